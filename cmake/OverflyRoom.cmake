@@ -1,0 +1,40 @@
+# overfly_room(NAME [DEPENDS targets...] [PRIVATE_DEPENDS targets...] [FOLDERS subfolders...])
+#
+# A room is a static library, overfly_NAME, of every .cpp in the current folder and its FOLDERS.
+# Third-party libraries go under PRIVATE_DEPENDS: their types must not leak into a room's headers.
+function(overfly_room name)
+  cmake_parse_arguments(arg "" "" "DEPENDS;PRIVATE_DEPENDS;FOLDERS" ${ARGN})
+  set(patterns ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  foreach(folder ${arg_FOLDERS})
+    list(APPEND patterns ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.cpp)
+  endforeach()
+  file(GLOB sources CONFIGURE_DEPENDS ${patterns})
+  if(NOT sources)
+    add_library(overfly_${name} INTERFACE)
+    return()
+  endif()
+  add_library(overfly_${name} STATIC ${sources})
+  target_include_directories(overfly_${name} PUBLIC ${CMAKE_SOURCE_DIR})
+  target_link_libraries(overfly_${name} PUBLIC ${arg_DEPENDS} PRIVATE ${arg_PRIVATE_DEPENDS})
+endfunction()
+
+# overfly_test(NAME [LIBS targets...] [TIMEOUT seconds])
+#
+# One GoogleTest program, NAME_tests, of every *_test.cpp in the current folder; each TEST is a
+# ctest case of its own, so that a skipped one is seen.
+function(overfly_test name)
+  cmake_parse_arguments(arg "" "TIMEOUT" "LIBS" ${ARGN})
+  if(NOT arg_TIMEOUT)
+    set(arg_TIMEOUT 300)
+  endif()
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*_test.cpp)
+  if(NOT sources)
+    return()
+  endif()
+  add_executable(${name}_tests ${sources})
+  target_link_libraries(${name}_tests PRIVATE ${arg_LIBS} overfly_test_support GTest::gmock GTest::gtest_main)
+  gtest_discover_tests(${name}_tests
+    TEST_PREFIX "${name}."
+    DISCOVERY_MODE PRE_TEST
+    PROPERTIES TIMEOUT ${arg_TIMEOUT})
+endfunction()

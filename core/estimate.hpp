@@ -1,0 +1,35 @@
+// What an estimator said about one frame, as it is recorded and scored.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/pose.hpp"
+
+namespace overfly {
+
+enum class TrackingState { kInitialising, kTracking, kLost };
+
+/// "INITIALISING", "TRACKING", "LOST".
+[[nodiscard]] const char* to_string(TrackingState state);
+[[nodiscard]] std::optional<TrackingState> tracking_state_from(const std::string& text);
+
+/// One answer of an estimator. `vo` is its own frame: arbitrary origin, rotation and scale.
+struct EstimateSample {
+  std::int64_t frame = 0;
+  std::int64_t t_ns = 0;  ///< stamp of the image it belongs to
+  TrackingState state = TrackingState::kInitialising;
+  Pose T_vo_camera;                      ///< meaningful only while tracking
+  std::optional<double> scene_depth;     ///< median depth of the scene in vo units
+  int map_id = 0;                        ///< grows by one with every reset: new origin, new scale
+};
+
+/// All answers of one estimator in one run, ordered by frame.
+struct EstimateTrack {
+  std::string name;
+  std::vector<EstimateSample> samples;
+};
+
+}  // namespace overfly

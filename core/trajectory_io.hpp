@@ -1,0 +1,37 @@
+// Trajectory files: TUM, KITTI and EuRoC ASL in, TUM out.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "core/result.hpp"
+#include "core/trajectory.hpp"
+
+namespace overfly {
+
+enum class TrajectoryFormat { kTum, kKitti, kEuroc };
+
+/// A trajectory as it stood in a file.
+struct TrajectoryFile {
+  Trajectory trajectory;
+  TrajectoryFormat format = TrajectoryFormat::kTum;
+  /// False for KITTI poses without a times file: stamps are then the line's number in seconds.
+  bool has_times = true;
+  /// `# key value` comments of a TUM file, e.g. init_scene_depth.
+  std::map<std::string, std::string> comments;
+};
+
+/// Reads a trajectory, its format told by its content. TUM: `t tx ty tz qx qy qz qw` [s, m];
+/// KITTI: 12 numbers, row-major 3 x 4, with the times of `times.txt` beside it where there is one
+/// of as many lines; EuRoC: csv `t[ns], p_xyz, q_wxyz, ...`.
+/// Errors: kNotFound; kUnreadable naming file, line, column and value.
+[[nodiscard]] Result<TrajectoryFile> read_trajectory(const std::filesystem::path& file);
+
+/// Writes TUM, stamps to the nanosecond and numbers that read back exactly.
+/// The file appears whole or not at all. Errors: kIo.
+[[nodiscard]] Status write_tum(const std::filesystem::path& file,
+                               const Trajectory& trajectory,
+                               const std::map<std::string, std::string>& comments = {});
+
+}  // namespace overfly

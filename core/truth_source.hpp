@@ -1,0 +1,39 @@
+// Where truth comes from, as the engine sees it: a simulator, a log or a live autopilot.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "core/pose.hpp"
+#include "core/result.hpp"
+
+namespace overfly {
+
+/// The aircraft at one instant.
+struct AircraftState {
+  std::int64_t t_ns = 0;
+  Pose T_world_body;  ///< body = forward-right-down
+  /// Velocity of body relative to world, expressed in world [m/s].
+  Eigen::Vector3d v_body_world_m_s = Eigen::Vector3d::Zero();
+  /// Angular rate of body relative to world, expressed in body [rad/s].
+  Eigen::Vector3d omega_body_rad_s = Eigen::Vector3d::Zero();
+  double airspeed_m_s = 0.0;
+};
+
+/// A flight. Queried with non-decreasing times; a live source may block until it knows.
+class TruthSource {
+ public:
+  virtual ~TruthSource() = default;
+
+  /// The state at t >= 0 from the run's start.
+  /// Errors: kNotFound after the end; whatever keeps a live source from answering.
+  [[nodiscard]] virtual Result<AircraftState> state_at(std::int64_t t_ns) = 0;
+  /// Empty for a flight whose end is not known beforehand.
+  [[nodiscard]] virtual std::optional<std::int64_t> duration_ns() const = 0;
+  /// One line for the manifest: what flew ("course: 25 m/s, 45 deg/s, 300 m").
+  [[nodiscard]] virtual std::string description() const = 0;
+};
+
+}  // namespace overfly

@@ -1,0 +1,118 @@
+// Scores of an estimate against the truth. Pure functions of their arguments.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/estimate.hpp"
+#include "core/result.hpp"
+#include "core/trajectory.hpp"
+
+namespace overfly::evaluation {
+
+enum class Association {
+  kInterpolate,  ///< truth at the estimate's stamp (default)
+  kNearest,      ///< truth pose with the nearest stamp, within max_time_difference, as evo does
+  kIndex,        ///< pose i to pose i, for files without times
+};
+
+enum class AlignmentMode { kNone, kOrigin, kInitScale, kSe3, kSim3, kYawOnly, kOriginSim3 };
+
+/// "none", "origin", "init_scale", "se3", "sim3", "yaw_only", "origin_sim3".
+[[nodiscard]] const char* to_string(AlignmentMode mode);
+[[nodiscard]] std::optional<AlignmentMode> alignment_mode_from(const std::string& text);
+[[nodiscard]] const std::vector<AlignmentMode>& all_alignment_modes();
+
+enum class Outcome {
+  kCompleted,
+  kNotInitialised,
+  kLost,
+  kReset,
+  kDiverged,
+  kCrashed,
+  kTimeout,
+};
+[[nodiscard]] const char* to_string(Outcome outcome);  ///< "COMPLETED", "NOT_INITIALISED", ...
+
+struct Options {
+  Association association = Association::kInterpolate;
+  std::int64_t max_time_difference_ns = 10'000'000;  ///< kNearest only
+  /// True depth of the ground along the optical axis at the first tracked pose [m].
+  std::optional<double> init_true_depth_m;
+  /// Mount of the camera, for roll, pitch and yaw of the body.
+  Pose T_body_camera{R_body_camera_nadir(), Eigen::Vector3d::Zero()};
+  std::vector<double> rpe_lengths_m{100, 200, 300, 400, 500, 600, 700, 800};
+};
+
+/// One truth-estimate pair, in time order.
+struct MatchedPose {
+  std::int64_t t_ns = 0;
+  Pose T_world_camera;  ///< truth
+  Pose T_vo_camera;     ///< estimate
+  std::optional<double> scene_depth;
+};
+
+/// Root mean square, mean, median, maximum of one error.
+struct ErrorStatistics {
+  double rmse = 0.0;
+  double mean = 0.0;
+  double median = 0.0;
+  double max = 0.0;
+};
+
+struct RelativeError {
+  double length_m = 0.0;
+  int pairs = 0;
+  double translation_percent = 0.0;      ///< RMS of position error / length
+  double rotation_deg_per_100m = 0.0;    ///< RMS
+};
+
+struct AlignmentScore {
+  AlignmentMode mode = AlignmentMode::kNone;
+  Similarity S_world_vo;
+  int matched = 0;
+  ErrorStatistics position_m;
+  ErrorStatistics rotation_deg;           ///< geodesic angle
+  ErrorStatistics rotation_euler_norm_deg;
+  /// With the last pose held to the end of the flight.
+  double position_rmse_hold_m = 0.0;
+  std::vector<RelativeError> relative;
+  std::vector<std::string> notes;         ///< e.g. "scale from the path of the first 5 s"
+};
+
+struct Score {
+  Outcome outcome = Outcome::kNotInitialised;
+  std::optional<double> outcome_time_s;   ///< of the loss, reset or divergence
+  int reset_count = 0;
+  double coverage = 0.0;                  ///< tracked frames / frames of the flight, [0, 1]
+  std::optional<double> initialised_at_s;
+  int frames = 0;
+  int tracked_frames = 0;
+  /// Per mode; a mode that the data cannot determine has its reason in `unavailable` instead.
+  std::map<AlignmentMode, AlignmentScore> alignments;
+  std::map<AlignmentMode, std::string> unavailable;
+};
+
+/// Pairs the tracked samples of the longest map with the truth.
+/// Errors: kInvalidArgument when nothing overlaps, with both time ranges.
+[[nodiscard]] Result<std::vector<MatchedPose>> associate(const Trajectory& T_world_camera_truth,
+                                                         const EstimateTrack& estimate,
+                                                         const Options& options);
+
+/// S_world_vo of one mode from matched poses.
+/// Errors: kInvalidArgument when the mode needs more than the data has (the message says what).
+[[nodiscard]] Result<Similarity> align(const std::vector<MatchedPose>& matches,
+                                       AlignmentMode mode,
+                                       const Options& options,
+                                       std::vector<std::string>* notes = nullptr);
+
+/// Scores an estimate against the truth: outcome, coverage and every alignment mode.
+/// Frames of the flight = samples of the track (one for each frame offered).
+[[nodiscard]] Score score(const Trajectory& T_world_camera_truth,
+                          const EstimateTrack& estimate,
+                          const Options& options);
+
+}  // namespace overfly::evaluation

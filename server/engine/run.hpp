@@ -1,0 +1,44 @@
+// Flies one scenario into one run folder.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "core/result.hpp"
+#include "renderer/renderer.hpp"
+#include "server/engine/run_timeline.hpp"
+#include "server/engine/scenario.hpp"
+
+namespace overfly::engine {
+
+/// Makes the renderer of a run, on the run's thread.
+using RendererFactory = std::function<Result<std::unique_ptr<renderer::Renderer>>(
+    std::shared_ptr<const terrain::TileSource>)>;
+
+struct RunOptions {
+  std::filesystem::path folder;      ///< made; must not hold a run already
+  RendererFactory renderer_factory;  ///< EGL where it is empty
+  /// Set by another thread to stop: the folder is then complete to the last frame and cancelled.
+  const std::atomic<bool>* cancel = nullptr;
+  /// Where live readers look; made by the run when null.
+  std::shared_ptr<RunTimeline> timeline;
+  /// Keep live pictures (camera, debug) in the timeline.
+  bool publish_images = false;
+  /// Called after each frame on the run's thread.
+  std::function<void(const RunInfo&)> progress;
+};
+
+struct RunResult {
+  RunInfo info;
+  nlohmann::json metrics;  ///< as in metrics.json
+};
+
+/// Flies, estimates, records and scores; returns when the folder is complete.
+/// Errors: kConflict if the folder holds a run; whatever world, renderer, flight or estimator say.
+/// A lost, diverged or crashed estimator is a result, not an error.
+[[nodiscard]] Result<RunResult> run_scenario(const Scenario& scenario, const RunOptions& options);
+
+}  // namespace overfly::engine

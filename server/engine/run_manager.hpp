@@ -1,0 +1,64 @@
+// The runs of a server: those on disk and those in flight.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/engine/run.hpp"
+
+namespace overfly::engine {
+
+struct ScenarioEntry {
+  std::string name;  ///< file name without .json
+  std::filesystem::path file;
+  std::string title;
+  std::string description;
+  std::string error;  ///< why it cannot be flown here; empty when it can
+};
+
+struct RunManagerOptions {
+  std::filesystem::path runs_folder;       ///< made if absent
+  std::filesystem::path scenarios_folder;
+  RendererFactory renderer_factory;
+  int max_parallel_runs = 1;               ///< further ones wait in a queue
+};
+
+/// Thread-safe. Owns the threads of the runs; its destructor cancels and joins them.
+class RunManager {
+ public:
+  static Result<std::unique_ptr<RunManager>> create(RunManagerOptions options);
+  ~RunManager();
+
+  [[nodiscard]] std::vector<ScenarioEntry> scenarios() const;
+  /// The resolved document. Errors: kNotFound, kInvalidArgument.
+  [[nodiscard]] Result<nlohmann::json> scenario(const std::string& name) const;
+
+  /// Starts (or queues) a run of a scenario with overrides. The same idempotency key gives the
+  /// run that it gave before. Errors: kNotFound, kInvalidArgument with the faulty fields.
+  [[nodiscard]] Result<RunInfo> start(const std::string& scenario,
+                                      const std::vector<Override>& overrides,
+                                      const std::string& idempotency_key = "");
+  /// Newest first.
+  [[nodiscard]] std::vector<RunInfo> runs() const;
+  /// The time line, live or read from disk (cached). Errors: kNotFound, kUnreadable.
+  [[nodiscard]] Result<std::shared_ptr<RunTimeline>> timeline(const std::string& id);
+  /// Errors: kNotFound; kConflict when it is not running or queued.
+  Status cancel(const std::string& id);
+  /// Deletes the folder. Errors: kNotFound; kConflict while it runs.
+  Status remove(const std::string& id);
+  /// Folder of a run. Errors: kNotFound, also for an id that is no plain folder name.
+  [[nodiscard]] Result<std::filesystem::path> folder(const std::string& id) const;
+  /// The world of a run, shared between its views. Errors: as open_world.
+  [[nodiscard]] Result<std::shared_ptr<const terrain::TileSource>> world(const std::string& id);
+  [[nodiscard]] const RendererFactory& renderer_factory() const;
+
+ private:
+  RunManager();
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace overfly::engine

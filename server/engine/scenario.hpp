@@ -1,0 +1,93 @@
+// A scenario: what to fly, over what, seen by what, judged how. JSON on disk
+// (scenarios/scenario.schema.json), plain values here.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/camera.hpp"
+#include "core/result.hpp"
+#include "core/time.hpp"
+#include "flight/flight.hpp"
+#include "terrain/world.hpp"
+
+namespace overfly::engine {
+
+enum class Pacing {
+  kLockstep,  ///< each frame waits for every estimator: nothing dropped, byte-identical results
+  kRealTime,  ///< frames come at their rate; a busy estimator gets the latest, drops are counted
+};
+
+struct EstimatorSpec {
+  std::string name;  ///< unique in the scenario; names the files
+  std::string type;  ///< "feature", "perfect", "drifting"
+  std::map<std::string, double> parameters;
+};
+
+/// A scenario with defaults filled in and angles in radians.
+struct Scenario {
+  std::string name;
+  std::string title;
+  std::string description;
+  std::uint64_t seed = 1;
+
+  /// The built-in world of a seed, a world manifest, or layers listed in the scenario itself.
+  struct BuiltinWorld {
+    std::uint64_t seed = 1;
+  };
+  std::variant<BuiltinWorld, std::filesystem::path, terrain::WorldSpec> world;
+
+  /// The course, or a pose file.
+  struct LoggedFlight {
+    std::filesystem::path file;
+    bool camera_poses = false;
+  };
+  std::variant<flight::CourseParameters, LoggedFlight> flight;
+  /// Stops the flight early [s].
+  std::optional<double> duration_s;
+
+  PinholeCamera camera;
+  FrameRate rate;
+  std::vector<EstimatorSpec> estimators;
+  Pacing pacing = Pacing::kLockstep;
+
+  bool record_frames = false;             ///< camera images as frames/NNNNNN.jpg
+  double record_debug_hz = 5.0;           ///< debug images as debug/NAME/NNNNNN.jpg; 0 = none
+
+  nlohmann::json resolved;                ///< the document with defaults, overrides and `data` applied
+};
+
+/// One override of a scenario document: `--set a.b.0.c=VALUE`.
+struct Override {
+  std::string path;
+  nlohmann::json value;
+};
+
+/// "path=VALUE": VALUE parsed as JSON, else taken as a string. Errors: kInvalidArgument.
+[[nodiscard]] Result<Override> parse_override(const std::string& text);
+
+/// Reads, overrides, validates and resolves a scenario file. Relative paths in it are relative to
+/// its folder, or to its field `data`.
+/// Errors: kNotFound; kUnreadable (JSON syntax, with line and column); kInvalidArgument with every
+/// fault as "field = value: must be limit", one a line.
+[[nodiscard]] Result<Scenario> load_scenario(const std::filesystem::path& file,
+                                             const std::vector<Override>& overrides = {});
+
+/// The same for a document in memory; `base` is the folder for its relative paths.
+[[nodiscard]] Result<Scenario> resolve_scenario(nlohmann::json document,
+                                                const std::vector<Override>& overrides,
+                                                const std::filesystem::path& base);
+
+/// Faults of a document against the schema alone: (JSON path, message). Empty = valid.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> schema_faults(
+    const nlohmann::json& document);
+/// The JSON schema (draft 2020-12) as text, embedded in the program.
+[[nodiscard]] const std::string& scenario_schema_text();
+
+}  // namespace overfly::engine

@@ -1,0 +1,79 @@
+// The ground as tiles of imagery over a map plane, and as a surface in the world frame.
+//
+// The map plane is a projected coordinate system in metres: x_map right (east), y_map up (north),
+// that of the first imagery layer where it is metric and north-up (its texels are then used as
+// they are), else a transverse Mercator at the world's origin. Texels of level 0 have the size
+// grid().texel_m; level L doubles it L times. Tile (level, col, row) spans
+//   x_map in [left_x_m + col * s, + s],  y_map in [top_y_m - (row + 1) * s, top_y_m - row * s],
+//   s = kTileTexels * texel_m * 2^level.
+// Columns and rows may be negative or beyond the imagery: such tiles have no imagery, and the
+// ground there continues with the elevation's edge value.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+
+#include "core/geodesy.hpp"
+#include "core/height_query.hpp"
+#include "core/image.hpp"
+#include "core/result.hpp"
+
+namespace overfly::terrain {
+
+inline constexpr int kTileTexels = 512;  ///< side of a tile without its border
+/// Texels of the neighbours around each tile, so that filtering shows no seam down to mip 3.
+inline constexpr int kTileBorder = 8;
+
+/// Colour of the ground where there is no imagery.
+inline constexpr std::uint8_t kVoidRgb[3] = {128, 128, 120};
+
+struct TileId {
+  int level = 0;
+  int col = 0;
+  int row = 0;
+  auto operator<=>(const TileId&) const = default;
+};
+
+struct TileGrid {
+  double left_x_m = 0.0;  ///< map x of the imagery's left edge
+  double top_y_m = 0.0;   ///< map y of the imagery's top edge
+  double texel_m = 1.0;   ///< level 0
+  int levels = 1;         ///< at level `levels - 1` one tile covers all imagery
+  int cols = 1;           ///< tiles of level 0 that have imagery
+  int rows = 1;
+
+  [[nodiscard]] double tile_m(int level) const { return kTileTexels * texel_m * (1 << level); }
+};
+
+enum class TileCoverage { kNone, kPartial, kFull };
+
+/// One tile's texels: (kTileTexels + 2 kTileBorder)^2, row 0 in the north.
+struct Tile {
+  Image rgb;    ///< void texels have kVoidRgb
+  Image valid;  ///< 255 where there is imagery, 0 where not
+};
+
+/// Thread-safe: the implementation guards its readers.
+class TileSource : public HeightQuery {
+ public:
+  [[nodiscard]] virtual const TileGrid& grid() const = 0;
+  [[nodiscard]] virtual TileCoverage coverage(const TileId& id) const = 0;
+  /// Reads a tile with its border. Errors: kIo when a file cannot be read.
+  [[nodiscard]] virtual Result<Tile> tile(const TileId& id) const = 0;
+
+  /// The ground's point in the world frame above a place of the map plane [m].
+  [[nodiscard]] virtual Eigen::Vector3d world_from_map(double x_map_m, double y_map_m) const = 0;
+  /// The map position of the ground on the vertical world line through (east, north) [m].
+  [[nodiscard]] virtual Eigen::Vector2d map_from_world(double east_m, double north_m) const = 0;
+  /// True where there is imagery.
+  [[nodiscard]] virtual bool has_imagery(double x_map_m, double y_map_m) const = 0;
+
+  [[nodiscard]] virtual const LocalFrame& frame() const = 0;
+  /// Lowest and highest ellipsoidal height of the ground [m].
+  [[nodiscard]] virtual Eigen::Vector2d height_range_m() const = 0;
+  /// Credit line of the imagery and elevation.
+  [[nodiscard]] virtual std::string attribution() const = 0;
+};
+
+}  // namespace overfly::terrain

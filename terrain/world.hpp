@@ -1,0 +1,72 @@
+// Opens a world: a manifest that lists imagery and elevation files, or those files directly.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "terrain/tile_source.hpp"
+
+namespace overfly::terrain {
+
+enum class VerticalDatum { kEllipsoid, kEgm96, kEgm2008, kNavd88, kUnknown };
+
+struct ImageryLayer {
+  std::filesystem::path file;
+  std::string attribution;
+};
+
+struct ElevationLayer {
+  std::filesystem::path file;
+  VerticalDatum datum = VerticalDatum::kUnknown;
+  /// Geoid height above the ellipsoid [m], for a datum whose PROJ grid is not installed.
+  std::optional<double> geoid_separation_m;
+  /// Metres per unit of the raster; taken from the file where it says, else 1.
+  std::optional<double> unit_m;
+  std::string attribution;
+};
+
+/// What a world is made of; layers in priority order, the first one wins.
+struct WorldSpec {
+  std::string name;
+  std::vector<ImageryLayer> imagery;
+  std::vector<ElevationLayer> elevation;
+  /// Ellipsoidal height of flat ground, where there is no elevation layer [m].
+  std::optional<double> ground_height_m;
+  /// Origin of the world frame; the imagery's centre on the ground where it is not given.
+  std::optional<Geodetic> origin;
+  /// A named place for courses to start: the threshold of the runway's north end, and the
+  /// direction of the take-off run, clockwise from north [rad].
+  struct Runway {
+    double lat_rad = 0.0;
+    double lon_rad = 0.0;
+    double heading_rad = 0.0;
+  };
+  std::optional<Runway> runway;
+};
+
+/// Reads a world manifest (JSON, format in docs/WORLDS.md). Relative files are relative to it.
+/// Errors: kNotFound, kUnreadable, kInvalidArgument naming file, field, value and limit.
+[[nodiscard]] Result<WorldSpec> read_world_manifest(const std::filesystem::path& manifest);
+[[nodiscard]] Status write_world_manifest(const std::filesystem::path& manifest,
+                                          const WorldSpec& spec);
+
+/// An opened world, with what was doubtful about its files.
+struct World {
+  std::shared_ptr<const TileSource> tiles;
+  WorldSpec spec;                      ///< with the origin resolved
+  std::vector<std::string> warnings;   ///< each names file, what was assumed, and the possible error
+  /// SHA-256 or size-and-time digests of the files, for the run's manifest: (file, digest).
+  std::vector<std::pair<std::string, std::string>> data_hashes;
+};
+
+/// Errors: kUnreadable or kInvalidArgument naming the file: no or broken georeference, missing
+/// CRS, imagery and elevation that do not overlap, a file GDAL cannot read.
+[[nodiscard]] Result<World> open_world(const WorldSpec& spec);
+
+/// Human-readable summary (extent, resolution, layers, warnings, attribution), one fact a line.
+[[nodiscard]] std::string describe(const World& world);
+
+}  // namespace overfly::terrain

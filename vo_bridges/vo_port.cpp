@@ -1,0 +1,34 @@
+#include "vo_bridges/vo_port.hpp"
+
+namespace overfly {
+
+Status validate_vo_frame(const VoFrame& frame, const VoFrame* previous) {
+  const std::string where = "frame " + std::to_string(frame.index);
+  const auto bad = [&](const std::string& what) {
+    return Error{ErrorCode::kInvalidArgument, where + ": " + what};
+  };
+  if (!frame.image || frame.image->empty()) return bad("the image is empty");
+  if (frame.image->channels != 1) {
+    return bad("the image has " + std::to_string(frame.image->channels) +
+               " channels: must be 1 (grey)");
+  }
+  if (Status status = frame.intrinsics.validate(); !status) return status.error().in(where);
+  if (frame.image->width_px != frame.intrinsics.width_px ||
+      frame.image->height_px != frame.intrinsics.height_px) {
+    return bad("the image is " + std::to_string(frame.image->width_px) + " x " +
+               std::to_string(frame.image->height_px) + " px, its intrinsics are for " +
+               std::to_string(frame.intrinsics.width_px) + " x " +
+               std::to_string(frame.intrinsics.height_px) + " px");
+  }
+  if (previous == nullptr) return {};
+  if (frame.index <= previous->index || frame.t_ns <= previous->t_ns) {
+    return bad("not after frame " + std::to_string(previous->index));
+  }
+  if (frame.intrinsics.width_px != previous->intrinsics.width_px ||
+      frame.intrinsics.height_px != previous->intrinsics.height_px) {
+    return bad("the image size changed in flight");
+  }
+  return {};
+}
+
+}  // namespace overfly

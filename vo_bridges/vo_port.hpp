@@ -1,0 +1,70 @@
+// The one interface between the range and a visual-odometry estimator. An estimator receives
+// images, intrinsics, exposure and time: it cannot reach the truth.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/camera.hpp"
+#include "core/estimate.hpp"
+#include "core/image.hpp"
+#include "core/result.hpp"
+
+namespace overfly {
+
+/// One inertial sample, body axes (forward-right-down).
+struct ImuSample {
+  std::int64_t t_ns = 0;
+  Eigen::Vector3d acceleration_m_s2 = Eigen::Vector3d::Zero();  ///< specific force
+  Eigen::Vector3d angular_rate_rad_s = Eigen::Vector3d::Zero();
+};
+
+/// One image for an estimator. The image is shared and never written to after it is made.
+struct VoFrame {
+  std::string camera_id = "camera0";
+  std::int64_t index = 0;          ///< frame number; gaps are dropped frames
+  std::int64_t t_ns = 0;           ///< mid exposure of the middle row
+  std::int64_t exposure_ns = 0;    ///< 0 = not known
+  std::shared_ptr<const Image> image;  ///< 8-bit grey
+  PinholeCamera intrinsics;
+  std::vector<ImuSample> imu;      ///< since the frame before; empty without an IMU
+};
+
+/// The estimator's answer to one frame.
+struct VoEstimate {
+  EstimateSample sample;               ///< frame and t_ns are those of the frame it answers
+  std::optional<Image> debug_image;    ///< RGB, same size as the frame or smaller
+  std::vector<Eigen::Vector3f> map_points_vo;  ///< sparse map seen now, in vo units; may be empty
+  std::map<std::string, double> timing_ms;     ///< wall time by stage
+  std::map<std::string, double> counters;      ///< e.g. features, inliers, keyframes
+};
+
+class VoPort {
+ public:
+  virtual ~VoPort() = default;
+
+  /// The estimator's type ("feature", "perfect", ...).
+  [[nodiscard]] virtual std::string type() const = 0;
+  /// The parameters in force, by their names in the field, as printed into the run's manifest.
+  [[nodiscard]] virtual std::map<std::string, std::string> effective_parameters() const = 0;
+  /// Takes the next frame and answers for it. Frames come with increasing index and time, all
+  /// with the intrinsics and size of the first.
+  /// A lost track is a state, not an error. Errors: kInvalidArgument for an empty or colour image,
+  /// for a changed size, and for a frame not after the one before; kInternal when the estimator
+  /// is gone for good (the run is CRASHED).
+  [[nodiscard]] virtual Result<VoEstimate> track(const VoFrame& frame) = 0;
+  /// Forgets everything, as newly created.
+  virtual void reset() = 0;
+  /// Whether `track` should make debug images and map points (they cost time). Default: no.
+  virtual void set_debug(bool wanted) = 0;
+};
+
+/// Checks what every estimator asks of a frame; `previous` is the frame before, or null.
+[[nodiscard]] Status validate_vo_frame(const VoFrame& frame, const VoFrame* previous);
+
+}  // namespace overfly
