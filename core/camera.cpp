@@ -12,9 +12,9 @@ Result<PinholeCamera> PinholeCamera::from_fov(int width_px,
                                               double fov_rad,
                                               FovAxis axis) {
   if (!(fov_rad > 0.0 && fov_rad < kPi)) {
-    return Error{ErrorCode::kInvalidArgument,
-                 "field of view = " + std::to_string(deg_from_rad(fov_rad)) +
-                     " deg: must be in (0, 180)"};
+    return Error{
+        ErrorCode::kInvalidArgument,
+        "field of view = " + std::to_string(deg_from_rad(fov_rad)) + " deg: must be in (0, 180)"};
   }
   double extent_px = width_px;
   if (axis == FovAxis::kVertical) extent_px = height_px;

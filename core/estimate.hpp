@@ -21,9 +21,9 @@ struct EstimateSample {
   std::int64_t frame = 0;
   std::int64_t t_ns = 0;  ///< stamp of the image it belongs to
   TrackingState state = TrackingState::kInitialising;
-  Pose T_vo_camera;                      ///< meaningful only while tracking
-  std::optional<double> scene_depth;     ///< median depth of the scene in vo units
-  int map_id = 0;                        ///< grows by one with every reset: new origin, new scale
+  Pose T_vo_camera;                   ///< meaningful only while tracking
+  std::optional<double> scene_depth;  ///< median depth of the scene in vo units
+  int map_id = 0;                     ///< grows by one with every reset: new origin, new scale
 };
 
 /// All answers of one estimator in one run, ordered by frame.

@@ -19,8 +19,8 @@ Eigen::Matrix3d R_enu_ecef_at(const Geodetic& point) {
   const double sin_lon = std::sin(point.lon_rad);
   const double cos_lon = std::cos(point.lon_rad);
   Eigen::Matrix3d R;
-  R << -sin_lon, cos_lon, 0.0,                               //
-      -sin_lat * cos_lon, -sin_lat * sin_lon, cos_lat,       //
+  R << -sin_lon, cos_lon, 0.0,                          //
+      -sin_lat * cos_lon, -sin_lat * sin_lon, cos_lat,  //
       cos_lat * cos_lon, cos_lat * sin_lon, sin_lat;
   return R;
 }

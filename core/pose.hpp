@@ -8,8 +8,9 @@ namespace overfly {
 
 /// Rigid transform T_target_source: p_target = T_target_source * p_source. Metres.
 struct Pose {
-  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< R_target_source, unit, Hamilton
-  Eigen::Vector3d translation = Eigen::Vector3d::Zero();         ///< source's origin in target [m]
+  Eigen::Quaterniond rotation =
+      Eigen::Quaterniond::Identity();                     ///< R_target_source, unit, Hamilton
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();  ///< source's origin in target [m]
 
   [[nodiscard]] Pose inverse() const;
   [[nodiscard]] Eigen::Matrix4d matrix() const;

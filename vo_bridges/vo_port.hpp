@@ -27,18 +27,18 @@ struct ImuSample {
 /// One image for an estimator. The image is shared and never written to after it is made.
 struct VoFrame {
   std::string camera_id = "camera0";
-  std::int64_t index = 0;          ///< frame number; gaps are dropped frames
-  std::int64_t t_ns = 0;           ///< mid exposure of the middle row
-  std::int64_t exposure_ns = 0;    ///< 0 = not known
+  std::int64_t index = 0;              ///< frame number; gaps are dropped frames
+  std::int64_t t_ns = 0;               ///< mid exposure of the middle row
+  std::int64_t exposure_ns = 0;        ///< 0 = not known
   std::shared_ptr<const Image> image;  ///< 8-bit grey
   PinholeCamera intrinsics;
-  std::vector<ImuSample> imu;      ///< since the frame before; empty without an IMU
+  std::vector<ImuSample> imu;  ///< since the frame before; empty without an IMU
 };
 
 /// The estimator's answer to one frame.
 struct VoEstimate {
-  EstimateSample sample;               ///< frame and t_ns are those of the frame it answers
-  std::optional<Image> debug_image;    ///< RGB, same size as the frame or smaller
+  EstimateSample sample;                       ///< frame and t_ns are those of the frame it answers
+  std::optional<Image> debug_image;            ///< RGB, same size as the frame or smaller
   std::vector<Eigen::Vector3f> map_points_vo;  ///< sparse map seen now, in vo units; may be empty
   std::map<std::string, double> timing_ms;     ///< wall time by stage
   std::map<std::string, double> counters;      ///< e.g. features, inliers, keyframes

@@ -32,7 +32,9 @@ std::optional<fs::path> shared_data(const std::string& relative) {
   return file;
 }
 
-fs::path source_file(const std::string& relative) { return fs::path(OVERFLY_SOURCE_DIR) / relative; }
+fs::path source_file(const std::string& relative) {
+  return fs::path(OVERFLY_SOURCE_DIR) / relative;
+}
 
 void write_text(const fs::path& file, const std::string& text) {
   std::ofstream out(file, std::ios::binary);

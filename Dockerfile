@@ -1,0 +1,29 @@
+# One image for any machine: it renders with a GPU where the host lends one, else in software.
+#   docker build -t overfly . && docker run --rm -p 127.0.0.1:8480:8480 overfly
+FROM debian:bookworm-slim AS build
+WORKDIR /opt/overfly
+COPY scripts scripts
+RUN scripts/install-packages build web run
+COPY . .
+RUN scripts/build && scripts/runtime-packages build/release/overfly > runtime-packages.txt
+
+FROM debian:bookworm-slim
+WORKDIR /opt/overfly
+COPY scripts/packages.txt scripts/install-packages scripts/
+COPY --from=build /opt/overfly/runtime-packages.txt .
+RUN scripts/install-packages run \
+ && apt-get install -y -qq --no-install-recommends curl $(cat runtime-packages.txt) \
+ && rm -rf /var/lib/apt/lists/* \
+ && useradd --create-home --uid 1000 overfly \
+ && install -d -o overfly -g overfly /data/runs /data/cache
+COPY --from=build /opt/overfly/build/release/overfly build/release/overfly
+COPY --from=build /opt/overfly/web/dist web/dist
+COPY scenarios scenarios
+USER overfly
+ENV OVERFLY_CACHE=/data/cache
+VOLUME ["/data/runs", "/data/cache"]
+EXPOSE 8480
+HEALTHCHECK --interval=30s --timeout=5s --start-period=10s \
+  CMD curl -fsS http://127.0.0.1:8480/api/v1/health || exit 1
+ENTRYPOINT ["/opt/overfly/build/release/overfly"]
+CMD ["serve", "--address", "0.0.0.0", "--runs", "/data/runs", "--scenarios", "/opt/overfly/scenarios", "--web", "/opt/overfly/web/dist"]
