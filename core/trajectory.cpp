@@ -1,6 +1,7 @@
 #include "core/trajectory.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -30,7 +31,10 @@ Status Trajectory::append(const StampedPose& stamped) {
     return Error{ErrorCode::kInvalidArgument, where + ": the quaternion has no length"};
   }
   poses_.push_back(stamped);
-  poses_.back().pose.rotation.normalize();
+  // A quaternion of unit length stays as it is to the last bit: normalising one again can change
+  // it, and a file written and read back must be the same file.
+  constexpr double kUnitTolerance = 1e-15;
+  if (std::abs(norm - 1.0) > kUnitTolerance) poses_.back().pose.rotation.normalize();
   return {};
 }
 

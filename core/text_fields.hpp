@@ -1,0 +1,57 @@
+// Text files of numbers: lines cut into fields, and errors that say where a value stands.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/result.hpp"
+
+namespace overfly {
+
+/// One line that is neither empty nor a comment. Comma-separated where it holds a comma, else cut
+/// at white space; fields are trimmed.
+struct FieldLine {
+  int number = 0;  ///< in the file, from 1
+  bool comma_separated = false;
+  std::vector<std::string_view> fields;
+};
+
+class FieldFile {
+ public:
+  /// Errors: kNotFound; kIo.
+  static Result<FieldFile> read(const std::filesystem::path& file);
+
+  [[nodiscard]] const std::vector<FieldLine>& lines() const { return lines_; }
+  /// `# key value` lines, the last of each key.
+  [[nodiscard]] const std::map<std::string, std::string>& comments() const { return comments_; }
+
+  /// kUnreadable: "FILE:12: column 5 = 'abc': WHAT"; columns count from 1.
+  [[nodiscard]] Error bad_field(const FieldLine& line,
+                                std::size_t column,
+                                const std::string& what) const;
+  /// kUnreadable: "FILE:12: WHAT".
+  [[nodiscard]] Error bad_line(const FieldLine& line, const std::string& what) const;
+
+  /// Errors: kUnreadable if the line has not exactly `count` fields.
+  [[nodiscard]] Status expect_fields(const FieldLine& line, std::size_t count) const;
+  /// A finite decimal number. Errors: kUnreadable.
+  [[nodiscard]] Result<double> number(const FieldLine& line, std::size_t column) const;
+  /// Seconds as a decimal, exact to the nanosecond whatever their size (a double of today's
+  /// seconds since 1970 resolves 240 ns only). Errors: kUnreadable.
+  [[nodiscard]] Result<std::int64_t> time_s(const FieldLine& line, std::size_t column) const;
+  /// Whole nanoseconds. Errors: kUnreadable.
+  [[nodiscard]] Result<std::int64_t> time_ns(const FieldLine& line, std::size_t column) const;
+
+ private:
+  std::filesystem::path file_;
+  std::shared_ptr<const std::string> text_;  // the fields point into it
+  std::vector<FieldLine> lines_;
+  std::map<std::string, std::string> comments_;
+};
+
+}  // namespace overfly

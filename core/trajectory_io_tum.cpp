@@ -1,0 +1,87 @@
+// Writing of TUM files.
+#include <unistd.h>
+
+#include <charconv>
+#include <cstdint>
+#include <fstream>
+#include <string>
+#include <system_error>
+
+#include "core/time.hpp"
+#include "core/trajectory_io.hpp"
+
+namespace overfly {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Seconds with nine decimals, exact.
+std::string seconds_text(std::int64_t t_ns) {
+  // Unsigned: the size of the smallest int64 has no int64.
+  const auto size =
+      t_ns < 0 ? 0 - static_cast<std::uint64_t>(t_ns) : static_cast<std::uint64_t>(t_ns);
+  constexpr std::uint64_t kNs = kNsPerS;
+  const std::string fraction = std::to_string(size % kNs);
+  std::string text = t_ns < 0 ? "-" : "";
+  text += std::to_string(size / kNs);
+  text += '.';
+  text.append(9 - fraction.size(), '0');
+  return text += fraction;
+}
+
+/// The shortest decimal that reads back as the same double.
+std::string number_text(double value) {
+  char buffer[32];
+  const auto [end, error] = std::to_chars(buffer, buffer + sizeof buffer, value);
+  return {buffer, error == std::errc() ? end : buffer};
+}
+
+std::string tum_text(const Trajectory& trajectory,
+                     const std::map<std::string, std::string>& comments) {
+  std::string text;
+  for (const auto& [key, value] : comments) text += "# " + key + " " + value + "\n";
+  for (const StampedPose& stamped : trajectory.poses()) {
+    const Eigen::Vector3d& p = stamped.pose.translation;
+    const Eigen::Quaterniond& q = stamped.pose.rotation;
+    text += seconds_text(stamped.t_ns);
+    for (const double value : {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()}) {
+      text += ' ' + number_text(value);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace
+
+Status write_tum(const fs::path& file,
+                 const Trajectory& trajectory,
+                 const std::map<std::string, std::string>& comments) {
+  const auto failed = [&](const std::string& what) {
+    return Error{ErrorCode::kIo, file.string() + ": " + what};
+  };
+  for (const auto& [key, value] : comments) {
+    if (key.empty() || key.find_first_of(" \t\r\n") != std::string::npos ||
+        value.find_first_of("\r\n") != std::string::npos) {
+      return failed("the comment '" + key + "' does not fit on one line");
+    }
+  }
+  const fs::path unfinished = file.string() + ".part" + std::to_string(getpid());
+  std::error_code error;
+  {
+    std::ofstream out(unfinished, std::ios::binary | std::ios::trunc);
+    out << tum_text(trajectory, comments);
+    if (!out.flush()) {
+      out.close();
+      fs::remove(unfinished, error);
+      return failed("cannot be written");
+    }
+  }
+  fs::rename(unfinished, file, error);
+  if (!error) return {};
+  std::error_code ignored;
+  fs::remove(unfinished, ignored);
+  return failed("cannot be written: " + error.message());
+}
+
+}  // namespace overfly
