@@ -1,0 +1,66 @@
+// Motions from homographies and essential matrices.
+#include <Eigen/Eigenvalues>
+#include <Eigen/SVD>
+#include <cmath>
+
+#include "odometry/feature/two_view.hpp"
+
+namespace overfly::odometry {
+namespace {
+
+constexpr double kNoMotion = 1e-9;
+
+Eigen::Matrix3d frame_of(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  Eigen::Matrix3d m;
+  m << a, b, a.cross(b);
+  return m;
+}
+
+Pose unit_motion(const Eigen::Matrix3d& R, const Eigen::Vector3d& t) {
+  return {Eigen::Quaterniond(R).normalized(), t.normalized()};
+}
+
+}  // namespace
+
+std::vector<Pose> motions_of_homography(const Eigen::Matrix3d& H_calibrated) {
+  const Eigen::JacobiSVD<Eigen::Matrix3d> scale(H_calibrated);
+  // The second singular value of R + t n^T / d is one.
+  Eigen::Matrix3d H = H_calibrated / scale.singularValues()(1);
+  if (H.determinant() < 0.0) H = -H;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(H.transpose() * H);
+  const double s1 = eigen.eigenvalues()(2);  // squares of the singular values
+  const double s3 = eigen.eigenvalues()(0);
+  if (s1 - s3 < kNoMotion) return {};
+  Eigen::Matrix3d V = eigen.eigenvectors().rowwise().reverse();
+  if (V.determinant() < 0.0) V = -V;
+  const double a = std::sqrt(std::max(0.0, 1.0 - s3) / (s1 - s3));
+  const double b = std::sqrt(std::max(0.0, s1 - 1.0) / (s1 - s3));
+  std::vector<Pose> motions;
+  for (const double sign : {1.0, -1.0}) {
+    const Eigen::Vector3d u = a * V.col(0) + sign * b * V.col(2);
+    const Eigen::Matrix3d U = frame_of(V.col(1), u);
+    const Eigen::Matrix3d W = frame_of(H * V.col(1), H * u);
+    const Eigen::Matrix3d R = W * U.transpose();
+    const Eigen::Vector3d t = (H - R) * U.col(2);
+    if (t.norm() < kNoMotion) continue;
+    motions.push_back(unit_motion(R, t));
+    motions.push_back(unit_motion(R, -t));
+  }
+  return motions;
+}
+
+std::vector<Pose> motions_of_essential(const Eigen::Matrix3d& E) {
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(E, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Matrix3d U = svd.matrixU();
+  Eigen::Matrix3d V = svd.matrixV();
+  if (U.determinant() < 0.0) U = -U;
+  if (V.determinant() < 0.0) V = -V;
+  Eigen::Matrix3d W;
+  W << 0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0;
+  const Eigen::Matrix3d R1 = U * W * V.transpose();
+  const Eigen::Matrix3d R2 = U * W.transpose() * V.transpose();
+  const Eigen::Vector3d t = U.col(2);
+  return {unit_motion(R1, t), unit_motion(R1, -t), unit_motion(R2, t), unit_motion(R2, -t)};
+}
+
+}  // namespace overfly::odometry

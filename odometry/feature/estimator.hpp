@@ -1,0 +1,71 @@
+// The estimator behind the port: which of its parts works on a frame, and what state that gives.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "odometry/feature/feature_odometry.hpp"
+#include "odometry/feature/initialiser.hpp"
+#include "odometry/feature/map.hpp"
+#include "odometry/feature/mapper.hpp"
+#include "odometry/feature/motion_model.hpp"
+#include "odometry/feature/orb.hpp"
+#include "odometry/feature/relocaliser.hpp"
+#include "odometry/feature/tracker.hpp"
+
+namespace overfly::odometry {
+
+/// States: INITIALISING until the first map; TRACKING; LOST until the map is found again. When
+/// that does not come for `kGiveUpS` of images that show something, or the map was just begun,
+/// the map is dropped and a new one begun (map_id grows): INITIALISING.
+class FeatureOdometry final : public VoPort {
+ public:
+  explicit FeatureOdometry(const FeatureParameters& parameters);
+
+  [[nodiscard]] std::string type() const override { return "feature"; }
+  [[nodiscard]] std::map<std::string, std::string> effective_parameters() const override;
+  [[nodiscard]] Result<VoEstimate> track(const VoFrame& frame) override;
+  void reset() override;
+  void set_debug(bool wanted) override { debug_ = wanted; }
+
+ private:
+  /// The parts that need the camera, made at the first frame.
+  struct Parts {
+    Parts(const PinholeCamera& camera, const FeatureParameters& parameters);
+    Initialiser initialiser;
+    Tracker tracker;
+    Mapper mapper;
+  };
+  /// What happened in the frame at hand.
+  struct Outcome {
+    TrackResult tracked;
+    bool keyframe = false;
+  };
+
+  void initialise(const FrameImage& frame, VoEstimate& estimate, Outcome& outcome);
+  void follow(const FrameImage& frame, VoEstimate& estimate, Outcome& outcome);
+  void search(const FrameImage& frame, VoEstimate& estimate, Outcome& outcome);
+  [[nodiscard]] TrackResult track_map(const FrameImage& frame) const;
+  void accept(const FrameImage& frame, VoEstimate& estimate, Outcome& outcome);
+  void lose(const FrameImage& frame);
+  void start_over();
+  void count_sights(const FrameImage& frame, const TrackResult& tracked);
+  void report(const FrameImage& frame, const Outcome& outcome, VoEstimate& estimate);
+
+  FeatureParameters parameters_;
+  PinholeCamera camera_;
+  OrbExtractor orb_;
+  std::unique_ptr<Parts> parts_;
+  Map map_;
+  MotionModel motion_;
+  TrackingState state_ = TrackingState::kInitialising;
+  int map_id_ = 0;
+  Pose T_camera_vo_;
+  std::optional<VoFrame> previous_;
+  std::int64_t lost_at_ns_ = 0;
+  double blind_search_s_ = 0.0;  ///< time lost over images that show something
+  bool debug_ = false;
+};
+
+}  // namespace overfly::odometry

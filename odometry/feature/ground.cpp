@@ -1,0 +1,83 @@
+// The ground's local shape: planes, patch tangents and depth, from the map's points.
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "odometry/feature/map.hpp"
+
+namespace overfly::odometry {
+namespace {
+
+constexpr int kMinPlanePoints = 20;
+constexpr int kMinAxisPoints = 15;
+/// Points less than this far off the axis, as a share of their depth, count as near it.
+constexpr double kAxisTangent = 0.2;
+
+double median_of(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+void set_tangents(const PinholeCamera& camera, const Keyframe& source, MapPoint& point) {
+  // On the plane n.X = d the point at ray r is X = d r / (n.r), so that
+  // dX/dr_x = d / (n.r) (e_x - r n_x / (n.r)), and likewise for y.
+  const Eigen::Vector3d ray = camera.ray(point.source_pixel);
+  const Eigen::Vector3d p_camera = source.T_camera_vo * point.position_vo;
+  const Eigen::Vector3d& n = source.plane.coefficients;
+  // A plane seen edge-on tells nothing: take one that faces the camera instead.
+  const bool grazing = n.dot(ray) < 0.15 * n.norm() * ray.norm();
+  const Eigen::Vector3d normal = grazing ? Eigen::Vector3d(0.0, 0.0, 1.0) : n;
+  const double along = normal.dot(ray);
+  Matrix32d tangents_camera;
+  tangents_camera.col(0) =
+      p_camera.z() * (Eigen::Vector3d::UnitX() - ray * (normal.x() / along)) / camera.fx_px;
+  tangents_camera.col(1) =
+      p_camera.z() * (Eigen::Vector3d::UnitY() - ray * (normal.y() / along)) / camera.fy_px;
+  point.tangents_vo = source.T_camera_vo.rotation.inverse().toRotationMatrix() * tangents_camera;
+}
+
+void fit_plane(const PinholeCamera& camera, const Map& map, Keyframe& keyframe) {
+  std::vector<std::pair<Eigen::Vector3d, double>> samples;  // ray, inverse depth
+  for (const Observation& seen : keyframe.observations) {
+    const MapPoint* point = map.point(seen.point);
+    if (point == nullptr) continue;
+    const double depth = (keyframe.T_camera_vo * point->position_vo).z();
+    if (depth > 1e-6) samples.emplace_back(camera.ray(seen.pixel), 1.0 / depth);
+  }
+  if (samples.size() < kMinPlanePoints) return;
+  // Iteratively reweighted least squares with Cauchy weights on the relative depth error.
+  Eigen::Vector3d plane = keyframe.plane.coefficients;
+  for (int iteration = 0; iteration < 6; ++iteration) {
+    Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d b = Eigen::Vector3d::Zero();
+    for (const auto& [ray, inverse_depth] : samples) {
+      const double error = (plane.dot(ray) - inverse_depth) / inverse_depth;
+      const double weight = (iteration == 0 ? 1.0 : 1.0 / (1.0 + std::pow(error / 0.05, 2))) /
+                            (inverse_depth * inverse_depth);
+      H += weight * ray * ray.transpose();
+      b += weight * inverse_depth * ray;
+    }
+    plane = H.ldlt().solve(b);
+  }
+  if (plane.allFinite() && plane.z() > 0.0) keyframe.plane.coefficients = plane;
+}
+
+std::optional<double> median_depth(const Pose& T_camera_vo,
+                                   const std::vector<Eigen::Vector3d>& points_vo) {
+  std::vector<double> near_axis;
+  std::vector<double> all;
+  for (const Eigen::Vector3d& point : points_vo) {
+    const Eigen::Vector3d p = T_camera_vo * point;
+    if (p.z() <= 0.0) continue;
+    all.push_back(p.z());
+    if (p.head<2>().norm() < kAxisTangent * p.z()) near_axis.push_back(p.z());
+  }
+  if (near_axis.size() >= kMinAxisPoints) return median_of(near_axis);
+  if (all.empty()) return std::nullopt;
+  return median_of(all);
+}
+
+}  // namespace overfly::odometry

@@ -1,0 +1,187 @@
+#include "odometry/feature/initialiser.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "odometry/feature/first_map.hpp"
+
+namespace overfly::odometry {
+namespace {
+
+constexpr double kPlaneThresholdPx = 3.0;
+constexpr double kMaxOffsetStepPx = 4.0;
+constexpr float kMinCorrelation = 0.85F;
+constexpr int kCoarseTracks = 200;
+
+}  // namespace
+
+int patch_level_of(int scale_level, double scale_factor) {
+  const double octaves = scale_level * std::log2(scale_factor);
+  return std::clamp(static_cast<int>(std::lround(octaves)), 0, 2);
+}
+
+Initialiser::Initialiser(const PinholeCamera& camera, const InitialiserOptions& options)
+    : camera_(camera), options_(options) {}
+
+void Initialiser::reset() {
+  first_.reset();
+  tracks_.clear();
+  origin_.clear();
+  snapshots_.clear();
+}
+
+void Initialiser::start(const FrameImage& frame, OrbExtractor& orb) {
+  reset();
+  first_ = frame;
+  frames_ = 0;
+  H_now_first_.setIdentity();
+  H_step_.setIdentity();
+  for (const Corner& corner : orb.detect(frame.pyramid.level(0))) {
+    Track& track = tracks_.emplace_back();
+    track.corner = corner;
+    track.patch_level = patch_level_of(corner.scale_level, orb.scale_factor());
+    track.pixel = corner.pixel;
+    origin_.push_back(tracks_.size() - 1);
+  }
+  corner_count_ = tracks_.size();
+  if (static_cast<int>(corner_count_) < options_.min_tracks) reset();
+}
+
+/// Brings H near the frame with few patches at coarse levels.
+bool Initialiser::follow_coarsely(const FrameImage& frame, Eigen::Matrix3d& H) const {
+  const std::size_t stride = std::max<std::size_t>(1, tracks_.size() / kCoarseTracks);
+  const int coarsest = frame.pyramid.level_count() - 1;
+  for (int level = coarsest; level >= 1; --level) {
+    std::vector<Eigen::Vector2d> from;
+    std::vector<Eigen::Vector2d> to;
+    for (std::size_t i = 0; i < tracks_.size(); i += stride) {
+      const Eigen::Vector2d& pixel = tracks_[i].corner.pixel;
+      const auto patch = make_template(first_->pyramid, pixel, transfer_jacobian(H, pixel), level);
+      if (!patch) continue;
+      const auto match = align_patch(frame.pyramid, *patch, transfer(H, pixel) + tracks_[i].offset);
+      if (!match || match->correlation < kMinCorrelation) continue;
+      from.push_back(pixel);
+      to.push_back(match->pixel - tracks_[i].offset);
+    }
+    const double threshold = kPlaneThresholdPx * std::ldexp(0.5, level) + 1.0;
+    const auto fit = fit_homography(from, to, threshold, options_.seed);
+    if (fit && fit->inliers >= 20 && fit->inliers * 3 > static_cast<int>(from.size())) {
+      H = fit->H_second_first;
+    } else if (level == 1) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool Initialiser::follow(const FrameImage& frame) {
+  Eigen::Matrix3d H = H_step_ * H_now_first_;
+  if (!follow_coarsely(frame, H)) return false;
+  std::vector<Track> alive;
+  std::vector<std::size_t> origin;
+  std::vector<Eigen::Vector2d> from;
+  std::vector<Eigen::Vector2d> to;
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    Track track = tracks_[i];
+    const auto patch = make_template(first_->pyramid,
+                                     track.corner.pixel,
+                                     transfer_jacobian(H, track.corner.pixel),
+                                     track.patch_level);
+    if (!patch) continue;
+    const Eigen::Vector2d start = transfer(H, track.corner.pixel) + track.offset;
+    const auto match = align_patch(frame.pyramid, *patch, start);
+    if (!match || match->correlation < kMinCorrelation ||
+        (match->pixel - start).norm() > std::ldexp(kMaxOffsetStepPx, track.patch_level)) {
+      continue;
+    }
+    track.pixel = match->pixel;
+    from.push_back(track.corner.pixel);
+    to.push_back(match->pixel);
+    alive.push_back(track);
+    origin.push_back(origin_[i]);
+  }
+  if (static_cast<int>(alive.size()) < options_.min_tracks ||
+      2 * alive.size() < corner_count_ / 2) {
+    return false;
+  }
+  const auto fit = fit_homography(from, to, kPlaneThresholdPx, options_.seed);
+  if (!fit) return false;
+  H_step_ = fit->H_second_first * H_now_first_.inverse();
+  H_now_first_ = fit->H_second_first;
+  for (Track& track : alive)
+    track.offset = track.pixel - transfer(H_now_first_, track.corner.pixel);
+  tracks_ = std::move(alive);
+  origin_ = std::move(origin);
+  return true;
+}
+
+void Initialiser::remember(const FrameImage& frame) {
+  Snapshot snapshot;
+  snapshot.frame = frame;
+  snapshot.pixels.resize(corner_count_);
+  for (std::size_t i = 0; i < tracks_.size(); ++i) snapshot.pixels[origin_[i]] = tracks_[i].pixel;
+  snapshots_.push_back(std::move(snapshot));
+}
+
+double Initialiser::median_motion_px() const {
+  std::vector<double> motion;
+  motion.reserve(tracks_.size());
+  for (const Track& track : tracks_) motion.push_back((track.pixel - track.corner.pixel).norm());
+  const auto middle = motion.begin() + static_cast<std::ptrdiff_t>(motion.size() / 2);
+  std::nth_element(motion.begin(), middle, motion.end());
+  return *middle;
+}
+
+bool Initialiser::process(const FrameImage& frame, OrbExtractor& orb, Map& map) {
+  if (!first_) {
+    start(frame, orb);
+    return false;
+  }
+  if (!follow(frame)) {
+    start(frame, orb);
+    return false;
+  }
+  ++frames_;
+  const bool tried =
+      frames_ % options_.attempt_every == 0 && median_motion_px() > options_.min_motion_px;
+  if (tried && reconstruct(frame, orb, map)) {
+    reset();
+    return true;
+  }
+  if (frames_ % options_.snapshot_every == 0) remember(frame);
+  return false;
+}
+
+bool Initialiser::reconstruct(const FrameImage& frame, OrbExtractor& orb, Map& map) {
+  std::vector<Eigen::Vector2d> from;
+  std::vector<Eigen::Vector2d> to;
+  for (const Track& track : tracks_) {
+    from.push_back(track.corner.pixel);
+    to.push_back(track.pixel);
+  }
+  TwoViewOptions options;
+  options.min_parallax_rad = options_.min_parallax_rad;
+  options.seed = options_.seed;
+  const auto two_views = reconstruct_two_view(camera_, from, to, options);
+  if (!two_views) return false;
+  FirstMapInput input;
+  input.first = &*first_;
+  input.last = &frame;
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    if (two_views->good[i] == 0) continue;
+    FirstMapPoint& point = input.points.emplace_back();
+    point.corner = tracks_[i].corner;
+    point.patch_level = tracks_[i].patch_level;
+    point.p_first = two_views->points_first[i];
+    point.last_pixel = tracks_[i].pixel;
+    for (const Snapshot& snapshot : snapshots_) {
+      point.between_pixels.push_back(snapshot.pixels[origin_[i]]);
+    }
+  }
+  for (const Snapshot& snapshot : snapshots_) input.between.push_back(&snapshot.frame);
+  input.T_last_first = two_views->T_second_first;
+  return make_first_map(camera_, input, orb, map);
+}
+
+}  // namespace overfly::odometry

@@ -1,0 +1,81 @@
+// Waits for enough parallax, then makes the first map.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/camera.hpp"
+#include "odometry/feature/map.hpp"
+#include "odometry/feature/orb.hpp"
+#include "odometry/feature/patch_aligner.hpp"
+#include "odometry/feature/pyramid.hpp"
+#include "odometry/feature/two_view.hpp"
+
+namespace overfly::odometry {
+
+/// An image with its stamp, as the estimator works on it.
+struct FrameImage {
+  std::int64_t index = 0;
+  std::int64_t t_ns = 0;
+  Pyramid pyramid;
+};
+
+struct InitialiserOptions {
+  double min_parallax_rad = 0.07;  ///< 4 deg: depths to 0.1 % with points to 0.1 px
+  double min_motion_px = 25.0;     ///< median displacement before a reconstruction is tried
+  int attempt_every = 3;           ///< frames
+  int snapshot_every = 6;          ///< frames between the keyframes of the first map
+  int min_tracks = 120;
+  std::uint64_t seed = 1;
+};
+
+/// Follows the corners of a first image, from frame to frame against their patches in that first
+/// image, until two views are far enough apart; then adjusts all views between them together.
+class Initialiser {
+ public:
+  Initialiser(const PinholeCamera& camera, const InitialiserOptions& options);
+
+  /// Takes the next frame. On success the map has its first keyframes, the newest of which is this
+  /// frame: the first one's camera is the origin, its median depth is 1.
+  bool process(const FrameImage& frame, OrbExtractor& orb, Map& map);
+  void reset();
+
+  struct Track {
+    Corner corner;
+    int patch_level = 0;
+    Eigen::Vector2d pixel = Eigen::Vector2d::Zero();   ///< in the last frame
+    Eigen::Vector2d offset = Eigen::Vector2d::Zero();  ///< from where the homography puts it
+  };
+  [[nodiscard]] const std::vector<Track>& tracks() const { return tracks_; }
+
+ private:
+  struct Snapshot {
+    FrameImage frame;
+    std::vector<std::optional<Eigen::Vector2d>> pixels;  ///< one for each corner of the first
+  };
+
+  void start(const FrameImage& frame, OrbExtractor& orb);
+  bool follow(const FrameImage& frame);
+  bool follow_coarsely(const FrameImage& frame, Eigen::Matrix3d& H) const;
+  void remember(const FrameImage& frame);
+  [[nodiscard]] double median_motion_px() const;
+  bool reconstruct(const FrameImage& frame, OrbExtractor& orb, Map& map);
+
+  PinholeCamera camera_;
+  InitialiserOptions options_;
+  std::optional<FrameImage> first_;
+  std::vector<Track> tracks_;
+  std::vector<std::size_t> origin_;  ///< of each track: index of its corner in the first image
+  std::size_t corner_count_ = 0;
+  std::vector<Snapshot> snapshots_;
+  Eigen::Matrix3d H_now_first_ = Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d H_step_ = Eigen::Matrix3d::Identity();
+  int frames_ = 0;
+};
+
+/// Pyramid level at which a corner of a scale level is followed.
+[[nodiscard]] int patch_level_of(int scale_level, double scale_factor);
+
+}  // namespace overfly::odometry

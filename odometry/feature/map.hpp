@@ -1,0 +1,120 @@
+// What the estimator knows: keyframes, and points of the ground seen from them.
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "core/camera.hpp"
+#include "core/pose.hpp"
+#include "odometry/feature/lie.hpp"
+#include "odometry/feature/orb.hpp"
+#include "odometry/feature/pyramid.hpp"
+
+namespace overfly::odometry {
+
+/// The pixel noise of a patch found at a pyramid level (std. deviation) [px].
+[[nodiscard]] inline double sigma_px_of(int patch_level) { return std::ldexp(0.2, patch_level); }
+
+/// A map point seen in a keyframe.
+struct Observation {
+  int point = 0;  ///< id
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
+  double sigma_px = 1.0;
+};
+
+/// A corner of a keyframe that has no depth yet.
+struct Candidate {
+  Corner corner;
+  Descriptor descriptor{};
+  int misses = 0;  ///< keyframes in which it was looked for in vain
+  bool done = false;
+};
+
+/// The ground as a plane in a camera: inverse depth = a x + b y + c at the ray (x, y, 1).
+struct GroundPlane {
+  Eigen::Vector3d coefficients{0.0, 0.0, 1.0};  ///< (a, b, c), also the plane's unscaled normal
+
+  [[nodiscard]] double inverse_depth(const Eigen::Vector3d& ray) const {
+    return coefficients.dot(ray);
+  }
+};
+
+struct Keyframe {
+  int id = 0;
+  std::int64_t frame = 0;
+  std::int64_t t_ns = 0;
+  Pose T_camera_vo;
+  Pyramid pyramid;  ///< emptied when the keyframe is too old to be looked at again
+  std::vector<Observation> observations;
+  std::vector<Candidate> candidates;
+  GroundPlane plane;
+};
+
+struct MapPoint {
+  int id = 0;
+  Eigen::Vector3d position_vo = Eigen::Vector3d::Zero();
+  int source_keyframe = 0;  ///< whose image holds its patch
+  Eigen::Vector2d source_pixel = Eigen::Vector2d::Zero();
+  int patch_level = 0;  ///< pyramid level at which it is searched
+  /// The ground's surface there: steps in vo of one source pixel along x and y.
+  Matrix32d tangents_vo = Matrix32d::Zero();
+  Descriptor descriptor{};
+  std::vector<int> keyframes;    ///< ids, ascending, of those that observe it
+  int expected = 0;              ///< frames in which it should have been seen
+  int found = 0;                 ///< frames in which it was
+  std::int64_t last_frame = -1;  ///< the last frame in which it was an inlier
+};
+
+/// Ids grow and are never used again. Iteration is in the order of ids: results repeat.
+class Map {
+ public:
+  Keyframe& add_keyframe(Keyframe keyframe);
+  MapPoint& add_point(MapPoint point);
+  void add_observation(Keyframe& keyframe, const Observation& observation);
+  /// Removes one sight of a point; a point seen from fewer than two keyframes goes.
+  void remove_observation(int keyframe, int point);
+  void remove_point(int point);
+  /// Drops images (and the points whose patch is in them) of all but the newest keyframes.
+  void forget_images(int keep_newest);
+  void clear();
+
+  [[nodiscard]] std::map<int, Keyframe>& keyframes() { return keyframes_; }
+  [[nodiscard]] const std::map<int, Keyframe>& keyframes() const { return keyframes_; }
+  [[nodiscard]] std::map<int, MapPoint>& points() { return points_; }
+  [[nodiscard]] const std::map<int, MapPoint>& points() const { return points_; }
+  [[nodiscard]] Keyframe& keyframe(int id) { return keyframes_.at(id); }
+  [[nodiscard]] const Keyframe& keyframe(int id) const { return keyframes_.at(id); }
+  /// Null when it is gone.
+  [[nodiscard]] MapPoint* point(int id);
+  [[nodiscard]] const MapPoint* point(int id) const;
+  /// @pre there is a keyframe
+  [[nodiscard]] Keyframe& newest() { return keyframes_.rbegin()->second; }
+  [[nodiscard]] const Keyframe& newest() const { return keyframes_.rbegin()->second; }
+
+  /// Keyframes that share points with `keyframe`, most shared first (then newest first).
+  [[nodiscard]] std::vector<int> covisible(int keyframe, int min_shared) const;
+
+ private:
+  std::map<int, Keyframe> keyframes_;
+  std::map<int, MapPoint> points_;
+  int next_keyframe_ = 0;
+  int next_point_ = 0;
+  int first_with_image_ = 0;
+};
+
+/// Sets the point's patch tangents from the plane through it in its source keyframe.
+void set_tangents(const PinholeCamera& camera, const Keyframe& source, MapPoint& point);
+
+/// Fits the ground's plane to the keyframe's points, robustly; keeps the old one with too few.
+void fit_plane(const PinholeCamera& camera, const Map& map, Keyframe& keyframe);
+
+/// Median depth in the camera of points: of those near the optical axis, where the alignment
+/// `init_scale` compares it with the ground, if there are enough of them. Empty without points.
+[[nodiscard]] std::optional<double> median_depth(const Pose& T_camera_vo,
+                                                 const std::vector<Eigen::Vector3d>& points_vo);
+
+}  // namespace overfly::odometry

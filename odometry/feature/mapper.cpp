@@ -1,0 +1,190 @@
+#include "odometry/feature/mapper.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "odometry/feature/patch_aligner.hpp"
+#include "odometry/feature/stopwatch.hpp"
+#include "odometry/feature/triangulation.hpp"
+
+namespace overfly::odometry {
+namespace {
+
+constexpr float kMinCorrelation = 0.8F;
+constexpr int kMaxMisses = 3;
+/// A new point's depth relative to the ground's plane: beyond, it is a wrong match.
+constexpr double kMaxDepthRatio = 2.5;
+/// Ground farther than so many median depths gives no parallax in a view's lifetime.
+constexpr double kMaxRelativeDepth = 6.0;
+constexpr int kExpectedBeforeCulling = 12;
+constexpr double kMinFoundShare = 0.25;
+
+Eigen::Vector3d centre_of(const Pose& T_camera_vo) { return T_camera_vo.inverse().translation; }
+
+}  // namespace
+
+Mapper::Mapper(const PinholeCamera& camera, const MapperOptions& options)
+    : camera_(camera), options_(options) {}
+
+bool Mapper::wants_keyframe(const FrameImage& frame,
+                            const TrackResult& tracked,
+                            const Map& map) const {
+  const Keyframe& last = map.newest();
+  if (frame.index - last.frame < options_.min_frames_between) return false;
+  const double turned = rotation_angle_rad(tracked.T_camera_vo.rotation, last.T_camera_vo.rotation);
+  if (turned > options_.max_rotation_rad) return true;
+  const double moved = (centre_of(tracked.T_camera_vo) - centre_of(last.T_camera_vo)).norm();
+  const double depth = 1.0 / std::max(last.plane.coefficients.z(), 1e-6);
+  if (moved > options_.max_translation * depth) return true;
+  return static_cast<double>(tracked.points.size()) <
+         options_.min_tracked_share * static_cast<double>(last.observations.size());
+}
+
+void Mapper::insert_keyframe(const FrameImage& frame,
+                             const TrackResult& tracked,
+                             OrbExtractor& orb,
+                             Map& map,
+                             std::map<std::string, double>& timing_ms) const {
+  {
+    const Stopwatch stopwatch(timing_ms, "triangulation");
+    Keyframe made;
+    made.frame = frame.index;
+    made.t_ns = frame.t_ns;
+    made.T_camera_vo = tracked.T_camera_vo;
+    made.pyramid = frame.pyramid;
+    made.plane = map.newest().plane;
+    Keyframe& keyframe = map.add_keyframe(std::move(made));
+    for (const TrackedPoint& seen : tracked.points) {
+      map.add_observation(keyframe, {seen.point, seen.pixel, seen.sigma_px});
+    }
+    fit_plane(camera_, map, keyframe);
+    triangulate_candidates(orb, map);
+  }
+  {
+    const Stopwatch stopwatch(timing_ms, "bundle_adjustment");
+    adjust_locally(camera_, options_.adjustment, map);
+    cull(map);
+    fit_plane(camera_, map, map.newest());
+  }
+  {
+    const Stopwatch stopwatch(timing_ms, "features");
+    add_candidates(orb, map);
+  }
+  map.forget_images(options_.images_kept);
+}
+
+void Mapper::add_candidates(OrbExtractor& orb, Map& map) const {
+  Keyframe& keyframe = map.newest();
+  const double cell_px =
+      std::sqrt(static_cast<double>(camera_.width_px) * camera_.height_px / options_.cells);
+  const auto cell_of = [&](const Eigen::Vector2d& pixel) {
+    const int columns = static_cast<int>(camera_.width_px / cell_px) + 1;
+    return static_cast<int>(pixel.y() / cell_px) * columns + static_cast<int>(pixel.x() / cell_px);
+  };
+  std::map<int, const Corner*> best;  // of each cell; null where a point is already
+  for (const Observation& seen : keyframe.observations) best[cell_of(seen.pixel)] = nullptr;
+  const double usual = keyframe.plane.coefficients.z();
+  const std::vector<Corner> corners = orb.detect(keyframe.pyramid.level(0));
+  for (const Corner& corner : corners) {
+    if (keyframe.plane.inverse_depth(camera_.ray(corner.pixel)) * kMaxRelativeDepth < usual) {
+      continue;
+    }
+    const auto [cell, made] = best.try_emplace(cell_of(corner.pixel), &corner);
+    if (!made && cell->second != nullptr && corner.response > cell->second->response) {
+      cell->second = &corner;
+    }
+  }
+  for (const auto& [cell, corner] : best) {
+    if (corner == nullptr) continue;
+    keyframe.candidates.push_back({*corner, orb.describe(*corner), 0, false});
+  }
+}
+
+void Mapper::triangulate_candidates(const OrbExtractor& orb, Map& map) const {
+  const int newest = map.newest().id;
+  for (auto& [id, source] : map.keyframes()) {
+    if (id < newest - options_.candidate_keyframes || id == newest) continue;
+    for (Candidate& candidate : source.candidates) {
+      if (candidate.done) continue;
+      const int level = patch_level_of(candidate.corner.scale_level, orb.scale_factor());
+      const Search search = triangulate_candidate(source, candidate, level, map);
+      if (search == Search::kMissed) ++candidate.misses;
+      candidate.done = search == Search::kFound || candidate.misses >= kMaxMisses;
+    }
+  }
+}
+
+Mapper::Search Mapper::triangulate_candidate(const Keyframe& source,
+                                             const Candidate& candidate,
+                                             int patch_level,
+                                             Map& map) const {
+  Keyframe& newest = map.newest();
+  const Eigen::Vector3d ray = camera_.ray(candidate.corner.pixel);
+  const double prior = 1.0 / source.plane.inverse_depth(ray);
+  if (!(prior > 0.0)) return Search::kMissed;
+  const Pose T_vo_source = source.T_camera_vo.inverse();
+  MapPoint point;
+  point.position_vo = T_vo_source * (prior * ray);
+  point.source_keyframe = source.id;
+  point.source_pixel = candidate.corner.pixel;
+  point.patch_level = patch_level;
+  point.descriptor = candidate.descriptor;
+  set_tangents(camera_, source, point);
+  const auto expected = camera_.project(newest.T_camera_vo * point.position_vo);
+  if (!expected) return Search::kMissed;
+  const Eigen::Matrix2d A = warp_of(camera_, newest.T_camera_vo, point);
+  // Coarse to fine, for the ground is not quite the plane.
+  Eigen::Vector2d pixel = *expected;
+  for (int level = patch_level + 2; level >= patch_level; --level) {
+    const auto patch = make_template(source.pyramid, point.source_pixel, A, level);
+    const auto match = patch ? align_patch(newest.pyramid, *patch, pixel) : std::nullopt;
+    const bool good = match && match->correlation > kMinCorrelation;
+    if (!good && level == patch_level) return Search::kMissed;
+    if (good) pixel = match->pixel;
+  }
+  const Pose T_newest_source = newest.T_camera_vo * T_vo_source;
+  const auto triangulated = triangulate(ray, camera_.ray(pixel), T_newest_source);
+  if (!triangulated) return Search::kTooNear;
+  if (triangulated->parallax_rad < options_.min_parallax_rad) return Search::kTooNear;
+  const double ratio = triangulated->p_first.z() / prior;
+  if (ratio > kMaxDepthRatio || ratio * kMaxDepthRatio < 1.0) return Search::kMissed;
+  const auto again = camera_.project(T_newest_source * triangulated->p_first);
+  if (!again || (*again - pixel).norm() > std::ldexp(options_.max_epipolar_px, patch_level)) {
+    return Search::kMissed;
+  }
+  point.position_vo = T_vo_source * triangulated->p_first;
+  set_tangents(camera_, source, point);
+  const int source_id = source.id;
+  const MapPoint& added = map.add_point(point);
+  map.add_observation(map.keyframe(source_id),
+                      {added.id, point.source_pixel, sigma_px_of(patch_level)});
+  map.add_observation(newest, {added.id, pixel, sigma_px_of(patch_level)});
+  for (int id = source_id + 1; id < newest.id; ++id) observe(added, map.keyframe(id), map);
+  return Search::kFound;
+}
+
+void Mapper::observe(const MapPoint& point, Keyframe& keyframe, Map& map) const {
+  const auto expected = camera_.project(keyframe.T_camera_vo * point.position_vo);
+  if (!expected) return;
+  const auto patch = make_template(map.keyframe(point.source_keyframe).pyramid,
+                                   point.source_pixel,
+                                   warp_of(camera_, keyframe.T_camera_vo, point),
+                                   point.patch_level);
+  const auto match = patch ? align_patch(keyframe.pyramid, *patch, *expected) : std::nullopt;
+  if (!match || match->correlation < kMinCorrelation) return;
+  if ((match->pixel - *expected).norm() > std::ldexp(1.5, point.patch_level)) return;
+  map.add_observation(keyframe, {point.id, match->pixel, sigma_px_of(point.patch_level)});
+}
+
+/// Points that are too seldom found where they should be, or behind a camera, go.
+void Mapper::cull(Map& map) const {
+  std::vector<int> gone;
+  for (const auto& [id, point] : map.points()) {
+    if (point.expected >= kExpectedBeforeCulling && point.found < kMinFoundShare * point.expected) {
+      gone.push_back(id);
+    }
+  }
+  for (const int id : gone) map.remove_point(id);
+}
+
+}  // namespace overfly::odometry

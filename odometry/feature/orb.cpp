@@ -1,0 +1,186 @@
+#include "odometry/feature/orb.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <opencv2/features2d.hpp>
+#include <opencv2/imgproc.hpp>
+#include <random>
+
+namespace overfly::odometry {
+namespace {
+
+constexpr int kCellPx = 32;
+constexpr int kMarginPx = 20;  ///< room for the turned pattern
+constexpr int kPatternRadius = 15;
+
+struct PatternPair {
+  float ax, ay, bx, by;
+};
+
+/// One coordinate of Calonder's G II: normal with sigma = S / 5 for a patch of side S, drawn
+/// without <random>'s distributions, whose results differ between standard libraries.
+float pattern_coordinate(std::mt19937& generator) {
+  double sum = 0.0;
+  for (int i = 0; i < 12; ++i) sum += static_cast<double>(generator()) / 4294967296.0;
+  const double sigma = (2.0 * kPatternRadius + 1.0) / 5.0;
+  const double value = std::clamp((sum - 6.0) * sigma, -10.0, 10.0);
+  return static_cast<float>(value);
+}
+
+const std::array<PatternPair, 256>& pattern() {
+  static const std::array<PatternPair, 256> pairs = [] {
+    std::mt19937 generator(20100905U);
+    std::array<PatternPair, 256> made{};
+    for (PatternPair& pair : made) {
+      pair.ax = pattern_coordinate(generator);
+      pair.ay = pattern_coordinate(generator);
+      pair.bx = pattern_coordinate(generator);
+      pair.by = pattern_coordinate(generator);
+    }
+    return made;
+  }();
+  return pairs;
+}
+
+/// Direction from the corner to the centroid of brightness in a disc (Rosin's moments), as a unit
+/// vector.
+Eigen::Vector2f centroid_direction(const cv::Mat& image, const Eigen::Vector2i& p) {
+  int m10 = 0;
+  int m01 = 0;
+  for (int dy = -kPatternRadius; dy <= kPatternRadius; ++dy) {
+    const int half =
+        static_cast<int>(std::sqrt(static_cast<double>(kPatternRadius * kPatternRadius - dy * dy)));
+    const std::uint8_t* row = image.ptr<std::uint8_t>(p.y() + dy) + p.x();
+    int row_sum = 0;
+    for (int dx = -half; dx <= half; ++dx) {
+      m10 += dx * row[dx];
+      row_sum += row[dx];
+    }
+    m01 += dy * row_sum;
+  }
+  const Eigen::Vector2f moment(static_cast<float>(m10), static_cast<float>(m01));
+  const float length = moment.norm();
+  return length > 0.0F ? Eigen::Vector2f(moment / length) : Eigen::Vector2f(1.0F, 0.0F);
+}
+
+/// Takes corners in rounds: every cell's best, then every cell's second best, ...
+std::vector<Corner> take_in_rounds(std::vector<std::vector<Corner>> cells, int wanted) {
+  std::vector<Corner> taken;
+  for (auto& cell : cells) {
+    std::stable_sort(cell.begin(), cell.end(), [](const Corner& a, const Corner& b) {
+      return a.response > b.response;
+    });
+  }
+  for (std::size_t round = 0; static_cast<int>(taken.size()) < wanted; ++round) {
+    std::vector<Corner> found;
+    for (const auto& cell : cells) {
+      if (round < cell.size()) found.push_back(cell[round]);
+    }
+    if (found.empty()) break;
+    std::stable_sort(found.begin(), found.end(), [](const Corner& a, const Corner& b) {
+      return a.response > b.response;
+    });
+    const std::size_t room = static_cast<std::size_t>(wanted) - taken.size();
+    taken.insert(taken.end(), found.begin(), found.begin() + std::min(room, found.size()));
+  }
+  return taken;
+}
+
+}  // namespace
+
+int hamming_distance(const Descriptor& a, const Descriptor& b) {
+  int bits = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) bits += std::popcount(a[i] ^ b[i]);
+  return bits;
+}
+
+OrbExtractor::OrbExtractor(const FeatureParameters& parameters) : parameters_(parameters) {
+  // Shares fall with the level's side, so that the corners' density per pixel rises slowly.
+  double total = 0.0;
+  for (int level = 0; level < parameters.levels; ++level) {
+    scales_.push_back(std::pow(parameters.scale_factor, level));
+    total += 1.0 / scales_.back();
+  }
+  for (const double scale : scales_) {
+    shares_.push_back(static_cast<int>(std::lround(parameters.features / (scale * total))));
+  }
+}
+
+void OrbExtractor::load(const cv::Mat& image) {
+  levels_.assign(1, image);
+  smoothed_.assign(scales_.size(), cv::Mat());
+  for (std::size_t l = 1; l < scales_.size(); ++l) {
+    const cv::Size size(static_cast<int>(std::lround(image.cols / scales_[l])),
+                        static_cast<int>(std::lround(image.rows / scales_[l])));
+    if (std::min(size.width, size.height) < 4 * kMarginPx) break;
+    cv::Mat smaller;
+    cv::resize(levels_.back(), smaller, size, 0.0, 0.0, cv::INTER_LINEAR);
+    levels_.push_back(smaller);
+  }
+}
+
+std::vector<Corner> OrbExtractor::detect_level(int level, int wanted) const {
+  const cv::Mat& image = levels_[static_cast<std::size_t>(level)];
+  // Of the sizes as rounded, not the nominal scale.
+  const double scale_x = static_cast<double>(levels_[0].cols) / image.cols;
+  const double scale_y = static_cast<double>(levels_[0].rows) / image.rows;
+  std::vector<std::vector<Corner>> cells;
+  std::vector<cv::KeyPoint> found;
+  for (int y = kMarginPx; y < image.rows - kMarginPx; y += kCellPx) {
+    for (int x = kMarginPx; x < image.cols - kMarginPx; x += kCellPx) {
+      // FAST looks 3 px beyond a pixel.
+      const cv::Rect cell(x - 3,
+                          y - 3,
+                          std::min(kCellPx, image.cols - kMarginPx - x) + 6,
+                          std::min(kCellPx, image.rows - kMarginPx - y) + 6);
+      cv::FAST(image(cell), found, parameters_.ini_fast_threshold, true);
+      if (found.empty()) cv::FAST(image(cell), found, parameters_.min_fast_threshold, true);
+      std::vector<Corner>& corners = cells.emplace_back();
+      for (const cv::KeyPoint& keypoint : found) {
+        Corner& corner = corners.emplace_back();
+        corner.level_pixel = {static_cast<int>(keypoint.pt.x) + cell.x,
+                              static_cast<int>(keypoint.pt.y) + cell.y};
+        corner.pixel = {(corner.level_pixel.x() + 0.5) * scale_x - 0.5,
+                        (corner.level_pixel.y() + 0.5) * scale_y - 0.5};
+        corner.scale_level = level;
+        corner.response = keypoint.response;
+      }
+    }
+  }
+  return take_in_rounds(std::move(cells), wanted);
+}
+
+std::vector<Corner> OrbExtractor::detect(const cv::Mat& image) {
+  load(image);
+  std::vector<Corner> corners;
+  for (std::size_t l = 0; l < levels_.size(); ++l) {
+    const std::vector<Corner> found = detect_level(static_cast<int>(l), shares_[l]);
+    corners.insert(corners.end(), found.begin(), found.end());
+  }
+  return corners;
+}
+
+Descriptor OrbExtractor::describe(const Corner& corner) {
+  const auto level = static_cast<std::size_t>(corner.scale_level);
+  if (smoothed_[level].empty()) {
+    cv::GaussianBlur(levels_[level], smoothed_[level], cv::Size(7, 7), 2.0);
+  }
+  const Eigen::Vector2f direction = centroid_direction(levels_[level], corner.level_pixel);
+  const cv::Mat& image = smoothed_[level];
+  const auto brightness = [&](float x, float y) {
+    const int u = static_cast<int>(std::lround(direction.x() * x - direction.y() * y));
+    const int v = static_cast<int>(std::lround(direction.y() * x + direction.x() * y));
+    return image.at<std::uint8_t>(corner.level_pixel.y() + v, corner.level_pixel.x() + u);
+  };
+  Descriptor descriptor{};
+  for (std::size_t i = 0; i < 256; ++i) {
+    const PatternPair& pair = pattern()[i];
+    if (brightness(pair.ax, pair.ay) < brightness(pair.bx, pair.by)) {
+      descriptor[i / 64] |= std::uint64_t{1} << (i % 64);
+    }
+  }
+  return descriptor;
+}
+
+}  // namespace overfly::odometry

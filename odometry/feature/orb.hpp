@@ -1,0 +1,56 @@
+// Oriented corners with binary descriptors, evenly spread over image and scales.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "odometry/feature/feature_odometry.hpp"
+
+namespace overfly::odometry {
+
+/// 256 brightness comparisons.
+using Descriptor = std::array<std::uint64_t, 4>;
+
+struct Corner {
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< full resolution
+  int scale_level = 0;                              ///< its size is scale_factor^level
+  float response = 0.0F;                            ///< FAST score
+  Eigen::Vector2i level_pixel = Eigen::Vector2i::Zero();
+};
+
+/// Number of differing bits, in [0, 256].
+[[nodiscard]] int hamming_distance(const Descriptor& a, const Descriptor& b);
+
+/// Detects and describes. One object serves one image at a time: `detect`, then `describe`.
+///
+/// Method: FAST (Rosten and Drummond 2006) on a scale pyramid, orientation by the intensity
+/// centroid and steered BRIEF (Rublee et al. 2011, ORB, sections 3 and 4; Calonder et al. 2010 for
+/// the Gaussian pattern, G II). The pattern is drawn once from a fixed seed.
+class OrbExtractor {
+ public:
+  explicit OrbExtractor(const FeatureParameters& parameters);
+
+  /// Corners of an 8-bit image: each cell of each level asks first with the initial threshold,
+  /// then with the minimum; a level takes its share of `features` in rounds over the cells.
+  [[nodiscard]] std::vector<Corner> detect(const cv::Mat& image);
+  /// Makes an image the one that `describe` looks at, without looking for corners.
+  void load(const cv::Mat& image);
+  /// Descriptor of a corner of the image last given to `detect` or `load`.
+  [[nodiscard]] Descriptor describe(const Corner& corner);
+
+  [[nodiscard]] double scale_factor() const { return parameters_.scale_factor; }
+
+ private:
+  [[nodiscard]] std::vector<Corner> detect_level(int level, int wanted) const;
+
+  FeatureParameters parameters_;
+  std::vector<double> scales_;
+  std::vector<int> shares_;
+  std::vector<cv::Mat> levels_;
+  std::vector<cv::Mat> smoothed_;  ///< made when first asked for
+};
+
+}  // namespace overfly::odometry

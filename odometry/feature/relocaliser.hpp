@@ -1,0 +1,39 @@
+// Finds the place again after the track was lost.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "core/camera.hpp"
+#include "odometry/feature/map.hpp"
+#include "odometry/feature/orb.hpp"
+
+namespace overfly::odometry {
+
+struct RelocaliserOptions {
+  int keyframes = 40;     ///< whose points are compared
+  int max_distance = 64;  ///< bits
+  double ratio = 0.85;    ///< best to second-best distance
+  int rounds = 300;       ///< of RANSAC
+  double threshold_px = 4.0;
+  int min_inliers = 25;
+  std::uint64_t seed = 1;
+};
+
+struct Relocalisation {
+  int corners = 0;  ///< what the image offered; few mean that it shows nothing
+  int matches = 0;
+  std::optional<Pose> T_camera_vo;
+};
+
+/// Compares an image's corners with the points of the newest keyframes.
+///
+/// Method: descriptors by exhaustive search with a ratio test, then three-point poses in RANSAC
+/// (Fischler and Bolles 1981) and a pose fit to the agreeing points.
+[[nodiscard]] Relocalisation relocalise(const PinholeCamera& camera,
+                                        const RelocaliserOptions& options,
+                                        const cv::Mat& image,
+                                        OrbExtractor& orb,
+                                        const Map& map);
+
+}  // namespace overfly::odometry

@@ -1,0 +1,130 @@
+#include "odometry/feature/tracker.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "odometry/feature/patch_aligner.hpp"
+
+namespace overfly::odometry {
+namespace {
+
+constexpr double kBorderPx = 8.0;
+constexpr int kCoarseMinMatches = 12;
+
+}  // namespace
+
+struct Tracker::Projection {
+  const MapPoint* point = nullptr;
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
+};
+
+Tracker::Tracker(const PinholeCamera& camera, const TrackerOptions& options)
+    : camera_(camera), options_(options) {}
+
+Eigen::Matrix2d warp_of(const PinholeCamera& camera,
+                        const Pose& T_camera_vo,
+                        const MapPoint& point) {
+  const Eigen::Vector3d p = T_camera_vo * point.position_vo;
+  return projection_jacobian(camera.fx_px, camera.fy_px, p) *
+         T_camera_vo.rotation.toRotationMatrix() * point.tangents_vo;
+}
+
+/// One point of the local map for each cell of the image, best known first.
+std::vector<Tracker::Projection> Tracker::project(const Pose& T_camera_vo, const Map& map) const {
+  const int oldest = map.newest().id - options_.local_keyframes;
+  const double cell_px =
+      std::sqrt(static_cast<double>(camera_.width_px) * camera_.height_px / options_.max_points);
+  const int columns = static_cast<int>(camera_.width_px / cell_px) + 1;
+  const int rows = static_cast<int>(camera_.height_px / cell_px) + 1;
+  std::vector<Projection> cells(static_cast<std::size_t>(columns) * rows);
+  const Eigen::Matrix3d R = T_camera_vo.rotation.toRotationMatrix();
+  for (const auto& [id, point] : map.points()) {
+    if (point.keyframes.back() < oldest) continue;
+    const auto pixel = camera_.project(R * point.position_vo + T_camera_vo.translation);
+    if (!pixel || pixel->x() < kBorderPx || pixel->y() < kBorderPx ||
+        pixel->x() > camera_.width_px - 1 - kBorderPx ||
+        pixel->y() > camera_.height_px - 1 - kBorderPx) {
+      continue;
+    }
+    const auto column = static_cast<std::size_t>(pixel->x() / cell_px);
+    const auto row = static_cast<std::size_t>(pixel->y() / cell_px);
+    Projection& cell = cells[row * static_cast<std::size_t>(columns) + column];
+    // Later points replace equals: the newer patch is nearer in view.
+    if (cell.point == nullptr || point.keyframes.size() >= cell.point->keyframes.size()) {
+      cell = {&point, *pixel};
+    }
+  }
+  std::erase_if(cells, [](const Projection& cell) { return cell.point == nullptr; });
+  return cells;
+}
+
+bool Tracker::align_coarsely(const Pyramid& image,
+                             const std::vector<Projection>& projections,
+                             int coarse_level,
+                             const Map& map,
+                             Pose& T_camera_vo) const {
+  const std::size_t stride = std::max<std::size_t>(
+      1, projections.size() / static_cast<std::size_t>(options_.coarse_points));
+  bool found = false;
+  for (int level = std::min(coarse_level, image.level_count() - 1); level >= 1; --level) {
+    std::vector<PoseObservation> observations;
+    for (std::size_t i = level % stride; i < projections.size(); i += stride) {
+      const MapPoint& point = *projections[i].point;
+      const auto start = camera_.project(T_camera_vo * point.position_vo);
+      if (!start) continue;
+      const auto patch = make_template(map.keyframe(point.source_keyframe).pyramid,
+                                       point.source_pixel,
+                                       warp_of(camera_, T_camera_vo, point),
+                                       level);
+      if (!patch) continue;
+      const auto match = align_patch(image, *patch, *start);
+      if (!match || match->correlation < options_.min_correlation) continue;
+      observations.push_back({point.position_vo, match->pixel, std::ldexp(0.4, level)});
+    }
+    const PoseFit fit = optimise_pose(camera_, T_camera_vo, observations);
+    found =
+        fit.inliers >= kCoarseMinMatches && 2 * fit.inliers > static_cast<int>(observations.size());
+    if (found) T_camera_vo = fit.T_camera_vo;
+  }
+  return found;
+}
+
+TrackResult Tracker::track(const Pyramid& image,
+                           const Pose& T_predicted,
+                           int coarse_level,
+                           const Map& map) const {
+  TrackResult result;
+  result.T_camera_vo = T_predicted;
+  if (!align_coarsely(image, project(T_predicted, map), coarse_level, map, result.T_camera_vo)) {
+    return result;
+  }
+  std::vector<PoseObservation> observations;
+  std::vector<int> ids;
+  for (const Projection& projection : project(result.T_camera_vo, map)) {
+    const MapPoint& point = *projection.point;
+    const auto patch = make_template(map.keyframe(point.source_keyframe).pyramid,
+                                     point.source_pixel,
+                                     warp_of(camera_, result.T_camera_vo, point),
+                                     point.patch_level);
+    if (!patch) continue;
+    ++result.searched;
+    const auto match = align_patch(image, *patch, projection.pixel);
+    if (!match || match->correlation < options_.min_correlation) {
+      result.missed.push_back(point.id);
+      continue;
+    }
+    observations.push_back({point.position_vo, match->pixel, sigma_px_of(point.patch_level)});
+    ids.push_back(point.id);
+  }
+  const PoseFit fit = optimise_pose(camera_, result.T_camera_vo, observations);
+  result.T_camera_vo = fit.T_camera_vo;
+  result.rms_px = fit.rms_px;
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    auto& list = fit.inlier[i] != 0 ? result.points : result.outliers;
+    list.push_back({ids[i], observations[i].pixel, observations[i].sigma_px});
+  }
+  result.tracked = fit.inliers >= options_.min_inliers && 3 * fit.inliers > result.searched;
+  return result;
+}
+
+}  // namespace overfly::odometry

@@ -1,0 +1,260 @@
+#include "odometry/feature/two_view.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "odometry/feature/triangulation.hpp"
+
+namespace overfly::odometry {
+namespace {
+
+using Pixels = std::vector<Eigen::Vector2d>;
+using Matrix9d = Eigen::Matrix<double, 9, 9>;
+using Vector9d = Eigen::Matrix<double, 9, 1>;
+
+constexpr int kRansacRounds = 200;
+// Limits of the chi-square distribution at 5 %: two degrees for a transfer, one for a line.
+constexpr double kChi2Point = 5.99;
+constexpr double kChi2Line = 3.84;
+constexpr double kPlanarRatio = 0.45;
+
+Eigen::Matrix3d from_null_vector(const Matrix9d& AtA) {
+  const Eigen::SelfAdjointEigenSolver<Matrix9d> eigen(AtA);
+  const Vector9d h = eigen.eigenvectors().col(0);
+  Eigen::Matrix3d m;
+  m << h(0), h(1), h(2), h(3), h(4), h(5), h(6), h(7), h(8);
+  return m;
+}
+
+/// Adds the two rows of one pair to A^T A of the homography's linear system.
+void add_homography_rows(const Eigen::Vector2d& a, const Eigen::Vector2d& b, Matrix9d& AtA) {
+  Vector9d r1;
+  Vector9d r2;
+  r1 << 0, 0, 0, -a.x(), -a.y(), -1, b.y() * a.x(), b.y() * a.y(), b.y();
+  r2 << a.x(), a.y(), 1, 0, 0, 0, -b.x() * a.x(), -b.x() * a.y(), -b.x();
+  AtA += r1 * r1.transpose() + r2 * r2.transpose();
+}
+
+void add_epipolar_row(const Eigen::Vector2d& a, const Eigen::Vector2d& b, Matrix9d& AtA) {
+  Vector9d r;
+  r << b.x() * a.x(), b.x() * a.y(), b.x(), b.y() * a.x(), b.y() * a.y(), b.y(), a.x(), a.y(), 1;
+  AtA += r * r.transpose();
+}
+
+Eigen::Matrix3d essential_of(const Matrix9d& AtA) {
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(from_null_vector(AtA),
+                                              Eigen::ComputeFullU | Eigen::ComputeFullV);
+  return svd.matrixU() * Eigen::Vector3d(1.0, 1.0, 0.0).asDiagonal() * svd.matrixV().transpose();
+}
+
+/// Draws `count` different indices below `size`.
+template <std::size_t N>
+std::array<std::size_t, N> draw(std::mt19937_64& generator, std::size_t size) {
+  std::array<std::size_t, N> indices{};
+  for (std::size_t i = 0; i < N;) {
+    indices[i] = generator() % size;
+    const auto end = indices.begin() + static_cast<std::ptrdiff_t>(i);
+    if (std::find(indices.begin(), end, indices[i]) == end) ++i;
+  }
+  return indices;
+}
+
+/// Score of a homography between normalised views: symmetric transfer errors, each point adding
+/// what its squared error lacks to the limit.
+double score_homography(const Eigen::Matrix3d& H, const Pixels& a, const Pixels& b, double sigma) {
+  const Eigen::Matrix3d back = H.inverse();
+  const double scale = 1.0 / (sigma * sigma);
+  double score = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double forth = (transfer(H, a[i]) - b[i]).squaredNorm() * scale;
+    const double return_error = (transfer(back, b[i]) - a[i]).squaredNorm() * scale;
+    if (forth < kChi2Point) score += kChi2Point - forth;
+    if (return_error < kChi2Point) score += kChi2Point - return_error;
+  }
+  return score;
+}
+
+double line_distance2(const Eigen::Vector3d& line, const Eigen::Vector2d& p) {
+  const double value = line.dot(p.homogeneous());
+  return value * value / std::max(line.head<2>().squaredNorm(), 1e-18);
+}
+
+/// As above by distances to epipolar lines; the same limit is credited so that scores compare.
+double score_essential(const Eigen::Matrix3d& E, const Pixels& a, const Pixels& b, double sigma) {
+  const double scale = 1.0 / (sigma * sigma);
+  double score = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double forth = line_distance2(E * a[i].homogeneous(), b[i]) * scale;
+    const double back = line_distance2(E.transpose() * b[i].homogeneous(), a[i]) * scale;
+    if (forth < kChi2Line) score += kChi2Point - forth;
+    if (back < kChi2Line) score += kChi2Point - back;
+  }
+  return score;
+}
+
+Pixels normalised(const PinholeCamera& camera, const Pixels& pixels) {
+  Pixels result;
+  result.reserve(pixels.size());
+  for (const Eigen::Vector2d& pixel : pixels) result.emplace_back(camera.ray(pixel).head<2>());
+  return result;
+}
+
+struct Model {
+  Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
+  double score = -1.0;
+};
+
+Model ransac_homography(const Pixels& a, const Pixels& b, double sigma, std::mt19937_64& rng) {
+  Model best;
+  for (int round = 0; round < kRansacRounds; ++round) {
+    Matrix9d AtA = Matrix9d::Zero();
+    for (const std::size_t i : draw<4>(rng, a.size())) add_homography_rows(a[i], b[i], AtA);
+    const Eigen::Matrix3d H = from_null_vector(AtA);
+    if (std::abs(H.determinant()) < 1e-9) continue;
+    const double score = score_homography(H, a, b, sigma);
+    if (score > best.score) best = {H, score};
+  }
+  return best;
+}
+
+/// Refits to the pairs that agree, keeping the better.
+Model refined_homography(Model model, const Pixels& a, const Pixels& b, double sigma) {
+  for (int round = 0; round < 2 && model.score > 0.0; ++round) {
+    Matrix9d AtA = Matrix9d::Zero();
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      const double error2 = (transfer(model.matrix, a[i]) - b[i]).squaredNorm();
+      if (error2 < kChi2Point * sigma * sigma) add_homography_rows(a[i], b[i], AtA);
+    }
+    const Eigen::Matrix3d H = from_null_vector(AtA);
+    const double score = score_homography(H, a, b, sigma);
+    if (score > model.score) model = {H, score};
+  }
+  return model;
+}
+
+Model ransac_essential(const Pixels& a, const Pixels& b, double sigma, std::mt19937_64& rng) {
+  Model best;
+  for (int round = 0; round < kRansacRounds; ++round) {
+    Matrix9d AtA = Matrix9d::Zero();
+    for (const std::size_t i : draw<8>(rng, a.size())) add_epipolar_row(a[i], b[i], AtA);
+    const Eigen::Matrix3d E = essential_of(AtA);
+    const double score = score_essential(E, a, b, sigma);
+    if (score > best.score) best = {E, score};
+  }
+  return best;
+}
+
+/// Points in front of both cameras that both views agree on.
+TwoViewReconstruction triangulate_all(const Pose& T_second_first,
+                                      const Pixels& a,
+                                      const Pixels& b,
+                                      double max_error) {
+  TwoViewReconstruction result;
+  result.T_second_first = T_second_first;
+  result.points_first.assign(a.size(), Eigen::Vector3d::Zero());
+  result.good.assign(a.size(), 0);
+  std::vector<double> parallaxes;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const auto point = triangulate(a[i].homogeneous(), b[i].homogeneous(), T_second_first);
+    if (!point) continue;
+    const Eigen::Vector3d p_second = T_second_first * point->p_first;
+    if ((p_second.hnormalized() - b[i]).norm() > max_error) continue;
+    result.points_first[i] = point->p_first;
+    result.good[i] = 1;
+    ++result.good_count;
+    parallaxes.push_back(point->parallax_rad);
+  }
+  if (!parallaxes.empty()) {
+    const auto middle = parallaxes.begin() + static_cast<std::ptrdiff_t>(parallaxes.size() / 2);
+    std::nth_element(parallaxes.begin(), middle, parallaxes.end());
+    result.median_parallax_rad = *middle;
+  }
+  return result;
+}
+
+}  // namespace
+
+Eigen::Vector2d transfer(const Eigen::Matrix3d& H, const Eigen::Vector2d& pixel) {
+  return (H * pixel.homogeneous()).hnormalized();
+}
+
+Eigen::Matrix2d transfer_jacobian(const Eigen::Matrix3d& H, const Eigen::Vector2d& pixel) {
+  const Eigen::Vector3d q = H * pixel.homogeneous();
+  return (H.topLeftCorner<2, 2>() - q.hnormalized() * H.block<1, 2>(2, 0)) / q.z();
+}
+
+std::optional<HomographyFit> fit_homography(const Pixels& first,
+                                            const Pixels& second,
+                                            double threshold_px,
+                                            std::uint64_t seed) {
+  if (first.size() < 8) return std::nullopt;
+  // A similarity that brings both views' pixels near [-1, 1] (H & Z, section 4.4).
+  Eigen::AlignedBox2d box;
+  for (const Eigen::Vector2d& p : first) box.extend(p);
+  const double scale = 2.0 / std::max(1.0, box.diagonal().norm());
+  Eigen::Matrix3d N = Eigen::Matrix3d::Identity() * scale;
+  N.topRightCorner<2, 1>() = -scale * box.center();
+  N(2, 2) = 1.0;
+  const auto scaled = [&](const Pixels& pixels) {
+    Pixels result;
+    result.reserve(pixels.size());
+    for (const Eigen::Vector2d& p : pixels) result.emplace_back(scale * (p - box.center()));
+    return result;
+  };
+  const Pixels a = scaled(first);
+  const Pixels b = scaled(second);
+  const double sigma = threshold_px * scale / std::sqrt(kChi2Point);
+  std::mt19937_64 rng(seed);
+  const Model model = refined_homography(ransac_homography(a, b, sigma, rng), a, b, sigma);
+  if (model.score <= 0.0) return std::nullopt;
+  HomographyFit fit;
+  fit.H_second_first = N.inverse() * model.matrix * N;
+  fit.inlier.assign(first.size(), 0);
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    if ((transfer(fit.H_second_first, first[i]) - second[i]).norm() > threshold_px) continue;
+    fit.inlier[i] = 1;
+    ++fit.inliers;
+  }
+  return fit;
+}
+
+std::optional<TwoViewReconstruction> reconstruct_two_view(const PinholeCamera& camera,
+                                                          const Pixels& first,
+                                                          const Pixels& second,
+                                                          const TwoViewOptions& options) {
+  if (static_cast<int>(first.size()) < options.min_points) return std::nullopt;
+  const Pixels a = normalised(camera, first);
+  const Pixels b = normalised(camera, second);
+  const double sigma = options.sigma_px / camera.fx_px;
+  std::mt19937_64 rng(options.seed);
+  const Model plane = refined_homography(ransac_homography(a, b, sigma, rng), a, b, sigma);
+  const Model general = ransac_essential(a, b, sigma, rng);
+  if (plane.score <= 0.0 && general.score <= 0.0) return std::nullopt;
+  const bool planar = plane.score > kPlanarRatio * (plane.score + general.score);
+  const std::vector<Pose> motions =
+      planar ? motions_of_homography(plane.matrix) : motions_of_essential(general.matrix);
+  TwoViewReconstruction best;
+  int second_best = 0;
+  for (const Pose& T_second_first : motions) {
+    TwoViewReconstruction tried = triangulate_all(T_second_first, a, b, 2.0 * sigma);
+    if (tried.good_count > best.good_count) {
+      second_best = best.good_count;
+      best = std::move(tried);
+    } else {
+      second_best = std::max(second_best, tried.good_count);
+    }
+  }
+  best.planar = planar;
+  if (best.good_count < options.min_points || second_best > 0.75 * best.good_count ||
+      best.good_count < 0.7 * static_cast<double>(first.size()) ||
+      best.median_parallax_rad < options.min_parallax_rad) {
+    return std::nullopt;
+  }
+  return best;
+}
+
+}  // namespace overfly::odometry

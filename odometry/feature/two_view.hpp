@@ -1,0 +1,70 @@
+// Motion and structure from two views, of a plane or of anything else.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/camera.hpp"
+#include "core/pose.hpp"
+
+namespace overfly::odometry {
+
+/// Homography by RANSAC and a refit to its inliers; maps pixels of the first view to the second.
+///
+/// Method: direct linear transform (Hartley and Zisserman 2003, algorithm 4.1) in RANSAC.
+struct HomographyFit {
+  Eigen::Matrix3d H_second_first = Eigen::Matrix3d::Identity();  ///< pixels
+  std::vector<std::uint8_t> inlier;
+  int inliers = 0;
+};
+[[nodiscard]] std::optional<HomographyFit> fit_homography(
+    const std::vector<Eigen::Vector2d>& first,
+    const std::vector<Eigen::Vector2d>& second,
+    double threshold_px,
+    std::uint64_t seed);
+
+/// A pixel through a homography.
+[[nodiscard]] Eigen::Vector2d transfer(const Eigen::Matrix3d& H, const Eigen::Vector2d& pixel);
+/// Derivative of `transfer` by the pixel.
+[[nodiscard]] Eigen::Matrix2d transfer_jacobian(const Eigen::Matrix3d& H,
+                                                const Eigen::Vector2d& pixel);
+
+struct TwoViewOptions {
+  double sigma_px = 1.0;           ///< noise assumed in scores and checks
+  double min_parallax_rad = 0.02;  ///< of the median point
+  int min_points = 60;
+  std::uint64_t seed = 1;
+};
+
+struct TwoViewReconstruction {
+  Pose T_second_first;                        ///< translation of unit length
+  std::vector<Eigen::Vector3d> points_first;  ///< one for each pair; zero where not good
+  std::vector<std::uint8_t> good;
+  int good_count = 0;
+  double median_parallax_rad = 0.0;
+  bool planar = false;  ///< the homography was chosen
+};
+
+/// Chooses between a plane's homography and an essential matrix and takes the motion from it.
+///
+/// Method: scores S_H, S_E and the ratio R_H = S_H / (S_H + S_E) > 0.45 of Mur-Artal, Montiel and
+/// Tardos 2015, section IV, eqs. 2 and 3 (DOI 10.1109/TRO.2015.2463671), with the calibrated
+/// matrix in the place of F.
+/// @return empty when the motion is ambiguous or the parallax still too small
+[[nodiscard]] std::optional<TwoViewReconstruction> reconstruct_two_view(
+    const PinholeCamera& camera,
+    const std::vector<Eigen::Vector2d>& first,
+    const std::vector<Eigen::Vector2d>& second,
+    const TwoViewOptions& options);
+
+/// The up to four motions (R, t / d) of a calibrated homography, t of unit length.
+///
+/// Method: Ma, Soatto, Kosecka and Sastry 2004, An Invitation to 3-D Vision, section 5.3.3.
+[[nodiscard]] std::vector<Pose> motions_of_homography(const Eigen::Matrix3d& H_calibrated);
+
+/// The four motions of an essential matrix (Hartley and Zisserman 2003, result 9.19).
+[[nodiscard]] std::vector<Pose> motions_of_essential(const Eigen::Matrix3d& E);
+
+}  // namespace overfly::odometry
