@@ -1,0 +1,79 @@
+// The REST interface as typed calls.
+import type { Json, JsonObject, Run, ScenarioEntry } from '../protocol/rest_types';
+
+/** An answer that was no success; `status` 0 = the server did not answer. */
+export class RestError extends Error {
+  constructor(
+    readonly status: number,
+    readonly code: string,
+    message: string,
+  ) {
+    super(message);
+  }
+}
+
+export type Fetch = (url: string, init?: RequestInit) => Promise<Response>;
+
+export class RestClient {
+  constructor(
+    private readonly base: string,
+    private readonly fetch: Fetch,
+  ) {}
+
+  async scenarios(): Promise<ScenarioEntry[]> {
+    const answer = (await this.call('GET', '/scenarios')) as { scenarios: ScenarioEntry[] };
+    return answer.scenarios;
+  }
+
+  async scenario(name: string): Promise<JsonObject> {
+    return (await this.call('GET', `/scenarios/${encodeURIComponent(name)}`)) as JsonObject;
+  }
+
+  async runs(): Promise<Run[]> {
+    return ((await this.call('GET', '/runs')) as { runs: Run[] }).runs;
+  }
+
+  /** `key` makes a repeated request give the same run. */
+  async startRun(scenario: string, overrides: Record<string, Json>, key: string): Promise<Run> {
+    const headers = { 'Idempotency-Key': key };
+    return (await this.call('POST', '/runs', { scenario, overrides }, headers)) as Run;
+  }
+
+  async cancelRun(id: string): Promise<void> {
+    await this.call('POST', `/runs/${encodeURIComponent(id)}/cancel`);
+  }
+
+  async deleteRun(id: string): Promise<void> {
+    await this.call('DELETE', `/runs/${encodeURIComponent(id)}`);
+  }
+
+  private async call(
+    method: string,
+    path: string,
+    body?: unknown,
+    headers: Record<string, string> = {},
+  ): Promise<unknown> {
+    const init: RequestInit = { method, headers: { ...headers } };
+    if (body !== undefined) {
+      init.body = JSON.stringify(body);
+      init.headers = { ...headers, 'Content-Type': 'application/json' };
+    }
+    let response: Response;
+    try {
+      response = await this.fetch(`${this.base}${path}`, init);
+    } catch {
+      throw new RestError(0, 'unreachable', 'the server does not answer');
+    }
+    if (!response.ok) throw await errorOf(response);
+    return response.status === 204 ? null : response.json();
+  }
+}
+
+async function errorOf(response: Response): Promise<RestError> {
+  try {
+    const { error } = (await response.json()) as { error: { code: string; message: string } };
+    return new RestError(response.status, error.code, error.message);
+  } catch {
+    return new RestError(response.status, 'http', `HTTP ${response.status} ${response.statusText}`);
+  }
+}

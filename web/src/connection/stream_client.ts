@@ -1,0 +1,206 @@
+// One WebSocket that heals itself: what the viewer wants (run, streams, view) is remembered here
+// and said again after every reconnection.
+import { backoffDelay_ms } from './backoff';
+import type {
+  ClientMessage,
+  PictureStream,
+  Resume,
+  SceneView,
+  ServerMessage,
+} from '../protocol/messages';
+import { kProtocolVersion } from '../protocol/messages';
+import type { PictureMessage } from '../protocol/parse';
+import { ParseError, parsePicture, parseServerMessage } from '../protocol/parse';
+
+/** The part of WebSocket in use, so that tests need no network. */
+export interface Socket {
+  binaryType: BinaryType;
+  onopen: ((event: Event) => void) | null;
+  onmessage: ((event: MessageEvent) => void) | null;
+  onclose: ((event: CloseEvent) => void) | null;
+  send(text: string): void;
+  close(): void;
+}
+
+export interface Timers {
+  set(callback: () => void, delay_ms: number): number;
+  clear(id: number): void;
+}
+
+export type ConnectionState =
+  | { status: 'connecting'; attempt: number }
+  | { status: 'open'; server: string }
+  | { status: 'waiting'; attempt: number; delay_ms: number }
+  | { status: 'incompatible'; reason: string };
+
+export interface StreamListener {
+  onState(state: ConnectionState): void;
+  /** What belongs to the run attached, and errors; nothing of a run left behind. */
+  onMessage(message: ServerMessage): void;
+  onAttachFailed(run: string, message: string): void;
+  onPicture(name: string, picture: PictureMessage): void;
+  /** Commands that bring the cursor back where it was, after a reconnection to the same run. */
+  restore(): ClientMessage[];
+  /** Rows at hand of the run attached, to go on from. */
+  resume(): Resume;
+  onFault(text: string): void;
+}
+
+export interface StreamClientOptions {
+  open: () => Socket;
+  timers: Timers;
+  random: () => number;
+  listener: StreamListener;
+}
+
+const kCloseTooSlow = 4000;
+
+export class StreamClient {
+  private socket: Socket | null = null;
+  private greeted = false;
+  private attempt = 0;
+  private timer: number | null = null;
+  private request = 0;
+  private run: string | null = null;
+  /** Request number of the `attach` not answered yet: until then, data are of the run before. */
+  private attaching: number | null = null;
+  private subscriptions: PictureStream[] = [];
+  private view: Partial<SceneView> = {};
+  private names = new Map<number, string>();
+
+  constructor(private readonly options: StreamClientOptions) {}
+
+  /** Connects, or tries again at once when waiting. */
+  connect(): void {
+    if (this.timer !== null) this.options.timers.clear(this.timer);
+    this.timer = null;
+    if (this.socket !== null) return;
+    this.attempt += 1;
+    this.options.listener.onState({ status: 'connecting', attempt: this.attempt });
+    const socket = this.options.open();
+    this.socket = socket;
+    socket.binaryType = 'arraybuffer';
+    socket.onmessage = (event) => this.onData(event.data as string | ArrayBuffer);
+    socket.onclose = (event) => this.onClosed(socket, event.code);
+  }
+
+  attach(run: string | null): void {
+    this.run = run;
+    this.names.clear();
+    if (run === null) this.send({ type: 'detach' });
+    else this.sendAttach(run);
+  }
+
+  subscribe(streams: PictureStream[]): void {
+    this.subscriptions = streams;
+    this.send({ type: 'subscribe', streams });
+  }
+
+  setView(view: Partial<SceneView>): void {
+    this.view = { ...this.view, ...view };
+    this.send({ type: 'view', ...view });
+  }
+
+  /** Sends a playback command; nothing happens while there is no connection. */
+  command(message: ClientMessage): void {
+    this.send(message);
+  }
+
+  private send(message: ClientMessage): void {
+    if (this.socket === null || !this.greeted) return;
+    this.request += 1;
+    this.socket.send(JSON.stringify({ ...message, request: this.request }));
+  }
+
+  private sendAttach(run: string): void {
+    const resume = this.options.listener.resume();
+    const known = Object.keys(resume).length > 0;
+    this.attaching = this.greeted ? this.request + 1 : null;
+    this.send(known ? { type: 'attach', run, resume } : { type: 'attach', run });
+  }
+
+  private onData(data: string | ArrayBuffer): void {
+    try {
+      if (typeof data === 'string') this.onText(data);
+      else this.onBinary(data);
+    } catch (error) {
+      if (!(error instanceof ParseError)) throw error;
+      this.options.listener.onFault(error.message);
+    }
+  }
+
+  private onText(text: string): void {
+    const message = parseServerMessage(text);
+    if (message === null) return;
+    if (message.type === 'hello') {
+      this.onHello(message);
+    } else if (message.type === 'streams') {
+      this.names = new Map(message.streams.map(({ id, name }) => [id, name]));
+    } else if (message.type === 'ok' || message.type === 'error') {
+      this.onAnswer(message);
+    } else {
+      if (message.type === 'run' && message.run.id === this.run) this.attaching = null;
+      if (this.attaching === null && this.run !== null) this.options.listener.onMessage(message);
+    }
+  }
+
+  private onAnswer(message: ServerMessage & { type: 'ok' | 'error' }): void {
+    const attach = message.request !== undefined && message.request === this.attaching;
+    if (attach) this.attaching = null;
+    if (message.type === 'ok') return;
+    if (attach && this.run !== null) {
+      const run = this.run;
+      this.run = null;
+      this.options.listener.onAttachFailed(run, message.message);
+    } else {
+      this.options.listener.onMessage(message);
+    }
+  }
+
+  private onHello(message: ServerMessage & { type: 'hello' }): void {
+    if (message.protocol !== kProtocolVersion) {
+      const reason = `the server speaks protocol ${message.protocol}, this page ${kProtocolVersion}: reload it`;
+      this.options.listener.onState({ status: 'incompatible', reason });
+      this.drop();
+      return;
+    }
+    this.greeted = true;
+    this.attempt = 0;
+    this.options.listener.onState({ status: 'open', server: message.server });
+    if (Object.keys(this.view).length > 0) this.send({ type: 'view', ...this.view });
+    if (this.run === null) return;
+    this.sendAttach(this.run);
+    if (this.subscriptions.length > 0) {
+      this.send({ type: 'subscribe', streams: this.subscriptions });
+    }
+    for (const command of this.options.listener.restore()) this.send(command);
+  }
+
+  private onBinary(buffer: ArrayBuffer): void {
+    const picture = parsePicture(buffer);
+    const name = picture === null ? undefined : this.names.get(picture.streamId);
+    if (picture === null || name === undefined || this.attaching !== null) return;
+    this.options.listener.onPicture(name, picture);
+  }
+
+  private onClosed(socket: Socket, code: number): void {
+    if (socket !== this.socket) return;
+    this.drop();
+    const tooSlow = code === kCloseTooSlow;
+    const delay_ms = tooSlow ? 0 : backoffDelay_ms(Math.max(1, this.attempt), this.options.random);
+    this.options.listener.onState({ status: 'waiting', attempt: this.attempt, delay_ms });
+    this.timer = this.options.timers.set(() => this.connect(), delay_ms);
+  }
+
+  private drop(): void {
+    const socket = this.socket;
+    this.socket = null;
+    this.greeted = false;
+    this.attaching = null;
+    this.names.clear();
+    if (socket !== null) {
+      socket.onclose = null;
+      socket.close();
+    }
+  }
+}

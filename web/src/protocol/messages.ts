@@ -1,0 +1,86 @@
+// Messages of the WebSocket /api/v1/stream; docs/PROTOCOL.md is the contract.
+import type { Metrics, Run } from './rest_types';
+
+export const kProtocolVersion = 1;
+
+export type SceneMode = 'chase' | 'orbit' | 'top';
+
+export interface SceneView {
+  mode: SceneMode;
+  azimuth_deg: number;
+  elevation_deg: number;
+  distance_m: number;
+  follow: boolean;
+  width_px: number;
+  height_px: number;
+}
+
+export interface PictureStream {
+  name: string;
+  max_hz?: number;
+  quality?: number;
+  max_width_px?: number;
+}
+
+/** Rows that the client has already, by data stream. */
+export type Resume = Record<string, number>;
+
+export type ClientMessage =
+  | { type: 'attach'; run: string; resume?: Resume }
+  | { type: 'detach' }
+  | { type: 'subscribe'; streams: PictureStream[] }
+  | ({ type: 'view' } & Partial<SceneView>)
+  | { type: 'play' }
+  | { type: 'pause' }
+  | { type: 'seek'; t_ns: number }
+  | { type: 'seek'; frame: number }
+  | { type: 'step'; frames: number }
+  | { type: 'speed'; value: number }
+  | { type: 'loop'; value: boolean }
+  | { type: 'live' };
+
+export interface PoseValues {
+  x_m: number;
+  y_m: number;
+  z_m: number;
+  roll_deg: number;
+  pitch_deg: number;
+  yaw_deg: number;
+}
+
+export interface EstimateInstant {
+  state: string;
+  pose: PoseValues | null;
+}
+
+export interface Playback {
+  t_ns: number;
+  frame: number;
+  playing: boolean;
+  live: boolean;
+  speed: number;
+  loop: boolean;
+  begin_ns: number;
+  end_ns: number;
+  truth: PoseValues | null;
+  estimates: Record<string, EstimateInstant>;
+}
+
+export type Cell = number | string | null;
+
+export interface Rows {
+  stream: string;
+  /** Number of the first row. */
+  seq: number;
+  columns: Record<string, Cell[]>;
+}
+
+export type ServerMessage =
+  | { type: 'hello'; protocol: number; server: string; connection: string }
+  | { type: 'ok'; request?: number }
+  | { type: 'error'; request?: number; code: string; message: string }
+  | { type: 'run'; run: Run }
+  | { type: 'streams'; streams: { id: number; name: string }[] }
+  | ({ type: 'rows' } & Rows)
+  | { type: 'metrics'; metrics: Metrics }
+  | ({ type: 'playback' } & Playback);

@@ -1,0 +1,113 @@
+// Pure readers of what comes over the wire. They throw ParseError and nothing else.
+import type { ServerMessage } from './messages';
+
+export class ParseError extends Error {}
+
+const kRequired: Record<ServerMessage['type'], Record<string, string>> = {
+  hello: { protocol: 'number', server: 'string' },
+  ok: {},
+  error: { code: 'string', message: 'string' },
+  run: { run: 'object' },
+  streams: { streams: 'object' },
+  rows: { stream: 'string', seq: 'number', columns: 'object' },
+  metrics: { metrics: 'object' },
+  playback: { t_ns: 'number', frame: 'number', playing: 'boolean', estimates: 'object' },
+};
+
+/** @return null for a type that this version does not know: newer servers may say more. */
+export function parseServerMessage(text: string): ServerMessage | null {
+  let value: unknown;
+  try {
+    value = JSON.parse(text);
+  } catch {
+    throw new ParseError('message is not JSON');
+  }
+  if (typeof value !== 'object' || value === null) throw new ParseError('message is no object');
+  const message = value as Record<string, unknown>;
+  const type = message['type'];
+  if (typeof type !== 'string') throw new ParseError('message has no type');
+  if (!Object.hasOwn(kRequired, type)) return null;
+  for (const [field, kind] of Object.entries(kRequired[type as ServerMessage['type']])) {
+    if (typeof message[field] !== kind || message[field] === null) {
+      throw new ParseError(`message ${type}: field ${field} is not of type ${kind}`);
+    }
+  }
+  return message as unknown as ServerMessage;
+}
+
+export interface PictureHeader {
+  streamId: number;
+  sequence: number;
+  frame: number;
+  t_ns: number;
+  width_px: number;
+  height_px: number;
+  grey: boolean;
+  live: boolean;
+}
+
+export interface PictureMessage extends PictureHeader {
+  /** A view into the message, not a copy. */
+  jpeg: Uint8Array<ArrayBuffer>;
+}
+
+export const kPictureHeaderBytes = 48;
+const kMagic = 0x4c46564f;
+const kPictureType = 1;
+const kEncodingGrey = 1;
+const kEncodingColour = 2;
+
+/** Reads a binary message; @return null for a message type that this version does not know. */
+export function parsePicture(buffer: ArrayBuffer): PictureMessage | null {
+  if (buffer.byteLength < kPictureHeaderBytes) {
+    throw new ParseError(`picture of ${buffer.byteLength} bytes is shorter than its header`);
+  }
+  const view = new DataView(buffer);
+  if (view.getUint32(0, true) !== kMagic) throw new ParseError('picture has no OVFL magic');
+  const version = view.getUint16(4, true);
+  if (version !== 1) throw new ParseError(`picture version ${version} is not 1`);
+  if (view.getUint16(6, true) !== kPictureType) return null;
+  const encoding = view.getUint16(36, true);
+  if (encoding !== kEncodingGrey && encoding !== kEncodingColour) {
+    throw new ParseError(`picture encoding ${encoding} is unknown`);
+  }
+  const headerBytes = view.getUint16(38, true);
+  const payloadBytes = view.getUint32(40, true);
+  if (headerBytes < kPictureHeaderBytes || headerBytes + payloadBytes > buffer.byteLength) {
+    throw new ParseError(
+      `picture says ${headerBytes} + ${payloadBytes} bytes, has ${buffer.byteLength}`,
+    );
+  }
+  return {
+    streamId: view.getUint32(8, true),
+    sequence: view.getUint32(12, true),
+    frame: Number(view.getBigInt64(16, true)),
+    t_ns: Number(view.getBigInt64(24, true)),
+    width_px: view.getUint16(32, true),
+    height_px: view.getUint16(34, true),
+    grey: encoding === kEncodingGrey,
+    live: (view.getUint32(44, true) & 1) === 1,
+    jpeg: new Uint8Array(buffer, headerBytes, payloadBytes),
+  };
+}
+
+/** The inverse of parsePicture, for stand-ins of the server. */
+export function encodePicture(header: PictureHeader, jpeg: Uint8Array): ArrayBuffer {
+  const buffer = new ArrayBuffer(kPictureHeaderBytes + jpeg.byteLength);
+  const view = new DataView(buffer);
+  view.setUint32(0, kMagic, true);
+  view.setUint16(4, 1, true);
+  view.setUint16(6, kPictureType, true);
+  view.setUint32(8, header.streamId, true);
+  view.setUint32(12, header.sequence, true);
+  view.setBigInt64(16, BigInt(header.frame), true);
+  view.setBigInt64(24, BigInt(header.t_ns), true);
+  view.setUint16(32, header.width_px, true);
+  view.setUint16(34, header.height_px, true);
+  view.setUint16(36, header.grey ? kEncodingGrey : kEncodingColour, true);
+  view.setUint16(38, kPictureHeaderBytes, true);
+  view.setUint32(40, jpeg.byteLength, true);
+  view.setUint32(44, header.live ? 1 : 0, true);
+  new Uint8Array(buffer, kPictureHeaderBytes).set(jpeg);
+  return buffer;
+}

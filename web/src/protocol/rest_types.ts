@@ -1,0 +1,61 @@
+// What the REST interface under /api/v1 says; docs/PROTOCOL.md is the contract.
+
+export type RunStatus = 'queued' | 'running' | 'completed' | 'failed' | 'cancelled' | 'interrupted';
+
+export interface Run {
+  id: string;
+  scenario: string;
+  title: string;
+  status: RunStatus;
+  created_utc: string;
+  error: string | null;
+  duration_ns: number;
+  frames: number;
+  frames_total: number;
+  pacing: string;
+  estimators: string[];
+  attribution: string;
+}
+
+export interface ScenarioEntry {
+  name: string;
+  title: string;
+  description: string;
+  /** Why it cannot be flown on this machine; null when it can. */
+  error: string | null;
+}
+
+/** Any JSON value: scenario documents are read by path, not by type. */
+export type Json = null | boolean | number | string | Json[] | { [key: string]: Json };
+export type JsonObject = Record<string, Json>;
+
+/** Errors of one estimate under one alignment; null where there is none to give. */
+export interface AlignmentErrors {
+  scale?: number | null;
+  position_rmse_m?: number | null;
+  rotation_rmse_deg?: number | null;
+  position_rmse_hold_m?: number | null;
+  rotation_euler_norm_rmse_deg?: number | null;
+  /** Why this alignment has no numbers. */
+  error?: string | null;
+}
+
+export interface EstimatorMetrics {
+  outcome: string;
+  outcome_time_s?: number | null;
+  coverage?: number | null;
+  alignments?: Record<string, AlignmentErrors>;
+  dropped_frames?: number | null;
+}
+
+export interface Metrics {
+  estimators?: Record<string, EstimatorMetrics>;
+  camera?: {
+    frames?: number;
+    texels_per_pixel?: { min?: number | null; median?: number | null };
+  };
+}
+
+export function isActive(run: Run): boolean {
+  return run.status === 'queued' || run.status === 'running';
+}

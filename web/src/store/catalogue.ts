@@ -1,0 +1,140 @@
+// Scenarios and runs of the server: read, launched, cancelled and deleted over REST.
+import type { RestClient } from '../connection/rest_client';
+import { RestError } from '../connection/rest_client';
+import { parseFaults } from '../protocol/faults';
+import { isActive } from '../protocol/rest_types';
+import { overridesOf } from './launch_form';
+import type { Notices } from './notices';
+import type { Session } from './session';
+import type { Store } from './state';
+
+const kPollActive_ms = 1500;
+const kPollIdle_ms = 8000;
+
+export class Catalogue {
+  private polling = false;
+
+  constructor(
+    private readonly store: Store,
+    private readonly rest: RestClient,
+    private readonly session: Session,
+    private readonly notices: Notices,
+    private readonly later: (callback: () => void, delay_ms: number) => void,
+    private readonly newKey: () => string,
+  ) {}
+
+  /** Reads the scenarios, and the runs again and again. */
+  start(): void {
+    void this.readScenarios();
+    void this.poll();
+  }
+
+  async readScenarios(): Promise<void> {
+    const { state } = this.store;
+    try {
+      state.scenarios = await this.rest.scenarios();
+      state.listError = null;
+    } catch (error) {
+      state.listError = textOf(error);
+      this.store.change('lists');
+      return;
+    }
+    this.store.change('lists');
+    const first = state.scenarios.find((entry) => entry.error === null);
+    if (state.scenarioName === null && first !== undefined) await this.selectScenario(first.name);
+  }
+
+  async selectScenario(name: string): Promise<void> {
+    const { state } = this.store;
+    state.scenarioName = name;
+    state.scenarioDocument = null;
+    state.launchFaults = [];
+    this.store.change('launch');
+    const entry = state.scenarios?.find((scenario) => scenario.name === name);
+    if (entry !== undefined && entry.error !== null) {
+      state.launchFaults = [{ field: '', message: entry.error }];
+      this.store.change('launch');
+      return;
+    }
+    try {
+      const document = await this.rest.scenario(name);
+      if (this.store.state.scenarioName === name) state.scenarioDocument = document;
+    } catch (error) {
+      state.launchFaults = [{ field: '', message: textOf(error) }];
+    }
+    this.store.change('launch');
+  }
+
+  /** Starts a run with the form's values and watches it; faults come back to the form. */
+  async launch(texts: ReadonlyMap<string, string>): Promise<void> {
+    const { state } = this.store;
+    const { scenarioName, scenarioDocument } = state;
+    if (scenarioName === null || scenarioDocument === null || state.launching) return;
+    const { overrides, faults } = overridesOf(scenarioDocument, texts);
+    state.launchFaults = faults;
+    this.store.change('launch');
+    if (faults.length > 0) return;
+    state.launching = true;
+    try {
+      const run = await this.rest.startRun(scenarioName, overrides, this.newKey());
+      state.runs = [run, ...(state.runs ?? []).filter(({ id }) => id !== run.id)];
+      this.session.selectRun(run.id);
+    } catch (error) {
+      state.launchFaults = parseFaults(textOf(error));
+    }
+    state.launching = false;
+    this.store.change('launch', 'lists');
+  }
+
+  async cancel(id: string): Promise<void> {
+    await this.attempt(() => this.rest.cancelRun(id));
+  }
+
+  async remove(id: string): Promise<void> {
+    await this.attempt(async () => {
+      await this.rest.deleteRun(id);
+      if (this.store.state.runId === id) this.session.selectRun(null);
+    });
+  }
+
+  private async attempt(action: () => Promise<void>): Promise<void> {
+    try {
+      await action();
+    } catch (error) {
+      this.notices.error(textOf(error));
+    }
+    await this.readRuns();
+  }
+
+  async readRuns(): Promise<void> {
+    const { state } = this.store;
+    try {
+      state.runs = await this.rest.runs();
+      state.listError = null;
+      const watched = state.runs.find(({ id }) => id === state.runId);
+      if (watched !== undefined && state.run === null) {
+        state.run = watched;
+        this.store.change('run');
+      }
+      if (state.scenarios === null) await this.readScenarios();
+    } catch (error) {
+      state.listError = textOf(error);
+    }
+    this.store.change('lists');
+  }
+
+  private async poll(): Promise<void> {
+    if (this.polling) return;
+    this.polling = true;
+    await this.readRuns();
+    this.polling = false;
+    const active = this.store.state.runs?.some(isActive) === true;
+    const failing = this.store.state.listError !== null;
+    this.later(() => void this.poll(), active || failing ? kPollActive_ms : kPollIdle_ms);
+  }
+}
+
+function textOf(error: unknown): string {
+  if (error instanceof RestError || error instanceof Error) return error.message;
+  return String(error);
+}

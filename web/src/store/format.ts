@@ -1,0 +1,41 @@
+// Numbers as people read them.
+
+export const kNothing = '–';
+
+/** Fixed digits with a true minus sign; an en dash for what is not there. */
+export function formatNumber(value: number | null | undefined, digits: number): string {
+  if (value === null || value === undefined || !Number.isFinite(value)) return kNothing;
+  const text = value.toFixed(digits);
+  return Number(text) === 0 ? text.replace('-', '') : text.replace('-', '−');
+}
+
+export function formatPercent(fraction: number | null | undefined, digits = 1): string {
+  if (fraction === null || fraction === undefined) return kNothing;
+  return `${formatNumber(fraction * 100, digits)} %`;
+}
+
+/** mm:ss.mmm of a time since the run's start. */
+export function formatTime(t_ns: number): string {
+  const ms = Math.max(0, Math.round(t_ns / 1e6));
+  const minutes = Math.floor(ms / 60000);
+  const seconds = Math.floor(ms / 1000) % 60;
+  return `${pad(minutes, 2)}:${pad(seconds, 2)}.${pad(ms % 1000, 3)}`;
+}
+
+/** Local date and time of an ISO 8601 instant, without seconds. */
+export function formatDate(utc: string): string {
+  const date = new Date(utc);
+  if (Number.isNaN(date.getTime())) return utc;
+  const day = `${date.getFullYear()}-${pad(date.getMonth() + 1, 2)}-${pad(date.getDate(), 2)}`;
+  return `${day} ${pad(date.getHours(), 2)}:${pad(date.getMinutes(), 2)}`;
+}
+
+/** Into (-180, 180]. */
+export function wrapDegrees(angle_deg: number): number {
+  const wrapped = angle_deg - 360 * Math.floor((angle_deg + 180) / 360);
+  return wrapped === -180 ? 180 : wrapped;
+}
+
+function pad(value: number, digits: number): string {
+  return String(value).padStart(digits, '0');
+}

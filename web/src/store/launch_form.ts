@@ -1,0 +1,186 @@
+// The launcher's fields: read from a scenario document, turned into overrides.
+import type { Fault } from '../protocol/faults';
+import type { Json, JsonObject } from '../protocol/rest_types';
+
+export interface FieldSpec {
+  /** Dotted path in the scenario document. */
+  path: string;
+  label: string;
+  unit: string;
+  kind: 'number' | 'choice' | 'estimators';
+  choices?: readonly { value: string; label: string }[];
+  step?: number;
+  /** The field is left out where the document has nothing at this path. */
+  needs?: string;
+  /** May stay empty. */
+  optional?: boolean;
+  hint: string;
+}
+
+const kCourse = 'flight.course';
+
+export const kFields: readonly FieldSpec[] = [
+  {
+    path: `${kCourse}.airspeed_m_s`,
+    label: 'Airspeed',
+    unit: 'm/s',
+    kind: 'number',
+    step: 1,
+    needs: kCourse,
+    hint: 'True airspeed',
+  },
+  {
+    path: `${kCourse}.roll_rate_max_deg_s`,
+    label: 'Max roll rate',
+    unit: 'deg/s',
+    kind: 'number',
+    step: 5,
+    needs: kCourse,
+    hint: 'Reached at each reversal',
+  },
+  {
+    path: `${kCourse}.height_agl_m`,
+    label: 'Height AGL',
+    unit: 'm',
+    kind: 'number',
+    step: 10,
+    needs: kCourse,
+    hint: 'Above the ground',
+  },
+  {
+    path: `${kCourse}.bank_max_deg`,
+    label: 'Bank limit',
+    unit: 'deg',
+    kind: 'number',
+    step: 5,
+    needs: kCourse,
+    hint: 'Largest bank angle',
+  },
+  {
+    path: 'seed',
+    label: 'Seed',
+    unit: '',
+    kind: 'number',
+    step: 1,
+    hint: 'Of everything random but the world',
+  },
+  {
+    path: 'world.builtin.seed',
+    label: 'World seed',
+    unit: '',
+    kind: 'number',
+    step: 1,
+    needs: 'world.builtin',
+    hint: 'Of the built-in landscape',
+  },
+  {
+    path: 'duration_s',
+    label: 'Duration',
+    unit: 's',
+    kind: 'number',
+    step: 5,
+    optional: true,
+    hint: 'Stops the flight early; empty flies all of it',
+  },
+  {
+    path: 'pacing',
+    label: 'Pacing',
+    unit: '',
+    kind: 'choice',
+    hint: 'Lockstep waits for the estimators, real time drops frames',
+    choices: [
+      { value: 'lockstep', label: 'Lockstep' },
+      { value: 'real_time', label: 'Real time' },
+    ],
+  },
+  {
+    path: 'estimators',
+    label: 'Estimators',
+    unit: '',
+    kind: 'estimators',
+    hint: 'None = camera and truth only',
+    choices: [
+      { value: 'feature', label: 'Feature' },
+      { value: 'perfect', label: 'Perfect' },
+      { value: 'drifting', label: 'Drifting' },
+    ],
+  },
+];
+
+export function valueAt(document: JsonObject, path: string): Json | undefined {
+  let value: Json | undefined = document;
+  for (const part of path.split('.')) {
+    if (typeof value !== 'object' || value === null || Array.isArray(value)) return undefined;
+    value = value[part];
+  }
+  return value;
+}
+
+export function fieldsOf(document: JsonObject): FieldSpec[] {
+  return kFields.filter(
+    ({ needs }) => needs === undefined || valueAt(document, needs) !== undefined,
+  );
+}
+
+/** What a field shows for a document: text of a number or choice, comma-separated estimators. */
+export function fieldText(document: JsonObject, field: FieldSpec): string {
+  const value = valueAt(document, field.path);
+  if (field.kind === 'estimators') return estimatorsOf(value).map(typeOf).join(',');
+  return typeof value === 'number' || typeof value === 'string' ? String(value) : '';
+}
+
+export interface Overrides {
+  overrides: Record<string, Json>;
+  faults: Fault[];
+}
+
+/** Only what differs from the document is overridden; limits are left to the server. */
+export function overridesOf(document: JsonObject, texts: ReadonlyMap<string, string>): Overrides {
+  const overrides: Record<string, Json> = {};
+  const faults: Fault[] = [];
+  for (const field of fieldsOf(document)) {
+    const text = (texts.get(field.path) ?? '').trim();
+    if (text === fieldText(document, field)) continue;
+    if (field.kind === 'estimators') {
+      overrides[field.path] = estimatorList(text, estimatorsOf(valueAt(document, field.path)));
+    } else if (field.kind === 'choice') {
+      overrides[field.path] = text;
+    } else if (text === '') {
+      if (field.optional === true) overrides[field.path] = null;
+      else faults.push({ field: field.path, message: 'must be a number' });
+    } else if (Number.isFinite(Number(text))) {
+      overrides[field.path] = Number(text);
+    } else {
+      faults.push({ field: field.path, message: 'must be a number' });
+    }
+  }
+  return { overrides, faults };
+}
+
+/** The field that a fault belongs to: the same path, or one it lies in. */
+export function fieldOfFault(fields: readonly FieldSpec[], fault: Fault): FieldSpec | null {
+  return (
+    fields.find(({ path }) => fault.field === path || fault.field.startsWith(`${path}.`)) ?? null
+  );
+}
+
+function estimatorsOf(value: Json | undefined): JsonObject[] {
+  if (!Array.isArray(value)) return [];
+  return value.filter(
+    (entry): entry is JsonObject =>
+      typeof entry === 'object' && entry !== null && !Array.isArray(entry),
+  );
+}
+
+function typeOf(estimator: JsonObject): string {
+  const type = estimator['type'];
+  return typeof type === 'string' ? type : '';
+}
+
+/** Estimators that the document has keep their parameters. */
+function estimatorList(text: string, known: JsonObject[]): Json[] {
+  return text
+    .split(',')
+    .filter((type) => type !== '')
+    .map((type) => known.find((entry) => typeOf(entry) === type) ?? { name: type, type });
+}

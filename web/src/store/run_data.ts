@@ -1,0 +1,92 @@
+// All rows received of the run being watched.
+import type { Cell, Resume, Rows } from '../protocol/messages';
+import { Table } from './table';
+
+export const kAxes = ['x_m', 'y_m', 'z_m', 'roll_deg', 'pitch_deg', 'yaw_deg'] as const;
+export type Axis = (typeof kAxes)[number];
+
+export type TruthColumn = 'frame' | 't_ns' | Axis | 'texels_per_pixel' | 'void_fraction';
+export type EstimateColumn = 'frame' | 't_ns' | Axis | 'latency_ms';
+
+export interface LogLine {
+  t_ns: number;
+  level: string;
+  text: string;
+}
+
+export interface EstimateRows {
+  table: Table<EstimateColumn>;
+  states: string[];
+}
+
+const kEstimatePrefix = 'estimate/';
+
+export class RunData {
+  readonly truth = new Table<TruthColumn>([
+    'frame',
+    't_ns',
+    ...kAxes,
+    'texels_per_pixel',
+    'void_fraction',
+  ]);
+  readonly estimates = new Map<string, EstimateRows>();
+  readonly log: LogLine[] = [];
+  /** Grows when rows are replaced: what was computed from them is then out of date. */
+  generation = 0;
+
+  /**
+   * Takes rows in. The server is right about rows sent again: they replace ours.
+   * @return false when rows before these are missing; nothing is changed then
+   */
+  apply(rows: Rows): boolean {
+    const count = Math.max(0, ...Object.values(rows.columns).map((cells) => cells.length));
+    const known = this.countOf(rows.stream);
+    if (rows.seq > known) return false;
+    if (rows.seq < known) this.generation += 1;
+    if (rows.stream === 'truth') {
+      this.truth.write(rows.seq, count, rows.columns);
+    } else if (rows.stream === 'log') {
+      this.log.splice(rows.seq, Infinity, ...logLines(rows.columns, count));
+    } else if (rows.stream.startsWith(kEstimatePrefix)) {
+      const estimate = this.estimate(rows.stream.slice(kEstimatePrefix.length));
+      estimate.table.write(rows.seq, count, rows.columns);
+      const states = (rows.columns['state'] ?? []).map(String);
+      estimate.states.splice(rows.seq, Infinity, ...states);
+    }
+    return true;
+  }
+
+  /** Rows at hand by stream, as `attach` wants them. */
+  resume(): Resume {
+    const counts: Resume = {};
+    if (this.truth.length > 0) counts['truth'] = this.truth.length;
+    if (this.log.length > 0) counts['log'] = this.log.length;
+    for (const [name, { table }] of this.estimates) {
+      if (table.length > 0) counts[kEstimatePrefix + name] = table.length;
+    }
+    return counts;
+  }
+
+  private countOf(stream: string): number {
+    if (stream === 'truth') return this.truth.length;
+    if (stream === 'log') return this.log.length;
+    return this.estimates.get(stream.slice(kEstimatePrefix.length))?.table.length ?? 0;
+  }
+
+  private estimate(name: string): EstimateRows {
+    let rows = this.estimates.get(name);
+    if (rows === undefined) {
+      rows = { table: new Table(['frame', 't_ns', ...kAxes, 'latency_ms']), states: [] };
+      this.estimates.set(name, rows);
+    }
+    return rows;
+  }
+}
+
+function logLines(columns: Record<string, Cell[]>, count: number): LogLine[] {
+  return Array.from({ length: count }, (_, i) => ({
+    t_ns: Number(columns['t_ns']?.[i] ?? 0),
+    level: String(columns['level']?.[i] ?? 'info'),
+    text: String(columns['text']?.[i] ?? ''),
+  }));
+}

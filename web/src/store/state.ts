@@ -1,0 +1,116 @@
+// Everything the screen shows, in one place, and who wants to know when it changes.
+import type { ConnectionState } from '../connection/stream_client';
+import type { Fault } from '../protocol/faults';
+import type { Playback, SceneMode, SceneView } from '../protocol/messages';
+import type { JsonObject, Metrics, Run, ScenarioEntry } from '../protocol/rest_types';
+import { kDefaultAlignment } from './error_table';
+import { RunData } from './run_data';
+
+/** A decoded picture and the instant it belongs to. */
+export interface Picture {
+  frame: number;
+  t_ns: number;
+  width_px: number;
+  height_px: number;
+  live: boolean;
+  bitmap: ImageBitmap;
+}
+
+export interface Notice {
+  id: number;
+  level: 'info' | 'error';
+  text: string;
+}
+
+export type SceneOrbit = Pick<SceneView, 'azimuth_deg' | 'elevation_deg' | 'distance_m' | 'follow'>;
+
+export interface State {
+  connection: ConnectionState;
+  /** null until they were read. */
+  scenarios: ScenarioEntry[] | null;
+  runs: Run[] | null;
+  listError: string | null;
+  scenarioName: string | null;
+  scenarioDocument: JsonObject | null;
+  launchFaults: Fault[];
+  launching: boolean;
+  /** The run being watched; `run` is null until the list or the stream has told about it. */
+  runId: string | null;
+  run: Run | null;
+  data: RunData;
+  metrics: Metrics | null;
+  playback: Playback | null;
+  pictures: Map<string, Picture>;
+  alignment: string;
+  sceneMode: SceneMode;
+  sceneOrbits: Record<SceneMode, SceneOrbit>;
+  notices: Notice[];
+  helpOpen: boolean;
+}
+
+export function initialState(): State {
+  return {
+    connection: { status: 'connecting', attempt: 1 },
+    scenarios: null,
+    runs: null,
+    listError: null,
+    scenarioName: null,
+    scenarioDocument: null,
+    launchFaults: [],
+    launching: false,
+    runId: null,
+    run: null,
+    data: new RunData(),
+    metrics: null,
+    playback: null,
+    pictures: new Map(),
+    alignment: kDefaultAlignment,
+    sceneMode: 'chase',
+    sceneOrbits: {
+      chase: { azimuth_deg: 0, elevation_deg: 18, distance_m: 60, follow: true },
+      orbit: { azimuth_deg: 215, elevation_deg: 35, distance_m: 900, follow: true },
+      top: { azimuth_deg: 180, elevation_deg: 90, distance_m: 2400, follow: false },
+    },
+    notices: [],
+    helpOpen: false,
+  };
+}
+
+/** Views draw themselves for the topics that changed since the last frame. */
+export type Topic =
+  | 'connection'
+  | 'lists'
+  | 'launch'
+  | 'run'
+  | 'rows'
+  | 'log'
+  | 'metrics'
+  | 'playback'
+  | 'pictures'
+  | 'scene'
+  | 'notices'
+  | 'help';
+
+export class Store {
+  readonly state = initialState();
+  private changed = new Set<Topic>();
+  private listener: (() => void) | null = null;
+
+  /** Calls back once when something changed after the last take(). */
+  onChange(listener: () => void): void {
+    this.listener = listener;
+  }
+
+  change(...topics: Topic[]): void {
+    const quiet = this.changed.size === 0;
+    for (const topic of topics) this.changed.add(topic);
+    if (quiet) this.listener?.();
+  }
+
+  /** The topics changed since the last call. */
+  take(): ReadonlySet<Topic> {
+    const taken = this.changed;
+    this.changed = new Set();
+    return taken;
+  }
+}

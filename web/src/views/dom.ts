@@ -1,0 +1,61 @@
+// Making elements, shortly.
+
+type Props = Record<string, string | number | boolean | undefined | ((event: never) => void)>;
+type Child = Node | string | null;
+
+/** `on...` props listen, booleans set or leave out an attribute, the rest become attributes. */
+export function h<K extends keyof HTMLElementTagNameMap>(
+  tag: K,
+  props: Props = {},
+  ...children: Child[]
+): HTMLElementTagNameMap[K] {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(props)) {
+    if (name === 'style') {
+      element.style.cssText = String(value);
+    } else if (typeof value === 'function') {
+      element.addEventListener(name.replace(/^on/, ''), value as EventListener);
+    } else if (value === true) {
+      element.setAttribute(name, '');
+    } else if (value !== false && value !== undefined) {
+      element.setAttribute(name, String(value));
+    }
+  }
+  element.append(...children.filter((child) => child !== null));
+  return element;
+}
+
+/** Sets text only when it differs, so that a still screen costs nothing. */
+export function setText(element: HTMLElement, text: string): void {
+  if (element.textContent !== text) element.textContent = text;
+}
+
+export function setAttribute(element: HTMLElement, name: string, value: string | null): void {
+  if (element.getAttribute(name) === value) return;
+  if (value === null) element.removeAttribute(name);
+  else element.setAttribute(name, value);
+}
+
+/** Replaces the children when `key` differs from the one they were made for. */
+export function rebuild(element: HTMLElement, key: string, make: () => Node[]): void {
+  if (element.dataset['key'] === key) return;
+  element.dataset['key'] = key;
+  element.replaceChildren(...make());
+}
+
+/** Calls `action` at most once a frame, with the newest argument. */
+export function perFrame<T>(action: (value: T) => void): (value: T) => void {
+  let waiting: { value: T } | null = null;
+  return (value) => {
+    if (waiting !== null) {
+      waiting.value = value;
+      return;
+    }
+    waiting = { value };
+    requestAnimationFrame(() => {
+      const newest = waiting;
+      waiting = null;
+      if (newest !== null) action(newest.value);
+    });
+  };
+}

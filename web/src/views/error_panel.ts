@@ -1,0 +1,139 @@
+// Errors of the estimates as the server scored them; the screen computes none.
+import { alignmentModes, errorTable } from '../store/error_table';
+import { kNothing } from '../store/format';
+import type { State, Topic } from '../store/state';
+import { estimateColour, kStateColours } from './colours';
+import { h, rebuild, setText } from './dom';
+import type { Panel } from './panel';
+import { makePanel } from './panel';
+import type { Context, View } from './view';
+
+export class ErrorPanel implements View {
+  readonly root: HTMLElement;
+  private readonly panel: Panel;
+  private readonly alignment = h('select', { id: 'alignment', 'aria-label': 'Alignment' });
+  private readonly table = h('table', { class: 'errors' });
+
+  constructor(private readonly context: Context) {
+    this.panel = makePanel('errors', 'Errors');
+    this.root = this.panel.root;
+    this.panel.tools.append(h('label', { for: 'alignment' }, 'Alignment'), this.alignment);
+    this.panel.body.append(this.table);
+    this.alignment.addEventListener('change', () => {
+      context.store.state.alignment = this.alignment.value;
+      context.store.change('metrics');
+    });
+  }
+
+  update(changed: ReadonlySet<Topic>): void {
+    const { state } = this.context.store;
+    if (changed.has('metrics') || changed.has('run')) {
+      this.drawModes(state);
+      this.draw(state);
+    }
+    if (changed.has('playback')) this.drawStates(state);
+    if (changed.has('playback') || changed.has('run')) {
+      this.panel.showFrame(state.playback?.frame ?? null);
+    }
+  }
+
+  private drawModes(state: State): void {
+    const modes = alignmentModes(state.metrics);
+    const shown = modes.length > 0 ? modes : [state.alignment];
+    rebuild(this.alignment, shown.join(' '), () =>
+      shown.map((mode) => h('option', { value: mode }, mode)),
+    );
+    if (!shown.includes(state.alignment)) state.alignment = shown[0] ?? state.alignment;
+    this.alignment.value = state.alignment;
+    this.alignment.disabled = modes.length === 0;
+  }
+
+  private draw(state: State): void {
+    const names = state.run?.estimators ?? [];
+    const scored = state.metrics?.estimators !== undefined;
+    this.panel.showEmpty(emptyText(state));
+    this.table.hidden = names.length === 0;
+    const metrics = state.metrics ?? {};
+    const table = errorTable(
+      scored
+        ? metrics
+        : { estimators: Object.fromEntries(names.map((name) => [name, { outcome: '' }])) },
+      state.alignment,
+    );
+    rebuild(this.table, JSON.stringify([table, names]), () => [
+      h(
+        'thead',
+        {},
+        h(
+          'tr',
+          {},
+          h('th', {}),
+          ...table.estimators.map(({ name }) =>
+            h('th', { scope: 'col', style: `color:${estimateColour(names.indexOf(name))}` }, name),
+          ),
+        ),
+      ),
+      h(
+        'tbody',
+        {},
+        tableRow(
+          'state',
+          'State here',
+          '',
+          'At the playback cursor',
+          table.estimators.map(({ name }) => h('td', { 'data-state-of': name }, kNothing)),
+        ),
+        tableRow(
+          'outcome',
+          'Outcome',
+          '',
+          'Of the whole flight',
+          table.estimators.map(({ outcome, good }) =>
+            h(
+              'td',
+              { class: good ? 'good' : 'bad', title: outcome },
+              scored ? outcome : 'not scored yet',
+            ),
+          ),
+        ),
+        ...table.rows.map(({ key, label, unit, hint, cells }) =>
+          tableRow(
+            key,
+            label,
+            unit,
+            hint,
+            cells.map((cell) => h('td', {}, cell)),
+          ),
+        ),
+      ),
+    ]);
+    this.drawStates(state);
+  }
+
+  private drawStates(state: State): void {
+    for (const cell of this.table.querySelectorAll<HTMLElement>('[data-state-of]')) {
+      const name = cell.dataset['stateOf'] ?? '';
+      const here = state.playback?.estimates[name]?.state ?? kNothing;
+      setText(cell, here);
+      cell.style.color = kStateColours[here] ?? '';
+    }
+  }
+}
+
+function tableRow(
+  key: string,
+  label: string,
+  unit: string,
+  hint: string,
+  cells: HTMLElement[],
+): HTMLElement {
+  const head = h('th', { scope: 'row', title: hint }, label);
+  if (unit !== '') head.append(h('span', { class: 'unit' }, unit));
+  return h('tr', { 'data-row': key }, head, ...cells);
+}
+
+function emptyText(state: State): string | null {
+  if (state.runId === null) return 'Errors of the estimates appear here.';
+  if (state.run?.estimators.length === 0) return 'This flight has no estimator.';
+  return null;
+}

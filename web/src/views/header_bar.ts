@@ -1,0 +1,123 @@
+// The line on top: which run this is, how it stands, and whether the server is there.
+import type { State, Topic } from '../store/state';
+import { textureLimited } from '../store/error_table';
+import { formatNumber, formatPercent } from '../store/format';
+import { h, setAttribute, setText } from './dom';
+import type { Context, View } from './view';
+
+export class HeaderBar implements View {
+  readonly root: HTMLElement;
+  private readonly title = h('span', { class: 'run-title' });
+  private readonly status = h('span', { class: 'chip', 'data-role': 'status' });
+  private readonly flag = h('span', {
+    class: 'chip warn',
+    'data-role': 'texture-limited',
+    hidden: true,
+  });
+  private readonly error = h('span', { class: 'run-error' });
+  private readonly attribution = h('span', { class: 'attribution' });
+  private readonly connection = h('button', {
+    class: 'chip connection',
+    'data-role': 'connection',
+  });
+  private countdown = 0;
+
+  constructor(private readonly context: Context) {
+    this.connection.addEventListener('click', () => context.client.connect());
+    const help = h(
+      'button',
+      {
+        class: 'icon-button help-button',
+        title: 'Keyboard shortcuts (?)',
+        'aria-label': 'Keyboard shortcuts',
+        onclick: () => {
+          context.store.state.helpOpen = true;
+          context.store.change('help');
+        },
+      },
+      '?',
+    );
+    this.root = h(
+      'header',
+      { class: 'header-bar' },
+      h('h1', {}, 'Overfly'),
+      this.title,
+      this.status,
+      this.flag,
+      this.error,
+      h('span', { class: 'spacer' }),
+      this.attribution,
+      this.connection,
+      help,
+    );
+  }
+
+  update(changed: ReadonlySet<Topic>): void {
+    const { state } = this.context.store;
+    if (changed.has('run') || changed.has('metrics')) this.updateRun(state);
+    if (changed.has('connection')) this.updateConnection(state);
+  }
+
+  private updateRun(state: State): void {
+    const { run } = state;
+    setText(this.title, run?.title ?? (state.runId === null ? 'No run chosen' : state.runId));
+    this.title.title = run === null ? '' : `${run.id} · scenario ${run.scenario} · ${run.pacing}`;
+    const share = run === null || run.frames_total === 0 ? 0 : run.frames / run.frames_total;
+    const running = run?.status === 'running' ? ` ${formatPercent(share, 0)}` : '';
+    setText(this.status, run === null ? '' : `${run.status}${running}`);
+    setAttribute(this.status, 'data-status', run?.status ?? null);
+    setText(this.error, run?.error ?? '');
+    this.error.title = run?.error ?? '';
+    setText(this.attribution, run?.attribution ?? '');
+    this.attribution.title = run?.attribution ?? '';
+    const median = textureLimited(state.metrics);
+    this.flag.hidden = median === null;
+    setText(
+      this.flag,
+      median === null ? '' : `Texture-limited: ${formatNumber(median, 2)} texels/px`,
+    );
+    this.flag.title =
+      'The imagery has less detail than the camera: errors say more about it than about the estimator';
+    document.title = run === null ? 'Overfly' : `${run.title} · Overfly`;
+  }
+
+  private updateConnection(state: State): void {
+    const { connection } = state;
+    clearInterval(this.countdown);
+    setAttribute(this.connection, 'data-status', connection.status);
+    this.connection.title = connection.status === 'open' ? connection.server : '';
+    this.connection.toggleAttribute('disabled', connection.status !== 'waiting');
+    switch (connection.status) {
+      case 'open': {
+        setText(this.connection, 'Connected');
+        return;
+      }
+      case 'connecting': {
+        setText(this.connection, connection.attempt > 1 ? 'Reconnecting' : 'Connecting');
+        return;
+      }
+      case 'incompatible':
+        this.connection.title = connection.reason;
+        {
+          setText(this.connection, 'Reload the page');
+          return;
+        }
+      case 'waiting':
+        this.connection.title = 'Connection lost. Click to try again now.';
+        {
+          this.countDown(connection.delay_ms);
+          return;
+        }
+    }
+  }
+
+  private countDown(delay_ms: number): void {
+    const due_ms = performance.now() + delay_ms;
+    const tell = () => {
+      const left_s = Math.max(0, Math.ceil((due_ms - performance.now()) / 1000));
+      setText(this.connection, `Connection lost · retry in ${left_s} s`);
+    };
+    tell();
+    this.countdown = window.setInterval(tell, 500);
+  }
+}

@@ -1,0 +1,45 @@
+// The keyboard shortcuts, listed.
+import type { Topic } from '../store/state';
+import { h } from './dom';
+import { kShortcuts } from './shortcuts';
+import type { Context, View } from './view';
+
+export class HelpOverlay implements View {
+  readonly root: HTMLElement;
+
+  constructor(private readonly context: Context) {
+    const rows = kShortcuts.map(({ label, what }) =>
+      h(
+        'tr',
+        {},
+        h('td', {}, ...label.split(' ').map((key) => h('kbd', {}, key))),
+        h('td', {}, what),
+      ),
+    );
+    const mouse = [
+      ['Drag in 3D', 'turn the view'],
+      ['Wheel in 3D', 'zoom'],
+      ['Double-click in 3D', 'follow the aircraft or not'],
+      ['Click or drag in a plot', 'seek'],
+    ].map(([what = '', does = '']) => h('tr', {}, h('td', {}, what), h('td', {}, does)));
+    this.root = h(
+      'div',
+      { class: 'overlay', hidden: true, onclick: () => this.close() },
+      h(
+        'div',
+        { class: 'help', role: 'dialog', 'aria-label': 'Keyboard shortcuts' },
+        h('h2', {}, 'Keyboard and mouse'),
+        h('table', {}, h('tbody', {}, ...rows, ...mouse)),
+      ),
+    );
+  }
+
+  update(changed: ReadonlySet<Topic>): void {
+    if (changed.has('help')) this.root.hidden = !this.context.store.state.helpOpen;
+  }
+
+  private close(): void {
+    this.context.store.state.helpOpen = false;
+    this.context.store.change('help');
+  }
+}

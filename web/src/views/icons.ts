@@ -1,0 +1,28 @@
+// Icons as inline drawings: nothing to download.
+
+const kPaths = {
+  play: 'M5 3.5v9l7.5-4.5z',
+  pause: 'M4.5 3.5h2.5v9H4.5zM9 3.5h2.5v9H9z',
+  stepBack: 'M11.5 3.5v9L6 8zM4 3.5h1.6v9H4z',
+  stepForward: 'M4.5 3.5v9L10 8zM10.4 3.5H12v9h-1.6z',
+  toBegin: 'M13 3.5v9L8.5 8zM8.5 3.5v9L4 8zM2.6 3.5H4v9H2.6z',
+  toEnd: 'M3 3.5v9L7.5 8zM7.5 3.5v9L12 8zM12 3.5h1.4v9H12z',
+  loop: 'M4.5 5H10V3l3.5 2.8L10 8.6V6.5H4.5V8H3V6.5A1.5 1.5 0 0 1 4.5 5zM11.5 11H6v2L2.5 10.2 6 7.4v2.1h5.5V8H13v1.5a1.5 1.5 0 0 1-1.5 1.5z',
+  expand: 'M3 3h4v1.5H4.5V7H3zM9 11.5h2.5V9H13v4H9z',
+  bin: 'M6 2.5h4v1h3V5H3V3.5h3zM4 6h8l-.6 7.5H4.6z',
+  stop: 'M4 4h8v8H4z',
+} as const;
+
+export type IconName = keyof typeof kPaths;
+
+const kSvg = 'http://www.w3.org/2000/svg';
+
+export function icon(name: IconName): SVGSVGElement {
+  const svg = document.createElementNS(kSvg, 'svg');
+  svg.setAttribute('viewBox', '0 0 16 16');
+  svg.setAttribute('aria-hidden', 'true');
+  const path = document.createElementNS(kSvg, 'path');
+  path.setAttribute('d', kPaths[name]);
+  svg.append(path);
+  return svg;
+}

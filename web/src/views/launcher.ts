@@ -1,0 +1,173 @@
+// Choosing a scenario, changing its main parameters, starting a run.
+import { fieldOfFault, fieldsOf, fieldText } from '../store/launch_form';
+import type { FieldSpec } from '../store/launch_form';
+import type { Topic } from '../store/state';
+import { h, rebuild, setText } from './dom';
+import { makePanel } from './panel';
+import type { Context, View } from './view';
+
+interface Field {
+  spec: FieldSpec;
+  row: HTMLElement;
+  fault: HTMLElement;
+  read: () => string;
+}
+
+export class Launcher implements View {
+  readonly root: HTMLElement;
+  private readonly picker = h('select', { id: 'scenario', 'aria-label': 'Scenario' });
+  private readonly description = h('p', { class: 'scenario-description' });
+  private readonly fieldArea = h('div', { class: 'fields' });
+  private readonly faults = h('div', { class: 'form-faults', role: 'alert' });
+  private readonly button = h('button', { class: 'primary', type: 'submit' }, 'Launch flight');
+  private fields: Field[] = [];
+  private documentShown: object | null = null;
+
+  constructor(private readonly context: Context) {
+    const panel = makePanel('launcher', 'Launch');
+    this.root = panel.root;
+    this.picker.addEventListener(
+      'change',
+      () => void context.catalogue.selectScenario(this.picker.value),
+    );
+    const form = h(
+      'form',
+      {
+        class: 'launch-form',
+        novalidate: true,
+        onsubmit: (event: SubmitEvent) => {
+          event.preventDefault();
+          void context.catalogue.launch(
+            new Map(this.fields.map(({ spec, read }) => [spec.path, read()])),
+          );
+        },
+      },
+      this.picker,
+      this.description,
+      this.fieldArea,
+      this.faults,
+      this.button,
+    );
+    panel.body.append(form);
+  }
+
+  update(changed: ReadonlySet<Topic>): void {
+    if (changed.has('lists') || changed.has('launch')) this.updatePicker();
+    if (!changed.has('launch') && !changed.has('connection')) return;
+    const { state } = this.context.store;
+    if (state.scenarioDocument !== this.documentShown) this.buildFields();
+    this.updateFaults();
+    this.button.disabled =
+      state.launching || state.scenarioDocument === null || state.connection.status !== 'open';
+    setText(this.button, state.launching ? 'Launching' : 'Launch flight');
+  }
+
+  private updatePicker(): void {
+    const { scenarios, scenarioName } = this.context.store.state;
+    rebuild(this.picker, JSON.stringify(scenarios), () =>
+      (scenarios ?? []).map(({ name, title, error }) =>
+        h(
+          'option',
+          { value: name, title: error ?? name },
+          error === null ? title : `${title} (unavailable)`,
+        ),
+      ),
+    );
+    if (scenarioName !== null) this.picker.value = scenarioName;
+    this.picker.disabled = scenarios === null || scenarios.length === 0;
+    const entry = scenarios?.find(({ name }) => name === scenarioName);
+    const empty = scenarios?.length === 0 ? 'The server has no scenario.' : 'Reading the scenarios';
+    setText(this.description, entry?.description ?? empty);
+    this.description.title = entry?.description ?? '';
+  }
+
+  private buildFields(): void {
+    const document = this.context.store.state.scenarioDocument;
+    this.documentShown = document;
+    if (document === null) {
+      this.fields = [];
+    } else {
+      this.fields = fieldsOf(document).map((spec) => makeField(spec, fieldText(document, spec)));
+      this.fieldArea.replaceChildren(...this.fields.flatMap(({ row, fault }) => [row, fault]));
+    }
+  }
+
+  private updateFaults(): void {
+    const { launchFaults } = this.context.store.state;
+    const specs = this.fields.map(({ spec }) => spec);
+    for (const { spec, row, fault } of this.fields) {
+      const own = launchFaults.filter((entry) => fieldOfFault(specs, entry) === spec);
+      setText(fault, own.map(({ message }) => message).join(' '));
+      fault.hidden = own.length === 0;
+      row.classList.toggle('faulty', own.length > 0);
+    }
+    const rest = launchFaults.filter((entry) => fieldOfFault(specs, entry) === null);
+    setText(
+      this.faults,
+      rest
+        .map(({ field, message }) => (field === '' ? message : `${field}: ${message}`))
+        .join('\n'),
+    );
+    this.faults.hidden = rest.length === 0;
+  }
+}
+
+function makeField(spec: FieldSpec, text: string): Field {
+  const id = `field-${spec.path}`;
+  const fault = h('div', { class: 'field-fault', hidden: true, 'data-fault': spec.path });
+  const { control, read } =
+    spec.kind === 'estimators' ? estimatorControl(spec, text) : valueControl(spec, text, id);
+  const label =
+    spec.kind === 'estimators'
+      ? h('span', { class: 'label' }, spec.label)
+      : h('label', { for: id }, spec.label);
+  const row = h('div', { class: `field ${spec.kind}`, title: spec.hint }, label, control);
+  if (spec.kind === 'number') row.append(h('span', { class: 'unit' }, spec.unit));
+  return { spec, row, fault, read };
+}
+
+function valueControl(spec: FieldSpec, text: string, id: string) {
+  if (spec.kind === 'choice') {
+    const select = h(
+      'select',
+      { id },
+      ...(spec.choices ?? []).map(({ value, label }) => h('option', { value }, label)),
+    );
+    select.value = text;
+    return { control: select, read: () => select.value };
+  }
+  const input = h('input', {
+    id,
+    type: 'number',
+    step: 'any',
+    value: text,
+    placeholder: spec.optional === true ? 'all' : '',
+    autocomplete: 'off',
+  });
+  return { control: input, read: () => (input.validity.badInput ? 'not a number' : input.value) };
+}
+
+function estimatorControl(spec: FieldSpec, text: string) {
+  const chosen = text.split(',');
+  const choices = [...(spec.choices ?? [])];
+  for (const type of chosen) {
+    if (type !== '' && !choices.some(({ value }) => value === type))
+      choices.push({ value: type, label: type });
+  }
+  const boxes = choices.map(({ value, label }) => {
+    const box = h('input', {
+      type: 'checkbox',
+      value,
+      checked: chosen.includes(value),
+      'data-estimator': value,
+    });
+    return { box, label: h('label', { class: 'check' }, box, label) };
+  });
+  // In the scenario's order where nothing changed, so that nothing is overridden.
+  const read = () => {
+    const ticked = boxes.filter(({ box }) => box.checked).map(({ box }) => box.value);
+    const kept = chosen.filter((type) => ticked.includes(type));
+    return [...kept, ...ticked.filter((type) => !chosen.includes(type))].join(',');
+  };
+  return { control: h('div', { class: 'checks' }, ...boxes.map(({ label }) => label)), read };
+}

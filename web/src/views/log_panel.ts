@@ -1,0 +1,46 @@
+// What the run said, newest last.
+import { formatTime } from '../store/format';
+import type { RunData } from '../store/run_data';
+import type { Topic } from '../store/state';
+import { h } from './dom';
+import type { Panel } from './panel';
+import { makePanel } from './panel';
+import type { Context, View } from './view';
+
+const kMostLines = 500;
+
+export class LogPanel implements View {
+  readonly root: HTMLElement;
+  private readonly panel: Panel;
+  private readonly list = h('ol', { class: 'log' });
+  private data: RunData | null = null;
+  private generation = 0;
+  private shown = 0;
+
+  constructor(private readonly context: Context) {
+    this.panel = makePanel('log', 'Log');
+    this.panel.body.append(this.list);
+    this.root = this.panel.root;
+  }
+
+  update(changed: ReadonlySet<Topic>): void {
+    if (!changed.has('log') && !changed.has('run')) return;
+    const { data } = this.context.store.state;
+    if (data !== this.data || data.generation !== this.generation) {
+      this.data = data;
+      this.generation = data.generation;
+      this.shown = 0;
+      this.list.replaceChildren();
+    }
+    const atEnd = this.list.scrollHeight - this.list.scrollTop - this.list.clientHeight < 24;
+    const first = Math.max(this.shown, data.log.length - kMostLines);
+    for (const { t_ns, level, text } of data.log.slice(first)) {
+      const time = h('time', {}, formatTime(t_ns));
+      this.list.append(h('li', { 'data-level': level }, time, h('span', {}, text)));
+    }
+    this.shown = data.log.length;
+    while (this.list.children.length > kMostLines) this.list.firstElementChild?.remove();
+    if (atEnd) this.list.scrollTop = this.list.scrollHeight;
+    this.panel.showEmpty(data.log.length === 0 ? 'Nothing logged.' : null);
+  }
+}

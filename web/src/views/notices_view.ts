@@ -1,0 +1,29 @@
+// Messages that stand over the screen's corner for a while.
+import type { Topic } from '../store/state';
+import { h, rebuild } from './dom';
+import type { Context, View } from './view';
+
+export class NoticesView implements View {
+  readonly root = h('div', { class: 'notices', role: 'status', 'aria-live': 'polite' });
+
+  constructor(private readonly context: Context) {}
+
+  update(changed: ReadonlySet<Topic>): void {
+    if (!changed.has('notices')) return;
+    const { notices } = this.context.store.state;
+    rebuild(this.root, notices.map(({ id }) => id).join(' '), () =>
+      notices.map(({ id, level, text }) =>
+        h(
+          'button',
+          {
+            class: 'notice',
+            'data-level': level,
+            title: 'Dismiss',
+            onclick: () => this.context.notices.dismiss(id),
+          },
+          text,
+        ),
+      ),
+    );
+  }
+}

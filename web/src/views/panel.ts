@@ -1,0 +1,61 @@
+// The frame around every panel: title, tools, and the number of the frame that it shows.
+import { h, setAttribute, setText } from './dom';
+import { icon } from './icons';
+
+export interface Panel {
+  root: HTMLElement;
+  tools: HTMLElement;
+  body: HTMLElement;
+  /** @param expected  frame of the playback cursor; another one is marked */
+  showFrame(frame: number | null, expected?: number | null): void;
+  /** Text in place of what is not there; null = it is. */
+  showEmpty(text: string | null): void;
+}
+
+export function makePanel(name: string, title: string, expandable = false): Panel {
+  const badge = h('span', { class: 'frame-badge', title: 'Frame shown' });
+  const tools = h('div', { class: 'panel-tools' });
+  const empty = h('div', { class: 'panel-empty', hidden: true });
+  const body = h('div', { class: 'panel-body' }, empty);
+  const root = h('section', { class: 'panel', 'data-panel': name, 'aria-label': title });
+  const expand = expandable ? expandButton(root) : null;
+  root.append(
+    h('header', { class: 'panel-header' }, h('h2', {}, title), tools, badge, expand ?? ''),
+    body,
+  );
+  return {
+    root,
+    tools,
+    body,
+    showFrame(frame, expected = null) {
+      setText(badge, frame === null ? '' : `#${frame}`);
+      setAttribute(root, 'data-frame', frame === null ? null : String(frame));
+      const late = frame !== null && expected !== null && frame !== expected;
+      badge.classList.toggle('late', late);
+    },
+    showEmpty(text) {
+      empty.hidden = text === null;
+      setText(empty, text ?? '');
+    },
+  };
+}
+
+function expandButton(root: HTMLElement): HTMLElement {
+  const label = 'Enlarge or restore';
+  return h(
+    'button',
+    {
+      class: 'icon-button',
+      title: label,
+      'aria-label': label,
+      onclick: () => {
+        const wasExpanded = root.classList.contains('expanded');
+        for (const other of document.querySelectorAll('.panel.expanded')) {
+          other.classList.remove('expanded');
+        }
+        root.classList.toggle('expanded', !wasExpanded);
+      },
+    },
+    icon('expand'),
+  );
+}

@@ -1,0 +1,120 @@
+// The aircraft's camera, and what the estimators draw of it.
+import type { State, Topic } from '../store/state';
+import { h, rebuild } from './dom';
+import type { Panel } from './panel';
+import { makePanel } from './panel';
+import { PictureCanvas } from './picture_canvas';
+import type { Context, View } from './view';
+
+abstract class PicturePanel implements View {
+  readonly root: HTMLElement;
+  protected readonly panel: Panel;
+  private readonly picture: PictureCanvas;
+
+  constructor(
+    protected readonly context: Context,
+    name: string,
+    title: string,
+  ) {
+    this.panel = makePanel(name, title, true);
+    this.picture = new PictureCanvas(title);
+    this.panel.body.append(this.picture.canvas);
+    this.root = this.panel.root;
+  }
+
+  update(changed: ReadonlySet<Topic>): void {
+    if (!changed.has('pictures') && !changed.has('playback') && !changed.has('run')) return;
+    const { state } = this.context.store;
+    const stream = this.streamOf(state);
+    const picture = stream === null ? null : (state.pictures.get(stream) ?? null);
+    this.picture.show(picture);
+    const still = state.playback !== null && !state.playback.playing ? state.playback.frame : null;
+    this.panel.showFrame(picture?.frame ?? null, still);
+    this.panel.showEmpty(picture === null ? this.emptyText(state) : null);
+  }
+
+  protected abstract streamOf(state: State): string | null;
+  protected abstract emptyText(state: State): string;
+}
+
+export class CameraPanel extends PicturePanel {
+  constructor(context: Context) {
+    super(context, 'camera', 'Camera');
+    new ResizeObserver(([entry]) => {
+      if (entry === undefined) return;
+      const width_px = entry.contentRect.width * window.devicePixelRatio;
+      context.session.setPictureWidth(width_px > 660 ? 1280 : 640);
+    }).observe(this.panel.body);
+  }
+
+  protected override streamOf(): string {
+    return 'camera';
+  }
+
+  protected override emptyText(state: State): string {
+    return waitingText(state);
+  }
+}
+
+/** One tab for each estimator where there are several. */
+export class DebugPanel extends PicturePanel {
+  private selected: string | null = null;
+
+  constructor(context: Context) {
+    super(context, 'debug', 'Estimator');
+  }
+
+  override update(changed: ReadonlySet<Topic>): void {
+    if (changed.has('run')) this.updateTabs();
+    super.update(changed);
+  }
+
+  protected override streamOf(state: State): string | null {
+    const name = this.current(state);
+    return name === null ? null : `debug/${name}`;
+  }
+
+  protected override emptyText(state: State): string {
+    if (state.run !== null && state.run.estimators.length === 0) {
+      return 'This flight has no estimator.';
+    }
+    const recorded = state.run !== null && state.playback !== null && !state.playback.live;
+    return recorded ? 'No debug image at this instant.' : waitingText(state);
+  }
+
+  private current(state: State): string | null {
+    const names = state.run?.estimators ?? [];
+    return this.selected !== null && names.includes(this.selected)
+      ? this.selected
+      : (names[0] ?? null);
+  }
+
+  private updateTabs(): void {
+    const { state } = this.context.store;
+    const names = state.run?.estimators ?? [];
+    const current = this.current(state);
+    rebuild(this.panel.tools, `${names.join('\n')}\n\n${String(current)}`, () =>
+      names.map((name) =>
+        h(
+          'button',
+          {
+            class: 'tab',
+            'aria-pressed': name === current ? 'true' : 'false',
+            onclick: () => {
+              this.selected = name;
+              this.context.store.change('run', 'pictures');
+            },
+          },
+          name,
+        ),
+      ),
+    );
+  }
+}
+
+export function waitingText(state: State): string {
+  if (state.runId === null) return 'Choose a run, or launch one.';
+  if (state.run?.status === 'queued') return 'The run waits for its turn.';
+  if (state.run?.status === 'failed') return 'The run failed.';
+  return 'Waiting for the first picture';
+}

@@ -1,0 +1,162 @@
+// One curve plot over time: truth and estimates of one axis, with a playback cursor. A click or
+// drag seeks.
+import uPlot from 'uplot';
+import type { Axis } from '../store/run_data';
+import { kAxes } from '../store/run_data';
+import { estimateColour, kTruthColour } from './colours';
+import { h, perFrame, setText } from './dom';
+import { formatNumber } from '../store/format';
+
+export interface PlotOptions {
+  axis: Axis;
+  label: string;
+  unit: 'm' | 'deg';
+  /** Whether the time axis has numbers. */
+  timeLabels: boolean;
+  estimators: number;
+  onSeek: (t_s: number) => void;
+  onHover: (index: number | null) => void;
+}
+
+const kGrid = 'rgba(140, 155, 180, 0.11)';
+const kText = '#8a94a6';
+const kFont = '10px system-ui, sans-serif';
+const kSyncKey = 'overfly-plots';
+const kLeastSpan = { m: 2, deg: 4 } as const;
+
+export type Curve = ArrayLike<number | null>;
+
+export class Plot {
+  readonly root: HTMLElement;
+  private readonly plot: uPlot;
+  private readonly area = h('div', { class: 'plot-area' });
+  private readonly cursor = h('div', { class: 'plot-cursor' });
+  private readonly readouts: HTMLElement[];
+  private span_s: [number, number] = [0, 1];
+  private cursor_s: number | null = null;
+
+  constructor(private readonly options: PlotOptions) {
+    const colours = [
+      kTruthColour,
+      ...Array.from({ length: options.estimators }, (_, i) => estimateColour(i)),
+    ];
+    this.readouts = colours.map((colour) =>
+      h('span', { class: 'readout', style: `color:${colour}` }),
+    );
+    const title = h(
+      'div',
+      { class: 'plot-title' },
+      h('b', {}, options.label),
+      h('span', { class: 'unit' }, options.unit),
+      ...this.readouts,
+    );
+    this.root = h('div', { class: 'plot', 'data-axis': options.axis }, title, this.area);
+    this.plot = new uPlot(this.uplotOptions(colours), [[], ...colours.map(() => [])], this.area);
+    this.plot.over.append(this.cursor);
+    this.seekable(this.plot.over);
+    new ResizeObserver(() => this.fit()).observe(this.area);
+  }
+
+  setData(
+    t_s: Float64Array,
+    truth: Float64Array,
+    estimates: Curve[],
+    span_s: [number, number],
+  ): void {
+    this.span_s = span_s;
+    // uPlot reads the series by index only; its type asks for one kind of array.
+    this.plot.setData([t_s, truth, ...estimates] as unknown as uPlot.AlignedData, true);
+    this.moveCursor(this.cursor_s);
+  }
+
+  moveCursor(t_s: number | null): void {
+    this.cursor_s = t_s;
+    const x = t_s === null ? -1 : this.plot.valToPos(t_s, 'x');
+    const visible = t_s !== null && x >= 0 && x <= this.plot.over.clientWidth;
+    this.cursor.style.visibility = visible ? 'visible' : 'hidden';
+    if (visible) this.cursor.style.transform = `translateX(${x.toFixed(1)}px)`;
+  }
+
+  /** Values beside the title: the truth's, then each estimate's. */
+  showValues(values: (number | null | undefined)[]): void {
+    const digits = this.options.unit === 'm' ? 1 : 2;
+    this.readouts.forEach((readout, i) => setText(readout, formatNumber(values[i], digits)));
+  }
+
+  destroy(): void {
+    this.plot.destroy();
+  }
+
+  private fit(): void {
+    const { clientWidth, clientHeight } = this.area;
+    if (clientWidth < 20 || clientHeight < 20) return;
+    this.plot.setSize({ width: clientWidth, height: clientHeight });
+    this.moveCursor(this.cursor_s);
+  }
+
+  private seekable(over: HTMLElement): void {
+    const seek = perFrame((x: number) => this.options.onSeek(this.plot.posToVal(x, 'x')));
+    const seekTo = (event: PointerEvent) => seek(event.clientX - over.getBoundingClientRect().left);
+    over.addEventListener('pointerdown', (event) => {
+      if (event.button !== 0) return;
+      over.setPointerCapture(event.pointerId);
+      seekTo(event);
+    });
+    over.addEventListener('pointermove', (event) => {
+      if (over.hasPointerCapture(event.pointerId)) seekTo(event);
+    });
+    over.addEventListener('pointerleave', () => this.options.onHover(null));
+  }
+
+  private uplotOptions(colours: string[]): uPlot.Options {
+    const axis = { stroke: kText, font: kFont, grid: { stroke: kGrid, width: 1 } };
+    const { axis: name, timeLabels, onHover } = this.options;
+    return {
+      width: 200,
+      height: 100,
+      padding: [6, 12, timeLabels ? 0 : 4, 0],
+      legend: { show: false },
+      cursor: {
+        y: false,
+        points: { show: false },
+        drag: { x: false, y: false, setScale: false },
+        sync: { key: kSyncKey, setSeries: false },
+      },
+      scales: {
+        x: { time: false, range: () => this.span_s },
+        y: { range: (_, low, high) => paddedRange(low, high, kLeastSpan[this.options.unit]) },
+      },
+      axes: [
+        timeLabels
+          ? { ...axis, size: 20, gap: 2, ticks: { show: false }, space: 44 }
+          : { ...axis, size: 0, ticks: { show: false }, values: () => [], space: 44 },
+        { ...axis, size: 40, gap: 3, ticks: { show: false }, space: 20 },
+      ],
+      series: [
+        {},
+        ...colours.map((stroke, i) => ({
+          label: String(i),
+          stroke,
+          width: i === 0 ? 1.5 : 1.25,
+          points: { show: false },
+        })),
+      ],
+      hooks: {
+        setCursor: [
+          (plot: uPlot) => {
+            // One plot speaks for all: the cursor is the same in each.
+            if (name === kAxes[0]) onHover(plot.cursor.idx ?? null);
+          },
+        ],
+      },
+    };
+  }
+}
+
+/** The data's range with 6 % of air, at least `least` wide, so that noise does not fill the plot. */
+export function paddedRange(low: number, high: number, least: number): [number, number] {
+  if (!Number.isFinite(low) || !Number.isFinite(high)) return [-least / 2, least / 2];
+  const middle = (low + high) / 2;
+  const half = Math.max((high - low) * 0.56, least / 2);
+  return [middle - half, middle + half];
+}

@@ -1,0 +1,115 @@
+// The server's runs, newest first.
+import { formatDate, formatNumber } from '../store/format';
+import type { Run } from '../protocol/rest_types';
+import { isActive } from '../protocol/rest_types';
+import type { Topic } from '../store/state';
+import { h, rebuild } from './dom';
+import { icon } from './icons';
+import type { Panel } from './panel';
+import { makePanel } from './panel';
+import type { Context, View } from './view';
+
+const kConfirm_ms = 3000;
+
+export class RunList implements View {
+  readonly root: HTMLElement;
+  private readonly panel: Panel;
+  private readonly list = h('ul', { class: 'runs' });
+  /** The run whose deletion the viewer was asked to confirm. */
+  private confirming: string | null = null;
+
+  constructor(private readonly context: Context) {
+    this.panel = makePanel('runs', 'Runs');
+    this.panel.body.append(this.list);
+    this.root = this.panel.root;
+  }
+
+  update(changed: ReadonlySet<Topic>): void {
+    if (changed.has('lists') || changed.has('run')) this.draw();
+  }
+
+  private draw(): void {
+    const { runs, runId, listError } = this.context.store.state;
+    const key = JSON.stringify([runs, runId, this.confirming]);
+    rebuild(this.list, key, () => (runs ?? []).map((run) => this.entry(run, run.id === runId)));
+    if (runs === null) this.panel.showEmpty(listError ?? 'Reading the runs');
+    else this.panel.showEmpty(runs.length === 0 ? 'No runs yet. Launch a flight above.' : null);
+  }
+
+  private entry(run: Run, selected: boolean): HTMLElement {
+    const share = run.frames_total > 0 ? run.frames / run.frames_total : 0;
+    const length = run.duration_ns > 0 ? `${formatNumber(run.duration_ns / 1e9, 0)} s` : '';
+    const detail = [
+      formatDate(run.created_utc),
+      length,
+      run.estimators.join(', ') || 'no estimator',
+    ];
+    return h(
+      'li',
+      {
+        class: 'run',
+        'data-run': run.id,
+        'data-status': run.status,
+        'aria-current': selected ? 'true' : 'false',
+      },
+      h(
+        'button',
+        {
+          class: 'run-open',
+          title: run.error ?? run.id,
+          onclick: () => this.context.session.selectRun(run.id),
+        },
+        h('span', { class: 'run-name' }, run.title || run.scenario),
+        h('span', { class: 'run-detail' }, detail.filter((part) => part !== '').join(' · ')),
+        isActive(run)
+          ? h(
+              'span',
+              { class: 'progress' },
+              h('i', { style: `width:${(share * 100).toFixed(1)}%` }),
+            )
+          : null,
+      ),
+      h('span', { class: 'chip small', 'data-status': run.status }, run.status),
+      isActive(run) ? this.cancelButton(run) : this.deleteButton(run),
+    );
+  }
+
+  private cancelButton(run: Run): HTMLElement {
+    return h(
+      'button',
+      {
+        class: 'icon-button',
+        title: 'Stop this run; what was flown stays',
+        'aria-label': 'Stop this run',
+        onclick: () => void this.context.catalogue.cancel(run.id),
+      },
+      icon('stop'),
+    );
+  }
+
+  private deleteButton(run: Run): HTMLElement {
+    const asked = this.confirming === run.id;
+    return h(
+      'button',
+      {
+        class: asked ? 'icon-button danger' : 'icon-button',
+        title: asked ? 'Click again to delete this run for good' : 'Delete this run',
+        'aria-label': asked ? 'Confirm deletion' : 'Delete this run',
+        onclick: () => {
+          if (asked) void this.context.catalogue.remove(run.id);
+          this.ask(asked ? null : run.id);
+        },
+      },
+      asked ? 'Delete?' : icon('bin'),
+    );
+  }
+
+  private ask(id: string | null): void {
+    this.confirming = id;
+    this.draw();
+    if (id === null) return;
+    window.setTimeout(() => {
+      if (this.confirming === id) this.ask(null);
+    }, kConfirm_ms);
+  }
+}

@@ -1,0 +1,159 @@
+// The 3D view: drawn by the server, steered here. Drag turns, the wheel zooms.
+import type { SceneMode } from '../protocol/messages';
+import type { Topic } from '../store/state';
+import { h, perFrame } from './dom';
+import { formatNumber } from '../store/format';
+import { estimateColour, kTruthColour } from './colours';
+import { rebuild, setAttribute, setText } from './dom';
+import type { Panel } from './panel';
+import { makePanel } from './panel';
+import { PictureCanvas } from './picture_canvas';
+import { waitingText } from './picture_panel';
+import type { Context, View } from './view';
+
+const kModes: readonly { mode: SceneMode; label: string; key: string }[] = [
+  { mode: 'chase', label: 'Chase', key: '1' },
+  { mode: 'orbit', label: 'Orbit', key: '2' },
+  { mode: 'top', label: 'Top', key: '3' },
+];
+
+const kTurn_deg_px = 0.35;
+const kZoom_per_px = 0.0012;
+const kResizeWait_ms = 150;
+const kWidthRange_px = [64, 1920] as const;
+const kHeightRange_px = [64, 1440] as const;
+
+export class ScenePanel implements View {
+  readonly root: HTMLElement;
+  private readonly panel: Panel;
+  private readonly picture = new PictureCanvas('3D view');
+  private readonly modeButtons = new Map<SceneMode, HTMLElement>();
+  private readonly followButton: HTMLElement;
+  private readonly legend = h('div', { class: 'legend' });
+  private readonly readout = h('div', { class: 'scene-readout' });
+
+  constructor(private readonly context: Context) {
+    this.panel = makePanel('scene', '3D view', true);
+    this.root = this.panel.root;
+    for (const { mode, label, key } of kModes) {
+      const button = h(
+        'button',
+        {
+          class: 'tab',
+          title: `${label} view (${key})`,
+          onclick: () => context.session.setSceneMode(mode),
+        },
+        label,
+      );
+      this.modeButtons.set(mode, button);
+      this.panel.tools.append(button);
+    }
+    this.followButton = h(
+      'button',
+      {
+        class: 'tab follow',
+        title: 'Keep the aircraft in the middle (F)',
+        onclick: () => context.session.toggleFollow(),
+      },
+      'Follow',
+    );
+    this.panel.tools.append(this.followButton);
+    this.panel.body.append(this.picture.canvas, this.legend, this.readout);
+    this.steer(this.panel.body);
+    this.observeSize(this.panel.body);
+  }
+
+  update(changed: ReadonlySet<Topic>): void {
+    const { state } = this.context.store;
+    if (changed.has('scene') || changed.has('run')) this.updateControls();
+    if (!changed.has('pictures') && !changed.has('playback') && !changed.has('run')) return;
+    const picture = state.pictures.get('scene') ?? null;
+    this.picture.show(picture);
+    const still = state.playback !== null && !state.playback.playing ? state.playback.frame : null;
+    this.panel.showFrame(picture?.frame ?? null, still);
+    this.panel.showEmpty(picture === null ? waitingText(state) : null);
+  }
+
+  private updateControls(): void {
+    const { state } = this.context.store;
+    const orbit = state.sceneOrbits[state.sceneMode];
+    for (const [mode, button] of this.modeButtons) {
+      setAttribute(button, 'aria-pressed', mode === state.sceneMode ? 'true' : 'false');
+    }
+    setAttribute(this.followButton, 'aria-pressed', orbit.follow ? 'true' : 'false');
+    this.followButton.toggleAttribute('disabled', state.sceneMode === 'chase');
+    const angles = `${formatNumber(orbit.azimuth_deg, 0)}° ${formatNumber(orbit.elevation_deg, 0)}°`;
+    setText(this.readout, `${angles} · ${formatNumber(orbit.distance_m, 0)} m`);
+    const names = state.run?.estimators ?? [];
+    rebuild(this.legend, `${String(state.runId)} ${names.join(' ')}`, () =>
+      state.runId === null
+        ? []
+        : [
+            legendEntry('truth', kTruthColour),
+            ...names.map((name, index) => legendEntry(name, estimateColour(index))),
+          ],
+    );
+  }
+
+  private steer(area: HTMLElement): void {
+    const { session, store } = this.context;
+    const current = () => store.state.sceneOrbits[store.state.sceneMode];
+    let last: { x: number; y: number } | null = null;
+    area.addEventListener('pointerdown', (event) => {
+      if (event.button !== 0) return;
+      last = { x: event.clientX, y: event.clientY };
+      area.setPointerCapture(event.pointerId);
+    });
+    area.addEventListener('pointermove', (event) => {
+      if (last === null) return;
+      const { azimuth_deg, elevation_deg } = current();
+      session.orbit({
+        azimuth_deg: azimuth_deg + (event.clientX - last.x) * kTurn_deg_px,
+        elevation_deg: elevation_deg + (event.clientY - last.y) * kTurn_deg_px,
+      });
+      last = { x: event.clientX, y: event.clientY };
+    });
+    const release = () => {
+      last = null;
+    };
+    area.addEventListener('pointerup', release);
+    area.addEventListener('pointercancel', release);
+    area.addEventListener('dblclick', () => session.toggleFollow());
+    area.addEventListener(
+      'wheel',
+      (event) => {
+        event.preventDefault();
+        session.orbit({ distance_m: current().distance_m * Math.exp(event.deltaY * kZoom_per_px) });
+      },
+      { passive: false },
+    );
+  }
+
+  /** Asks for pictures of the panel's size, once it stays. */
+  private observeSize(area: HTMLElement): void {
+    let timer = 0;
+    let asked = '';
+    const ask = perFrame((size: { width: number; height: number }) => {
+      const width_px = even(size.width * window.devicePixelRatio, kWidthRange_px);
+      const height_px = even(size.height * window.devicePixelRatio, kHeightRange_px);
+      const key = `${width_px}x${height_px}`;
+      if (key === asked) return;
+      asked = key;
+      this.context.session.setSceneSize(width_px, height_px);
+    });
+    new ResizeObserver(([entry]) => {
+      if (entry === undefined) return;
+      const { width, height } = entry.contentRect;
+      clearTimeout(timer);
+      timer = window.setTimeout(() => ask({ width, height }), asked === '' ? 0 : kResizeWait_ms);
+    }).observe(area);
+  }
+}
+
+function legendEntry(name: string, colour: string): HTMLElement {
+  return h('span', {}, h('i', { style: `background:${colour}` }), name);
+}
+
+function even(value: number, [low, high]: readonly [number, number]): number {
+  return Math.min(high, Math.max(low, Math.round(value / 2) * 2));
+}

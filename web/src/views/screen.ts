@@ -1,0 +1,63 @@
+// Everything in its place.
+import { ErrorPanel } from './error_panel';
+import { h } from './dom';
+import { HeaderBar } from './header_bar';
+import { HelpOverlay } from './help_overlay';
+import { Launcher } from './launcher';
+import { LogPanel } from './log_panel';
+import { NoticesView } from './notices_view';
+import { CameraPanel, DebugPanel } from './picture_panel';
+import { PlotsPanel } from './plots_panel';
+import { RunList } from './run_list';
+import { ScenePanel } from './scene_panel';
+import { listenToKeys } from './shortcuts';
+import { Timeline } from './timeline';
+import type { Context, View } from './view';
+
+const kEverything = new Set([
+  'connection',
+  'lists',
+  'launch',
+  'run',
+  'rows',
+  'log',
+  'metrics',
+  'playback',
+  'pictures',
+  'scene',
+  'notices',
+  'help',
+] as const);
+
+/** Builds the screen and redraws what changed, once a frame at most. */
+export function showScreen(context: Context, place: HTMLElement): void {
+  const header = new HeaderBar(context);
+  const left = [new Launcher(context), new RunList(context), new LogPanel(context)];
+  const centre = [new ScenePanel(context), new PlotsPanel(context)];
+  const right = [new CameraPanel(context), new DebugPanel(context), new ErrorPanel(context)];
+  const timeline = new Timeline(context);
+  const above = [new NoticesView(context), new HelpOverlay(context)];
+  const views: View[] = [header, ...left, ...centre, ...right, timeline, ...above];
+  const column = (name: string, parts: View[]) =>
+    h('div', { class: `column ${name}` }, ...parts.map(({ root }) => root));
+  place.replaceChildren(
+    header.root,
+    h(
+      'main',
+      { class: 'columns' },
+      column('left', left),
+      column('centre', centre),
+      column('right', right),
+    ),
+    timeline.root,
+    ...above.map(({ root }) => root),
+  );
+  listenToKeys(context);
+  for (const view of views) view.update(kEverything);
+  context.store.onChange(() => {
+    requestAnimationFrame(() => {
+      const changed = context.store.take();
+      for (const view of views) view.update(changed);
+    });
+  });
+}

@@ -1,0 +1,116 @@
+// Keys that work wherever no text is being typed.
+import type { Context } from './view';
+
+interface Shortcut {
+  /** KeyboardEvent.key values, lower case; "shift+" before one asks for the shift key. */
+  keys: readonly string[];
+  label: string;
+  what: string;
+  run: (context: Context) => void;
+}
+
+const kSecond_ns = 1e9;
+
+export const kShortcuts: readonly Shortcut[] = [
+  {
+    keys: [' '],
+    label: 'Space',
+    what: 'play or pause',
+    run: ({ session }) => session.togglePlay(),
+  },
+  {
+    keys: ['arrowleft'],
+    label: '←',
+    what: 'one frame back',
+    run: ({ session }) => session.step(-1),
+  },
+  { keys: ['arrowright'], label: '→', what: 'one frame on', run: ({ session }) => session.step(1) },
+  {
+    keys: ['shift+arrowleft'],
+    label: 'Shift ←',
+    what: 'one second back',
+    run: ({ session }) => session.seekBy(-kSecond_ns),
+  },
+  {
+    keys: ['shift+arrowright'],
+    label: 'Shift →',
+    what: 'one second on',
+    run: ({ session }) => session.seekBy(kSecond_ns),
+  },
+  {
+    keys: ['home'],
+    label: 'Home',
+    what: 'to the begin',
+    run: ({ session }) => session.seekEdge('begin'),
+  },
+  {
+    keys: ['end'],
+    label: 'End',
+    what: 'to the end',
+    run: ({ session }) => session.seekEdge('end'),
+  },
+  {
+    keys: ['+', 'shift++', '='],
+    label: '+',
+    what: 'faster',
+    run: ({ session }) => session.changeSpeed(1),
+  },
+  { keys: ['-'], label: '−', what: 'slower', run: ({ session }) => session.changeSpeed(-1) },
+  {
+    keys: ['1'],
+    label: '1',
+    what: 'chase view',
+    run: ({ session }) => session.setSceneMode('chase'),
+  },
+  {
+    keys: ['2'],
+    label: '2',
+    what: 'orbit view',
+    run: ({ session }) => session.setSceneMode('orbit'),
+  },
+  { keys: ['3'], label: '3', what: 'top view', run: ({ session }) => session.setSceneMode('top') },
+  {
+    keys: ['f'],
+    label: 'F',
+    what: 'follow the aircraft or not',
+    run: ({ session }) => session.toggleFollow(),
+  },
+  { keys: ['l'], label: 'L', what: 'live', run: ({ session }) => session.goLive() },
+  { keys: ['?', 'shift+?'], label: '?', what: 'this help', run: ({ store }) => toggleHelp(store) },
+  {
+    keys: ['escape'],
+    label: 'Esc',
+    what: 'close, restore',
+    run: ({ store }) => restoreScreen(store),
+  },
+];
+
+export function listenToKeys(context: Context): void {
+  document.addEventListener('keydown', (event) => {
+    if (event.ctrlKey || event.altKey || event.metaKey || takesText(event.target)) return;
+    const name = (event.shiftKey ? 'shift+' : '') + event.key.toLowerCase();
+    const shortcut = kShortcuts.find(({ keys }) => keys.includes(name));
+    if (shortcut === undefined) return;
+    event.preventDefault();
+    shortcut.run(context);
+  });
+}
+
+function takesText(target: EventTarget | null): boolean {
+  return (
+    target instanceof HTMLSelectElement ||
+    target instanceof HTMLTextAreaElement ||
+    (target instanceof HTMLInputElement && target.type !== 'checkbox')
+  );
+}
+
+function toggleHelp(store: Context['store']): void {
+  store.state.helpOpen = !store.state.helpOpen;
+  store.change('help');
+}
+
+function restoreScreen(store: Context['store']): void {
+  store.state.helpOpen = false;
+  store.change('help');
+  document.querySelector('.panel.expanded')?.classList.remove('expanded');
+}

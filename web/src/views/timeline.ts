@@ -1,0 +1,108 @@
+// Playback: buttons, the time line, speed.
+import type { Topic } from '../store/state';
+import { formatTime } from '../store/format';
+import { kSpeeds } from '../store/session';
+import { h, setAttribute, setText } from './dom';
+import type { IconName } from './icons';
+import { icon } from './icons';
+import { TimelineTrack } from './timeline_track';
+import type { Context, View } from './view';
+
+export class Timeline implements View {
+  readonly root: HTMLElement;
+  private readonly track: TimelineTrack;
+  private readonly playIcon = icon('play');
+  private readonly pauseIcon = icon('pause');
+  private readonly play: HTMLButtonElement;
+  private readonly loop: HTMLButtonElement;
+  private readonly live: HTMLButtonElement;
+  private readonly speed = h('select', {
+    id: 'speed',
+    'aria-label': 'Speed',
+    title: 'Speed (+ and −)',
+  });
+  private readonly time = h('span', { class: 'time', 'data-role': 'time' });
+  private readonly end = h('span', { class: 'time-end' });
+  private readonly frame = h('span', { class: 'frame', 'data-role': 'frame' });
+
+  constructor(private readonly context: Context) {
+    const { session } = context;
+    this.track = new TimelineTrack(context);
+    this.play = iconButton('play', 'Play or pause (space)', () => session.togglePlay());
+    this.play.classList.add('play');
+    this.play.append(this.pauseIcon);
+    this.play.replaceChildren(this.playIcon, this.pauseIcon);
+    this.loop = iconButton('loop', 'Start again at the end', () => session.toggleLoop());
+    this.live = h(
+      'button',
+      {
+        class: 'live-button',
+        title: 'Follow the running flight (L)',
+        onclick: () => session.goLive(),
+      },
+      h('i', {}),
+      'Live',
+    );
+    this.speed.addEventListener('change', () => session.setSpeed(Number(this.speed.value)));
+    this.speed.append(...kSpeeds.map((value) => h('option', { value }, `${value}×`)));
+    this.root = h(
+      'footer',
+      { class: 'timeline', 'data-panel': 'timeline', 'aria-label': 'Playback' },
+      h(
+        'div',
+        { class: 'transport' },
+        iconButton('toBegin', 'To the begin (Home)', () => session.seekEdge('begin')),
+        iconButton('stepBack', 'One frame back (←)', () => session.step(-1)),
+        this.play,
+        iconButton('stepForward', 'One frame on (→)', () => session.step(1)),
+        iconButton('toEnd', 'To the end (End)', () => session.seekEdge('end')),
+      ),
+      h('div', { class: 'clock' }, h('div', {}, this.time, this.end), this.frame),
+      this.track.root,
+      h('div', { class: 'rates' }, this.speed, this.loop, this.live),
+    );
+  }
+
+  update(changed: ReadonlySet<Topic>): void {
+    this.track.update(changed);
+    if (!changed.has('playback') && !changed.has('run')) return;
+    const { playback, run } = this.context.store.state;
+    const playing = playback?.playing === true;
+    this.playIcon.style.display = playing ? 'none' : '';
+    this.pauseIcon.style.display = playing ? '' : 'none';
+    for (const control of this.root.querySelectorAll<HTMLButtonElement | HTMLSelectElement>(
+      'button, select',
+    )) {
+      control.disabled = playback === null;
+    }
+    setText(this.time, formatTime(playback?.t_ns ?? 0));
+    const end_ns = Math.max(playback?.end_ns ?? 0, run?.duration_ns ?? 0);
+    setText(this.end, ` / ${formatTime(end_ns)}`);
+    setText(this.frame, playback === null ? '' : `frame ${playback.frame}`);
+    setAttribute(this.root, 'data-frame', playback === null ? null : String(playback.frame));
+    setAttribute(this.root, 'data-t-ns', playback === null ? null : String(playback.t_ns));
+    setAttribute(this.root, 'data-playing', playing ? 'true' : 'false');
+    this.showSpeed(playback?.speed ?? 1);
+    setAttribute(this.loop, 'aria-pressed', playback?.loop === true ? 'true' : 'false');
+    setAttribute(this.live, 'aria-pressed', playback?.live === true ? 'true' : 'false');
+    this.live.disabled = run?.status !== 'running' || playback === null;
+  }
+
+  private showSpeed(speed: number): void {
+    if (!kSpeeds.some((value) => value === speed)) {
+      this.speed.querySelector('option[data-other]')?.remove();
+      this.speed.prepend(h('option', { value: speed, 'data-other': true }, `${speed}×`));
+    }
+    if (document.activeElement !== this.speed || this.speed.value !== String(speed)) {
+      this.speed.value = String(speed);
+    }
+  }
+}
+
+function iconButton(name: IconName, label: string, onclick: () => void): HTMLButtonElement {
+  return h(
+    'button',
+    { class: 'icon-button', title: label, 'aria-label': label, onclick },
+    icon(name),
+  );
+}

@@ -1,0 +1,132 @@
+// The bar of the time line: what is recorded, how each estimator fared, where the cursor is.
+import { formatTime } from '../store/format';
+import type { EstimateRows } from '../store/run_data';
+import type { Topic } from '../store/state';
+import { kStateColours } from './colours';
+import { h, perFrame, setText } from './dom';
+import type { Context } from './view';
+
+const kStripHeight_px = 4;
+
+export class TimelineTrack {
+  readonly root: HTMLElement;
+  private readonly recorded = h('div', { class: 'recorded' });
+  private readonly strips = h('canvas', { class: 'strips' });
+  private readonly head = h('div', { class: 'head' });
+  private readonly tip = h('div', { class: 'tip', hidden: true });
+  private readonly bar: HTMLElement;
+  /** Where the mouse holds the head, until the server says it is there. */
+  private held_ns: number | null = null;
+
+  constructor(private readonly context: Context) {
+    this.bar = h('div', { class: 'bar' }, this.recorded, this.strips, this.head);
+    this.root = h(
+      'div',
+      { class: 'track', role: 'slider', tabindex: 0, 'aria-label': 'Time', 'aria-valuemin': 0 },
+      this.bar,
+      this.tip,
+    );
+    this.scrub();
+    new ResizeObserver(() => this.drawStrips()).observe(this.bar);
+  }
+
+  update(changed: ReadonlySet<Topic>): void {
+    if (changed.has('rows') || changed.has('run')) this.drawStrips();
+    if (changed.has('playback') || changed.has('run')) this.moveHead();
+  }
+
+  private span_ns(): number {
+    const { run, playback, data } = this.context.store.state;
+    const last = data.truth.at('t_ns', data.truth.length - 1);
+    return Math.max(
+      run?.duration_ns ?? 0,
+      playback?.end_ns ?? 0,
+      Number.isNaN(last) ? 0 : last,
+      1e9,
+    );
+  }
+
+  private moveHead(): void {
+    const { playback } = this.context.store.state;
+    const span_ns = this.span_ns();
+    const t_ns = this.held_ns ?? playback?.t_ns ?? 0;
+    this.head.style.left = `${((t_ns / span_ns) * 100).toFixed(3)}%`;
+    this.head.hidden = playback === null;
+    this.recorded.style.width = `${(((playback?.end_ns ?? 0) / span_ns) * 100).toFixed(3)}%`;
+    this.root.setAttribute('aria-valuemax', (span_ns / 1e9).toFixed(3));
+    this.root.setAttribute('aria-valuenow', (t_ns / 1e9).toFixed(3));
+    this.root.setAttribute('aria-valuetext', formatTime(t_ns));
+  }
+
+  private drawStrips(): void {
+    const { run, data } = this.context.store.state;
+    const names = run?.estimators ?? [];
+    const width = Math.max(1, Math.round(this.bar.clientWidth * window.devicePixelRatio));
+    const height = Math.max(1, names.length * kStripHeight_px);
+    this.strips.style.height = `${height}px`;
+    this.strips.width = width;
+    this.strips.height = height;
+    const pen = this.strips.getContext('2d');
+    if (pen === null) return;
+    names.forEach((name, i) => {
+      const rows = data.estimates.get(name);
+      if (rows !== undefined) this.drawStrip(pen, rows, i * kStripHeight_px, width);
+    });
+  }
+
+  /** Runs of the same state become one rectangle. */
+  private drawStrip(
+    pen: CanvasRenderingContext2D,
+    rows: EstimateRows,
+    top: number,
+    width: number,
+  ): void {
+    const span_ns = this.span_ns();
+    const times = rows.table.column('t_ns');
+    let begin = 0;
+    for (let i = 1; i <= times.length; i += 1) {
+      const state = rows.states[begin] ?? '';
+      if (i < times.length && rows.states[i] === state) continue;
+      const x0 = ((times[begin] ?? 0) / span_ns) * width;
+      const x1 = ((times[Math.min(i, times.length - 1)] ?? 0) / span_ns) * width;
+      pen.fillStyle = kStateColours[state] ?? '#6b7688';
+      pen.fillRect(x0, top, Math.max(1, x1 - x0), kStripHeight_px - 1);
+      begin = i;
+    }
+  }
+
+  private timeAt(event: PointerEvent): number {
+    const box = this.bar.getBoundingClientRect();
+    const share = Math.min(1, Math.max(0, (event.clientX - box.left) / box.width));
+    return share * this.span_ns();
+  }
+
+  private scrub(): void {
+    const seek = perFrame((t_ns: number) => this.context.session.seekTime(t_ns));
+    const hold = (event: PointerEvent) => {
+      const end_ns = this.context.store.state.playback?.end_ns ?? 0;
+      this.held_ns = Math.min(this.timeAt(event), end_ns);
+      this.moveHead();
+      seek(this.held_ns);
+    };
+    this.root.addEventListener('pointerdown', (event) => {
+      if (event.button !== 0 || this.context.store.state.playback === null) return;
+      this.root.setPointerCapture(event.pointerId);
+      hold(event);
+    });
+    this.root.addEventListener('pointermove', (event) => {
+      if (this.root.hasPointerCapture(event.pointerId)) hold(event);
+      this.tip.hidden = false;
+      this.tip.style.left = `${event.clientX - this.root.getBoundingClientRect().left}px`;
+      setText(this.tip, formatTime(this.timeAt(event)));
+    });
+    this.root.addEventListener('pointerleave', () => {
+      this.tip.hidden = true;
+    });
+    const release = () => {
+      this.held_ns = null;
+    };
+    this.root.addEventListener('pointerup', release);
+    this.root.addEventListener('pointercancel', release);
+  }
+}

@@ -1,0 +1,21 @@
+// What every part of the screen is.
+import type { Store, Topic } from '../store/state';
+import type { Session } from '../store/session';
+import type { Catalogue } from '../store/catalogue';
+import type { Notices } from '../store/notices';
+import type { StreamClient } from '../connection/stream_client';
+
+export interface View {
+  readonly root: HTMLElement;
+  /** Draws the store's state anew where these topics matter. */
+  update(changed: ReadonlySet<Topic>): void;
+}
+
+/** What views read and call. */
+export interface Context {
+  store: Store;
+  session: Session;
+  catalogue: Catalogue;
+  notices: Notices;
+  client: StreamClient;
+}

@@ -1,0 +1,11 @@
+import { defineConfig, loadEnv } from 'vite';
+
+// `npm run dev` serves the dashboard with hot reload and passes the API on to a running server.
+export default defineConfig(({ mode }) => {
+  const { OVERFLY_URL = 'http://127.0.0.1:8480' } = loadEnv(mode, '.', 'OVERFLY_');
+  return {
+    base: './',
+    build: { target: 'es2022', assetsInlineLimit: 0, sourcemap: false },
+    server: { proxy: { '/api': { target: OVERFLY_URL, ws: true } } },
+  };
+});
