@@ -14,6 +14,9 @@
 
 namespace overfly::engine {
 
+class RunClock;
+class WorldCache;
+
 /// Makes the renderer of a run, on the run's thread.
 using RendererFactory = std::function<Result<std::unique_ptr<renderer::Renderer>>(
     std::shared_ptr<const terrain::TileSource>)>;
@@ -27,6 +30,10 @@ struct RunOptions {
   std::shared_ptr<RunTimeline> timeline;
   /// Keep live pictures (camera, debug) in the timeline.
   bool publish_images = false;
+  /// Opened worlds to share; the run opens its own when null.
+  WorldCache* worlds = nullptr;
+  /// Paces a real-time run; the machine's clock when null.
+  RunClock* clock = nullptr;
   /// Called after each frame on the run's thread.
   std::function<void(const RunInfo&)> progress;
 };

@@ -20,10 +20,10 @@ struct ScenarioEntry {
 };
 
 struct RunManagerOptions {
-  std::filesystem::path runs_folder;       ///< made if absent
+  std::filesystem::path runs_folder;  ///< made if absent
   std::filesystem::path scenarios_folder;
   RendererFactory renderer_factory;
-  int max_parallel_runs = 1;               ///< further ones wait in a queue
+  int max_parallel_runs = 1;  ///< further ones wait in a queue
 };
 
 /// Thread-safe. Owns the threads of the runs; its destructor cancels and joins them.

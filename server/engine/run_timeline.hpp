@@ -59,10 +59,10 @@ struct RunInfo {
   std::string scenario;  ///< name
   std::string title;
   RunStatus status = RunStatus::kQueued;
-  std::string created_utc;      ///< ISO 8601
-  std::string error;            ///< why it failed; empty otherwise
-  std::int64_t duration_ns = 0; ///< of the flight, 0 = not known yet
-  std::int64_t frames = 0;      ///< done
+  std::string created_utc;       ///< ISO 8601
+  std::string error;             ///< why it failed; empty otherwise
+  std::int64_t duration_ns = 0;  ///< of the flight, 0 = not known yet
+  std::int64_t frames = 0;       ///< done
   std::int64_t frames_total = 0;
   std::string pacing;
   std::vector<std::string> estimators;

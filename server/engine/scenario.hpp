@@ -30,25 +30,37 @@ struct EstimatorSpec {
   std::map<std::string, double> parameters;
 };
 
+struct BuiltinWorld {
+  std::uint64_t seed = 1;
+};
+
+struct LoggedFlight {
+  std::filesystem::path file;
+  bool camera_poses = false;
+};
+
+[[nodiscard]] const char* to_string(Pacing pacing);  ///< "lockstep", "real_time"
+
 /// A scenario with defaults filled in and angles in radians.
 struct Scenario {
   std::string name;
   std::string title;
   std::string description;
   std::uint64_t seed = 1;
+  /// Unix time of t = 0; the run chooses where it is not given.
+  std::optional<std::int64_t> epoch_utc_ns;
 
   /// The built-in world of a seed, a world manifest, or layers listed in the scenario itself.
-  struct BuiltinWorld {
-    std::uint64_t seed = 1;
-  };
+  using BuiltinWorld = engine::BuiltinWorld;
   std::variant<BuiltinWorld, std::filesystem::path, terrain::WorldSpec> world;
 
   /// The course, or a pose file.
-  struct LoggedFlight {
-    std::filesystem::path file;
-    bool camera_poses = false;
-  };
+  using LoggedFlight = engine::LoggedFlight;
   std::variant<flight::CourseParameters, LoggedFlight> flight;
+  /// A course whose start is the world's runway, known only when the world is open.
+  bool start_at_runway = true;
+  /// Of the course's first leg; the runway's, else south, where it is not given.
+  std::optional<double> course_heading_rad;
   /// Stops the flight early [s].
   std::optional<double> duration_s;
 
@@ -57,10 +69,10 @@ struct Scenario {
   std::vector<EstimatorSpec> estimators;
   Pacing pacing = Pacing::kLockstep;
 
-  bool record_frames = false;             ///< camera images as frames/NNNNNN.jpg
-  double record_debug_hz = 5.0;           ///< debug images as debug/NAME/NNNNNN.jpg; 0 = none
+  bool record_frames = false;    ///< camera images as frames/NNNNNN.jpg
+  double record_debug_hz = 5.0;  ///< debug images as debug/NAME/NNNNNN.jpg; 0 = none
 
-  nlohmann::json resolved;                ///< the document with defaults, overrides and `data` applied
+  nlohmann::json resolved;  ///< the document with defaults, overrides and `data` applied
 };
 
 /// One override of a scenario document: `--set a.b.0.c=VALUE`.

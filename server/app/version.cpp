@@ -1,0 +1,11 @@
+#include "server/app/version.hpp"
+
+#include "server/engine/build_info.hpp"
+
+namespace overfly::app {
+
+std::string version_text() {
+  return "overfly " + engine::version() + " (commit " + engine::git_commit() + ")";
+}
+
+}  // namespace overfly::app

@@ -1,0 +1,12 @@
+// Which build this is, for manifests and `--version`.
+#pragma once
+
+#include <string>
+
+namespace overfly::engine {
+
+[[nodiscard]] std::string version();  ///< "0.1.0"
+/// Abbreviated commit of the source, with "-dirty" when files were changed; "unknown" outside git.
+[[nodiscard]] std::string git_commit();
+
+}  // namespace overfly::engine

@@ -1,0 +1,67 @@
+// A run's folder: names of its files, its lock, what its manifest says of it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/result.hpp"
+#include "server/engine/run_timeline.hpp"
+
+namespace overfly::engine {
+
+/// Version of the folder's format, in its manifest.
+inline constexpr int kRunFormatVersion = 1;
+
+[[nodiscard]] std::filesystem::path manifest_file(const std::filesystem::path& folder);
+[[nodiscard]] std::filesystem::path scenario_file(const std::filesystem::path& folder);
+[[nodiscard]] std::filesystem::path timings_file(const std::filesystem::path& folder);
+[[nodiscard]] std::filesystem::path metrics_file(const std::filesystem::path& folder);
+[[nodiscard]] std::filesystem::path frames_file(const std::filesystem::path& folder);
+[[nodiscard]] std::filesystem::path log_file(const std::filesystem::path& folder);
+[[nodiscard]] std::filesystem::path truth_file(const std::filesystem::path& folder);
+/// estimates/NAME.jsonl and estimates/NAME.tum
+[[nodiscard]] std::filesystem::path estimate_file(const std::filesystem::path& folder,
+                                                  const std::string& estimator);
+[[nodiscard]] std::filesystem::path estimate_tum_file(const std::filesystem::path& folder,
+                                                      const std::string& estimator);
+/// frames/NNNNNN.jpg and debug/NAME/NNNNNN.jpg
+[[nodiscard]] std::filesystem::path frame_image_file(const std::filesystem::path& folder,
+                                                     std::int64_t frame);
+[[nodiscard]] std::filesystem::path debug_image_file(const std::filesystem::path& folder,
+                                                     const std::string& estimator,
+                                                     std::int64_t frame);
+
+/// Says that a process is at work in a run folder, for as long as the object and the process
+/// live: the system itself takes the mark away when the process is killed.
+class RunLock {
+ public:
+  /// Errors: kConflict while another holds it; kIo.
+  static Result<RunLock> take(const std::filesystem::path& folder);
+  /// True while some process (this one too) holds the lock.
+  [[nodiscard]] static bool held(const std::filesystem::path& folder);
+  ~RunLock();  ///< releases and removes the file
+  RunLock(RunLock&& other) noexcept;
+  RunLock& operator=(RunLock&& other) noexcept;
+
+ private:
+  RunLock(int descriptor, std::filesystem::path file);
+  int descriptor_ = -1;
+  std::filesystem::path file_;
+};
+
+/// What the folder says of itself: its manifest, the time stamps of timings.json, and the frames
+/// counted where the run did not come to its end. A run marked running whose lock nobody holds is
+/// interrupted.
+/// Errors: kNotFound where there is no manifest; kUnreadable naming file and fault.
+[[nodiscard]] Result<RunInfo> read_run_info(const std::filesystem::path& folder);
+
+/// The fields of a RunInfo that stand in a manifest.
+void put_run_info(const RunInfo& info, nlohmann::json& manifest);
+
+/// `2026-11-21T09:12:04Z`
+[[nodiscard]] std::string utc_text(std::int64_t unix_ns);
+[[nodiscard]] std::int64_t utc_now_ns();
+
+}  // namespace overfly::engine

@@ -1,0 +1,68 @@
+#include "server/engine/scenario.hpp"
+
+#include <utility>
+
+#include "server/engine/json_schema.hpp"
+#include "server/engine/scenario_document.hpp"
+#include "server/engine/scenario_override.hpp"
+#include "server/engine/whole_file.hpp"
+
+namespace overfly::engine {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+const JsonSchema& schema() {
+  static const JsonSchema instance(Json::parse(scenario_schema_text()));
+  return instance;
+}
+
+/// The document with the file's name where it has none of its own, so that a run's copy of it
+/// keeps saying where it came from.
+void put_name(Json& document, const std::string& name) {
+  if (!document.is_object()) return;
+  if (!document.contains("name")) document["name"] = name;
+}
+
+}  // namespace
+
+const char* to_string(Pacing pacing) {
+  return pacing == Pacing::kRealTime ? "real_time" : "lockstep";
+}
+
+std::vector<std::pair<std::string, std::string>> schema_faults(const Json& document) {
+  std::vector<std::pair<std::string, std::string>> pairs;
+  for (SchemaFault& fault : schema().faults(document)) {
+    pairs.emplace_back(std::move(fault.path), std::move(fault.text));
+  }
+  return pairs;
+}
+
+Result<Scenario> resolve_scenario(Json document,
+                                  const std::vector<Override>& overrides,
+                                  const fs::path& base) {
+  for (const Override& change : overrides) {
+    if (Status status = apply_override(change, document); !status) return status.error();
+  }
+  std::string faults;
+  for (const auto& [path, text] : schema_faults(document)) {
+    faults += (faults.empty() ? "" : "\n") + text;
+  }
+  if (!faults.empty()) return Error{ErrorCode::kInvalidArgument, faults};
+  put_name(document, "scenario");
+  schema().apply_defaults(document);
+  return scenario_from(std::move(document), base);
+}
+
+Result<Scenario> load_scenario(const fs::path& file, const std::vector<Override>& overrides) {
+  Result<Json> document = read_json(file);
+  if (!document) return document.error();
+  put_name(*document, file.stem().string());
+  const fs::path folder = fs::absolute(file).parent_path().lexically_normal();
+  Result<Scenario> scenario = resolve_scenario(std::move(*document), overrides, folder);
+  if (!scenario) return scenario.error().in(file.string());
+  return scenario;
+}
+
+}  // namespace overfly::engine

@@ -1,0 +1,52 @@
+// Files that are there whole or not at all, and files that only grow.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/result.hpp"
+
+namespace overfly::engine {
+
+/// Writes beside the target and renames. Errors: kIo naming the file and the system's reason.
+[[nodiscard]] Status write_whole(const std::filesystem::path& file,
+                                 std::span<const std::uint8_t> bytes);
+[[nodiscard]] Status write_whole(const std::filesystem::path& file, const std::string& text);
+/// Indented by two blanks, with a line feed at the end.
+[[nodiscard]] Status write_json(const std::filesystem::path& file, const nlohmann::json& value);
+
+/// Errors: kNotFound, kIo.
+[[nodiscard]] Result<std::string> read_text(const std::filesystem::path& file);
+/// Errors: kNotFound; kUnreadable naming file, line and column.
+[[nodiscard]] Result<nlohmann::json> read_json(const std::filesystem::path& file);
+/// The same for text that was read from `origin`.
+[[nodiscard]] Result<nlohmann::json> parse_json(const std::string& text, const std::string& origin);
+
+/// A file of one JSON document a line. Each line reaches the system as one write, so a process
+/// that is killed leaves at most the last line cut short.
+class LineFile {
+ public:
+  /// Creates the file; must not exist. Errors: kIo.
+  static Result<LineFile> create(const std::filesystem::path& file);
+  ~LineFile();
+  LineFile(LineFile&& other) noexcept;
+  LineFile& operator=(LineFile&& other) noexcept;
+
+  Status append(const nlohmann::json& line);
+
+ private:
+  LineFile(int descriptor, std::filesystem::path file);
+  int descriptor_ = -1;
+  std::filesystem::path file_;
+};
+
+/// Reads such a file; a last line without its line feed is what a kill left over, and is skipped.
+/// A file that is absent has no lines. Errors: kUnreadable naming file and line.
+[[nodiscard]] Result<std::vector<nlohmann::json>> read_lines(const std::filesystem::path& file);
+
+}  // namespace overfly::engine
