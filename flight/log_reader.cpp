@@ -1,0 +1,105 @@
+#include "flight/log_reader.hpp"
+
+#include <array>
+#include <string>
+
+#include "core/text_fields.hpp"
+#include "core/trajectory_io.hpp"
+
+namespace overfly::flight {
+namespace {
+
+struct Column {
+  const char* name;
+  double low;
+  double high;
+};
+
+constexpr std::array<Column, 7> kColumns{{{"t_s", 0.0, 0.0},
+                                          {"lat_deg", -90.0, 90.0},
+                                          {"lon_deg", -180.0, 360.0},
+                                          {"alt_ellipsoid_m", -1000.0, 100000.0},
+                                          {"roll_deg", -360.0, 360.0},
+                                          {"pitch_deg", -90.0, 90.0},
+                                          {"yaw_deg", -360.0, 360.0}}};
+
+constexpr const char* kHeader = "t_s,lat_deg,lon_deg,alt_ellipsoid_m,roll_deg,pitch_deg,yaw_deg";
+
+Status check_header(const FieldFile& file, const FieldLine& line) {
+  const std::string wanted = std::string("the header must be ") + kHeader;
+  if (line.fields.size() != kColumns.size()) return file.bad_line(line, wanted);
+  for (std::size_t i = 0; i < kColumns.size(); ++i) {
+    if (line.fields[i] != kColumns[i].name) return file.bad_field(line, i + 1, wanted);
+  }
+  return {};
+}
+
+Result<StampedPose> pose_from(const FieldFile& file,
+                              const FieldLine& line,
+                              const LocalFrame& frame) {
+  if (Status status = file.expect_fields(line, kColumns.size()); !status) return status.error();
+  const Result<std::int64_t> t_ns = file.time_s(line, 1);
+  if (!t_ns) return t_ns.error();
+  std::array<double, kColumns.size()> values{};
+  for (std::size_t i = 1; i < kColumns.size(); ++i) {
+    const Result<double> value = file.number(line, i + 1);
+    if (!value) return value.error();
+    values[i] = *value;
+    if (*value >= kColumns[i].low && *value <= kColumns[i].high) continue;
+    return file.bad_field(line,
+                          i + 1,
+                          std::string(kColumns[i].name) + " must be in [" +
+                              std::to_string(static_cast<int>(kColumns[i].low)) + ", " +
+                              std::to_string(static_cast<int>(kColumns[i].high)) + "]");
+  }
+  const Geodetic point = geodetic_from_deg(values[1], values[2], values[3]);
+  const Eigen::Quaterniond R_enu_body = R_world_body_from(
+      {rad_from_deg(values[4]), rad_from_deg(values[5]), rad_from_deg(values[6])});
+  return StampedPose{*t_ns,
+                     {frame.R_world_enu_at(point) * R_enu_body, frame.world_from_geodetic(point)}};
+}
+
+Result<Trajectory> read_csv(const FieldFile& file, const LocalFrame& frame) {
+  if (Status status = check_header(file, file.lines().front()); !status) return status.error();
+  Trajectory trajectory;
+  for (std::size_t i = 1; i < file.lines().size(); ++i) {
+    const FieldLine& line = file.lines()[i];
+    const Result<StampedPose> stamped = pose_from(file, line, frame);
+    if (!stamped) return stamped.error();
+    if (!trajectory.empty() && stamped->t_ns <= trajectory.end_ns()) {
+      return file.bad_field(line, 1, "must be after the time of the row before");
+    }
+    if (Status status = trajectory.append(*stamped); !status) {
+      return file.bad_line(line, status.error().message);
+    }
+  }
+  return trajectory;
+}
+
+}  // namespace
+
+Result<Trajectory> read_log(const std::filesystem::path& path,
+                            const LocalFrame& frame,
+                            bool camera_poses) {
+  const Result<FieldFile> file = FieldFile::read(path);
+  if (!file) return file.error();
+  if (!file->lines().empty() && file->lines().front().fields.front() == kColumns[0].name) {
+    return read_csv(*file, frame);
+  }
+  const Result<TrajectoryFile> poses = read_trajectory(path);
+  if (!poses) return poses.error();
+  if (!poses->has_times) {
+    return Error{ErrorCode::kUnreadable,
+                 path.string() + ": KITTI poses without a times.txt beside them cannot be flown"};
+  }
+  if (!camera_poses) return poses->trajectory;
+  const Pose T_camera_body = Pose{R_body_camera_nadir(), Eigen::Vector3d::Zero()}.inverse();
+  Trajectory trajectory;
+  for (const StampedPose& stamped : poses->trajectory.poses()) {
+    // Cannot fail: stamps increase and poses are sound already.
+    static_cast<void>(trajectory.append({stamped.t_ns, stamped.pose * T_camera_body}));
+  }
+  return trajectory;
+}
+
+}  // namespace overfly::flight
