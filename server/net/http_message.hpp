@@ -1,0 +1,35 @@
+// HTTP requests and answers as plain values, without a library's type.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace overfly::net {
+
+struct HttpRequest {
+  std::string method;                          ///< upper-case
+  std::string target;                          ///< as sent: path and query, percent-encoded
+  std::map<std::string, std::string> headers;  ///< names in lower case
+  std::string body;
+
+  /// Empty when the header is absent.
+  [[nodiscard]] std::string header(const std::string& lower_case_name) const {
+    const auto found = headers.find(lower_case_name);
+    return found == headers.end() ? std::string() : found->second;
+  }
+};
+
+struct HttpResponse {
+  int status = 200;
+  std::string content_type;
+  std::vector<std::pair<std::string, std::string>> headers;
+  std::string body;
+};
+
+/// Called once, from any thread, with the answer of a request.
+using Respond = std::function<void(HttpResponse)>;
+
+}  // namespace overfly::net

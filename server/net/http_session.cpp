@@ -1,0 +1,242 @@
+#include "server/net/http_session.hpp"
+
+#include <algorithm>
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
+#include <chrono>
+#include <optional>
+#include <utility>
+
+#include "server/net/error_response.hpp"
+#include "server/net/origin.hpp"
+#include "server/net/websocket_session.hpp"
+
+namespace overfly::net {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+using asio::ip::tcp;
+using beast::error_code;
+
+constexpr const char* kStreamPath = "/api/v1/stream";
+constexpr const char* kApiPrefix = "/api/";
+/// Requests that are sent ahead wait here, no more than this of them.
+constexpr std::size_t kReadBufferBytes = std::size_t{128} << 10U;
+/// A picture may wait for a world to open and for tiles to load, but not for ever.
+constexpr std::chrono::seconds kAnswerLimit{120};
+
+std::string path_of(const std::string& target) { return target.substr(0, target.find('?')); }
+
+HttpRequest plain_request(http::request<http::string_body>&& message) {
+  HttpRequest request;
+  request.method = std::string(message.method_string());
+  request.target = std::string(message.target());
+  for (const auto& field : message) {
+    std::string name(field.name_string());
+    std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) {
+      return static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+    });
+    request.headers[name] = std::string(field.value());
+  }
+  request.body = std::move(message.body());
+  return request;
+}
+
+class HttpSession final : public std::enable_shared_from_this<HttpSession> {
+ public:
+  HttpSession(tcp::socket socket, std::shared_ptr<ServerContext> context)
+      : context_(std::move(context)),
+        stream_(std::move(socket)),
+        answer_limit_(stream_.get_executor()),
+        buffer_(kReadBufferBytes) {
+    ++context_->connections;
+  }
+  ~HttpSession() { --context_->connections; }
+
+  void read();
+
+ private:
+  void on_read(const error_code& error);
+  void refuse(const error_code& error);
+  void dispatch(const HttpRequest& request);
+  [[nodiscard]] std::optional<HttpResponse> forbidden(const HttpRequest& request) const;
+  void answer(std::uint64_t number, HttpResponse response);
+  void write(HttpResponse response);
+  void on_written(const error_code& error, bool keep_alive);
+  void close();
+
+  std::shared_ptr<ServerContext> context_;
+  beast::tcp_stream stream_;
+  /// Runs while an answer is awaited, and keeps the session alive meanwhile.
+  asio::steady_timer answer_limit_;
+  beast::flat_buffer buffer_;
+  std::optional<http::request_parser<http::string_body>> parser_;
+  std::optional<http::response<http::string_body>> response_;
+  std::uint64_t request_number_ = 0;  ///< an answer to another one comes too late
+  bool head_ = false;
+  bool keep_alive_ = false;
+  unsigned version_ = 11;
+};
+
+void HttpSession::read() {
+  const ServerLimits& limits = context_->options.limits;
+  parser_.emplace();
+  parser_->body_limit(limits.max_body_bytes);
+  parser_->header_limit(static_cast<std::uint32_t>(limits.max_header_bytes));
+  stream_.expires_after(std::chrono::milliseconds(limits.idle_ms));
+  http::async_read(
+      stream_,
+      buffer_,
+      *parser_,
+      [self = shared_from_this()](const error_code& error, std::size_t) { self->on_read(error); });
+}
+
+void HttpSession::on_read(const error_code& error) {
+  if (error) {
+    refuse(error);
+    return;
+  }
+  stream_.expires_never();
+  http::request<http::string_body> message = parser_->release();
+  head_ = message.method() == http::verb::head;
+  keep_alive_ = message.keep_alive();
+  version_ = message.version();
+  ++request_number_;
+  if (beast::websocket::is_upgrade(message) &&
+      path_of(std::string(message.target())) == kStreamPath) {
+    http::request<http::string_body> upgrade = message;
+    if (auto response = forbidden(plain_request(std::move(message)))) {
+      write(*std::move(response));
+      return;
+    }
+    serve_websocket(stream_.release_socket(), upgrade, context_);
+    return;
+  }
+  dispatch(plain_request(std::move(message)));
+}
+
+void HttpSession::refuse(const error_code& error) {
+  keep_alive_ = false;
+  if (error == http::error::body_limit) {
+    write(error_response(413,
+                         "payload_too_large",
+                         "the body is larger than " +
+                             std::to_string(context_->options.limits.max_body_bytes) + " bytes"));
+  } else if (error == http::error::header_limit || error == http::error::buffer_overflow) {
+    write(error_response(431, "headers_too_large", "the request's headers are too large"));
+  } else if (error.category() == make_error_code(http::error::bad_method).category() &&
+             error != http::error::end_of_stream && error != http::error::partial_message) {
+    write(error_response(400, "invalid_argument", "the request is malformed: " + error.message()));
+  } else {
+    close();
+  }
+}
+
+std::optional<HttpResponse> HttpSession::forbidden(const HttpRequest& request) const {
+  const std::string host = request.header("host");
+  if (!host_allowed(host, context_->options.address)) {
+    return error_response(403,
+                          "forbidden",
+                          "host " + host + ": this server listens on " + context_->options.address +
+                              " and is asked for by that name only");
+  }
+  const std::string origin = request.header("origin");
+  const bool reads = request.method == "GET" || request.method == "HEAD";
+  const bool upgrade = !request.header("upgrade").empty();
+  if ((!reads || upgrade) && !origin_allowed(origin, host)) {
+    return error_response(403, "forbidden", "origin " + origin + ": is another site's page");
+  }
+  return std::nullopt;
+}
+
+void HttpSession::dispatch(const HttpRequest& request) {
+  if (auto response = forbidden(request)) {
+    write(*std::move(response));
+    return;
+  }
+  const std::string path = path_of(request.target);
+  if (path == kStreamPath) {
+    write(error_response(426, "upgrade_required", "the stream is a WebSocket: ask for an upgrade"));
+    return;
+  }
+  if (!path.starts_with(kApiPrefix)) {
+    write(context_->files.serve(request));
+    return;
+  }
+  const std::uint64_t number = request_number_;
+  answer_limit_.expires_after(kAnswerLimit);
+  answer_limit_.async_wait([self = shared_from_this(), number](const error_code& error) {
+    if (error) return;
+    self->answer(number, error_response(503, "timeout", "the answer took too long"));
+  });
+  context_->router.handle(
+      request, [weak = weak_from_this(), context = context_, number](HttpResponse response) {
+        context->gate.run([&] {
+          const auto self = weak.lock();
+          if (!self) return;
+          asio::post(self->stream_.get_executor(),
+                     [weak, number, response = std::move(response)]() mutable {
+                       if (const auto session = weak.lock()) {
+                         session->answer(number, std::move(response));
+                       }
+                     });
+        });
+      });
+}
+
+void HttpSession::answer(std::uint64_t number, HttpResponse response) {
+  if (number != request_number_) return;
+  ++request_number_;
+  answer_limit_.cancel();
+  write(std::move(response));
+}
+
+void HttpSession::write(HttpResponse response) {
+  response_.emplace(static_cast<http::status>(response.status), version_);
+  response_->set(http::field::server, std::string("overfly/") + OVERFLY_VERSION);
+  response_->set("X-Content-Type-Options", "nosniff");
+  response_->set("Content-Security-Policy",
+                 "default-src 'self'; img-src 'self' blob: data:; style-src 'self' "
+                 "'unsafe-inline'; connect-src 'self' ws: wss:; frame-ancestors 'self'");
+  if (!response.content_type.empty()) {
+    response_->set(http::field::content_type, response.content_type);
+  }
+  for (const auto& [name, value] : response.headers) response_->set(name, value);
+  response_->keep_alive(keep_alive_);
+  const std::size_t body_bytes = response.body.size();
+  if (!head_) response_->body() = std::move(response.body);
+  response_->prepare_payload();
+  if (head_) response_->content_length(body_bytes);
+  stream_.expires_after(std::chrono::milliseconds(context_->options.limits.idle_ms));
+  http::async_write(
+      stream_, *response_, [self = shared_from_this()](const error_code& error, std::size_t) {
+        self->on_written(error, self->keep_alive_);
+      });
+}
+
+void HttpSession::on_written(const error_code& error, bool keep_alive) {
+  response_.reset();
+  if (error || !keep_alive) {
+    close();
+    return;
+  }
+  read();
+}
+
+void HttpSession::close() {
+  error_code ignored;
+  stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
+}
+
+}  // namespace
+
+void serve_http(tcp::socket socket, std::shared_ptr<ServerContext> context) {
+  std::make_shared<HttpSession>(std::move(socket), std::move(context))->read();
+}
+
+}  // namespace overfly::net

@@ -1,0 +1,104 @@
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include "server/net/error_response.hpp"
+#include "server/net/rest_api.hpp"
+#include "server/net/row_encoder.hpp"
+
+namespace overfly::net {
+namespace {
+
+namespace fs = std::filesystem;
+using engine::RunManager;
+using engine::RunTimeline;
+using nlohmann::json;
+
+constexpr const char* kTruth = "truth";
+
+HttpResponse file_response(const fs::path& file,
+                           const std::string& content_type,
+                           const std::string& absent) {
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) return error_response({ErrorCode::kNotFound, absent});
+  std::ifstream in(file, std::ios::binary);
+  if (!in) return error_response({ErrorCode::kIo, "cannot read " + file.filename().string()});
+  HttpResponse response;
+  response.content_type = content_type;
+  response.headers.emplace_back("Cache-Control", "no-cache");
+  response.body.assign(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
+  return response;
+}
+
+HttpResponse metrics(RunManager* runs, const std::string& id) {
+  const auto timeline = runs->timeline(id);
+  if (!timeline) return error_response(timeline.error());
+  json scores = (*timeline)->metrics();
+  if (scores.empty()) {
+    return error_response({ErrorCode::kNotFound, "run " + id + " is not scored"});
+  }
+  return json_response(200, scores);
+}
+
+HttpResponse manifest(RunManager* runs, const std::string& id) {
+  const auto folder = runs->folder(id);
+  if (!folder) return error_response(folder.error());
+  return file_response(
+      *folder / "manifest.json", "application/json", "run " + id + " has no manifest yet");
+}
+
+json columns_of(const RunTimeline& timeline, const std::string& name) {
+  if (name == kTruth) return truth_columns(timeline.frames(0, timeline.frame_count()));
+  const auto& names = timeline.estimators();
+  const auto index =
+      static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+  return estimate_columns(timeline.estimates(index, 0, timeline.estimate_count(index)));
+}
+
+HttpResponse trajectory(RunManager* runs, const RouteCall& call) {
+  if (const Status status = call.allow_query({"format"}); !status) {
+    return error_response(status.error());
+  }
+  const auto format = call.query.find("format");
+  const std::string wanted = format == call.query.end() ? "tum" : format->second;
+  if (wanted != "tum" && wanted != "json") {
+    return error_response(
+        {ErrorCode::kInvalidArgument, "format = " + wanted + ": must be \"tum\" or \"json\""});
+  }
+  const std::string& id = call.path.at("id");
+  const std::string& name = call.path.at("name");
+  const auto timeline = runs->timeline(id);
+  if (!timeline) return error_response(timeline.error());
+  const auto& names = (*timeline)->estimators();
+  if (name != kTruth && std::find(names.begin(), names.end(), name) == names.end()) {
+    return error_response({ErrorCode::kNotFound, "run " + id + " has no trajectory " + name});
+  }
+  if (wanted == "json") return json_response(200, columns_of(**timeline, name));
+  const auto folder = runs->folder(id);
+  if (!folder) return error_response(folder.error());
+  const std::string file_name = name + ".tum";
+  return file_response(
+      name == kTruth ? *folder / file_name : *folder / "estimates" / file_name,
+      "text/plain; charset=utf-8",
+      file_name + " is written when the run ends; format=json has the rows so far");
+}
+
+}  // namespace
+
+void add_result_routes(RestRouter* router, RunManager* runs) {
+  router->add(
+      "GET", "/api/v1/runs/{id}/metrics", [runs](const RouteCall& call, const Respond& respond) {
+        respond(metrics(runs, call.path.at("id")));
+      });
+  router->add(
+      "GET", "/api/v1/runs/{id}/manifest", [runs](const RouteCall& call, const Respond& respond) {
+        respond(manifest(runs, call.path.at("id")));
+      });
+  router->add(
+      "GET",
+      "/api/v1/runs/{id}/trajectories/{name}",
+      [runs](const RouteCall& call, const Respond& respond) { respond(trajectory(runs, call)); });
+}
+
+}  // namespace overfly::net

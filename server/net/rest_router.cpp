@@ -1,0 +1,84 @@
+#include "server/net/rest_router.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "server/net/error_response.hpp"
+
+namespace overfly::net {
+namespace {
+
+using Captures = std::map<std::string, std::string>;
+
+bool is_capture(const std::string& segment) {
+  return segment.size() > 2 && segment.front() == '{' && segment.back() == '}';
+}
+
+std::optional<Captures> match(const std::vector<std::string>& pattern,
+                              const std::vector<std::string>& segments) {
+  if (pattern.size() != segments.size()) return std::nullopt;
+  Captures captures;
+  for (std::size_t i = 0; i < pattern.size(); ++i) {
+    if (is_capture(pattern[i])) {
+      if (segments[i].empty()) return std::nullopt;
+      captures[pattern[i].substr(1, pattern[i].size() - 2)] = segments[i];
+    } else if (pattern[i] != segments[i]) {
+      return std::nullopt;
+    }
+  }
+  return captures;
+}
+
+HttpResponse method_not_allowed(const std::string& method, const std::set<std::string>& allowed) {
+  std::string list;
+  for (const std::string& name : allowed) list += (list.empty() ? "" : ", ") + name;
+  HttpResponse response = error_response(
+      405, "method_not_allowed", "method " + method + " is not served here: allowed are " + list);
+  response.headers.emplace_back("Allow", list);
+  return response;
+}
+
+}  // namespace
+
+Status RouteCall::allow_query(const std::vector<std::string>& known) const {
+  for (const auto& [name, value] : query) {
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
+      return Error{ErrorCode::kInvalidArgument, "query." + name + ": is not a known parameter"};
+    }
+  }
+  return {};
+}
+
+void RestRouter::add(const std::string& method, const std::string& pattern, Handler handler) {
+  const auto url = parse_target(pattern);
+  routes_.push_back({method, pattern, url ? url->segments : std::vector<std::string>{}, handler});
+}
+
+void RestRouter::handle(const HttpRequest& request, const Respond& respond) const {
+  const auto url = parse_target(request.target);
+  if (!url) {
+    respond(error_response({ErrorCode::kInvalidArgument, "the request's path is malformed"}));
+    return;
+  }
+  const std::string& method = request.method == "HEAD" ? std::string("GET") : request.method;
+  std::set<std::string> allowed;
+  for (const Route& route : routes_) {
+    auto captures = match(route.segments, url->segments);
+    if (!captures) continue;
+    if (route.method == method) {
+      route.handler({request, std::move(*captures), url->query}, respond);
+      return;
+    }
+    allowed.insert(route.method);
+    if (route.method == "GET") allowed.insert("HEAD");
+  }
+  if (!allowed.empty()) {
+    respond(method_not_allowed(request.method, allowed));
+    return;
+  }
+  respond(error_response({ErrorCode::kNotFound, "no such resource: " + request.target}));
+}
+
+}  // namespace overfly::net

@@ -1,0 +1,106 @@
+#include <algorithm>
+#include <utility>
+
+#include "server/net/error_response.hpp"
+#include "server/net/json_text.hpp"
+#include "server/net/rest_api.hpp"
+#include "server/net/row_encoder.hpp"
+
+namespace overfly::net {
+namespace {
+
+using engine::RunManager;
+using nlohmann::json;
+
+constexpr std::size_t kMaxKeyBytes = 200;
+
+Result<engine::RunInfo> find_run(RunManager* runs, const std::string& id) {
+  for (engine::RunInfo& info : runs->runs()) {
+    if (info.id == id) return std::move(info);
+  }
+  return Error{ErrorCode::kNotFound, "no such run: " + id};
+}
+
+struct StartBody {
+  std::string scenario;
+  std::vector<engine::Override> overrides;
+};
+
+Result<StartBody> parse_start(const std::string& text) {
+  const Result<json> body = parse_object(text, "the body");
+  if (!body) return body.error();
+  JsonFields fields(*body, "");
+  StartBody start;
+  fields.require("scenario");
+  start.scenario = fields.text("scenario").value_or("");
+  if (const json* overrides = fields.object("overrides")) {
+    for (const auto& [path, value] : overrides->items()) start.overrides.push_back({path, value});
+  }
+  if (const Status status = fields.finish(); !status) return status.error();
+  return start;
+}
+
+bool is_json(const HttpRequest& request) {
+  const std::string type = request.header("content-type");
+  return type == "application/json" || type.starts_with("application/json;");
+}
+
+HttpResponse start_run(RunManager* runs, const HttpRequest& request) {
+  if (!is_json(request)) {
+    return error_response(415, "unsupported_media_type", "the body must be application/json");
+  }
+  const std::string key = request.header("idempotency-key");
+  if (key.size() > kMaxKeyBytes) {
+    return error_response(
+        {ErrorCode::kInvalidArgument,
+         "Idempotency-Key: must have at most " + std::to_string(kMaxKeyBytes) + " characters"});
+  }
+  const Result<StartBody> start = parse_start(request.body);
+  if (!start) return error_response(start.error());
+  const auto before = key.empty() ? std::vector<engine::RunInfo>() : runs->runs();
+  const auto info = runs->start(start->scenario, start->overrides, key);
+  if (!info) return error_response(info.error());
+  const bool known = std::any_of(
+      before.begin(), before.end(), [&](const auto& other) { return other.id == info->id; });
+  HttpResponse response = json_response(known ? 200 : 201, run_json(*info));
+  response.headers.emplace_back("Location", "/api/v1/runs/" + info->id);
+  return response;
+}
+
+HttpResponse list_runs(RunManager* runs) {
+  json list = json::array();
+  for (const engine::RunInfo& info : runs->runs()) list.push_back(run_json(info));
+  return json_response(200, {{"runs", std::move(list)}});
+}
+
+HttpResponse one_run(RunManager* runs, const std::string& id, int status) {
+  const auto info = find_run(runs, id);
+  return info ? json_response(status, run_json(*info)) : error_response(info.error());
+}
+
+}  // namespace
+
+void add_run_routes(RestRouter* router, RunManager* runs) {
+  router->add("GET", "/api/v1/runs", [runs](const RouteCall&, const Respond& respond) {
+    respond(list_runs(runs));
+  });
+  router->add("POST", "/api/v1/runs", [runs](const RouteCall& call, const Respond& respond) {
+    respond(start_run(runs, call.request));
+  });
+  router->add("GET", "/api/v1/runs/{id}", [runs](const RouteCall& call, const Respond& respond) {
+    respond(one_run(runs, call.path.at("id"), 200));
+  });
+  router->add(
+      "POST", "/api/v1/runs/{id}/cancel", [runs](const RouteCall& call, const Respond& respond) {
+        const Status status = runs->cancel(call.path.at("id"));
+        respond(status ? one_run(runs, call.path.at("id"), 202) : error_response(status.error()));
+      });
+  router->add("DELETE", "/api/v1/runs/{id}", [runs](const RouteCall& call, const Respond& respond) {
+    const Status status = runs->remove(call.path.at("id"));
+    HttpResponse gone;
+    gone.status = 204;
+    respond(status ? gone : error_response(status.error()));
+  });
+}
+
+}  // namespace overfly::net

@@ -1,0 +1,66 @@
+#include "server/net/server.hpp"
+
+#include <algorithm>
+#include <boost/asio/io_context.hpp>
+#include <system_error>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "server/net/listener.hpp"
+#include "server/net/rest_api.hpp"
+#include "server/net/server_context.hpp"
+
+namespace overfly::net {
+
+struct Server::Impl {
+  std::shared_ptr<ServerContext> context;
+  boost::asio::io_context loop;
+  std::vector<std::thread> threads;
+  std::uint16_t port = 0;
+};
+
+Server::Server() : impl_(std::make_unique<Impl>()) {}
+
+Server::~Server() {
+  if (impl_->context) impl_->context->gate.close();
+  impl_->loop.stop();
+  for (std::thread& thread : impl_->threads) thread.join();
+}
+
+Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options,
+                                              engine::RunManager& runs,
+                                              engine::ViewService& views) {
+  std::error_code error;
+  if (!options.web_folder.empty() &&
+      !std::filesystem::is_regular_file(options.web_folder / "index.html", error)) {
+    return Error{ErrorCode::kNotFound,
+                 "the dashboard's folder " + options.web_folder.string() + " has no index.html"};
+  }
+  std::unique_ptr<Server> server(new Server());
+  auto context = std::make_shared<ServerContext>(options, runs, views);
+  add_service_routes(&context->router);
+  add_scenario_routes(&context->router, &runs);
+  add_run_routes(&context->router, &runs);
+  add_result_routes(&context->router, &runs);
+  add_frame_routes(&context->router, &runs, &views);
+  server->impl_->context = context;
+  const auto port = listen(&server->impl_->loop, context);
+  if (!port) return port.error();
+  server->impl_->port = *port;
+  for (int i = 0; i < std::max(options.threads, 1); ++i) {
+    server->impl_->threads.emplace_back([impl = server->impl_.get()] { impl->loop.run(); });
+  }
+  return server;
+}
+
+std::uint16_t Server::port() const { return impl_->port; }
+
+std::string Server::url() const {
+  const std::string& address = impl_->context->options.address;
+  const bool is_ipv6 = address.find(':') != std::string::npos;
+  return "http://" + (is_ipv6 ? "[" + address + "]" : address) + ":" + std::to_string(impl_->port) +
+         "/";
+}
+
+}  // namespace overfly::net

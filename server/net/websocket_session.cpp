@@ -1,0 +1,283 @@
+#include "server/net/websocket_session.hpp"
+
+#include <array>
+#include <boost/asio/dispatch.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/websocket.hpp>
+#include <chrono>
+#include <deque>
+#include <optional>
+#include <utility>
+
+#include "server/net/json_text.hpp"
+#include "server/net/viewer.hpp"
+
+namespace overfly::net {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+namespace websocket = beast::websocket;
+using asio::ip::tcp;
+using beast::error_code;
+
+constexpr std::uint16_t kTooSlow = 4000;
+/// How long a client that is too slow has to take what is on its way before the close frame.
+constexpr std::chrono::seconds kCloseGrace{5};
+
+std::int64_t monotonic_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+/// One message that waits to be written.
+struct Outgoing {
+  std::string text;  ///< a text message, unless there is a picture
+  std::array<std::uint8_t, kPictureHeaderBytes> header{};
+  std::shared_ptr<const std::vector<std::uint8_t>> jpeg;
+  PictureTicket ticket;
+
+  [[nodiscard]] std::size_t bytes() const {
+    return jpeg ? header.size() + jpeg->size() : text.size();
+  }
+};
+
+class WebSocketSession final : public ViewerPort,
+                               public std::enable_shared_from_this<WebSocketSession> {
+ public:
+  WebSocketSession(tcp::socket socket, std::shared_ptr<ServerContext> context)
+      : context_(std::move(context)),
+        ws_(std::move(socket)),
+        timer_(ws_.get_executor()),
+        viewer_(context_->runs, *this),
+        client_(context_->next_client++) {
+    ++context_->connections;
+  }
+  ~WebSocketSession() override {
+    context_->views.forget(client_);
+    --context_->connections;
+  }
+
+  void run(const http::request<http::string_body>& upgrade);
+
+  void send_text(std::string text) override;
+  void send_picture(const PictureTicket& ticket,
+                    const PictureHeader& header,
+                    std::shared_ptr<const std::vector<std::uint8_t>> jpeg) override;
+  void draw(const PictureTicket& ticket, const engine::PictureRequest& request) override;
+  [[nodiscard]] std::size_t unsent_bytes() const override { return unsent_bytes_; }
+
+ private:
+  void read();
+  void on_read(const error_code& error);
+  void enqueue(Outgoing message);
+  void write();
+  void on_written(const error_code& error);
+  void schedule();
+  void on_timer(const error_code& error);
+  void check_pace();
+  void close_too_slow();
+  void send_close_frame();
+  void end();
+
+  std::shared_ptr<ServerContext> context_;
+  websocket::stream<beast::tcp_stream> ws_;
+  beast::flat_buffer read_buffer_;
+  std::deque<Outgoing> queue_;  ///< the front one is on its way while writing_
+  std::size_t unsent_bytes_ = 0;
+  std::int64_t write_began_ns_ = 0;
+  bool writing_ = false;
+  bool closing_ = false;
+  bool ended_ = false;
+  asio::steady_timer timer_;
+  Viewer viewer_;
+  std::uint64_t client_;
+};
+
+void WebSocketSession::run(const http::request<http::string_body>& upgrade) {
+  const ServerLimits& limits = context_->options.limits;
+  error_code ignored;
+  auto& socket = beast::get_lowest_layer(ws_).socket();
+  socket.set_option(tcp::no_delay(true), ignored);
+  socket.set_option(asio::socket_base::send_buffer_size(limits.send_buffer_bytes), ignored);
+  beast::get_lowest_layer(ws_).expires_never();
+  websocket::stream_base::timeout timeout{};
+  timeout.handshake_timeout = std::chrono::milliseconds(limits.idle_ms);
+  timeout.idle_timeout = std::chrono::milliseconds(limits.idle_ms);
+  timeout.keep_alive_pings = true;
+  ws_.set_option(timeout);
+  ws_.read_message_max(limits.max_message_bytes);
+  ws_.auto_fragment(false);
+  ws_.async_accept(upgrade, [self = shared_from_this()](const error_code& error) {
+    if (error) return;
+    self->viewer_.greet("c" + std::to_string(self->client_));
+    self->read();
+  });
+}
+
+void WebSocketSession::read() {
+  ws_.async_read(read_buffer_, [self = shared_from_this()](const error_code& error, std::size_t) {
+    self->on_read(error);
+  });
+}
+
+void WebSocketSession::on_read(const error_code& error) {
+  if (error) {
+    end();
+    return;
+  }
+  if (!closing_) {
+    // A binary message is no JSON: it is answered as what is not understood.
+    viewer_.handle(ws_.got_text() ? beast::buffers_to_string(read_buffer_.data()) : std::string(),
+                   monotonic_ns());
+    schedule();
+  }
+  read_buffer_.consume(read_buffer_.size());
+  read();
+}
+
+void WebSocketSession::send_text(std::string text) {
+  Outgoing message;
+  message.text = std::move(text);
+  enqueue(std::move(message));
+}
+
+void WebSocketSession::send_picture(const PictureTicket& ticket,
+                                    const PictureHeader& header,
+                                    std::shared_ptr<const std::vector<std::uint8_t>> jpeg) {
+  Outgoing message;
+  message.header = encode_picture_header(header);
+  message.jpeg = std::move(jpeg);
+  message.ticket = ticket;
+  enqueue(std::move(message));
+}
+
+void WebSocketSession::draw(const PictureTicket& ticket, const engine::PictureRequest& request) {
+  const auto done = [weak = weak_from_this(), context = context_, ticket](
+                        const Result<engine::Picture>& picture) {
+    context->gate.run([&] {
+      const auto self = weak.lock();
+      if (!self) return;
+      asio::post(self->ws_.get_executor(), [weak, ticket, picture] {
+        const auto session = weak.lock();
+        if (!session || session->closing_) return;
+        session->viewer_.picture_ready(ticket, picture, monotonic_ns());
+        session->schedule();
+      });
+    });
+  };
+  context_->views.request(client_, static_cast<int>(ticket.stream_id), request, done);
+}
+
+void WebSocketSession::enqueue(Outgoing message) {
+  if (closing_ || ended_) return;
+  unsent_bytes_ += message.bytes();
+  queue_.push_back(std::move(message));
+  check_pace();
+  if (!writing_ && !closing_) write();
+}
+
+void WebSocketSession::write() {
+  writing_ = true;
+  write_began_ns_ = monotonic_ns();
+  const Outgoing& message = queue_.front();
+  const auto written = [self = shared_from_this()](const error_code& error, std::size_t) {
+    self->on_written(error);
+  };
+  if (message.jpeg) {
+    ws_.binary(true);
+    const std::array<asio::const_buffer, 2> parts = {asio::buffer(message.header),
+                                                     asio::buffer(*message.jpeg)};
+    ws_.async_write(parts, written);
+  } else {
+    ws_.text(true);
+    ws_.async_write(asio::buffer(message.text), written);
+  }
+}
+
+void WebSocketSession::on_written(const error_code& error) {
+  writing_ = false;
+  if (error) {
+    end();
+    return;
+  }
+  const Outgoing message = std::move(queue_.front());
+  queue_.pop_front();
+  unsent_bytes_ -= message.bytes();
+  if (closing_) {
+    send_close_frame();
+    return;
+  }
+  if (!queue_.empty()) write();
+  if (message.jpeg) {
+    viewer_.picture_sent(message.ticket, monotonic_ns());
+    schedule();
+  }
+}
+
+void WebSocketSession::schedule() {
+  const auto after_ns = viewer_.tick_after_ns();
+  if (!after_ns || closing_ || ended_) return;
+  timer_.expires_after(std::chrono::nanoseconds(*after_ns));
+  timer_.async_wait([weak = weak_from_this()](const error_code& error) {
+    if (const auto self = weak.lock()) self->on_timer(error);
+  });
+}
+
+void WebSocketSession::on_timer(const error_code& error) {
+  if (error || closing_ || ended_) return;
+  viewer_.tick(monotonic_ns());
+  check_pace();
+  schedule();
+}
+
+void WebSocketSession::check_pace() {
+  const ServerLimits& limits = context_->options.limits;
+  const std::int64_t stalled_ms = writing_ ? (monotonic_ns() - write_began_ns_) / 1'000'000 : 0;
+  if (unsent_bytes_ > limits.max_unsent_bytes || stalled_ms > limits.max_stall_ms) {
+    close_too_slow();
+  }
+}
+
+/// The message on its way cannot be taken back: the close frame follows it, or the connection
+/// ends without one when the client takes nothing at all.
+void WebSocketSession::close_too_slow() {
+  if (closing_) return;
+  closing_ = true;
+  if (queue_.size() > 1) queue_.erase(queue_.begin() + 1, queue_.end());
+  context_->views.forget(client_);
+  context_->log("warning", "a client is too slow and is disconnected (it may resume)");
+  timer_.expires_after(kCloseGrace);
+  timer_.async_wait([weak = weak_from_this()](const error_code& error) {
+    const auto self = weak.lock();
+    if (self && !error) self->end();
+  });
+  if (!writing_) send_close_frame();
+}
+
+void WebSocketSession::send_close_frame() {
+  const websocket::close_reason reason(static_cast<websocket::close_code>(kTooSlow), "too slow");
+  ws_.async_close(reason, [self = shared_from_this()](const error_code&) { self->end(); });
+}
+
+void WebSocketSession::end() {
+  if (ended_) return;
+  ended_ = true;
+  timer_.cancel();
+  context_->views.forget(client_);
+  beast::get_lowest_layer(ws_).close();
+}
+
+}  // namespace
+
+void serve_websocket(tcp::socket socket,
+                     const http::request<http::string_body>& upgrade,
+                     std::shared_ptr<ServerContext> context) {
+  std::make_shared<WebSocketSession>(std::move(socket), std::move(context))->run(upgrade);
+}
+
+}  // namespace overfly::net
