@@ -16,7 +16,7 @@ struct SynthesisOptions {
   double texel_m = 0.3;       ///< imagery resolution, in [0.1, 5]
   double center_lat_rad = 0;  ///< 0, 0 = the default place (39.35 N, 86.03 W)
   double center_lon_rad = 0;
-  double relief_m = 40.0;     ///< height between valley and hilltop, in [0, 400]
+  double relief_m = 40.0;  ///< height between valley and hilltop, in [0, 400]
 };
 
 /// Called with the done share in [0, 1]; returning false cancels.

@@ -42,6 +42,8 @@ struct TileGrid {
   int levels = 1;         ///< at level `levels - 1` one tile covers all imagery
   int cols = 1;           ///< tiles of level 0 that have imagery
   int rows = 1;
+  double width_m = 0.0;   ///< of the imagery, from left_x_m; not a multiple of a tile
+  double height_m = 0.0;  ///< of the imagery, down from top_y_m
 
   [[nodiscard]] double tile_m(int level) const { return kTileTexels * texel_m * (1 << level); }
 };

@@ -16,6 +16,8 @@ enum class VerticalDatum { kEllipsoid, kEgm96, kEgm2008, kNavd88, kUnknown };
 struct ImageryLayer {
   std::filesystem::path file;
   std::string attribution;
+  /// Coordinate reference system where the file names none, as "EPSG:2994".
+  std::optional<std::string> crs;
 };
 
 struct ElevationLayer {
@@ -26,6 +28,8 @@ struct ElevationLayer {
   /// Metres per unit of the raster; taken from the file where it says, else 1.
   std::optional<double> unit_m;
   std::string attribution;
+  /// Coordinate reference system where the file names none, as "EPSG:2994".
+  std::optional<std::string> crs;
 };
 
 /// What a world is made of; layers in priority order, the first one wins.
@@ -56,8 +60,8 @@ struct WorldSpec {
 /// An opened world, with what was doubtful about its files.
 struct World {
   std::shared_ptr<const TileSource> tiles;
-  WorldSpec spec;                      ///< with the origin resolved
-  std::vector<std::string> warnings;   ///< each names file, what was assumed, and the possible error
+  WorldSpec spec;                     ///< with the origin resolved
+  std::vector<std::string> warnings;  ///< each names file, what was assumed, and the possible error
   /// SHA-256 or size-and-time digests of the files, for the run's manifest: (file, digest).
   std::vector<std::pair<std::string, std::string>> data_hashes;
 };

@@ -1,0 +1,156 @@
+#include "terrain/gdal_dataset.hpp"
+
+#include <cpl_conv.h>
+
+#include <cmath>
+
+namespace overfly::terrain {
+namespace fs = std::filesystem;
+
+void initialise_gdal() {
+  static const bool done = [] {
+    GDALAllRegister();
+    constexpr GIntBig kBlockCacheBytes = GIntBig{128} << 20;
+    GDALSetCacheMax64(kBlockCacheBytes);
+    // Side-car files of one directory listing per open cost more than they bring.
+    CPLSetConfigOption("GDAL_PAM_ENABLED", "YES");
+    return true;
+  }();
+  (void)done;
+}
+
+GdalMessages::GdalMessages() { CPLPushErrorHandlerEx(&GdalMessages::collect, this); }
+
+GdalMessages::~GdalMessages() { CPLPopErrorHandler(); }
+
+void CPL_STDCALL GdalMessages::collect(CPLErr severity, CPLErrorNum, const char* message) {
+  auto* self = static_cast<GdalMessages*>(CPLGetErrorHandlerUserData());
+  constexpr std::size_t kLongest = 600;
+  if (severity < CE_Warning || self->text_.size() > kLongest) return;
+  if (self->text_.find(message) != std::string::npos) return;
+  if (!self->text_.empty()) self->text_ += "; ";
+  self->text_ += message;
+}
+
+std::string GdalMessages::text() const { return text_.empty() ? "no reason given" : text_; }
+
+Result<DatasetPtr> open_raster(const fs::path& file, int level) {
+  initialise_gdal();
+  std::error_code ignored;
+  if (!fs::exists(file, ignored)) {
+    return Error{ErrorCode::kNotFound, file.string() + ": no such file"};
+  }
+  GdalMessages messages;
+  CPLStringList options;
+  if (level > 0) options.SetNameValue("OVERVIEW_LEVEL", std::to_string(level - 1).c_str());
+  DatasetPtr dataset(GDALDataset::Open(
+      file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, nullptr, options.List(), nullptr));
+  if (!dataset) {
+    return Error{ErrorCode::kUnreadable,
+                 file.string() + ": not a raster that can be read: " + messages.text()};
+  }
+  if (dataset->GetRasterCount() < 1) {
+    return Error{ErrorCode::kUnreadable, file.string() + ": has no raster band"};
+  }
+  return dataset;
+}
+
+Result<DatasetPtr> DatasetPool::take() {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!idle_.empty()) {
+      DatasetPtr dataset = std::move(idle_.back());
+      idle_.pop_back();
+      return dataset;
+    }
+  }
+  return open_raster(file_, level_);
+}
+
+void DatasetPool::put(DatasetPtr dataset) {
+  const std::lock_guard lock(mutex_);
+  idle_.push_back(std::move(dataset));
+}
+
+void GeoTransform::crs_from_pixel(double px, double py, double& x, double& y) const {
+  x = g[0] + g[1] * px + g[2] * py;
+  y = g[3] + g[4] * px + g[5] * py;
+}
+
+void GeoTransform::pixel_from_crs(double x, double y, double& px, double& py) const {
+  const double determinant = g[1] * g[5] - g[2] * g[4];
+  const double dx = x - g[0];
+  const double dy = y - g[3];
+  px = (g[5] * dx - g[2] * dy) / determinant;
+  py = (g[1] * dy - g[4] * dx) / determinant;
+}
+
+namespace {
+
+/// Corner coordinates that no place on earth has betray a transform and a CRS that do not match.
+Status check_range(const Georeference& place, int width, int height, const std::string& file) {
+  for (int corner = 0; corner < 4; ++corner) {
+    double x = 0.0;
+    double y = 0.0;
+    place.transform.crs_from_pixel((corner & 1) * width, (corner >> 1) * height, x, y);
+    const bool geographic = place.crs.IsGeographic() != 0;
+    const double unit = geographic ? place.crs.GetAngularUnits() : place.crs.GetLinearUnits();
+    constexpr double kTolerance = 1e-3;
+    const double limit_x = geographic ? 2.0 * M_PI + kTolerance : 5e7;
+    const double limit_y = geographic ? 0.5 * M_PI + kTolerance : 5e7;
+    if (!(std::abs(x * unit) <= limit_x) || !(std::abs(y * unit) <= limit_y)) {
+      return Error{ErrorCode::kInvalidArgument,
+                   file + ": georeference is broken: a corner lies at (" + std::to_string(x) +
+                       ", " + std::to_string(y) + "), outside its coordinate reference system"};
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<Georeference> read_georeference(GDALDataset& dataset,
+                                       const fs::path& file,
+                                       const std::optional<std::string>& crs_override,
+                                       const std::string& said) {
+  const std::string heard = said.empty() ? "" : " (GDAL said: " + said + ")";
+  Georeference place;
+  if (dataset.GetGeoTransform(place.transform.g) != CE_None) {
+    return Error{ErrorCode::kInvalidArgument,
+                 file.string() + ": has no georeference (no position and pixel size)" + heard};
+  }
+  const double* g = place.transform.g;
+  if (const double area = g[1] * g[5] - g[2] * g[4]; !std::isfinite(area) || area == 0.0) {
+    return Error{ErrorCode::kInvalidArgument,
+                 file.string() + ": georeference is degenerate: pixel size (" +
+                     std::to_string(g[1]) + ", " + std::to_string(g[5]) + ")"};
+  }
+  const OGRSpatialReference* crs = dataset.GetSpatialRef();
+  if (crs != nullptr && !crs->IsEmpty()) {
+    place.crs = *crs;
+  } else if (crs_override) {
+    const GdalMessages messages;
+    if (place.crs.SetFromUserInput(crs_override->c_str()) != OGRERR_NONE) {
+      return Error{ErrorCode::kInvalidArgument,
+                   file.string() + ": crs = \"" + *crs_override +
+                       "\" is not a known coordinate reference system: " + messages.text()};
+    }
+  } else {
+    return Error{ErrorCode::kInvalidArgument,
+                 file.string() + ": has no coordinate reference system" + heard +
+                     "; say it in the manifest's field \"crs\", for example \"EPSG:4326\""};
+  }
+  if (place.crs.IsProjected() == 0 && place.crs.IsGeographic() == 0) {
+    return Error{ErrorCode::kInvalidArgument,
+                 file.string() +
+                     ": coordinate reference system is neither projected nor "
+                     "geographic, so its place on the earth is unknown"};
+  }
+  place.crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  const Status in_range =
+      check_range(place, dataset.GetRasterXSize(), dataset.GetRasterYSize(), file.string());
+  if (!in_range) return in_range.error();
+  return place;
+}
+
+}  // namespace overfly::terrain

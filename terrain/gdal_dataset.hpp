@@ -1,0 +1,89 @@
+// Inside terrain only: GDAL datasets with an owner, and what GDAL says while one is used.
+#pragma once
+
+#include <gdal_priv.h>
+#include <ogr_spatialref.h>
+
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/result.hpp"
+
+namespace overfly::terrain {
+
+struct DatasetCloser {
+  void operator()(GDALDataset* dataset) const { GDALClose(dataset); }
+};
+using DatasetPtr = std::unique_ptr<GDALDataset, DatasetCloser>;
+
+/// Registers the drivers and bounds the block cache; any number of calls.
+void initialise_gdal();
+
+/// Collects what GDAL and PROJ report on this thread instead of printing it.
+class GdalMessages {
+ public:
+  GdalMessages();
+  ~GdalMessages();
+  GdalMessages(const GdalMessages&) = delete;
+  GdalMessages& operator=(const GdalMessages&) = delete;
+
+  [[nodiscard]] bool empty() const { return text_.empty(); }
+  /// The messages, "; " between them; "no reason given" when there are none.
+  [[nodiscard]] std::string text() const;
+
+ private:
+  static void CPL_STDCALL collect(CPLErr severity, CPLErrorNum number, const char* message);
+  std::string text_;
+};
+
+/// Opens a raster for reading. Level 0 is the file itself, n > 0 its n-th overview.
+/// Errors: kNotFound; kUnreadable with GDAL's reason.
+[[nodiscard]] Result<DatasetPtr> open_raster(const std::filesystem::path& file, int level = 0);
+
+/// Several handles on one file, since a GDAL handle serves one thread at a time.
+class DatasetPool {
+ public:
+  DatasetPool(std::filesystem::path file, int level) : file_(std::move(file)), level_(level) {}
+
+  /// A handle that nobody else uses; give it back with `put`.
+  [[nodiscard]] Result<DatasetPtr> take();
+  void put(DatasetPtr dataset);
+
+ private:
+  std::filesystem::path file_;
+  int level_;
+  std::mutex mutex_;
+  std::vector<DatasetPtr> idle_;
+};
+
+/// The six numbers of an affine georeference, pixel corners at integers:
+/// X = g0 + g1 px + g2 py, Y = g3 + g4 px + g5 py.
+struct GeoTransform {
+  double g[6] = {0, 1, 0, 0, 0, 1};
+
+  [[nodiscard]] bool north_up() const {
+    return g[2] == 0.0 && g[4] == 0.0 && g[1] > 0.0 && g[5] < 0.0;
+  }
+  void crs_from_pixel(double px, double py, double& x, double& y) const;
+  void pixel_from_crs(double x, double y, double& px, double& py) const;
+};
+
+/// Place of a raster on the earth, checked.
+struct Georeference {
+  GeoTransform transform;
+  OGRSpatialReference crs;  ///< traditional axis order: x = east or longitude
+};
+
+/// Reads the georeference; `crs_override` ("EPSG:2994") stands in where the file has none.
+/// Errors: kInvalidArgument naming the file: no CRS, no or degenerate transform, a place outside
+/// the CRS's range. `said` is what GDAL reported when it opened the file.
+[[nodiscard]] Result<Georeference> read_georeference(GDALDataset& dataset,
+                                                     const std::filesystem::path& file,
+                                                     const std::optional<std::string>& crs_override,
+                                                     const std::string& said);
+
+}  // namespace overfly::terrain

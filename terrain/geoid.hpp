@@ -1,0 +1,40 @@
+// Inside terrain only: how far a vertical datum's zero lies above the ellipsoid.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "terrain/world.hpp"
+
+namespace overfly::terrain {
+
+/// A source of separations, chosen once for a layer.
+struct GeoidModel {
+  /// PROJ grid ("egm96_15.gtx"); empty where a constant or the built-in table serves.
+  std::string grid;
+  std::optional<double> constant_m;
+  bool built_in = false;  ///< the coarse table of EGM96 inside the program
+};
+
+/// Chooses the model for a datum: its own PROJ grid, else the given constant, else EGM96's grid,
+/// else the built-in table. Whatever is not the datum's own is named in `warnings` with its
+/// possible error. Empty for ellipsoidal and unknown heights (the latter with a warning).
+/// @param lat_rad, lon_rad  the layer's middle, for the size of the error
+[[nodiscard]] std::optional<GeoidModel> choose_geoid(VerticalDatum datum,
+                                                     std::optional<double> constant_m,
+                                                     double lat_rad,
+                                                     double lon_rad,
+                                                     const std::string& file,
+                                                     std::vector<std::string>& warnings);
+
+/// Height of the datum's zero above the ellipsoid [m] at points (longitude, latitude) [rad].
+[[nodiscard]] Eigen::VectorXd geoid_separation_m(const GeoidModel& model,
+                                                 const Eigen::Matrix2Xd& lon_lat_rad);
+
+/// "ellipsoid", "egm96", "egm2008", "navd88", "unknown".
+[[nodiscard]] const char* to_string(VerticalDatum datum);
+
+}  // namespace overfly::terrain

@@ -1,0 +1,24 @@
+// Pictures as files: PNG for images, GeoTIFF for depth.
+#pragma once
+
+#include <filesystem>
+
+#include "core/image.hpp"
+#include "core/result.hpp"
+
+namespace overfly::terrain {
+
+/// Writes 8-bit grey or RGB. The file appears whole or not at all, without side-car files.
+/// Errors: kInvalidArgument for an empty image or other channels; kIo naming the file.
+[[nodiscard]] Status write_png(const std::filesystem::path& file, const Image& image);
+
+/// Reads any 8-bit picture that GDAL knows; palettes become RGB, alpha is dropped.
+/// Errors: kNotFound, kUnreadable.
+[[nodiscard]] Result<Image> read_png(const std::filesystem::path& file);
+
+/// Writes depths [m] as a 32-bit float TIFF without georeference (the image is the camera's).
+/// Sky (+infinity) is written as such. Errors: as write_png.
+[[nodiscard]] Status write_geotiff_depth(const std::filesystem::path& file,
+                                         const DepthImage& depth);
+
+}  // namespace overfly::terrain

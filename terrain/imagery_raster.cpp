@@ -1,0 +1,225 @@
+#include "terrain/imagery_raster.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace overfly::terrain {
+namespace {
+
+/// Texels of the in-memory levels at most, about (64 Mi texels = 256 MB).
+constexpr double kPyramidTexels = 64.0 * 1024 * 1024;
+
+int ceil_div(int a, int b) { return (a + b - 1) / b; }
+
+}  // namespace
+
+Result<std::shared_ptr<const ImageryRaster>> ImageryRaster::open(
+    const std::filesystem::path& file,
+    const std::optional<std::string>& crs,
+    std::vector<std::string>& warnings) {
+  auto raster = std::make_shared<ImageryRaster>();
+  raster->file_ = file;
+  initialise_gdal();
+  GdalMessages messages;
+  auto opened = open_raster(file);
+  if (!opened) return opened.error();
+  GDALDataset& dataset = **opened;
+  raster->width_px_ = dataset.GetRasterXSize();
+  raster->height_px_ = dataset.GetRasterYSize();
+  raster->format_ = dataset.GetDriver()->GetDescription();
+  auto place =
+      read_georeference(dataset, file, crs, messages.empty() ? std::string() : messages.text());
+  if (!place) return place.error();
+  raster->georeference_ = *place;
+  auto bands = find_bands(dataset, file.string(), warnings);
+  if (!bands) return bands.error();
+  raster->bands_ = *bands;
+  const Status whole = check_blocks(dataset, file);
+  if (!whole) return whole.error();
+
+  Stored base;
+  base.width_px = raster->width_px_;
+  base.height_px = raster->height_px_;
+  base.pool = std::make_unique<DatasetPool>(file, 0);
+  raster->stored_.push_back(std::move(base));
+  raster->add_overviews(dataset, warnings);
+  raster->stored_.front().pool->put(std::move(*opened));
+
+  // The in-memory levels start where the stored ones are left behind, later if they were too big.
+  raster->pyramid_level_ = raster->stored_.back().level + 2;
+  const double texels = static_cast<double>(raster->width_px_) * raster->height_px_;
+  while (texels / std::pow(4.0, raster->pyramid_level_) > kPyramidTexels) ++raster->pyramid_level_;
+  raster->pyramid_ = std::make_unique<Pyramid>();
+  return std::shared_ptr<const ImageryRaster>(std::move(raster));
+}
+
+void ImageryRaster::add_overviews(GDALDataset& dataset, std::vector<std::string>& warnings) {
+  GDALRasterBand* band = dataset.GetRasterBand(bands_.rgb[0]);
+  for (int i = 0; i < band->GetOverviewCount(); ++i) {
+    GDALRasterBand* overview = band->GetOverview(i);
+    if (overview == nullptr) continue;
+    Stored stored;
+    stored.width_px = overview->GetXSize();
+    stored.height_px = overview->GetYSize();
+    stored.ratio_x = static_cast<double>(width_px_) / stored.width_px;
+    stored.ratio_y = static_cast<double>(height_px_) / stored.height_px;
+    stored.level = static_cast<int>(std::lround(std::log2(stored.ratio_x)));
+    const double power = std::pow(2.0, stored.level);
+    const bool power_of_two = std::abs(stored.ratio_x / power - 1.0) < 0.02 &&
+                              std::abs(stored.ratio_y / power - 1.0) < 0.02;
+    if (!power_of_two || stored.level <= stored_.back().level) continue;
+    stored.pool = std::make_unique<DatasetPool>(file_, i + 1);
+    if (!overview_is_average(stored_.back(), stored)) {
+      warnings.push_back(file_.string() + ": its overview of 1/" +
+                         std::to_string(1 << stored.level) +
+                         " is no area average of the imagery; coarse tiles are made afresh");
+      return;
+    }
+    stored_.push_back(std::move(stored));
+  }
+}
+
+bool ImageryRaster::overview_is_average(const Stored& finer, const Stored& coarser) const {
+  const double step_x = static_cast<double>(finer.width_px) / coarser.width_px;
+  const double step_y = static_cast<double>(finer.height_px) / coarser.height_px;
+  constexpr int kWindow = 48;
+  const int width = std::min(kWindow, coarser.width_px);
+  const int height = std::min(kWindow, coarser.height_px);
+  double to_average = 0.0;
+  double to_nearest = 0.0;
+  for (int place = 0; place < 5; ++place) {
+    const int x = static_cast<int>((coarser.width_px - width) * (0.1 + 0.2 * place));
+    const int y = static_cast<int>((coarser.height_px - height) * (0.9 - 0.17 * place));
+    const int fine_x = static_cast<int>(x * step_x);
+    const int fine_y = static_cast<int>(y * step_y);
+    const int fine_width =
+        std::min(finer.width_px - fine_x, static_cast<int>(std::ceil(width * step_x)) + 2);
+    const int fine_height =
+        std::min(finer.height_px - fine_y, static_cast<int>(std::ceil(height * step_y)) + 2);
+    const auto fine = read_stored(finer, fine_x, fine_y, fine_width, fine_height);
+    const auto coarse = read_stored(coarser, x, y, width, height);
+    if (!fine || !coarse) return false;
+    const Patch average = area_average(
+        *fine, x * step_x - fine_x, step_x, y * step_y - fine_y, step_y, width, height);
+    for (int v = 0; v < height; ++v) {
+      for (int u = 0; u < width; ++u) {
+        if (average.valid.at(u, v) == 0 || coarse->valid.at(u, v) == 0) continue;
+        const int px = std::min(fine_width - 1, static_cast<int>((x + u + 0.5) * step_x) - fine_x);
+        const int py = std::min(fine_height - 1, static_cast<int>((y + v + 0.5) * step_y) - fine_y);
+        const double mean = average.rgb.at(u, v, 1);
+        to_average += std::pow(coarse->rgb.at(u, v, 1) - mean, 2.0);
+        to_nearest += std::pow(fine->rgb.at(px, py, 1) - mean, 2.0);
+      }
+    }
+  }
+  // Compression keeps an average within a few grey levels of ours; a nearest-neighbour overview
+  // differs as much as single texels do.
+  constexpr double kShare = 0.35;
+  const double noise = 2.0 * 2.0 * 5 * width * height;
+  return to_average <= std::max(noise, kShare * to_nearest);
+}
+
+Result<Patch> ImageryRaster::read_stored(
+    const Stored& stored, int x, int y, int width, int height) const {
+  const int left = std::max(0, x);
+  const int top = std::max(0, y);
+  const int right = std::min(stored.width_px, x + width);
+  const int bottom = std::min(stored.height_px, y + height);
+  if (right <= left || bottom <= top) return void_patch(width, height);
+  auto dataset = stored.pool->take();
+  if (!dataset) return dataset.error();
+  auto inside =
+      read_bands(**dataset, bands_, file_.string(), left, top, right - left, bottom - top);
+  stored.pool->put(std::move(*dataset));
+  if (!inside || (right - left == width && bottom - top == height)) return inside;
+  Patch patch = void_patch(width, height);
+  for (int row = top; row < bottom; ++row) {
+    const std::size_t count = static_cast<std::size_t>(right - left);
+    const std::size_t from = static_cast<std::size_t>(row - top) * count;
+    const std::size_t to = static_cast<std::size_t>(row - y) * width + (left - x);
+    std::copy_n(inside->rgb.data.begin() + static_cast<std::ptrdiff_t>(3 * from),
+                3 * count,
+                patch.rgb.data.begin() + static_cast<std::ptrdiff_t>(3 * to));
+    std::copy_n(inside->valid.data.begin() + static_cast<std::ptrdiff_t>(from),
+                count,
+                patch.valid.data.begin() + static_cast<std::ptrdiff_t>(to));
+  }
+  return patch;
+}
+
+/// The coarsest stored texels that can make a level: the level itself where it is exact, else
+/// texels of at most half its size, so that their shifts average out.
+const ImageryRaster::Stored& ImageryRaster::source_for(int level) const {
+  const Stored* best = &stored_.front();
+  for (const Stored& stored : stored_) {
+    if (stored.level <= (stored.exact() ? level : level - 1)) best = &stored;
+  }
+  return *best;
+}
+
+Result<Patch> ImageryRaster::read_averaged(
+    const Stored& stored, int level, int x, int y, int width, int height) const {
+  const double step_x = std::pow(2.0, level) / stored.ratio_x;
+  const double step_y = std::pow(2.0, level) / stored.ratio_y;
+  const int first_x = static_cast<int>(std::floor(x * step_x));
+  const int first_y = static_cast<int>(std::floor(y * step_y));
+  const int last_x = static_cast<int>(std::ceil((x + width) * step_x));
+  const int last_y = static_cast<int>(std::ceil((y + height) * step_y));
+  auto fine = read_stored(stored, first_x, first_y, last_x - first_x, last_y - first_y);
+  if (!fine) return fine;
+  return area_average(
+      *fine, x * step_x - first_x, step_x, y * step_y - first_y, step_y, width, height);
+}
+
+void ImageryRaster::build_pyramid() const {
+  const int level = pyramid_level_;
+  const Stored& source = source_for(level);
+  Patch first = void_patch(ceil_div(width_px_, 1 << level), ceil_div(height_px_, 1 << level));
+  const int width = first.rgb.width_px;
+  constexpr int kRows = 16;
+  for (int y = 0; y < first.rgb.height_px; y += kRows) {
+    const int rows = std::min(kRows, first.rgb.height_px - y);
+    auto strip = read_averaged(source, level, 0, y, width, rows);
+    if (!strip) {
+      pyramid_->error = strip.error();
+      return;
+    }
+    const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(y) * width;
+    std::copy(strip->rgb.data.begin(), strip->rgb.data.end(), first.rgb.data.begin() + 3 * at);
+    std::copy(strip->valid.data.begin(), strip->valid.data.end(), first.valid.data.begin() + at);
+  }
+  pyramid_->levels.push_back(std::move(first));
+  while (true) {
+    const Patch& finest = pyramid_->levels.back();
+    if (finest.rgb.width_px == 1 && finest.rgb.height_px == 1) return;
+    Patch next = area_average(finest,
+                              0.0,
+                              2.0,
+                              0.0,
+                              2.0,
+                              ceil_div(finest.rgb.width_px, 2),
+                              ceil_div(finest.rgb.height_px, 2));
+    pyramid_->levels.push_back(std::move(next));
+  }
+}
+
+Result<Patch> ImageryRaster::read(int level, int x, int y, int width, int height) const {
+  const Stored& stored = source_for(level);
+  if (stored.level == level && stored.exact()) return read_stored(stored, x, y, width, height);
+  if (level < pyramid_level_) return read_averaged(stored, level, x, y, width, height);
+  std::call_once(pyramid_->once, [this] { build_pyramid(); });
+  if (pyramid_->error) return *pyramid_->error;
+  const std::size_t index =
+      std::min<std::size_t>(level - pyramid_level_, pyramid_->levels.size() - 1);
+  const Patch& whole = pyramid_->levels[index];
+  Patch patch = void_patch(width, height);
+  for (int v = std::max(0, -y); v < std::min(height, whole.rgb.height_px - y); ++v) {
+    for (int u = std::max(0, -x); u < std::min(width, whole.rgb.width_px - x); ++u) {
+      for (int c = 0; c < 3; ++c) patch.rgb.at(u, v, c) = whole.rgb.at(x + u, y + v, c);
+      patch.valid.at(u, v) = whole.valid.at(x + u, y + v);
+    }
+  }
+  return patch;
+}
+
+}  // namespace overfly::terrain

@@ -1,0 +1,80 @@
+// Inside terrain only: one imagery file as RGB texels with validity at every power of two.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "terrain/area_average.hpp"
+#include "terrain/gdal_dataset.hpp"
+#include "terrain/raster_bands.hpp"
+
+namespace overfly::terrain {
+
+/// Level L's texel (i, j) is the area average of the file's texels
+/// [i 2^L, (i + 1) 2^L) x [j 2^L, (j + 1) 2^L). Thread-safe after `open`.
+class ImageryRaster {
+ public:
+  /// Opens the file and checks it: bands, georeference, that its blocks lie inside the file, and
+  /// which of its overviews are area averages (others are not used, with a warning).
+  /// Errors: kNotFound, kUnreadable, kInvalidArgument naming the file.
+  static Result<std::shared_ptr<const ImageryRaster>> open(const std::filesystem::path& file,
+                                                           const std::optional<std::string>& crs,
+                                                           std::vector<std::string>& warnings);
+
+  /// Texels [x, x + width) x [y, y + height) of a level; void outside the file.
+  /// Errors: kIo with GDAL's reason.
+  [[nodiscard]] Result<Patch> read(int level, int x, int y, int width, int height) const;
+
+  [[nodiscard]] int width_px() const { return width_px_; }
+  [[nodiscard]] int height_px() const { return height_px_; }
+  [[nodiscard]] const Georeference& georeference() const { return georeference_; }
+  [[nodiscard]] const std::filesystem::path& file() const { return file_; }
+  [[nodiscard]] bool has_mask() const { return bands_.has_mask; }
+  [[nodiscard]] const std::string& format() const { return format_; }
+
+ private:
+  /// The file itself or one of its overviews.
+  struct Stored {
+    int level = 0;         ///< the power of two it stands for
+    double ratio_x = 1.0;  ///< file texels per texel of this, not always 2^level exactly
+    double ratio_y = 1.0;
+    int width_px = 0;
+    int height_px = 0;
+    std::unique_ptr<DatasetPool> pool;
+
+    [[nodiscard]] bool exact() const {
+      return ratio_x == static_cast<double>(1 << level) && ratio_y == ratio_x;
+    }
+  };
+  /// Levels that no overview holds, made once when first asked for.
+  struct Pyramid {
+    std::once_flag once;
+    std::vector<Patch> levels;  ///< the first is pyramid_level_
+    std::optional<Error> error;
+  };
+
+  void add_overviews(GDALDataset& dataset, std::vector<std::string>& warnings);
+  [[nodiscard]] bool overview_is_average(const Stored& finer, const Stored& coarser) const;
+  [[nodiscard]] Result<Patch> read_stored(
+      const Stored& stored, int x, int y, int width, int height) const;
+  [[nodiscard]] Result<Patch> read_averaged(
+      const Stored& stored, int level, int x, int y, int width, int height) const;
+  [[nodiscard]] const Stored& source_for(int level) const;
+  void build_pyramid() const;
+
+  std::filesystem::path file_;
+  Georeference georeference_;
+  RasterBands bands_;
+  std::string format_;
+  int width_px_ = 0;
+  int height_px_ = 0;
+  std::vector<Stored> stored_;
+  /// First level kept in memory: where the stored ones are too fine to be averaged on the fly.
+  int pyramid_level_ = 0;
+  std::unique_ptr<Pyramid> pyramid_;
+};
+
+}  // namespace overfly::terrain

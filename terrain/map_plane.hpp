@@ -1,0 +1,65 @@
+// Inside terrain only: the map plane, a projected coordinate system scaled to metres, and its
+// exact relation to WGS84 and to other coordinate systems.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "core/geodesy.hpp"
+#include "terrain/gdal_dataset.hpp"
+
+namespace overfly::terrain {
+
+/// Coordinates of one CRS in another, as PROJ says. Thread-safe (serialised).
+class CrsTransform {
+ public:
+  /// Errors: kInvalidArgument when PROJ knows no way; `what` names the file.
+  static Result<std::shared_ptr<const CrsTransform>> create(const OGRSpatialReference& from,
+                                                            const OGRSpatialReference& to,
+                                                            const std::string& what);
+  /// In place, x = east or longitude first. False if any point has no answer.
+  bool apply(Eigen::Matrix2Xd& points) const;
+
+ private:
+  explicit CrsTransform(OGRCoordinateTransformation* transformation)
+      : transformation_(transformation) {}
+  mutable std::mutex mutex_;
+  std::unique_ptr<OGRCoordinateTransformation> transformation_;
+};
+
+/// WGS84 longitude and latitude in degrees.
+[[nodiscard]] OGRSpatialReference wgs84_crs();
+/// Transverse Mercator with scale 1 at a point.
+[[nodiscard]] OGRSpatialReference transverse_mercator_at(double lat_rad, double lon_rad);
+
+/// The CRS of the tiles with the factors that turn its units into map metres.
+class MapPlane {
+ public:
+  /// x_map = scale_x X, y_map = scale_y Y.
+  static Result<MapPlane> create(const OGRSpatialReference& crs,
+                                 double scale_x,
+                                 double scale_y,
+                                 const std::string& what);
+
+  /// Longitude, latitude [rad] of map points; false if any has none.
+  bool geodetic_from_map(Eigen::Matrix2Xd& points) const;
+  /// The inverse.
+  bool map_from_geodetic(Eigen::Matrix2Xd& points) const;
+  /// Map points into another CRS's own units.
+  bool to_crs(const CrsTransform& crs_from_wgs84, Eigen::Matrix2Xd& points) const;
+
+  [[nodiscard]] const OGRSpatialReference& crs() const { return crs_; }
+  [[nodiscard]] double scale_x() const { return scale_x_; }
+  [[nodiscard]] double scale_y() const { return scale_y_; }
+
+ private:
+  OGRSpatialReference crs_;
+  double scale_x_ = 1.0;
+  double scale_y_ = 1.0;
+  std::shared_ptr<const CrsTransform> to_wgs84_;
+  std::shared_ptr<const CrsTransform> from_wgs84_;
+};
+
+}  // namespace overfly::terrain

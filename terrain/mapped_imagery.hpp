@@ -1,0 +1,53 @@
+// Inside terrain only: an imagery file laid on the map plane, texel for texel where its own grid
+// is the map's, resampled where it is not.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "terrain/imagery_raster.hpp"
+#include "terrain/map_plane.hpp"
+#include "terrain/smooth_map.hpp"
+#include "terrain/validity_grid.hpp"
+
+namespace overfly::terrain {
+
+class MappedImagery {
+ public:
+  /// The layer whose own grid the tiles use: grid texel (0, 0) is file texel (-pad_x, -pad_y),
+  /// with pads that are multiples of 2^(levels - 1).
+  static Result<MappedImagery> aligned(std::shared_ptr<const ImageryRaster> raster,
+                                       const TileGrid& grid,
+                                       int pad_x,
+                                       int pad_y);
+  /// A layer that is resampled. Errors: kInvalidArgument if its CRS has no place for the grid.
+  static Result<MappedImagery> warped(std::shared_ptr<const ImageryRaster> raster,
+                                      const MapPlane& plane,
+                                      const TileGrid& grid);
+
+  /// The tile's texels as far as this layer has them. Errors: kIo.
+  [[nodiscard]] Result<Patch> read(const TileId& id) const;
+  /// What is certain about a tile without reading it.
+  [[nodiscard]] TileCoverage coverage(const TileId& id) const;
+  [[nodiscard]] bool has_imagery(double x_map_m, double y_map_m) const;
+  [[nodiscard]] bool resampled() const { return pixel_from_map_.has_value(); }
+  [[nodiscard]] const ImageryRaster& raster() const { return *raster_; }
+
+ private:
+  MappedImagery(std::shared_ptr<const ImageryRaster> raster, const TileGrid& grid)
+      : raster_(std::move(raster)), grid_(grid) {}
+  [[nodiscard]] Eigen::Vector2d pixel_from_map(double x_map_m, double y_map_m) const;
+  [[nodiscard]] Result<Patch> read_warped(const TileId& id) const;
+  Status read_validity();
+
+  std::shared_ptr<const ImageryRaster> raster_;
+  TileGrid grid_;
+  int pad_x_ = 0;
+  int pad_y_ = 0;
+  /// File pixel coordinates (corners at integers) of a map point; empty for the aligned layer.
+  std::optional<SmoothMap<2>> pixel_from_map_;
+  Eigen::Vector2d texel_px_{1.0, 1.0};    ///< size of a texel of level 0 in file pixels
+  std::optional<ValidityGrid> validity_;  ///< empty where every texel is valid
+};
+
+}  // namespace overfly::terrain

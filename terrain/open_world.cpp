@@ -1,0 +1,160 @@
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "core/pose.hpp"
+#include "terrain/file_digest.hpp"
+#include "terrain/raster_world.hpp"
+#include "terrain/world.hpp"
+#include "terrain/world_layout.hpp"
+
+namespace overfly::terrain {
+namespace {
+
+using Rasters = std::vector<std::shared_ptr<const ImageryRaster>>;
+
+Result<Rasters> open_imagery(const WorldSpec& spec, std::vector<std::string>& warnings) {
+  if (spec.imagery.empty()) {
+    return Error{ErrorCode::kInvalidArgument, "imagery: is empty; a world needs at least one file"};
+  }
+  Rasters rasters;
+  for (const ImageryLayer& layer : spec.imagery) {
+    auto raster = ImageryRaster::open(layer.file, layer.crs, warnings);
+    if (!raster) return raster.error();
+    rasters.push_back(std::move(*raster));
+  }
+  return rasters;
+}
+
+Result<std::vector<MappedImagery>> map_imagery(const Rasters& rasters, const WorldLayout& layout) {
+  std::vector<MappedImagery> layers;
+  for (std::size_t i = 0; i < rasters.size(); ++i) {
+    auto layer = i == 0 && layout.first_aligned
+                     ? MappedImagery::aligned(rasters[i], layout.grid, layout.pad_x, layout.pad_y)
+                     : MappedImagery::warped(rasters[i], layout.plane, layout.grid);
+    if (!layer) return layer.error();
+    layers.push_back(std::move(*layer));
+  }
+  return layers;
+}
+
+/// Elevation as far around the imagery as memory allows, at most to about the horizon of a
+/// low flight.
+Result<ElevationModel> load_elevation(const WorldSpec& spec,
+                                      const WorldLayout& layout,
+                                      std::vector<std::string>& warnings) {
+  if (spec.elevation.empty()) {
+    if (!spec.ground_height_m) {
+      warnings.emplace_back(
+          "there is neither elevation nor a ground height: the ground is the ellipsoid (height 0). "
+          "Positions on the map are right, heights above the ellipsoid are not");
+    }
+    return ElevationModel::flat(spec.ground_height_m.value_or(0.0));
+  }
+  constexpr double kReachesM[] = {30e3, 10e3, 3e3, 300.0};
+  Error last;
+  for (const double reach_m : kReachesM) {
+    std::vector<std::string> doubts;
+    auto model = ElevationModel::load(
+        spec.elevation, layout.plane, layout.extent, layout.extent.grown(reach_m), doubts);
+    if (model) {
+      warnings.insert(warnings.end(), doubts.begin(), doubts.end());
+      return model;
+    }
+    last = model.error();
+    if (last.code != ErrorCode::kUnsupported) break;
+  }
+  return last;
+}
+
+std::string credit_line(const WorldSpec& spec) {
+  std::string line;
+  std::set<std::string> named;
+  const auto add = [&](const std::string& credit) {
+    if (credit.empty() || !named.insert(credit).second) return;
+    line += (line.empty() ? "" : "; ") + credit;
+  };
+  for (const ImageryLayer& layer : spec.imagery) add(layer.attribution);
+  for (const ElevationLayer& layer : spec.elevation) add(layer.attribution);
+  return line;
+}
+
+Status check_spec(const WorldSpec& spec, const WorldLayout& layout) {
+  if (spec.ground_height_m && !(std::abs(*spec.ground_height_m) <= 12000.0)) {
+    return Error{ErrorCode::kInvalidArgument,
+                 "ground_height_m = " + std::to_string(*spec.ground_height_m) +
+                     ": must be in [-12000, 12000]"};
+  }
+  if (!spec.origin) return {};
+  const Geodetic middle{layout.center_lat_rad, layout.center_lon_rad, 0.0};
+  const Geodetic origin{spec.origin->lat_rad, spec.origin->lon_rad, 0.0};
+  const double away_m = (ecef_from_geodetic(middle) - ecef_from_geodetic(origin)).norm();
+  constexpr double kFarthestM = 500e3;
+  if (!(away_m <= kFarthestM)) {
+    return Error{ErrorCode::kInvalidArgument,
+                 "origin: lies " + std::to_string(static_cast<long>(away_m / 1000.0)) +
+                     " km from the imagery, limit 500 km"};
+  }
+  return {};
+}
+
+Status add_digests(World& world) {
+  const auto add = [&](const std::filesystem::path& file) -> Status {
+    auto digest = file_digest(file);
+    if (!digest) return digest.error();
+    world.data_hashes.emplace_back(file.string(), *digest);
+    return {};
+  };
+  for (const ImageryLayer& layer : world.spec.imagery) {
+    const Status added = add(layer.file);
+    if (!added) return added;
+  }
+  for (const ElevationLayer& layer : world.spec.elevation) {
+    const Status added = add(layer.file);
+    if (!added) return added;
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<World> open_world(const WorldSpec& spec) {
+  World world;
+  world.spec = spec;
+  auto rasters = open_imagery(spec, world.warnings);
+  if (!rasters) return rasters.error();
+  auto layout = lay_out_world(*rasters, spec.origin);
+  if (!layout) return layout.error();
+  const Status sane = check_spec(spec, *layout);
+  if (!sane) return sane.error();
+  auto imagery = map_imagery(*rasters, *layout);
+  if (!imagery) return imagery.error();
+  auto elevation = load_elevation(spec, *layout, world.warnings);
+  if (!elevation) return elevation.error();
+
+  if (!world.spec.origin) {
+    const MapRect& all = layout->extent;
+    const double height_m =
+        elevation->height_m(0.5 * (all.x_min + all.x_max), 0.5 * (all.y_min + all.y_max));
+    world.spec.origin = Geodetic{layout->center_lat_rad, layout->center_lon_rad, height_m};
+  }
+  const LocalFrame frame(*world.spec.origin);
+  // As far as the polynomial holds: to the horizon where the projection allows.
+  Result<MapGeodesy> geodesy = Error{};
+  for (const double reach_m : {50e3, 10e3, 1e3}) {
+    geodesy = MapGeodesy::create(layout->plane, frame, layout->extent.grown(reach_m));
+    if (geodesy) break;
+  }
+  if (!geodesy) return geodesy.error().in(rasters->front()->file().string());
+  world.tiles = std::make_shared<RasterWorld>(layout->grid,
+                                              std::move(*imagery),
+                                              std::move(*elevation),
+                                              std::move(*geodesy),
+                                              frame,
+                                              credit_line(spec));
+  const Status hashed = add_digests(world);
+  if (!hashed) return hashed.error();
+  return world;
+}
+
+}  // namespace overfly::terrain

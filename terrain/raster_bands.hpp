@@ -1,0 +1,42 @@
+// Inside terrain only: which bands of a file make its colours, and how they become 8 bit.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "terrain/area_average.hpp"
+#include "terrain/gdal_dataset.hpp"
+
+namespace overfly::terrain {
+
+struct RasterBands {
+  std::array<int, 3> rgb{1, 1, 1};  ///< band numbers, equal for grey
+  bool palette = false;
+  std::vector<std::array<std::uint8_t, 4>> colours;  ///< of a palette; the fourth is alpha
+  bool has_mask = false;
+  /// 8-bit value = (value - low) * 255 / (high - low), for bands that are not 8 bit.
+  bool rescaled = false;
+  double low = 0.0;
+  double high = 255.0;
+};
+
+/// Finds them; what was assumed goes to `warnings`.
+/// Errors: kUnreadable naming the file for complex samples.
+[[nodiscard]] Result<RasterBands> find_bands(GDALDataset& dataset,
+                                             const std::string& file,
+                                             std::vector<std::string>& warnings);
+
+/// Reads a window that lies inside the dataset. Errors: kIo with GDAL's reason.
+[[nodiscard]] Result<Patch> read_bands(GDALDataset& dataset,
+                                       const RasterBands& bands,
+                                       const std::string& file,
+                                       int x,
+                                       int y,
+                                       int width,
+                                       int height);
+
+/// Errors: kUnreadable if a block of a (Geo)TIFF reaches beyond the end of the file.
+[[nodiscard]] Status check_blocks(GDALDataset& dataset, const std::filesystem::path& file);
+
+}  // namespace overfly::terrain

@@ -1,0 +1,22 @@
+// Inside terrain only: an image sampled at arbitrary places.
+#pragma once
+
+#include "terrain/imagery_raster.hpp"
+
+namespace overfly::terrain {
+
+/// Samples a raster where `pixels` says (file pixel coordinates, corners at integers; row-major,
+/// one column a texel, rows of the result next to each other in the file as they are in space).
+///
+/// Method: Catmull-Rom cubic convolution (Keys, 1981, 10.1109/TASSP.1981.1163711, a = -0.5) on the
+/// pyramid level whose texels are at most the result's, the kernel widened to the result's texel.
+/// @param size_px  size of a result's texel along the file's axes, file pixels; the same for all
+///                 tiles of a level, so that neighbours agree
+/// Errors: kIo.
+[[nodiscard]] Result<Patch> resample(const ImageryRaster& raster,
+                                     const Eigen::Matrix2Xd& pixels,
+                                     const Eigen::Vector2d& size_px,
+                                     int width,
+                                     int height);
+
+}  // namespace overfly::terrain

@@ -1,0 +1,37 @@
+// Inside terrain only: where a masked image has texels, in cells small enough for a look-up and
+// large enough to be kept in memory.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "terrain/imagery_raster.hpp"
+
+namespace overfly::terrain {
+
+class ValidityGrid {
+ public:
+  /// Reads the mask once. Errors: kIo.
+  static Result<ValidityGrid> read(const ImageryRaster& raster);
+
+  /// Whether most of the cell around a file texel is valid; false outside the file.
+  [[nodiscard]] bool valid_at(double px, double py) const;
+  /// Coverage of a rectangle of file texels, cells counted whole.
+  [[nodiscard]] TileCoverage coverage(double left, double top, double right, double bottom) const;
+
+ private:
+  enum class Cell : std::uint8_t { kNone, kSome, kMost, kAll };
+  [[nodiscard]] Cell cell(int column, int row) const {
+    return cells_[static_cast<std::size_t>(row) * columns_ + column];
+  }
+
+  int cell_px_ = 1;
+  int columns_ = 0;
+  int rows_ = 0;
+  int width_px_ = 0;
+  int height_px_ = 0;
+  std::vector<Cell> cells_;
+};
+
+}  // namespace overfly::terrain

@@ -1,0 +1,34 @@
+// Inside terrain only: the map plane and the tile grid that a set of imagery files asks for.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/geodesy.hpp"
+#include "terrain/imagery_raster.hpp"
+#include "terrain/map_plane.hpp"
+#include "terrain/smooth_map.hpp"
+
+namespace overfly::terrain {
+
+struct WorldLayout {
+  MapPlane plane;
+  TileGrid grid;
+  MapRect extent;              ///< of all imagery on the map
+  bool first_aligned = false;  ///< the first file's texels are the tiles' texels
+  int pad_x = 0;               ///< grid texels left of the first file's, where it is aligned
+  int pad_y = 0;
+  double center_lat_rad = 0.0;  ///< of the extent
+  double center_lon_rad = 0.0;
+};
+
+/// Lays out the map: the first file's own grid where it is projected, north-up and of square
+/// texels (to 1 %), scaled to metres; else a transverse Mercator at `origin` (or at the imagery's
+/// middle) with the first file's finest texel size.
+/// Errors: kInvalidArgument naming the file that has no place there.
+[[nodiscard]] Result<WorldLayout> lay_out_world(
+    const std::vector<std::shared_ptr<const ImageryRaster>>& rasters,
+    const std::optional<Geodetic>& origin);
+
+}  // namespace overfly::terrain
