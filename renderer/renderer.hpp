@@ -40,7 +40,7 @@ struct CameraFrame {
 struct Ribbon {
   std::array<float, 3> rgb{1.0F, 0.0F, 0.0F};  ///< in [0, 1]
   double wing_span_m = 8.0;
-  std::vector<Pose> T_world_body;              ///< in flight order
+  std::vector<Pose> T_world_body;  ///< in flight order
 };
 
 /// A view that is not the aircraft's camera.
@@ -72,10 +72,10 @@ struct SceneContent {
 };
 
 struct RendererInfo {
-  std::string backend;      ///< "egl" or "noop"
-  std::string device;       ///< GL_RENDERER
-  std::string gl_version;   ///< GL_VERSION
-  bool software = true;     ///< true when the CPU draws
+  std::string backend;     ///< "egl" or "noop"
+  std::string device;      ///< GL_RENDERER
+  std::string gl_version;  ///< GL_VERSION
+  bool software = true;    ///< true when the CPU draws
 };
 
 /// Views of one world. Not thread-safe: create, use and destroy on one thread.

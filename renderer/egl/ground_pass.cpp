@@ -1,0 +1,116 @@
+#include "renderer/egl/ground_pass.hpp"
+
+#include <vector>
+
+namespace overfly::renderer::egl {
+
+namespace {
+
+constexpr const char* kVertexSource = R"(#version 330 core
+uniform vec4 projection;
+uniform float near;
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec2 texel;
+out vec2 uv;
+void main() {
+  uv = texel;
+  gl_Position = vec4(projection.xy * position.xy + projection.zw * position.z, near, position.z);
+}
+)";
+
+constexpr const char* kColourSource = R"(#version 330 core
+uniform sampler2D tile;
+in vec2 uv;
+out vec4 colour;
+void main() { colour = texture(tile, uv); }
+)";
+
+constexpr const char* kDepthSource = R"(#version 330 core
+out float depth_m;
+void main() { depth_m = 1.0 / gl_FragCoord.w; }
+)";
+
+}  // namespace
+
+void set_projection(const GlProgram& program, const PinholeCamera& camera) {
+  glUniform4f(program.uniform("projection"),
+              static_cast<float>(2.0 * camera.fx_px / camera.width_px),
+              static_cast<float>(2.0 * camera.fy_px / camera.height_px),
+              static_cast<float>((2.0 * camera.cx_px + 1.0) / camera.width_px - 1.0),
+              static_cast<float>((2.0 * camera.cy_px + 1.0) / camera.height_px - 1.0));
+  glUniform1f(program.uniform("near"), kNearM);
+}
+
+Result<GroundPass> GroundPass::create() {
+  Result<GlProgram> colour = GlProgram::link(kVertexSource, kColourSource);
+  if (!colour.ok()) return colour.error();
+  Result<GlProgram> depth = GlProgram::link(kVertexSource, kDepthSource);
+  if (!depth.ok()) return depth.error();
+  return GroundPass(std::move(*colour), std::move(*depth));
+}
+
+GroundPass::GroundPass(GlProgram colour, GlProgram depth)
+    : colour_(std::move(colour)),
+      depth_(std::move(depth)),
+      vertex_array_(GlVertexArray::make()),
+      vertices_(GlBuffer::make()),
+      indices_(GlBuffer::make()) {
+  glBindVertexArray(vertex_array_.name());
+  glBindBuffer(GL_ARRAY_BUFFER, vertices_.name());
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_.name());
+  glEnableVertexAttribArray(0);
+  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(GroundVertex), nullptr);
+  glEnableVertexAttribArray(1);
+  glVertexAttribPointer(1,
+                        2,
+                        GL_FLOAT,
+                        GL_FALSE,
+                        sizeof(GroundVertex),
+                        reinterpret_cast<const void*>(offsetof(GroundVertex, u)));
+}
+
+void GroundPass::upload(const GroundMesh& mesh) {
+  glBindVertexArray(vertex_array_.name());
+  glBindBuffer(GL_ARRAY_BUFFER, vertices_.name());
+  glBufferData(GL_ARRAY_BUFFER,
+               static_cast<GLsizeiptr>(mesh.vertices.size() * sizeof(GroundVertex)),
+               mesh.vertices.data(),
+               GL_STREAM_DRAW);
+  glBufferData(GL_ELEMENT_ARRAY_BUFFER,
+               static_cast<GLsizeiptr>(mesh.indices.size() * sizeof(std::uint32_t)),
+               mesh.indices.data(),
+               GL_STREAM_DRAW);
+}
+
+Status GroundPass::draw(const GroundMesh& mesh,
+                        const PinholeCamera& camera,
+                        TileTextures& textures,
+                        PixelFormat format,
+                        Output output) {
+  const bool colour = output == Output::kColour;
+  std::vector<GLuint> names(mesh.batches.size(), 0);
+  for (std::size_t i = 0; colour && i < mesh.batches.size(); ++i) {
+    if (!mesh.batches[i].textured) {
+      names[i] = textures.void_texture(format);
+      continue;
+    }
+    const Result<GLuint> texture = textures.texture(mesh.batches[i].texture, format);
+    if (!texture.ok()) return texture.error();
+    names[i] = *texture;
+  }
+  const GlProgram& program = colour ? colour_ : depth_;
+  program.use();
+  set_projection(program, camera);
+  upload(mesh);
+  for (std::size_t i = 0; i < mesh.batches.size(); ++i) {
+    const GroundBatch& batch = mesh.batches[i];
+    if (colour) glBindTexture(GL_TEXTURE_2D, names[i]);
+    glDrawElements(GL_TRIANGLES,
+                   static_cast<GLsizei>(batch.index_count),
+                   GL_UNSIGNED_INT,
+                   reinterpret_cast<const void*>(batch.first_index * sizeof(std::uint32_t)));
+  }
+  return {};
+}
+
+}  // namespace overfly::renderer::egl

@@ -1,0 +1,47 @@
+// Draws a ground mesh.
+#pragma once
+
+#include <cstddef>
+
+#include "core/result.hpp"
+#include "renderer/egl/gl_objects.hpp"
+#include "renderer/egl/gl_program.hpp"
+#include "renderer/egl/tile_textures.hpp"
+#include "renderer/ground_mesh.hpp"
+
+namespace overfly::renderer::egl {
+
+/// Everything nearer than this is cut away [m].
+inline constexpr float kNearM = 0.05F;
+
+/// Sets the uniform `projection` (fx', fy', cx', cy') of a program: clip coordinates of a point
+/// (x, y, z) of the camera frame are (fx' x + cx' z, fy' y + cy' z, kNearM, z). Depth is then
+/// kNearM / z: 1 at the near plane, 0 at infinity, and floats keep it precise everywhere.
+/// The window's row 0 is the image's row 0, and the centre of pixel i is at window i + 0.5.
+void set_projection(const GlProgram& program, const PinholeCamera& camera);
+
+class GroundPass {
+ public:
+  enum class Output { kColour, kDepthM };
+
+  static Result<GroundPass> create();
+
+  /// Draws into the bound target, which is cleared except for colour.
+  /// @param format  of the textures; ignored for depth
+  /// Errors: kIo when a tile cannot be read.
+  Status draw(const GroundMesh& mesh,
+              const PinholeCamera& camera,
+              TileTextures& textures,
+              PixelFormat format,
+              Output output);
+
+ private:
+  GroundPass(GlProgram colour, GlProgram depth);
+  void upload(const GroundMesh& mesh);
+
+  GlProgram colour_, depth_;
+  GlVertexArray vertex_array_;
+  GlBuffer vertices_, indices_;
+};
+
+}  // namespace overfly::renderer::egl

@@ -1,0 +1,43 @@
+// An off-screen image to draw into and read back.
+#pragma once
+
+#include "core/image.hpp"
+#include "core/result.hpp"
+#include "renderer/egl/gl_objects.hpp"
+
+namespace overfly::renderer::egl {
+
+enum class TargetFormat { kGrey8, kRgba8, kDepthM };
+
+/// A colour buffer with a depth buffer. Image row 0 is the window's row 0: what is drawn must
+/// have y pointing down, and rows are read in image order.
+class RenderTarget {
+ public:
+  /// @param samples  0 or 1: no multisampling; more: resolved when read
+  /// Errors: kUnsupported if the driver refuses such a buffer.
+  static Result<RenderTarget> create(int width_px, int height_px, TargetFormat format, int samples);
+
+  /// Binds the target and sets the viewport.
+  void bind() const;
+  [[nodiscard]] bool fits(int width_px, int height_px) const {
+    return width_px == width_px_ && height_px == height_px_;
+  }
+
+  /// Reads what was drawn: grey from kGrey8, RGB from kRgba8.
+  void read(Image& image) const;
+  /// Reads a kDepthM target.
+  void read(DepthImage& depth) const;
+
+ private:
+  RenderTarget() = default;
+  void bind_for_reading() const;
+
+  int width_px_ = 0;
+  int height_px_ = 0;
+  TargetFormat format_ = TargetFormat::kGrey8;
+  bool multisampled_ = false;
+  GlFramebuffer framebuffer_, resolved_;
+  GlRenderbuffer colour_, depth_, resolved_colour_;
+};
+
+}  // namespace overfly::renderer::egl

@@ -1,0 +1,112 @@
+// A renderer without graphics: the same checks and records as the real one, and images that are
+// a pattern of their pose.
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "renderer/frame_statistics.hpp"
+#include "renderer/ground_mesh.hpp"
+#include "renderer/renderer.hpp"
+#include "renderer/request_check.hpp"
+
+namespace overfly::renderer {
+
+namespace {
+
+/// Stripes whose phase and direction follow the pose: equal poses give equal images, and a moving
+/// camera gives moving ones.
+Image pattern(int width_px, int height_px, int channels, const Pose& pose) {
+  const Eigen::Vector3d& p = pose.translation;
+  const Eigen::Quaterniond& q = pose.rotation;
+  const double phase = p.x() + 3.0 * p.y() + 7.0 * p.z() + 40.0 * q.x() + 90.0 * q.y();
+  const int offset = static_cast<int>(std::lround(std::fmod(8.0 * phase, 65536.0)));
+  const int slope = 1 + (static_cast<int>(std::lround(50.0 * std::abs(q.z()))) & 7);
+  Image image(width_px, height_px, channels);
+  for (int y = 0; y < height_px; ++y) {
+    for (int x = 0; x < width_px; ++x) {
+      const auto value = static_cast<std::uint8_t>(x + slope * y + offset);
+      for (int c = 0; c < channels; ++c) {
+        image.at(x, y, c) = static_cast<std::uint8_t>(value + 40 * c);
+      }
+    }
+  }
+  return image;
+}
+
+class NoopRenderer final : public Renderer {
+ public:
+  explicit NoopRenderer(std::shared_ptr<const terrain::TileSource> tiles)
+      : tiles_(std::move(tiles)), patches_(tiles_) {}
+
+  Result<CameraFrame> render_camera(const PinholeCamera& camera,
+                                    const Pose& T_world_camera,
+                                    std::int64_t t_ns,
+                                    PixelFormat format) override {
+    if (Status s = check_camera_request(*tiles_, camera, T_world_camera); !s) return s.error();
+    CameraFrame frame;
+    frame.t_ns = t_ns;
+    frame.T_world_camera = T_world_camera;
+    frame.camera = camera;
+    const int channels = format == PixelFormat::kGrey8 ? 1 : 3;
+    frame.image = pattern(camera.width_px, camera.height_px, channels, T_world_camera);
+    const FrameStatistics statistics = measure(View::from(camera, T_world_camera));
+    frame.texels_per_pixel_min = statistics.texels_per_pixel_min;
+    frame.texels_per_pixel_median = statistics.texels_per_pixel_median;
+    frame.void_fraction = statistics.void_fraction;
+    frame.axis_depth_m = statistics.axis_depth_m;
+    return frame;
+  }
+
+  /// Depth of the level plane through the ground below the camera.
+  Result<DepthImage> render_depth(const PinholeCamera& camera,
+                                  const Pose& T_world_camera) override {
+    if (Status s = check_camera_request(*tiles_, camera, T_world_camera); !s) return s.error();
+    const View view = View::from(camera, T_world_camera);
+    const Eigen::Vector3d& p = view.position_world;
+    const double height_m = p.z() - tiles_->ground_up_m(p.x(), p.y());
+    const Eigen::Vector3d down_camera = -view.R_camera_world.col(2);
+    DepthImage depth(camera.width_px, camera.height_px, 1);
+    for (int y = 0; y < camera.height_px; ++y) {
+      for (int x = 0; x < camera.width_px; ++x) {
+        const double descent = down_camera.dot(camera.ray({x, y}));
+        depth.at(x, y) = descent > 1e-6 && height_m > 0.0 ? static_cast<float>(height_m / descent)
+                                                          : std::numeric_limits<float>::infinity();
+      }
+    }
+    return depth;
+  }
+
+  Result<Image> render_scene(const SceneView& view, const SceneContent& /*content*/) override {
+    const Result<PinholeCamera> camera = camera_of(view);
+    if (!camera.ok()) return camera.error();
+    return pattern(view.width_px, view.height_px, 3, view.T_world_camera);
+  }
+
+  [[nodiscard]] RendererInfo info() const override { return {"noop", "none", "none", true}; }
+
+ private:
+  FrameStatistics measure(const View& view) {
+    const terrain::TileGrid& grid = tiles_->grid();
+    const GroundMesh mesh = build_ground_mesh(patches_, view, {});
+    return measure_frame(mesh, view, *tiles_, [&](const terrain::TileId& tile, double u, double v) {
+      constexpr double kTexels = terrain::kTileTexels + 2 * terrain::kTileBorder;
+      const double texel_m = grid.tile_m(tile.level) / terrain::kTileTexels;
+      const double x_m = grid.left_x_m + tile.col * grid.tile_m(tile.level) +
+                         (u * kTexels - terrain::kTileBorder) * texel_m;
+      const double y_m = grid.top_y_m - tile.row * grid.tile_m(tile.level) -
+                         (v * kTexels - terrain::kTileBorder) * texel_m;
+      return tiles_->has_imagery(x_m, y_m);
+    });
+  }
+
+  std::shared_ptr<const terrain::TileSource> tiles_;
+  GroundPatches patches_;
+};
+
+}  // namespace
+
+std::unique_ptr<Renderer> create_noop_renderer(std::shared_ptr<const terrain::TileSource> tiles) {
+  return std::make_unique<NoopRenderer>(std::move(tiles));
+}
+
+}  // namespace overfly::renderer

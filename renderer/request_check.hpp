@@ -1,0 +1,24 @@
+// Checks what callers ask of a renderer, the same in every implementation.
+#pragma once
+
+#include "core/camera.hpp"
+#include "core/pose.hpp"
+#include "core/result.hpp"
+#include "renderer/renderer.hpp"
+#include "terrain/tile_source.hpp"
+
+namespace overfly::renderer {
+
+inline constexpr int kMaxImageSidePx = 8192;
+inline constexpr double kMaxDepthBelowGroundM = 1.0;
+
+/// Errors: kInvalidArgument for a bad or too large camera, a pose that is not finite, or an
+/// optical centre more than kMaxDepthBelowGroundM below the ground.
+[[nodiscard]] Status check_camera_request(const terrain::TileSource& tiles,
+                                          const PinholeCamera& camera,
+                                          const Pose& T_world_camera);
+
+/// The pinhole camera of a scene view. Errors: kInvalidArgument naming the field.
+[[nodiscard]] Result<PinholeCamera> camera_of(const SceneView& view);
+
+}  // namespace overfly::renderer
