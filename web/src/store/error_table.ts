@@ -30,70 +30,81 @@ export function alignmentModes(metrics: Metrics | null): string[] {
   return modes.has(kDefaultAlignment) ? [kDefaultAlignment, ...rest] : rest;
 }
 
+interface Figure {
+  key: keyof AlignmentErrors;
+  label: string;
+  unit: string;
+  hint: string;
+  digits: number;
+}
+
+const kFigures: readonly Figure[] = [
+  { key: 'scale', label: 'Scale', unit: '', hint: 'Metres per unit of the estimate', digits: 4 },
+  {
+    key: 'position_rmse_m',
+    label: 'Position RMSE',
+    unit: 'm',
+    hint: 'Over tracked frames',
+    digits: 2,
+  },
+  {
+    key: 'position_rmse_hold_m',
+    label: 'Position RMSE, held',
+    unit: 'm',
+    hint: 'Last pose held to the end of the flight',
+    digits: 2,
+  },
+  {
+    key: 'rotation_rmse_deg',
+    label: 'Rotation RMSE',
+    unit: 'deg',
+    hint: 'Geodesic angle',
+    digits: 2,
+  },
+  {
+    key: 'rotation_euler_norm_rmse_deg',
+    label: 'Rotation, Euler norm',
+    unit: 'deg',
+    hint: 'Norm of the wrapped roll, pitch and yaw errors',
+    digits: 2,
+  },
+];
+
 export function errorTable(metrics: Metrics, mode: string): ErrorTable {
-  const entries = Object.entries(metrics.estimators ?? {});
-  const errors = entries.map(([, estimator]) => estimator.alignments?.[mode] ?? {});
-  const row = (key: string, label: string, unit: string, hint: string, cells: string[]) => ({
-    key,
-    label,
-    unit,
-    hint,
-    cells,
-  });
-  const figure = (key: keyof AlignmentErrors, digits: number) =>
-    errors.map((error) => formatNumber(error[key] as number | null | undefined, digits));
+  const names = Object.keys(metrics.estimators ?? {});
+  const estimators = Object.values(metrics.estimators ?? {});
+  const errors = estimators.map(({ alignments }) => alignments?.[mode] ?? {});
   return {
-    estimators: entries.map(([name, estimator]) => ({
-      name,
+    estimators: estimators.map((estimator, i) => ({
+      name: names[i] ?? '',
       outcome: outcomeText(estimator),
       good: estimator.outcome === 'COMPLETED',
     })),
     rows: [
-      row(
-        'coverage',
-        'Coverage',
-        '',
-        'Share of the frames that were tracked',
-        entries.map(([, estimator]) => formatPercent(estimator.coverage)),
-      ),
-      row('scale', 'Scale', '', 'Metres per unit of the estimate', figure('scale', 4)),
-      row(
-        'position_rmse_m',
-        'Position RMSE',
-        'm',
-        'Over tracked frames',
-        figure('position_rmse_m', 2),
-      ),
-      row(
-        'position_rmse_hold_m',
-        'Position RMSE, held',
-        'm',
-        'Last pose held to the end of the flight',
-        figure('position_rmse_hold_m', 2),
-      ),
-      row(
-        'rotation_rmse_deg',
-        'Rotation RMSE',
-        'deg',
-        'Geodesic angle',
-        figure('rotation_rmse_deg', 2),
-      ),
-      row(
-        'rotation_euler_norm_rmse_deg',
-        'Rotation, Euler norm',
-        'deg',
-        'Norm of the wrapped roll, pitch and yaw errors',
-        figure('rotation_euler_norm_rmse_deg', 2),
-      ),
-      row(
-        'dropped_frames',
-        'Dropped frames',
-        '',
-        'Frames that the estimator never saw',
-        entries.map(([, estimator]) => formatNumber(estimator.dropped_frames, 0)),
-      ),
+      {
+        key: 'coverage',
+        label: 'Coverage',
+        unit: '',
+        hint: 'Share of the frames that were tracked',
+        cells: estimators.map(({ coverage }) => formatPercent(coverage)),
+      },
+      ...kFigures.map(({ digits, ...row }) => ({
+        ...row,
+        cells: errors.map((error) => formatNumber(numberOf(error[row.key]), digits)),
+      })),
+      {
+        key: 'dropped_frames',
+        label: 'Dropped frames',
+        unit: '',
+        hint: 'Frames that the estimator never saw',
+        cells: estimators.map(({ dropped_frames }) => formatNumber(dropped_frames, 0)),
+      },
     ],
   };
+}
+
+function numberOf(value: number | string | null | undefined): number | null {
+  return typeof value === 'number' ? value : null;
 }
 
 /** Median texels per pixel when it is below the limit, else null. */

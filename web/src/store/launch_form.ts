@@ -145,10 +145,7 @@ export function overridesOf(document: JsonObject, texts: ReadonlyMap<string, str
       overrides[field.path] = estimatorList(text, estimatorsOf(valueAt(document, field.path)));
     } else if (field.kind === 'choice') {
       overrides[field.path] = text;
-    } else if (text === '') {
-      if (field.optional === true) overrides[field.path] = null;
-      else faults.push({ field: field.path, message: 'must be a number' });
-    } else if (Number.isFinite(Number(text))) {
+    } else if (text !== '' && Number.isFinite(Number(text))) {
       overrides[field.path] = Number(text);
     } else {
       faults.push({ field: field.path, message: 'must be a number' });

@@ -1,4 +1,5 @@
 // Errors of the estimates as the server scored them; the screen computes none.
+import type { ErrorRow, ErrorTable } from '../store/error_table';
 import { alignmentModes, errorTable } from '../store/error_table';
 import { kNothing } from '../store/format';
 import type { State, Topic } from '../store/state';
@@ -61,47 +62,15 @@ export class ErrorPanel implements View {
       state.alignment,
     );
     rebuild(this.table, JSON.stringify([table, names]), () => [
-      h(
-        'thead',
-        {},
-        h(
-          'tr',
-          {},
-          h('th', {}),
-          ...table.estimators.map(({ name }) =>
-            h('th', { scope: 'col', style: `color:${estimateColour(names.indexOf(name))}` }, name),
-          ),
-        ),
-      ),
+      h('thead', {}, headRow(table, names)),
       h(
         'tbody',
         {},
-        tableRow(
-          'state',
-          'State here',
-          '',
-          'At the playback cursor',
-          table.estimators.map(({ name }) => h('td', { 'data-state-of': name }, kNothing)),
-        ),
-        tableRow(
-          'outcome',
-          'Outcome',
-          '',
-          'Of the whole flight',
-          table.estimators.map(({ outcome, good }) =>
-            h(
-              'td',
-              { class: good ? 'good' : 'bad', title: outcome },
-              scored ? outcome : 'not scored yet',
-            ),
-          ),
-        ),
-        ...table.rows.map(({ key, label, unit, hint, cells }) =>
+        stateRow(table),
+        outcomeRow(table, scored),
+        ...table.rows.map(({ cells, ...row }) =>
           tableRow(
-            key,
-            label,
-            unit,
-            hint,
+            row,
             cells.map((cell) => h('td', {}, cell)),
           ),
         ),
@@ -120,16 +89,37 @@ export class ErrorPanel implements View {
   }
 }
 
-function tableRow(
-  key: string,
-  label: string,
-  unit: string,
-  hint: string,
-  cells: HTMLElement[],
-): HTMLElement {
-  const head = h('th', { scope: 'row', title: hint }, label);
-  if (unit !== '') head.append(h('span', { class: 'unit' }, unit));
-  return h('tr', { 'data-row': key }, head, ...cells);
+function headRow(table: ErrorTable, names: string[]): HTMLElement {
+  const heads = table.estimators.map(({ name }) =>
+    h('th', { scope: 'col', style: `color:${estimateColour(names.indexOf(name))}` }, name),
+  );
+  return h('tr', {}, h('th', {}), ...heads);
+}
+
+function stateRow(table: ErrorTable): HTMLElement {
+  const row = { key: 'state', label: 'State here', unit: '', hint: 'At the playback cursor' };
+  return tableRow(
+    row,
+    table.estimators.map(({ name }) => h('td', { 'data-state-of': name }, kNothing)),
+  );
+}
+
+function outcomeRow(table: ErrorTable, scored: boolean): HTMLElement {
+  const row = { key: 'outcome', label: 'Outcome', unit: '', hint: 'Of the whole flight' };
+  return tableRow(
+    row,
+    table.estimators.map(({ outcome, good }) =>
+      scored
+        ? h('td', { class: good ? 'good' : 'bad', title: outcome }, outcome)
+        : h('td', { class: 'pending' }, 'not scored yet'),
+    ),
+  );
+}
+
+function tableRow(row: Omit<ErrorRow, 'cells'>, cells: HTMLElement[]): HTMLElement {
+  const head = h('th', { scope: 'row', title: row.hint }, row.label);
+  if (row.unit !== '') head.append(h('span', { class: 'unit' }, row.unit));
+  return h('tr', { 'data-row': row.key }, head, ...cells);
 }
 
 function emptyText(state: State): string | null {

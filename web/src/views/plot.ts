@@ -6,6 +6,7 @@ import { kAxes } from '../store/run_data';
 import { estimateColour, kTruthColour } from './colours';
 import { h, perFrame, setText } from './dom';
 import { formatNumber } from '../store/format';
+import { paddedRange } from './plot_range';
 
 export interface PlotOptions {
   axis: Axis;
@@ -151,12 +152,4 @@ export class Plot {
       },
     };
   }
-}
-
-/** The data's range with 6 % of air, at least `least` wide, so that noise does not fill the plot. */
-export function paddedRange(low: number, high: number, least: number): [number, number] {
-  if (!Number.isFinite(low) || !Number.isFinite(high)) return [-least / 2, least / 2];
-  const middle = (low + high) / 2;
-  const half = Math.max((high - low) * 0.56, least / 2);
-  return [middle - half, middle + half];
 }

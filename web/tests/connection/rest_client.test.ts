@@ -1,0 +1,53 @@
+import { describe, expect, it } from 'vitest';
+import { RestClient } from '../../src/connection/rest_client';
+import { sampleRun } from '../support/samples';
+
+function answering(status: number, body: unknown) {
+  const calls: { url: string; init: RequestInit | undefined }[] = [];
+  const client = new RestClient('api/v1', (url, init) => {
+    calls.push({ url, init });
+    const text = status === 204 ? null : typeof body === 'string' ? body : JSON.stringify(body);
+    return Promise.resolve(new Response(text, { status }));
+  });
+  return { client, calls };
+}
+
+describe('RestClient', () => {
+  it('starts a run with its overrides and an idempotency key', async () => {
+    const { client, calls } = answering(201, sampleRun());
+    const run = await client.startRun('course', { duration_s: 20 }, 'key');
+    expect(run.id).toBe('r1');
+    expect(calls[0]?.url).toBe('api/v1/runs');
+    expect(calls[0]?.init?.method).toBe('POST');
+    expect(calls[0]?.init?.headers).toMatchObject({ 'Idempotency-Key': 'key' });
+    expect(JSON.parse(calls[0]?.init?.body as string)).toEqual({
+      scenario: 'course',
+      overrides: { duration_s: 20 },
+    });
+  });
+
+  it('accepts an answer without a body', async () => {
+    const { client, calls } = answering(204, '');
+    await client.deleteRun('a/b');
+    expect(calls[0]?.url).toBe('api/v1/runs/a%2Fb');
+  });
+
+  it("passes on the server's error", async () => {
+    const { client } = answering(409, { error: { code: 'conflict', message: 'it still runs' } });
+    await expect(client.deleteRun('r1')).rejects.toMatchObject({
+      status: 409,
+      code: 'conflict',
+      message: 'it still runs',
+    });
+  });
+
+  it('tells the status when the answer is no error document', async () => {
+    const { client } = answering(502, '<html>');
+    await expect(client.runs()).rejects.toMatchObject({ status: 502, code: 'http' });
+  });
+
+  it('tells when nobody answers', async () => {
+    const client = new RestClient('api/v1', () => Promise.reject(new TypeError('refused')));
+    await expect(client.runs()).rejects.toMatchObject({ status: 0, code: 'unreachable' });
+  });
+});

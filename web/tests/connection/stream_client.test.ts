@@ -1,0 +1,166 @@
+import { beforeEach, describe, expect, it } from 'vitest';
+import type { ConnectionState, StreamListener } from '../../src/connection/stream_client';
+import { StreamClient } from '../../src/connection/stream_client';
+import type { ClientMessage, Resume, ServerMessage } from '../../src/protocol/messages';
+import { encodePicture } from '../../src/protocol/parse';
+import { FakeSocket, FakeTimers } from '../support/fake_socket';
+import { samplePlayback, sampleRun } from '../support/samples';
+
+class Listener implements StreamListener {
+  states: ConnectionState[] = [];
+  messages: ServerMessage[] = [];
+  pictures: string[] = [];
+  faults: string[] = [];
+  failed: string[] = [];
+  rows: Resume = {};
+  commands: ClientMessage[] = [];
+  onState = (state: ConnectionState) => this.states.push(state);
+  onMessage = (message: ServerMessage) => this.messages.push(message);
+  onAttachFailed = (run: string, message: string) => this.failed.push(`${run}: ${message}`);
+  onPicture = (name: string) => this.pictures.push(name);
+  onFault = (text: string) => this.faults.push(text);
+  resume = () => this.rows;
+  restore = () => this.commands;
+}
+
+let sockets: FakeSocket[];
+let timers: FakeTimers;
+let listener: Listener;
+let client: StreamClient;
+
+function socket(): FakeSocket {
+  const newest = sockets.at(-1);
+  if (newest === undefined) throw new Error('no socket was opened');
+  return newest;
+}
+
+function picture(streamId: number): ArrayBuffer {
+  const header = { streamId, sequence: 0, frame: 0, t_ns: 0, width_px: 1, height_px: 1 };
+  return encodePicture({ ...header, grey: true, live: false }, Uint8Array.of(1));
+}
+
+beforeEach(() => {
+  sockets = [];
+  timers = new FakeTimers();
+  listener = new Listener();
+  client = new StreamClient({
+    open: () => {
+      const opened = new FakeSocket();
+      sockets.push(opened);
+      return opened;
+    },
+    timers,
+    random: () => 0,
+    listener,
+  });
+});
+
+function attached(run = 'r1'): void {
+  client.connect();
+  socket().hello();
+  client.attach(run);
+  socket().receive({ type: 'ok', request: socket().last().request });
+  socket().receive({ type: 'run', run: sampleRun({ id: run }) });
+}
+
+describe('StreamClient', () => {
+  it('says nothing before the server has greeted, then all that is wanted', () => {
+    client.connect();
+    client.attach('r1');
+    client.subscribe([{ name: 'camera' }]);
+    client.setView({ mode: 'top' });
+    expect(socket().sent).toEqual([]);
+    socket().hello();
+    expect(socket().types()).toEqual(['view', 'attach', 'subscribe']);
+    expect(listener.states.at(-1)).toEqual({ status: 'open', server: 'overfly 0.1.0' });
+  });
+
+  it('refuses a server of another protocol and does not come back', () => {
+    client.connect();
+    socket().hello(2);
+    expect(listener.states.at(-1)?.status).toBe('incompatible');
+    expect(socket().closed).toBe(true);
+    expect(timers.waiting.size).toBe(0);
+  });
+
+  it('waits longer from attempt to attempt, and anew after a success', () => {
+    client.connect();
+    const delays: number[] = [];
+    for (let i = 0; i < 6; i += 1) {
+      socket().lose();
+      delays.push(...timers.delays());
+      timers.fire();
+    }
+    expect(delays).toEqual([500, 1000, 2000, 4000, 8000, 8000]);
+    socket().hello();
+    socket().lose();
+    expect(timers.delays()).toEqual([500]);
+  });
+
+  it('tries at once when asked to', () => {
+    client.connect();
+    socket().lose();
+    client.connect();
+    expect(sockets.length).toBe(2);
+    expect(timers.waiting.size).toBe(0);
+  });
+
+  it('comes back to the same run with the rows at hand and restores the cursor', () => {
+    attached();
+    listener.rows = { truth: 10 };
+    listener.commands = [{ type: 'seek', t_ns: 5 }];
+    socket().lose();
+    timers.fire();
+    socket().hello();
+    expect(socket().types()).toEqual(['attach', 'seek']);
+    expect(socket().sent[0]).toMatchObject({ run: 'r1', resume: { truth: 10 } });
+  });
+
+  it('resumes without waiting when the server found it too slow', () => {
+    attached();
+    socket().lose(4000);
+    expect(timers.delays()).toEqual([0]);
+  });
+
+  it('keeps out what still comes of the run left behind', () => {
+    attached('old');
+    listener.messages = [];
+    client.attach('new');
+    const request = socket().last().request;
+    socket().receive({ type: 'playback', ...samplePlayback({ frame: 7 }) });
+    socket().receive({ type: 'run', run: sampleRun({ id: 'old' }) });
+    expect(listener.messages).toEqual([]);
+    socket().receive({ type: 'ok', request });
+    socket().receive({ type: 'playback', ...samplePlayback({ frame: 8 }) });
+    expect(listener.messages).toMatchObject([{ type: 'playback', frame: 8 }]);
+  });
+
+  it('tells when a run cannot be attached and does not try it again', () => {
+    client.connect();
+    socket().hello();
+    client.attach('gone');
+    const { request } = socket().last();
+    socket().receive({ type: 'error', request, code: 'not_found', message: 'no such run' });
+    expect(listener.failed).toEqual(['gone: no such run']);
+    socket().lose();
+    timers.fire();
+    socket().hello();
+    expect(socket().types()).toEqual([]);
+  });
+
+  it('names pictures by the streams announced and ignores others', () => {
+    attached();
+    socket().receive({ type: 'streams', streams: [{ id: 4, name: 'camera' }] });
+    socket().receive(picture(4));
+    socket().receive(picture(5));
+    expect(listener.pictures).toEqual(['camera']);
+  });
+
+  it('survives what it cannot read and tells it', () => {
+    attached();
+    socket().receive(new ArrayBuffer(3));
+    socket().onmessage?.({ data: '{' } as MessageEvent);
+    expect(listener.faults.length).toBe(2);
+    expect(socket().closed).toBe(false);
+  });
+});

@@ -1,0 +1,130 @@
+import { describe, expect, it } from 'vitest';
+import { RestClient } from '../../src/connection/rest_client';
+import { StreamClient } from '../../src/connection/stream_client';
+import { Catalogue } from '../../src/store/catalogue';
+import { Notices } from '../../src/store/notices';
+import { Session } from '../../src/store/session';
+import { Store } from '../../src/store/state';
+import { FakeSocket, FakeTimers } from '../support/fake_socket';
+import { sampleRun } from '../support/samples';
+
+const document = { seed: 1, pacing: 'lockstep', estimators: [] };
+const kScenario = { name: 'course', title: 'Course', description: '', error: null };
+
+/** A catalogue whose server answers by method and path. */
+function catalogue(answers: Record<string, () => [number, unknown]>) {
+  const store = new Store();
+  const timers = new FakeTimers();
+  const later = (callback: () => void, delay_ms: number) => void timers.set(callback, delay_ms);
+  const notices = new Notices(store, later);
+  const session = new Session(store, notices, () => Promise.reject(new Error('no pictures here')));
+  const socket = new FakeSocket();
+  const client = new StreamClient({
+    open: () => socket,
+    timers,
+    random: () => 0,
+    listener: session,
+  });
+  session.use(client);
+  client.connect();
+  socket.hello();
+  const rest = new RestClient('', (url, init) => {
+    const answer = answers[`${init?.method ?? 'GET'} ${url}`];
+    if (answer === undefined) return Promise.reject(new TypeError('refused'));
+    const [status, body] = answer();
+    return Promise.resolve(new Response(status === 204 ? null : JSON.stringify(body), { status }));
+  });
+  const subject = new Catalogue(store, rest, session, notices, later, () => 'key');
+  return { store, socket, subject };
+}
+
+const reading = {
+  'GET /scenarios': (): [number, unknown] => [200, { scenarios: [kScenario] }],
+  'GET /scenarios/course': (): [number, unknown] => [200, document],
+};
+
+describe('Catalogue', () => {
+  it('opens the first scenario that can be flown', async () => {
+    const broken = { ...kScenario, name: 'a', error: 'no data' };
+    const { store, subject } = catalogue({
+      ...reading,
+      'GET /scenarios': () => [200, { scenarios: [broken, kScenario] }],
+    });
+    await subject.readScenarios();
+    expect(store.state.scenarioName).toBe('course');
+    expect(store.state.scenarioDocument).toEqual(document);
+  });
+
+  it('says why a scenario cannot be flown', async () => {
+    const broken = { ...kScenario, error: 'no data' };
+    const { store, subject } = catalogue({
+      ...reading,
+      'GET /scenarios': () => [200, { scenarios: [broken] }],
+    });
+    await subject.readScenarios();
+    await subject.selectScenario('course');
+    expect(store.state.launchFaults).toEqual([{ field: '', message: 'no data' }]);
+  });
+
+  it('launches a run, lists it and watches it', async () => {
+    const { store, socket, subject } = catalogue({
+      ...reading,
+      'POST /runs': () => [201, sampleRun({ id: 'new', status: 'running' })],
+    });
+    await subject.readScenarios();
+    await subject.launch(
+      new Map([
+        ['seed', '2'],
+        ['pacing', 'lockstep'],
+      ]),
+    );
+    expect(store.state.runs?.map(({ id }) => id)).toEqual(['new']);
+    expect(socket.sent.find(({ type }) => type === 'attach')).toMatchObject({ run: 'new' });
+    expect(store.state.launching).toBe(false);
+  });
+
+  it("brings the server's faults to the form", async () => {
+    const message = 'seed = -1: must be at least 0';
+    const { store, subject } = catalogue({
+      ...reading,
+      'POST /runs': () => [400, { error: { code: 'invalid_argument', message } }],
+    });
+    await subject.readScenarios();
+    await subject.launch(
+      new Map([
+        ['seed', '-1'],
+        ['pacing', 'lockstep'],
+      ]),
+    );
+    expect(store.state.launchFaults).toEqual([{ field: 'seed', message: 'must be at least 0' }]);
+    expect(store.state.runId).toBeNull();
+  });
+
+  it('tells when a run cannot be deleted', async () => {
+    const { store, subject } = catalogue({
+      'DELETE /runs/r1': () => [409, { error: { code: 'conflict', message: 'it still runs' } }],
+      'GET /runs': () => [200, { runs: [sampleRun()] }],
+    });
+    await subject.remove('r1');
+    expect(store.state.notices.map(({ text }) => text)).toEqual(['it still runs']);
+  });
+
+  it('leaves a run that it deletes', async () => {
+    const { store, subject } = catalogue({
+      'DELETE /runs/r1': () => [204, null],
+      'GET /runs': () => [200, { runs: [] }],
+    });
+    store.state.runId = 'r1';
+    await subject.remove('r1');
+    expect(store.state.runId).toBeNull();
+    expect(store.state.runs).toEqual([]);
+  });
+
+  it('keeps the list and tells when the server is gone', async () => {
+    const { store, subject } = catalogue({});
+    store.state.runs = [sampleRun()];
+    await subject.readRuns();
+    expect(store.state.runs).toHaveLength(1);
+    expect(store.state.listError).toBe('the server does not answer');
+  });
+});

@@ -1,0 +1,60 @@
+import { describe, expect, it } from 'vitest';
+import type { Metrics } from '../../src/protocol/rest_types';
+import { alignmentModes, errorTable, textureLimited } from '../../src/store/error_table';
+
+const metrics: Metrics = {
+  estimators: {
+    feature: {
+      outcome: 'LOST',
+      outcome_time_s: 12.34,
+      coverage: 0.5,
+      dropped_frames: 3,
+      alignments: {
+        sim3: { scale: 2, position_rmse_m: 1 },
+        init_scale: {
+          scale: 41.20314,
+          position_rmse_m: 3.456,
+          position_rmse_hold_m: 500,
+          rotation_rmse_deg: 0.5,
+          rotation_euler_norm_rmse_deg: null,
+        },
+      },
+    },
+    none: { outcome: 'NOT_INITIALISED', outcome_time_s: null, coverage: 0, alignments: {} },
+  },
+  camera: { frames: 10, texels_per_pixel: { min: 0.2, median: 0.49 } },
+};
+
+describe('errorTable', () => {
+  it('shows the figures of the chosen alignment beside outcome and coverage', () => {
+    const table = errorTable(metrics, 'init_scale');
+    expect(table.estimators).toEqual([
+      { name: 'feature', outcome: 'LOST at 12.3 s', good: false },
+      { name: 'none', outcome: 'NOT_INITIALISED', good: false },
+    ]);
+    const cells = Object.fromEntries(table.rows.map(({ key, cells: row }) => [key, row]));
+    expect(cells).toEqual({
+      coverage: ['50.0 %', '0.0 %'],
+      scale: ['41.2031', '–'],
+      position_rmse_m: ['3.46', '–'],
+      position_rmse_hold_m: ['500.00', '–'],
+      rotation_rmse_deg: ['0.50', '–'],
+      rotation_euler_norm_rmse_deg: ['–', '–'],
+      dropped_frames: ['3', '–'],
+    });
+  });
+
+  it("offers the alignments in the metrics, the paper's first", () => {
+    expect(alignmentModes(metrics)).toEqual(['init_scale', 'sim3']);
+    expect(alignmentModes(null)).toEqual([]);
+  });
+});
+
+describe('textureLimited', () => {
+  it('speaks up below half a texel a pixel only', () => {
+    expect(textureLimited(metrics)).toBe(0.49);
+    expect(textureLimited({ camera: { texels_per_pixel: { median: 0.5 } } })).toBeNull();
+    expect(textureLimited({})).toBeNull();
+    expect(textureLimited(null)).toBeNull();
+  });
+});

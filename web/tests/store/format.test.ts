@@ -1,0 +1,36 @@
+import { describe, expect, it } from 'vitest';
+import { formatNumber, formatPercent, formatTime, wrapDegrees } from '../../src/store/format';
+
+describe('formatting', () => {
+  it('writes numbers with fixed digits, and a dash for none', () => {
+    expect(formatNumber(3.14159, 2)).toBe('3.14');
+    expect(formatNumber(-1, 1)).toBe('−1.0');
+    expect(formatNumber(-0.001, 1)).toBe('0.0');
+    expect(formatNumber(null, 1)).toBe('–');
+    expect(formatNumber(NaN, 1)).toBe('–');
+  });
+
+  it('writes shares as percent', () => {
+    expect(formatPercent(0.9876)).toBe('98.8 %');
+    expect(formatPercent(undefined)).toBe('–');
+  });
+
+  it.each([
+    [0, '00:00.000'],
+    [61_234_500_000, '01:01.235'],
+    [59_999_600_000, '01:00.000'],
+    [-5, '00:00.000'],
+  ])('writes %d ns as %s', (t_ns, text) => {
+    expect(formatTime(t_ns)).toBe(text);
+  });
+
+  it.each([
+    [180, 180],
+    [-180, 180],
+    [181, -179],
+    [720, 0],
+    [-539, -179],
+  ])('wraps %d to %d', (angle, wrapped) => {
+    expect(wrapDegrees(angle)).toBe(wrapped);
+  });
+});

@@ -1,0 +1,78 @@
+import { describe, expect, it } from 'vitest';
+import type { JsonObject } from '../../src/protocol/rest_types';
+import { fieldOfFault, fieldsOf, fieldText, overridesOf } from '../../src/store/launch_form';
+
+const course: JsonObject = {
+  seed: 1,
+  world: { builtin: { seed: 3 } },
+  flight: {
+    course: { airspeed_m_s: 25, roll_rate_max_deg_s: 45, height_agl_m: 300, bank_max_deg: 45 },
+  },
+  estimators: [{ name: 'orb', type: 'feature', parameters: { features: 900 } }],
+  pacing: 'lockstep',
+};
+
+function texts(document: JsonObject, changes: Record<string, string> = {}): Map<string, string> {
+  const map = new Map(fieldsOf(document).map((field) => [field.path, fieldText(document, field)]));
+  for (const [path, text] of Object.entries(changes)) map.set(path, text);
+  return map;
+}
+
+describe('the launcher', () => {
+  it('overrides nothing when nothing was changed', () => {
+    expect(overridesOf(course, texts(course))).toEqual({ overrides: {}, faults: [] });
+  });
+
+  it('overrides what was changed, as numbers', () => {
+    const { overrides } = overridesOf(
+      course,
+      texts(course, {
+        'flight.course.airspeed_m_s': '10',
+        duration_s: '20.5',
+        pacing: 'real_time',
+      }),
+    );
+    expect(overrides).toEqual({
+      'flight.course.airspeed_m_s': 10,
+      duration_s: 20.5,
+      pacing: 'real_time',
+    });
+  });
+
+  it('turns estimators off, and keeps the parameters of those that stay', () => {
+    expect(overridesOf(course, texts(course, { estimators: '' })).overrides).toEqual({
+      estimators: [],
+    });
+    expect(
+      overridesOf(course, texts(course, { estimators: 'feature,drifting' })).overrides,
+    ).toEqual({
+      estimators: [
+        { name: 'orb', type: 'feature', parameters: { features: 900 } },
+        { name: 'drifting', type: 'drifting' },
+      ],
+    });
+  });
+
+  it('finds fault with what is no number', () => {
+    const { faults } = overridesOf(course, texts(course, { seed: '', 'world.builtin.seed': 'x' }));
+    expect(faults.map(({ field }) => field)).toEqual(['seed', 'world.builtin.seed']);
+  });
+
+  it('shows only the fields that the scenario has', () => {
+    const logged: JsonObject = { seed: 1, flight: { logged: { file: 'a.tum' } }, world: {} };
+    expect(fieldsOf(logged).map(({ path }) => path)).toEqual([
+      'seed',
+      'duration_s',
+      'pacing',
+      'estimators',
+    ]);
+  });
+
+  it('finds the field of a fault, also of one inside it', () => {
+    const fields = fieldsOf(course);
+    const field = (path: string) => fieldOfFault(fields, { field: path, message: '' })?.path;
+    expect(field('seed')).toBe('seed');
+    expect(field('estimators.0.type')).toBe('estimators');
+    expect(field('camera.fov_deg')).toBeUndefined();
+  });
+});

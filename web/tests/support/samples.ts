@@ -1,0 +1,37 @@
+// Values as the server sends them.
+import type { Playback } from '../../src/protocol/messages';
+import type { Run } from '../../src/protocol/rest_types';
+
+export function sampleRun(change: Partial<Run> = {}): Run {
+  return {
+    id: 'r1',
+    scenario: 'course',
+    title: 'The course',
+    status: 'completed',
+    created_utc: '2026-01-02T03:04:05Z',
+    error: null,
+    duration_ns: 2e9,
+    frames: 63,
+    frames_total: 63,
+    pacing: 'lockstep',
+    estimators: ['feature'],
+    attribution: '',
+    ...change,
+  };
+}
+
+export function samplePlayback(change: Partial<Playback> = {}): Playback {
+  return {
+    t_ns: 0,
+    frame: 0,
+    playing: false,
+    live: false,
+    speed: 1,
+    loop: false,
+    begin_ns: 0,
+    end_ns: 2e9,
+    truth: null,
+    estimates: {},
+    ...change,
+  };
+}
