@@ -18,23 +18,23 @@ enum class SceneMode { kChase, kOrbit, kTop };
 /// How a viewer looks at the scene. Angles are the viewpoint's as seen from the target.
 struct SceneSettings {
   SceneMode mode = SceneMode::kChase;
-  double azimuth_rad = 0.0;      ///< chase: relative to the tail; orbit: clockwise from north
-  double elevation_rad = 0.4;    ///< above the horizon, in [-0.2, pi/2]
-  double distance_m = 120.0;     ///< in [5, 20000]
-  bool follow = true;            ///< orbit and top: target = aircraft, else the trajectory's centre
-  int width_px = 960;            ///< in [64, 1920]
-  int height_px = 720;           ///< in [64, 1440]
+  double azimuth_rad = 0.0;    ///< chase: relative to the tail; orbit: clockwise from north
+  double elevation_rad = 0.4;  ///< above the horizon, in [-0.2, pi/2]
+  double distance_m = 120.0;   ///< in [5, 20000]
+  bool follow = true;          ///< orbit and top: target = aircraft, else the trajectory's centre
+  int width_px = 960;          ///< in [64, 1920]
+  int height_px = 720;         ///< in [64, 1440]
 };
 
 struct PictureRequest {
   std::string run_id;
   enum class Kind { kCamera, kDebug, kScene } kind = Kind::kCamera;
-  std::size_t estimator = 0;     ///< kDebug
-  std::int64_t t_ns = 0;         ///< the frame at or before it
-  bool live = false;             ///< the newest picture of a running run, if it has one
-  SceneSettings scene;           ///< kScene
-  int quality = 75;              ///< JPEG, in [1, 100]
-  int max_width_px = 1280;       ///< camera and debug images are halved until they fit
+  std::size_t estimator = 0;  ///< kDebug
+  std::int64_t t_ns = 0;      ///< the frame at or before it
+  bool live = false;          ///< the newest picture of a running run, if it has one
+  SceneSettings scene;        ///< kScene
+  int quality = 75;           ///< JPEG, in [1, 100]
+  int max_width_px = 1280;    ///< camera and debug images are halved until they fit
 };
 
 struct Picture {

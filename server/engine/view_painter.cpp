@@ -1,0 +1,148 @@
+#include "server/engine/view_painter.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "server/engine/run_folder.hpp"
+#include "server/engine/view_scene.hpp"
+
+namespace overfly::engine {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMaxRibbons = 4;
+
+std::optional<FrameRow> row_of(const RunTimeline& timeline, const PictureRequest& request) {
+  if (!request.live) return timeline.frame_at(request.t_ns);
+  const std::size_t count = timeline.frame_count();
+  if (count == 0) return std::nullopt;
+  return timeline.frames(count - 1, 1).front();
+}
+
+/// Number of the last picture NNNNNN.jpg in a folder at or before `frame`.
+std::optional<std::int64_t> last_recorded(const fs::path& folder, std::int64_t frame) {
+  std::optional<std::int64_t> last;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    const std::string name = entry->path().stem().string();
+    std::int64_t number = 0;
+    const char* name_end = name.data() + name.size();
+    const auto [rest, failure] = std::from_chars(name.data(), name_end, number);
+    if (failure != std::errc() || rest != name_end || number > frame) continue;
+    if (!last || number > *last) last = number;
+  }
+  return last;
+}
+
+/// Stamp of a frame at or before `row`.
+std::int64_t stamp_before(const RunTimeline& timeline, const FrameRow& row, std::int64_t frame) {
+  if (frame == row.frame) return row.t_ns;
+  const auto rows = timeline.frames(static_cast<std::size_t>(frame), 1);
+  return !rows.empty() && rows.front().frame == frame ? rows.front().t_ns : row.t_ns;
+}
+
+}  // namespace
+
+Result<Picture> ViewPainter::paint(const PictureRequest& request) {
+  auto timeline = runs_.timeline(request.run_id);
+  if (!timeline) return timeline.error();
+  const auto row = row_of(**timeline, request);
+  if (!row) return Error{ErrorCode::kNotFound, "run " + request.run_id + " has no frame yet"};
+  switch (request.kind) {
+    case PictureRequest::Kind::kCamera:
+      return paint_camera(request, **timeline, *row);
+    case PictureRequest::Kind::kDebug:
+      return paint_debug(request, **timeline, *row);
+    case PictureRequest::Kind::kScene:
+      return paint_scene(request, *timeline, *row);
+  }
+  return Error{ErrorCode::kInvalidArgument, "no such kind of picture"};
+}
+
+Result<Picture> ViewPainter::paint_camera(const PictureRequest& request,
+                                          const RunTimeline& timeline,
+                                          const FrameRow& row) {
+  const auto live = timeline.live_camera();
+  if (live && live->image && (request.live || live->frame == row.frame)) {
+    return encoder_.encode(*live, request.quality, request.max_width_px);
+  }
+  const auto folder = runs_.folder(request.run_id);
+  if (!folder) return folder.error();
+  const fs::path recorded = frame_image_file(*folder, row.frame);
+  std::error_code error;
+  if (fs::is_regular_file(recorded, error)) {
+    return encoder_.encode_file(
+        recorded, row.frame, row.t_ns, request.quality, request.max_width_px);
+  }
+  auto view = renderers_.of_run(request.run_id);
+  if (!view) return view.error();
+  auto frame = (*view)->renderer->render_camera(
+      timeline.camera(), row.T_world_camera, row.t_ns, renderer::PixelFormat::kGrey8);
+  if (!frame) return frame.error();
+  const auto image = std::make_shared<const Image>(std::move(frame->image));
+  return encoder_.encode({row.frame, row.t_ns, image}, request.quality, request.max_width_px);
+}
+
+Result<Picture> ViewPainter::paint_debug(const PictureRequest& request,
+                                         const RunTimeline& timeline,
+                                         const FrameRow& row) {
+  if (request.estimator >= timeline.estimators().size()) {
+    return Error{ErrorCode::kInvalidArgument,
+                 "estimator = " + std::to_string(request.estimator) + ": must be below " +
+                     std::to_string(timeline.estimators().size())};
+  }
+  const auto live = timeline.live_debug(request.estimator);
+  if (live && live->image && (request.live || live->frame == row.frame)) {
+    return encoder_.encode(*live, request.quality, request.max_width_px);
+  }
+  const auto folder = runs_.folder(request.run_id);
+  if (!folder) return folder.error();
+  const std::string& name = timeline.estimators()[request.estimator];
+  const auto frame = last_recorded(debug_image_file(*folder, name, 0).parent_path(), row.frame);
+  if (!frame) {
+    return Error{ErrorCode::kNotFound,
+                 "estimator " + name + " has no picture up to frame " + std::to_string(row.frame)};
+  }
+  return encoder_.encode_file(debug_image_file(*folder, name, *frame),
+                              *frame,
+                              stamp_before(timeline, row, *frame),
+                              request.quality,
+                              request.max_width_px);
+}
+
+Result<Picture> ViewPainter::paint_scene(const PictureRequest& request,
+                                         const std::shared_ptr<RunTimeline>& timeline,
+                                         const FrameRow& row) {
+  auto view = renderers_.of_run(request.run_id);
+  if (!view) return view.error();
+  ViewRibbons& ribbons = ribbons_of(timeline);
+  ribbons.refresh();
+  const auto scene = scene_view(request.scene, row.T_world_body, ribbons.centre(), *(*view)->tiles);
+  const auto content = scene_content(*timeline, ribbons, row, request.live);
+  auto image = (*view)->renderer->render_scene(scene, content);
+  if (!image) return image.error();
+  const auto shared = std::make_shared<const Image>(std::move(*image));
+  return encoder_.encode({row.frame, row.t_ns, shared}, request.quality, shared->width_px);
+}
+
+ViewRibbons& ViewPainter::ribbons_of(const std::shared_ptr<RunTimeline>& timeline) {
+  const auto known =
+      std::find_if(ribbons_.begin(), ribbons_.end(), [&](const ViewRibbons& ribbons) {
+        return ribbons.timeline() == timeline;
+      });
+  if (known != ribbons_.end()) {
+    ribbons_.splice(ribbons_.begin(), ribbons_, known);
+  } else {
+    ribbons_.emplace_front(timeline);
+    if (ribbons_.size() > kMaxRibbons) ribbons_.pop_back();
+  }
+  return ribbons_.front();
+}
+
+}  // namespace overfly::engine

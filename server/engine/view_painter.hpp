@@ -1,0 +1,40 @@
+// Makes the picture that a viewer asked for: taken live, read from the run folder, or drawn again.
+#pragma once
+
+#include <list>
+#include <memory>
+
+#include "server/engine/view_encoding.hpp"
+#include "server/engine/view_renderers.hpp"
+#include "server/engine/view_ribbons.hpp"
+#include "server/engine/view_service.hpp"
+
+namespace overfly::engine {
+
+/// Used and destroyed on one thread.
+class ViewPainter {
+ public:
+  explicit ViewPainter(RunManager& runs) : runs_(runs), renderers_(runs) {}
+
+  /// Errors: kNotFound when there is nothing to see at that instant; as world and renderer say.
+  [[nodiscard]] Result<Picture> paint(const PictureRequest& request);
+
+ private:
+  [[nodiscard]] Result<Picture> paint_camera(const PictureRequest& request,
+                                             const RunTimeline& timeline,
+                                             const FrameRow& row);
+  [[nodiscard]] Result<Picture> paint_debug(const PictureRequest& request,
+                                            const RunTimeline& timeline,
+                                            const FrameRow& row);
+  [[nodiscard]] Result<Picture> paint_scene(const PictureRequest& request,
+                                            const std::shared_ptr<RunTimeline>& timeline,
+                                            const FrameRow& row);
+  ViewRibbons& ribbons_of(const std::shared_ptr<RunTimeline>& timeline);
+
+  RunManager& runs_;
+  ViewRenderers renderers_;
+  PictureEncoder encoder_;
+  std::list<ViewRibbons> ribbons_;  ///< of the runs watched last
+};
+
+}  // namespace overfly::engine
