@@ -10,6 +10,7 @@
 #include "core/estimate.hpp"
 #include "core/result.hpp"
 #include "core/trajectory.hpp"
+#include "core/trajectory_io.hpp"
 
 namespace overfly::evaluation {
 
@@ -26,6 +27,9 @@ enum class AlignmentMode { kNone, kOrigin, kInitScale, kSe3, kSim3, kYawOnly, kO
 [[nodiscard]] std::optional<AlignmentMode> alignment_mode_from(const std::string& text);
 [[nodiscard]] const std::vector<AlignmentMode>& all_alignment_modes();
 
+/// How the run of an estimator went. DIVERGED comes before RESET, and RESET before LOST, where
+/// several hold. CRASHED and TIMEOUT are not seen in a track: who runs the estimator puts them
+/// into Score::outcome.
 enum class Outcome {
   kCompleted,
   kNotInitialised,
@@ -63,11 +67,15 @@ struct ErrorStatistics {
   double max = 0.0;
 };
 
+/// Errors of the pieces of one length (Geiger, Lenz, Urtasun 2012, the KITTI odometry benchmark):
+/// from every tenth pose to the first that is farther along the truth's path.
 struct RelativeError {
   double length_m = 0.0;
   int pairs = 0;
-  double translation_percent = 0.0;      ///< RMS of position error / length
-  double rotation_deg_per_100m = 0.0;    ///< RMS
+  double translation_percent = 0.0;         ///< RMS of position error / length
+  double rotation_deg_per_100m = 0.0;       ///< RMS
+  double translation_mean_percent = 0.0;    ///< the mean, as KITTI prints it
+  double rotation_mean_deg_per_100m = 0.0;  ///< the mean, as KITTI prints it
 };
 
 struct AlignmentScore {
@@ -75,19 +83,20 @@ struct AlignmentScore {
   Similarity S_world_vo;
   int matched = 0;
   ErrorStatistics position_m;
-  ErrorStatistics rotation_deg;           ///< geodesic angle
+  ErrorStatistics rotation_deg;  ///< geodesic angle
   ErrorStatistics rotation_euler_norm_deg;
-  /// With the last pose held to the end of the flight.
+  /// Over all frames from the first tracked to the end of the flight, those without a pose taken at
+  /// the last one before.
   double position_rmse_hold_m = 0.0;
   std::vector<RelativeError> relative;
-  std::vector<std::string> notes;         ///< e.g. "scale from the path of the first 5 s"
+  std::vector<std::string> notes;  ///< e.g. "scale from the path of the first 5 s"
 };
 
 struct Score {
   Outcome outcome = Outcome::kNotInitialised;
-  std::optional<double> outcome_time_s;   ///< of the loss, reset or divergence
-  int reset_count = 0;
-  double coverage = 0.0;                  ///< tracked frames / frames of the flight, [0, 1]
+  std::optional<double> outcome_time_s;  ///< of the loss, reset or divergence
+  int reset_count = 0;                   ///< since the first tracked frame
+  double coverage = 0.0;                 ///< tracked frames / frames of the flight, [0, 1]
   std::optional<double> initialised_at_s;
   int frames = 0;
   int tracked_frames = 0;
@@ -102,12 +111,22 @@ struct Score {
                                                          const EstimateTrack& estimate,
                                                          const Options& options);
 
-/// S_world_vo of one mode from matched poses.
+/// S_world_vo of one mode from matched poses:
+/// none: as it is. origin: the first poses made equal, scale 1. init_scale: the same with the scale
+/// init_true_depth_m / scene depth of the first pose, or, where one of them is absent, the ratio of
+/// path lengths over the first 5 s (noted). se3, sim3: least squares over positions (Umeyama 1991).
+/// yaw_only: the same with rotation about up only, scale 1 (Zhang, Scaramuzza 2018). origin_sim3:
+/// sim3 with the first position held.
+/// Where positions lie on a line, the rotation about it is taken from the orientations (noted).
 /// Errors: kInvalidArgument when the mode needs more than the data has (the message says what).
 [[nodiscard]] Result<Similarity> align(const std::vector<MatchedPose>& matches,
                                        AlignmentMode mode,
                                        const Options& options,
                                        std::vector<std::string>* notes = nullptr);
+
+/// An estimate read from a file: every pose is tracked, pose i is frame i, and the first has the
+/// scene depth of the file's comment `init_scene_depth`, if that is a number.
+[[nodiscard]] EstimateTrack track_from(const TrajectoryFile& file, const std::string& name);
 
 /// Scores an estimate against the truth: outcome, coverage and every alignment mode.
 /// Frames of the flight = samples of the track (one for each frame offered).

@@ -1,0 +1,123 @@
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "core/time.hpp"
+#include "evaluation/evaluation.hpp"
+#include "evaluation/umeyama.hpp"
+
+namespace overfly::evaluation {
+namespace {
+
+constexpr std::int64_t kInitPathNs = 5 * kNsPerS;
+
+/// Ratio of the path lengths of truth and estimate over the first 5 s.
+Result<double> scale_from_path(const std::vector<MatchedPose>& matches) {
+  double truth_m = 0.0;
+  double vo = 0.0;
+  for (std::size_t i = 1; i < matches.size(); ++i) {
+    if (matches[i].t_ns - matches.front().t_ns > kInitPathNs) break;
+    truth_m +=
+        (matches[i].T_world_camera.translation - matches[i - 1].T_world_camera.translation).norm();
+    vo += (matches[i].T_vo_camera.translation - matches[i - 1].T_vo_camera.translation).norm();
+  }
+  if (truth_m > 0.0 && vo > 0.0 && std::isfinite(truth_m / vo)) return truth_m / vo;
+  return Error{ErrorCode::kInvalidArgument,
+               std::string("no scene depth at the first pose, and ") +
+                   (vo > 0.0 ? "the truth" : "the estimate") +
+                   " does not move in the first 5 s: the scale cannot be determined"};
+}
+
+Result<double> init_scale(const std::vector<MatchedPose>& matches,
+                          const Options& options,
+                          std::vector<std::string>* notes) {
+  const std::optional<double> depth = matches.front().scene_depth;
+  const bool has_depth = depth && std::isfinite(*depth) && *depth > 0.0;
+  if (has_depth && options.init_true_depth_m) return *options.init_true_depth_m / *depth;
+  Result<double> scale = scale_from_path(matches);
+  if (scale && notes != nullptr) {
+    notes->push_back(std::string("scale from the path of the first 5 s: ") +
+                     (has_depth ? "the true depth" : "the estimate's scene depth") +
+                     " at the first pose is not known");
+  }
+  return scale;
+}
+
+/// The similarity of a scale that makes the first poses equal.
+Similarity first_pose(const MatchedPose& first, double scale) {
+  Similarity S_world_vo;
+  S_world_vo.scale = scale;
+  S_world_vo.rotation =
+      (first.T_world_camera.rotation * first.T_vo_camera.rotation.conjugate()).normalized();
+  S_world_vo.translation = first.T_world_camera.translation -
+                           scale * (S_world_vo.rotation * first.T_vo_camera.translation);
+  return S_world_vo;
+}
+
+struct ModeName {
+  AlignmentMode mode;
+  const char* name;
+};
+
+constexpr std::array<ModeName, 7> kModeNames{{{AlignmentMode::kNone, "none"},
+                                              {AlignmentMode::kOrigin, "origin"},
+                                              {AlignmentMode::kInitScale, "init_scale"},
+                                              {AlignmentMode::kSe3, "se3"},
+                                              {AlignmentMode::kSim3, "sim3"},
+                                              {AlignmentMode::kYawOnly, "yaw_only"},
+                                              {AlignmentMode::kOriginSim3, "origin_sim3"}}};
+
+}  // namespace
+
+const char* to_string(AlignmentMode mode) {
+  for (const ModeName& entry : kModeNames) {
+    if (entry.mode == mode) return entry.name;
+  }
+  return "";
+}
+
+std::optional<AlignmentMode> alignment_mode_from(const std::string& text) {
+  for (const ModeName& entry : kModeNames) {
+    if (text == entry.name) return entry.mode;
+  }
+  return std::nullopt;
+}
+
+const std::vector<AlignmentMode>& all_alignment_modes() {
+  static const std::vector<AlignmentMode> modes = [] {
+    std::vector<AlignmentMode> all;
+    for (const ModeName& entry : kModeNames) all.push_back(entry.mode);
+    return all;
+  }();
+  return modes;
+}
+
+Result<Similarity> align(const std::vector<MatchedPose>& matches,
+                         AlignmentMode mode,
+                         const Options& options,
+                         std::vector<std::string>* notes) {
+  if (matches.empty())
+    return Error{ErrorCode::kInvalidArgument, "0 matched poses: nothing to align"};
+  switch (mode) {
+    case AlignmentMode::kNone:
+      return Similarity{};
+    case AlignmentMode::kOrigin:
+      return first_pose(matches.front(), 1.0);
+    case AlignmentMode::kInitScale: {
+      const Result<double> scale = init_scale(matches, options, notes);
+      if (!scale) return scale.error();
+      return first_pose(matches.front(), *scale);
+    }
+    case AlignmentMode::kSe3:
+      return fit_similarity(matches, {.with_scale = false, .hold_first = false}, notes);
+    case AlignmentMode::kSim3:
+      return fit_similarity(matches, {.with_scale = true, .hold_first = false}, notes);
+    case AlignmentMode::kYawOnly:
+      return fit_yaw(matches);
+    case AlignmentMode::kOriginSim3:
+      return fit_similarity(matches, {.with_scale = true, .hold_first = true}, notes);
+  }
+  return Error{ErrorCode::kInvalidArgument, "unknown alignment mode"};
+}
+
+}  // namespace overfly::evaluation

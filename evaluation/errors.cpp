@@ -1,0 +1,62 @@
+#include "evaluation/errors.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace overfly::evaluation {
+
+double rms(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value * value;
+  return std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+ErrorStatistics statistics_of(std::vector<double> errors) {
+  ErrorStatistics statistics;
+  statistics.rmse = rms(errors);
+  statistics.mean =
+      std::accumulate(errors.begin(), errors.end(), 0.0) / static_cast<double>(errors.size());
+  std::sort(errors.begin(), errors.end());
+  const std::size_t middle = errors.size() / 2;
+  statistics.median =
+      errors.size() % 2 == 1 ? errors[middle] : 0.5 * (errors[middle - 1] + errors[middle]);
+  statistics.max = errors.back();
+  return statistics;
+}
+
+double euler_norm_rad(const Eigen::Quaterniond& R_world_body_a,
+                      const Eigen::Quaterniond& R_world_body_b) {
+  const RollPitchYaw a = attitude_from(R_world_body_a);
+  const RollPitchYaw b = attitude_from(R_world_body_b);
+  return Eigen::Vector3d(wrap_pi(a.roll_rad - b.roll_rad),
+                         wrap_pi(a.pitch_rad - b.pitch_rad),
+                         wrap_pi(a.yaw_rad - b.yaw_rad))
+      .norm();
+}
+
+void add_errors(const std::vector<MatchedPose>& matches,
+                const Options& options,
+                AlignmentScore* score) {
+  const Eigen::Quaterniond R_camera_body = options.T_body_camera.rotation.conjugate();
+  std::vector<double> position_m;
+  std::vector<double> rotation_deg;
+  std::vector<double> euler_deg;
+  std::vector<Pose> aligned;
+  for (const MatchedPose& match : matches) {
+    const Pose estimate = score->S_world_vo * match.T_vo_camera;
+    const Pose& truth = match.T_world_camera;
+    position_m.push_back((estimate.translation - truth.translation).norm());
+    rotation_deg.push_back(deg_from_rad(rotation_angle_rad(truth.rotation, estimate.rotation)));
+    euler_deg.push_back(deg_from_rad(
+        euler_norm_rad(estimate.rotation * R_camera_body, truth.rotation * R_camera_body)));
+    aligned.push_back(estimate);
+  }
+  score->matched = static_cast<int>(matches.size());
+  score->position_m = statistics_of(position_m);
+  score->rotation_deg = statistics_of(rotation_deg);
+  score->rotation_euler_norm_deg = statistics_of(euler_deg);
+  score->relative = relative_errors(matches, aligned, options.rpe_lengths_m);
+}
+
+}  // namespace overfly::evaluation

@@ -1,0 +1,21 @@
+// How the run of an estimator went. Private to evaluation.
+#pragma once
+
+#include <vector>
+
+#include "evaluation/evaluation.hpp"
+
+namespace overfly::evaluation {
+
+/// Fills outcome, its time, resets, coverage and counts.
+/// @param matches  of the longest map; may be empty
+void add_outcome(const EstimateTrack& estimate,
+                 const std::vector<MatchedPose>& matches,
+                 Score* score);
+
+/// Time at which the scale against the truth, over windows of 10 s, has changed by more than a
+/// factor of two between any two windows so far; empty if it never does. Path lengths are summed
+/// over steps of a second, so that jitter from frame to frame does not count as way.
+[[nodiscard]] std::optional<double> divergence_time_s(const std::vector<MatchedPose>& matches);
+
+}  // namespace overfly::evaluation

@@ -1,0 +1,122 @@
+#include <charconv>
+#include <cmath>
+
+#include "core/time.hpp"
+#include "evaluation/association.hpp"
+#include "evaluation/errors.hpp"
+#include "evaluation/evaluation.hpp"
+#include "evaluation/outcome.hpp"
+
+namespace overfly::evaluation {
+namespace {
+
+/// A frame of the flight at or after the first tracked one, with the estimate that holds there.
+struct HeldPose {
+  Eigen::Vector3d p_world = Eigen::Vector3d::Zero();  ///< truth
+  Eigen::Vector3d p_vo = Eigen::Vector3d::Zero();     ///< tracked, or the last tracked before
+};
+
+std::vector<HeldPose> held_poses(const Trajectory& truth,
+                                 const EstimateTrack& estimate,
+                                 const Options& options) {
+  const std::optional<int> map_id = longest_map(estimate);
+  std::vector<HeldPose> held;
+  std::optional<Eigen::Vector3d> last;
+  for (const EstimateSample& sample : estimate.samples) {
+    if (sample.state == TrackingState::kTracking && sample.map_id == map_id) {
+      last = sample.T_vo_camera.translation;
+    }
+    if (!last) continue;
+    if (const auto frame = truth_of(truth, sample, options)) {
+      held.push_back({frame->T_world_camera.translation, *last});
+    }
+  }
+  return held;
+}
+
+double hold_rmse_m(const std::vector<HeldPose>& held, const Similarity& S_world_vo) {
+  std::vector<double> errors;
+  for (const HeldPose& pose : held)
+    errors.push_back((S_world_vo * pose.p_vo - pose.p_world).norm());
+  return errors.empty() ? 0.0 : rms(errors);
+}
+
+/// What a reader of any of the scores must know.
+std::vector<std::string> common_notes(const Score& score,
+                                      const std::vector<MatchedPose>& matches,
+                                      const EstimateTrack& estimate) {
+  int map_frames = 0;
+  const std::optional<int> map_id = longest_map(estimate);
+  for (const EstimateSample& sample : estimate.samples) {
+    if (sample.state == TrackingState::kTracking && sample.map_id == map_id) ++map_frames;
+  }
+  std::vector<std::string> notes;
+  if (map_frames < score.tracked_frames) {
+    notes.push_back("only the piece with the most frames is scored: " + std::to_string(map_frames) +
+                    " of " + std::to_string(score.tracked_frames) + " tracked frames, from " +
+                    std::to_string(s_from_ns(matches.front().t_ns)) + " s to " +
+                    std::to_string(s_from_ns(matches.back().t_ns)) + " s");
+  }
+  const int without_truth = map_frames - static_cast<int>(matches.size());
+  if (without_truth > 0) {
+    notes.push_back(std::to_string(without_truth) + " tracked frames have no truth");
+  }
+  return notes;
+}
+
+}  // namespace
+
+EstimateTrack track_from(const TrajectoryFile& file, const std::string& name) {
+  EstimateTrack track;
+  track.name = name;
+  for (const StampedPose& stamped : file.trajectory.poses()) {
+    EstimateSample sample;
+    sample.frame = static_cast<std::int64_t>(track.samples.size());
+    sample.t_ns = stamped.t_ns;
+    sample.state = TrackingState::kTracking;
+    sample.T_vo_camera = stamped.pose;
+    track.samples.push_back(sample);
+  }
+  const auto comment = file.comments.find("init_scene_depth");
+  if (comment == file.comments.end() || track.samples.empty()) return track;
+  const std::string& text = comment->second;
+  double depth = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), depth);
+  if (error == std::errc() && end == text.data() + text.size() && std::isfinite(depth)) {
+    track.samples.front().scene_depth = depth;
+  }
+  return track;
+}
+
+Score score(const Trajectory& T_world_camera_truth,
+            const EstimateTrack& estimate,
+            const Options& options) {
+  Score result;
+  const Result<std::vector<MatchedPose>> matches =
+      associate(T_world_camera_truth, estimate, options);
+  add_outcome(estimate, matches ? *matches : std::vector<MatchedPose>{}, &result);
+  if (!matches) {
+    for (const AlignmentMode mode : all_alignment_modes()) {
+      result.unavailable[mode] = matches.error().message;
+    }
+    return result;
+  }
+  const std::vector<HeldPose> held = held_poses(T_world_camera_truth, estimate, options);
+  for (const AlignmentMode mode : all_alignment_modes()) {
+    AlignmentScore alignment;
+    alignment.mode = mode;
+    alignment.notes = common_notes(result, *matches, estimate);
+    const Result<Similarity> S_world_vo = align(*matches, mode, options, &alignment.notes);
+    if (!S_world_vo) {
+      result.unavailable[mode] = S_world_vo.error().message;
+      continue;
+    }
+    alignment.S_world_vo = *S_world_vo;
+    add_errors(*matches, options, &alignment);
+    alignment.position_rmse_hold_m = hold_rmse_m(held, *S_world_vo);
+    result.alignments[mode] = alignment;
+  }
+  return result;
+}
+
+}  // namespace overfly::evaluation
