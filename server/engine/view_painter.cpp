@@ -40,11 +40,15 @@ std::optional<std::int64_t> last_recorded(const fs::path& folder, std::int64_t f
   return last;
 }
 
-/// Stamp of a frame at or before `row`.
+/// Stamp of a frame at or before `row`. Row i is of frame i or, where some were skipped, a later one.
 std::int64_t stamp_before(const RunTimeline& timeline, const FrameRow& row, std::int64_t frame) {
   if (frame == row.frame) return row.t_ns;
-  const auto rows = timeline.frames(static_cast<std::size_t>(frame), 1);
-  return !rows.empty() && rows.front().frame == frame ? rows.front().t_ns : row.t_ns;
+  const auto count = static_cast<std::int64_t>(timeline.frame_count());
+  for (std::int64_t i = std::min(frame, count - 1); i >= 0; --i) {
+    const FrameRow before = timeline.frames(static_cast<std::size_t>(i), 1).front();
+    if (before.frame <= frame) return before.t_ns;
+  }
+  return row.t_ns;
 }
 
 }  // namespace

@@ -76,7 +76,7 @@ ClientCommand read_subscribe(JsonFields* fields) {
     for (const StreamWish& other : command.streams) {
       if (other.name == wish->name) fields->fault("streams", ": " + wish->name + " comes twice");
     }
-    command.streams.push_back(*std::move(wish));
+    command.streams.push_back(std::move(*wish));
   }
   return command;
 }

@@ -111,7 +111,7 @@ void HttpSession::on_read(const error_code& error) {
       path_of(std::string(message.target())) == kStreamPath) {
     http::request<http::string_body> upgrade = message;
     if (auto response = forbidden(plain_request(std::move(message)))) {
-      write(*std::move(response));
+      write(std::move(*response));
       return;
     }
     serve_websocket(stream_.release_socket(), upgrade, context_);
@@ -156,7 +156,7 @@ std::optional<HttpResponse> HttpSession::forbidden(const HttpRequest& request) c
 
 void HttpSession::dispatch(const HttpRequest& request) {
   if (auto response = forbidden(request)) {
-    write(*std::move(response));
+    write(std::move(*response));
     return;
   }
   const std::string path = path_of(request.target);

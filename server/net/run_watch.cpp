@@ -78,7 +78,7 @@ void RunWatch::tell_rows(ViewerPort* port, std::int64_t now_ns) {
       behind_ = false;
       return;
     }
-    port->send_text(*std::move(message));
+    port->send_text(std::move(*message));
   }
 }
 

@@ -96,7 +96,7 @@ Status Viewer::attach(const AttachCommand& command) {
   if (!timeline) return timeline.error();
   pictures_.restart();
   run_id_ = command.run_id;
-  watch_.emplace(*std::move(timeline), command.resume);
+  watch_.emplace(std::move(*timeline), command.resume);
   streams_due_ = true;
   return {};
 }
