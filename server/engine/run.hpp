@@ -34,6 +34,8 @@ struct RunOptions {
   WorldCache* worlds = nullptr;
   /// Paces a real-time run; the machine's clock when null.
   RunClock* clock = nullptr;
+  /// What takes long before the first frame, one line at a time; on the run's thread.
+  std::function<void(const std::string&)> notice;
   /// Called after each frame on the run's thread.
   std::function<void(const RunInfo&)> progress;
 };

@@ -70,6 +70,7 @@ Json json_from(const EstimateRecord& record) {
     if (record.sample.scene_depth) value["scene_depth"] = *record.sample.scene_depth;
   }
   if (!record.counters.empty()) value["counters"] = record.counters;
+  if (!record.crash.empty()) value["crash"] = record.crash;
   return value;
 }
 
@@ -131,6 +132,7 @@ Result<EstimateRecord> estimate_record_from(const Json& value) {
     if (value.contains("counters")) {
       record.counters = value.at("counters").get<std::map<std::string, double>>();
     }
+    record.crash = value.value("crash", "");
     return record;
   });
 }

@@ -25,6 +25,7 @@ struct EstimateRecord {
   EstimateSample sample;
   std::map<std::string, double> counters;
   bool dropped = false;
+  std::string crash;  ///< why the estimator is gone, at the frame where it went; else empty
 };
 
 /// {"p_m": [x, y, z], "q_xyzw": [x, y, z, w]}

@@ -4,7 +4,7 @@
 
 #include "server/engine/live_alignment.hpp"
 #include "server/engine/run_folder.hpp"
-#include "server/engine/run_rows.hpp"
+#include "server/engine/run_records.hpp"
 #include "server/engine/run_timeline.hpp"
 #include "server/engine/whole_file.hpp"
 
@@ -13,11 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
-using FrameRecords = std::unordered_map<std::int64_t, FrameRecord>;
-
-Error in_row(const Error& error, const fs::path& file, std::size_t row) {
-  return error.in(file.string() + ", row " + std::to_string(row + 1));
-}
+using FramesByNumber = std::unordered_map<std::int64_t, const FrameRecord*>;
 
 /// Latencies by frame, as timings.json has them once the run is over.
 std::unordered_map<std::int64_t, double> read_latencies(const Json& timings,
@@ -36,70 +32,51 @@ std::unordered_map<std::int64_t, double> read_latencies(const Json& timings,
   return latencies;
 }
 
-Result<FrameRecords> read_frames(const fs::path& folder, RunTimeline& timeline) {
-  const fs::path file = frames_file(folder);
-  const Result<std::vector<Json>> lines = read_lines(file);
-  if (!lines) return lines.error();
-  FrameRecords records;
-  for (std::size_t i = 0; i < lines->size(); ++i) {
-    Result<FrameRecord> record = frame_record_from((*lines)[i], timeline.T_body_camera());
-    if (!record) return in_row(record.error(), file, i);
-    timeline.append_frame(record->row);
-    records.emplace(record->row.frame, *record);
-  }
-  return records;
-}
-
-Status read_estimates(const fs::path& folder,
-                      std::size_t estimator,
-                      const FrameRecords& frames,
+void append_estimates(const EstimatorRecords& estimator,
+                      std::size_t index,
+                      const FramesByNumber& frames,
                       const Json& timings,
                       RunTimeline& timeline) {
-  const std::string& name = timeline.estimators()[estimator];
-  const fs::path file = estimate_file(folder, name);
-  const Result<std::vector<Json>> lines = read_lines(file);
-  if (!lines) return lines.error();
-  const auto latencies = read_latencies(timings, name);
+  const auto latencies = read_latencies(timings, estimator.name);
   LiveAlignment alignment(timeline.T_body_camera());
-  for (std::size_t i = 0; i < lines->size(); ++i) {
-    const Result<EstimateRecord> record = estimate_record_from((*lines)[i]);
-    if (!record) return in_row(record.error(), file, i);
-    if (record->dropped) continue;
-    const auto frame = frames.find(record->sample.frame);
-    if (frame == frames.end()) continue;  // a kill can cut the frames' file shorter than this one
+  for (const EstimateRecord& record : estimator.records) {
+    const auto frame = frames.find(record.sample.frame);
+    // A kill can cut the frames' file shorter than this one.
+    if (record.dropped || frame == frames.end()) continue;
     EstimateRow row;
-    row.sample = record->sample;
-    row.T_world_body =
-        alignment.add(record->sample, frame->second.row.T_world_camera, frame->second.axis_depth_m);
-    const auto latency = latencies.find(record->sample.frame);
+    row.sample = record.sample;
+    row.T_world_body = alignment.add(
+        record.sample, frame->second->row.T_world_camera, frame->second->axis_depth_m);
+    const auto latency = latencies.find(record.sample.frame);
     if (latency != latencies.end()) row.latency_ms = latency->second;
-    timeline.append_estimate(estimator, row);
+    timeline.append_estimate(index, row);
   }
-  return {};
 }
 
-Status read_logs(const fs::path& folder, RunTimeline& timeline) {
+Status append_logs(const fs::path& folder, RunTimeline& timeline) {
   const fs::path file = log_file(folder);
   const Result<std::vector<Json>> lines = read_lines(file);
   if (!lines) return lines.error();
   for (std::size_t i = 0; i < lines->size(); ++i) {
     const Result<LogRow> row = log_row_from((*lines)[i]);
-    if (!row) return in_row(row.error(), file, i);
+    if (!row) return row.error().in(file.string() + ", row " + std::to_string(i + 1));
     timeline.append_log(*row);
   }
   return {};
 }
 
-/// Camera and mount; a run that failed before it had them keeps the defaults.
-Status read_camera(const Json& manifest, const fs::path& folder, RunTimeline& timeline) {
-  if (!manifest.contains("camera")) return {};
-  const Json& entry = manifest.at("camera");
-  const Result<PinholeCamera> camera = camera_from(entry);
-  if (!camera) return camera.error().in(manifest_file(folder).string() + ": camera");
-  const Result<Pose> mount = pose_from(entry.value("T_body_camera", Json::object()));
-  if (!mount) return mount.error().in(manifest_file(folder).string() + ": camera.T_body_camera");
-  timeline.set_camera(*camera, *mount);
-  return {};
+Status append_records(const fs::path& folder, const RunRecords& records, RunTimeline& timeline) {
+  Json timings = Json::object();
+  if (Result<Json> read = read_json(timings_file(folder)); read) timings = std::move(*read);
+  FramesByNumber frames;
+  for (const FrameRecord& record : records.frames) {
+    timeline.append_frame(record.row);
+    frames.emplace(record.row.frame, &record);
+  }
+  for (std::size_t i = 0; i < records.estimators.size(); ++i) {
+    append_estimates(records.estimators[i], i, frames, timings, timeline);
+  }
+  return append_logs(folder, timeline);
 }
 
 }  // namespace
@@ -109,19 +86,16 @@ Result<std::shared_ptr<RunTimeline>> RunTimeline::open(const fs::path& folder) {
   if (!info) return info.error();
   const Result<Json> manifest = read_json(manifest_file(folder));
   if (!manifest) return manifest.error();
-  auto timeline = std::make_shared<RunTimeline>(*info, info->estimators);
-  if (Status status = read_camera(*manifest, folder, *timeline); !status) return status.error();
+  const Result<RunRecords> records = read_run_records(folder);
+  if (!records) return records.error();
 
-  Json timings = Json::object();
-  if (Result<Json> read = read_json(timings_file(folder)); read) timings = std::move(*read);
-  const Result<FrameRecords> frames = read_frames(folder, *timeline);
-  if (!frames) return frames.error();
-  for (std::size_t i = 0; i < timeline->estimators().size(); ++i) {
-    if (Status status = read_estimates(folder, i, *frames, timings, *timeline); !status) {
-      return status.error();
-    }
+  auto timeline = std::make_shared<RunTimeline>(*info, info->estimators);
+  if (manifest->contains("camera")) {
+    const Result<PinholeCamera> camera = camera_from(manifest->at("camera"));
+    if (!camera) return camera.error().in(manifest_file(folder).string() + ": camera");
+    timeline->set_camera(*camera, records->T_body_camera);
   }
-  if (Status status = read_logs(folder, *timeline); !status) return status.error();
+  if (Status status = append_records(folder, *records, *timeline); !status) return status.error();
   if (fs::exists(metrics_file(folder))) {
     Result<Json> metrics = read_json(metrics_file(folder));
     if (!metrics) return metrics.error();

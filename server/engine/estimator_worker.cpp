@@ -1,0 +1,120 @@
+#include "server/engine/estimator_worker.hpp"
+
+#include <cmath>
+#include <exception>
+#include <iterator>
+
+#include "core/time.hpp"
+
+namespace overfly::engine {
+namespace {
+
+EstimatorEvent drop_of(const VoFrame& frame) {
+  EstimatorEvent event;
+  event.record.sample.frame = frame.index;
+  event.record.sample.t_ns = frame.t_ns;
+  event.record.dropped = true;
+  return event;
+}
+
+/// Calls the estimator; whatever a library throws through it is its end, not ours.
+Result<VoEstimate> track_guarded(VoPort& port, const VoFrame& frame) {
+  try {
+    return port.track(frame);
+  } catch (const std::exception& error) {
+    return Error{ErrorCode::kInternal, error.what()};
+  }
+}
+
+}  // namespace
+
+EstimatorWorker::EstimatorWorker(std::unique_ptr<VoPort> port, double debug_hz, RunClock& clock)
+    : port_(std::move(port)), clock_(clock) {
+  if (debug_hz > 0.0) debug_period_ns_ = std::llround(static_cast<double>(kNsPerS) / debug_hz);
+  thread_ = std::thread([this] { work(); });
+}
+
+EstimatorWorker::~EstimatorWorker() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+    if (waiting_ && !busy_) clock_.leave();
+    waiting_.reset();
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+void EstimatorWorker::submit(VoFrame frame) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (waiting_) {
+      drops_.push_back(drop_of(waiting_->frame));
+    } else if (!busy_) {
+      clock_.enter();
+    }
+    waiting_ = Waiting{std::move(frame), clock_.now_ns()};
+  }
+  changed_.notify_all();
+}
+
+void EstimatorWorker::wait_until_idle() {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return !waiting_ && !busy_; });
+}
+
+std::vector<EstimatorEvent> EstimatorWorker::take_events() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(events_, {});
+}
+
+void EstimatorWorker::work() {
+  std::unique_lock lock(mutex_);
+  while (true) {
+    changed_.wait(lock, [this] { return stopping_ || waiting_; });
+    if (stopping_) return;
+    const Waiting taken = std::move(*waiting_);
+    waiting_.reset();
+    // Frames dropped before this one was taken come before its answer.
+    std::move(drops_.begin(), drops_.end(), std::back_inserter(events_));
+    drops_.clear();
+    busy_ = true;
+    lock.unlock();
+    EstimatorEvent event = answer(taken);
+    lock.lock();
+    events_.push_back(std::move(event));
+    busy_ = false;
+    if (!waiting_) clock_.leave();
+    changed_.notify_all();
+  }
+}
+
+EstimatorEvent EstimatorWorker::answer(const Waiting& waiting) {
+  EstimatorEvent event;
+  event.record.sample.frame = waiting.frame.index;
+  event.record.sample.t_ns = waiting.frame.t_ns;
+  event.record.sample.state = TrackingState::kLost;
+  if (crashed_) return event;
+  choose_debug(waiting.frame.t_ns);
+  Result<VoEstimate> estimate = track_guarded(*port_, waiting.frame);
+  event.latency_ms = static_cast<double>(clock_.now_ns() - waiting.handed_over_ns) * 1e-6;
+  if (!estimate) {
+    crashed_ = true;
+    event.record.crash = estimate.error().message;
+    return event;
+  }
+  event.record.sample = estimate->sample;
+  event.record.counters = std::move(estimate->counters);
+  event.debug_image = std::move(estimate->debug_image);
+  event.map_points_vo = std::move(estimate->map_points_vo);
+  event.timing_ms = std::move(estimate->timing_ms);
+  return event;
+}
+
+void EstimatorWorker::choose_debug(std::int64_t t_ns) {
+  const bool wanted = debug_period_ns_ > 0 && t_ns >= next_debug_ns_;
+  port_->set_debug(wanted);
+  while (wanted && next_debug_ns_ <= t_ns) next_debug_ns_ += debug_period_ns_;
+}
+
+}  // namespace overfly::engine

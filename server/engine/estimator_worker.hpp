@@ -1,0 +1,73 @@
+// One estimator at work on a thread of its own.
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "core/result.hpp"
+#include "server/engine/run_clock.hpp"
+#include "server/engine/run_rows.hpp"
+#include "vo_bridges/vo_port.hpp"
+
+namespace overfly::engine {
+
+/// What became of one frame: an answer, or a drop (record.dropped).
+struct EstimatorEvent {
+  EstimateRecord record;
+  double latency_ms = 0.0;  ///< from handing the frame over to the answer
+  std::optional<Image> debug_image;
+  std::vector<Eigen::Vector3f> map_points_vo;
+  std::map<std::string, double> timing_ms;
+};
+
+/// A slot for one frame in front of an estimator: a frame that still waits there when the next one
+/// comes is dropped. Handing over a frame only when idle() makes it lossless.
+class EstimatorWorker {
+ public:
+  /// @param debug_hz  rate of debug images, 0 = none
+  EstimatorWorker(std::unique_ptr<VoPort> port, double debug_hz, RunClock& clock);
+  /// Waits for the frame at work, forgets the one in the slot.
+  ~EstimatorWorker();
+  EstimatorWorker(const EstimatorWorker&) = delete;
+  EstimatorWorker& operator=(const EstimatorWorker&) = delete;
+
+  void submit(VoFrame frame);
+  /// Waits until no frame is at work or waiting.
+  void wait_until_idle();
+  /// Takes what happened since the last call, ordered by frame.
+  [[nodiscard]] std::vector<EstimatorEvent> take_events();
+
+ private:
+  struct Waiting {
+    VoFrame frame;
+    std::int64_t handed_over_ns = 0;
+  };
+  void work();
+  [[nodiscard]] EstimatorEvent answer(const Waiting& waiting);
+  void choose_debug(std::int64_t t_ns);
+
+  std::unique_ptr<VoPort> port_;
+  RunClock& clock_;
+  std::int64_t debug_period_ns_ = 0;
+  std::int64_t next_debug_ns_ = 0;
+  bool crashed_ = false;
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::optional<Waiting> waiting_;
+  bool busy_ = false;
+  bool stopping_ = false;
+  std::vector<EstimatorEvent> events_;
+  std::vector<EstimatorEvent> drops_;  ///< after the frame at work, before the one that waits
+  std::thread thread_;
+};
+
+}  // namespace overfly::engine

@@ -1,0 +1,215 @@
+#include "server/engine/metrics.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/time.hpp"
+#include "core/trajectory_io.hpp"
+#include "server/engine/run_folder.hpp"
+#include "server/engine/whole_file.hpp"
+
+namespace overfly::engine {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+template <typename Value>
+Json or_null(const std::optional<Value>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+double median_of(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  if (values.size() % 2 == 1) return *middle;
+  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
+}
+
+/// [[first, last], ...] of ascending frame numbers.
+Json ranges_of(const std::vector<std::int64_t>& frames) {
+  Json ranges = Json::array();
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (i > 0 && frames[i] == frames[i - 1] + 1) {
+      ranges.back()[1] = frames[i];
+    } else {
+      ranges.push_back({frames[i], frames[i]});
+    }
+  }
+  return ranges;
+}
+
+Json camera_metrics(const RunRecords& records) {
+  std::vector<double> texels;
+  double texels_min = 0.0;
+  double void_sum = 0.0;
+  double void_max = 0.0;
+  for (const FrameRecord& frame : records.frames) {
+    void_sum += frame.row.void_fraction;
+    void_max = std::max(void_max, frame.row.void_fraction);
+    if (frame.row.texels_per_pixel_median <= 0.0) continue;  // no imagery in sight
+    texels_min = texels.empty() ? frame.row.texels_per_pixel_min
+                                : std::min(texels_min, frame.row.texels_per_pixel_min);
+    texels.push_back(frame.row.texels_per_pixel_median);
+  }
+  const double count = std::max<double>(1.0, static_cast<double>(records.frames.size()));
+  return {{"frames", records.frames.size()},
+          {"late_frames", records.late_frames.size()},
+          {"late_frame_ranges", ranges_of(records.late_frames)},
+          {"texels_per_pixel", {{"min", texels_min}, {"median", median_of(texels)}}},
+          {"void_fraction", {{"mean", void_sum / count}, {"max", void_max}}}};
+}
+
+Json flight_metrics(const RunRecords& records, const Trajectory& truth) {
+  const double duration_s =
+      records.frames.empty() ? 0.0 : s_from_ns(records.frames.back().row.t_ns);
+  return {{"duration_s", duration_s}, {"path_length_m", truth.path_length_m()}};
+}
+
+std::vector<std::int64_t> dropped_frames(const EstimatorRecords& estimator) {
+  std::vector<std::int64_t> dropped;
+  for (const EstimateRecord& record : estimator.records) {
+    if (record.dropped) dropped.push_back(record.sample.frame);
+  }
+  return dropped;
+}
+
+evaluation::Score score_of(const RunRecords& records,
+                           const Trajectory& truth,
+                           const EstimatorRecords& estimator) {
+  evaluation::Options options;
+  options.T_body_camera = records.T_body_camera;
+  if (const auto initial = initial_frame(records, estimator)) {
+    options.init_true_depth_m = initial->true_depth_m;
+  }
+  evaluation::Score score = evaluation::score(truth, track_of(estimator), options);
+  for (const EstimateRecord& record : estimator.records) {
+    if (record.crash.empty()) continue;
+    score.outcome = evaluation::Outcome::kCrashed;
+    score.outcome_time_s = s_from_ns(record.sample.t_ns);
+    break;
+  }
+  return score;
+}
+
+std::string number_text(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.17g", value);
+  return text.data();
+}
+
+Status write_trajectories(const fs::path& folder,
+                          const RunRecords& records,
+                          const Trajectory& truth) {
+  if (Status status = write_tum(truth_file(folder), truth); !status) return status;
+  for (const EstimatorRecords& estimator : records.estimators) {
+    const auto initial = initial_frame(records, estimator);
+    Trajectory trajectory;
+    std::map<std::string, std::string> comments;
+    if (initial && initial->scene_depth) {
+      comments["init_scene_depth"] = number_text(*initial->scene_depth);
+    }
+    if (initial && initial->true_depth_m) {
+      comments["init_true_depth"] = number_text(*initial->true_depth_m);
+    }
+    for (const EstimateRecord& record : estimator.records) {
+      // Pieces before and after a reset have no common origin or scale: only the scored one.
+      if (record.dropped || record.sample.state != TrackingState::kTracking) continue;
+      if (record.sample.map_id != initial->map_id) continue;
+      const Status added = trajectory.append({record.sample.t_ns, record.sample.T_vo_camera});
+      if (!added) return added.error().in("estimator " + estimator.name);
+    }
+    const fs::path file = estimate_tum_file(folder, estimator.name);
+    if (Status status = write_tum(file, trajectory, comments); !status) return status;
+  }
+  return {};
+}
+
+}  // namespace
+
+Json json_from(const evaluation::AlignmentScore& score) {
+  Json relative = Json::array();
+  for (const evaluation::RelativeError& error : score.relative) {
+    relative.push_back({{"length_m", error.length_m},
+                        {"pairs", error.pairs},
+                        {"translation_percent", error.translation_percent},
+                        {"rotation_deg_per_100m", error.rotation_deg_per_100m}});
+  }
+  return {{"scale", score.S_world_vo.scale},
+          {"matched", score.matched},
+          {"position_rmse_m", score.position_m.rmse},
+          {"position_mean_m", score.position_m.mean},
+          {"position_median_m", score.position_m.median},
+          {"position_max_m", score.position_m.max},
+          {"position_rmse_hold_m", score.position_rmse_hold_m},
+          {"rotation_rmse_deg", score.rotation_deg.rmse},
+          {"rotation_mean_deg", score.rotation_deg.mean},
+          {"rotation_median_deg", score.rotation_deg.median},
+          {"rotation_max_deg", score.rotation_deg.max},
+          {"rotation_euler_norm_rmse_deg", score.rotation_euler_norm_deg.rmse},
+          {"relative", relative},
+          {"notes", score.notes}};
+}
+
+Json alignments_json(const evaluation::Score& score) {
+  Json alignments = Json::object();
+  for (const auto& [mode, alignment] : score.alignments) {
+    alignments[evaluation::to_string(mode)] = json_from(alignment);
+  }
+  return alignments;
+}
+
+Json unavailable_json(const evaluation::Score& score) {
+  Json unavailable = Json::object();
+  for (const auto& [mode, reason] : score.unavailable) {
+    unavailable[evaluation::to_string(mode)] = reason;
+  }
+  return unavailable;
+}
+
+Json json_from(const evaluation::Score& score) {
+  return {{"outcome", evaluation::to_string(score.outcome)},
+          {"outcome_time_s", or_null(score.outcome_time_s)},
+          {"reset_count", score.reset_count},
+          {"coverage", score.coverage},
+          {"initialised_at_s", or_null(score.initialised_at_s)},
+          {"frames", score.frames},
+          {"tracked_frames", score.tracked_frames},
+          {"alignments", alignments_json(score)},
+          {"unavailable", unavailable_json(score)}};
+}
+
+Json metrics_from(const RunRecords& records) {
+  const Result<Trajectory> truth = truth_of(records);
+  const Trajectory trajectory = truth ? *truth : Trajectory();
+  Json estimators = Json::object();
+  for (const EstimatorRecords& estimator : records.estimators) {
+    Json entry = json_from(score_of(records, trajectory, estimator));
+    const std::vector<std::int64_t> dropped = dropped_frames(estimator);
+    entry["type"] = estimator.type;
+    entry["test_estimator"] = is_test_estimator(estimator.type);
+    entry["dropped_frames"] = dropped.size();
+    entry["dropped_frame_ranges"] = ranges_of(dropped);
+    estimators[estimator.name] = std::move(entry);
+  }
+  return {{"format_version", 1},
+          {"camera", camera_metrics(records)},
+          {"flight", flight_metrics(records, trajectory)},
+          {"estimators", std::move(estimators)}};
+}
+
+Result<Json> write_derived(const fs::path& folder, const RunRecords& records) {
+  const Result<Trajectory> truth = truth_of(records);
+  if (!truth) return truth.error();
+  if (Status status = write_trajectories(folder, records, *truth); !status) return status.error();
+  Json metrics = metrics_from(records);
+  if (Status status = write_json(metrics_file(folder), metrics); !status) return status.error();
+  return metrics;
+}
+
+}  // namespace overfly::engine

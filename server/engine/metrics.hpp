@@ -1,0 +1,30 @@
+// metrics.json and the trajectories: what is derived from a run's records.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "core/result.hpp"
+#include "evaluation/evaluation.hpp"
+#include "server/engine/run_records.hpp"
+
+namespace overfly::engine {
+
+/// One alignment as metrics.json and `overfly evaluate --json` print it.
+[[nodiscard]] nlohmann::json json_from(const evaluation::AlignmentScore& score);
+/// {"MODE": alignment, ...} and {"MODE": "reason", ...}
+[[nodiscard]] nlohmann::json alignments_json(const evaluation::Score& score);
+[[nodiscard]] nlohmann::json unavailable_json(const evaluation::Score& score);
+/// Outcome, coverage and frames, with the two above.
+[[nodiscard]] nlohmann::json json_from(const evaluation::Score& score);
+
+/// Scores every estimator of a run. With fewer than two frames there is nothing to score: then the
+/// estimators have an outcome only.
+[[nodiscard]] nlohmann::json metrics_from(const RunRecords& records);
+
+/// Writes truth.tum, estimates/NAME.tum and metrics.json, each whole.
+/// @return the metrics. Errors: kIo.
+[[nodiscard]] Result<nlohmann::json> write_derived(const std::filesystem::path& folder,
+                                                   const RunRecords& records);
+
+}  // namespace overfly::engine

@@ -1,0 +1,274 @@
+#include "server/engine/run_recorder.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "server/engine/build_info.hpp"
+#include "server/engine/jpeg.hpp"
+#include "server/engine/metrics.hpp"
+
+namespace overfly::engine {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+constexpr int kFrameQuality = 95;  ///< close to lossless: estimators may be flown again over it
+constexpr int kDebugQuality = 85;
+
+Status make_empty_folder(const fs::path& folder) {
+  std::error_code failure;
+  fs::create_directories(folder, failure);
+  if (failure) return Error{ErrorCode::kIo, folder.string() + ": " + failure.message()};
+  if (fs::exists(manifest_file(folder))) {
+    return Error{ErrorCode::kConflict, folder.string() + ": holds a run already"};
+  }
+  if (!fs::is_empty(folder, failure) || failure) {
+    return Error{ErrorCode::kConflict, folder.string() + ": is not empty"};
+  }
+  return {};
+}
+
+std::string folder_name(const fs::path& folder) {
+  const fs::path plain = fs::absolute(folder).lexically_normal();
+  return (plain.has_filename() ? plain : plain.parent_path()).filename().string();
+}
+
+Json estimators_json(const Scenario& scenario) {
+  Json estimators = Json::array();
+  for (const EstimatorSpec& spec : scenario.estimators) {
+    estimators.push_back({{"name", spec.name},
+                          {"type", spec.type},
+                          {"test_estimator", is_test_estimator(spec.type)}});
+  }
+  return estimators;
+}
+
+Status write_jpeg(const fs::path& file, const Image& image, int quality) {
+  const auto bytes = encode_jpeg(image, quality);
+  if (!bytes) return bytes.error();
+  return write_whole(file, *bytes);
+}
+
+}  // namespace
+
+RunRecorder::RunRecorder(fs::path folder, RunLock lock, const Scenario& scenario)
+    : folder_(std::move(folder)), lock_(std::move(lock)), scenario_(scenario) {}
+
+Result<std::unique_ptr<RunRecorder>> RunRecorder::create(const fs::path& folder,
+                                                         const Scenario& scenario,
+                                                         std::shared_ptr<RunTimeline> timeline,
+                                                         bool publish_images) {
+  if (Status status = make_empty_folder(folder); !status) return status.error();
+  Result<RunLock> lock = RunLock::take(folder);
+  if (!lock) return lock.error();
+  std::unique_ptr<RunRecorder> recorder(new RunRecorder(folder, std::move(lock).value(), scenario));
+  RunInfo& info = recorder->info_;
+  if (timeline) info = timeline->info();
+  info.id = folder_name(folder);
+  info.scenario = scenario.name;
+  info.title = scenario.title;
+  info.pacing = to_string(scenario.pacing);
+  info.status = RunStatus::kRunning;
+  info.estimators.clear();
+  for (const EstimatorSpec& spec : scenario.estimators) {
+    info.estimators.push_back(spec.name);
+    recorder->records_.estimators.push_back({spec.name, spec.type, {}});
+  }
+  if (info.created_utc.empty()) info.created_utc = utc_text(utc_now_ns());
+  if (!timeline) timeline = std::make_shared<RunTimeline>(info, info.estimators);
+  recorder->timeline_ = std::move(timeline);
+  recorder->publish_images_ = publish_images;
+  if (Status status = recorder->open_files(); !status) return status.error();
+  return recorder;
+}
+
+Status RunRecorder::open_files() {
+  manifest_ = {{"format_version", kRunFormatVersion},
+               {"version", version()},
+               {"commit", git_commit()},
+               {"seed", scenario_.seed},
+               {"world", Json::object()},
+               {"estimators", estimators_json(scenario_)}};
+  if (Status status = write_timings(Json::object()); !status) return status;
+  if (Status status = write_manifest(); !status) return status;
+  if (Status status = write_json(scenario_file(folder_), scenario_.resolved); !status) {
+    return status;
+  }
+  std::error_code failure;
+  fs::create_directories(folder_ / "estimates", failure);
+  if (scenario_.record_frames) fs::create_directories(folder_ / "frames", failure);
+  Result<LineFile> frames = LineFile::create(frames_file(folder_));
+  if (!frames) return frames.error();
+  frame_lines_ = std::move(frames).value();
+  Result<LineFile> log = LineFile::create(log_file(folder_));
+  if (!log) return log.error();
+  log_lines_ = std::move(log).value();
+  for (const std::string& name : info_.estimators) {
+    Result<LineFile> lines = LineFile::create(estimate_file(folder_, name));
+    if (!lines) return lines.error();
+    estimators_.push_back({std::move(lines).value(), LiveAlignment(records_.T_body_camera)});
+    if (scenario_.record_debug_hz > 0.0) fs::create_directories(folder_ / "debug" / name, failure);
+  }
+  if (failure) return Error{ErrorCode::kIo, folder_.string() + ": " + failure.message()};
+  timeline_->set_info(info_);
+  return {};
+}
+
+Status RunRecorder::write_manifest() {
+  put_run_info(info_, manifest_);
+  timeline_->set_info(info_);
+  return write_json(manifest_file(folder_), manifest_);
+}
+
+void RunRecorder::set_mount(const Pose& T_body_camera) {
+  records_.T_body_camera = T_body_camera;
+  for (EstimatorState& estimator : estimators_) estimator.alignment = LiveAlignment(T_body_camera);
+  manifest_["camera"] = json_from(scenario_.camera);
+  manifest_["camera"]["rate_hz"] = scenario_.rate.hz();
+  manifest_["camera"]["T_body_camera"] = json_from(T_body_camera);
+  timeline_->set_camera(scenario_.camera, T_body_camera);
+}
+
+void RunRecorder::set_length(std::int64_t duration_ns, std::int64_t frames_total) {
+  info_.duration_ns = duration_ns;
+  info_.frames_total = frames_total;
+}
+
+void RunRecorder::set_attribution(const std::string& attribution) {
+  info_.attribution = attribution;
+}
+
+Status RunRecorder::add_frame(const FrameRecord& record,
+                              const std::shared_ptr<const Image>& image) {
+  if (Status status = frame_lines_->append(json_from(record)); !status) return status;
+  records_.frames.push_back(record);
+  timeline_->append_frame(record.row);
+  if (publish_images_) timeline_->set_live_camera({record.row.frame, record.row.t_ns, image});
+  if (scenario_.record_frames) {
+    const fs::path file = frame_image_file(folder_, record.row.frame);
+    if (Status status = write_jpeg(file, *image, kFrameQuality); !status) return status;
+  }
+  ++info_.frames;
+  timeline_->set_info(info_);
+  return {};
+}
+
+Status RunRecorder::add_late_frame(std::int64_t frame, std::int64_t t_ns) {
+  records_.late_frames.push_back(frame);
+  return frame_lines_->append({{"frame", frame}, {"t_ns", t_ns}, {"late", true}});
+}
+
+const FrameRecord* RunRecorder::frame_record(std::int64_t frame) const {
+  const auto found = std::lower_bound(
+      records_.frames.begin(),
+      records_.frames.end(),
+      frame,
+      [](const FrameRecord& record, std::int64_t number) { return record.row.frame < number; });
+  return found != records_.frames.end() && found->row.frame == frame ? &*found : nullptr;
+}
+
+Status RunRecorder::add_event(std::size_t estimator, EstimatorEvent event) {
+  EstimatorState& state = estimators_[estimator];
+  if (Status status = state.lines.append(json_from(event.record)); !status) return status;
+  if (!event.record.dropped) {
+    if (Status status = add_answer(estimator, event); !status) return status;
+  }
+  records_.estimators[estimator].records.push_back(std::move(event.record));
+  return {};
+}
+
+Status RunRecorder::add_answer(std::size_t estimator, EstimatorEvent& event) {
+  EstimatorState& state = estimators_[estimator];
+  EstimateRow row;
+  row.sample = event.record.sample;
+  row.latency_ms = event.latency_ms;
+  if (const FrameRecord* frame = frame_record(row.sample.frame)) {
+    row.T_world_body =
+        state.alignment.add(row.sample, frame->row.T_world_camera, frame->axis_depth_m);
+  }
+  state.frames.push_back(row.sample.frame);
+  state.latency.ms.push_back(event.latency_ms);
+  for (const auto& [stage, ms] : event.timing_ms) state.stages[stage].ms.push_back(ms);
+  timeline_->append_estimate(estimator, row);
+  if (Status status = keep_debug_image(estimator, event); !status) return status;
+  if (publish_images_ && !event.map_points_vo.empty() && state.alignment.S_world_vo()) {
+    const Similarity S_world_vo = *state.alignment.S_world_vo();
+    for (Eigen::Vector3f& point : event.map_points_vo) {
+      point = (S_world_vo * Eigen::Vector3d(point.cast<double>())).cast<float>();
+    }
+    timeline_->set_live_points(estimator, std::move(event.map_points_vo));
+  }
+  return log_transition(estimator, event.record);
+}
+
+Status RunRecorder::keep_debug_image(std::size_t estimator, EstimatorEvent& event) {
+  if (!event.debug_image) return {};
+  const EstimateSample& sample = event.record.sample;
+  auto image = std::make_shared<const Image>(std::move(*event.debug_image));
+  if (publish_images_) timeline_->set_live_debug(estimator, {sample.frame, sample.t_ns, image});
+  const fs::path file = debug_image_file(folder_, info_.estimators[estimator], sample.frame);
+  return write_jpeg(file, *image, kDebugQuality);
+}
+
+Status RunRecorder::log_transition(std::size_t estimator, const EstimateRecord& record) {
+  EstimatorState& state = estimators_[estimator];
+  const EstimateSample& sample = record.sample;
+  const std::string& name = info_.estimators[estimator];
+  if (!record.crash.empty()) return log(sample.t_ns, "error", name + " crashed: " + record.crash);
+  const TrackingState last = std::exchange(state.last, sample.state);
+  const int last_map_id = std::exchange(state.last_map_id, sample.map_id);
+  if (sample.map_id != last_map_id) {
+    return log(sample.t_ns, "warning", name + " started a new map: origin and scale are new");
+  }
+  if (sample.state == last) return {};
+  const bool lost = sample.state == TrackingState::kLost;
+  return log(sample.t_ns,
+             lost ? "warning" : "info",
+             name + (lost                                       ? " lost track"
+                     : sample.state == TrackingState::kTracking ? " tracks"
+                                                                : " initialises"));
+}
+
+Status RunRecorder::log(std::int64_t t_ns, const std::string& level, const std::string& text) {
+  const LogRow row{t_ns, level, text};
+  timeline_->append_log(row);
+  return log_lines_->append(json_from(row));
+}
+
+Status RunRecorder::write_timings(Json timings) const {
+  timings["created_utc"] = info_.created_utc;
+  Json estimators = Json::object();
+  for (std::size_t i = 0; i < estimators_.size(); ++i) {
+    const EstimatorState& state = estimators_[i];
+    Json stages = Json::object();
+    for (const auto& [stage, durations] : state.stages) stages[stage] = durations.summary();
+    estimators[info_.estimators[i]] = {{"latency", state.latency.summary()},
+                                       {"stages", std::move(stages)},
+                                       {"frame", state.frames},
+                                       {"latency_ms", state.latency.ms}};
+  }
+  timings["estimators"] = std::move(estimators);
+  return write_json(timings_file(folder_), timings);
+}
+
+Result<Json> RunRecorder::finish(RunStatus status, const std::string& error, Json timings) {
+  info_.status = status;
+  info_.error = error;
+  Result<Json> metrics = write_derived(folder_, records_);
+  if (!metrics) {
+    info_.status = RunStatus::kFailed;
+    if (info_.error.empty()) info_.error = metrics.error().message;
+  } else {
+    timeline_->set_metrics(*metrics);
+  }
+  const Status timed = write_timings(std::move(timings));
+  const Status written = write_manifest();
+  lock_.reset();
+  if (!metrics) return metrics.error();
+  if (!timed) return timed.error();
+  if (!written) return written.error();
+  return metrics;
+}
+
+}  // namespace overfly::engine

@@ -1,0 +1,86 @@
+// Writes a run folder while its run goes on, and tells the timeline the same.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/result.hpp"
+#include "server/engine/estimator_worker.hpp"
+#include "server/engine/live_alignment.hpp"
+#include "server/engine/run_folder.hpp"
+#include "server/engine/run_records.hpp"
+#include "server/engine/scenario.hpp"
+#include "server/engine/stage_timer.hpp"
+#include "server/engine/whole_file.hpp"
+
+namespace overfly::engine {
+
+/// Used by one thread, that of the run.
+class RunRecorder {
+ public:
+  /// Makes the folder and takes its lock; the manifest says "running" from then on.
+  /// @param timeline  its info has the id and when the run was asked for; made when null
+  /// Errors: kConflict if the folder holds anything; kIo.
+  static Result<std::unique_ptr<RunRecorder>> create(const std::filesystem::path& folder,
+                                                     const Scenario& scenario,
+                                                     std::shared_ptr<RunTimeline> timeline,
+                                                     bool publish_images);
+
+  /// What the manifest says besides the run's info; written out by write_manifest().
+  [[nodiscard]] nlohmann::json& manifest() { return manifest_; }
+  Status write_manifest();
+
+  void set_mount(const Pose& T_body_camera);
+  void set_length(std::int64_t duration_ns, std::int64_t frames_total);
+  void set_attribution(const std::string& attribution);
+
+  Status add_frame(const FrameRecord& record, const std::shared_ptr<const Image>& image);
+  Status add_late_frame(std::int64_t frame, std::int64_t t_ns);
+  Status add_event(std::size_t estimator, EstimatorEvent event);
+  Status log(std::int64_t t_ns, const std::string& level, const std::string& text);
+
+  /// Derives trajectories and metrics, writes timings and the final manifest, lets the folder go.
+  /// @param timings  wall-clock facts to put beside the estimators'
+  Result<nlohmann::json> finish(RunStatus status, const std::string& error, nlohmann::json timings);
+
+  [[nodiscard]] RunInfo info() const { return info_; }
+  [[nodiscard]] const RunRecords& records() const { return records_; }
+
+ private:
+  struct EstimatorState {
+    LineFile lines;
+    LiveAlignment alignment;
+    TrackingState last = TrackingState::kInitialising;
+    int last_map_id = 0;
+    std::vector<std::int64_t> frames = {};
+    DurationList latency = {};
+    std::map<std::string, DurationList> stages = {};
+  };
+
+  RunRecorder(std::filesystem::path folder, RunLock lock, const Scenario& scenario);
+  Status open_files();
+  Status add_answer(std::size_t estimator, EstimatorEvent& event);
+  Status log_transition(std::size_t estimator, const EstimateRecord& record);
+  Status keep_debug_image(std::size_t estimator, EstimatorEvent& event);
+  [[nodiscard]] const FrameRecord* frame_record(std::int64_t frame) const;
+  Status write_timings(nlohmann::json timings) const;
+
+  std::filesystem::path folder_;
+  std::optional<RunLock> lock_;
+  const Scenario& scenario_;
+  bool publish_images_ = false;
+  std::shared_ptr<RunTimeline> timeline_;
+  RunInfo info_;
+  nlohmann::json manifest_ = nlohmann::json::object();
+  RunRecords records_;
+  std::optional<LineFile> frame_lines_;
+  std::optional<LineFile> log_lines_;
+  std::vector<EstimatorState> estimators_;
+};
+
+}  // namespace overfly::engine

@@ -1,0 +1,131 @@
+#include "server/engine/run_records.hpp"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "server/engine/run_folder.hpp"
+#include "server/engine/whole_file.hpp"
+
+namespace overfly::engine {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+/// Reads each line of a file into a row; `read` gives a Result.
+template <typename Read>
+Status for_each_row(const fs::path& file, const Read& read) {
+  const Result<std::vector<Json>> lines = read_lines(file);
+  if (!lines) return lines.error();
+  for (std::size_t i = 0; i < lines->size(); ++i) {
+    if (Status status = read((*lines)[i]); !status) {
+      return status.error().in(file.string() + ", row " + std::to_string(i + 1));
+    }
+  }
+  return {};
+}
+
+Status read_mount(const Json& manifest, RunRecords& records) {
+  // A run that failed before it had a camera keeps the default mount.
+  if (!manifest.contains("camera")) return {};
+  const Json& camera = manifest.at("camera");
+  const Result<Pose> mount = pose_from(camera.value("T_body_camera", Json::object()));
+  if (!mount) return mount.error().in("camera.T_body_camera");
+  records.T_body_camera = *mount;
+  return {};
+}
+
+Status read_frames(const fs::path& folder, RunRecords& records) {
+  return for_each_row(frames_file(folder), [&](const Json& line) -> Status {
+    if (line.is_object() && line.value("late", false)) {
+      records.late_frames.push_back(line.value("frame", std::int64_t{0}));
+      return {};
+    }
+    Result<FrameRecord> record = frame_record_from(line, records.T_body_camera);
+    if (!record) return record.error();
+    records.frames.push_back(std::move(*record));
+    return {};
+  });
+}
+
+Status read_estimator(const fs::path& folder, EstimatorRecords& estimator) {
+  return for_each_row(estimate_file(folder, estimator.name), [&](const Json& line) -> Status {
+    Result<EstimateRecord> record = estimate_record_from(line);
+    if (!record) return record.error();
+    estimator.records.push_back(std::move(*record));
+    return {};
+  });
+}
+
+}  // namespace
+
+bool is_test_estimator(const std::string& type) { return type == "perfect" || type == "drifting"; }
+
+Result<RunRecords> read_run_records(const fs::path& folder) {
+  const Result<Json> manifest = read_json(manifest_file(folder));
+  if (!manifest) return manifest.error();
+  RunRecords records;
+  const std::string origin = manifest_file(folder).string();
+  try {
+    if (Status status = read_mount(*manifest, records); !status) return status.error().in(origin);
+    for (const Json& entry : manifest->at("estimators")) {
+      records.estimators.push_back(
+          {entry.at("name").get<std::string>(), entry.at("type").get<std::string>(), {}});
+    }
+  } catch (const Json::exception& error) {
+    return Error{ErrorCode::kUnreadable, origin + ": " + error.what()};
+  }
+  if (Status status = read_frames(folder, records); !status) return status.error();
+  for (EstimatorRecords& estimator : records.estimators) {
+    if (Status status = read_estimator(folder, estimator); !status) return status.error();
+  }
+  return records;
+}
+
+Result<Trajectory> truth_of(const RunRecords& records) {
+  std::vector<StampedPose> poses;
+  poses.reserve(records.frames.size());
+  for (const FrameRecord& frame : records.frames) {
+    poses.push_back({frame.row.t_ns, frame.row.T_world_camera});
+  }
+  return Trajectory::from_poses(std::move(poses));
+}
+
+EstimateTrack track_of(const EstimatorRecords& estimator) {
+  EstimateTrack track;
+  track.name = estimator.name;
+  for (const EstimateRecord& record : estimator.records) {
+    if (!record.dropped) track.samples.push_back(record.sample);
+  }
+  return track;
+}
+
+std::optional<InitialFrame> initial_frame(const RunRecords& records,
+                                          const EstimatorRecords& estimator) {
+  std::map<int, std::int64_t> tracked;
+  std::map<int, const EstimateRecord*> first;
+  for (const EstimateRecord& record : estimator.records) {
+    if (record.dropped || record.sample.state != TrackingState::kTracking) continue;
+    ++tracked[record.sample.map_id];
+    first.try_emplace(record.sample.map_id, &record);
+  }
+  if (tracked.empty()) return std::nullopt;
+  const auto longest =
+      std::max_element(tracked.begin(), tracked.end(), [](const auto& a, const auto& b) {
+        return a.second < b.second;
+      });
+  const EstimateSample& sample = first.at(longest->first)->sample;
+  InitialFrame initial{sample.frame, sample.map_id, std::nullopt, sample.scene_depth};
+  const auto frame = std::lower_bound(
+      records.frames.begin(),
+      records.frames.end(),
+      sample.frame,
+      [](const FrameRecord& record, std::int64_t number) { return record.row.frame < number; });
+  if (frame != records.frames.end() && frame->row.frame == sample.frame) {
+    initial.true_depth_m = frame->axis_depth_m;
+  }
+  return initial;
+}
+
+}  // namespace overfly::engine

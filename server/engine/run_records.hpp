@@ -1,0 +1,51 @@
+// All that a run recorded: the master from which trajectories and metrics are derived.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/result.hpp"
+#include "core/trajectory.hpp"
+#include "server/engine/run_rows.hpp"
+
+namespace overfly::engine {
+
+struct EstimatorRecords {
+  std::string name;
+  std::string type;
+  std::vector<EstimateRecord> records;  ///< by frame, drops among them
+};
+
+struct RunRecords {
+  Pose T_body_camera{R_body_camera_nadir(), Eigen::Vector3d::Zero()};
+  std::vector<FrameRecord> frames;
+  std::vector<std::int64_t> late_frames;  ///< never drawn, since their time had passed
+  std::vector<EstimatorRecords> estimators;
+};
+
+/// True for the types that are given the truth.
+[[nodiscard]] bool is_test_estimator(const std::string& type);
+
+/// Reads the line files of a run folder; a kill leaves them readable.
+/// Errors: kNotFound without a manifest; kUnreadable naming file and row.
+[[nodiscard]] Result<RunRecords> read_run_records(const std::filesystem::path& folder);
+
+/// T_world_camera of every frame.
+[[nodiscard]] Result<Trajectory> truth_of(const RunRecords& records);
+/// The answers of one estimator without the drops.
+[[nodiscard]] EstimateTrack track_of(const EstimatorRecords& estimator);
+
+/// What `init_scale` rests on: the first tracked frame of the map that is scored, the one with the
+/// most tracked frames (the earlier of two equal ones).
+struct InitialFrame {
+  std::int64_t frame = 0;
+  int map_id = 0;
+  std::optional<double> true_depth_m;
+  std::optional<double> scene_depth;
+};
+[[nodiscard]] std::optional<InitialFrame> initial_frame(const RunRecords& records,
+                                                        const EstimatorRecords& estimator);
+
+}  // namespace overfly::engine
