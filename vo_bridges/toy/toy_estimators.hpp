@@ -11,8 +11,8 @@ namespace overfly {
 
 /// Truth in a frame of its own: origin and rotation of the first pose, lengths times `scale`.
 struct ToyParameters {
-  double scale = 0.37;          ///< vo units per metre, > 0
-  double drift = 0.0;           ///< position error per path length: 0.01 = 1 %, in [-1, 1]
+  double scale = 0.37;  ///< vo units per metre, > 0
+  double drift = 0.0;   ///< position error per path length: 0.01 = 1 %, in (-1, 1]
   /// True depth of the ground along the optical axis at each frame [m]; 0 = report none.
   double scene_depth_m = 0.0;
 };

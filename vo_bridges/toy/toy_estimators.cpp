@@ -1,0 +1,138 @@
+#include "vo_bridges/toy/toy_estimators.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace overfly {
+namespace {
+
+std::string text_of(double value) {
+  std::string text = std::to_string(value);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text;
+}
+
+/// The image in RGB with a cross in its middle, so that a debug image is seen to be one.
+Image debug_image(const Image& grey) {
+  Image rgb(grey.width_px, grey.height_px, 3);
+  for (std::size_t i = 0; i < grey.data.size(); ++i) {
+    for (std::size_t c = 0; c < 3; ++c) rgb.data[3 * i + c] = grey.data[i];
+  }
+  const auto mark = [&](int x, int y) {
+    const std::size_t at =
+        3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(rgb.width_px) +
+             static_cast<std::size_t>(x));
+    rgb.data[at] = 255;
+    rgb.data[at + 1] = rgb.data[at + 2] = 0;
+  };
+  for (int x = 0; x < rgb.width_px; ++x) mark(x, rgb.height_px / 2);
+  for (int y = 0; y < rgb.height_px; ++y) mark(rgb.width_px / 2, y);
+  return rgb;
+}
+
+/// Knows the truth. Loses track where the truth does not reach.
+class ToyEstimator final : public VoPort {
+ public:
+  ToyEstimator(std::string type, Trajectory T_world_camera, const ToyParameters& parameters)
+      : type_(std::move(type)),
+        T_world_camera_(std::move(T_world_camera)),
+        parameters_(parameters) {}
+
+  [[nodiscard]] std::string type() const override { return type_; }
+
+  [[nodiscard]] std::map<std::string, std::string> effective_parameters() const override {
+    return {{"scale", text_of(parameters_.scale)},
+            {"drift", text_of(parameters_.drift)},
+            {"scene_depth_m", text_of(parameters_.scene_depth_m)}};
+  }
+
+  [[nodiscard]] Result<VoEstimate> track(const VoFrame& frame) override {
+    const VoFrame* const previous = previous_ ? &*previous_ : nullptr;
+    if (Status status = validate_vo_frame(frame, previous); !status) return status.error();
+    previous_ = frame;
+    previous_->image.reset();  // its size stays in the intrinsics
+
+    VoEstimate estimate;
+    estimate.sample.frame = frame.index;
+    estimate.sample.t_ns = frame.t_ns;
+    if (const std::optional<Pose> truth = T_world_camera_.at(frame.t_ns)) {
+      if (!T_vo_world_) T_vo_world_ = truth->inverse();
+      estimate.sample.state = TrackingState::kTracking;
+      estimate.sample.T_vo_camera = *T_vo_world_ * *truth;
+      // A step lengthened by a constant factor lengthens all of the way so.
+      const double stretch = parameters_.scale * (1.0 + parameters_.drift);
+      estimate.sample.T_vo_camera.translation *= stretch;
+      if (parameters_.scene_depth_m > 0.0) {
+        estimate.sample.scene_depth = parameters_.scene_depth_m * parameters_.scale;
+      }
+    } else if (T_vo_world_) {
+      estimate.sample.state = TrackingState::kLost;
+    }
+    if (debug_) {
+      estimate.debug_image = debug_image(*frame.image);
+      if (estimate.sample.scene_depth) {
+        const Eigen::Vector3d ahead(0.0, 0.0, *estimate.sample.scene_depth);
+        estimate.map_points_vo.push_back((estimate.sample.T_vo_camera * ahead).cast<float>());
+      }
+    }
+    return estimate;
+  }
+
+  void reset() override {
+    previous_.reset();
+    T_vo_world_.reset();
+  }
+
+  void set_debug(bool wanted) override { debug_ = wanted; }
+
+ private:
+  std::string type_;
+  Trajectory T_world_camera_;
+  ToyParameters parameters_;
+  std::optional<VoFrame> previous_;
+  std::optional<Pose> T_vo_world_;  // inverse of the first pose
+  bool debug_ = false;
+};
+
+Result<std::unique_ptr<VoPort>> create(std::string type,
+                                       const Trajectory& T_world_camera,
+                                       const ToyParameters& parameters) {
+  const auto bad = [](const std::string& field, double value, const std::string& limit) {
+    return Error{ErrorCode::kInvalidArgument,
+                 field + " = " + std::to_string(value) + ": must be " + limit};
+  };
+  if (!(parameters.scale > 0.0) || !std::isfinite(parameters.scale)) {
+    return bad("scale", parameters.scale, "above 0 and finite");
+  }
+  if (!(parameters.drift > -1.0 && parameters.drift <= 1.0)) {
+    return bad("drift", parameters.drift, "in (-1, 1]");
+  }
+  if (!(parameters.scene_depth_m >= 0.0) || !std::isfinite(parameters.scene_depth_m)) {
+    return bad("scene_depth_m", parameters.scene_depth_m, "0 or more and finite");
+  }
+  if (T_world_camera.empty()) {
+    return Error{ErrorCode::kInvalidArgument, "a toy estimator needs a truth with poses"};
+  }
+  return std::unique_ptr<VoPort>(
+      std::make_unique<ToyEstimator>(std::move(type), T_world_camera, parameters));
+}
+
+}  // namespace
+
+Result<std::unique_ptr<VoPort>> create_perfect_estimator(const Trajectory& T_world_camera,
+                                                         const ToyParameters& parameters) {
+  ToyParameters perfect = parameters;
+  perfect.drift = 0.0;
+  return create("perfect", T_world_camera, perfect);
+}
+
+Result<std::unique_ptr<VoPort>> create_drifting_estimator(const Trajectory& T_world_camera,
+                                                          const ToyParameters& parameters) {
+  return create("drifting", T_world_camera, parameters);
+}
+
+}  // namespace overfly
