@@ -6,7 +6,7 @@ import type { State, Topic } from '../store/state';
 import { estimateColour, kStateColours } from './colours';
 import { h, rebuild, setText } from './dom';
 import type { Panel } from './panel';
-import { makePanel } from './panel';
+import { frameOf, makePanel } from './panel';
 import type { Context, View } from './view';
 
 export class ErrorPanel implements View {
@@ -34,7 +34,7 @@ export class ErrorPanel implements View {
     }
     if (changed.has('playback')) this.drawStates(state);
     if (changed.has('playback') || changed.has('run')) {
-      this.panel.showFrame(state.playback?.frame ?? null);
+      this.panel.showFrame(frameOf(state.playback));
     }
   }
 

@@ -1,4 +1,5 @@
 // The frame around every panel: title, tools, and the number of the frame that it shows.
+import type { Playback } from '../protocol/messages';
 import { h, setAttribute, setText } from './dom';
 import { icon } from './icons';
 
@@ -6,10 +7,15 @@ export interface Panel {
   root: HTMLElement;
   tools: HTMLElement;
   body: HTMLElement;
-  /** @param expected  frame of the playback cursor; another one is marked */
+  /** @param expected  frame of the playback cursor; another one shows by how much it is off */
   showFrame(frame: number | null, expected?: number | null): void;
   /** Text in place of what is not there; null = it is. */
   showEmpty(text: string | null): void;
+}
+
+/** Frame at the cursor; null before the first one. */
+export function frameOf(playback: Playback | null): number | null {
+  return playback === null || playback.frame < 0 ? null : playback.frame;
 }
 
 export function makePanel(name: string, title: string, expandable = false): Panel {
@@ -28,10 +34,10 @@ export function makePanel(name: string, title: string, expandable = false): Pane
     tools,
     body,
     showFrame(frame, expected = null) {
-      setText(badge, frame === null ? '' : `#${frame}`);
+      const off = frame === null || expected === null ? 0 : frame - expected;
+      const offText = off === 0 ? '' : ` (${off > 0 ? '+' : '−'}${Math.abs(off)})`;
+      setText(badge, frame === null ? '' : `#${frame}${offText}`);
       setAttribute(root, 'data-frame', frame === null ? null : String(frame));
-      const late = frame !== null && expected !== null && frame !== expected;
-      badge.classList.toggle('late', late);
     },
     showEmpty(text) {
       empty.hidden = text === null;

@@ -2,6 +2,8 @@
 import type { Picture } from '../store/state';
 import { h } from './dom';
 
+const kOldest_ns = 1e9;
+
 export class PictureCanvas {
   readonly canvas: HTMLCanvasElement;
   private shown: Picture | null = null;
@@ -20,5 +22,15 @@ export class PictureCanvas {
       this.canvas.height = picture.height_px;
     }
     this.canvas.getContext('2d', { alpha: false })?.drawImage(picture.bitmap, 0, 0);
+  }
+
+  /** Fades a picture that is not of the instant at which the playback stands. */
+  markStale(cursor_ns: number | null): void {
+    const picture = this.shown;
+    const stale =
+      picture !== null &&
+      cursor_ns !== null &&
+      (picture.t_ns > cursor_ns || picture.t_ns < cursor_ns - kOldest_ns);
+    this.canvas.classList.toggle('stale', stale);
   }
 }

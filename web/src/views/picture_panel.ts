@@ -1,4 +1,5 @@
 // The aircraft's camera, and what the estimators draw of it.
+import type { Playback } from '../protocol/messages';
 import type { State, Topic } from '../store/state';
 import { h, rebuild } from './dom';
 import type { Panel } from './panel';
@@ -28,8 +29,9 @@ abstract class PicturePanel implements View {
     const stream = this.streamOf(state);
     const picture = stream === null ? null : (state.pictures.get(stream) ?? null);
     this.picture.show(picture);
-    const still = state.playback !== null && !state.playback.playing ? state.playback.frame : null;
-    this.panel.showFrame(picture?.frame ?? null, still);
+    const still = standingStill(state);
+    this.picture.markStale(still?.t_ns ?? null);
+    this.panel.showFrame(picture?.frame ?? null, still?.frame ?? null);
     this.panel.showEmpty(picture === null ? this.emptyText(state) : null);
   }
 
@@ -110,6 +112,11 @@ export class DebugPanel extends PicturePanel {
       ),
     );
   }
+}
+
+/** The playback while it does not move; null while it does. */
+export function standingStill({ playback }: State): Playback | null {
+  return playback === null || playback.playing ? null : playback;
 }
 
 export function waitingText(state: State): string {

@@ -6,7 +6,7 @@ import { EstimateCurve, isAngle, TruthCurve } from '../store/series';
 import type { Topic } from '../store/state';
 import { h, setText } from './dom';
 import type { Panel } from './panel';
-import { makePanel } from './panel';
+import { frameOf, makePanel } from './panel';
 import { Plot } from './plot';
 import type { Context, View } from './view';
 
@@ -108,7 +108,7 @@ export class PlotsPanel implements View {
     const { playback } = this.context.store.state;
     for (const { plot } of this.plots)
       plot.moveCursor(playback === null ? null : playback.t_ns / 1e9);
-    this.panel.showFrame(playback?.frame ?? null);
+    this.panel.showFrame(frameOf(playback));
     if (this.hovered === null) this.showPlaybackValues();
   }
 

@@ -8,7 +8,7 @@ import { rebuild, setAttribute, setText } from './dom';
 import type { Panel } from './panel';
 import { makePanel } from './panel';
 import { PictureCanvas } from './picture_canvas';
-import { waitingText } from './picture_panel';
+import { standingStill, waitingText } from './picture_panel';
 import type { Context, View } from './view';
 
 const kModes: readonly { mode: SceneMode; label: string; key: string }[] = [
@@ -69,8 +69,9 @@ export class ScenePanel implements View {
     if (!changed.has('pictures') && !changed.has('playback') && !changed.has('run')) return;
     const picture = state.pictures.get('scene') ?? null;
     this.picture.show(picture);
-    const still = state.playback !== null && !state.playback.playing ? state.playback.frame : null;
-    this.panel.showFrame(picture?.frame ?? null, still);
+    const still = standingStill(state);
+    this.picture.markStale(still?.t_ns ?? null);
+    this.panel.showFrame(picture?.frame ?? null, still?.frame ?? null);
     this.panel.showEmpty(picture === null ? waitingText(state) : null);
   }
 

@@ -87,21 +87,38 @@ export const kShortcuts: readonly Shortcut[] = [
 
 export function listenToKeys(context: Context): void {
   document.addEventListener('keydown', (event) => {
-    if (event.ctrlKey || event.altKey || event.metaKey || takesText(event.target)) return;
+    if (event.ctrlKey || event.altKey || event.metaKey || wantsKey(event)) return;
     const name = (event.shiftKey ? 'shift+' : '') + event.key.toLowerCase();
     const shortcut = kShortcuts.find(({ keys }) => keys.includes(name));
     if (shortcut === undefined) return;
     event.preventDefault();
     shortcut.run(context);
   });
+  leaveAfterMouse();
 }
 
-function takesText(target: EventTarget | null): boolean {
-  return (
-    target instanceof HTMLSelectElement ||
-    target instanceof HTMLTextAreaElement ||
-    (target instanceof HTMLInputElement && target.type !== 'checkbox')
-  );
+/** Whether what has the focus needs the key itself. */
+function wantsKey({ target, key }: KeyboardEvent): boolean {
+  if (target instanceof HTMLSelectElement) return true;
+  if (target instanceof HTMLInputElement && target.type !== 'checkbox') return true;
+  return key === ' ' && (target instanceof HTMLButtonElement || target instanceof HTMLInputElement);
+}
+
+/** What was used with the mouse gives the focus back, so that the shortcuts work again. */
+function leaveAfterMouse(): void {
+  let mouse = false;
+  document.addEventListener('pointerdown', () => (mouse = true), true);
+  document.addEventListener('keydown', () => (mouse = false), true);
+  const leave = ({ target }: Event) => {
+    if (mouse && (target instanceof HTMLSelectElement || target instanceof HTMLButtonElement)) {
+      target.blur();
+    }
+  };
+  document.addEventListener('change', leave);
+  document.addEventListener('click', ({ target }) => {
+    const button = target instanceof Element ? target.closest('button') : null;
+    if (mouse) button?.blur();
+  });
 }
 
 function toggleHelp(store: Context['store']): void {

@@ -5,6 +5,7 @@ import { kSpeeds } from '../store/session';
 import { h, setAttribute, setText } from './dom';
 import type { IconName } from './icons';
 import { icon } from './icons';
+import { frameOf } from './panel';
 import { TimelineTrack } from './timeline_track';
 import type { Context, View } from './view';
 
@@ -78,8 +79,9 @@ export class Timeline implements View {
     setText(this.time, formatTime(playback?.t_ns ?? 0));
     const end_ns = Math.max(playback?.end_ns ?? 0, run?.duration_ns ?? 0);
     setText(this.end, ` / ${formatTime(end_ns)}`);
-    setText(this.frame, playback === null ? '' : `frame ${playback.frame}`);
-    setAttribute(this.root, 'data-frame', playback === null ? null : String(playback.frame));
+    const frame = frameOf(playback);
+    setText(this.frame, frame === null ? '' : `frame ${frame}`);
+    setAttribute(this.root, 'data-frame', frame === null ? null : String(frame));
     setAttribute(this.root, 'data-t-ns', playback === null ? null : String(playback.t_ns));
     setAttribute(this.root, 'data-playing', playing ? 'true' : 'false');
     this.showSpeed(playback?.speed ?? 1);

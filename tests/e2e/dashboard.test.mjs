@@ -1,0 +1,273 @@
+// One viewer's session with the real server: launch, watch, pause, seek, change the speed, read
+// the error, come back.
+import assert from 'node:assert/strict';
+import { after, before, describe, it } from 'node:test';
+import { browserMissing, openBrowser } from './support/browser.mjs';
+import { Dashboard } from './support/dashboard.mjs';
+import { getJson, makeRunsFolder, serverMissing, startServer } from './support/server.mjs';
+
+const kFlight_s = 20;
+const kRate_hz = 31;
+// Rendering and estimating in software on two busy cores; a fast machine needs a tenth.
+const kFlightPatience_ms = 300_000;
+// Debug images are recorded at 5 Hz: one at or before the instant is at most 7 frames old.
+const kDebugGap = Math.ceil(kRate_hz / 5);
+const kSizes = [
+  { width: 1280, height: 800 },
+  { width: 1920, height: 1080 },
+];
+
+const skip = serverMissing() || browserMissing();
+
+describe('the dashboard', { skip, timeout: 900_000 }, () => {
+  let runs;
+  let server;
+  let browser;
+  let dashboard;
+  let run;
+
+  before(async () => {
+    runs = makeRunsFolder();
+    server = await startServer({ runs: runs.folder });
+    browser = await openBrowser(kSizes[0]);
+    dashboard = new Dashboard(browser.page);
+    await dashboard.open(server.url);
+  });
+
+  after(async () => {
+    await browser?.close();
+    await server?.stop();
+    runs?.remove();
+  });
+
+  it('says what to do when there are no runs', async () => {
+    await dashboard.until(() => document.querySelector('[data-panel=runs]').innerText.includes('No runs yet'));
+    await dashboard.screenshot('empty_1280x800');
+  });
+
+  it("shows the server's limit at the field that breaks it", async () => {
+    await dashboard.field('flight.course.airspeed_m_s').fill('999');
+    await dashboard.page.locator('button.primary').click();
+    const fault = dashboard.page.locator('[data-fault="flight.course.airspeed_m_s"]');
+    await fault.waitFor({ state: 'visible' });
+    assert.match(await fault.innerText(), /must be/);
+    assert.equal((await getJson(server.url, '/runs')).runs.length, 0);
+    await dashboard.field('flight.course.airspeed_m_s').fill('25');
+  });
+
+  it('launches a flight and shows it live', async () => {
+    await dashboard.field('duration_s').fill(String(kFlight_s));
+    await dashboard.chooseEstimators('feature');
+    run = await dashboard.launch();
+    await dashboard.untilFrames(['scene', 'camera', 'plots'], 5);
+    assert.ok((await dashboard.picture('camera')).deviation > 5, 'the camera image is empty');
+    assert.ok((await dashboard.picture('scene')).deviation > 5, 'the 3D view is empty');
+    const seen = await dashboard.frame('camera');
+    await dashboard.untilFrames(['camera'], seen + 5);
+    await dashboard.screenshot('live_1280x800');
+  });
+
+  it('finishes the flight and tells its outcome', async () => {
+    await dashboard.untilStatus(run, 'completed', kFlightPatience_ms);
+    await dashboard.until(() => document.querySelector('.errors .good, .errors .bad') !== null);
+    const { frames } = await getJson(server.url, `/runs/${run}`);
+    assert.ok(Math.abs(frames - kFlight_s * kRate_hz) <= 1, `${frames} frames`);
+  });
+
+  it('shows the same instant in every panel after a seek on the time line', async () => {
+    await dashboard.clickAt('.track .bar', 0.5);
+    await dashboard.untilSameInstant();
+    const { frame, t_ns } = await dashboard.playback();
+    assert.ok(Math.abs(frame - (kFlight_s * kRate_hz) / 2) < 20, `frame ${frame}`);
+    assert.equal(t_ns, Math.round((frame * 1e9) / kRate_hz));
+    const debug = await dashboard.frame('debug');
+    assert.ok(debug <= frame && debug > frame - kDebugGap - 1, `debug image of ${debug} at ${frame}`);
+  });
+
+  it('seeks by a click in a plot', async () => {
+    await dashboard.clickAt('.plot[data-axis=y_m] .u-over', 0.8);
+    await dashboard.until(() => Number(document.querySelector('[data-panel=timeline]').dataset.frame) > 400);
+    await dashboard.untilSameInstant();
+    for (const size of kSizes) {
+      await dashboard.page.setViewportSize(size);
+      await dashboard.untilSameInstant();
+    }
+  });
+
+  it("shows the truth's and the estimate's pose at the cursor", async () => {
+    const { frame } = await dashboard.playback();
+    const columns = async (name) => (await getJson(server.url, `/runs/${run}/trajectories/${name}?format=json`));
+    const truth = await columns('truth');
+    const row = truth.columns.frame.indexOf(frame);
+    const shown = await dashboard.page.locator('.plot[data-axis=y_m] .readout').first().innerText();
+    assert.equal(shown.replace('−', '-'), truth.columns.y_m[row].toFixed(1));
+  });
+
+  it('steps frame by frame and second by second', async () => {
+    const { page } = dashboard;
+    const { frame } = await dashboard.playback();
+    await page.keyboard.press('ArrowRight');
+    await dashboard.untilCursor(frame + 1);
+    await page.keyboard.press('ArrowLeft');
+    await dashboard.untilCursor(frame);
+    await page.locator('button[aria-label^="One frame back"]').click();
+    await dashboard.untilCursor(frame - 1);
+    await page.keyboard.press('Shift+ArrowLeft');
+    await dashboard.untilCursor(frame - 1 - kRate_hz);
+    await page.keyboard.press('Home');
+    await dashboard.untilCursor(0);
+    await dashboard.untilSameInstant();
+    await page.keyboard.press('End');
+    await dashboard.until(() => Number(document.querySelector('[data-panel=timeline]').dataset.frame) > 600);
+    await dashboard.untilSameInstant();
+  });
+
+  it('plays, changes the speed and pauses', async () => {
+    const { page } = dashboard;
+    await page.keyboard.press('Home');
+    await dashboard.untilCursor(0);
+    await page.locator('#speed').selectOption('0.5');
+    await dashboard.until(() => document.querySelector('#speed').value === '0.5');
+    await page.keyboard.press('+');
+    await page.keyboard.press('+');
+    await dashboard.until(() => document.querySelector('#speed').value === '2');
+    await page.keyboard.press('Space');
+    await dashboard.untilPlaying(true);
+    await dashboard.untilFrames(['timeline', 'camera', 'scene'], 20);
+    await page.keyboard.press('Space');
+    await dashboard.untilPlaying(false);
+    await dashboard.untilSameInstant();
+    await page.keyboard.press('-');
+    await dashboard.until(() => document.querySelector('#speed').value === '1');
+  });
+
+  it('turns, zooms and switches the 3D view', async () => {
+    const { page } = dashboard;
+    const changed = async (act) => {
+      const { digest } = await dashboard.picture('scene');
+      await act();
+      const deadline = Date.now() + 30_000;
+      while ((await dashboard.picture('scene')).digest === digest) {
+        assert.ok(Date.now() < deadline, 'the 3D view stays as it was');
+        await page.evaluate(() => new Promise(requestAnimationFrame));
+      }
+    };
+    await changed(() => page.keyboard.press('2'));
+    await changed(() => page.keyboard.press('3'));
+    await changed(() => page.keyboard.press('f'));
+    await changed(() => page.keyboard.press('1'));
+    const box = await page.locator('[data-panel=scene] .panel-body').boundingBox();
+    const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+    await changed(async () => {
+      await page.mouse.move(x, y);
+      await page.mouse.down();
+      await page.mouse.move(x + 120, y + 10, { steps: 4 });
+      await page.mouse.up();
+    });
+    await changed(() => page.mouse.wheel(0, -300));
+  });
+
+  it('shows the figures of metrics.json for every alignment', async () => {
+    const metrics = await getJson(server.url, `/runs/${run}/metrics`);
+    const { alignments, coverage, dropped_frames, outcome } = metrics.estimators.feature;
+    const modes = Object.keys(alignments);
+    assert.ok(modes.includes('init_scale'));
+    const plain = (text) => text.replace('−', '-');
+    const fixed = (value, digits) => (typeof value === 'number' ? value.toFixed(digits) : '–');
+    for (const mode of modes) {
+      await dashboard.page.locator('#alignment').selectOption(mode);
+      const figures = alignments[mode];
+      await dashboard.until(
+        (wanted) => document.querySelector('.errors [data-row=scale] td')?.textContent === wanted,
+        fixed(figures.scale, 4),
+      );
+      const rows = await dashboard.errors();
+      assert.equal(plain(rows.position_rmse_m[0]), fixed(figures.position_rmse_m, 2), mode);
+      assert.equal(plain(rows.position_rmse_hold_m[0]), fixed(figures.position_rmse_hold_m, 2), mode);
+      assert.equal(plain(rows.rotation_rmse_deg[0]), fixed(figures.rotation_rmse_deg, 2), mode);
+      assert.equal(
+        plain(rows.rotation_euler_norm_rmse_deg[0]),
+        fixed(figures.rotation_euler_norm_rmse_deg, 2),
+        mode,
+      );
+      assert.equal(rows.coverage[0], `${(coverage * 100).toFixed(1)} %`);
+      assert.equal(rows.dropped_frames[0], String(dropped_frames));
+      assert.ok(rows.outcome[0].startsWith(outcome));
+    }
+    await dashboard.page.locator('#alignment').selectOption('init_scale');
+  });
+
+  it('fits both screens without scrolling', async () => {
+    await dashboard.clickAt('.track .bar', 0.9);
+    await dashboard.page.mouse.move(2, 2);
+    for (const { width, height } of kSizes) {
+      await dashboard.page.setViewportSize({ width, height });
+      await dashboard.until(
+        ([w, h]) => {
+          const canvas = document.querySelector('[data-panel=scene] canvas.picture');
+          const body = canvas.parentElement.getBoundingClientRect();
+          return window.innerWidth === w && window.innerHeight === h && Math.abs(canvas.width - body.width) <= 2;
+        },
+        [width, height],
+      );
+      await dashboard.untilSameInstant();
+      const overflow = await dashboard.page.evaluate(() => {
+        const { scrollWidth, scrollHeight } = document.documentElement;
+        const outside = [...document.querySelectorAll('.panel, .timeline, .header-bar')].filter((part) => {
+          const box = part.getBoundingClientRect();
+          return box.right > window.innerWidth + 1 || box.bottom > window.innerHeight + 1 || box.height < 20;
+        });
+        return [scrollWidth - window.innerWidth, scrollHeight - window.innerHeight, outside.length];
+      });
+      assert.deepEqual(overflow, [0, 0, 0]);
+      await dashboard.screenshot(`flight_${width}x${height}`);
+    }
+    await dashboard.page.setViewportSize(kSizes[0]);
+  });
+
+  it('opens the help and closes it', async () => {
+    await dashboard.page.keyboard.press('?');
+    await dashboard.page.locator('.help').waitFor({ state: 'visible' });
+    await dashboard.page.keyboard.press('Escape');
+    await dashboard.page.locator('.help').waitFor({ state: 'hidden' });
+  });
+
+  it('shows the same run and instant again from a copied address', async () => {
+    const { frame, t_ns } = await dashboard.playback();
+    await dashboard.until((t) => location.hash.endsWith(`t=${(t / 1e9).toFixed(3)}`), t_ns);
+    await dashboard.page.reload();
+    await dashboard.untilCursor(frame);
+    await dashboard.untilSameInstant();
+    assert.equal(await dashboard.runId(), run);
+  });
+
+  it('comes back by itself after the server was away', async () => {
+    const { frame } = await dashboard.playback();
+    await server.stop();
+    await dashboard.until(() => document.querySelector('[data-role=connection]').dataset.status === 'waiting');
+    server = await startServer({ runs: runs.folder, port: server.port });
+    await dashboard.until(() => document.querySelector('[data-role=connection]').dataset.status === 'open');
+    await dashboard.untilCursor(frame);
+    await dashboard.page.keyboard.press('ArrowLeft');
+    await dashboard.untilCursor(frame - 1);
+    await dashboard.untilSameInstant();
+  });
+
+  it('stops a running flight in real time and deletes it', async () => {
+    await dashboard.field('pacing').selectOption('real_time');
+    await dashboard.chooseEstimators();
+    const second = await dashboard.launch();
+    await dashboard.untilFrames(['camera', 'scene'], 10);
+    await dashboard.page.locator(`.run[data-run="${second}"] button[aria-label="Stop this run"]`).click();
+    await dashboard.untilStatus(second, 'cancelled');
+    await dashboard.page.locator(`.run[data-run="${second}"] button[aria-label="Delete this run"]`).click();
+    await dashboard.page.locator(`.run[data-run="${second}"] button[aria-label="Confirm deletion"]`).click();
+    await dashboard.until((id) => document.querySelector(`.run[data-run="${id}"]`) === null, second);
+    const left = (await getJson(server.url, '/runs')).runs.map(({ id }) => id);
+    assert.deepEqual(left, [run]);
+  });
+
+  it('never met an error of its own', () => {
+    assert.deepEqual(dashboard.complaints, []);
+  });
+});

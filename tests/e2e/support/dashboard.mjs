@@ -1,0 +1,152 @@
+// The dashboard as a viewer uses it. Everything waits for a condition, never for a time.
+import { mkdirSync } from 'node:fs';
+import { fileURLToPath } from 'node:url';
+import path from 'node:path';
+
+const kScreenshots = fileURLToPath(new URL('../screenshots', import.meta.url));
+const kPatience_ms = 30_000;
+
+export class Dashboard {
+  constructor(page) {
+    this.page = page;
+    this.complaints = [];
+    page.setDefaultTimeout(kPatience_ms);
+    page.on('pageerror', (error) => this.complaints.push(error.message));
+  }
+
+  async open(url) {
+    await this.page.goto(url);
+    await this.until(() => document.querySelector('[data-role=connection]')?.dataset.status === 'open');
+  }
+
+  /** Waits until a function of the page is true. */
+  async until(condition, argument, timeout = kPatience_ms) {
+    await this.page.waitForFunction(condition, argument, { timeout, polling: 50 });
+  }
+
+  field(name) {
+    return this.page.locator(`[id="field-${name}"]`);
+  }
+
+  async chooseEstimators(...types) {
+    for (const box of await this.page.locator('[data-estimator]').all()) {
+      await box.setChecked(types.includes(await box.getAttribute('data-estimator')));
+    }
+  }
+
+  /** Presses the button and waits for the run. @return its id */
+  async launch() {
+    const before = await this.runId();
+    await this.page.locator('button.primary').click();
+    await this.until(
+      (id) => {
+        const chosen = document.querySelector('.run[aria-current=true]');
+        return chosen !== null && chosen.dataset.run !== id;
+      },
+      before,
+    );
+    return this.runId();
+  }
+
+  runId() {
+    return this.page.evaluate(() => document.querySelector('.run[aria-current=true]')?.dataset.run ?? null);
+  }
+
+  async untilStatus(id, status, timeout) {
+    await this.until(
+      ([run, wanted]) => document.querySelector(`.run[data-run="${run}"]`)?.dataset.status === wanted,
+      [id, status],
+      timeout,
+    );
+  }
+
+  /** Frame number that a panel shows; null when it shows none. */
+  frame(panel) {
+    return this.page.evaluate((name) => {
+      const text = document.querySelector(`[data-panel="${name}"]`)?.dataset.frame;
+      return text === undefined ? null : Number(text);
+    }, panel);
+  }
+
+  async untilFrames(panels, least = 0) {
+    await this.until(
+      ([names, low]) =>
+        names.every((name) => Number(document.querySelector(`[data-panel="${name}"]`)?.dataset.frame ?? -1) >= low),
+      [panels, least],
+    );
+  }
+
+  /** Waits until these panels all show the frame at the playback cursor, standing still. */
+  async untilSameInstant(panels = ['scene', 'camera', 'plots', 'errors']) {
+    await this.until((names) => {
+      const timeline = document.querySelector('[data-panel=timeline]');
+      return (
+        timeline.dataset.playing === 'false' &&
+        names.every((name) => document.querySelector(`[data-panel="${name}"]`)?.dataset.frame === timeline.dataset.frame)
+      );
+    }, panels);
+  }
+
+  async playback() {
+    return this.page.evaluate(() => {
+      const { frame, tNs, playing } = document.querySelector('[data-panel=timeline]').dataset;
+      return { frame: Number(frame), t_ns: Number(tNs), playing: playing === 'true' };
+    });
+  }
+
+  async untilPlaying(playing) {
+    await this.until(
+      (wanted) => document.querySelector('[data-panel=timeline]').dataset.playing === String(wanted),
+      playing,
+    );
+  }
+
+  async untilCursor(frame) {
+    await this.until(
+      (wanted) => document.querySelector('[data-panel=timeline]').dataset.frame === String(wanted),
+      frame,
+    );
+  }
+
+  /** Clicks at a share of the width of the time line or of a plot. */
+  async clickAt(selector, share) {
+    const box = await this.page.locator(selector).first().boundingBox();
+    await this.page.mouse.click(box.x + box.width * share, box.y + box.height / 2);
+  }
+
+  /** A digest of what a panel's canvas shows. */
+  picture(panel) {
+    return this.page.evaluate((name) => {
+      const canvas = document.querySelector(`[data-panel="${name}"] canvas.picture`);
+      const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+      let sum = 0;
+      let squares = 0;
+      let digest = 0;
+      for (let i = 0; i < data.length; i += 4) {
+        sum += data[i];
+        squares += data[i] * data[i];
+        digest = (Math.imul(digest, 31) + data[i]) | 0;
+      }
+      const count = data.length / 4;
+      const mean = sum / count;
+      return { digest, mean, deviation: Math.sqrt(Math.max(0, squares / count - mean * mean)) };
+    }, panel);
+  }
+
+  /** Texts of the error table: row key -> one text an estimator. */
+  errors() {
+    return this.page.evaluate(() =>
+      Object.fromEntries(
+        [...document.querySelectorAll('.errors tr[data-row]')].map((row) => [
+          row.dataset.row,
+          [...row.querySelectorAll('td')].map((cell) => cell.textContent),
+        ]),
+      ),
+    );
+  }
+
+  async screenshot(name) {
+    mkdirSync(kScreenshots, { recursive: true });
+    await this.page.screenshot({ path: path.join(kScreenshots, `${name}.png`) });
+  }
+}
