@@ -13,29 +13,25 @@ namespace {
 constexpr double kEarthRadiusM = 6371000.0;
 constexpr std::size_t kMaxPatches = 6000;  // some 60 MB when a quarter of them is sampled
 
-/// Point of the mesh of 2^m cells above fine column i and row j: linear in the triangles that
-/// `append_cell` of ground_mesh.cpp draws (diagonal from the north-east to the south-west).
-Eigen::Vector3d mesh_point(const GroundPatch& patch, int log2_cells, int i, int j) {
-  const int step = kPatchCells >> log2_cells;
-  const int i0 = std::min(i / step * step, kPatchCells - step);
-  const int j0 = std::min(j / step * step, kPatchCells - step);
-  const double a = static_cast<double>(i - i0) / step;
-  const double b = static_cast<double>(j - j0) / step;
-  const Eigen::Vector3d& north_east = patch.point(i0 + step, j0);
-  const Eigen::Vector3d& south_west = patch.point(i0, j0 + step);
-  if (a + b <= 1.0) {
-    const Eigen::Vector3d& corner = patch.point(i0, j0);
-    return corner + a * (north_east - corner) + b * (south_west - corner);
-  }
-  const Eigen::Vector3d& corner = patch.point(i0 + step, j0 + step);
-  return corner + (1.0 - a) * (south_west - corner) + (1.0 - b) * (north_east - corner);
-}
-
-double mesh_error_m(const GroundPatch& patch, int log2_cells) {
+/// Largest distance between the ground's points in a square and the square's two triangles, which
+/// meet on the diagonal from the north-east to the south-west.
+double square_error_m(const GroundPatch& patch, int column, int row, int cells) {
+  const Eigen::Vector3d& north_west = patch.point(column, row);
+  const Eigen::Vector3d& north_east = patch.point(column + cells, row);
+  const Eigen::Vector3d& south_west = patch.point(column, row + cells);
+  const Eigen::Vector3d& south_east = patch.point(column + cells, row + cells);
+  const double scale = 1.0 / cells;
   double worst_squared = 0.0;
-  for (int j = 0; j <= kPatchCells; ++j) {
-    for (int i = 0; i <= kPatchCells; ++i) {
-      const Eigen::Vector3d difference = patch.point(i, j) - mesh_point(patch, log2_cells, i, j);
+  for (int j = 0; j <= cells; ++j) {
+    for (int i = 0; i <= cells; ++i) {
+      const double a = i * scale;
+      const double b = j * scale;
+      Eigen::Vector3d difference = -patch.point(column + i, row + j);
+      if (i + j <= cells) {
+        difference += (1.0 - a - b) * north_west + a * north_east + b * south_west;
+      } else {
+        difference += (a + b - 1.0) * south_east + (1.0 - a) * south_west + (1.0 - b) * north_east;
+      }
       worst_squared = std::max(worst_squared, difference.squaredNorm());
     }
   }
@@ -64,17 +60,16 @@ bool GroundPatches::above_imagery(const TileId& id) const {
   return id.level >= tiles_->grid().levels && id.col == 0 && id.row == 0;
 }
 
-Eigen::Vector3d GroundPatches::ground_point(const TileId& id, int column, int row) const {
-  // Counted in whole steps of the finest patch, so that patches of any level that share a point
-  // get the same bits for it: the mesh has no gaps.
+GroundPatches::LatticePoint GroundPatches::lattice_point(const TileId& id, int column, int row) {
+  const int scale = 1 << (id.level - kFinestPatchLevel);
+  return {(id.col * kPatchCells + column) * scale, (id.row * kPatchCells + row) * scale};
+}
+
+Eigen::Vector3d GroundPatches::ground_point(const LatticePoint& at) const {
   const terrain::TileGrid& grid = tiles_->grid();
   const double step_m =
       std::ldexp(terrain::kTileTexels * grid.texel_m, kFinestPatchLevel - kLog2PatchCells);
-  const std::int64_t scale = std::int64_t{1} << (id.level - kFinestPatchLevel);
-  const std::int64_t x = (static_cast<std::int64_t>(id.col) * kPatchCells + column) * scale;
-  const std::int64_t y = (static_cast<std::int64_t>(id.row) * kPatchCells + row) * scale;
-  return tiles_->world_from_map(grid.left_x_m + static_cast<double>(x) * step_m,
-                                grid.top_y_m - static_cast<double>(y) * step_m);
+  return tiles_->world_from_map(grid.left_x_m + at[0] * step_m, grid.top_y_m - at[1] * step_m);
 }
 
 TileCoverage GroundPatches::coverage_of(const TileId& id) const {
@@ -95,7 +90,7 @@ GroundPatch& GroundPatches::outline(const TileId& id) {
   constexpr int kStep = kPatchCells / kOutlineCells;
   for (int row = 0; row <= kOutlineCells; ++row) {
     for (int column = 0; column <= kOutlineCells; ++column) {
-      const Eigen::Vector3d point = ground_point(id, column * kStep, row * kStep);
+      const Eigen::Vector3d point = ground_point(lattice_point(id, column * kStep, row * kStep));
       patch.outline[row * (kOutlineCells + 1) + column] = point;
       patch.bounds.extend(point);
     }
@@ -117,12 +112,18 @@ void GroundPatches::sample(GroundPatch& patch) const {
   patch.points.reserve((kPatchCells + 1) * (kPatchCells + 1));
   for (int row = 0; row <= kPatchCells; ++row) {
     for (int column = 0; column <= kPatchCells; ++column) {
-      patch.points.push_back(ground_point(patch.id, column, row));
+      patch.points.push_back(ground_point(lattice_point(patch.id, column, row)));
     }
   }
-  for (int m = 0; m < kLog2PatchCells; ++m) patch.error_m[m] = mesh_error_m(patch, m);
-  // Halving the cells divides the error of a smooth surface by four, of a kinked one by two.
-  patch.error_m[kLog2PatchCells] = 0.5 * patch.error_m[kLog2PatchCells - 1];
+  for (int t = 1; t <= kLog2PatchCells; ++t) {
+    const int cells = 1 << t;
+    for (int row = 0; row < kPatchCells; row += cells) {
+      for (int column = 0; column < kPatchCells; column += cells) {
+        patch.square_error_m[t].push_back(
+            static_cast<float>(square_error_m(patch, column, row, cells)));
+      }
+    }
+  }
 }
 
 void GroundPatches::end_view() {

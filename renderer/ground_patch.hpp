@@ -31,14 +31,18 @@ struct GroundPatch {
 
   /// (kPatchCells + 1)^2 points of the ground; empty until sampled.
   std::vector<Eigen::Vector3d> points;
-  /// Largest distance between the sampled ground and a mesh of 2^m cells a side [m]; that of the
-  /// finest mesh is extrapolated.
-  std::array<double, kLog2PatchCells + 1> error_m{};
+  /// Largest distance between the sampled ground in a square of 2^t cells and the square's two
+  /// triangles [m], by t and the square's place; nothing for t = 0.
+  std::array<std::vector<float>, kLog2PatchCells + 1> square_error_m;
 
   std::uint64_t last_use = 0;
 
   [[nodiscard]] const Eigen::Vector3d& point(int column, int row) const {
     return points[static_cast<std::size_t>(row) * (kPatchCells + 1) + column];
+  }
+  /// @param t  log2 of the square's cells a side, >= 1
+  [[nodiscard]] float square_error(int t, int column, int row) const {
+    return square_error_m[t][static_cast<std::size_t>(row) * (kPatchCells >> t) + column];
   }
 };
 
@@ -47,9 +51,15 @@ class GroundPatches {
  public:
   explicit GroundPatches(std::shared_ptr<const terrain::TileSource> tiles);
 
+  /// A ground point by its place in the lattice of the finest patches' cells, counted from the
+  /// grid's corner to the east and to the south. Patches of any level that share a point get the
+  /// same bits for it.
+  using LatticePoint = std::array<std::int32_t, 2>;
+  [[nodiscard]] static LatticePoint lattice_point(const terrain::TileId& id, int column, int row);
+
   /// The patch with its outline. References stay good until end_view().
   GroundPatch& outline(const terrain::TileId& id);
-  /// Fills points and error_m.
+  /// Fills points and square_error_m.
   void sample(GroundPatch& patch) const;
   /// Forgets the patches used longest ago when there are many.
   void end_view();
@@ -64,7 +74,7 @@ class GroundPatches {
   struct Hash {
     std::size_t operator()(const terrain::TileId& id) const;
   };
-  [[nodiscard]] Eigen::Vector3d ground_point(const terrain::TileId& id, int column, int row) const;
+  [[nodiscard]] Eigen::Vector3d ground_point(const LatticePoint& at) const;
   [[nodiscard]] terrain::TileCoverage coverage_of(const terrain::TileId& id) const;
 
   std::shared_ptr<const terrain::TileSource> tiles_;

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "renderer/ground_stitching.hpp"
-
 namespace overfly::renderer {
 
 using terrain::TileCoverage;
@@ -20,19 +18,24 @@ constexpr double kDensityMargin = 0.9;
 /// Elevation finer than a patch's 32 cells is followed by splitting it, at most this often.
 constexpr int kMaxReliefSplits = 2;
 
-/// How a patch looks in the image: extremes over the visible part of its outline.
+/// How a patch looks in the image.
 struct Appearance {
+  GroundLeaf leaf;
   double texels_per_px_min = std::numeric_limits<double>::infinity();  ///< of level 0
-  double px_per_m_up_max = 0.0;   ///< image motion of a vertical displacement
-  double px_per_map_m_max = 0.0;  ///< image length of a step on the map
 };
 
 class Selector {
  public:
-  Selector(GroundPatches& patches, const View& view, const MeshLimits& limits)
-      : patches_(patches), view_(view), limits_(limits), side_normals_(view.side_normals_world()) {
-    up_camera_ = view.R_camera_world.col(2);
-  }
+  Selector(GroundPatches& patches,
+           const View& view,
+           const MeshLimits& limits,
+           const OnDivided& on_divided)
+      : patches_(patches),
+        view_(view),
+        limits_(limits),
+        on_divided_(on_divided),
+        side_normals_(view.side_normals_world()),
+        up_camera_(view.R_camera_world.col(2)) {}
 
   std::vector<GroundLeaf> run() {
     const terrain::TileSource& tiles = patches_.tiles();
@@ -76,36 +79,58 @@ class Selector {
   void visit(const TileId& id) {
     GroundPatch& patch = patches_.outline(id);
     if (outside(patch.bounds)) return;
-    const Appearance appearance = measure(patch);
+    Appearance appearance = measure(patch);
     if (id.level > kFinestPatchLevel && needs_finer_texels(patch, appearance)) {
-      for_children(id, [this](const TileId& child) { visit(child); });
+      divide(patch, [this](const TileId& child) { visit(child); });
       return;
     }
-    const bool textured = patch.coverage != TileCoverage::kNone;
-    visit_textured(patch, appearance, GroundPatches::tile_of(id), textured, kMaxReliefSplits);
+    appearance.leaf.textured = patch.coverage != TileCoverage::kNone;
+    appearance.leaf.texture = GroundPatches::tile_of(id);
+    const int splits = appearance.leaf.textured ? kMaxReliefSplits : 0;
+    emit(patch, appearance.leaf, splits);
   }
 
-  /// Splits on for the relief's sake, below the level that the texels ask for.
-  void visit_textured(GroundPatch& patch,
-                      const Appearance& appearance,
-                      const TileId& texture,
-                      bool textured,
-                      int splits_left) {
+  /// Keeps a patch, or divides it on where its relief is finer than its cells.
+  void emit(GroundPatch& patch, const GroundLeaf& leaf, int splits_left) {
     patches_.sample(patch);
-    const double error_px = patch.error_m[kLog2PatchCells] * appearance.px_per_m_up_max;
-    if (error_px > limits_.max_error_px && splits_left > 0 && patch.id.level > kFinestPatchLevel) {
-      for_children(patch.id, [&](const TileId& id) {
+    if (splits_left > 0 && patch.id.level > kFinestPatchLevel &&
+        relief_error_px(leaf) > limits_.max_error_px) {
+      divide(patch, [&](const TileId& id) {
         GroundPatch& child = patches_.outline(id);
         if (outside(child.bounds)) return;
-        visit_textured(child, measure(child), texture, textured, splits_left - 1);
+        GroundLeaf child_leaf = measure(child).leaf;
+        child_leaf.texture = leaf.texture;
+        child_leaf.textured = leaf.textured;
+        emit(child, child_leaf, splits_left - 1);
       });
       return;
     }
-    leaves_.push_back({&patch, texture, textured, log2_cells_for(patch, appearance), {}});
+    leaves_.push_back(leaf);
+  }
+
+  /// What the finest mesh of a patch leaves: cells half as long as those of t = 1 have half the
+  /// error of a kinked surface, a quarter of that of a smooth one.
+  [[nodiscard]] static double relief_error_px(const GroundLeaf& leaf) {
+    double worst_px = 0.0;
+    constexpr int kSquares = kPatchCells / 2;
+    for (int row = 0; row < kSquares; ++row) {
+      for (int column = 0; column < kSquares; ++column) {
+        const int corner =
+            row * kOutlineCells / kSquares * kOutlinePoints + column * kOutlineCells / kSquares;
+        const float scale = std::max({leaf.px_per_m_up[corner],
+                                      leaf.px_per_m_up[corner + 1],
+                                      leaf.px_per_m_up[corner + kOutlinePoints],
+                                      leaf.px_per_m_up[corner + kOutlinePoints + 1]});
+        worst_px = std::max(worst_px, 0.5 * scale * leaf.patch->square_error(1, column, row));
+      }
+    }
+    return worst_px;
   }
 
   template <typename Visit>
-  static void for_children(const TileId& id, const Visit& visit) {
+  void divide(const GroundPatch& patch, const Visit& visit) {
+    on_divided_(patch);
+    const TileId id = patch.id;
     for (int row = 0; row < 2; ++row) {
       for (int column = 0; column < 2; ++column) {
         visit(TileId{id.level - 1, 2 * id.col + column, 2 * id.row + row});
@@ -122,29 +147,20 @@ class Selector {
     return std::ldexp(1.0, patch.id.level) > kDensityMargin * appearance.texels_per_px_min;
   }
 
-  [[nodiscard]] int log2_cells_for(const GroundPatch& patch, const Appearance& appearance) const {
-    int m = 0;
-    while (m < kLog2PatchCells &&
-           (patch.error_m[m] * appearance.px_per_m_up_max > limits_.max_error_px ||
-            std::ldexp(patch.size_map_m, -m) * appearance.px_per_map_m_max > limits_.max_edge_px)) {
-      ++m;
-    }
-    return m;
-  }
-
   [[nodiscard]] Appearance measure(const GroundPatch& patch) const;
   void measure_point(int column, int row, double step_m, Appearance& appearance) const;
+
+  static constexpr int kOutlinePoints = kOutlineCells + 1;
 
   GroundPatches& patches_;
   const View& view_;
   MeshLimits limits_;
+  const OnDivided& on_divided_;
   std::array<Eigen::Vector3d, 4> side_normals_;
   Eigen::Vector3d up_camera_;
   std::vector<GroundLeaf> leaves_;
   mutable std::array<Eigen::Vector3d, 25> outline_camera_;
 };
-
-constexpr int kOutlinePoints = kOutlineCells + 1;
 
 Appearance Selector::measure(const GroundPatch& patch) const {
   std::array<unsigned, 25> codes{};
@@ -163,6 +179,7 @@ Appearance Selector::measure(const GroundPatch& patch) const {
     }
   }
   Appearance appearance;
+  appearance.leaf.patch = &patch;
   const double step_m = patch.size_map_m / kOutlineCells;
   for (int i = 0; i < kOutlinePoints * kOutlinePoints; ++i) {
     if ((!counts[i] && any) || outline_camera_[i].z() <= 1e-3) continue;
@@ -192,19 +209,18 @@ void Selector::measure_point(int column, int row, double step_m, Appearance& app
     const double texels = largest / (determinant * patches_.tiles().grid().texel_m);
     appearance.texels_per_px_min = std::min(appearance.texels_per_px_min, texels);
   }
-  appearance.px_per_map_m_max = std::max({appearance.px_per_map_m_max, a.norm(), b.norm()});
-  appearance.px_per_m_up_max =
-      std::max(appearance.px_per_m_up_max, view_.pixel_rate(p, up_camera_).norm());
+  const int index = row * kOutlinePoints + column;
+  appearance.leaf.px_per_map_m[index] = static_cast<float>(std::max(a.norm(), b.norm()));
+  appearance.leaf.px_per_m_up[index] = static_cast<float>(view_.pixel_rate(p, up_camera_).norm());
 }
 
 }  // namespace
 
 std::vector<GroundLeaf> select_ground(GroundPatches& patches,
                                       const View& view,
-                                      const MeshLimits& limits) {
-  std::vector<GroundLeaf> leaves = Selector(patches, view, limits).run();
-  stitch_borders(leaves);
-  return leaves;
+                                      const MeshLimits& limits,
+                                      const OnDivided& on_divided) {
+  return Selector(patches, view, limits, on_divided).run();
 }
 
 }  // namespace overfly::renderer

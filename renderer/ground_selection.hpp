@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <vector>
 
 #include "renderer/ground_patch.hpp"
@@ -11,22 +12,23 @@
 namespace overfly::renderer {
 
 struct MeshLimits {
-  double max_edge_px = 64.0;   ///< longest edge of a mesh cell in the image
+  double max_edge_px = 64.0;   ///< longest side of a mesh square in the image
   double max_error_px = 0.25;  ///< displacement by the mesh's deviation from the ground
 };
 
-/// The sides of a patch, as indices.
-enum PatchSide { kWest = 0, kEast = 1, kNorth = 2, kSouth = 3 };
-
+/// A sampled patch that the view shows, and how the image magnifies it at the points of its
+/// outline; 0 at those that belong to no visible part.
 struct GroundLeaf {
   const GroundPatch* patch = nullptr;
-  terrain::TileId texture;  ///< tile of level >= 0 that covers the patch
-  bool textured = false;    ///< false: no imagery here
-  int log2_cells = 0;       ///< the mesh has 2^log2_cells cells a side
-  /// log2 of how many of its own cells one cell of each border spans: a border is as coarse as
-  /// the coarser of its two patches, so that no gap opens between them.
-  std::array<int, 4> log2_border_ratio{};
+  terrain::TileId texture;               ///< tile of level >= 0 that covers the patch
+  bool textured = false;                 ///< false: no imagery here
+  std::array<float, 25> px_per_m_up{};   ///< image motion of a vertical displacement
+  std::array<float, 25> px_per_map_m{};  ///< image length of a step on the map
 };
+
+/// Called for each patch that the selection divides: its outline holds the points that are new
+/// corners of its parts.
+using OnDivided = std::function<void(const GroundPatch&)>;
 
 /// Selects the patches of a view: as coarse as the image allows (the texel of a patch's tile is
 /// nowhere larger than a pixel's footprint, except at level 0), to the horizon.
@@ -34,6 +36,7 @@ struct GroundLeaf {
 /// Cost: O(visited patches); new ones are sampled from the tile source.
 [[nodiscard]] std::vector<GroundLeaf> select_ground(GroundPatches& patches,
                                                     const View& view,
-                                                    const MeshLimits& limits);
+                                                    const MeshLimits& limits,
+                                                    const OnDivided& on_divided);
 
 }  // namespace overfly::renderer
