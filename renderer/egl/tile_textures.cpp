@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "renderer/egl/texture_upload.hpp"
 #include "renderer/tile_pixels.hpp"
 
 namespace overfly::renderer::egl {
@@ -13,30 +14,6 @@ using terrain::TileId;
 namespace {
 
 constexpr int kValidStep = 8;
-
-GlTexture upload(const std::vector<Image>& levels) {
-  GlTexture texture = GlTexture::make();
-  glBindTexture(GL_TEXTURE_2D, texture.name());
-  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  const bool grey = levels.front().channels == 1;
-  for (std::size_t i = 0; i < levels.size(); ++i) {
-    glTexImage2D(GL_TEXTURE_2D,
-                 static_cast<GLint>(i),
-                 grey ? GL_R8 : GL_RGB8,
-                 levels[i].width_px,
-                 levels[i].height_px,
-                 0,
-                 grey ? GL_RED : GL_RGB,
-                 GL_UNSIGNED_BYTE,
-                 levels[i].data.data());
-  }
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, static_cast<GLint>(levels.size()) - 1);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-  return texture;
-}
 
 Image in_format(Image rgb, PixelFormat format) {
   return format == PixelFormat::kGrey8 ? grey_from_rgb(rgb) : std::move(rgb);
@@ -81,7 +58,7 @@ Result<GLuint> TileTextures::texture(const TileId& id, PixelFormat format) {
   for (const Image& level : levels) {
     entry.bytes += static_cast<std::size_t>(level.width_px) * level.height_px * texel_bytes;
   }
-  entry.texture = upload(levels);
+  entry.texture = upload_texture(levels);
   held_bytes_ += entry.bytes;
   entries_.push_front(std::move(entry));
   by_key_.emplace(key, entries_.begin());
@@ -93,7 +70,7 @@ GLuint TileTextures::void_texture(PixelFormat format) {
   if (texture.name() == 0) {
     Image rgb(1, 1, 3);
     std::copy(std::begin(terrain::kVoidRgb), std::end(terrain::kVoidRgb), rgb.data.begin());
-    texture = upload({in_format(std::move(rgb), format)});
+    texture = upload_texture({in_format(std::move(rgb), format)});
   }
   return texture.name();
 }

@@ -1,0 +1,124 @@
+#include "renderer/bench_probe.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+#include <functional>
+#include <optional>
+
+namespace overfly::renderer {
+
+namespace {
+
+double process_cpu_ms() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// The costs of one kind of call, in order.
+struct Series {
+  std::vector<double> cpu_ms, wall_ms;
+
+  Status time(const std::function<Status()>& call) {
+    const double cpu_before_ms = process_cpu_ms();
+    const auto before = std::chrono::steady_clock::now();
+    Status status = call();
+    const std::chrono::duration<double, std::milli> wall =
+        std::chrono::steady_clock::now() - before;
+    cpu_ms.push_back(process_cpu_ms() - cpu_before_ms);
+    wall_ms.push_back(wall.count());
+    return status;
+  }
+
+  [[nodiscard]] CallCost cost() const { return {median(cpu_ms), median(wall_ms)}; }
+};
+
+template <typename T>
+Status status_of(const Result<T>& result) {
+  return result.ok() ? Status() : Status(result.error());
+}
+
+PinholeCamera standard_camera() {
+  return PinholeCamera::from_fov(1280, 960, rad_from_deg(84.872), FovAxis::kHorizontal).value();
+}
+
+class Measurement {
+ public:
+  Measurement(Renderer& renderer, QuadProbe& quad) : renderer_(renderer), quad_(quad) {}
+
+  Status warm_up(const Pose& pose) {
+    Measurement unused(renderer_, quad_);
+    return unused.round(pose);
+  }
+
+  Status round(const Pose& pose) {
+    if (Status s = quads_.time([&] { return quad_.draw(); }); !s) return s;
+    if (Status s = grey_.time([&] { return camera(pose, PixelFormat::kGrey8); }); !s) return s;
+    if (Status s = rgb_.time([&] { return camera(pose, PixelFormat::kRgb8); }); !s) return s;
+    if (Status s = depth_.time([&] { return status_of(renderer_.render_depth(camera_, pose)); });
+        !s) {
+      return s;
+    }
+    return scene_.time([&] {
+      SceneView view;
+      view.T_world_camera = pose;
+      SceneContent content;
+      content.aircraft.push_back({{pose.rotation * R_body_camera_nadir().conjugate(),
+                                   pose.translation + pose.rotation * Eigen::Vector3d(0, 0, 30)},
+                                  {0.9F, 0.1F, 0.1F},
+                                  8.0,
+                                  false});
+      return status_of(renderer_.render_scene(view, content));
+    });
+  }
+
+  [[nodiscard]] RenderCosts costs() const {
+    std::vector<double> ratios;
+    for (std::size_t i = 0; i < quads_.cpu_ms.size(); ++i) {
+      ratios.push_back(grey_.cpu_ms[i] / quads_.cpu_ms[i]);
+    }
+    return {quads_.cost(), grey_.cost(), rgb_.cost(), depth_.cost(), scene_.cost(), median(ratios)};
+  }
+
+ private:
+  Status camera(const Pose& pose, PixelFormat format) {
+    return status_of(renderer_.render_camera(camera_, pose, 0, format));
+  }
+
+  Renderer& renderer_;
+  QuadProbe& quad_;
+  PinholeCamera camera_ = standard_camera();
+  Series quads_, grey_, rgb_, depth_, scene_;
+};
+
+}  // namespace
+
+Result<RenderCosts> measure_render_costs(const std::shared_ptr<const terrain::TileSource>& tiles,
+                                         const std::vector<Pose>& T_world_camera,
+                                         int repetitions) {
+  if (T_world_camera.empty() || repetitions < 1) {
+    return Error{ErrorCode::kInvalidArgument, "render costs need a pose and a repetition"};
+  }
+  const Result<std::unique_ptr<QuadProbe>> quad = QuadProbe::create();
+  if (!quad.ok()) return quad.error();
+  const Result<std::unique_ptr<Renderer>> renderer = create_egl_renderer(tiles);
+  if (!renderer.ok()) return renderer.error();
+  Measurement measurement(**renderer, **quad);
+  for (const Pose& pose : T_world_camera) {
+    if (Status status = measurement.warm_up(pose); !status) return status.error();
+  }
+  for (int i = 0; i < repetitions; ++i) {
+    const Status status = measurement.round(T_world_camera[i % T_world_camera.size()]);
+    if (!status) return status.error();
+  }
+  return measurement.costs();
+}
+
+}  // namespace overfly::renderer
