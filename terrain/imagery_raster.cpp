@@ -42,7 +42,7 @@ Result<std::shared_ptr<const ImageryRaster>> ImageryRaster::open(
   base.height_px = raster->height_px_;
   base.pool = std::make_unique<DatasetPool>(file, 0);
   raster->stored_.push_back(std::move(base));
-  raster->add_overviews(dataset, warnings);
+  raster->add_overviews(dataset);
   raster->stored_.front().pool->put(std::move(*opened));
 
   // The in-memory levels start where the stored ones are left behind, later if they were too big.
@@ -53,7 +53,7 @@ Result<std::shared_ptr<const ImageryRaster>> ImageryRaster::open(
   return std::shared_ptr<const ImageryRaster>(std::move(raster));
 }
 
-void ImageryRaster::add_overviews(GDALDataset& dataset, std::vector<std::string>& warnings) {
+void ImageryRaster::add_overviews(GDALDataset& dataset) {
   GDALRasterBand* band = dataset.GetRasterBand(bands_.rgb[0]);
   for (int i = 0; i < band->GetOverviewCount(); ++i) {
     GDALRasterBand* overview = band->GetOverview(i);
@@ -69,12 +69,8 @@ void ImageryRaster::add_overviews(GDALDataset& dataset, std::vector<std::string>
                               std::abs(stored.ratio_y / power - 1.0) < 0.02;
     if (!power_of_two || stored.level <= stored_.back().level) continue;
     stored.pool = std::make_unique<DatasetPool>(file_, i + 1);
-    if (!overview_is_average(stored_.back(), stored)) {
-      warnings.push_back(file_.string() + ": its overview of 1/" +
-                         std::to_string(1 << stored.level) +
-                         " is no area average of the imagery; coarse tiles are made afresh");
-      return;
-    }
+    // Coarse tiles are then made afresh, which costs time and nothing else.
+    if (!overview_is_average(stored_.back(), stored)) return;
     stored_.push_back(std::move(stored));
   }
 }
@@ -115,7 +111,7 @@ bool ImageryRaster::overview_is_average(const Stored& finer, const Stored& coars
   // Compression keeps an average within a few grey levels of ours; a nearest-neighbour overview
   // differs as much as single texels do.
   constexpr double kShare = 0.35;
-  const double noise = 2.0 * 2.0 * 5 * width * height;
+  const double noise = 3.5 * 3.5 * 5 * width * height;
   return to_average <= std::max(noise, kShare * to_nearest);
 }
 

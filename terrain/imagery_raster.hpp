@@ -18,7 +18,7 @@ namespace overfly::terrain {
 class ImageryRaster {
  public:
   /// Opens the file and checks it: bands, georeference, that its blocks lie inside the file, and
-  /// which of its overviews are area averages (others are not used, with a warning).
+  /// which of its overviews are area averages (others are not used).
   /// Errors: kNotFound, kUnreadable, kInvalidArgument naming the file.
   static Result<std::shared_ptr<const ImageryRaster>> open(const std::filesystem::path& file,
                                                            const std::optional<std::string>& crs,
@@ -56,7 +56,7 @@ class ImageryRaster {
     std::optional<Error> error;
   };
 
-  void add_overviews(GDALDataset& dataset, std::vector<std::string>& warnings);
+  void add_overviews(GDALDataset& dataset);
   [[nodiscard]] bool overview_is_average(const Stored& finer, const Stored& coarser) const;
   [[nodiscard]] Result<Patch> read_stored(
       const Stored& stored, int x, int y, int width, int height) const;

@@ -1,0 +1,37 @@
+// The plan of the built-in world: everything in it as shapes, before anything is painted.
+#pragma once
+
+#include <vector>
+
+#include "terrain/synthesis/airfield.hpp"
+#include "terrain/synthesis/parcels.hpp"
+#include "terrain/synthesis/relief.hpp"
+#include "terrain/synthesis/structures.hpp"
+#include "terrain/synthesis/water.hpp"
+
+namespace overfly::terrain::synthesis {
+
+struct LandscapeOptions {
+  std::uint32_t seed = 1;
+  float half_m = 2100.0F;   ///< half the side of the imagery
+  float reach_m = 1500.0F;  ///< the hills go on so far beyond it
+  float relief_m = 40.0F;
+};
+
+struct Landscape {
+  LandscapeOptions options;
+  Airfield airfield;
+  Parcels parcels;
+  Water water;
+  Relief relief;
+  Structures structures;
+
+  static Landscape plan(const LandscapeOptions& options);
+
+  /// The parcels of a place, with the old boundaries' bends.
+  [[nodiscard]] ParcelHit parcel_at(float x, float y) const;
+  /// How far boundaries bend away from straight lines here [m].
+  [[nodiscard]] Point bend_at(float x, float y) const;
+};
+
+}  // namespace overfly::terrain::synthesis
