@@ -5,6 +5,8 @@ import type { Socket } from './connection/stream_client';
 import { StreamClient } from './connection/stream_client';
 import { Catalogue } from './store/catalogue';
 import { Notices } from './store/notices';
+import { Player } from './store/player';
+import { SceneControl } from './store/scene_control';
 import { Session } from './store/session';
 import { Store } from './store/state';
 import { followAddress } from './views/address_bar';
@@ -27,9 +29,12 @@ export function startDashboard(outside: Outside): void {
     listener: session,
   });
   session.use(client);
+  const player = new Player(store, session);
+  const scene = new SceneControl(store, client);
+  scene.setMode(store.state.sceneMode);
   const rest = new RestClient('api/v1', outside.fetch);
   const catalogue = new Catalogue(store, rest, session, notices, later, newKey);
-  const context = { store, session, catalogue, notices, client };
+  const context = { store, session, player, scene, catalogue, notices, client };
   showScreen(context, document.body);
   followAddress(context);
   window.addEventListener('online', () => client.connect());

@@ -1,12 +1,10 @@
-// Watching one run: takes the stream's messages into the store and turns the viewer's wishes
-// into commands.
+// Watching one run: asks for it and takes what the stream tells about it into the store.
 import type { ConnectionState, StreamClient, StreamListener } from '../connection/stream_client';
 import type {
   ClientMessage,
   PictureStream,
   Playback,
   Resume,
-  SceneMode,
   ServerMessage,
 } from '../protocol/messages';
 import type { PictureMessage } from '../protocol/parse';
@@ -15,13 +13,7 @@ import type { Decode } from './picture_decoder';
 import { PictureDecoder } from './picture_decoder';
 import { RunData } from './run_data';
 import type { Notices } from './notices';
-import type { SceneOrbit, Store } from './state';
-import { nearestIndex } from './table';
-
-export const kSpeeds = [0.1, 0.25, 0.5, 1, 2, 5, 10, 20, 50] as const;
-
-const kDistanceRange_m = [5, 20000] as const;
-const kElevationRange_deg = [-10, 90] as const;
+import type { Store } from './state';
 
 export class Session implements StreamListener {
   private client: StreamClient | null = null;
@@ -57,7 +49,7 @@ export class Session implements StreamListener {
   selectRun(id: string | null, t_ns: number | null = null): void {
     const { state } = this.store;
     if (id !== null && id === state.runId) {
-      if (t_ns !== null) this.seekTime(t_ns);
+      if (t_ns !== null) this.command({ type: 'seek', t_ns });
       return;
     }
     this.decoder.clear();
@@ -72,85 +64,6 @@ export class Session implements StreamListener {
     this.subscribed = '';
     this.client?.attach(id);
     this.store.change('run', 'rows', 'log', 'metrics', 'playback', 'pictures', 'scene');
-  }
-
-  togglePlay(): void {
-    const { playback } = this.store.state;
-    if (playback === null) return;
-    const atEnd = !playback.live && playback.t_ns >= playback.end_ns;
-    if (!playback.playing && atEnd) this.command({ type: 'seek', t_ns: playback.begin_ns });
-    this.command({ type: playback.playing ? 'pause' : 'play' });
-  }
-
-  step(frames: number): void {
-    this.command({ type: 'step', frames });
-  }
-
-  /** Goes to the frame nearest to a time, so that every panel has a picture of that very instant. */
-  seekTime(t_ns: number): void {
-    const { truth } = this.store.state.data;
-    const row = nearestIndex(truth.column('t_ns'), t_ns);
-    if (row < 0) this.command({ type: 'seek', t_ns: Math.round(t_ns) });
-    else this.command({ type: 'seek', frame: truth.at('frame', row) });
-  }
-
-  seekBy(delta_ns: number): void {
-    const { playback } = this.store.state;
-    if (playback !== null) this.seekTime(playback.t_ns + delta_ns);
-  }
-
-  seekEdge(edge: 'begin' | 'end'): void {
-    const { playback } = this.store.state;
-    if (playback !== null) this.seekTime(edge === 'begin' ? playback.begin_ns : playback.end_ns);
-  }
-
-  setSpeed(value: number): void {
-    this.command({ type: 'speed', value });
-  }
-
-  changeSpeed(direction: 1 | -1): void {
-    const speed = this.store.state.playback?.speed ?? 1;
-    const next =
-      direction > 0
-        ? kSpeeds.find((value) => value > speed * 1.001)
-        : kSpeeds.findLast((value) => value < speed * 0.999);
-    if (next !== undefined) this.setSpeed(next);
-  }
-
-  toggleLoop(): void {
-    const { playback } = this.store.state;
-    if (playback !== null) this.command({ type: 'loop', value: !playback.loop });
-  }
-
-  goLive(): void {
-    if (this.store.state.run?.status === 'running') this.command({ type: 'live' });
-  }
-
-  setSceneMode(mode: SceneMode): void {
-    const { state } = this.store;
-    state.sceneMode = mode;
-    this.client?.setView({ mode, ...state.sceneOrbits[mode] });
-    this.store.change('scene');
-  }
-
-  orbit(change: Partial<SceneOrbit>): void {
-    const { state } = this.store;
-    const orbit = { ...state.sceneOrbits[state.sceneMode], ...change };
-    orbit.azimuth_deg = ((orbit.azimuth_deg % 360) + 360) % 360;
-    orbit.elevation_deg = clamp(orbit.elevation_deg, kElevationRange_deg);
-    orbit.distance_m = clamp(orbit.distance_m, kDistanceRange_m);
-    state.sceneOrbits[state.sceneMode] = orbit;
-    this.client?.setView({ mode: state.sceneMode, ...orbit });
-    this.store.change('scene');
-  }
-
-  toggleFollow(): void {
-    const { state } = this.store;
-    this.orbit({ follow: !state.sceneOrbits[state.sceneMode].follow });
-  }
-
-  setSceneSize(width_px: number, height_px: number): void {
-    this.client?.setView({ width_px, height_px });
   }
 
   /** How wide camera and debug images are shown, in device pixels. */
@@ -258,11 +171,8 @@ export class Session implements StreamListener {
     this.client?.subscribe(streams);
   }
 
-  private command(message: ClientMessage): void {
+  /** Sends a playback command to the run being watched. */
+  command(message: ClientMessage): void {
     if (this.store.state.runId !== null) this.client?.command(message);
   }
-}
-
-function clamp(value: number, [low, high]: readonly [number, number]): number {
-  return Math.min(high, Math.max(low, value));
 }

@@ -97,7 +97,7 @@ export class PlotsPanel implements View {
         unit: isAngle(axis) ? 'deg' : 'm',
         timeLabels: index >= 3,
         estimators: names.length,
-        onSeek: (t_s) => this.context.session.seekTime(t_s * 1e9),
+        onSeek: (t_s) => this.context.player.seekTime(t_s * 1e9),
         onHover: (row) => this.hover(row),
       }),
     }));

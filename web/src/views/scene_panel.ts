@@ -41,7 +41,7 @@ export class ScenePanel implements View {
         {
           class: 'tab',
           title: `${label} view (${key})`,
-          onclick: () => context.session.setSceneMode(mode),
+          onclick: () => context.scene.setMode(mode),
         },
         label,
       );
@@ -53,7 +53,7 @@ export class ScenePanel implements View {
       {
         class: 'tab follow',
         title: 'Keep the aircraft in the middle (F)',
-        onclick: () => context.session.toggleFollow(),
+        onclick: () => context.scene.toggleFollow(),
       },
       'Follow',
     );
@@ -97,7 +97,7 @@ export class ScenePanel implements View {
   }
 
   private steer(area: HTMLElement): void {
-    const { session, store } = this.context;
+    const { scene, store } = this.context;
     const current = () => store.state.sceneOrbits[store.state.sceneMode];
     let last: { x: number; y: number } | null = null;
     area.addEventListener('pointerdown', (event) => {
@@ -108,7 +108,7 @@ export class ScenePanel implements View {
     area.addEventListener('pointermove', (event) => {
       if (last === null) return;
       const { azimuth_deg, elevation_deg } = current();
-      session.orbit({
+      scene.orbit({
         azimuth_deg: azimuth_deg + (event.clientX - last.x) * kTurn_deg_px,
         elevation_deg: elevation_deg + (event.clientY - last.y) * kTurn_deg_px,
       });
@@ -119,12 +119,12 @@ export class ScenePanel implements View {
     };
     area.addEventListener('pointerup', release);
     area.addEventListener('pointercancel', release);
-    area.addEventListener('dblclick', () => session.toggleFollow());
+    area.addEventListener('dblclick', () => scene.toggleFollow());
     area.addEventListener(
       'wheel',
       (event) => {
         event.preventDefault();
-        session.orbit({ distance_m: current().distance_m * Math.exp(event.deltaY * kZoom_per_px) });
+        scene.orbit({ distance_m: current().distance_m * Math.exp(event.deltaY * kZoom_per_px) });
       },
       { passive: false },
     );
@@ -140,7 +140,7 @@ export class ScenePanel implements View {
       const key = `${width_px}x${height_px}`;
       if (key === asked) return;
       asked = key;
-      this.context.session.setSceneSize(width_px, height_px);
+      this.context.scene.setSize(width_px, height_px);
     });
     new ResizeObserver(([entry]) => {
       if (entry === undefined) return;

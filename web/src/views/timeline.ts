@@ -1,7 +1,7 @@
 // Playback: buttons, the time line, speed.
 import type { Topic } from '../store/state';
 import { formatTime } from '../store/format';
-import { kSpeeds } from '../store/session';
+import { kSpeeds } from '../store/player';
 import { h, setAttribute, setText } from './dom';
 import type { IconName } from './icons';
 import { icon } from './icons';
@@ -27,24 +27,24 @@ export class Timeline implements View {
   private readonly frame = h('span', { class: 'frame', 'data-role': 'frame' });
 
   constructor(private readonly context: Context) {
-    const { session } = context;
+    const { player } = context;
     this.track = new TimelineTrack(context);
-    this.play = iconButton('play', 'Play or pause (space)', () => session.togglePlay());
+    this.play = iconButton('play', 'Play or pause (space)', () => player.togglePlay());
     this.play.classList.add('play');
     this.play.append(this.pauseIcon);
     this.play.replaceChildren(this.playIcon, this.pauseIcon);
-    this.loop = iconButton('loop', 'Start again at the end', () => session.toggleLoop());
+    this.loop = iconButton('loop', 'Start again at the end', () => player.toggleLoop());
     this.live = h(
       'button',
       {
         class: 'live-button',
         title: 'Follow the running flight (L)',
-        onclick: () => session.goLive(),
+        onclick: () => player.goLive(),
       },
       h('i', {}),
       'Live',
     );
-    this.speed.addEventListener('change', () => session.setSpeed(Number(this.speed.value)));
+    this.speed.addEventListener('change', () => player.setSpeed(Number(this.speed.value)));
     this.speed.append(...kSpeeds.map((value) => h('option', { value }, `${value}×`)));
     this.root = h(
       'footer',
@@ -52,11 +52,11 @@ export class Timeline implements View {
       h(
         'div',
         { class: 'transport' },
-        iconButton('toBegin', 'To the begin (Home)', () => session.seekEdge('begin')),
-        iconButton('stepBack', 'One frame back (←)', () => session.step(-1)),
+        iconButton('toBegin', 'To the begin (Home)', () => player.seekEdge('begin')),
+        iconButton('stepBack', 'One frame back (←)', () => player.step(-1)),
         this.play,
-        iconButton('stepForward', 'One frame on (→)', () => session.step(1)),
-        iconButton('toEnd', 'To the end (End)', () => session.seekEdge('end')),
+        iconButton('stepForward', 'One frame on (→)', () => player.step(1)),
+        iconButton('toEnd', 'To the end (End)', () => player.seekEdge('end')),
       ),
       h('div', { class: 'clock' }, h('div', {}, this.time, this.end), this.frame),
       this.track.root,

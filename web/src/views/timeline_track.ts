@@ -102,7 +102,7 @@ export class TimelineTrack {
   }
 
   private scrub(): void {
-    const seek = perFrame((t_ns: number) => this.context.session.seekTime(t_ns));
+    const seek = perFrame((t_ns: number) => this.context.player.seekTime(t_ns));
     const hold = (event: PointerEvent) => {
       const end_ns = this.context.store.state.playback?.end_ns ?? 0;
       this.held_ns = Math.min(this.timeAt(event), end_ns);

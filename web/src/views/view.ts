@@ -1,5 +1,7 @@
 // What every part of the screen is.
 import type { Store, Topic } from '../store/state';
+import type { Player } from '../store/player';
+import type { SceneControl } from '../store/scene_control';
 import type { Session } from '../store/session';
 import type { Catalogue } from '../store/catalogue';
 import type { Notices } from '../store/notices';
@@ -15,6 +17,8 @@ export interface View {
 export interface Context {
   store: Store;
   session: Session;
+  player: Player;
+  scene: SceneControl;
   catalogue: Catalogue;
   notices: Notices;
   client: StreamClient;

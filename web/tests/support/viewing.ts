@@ -1,0 +1,55 @@
+// A session on a socket whose other end is the test.
+import { StreamClient } from '../../src/connection/stream_client';
+import { Notices } from '../../src/store/notices';
+import { Player } from '../../src/store/player';
+import { SceneControl } from '../../src/store/scene_control';
+import { Session } from '../../src/store/session';
+import { Store } from '../../src/store/state';
+import { FakeSocket, FakeTimers } from './fake_socket';
+import { samplePlayback, sampleRun } from './samples';
+
+export class Viewing {
+  readonly store = new Store();
+  readonly timers = new FakeTimers();
+  readonly session: Session;
+  readonly player: Player;
+  readonly scene: SceneControl;
+  socket = new FakeSocket();
+
+  constructor() {
+    const notices = new Notices(this.store, (callback, delay_ms) => {
+      this.timers.set(callback, delay_ms);
+    });
+    const noPictures = () => Promise.reject(new Error('no pictures here'));
+    this.session = new Session(this.store, notices, noPictures);
+    const client = new StreamClient({
+      open: () => {
+        this.socket = new FakeSocket();
+        return this.socket;
+      },
+      timers: this.timers,
+      random: () => 0,
+      listener: this.session,
+    });
+    this.session.use(client);
+    this.player = new Player(this.store, this.session);
+    this.scene = new SceneControl(this.store, client);
+    client.connect();
+    this.socket.hello();
+  }
+
+  /** Watches run r1, 63 frames of 31 a second. */
+  watch(t_ns: number | null = null): void {
+    this.session.selectRun('r1', t_ns);
+    this.socket.receive({ type: 'run', run: sampleRun() });
+    const frame = Array.from({ length: 63 }, (_, k) => k);
+    const stamps = frame.map((k) => Math.round((k * 1e9) / 31));
+    this.socket.receive({
+      type: 'rows',
+      stream: 'truth',
+      seq: 0,
+      columns: { frame, t_ns: stamps },
+    });
+    this.socket.receive({ type: 'playback', ...samplePlayback() });
+  }
+}
