@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
-#include <utility>
 
 namespace overfly {
 
-Result<Trajectory> Trajectory::from_poses(std::vector<StampedPose> poses) {
+Result<Trajectory> Trajectory::from_poses(const std::vector<StampedPose>& poses) {
   Trajectory trajectory;
   trajectory.poses_.reserve(poses.size());
   for (const StampedPose& stamped : poses) {

@@ -20,7 +20,7 @@ class Trajectory {
   Trajectory() = default;
   /// Errors: kInvalidArgument if stamps do not strictly increase (the message gives the index),
   /// or if a pose is not finite or its quaternion has no length. Quaternions are normalised.
-  static Result<Trajectory> from_poses(std::vector<StampedPose> poses);
+  static Result<Trajectory> from_poses(const std::vector<StampedPose>& poses);
 
   /// Appends one pose. Errors: as from_poses.
   Status append(const StampedPose& stamped);
