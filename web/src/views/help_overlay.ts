@@ -21,6 +21,8 @@ export class HelpOverlay implements View {
       ['Wheel in 3D', 'zoom'],
       ['Double-click in 3D', 'follow the aircraft or not'],
       ['Click or drag in a plot', 'seek'],
+      ['Wheel in a plot', 'zoom in time'],
+      ['Double-click in a plot', 'show the whole flight'],
     ].map(([what = '', does = '']) => h('tr', {}, h('td', {}, what), h('td', {}, does)));
     this.root = h(
       'div',

@@ -6,6 +6,7 @@ import { kAxes } from '../store/run_data';
 import { estimateColour, kTruthColour } from './colours';
 import { h, perFrame, setText } from './dom';
 import { formatNumber } from '../store/format';
+import type { Span } from '../store/time_window';
 import { paddedRange } from './plot_range';
 
 export interface PlotOptions {
@@ -17,11 +18,14 @@ export interface PlotOptions {
   estimators: number;
   onSeek: (t_s: number) => void;
   onHover: (index: number | null) => void;
+  /** Above 1 shows more; 0 shows all. */
+  onZoom: (centre_s: number, factor: number) => void;
 }
 
 const kGrid = 'rgba(140, 155, 180, 0.11)';
 const kText = '#8a94a6';
 const kFont = '10px system-ui, sans-serif';
+const kZoom_per_px = 0.0015;
 const kSyncKey = 'overfly-plots';
 const kLeastSpan = { m: 2, deg: 4 } as const;
 
@@ -33,7 +37,7 @@ export class Plot {
   private readonly area = h('div', { class: 'plot-area' });
   private readonly cursor = h('div', { class: 'plot-cursor' });
   private readonly readouts: HTMLElement[];
-  private span_s: [number, number] = [0, 1];
+  private span_s: Span = [0, 1];
   private cursor_s: number | null = null;
 
   constructor(private readonly options: PlotOptions) {
@@ -58,12 +62,7 @@ export class Plot {
     new ResizeObserver(() => this.fit()).observe(this.area);
   }
 
-  setData(
-    t_s: Float64Array,
-    truth: Float64Array,
-    estimates: Curve[],
-    span_s: [number, number],
-  ): void {
+  setData(t_s: Float64Array, truth: Float64Array, estimates: Curve[], span_s: Span): void {
     this.span_s = span_s;
     // uPlot reads the series by index only; its type asks for one kind of array.
     this.plot.setData([t_s, truth, ...estimates] as unknown as uPlot.AlignedData, true);
@@ -106,6 +105,16 @@ export class Plot {
     over.addEventListener('pointermove', (event) => {
       if (over.hasPointerCapture(event.pointerId)) seekTo(event);
     });
+    over.addEventListener(
+      'wheel',
+      (event) => {
+        event.preventDefault();
+        const x = event.clientX - over.getBoundingClientRect().left;
+        this.options.onZoom(this.plot.posToVal(x, 'x'), Math.exp(event.deltaY * kZoom_per_px));
+      },
+      { passive: false },
+    );
+    over.addEventListener('dblclick', () => this.options.onZoom(0, 0));
     over.addEventListener('pointerleave', () => this.options.onHover(null));
   }
 
@@ -124,7 +133,7 @@ export class Plot {
         sync: { key: kSyncKey, setSeries: false },
       },
       scales: {
-        x: { time: false, range: () => this.span_s },
+        x: { time: false, range: () => [...this.span_s] },
         y: { range: (_, low, high) => paddedRange(low, high, kLeastSpan[this.options.unit]) },
       },
       axes: [

@@ -1,7 +1,10 @@
 // Six plots of the pose over time, drawn at most 15 times a second.
+import type { Playback } from '../protocol/messages';
 import { formatTime, wrapDegrees } from '../store/format';
 import type { Axis } from '../store/run_data';
 import { kAxes } from '../store/run_data';
+import type { Span } from '../store/time_window';
+import { following, zoomed } from '../store/time_window';
 import { EstimateCurve, isAngle, TruthCurve } from '../store/series';
 import type { Topic } from '../store/state';
 import { h, setText } from './dom';
@@ -39,6 +42,8 @@ export class PlotsPanel implements View {
   private drawn_ms = -Infinity;
   private timer = 0;
   private hovered: number | null = null;
+  /** What the viewer zoomed to; null = the whole flight. */
+  private window_s: Span | null = null;
 
   constructor(private readonly context: Context) {
     this.panel = makePanel('plots', 'Pose over time [s]', true);
@@ -69,23 +74,44 @@ export class PlotsPanel implements View {
     if (this.key !== `${String(runId)}/${data.generation}/${names.join('/')}`) this.build();
     const t_ns = data.truth.column('t_ns');
     if (this.t_s.length !== t_ns.length) this.t_s = t_ns.map((t) => t / 1e9);
-    const end_s = Math.max((run?.duration_ns ?? 0) / 1e9, this.t_s.at(-1) ?? 0, 1);
+    const span_s = this.window_s ?? this.whole();
     for (const { plot, truth, estimates } of this.plots) {
       const curve = truth.update(data);
       const others = names.map((name, i) => {
         const rows = data.estimates.get(name);
         return rows === undefined ? [] : (estimates[i]?.update(data, rows, curve) ?? []);
       });
-      plot.setData(this.t_s, curve, others, [0, end_s]);
+      plot.setData(this.t_s, curve, others, span_s);
     }
     this.panel.showEmpty(runId === null ? 'Poses of the flight appear here.' : null);
     this.moveCursor();
+  }
+
+  private whole(): Span {
+    const { run } = this.context.store.state;
+    return [0, Math.max((run?.duration_ns ?? 0) / 1e9, this.t_s.at(-1) ?? 0, 1)];
+  }
+
+  private zoom(centre_s: number, factor: number): void {
+    const whole = this.whole();
+    this.window_s = factor === 0 ? null : zoomed(this.window_s ?? whole, whole, centre_s, factor);
+    this.drawSoon();
+  }
+
+  /** Keeps the cursor in the window while it moves by itself. */
+  private followCursor(playback: Playback | null): void {
+    if (this.window_s === null || playback?.playing !== true) return;
+    const moved = following(this.window_s, this.whole(), playback.t_ns / 1e9);
+    if (moved === this.window_s) return;
+    this.window_s = moved;
+    this.drawSoon();
   }
 
   private build(): void {
     const { run, runId, data } = this.context.store.state;
     const names = run?.estimators ?? [];
     this.key = `${String(runId)}/${data.generation}/${names.join('/')}`;
+    this.window_s = null;
     for (const { plot } of this.plots) plot.destroy();
     this.plots = kAxes.map((axis, index) => ({
       axis,
@@ -99,6 +125,7 @@ export class PlotsPanel implements View {
         estimators: names.length,
         onSeek: (t_s) => this.context.player.seekTime(t_s * 1e9),
         onHover: (row) => this.hover(row),
+        onZoom: (centre_s, factor) => this.zoom(centre_s, factor),
       }),
     }));
     this.grid.replaceChildren(...this.plots.map(({ plot }) => plot.root));
@@ -106,6 +133,7 @@ export class PlotsPanel implements View {
 
   private moveCursor(): void {
     const { playback } = this.context.store.state;
+    this.followCursor(playback);
     for (const { plot } of this.plots)
       plot.moveCursor(playback === null ? null : playback.t_ns / 1e9);
     this.panel.showFrame(frameOf(playback));
