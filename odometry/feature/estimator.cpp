@@ -106,7 +106,7 @@ Result<VoEstimate> FeatureOdometry::track(const VoFrame& frame) {
     if (state_ == TrackingState::kInitialising) {
       if (!repeated) initialise(image, estimate, outcome);
     } else if (frozen) {
-      if (state_ == TrackingState::kTracking) lose(image);
+      if (state_ == TrackingState::kTracking) lose();
     } else if (state_ == TrackingState::kTracking) {
       follow(image, estimate, outcome);
     } else {
@@ -156,7 +156,7 @@ void FeatureOdometry::follow(const FrameImage& frame, VoEstimate& estimate, Outc
     outcome.tracked = track_map(frame);
   }
   if (!outcome.tracked.tracked) {
-    lose(frame);
+    lose();
     return;
   }
   accept(frame, estimate, outcome);
@@ -189,12 +189,11 @@ void FeatureOdometry::count_sights(const FrameImage& frame, const TrackResult& t
   for (const int id : tracked.missed) count(id, false);
 }
 
-void FeatureOdometry::lose(const FrameImage& frame) {
+void FeatureOdometry::lose() {
   state_ = TrackingState::kLost;
   lost_at_ns_ = previous_->t_ns;
   blind_search_s_ = 0.0;
   if (static_cast<int>(map_.keyframes().size()) < kYoungMap) start_over();
-  (void)frame;
 }
 
 void FeatureOdometry::search(const FrameImage& frame, VoEstimate& estimate, Outcome& outcome) {

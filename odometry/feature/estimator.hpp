@@ -48,7 +48,7 @@ class FeatureOdometry final : public VoPort {
   void search(const FrameImage& frame, VoEstimate& estimate, Outcome& outcome);
   [[nodiscard]] TrackResult track_map(const FrameImage& frame) const;
   void accept(const FrameImage& frame, VoEstimate& estimate, Outcome& outcome);
-  void lose(const FrameImage& frame);
+  void lose();
   void start_over();
   void count_sights(const FrameImage& frame, const TrackResult& tracked);
   void report(const FrameImage& frame, const Outcome& outcome, VoEstimate& estimate);

@@ -75,26 +75,19 @@ void Mapper::insert_keyframe(const FrameImage& frame,
 
 void Mapper::add_candidates(OrbExtractor& orb, Map& map) const {
   Keyframe& keyframe = map.newest();
-  const double cell_px =
-      std::sqrt(static_cast<double>(camera_.width_px) * camera_.height_px / options_.cells);
-  const auto cell_of = [&](const Eigen::Vector2d& pixel) {
-    const int columns = static_cast<int>(camera_.width_px / cell_px) + 1;
-    return static_cast<int>(pixel.y() / cell_px) * columns + static_cast<int>(pixel.x() / cell_px);
-  };
-  std::map<int, const Corner*> best;  // of each cell; null where a point is already
-  for (const Observation& seen : keyframe.observations) best[cell_of(seen.pixel)] = nullptr;
+  CellGrid empty = CellGrid::over(camera_.width_px, camera_.height_px, options_.cells);
+  std::fill(empty.marked.begin(), empty.marked.end(), std::uint8_t{1});
+  for (const Observation& seen : keyframe.observations) empty.marked[empty.index(seen.pixel)] = 0;
   const double usual = keyframe.plane.coefficients.z();
-  const std::vector<Corner> corners = orb.detect(keyframe.pyramid.level(0));
+  const std::vector<Corner> corners = orb.detect(keyframe.pyramid.level(0), &empty);
+  std::vector<const Corner*> best(empty.marked.size(), nullptr);
   for (const Corner& corner : corners) {
-    if (keyframe.plane.inverse_depth(camera_.ray(corner.pixel)) * kMaxRelativeDepth < usual) {
-      continue;
-    }
-    const auto [cell, made] = best.try_emplace(cell_of(corner.pixel), &corner);
-    if (!made && cell->second != nullptr && corner.response > cell->second->response) {
-      cell->second = &corner;
-    }
+    const std::size_t cell = empty.index(corner.pixel);
+    const double inverse_depth = keyframe.plane.inverse_depth(camera_.ray(corner.pixel));
+    if (empty.marked[cell] == 0 || inverse_depth * kMaxRelativeDepth < usual) continue;
+    if (best[cell] == nullptr || corner.response > best[cell]->response) best[cell] = &corner;
   }
-  for (const auto& [cell, corner] : best) {
+  for (const Corner* corner : best) {
     if (corner == nullptr) continue;
     keyframe.candidates.push_back({*corner, orb.describe(*corner), 0, false});
   }

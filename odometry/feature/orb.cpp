@@ -89,6 +89,35 @@ std::vector<Corner> take_in_rounds(std::vector<std::vector<Corner>> cells, int w
 
 }  // namespace
 
+CellGrid CellGrid::over(int width_px, int height_px, int cells) {
+  CellGrid grid;
+  grid.cell_px = std::sqrt(static_cast<double>(width_px) * height_px / cells);
+  grid.columns = static_cast<int>(width_px / grid.cell_px) + 1;
+  const int rows = static_cast<int>(height_px / grid.cell_px) + 1;
+  grid.marked.assign(static_cast<std::size_t>(grid.columns) * rows, 0);
+  return grid;
+}
+
+std::size_t CellGrid::index(const Eigen::Vector2d& pixel) const {
+  const Eigen::Vector2d cell = pixel.cwiseMax(0.0) / cell_px;
+  return static_cast<std::size_t>(cell.y()) * static_cast<std::size_t>(columns) +
+         static_cast<std::size_t>(cell.x());
+}
+
+bool CellGrid::any_marked(const Eigen::Vector2d& low, const Eigen::Vector2d& high) const {
+  const int rows = static_cast<int>(marked.size()) / columns;
+  const int first_column = std::max(0, static_cast<int>(low.x() / cell_px));
+  const int first_row = std::max(0, static_cast<int>(low.y() / cell_px));
+  const int last_column = std::min(columns - 1, static_cast<int>(high.x() / cell_px));
+  const int last_row = std::min(rows - 1, static_cast<int>(high.y() / cell_px));
+  for (int row = first_row; row <= last_row; ++row) {
+    for (int column = first_column; column <= last_column; ++column) {
+      if (marked[static_cast<std::size_t>(row) * columns + column] != 0) return true;
+    }
+  }
+  return false;
+}
+
 int hamming_distance(const Descriptor& a, const Descriptor& b) {
   int bits = 0;
   for (std::size_t i = 0; i < a.size(); ++i) bits += std::popcount(a[i] ^ b[i]);
@@ -120,20 +149,23 @@ void OrbExtractor::load(const cv::Mat& image) {
   }
 }
 
-std::vector<Corner> OrbExtractor::detect_level(int level, int wanted) const {
+std::vector<Corner> OrbExtractor::detect_level(int level, const CellGrid* wanted) const {
   const cv::Mat& image = levels_[static_cast<std::size_t>(level)];
   // Of the sizes as rounded, not the nominal scale.
-  const double scale_x = static_cast<double>(levels_[0].cols) / image.cols;
-  const double scale_y = static_cast<double>(levels_[0].rows) / image.rows;
+  const Eigen::Array2d scale(static_cast<double>(levels_[0].cols) / image.cols,
+                             static_cast<double>(levels_[0].rows) / image.rows);
   std::vector<std::vector<Corner>> cells;
   std::vector<cv::KeyPoint> found;
   for (int y = kMarginPx; y < image.rows - kMarginPx; y += kCellPx) {
     for (int x = kMarginPx; x < image.cols - kMarginPx; x += kCellPx) {
+      const int width = std::min(kCellPx, image.cols - kMarginPx - x);
+      const int height = std::min(kCellPx, image.rows - kMarginPx - y);
+      if (wanted != nullptr && !wanted->any_marked(scale * Eigen::Array2d(x, y),
+                                                   scale * Eigen::Array2d(x + width, y + height))) {
+        continue;
+      }
       // FAST looks 3 px beyond a pixel.
-      const cv::Rect cell(x - 3,
-                          y - 3,
-                          std::min(kCellPx, image.cols - kMarginPx - x) + 6,
-                          std::min(kCellPx, image.rows - kMarginPx - y) + 6);
+      const cv::Rect cell(x - 3, y - 3, width + 6, height + 6);
       cv::FAST(image(cell), found, parameters_.ini_fast_threshold, true);
       if (found.empty()) cv::FAST(image(cell), found, parameters_.min_fast_threshold, true);
       std::vector<Corner>& corners = cells.emplace_back();
@@ -141,21 +173,20 @@ std::vector<Corner> OrbExtractor::detect_level(int level, int wanted) const {
         Corner& corner = corners.emplace_back();
         corner.level_pixel = {static_cast<int>(keypoint.pt.x) + cell.x,
                               static_cast<int>(keypoint.pt.y) + cell.y};
-        corner.pixel = {(corner.level_pixel.x() + 0.5) * scale_x - 0.5,
-                        (corner.level_pixel.y() + 0.5) * scale_y - 0.5};
+        corner.pixel = (corner.level_pixel.cast<double>().array() + 0.5) * scale - 0.5;
         corner.scale_level = level;
         corner.response = keypoint.response;
       }
     }
   }
-  return take_in_rounds(std::move(cells), wanted);
+  return take_in_rounds(std::move(cells), shares_[static_cast<std::size_t>(level)]);
 }
 
-std::vector<Corner> OrbExtractor::detect(const cv::Mat& image) {
+std::vector<Corner> OrbExtractor::detect(const cv::Mat& image, const CellGrid* wanted) {
   load(image);
   std::vector<Corner> corners;
   for (std::size_t l = 0; l < levels_.size(); ++l) {
-    const std::vector<Corner> found = detect_level(static_cast<int>(l), shares_[l]);
+    const std::vector<Corner> found = detect_level(static_cast<int>(l), wanted);
     corners.insert(corners.end(), found.begin(), found.end());
   }
   return corners;

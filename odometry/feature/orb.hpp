@@ -21,6 +21,20 @@ struct Corner {
   Eigen::Vector2i level_pixel = Eigen::Vector2i::Zero();
 };
 
+/// Cells of an image, row-major, each with a mark.
+struct CellGrid {
+  double cell_px = 1.0;
+  int columns = 0;
+  std::vector<std::uint8_t> marked;
+
+  /// About `cells` square cells over an image, all unmarked.
+  static CellGrid over(int width_px, int height_px, int cells);
+  /// @pre the pixel is in the image
+  [[nodiscard]] std::size_t index(const Eigen::Vector2d& pixel) const;
+  /// Whether any cell that touches the box (full resolution, clipped to the grid) is marked.
+  [[nodiscard]] bool any_marked(const Eigen::Vector2d& low, const Eigen::Vector2d& high) const;
+};
+
 /// Number of differing bits, in [0, 256].
 [[nodiscard]] int hamming_distance(const Descriptor& a, const Descriptor& b);
 
@@ -35,7 +49,8 @@ class OrbExtractor {
 
   /// Corners of an 8-bit image: each cell of each level asks first with the initial threshold,
   /// then with the minimum; a level takes its share of `features` in rounds over the cells.
-  [[nodiscard]] std::vector<Corner> detect(const cv::Mat& image);
+  /// @param wanted looks only near marked cells; null = everywhere
+  [[nodiscard]] std::vector<Corner> detect(const cv::Mat& image, const CellGrid* wanted = nullptr);
   /// Makes an image the one that `describe` looks at, without looking for corners.
   void load(const cv::Mat& image);
   /// Descriptor of a corner of the image last given to `detect` or `load`.
@@ -44,7 +59,7 @@ class OrbExtractor {
   [[nodiscard]] double scale_factor() const { return parameters_.scale_factor; }
 
  private:
-  [[nodiscard]] std::vector<Corner> detect_level(int level, int wanted) const;
+  [[nodiscard]] std::vector<Corner> detect_level(int level, const CellGrid* wanted) const;
 
   FeatureParameters parameters_;
   std::vector<double> scales_;

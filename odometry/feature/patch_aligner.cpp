@@ -1,5 +1,6 @@
 #include "odometry/feature/patch_aligner.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>

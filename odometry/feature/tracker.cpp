@@ -32,11 +32,8 @@ Eigen::Matrix2d warp_of(const PinholeCamera& camera,
 /// One point of the local map for each cell of the image, best known first.
 std::vector<Tracker::Projection> Tracker::project(const Pose& T_camera_vo, const Map& map) const {
   const int oldest = map.newest().id - options_.local_keyframes;
-  const double cell_px =
-      std::sqrt(static_cast<double>(camera_.width_px) * camera_.height_px / options_.max_points);
-  const int columns = static_cast<int>(camera_.width_px / cell_px) + 1;
-  const int rows = static_cast<int>(camera_.height_px / cell_px) + 1;
-  std::vector<Projection> cells(static_cast<std::size_t>(columns) * rows);
+  const CellGrid grid = CellGrid::over(camera_.width_px, camera_.height_px, options_.max_points);
+  std::vector<Projection> cells(grid.marked.size());
   const Eigen::Matrix3d R = T_camera_vo.rotation.toRotationMatrix();
   for (const auto& [id, point] : map.points()) {
     if (point.keyframes.back() < oldest) continue;
@@ -46,9 +43,7 @@ std::vector<Tracker::Projection> Tracker::project(const Pose& T_camera_vo, const
         pixel->y() > camera_.height_px - 1 - kBorderPx) {
       continue;
     }
-    const auto column = static_cast<std::size_t>(pixel->x() / cell_px);
-    const auto row = static_cast<std::size_t>(pixel->y() / cell_px);
-    Projection& cell = cells[row * static_cast<std::size_t>(columns) + column];
+    Projection& cell = cells[grid.index(*pixel)];
     // Later points replace equals: the newer patch is nearer in view.
     if (cell.point == nullptr || point.keyframes.size() >= cell.point->keyframes.size()) {
       cell = {&point, *pixel};
