@@ -96,9 +96,10 @@ export class Store {
   private changed = new Set<Topic>();
   private listener: (() => void) | null = null;
 
-  /** Calls back once when something changed after the last take(). */
+  /** Calls back once when something changed after the last take(), or has already. */
   onChange(listener: () => void): void {
     this.listener = listener;
+    if (this.changed.size > 0) listener();
   }
 
   change(...topics: Topic[]): void {

@@ -66,15 +66,11 @@ export class Plot {
     this.span_s = span_s;
     // uPlot reads the series by index only; its type asks for one kind of array.
     this.plot.setData([t_s, truth, ...estimates] as unknown as uPlot.AlignedData, true);
-    this.moveCursor(this.cursor_s);
   }
 
   moveCursor(t_s: number | null): void {
     this.cursor_s = t_s;
-    const x = t_s === null ? -1 : this.plot.valToPos(t_s, 'x');
-    const visible = t_s !== null && x >= 0 && x <= this.plot.over.clientWidth;
-    this.cursor.style.visibility = visible ? 'visible' : 'hidden';
-    if (visible) this.cursor.style.transform = `translateX(${x.toFixed(1)}px)`;
+    this.placeCursor(this.plot);
   }
 
   /** Values beside the title: the truth's, then each estimate's. */
@@ -91,7 +87,13 @@ export class Plot {
     const { clientWidth, clientHeight } = this.area;
     if (clientWidth < 20 || clientHeight < 20) return;
     this.plot.setSize({ width: clientWidth, height: clientHeight });
-    this.moveCursor(this.cursor_s);
+  }
+
+  private placeCursor(plot: uPlot): void {
+    const x = this.cursor_s === null ? -1 : plot.valToPos(this.cursor_s, 'x');
+    const visible = x >= 0 && x <= plot.over.clientWidth;
+    this.cursor.style.visibility = visible ? 'visible' : 'hidden';
+    if (visible) this.cursor.style.transform = `translateX(${x.toFixed(1)}px)`;
   }
 
   private seekable(over: HTMLElement): void {
@@ -152,6 +154,8 @@ export class Plot {
         })),
       ],
       hooks: {
+        // Only now the scales are those of the data.
+        draw: [(plot: uPlot) => this.placeCursor(plot)],
         setCursor: [
           (plot: uPlot) => {
             // One plot speaks for all: the cursor is the same in each.

@@ -1,5 +1,4 @@
 // Six plots of the pose over time, drawn at most 15 times a second.
-import type { Playback } from '../protocol/messages';
 import { formatTime, wrapDegrees } from '../store/format';
 import type { Axis } from '../store/run_data';
 import { kAxes } from '../store/run_data';
@@ -55,6 +54,7 @@ export class PlotsPanel implements View {
 
   update(changed: ReadonlySet<Topic>): void {
     if (changed.has('run') || changed.has('rows')) this.drawSoon();
+    if (changed.has('playback')) this.followCursor();
     if (changed.has('playback') || changed.has('run')) this.moveCursor();
   }
 
@@ -98,9 +98,10 @@ export class PlotsPanel implements View {
     this.drawSoon();
   }
 
-  /** Keeps the cursor in the window while it moves by itself. */
-  private followCursor(playback: Playback | null): void {
-    if (this.window_s === null || playback?.playing !== true) return;
+  /** Keeps the cursor in the window when it moves. */
+  private followCursor(): void {
+    const { playback } = this.context.store.state;
+    if (this.window_s === null || playback === null) return;
     const moved = following(this.window_s, this.whole(), playback.t_ns / 1e9);
     if (moved === this.window_s) return;
     this.window_s = moved;
@@ -133,7 +134,6 @@ export class PlotsPanel implements View {
 
   private moveCursor(): void {
     const { playback } = this.context.store.state;
-    this.followCursor(playback);
     for (const { plot } of this.plots)
       plot.moveCursor(playback === null ? null : playback.t_ns / 1e9);
     this.panel.showFrame(frameOf(playback));
