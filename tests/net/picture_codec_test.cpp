@@ -1,0 +1,72 @@
+#include "server/net/picture_codec.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace overfly::net {
+namespace {
+
+PictureHeader example() {
+  PictureHeader header;
+  header.stream_id = 0x01020304;
+  header.sequence = 7;
+  header.frame = 0x1122334455;
+  header.t_ns = 32'258'065;
+  header.width_px = 1280;
+  header.height_px = 960;
+  header.encoding = PictureEncoding::kJpegGrey;
+  header.payload_bytes = 3;
+  header.live = true;
+  return header;
+}
+
+std::vector<std::uint8_t> message_of(const PictureHeader& header) {
+  const auto bytes = encode_picture_header(header);
+  std::vector<std::uint8_t> message(bytes.begin(), bytes.end());
+  message.resize(message.size() + header.payload_bytes, 0xAB);
+  return message;
+}
+
+TEST(PictureCodec, LaysOutTheHeaderByteByByte) {
+  // Written by hand from the table of docs/PROTOCOL.md.
+  const std::array<std::uint8_t, 48> expected = {
+      'O',  'V',  'F',  'L',  1,    0,    1, 0,          // magic, version, type
+      0x04, 0x03, 0x02, 0x01, 7,    0,    0, 0,          // stream, sequence
+      0x55, 0x44, 0x33, 0x22, 0x11, 0,    0, 0,          // frame
+      0x11, 0x38, 0xEC, 0x01, 0,    0,    0, 0,          // t_ns = 32258065 = 0x01EC3811
+      0x00, 0x05, 0xC0, 0x03, 1,    0,    48, 0,         // 1280, 960, grey, header length
+      3,    0,    0,    0,    1,    0,    0, 0};         // payload, flags
+  EXPECT_EQ(encode_picture_header(example()), expected);
+}
+
+TEST(PictureCodec, ReadsWhatItWrote) {
+  const auto decoded = decode_picture_header(message_of(example()));
+  ASSERT_TRUE(decoded);
+  EXPECT_EQ(decoded->stream_id, 0x01020304U);
+  EXPECT_EQ(decoded->frame, 0x1122334455);
+  EXPECT_EQ(decoded->t_ns, 32'258'065);
+  EXPECT_EQ(decoded->height_px, 960);
+  EXPECT_TRUE(decoded->live);
+}
+
+TEST(PictureCodec, KeepsNegativeFrames) {
+  PictureHeader header = example();
+  header.frame = -1;
+  EXPECT_EQ(decode_picture_header(message_of(header))->frame, -1);
+}
+
+TEST(PictureCodec, RefusesMessagesThatAreNoWholePicture) {
+  const auto good = message_of(example());
+  for (std::size_t size = 0; size < good.size(); ++size) {
+    EXPECT_FALSE(decode_picture_header(std::span(good).first(size))) << size;
+  }
+  for (const std::size_t at : {0U, 4U, 6U, 36U, 38U, 40U}) {
+    auto bad = good;
+    bad[at] ^= 0x40;
+    EXPECT_FALSE(decode_picture_header(bad)) << at;
+  }
+}
+
+}  // namespace
+}  // namespace overfly::net

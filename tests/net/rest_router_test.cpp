@@ -1,0 +1,67 @@
+#include "server/net/rest_router.hpp"
+
+#include <gtest/gtest.h>
+
+#include "server/net/error_response.hpp"
+
+namespace overfly::net {
+namespace {
+
+HttpResponse ask(const RestRouter& router, const std::string& method, const std::string& target) {
+  HttpResponse answer;
+  router.handle({method, target, {}, ""}, [&](HttpResponse response) { answer = response; });
+  return answer;
+}
+
+RestRouter example() {
+  RestRouter router;
+  const auto echo = [](const RouteCall& call, const Respond& respond) {
+    HttpResponse response;
+    response.body = call.path.at("id");
+    respond(response);
+  };
+  router.add("GET", "/runs/{id}", echo);
+  router.add("DELETE", "/runs/{id}", echo);
+  router.add("POST", "/runs/{id}/cancel", echo);
+  return router;
+}
+
+TEST(RestRouter, MatchesPathsAndDecodesWhatTheyHold) {
+  const RestRouter router = example();
+  EXPECT_EQ(ask(router, "GET", "/runs/a%20b").body, "a b");
+  EXPECT_EQ(ask(router, "HEAD", "/runs/a").status, 200);
+  EXPECT_EQ(ask(router, "POST", "/runs/a/cancel").body, "a");
+}
+
+TEST(RestRouter, TellsUnknownPathsFromWrongMethods) {
+  const RestRouter router = example();
+  EXPECT_EQ(ask(router, "GET", "/runs").status, 404);
+  EXPECT_EQ(ask(router, "GET", "/runs/").status, 404);
+  EXPECT_EQ(ask(router, "GET", "/runs/a/b").status, 404);
+  EXPECT_EQ(ask(router, "GET", "/runs/%zz").status, 400);
+  const HttpResponse wrong = ask(router, "PUT", "/runs/a");
+  EXPECT_EQ(wrong.status, 405);
+  bool allow_seen = false;
+  for (const auto& [name, value] : wrong.headers) {
+    if (name == "Allow") allow_seen = value == "DELETE, GET, HEAD";
+  }
+  EXPECT_TRUE(allow_seen);
+}
+
+TEST(ErrorResponse, ListsTheFieldsAtFault) {
+  const HttpResponse response = error_response({ErrorCode::kInvalidArgument,
+                                                "camera.fov_deg = 190: must be in (0, 180)\n"
+                                                "seed = -1: must be at least 0"});
+  EXPECT_EQ(response.status, 400);
+  const auto error = nlohmann::json::parse(response.body).at("error");
+  ASSERT_EQ(error.at("faults").size(), 2U);
+  EXPECT_EQ(error["faults"][0]["field"], "camera.fov_deg");
+  EXPECT_EQ(error["faults"][1]["field"], "seed");
+}
+
+TEST(ErrorResponse, SurvivesTextThatIsNoUtf8) {
+  EXPECT_EQ(error_response({ErrorCode::kNotFound, "no \xFF\xC0 here"}).status, 404);
+}
+
+}  // namespace
+}  // namespace overfly::net

@@ -1,0 +1,58 @@
+#include "server/net/row_encoder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace overfly::net {
+namespace {
+
+Pose pose_of(double roll_deg, double pitch_deg, double yaw_deg) {
+  return {
+      R_world_body_from({rad_from_deg(roll_deg), rad_from_deg(pitch_deg), rad_from_deg(yaw_deg)}),
+      {1.23456, -2.0, 300.0}};
+}
+
+TEST(RowEncoder, SaysPosesInMillimetresAndDegrees) {
+  const auto json = pose_json(pose_of(10.0, -5.0, 123.4));
+  EXPECT_EQ(json.at("x_m").dump(), "1.235");
+  EXPECT_DOUBLE_EQ(json.at("roll_deg"), 10.0);
+  EXPECT_DOUBLE_EQ(json.at("pitch_deg"), -5.0);
+  EXPECT_DOUBLE_EQ(json.at("yaw_deg"), 123.4);
+}
+
+TEST(RowEncoder, GivesEveryColumnOneValueARow) {
+  engine::FrameRow row;
+  row.frame = 3;
+  row.t_ns = 96'774'194;
+  row.T_world_body = pose_of(0, 0, 90);
+  row.texels_per_pixel_median = 1.5;
+  row.void_fraction = std::numeric_limits<double>::quiet_NaN();
+  const auto columns = truth_columns({row, row});
+  EXPECT_EQ(columns.size(), 10U);
+  for (const auto& [name, values] : columns.items()) EXPECT_EQ(values.size(), 2U) << name;
+  EXPECT_EQ(columns["t_ns"][1], 96'774'194);
+  EXPECT_TRUE(columns["void_fraction"][0].is_null());
+}
+
+TEST(RowEncoder, LeavesPosesOutWhileNotTracking) {
+  engine::EstimateRow lost;
+  lost.sample.state = TrackingState::kLost;
+  engine::EstimateRow tracked;
+  tracked.sample.state = TrackingState::kTracking;
+  tracked.T_world_body = pose_of(1, 2, 3);
+  const auto columns = estimate_columns({lost, tracked});
+  EXPECT_EQ(columns["state"][0], "LOST");
+  EXPECT_TRUE(columns["yaw_deg"][0].is_null());
+  EXPECT_DOUBLE_EQ(columns["yaw_deg"][1], 3.0);
+}
+
+TEST(RowEncoder, SaysNullForARunWithoutError) {
+  engine::RunInfo info;
+  EXPECT_TRUE(run_json(info).at("error").is_null());
+  info.error = "bad";
+  EXPECT_EQ(run_json(info).at("error"), "bad");
+}
+
+}  // namespace
+}  // namespace overfly::net
