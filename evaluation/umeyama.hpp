@@ -27,7 +27,7 @@ struct FitOptions {
 
 /// Rotation about up and translation only; scale 1.
 /// Method: Zhang and Scaramuzza 2018, "A tutorial on quantitative trajectory evaluation for
-/// visual(-inertial) odometry", sec. III-B, doi:10.1109/IROS.2018.8593941.
+/// visual(-inertial) odometry", sec. III, doi:10.1109/IROS.2018.8593941.
 /// Errors: kInvalidArgument for positions that do not move horizontally.
 [[nodiscard]] Result<Similarity> fit_yaw(const std::vector<MatchedPose>& matches);
 

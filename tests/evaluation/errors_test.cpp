@@ -1,0 +1,127 @@
+#include "evaluation/errors.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/evaluation/flights.hpp"
+
+namespace overfly::evaluation {
+namespace {
+
+RollPitchYaw degrees(double roll, double pitch, double yaw) {
+  return {rad_from_deg(roll), rad_from_deg(pitch), rad_from_deg(yaw)};
+}
+
+TEST(Errors, StatisticsOfKnownNumbers) {
+  const ErrorStatistics odd = statistics_of({3.0, 1.0, 2.0});
+  EXPECT_DOUBLE_EQ(odd.rmse, std::sqrt(14.0 / 3.0));
+  EXPECT_DOUBLE_EQ(odd.mean, 2.0);
+  EXPECT_DOUBLE_EQ(odd.median, 2.0);
+  EXPECT_DOUBLE_EQ(odd.max, 3.0);
+  EXPECT_DOUBLE_EQ(statistics_of({4.0, 1.0, 2.0, 9.0}).median, 3.0);
+}
+
+/// The norm of the angles' differences exceeds 180 deg, which no rotation angle can: the paper's
+/// 198.6 deg must be of this kind.
+TEST(Errors, EulerNormExceeds180DegreesWhereTheGeodesicAngleCannot) {
+  const Eigen::Quaterniond a = R_world_body_from(degrees(0, 0, 0));
+  const Eigen::Quaterniond b = R_world_body_from(degrees(170, 80, -170));
+  EXPECT_NEAR(
+      deg_from_rad(euler_norm_rad(b, a)), std::sqrt(170.0 * 170 + 80 * 80 + 170 * 170), 1e-6);
+  EXPECT_LE(deg_from_rad(rotation_angle_rad(a, b)), 180.0);
+
+  // A constant error through a whole score.
+  Trajectory truth;
+  Trajectory estimate;
+  const Pose T_body_camera{R_body_camera_nadir(), Eigen::Vector3d::Zero()};
+  for (int i = 0; i < 20; ++i) {
+    const Eigen::Vector3d p(i, 0.1 * i * i, 300.0);
+    ASSERT_TRUE(truth.append({i * kFrameNs, Pose{a, p} * T_body_camera}).ok());
+    ASSERT_TRUE(estimate.append({i * kFrameNs, Pose{b, p} * T_body_camera}).ok());
+  }
+  const Score scored = score(truth, seen_from(estimate, {}), {});
+  const AlignmentScore& none = scored.alignments.at(AlignmentMode::kNone);
+  EXPECT_NEAR(none.rotation_euler_norm_deg.rmse, 253.3772, 1e-3);
+  EXPECT_NEAR(none.rotation_deg.rmse, deg_from_rad(rotation_angle_rad(a, b)), 1e-9);
+}
+
+TEST(Errors, EulerDifferencesWrap) {
+  EXPECT_NEAR(deg_from_rad(euler_norm_rad(R_world_body_from(degrees(0, 0, 179)),
+                                          R_world_body_from(degrees(0, 0, -179)))),
+              2.0,
+              1e-9);
+}
+
+/// Straight east at 1 m a pose; the estimate is 2 % too long and yaws 0.01 deg a pose.
+/// Pieces of 100 m begin at poses 0, 10, ... 100 and end 101 poses on (the first beyond 100 m), so
+/// the chord's error and the rotation of each are the same and known.
+TEST(Errors, RelativeErrorsOfAHandCheckedPath) {
+  std::vector<MatchedPose> matches;
+  std::vector<Pose> estimate;
+  for (int i = 0; i <= 205; ++i) {
+    MatchedPose match;
+    match.t_ns = i * kFrameNs;
+    match.T_world_camera.translation = {1.0 * i, 0.0, 0.0};
+    matches.push_back(match);
+    Pose pose;
+    pose.translation = {1.02 * i, 0.0, 0.0};
+    estimate.push_back(pose);
+  }
+  const auto straight = relative_errors(matches, estimate, {100.0, 200.0, 1000.0});
+  ASSERT_EQ(straight.size(), 2U);  // nothing is 1000 m long
+  EXPECT_EQ(straight[0].pairs, 11);
+  EXPECT_NEAR(straight[0].translation_percent, 2.0 * 101.0 / 100.0, 1e-9);
+  EXPECT_NEAR(straight[0].translation_mean_percent, 2.02, 1e-9);
+  EXPECT_EQ(straight[1].pairs, 1);
+  EXPECT_NEAR(straight[1].translation_percent, 2.0 * 201.0 / 200.0, 1e-9);
+
+  for (std::size_t i = 0; i < estimate.size(); ++i) {
+    estimate[i] = {Eigen::Quaterniond(Eigen::AngleAxisd(rad_from_deg(0.01 * static_cast<double>(i)),
+                                                        Eigen::Vector3d::UnitZ())),
+                   matches[i].T_world_camera.translation};
+  }
+  const auto turning = relative_errors(matches, estimate, {100.0});
+  EXPECT_NEAR(turning[0].rotation_deg_per_100m, 1.01, 1e-9);
+  EXPECT_NEAR(turning[0].rotation_mean_deg_per_100m, 1.01, 1e-9);
+}
+
+TEST(Errors, RmsAndMeanOfRelativeErrorsDifferWherePiecesDo) {
+  // Two pieces of 10 poses of 1 m (11 to be beyond 10 m): without error, and 10 % too long.
+  std::vector<MatchedPose> matches;
+  std::vector<Pose> estimate;
+  for (int i = 0; i <= 21; ++i) {
+    MatchedPose match;
+    match.T_world_camera.translation = {1.0 * i, 0.0, 0.0};
+    matches.push_back(match);
+    Pose pose;
+    pose.translation = {i <= 11 ? 1.0 * i : 11.0 + 1.1 * (i - 11), 0.0, 0.0};
+    estimate.push_back(pose);
+  }
+  const auto relative = relative_errors(matches, estimate, {10.0});
+  ASSERT_EQ(relative.size(), 1U);
+  ASSERT_EQ(relative[0].pairs, 2);  // 0-11: no error; 10-21: 1 m over 10 m
+  EXPECT_NEAR(relative[0].translation_mean_percent, 5.0, 1e-9);
+  EXPECT_NEAR(relative[0].translation_percent, 10.0 / std::sqrt(2.0), 1e-9);
+}
+
+/// Lost at half of a straight flight: with the last pose held, the error grows with the way.
+TEST(Errors, HoldsTheLastPoseToTheEndOfTheFlight) {
+  Trajectory truth;
+  for (int i = 0; i < 201; ++i) {
+    ASSERT_TRUE(
+        truth.append({i * kFrameNs, {Eigen::Quaterniond::Identity(), {1.0 * i, 0, 0}}}).ok());
+  }
+  EstimateTrack track = seen_from(truth, {});
+  for (std::size_t i = 0; i < track.samples.size(); ++i) {
+    if (i < 10) track.samples[i].state = TrackingState::kInitialising;
+    if (i > 100) track.samples[i].state = TrackingState::kLost;
+  }
+  const Score scored = score(truth, track, {});
+  const AlignmentScore& none = scored.alignments.at(AlignmentMode::kNone);
+  EXPECT_EQ(none.matched, 91);
+  EXPECT_EQ(none.position_m.rmse, 0.0);
+  // Frames 10-100 without error, 101-200 with 1 ... 100 m: sum k^2 = 100 * 101 * 201 / 6.
+  EXPECT_NEAR(none.position_rmse_hold_m, std::sqrt(100.0 * 101.0 * 201.0 / 6.0 / 191.0), 1e-9);
+}
+
+}  // namespace
+}  // namespace overfly::evaluation
