@@ -47,7 +47,7 @@ float end_marking(float e, float s, float width_m, int number) {
   }
   if (e > 48.0F && e < 62.0F) {
     const bool painted =
-        digit(number / 10, e - 55.0F, s + 2.8F) || digit(number % 10, e - 55.0F, s - 2.8F);
+        digit(number / 10, e - 55.0F, s + 3.1F) || digit(number % 10, e - 55.0F, s - 3.1F);
     return painted ? 1.0F : 0.0F;
   }
   if (e > 150.0F && e < 195.0F) return inside(std::abs(std::abs(s) - 7.0F) - 2.2F);

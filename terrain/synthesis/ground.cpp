@@ -135,11 +135,12 @@ Rgb yard_colour(
   return mix(around, ground, soft(distance_m + 1.5F * tex.tufts, 1.0F));
 }
 
-Rgb water_colour(const Rgb& bank, float inside_m, const Texture& tex, float x, float y) {
+Rgb water_colour(
+    const Rgb& bank, float inside_m, float deep_m, const Texture& tex, float x, float y) {
   // Shallows over mud, then water that mirrors an even sky: a poor place for any tracker.
-  const float depth = smoothstep(0.0F, 7.0F, inside_m);
+  const float depth = smoothstep(0.0F, deep_m, inside_m);
   const float ripple = 0.6F * noise(x * 0.05F, y * 0.11F, 321) + 0.15F * tex.clods;
-  const Rgb water = mix({98, 96, 74}, {50, 64, 66}, depth) * (1.0F + 0.035F * ripple);
+  const Rgb water = mix({92, 94, 72}, {52, 66, 66}, depth) * (1.0F + 0.035F * ripple);
   return mix(bank, water, soft(-inside_m, 0.3F));
 }
 
@@ -151,7 +152,12 @@ Slow slow_at(const Landscape& land, float x, float y) {
   const std::uint32_t seed = land.water.seed + 80;
   slow.bend_x = bend.x;
   slow.bend_y = bend.y;
-  slow.soil = 1.3F * fractal(x / 170.0F, y / 170.0F, 4, 0.62F, seed);
+  // Old watercourses show as dark, crooked bands in the soil.
+  const float swale = std::abs(fractal(x / 240.0F, y / 240.0F, 3, 0.55F, seed + 20));
+  slow.soil = 1.2F * fractal(x / 170.0F, y / 170.0F, 4, 0.62F, seed) -
+              0.55F * (1.0F - smoothstep(0.02F, 0.13F, swale));
+  slow.wood = land.wood_at(x, y);
+  slow.drift = 1.0F + 0.07F * fractal(x / 610.0F, y / 610.0F, 3, 0.5F, seed + 30);
   slow.patches = 1.3F * fractal(x / 26.0F, y / 26.0F, 3, 0.66F, seed + 9);
   slow.light = land.relief.light(x, y);
   slow.stream_m = land.water.stream_m(x, y);
@@ -170,6 +176,8 @@ Slow interpolate(const Slow& a, const Slow& b, float t) {
   slow.stream_m = lerp(a.stream_m, b.stream_m, t);
   slow.stream_half_m = lerp(a.stream_half_m, b.stream_half_m, t);
   slow.pond_m = lerp(a.pond_m, b.pond_m, t);
+  slow.wood = lerp(a.wood, b.wood, t);
+  slow.drift = lerp(a.drift, b.drift, t);
   return slow;
 }
 
@@ -185,7 +193,7 @@ Rgb ground_colour(const Landscape& land,
                   float y) {
   const Point uv = land.airfield.to_uv(x, y);
   const float outside = land.airfield.outside_m(uv.x, uv.y);
-  if (outside < -9.0F) return land.airfield.colour(uv.x, uv.y, x, y) * slow.light;
+  if (outside < -9.0F) return land.airfield.colour(uv.x, uv.y, x, y) * (slow.light * slow.drift);
 
   const Texture tex(x, y, land.water.seed + 17);
   const float bent_x = x + slow.bend_x;
@@ -193,6 +201,9 @@ Rgb ground_colour(const Landscape& land,
   const ParcelHit hit = land.parcels.at(bent_x, bent_y);
   Rgb colour = field_colour(*hit.parcel, hit, slow, tex, bent_x, bent_y);
   colour = border_colour(colour, hit, slow, tex);
+  if (slow.wood > 0.0F) colour = mix(colour, grass_colour(slow, tex) * 0.8F, slow.wood);
+  const bool track = hit.road == Border::kTrack;
+  if (track && hit.road_m < 9.0F) colour = road_colour(colour, hit, slow, tex);
   for (const Yard* yard : yards) {
     const float distance = yard_m(*yard, x, y);
     if (distance < 4.0F) colour = yard_colour(colour, *yard, distance, slow, tex);
@@ -204,9 +215,9 @@ Rgb ground_colour(const Landscape& land,
     const Rgb reeds = grass_colour(slow, tex) * 0.82F;
     colour = mix(colour, reeds, soft(-wet - 7.0F - 2.5F * tex.tufts, 1.6F));
     colour = mix(colour, {152, 138, 108}, 0.7F * soft(-wet - 1.2F - 0.8F * tex.clods, 0.5F));
-    colour = water_colour(colour, wet, tex, x, y);
+    colour = water_colour(colour, wet, in_pond > in_stream ? 7.0F : 2.4F, tex, x, y);
   }
-  if (hit.road_m < 9.0F) colour = road_colour(colour, hit, slow, tex);
+  if (!track && hit.road_m < 9.0F) colour = road_colour(colour, hit, slow, tex);
   if (outside < 3.0F) {
     // The fence's line, the track inside it, and the grass up to the airfield's own.
     const Rgb grass = grass_colour(slow, tex);
@@ -214,7 +225,7 @@ Rgb ground_colour(const Landscape& land,
     const float rut = std::abs(std::abs(outside + 5.0F) - 0.85F) - 0.4F;
     colour = mix(colour, {176, 162, 132}, 0.8F * soft(rut, 0.3F));
   }
-  return colour * slow.light;
+  return colour * (slow.light * slow.drift);
 }
 
 }  // namespace overfly::terrain::synthesis

@@ -17,6 +17,8 @@ struct Slow {
   float stream_m = 0.0F;  ///< distance to the stream's middle
   float stream_half_m = 3.0F;
   float pond_m = 0.0F;  ///< distance to the shore
+  float wood = 0.0F;    ///< share of woodland floor
+  float drift = 1.0F;   ///< of brightness over the countryside
 };
 
 [[nodiscard]] Slow slow_at(const Landscape& land, float x, float y);

@@ -10,7 +10,7 @@ Landscape Landscape::plan(const LandscapeOptions& options) {
   const float half_x = 275.0F;
   const float half_y = land.airfield.half_length_m() + 110.0F;
   land.parcels = Parcels::plan(options.half_m, half_x, half_y, dice);
-  land.water = Water::plan(options.half_m, half_x, dice);
+  land.water = Water::plan(options.half_m, half_x, land.parcels, dice);
   land.relief = Relief::plan(
       options.half_m, options.reach_m, options.relief_m, land.airfield, land.water, dice.seed());
   land.structures = Structures::plan(options.half_m, land.airfield, land.parcels, land.water, dice);
@@ -22,6 +22,14 @@ Point Landscape::bend_at(float x, float y) const {
   return {9.0F * noise(x / 260.0F, y / 260.0F, seed) + 1.6F * noise(x / 47.0F, y / 47.0F, seed + 1),
           9.0F * noise(x / 260.0F, y / 260.0F, seed + 2) +
               1.6F * noise(x / 47.0F, y / 47.0F, seed + 3)};
+}
+
+float Landscape::wood_at(float x, float y) const {
+  const std::uint32_t seed = water.seed + 70;
+  const Point uv = airfield.to_uv(x, y);
+  const float clear = smoothstep(40.0F, 260.0F, airfield.outside_m(uv.x, uv.y));
+  const float growth = fractal(x / 330.0F, y / 330.0F, 4, 0.5F, seed) - 0.35F * (1.0F - clear);
+  return smoothstep(0.50F, 0.58F, growth);
 }
 
 ParcelHit Landscape::parcel_at(float x, float y) const {

@@ -30,6 +30,8 @@ struct Landscape {
 
   /// The parcels of a place, with the old boundaries' bends.
   [[nodiscard]] ParcelHit parcel_at(float x, float y) const;
+  /// Where woods stand whatever the fields say, 0 to 1 over a soft edge.
+  [[nodiscard]] float wood_at(float x, float y) const;
   /// How far boundaries bend away from straight lines here [m].
   [[nodiscard]] Point bend_at(float x, float y) const;
 };

@@ -84,6 +84,9 @@ Image expose(const Canvas& canvas, int width, int height) {
           sum = sum + row[i] * (kBlur[i] * kBlur[j]);
         }
       }
+      // A little haze lies over everything.
+      const float grey = 0.3F * sum.r + 0.59F * sum.g + 0.11F * sum.b;
+      sum = mix(sum, {grey, grey, grey}, 0.10F) * 0.93F + Rgb{9.0F, 11.0F, 14.0F};
       const std::uint32_t bits = hash(canvas.x0 + u, canvas.y0 + v, 0x5e5eU);
       const float grain = 2.4F * (unit(bits) + unit(bits * 0x9e3779b1U) - 1.0F);
       const auto level = [&](float value) {

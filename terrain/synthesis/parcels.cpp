@@ -119,24 +119,29 @@ void choose_use(Parcel& parcel, Dice& dice) {
     parcel.row_spacing_m = dice.between(0.9F, 2.2F);
     parcel.grain = 0.11F;
     parcel.blotch = 0.75F;
-  } else if (lot < 0.78F) {
+  } else if (lot < 0.79F) {
     set(LandUse::kPasture, {134, 134, 88}, {94, 104, 62}, 8);
     parcel.grain = 0.12F;
     parcel.pass_contrast = 0.0F;
     parcel.bare = 0.35F;
-  } else if (lot < 0.87F) {
+  } else if (lot < 0.89F) {
     set(LandUse::kMeadow, {150, 152, 98}, {106, 122, 70}, 8);
     parcel.pass_contrast = dice.between(0.05F, 0.12F);
     parcel.pass_width_m = dice.between(4.0F, 8.0F);
     parcel.grain = 0.09F;
-  } else if (lot < 0.975F) {
+  } else if (lot < 0.945F) {
     set(LandUse::kWood, {96, 98, 64}, {70, 76, 46}, 4);
     parcel.pass_contrast = 0.0F;
     parcel.grain = 0.14F;
-  } else {
+  } else if (lot < 0.96F) {
     set(LandUse::kOrchard, {132, 136, 88}, {100, 110, 66}, 6);
     parcel.pass_contrast = 0.0F;
     parcel.grain = 0.10F;
+  } else {  // fallow
+    set(LandUse::kMeadow, {164, 150, 112}, {118, 116, 78}, 8);
+    parcel.pass_contrast = 0.02F;
+    parcel.grain = 0.12F;
+    parcel.bare = 0.5F;
   }
 }
 
@@ -175,7 +180,8 @@ class ParcelPlanner {
     const Point across{-along.y, along.x};
     const float length = extent_along(land, along);
     const float width = extent_along(land, across);
-    const float wanted = dice_.between(9e3F, 75e3F);
+    // From paddocks of a hectare to fields of thirty.
+    const float wanted = 9e3F * std::exp(3.4F * dice_.unit());
     if (area < wanted || depth > 14 || std::max(length, width) < 70.0F)
       return leaf(land, along, area);
     // Cut across the longer extent, a little off square as old boundaries are.

@@ -36,10 +36,13 @@ Stand stand_at(const Landscape& land, float x, float y) {
   Stand stand{0.0008F, 1.0F};
   // No tall trees where aircraft come in.
   const bool approach = std::abs(uv.y) < 120.0F && outside < 260.0F;
-  if (hit.parcel->use == LandUse::kWood) {
-    stand.chance = hit.border_m < 4.0F ? 0.35F : 0.90F;
+  const float wood = land.wood_at(x, y);
+  const float ragged = 3.0F + 9.0F * noise(x / 37.0F, y / 37.0F, seed + 3);
+  const bool inside_wood = hit.parcel->use == LandUse::kWood && hit.border_m > ragged;
+  if (inside_wood || wood > 0.5F) {
+    stand.chance = hit.border_m < 4.0F ? 0.5F : 0.90F;
     stand.chance *= smoothstep(-1.15F, -0.75F, clump);
-    stand.size = 1.05F + 0.25F * noise(x / 90.0F, y / 90.0F, seed + 2);
+    stand.size = 1.02F + 0.38F * noise(x / 90.0F, y / 90.0F, seed + 2);
   } else if (hit.border == Border::kHedge && hit.border_m < 4.0F) {
     stand = {0.75F * smoothstep(-0.7F, -0.2F, clump), 0.62F + 0.3F * clump};
   } else if (hit.parcel->use == LandUse::kPasture) {

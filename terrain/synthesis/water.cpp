@@ -4,21 +4,26 @@
 
 namespace overfly::terrain::synthesis {
 
-Water Water::plan(float half_m, float airfield_half_x_m, Dice& dice) {
+Water Water::plan(float half_m, float airfield_half_x_m, const Parcels& parcels, Dice& dice) {
   Water water;
   water.seed = dice.seed();
   const float room = half_m - airfield_half_x_m;
   water.stream_x_m = -airfield_half_x_m - dice.between(0.40F, 0.55F) * room;
   water.swing_m = 0.22F * room;
-  const int ponds = 3 + dice.below(3);
-  for (int i = 0; i < ponds; ++i) {
+  const int wanted = 4 + dice.below(3);
+  // Ponds lie inside fields, away from roads and from the stream.
+  for (int trial = 0; trial < 4000 && static_cast<int>(water.ponds.size()) < wanted; ++trial) {
     Pond pond;
-    pond.radius_m = std::min(dice.between(14.0F, 46.0F), 0.06F * half_m);
-    const float side = i % 2 == 0 ? -1.0F : 1.0F;
-    pond.middle.x = side * (airfield_half_x_m + dice.between(0.12F, 0.8F) * room);
-    pond.middle.y = dice.between(-0.85F, 0.85F) * half_m;
+    pond.radius_m = std::min(dice.between(14.0F, 48.0F), 0.06F * half_m);
+    pond.middle = {dice.between(-0.93F, 0.93F) * half_m, dice.between(-0.93F, 0.93F) * half_m};
     pond.seed = dice.seed();
-    water.ponds.push_back(pond);
+    const ParcelHit hit = parcels.at(pond.middle.x, pond.middle.y);
+    const bool free = std::abs(pond.middle.x) > airfield_half_x_m + 2.0F * pond.radius_m &&
+                      hit.road_m > 1.5F * pond.radius_m + 15.0F &&
+                      hit.border_m > 0.8F * pond.radius_m &&
+                      water.stream_m(pond.middle.x, pond.middle.y) > 2.0F * pond.radius_m + 20.0F &&
+                      water.pond_m(pond.middle.x, pond.middle.y) > 400.0F;
+    if (free) water.ponds.push_back(pond);
   }
   return water;
 }

@@ -20,7 +20,7 @@ struct Water {
   std::vector<Pond> ponds;
 
   /// @param airfield_half_x_m  kept free of water around the middle
-  static Water plan(float half_m, float airfield_half_x_m, Dice& dice);
+  static Water plan(float half_m, float airfield_half_x_m, const Parcels& parcels, Dice& dice);
 
   /// Distance to the stream's middle line.
   [[nodiscard]] float stream_m(float x, float y) const;

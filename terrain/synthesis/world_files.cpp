@@ -85,12 +85,10 @@ Image paint_strip(const Landscape& land, float texel_m, int side_px, int y, int 
 /// Writes rows of one level, then their average into the next, from finest to coarsest.
 class LevelWriter {
  public:
-  LevelWriter(GDALDataset& dataset, int levels)
-      : dataset_(dataset), pending_(static_cast<std::size_t>(levels)) {}
+  LevelWriter(GDALDataset& dataset, int levels) : dataset_(dataset), levels_(levels) {}
 
   /// Rows must come in order. @return false when GDAL failed
   bool write(int level, int y, const Image& rows) {
-    GDALRasterBand* first = dataset_.GetRasterBand(1);
     const bool overview = level > 0;
     for (int c = 0; c < 3; ++c) {
       GDALRasterBand* band = dataset_.GetRasterBand(c + 1);
@@ -110,8 +108,7 @@ class LevelWriter {
         return false;
       }
     }
-    (void)first;
-    if (level + 1 >= static_cast<int>(pending_.size())) return true;
+    if (level + 1 >= levels_) return true;
     Patch patch{rows, Image(rows.width_px, rows.height_px, 1, 255)};
     const Patch half =
         area_average(patch, 0.0, 2.0, 0.0, 2.0, rows.width_px / 2, rows.height_px / 2);
@@ -120,7 +117,7 @@ class LevelWriter {
 
  private:
   GDALDataset& dataset_;
-  std::vector<int> pending_;
+  int levels_;
 };
 
 }  // namespace
