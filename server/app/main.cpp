@@ -1,12 +1,28 @@
 // overfly: the command line.
 #include <CLI/CLI.hpp>
 
+#include "server/app/commands.hpp"
+#include "server/app/exit_code.hpp"
 #include "server/app/version.hpp"
 
 int main(int argc, char** argv) {
-  CLI::App app{"Overfly: a virtual flight range for monocular visual odometry"};
-  app.set_version_flag("--version", overfly::app::version_text());
-  app.require_subcommand(0);
-  CLI11_PARSE(app, argc, argv);
-  return 0;
+  using namespace overfly::app;
+  CLI::App app{"Overfly: a virtual flight range for monocular visual odometry", "overfly"};
+  app.set_version_flag("--version", version_text());
+  app.require_subcommand(1);
+  int exit_code = kExitOk;
+  add_run_command(app, exit_code);
+  add_serve_command(app, exit_code);
+  add_evaluate_command(app, exit_code);
+  add_render_command(app, exit_code);
+  add_world_command(app, exit_code);
+  add_scenario_command(app, exit_code);
+  add_bench_command(app, exit_code);
+  add_doctor_command(app, exit_code);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kExitOk : kExitUsage;
+  }
+  return exit_code;
 }

@@ -1,0 +1,215 @@
+// overfly bench: what drawing, encoding and tracking cost on this machine.
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <filesystem>
+#include <iomanip>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "renderer/bench_probe.hpp"
+#include "server/app/bench_folder.hpp"
+#include "server/app/commands.hpp"
+#include "server/app/exit_code.hpp"
+#include "server/app/progress.hpp"
+#include "server/app/stop_signal.hpp"
+#include "server/engine/jpeg.hpp"
+#include "server/engine/run.hpp"
+#include "server/engine/run_folder.hpp"
+#include "server/engine/truth.hpp"
+#include "server/engine/whole_file.hpp"
+#include "server/engine/world_cache.hpp"
+
+namespace overfly::app {
+namespace {
+
+using Json = nlohmann::json;
+
+struct BenchArguments {
+  double flight_s = 10.0;
+  int repetitions = 20;
+  bool json = false;
+};
+
+Result<engine::Scenario> bench_scenario(double flight_s) {
+  return engine::resolve_scenario({{"format_version", 1},
+                                   {"name", "bench"},
+                                   {"world", {{"builtin", {{"seed", 1}}}}},
+                                   {"flight", {{"course", Json::object()}}},
+                                   {"duration_s", flight_s},
+                                   {"recording", {{"debug_hz", 0}}},
+                                   {"estimators", {{{"name", "feature"}, {"type", "feature"}}}}},
+                                  {},
+                                  std::filesystem::current_path());
+}
+
+/// Camera poses spread over the course: level flight and turns.
+Result<std::vector<Pose>> course_poses(const engine::Scenario& scenario,
+                                       const terrain::World& world,
+                                       int count) {
+  const auto truth = engine::create_truth(scenario, world);
+  if (!truth) return truth.error();
+  const std::int64_t end_ns = (*truth)->duration_ns().value_or(0);
+  std::vector<Pose> poses;
+  for (int i = 0; i < count; ++i) {
+    const Result<AircraftState> state = (*truth)->state_at(end_ns * i / count);
+    if (!state) return state.error();
+    poses.push_back(state->T_world_body * Pose{R_body_camera_nadir(), Eigen::Vector3d::Zero()});
+  }
+  return poses;
+}
+
+Json json_of(const renderer::CallCost& cost) {
+  return {{"cpu_ms", cost.cpu_ms}, {"wall_ms", cost.wall_ms}};
+}
+
+Result<Json> bench_drawing(const terrain::World& world,
+                           const std::vector<Pose>& poses,
+                           int repetitions) {
+  const auto costs = renderer::measure_render_costs(world.tiles, poses, repetitions);
+  if (!costs) return costs.error();
+  return Json{{"quad", json_of(costs->quad)},
+              {"camera_grey_1280x960", json_of(costs->camera_grey)},
+              {"camera_rgb_1280x960", json_of(costs->camera_rgb)},
+              {"depth_1280x960", json_of(costs->depth)},
+              {"scene_960x720", json_of(costs->scene)},
+              {"camera_per_quad", costs->camera_per_quad}};
+}
+
+Result<Json> bench_encoding(const terrain::World& world, const Pose& T_world_camera, int times) {
+  const auto renderer = renderer::create_egl_renderer(world.tiles);
+  if (!renderer) return renderer.error();
+  const auto camera =
+      PinholeCamera::from_fov(1280, 960, rad_from_deg(84.872), FovAxis::kHorizontal);
+  if (!camera) return camera.error();
+  Json result = Json::object();
+  for (const auto format : {renderer::PixelFormat::kGrey8, renderer::PixelFormat::kRgb8}) {
+    const auto frame = (*renderer)->render_camera(*camera, T_world_camera, 0, format);
+    if (!frame) return frame.error();
+    std::size_t bytes = 0;
+    const auto begin = std::chrono::steady_clock::now();
+    for (int i = 0; i < times; ++i) {
+      const auto jpeg = engine::encode_jpeg(frame->image, 75);
+      if (!jpeg) return jpeg.error();
+      bytes = jpeg->size();
+    }
+    const std::chrono::duration<double, std::milli> elapsed =
+        std::chrono::steady_clock::now() - begin;
+    const bool grey = format == renderer::PixelFormat::kGrey8;
+    result[grey ? "jpeg75_grey_1280x960" : "jpeg75_rgb_1280x960"] = {
+        {"wall_ms", elapsed.count() / times}, {"bytes", bytes}};
+  }
+  return result;
+}
+
+/// A lockstep flight with the native estimator, and where its time went.
+Result<Json> bench_flight(const engine::Scenario& scenario, engine::WorldCache& worlds) {
+  Result<BenchFolder> folder = BenchFolder::create();
+  if (!folder) return folder.error();
+  engine::RunOptions options;
+  options.folder = folder->path() / "run";
+  options.worlds = &worlds;
+  options.cancel = &catch_stop_signals();
+  const auto run = engine::run_scenario(scenario, options);
+  if (!run) return run.error();
+  if (run->info.status == engine::RunStatus::kCancelled) {
+    return Error{ErrorCode::kCancelled, "cancelled"};
+  }
+  const auto timings = engine::read_json(engine::timings_file(options.folder));
+  if (!timings) return timings.error();
+  const Json& estimator = timings->at("estimators").at("feature");
+  return Json{{"flight_s", timings->at("flight_s")},
+              {"wall_s", timings->at("wall_s")},
+              {"flight_s_per_wall_s", timings->at("flight_s_per_wall_s")},
+              {"stages", timings->at("stages")},
+              {"estimator_latency", estimator.at("latency")},
+              {"estimator_stages", estimator.at("stages")}};
+}
+
+void print_table(const Json& result) {
+  std::cout << std::fixed << std::setprecision(2);
+  for (const auto& [name, cost] : result.at("drawing").items()) {
+    if (!cost.is_object()) continue;
+    std::cout << std::left << std::setw(24) << name << std::right << std::setw(8)
+              << cost.at("wall_ms").get<double>() << " ms wall " << std::setw(8)
+              << cost.at("cpu_ms").get<double>() << " ms CPU\n";
+  }
+  std::cout << "camera frame / quad     " << std::setw(8)
+            << result.at("drawing").at("camera_per_quad").get<double>() << " Q (CPU time)\n";
+  for (const auto& [name, cost] : result.at("encoding").items()) {
+    std::cout << std::left << std::setw(24) << name << std::right << std::setw(8)
+              << cost.at("wall_ms").get<double>() << " ms wall " << std::setw(8)
+              << cost.at("bytes").get<double>() / 1000.0 << " kB\n";
+  }
+  const Json& flight = result.at("flight");
+  std::cout << "lockstep flight         " << std::setw(8)
+            << flight.at("flight_s_per_wall_s").get<double>() << " s of flight per s\n";
+  for (const char* kind : {"stages", "estimator_stages"}) {
+    for (const auto& [name, stage] : flight.at(kind).items()) {
+      if (!stage.contains("mean_ms")) continue;
+      std::cout << "  " << std::left << std::setw(22) << name << std::right << std::setw(8)
+                << stage.at("mean_ms").get<double>() << " ms mean " << std::setw(8)
+                << stage.at("total_ms").get<double>() / 1000.0 << " s in all\n";
+    }
+  }
+}
+
+Result<Json> measure(const BenchArguments& arguments, ProgressDisplay& display) {
+  const Result<engine::Scenario> scenario = bench_scenario(arguments.flight_s);
+  if (!scenario) return scenario.error();
+  engine::WorldCache worlds;
+  const auto world = worlds.get(*scenario, [&](double share) {
+    display.show(share, "making the built-in world");
+    return !catch_stop_signals().load();
+  });
+  if (!world) return world.error();
+  const auto poses = course_poses(*scenario, **world, 12);
+  if (!poses) return poses.error();
+  display.note("drawing ...");
+  Result<Json> drawing = bench_drawing(**world, *poses, arguments.repetitions);
+  if (!drawing) return drawing.error();
+  display.note("encoding ...");
+  Result<Json> encoding = bench_encoding(**world, poses->front(), arguments.repetitions);
+  if (!encoding) return encoding.error();
+  display.note("flying ...");
+  Result<Json> flight = bench_flight(*scenario, worlds);
+  if (!flight) return flight.error();
+  return Json{{"drawing", std::move(*drawing)},
+              {"encoding", std::move(*encoding)},
+              {"flight", std::move(*flight)}};
+}
+
+int bench(const BenchArguments& arguments) {
+  (void)catch_stop_signals();
+  Result<Json> result = Error{};
+  {
+    ProgressDisplay display(arguments.json);
+    result = measure(arguments, display);
+  }
+  if (!result) return report(result.error());
+  if (arguments.json) {
+    std::cout << result->dump(2) << "\n";
+  } else {
+    print_table(*result);
+  }
+  return kExitOk;
+}
+
+}  // namespace
+
+void add_bench_command(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<BenchArguments>();
+  CLI::App* command = app.add_subcommand("bench", "Measure drawing, encoding and tracking here");
+  command->add_option("--flight-s", arguments->flight_s, "Length of the measured flight [s]")
+      ->check(CLI::Range(1.0, 200.0))
+      ->capture_default_str();
+  command->add_option("--repetitions", arguments->repetitions, "Of each image")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command->add_flag("--json", arguments->json, "Print JSON");
+  command->callback([arguments, &exit_code] { exit_code = bench(*arguments); });
+}
+
+}  // namespace overfly::app

@@ -1,0 +1,20 @@
+// The commands of the program, one file each. Each adds itself to the command line and leaves its
+// exit code where it is told when it was the one called.
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace overfly::app {
+
+void add_run_command(CLI::App& app, int& exit_code);
+void add_serve_command(CLI::App& app, int& exit_code);
+void add_evaluate_command(CLI::App& app, int& exit_code);
+void add_render_command(CLI::App& app, int& exit_code);
+void add_world_command(CLI::App& app, int& exit_code);
+void add_scenario_command(CLI::App& app, int& exit_code);
+void add_bench_command(CLI::App& app, int& exit_code);
+void add_doctor_command(CLI::App& app, int& exit_code);
+
+}  // namespace overfly::app

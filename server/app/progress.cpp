@@ -1,0 +1,47 @@
+#include "server/app/progress.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+
+namespace overfly::app {
+
+ProgressDisplay::ProgressDisplay(bool quiet)
+    : quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1) {}
+
+ProgressDisplay::~ProgressDisplay() {
+  if (open_line_) std::cerr << "\n";
+}
+
+void ProgressDisplay::show(double share, const std::string& text) {
+  if (quiet_) return;
+  const double done = std::clamp(share, 0.0, 1.0);
+  const int percent = static_cast<int>(std::floor(100.0 * done));
+  if (!terminal_) {
+    // One line for each tenth: a log stays readable.
+    if (percent / 10 == last_tenth_) return;
+    last_tenth_ = percent / 10;
+    std::cerr << percent << " % " << text << "\n";
+    return;
+  }
+  const auto now = std::chrono::steady_clock::now();
+  if (done < 1.0 && now - last_shown_ < std::chrono::milliseconds(100)) return;
+  last_shown_ = now;
+  constexpr int kWidth = 30;
+  const int filled = static_cast<int>(done * kWidth);
+  std::cerr << "\r[" << std::string(static_cast<std::size_t>(filled), '#')
+            << std::string(static_cast<std::size_t>(kWidth - filled), '.') << "] " << percent
+            << " % " << text << "\033[K" << std::flush;
+  open_line_ = true;
+}
+
+void ProgressDisplay::note(const std::string& text) {
+  if (quiet_) return;
+  if (open_line_) std::cerr << "\n";
+  open_line_ = false;
+  std::cerr << text << "\n";
+}
+
+}  // namespace overfly::app

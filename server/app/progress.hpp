@@ -1,0 +1,31 @@
+// What a person sees while something takes long: a bar on a terminal, plain lines elsewhere.
+#pragma once
+
+#include <chrono>
+#include <string>
+
+namespace overfly::app {
+
+/// Writes to standard error, so that standard output keeps to results.
+class ProgressDisplay {
+ public:
+  explicit ProgressDisplay(bool quiet);
+  ~ProgressDisplay();  ///< ends the bar's line
+  ProgressDisplay(const ProgressDisplay&) = delete;
+  ProgressDisplay& operator=(const ProgressDisplay&) = delete;
+
+  /// @param share  done, in [0, 1]
+  /// @param text   behind the bar: "frame 120 of 3911, tracking"
+  void show(double share, const std::string& text);
+  /// One line that stays.
+  void note(const std::string& text);
+
+ private:
+  bool quiet_;
+  bool terminal_;
+  bool open_line_ = false;
+  int last_tenth_ = -1;
+  std::chrono::steady_clock::time_point last_shown_;
+};
+
+}  // namespace overfly::app

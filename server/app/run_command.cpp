@@ -1,0 +1,91 @@
+// overfly run: flies one scenario into one folder.
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "server/app/commands.hpp"
+#include "server/app/exit_code.hpp"
+#include "server/app/progress.hpp"
+#include "server/app/score_table.hpp"
+#include "server/app/stop_signal.hpp"
+#include "server/engine/run.hpp"
+#include "server/engine/scenario_list.hpp"
+
+namespace overfly::app {
+namespace {
+
+struct RunArguments {
+  std::string scenario;
+  std::string out;
+  std::vector<std::string> sets;
+  bool json = false;
+  bool quiet = false;
+};
+
+Result<engine::Scenario> load(const RunArguments& arguments) {
+  std::vector<engine::Override> overrides;
+  for (const std::string& text : arguments.sets) {
+    Result<engine::Override> change = engine::parse_override(text);
+    if (!change) return change.error();
+    overrides.push_back(std::move(*change));
+  }
+  Result<engine::Scenario> scenario = engine::load_scenario(arguments.scenario, overrides);
+  if (!scenario) return scenario.error();
+  if (Status status = engine::check_scenario(*scenario); !status) return status.error();
+  return scenario;
+}
+
+void show_progress(ProgressDisplay& display, const engine::RunInfo& info) {
+  const std::string done = "frame " + std::to_string(info.frames);
+  if (info.frames_total == 0) {
+    display.show(0.0, done);
+    return;
+  }
+  display.show(static_cast<double>(info.frames) / static_cast<double>(info.frames_total),
+               done + " of " + std::to_string(info.frames_total));
+}
+
+int run(const RunArguments& arguments) {
+  const Result<engine::Scenario> scenario = load(arguments);
+  if (!scenario) return report(scenario.error());
+  Result<engine::RunResult> result = Error{};
+  {
+    ProgressDisplay display(arguments.quiet);
+    engine::RunOptions options;
+    options.folder = arguments.out;
+    options.cancel = &catch_stop_signals();
+    options.notice = [&](const std::string& text) { display.note(text); };
+    options.progress = [&](const engine::RunInfo& info) { show_progress(display, info); };
+    result = engine::run_scenario(*scenario, options);
+  }
+  if (!result) return report(result.error());
+  if (arguments.json) {
+    std::cout << result->metrics.dump(2) << "\n";
+  } else {
+    std::cout << score_table(result->metrics, "init_scale") << "run folder: " << arguments.out
+              << "\n";
+  }
+  if (result->info.status == engine::RunStatus::kCancelled) {
+    std::cerr << "cancelled after frame " << result->info.frames << "\n";
+    return kExitCancelled;
+  }
+  return kExitOk;
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<RunArguments>();
+  CLI::App* command = app.add_subcommand("run", "Fly one scenario and score its estimators");
+  command->add_option("scenario", arguments->scenario, "Scenario file (JSON)")->required();
+  command->add_option("--out", arguments->out, "Run folder to make")->required();
+  command->add_option("--set", arguments->sets, "Override a field: path=value, e.g. seed=2")
+      ->allow_extra_args(false);
+  command->add_flag("--json", arguments->json, "Print metrics.json instead of a table");
+  command->add_flag("--quiet", arguments->quiet, "No progress");
+  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+}
+
+}  // namespace overfly::app

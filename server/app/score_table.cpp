@@ -1,0 +1,90 @@
+#include "server/app/score_table.hpp"
+
+#include <array>
+#include <cstdarg>
+#include <cstdio>
+
+namespace overfly::app {
+namespace {
+
+using Json = nlohmann::json;
+
+[[gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...) {
+  std::array<char, 400> line{};
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(line.data(), line.size(), format, arguments);
+  va_end(arguments);
+  return line.data();
+}
+
+std::string outcome_text(const Json& score) {
+  std::string text = score.at("outcome").get<std::string>();
+  const Json& at = score.at("outcome_time_s");
+  if (at.is_number()) text += formatted(" at %.1f s", at.get<double>());
+  return text;
+}
+
+}  // namespace
+
+std::string score_table(const Json& metrics, const std::string& mode) {
+  const Json& estimators = metrics.at("estimators");
+  if (estimators.empty()) return "no estimator\n";
+  std::string table = formatted("%-16s %-22s %9s %8s  %12s %12s %12s\n",
+                                "estimator",
+                                "outcome",
+                                "coverage",
+                                "dropped",
+                                "position [m]",
+                                "held [m]",
+                                "rot. [deg]");
+  for (const auto& [name, score] : estimators.items()) {
+    table += formatted("%-16s %-22s %7.1f %% %8lld",
+                       name.c_str(),
+                       outcome_text(score).c_str(),
+                       100.0 * score.at("coverage").get<double>(),
+                       score.at("dropped_frames").get<long long>());  // NOLINT(google-runtime-int)
+    const Json& alignments = score.at("alignments");
+    if (alignments.contains(mode)) {
+      const Json& alignment = alignments.at(mode);
+      table += formatted("  %12.3f %12.3f %12.4f",
+                         alignment.at("position_rmse_m").get<double>(),
+                         alignment.at("position_rmse_hold_m").get<double>(),
+                         alignment.at("rotation_rmse_deg").get<double>());
+    } else {
+      table += "  X (" + score.at("unavailable").value(mode, "not scored") + ")";
+    }
+    table += "\n";
+  }
+  return table + "RMSE, alignment " + mode + "\n";
+}
+
+std::string alignment_table(const Json& alignments, const Json& unavailable) {
+  std::string table = formatted("  %-12s %12s %8s  %12s %12s %12s %14s\n",
+                                "alignment",
+                                "scale",
+                                "poses",
+                                "position [m]",
+                                "held [m]",
+                                "rot. [deg]",
+                                "euler n. [deg]");
+  for (const auto& [mode, alignment] : alignments.items()) {
+    table += formatted("  %-12s %12.6g %8d  %12.3f %12.3f %12.4f %14.4f\n",
+                       mode.c_str(),
+                       alignment.at("scale").get<double>(),
+                       alignment.at("matched").get<int>(),
+                       alignment.at("position_rmse_m").get<double>(),
+                       alignment.at("position_rmse_hold_m").get<double>(),
+                       alignment.at("rotation_rmse_deg").get<double>(),
+                       alignment.at("rotation_euler_norm_rmse_deg").get<double>());
+    for (const Json& note : alignment.at("notes")) {
+      table += "    " + note.get<std::string>() + "\n";
+    }
+  }
+  for (const auto& [mode, reason] : unavailable.items()) {
+    table += formatted("  %-12s X: ", mode.c_str()) + reason.get<std::string>() + "\n";
+  }
+  return table;
+}
+
+}  // namespace overfly::app

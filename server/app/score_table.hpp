@@ -1,0 +1,16 @@
+// Metrics as a table for people.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace overfly::app {
+
+/// One line for each estimator of a metrics document: outcome, coverage, errors by `mode`.
+[[nodiscard]] std::string score_table(const nlohmann::json& metrics, const std::string& mode);
+
+/// The lines of one estimate's alignments: mode, scale, position and rotation error.
+[[nodiscard]] std::string alignment_table(const nlohmann::json& alignments,
+                                          const nlohmann::json& unavailable);
+
+}  // namespace overfly::app

@@ -1,0 +1,89 @@
+// overfly serve: the web server with its dashboard.
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+
+#include "server/app/commands.hpp"
+#include "server/app/exit_code.hpp"
+#include "server/app/install_paths.hpp"
+#include "server/app/stop_signal.hpp"
+#include "server/net/server.hpp"
+
+namespace overfly::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ServeArguments {
+  std::string address = "127.0.0.1";
+  std::uint16_t port = 8480;
+  std::string runs = "runs";
+  std::string scenarios;
+  std::string web;
+  int parallel_runs = 1;
+};
+
+void log_line(const std::string& level, const std::string& text) {
+  if (level == "error") {
+    spdlog::error(text);
+  } else if (level == "warning") {
+    spdlog::warn(text);
+  } else if (level == "debug") {
+    spdlog::debug(text);
+  } else {
+    spdlog::info(text);
+  }
+}
+
+int serve(const ServeArguments& arguments) {
+  (void)catch_stop_signals();
+  spdlog::set_default_logger(spdlog::stderr_color_mt("overfly"));
+  engine::RunManagerOptions manager_options;
+  manager_options.runs_folder = arguments.runs;
+  manager_options.scenarios_folder =
+      arguments.scenarios.empty() ? scenarios_folder() : fs::path(arguments.scenarios);
+  manager_options.max_parallel_runs = arguments.parallel_runs;
+  const auto runs = engine::RunManager::create(manager_options);
+  if (!runs) return report(runs.error());
+  engine::ViewService views(**runs);
+
+  net::ServerOptions options;
+  options.address = arguments.address;
+  options.port = arguments.port;
+  options.web_folder = arguments.web.empty() ? web_folder() : fs::path(arguments.web);
+  options.log = log_line;
+  const auto server = net::Server::start(options, **runs, views);
+  if (!server) return report(server.error());
+  if (options.web_folder.empty()) {
+    spdlog::warn("the dashboard is not built (web/dist): only REST and WebSocket are served");
+  }
+  std::cout << "Overfly is at " << (*server)->url() << std::endl;
+  wait_for_stop_signal();
+  spdlog::info("stopping: running flights are cancelled, their folders stay readable");
+  return kExitOk;
+}
+
+}  // namespace
+
+void add_serve_command(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<ServeArguments>();
+  CLI::App* command = app.add_subcommand("serve", "Serve the dashboard and the REST interface");
+  command->add_option("--address", arguments->address, "Address to listen on")
+      ->capture_default_str();
+  command->add_option("--port", arguments->port, "Port; 0 = any free one")->capture_default_str();
+  command->add_option("--runs", arguments->runs, "Folder of the runs")->capture_default_str();
+  command->add_option("--scenarios", arguments->scenarios, "Folder of the scenario files");
+  command->add_option("--web", arguments->web, "Folder of the built dashboard");
+  command->add_option("--parallel-runs", arguments->parallel_runs, "Flights at the same time")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+  command->callback([arguments, &exit_code] { exit_code = serve(*arguments); });
+}
+
+}  // namespace overfly::app
