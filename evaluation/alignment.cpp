@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -85,8 +86,10 @@ std::optional<AlignmentMode> alignment_mode_from(const std::string& text) {
 
 const std::vector<AlignmentMode>& all_alignment_modes() {
   static const std::vector<AlignmentMode> modes = [] {
-    std::vector<AlignmentMode> all;
-    for (const ModeName& entry : kModeNames) all.push_back(entry.mode);
+    std::vector<AlignmentMode> all(kModeNames.size());
+    std::transform(kModeNames.begin(), kModeNames.end(), all.begin(), [](const ModeName& entry) {
+      return entry.mode;
+    });
     return all;
   }();
   return modes;

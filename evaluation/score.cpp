@@ -36,6 +36,7 @@ std::vector<HeldPose> held_poses(const Trajectory& truth,
 
 double hold_rmse_m(const std::vector<HeldPose>& held, const Similarity& S_world_vo) {
   std::vector<double> errors;
+  errors.reserve(held.size());
   for (const HeldPose& pose : held)
     errors.push_back((S_world_vo * pose.p_vo - pose.p_world).norm());
   return errors.empty() ? 0.0 : rms(errors);

@@ -20,7 +20,7 @@ struct Moments {
   Eigen::Vector3d centre_y = Eigen::Vector3d::Zero();
   double variance_x = 0.0;
   double variance_y = 0.0;
-  Eigen::Matrix3d Sigma_xy = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d sigma_xy = Eigen::Matrix3d::Zero();
   bool x_moves = false;
   bool y_moves = false;
 };
@@ -44,7 +44,7 @@ Moments moments_of(const std::vector<MatchedPose>& matches, bool about_first) {
     const Eigen::Vector3d y = match.T_world_camera.translation - m.centre_y;
     m.variance_x += x.squaredNorm() / n;  // (36)
     m.variance_y += y.squaredNorm() / n;  // (37)
-    m.Sigma_xy += y * x.transpose() / n;  // (38), 3x3
+    m.sigma_xy += y * x.transpose() / n;  // (38), 3x3
     size_x = std::max(size_x, match.T_vo_camera.translation.norm());
     size_y = std::max(size_y, match.T_world_camera.translation.norm());
   }
@@ -90,9 +90,9 @@ Result<Similarity> fit_similarity(const std::vector<MatchedPose>& matches,
   const Moments m = moments_of(matches, options.hold_first);
   if (Status status = check_motion(matches, m, options.with_scale); !status) return status.error();
 
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(m.Sigma_xy,
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(m.sigma_xy,
                                               Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Vector3d D = svd.singularValues();  // (39)
+  const Eigen::Vector3d& D = svd.singularValues();  // (39)
   if (D(0) <= kLineRatio * std::sqrt(m.variance_x * m.variance_y)) {
     return Error{ErrorCode::kInvalidArgument,
                  "the estimate's motion is not correlated with the truth's: the rotation cannot "
@@ -123,8 +123,8 @@ Result<Similarity> fit_yaw(const std::vector<MatchedPose>& matches) {
   }
   const Moments m = moments_of(matches, false);
   // Maximises sum y . Rz(yaw) x = A cos(yaw) + B sin(yaw), plus the vertical part.
-  const double A = m.Sigma_xy(0, 0) + m.Sigma_xy(1, 1);
-  const double B = m.Sigma_xy(1, 0) - m.Sigma_xy(0, 1);
+  const double A = m.sigma_xy(0, 0) + m.sigma_xy(1, 1);
+  const double B = m.sigma_xy(1, 0) - m.sigma_xy(0, 1);
   const double spread = std::sqrt(m.variance_x * m.variance_y);
   if (!m.x_moves || !m.y_moves || std::hypot(A, B) <= kLineRatio * spread) {
     return Error{ErrorCode::kInvalidArgument,
