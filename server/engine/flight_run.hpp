@@ -50,6 +50,7 @@ class FlightRun {
   RunClock& clock_;
   StageTimer stages_;
   std::int64_t begin_ns_ = 0;
+  std::int64_t loop_begin_ns_ = 0;  ///< 0 = no frame yet
 
   std::shared_ptr<const terrain::World> world_;
   std::unique_ptr<TruthSource> truth_;

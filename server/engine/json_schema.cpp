@@ -27,6 +27,12 @@ std::string names_of(const Json& properties) {
   return names.empty() ? "none" : names;
 }
 
+/// What a keyword holds, or an empty object (`.items()` must not walk over a temporary).
+const Json& keyword(const Json& node, const char* name) {
+  static const Json none = Json::object();
+  return node.contains(name) ? node.at(name) : none;
+}
+
 void collect_keywords(const Json& node, std::set<std::string>& keywords) {
   if (!node.is_object()) return;
   for (const auto& [key, value] : node.items()) {
@@ -114,15 +120,15 @@ void JsonSchema::check_object(const Json& node,
                               const Json& value,
                               const std::string& path,
                               Faults& faults) const {
-  const Json properties = node.value("properties", Json::object());
+  const Json& properties = keyword(node, "properties");
   for (const auto& [key, child] : properties.items()) {
     if (value.contains(key)) check(child, value.at(key), joined(path, key), faults);
   }
-  for (const Json& key : node.value("required", Json::array())) {
+  for (const Json& key : keyword(node, "required")) {
     const std::string name = key.get<std::string>();
     if (!value.contains(name)) faults.push_back(missing(joined(path, name)));
   }
-  for (const auto& [given, wanted] : node.value("dependentRequired", Json::object()).items()) {
+  for (const auto& [given, wanted] : keyword(node, "dependentRequired").items()) {
     if (!value.contains(given)) continue;
     for (const Json& key : wanted) {
       const std::string name = key.get<std::string>();
@@ -159,7 +165,7 @@ bool JsonSchema::looks_meant(const Json& branch, const Json& value) const {
   const Json& node = resolved(branch);
   if (node.contains("type") && !has_type(value, node.at("type"))) return false;
   if (node.contains("const") || node.contains("enum")) return false;
-  const Json required = node.value("required", Json::array());
+  const Json& required = keyword(node, "required");
   return std::all_of(required.begin(), required.end(), [&](const Json& key) {
     return value.contains(key.get<std::string>());
   });
@@ -193,7 +199,7 @@ void JsonSchema::apply_defaults(Json& document) const { apply_defaults(schema_, 
 void JsonSchema::apply_defaults(const Json& unresolved, Json& value) const {
   const Json& node = resolved(unresolved);
   if (value.is_object()) {
-    for (const auto& [key, child] : node.value("properties", Json::object()).items()) {
+    for (const auto& [key, child] : keyword(node, "properties").items()) {
       const Json& property = resolved(child);
       if (!value.contains(key) && property.contains("default")) value[key] = property.at("default");
       if (value.contains(key)) apply_defaults(child, value[key]);
@@ -202,7 +208,7 @@ void JsonSchema::apply_defaults(const Json& unresolved, Json& value) const {
   if (value.is_array() && node.contains("items")) {
     for (Json& item : value) apply_defaults(node.at("items"), item);
   }
-  for (const Json& branch : node.value("oneOf", Json::array())) {
+  for (const Json& branch : keyword(node, "oneOf")) {
     if (!matches(branch, value)) continue;
     apply_defaults(branch, value);
     break;

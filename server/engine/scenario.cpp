@@ -18,6 +18,20 @@ const JsonSchema& schema() {
   return instance;
 }
 
+/// A file's name as a scenario's: what a name may not hold becomes `_`.
+std::string name_from(std::string text) {
+  const auto allowed = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+  };
+  constexpr std::size_t kLongest = 64;
+  text = text.substr(0, kLongest);
+  for (char& c : text) {
+    if (!allowed(c) && c != '-') c = '_';
+  }
+  if (text.empty() || !allowed(text.front())) text = "scenario" + text.substr(0, kLongest - 8);
+  return text;
+}
+
 /// The document with the file's name where it has none of its own, so that a run's copy of it
 /// keeps saying where it came from.
 void put_name(Json& document, const std::string& name) {
@@ -58,7 +72,7 @@ Result<Scenario> resolve_scenario(Json document,
 Result<Scenario> load_scenario(const fs::path& file, const std::vector<Override>& overrides) {
   Result<Json> document = read_json(file);
   if (!document) return document.error();
-  put_name(*document, file.stem().string());
+  put_name(*document, name_from(file.stem().string()));
   const fs::path folder = fs::absolute(file).parent_path().lexically_normal();
   Result<Scenario> scenario = resolve_scenario(std::move(*document), overrides, folder);
   if (!scenario) return scenario.error().in(file.string());
