@@ -35,6 +35,15 @@ Image grey_from_rgb(const Image& rgb) {
   return grey;
 }
 
+Image with_alpha(const Image& rgb, const Image& alpha) {
+  Image rgba(rgb.width_px, rgb.height_px, 4);
+  for (std::size_t i = 0; i < alpha.data.size(); ++i) {
+    for (std::size_t c = 0; c < 3; ++c) rgba.data[4 * i + c] = rgb.data[3 * i + c];
+    rgba.data[4 * i + 3] = alpha.data[i];
+  }
+  return rgba;
+}
+
 std::vector<Image> mip_chain(Image level_0) {
   std::vector<Image> levels;
   levels.push_back(std::move(level_0));

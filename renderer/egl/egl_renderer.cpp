@@ -5,6 +5,7 @@
 #include "renderer/egl/egl_context.hpp"
 #include "renderer/egl/ground_pass.hpp"
 #include "renderer/egl/render_target.hpp"
+#include "renderer/egl/scene_pass.hpp"
 #include "renderer/egl/tile_textures.hpp"
 #include "renderer/frame_statistics.hpp"
 #include "renderer/renderer.hpp"
@@ -23,13 +24,15 @@ class EglRenderer final : public Renderer {
  public:
   EglRenderer(std::unique_ptr<EglContext> context,
               GroundPass ground,
+              ScenePass scene,
               std::shared_ptr<const terrain::TileSource> tiles,
               const RendererOptions& options)
       : context_(std::move(context)),
         tiles_(std::move(tiles)),
         patches_(tiles_),
         textures_(tiles_, options.tile_cache_bytes),
-        ground_(std::move(ground)) {
+        ground_(std::move(ground)),
+        scene_(std::move(scene)) {
     glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
     glDisable(GL_DITHER);
   }
@@ -101,12 +104,12 @@ class EglRenderer final : public Renderer {
     return depth;
   }
 
-  Result<Image> render_scene(const SceneView& view, const SceneContent& /*content*/) override {
+  Result<Image> render_scene(const SceneView& view, const SceneContent& content) override {
     const Result<PinholeCamera> camera = camera_of(view);
     if (!camera.ok()) return camera.error();
-    Result<CameraFrame> frame = render_camera(*camera, view.T_world_camera, 0, PixelFormat::kRgb8);
-    if (!frame.ok()) return frame.error();
-    return std::move(frame->image);
+    if (Status s = context_->make_current(); !s) return s.error();
+    return scene_.draw(
+        content, View::from(*camera, view.T_world_camera), *tiles_, patches_, ground_, textures_);
   }
 
   [[nodiscard]] RendererInfo info() const override {
@@ -144,6 +147,7 @@ class EglRenderer final : public Renderer {
   GroundPatches patches_;
   TileTextures textures_;
   GroundPass ground_;
+  ScenePass scene_;
   std::map<TargetFormat, RenderTarget> targets_;
 };
 
@@ -156,8 +160,10 @@ Result<std::unique_ptr<Renderer>> create_egl_renderer(
   if (!context.ok()) return context.error();
   Result<egl::GroundPass> ground = egl::GroundPass::create();
   if (!ground.ok()) return ground.error();
+  Result<egl::ScenePass> scene = egl::ScenePass::create();
+  if (!scene.ok()) return scene.error();
   return std::unique_ptr<Renderer>(std::make_unique<egl::EglRenderer>(
-      std::move(*context), std::move(*ground), std::move(tiles), options));
+      std::move(*context), std::move(*ground), std::move(*scene), std::move(tiles), options));
 }
 
 Result<RendererInfo> probe_egl() {

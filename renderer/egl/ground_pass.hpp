@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "core/result.hpp"
 #include "renderer/egl/gl_objects.hpp"
@@ -14,6 +15,9 @@ namespace overfly::renderer::egl {
 /// Everything nearer than this is cut away [m].
 inline constexpr float kNearM = 0.05F;
 
+/// Colour of the air at the horizon in scene views.
+inline constexpr float kHazeRgb[3] = {0.84F, 0.89F, 0.93F};
+
 /// Sets the uniform `projection` (fx', fy', cx', cy') of a program: clip coordinates of a point
 /// (x, y, z) of the camera frame are (fx' x + cx' z, fy' y + cy' z, kNearM, z). Depth is then
 /// kNearM / z: 1 at the near plane, 0 at infinity, and floats keep it precise everywhere.
@@ -22,7 +26,11 @@ void set_projection(const GlProgram& program, const PinholeCamera& camera);
 
 class GroundPass {
  public:
-  enum class Output { kColour, kDepthM };
+  enum class Output {
+    kColour,
+    kHazyColour,  ///< fades into kHazeRgb with distance; ground without imagery is earth-coloured
+    kDepthM,
+  };
 
   static Result<GroundPass> create();
 
@@ -36,12 +44,14 @@ class GroundPass {
               Output output);
 
  private:
-  GroundPass(GlProgram colour, GlProgram depth);
+  GroundPass(GlProgram colour, GlProgram hazy, GlProgram depth);
+  Status find_textures(const GroundMesh& mesh, TileTextures& textures, PixelFormat format);
   void upload(const GroundMesh& mesh);
 
-  GlProgram colour_, depth_;
+  GlProgram colour_, hazy_, depth_;
   GlVertexArray vertex_array_;
   GlBuffer vertices_, indices_;
+  std::vector<GLuint> names_;  // of the batches being drawn
 };
 
 }  // namespace overfly::renderer::egl

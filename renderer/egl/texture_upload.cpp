@@ -10,11 +10,11 @@ GlTexture upload_texture(const std::vector<Image>& levels) {
   for (std::size_t i = 0; i < levels.size(); ++i) {
     glTexImage2D(GL_TEXTURE_2D,
                  static_cast<GLint>(i),
-                 grey ? GL_R8 : GL_RGB8,
+                 grey ? GL_R8 : GL_RGBA8,
                  levels[i].width_px,
                  levels[i].height_px,
                  0,
-                 grey ? GL_RED : GL_RGB,
+                 grey ? GL_RED : GL_RGBA,
                  GL_UNSIGNED_BYTE,
                  levels[i].data.data());
   }

@@ -8,7 +8,7 @@
 
 namespace overfly::renderer::egl {
 
-/// A texture of an image (grey or RGB) and its mip levels, trilinear, clamped at the edges.
+/// A texture of an image (grey or RGBA) and its mip levels, trilinear, clamped at the edges.
 [[nodiscard]] GlTexture upload_texture(const std::vector<Image>& levels);
 
 }  // namespace overfly::renderer::egl

@@ -15,8 +15,9 @@ namespace {
 
 constexpr int kValidStep = 8;
 
-Image in_format(Image rgb, PixelFormat format) {
-  return format == PixelFormat::kGrey8 ? grey_from_rgb(rgb) : std::move(rgb);
+/// Grey, or RGB with the imagery's validity as alpha.
+Image in_format(const terrain::Tile& tile, PixelFormat format) {
+  return format == PixelFormat::kGrey8 ? grey_from_rgb(tile.rgb) : with_alpha(tile.rgb, tile.valid);
 }
 
 Image thinned(const Image& valid) {
@@ -52,12 +53,8 @@ Result<GLuint> TileTextures::texture(const TileId& id, PixelFormat format) {
   Entry entry;
   entry.key = key;
   entry.valid = thinned(tile->valid);
-  const std::vector<Image> levels = mip_chain(in_format(std::move(tile->rgb), format));
-  // Drivers keep RGB as four bytes a texel.
-  const std::size_t texel_bytes = format == PixelFormat::kGrey8 ? 1 : 4;
-  for (const Image& level : levels) {
-    entry.bytes += static_cast<std::size_t>(level.width_px) * level.height_px * texel_bytes;
-  }
+  const std::vector<Image> levels = mip_chain(in_format(*tile, format));
+  for (const Image& level : levels) entry.bytes += level.data.size();
   entry.texture = upload_texture(levels);
   held_bytes_ += entry.bytes;
   entries_.push_front(std::move(entry));
@@ -68,9 +65,9 @@ Result<GLuint> TileTextures::texture(const TileId& id, PixelFormat format) {
 GLuint TileTextures::void_texture(PixelFormat format) {
   GlTexture& texture = format == PixelFormat::kGrey8 ? void_grey_ : void_rgb_;
   if (texture.name() == 0) {
-    Image rgb(1, 1, 3);
-    std::copy(std::begin(terrain::kVoidRgb), std::end(terrain::kVoidRgb), rgb.data.begin());
-    texture = upload_texture({in_format(std::move(rgb), format)});
+    terrain::Tile nothing{Image(1, 1, 3), Image(1, 1, 1)};
+    std::copy(std::begin(terrain::kVoidRgb), std::end(terrain::kVoidRgb), nothing.rgb.data.begin());
+    texture = upload_texture({in_format(nothing, format)});
   }
   return texture.name();
 }

@@ -1,0 +1,39 @@
+// Draws a scene view: sky, hazy ground, and what is in the air above it.
+#pragma once
+
+#include <optional>
+
+#include "core/image.hpp"
+#include "core/result.hpp"
+#include "renderer/egl/ground_pass.hpp"
+#include "renderer/egl/render_target.hpp"
+#include "renderer/renderer.hpp"
+#include "renderer/scene_triangles.hpp"
+
+namespace overfly::renderer::egl {
+
+class ScenePass {
+ public:
+  static Result<ScenePass> create();
+
+  /// Errors: kIo when a tile cannot be read; kUnsupported when there is no such framebuffer.
+  Result<Image> draw(const SceneContent& content,
+                     const View& view,
+                     const terrain::TileSource& tiles,
+                     GroundPatches& patches,
+                     GroundPass& ground,
+                     TileTextures& textures);
+
+ private:
+  ScenePass(GlProgram sky, GlProgram overlay);
+  Status prepare_target(const PinholeCamera& camera);
+  void draw_sky(const View& view);
+  void draw_triangles(const SceneTriangles& triangles, bool translucent);
+
+  GlProgram sky_, overlay_;
+  GlVertexArray no_vertices_, vertex_array_;
+  GlBuffer vertices_;
+  std::optional<RenderTarget> target_;
+};
+
+}  // namespace overfly::renderer::egl
