@@ -86,9 +86,9 @@ Image expose(const Canvas& canvas, int width, int height) {
       }
       // A little haze lies over everything.
       const float grey = 0.3F * sum.r + 0.59F * sum.g + 0.11F * sum.b;
-      sum = mix(sum, {grey, grey, grey}, 0.10F) * 0.93F + Rgb{9.0F, 11.0F, 14.0F};
+      sum = mix(sum, {grey, grey, grey}, 0.10F) * 0.95F + Rgb{7.0F, 9.0F, 12.0F};
       const std::uint32_t bits = hash(canvas.x0 + u, canvas.y0 + v, 0x5e5eU);
-      const float grain = 2.4F * (unit(bits) + unit(bits * 0x9e3779b1U) - 1.0F);
+      const float grain = 2.0F * (unit(bits) + unit(bits * 0x9e3779b1U) - 1.0F);
       const auto level = [&](float value) {
         return static_cast<std::uint8_t>(std::clamp(value + grain + 0.5F, 0.0F, 255.0F));
       };

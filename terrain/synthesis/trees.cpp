@@ -12,6 +12,7 @@ constexpr float kReachM = 26.0F;
 struct Stand {
   float chance = 0.0F;  ///< of a tree in a cell
   float size = 1.0F;    ///< of its crown and height
+  bool bale = false;    ///< a bale of straw instead
 };
 
 /// How likely a tree is here.
@@ -47,8 +48,12 @@ Stand stand_at(const Landscape& land, float x, float y) {
     stand = {0.75F * smoothstep(-0.7F, -0.2F, clump), 0.62F + 0.3F * clump};
   } else if (hit.parcel->use == LandUse::kPasture) {
     stand.chance = 0.012F * smoothstep(0.1F, 0.8F, clump) + 0.002F;
-  } else if (hit.border == Border::kMargin && hit.border_m < 3.0F) {
-    stand = {0.06F, 0.7F};
+  } else if ((hit.border == Border::kMargin || hit.border == Border::kDitch) &&
+             hit.border_m < 3.0F) {
+    stand = {0.16F * smoothstep(-0.5F, 0.6F, clump), 0.55F};
+  } else if (hit.parcel->use == LandUse::kStubble || hit.parcel->use == LandUse::kMeadow) {
+    const bool baled = unit(hash(9, 9, hit.parcel->seed)) < 0.5F && hit.border_m > 9.0F;
+    if (baled) stand = {0.022F, 1.0F, true};
   } else if (hit.road == Border::kRoad && hit.road_m < 14.0F) {
     stand = {0.04F * smoothstep(0.0F, 0.6F, clump), 0.9F};
   }
@@ -73,6 +78,12 @@ Tree grown(const Stand& stand, float x, float y, std::uint32_t seed) {
   Tree tree;
   tree.at = {x, y};
   tree.seed = seed;
+  if (stand.bale) {
+    tree.radius_m = 0.95F;
+    tree.height_m = 2.2F;
+    tree.colour = {214, 198, 150};
+    return tree;
+  }
   const float vigour = unit(hash(1, 2, seed));
   tree.radius_m = std::max(1.1F, stand.size * lerp(1.9F, 4.3F, vigour * vigour + 0.15F * vigour));
   tree.height_m = tree.radius_m * lerp(2.0F, 3.1F, unit(hash(3, 4, seed)));

@@ -21,10 +21,10 @@ constexpr int kCropPx = 256;
 constexpr double kTexelM = 0.3;
 
 struct Statistics {
-  double slope = 0.0;        ///< of log power over log frequency
-  double corners_20 = 0.0;   ///< median count per crop at threshold 20
+  double slope = 0.0;       ///< of log power over log frequency
+  double corners_20 = 0.0;  ///< median count per crop at threshold 20
   double corners_7 = 0.0;
-  double poorest_7 = 0.0;    ///< 5th percentile
+  double poorest_7 = 0.0;  ///< 5th percentile
 };
 
 cv::Mat grey_of(const Image& rgb) {
@@ -103,8 +103,10 @@ Statistics measure(const std::vector<Image>& crops) {
   for (std::size_t f : {4, 8, 16, 32, 64, 90, 120})
     printf(" f%zu %.3g", f, power[f] / count[f] / crops.size());
   printf("\n");
-  return {(n * sxy - sx * sy) / (n * sxx - sx * sx), percentile(corners_20, 0.5),
-          percentile(corners_7, 0.5), percentile(corners_7, 0.05)};
+  return {(n * sxy - sx * sy) / (n * sxx - sx * sx),
+          percentile(corners_20, 0.5),
+          percentile(corners_7, 0.5),
+          percentile(corners_7, 0.05)};
 }
 
 /// Crops on a regular lattice over the middle of the world, painted as the world's files are.
@@ -166,9 +168,15 @@ TEST(LandscapeStatistics, MatchThePhotographWithinAFactorOfTwo) {
   const Statistics real = measure(real_crops);
   for (const std::uint32_t seed : {1U, 2U}) {
     const Statistics made = measure(synthetic_crops(seed));
-    printf("slope %.2f/%.2f, FAST20 %.0f/%.0f FAST7 %.0f/%.0f poorest %.0f/%.0f\n", made.slope,
-           real.slope, made.corners_20, real.corners_20, made.corners_7, real.corners_7,
-           made.poorest_7, real.poorest_7);
+    printf("slope %.2f/%.2f, FAST20 %.0f/%.0f FAST7 %.0f/%.0f poorest %.0f/%.0f\n",
+           made.slope,
+           real.slope,
+           made.corners_20,
+           real.corners_20,
+           made.corners_7,
+           real.corners_7,
+           made.poorest_7,
+           real.poorest_7);
     expect_within_factor_two(made.slope, real.slope, "spectrum slope");
     expect_within_factor_two(made.corners_20, real.corners_20, "FAST corners at 20");
     expect_within_factor_two(made.corners_7, real.corners_7, "FAST corners at 7");
