@@ -10,7 +10,6 @@
 #include "core/estimate.hpp"
 #include "core/result.hpp"
 #include "core/trajectory.hpp"
-#include "core/trajectory_io.hpp"
 
 namespace overfly::evaluation {
 
@@ -123,10 +122,6 @@ struct Score {
                                        AlignmentMode mode,
                                        const Options& options,
                                        std::vector<std::string>* notes = nullptr);
-
-/// An estimate read from a file: every pose is tracked, pose i is frame i, and the first has the
-/// scene depth of the file's comment `init_scene_depth`, if that is a number.
-[[nodiscard]] EstimateTrack track_from(const TrajectoryFile& file, const std::string& name);
 
 /// Scores an estimate against the truth: outcome, coverage and every alignment mode.
 /// Frames of the flight = samples of the track (one for each frame offered).

@@ -1,6 +1,3 @@
-#include <charconv>
-#include <cmath>
-
 #include "core/time.hpp"
 #include "evaluation/association.hpp"
 #include "evaluation/errors.hpp"
@@ -66,28 +63,6 @@ std::vector<std::string> common_notes(const Score& score,
 }
 
 }  // namespace
-
-EstimateTrack track_from(const TrajectoryFile& file, const std::string& name) {
-  EstimateTrack track;
-  track.name = name;
-  for (const StampedPose& stamped : file.trajectory.poses()) {
-    EstimateSample sample;
-    sample.frame = static_cast<std::int64_t>(track.samples.size());
-    sample.t_ns = stamped.t_ns;
-    sample.state = TrackingState::kTracking;
-    sample.T_vo_camera = stamped.pose;
-    track.samples.push_back(sample);
-  }
-  const auto comment = file.comments.find("init_scene_depth");
-  if (comment == file.comments.end() || track.samples.empty()) return track;
-  const std::string& text = comment->second;
-  double depth = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), depth);
-  if (error == std::errc() && end == text.data() + text.size() && std::isfinite(depth)) {
-    track.samples.front().scene_depth = depth;
-  }
-  return track;
-}
 
 Score score(const Trajectory& T_world_camera_truth,
             const EstimateTrack& estimate,

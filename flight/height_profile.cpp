@@ -51,16 +51,17 @@ class SampledGround {
     if (bad == heights_.end()) return std::nullopt;
     return begin_s_ + static_cast<double>(bad - heights_.begin()) * step_s_;
   }
-  /// Mean (trapezoidal rule) over `half_steps` steps to each side of a sample.
-  [[nodiscard]] double mean_around(double t_s, long half_steps) const {
+  /// Mean around a sample, weighted by a triangle that falls to 0 at `reach` steps to each side:
+  /// the least window that keeps bumps shorter than two knots from showing as long waves.
+  [[nodiscard]] double mean_around(double t_s, long reach) const {
     const auto last = static_cast<long>(heights_.size()) - 1;
     const long centre = std::lround((t_s - begin_s_) / step_s_);
     double sum = 0.0;
-    for (long i = -half_steps; i <= half_steps; ++i) {
-      const double weight = std::abs(i) == half_steps ? 0.5 : 1.0;
+    for (long i = 1 - reach; i < reach; ++i) {
+      const auto weight = static_cast<double>(reach - std::abs(i));
       sum += weight * heights_[static_cast<std::size_t>(std::clamp(centre + i, 0L, last))];
     }
-    return sum / static_cast<double>(2 * half_steps);
+    return sum / static_cast<double>(reach * reach);
   }
 
  private:
@@ -91,7 +92,7 @@ Result<HeightProfile> HeightProfile::above(const std::function<double(double)>& 
     profile.control_m_.clear();
     for (int j = 0; j < count; ++j) {
       const double t_s = (j - kMargin) * profile.knot_s_;
-      profile.control_m_.push_back(ground.mean_around(t_s, half_steps) + height_agl_m);
+      profile.control_m_.push_back(ground.mean_around(t_s, 2 * half_steps) + height_agl_m);
     }
     if (profile.steepest_m_s(duration_s) <= limits.climb_max_m_s) return profile;
     if (profile.knot_s_ > duration_s) break;

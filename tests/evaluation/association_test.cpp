@@ -119,20 +119,5 @@ TEST(Association, TakesTheMapWithTheMostFrames) {
   EXPECT_EQ(matches->front().t_ns, 200'000'000);
 }
 
-TEST(TrackFrom, TakesEveryPoseAndTheSceneDepthOfTheFile) {
-  TrajectoryFile file;
-  file.trajectory = line(3, kNsPerS, 10.0);
-  file.comments = {{"init_scene_depth", "0.987"}};
-  const EstimateTrack track = track_from(file, "orb");
-  EXPECT_EQ(track.name, "orb");
-  ASSERT_EQ(track.samples.size(), 3U);
-  EXPECT_EQ(track.samples[2].frame, 2);
-  EXPECT_EQ(track.samples[2].state, TrackingState::kTracking);
-  EXPECT_EQ(track.samples[0].scene_depth, 0.987);
-  EXPECT_FALSE(track.samples[1].scene_depth.has_value());
-  file.comments["init_scene_depth"] = "deep";
-  EXPECT_FALSE(track_from(file, "orb").samples[0].scene_depth.has_value());
-}
-
 }  // namespace
 }  // namespace overfly::evaluation
