@@ -184,10 +184,10 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
       const rows = await dashboard.errors();
       assert.equal(plain(rows.position_rmse_m[0]), fixed(figures.position_rmse_m, 2), mode);
       assert.equal(plain(rows.position_rmse_hold_m[0]), fixed(figures.position_rmse_hold_m, 2), mode);
-      assert.equal(plain(rows.rotation_rmse_deg[0]), fixed(figures.rotation_rmse_deg, 2), mode);
+      assert.equal(plain(rows.rotation_rmse_deg[0]), fixed(figures.rotation_rmse_deg, 3), mode);
       assert.equal(
         plain(rows.rotation_euler_norm_rmse_deg[0]),
-        fixed(figures.rotation_euler_norm_rmse_deg, 2),
+        fixed(figures.rotation_euler_norm_rmse_deg, 3),
         mode,
       );
       assert.equal(rows.coverage[0], `${(coverage * 100).toFixed(1)} %`);

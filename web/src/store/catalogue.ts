@@ -8,6 +8,8 @@ import type { Notices } from './notices';
 import type { Session } from './session';
 import type { Store } from './state';
 
+/** Offered first: it needs no data. */
+const kPreferred = 'course';
 const kPollActive_ms = 1500;
 const kPollIdle_ms = 8000;
 
@@ -40,7 +42,8 @@ export class Catalogue {
       return;
     }
     this.store.change('lists');
-    const first = state.scenarios.find((entry) => entry.error === null);
+    const flyable = state.scenarios.filter(({ error }) => error === null);
+    const first = flyable.find(({ name }) => name === kPreferred) ?? flyable[0];
     if (state.scenarioName === null && first !== undefined) await this.selectScenario(first.name);
   }
 

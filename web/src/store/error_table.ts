@@ -59,14 +59,14 @@ const kFigures: readonly Figure[] = [
     label: 'Rotation RMSE',
     unit: 'deg',
     hint: 'Geodesic angle',
-    digits: 2,
+    digits: 3,
   },
   {
     key: 'rotation_euler_norm_rmse_deg',
     label: 'Rotation, Euler norm',
     unit: 'deg',
     hint: 'Norm of the wrapped roll, pitch and yaw errors',
-    digits: 2,
+    digits: 3,
   },
 ];
 

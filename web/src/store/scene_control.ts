@@ -23,7 +23,8 @@ export class SceneControl {
     const { state } = this.store;
     const orbit = { ...state.sceneOrbits[state.sceneMode], ...change };
     orbit.azimuth_deg = ((orbit.azimuth_deg % 360) + 360) % 360;
-    orbit.elevation_deg = clamp(orbit.elevation_deg, kElevationRange_deg);
+    orbit.elevation_deg =
+      state.sceneMode === 'top' ? 90 : clamp(orbit.elevation_deg, kElevationRange_deg);
     orbit.distance_m = clamp(orbit.distance_m, kDistanceRange_m);
     state.sceneOrbits[state.sceneMode] = orbit;
     this.client.setView({ mode: state.sceneMode, ...orbit });

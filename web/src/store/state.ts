@@ -67,9 +67,9 @@ export function initialState(): State {
     alignment: kDefaultAlignment,
     sceneMode: 'chase',
     sceneOrbits: {
-      chase: { azimuth_deg: 0, elevation_deg: 18, distance_m: 60, follow: true },
+      chase: { azimuth_deg: 20, elevation_deg: 18, distance_m: 40, follow: true },
       orbit: { azimuth_deg: 215, elevation_deg: 35, distance_m: 900, follow: true },
-      top: { azimuth_deg: 180, elevation_deg: 90, distance_m: 2400, follow: false },
+      top: { azimuth_deg: 0, elevation_deg: 90, distance_m: 2400, follow: false },
     },
     notices: [],
     helpOpen: false,

@@ -5,9 +5,11 @@ export const kTruthColour = 'rgb(230, 38, 38)';
 /** By the estimator's place in the run. */
 const kEstimateColours = [
   'rgb(38, 115, 255)',
-  'rgb(255, 166, 26)',
-  'rgb(51, 191, 89)',
-  'rgb(191, 77, 230)',
+  'rgb(26, 184, 89)',
+  'rgb(242, 166, 26)',
+  'rgb(166, 89, 230)',
+  'rgb(26, 191, 204)',
+  'rgb(217, 89, 153)',
 ] as const;
 
 export function estimateColour(index: number): string {

@@ -25,6 +25,9 @@ export interface PlotOptions {
 const kGrid = 'rgba(140, 155, 180, 0.11)';
 const kText = '#8a94a6';
 const kFont = '10px system-ui, sans-serif';
+// The truth lies below the estimates: it stays visible where they agree.
+const kTruthWidth_px = 3;
+const kEstimateWidth_px = 1.25;
 const kZoom_per_px = 0.0015;
 const kSyncKey = 'overfly-plots';
 const kLeastSpan = { m: 2, deg: 4 } as const;
@@ -149,7 +152,7 @@ export class Plot {
         ...colours.map((stroke, i) => ({
           label: String(i),
           stroke,
-          width: i === 0 ? 1.5 : 1.25,
+          width: i === 0 ? kTruthWidth_px : kEstimateWidth_px,
           points: { show: false },
         })),
       ],

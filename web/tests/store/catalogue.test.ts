@@ -44,14 +44,24 @@ const reading = {
 };
 
 describe('Catalogue', () => {
-  it('opens the first scenario that can be flown', async () => {
-    const broken = { ...kScenario, name: 'a', error: 'no data' };
+  it('offers the course first, which needs no data', async () => {
     const { store, subject } = catalogue({
       ...reading,
-      'GET /scenarios': () => [200, { scenarios: [broken, kScenario] }],
+      'GET /scenarios': () => [200, { scenarios: [{ ...kScenario, name: 'autzen' }, kScenario] }],
     });
     await subject.readScenarios();
     expect(store.state.scenarioName).toBe('course');
+  });
+
+  it('opens the first scenario that can be flown', async () => {
+    const broken = { ...kScenario, error: 'no data' };
+    const { store, subject } = catalogue({
+      ...reading,
+      'GET /scenarios': () => [200, { scenarios: [broken, { ...kScenario, name: 'tour' }] }],
+      'GET /scenarios/tour': () => [200, document],
+    });
+    await subject.readScenarios();
+    expect(store.state.scenarioName).toBe('tour');
     expect(store.state.scenarioDocument).toEqual(document);
   });
 

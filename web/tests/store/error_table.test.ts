@@ -38,7 +38,7 @@ describe('errorTable', () => {
       scale: ['41.2031', '–'],
       position_rmse_m: ['3.46', '–'],
       position_rmse_hold_m: ['500.00', '–'],
-      rotation_rmse_deg: ['0.50', '–'],
+      rotation_rmse_deg: ['0.500', '–'],
       rotation_euler_norm_rmse_deg: ['–', '–'],
       dropped_frames: ['3', '–'],
     });
