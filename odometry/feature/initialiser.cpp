@@ -143,8 +143,8 @@ bool Initialiser::process(const FrameImage& frame, OrbExtractor& orb, Map& map) 
     return false;
   }
   ++frames_;
-  const bool tried =
-      frames_ % options_.attempt_every == 0 && median_motion_px() > options_.min_motion_px;
+  const bool tried = frames_ % options_.attempt_every == 0 &&
+                     median_motion_px() > options_.min_motion_rad * camera_.fx_px;
   if (tried && reconstruct(frame, orb, map)) {
     reset();
     return true;

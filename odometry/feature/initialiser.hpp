@@ -24,7 +24,7 @@ struct FrameImage {
 
 struct InitialiserOptions {
   double min_parallax_rad = 0.07;  ///< 4 deg: depths to 0.1 % with points to 0.1 px
-  double min_motion_px = 25.0;     ///< median displacement before a reconstruction is tried
+  double min_motion_rad = 0.035;   ///< median displacement before a reconstruction is tried
   int attempt_every = 3;           ///< frames
   int snapshot_every = 6;          ///< frames between the keyframes of the first map
   int min_tracks = 120;

@@ -87,7 +87,8 @@ SyntheticGround SyntheticGround::procedural(std::uint64_t seed,
       const double period = 4.0 + 20.0 * uniform();
       for (int dy = 0; dy < h; ++dy) {
         for (int dx = 0; dx < w; ++dx) {
-          const auto at = static_cast<std::size_t>((y + dy) % size_px) * size_px + (x + dx) % size_px;
+          const auto at =
+              static_cast<std::size_t>((y + dy) % size_px) * size_px + (x + dx) % size_px;
           const auto furrow = static_cast<float>(6.0 * std::sin(6.28 * dx / period));
           grey[at] += tone + furrow - 0.3F * (grey[at] - 110.0F);
         }
@@ -104,7 +105,8 @@ SyntheticGround SyntheticGround::procedural(std::uint64_t seed,
 double SyntheticGround::height_m(double east_m, double north_m) const {
   if (relief_m_ == 0.0) return 0.0;
   return 0.5 * relief_m_ *
-         (std::sin(east_m / 90.0) * std::cos(north_m / 110.0) + std::sin((east_m + north_m) / 60.0));
+         (std::sin(east_m / 90.0) * std::cos(north_m / 110.0) +
+          std::sin((east_m + north_m) / 60.0));
 }
 
 float SyntheticGround::sample(double east_m, double north_m, double footprint_m) const {
@@ -130,12 +132,14 @@ Image SyntheticGround::render(const PinholeCamera& camera,
   for (int y = 0; y < camera.height_px; ++y) {
     for (int x = 0; x < camera.width_px; ++x) {
       const Eigen::Vector3d ray =
-          R * Eigen::Vector3d((x - camera.cx_px) / camera.fx_px, (y - camera.cy_px) / camera.fy_px, 1.0);
+          R * Eigen::Vector3d(
+                  (x - camera.cx_px) / camera.fx_px, (y - camera.cy_px) / camera.fy_px, 1.0);
       if (ray.z() > -0.02) continue;  // sky
       double along = -eye.z() / ray.z();
       if (relief_m_ != 0.0) {
         for (int i = 0; i < 6; ++i) {
-          along = (height_m(eye.x() + along * ray.x(), eye.y() + along * ray.y()) - eye.z()) / ray.z();
+          along =
+              (height_m(eye.x() + along * ray.x(), eye.y() + along * ray.y()) - eye.z()) / ray.z();
         }
       }
       // The footprint of a pixel, mean of along and across the slope.
@@ -146,7 +150,8 @@ Image SyntheticGround::render(const PinholeCamera& camera,
         const std::uint64_t bits = rng();
         const double sum = static_cast<double>((bits & 0xffffU) + ((bits >> 16U) & 0xffffU) +
                                                ((bits >> 32U) & 0xffffU) + (bits >> 48U)) /
-                               65535.0 - 2.0;
+                               65535.0 -
+                           2.0;
         value += static_cast<float>(noise * 1.732 * sum);
       }
       image.at(x, y) = static_cast<std::uint8_t>(std::clamp(value + 0.5F, 0.0F, 255.0F));

@@ -43,10 +43,10 @@ class SyntheticGround {
 struct SyntheticFlightOptions {
   double speed_m_s = 25.0;
   double height_m = 300.0;
-  double straight_s = 3.0;            ///< level at first
+  double straight_s = 3.0;  ///< level at first
   double roll_rate_max_rad_s = 0.785;
   double bank_max_rad = 0.785;
-  double hold_s = 1.0;                ///< at full bank, each way
+  double hold_s = 1.0;  ///< at full bank, each way
   double duration_s = 10.0;
   double rate_hz = 31.0;
 };

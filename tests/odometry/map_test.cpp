@@ -1,0 +1,98 @@
+#include "odometry/feature/map.hpp"
+
+#include <gtest/gtest.h>
+
+namespace overfly::odometry {
+namespace {
+
+PinholeCamera camera() { return {1280, 960, 700.0, 700.0, 639.5, 479.5}; }
+
+/// Three keyframes; point i is seen by keyframe 0 and 1, every third one by keyframe 2 as well.
+Map small_map(int points) {
+  Map map;
+  for (int i = 0; i < 3; ++i) map.add_keyframe({});
+  for (int i = 0; i < points; ++i) {
+    const int id = map.add_point({}).id;
+    for (int keyframe = 0; keyframe < (i % 3 == 0 ? 3 : 2); ++keyframe) {
+      map.add_observation(map.keyframe(keyframe), {id, {}, 1.0});
+    }
+  }
+  return map;
+}
+
+TEST(Map, RanksCovisibleKeyframesByWhatTheyShare) {
+  const Map map = small_map(30);
+  EXPECT_EQ(map.covisible(0, 1), (std::vector<int>{1, 2}));
+  EXPECT_EQ(map.covisible(0, 15), (std::vector<int>{1}));
+  EXPECT_EQ(map.covisible(2, 1), (std::vector<int>{1, 0}));
+}
+
+TEST(Map, DropsAPointThatLosesAllButOneSight) {
+  Map map = small_map(3);
+  map.remove_observation(1, 1);
+  EXPECT_EQ(map.point(1), nullptr);
+  EXPECT_EQ(map.keyframe(0).observations.size(), 2U);
+  map.remove_observation(1, 0);  // keyframes 0 and 2 still see it
+  ASSERT_NE(map.point(0), nullptr);
+  EXPECT_EQ(map.point(0)->keyframes, (std::vector<int>{0, 2}));
+}
+
+TEST(Map, ForgetsOldImagesAndWhatHangsOnThem) {
+  Map map = small_map(4);
+  MapPoint young;
+  young.source_keyframe = 2;
+  const int id = map.add_point(young).id;
+  map.forget_images(1);
+  EXPECT_EQ(map.points().size(), 1U);
+  EXPECT_NE(map.point(id), nullptr);
+  EXPECT_EQ(map.keyframes().size(), 3U);
+}
+
+TEST(GroundPlane, IsFittedDespiteOutliers) {
+  Map map;
+  Keyframe& keyframe = map.add_keyframe({});
+  map.add_keyframe({});
+  const Eigen::Vector3d truth(0.1, -0.2, 0.8);
+  for (int i = 0; i < 100; ++i) {
+    const Eigen::Vector2d pixel(100.0 + 11.0 * i, 60.0 + (67 * i) % 800);
+    const Eigen::Vector3d ray = camera().ray(pixel);
+    MapPoint point;
+    point.position_vo = ray / truth.dot(ray) * (i % 10 == 0 ? 0.6 : 1.0);
+    const int id = map.add_point(point).id;
+    map.add_observation(keyframe, {id, pixel, 1.0});
+  }
+  fit_plane(camera(), map, keyframe);
+  EXPECT_LT((keyframe.plane.coefficients - truth).norm(), 0.01);
+}
+
+TEST(MedianDepth, SpeaksForTheGroundOnTheOpticalAxis) {
+  std::vector<Eigen::Vector3d> points;
+  for (int i = 0; i < 20; ++i) points.emplace_back(0.005 * i, 0.0, 2.0);
+  for (int i = 0; i < 200; ++i) points.emplace_back(3.0, 0.0, 4.0);
+  EXPECT_DOUBLE_EQ(*median_depth(Pose{}, points), 2.0);
+  points.erase(points.begin(), points.begin() + 10);  // too few are left near the axis
+  EXPECT_DOUBLE_EQ(*median_depth(Pose{}, points), 4.0);
+  EXPECT_FALSE(median_depth(Pose{}, {}));
+}
+
+TEST(PatchTangents, AreThePlanesStepsOfOnePixel) {
+  Map map;
+  Keyframe& keyframe = map.add_keyframe({});
+  keyframe.T_camera_vo = {exp_so3({0.3, 0.1, -0.2}), {0.1, 0.2, 0.3}};
+  keyframe.plane.coefficients = {0.1, -0.2, 0.8};
+  const auto on_plane = [&](const Eigen::Vector2d& pixel) -> Eigen::Vector3d {
+    const Eigen::Vector3d ray = camera().ray(pixel);
+    return keyframe.T_camera_vo.inverse() * (ray / keyframe.plane.inverse_depth(ray));
+  };
+  MapPoint point;
+  point.source_pixel = {900.0, 300.0};
+  point.position_vo = on_plane(point.source_pixel);
+  set_tangents(camera(), keyframe, point);
+  const Eigen::Vector3d right = on_plane({900.5, 300.0}) - on_plane({899.5, 300.0});
+  const Eigen::Vector3d down = on_plane({900.0, 300.5}) - on_plane({900.0, 299.5});
+  EXPECT_LT((point.tangents_vo.col(0) - right).norm(), 1e-8);
+  EXPECT_LT((point.tangents_vo.col(1) - down).norm(), 1e-8);
+}
+
+}  // namespace
+}  // namespace overfly::odometry

@@ -1,0 +1,137 @@
+#include "odometry/feature/two_view.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "odometry/feature/lie.hpp"
+
+namespace overfly::odometry {
+namespace {
+
+PinholeCamera camera() { return {1280, 960, 700.0, 700.0, 639.5, 479.5}; }
+
+struct Pair {
+  std::vector<Eigen::Vector2d> first;
+  std::vector<Eigen::Vector2d> second;
+};
+
+/// Points at 1 / (n . ray) with depth changed by up to `roughness`, seen with 0.1 px of noise.
+Pair views_of(const Pose& T_second_first, double roughness) {
+  std::mt19937 rng(3);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  std::normal_distribution<double> normal(0.0, 0.1);
+  const Eigen::Vector3d plane(0.05, -0.1, 1.0);
+  Pair pair;
+  while (pair.first.size() < 300) {
+    const Eigen::Vector2d pixel(1280.0 * uniform(rng), 960.0 * uniform(rng));
+    const Eigen::Vector3d ray = camera().ray(pixel);
+    const double depth = (1.0 + roughness * (uniform(rng) - 0.5)) / plane.dot(ray);
+    const auto seen = camera().project(T_second_first * (depth * ray));
+    if (!seen) continue;
+    pair.first.push_back(pixel);
+    pair.second.push_back(*seen + Eigen::Vector2d(normal(rng), normal(rng)));
+  }
+  return pair;
+}
+
+const Pose kMotion{exp_so3({0.01, -0.03, 0.02}), {0.02, -0.10, 0.01}};
+
+void expect_motion(const Pose& T_second_first, double tolerance_rad) {
+  const Eigen::Vector3d direction = kMotion.translation.normalized();
+  EXPECT_LT(rotation_angle_rad(T_second_first.rotation, kMotion.rotation), tolerance_rad);
+  EXPECT_LT(std::acos(std::min(1.0, direction.dot(T_second_first.translation))),
+            20.0 * tolerance_rad);
+}
+
+TEST(TwoView, TakesTheMotionOverAPlaneFromTheHomography) {
+  const Pair pair = views_of(kMotion, 0.0);
+  const auto result = reconstruct_two_view(camera(), pair.first, pair.second, {});
+  ASSERT_TRUE(result);
+  EXPECT_TRUE(result->planar);
+  EXPECT_GT(result->good_count, 290);
+  expect_motion(result->T_second_first, 1e-3);
+}
+
+TEST(TwoView, TakesTheMotionOverReliefFromTheEssentialMatrix) {
+  const Pair pair = views_of(kMotion, 1.0);
+  const auto result = reconstruct_two_view(camera(), pair.first, pair.second, {});
+  ASSERT_TRUE(result);
+  EXPECT_FALSE(result->planar);
+  expect_motion(result->T_second_first, 3e-3);
+}
+
+TEST(TwoView, RefusesAPureRotation) {
+  const Pair pair = views_of({exp_so3({0.05, -0.08, 0.1}), {0.0, 0.0, 0.0}}, 0.3);
+  EXPECT_FALSE(reconstruct_two_view(camera(), pair.first, pair.second, {}));
+}
+
+TEST(TwoView, RefusesTooLittleParallax) {
+  const Pair pair = views_of({exp_so3({0.0, 0.0, 0.1}), {0.0, 0.005, 0.0}}, 0.0);
+  EXPECT_FALSE(reconstruct_two_view(camera(), pair.first, pair.second, {}));
+}
+
+TEST(TwoView, SurvivesWrongMatches) {
+  Pair pair = views_of(kMotion, 0.0);
+  for (std::size_t i = 0; i < 60; ++i) pair.second[i] = pair.first[(7 * i + 13) % 300];
+  const auto result = reconstruct_two_view(camera(), pair.first, pair.second, {});
+  ASSERT_TRUE(result);
+  expect_motion(result->T_second_first, 1e-3);
+}
+
+TEST(HomographyMotions, HoldTheTrueOne) {
+  const Eigen::Vector3d normal = Eigen::Vector3d(0.1, 0.2, 1.0).normalized();
+  const Eigen::Matrix3d H =
+      kMotion.rotation.toRotationMatrix() + kMotion.translation * normal.transpose() / 0.9;
+  const std::vector<Pose> motions = motions_of_homography(-3.0 * H);
+  ASSERT_EQ(motions.size(), 4U);
+  EXPECT_TRUE(std::any_of(motions.begin(), motions.end(), [](const Pose& motion) {
+    return rotation_angle_rad(motion.rotation, kMotion.rotation) < 1e-6 &&
+           (motion.translation - kMotion.translation.normalized()).norm() < 1e-6;
+  }));
+}
+
+TEST(HomographyMotions, AreNoneForARotation) {
+  EXPECT_TRUE(motions_of_homography(kMotion.rotation.toRotationMatrix()).empty());
+}
+
+TEST(EssentialMotions, HoldTheTrueOne) {
+  const Eigen::Matrix3d E = skew(kMotion.translation) * kMotion.rotation.toRotationMatrix();
+  const std::vector<Pose> motions = motions_of_essential(E);
+  EXPECT_TRUE(std::any_of(motions.begin(), motions.end(), [](const Pose& motion) {
+    return rotation_angle_rad(motion.rotation, kMotion.rotation) < 1e-6 &&
+           (motion.translation - kMotion.translation.normalized()).norm() < 1e-6;
+  }));
+}
+
+TEST(Homography, IsFoundAmongWrongMatches) {
+  Eigen::Matrix3d H;
+  H << 0.98, -0.05, 12.0, 0.04, 1.01, -7.0, 1e-5, -2e-5, 1.0;
+  std::mt19937 rng(5);
+  std::uniform_real_distribution<double> uniform(0.0, 900.0);
+  std::vector<Eigen::Vector2d> first;
+  std::vector<Eigen::Vector2d> second;
+  for (int i = 0; i < 200; ++i) {
+    first.emplace_back(uniform(rng), uniform(rng));
+    second.push_back(i % 3 == 0 ? Eigen::Vector2d(uniform(rng), uniform(rng))
+                                : transfer(H, first.back()));
+  }
+  const auto fit = fit_homography(first, second, 2.0, 1);
+  ASSERT_TRUE(fit);
+  EXPECT_GE(fit->inliers, 133);
+  for (const Eigen::Vector2d& p : first) {
+    EXPECT_LT((transfer(fit->H_second_first, p) - transfer(H, p)).norm(), 1e-3);
+    const Eigen::Matrix2d J = transfer_jacobian(H, p);
+    const Eigen::Vector2d ahead = transfer(H, p + Eigen::Vector2d(1e-4, 0.0));
+    EXPECT_LT(((ahead - transfer(H, p)) / 1e-4 - J.col(0)).norm(), 1e-5);
+  }
+}
+
+TEST(Homography, NeedsEightPairs) {
+  const std::vector<Eigen::Vector2d> few(7, Eigen::Vector2d(1.0, 2.0));
+  EXPECT_FALSE(fit_homography(few, few, 1.0, 1));
+}
+
+}  // namespace
+}  // namespace overfly::odometry
