@@ -32,6 +32,34 @@ double covered_share(const std::vector<ElevationRaster>& rasters, const MapRect&
   return static_cast<double>(covered) / (kSteps * kSteps);
 }
 
+/// The part of an area where some raster has posts, to a hundredth of the area.
+MapRect covered_part(const std::vector<ElevationRaster>& rasters, const MapRect& area) {
+  constexpr int kSteps = 200;
+  const double step_x = (area.x_max - area.x_min) / kSteps;
+  const double step_y = (area.y_max - area.y_min) / kSteps;
+  MapRect part{area.x_max, area.y_max, area.x_min, area.y_min};
+  for (int j = 0; j <= kSteps; ++j) {
+    for (int i = 0; i <= kSteps; ++i) {
+      const double x = area.x_min + i * step_x;
+      const double y = area.y_min + j * step_y;
+      const bool covered =
+          std::any_of(rasters.begin(), rasters.end(), [&](const ElevationRaster& raster) {
+            return raster.covers(x, y);
+          });
+      if (!covered) continue;
+      part = {std::min(part.x_min, x - step_x),
+              std::min(part.y_min, y - step_y),
+              std::max(part.x_max, x + step_x),
+              std::max(part.y_max, y + step_y)};
+    }
+  }
+  if (part.x_min > part.x_max) return area;
+  return {std::max(part.x_min, area.x_min),
+          std::max(part.y_min, area.y_min),
+          std::min(part.x_max, area.x_max),
+          std::min(part.y_max, area.y_max)};
+}
+
 }  // namespace
 
 ElevationModel ElevationModel::flat(double height_m) {
@@ -62,7 +90,7 @@ Result<ElevationModel> ElevationModel::load(const std::vector<ElevationLayer>& l
     warnings.push_back(rasters.front().file + ": elevation covers " + percent(share) +
                        " of the imagery; the ground beyond goes on with the edge's height");
   }
-  if (rasters.size() > 1) return merge(rasters, plane, area, warnings);
+  if (rasters.size() > 1) return merge(rasters, covered_part(rasters, area), warnings);
   ElevationModel model;
   model.post_from_map_ = std::move(rasters.front().post_from_map);
   model.spacing_m_ = rasters.front().spacing_m;
@@ -93,7 +121,6 @@ Status ElevationModel::finish(HeightGrid grid,
 
 /// Lays the rasters onto one grid parallel to the map's axes.
 Result<ElevationModel> ElevationModel::merge(const std::vector<ElevationRaster>& rasters,
-                                             const MapPlane& /*plane*/,
                                              const MapRect& area,
                                              std::vector<std::string>& warnings) {
   ElevationModel model;

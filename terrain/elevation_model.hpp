@@ -39,7 +39,6 @@ class ElevationModel {
 
  private:
   static Result<ElevationModel> merge(const std::vector<ElevationRaster>& rasters,
-                                      const MapPlane& plane,
                                       const MapRect& area,
                                       std::vector<std::string>& warnings);
   Status finish(HeightGrid grid, const std::string& what, std::vector<std::string>& warnings);

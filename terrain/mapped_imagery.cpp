@@ -120,7 +120,7 @@ Result<Patch> MappedImagery::read_warped(const TileId& id) const {
       pixels.col(static_cast<Eigen::Index>(v) * kSide + u) = pixel;
     }
   }
-  return resample(*raster_, pixels, texel_px_ * (1 << id.level), kSide, kSide);
+  return resample(*raster_, pixels, texel_px_, id.level, kSide, kSide);
 }
 
 TileCoverage MappedImagery::coverage(const TileId& id) const {

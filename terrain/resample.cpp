@@ -15,25 +15,37 @@ double cubic(double t) {
   return 0.0;
 }
 
-/// Kernel weights of one axis around a place, tabulated over its fraction of a texel.
+/// Kernel weights of one axis around a place, tabulated over its fraction of a texel: the mean of
+/// `count` cubic interpolations that share a texel of the result of width `width`.
 class Kernel {
  public:
-  explicit Kernel(double widening)
-      : radius_(2.0 * std::max(1.0, widening)), taps_(2 * static_cast<int>(std::ceil(radius_))) {
+  Kernel(double width, int count)
+      : taps_(2 * static_cast<int>(std::ceil(2.0 + 0.5 * width * (count - 1) / count))) {
     weights_.resize(static_cast<std::size_t>(kSteps + 1) * taps_);
     for (int step = 0; step <= kSteps; ++step) {
       const double fraction = static_cast<double>(step) / kSteps;
+      float* weights = &weights_[static_cast<std::size_t>(step) * taps_];
       double sum = 0.0;
       for (int k = 0; k < taps_; ++k) {
         const double distance = k - (taps_ / 2 - 1) - fraction;
-        const double weight = cubic(2.0 * distance / radius_);
-        weights_[static_cast<std::size_t>(step) * taps_ + k] = static_cast<float>(weight);
+        double weight = 0.0;
+        for (int i = 0; i < count; ++i) {
+          weight += cubic(distance - width * ((i + 0.5) / count - 0.5));
+        }
+        weights[k] = static_cast<float>(weight);
         sum += weight;
       }
-      for (int k = 0; k < taps_; ++k) {
-        weights_[static_cast<std::size_t>(step) * taps_ + k] /= static_cast<float>(sum);
-      }
+      for (int k = 0; k < taps_; ++k) weights[k] /= static_cast<float>(sum);
     }
+  }
+
+  /// @param width  of the result's texel, in texels of the level that is read
+  /// @param base   of a texel of the result's level 0, in file pixels
+  static Kernel across(double width, double base) {
+    // Where level 0 magnifies, it interpolates at texel centres, and a coarser level is the mean of
+    // the same interpolations; where it reduces, they are spread evenly over its texel.
+    const double spacing = base <= 1.0 + 1e-6 ? base : 0.25;
+    return {width, std::max(1, static_cast<int>(std::lround(width / spacing)))};
   }
 
   [[nodiscard]] int taps() const { return taps_; }
@@ -47,7 +59,6 @@ class Kernel {
 
  private:
   static constexpr int kSteps = 256;
-  double radius_;
   int taps_;
   std::vector<float> weights_;
 };
@@ -88,13 +99,15 @@ void sample(const Patch& source,
 
 Result<Patch> resample(const ImageryRaster& raster,
                        const Eigen::Matrix2Xd& pixels,
-                       const Eigen::Vector2d& size_px,
+                       const Eigen::Vector2d& base_px,
+                       int result_level,
                        int width,
                        int height) {
+  const Eigen::Vector2d size_px = base_px * std::pow(2.0, result_level);
   const int level = std::max(0, static_cast<int>(std::floor(std::log2(size_px.minCoeff() + 1e-9))));
   const double scale = std::pow(2.0, -level);
-  const Kernel kernel_x(size_px.x() * scale);
-  const Kernel kernel_y(size_px.y() * scale);
+  const Kernel kernel_x = Kernel::across(size_px.x() * scale, base_px.x());
+  const Kernel kernel_y = Kernel::across(size_px.y() * scale, base_px.y());
 
   // The window of the file that the result needs, as far as the file goes.
   const double reach_x = (kernel_x.taps() + 1) / scale;

@@ -9,13 +9,14 @@ namespace overfly::terrain {
 /// one column a texel, rows of the result next to each other in the file as they are in space).
 ///
 /// Method: Catmull-Rom cubic convolution (Keys, 1981, 10.1109/TASSP.1981.1163711, a = -0.5) on the
-/// pyramid level whose texels are at most the result's, the kernel widened to the result's texel.
-/// @param size_px  size of a result's texel along the file's axes, file pixels; the same for all
-///                 tiles of a level, so that neighbours agree
+/// pyramid level whose texels are at most the result's, averaged over the result's texel.
+/// @param base_px  size of a texel of the result's level 0 along the file's axes [file pixels];
+///                 the same for all tiles, so that neighbours and levels agree
 /// Errors: kIo.
 [[nodiscard]] Result<Patch> resample(const ImageryRaster& raster,
                                      const Eigen::Matrix2Xd& pixels,
-                                     const Eigen::Vector2d& size_px,
+                                     const Eigen::Vector2d& base_px,
+                                     int result_level,
                                      int width,
                                      int height);
 

@@ -196,26 +196,36 @@ Status synthesize_world(const fs::path& folder,
   return written;
 }
 
-Result<fs::path> builtin_world(std::uint64_t seed, const Progress& progress) {
-  const fs::path worlds = cache_folder() / "worlds";
-  const std::string name =
-      "airfield-v" + std::to_string(kLandscapeVersion) + "-seed" + std::to_string(seed);
-  const fs::path folder = worlds / name;
+Status ensure_world(const fs::path& folder,
+                    const SynthesisOptions& options,
+                    const Progress& progress) {
   std::error_code failed;
-  if (fs::exists(folder / "world.json", failed)) return folder;
-  fs::create_directories(worlds, failed);
-  const FileLock lock(worlds / ("." + name + ".lock"));
-  if (!lock.usable()) return Error{ErrorCode::kIo, worlds.string() + ": cannot be written to"};
+  if (fs::exists(folder / "world.json", failed)) return {};
+  const fs::path parent = fs::absolute(folder).lexically_normal().parent_path();
+  fs::create_directories(parent, failed);
+  std::string lock_name = folder.filename().string();
+  lock_name.insert(0, 1, '.').append(".lock");
+  const FileLock lock(parent / lock_name);
+  if (!lock.usable()) {
+    return Error{ErrorCode::kIo, parent.string() + ": cannot be written to"};
+  }
   while (!lock.try_lock()) {
     // Another process is at it; its folder appears when it is done.
     if (progress && !progress(0.0)) return Error{ErrorCode::kCancelled, "synthesis was cancelled"};
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }
-  if (fs::exists(folder / "world.json", failed)) return folder;
+  if (fs::exists(folder / "world.json", failed)) return {};
+  return synthesize_world(folder, options, progress);
+}
+
+Result<fs::path> builtin_world(std::uint64_t seed, const Progress& progress) {
+  const fs::path folder =
+      cache_folder() / "worlds" /
+      ("airfield-v" + std::to_string(kLandscapeVersion) + "-seed" + std::to_string(seed));
   SynthesisOptions options;
   options.seed = seed;
-  const Status written = synthesize_world(folder, options, progress);
-  if (!written) return written.error();
+  const Status there = ensure_world(folder, options, progress);
+  if (!there) return there.error();
   return folder;
 }
 

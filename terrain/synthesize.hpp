@@ -29,9 +29,15 @@ using Progress = std::function<bool(double)>;
                                       const SynthesisOptions& options,
                                       const Progress& progress = {});
 
+/// The world in `folder`, synthesised if it is not there yet. Safe when two processes ask at once:
+/// the second waits for the first (a lock file beside the folder).
+/// Errors: as synthesize_world.
+[[nodiscard]] Status ensure_world(const std::filesystem::path& folder,
+                                  const SynthesisOptions& options,
+                                  const Progress& progress = {});
+
 /// The folder of the built-in world with this seed in the user's cache
 /// ($OVERFLY_CACHE, else $XDG_CACHE_HOME/overfly, else ~/.cache/overfly), synthesised if absent.
-/// Safe when two processes ask at once.
 [[nodiscard]] Result<std::filesystem::path> builtin_world(std::uint64_t seed,
                                                           const Progress& progress = {});
 

@@ -108,6 +108,12 @@ class LevelWriter {
         return false;
       }
     }
+    // Flushed here, blocks reach the file in one order whatever else fills GDAL's cache.
+    for (int c = 0; c < 3; ++c) {
+      GDALRasterBand* band = dataset_.GetRasterBand(c + 1);
+      if (overview) band = band->GetOverview(level - 1);
+      if (band->FlushCache(false) != CE_None) return false;
+    }
     if (level + 1 >= levels_) return true;
     Patch patch{rows, Image(rows.width_px, rows.height_px, 1, 255)};
     const Patch half =
