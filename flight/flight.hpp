@@ -41,9 +41,10 @@ inline constexpr double kHeightKnotS = 1.6;
 /// cosines and each reversal reaches the limit. The nose lies along the velocity: no angle of
 /// attack, pitch = path angle. The height follows the smoothed ground: up to 25 m/s it follows
 /// hills longer than 800 m to within 4 % of their height, and of bumps below 80 m it takes less
-/// than 5 %. It climbs at kClimbMaxRad at most. Errors: kInvalidArgument naming field, value and
-/// limit (angles in degrees), for ground too steep to follow, and where less than a quarter of
-/// height_agl_m would be left.
+/// than 6 %. It climbs at kClimbMaxRad at most.
+///
+/// Errors: kInvalidArgument naming field, value and limit (angles in degrees), for ground too steep
+/// to follow, and where less than a quarter of height_agl_m would be left.
 [[nodiscard]] Result<std::unique_ptr<TruthSource>> fly_course(
     const CourseParameters& parameters, std::shared_ptr<const HeightQuery> ground);
 
