@@ -67,13 +67,15 @@ ProceduralGround::ProceduralGround(Options options)
   grid_.texel_m = options_.texel_m;
   grid_.cols = options_.cols;
   grid_.rows = options_.rows;
-  grid_.left_x_m = options_.map_offset_m - 0.5 * options_.cols * grid_.tile_m(0);
+  grid_.left_x_m =
+      options_.map_offset_m + options_.centre_east_m - 0.5 * options_.cols * grid_.tile_m(0);
   grid_.top_y_m = options_.map_offset_m + 0.5 * options_.rows * grid_.tile_m(0);
   grid_.levels = 1;
   while ((1 << (grid_.levels - 1)) < std::max(options_.cols, options_.rows)) ++grid_.levels;
 }
 
 double ProceduralGround::ground_up_m(double east_m, double north_m) const {
+  if (!options_.curved) return options_.height_m(east_m, north_m);
   return options_.height_m(east_m, north_m) -
          (east_m * east_m + north_m * north_m) / (2.0 * kEarthRadiusM);
 }

@@ -1,6 +1,7 @@
 // A small analytic world for the renderer's tests: hills and a painted ground, without files.
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <string>
@@ -26,8 +27,10 @@ class ProceduralGround final : public terrain::TileSource {
     Eigen::Vector2d height_range_m{0.0, 0.0};
     /// Brightness at (east, north), in [0, 255].
     std::function<double(double east_m, double north_m)> paint;
-    bool colourful = false;  ///< red and blue differ from the brightness
-    int failing_level = -1;  ///< reading tiles of this level fails
+    bool colourful = false;      ///< red and blue differ from the brightness
+    int failing_level = -1;      ///< reading tiles of this level fails
+    double centre_east_m = 0.0;  ///< where the imagery's middle lies
+    bool curved = true;          ///< false: the earth is a plane
   };
 
   explicit ProceduralGround(Options options);
@@ -50,7 +53,7 @@ class ProceduralGround final : public terrain::TileSource {
   Options options_;
   terrain::TileGrid grid_;
   LocalFrame frame_;
-  mutable int tiles_read_ = 0;
+  mutable std::atomic<int> tiles_read_{0};
 };
 
 /// Smooth structure at every scale from 1 m to 100 m, the same for the same place.
