@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace overfly::net {
@@ -22,21 +23,21 @@ PictureHeader example() {
 }
 
 std::vector<std::uint8_t> message_of(const PictureHeader& header) {
+  std::vector<std::uint8_t> message(kPictureHeaderBytes + header.payload_bytes, 0xAB);
   const auto bytes = encode_picture_header(header);
-  std::vector<std::uint8_t> message(bytes.begin(), bytes.end());
-  message.resize(message.size() + header.payload_bytes, 0xAB);
+  std::copy(bytes.begin(), bytes.end(), message.begin());
   return message;
 }
 
 TEST(PictureCodec, LaysOutTheHeaderByteByByte) {
   // Written by hand from the table of docs/PROTOCOL.md.
   const std::array<std::uint8_t, 48> expected = {
-      'O',  'V',  'F',  'L',  1,    0,    1, 0,          // magic, version, type
-      0x04, 0x03, 0x02, 0x01, 7,    0,    0, 0,          // stream, sequence
-      0x55, 0x44, 0x33, 0x22, 0x11, 0,    0, 0,          // frame
-      0x11, 0x38, 0xEC, 0x01, 0,    0,    0, 0,          // t_ns = 32258065 = 0x01EC3811
-      0x00, 0x05, 0xC0, 0x03, 1,    0,    48, 0,         // 1280, 960, grey, header length
-      3,    0,    0,    0,    1,    0,    0, 0};         // payload, flags
+      'O',  'V',  'F',  'L',  1,    0, 1,  0,   // magic, version, type
+      0x04, 0x03, 0x02, 0x01, 7,    0, 0,  0,   // stream, sequence
+      0x55, 0x44, 0x33, 0x22, 0x11, 0, 0,  0,   // frame
+      0x11, 0x38, 0xEC, 0x01, 0,    0, 0,  0,   // t_ns = 32258065 = 0x01EC3811
+      0x00, 0x05, 0xC0, 0x03, 1,    0, 48, 0,   // 1280, 960, grey, header length
+      3,    0,    0,    0,    1,    0, 0,  0};  // payload, flags
   EXPECT_EQ(encode_picture_header(example()), expected);
 }
 

@@ -1,0 +1,41 @@
+// A whole server on a free loopback port, over a small world, with a renderer that needs no GPU.
+#pragma once
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "server/engine/run_manager.hpp"
+#include "server/engine/view_service.hpp"
+#include "server/net/server.hpp"
+#include "tests/support/support.hpp"
+
+namespace overfly::testing {
+
+/// Scenarios: "tiny" (2 s in lockstep, estimator "perfect", frames recorded), "slow" (60 s in
+/// real time, the same estimator) and "broken" (a field at fault).
+class TestServer {
+ public:
+  explicit TestServer(const net::ServerLimits& limits = {});
+
+  [[nodiscard]] std::uint16_t port() const { return server_->port(); }
+  [[nodiscard]] engine::RunManager& runs() { return *runs_; }
+  [[nodiscard]] engine::ViewService& views() { return *views_; }
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_.path(); }
+  [[nodiscard]] static std::string body_of(const std::string& scenario) {
+    return nlohmann::json{{"scenario", scenario}}.dump();
+  }
+  /// Starts a run and returns its id. Throws when it cannot.
+  std::string start(const std::string& scenario);
+  /// Starts a run and waits for its end.
+  std::string fly(const std::string& scenario);
+  void wait_for_end(const std::string& id);
+
+ private:
+  TemporaryFolder folder_;
+  std::unique_ptr<engine::RunManager> runs_;
+  std::unique_ptr<engine::ViewService> views_;
+  std::unique_ptr<net::Server> server_;
+};
+
+}  // namespace overfly::testing

@@ -1,0 +1,258 @@
+// The WebSocket protocol end to end: attach, rows, playback, pictures, resume.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numeric>
+#include <random>
+
+#include "server/engine/jpeg.hpp"
+#include "tests/net/test_client.hpp"
+#include "tests/net/test_server.hpp"
+
+namespace overfly::testing {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+constexpr std::int64_t kFrame = 1'000'000'000 / 31;
+
+std::string upgrade_with(const std::string& headers) {
+  return "GET /api/v1/stream HTTP/1.1\r\nHost: localhost\r\nConnection: Upgrade\r\n"
+         "Upgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
+         "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n" +
+         headers + "\r\n";
+}
+
+bool is_playback(const json& message) { return message.at("type") == "playback"; }
+
+/// Rows of each data stream that a client has, counted by message; checks that none is missing.
+std::map<std::string, std::size_t> rows_of(const WebSocketClient& client) {
+  std::map<std::string, std::size_t> rows;
+  for (const json& message : client.texts()) {
+    if (message.at("type") != "rows") continue;
+    const std::string stream = message.at("stream");
+    if (rows.contains(stream)) {
+      EXPECT_EQ(message.at("seq"), rows[stream]) << stream;
+    } else {
+      rows[stream] = message.at("seq");
+    }
+    rows[stream] += message.at("columns").at("t_ns").size();
+  }
+  return rows;
+}
+
+TEST(WebSocket, GreetsAndAnswersEachRequest) {
+  const TestServer server;
+  WebSocketClient client(server.port());
+  EXPECT_TRUE(client.is_open());
+  const json hello = client.wait_for("hello");
+  EXPECT_EQ(hello.at("protocol"), 1);
+  EXPECT_THAT(hello.at("server").get<std::string>(), HasSubstr("overfly "));
+  EXPECT_EQ(client.command({{"type", "detach"}}).at("type"), "ok");
+  const json error = client.command({{"type", "play"}});
+  EXPECT_EQ(error.at("type"), "error");
+  EXPECT_EQ(error.at("code"), "conflict");
+  EXPECT_EQ(client.command({{"type", "attach"}, {"run", "none"}}).at("code"), "not_found");
+  EXPECT_EQ(client.command({{"type", "attach"}, {"run", "../x"}}).at("code"), "not_found");
+}
+
+TEST(WebSocket, TellsAFinishedRunWholeAndWaitsAtItsStart) {
+  TestServer server;
+  const std::string id = server.fly("tiny");
+  WebSocketClient client(server.port());
+  EXPECT_EQ(client.command({{"type", "attach"}, {"run", id}}).at("type"), "ok");
+  const json playback = client.wait_until(is_playback);
+  EXPECT_EQ(playback.at("t_ns"), 0);
+  EXPECT_EQ(playback.at("frame"), 0);
+  EXPECT_EQ(playback.at("playing"), false);
+  EXPECT_EQ(playback.at("live"), false);
+  EXPECT_TRUE(playback.at("truth").contains("roll_deg"));
+  EXPECT_TRUE(playback.at("estimates").contains("perfect"));
+  const auto rows = rows_of(client);
+  EXPECT_EQ(rows.at("truth"), 63U);
+  EXPECT_EQ(rows.at("estimate/perfect"), 63U);
+  EXPECT_GE(rows.at("log"), 1U);
+  std::set<std::string> types;
+  for (const json& message : client.texts()) types.insert(message.at("type"));
+  EXPECT_TRUE(types.contains("run"));
+  EXPECT_TRUE(types.contains("streams"));
+  EXPECT_TRUE(types.contains("metrics"));
+}
+
+TEST(WebSocket, ResumesAfterTheRowsThatTheClientHas) {
+  TestServer server;
+  const std::string id = server.fly("tiny");
+  WebSocketClient client(server.port());
+  client.command({{"type", "attach"}, {"run", id}, {"resume", {{"truth", 60}}}});
+  client.wait_until(is_playback);
+  for (const json& message : client.texts()) {
+    if (message.at("type") == "rows" && message.at("stream") == "truth") {
+      EXPECT_EQ(message.at("seq"), 60);
+      EXPECT_EQ(message.at("columns").at("frame").front(), 60);
+    }
+  }
+  EXPECT_EQ(rows_of(client).at("truth"), 63U);
+}
+
+TEST(WebSocket, SeeksStepsAndChangesSpeedWithoutTouchingOtherViewers) {
+  TestServer server;
+  const std::string id = server.fly("tiny");
+  WebSocketClient client(server.port());
+  WebSocketClient other(server.port());
+  for (WebSocketClient* each : {&client, &other}) {
+    each->command({{"type", "attach"}, {"run", id}});
+    each->wait_until(is_playback);
+  }
+  client.command({{"type", "seek"}, {"t_ns", kFrame + kFrame / 2}});
+  json playback = client.wait_until(is_playback);
+  EXPECT_EQ(playback.at("t_ns"), kFrame + kFrame / 2);
+  EXPECT_EQ(playback.at("frame"), 1);
+  const json rows =
+      ask(server.port(), "GET", "/api/v1/runs/" + id + "/trajectories/truth?format=json").json();
+  const double y_1 = rows.at("y_m").at(1);
+  const double y_2 = rows.at("y_m").at(2);
+  // Half way between two frames, up to the millimetres of the wire.
+  EXPECT_NEAR(playback.at("truth").at("y_m"), 0.5 * (y_1 + y_2), 2e-3);
+  client.command({{"type", "seek"}, {"frame", 40}});
+  EXPECT_EQ(client.wait_until(is_playback).at("frame"), 40);
+  client.command({{"type", "step"}, {"frames", -3}});
+  EXPECT_EQ(client.wait_until(is_playback).at("frame"), 37);
+  client.command({{"type", "step"}, {"frames", 1000}});
+  EXPECT_EQ(client.wait_until(is_playback).at("frame"), 62);
+  client.command({{"type", "speed"}, {"value", 50}});
+  EXPECT_EQ(client.wait_until(is_playback).at("speed"), 50.0);
+  client.command({{"type", "play"}});
+  // From the start again, to the end in a 25th of a second.
+  playback = client.wait_until(
+      [](const json& message) { return is_playback(message) && !message.at("playing"); });
+  EXPECT_EQ(playback.at("frame"), 62);
+  other.command({{"type", "step"}, {"frames", 1}});
+  EXPECT_EQ(other.wait_until(is_playback).at("frame"), 1);
+}
+
+TEST(WebSocket, SendsEveryStreamThePictureOfTheSoughtInstant) {
+  TestServer server;
+  const std::string id = server.fly("tiny");
+  WebSocketClient client(server.port());
+  client.command({{"type", "subscribe"},
+                  {"streams", {{{"name", "camera"}}, {{"name", "scene"}, {"max_hz", 15}}}}});
+  client.command({{"type", "view"}, {"width_px", 96}, {"height_px", 64}, {"distance_m", 50}});
+  client.command({{"type", "attach"}, {"run", id}});
+  const json streams = client.wait_for("streams");
+  std::map<std::uint32_t, std::string> names;
+  for (const json& stream : streams.at("streams")) names[stream.at("id")] = stream.at("name");
+  ASSERT_EQ(names.size(), 2U);
+  for (const std::int64_t frame : {30, 10, 62, 0}) {
+    client.command({{"type", "seek"}, {"frame", frame}});
+    std::set<std::string> seen;
+    while (seen.size() < 2) {
+      const PictureMessage picture = client.wait_for_picture(
+          [&](const PictureMessage& message) { return message.header.frame == frame; });
+      seen.insert(names.at(picture.header.stream_id));
+      const auto image = engine::decode_jpeg(picture.jpeg);
+      ASSERT_TRUE(image);
+      EXPECT_EQ(image->width_px, picture.header.width_px);
+      EXPECT_EQ(image->channels == 1, picture.header.encoding == net::PictureEncoding::kJpegGrey);
+      const bool is_scene = names.at(picture.header.stream_id) == "scene";
+      EXPECT_EQ(image->width_px, is_scene ? 96 : 64);
+    }
+  }
+  std::map<std::uint32_t, std::uint32_t> next;
+  for (const PictureMessage& picture : client.pictures()) {
+    EXPECT_EQ(picture.header.sequence, next[picture.header.stream_id]++);
+  }
+}
+
+TEST(WebSocket, FollowsALiveRunAndLeavesItByASeek) {
+  TestServer server;
+  const std::string id = server.start("slow");
+  WebSocketClient client(server.port());
+  client.command({{"type", "subscribe"}, {"streams", {{{"name", "camera"}}}}});
+  client.command({{"type", "attach"}, {"run", id}});
+  const auto live_beyond = [](std::int64_t frame) {
+    return [frame](const json& message) {
+      return is_playback(message) && message.at("live") && message.at("frame") > frame;
+    };
+  };
+  client.wait_until(live_beyond(5));
+  client.wait_until(live_beyond(15));
+  const PictureMessage live =
+      client.wait_for_picture([](const PictureMessage& message) { return message.header.live; });
+  EXPECT_GE(live.header.frame, 0);
+  client.command({{"type", "seek"}, {"frame", 2}});
+  client.command({{"type", "pause"}});
+  const json paused = client.wait_until(
+      [](const json& message) { return is_playback(message) && !message.at("playing"); });
+  EXPECT_EQ(paused.at("live"), false);
+  client.wait_for_picture([&](const PictureMessage& message) {
+    return message.header.frame == paused.at("frame") && !message.header.live;
+  });
+  client.command({{"type", "live"}});
+  client.wait_until(live_beyond(15));
+  ASSERT_EQ(ask(server.port(), "POST", "/api/v1/runs/" + id + "/cancel").status, 202);
+  client.wait_until([](const json& message) {
+    return message.at("type") == "run" && message.at("run").at("status") == "cancelled";
+  });
+  const json end = client.wait_until(
+      [](const json& message) { return is_playback(message) && !message.at("live"); });
+  EXPECT_EQ(end.at("t_ns"), end.at("end_ns"));
+  EXPECT_EQ(client.command({{"type", "live"}}).at("code"), "conflict");
+}
+
+TEST(WebSocket, AnswersWhatItDoesNotUnderstandAndStaysOpen) {
+  const TestServer server;
+  WebSocketClient client(server.port());
+  client.send_text("{");
+  EXPECT_THAT(client.wait_for("error").at("message").get<std::string>(), HasSubstr("JSON"));
+  client.send_binary(std::string(100, '\xFF'));
+  client.wait_for("error");
+  std::mt19937 random(5);
+  for (int i = 0; i < 200; ++i) {
+    std::string text = R"({"type":"seek","t_ns":17,"request":4})";
+    for (int k = 0; k < 3; ++k)
+      text[random() % text.size()] = static_cast<char>(32 + random() % 95);
+    client.send_text(text);
+  }
+  EXPECT_EQ(client.command({{"type", "detach"}}).at("type"), "ok");
+}
+
+TEST(WebSocket, EndsAConnectionWithAMessageThatIsTooLarge) {
+  const TestServer server;
+  WebSocketClient client(server.port());
+  client.wait_for("hello");
+  client.send_text(std::string(70'000, ' '));
+  EXPECT_EQ(client.read_to_end(), 1009);
+  EXPECT_EQ(ask(server.port(), "GET", "/api/v1/health").status, 200);
+}
+
+TEST(WebSocket, SurvivesFramesThatAreNone) {
+  const TestServer server;
+  const std::string upgrade = upgrade_with("");
+  std::mt19937 random(11);
+  for (int i = 0; i < 60; ++i) {
+    std::string bytes(1 + random() % 200, '\0');
+    for (char& byte : bytes) byte = static_cast<char>(random() % 256);
+    EXPECT_THAT(exchange_raw(server.port(), upgrade + bytes), HasSubstr("HTTP/1.1 101"));
+  }
+  // A frame that claims 2^62 bytes.
+  const std::string huge("\x81\xFF\x40\0\0\0\0\0\0\0abcd", 14);
+  (void)exchange_raw(server.port(), upgrade + huge);
+  EXPECT_EQ(ask(server.port(), "GET", "/api/v1/health").status, 200);
+}
+
+TEST(WebSocket, IsClosedToPagesOfOtherSites) {
+  const TestServer server;
+  const auto accepts = [&](const std::string& origin) {
+    return WebSocketClient(server.port(), {{{"Origin", origin}}, 0}).is_open();
+  };
+  EXPECT_FALSE(accepts("http://evil.example"));
+  EXPECT_FALSE(accepts("null"));
+  EXPECT_TRUE(accepts("http://127.0.0.1:" + std::to_string(server.port())));
+  EXPECT_TRUE(accepts("http://localhost:5173"));
+  EXPECT_THAT(exchange_raw(server.port(), upgrade_with("Origin: http://evil.example\r\n")),
+              HasSubstr("HTTP/1.1 403"));
+}
+
+}  // namespace
+}  // namespace overfly::testing
