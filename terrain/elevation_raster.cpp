@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/pose.hpp"
+#include "terrain/datum_shift.hpp"
 #include "terrain/geoid.hpp"
 #include "terrain/raster_bands.hpp"
 
@@ -242,6 +243,9 @@ Result<ElevationRaster> ElevationRaster::load(const ElevationLayer& layer,
                                   window.row + 0.5 * window.rows,
                                   middle(0, 0),
                                   middle(1, 0));
+  if (auto doubt = datum_shift_doubt(place->crs, middle(0, 0), middle(1, 0), file)) {
+    warnings.push_back(std::move(*doubt));
+  }
   if (!(*wgs84_from_crs)->apply(middle)) {
     return Error{ErrorCode::kInvalidArgument, file + ": its middle has no place in WGS84"};
   }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "terrain/datum_shift.hpp"
+
 namespace overfly::terrain {
 namespace {
 
@@ -31,6 +33,12 @@ Result<std::shared_ptr<const ImageryRaster>> ImageryRaster::open(
       read_georeference(dataset, file, crs, messages.empty() ? std::string() : messages.text());
   if (!place) return place.error();
   raster->georeference_ = *place;
+  Eigen::Vector2d middle;
+  place->transform.crs_from_pixel(
+      0.5 * raster->width_px_, 0.5 * raster->height_px_, middle.x(), middle.y());
+  if (auto doubt = datum_shift_doubt(place->crs, middle.x(), middle.y(), file.string())) {
+    warnings.push_back(std::move(*doubt));
+  }
   auto bands = find_bands(dataset, file.string(), warnings);
   if (!bands) return bands.error();
   raster->bands_ = *bands;

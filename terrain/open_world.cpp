@@ -106,11 +106,11 @@ Status add_digests(World& world) {
     return {};
   };
   for (const ImageryLayer& layer : world.spec.imagery) {
-    const Status added = add(layer.file);
+    Status added = add(layer.file);
     if (!added) return added;
   }
   for (const ElevationLayer& layer : world.spec.elevation) {
-    const Status added = add(layer.file);
+    Status added = add(layer.file);
     if (!added) return added;
   }
   return {};

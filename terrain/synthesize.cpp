@@ -113,9 +113,9 @@ Status write_world(const fs::path& folder,
   plan.relief_m = static_cast<float>(options.relief_m);
   if (progress && !progress(0.0)) return Error{ErrorCode::kCancelled, "synthesis was cancelled"};
   const synthesis::Landscape land = synthesis::Landscape::plan(plan);
-  const Status heights = synthesis::write_heights(folder / "elevation.tif", land, *site);
+  Status heights = synthesis::write_heights(folder / "elevation.tif", land, *site);
   if (!heights) return heights;
-  const Status imagery = synthesis::write_imagery(
+  Status imagery = synthesis::write_imagery(
       folder / "imagery.tif", land, *site, options.texel_m, side_px, progress);
   if (!imagery) return imagery;
   auto runway = runway_of(land, *site);
@@ -167,7 +167,7 @@ class FileLock {
 Status synthesize_world(const fs::path& folder,
                         const SynthesisOptions& options,
                         const Progress& progress) {
-  const Status sane = check(options);
+  Status sane = check(options);
   if (!sane) return sane;
   std::error_code failed;
   if (fs::exists(folder, failed) &&
