@@ -5,12 +5,43 @@ import './styles/layout.css';
 import './styles/panels.css';
 import './styles/side.css';
 import './styles/timeline.css';
-import { startDashboard } from './app';
+import { RestClient } from './connection/rest_client';
+import { StreamClient } from './connection/stream_client';
+import { Catalogue } from './store/catalogue';
+import { Notices } from './store/notices';
+import { Player } from './store/player';
+import { SceneControl } from './store/scene_control';
+import { Session } from './store/session';
+import { Store } from './store/state';
+import { followAddress } from './views/address_bar';
+import { showScreen } from './views/screen';
 
 const streamUrl = new URL('api/v1/stream', location.href);
 streamUrl.protocol = location.protocol === 'https:' ? 'wss:' : 'ws:';
 
-startDashboard({
-  openSocket: () => new WebSocket(streamUrl),
-  fetch: (url, init) => fetch(url, init),
+const later = (callback: () => void, delay_ms: number) => window.setTimeout(callback, delay_ms);
+const newKey = () =>
+  Array.from(crypto.getRandomValues(new Uint32Array(4)), (n) => n.toString(36)).join('-');
+
+const store = new Store();
+const notices = new Notices(store, later);
+const session = new Session(store, notices, (jpeg) => createImageBitmap(jpeg));
+const client = new StreamClient({
+  open: () => new WebSocket(streamUrl),
+  timers: { set: later, clear: (id) => window.clearTimeout(id) },
+  random: Math.random,
+  listener: session,
 });
+session.use(client);
+const player = new Player(store, session);
+const scene = new SceneControl(store, client);
+const rest = new RestClient('api/v1', (url, init) => fetch(url, init));
+const catalogue = new Catalogue(store, rest, session, notices, later, newKey);
+
+const context = { store, session, player, scene, catalogue, notices, client };
+scene.setMode(store.state.sceneMode);
+showScreen(context, document.body);
+followAddress(context);
+window.addEventListener('online', () => client.connect());
+client.connect();
+catalogue.start();

@@ -16,7 +16,9 @@ export class Dashboard {
 
   async open(url) {
     await this.page.goto(url);
-    await this.until(() => document.querySelector('[data-role=connection]')?.dataset.status === 'open');
+    await this.until(
+      () => document.querySelector('[data-role=connection]')?.dataset.status === 'open',
+    );
   }
 
   /** Waits until a function of the page is true. */
@@ -26,6 +28,13 @@ export class Dashboard {
 
   field(name) {
     return this.page.locator(`[id="field-${name}"]`);
+  }
+
+  /** Chooses a scenario and waits for its fields. */
+  async chooseScenario(name) {
+    await this.page.locator(`#scenario option[value="${name}"]`).waitFor({ state: 'attached' });
+    await this.page.locator('#scenario').selectOption(name);
+    await this.field('duration_s').waitFor();
   }
 
   async chooseEstimators(...types) {
@@ -38,23 +47,23 @@ export class Dashboard {
   async launch() {
     const before = await this.runId();
     await this.page.locator('button.primary').click();
-    await this.until(
-      (id) => {
-        const chosen = document.querySelector('.run[aria-current=true]');
-        return chosen !== null && chosen.dataset.run !== id;
-      },
-      before,
-    );
+    await this.until((id) => {
+      const chosen = document.querySelector('.run[aria-current=true]');
+      return chosen !== null && chosen.dataset.run !== id;
+    }, before);
     return this.runId();
   }
 
   runId() {
-    return this.page.evaluate(() => document.querySelector('.run[aria-current=true]')?.dataset.run ?? null);
+    return this.page.evaluate(
+      () => document.querySelector('.run[aria-current=true]')?.dataset.run ?? null,
+    );
   }
 
   async untilStatus(id, status, timeout) {
     await this.until(
-      ([run, wanted]) => document.querySelector(`.run[data-run="${run}"]`)?.dataset.status === wanted,
+      ([run, wanted]) =>
+        document.querySelector(`.run[data-run="${run}"]`)?.dataset.status === wanted,
       [id, status],
       timeout,
     );
@@ -71,7 +80,10 @@ export class Dashboard {
   async untilFrames(panels, least = 0) {
     await this.until(
       ([names, low]) =>
-        names.every((name) => Number(document.querySelector(`[data-panel="${name}"]`)?.dataset.frame ?? -1) >= low),
+        names.every(
+          (name) =>
+            Number(document.querySelector(`[data-panel="${name}"]`)?.dataset.frame ?? -1) >= low,
+        ),
       [panels, least],
     );
   }
@@ -82,7 +94,11 @@ export class Dashboard {
       const timeline = document.querySelector('[data-panel=timeline]');
       return (
         timeline.dataset.playing === 'false' &&
-        names.every((name) => document.querySelector(`[data-panel="${name}"]`)?.dataset.frame === timeline.dataset.frame)
+        names.every(
+          (name) =>
+            document.querySelector(`[data-panel="${name}"]`)?.dataset.frame ===
+            timeline.dataset.frame,
+        )
       );
     }, panels);
   }
@@ -96,7 +112,8 @@ export class Dashboard {
 
   async untilPlaying(playing) {
     await this.until(
-      (wanted) => document.querySelector('[data-panel=timeline]').dataset.playing === String(wanted),
+      (wanted) =>
+        document.querySelector('[data-panel=timeline]').dataset.playing === String(wanted),
       playing,
     );
   }

@@ -31,7 +31,10 @@ export async function startServer({ runs, port = 0 }) {
   let output = '';
   const exited = new Promise((resolve) => child.on('exit', resolve));
   const url = await new Promise((resolve, reject) => {
-    const late = setTimeout(() => reject(new Error(`no address after ${kStart_ms} ms\n${output}`)), kStart_ms);
+    const late = setTimeout(
+      () => reject(new Error(`no address after ${kStart_ms} ms\n${output}`)),
+      kStart_ms,
+    );
     const read = (chunk) => {
       output += chunk;
       const match = /http:\/\/127\.0\.0\.1:\d+/.exec(output);

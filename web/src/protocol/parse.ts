@@ -51,7 +51,7 @@ export interface PictureMessage extends PictureHeader {
   jpeg: Uint8Array<ArrayBuffer>;
 }
 
-export const kPictureHeaderBytes = 48;
+const kPictureHeaderBytes = 48;
 const kMagic = 0x4c46564f;
 const kPictureType = 1;
 const kEncodingGrey = 1;
@@ -89,25 +89,4 @@ export function parsePicture(buffer: ArrayBuffer): PictureMessage | null {
     live: (view.getUint32(44, true) & 1) === 1,
     jpeg: new Uint8Array(buffer, headerBytes, payloadBytes),
   };
-}
-
-/** The inverse of parsePicture, for stand-ins of the server. */
-export function encodePicture(header: PictureHeader, jpeg: Uint8Array): ArrayBuffer {
-  const buffer = new ArrayBuffer(kPictureHeaderBytes + jpeg.byteLength);
-  const view = new DataView(buffer);
-  view.setUint32(0, kMagic, true);
-  view.setUint16(4, 1, true);
-  view.setUint16(6, kPictureType, true);
-  view.setUint32(8, header.streamId, true);
-  view.setUint32(12, header.sequence, true);
-  view.setBigInt64(16, BigInt(header.frame), true);
-  view.setBigInt64(24, BigInt(header.t_ns), true);
-  view.setUint16(32, header.width_px, true);
-  view.setUint16(34, header.height_px, true);
-  view.setUint16(36, header.grey ? kEncodingGrey : kEncodingColour, true);
-  view.setUint16(38, kPictureHeaderBytes, true);
-  view.setUint32(40, jpeg.byteLength, true);
-  view.setUint32(44, header.live ? 1 : 0, true);
-  new Uint8Array(buffer, kPictureHeaderBytes).set(jpeg);
-  return buffer;
 }

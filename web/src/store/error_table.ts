@@ -45,14 +45,14 @@ const kFigures: readonly Figure[] = [
     label: 'Position RMSE',
     unit: 'm',
     hint: 'Over tracked frames',
-    digits: 2,
+    digits: 3,
   },
   {
     key: 'position_rmse_hold_m',
     label: 'Position RMSE, held',
     unit: 'm',
     hint: 'Last pose held to the end of the flight',
-    digits: 2,
+    digits: 3,
   },
   {
     key: 'rotation_rmse_deg',

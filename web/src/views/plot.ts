@@ -153,6 +153,7 @@ export class Plot {
           label: String(i),
           stroke,
           width: i === 0 ? kTruthWidth_px : kEstimateWidth_px,
+          pxAlign: 0,
           points: { show: false },
         })),
       ],

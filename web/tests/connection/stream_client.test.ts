@@ -2,7 +2,7 @@ import { beforeEach, describe, expect, it } from 'vitest';
 import type { ConnectionState, StreamListener } from '../../src/connection/stream_client';
 import { StreamClient } from '../../src/connection/stream_client';
 import type { ClientMessage, Resume, ServerMessage } from '../../src/protocol/messages';
-import { encodePicture } from '../../src/protocol/parse';
+import { encodePicture } from '../support/encode_picture';
 import { FakeSocket, FakeTimers } from '../support/fake_socket';
 import { samplePlayback, sampleRun } from '../support/samples';
 

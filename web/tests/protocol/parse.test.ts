@@ -1,10 +1,6 @@
 import { describe, expect, it } from 'vitest';
-import {
-  encodePicture,
-  ParseError,
-  parsePicture,
-  parseServerMessage,
-} from '../../src/protocol/parse';
+import { ParseError, parsePicture, parseServerMessage } from '../../src/protocol/parse';
+import { encodePicture } from '../support/encode_picture';
 
 /** Byte by byte as docs/PROTOCOL.md says, without the code under test. */
 function pictureBytes(): Uint8Array<ArrayBuffer> {

@@ -36,8 +36,8 @@ describe('errorTable', () => {
     expect(cells).toEqual({
       coverage: ['50.0 %', '0.0 %'],
       scale: ['41.2031', '–'],
-      position_rmse_m: ['3.46', '–'],
-      position_rmse_hold_m: ['500.00', '–'],
+      position_rmse_m: ['3.456', '–'],
+      position_rmse_hold_m: ['500.000', '–'],
       rotation_rmse_deg: ['0.500', '–'],
       rotation_euler_norm_rmse_deg: ['–', '–'],
       dropped_frames: ['3', '–'],
