@@ -1,59 +1,43 @@
 #include "server/engine/view_scene.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
+#include "renderer/viewpoint.hpp"
 
 namespace overfly::engine {
 namespace {
 
-using Eigen::Vector3d;
-
-/// The viewer stays this far above the ground [m].
-constexpr double kClearance = 2.0;
 constexpr double kFovY = 0.9;
-/// A line of sight steeper than this has no horizon to stand upright by.
-constexpr double kSteepest = std::numbers::pi / 2 - 1e-3;
 
-/// Horizontal unit vector of a compass direction.
-Vector3d direction(double azimuth_rad) {
-  return {std::sin(azimuth_rad), std::cos(azimuth_rad), 0.0};
-}
-
-/// A camera at `eye` that looks along `forward`; `top` shows upwards in its image.
-Pose look(const Vector3d& eye, const Vector3d& forward, const Vector3d& top) {
-  Eigen::Matrix3d R_world_camera;
-  R_world_camera.col(2) = forward.normalized();
-  R_world_camera.col(0) = forward.cross(top).normalized();
-  R_world_camera.col(1) = R_world_camera.col(2).cross(R_world_camera.col(0));
-  return {Eigen::Quaterniond(R_world_camera).normalized(), eye};
+Pose viewpoint(const SceneSettings& settings,
+               const Pose& T_world_body,
+               const Eigen::Vector3d& centre_world,
+               const HeightQuery& ground) {
+  renderer::Viewpoint view;
+  view.azimuth_rad = settings.azimuth_rad;
+  view.elevation_rad = settings.elevation_rad;
+  view.distance_m = settings.distance_m;
+  const Eigen::Vector3d target = settings.follow ? T_world_body.translation : centre_world;
+  switch (settings.mode) {
+    case SceneMode::kChase:
+      return renderer::chase_viewpoint(T_world_body, view, ground);
+    case SceneMode::kOrbit:
+      return renderer::orbit_viewpoint(target, view, ground);
+    case SceneMode::kTop:
+      break;
+  }
+  return renderer::top_viewpoint(target, settings.azimuth_rad, settings.distance_m);
 }
 
 }  // namespace
 
 renderer::SceneView scene_view(const SceneSettings& settings,
                                const Pose& T_world_body,
-                               const Vector3d& centre_world,
+                               const Eigen::Vector3d& centre_world,
                                const HeightQuery& ground) {
-  const bool chase = settings.mode == SceneMode::kChase;
-  const bool top = settings.mode == SceneMode::kTop;
-  const Vector3d target = chase || settings.follow ? T_world_body.translation : centre_world;
-  double azimuth_rad = settings.azimuth_rad;
-  if (chase) azimuth_rad += attitude_from(T_world_body.rotation).yaw_rad + std::numbers::pi;
-  const double elevation_rad =
-      top ? kSteepest : std::clamp(settings.elevation_rad, -0.2, kSteepest);
-  // Seen from above, an azimuth of 0 has north at the top: the viewer stands to the south.
-  if (top) azimuth_rad += std::numbers::pi;
-  const Vector3d outward = std::cos(elevation_rad) * direction(azimuth_rad) +
-                           std::sin(elevation_rad) * Vector3d::UnitZ();
-  Vector3d eye = target + settings.distance_m * outward;
-  eye.z() = std::max(eye.z(), ground.ground_up_m(eye.x(), eye.y()) + kClearance);
-
   renderer::SceneView view;
   view.width_px = settings.width_px;
   view.height_px = settings.height_px;
   view.fov_y_rad = kFovY;
-  view.T_world_camera = look(eye, target - eye, Vector3d::UnitZ());
+  view.T_world_camera = viewpoint(settings, T_world_body, centre_world, ground);
   return view;
 }
 
