@@ -45,6 +45,7 @@ class Selector {
     while (level < 24 && grid.tile_m(level) < reach_m) ++level;
     const Eigen::Vector2d map =
         tiles.map_from_world(view_.position_world.x(), view_.position_world.y());
+    if (!map.allFinite()) return {};  // beyond what the map's projection knows
     const double size_m = grid.tile_m(level);
     const int column = static_cast<int>(std::floor((map.x() - grid.left_x_m) / size_m));
     const int row = static_cast<int>(std::floor((grid.top_y_m - map.y()) / size_m));

@@ -3,9 +3,15 @@
 
 #include <epoxy/gl.h>
 
+#include <cstddef>
 #include <utility>
 
 namespace overfly::renderer::egl {
+
+/// An offset into the bound buffer, as OpenGL's calls want it.
+inline const void* buffer_offset(std::size_t bytes) {
+  return reinterpret_cast<const void*>(bytes);  // NOLINT(performance-no-int-to-ptr)
+}
 
 /// One GL name of the kind that Traits makes and deletes.
 template <typename Traits>

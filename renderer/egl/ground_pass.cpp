@@ -88,12 +88,8 @@ GroundPass::GroundPass(GlProgram colour, GlProgram hazy, GlProgram depth)
   glEnableVertexAttribArray(0);
   glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(GroundVertex), nullptr);
   glEnableVertexAttribArray(1);
-  glVertexAttribPointer(1,
-                        2,
-                        GL_FLOAT,
-                        GL_FALSE,
-                        sizeof(GroundVertex),
-                        reinterpret_cast<const void*>(offsetof(GroundVertex, u)));
+  glVertexAttribPointer(
+      1, 2, GL_FLOAT, GL_FALSE, sizeof(GroundVertex), buffer_offset(offsetof(GroundVertex, u)));
 }
 
 void GroundPass::upload(const GroundMesh& mesh) {
@@ -148,7 +144,7 @@ Status GroundPass::draw(const GroundMesh& mesh,
     glDrawElements(GL_TRIANGLES,
                    static_cast<GLsizei>(batch.index_count),
                    GL_UNSIGNED_INT,
-                   reinterpret_cast<const void*>(batch.first_index * sizeof(std::uint32_t)));
+                   buffer_offset(batch.first_index * sizeof(std::uint32_t)));
   }
   return {};
 }

@@ -98,7 +98,7 @@ ScenePass::ScenePass(GlProgram sky, GlProgram overlay)
                         GL_UNSIGNED_BYTE,
                         GL_TRUE,
                         sizeof(SceneVertex),
-                        reinterpret_cast<const void*>(offsetof(SceneVertex, rgba)));
+                        buffer_offset(offsetof(SceneVertex, rgba)));
 }
 
 Status ScenePass::prepare_target(const PinholeCamera& camera) {
