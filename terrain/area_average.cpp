@@ -51,7 +51,7 @@ Patch average_blocks(const Patch& source, int factor, int width, int height) {
           ++count;
         }
       }
-      if (2 * count < static_cast<std::uint32_t>(factor * factor)) continue;
+      if (count == 0 || 2 * count < static_cast<std::uint32_t>(factor * factor)) continue;
       for (int c = 0; c < 3; ++c) {
         result.rgb.at(x, y, c) = static_cast<std::uint8_t>((sum[c] + count / 2) / count);
       }

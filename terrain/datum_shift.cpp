@@ -22,7 +22,7 @@ std::string wkt_of(const OGRSpatialReference& crs) {
   char* text = nullptr;
   const char* const options[] = {"FORMAT=WKT2_2019", nullptr};
   crs.exportToWkt(&text, options);
-  const std::string wkt = text != nullptr ? text : "";
+  std::string wkt = text != nullptr ? text : "";
   CPLFree(text);
   return wkt;
 }

@@ -80,7 +80,7 @@ double unit_of(GDALDataset& dataset,
   if (unit == "m" || unit == "metre" || unit == "meter" || unit == "metres" || unit == "meters") {
     return 1.0;
   }
-  if (unit.find("us") != std::string::npos && unit.find("f") != std::string::npos) {
+  if (unit.find("us") != std::string::npos && unit.find('f') != std::string::npos) {
     return kUsSurveyFootM;
   }
   if (unit == "ft" || unit == "foot" || unit == "feet") return kFootM;

@@ -120,7 +120,7 @@ CPLErr read_rescaled(GDALDataset& dataset, const RasterBands& bands, int x, int 
     const double factor = 255.0 / (bands.high - bands.low);
     for (std::size_t i = 0; i < values.size(); ++i) {
       const double scaled = std::clamp((values[i] - bands.low) * factor, 0.0, 255.0);
-      rgb.data[3 * i + c] = static_cast<std::uint8_t>(scaled + 0.5);
+      rgb.data[3 * i + c] = static_cast<std::uint8_t>(std::lround(scaled));
     }
   }
   return CE_None;

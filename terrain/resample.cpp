@@ -27,7 +27,8 @@ class Kernel {
       float* weights = &weights_[static_cast<std::size_t>(step) * taps_];
       double sum = 0.0;
       for (int k = 0; k < taps_; ++k) {
-        const double distance = k - (taps_ / 2 - 1) - fraction;
+        const int offset = k - (taps_ / 2 - 1);
+        const double distance = offset - fraction;
         double weight = 0.0;
         for (int i = 0; i < count; ++i) {
           weight += cubic(distance - width * ((i + 0.5) / count - 0.5));
@@ -53,7 +54,7 @@ class Kernel {
   const float* at(double place, int& first) const {
     const double base = std::floor(place);
     first = static_cast<int>(base) - (taps_ / 2 - 1);
-    const int step = static_cast<int>((place - base) * kSteps + 0.5);
+    const auto step = static_cast<int>(std::lround((place - base) * kSteps));
     return weights_.data() + static_cast<std::size_t>(step) * taps_;
   }
 

@@ -139,7 +139,7 @@ fs::path cache_folder() {
     const char* value = std::getenv(name);
     return value != nullptr && *value != '\0' ? fs::path(value) : fs::path();
   };
-  if (const fs::path own = variable("OVERFLY_CACHE"); !own.empty()) return own;
+  if (fs::path own = variable("OVERFLY_CACHE"); !own.empty()) return own;
   if (const fs::path xdg = variable("XDG_CACHE_HOME"); !xdg.empty()) return xdg / "overfly";
   if (const fs::path home = variable("HOME"); !home.empty()) return home / ".cache" / "overfly";
   return fs::temp_directory_path() / "overfly-cache";
