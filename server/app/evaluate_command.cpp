@@ -12,6 +12,7 @@
 #include "server/app/exit_code.hpp"
 #include "server/app/score_table.hpp"
 #include "server/engine/metrics.hpp"
+#include "server/engine/run_folder.hpp"
 #include "server/engine/run_records.hpp"
 
 namespace overfly::app {
@@ -151,7 +152,13 @@ int evaluate_files(const EvaluateArguments& arguments) {
 int evaluate_run(const EvaluateArguments& arguments) {
   const Result<engine::RunRecords> records = engine::read_run_records(arguments.run);
   if (!records) return report(records.error());
+  const Result<engine::RunInfo> info = engine::read_run_info(arguments.run);
+  if (!info) return report(info.error());
   Json metrics = engine::metrics_from(*records);
+  metrics["status"] = engine::to_string(info->status);
+  if (!arguments.json && info->status != engine::RunStatus::kCompleted) {
+    std::cout << "the run is " << engine::to_string(info->status) << "\n";
+  }
   for (auto& [name, entry] : metrics.at("estimators").items()) {
     choose_modes(arguments.alignments, entry);
     if (arguments.json) continue;

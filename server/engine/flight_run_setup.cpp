@@ -112,7 +112,9 @@ Status FlightRun::open_estimators() {
   };
   for (std::size_t i = 0; i < scenario_.estimators.size(); ++i) {
     const EstimatorSpec& spec = scenario_.estimators[i];
-    Result<std::unique_ptr<VoPort>> port = create_estimator(spec, scenario_.seed, truth);
+    Result<std::unique_ptr<VoPort>> port = options_.estimator_factory
+                                               ? options_.estimator_factory(spec)
+                                               : create_estimator(spec, scenario_.seed, truth);
     if (!port) return port.error();
     recorder_.manifest()["estimators"][i]["parameters"] = (*port)->effective_parameters();
     workers_.push_back(

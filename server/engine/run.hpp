@@ -11,6 +11,7 @@
 #include "renderer/renderer.hpp"
 #include "server/engine/run_timeline.hpp"
 #include "server/engine/scenario.hpp"
+#include "vo_bridges/vo_port.hpp"
 
 namespace overfly::engine {
 
@@ -21,9 +22,13 @@ class WorldCache;
 using RendererFactory = std::function<Result<std::unique_ptr<renderer::Renderer>>(
     std::shared_ptr<const terrain::TileSource>)>;
 
+/// Makes an estimator instead of the one that its type names.
+using EstimatorFactory = std::function<Result<std::unique_ptr<VoPort>>(const EstimatorSpec&)>;
+
 struct RunOptions {
-  std::filesystem::path folder;      ///< made; must not hold a run already
-  RendererFactory renderer_factory;  ///< EGL where it is empty
+  std::filesystem::path folder;        ///< made; must not hold a run already
+  RendererFactory renderer_factory;    ///< EGL where it is empty
+  EstimatorFactory estimator_factory;  ///< by their types where it is empty
   /// Set by another thread to stop: the folder is then complete to the last frame and cancelled.
   const std::atomic<bool>* cancel = nullptr;
   /// Where live readers look; made by the run when null.

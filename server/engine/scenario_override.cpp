@@ -65,7 +65,11 @@ Status apply_override(const Override& change, Json& document) {
   if (!document.is_object()) return bad_path(change.path, "the document is not an object");
   make_room_for_kind(document, parts);
   Json* place = &document;
-  for (const std::string& part : parts) {
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const std::string& part = parts[i];
+    // What is not there yet becomes an array where the path goes on with a number.
+    const bool array_next = i + 1 < parts.size() && index_from(parts[i + 1]).has_value();
+    const Json made = array_next ? Json::array() : Json::object();
     if (part.empty()) return bad_path(change.path, "has an empty part");
     if (place->is_array()) {
       const std::optional<std::size_t> index = index_from(part);
@@ -74,10 +78,10 @@ Status apply_override(const Override& change, Json& document) {
             change.path,
             "\"" + part + "\": must be a number in [0, " + std::to_string(place->size()) + "]");
       }
-      if (*index == place->size()) place->push_back(Json::object());
+      if (*index == place->size()) place->push_back(made);
       place = &(*place)[*index];
     } else if (place->is_object()) {
-      if (!place->contains(part)) (*place)[part] = Json::object();
+      if (!place->contains(part)) (*place)[part] = made;
       place = &(*place)[part];
     } else {
       return bad_path(change.path, "\"" + part + "\": what holds it is no object or array");

@@ -1,0 +1,200 @@
+// Real-time pacing under a simulated clock: what is dropped, what is late.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "server/engine/run_clock.hpp"
+#include "server/engine/run_records.hpp"
+#include "server/engine/whole_file.hpp"
+#include "tests/engine/engine_fixture.hpp"
+
+namespace overfly::engine {
+namespace {
+
+using overfly::testing::TemporaryFolder;
+using ::testing::ElementsAre;
+using Json = nlohmann::json;
+
+constexpr std::int64_t kMs = 1'000'000;
+
+/// Moves on to the earliest wish whenever everyone who is at work sleeps.
+class SimulatedClock final : public RunClock {
+ public:
+  std::int64_t now_ns() override {
+    const std::lock_guard lock(mutex_);
+    return now_ns_;
+  }
+  void sleep_until_ns(std::int64_t t_ns) override {
+    std::unique_lock lock(mutex_);
+    if (t_ns <= now_ns_) return;
+    const auto mine = sleepers_.emplace(t_ns, false);
+    move_on();
+    changed_.wait(lock, [&] { return mine->second; });
+    sleepers_.erase(mine);
+  }
+  void enter() override {
+    const std::lock_guard lock(mutex_);
+    ++at_work_;
+  }
+  void leave() override {
+    const std::lock_guard lock(mutex_);
+    --at_work_;
+    move_on();
+  }
+
+ private:
+  void move_on() {
+    // Woken sleepers are at work again although they still stand in the list.
+    int asleep = 0;
+    for (const auto& [t_ns, woken] : sleepers_) asleep += woken ? 0 : 1;
+    if (asleep == 0 || asleep < at_work_) return;
+    for (auto& [t_ns, woken] : sleepers_) {
+      if (woken) continue;
+      now_ns_ = t_ns;
+      woken = true;
+      changed_.notify_all();
+      return;
+    }
+  }
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::int64_t now_ns_ = 0;
+  int at_work_ = 0;
+  std::multimap<std::int64_t, bool> sleepers_;
+};
+
+/// Answers after a fixed time by the clock.
+class SlowEstimator final : public VoPort {
+ public:
+  SlowEstimator(RunClock& clock, std::int64_t work_ns) : clock_(clock), work_ns_(work_ns) {}
+  std::string type() const override { return "slow"; }
+  std::map<std::string, std::string> effective_parameters() const override { return {}; }
+  Result<VoEstimate> track(const VoFrame& frame) override {
+    clock_.sleep_until_ns(clock_.now_ns() + work_ns_);
+    VoEstimate estimate;
+    estimate.sample.frame = frame.index;
+    estimate.sample.t_ns = frame.t_ns;
+    estimate.sample.state = TrackingState::kTracking;
+    estimate.sample.T_vo_camera.translation.x() = static_cast<double>(frame.index);
+    return estimate;
+  }
+  void reset() override {}
+  void set_debug(bool /*wanted*/) override {}
+
+ private:
+  RunClock& clock_;
+  std::int64_t work_ns_;
+};
+
+/// A renderer whose every second image takes long.
+class SlowRenderer final : public renderer::Renderer {
+ public:
+  SlowRenderer(std::unique_ptr<renderer::Renderer> inner, RunClock& clock, std::int64_t work_ns)
+      : inner_(std::move(inner)), clock_(clock), work_ns_(work_ns) {}
+  Result<renderer::CameraFrame> render_camera(const PinholeCamera& camera,
+                                              const Pose& T_world_camera,
+                                              std::int64_t t_ns,
+                                              renderer::PixelFormat format) override {
+    clock_.sleep_until_ns(clock_.now_ns() + work_ns_);
+    return inner_->render_camera(camera, T_world_camera, t_ns, format);
+  }
+  Result<DepthImage> render_depth(const PinholeCamera& camera, const Pose& T) override {
+    return inner_->render_depth(camera, T);
+  }
+  Result<Image> render_scene(const renderer::SceneView& view,
+                             const renderer::SceneContent& content) override {
+    return inner_->render_scene(view, content);
+  }
+  renderer::RendererInfo info() const override { return inner_->info(); }
+
+ private:
+  std::unique_ptr<renderer::Renderer> inner_;
+  RunClock& clock_;
+  std::int64_t work_ns_;
+};
+
+std::vector<std::int64_t> frames_where(const EstimatorRecords& estimator, bool dropped) {
+  std::vector<std::int64_t> frames;
+  for (const EstimateRecord& record : estimator.records) {
+    if (record.dropped == dropped) frames.push_back(record.sample.frame);
+  }
+  return frames;
+}
+
+TEST(RealTime, BusyEstimatorGetsTheLatestFrameAndTheOthersAreListed) {
+  const TemporaryFolder folder;
+  SimulatedClock clock;
+  RunOptions options;
+  options.folder = folder.path() / "r";
+  options.renderer_factory = testing::noop_factory();
+  options.clock = &clock;
+  options.estimator_factory = [&](const EstimatorSpec&) {
+    return Result<std::unique_ptr<VoPort>>(std::make_unique<SlowEstimator>(clock, 250 * kMs));
+  };
+  // 10 Hz against 250 ms: 0 is done at 250 and takes 2, that is done at 500. Frame 5 comes at
+  // that instant: either of 4 and 5 may be taken, so the flight ends with frame 4, at 400 ms.
+  const auto run =
+      run_scenario(testing::small_scenario({"pacing=real_time",
+                                            "duration_s=0.4",
+                                            R"(estimators=[{"name":"slow","type":"feature"}])"}),
+                   options);
+  ASSERT_TRUE(run.ok()) << run.error().message;
+  const auto records = read_run_records(options.folder);
+  ASSERT_TRUE(records.ok()) << records.error().message;
+  EXPECT_THAT(frames_where(records->estimators[0], false), ElementsAre(0, 2, 4));
+  EXPECT_THAT(frames_where(records->estimators[0], true), ElementsAre(1, 3));
+  const Json& score = run->metrics.at("estimators").at("slow");
+  EXPECT_EQ(score.at("dropped_frames"), 2);
+  EXPECT_EQ(score.at("dropped_frame_ranges"), Json::parse("[[1, 1], [3, 3]]"));
+  EXPECT_EQ(run->metrics.at("camera").at("late_frames"), 0);
+  EXPECT_EQ(run->info.frames, 5);
+}
+
+TEST(RealTime, QuickEstimatorDropsNothing) {
+  const TemporaryFolder folder;
+  SimulatedClock clock;
+  RunOptions options;
+  options.folder = folder.path() / "r";
+  options.renderer_factory = testing::noop_factory();
+  options.clock = &clock;
+  options.estimator_factory = [&](const EstimatorSpec&) {
+    return Result<std::unique_ptr<VoPort>>(std::make_unique<SlowEstimator>(clock, 99 * kMs));
+  };
+  const auto run =
+      run_scenario(testing::small_scenario(
+                       {"pacing=real_time", R"(estimators=[{"name":"slow","type":"feature"}])"}),
+                   options);
+  ASSERT_TRUE(run.ok()) << run.error().message;
+  EXPECT_EQ(run->metrics.at("estimators").at("slow").at("dropped_frames"), 0);
+  EXPECT_EQ(run->metrics.at("estimators").at("slow").at("frames"), 21);
+}
+
+TEST(RealTime, RendererThatFallsBehindSkipsFramesWhoseTimeHasPassed) {
+  const TemporaryFolder folder;
+  SimulatedClock clock;
+  RunOptions options;
+  options.folder = folder.path() / "r";
+  options.clock = &clock;
+  options.renderer_factory = [&](std::shared_ptr<const terrain::TileSource> tiles) {
+    return Result<std::unique_ptr<renderer::Renderer>>(std::make_unique<SlowRenderer>(
+        renderer::create_noop_renderer(std::move(tiles)), clock, 250 * kMs));
+  };
+  // 10 Hz against 250 ms a frame: 0 until 250, so 1 (due by 200) is late; 2 until 500, so 3 and 4
+  // (due by 400 and 500) are; 5 until 750, so 6 is; 7 until 1000, so 8 and 9 are; 10.
+  const auto run =
+      run_scenario(testing::small_scenario({"pacing=real_time", "duration_s=1"}), options);
+  ASSERT_TRUE(run.ok()) << run.error().message;
+  const auto records = read_run_records(options.folder);
+  ASSERT_TRUE(records.ok());
+  std::vector<std::int64_t> drawn;
+  for (const FrameRecord& frame : records->frames) drawn.push_back(frame.row.frame);
+  EXPECT_THAT(drawn, ElementsAre(0, 2, 5, 7, 10));
+  EXPECT_THAT(records->late_frames, ElementsAre(1, 3, 4, 6, 8, 9));
+  EXPECT_EQ(run->metrics.at("camera").at("late_frame_ranges"),
+            Json::parse("[[1, 1], [3, 4], [6, 6], [8, 9]]"));
+}
+
+}  // namespace
+}  // namespace overfly::engine

@@ -1,0 +1,176 @@
+// Mutated scenarios and the program's verdicts on them; engine/ajv asks another validator.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "server/engine/json_schema.hpp"
+#include "server/engine/scenario.hpp"
+#include "tests/support/support.hpp"
+
+namespace overfly::engine {
+namespace {
+
+using Json = nlohmann::json;
+
+struct Mutant {
+  std::string name;
+  Json document;
+};
+
+/// Documents that between them use every field of the format.
+std::vector<Mutant> seeds() {
+  Json course = Json::parse(R"({
+    "format_version": 1, "name": "a-1", "title": "t", "description": "d", "seed": 3,
+    "epoch_utc_s": 1767225600, "data": "data",
+    "world": {"imagery": [{"file": "a.tif", "crs": "EPSG:2994", "attribution": "x"}],
+              "elevation": [{"file": "b.tif", "datum": "navd88", "geoid_separation_m": -22.5,
+                             "unit_m": 0.3048, "crs": "EPSG:2994", "attribution": "y"}],
+              "ground_height_m": 12.5,
+              "origin": {"lat_deg": 44, "lon_deg": -123, "alt_ellipsoid_m": 100},
+              "runway": {"lat_deg": 44, "lon_deg": -123, "heading_deg": 180}},
+    "flight": {"course": {"airspeed_m_s": 25, "roll_rate_max_deg_s": 45, "height_agl_m": 300,
+                          "bank_max_deg": 45, "length_m": 3300, "leg_length_m": 1100,
+                          "start": {"east_m": 1, "north_m": 2}, "heading_deg": 180}},
+    "duration_s": 40,
+    "camera": {"width_px": 1280, "height_px": 960, "rate_hz": 31, "fx_px": 700, "fy_px": 700,
+               "cx_px": 639.5, "cy_px": 479.5},
+    "estimators": [{"name": "feature", "type": "feature", "parameters": {"features": 1000}}],
+    "pacing": "real_time", "recording": {"frames": true, "debug_hz": 2}})");
+  Json log = Json::parse(R"({
+    "format_version": 1, "world": {"manifest": "world.json"},
+    "flight": {"log": {"file": "flight.csv", "camera_poses": false}},
+    "camera": {"fov_deg": 84.872, "fov_axis": "horizontal"},
+    "estimators": [{"name": "p", "type": "perfect"}, {"name": "d", "type": "drifting"}]})");
+  Json builtin = Json::parse(R"({
+    "format_version": 1, "world": {"builtin": {"seed": 7}},
+    "flight": {"course": {"start": "runway"}}})");
+  return {{"course", course}, {"log", log}, {"builtin", builtin}};
+}
+
+/// Every place in a document, as JSON pointers.
+void collect_places(const Json& node,
+                    const Json::json_pointer& at,
+                    std::vector<Json::json_pointer>& places) {
+  if (!at.empty()) places.push_back(at);
+  if (node.is_object()) {
+    for (const auto& [key, child] : node.items()) collect_places(child, at / key, places);
+  } else if (node.is_array()) {
+    for (std::size_t i = 0; i < node.size(); ++i) collect_places(node[i], at / i, places);
+  }
+}
+
+/// Values of other types and at the edges, put in the place of `value`.
+std::vector<Json> replacements(const Json& value) {
+  std::vector<Json> others = {nullptr, "text", Json::array(), Json::object(), true};
+  if (value.is_number()) {
+    for (const Json& number : {Json(-1),
+                               Json(0),
+                               Json(1),
+                               Json(2.0),
+                               Json(0.5),
+                               Json(1e9),
+                               Json(-180.0001),
+                               Json(180),
+                               Json(90.0001),
+                               Json(9007199254740992)}) {
+      others.push_back(number);
+    }
+  }
+  if (value.is_string()) {
+    for (const char* text : {"", "runway", "a b", "feature", "\u00e9t\u00e9", "-x"}) {
+      others.emplace_back(text);
+    }
+  }
+  others.erase(std::remove(others.begin(), others.end(), value), others.end());
+  return others;
+}
+
+void mutate_place(const Mutant& seed,
+                  const Json::json_pointer& place,
+                  std::vector<Mutant>& mutants) {
+  const std::string name = seed.name + place.to_string();
+  for (const Json& other : replacements(seed.document.at(place))) {
+    Json document = seed.document;
+    document[place] = other;
+    mutants.push_back({name + " = " + other.dump(), std::move(document)});
+  }
+  Json without = seed.document;
+  Json& parent = without[place.parent_pointer()];
+  if (parent.is_object()) {
+    parent.erase(place.back());
+  } else {
+    parent.erase(std::stoul(place.back()));
+  }
+  mutants.push_back({name + " removed", std::move(without)});
+  if (seed.document.at(place).is_object()) {
+    Json with = seed.document;
+    with[place]["surplus"] = 1;
+    mutants.push_back({name + " with a surplus field", std::move(with)});
+  }
+}
+
+std::vector<Mutant> all_mutants() {
+  std::vector<Mutant> mutants;
+  for (const Mutant& seed : seeds()) {
+    mutants.push_back(seed);
+    std::vector<Json::json_pointer> places;
+    collect_places(seed.document, Json::json_pointer(), places);
+    for (const Json::json_pointer& place : places) mutate_place(seed, place, mutants);
+  }
+  for (const char* text : {"null", "[]", "{}", "1", "\"x\""}) {
+    mutants.push_back({std::string("whole document ") + text, Json::parse(text)});
+  }
+  return mutants;
+}
+
+TEST(ScenarioMutations, SeedsAreValid) {
+  for (const Mutant& seed : seeds()) EXPECT_TRUE(schema_faults(seed.document).empty()) << seed.name;
+}
+
+TEST(ScenarioMutations, EachHasAVerdictAndInvalidOnesNameAField) {
+  Json verdicts = Json::array();
+  int invalid = 0;
+  for (const Mutant& mutant : all_mutants()) {
+    const auto faults = schema_faults(mutant.document);
+    verdicts.push_back(
+        {{"name", mutant.name}, {"document", mutant.document}, {"valid", faults.empty()}});
+    if (faults.empty()) continue;
+    ++invalid;
+    for (const auto& [path, text] : faults) EXPECT_THAT(text, ::testing::HasSubstr(path));
+  }
+  const int valid = static_cast<int>(verdicts.size()) - invalid;
+  EXPECT_GE(verdicts.size(), 200U);
+  EXPECT_GE(invalid, 150);
+  EXPECT_GE(valid, 30);
+  if (const char* file = std::getenv("OVERFLY_VERDICTS_FILE"); file != nullptr) {
+    overfly::testing::write_text(file, verdicts.dump());
+  }
+}
+
+/// What passes the schema either resolves or is refused for a reason that is not a bug.
+TEST(ScenarioMutations, ValidOnesResolveOrAreRefusedWithAReason) {
+  for (const Mutant& mutant : all_mutants()) {
+    const bool valid = schema_faults(mutant.document).empty();
+    const Result<Scenario> scenario = resolve_scenario(mutant.document, {}, "/tmp");
+    if (!valid) {
+      ASSERT_FALSE(scenario.ok()) << mutant.name;
+      EXPECT_EQ(scenario.error().code, ErrorCode::kInvalidArgument) << mutant.name;
+    } else if (!scenario) {
+      EXPECT_EQ(scenario.error().code, ErrorCode::kInvalidArgument)
+          << mutant.name << ": " << scenario.error().message;
+    }
+  }
+}
+
+TEST(ScenarioSchema, UsesOnlyKeywordsThatTheProgramUnderstands) {
+  const JsonSchema schema(Json::parse(scenario_schema_text()));
+  EXPECT_THAT(schema.unknown_keywords(), ::testing::IsEmpty());
+}
+
+}  // namespace
+}  // namespace overfly::engine

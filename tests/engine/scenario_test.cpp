@@ -1,0 +1,166 @@
+// Scenarios read, overridden and resolved.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "server/engine/scenario.hpp"
+#include "server/engine/scenario_list.hpp"
+#include "tests/support/support.hpp"
+
+namespace overfly::engine {
+namespace {
+
+using overfly::testing::TemporaryFolder;
+using ::testing::HasSubstr;
+using Json = nlohmann::json;
+
+Json course_document() {
+  return {{"format_version", 1},
+          {"world", {{"builtin", Json::object()}}},
+          {"flight", {{"course", Json::object()}}}};
+}
+
+std::vector<Override> overrides(const std::vector<std::string>& texts) {
+  std::vector<Override> changes;
+  for (const std::string& text : texts) changes.push_back(parse_override(text).value());
+  return changes;
+}
+
+std::string fault_of(const Json& document, const std::vector<std::string>& texts) {
+  const Result<Scenario> scenario = resolve_scenario(document, overrides(texts), "/tmp");
+  return scenario ? "" : scenario.error().message;
+}
+
+TEST(Scenario, FillsInTheDefaultsOfThePaper) {
+  const Result<Scenario> scenario = resolve_scenario(course_document(), {}, "/tmp");
+  ASSERT_TRUE(scenario.ok()) << scenario.error().message;
+  EXPECT_EQ(scenario->camera.width_px, 1280);
+  EXPECT_EQ(scenario->camera.height_px, 960);
+  EXPECT_NEAR(scenario->camera.fx_px, 700.006, 0.001);
+  EXPECT_EQ(scenario->camera.cx_px, 639.5);
+  EXPECT_EQ(scenario->rate.numerator, 31);
+  EXPECT_EQ(scenario->pacing, Pacing::kLockstep);
+  EXPECT_TRUE(scenario->estimators.empty());
+  const auto& course = std::get<flight::CourseParameters>(scenario->flight);
+  EXPECT_NEAR(course.roll_rate_max_rad_s, rad_from_deg(45.0), 1e-12);
+  EXPECT_EQ(course.length_m, 3300.0);
+  EXPECT_EQ(scenario->resolved.at("flight").at("course").at("airspeed_m_s"), 25);
+}
+
+TEST(Scenario, SaysFieldValueAndLimitOfEveryFault) {
+  const std::string faults =
+      fault_of(course_document(), {"camera.fov_deg=190", "flight.course.airspeed_m_s=4", "sed=1"});
+  EXPECT_THAT(faults, HasSubstr("camera.fov_deg = 190: must be in (0, 180)"));
+  EXPECT_THAT(faults, HasSubstr("flight.course.airspeed_m_s = 4: must be in [5, 80]"));
+  EXPECT_THAT(faults, HasSubstr("sed = 1: no such field (known: $schema, camera,"));
+}
+
+TEST(Scenario, SaysWhatTheSchemaCannotSay) {
+  EXPECT_THAT(fault_of(course_document(), {"flight.course.leg_length_m=3300"}),
+              HasSubstr("flight.course.leg_length_m = 3300: must be less than"));
+  EXPECT_THAT(
+      fault_of(course_document(),
+               {R"(estimators=[{"name":"a","type":"perfect"},{"name":"a","type":"perfect"}])"}),
+      HasSubstr("estimators.1.name = \"a\": must be unique"));
+  EXPECT_THAT(
+      fault_of(course_document(), {"camera.fx_px=700", "camera.fy_px=700", "camera.fov_deg=80"}),
+      HasSubstr("camera.fx_px = 700: must not be given with camera.fov_deg"));
+  EXPECT_THAT(fault_of(course_document(), {"camera.fx_px=700"}),
+              HasSubstr("camera.fy_px: must be given with camera.fx_px"));
+}
+
+TEST(Scenario, TakesFocalLengthsAndCentresThePrincipalPoint) {
+  const auto scenario =
+      resolve_scenario(course_document(),
+                       overrides({"camera.fx_px=500", "camera.fy_px=501", "camera.width_px=640"}),
+                       "/tmp");
+  ASSERT_TRUE(scenario.ok()) << scenario.error().message;
+  EXPECT_EQ(scenario->camera.fy_px, 501.0);
+  EXPECT_EQ(scenario->camera.cx_px, 319.5);
+}
+
+TEST(ScenarioOverride, IsJsonElseText) {
+  EXPECT_EQ(parse_override("a.b=3")->value, 3);
+  EXPECT_EQ(parse_override("a=real_time")->value, "real_time");
+  EXPECT_EQ(parse_override("a=x=y")->value, "x=y");
+  EXPECT_EQ(parse_override("a=[1]")->value, Json::array({1}));
+  EXPECT_FALSE(parse_override("a").ok());
+  EXPECT_FALSE(parse_override("=1").ok());
+}
+
+TEST(ScenarioOverride, ReachesArraysAndReplacesTheKindOfWorld) {
+  Json document = course_document();
+  const auto scenario = resolve_scenario(document,
+                                         overrides({"estimators.0.name=e",
+                                                    "estimators.0.type=drifting",
+                                                    "estimators.0.parameters.drift=0.01",
+                                                    "world.manifest=w.json"}),
+                                         "/base");
+  ASSERT_TRUE(scenario.ok()) << scenario.error().message;
+  EXPECT_EQ(scenario->estimators.at(0).parameters.at("drift"), 0.01);
+  EXPECT_EQ(std::get<std::filesystem::path>(scenario->world), "/base/w.json");
+  EXPECT_THAT(fault_of(document, {"estimators.2.name=e"}), HasSubstr("must be a number in [0, 0]"));
+  EXPECT_THAT(fault_of(document, {"seed.x=1", "seed.y.z=2"}), HasSubstr("seed"));
+  EXPECT_THAT(fault_of(document, {"format_version.x=1"}), HasSubstr("no object or array"));
+}
+
+TEST(Scenario, FindsFilesInDataOrBesideItselfAndItsCopyMeansTheSame) {
+  const TemporaryFolder folder;
+  const char* text = R"({"format_version": 1, "data": "d",
+    "world": {"imagery": [{"file": "a.tif"}], "ground_height_m": 0},
+    "flight": {"log": {"file": "./tour.csv"}}})";
+  overfly::testing::write_text(folder.path() / "first one.json", text);
+  const auto scenario = load_scenario(folder.path() / "first one.json");
+  ASSERT_TRUE(scenario.ok()) << scenario.error().message;
+  EXPECT_EQ(scenario->name, "first_one");
+  const auto& world = std::get<terrain::WorldSpec>(scenario->world);
+  const bool replaced = std::getenv("OVERFLY_DATA") != nullptr;
+  if (!replaced) {
+    EXPECT_EQ(world.imagery.at(0).file, folder.path() / "d" / "a.tif");
+  }
+  EXPECT_EQ(std::get<LoggedFlight>(scenario->flight).file, folder.path() / "tour.csv");
+
+  const TemporaryFolder elsewhere;
+  overfly::testing::write_text(elsewhere.path() / "scenario.json", scenario->resolved.dump());
+  const auto copy = load_scenario(elsewhere.path() / "scenario.json");
+  ASSERT_TRUE(copy.ok()) << copy.error().message;
+  EXPECT_EQ(copy->name, "first_one");
+  EXPECT_EQ(std::get<terrain::WorldSpec>(copy->world).imagery.at(0).file, world.imagery.at(0).file);
+  EXPECT_EQ(std::get<LoggedFlight>(copy->flight).file, folder.path() / "tour.csv");
+  EXPECT_EQ(copy->resolved, scenario->resolved);
+}
+
+TEST(Scenario, NamesLineAndColumnOfBrokenJson) {
+  const TemporaryFolder folder;
+  overfly::testing::write_text(folder.path() / "a.json", "{\n  \"seed\": 1,\n  oops\n}");
+  const auto scenario = load_scenario(folder.path() / "a.json");
+  ASSERT_FALSE(scenario.ok());
+  EXPECT_EQ(scenario.error().code, ErrorCode::kUnreadable);
+  EXPECT_THAT(scenario.error().message, HasSubstr("line 3"));
+  EXPECT_EQ(load_scenario(folder.path() / "b.json").error().code, ErrorCode::kNotFound);
+}
+
+TEST(ScenarioList, SaysWhichFilesAreMissing) {
+  const TemporaryFolder folder;
+  overfly::testing::write_text(folder.path() / "a.json", R"({"format_version": 1,
+    "world": {"manifest": "no.json"}, "flight": {"log": {"file": "no.csv"}}})");
+  overfly::testing::write_text(folder.path() / "a.schema.json", "{}");
+  const auto entries = list_scenarios(folder.path());
+  ASSERT_EQ(entries.size(), 1U);
+  EXPECT_THAT(entries[0].error, HasSubstr("world.manifest"));
+  EXPECT_THAT(entries[0].error, HasSubstr("flight.log.file"));
+  EXPECT_FALSE(scenario_path(folder.path(), "../a").ok());
+  EXPECT_FALSE(scenario_path(folder.path(), "a.schema").ok());
+  EXPECT_TRUE(scenario_path(folder.path(), "a").ok());
+}
+
+TEST(ScenarioList, ShippedScenariosAreValid) {
+  for (const ScenarioEntry& entry : list_scenarios(overfly::testing::source_file("scenarios"))) {
+    EXPECT_TRUE(load_scenario(entry.file).ok()) << entry.error;
+  }
+}
+
+}  // namespace
+}  // namespace overfly::engine
