@@ -53,7 +53,8 @@ Status RouteCall::allow_query(const std::vector<std::string>& known) const {
 
 void RestRouter::add(const std::string& method, const std::string& pattern, Handler handler) {
   const auto url = parse_target(pattern);
-  routes_.push_back({method, pattern, url ? url->segments : std::vector<std::string>{}, handler});
+  routes_.push_back(
+      {method, pattern, url ? url->segments : std::vector<std::string>{}, std::move(handler)});
 }
 
 void RestRouter::handle(const HttpRequest& request, const Respond& respond) const {

@@ -109,7 +109,7 @@ std::optional<fs::path> resolve_below(const fs::path& root, const std::string& t
   return file;
 }
 
-StaticFiles::StaticFiles(fs::path root) {
+StaticFiles::StaticFiles(const fs::path& root) {
   std::error_code error;
   if (!root.empty()) root_ = fs::canonical(root, error);
 }

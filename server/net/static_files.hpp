@@ -23,7 +23,7 @@ namespace overfly::net {
 class StaticFiles {
  public:
   /// @param root  existing folder; empty = serve nothing
-  explicit StaticFiles(std::filesystem::path root);
+  explicit StaticFiles(const std::filesystem::path& root);
   [[nodiscard]] HttpResponse serve(const HttpRequest& request) const;
 
  private:

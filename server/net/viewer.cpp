@@ -60,7 +60,7 @@ struct Viewer::CommandVisitor {
   }
   Status operator()(const LiveCommand& /*command*/) const {
     bool live = false;
-    const Status status = with_cursor([&](PlaybackCursor* cursor) { live = cursor->go_live(); });
+    Status status = with_cursor([&](PlaybackCursor* cursor) { live = cursor->go_live(); });
     if (status && !live) return Error{ErrorCode::kConflict, "the run is not running any more"};
     return status;
   }

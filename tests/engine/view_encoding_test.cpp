@@ -1,0 +1,81 @@
+#include "server/engine/view_encoding.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "server/engine/jpeg.hpp"
+#include "tests/support/support.hpp"
+
+namespace overfly::engine {
+namespace {
+
+std::shared_ptr<const Image> ramp(int width_px, int height_px, int channels) {
+  auto image = std::make_shared<Image>(width_px, height_px, channels);
+  for (int y = 0; y < height_px; ++y) {
+    for (int x = 0; x < width_px; ++x) {
+      for (int c = 0; c < channels; ++c) image->at(x, y, c) = static_cast<std::uint8_t>(2 * x + c);
+    }
+  }
+  return image;
+}
+
+TEST(HalvedToFit, KeepsWhatFitsAndAveragesWhatDoesNot) {
+  const auto image = ramp(64, 48, 1);
+  EXPECT_EQ(halved_to_fit(image, 64), image);
+  const auto half = halved_to_fit(image, 63);
+  EXPECT_EQ(half->width_px, 32);
+  EXPECT_EQ(half->height_px, 24);
+  EXPECT_EQ(half->at(5, 3), 21);  // mean of 20, 22, 20, 22
+  EXPECT_EQ(halved_to_fit(image, 16)->width_px, 16);
+}
+
+TEST(JpegSize, ReadsTheFrameHeader) {
+  const auto grey = encode_jpeg(*ramp(70, 40, 1), 80);
+  const auto colour = encode_jpeg(*ramp(33, 51, 3), 80);
+  ASSERT_TRUE(grey && colour);
+  EXPECT_EQ(jpeg_size(*grey)->width_px, 70);
+  EXPECT_EQ(jpeg_size(*grey)->height_px, 40);
+  EXPECT_TRUE(jpeg_size(*grey)->grey);
+  EXPECT_EQ(jpeg_size(*colour)->height_px, 51);
+  EXPECT_FALSE(jpeg_size(*colour)->grey);
+  for (std::size_t size = 0; size < 30; ++size) {
+    (void)jpeg_size({grey->begin(), grey->begin() + static_cast<std::ptrdiff_t>(size)});
+  }
+  EXPECT_FALSE(jpeg_size({0xFF, 0xD8, 0xFF, 0xD9}));
+}
+
+TEST(PictureEncoder, EncodesASharedImageOnce) {
+  PictureEncoder encoder;
+  const StampedImage image{7, 700, ramp(64, 48, 1)};
+  const auto first = encoder.encode(image, 75, 64);
+  const auto second = encoder.encode(image, 75, 64);
+  const auto smaller = encoder.encode(image, 75, 32);
+  ASSERT_TRUE(first && second && smaller);
+  EXPECT_EQ(first->jpeg, second->jpeg);
+  EXPECT_EQ(first->frame, 7);
+  EXPECT_EQ(smaller->width_px, 32);
+}
+
+TEST(PictureEncoder, PassesARecordedPictureOnWhereItFits) {
+  const testing::TemporaryFolder folder;
+  const auto jpeg = encode_jpeg(*ramp(64, 48, 1), 80);
+  ASSERT_TRUE(jpeg);
+  const auto file = folder.path() / "000003.jpg";
+  testing::write_text(file, {jpeg->begin(), jpeg->end()});
+  PictureEncoder encoder;
+  const auto whole = encoder.encode_file(file, 3, 300, 75, 64);
+  ASSERT_TRUE(whole);
+  EXPECT_EQ(*whole->jpeg, *jpeg);
+  EXPECT_TRUE(whole->grey);
+  const auto half = encoder.encode_file(file, 3, 300, 75, 40);
+  ASSERT_TRUE(half);
+  EXPECT_EQ(half->width_px, 32);
+  EXPECT_EQ(encoder.encode_file(folder.path() / "none.jpg", 3, 300, 75, 64).error().code,
+            ErrorCode::kNotFound);
+  testing::write_text(folder.path() / "bad.jpg", "no picture");
+  EXPECT_FALSE(encoder.encode_file(folder.path() / "bad.jpg", 3, 300, 75, 64));
+}
+
+}  // namespace
+}  // namespace overfly::engine
