@@ -17,6 +17,21 @@ const kSizes = [
   { width: 1920, height: 1080 },
 ];
 
+let broken = false;
+
+/** The steps of one session: after one that failed the others would only wait in vain. */
+function step(name, body) {
+  it(name, async (t) => {
+    if (broken) {
+      t.skip('an earlier step failed');
+      return;
+    }
+    broken = true;
+    await body();
+    broken = false;
+  });
+}
+
 const skip = serverMissing() || browserMissing();
 
 describe('the dashboard', { skip, timeout: 900_000 }, () => {
@@ -40,7 +55,7 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
     runs?.remove();
   });
 
-  it('says what to do when there are no runs', async () => {
+  step('says what to do when there are no runs', async () => {
     await dashboard.until(() =>
       document.querySelector('[data-panel=runs]').innerText.includes('No runs yet'),
     );
@@ -48,7 +63,7 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
     await dashboard.screenshot('empty_1280x800');
   });
 
-  it("shows the server's limit at the field that breaks it", async () => {
+  step("shows the server's limit at the field that breaks it", async () => {
     await dashboard.field('flight.course.airspeed_m_s').fill('999');
     await dashboard.page.locator('button.primary').click();
     const fault = dashboard.page.locator('[data-fault="flight.course.airspeed_m_s"]');
@@ -58,7 +73,7 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
     await dashboard.field('flight.course.airspeed_m_s').fill('25');
   });
 
-  it('launches a flight and shows it live', async () => {
+  step('launches a flight and shows it live', async () => {
     await dashboard.field('duration_s').fill(String(kFlight_s));
     await dashboard.chooseEstimators('feature');
     run = await dashboard.launch();
@@ -70,14 +85,14 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
     await dashboard.screenshot('live_1280x800');
   });
 
-  it('finishes the flight and tells its outcome', async () => {
+  step('finishes the flight and tells its outcome', async () => {
     await dashboard.untilStatus(run, 'completed', kFlightPatience_ms);
     await dashboard.until(() => document.querySelector('.errors .good, .errors .bad') !== null);
     const { frames } = await getJson(server.url, `/runs/${run}`);
     assert.ok(Math.abs(frames - kFlight_s * kRate_hz) <= 1, `${frames} frames`);
   });
 
-  it('shows the same instant in every panel after a seek on the time line', async () => {
+  step('shows the same instant in every panel after a seek on the time line', async () => {
     await dashboard.clickAt('.track .bar', 0.5);
     await dashboard.untilSameInstant();
     const { frame, t_ns } = await dashboard.playback();
@@ -90,7 +105,7 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
     );
   });
 
-  it('seeks by a click in a plot', async () => {
+  step('seeks by a click in a plot', async () => {
     await dashboard.clickAt('.plot[data-axis=y_m] .u-over', 0.8);
     await dashboard.until(
       () => Number(document.querySelector('[data-panel=timeline]').dataset.frame) > 400,
@@ -102,7 +117,7 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
     }
   });
 
-  it("shows the truth's and the estimate's pose at the cursor", async () => {
+  step("shows the truth's and the estimate's pose at the cursor", async () => {
     const { frame } = await dashboard.playback();
     const shown = await dashboard.page.locator('.plot[data-axis=y_m] .readout').allInnerTexts();
     for (const [i, name] of ['truth', 'feature'].entries()) {
@@ -112,7 +127,7 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
     }
   });
 
-  it('steps frame by frame and second by second', async () => {
+  step('steps frame by frame and second by second', async () => {
     const { page } = dashboard;
     const { frame } = await dashboard.playback();
     await page.keyboard.press('ArrowRight');
@@ -133,7 +148,7 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
     await dashboard.untilSameInstant();
   });
 
-  it('plays, changes the speed and pauses', async () => {
+  step('plays, changes the speed and pauses', async () => {
     const { page } = dashboard;
     await page.keyboard.press('Home');
     await dashboard.untilCursor(0);
@@ -152,7 +167,7 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
     await dashboard.until(() => document.querySelector('#speed').value === '1');
   });
 
-  it('turns, zooms and switches the 3D view', async () => {
+  step('turns, zooms and switches the 3D view', async () => {
     const { page } = dashboard;
     const changed = async (act) => {
       const { digest } = await dashboard.picture('scene');
@@ -178,7 +193,7 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
     await changed(() => page.mouse.wheel(0, -300));
   });
 
-  it('shows the figures of metrics.json for every alignment', async () => {
+  step('shows the figures of metrics.json for every alignment', async () => {
     const metrics = await getJson(server.url, `/runs/${run}/metrics`);
     const { alignments, coverage, dropped_frames, outcome } = metrics.estimators.feature;
     const modes = Object.keys(alignments);
@@ -212,7 +227,7 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
     await dashboard.page.locator('#alignment').selectOption('init_scale');
   });
 
-  it('fits both screens without scrolling', async () => {
+  step('fits both screens without scrolling', async () => {
     await dashboard.clickAt('.track .bar', 0.9);
     await dashboard.page.mouse.move(2, 2);
     for (const { width, height } of kSizes) {
@@ -250,14 +265,14 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
     await dashboard.page.setViewportSize(kSizes[0]);
   });
 
-  it('opens the help and closes it', async () => {
+  step('opens the help and closes it', async () => {
     await dashboard.page.keyboard.press('?');
     await dashboard.page.locator('.help').waitFor({ state: 'visible' });
     await dashboard.page.keyboard.press('Escape');
     await dashboard.page.locator('.help').waitFor({ state: 'hidden' });
   });
 
-  it('shows the same run and instant again from a copied address', async () => {
+  step('shows the same run and instant again from a copied address', async () => {
     const { frame, t_ns } = await dashboard.playback();
     await dashboard.until((t) => location.hash.endsWith(`t=${(t / 1e9).toFixed(3)}`), t_ns);
     await dashboard.page.reload();
@@ -266,7 +281,7 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
     assert.equal(await dashboard.runId(), run);
   });
 
-  it('comes back by itself after the server was away', async () => {
+  step('comes back by itself after the server was away', async () => {
     const { frame } = await dashboard.playback();
     await server.stop();
     await dashboard.until(
@@ -282,7 +297,7 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
     await dashboard.untilSameInstant();
   });
 
-  it('stops a running flight in real time and deletes it', async () => {
+  step('stops a running flight in real time and deletes it', async () => {
     await dashboard.field('pacing').selectOption('real_time');
     await dashboard.chooseEstimators();
     const second = await dashboard.launch();
@@ -305,7 +320,7 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
     assert.deepEqual(left, [run]);
   });
 
-  it('never met an error of its own', () => {
+  step('never met an error of its own', () => {
     assert.deepEqual(dashboard.complaints, []);
   });
 });

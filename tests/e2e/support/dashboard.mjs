@@ -33,8 +33,9 @@ export class Dashboard {
   /** Chooses a scenario and waits for its fields. */
   async chooseScenario(name) {
     await this.page.locator(`#scenario option[value="${name}"]`).waitFor({ state: 'attached' });
-    await this.page.locator('#scenario').selectOption(name);
-    await this.field('duration_s').waitFor();
+    const picker = this.page.locator('#scenario');
+    if ((await picker.inputValue()) !== name) await picker.selectOption(name);
+    await this.page.locator(`.fields[data-scenario="${name}"]`).waitFor();
   }
 
   async chooseEstimators(...types) {

@@ -1,4 +1,6 @@
 // The REST interface as typed calls.
+import type { Fault } from '../protocol/faults';
+import { readFaults } from '../protocol/faults';
 import type { Json, JsonObject, Run, ScenarioEntry } from '../protocol/rest_types';
 
 /** An answer that was no success; `status` 0 = the server did not answer. */
@@ -7,6 +9,7 @@ export class RestError extends Error {
     readonly status: number,
     readonly code: string,
     message: string,
+    readonly faults: Fault[] = [],
   ) {
     super(message);
   }
@@ -69,10 +72,15 @@ export class RestClient {
   }
 }
 
+interface ErrorDocument {
+  error: { code: string; message: string; faults?: unknown };
+}
+
 async function errorOf(response: Response): Promise<RestError> {
   try {
-    const { error } = (await response.json()) as { error: { code: string; message: string } };
-    return new RestError(response.status, error.code, error.message);
+    const { error } = (await response.json()) as ErrorDocument;
+    const { code, message, faults } = error;
+    return new RestError(response.status, code, message, readFaults(faults));
   } catch {
     return new RestError(response.status, 'http', `HTTP ${response.status} ${response.statusText}`);
   }

@@ -1,7 +1,7 @@
 // Scenarios and runs of the server: read, launched, cancelled and deleted over REST.
 import type { RestClient } from '../connection/rest_client';
 import { RestError } from '../connection/rest_client';
-import { parseFaults } from '../protocol/faults';
+import type { Fault } from '../protocol/faults';
 import { isActive } from '../protocol/rest_types';
 import { overridesOf } from './launch_form';
 import type { Notices } from './notices';
@@ -83,7 +83,7 @@ export class Catalogue {
       state.runs = [run, ...(state.runs ?? []).filter(({ id }) => id !== run.id)];
       this.session.selectRun(run.id);
     } catch (error) {
-      state.launchFaults = parseFaults(textOf(error));
+      state.launchFaults = faultsOf(error);
     }
     state.launching = false;
     this.store.change('launch', 'lists');
@@ -135,6 +135,11 @@ export class Catalogue {
     const failing = this.store.state.listError !== null;
     this.later(() => void this.poll(), active || failing ? kPollActive_ms : kPollIdle_ms);
   }
+}
+
+function faultsOf(error: unknown): Fault[] {
+  const known = error instanceof RestError ? error.faults : [];
+  return known.length > 0 ? known : [{ field: '', message: textOf(error) }];
 }
 
 function textOf(error: unknown): string {

@@ -2,7 +2,7 @@
 import { fieldOfFault, fieldsOf, fieldText } from '../store/launch_form';
 import type { FieldSpec } from '../store/launch_form';
 import type { Topic } from '../store/state';
-import { h, rebuild, setText } from './dom';
+import { h, rebuild, setAttribute, setText } from './dom';
 import { makePanel } from './panel';
 import type { Context, View } from './view';
 
@@ -84,6 +84,8 @@ export class Launcher implements View {
   private buildFields(): void {
     const document = this.context.store.state.scenarioDocument;
     this.documentShown = document;
+    const name = this.context.store.state.scenarioName;
+    setAttribute(this.fieldArea, 'data-scenario', document === null ? null : name);
     if (document === null) {
       this.fields = [];
     } else {

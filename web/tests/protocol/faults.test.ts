@@ -1,21 +1,23 @@
 import { describe, expect, it } from 'vitest';
-import { parseFaults } from '../../src/protocol/faults';
+import { readFaults } from '../../src/protocol/faults';
 
-describe('parseFaults', () => {
-  it('splits field and limit, one fault a line', () => {
-    expect(
-      parseFaults(
-        'flight.course.airspeed_m_s = 99: must be in [5, 60]\nestimators.0.type = "x": must be one of a, b',
-      ),
-    ).toEqual([
-      { field: 'flight.course.airspeed_m_s', message: 'must be in [5, 60]' },
-      { field: 'estimators.0.type', message: 'must be one of a, b' },
+describe('readFaults', () => {
+  it('keeps the limit and leaves out field and value, which the form shows', () => {
+    const message = 'flight.course.airspeed_m_s = 999: must be in [5, 80]';
+    expect(readFaults([{ field: 'flight.course.airspeed_m_s', message }])).toEqual([
+      { field: 'flight.course.airspeed_m_s', message: 'must be in [5, 80]' },
     ]);
   });
 
-  it('keeps a line without a field as it is', () => {
-    expect(parseFaults('The disk is full.\n')).toEqual([
-      { field: '', message: 'The disk is full.' },
-    ]);
+  it('keeps a message of another form whole', () => {
+    const fault = { field: 'world', message: 'world: must be given' };
+    expect(readFaults([fault])).toEqual([fault]);
   });
+
+  it.each([undefined, null, 'x', [null], [{ field: 1, message: 'a' }], [{}]])(
+    'reads nothing from %j',
+    (faults) => {
+      expect(readFaults(faults)).toEqual([]);
+    },
+  );
 });

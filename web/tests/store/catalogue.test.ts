@@ -97,7 +97,10 @@ describe('Catalogue', () => {
     const message = 'seed = -1: must be at least 0';
     const { store, subject } = catalogue({
       ...reading,
-      'POST /runs': () => [400, { error: { code: 'invalid_argument', message } }],
+      'POST /runs': () => [
+        400,
+        { error: { code: 'invalid_argument', message, faults: [{ field: 'seed', message }] } },
+      ],
     });
     await subject.readScenarios();
     await subject.launch(
