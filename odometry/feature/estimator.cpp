@@ -163,7 +163,7 @@ void FeatureOdometry::follow(const FrameImage& frame, VoEstimate& estimate, Outc
 }
 
 void FeatureOdometry::accept(const FrameImage& frame, VoEstimate& estimate, Outcome& outcome) {
-  count_sights(frame, outcome.tracked);
+  count_sights(outcome.tracked);
   T_camera_vo_ = outcome.tracked.T_camera_vo;
   if (parts_->mapper.wants_keyframe(frame, outcome.tracked, map_)) {
     const Stopwatch stopwatch(estimate.timing_ms, "mapping");
@@ -175,14 +175,12 @@ void FeatureOdometry::accept(const FrameImage& frame, VoEstimate& estimate, Outc
   state_ = TrackingState::kTracking;
 }
 
-void FeatureOdometry::count_sights(const FrameImage& frame, const TrackResult& tracked) {
+void FeatureOdometry::count_sights(const TrackResult& tracked) {
   const auto count = [&](int id, bool found) {
     MapPoint* point = map_.point(id);
     if (point == nullptr) return;
     ++point->expected;
-    if (!found) return;
-    ++point->found;
-    point->last_frame = frame.index;
+    if (found) ++point->found;
   };
   for (const TrackedPoint& seen : tracked.points) count(seen.point, true);
   for (const TrackedPoint& seen : tracked.outliers) count(seen.point, false);

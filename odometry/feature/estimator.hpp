@@ -50,7 +50,7 @@ class FeatureOdometry final : public VoPort {
   void accept(const FrameImage& frame, VoEstimate& estimate, Outcome& outcome);
   void lose();
   void start_over();
-  void count_sights(const FrameImage& frame, const TrackResult& tracked);
+  void count_sights(const TrackResult& tracked);
   void report(const FrameImage& frame, const Outcome& outcome, VoEstimate& estimate);
 
   FeatureParameters parameters_;

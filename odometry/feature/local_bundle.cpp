@@ -40,6 +40,7 @@ std::vector<int> fixed_keyframes(const LocalAdjustment& options,
     }
   }
   std::vector<std::pair<int, int>> ranked;
+  ranked.reserve(sights.size());
   for (const auto& [id, count] : sights) ranked.emplace_back(count, id);
   std::sort(ranked.rbegin(), ranked.rend());
   std::vector<int> ids;

@@ -56,17 +56,16 @@ struct Keyframe {
 
 struct MapPoint {
   int id = 0;
-  Eigen::Vector3d position_vo = Eigen::Vector3d::Zero();
   int source_keyframe = 0;  ///< whose image holds its patch
   Eigen::Vector2d source_pixel = Eigen::Vector2d::Zero();
-  int patch_level = 0;  ///< pyramid level at which it is searched
   /// The ground's surface there: steps in vo of one source pixel along x and y.
   Matrix32d tangents_vo = Matrix32d::Zero();
   Descriptor descriptor{};
-  std::vector<int> keyframes;    ///< ids, ascending, of those that observe it
-  int expected = 0;              ///< frames in which it should have been seen
-  int found = 0;                 ///< frames in which it was
-  std::int64_t last_frame = -1;  ///< the last frame in which it was an inlier
+  Eigen::Vector3d position_vo = Eigen::Vector3d::Zero();
+  std::vector<int> keyframes;  ///< ids, ascending, of those that observe it
+  int patch_level = 0;         ///< pyramid level at which it is searched
+  int expected = 0;            ///< frames in which it should have been seen
+  int found = 0;               ///< frames in which it was
 };
 
 /// Ids grow and are never used again. Iteration is in the order of ids: results repeat.

@@ -22,8 +22,8 @@ constexpr double kChi2Point = 5.99;
 constexpr double kChi2Line = 3.84;
 constexpr double kPlanarRatio = 0.45;
 
-Eigen::Matrix3d from_null_vector(const Matrix9d& AtA) {
-  const Eigen::SelfAdjointEigenSolver<Matrix9d> eigen(AtA);
+Eigen::Matrix3d from_null_vector(const Matrix9d& normal_matrix) {
+  const Eigen::SelfAdjointEigenSolver<Matrix9d> eigen(normal_matrix);
   const Vector9d h = eigen.eigenvectors().col(0);
   Eigen::Matrix3d m;
   m << h(0), h(1), h(2), h(3), h(4), h(5), h(6), h(7), h(8);
@@ -31,22 +31,24 @@ Eigen::Matrix3d from_null_vector(const Matrix9d& AtA) {
 }
 
 /// Adds the two rows of one pair to A^T A of the homography's linear system.
-void add_homography_rows(const Eigen::Vector2d& a, const Eigen::Vector2d& b, Matrix9d& AtA) {
+void add_homography_rows(const Eigen::Vector2d& a,
+                         const Eigen::Vector2d& b,
+                         Matrix9d& normal_matrix) {
   Vector9d r1;
   Vector9d r2;
   r1 << 0, 0, 0, -a.x(), -a.y(), -1, b.y() * a.x(), b.y() * a.y(), b.y();
   r2 << a.x(), a.y(), 1, 0, 0, 0, -b.x() * a.x(), -b.x() * a.y(), -b.x();
-  AtA += r1 * r1.transpose() + r2 * r2.transpose();
+  normal_matrix += r1 * r1.transpose() + r2 * r2.transpose();
 }
 
-void add_epipolar_row(const Eigen::Vector2d& a, const Eigen::Vector2d& b, Matrix9d& AtA) {
+void add_epipolar_row(const Eigen::Vector2d& a, const Eigen::Vector2d& b, Matrix9d& normal_matrix) {
   Vector9d r;
   r << b.x() * a.x(), b.x() * a.y(), b.x(), b.y() * a.x(), b.y() * a.y(), b.y(), a.x(), a.y(), 1;
-  AtA += r * r.transpose();
+  normal_matrix += r * r.transpose();
 }
 
-Eigen::Matrix3d essential_of(const Matrix9d& AtA) {
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(from_null_vector(AtA),
+Eigen::Matrix3d essential_of(const Matrix9d& normal_matrix) {
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(from_null_vector(normal_matrix),
                                               Eigen::ComputeFullU | Eigen::ComputeFullV);
   return svd.matrixU() * Eigen::Vector3d(1.0, 1.0, 0.0).asDiagonal() * svd.matrixV().transpose();
 }
@@ -111,9 +113,10 @@ struct Model {
 Model ransac_homography(const Pixels& a, const Pixels& b, double sigma, std::mt19937_64& rng) {
   Model best;
   for (int round = 0; round < kRansacRounds; ++round) {
-    Matrix9d AtA = Matrix9d::Zero();
-    for (const std::size_t i : draw<4>(rng, a.size())) add_homography_rows(a[i], b[i], AtA);
-    const Eigen::Matrix3d H = from_null_vector(AtA);
+    Matrix9d normal_matrix = Matrix9d::Zero();
+    for (const std::size_t i : draw<4>(rng, a.size()))
+      add_homography_rows(a[i], b[i], normal_matrix);
+    const Eigen::Matrix3d H = from_null_vector(normal_matrix);
     if (std::abs(H.determinant()) < 1e-9) continue;
     const double score = score_homography(H, a, b, sigma);
     if (score > best.score) best = {H, score};
@@ -124,12 +127,12 @@ Model ransac_homography(const Pixels& a, const Pixels& b, double sigma, std::mt1
 /// Refits to the pairs that agree, keeping the better.
 Model refined_homography(Model model, const Pixels& a, const Pixels& b, double sigma) {
   for (int round = 0; round < 2 && model.score > 0.0; ++round) {
-    Matrix9d AtA = Matrix9d::Zero();
+    Matrix9d normal_matrix = Matrix9d::Zero();
     for (std::size_t i = 0; i < a.size(); ++i) {
       const double error2 = (transfer(model.matrix, a[i]) - b[i]).squaredNorm();
-      if (error2 < kChi2Point * sigma * sigma) add_homography_rows(a[i], b[i], AtA);
+      if (error2 < kChi2Point * sigma * sigma) add_homography_rows(a[i], b[i], normal_matrix);
     }
-    const Eigen::Matrix3d H = from_null_vector(AtA);
+    const Eigen::Matrix3d H = from_null_vector(normal_matrix);
     const double score = score_homography(H, a, b, sigma);
     if (score > model.score) model = {H, score};
   }
@@ -139,9 +142,9 @@ Model refined_homography(Model model, const Pixels& a, const Pixels& b, double s
 Model ransac_essential(const Pixels& a, const Pixels& b, double sigma, std::mt19937_64& rng) {
   Model best;
   for (int round = 0; round < kRansacRounds; ++round) {
-    Matrix9d AtA = Matrix9d::Zero();
-    for (const std::size_t i : draw<8>(rng, a.size())) add_epipolar_row(a[i], b[i], AtA);
-    const Eigen::Matrix3d E = essential_of(AtA);
+    Matrix9d normal_matrix = Matrix9d::Zero();
+    for (const std::size_t i : draw<8>(rng, a.size())) add_epipolar_row(a[i], b[i], normal_matrix);
+    const Eigen::Matrix3d E = essential_of(normal_matrix);
     const double score = score_essential(E, a, b, sigma);
     if (score > best.score) best = {E, score};
   }
