@@ -32,6 +32,7 @@ struct TileId {
   int level = 0;
   int col = 0;
   int row = 0;
+  // NOLINTNEXTLINE(modernize-use-nullptr): the check mistakes the generated comparison with 0.
   auto operator<=>(const TileId&) const = default;
 };
 

@@ -259,7 +259,8 @@ ParcelHit Parcels::at(float x, float y) const {
     }
     index = side < 0.0F ? node.below : node.above;
   }
-  hit.parcel = &parcels_[static_cast<std::size_t>(~index)];
+  const int leaf = ~index;
+  hit.parcel = &parcels_[static_cast<std::size_t>(leaf)];
   return hit;
 }
 
