@@ -187,6 +187,71 @@ Result<HeightGrid> read_posts(GDALDataset& dataset,
   return grid;
 }
 
+/// Turns raw values into metres above the ellipsoid; doubts go to `warnings`.
+Status to_ellipsoidal_metres(GDALDataset& dataset,
+                             const ElevationLayer& layer,
+                             const Georeference& place,
+                             const PostWindow& window,
+                             HeightGrid& grid,
+                             std::vector<std::string>& warnings) {
+  const std::string file = layer.file.string();
+  const double unit_m = unit_of(dataset, layer, place.crs, warnings);
+  const std::size_t implausible = to_metres(*dataset.GetRasterBand(1), unit_m, grid);
+  if (implausible > 0) {
+    warnings.push_back(file + ": " + std::to_string(implausible) +
+                       " heights outside -12000 to 9000 m are taken as missing");
+  }
+  auto wgs84_from_crs = CrsTransform::create(place.crs, wgs84_crs(), file);
+  if (!wgs84_from_crs) return wgs84_from_crs.error();
+  Eigen::Matrix2Xd middle(2, 1);
+  place.transform.crs_from_pixel(window.column + 0.5 * window.columns,
+                                 window.row + 0.5 * window.rows,
+                                 middle(0, 0),
+                                 middle(1, 0));
+  if (auto doubt = datum_shift_doubt(place.crs, middle(0, 0), middle(1, 0), file)) {
+    warnings.push_back(std::move(*doubt));
+  }
+  if (!(*wgs84_from_crs)->apply(middle)) {
+    return Error{ErrorCode::kInvalidArgument, file + ": its middle has no place in WGS84"};
+  }
+  middle *= rad_from_deg(1.0);
+  const auto geoid = choose_geoid(datum_of(layer, place.crs),
+                                  layer.geoid_separation_m,
+                                  middle(1, 0),
+                                  middle(0, 0),
+                                  file,
+                                  warnings);
+  if (!geoid) return {};
+  const Status added = add_separation(*geoid, place.transform, **wgs84_from_crs, window, grid);
+  return added ? Status() : Status(added.error().in(file));
+}
+
+/// Errors: kInvalidArgument when the file has no posts there, kUnsupported when it has too many.
+Status check_window(const PostWindow& window, const std::string& file) {
+  if (window.columns < 1 || window.rows < 1) {
+    return Error{ErrorCode::kInvalidArgument,
+                 file + ": elevation lies nowhere near the imagery; check both georeferences"};
+  }
+  if (static_cast<double>(window.columns) * window.rows > kMaxPosts) {
+    return Error{ErrorCode::kUnsupported,
+                 file + ": " + std::to_string(window.columns) + " x " +
+                     std::to_string(window.rows) + " posts around the imagery, limit " +
+                     std::to_string(static_cast<int>(kMaxPosts)) + "; resample it first"};
+  }
+  return {};
+}
+
+/// Distance between posts on the map at the middle of the fitted area.
+double spacing_of(const SmoothMap<2>& post_from_map) {
+  const MapRect& area = post_from_map.domain();
+  const double x = 0.5 * (area.x_min + area.x_max);
+  const double y = 0.5 * (area.y_min + area.y_max);
+  const Eigen::Vector2d here = post_from_map(x, y);
+  const Eigen::Vector2d east = post_from_map(x + 1.0, y) - here;
+  const Eigen::Vector2d north = post_from_map(x, y + 1.0) - here;
+  return 1.0 / std::max(east.norm(), north.norm());
+}
+
 }  // namespace
 
 Result<ElevationRaster> ElevationRaster::load(const ElevationLayer& layer,
@@ -205,8 +270,6 @@ Result<ElevationRaster> ElevationRaster::load(const ElevationLayer& layer,
   if (!whole) return whole.error();
   auto crs_from_wgs84 = CrsTransform::create(wgs84_crs(), place->crs, file);
   if (!crs_from_wgs84) return crs_from_wgs84.error();
-  auto wgs84_from_crs = CrsTransform::create(place->crs, wgs84_crs(), file);
-  if (!wgs84_from_crs) return wgs84_from_crs.error();
 
   constexpr double kTolerancePosts = 1e-3;
   auto post_from_map =
@@ -219,53 +282,16 @@ Result<ElevationRaster> ElevationRaster::load(const ElevationLayer& layer,
   }
   const PostWindow window =
       window_over(*post_from_map, (*dataset)->GetRasterXSize(), (*dataset)->GetRasterYSize());
-  if (window.columns < 1 || window.rows < 1) {
-    return Error{ErrorCode::kInvalidArgument,
-                 file + ": elevation lies nowhere near the imagery; check both georeferences"};
-  }
-  if (static_cast<double>(window.columns) * window.rows > kMaxPosts) {
-    return Error{ErrorCode::kUnsupported,
-                 file + ": " + std::to_string(window.columns) + " x " +
-                     std::to_string(window.rows) + " posts around the imagery, limit " +
-                     std::to_string(static_cast<int>(kMaxPosts)) + "; resample it first"};
-  }
+  const Status sane = check_window(window, file);
+  if (!sane) return sane.error();
   auto grid = read_posts(**dataset, window, file);
   if (!grid) return grid.error();
-  const double unit_m = unit_of(**dataset, layer, place->crs, warnings);
-  const std::size_t implausible = to_metres(*(*dataset)->GetRasterBand(1), unit_m, *grid);
-  if (implausible > 0) {
-    warnings.push_back(file + ": " + std::to_string(implausible) +
-                       " heights outside -12000 to 9000 m are taken as missing");
-  }
+  const Status converted = to_ellipsoidal_metres(**dataset, layer, *place, window, *grid, warnings);
+  if (!converted) return converted.error();
 
-  Eigen::Matrix2Xd middle(2, 1);
-  place->transform.crs_from_pixel(window.column + 0.5 * window.columns,
-                                  window.row + 0.5 * window.rows,
-                                  middle(0, 0),
-                                  middle(1, 0));
-  if (auto doubt = datum_shift_doubt(place->crs, middle(0, 0), middle(1, 0), file)) {
-    warnings.push_back(std::move(*doubt));
-  }
-  if (!(*wgs84_from_crs)->apply(middle)) {
-    return Error{ErrorCode::kInvalidArgument, file + ": its middle has no place in WGS84"};
-  }
-  middle *= rad_from_deg(1.0);
-  const VerticalDatum datum = datum_of(layer, place->crs);
-  const auto geoid =
-      choose_geoid(datum, layer.geoid_separation_m, middle(1, 0), middle(0, 0), file, warnings);
-  if (geoid) {
-    const Status added = add_separation(*geoid, place->transform, **wgs84_from_crs, window, *grid);
-    if (!added) return added.error().in(file);
-  }
-
-  ElevationRaster raster{file, std::move(*grid), std::move(*post_from_map), 0.0, datum};
+  ElevationRaster raster{file, std::move(*grid), std::move(*post_from_map), 0.0};
   raster.post_from_map.shift(Eigen::Vector2d(-window.column, -window.row));
-  const double x = 0.5 * (area.x_min + area.x_max);
-  const double y = 0.5 * (area.y_min + area.y_max);
-  const Eigen::Vector2d here = raster.post_from_map(x, y);
-  const Eigen::Vector2d east = raster.post_from_map(x + 1.0, y) - here;
-  const Eigen::Vector2d north = raster.post_from_map(x, y + 1.0) - here;
-  raster.spacing_m = 1.0 / std::max(east.norm(), north.norm());
+  raster.spacing_m = spacing_of(raster.post_from_map);
   return raster;
 }
 

@@ -17,7 +17,6 @@ struct ElevationRaster {
   HeightGrid grid;  ///< NaN where the file has no data
   SmoothMap<2> post_from_map;
   double spacing_m = 0.0;  ///< between posts on the map, at the area's middle
-  VerticalDatum datum = VerticalDatum::kUnknown;
 
   /// Reads the posts over `area` of the map plane and converts them to metres above the ellipsoid.
   /// Doubts about unit, datum and implausible values go to `warnings`.

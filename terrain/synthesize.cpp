@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Raised whenever the landscape changes, so that cached worlds of before are not mistaken for it.
-constexpr int kLandscapeVersion = 3;
+constexpr int kLandscapeVersion = 4;
 constexpr double kDefaultLatDeg = 39.35;
 constexpr double kDefaultLonDeg = -86.03;
 /// Texels per side are a multiple of this, so that all overviews are exact.

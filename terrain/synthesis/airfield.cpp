@@ -76,6 +76,34 @@ float Airfield::from_pavement_m(float u, float v) const {
   return rect_m(u, v, half_length_m() + 40.0F, -50.0F, 230.0F);
 }
 
+Rgb Airfield::runway_colour(float u, float v, float fine, float small, float middle) const {
+  // Asphalt with repairs, cracks, tyre marks and paint.
+  const float half = half_length_m();
+  const float patch =
+      unit(hash(floor_int(u / 47.0F), floor_int((v + 60.0F) / 7.5F), seed + 5)) - 0.5F;
+  const float streak = noise(u * 0.03F, v * 1.3F, seed + 6);
+  const float joint = inside(std::abs(std::fmod(std::abs(v), 7.5F) - 3.75F) - 0.06F, 0.15F);
+  const float crack = std::abs(noise(u * 0.21F, v * 0.21F, seed + 7) + 0.25F * small);
+  Rgb asphalt = Rgb{112, 112, 110} * (1.0F + 0.07F * patch + 0.04F * streak + 0.035F * fine +
+                                      0.035F * small + 0.04F * middle);
+  asphalt = asphalt * (1.0F - 0.10F * joint - 0.12F * inside(crack - 0.012F, 0.012F));
+  const float end = half - std::abs(u);
+  const float rubber = smoothstep(60.0F, 160.0F, end) * (1.0F - smoothstep(230.0F, 420.0F, end)) *
+                       std::exp(-0.02F * v * v) * (0.75F + 0.35F * streak);
+  asphalt = asphalt * (1.0F - 0.38F * rubber);
+  float paint = 0.0F;
+  paint = std::max(paint, inside(std::abs(std::abs(v) - 0.5F * width_m + 1.0F) - 0.45F));
+  if (end > 75.0F && std::fmod(u + 2000.0F, 50.0F) < 30.0F) {
+    paint = std::max(paint, inside(std::abs(v) - 0.4F));
+  }
+  // Landing at the north end one looks along +u with +v to the right.
+  paint = std::max(paint,
+                   u < 0.0F ? end_marking(u + half, v, width_m, designator)
+                            : end_marking(half - u, -v, width_m, designator + 18));
+  const float wear = std::clamp(0.80F + 0.3F * small - 0.45F * rubber, 0.0F, 1.0F);
+  return mix(asphalt, {222, 222, 214}, paint * wear);
+}
+
 Rgb Airfield::colour(float u, float v, float x, float y) const {
   const float fine = noise(x * 2.9F, y * 2.9F, seed + 1);
   const float small = noise(x * 1.1F, y * 1.1F, seed + 2);
@@ -116,33 +144,9 @@ Rgb Airfield::colour(float u, float v, float x, float y) const {
                std::abs(v - taxi - 45.0F) + (std::abs(u) > apron_half_m() ? 9.0F : 0.0F));
   if (std::abs(u) < half) ground = mix(ground, {196, 170, 70}, 0.7F * inside(guide - 0.10F));
 
-  // The runway: asphalt with repairs, cracks, tyre marks and paint.
   const float runway = rect_m(u, v, half, -0.5F * width_m, 0.5F * width_m);
   if (runway > 1.0F) return ground;
-  const float patch =
-      unit(hash(floor_int(u / 47.0F), floor_int((v + 60.0F) / 7.5F), seed + 5)) - 0.5F;
-  const float streak = noise(u * 0.03F, v * 1.3F, seed + 6);
-  const float joint = inside(std::abs(std::fmod(std::abs(v), 7.5F) - 3.75F) - 0.06F, 0.15F);
-  const float crack = std::abs(noise(u * 0.21F, v * 0.21F, seed + 7) + 0.25F * small);
-  Rgb asphalt = Rgb{112, 112, 110} * (1.0F + 0.07F * patch + 0.04F * streak + 0.035F * fine +
-                                      0.035F * small + 0.04F * middle);
-  asphalt = asphalt * (1.0F - 0.10F * joint - 0.12F * inside(crack - 0.012F, 0.012F));
-  const float end = half - std::abs(u);
-  const float rubber = smoothstep(60.0F, 160.0F, end) * (1.0F - smoothstep(230.0F, 420.0F, end)) *
-                       std::exp(-0.02F * v * v) * (0.75F + 0.35F * streak);
-  asphalt = asphalt * (1.0F - 0.38F * rubber);
-  float paint = 0.0F;
-  paint = std::max(paint, inside(std::abs(std::abs(v) - 0.5F * width_m + 1.0F) - 0.45F));
-  if (end > 75.0F && std::fmod(u + 2000.0F, 50.0F) < 30.0F) {
-    paint = std::max(paint, inside(std::abs(v) - 0.4F));
-  }
-  // Landing at the north end one looks along +u with +v to the left.
-  paint = std::max(paint,
-                   u < 0.0F ? end_marking(u + half, -v, width_m, designator)
-                            : end_marking(half - u, v, width_m, designator + 18));
-  const float wear = std::clamp(0.80F + 0.3F * small - 0.45F * rubber, 0.0F, 1.0F);
-  asphalt = mix(asphalt, {222, 222, 214}, paint * wear);
-  return mix(ground, asphalt, inside(runway));
+  return mix(ground, runway_colour(u, v, fine, small, middle), inside(runway));
 }
 
 }  // namespace overfly::terrain::synthesis

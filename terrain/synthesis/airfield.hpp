@@ -6,8 +6,8 @@
 
 namespace overfly::terrain::synthesis {
 
-/// Coordinates on the airfield: u along the runway from its middle towards the south end's
-/// departure, v to the left of that direction (east of a southbound runway).
+/// Coordinates on the airfield: u along the take-off run of the north end, from the runway's
+/// middle; v to the right of that direction (west of a southbound runway).
 struct Airfield {
   float heading_cos = -1.0F;  ///< of the take-off run: north component
   float heading_sin = 0.0F;   ///< east component
@@ -28,6 +28,8 @@ struct Airfield {
   [[nodiscard]] float outside_m(float u, float v) const;
   /// The grass' and pavements' colour inside the fence.
   [[nodiscard]] Rgb colour(float u, float v, float x, float y) const;
+  /// The runway's surface and paint, with the textures of the place.
+  [[nodiscard]] Rgb runway_colour(float u, float v, float fine, float small, float middle) const;
   /// Distance from the pavements that must be level.
   [[nodiscard]] float from_pavement_m(float u, float v) const;
 
