@@ -58,7 +58,7 @@ class VoPort {
   /// for a changed size, and for a frame not after the one before; kInternal when the estimator
   /// is gone for good (the run is CRASHED).
   [[nodiscard]] virtual Result<VoEstimate> track(const VoFrame& frame) = 0;
-  /// Forgets everything, as newly created.
+  /// Forgets every frame, as newly created; what set_debug said stays.
   virtual void reset() = 0;
   /// Whether `track` should make debug images and map points (they cost time). Default: no.
   virtual void set_debug(bool wanted) = 0;
