@@ -87,7 +87,7 @@ fs::path cache_folder() {
     const char* value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe)
     return value != nullptr ? value : "";
   };
-  if (const std::string own = variable("OVERFLY_CACHE"); !own.empty()) return own;
+  if (std::string own = variable("OVERFLY_CACHE"); !own.empty()) return own;
   if (const std::string xdg = variable("XDG_CACHE_HOME"); !xdg.empty()) {
     return fs::path(xdg) / "overfly";
   }

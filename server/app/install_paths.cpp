@@ -34,11 +34,11 @@ fs::path web_folder() {
 
 fs::path scenarios_folder() {
   const fs::path program = program_folder();
-  const fs::path found = first_folder_with("scenario.schema.json",
-                                           {program / "scenarios",
-                                            program / ".." / "share" / "overfly" / "scenarios",
-                                            program / ".." / ".." / "scenarios",
-                                            "scenarios"});
+  fs::path found = first_folder_with("scenario.schema.json",
+                                     {program / "scenarios",
+                                      program / ".." / "share" / "overfly" / "scenarios",
+                                      program / ".." / ".." / "scenarios",
+                                      "scenarios"});
   return found.empty() ? fs::path("scenarios") : found;
 }
 

@@ -44,20 +44,19 @@ Status FlightRun::fly() {
                                                 {"open_renderer", &FlightRun::open_renderer},
                                                 {"open_estimators", &FlightRun::open_estimators},
                                                 {"describe", &FlightRun::describe}};
-  for (const auto& [stage, step] : steps) {
+  for (const auto& step : steps) {
     if (cancelled()) return stopped();
-    if (Status status = stages_.measure(stage, [&] { return (this->*step)(); }); !status) {
-      return status;
-    }
+    Status status = stages_.measure(step.first, [&] { return (this->*step.second)(); });
+    if (!status) return status;
   }
   loop_begin_ns_ = clock_.now_ns();
-  const Status flown = scenario_.pacing == Pacing::kRealTime ? fly_real_time() : fly_lockstep();
+  Status flown = scenario_.pacing == Pacing::kRealTime ? fly_real_time() : fly_lockstep();
   // Also after an error: what the estimators have said so far belongs into the folder.
   stages_.measure("wait_for_estimators", [&] {
     for (auto& worker : workers_) worker->wait_until_idle();
     return 0;
   });
-  const Status recorded = record_events();
+  Status recorded = record_events();
   renderer_.reset();
   return flown ? recorded : flown;
 }
@@ -65,7 +64,7 @@ Status FlightRun::fly() {
 Status FlightRun::fly_lockstep() {
   for (std::int64_t k = 0; k < frames_total_; ++k) {
     if (cancelled()) return stopped();
-    const Status status = fly_frame(k, true);
+    Status status = fly_frame(k, true);
     if (!status && status.error().code == ErrorCode::kNotFound) return {};
     if (!status) return status;
   }
@@ -135,8 +134,7 @@ Status FlightRun::fly_frame(std::int64_t k, bool wait_for_estimators) {
     frame.intrinsics = scenario_.camera;
     worker->submit(std::move(frame));
   }
-  const Status recorded =
-      stages_.measure("record", [&] { return recorder_.add_frame(record, image); });
+  Status recorded = stages_.measure("record", [&] { return recorder_.add_frame(record, image); });
   if (options_.progress) options_.progress(recorder_.info());
   return recorded;
 }

@@ -96,8 +96,9 @@ Result<std::shared_ptr<RunTimeline>> RunManager::timeline(const std::string& id)
 
 Status RunManager::cancel(const std::string& id) {
   if (impl_->cancel(id)) return {};
-  const Result<fs::path> place = folder(id);
-  if (!place) return place.error();
+  if (const Result<fs::path> place = folder(id); !place && !impl_->known_timeline(id)) {
+    return place.error();
+  }
   return Error{ErrorCode::kConflict, "run \"" + id + "\" is neither queued nor running here"};
 }
 

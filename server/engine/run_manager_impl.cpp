@@ -65,9 +65,7 @@ std::string RunManager::Impl::new_id(const std::string& scenario) {
 
 RunInfo RunManager::Impl::enqueue(Scenario scenario, const std::string& idempotency_key) {
   const std::lock_guard lock(mutex_);
-  if (const auto earlier = id_by_key_.find(idempotency_key); earlier != id_by_key_.end()) {
-    return runs_.at(earlier->second)->timeline->info();
-  }
+  if (std::optional<RunInfo> earlier = info_by_key(idempotency_key)) return *earlier;
   auto run = std::make_shared<ManagedRun>();
   run->id = new_id(scenario.name);
   const RunInfo info = queued_info(run->id, scenario);
@@ -82,9 +80,28 @@ RunInfo RunManager::Impl::enqueue(Scenario scenario, const std::string& idempote
 
 std::optional<RunInfo> RunManager::Impl::started_by(const std::string& idempotency_key) const {
   const std::lock_guard lock(mutex_);
+  return info_by_key(idempotency_key);
+}
+
+std::optional<RunInfo> RunManager::Impl::info_by_key(const std::string& idempotency_key) const {
   const auto id = id_by_key_.find(idempotency_key);
   if (id == id_by_key_.end()) return std::nullopt;
-  return runs_.at(id->second)->timeline->info();
+  const auto run = runs_.find(id->second);
+  if (run != runs_.end()) return run->second->timeline->info();
+  const Result<RunInfo> info = read_run_info(options.runs_folder / id->second);
+  return info ? std::optional<RunInfo>(*info) : std::nullopt;
+}
+
+void RunManager::Impl::retire() {
+  std::vector<std::pair<std::string, std::string>> over;  // (created, id): the oldest first
+  for (const auto& [id, run] : runs_) {
+    std::error_code ignored;
+    if (live(*run->timeline)) continue;
+    if (!std::filesystem::exists(manifest_file(options.runs_folder / id), ignored)) continue;
+    over.emplace_back(run->timeline->info().created_utc, id);
+  }
+  std::sort(over.begin(), over.end());
+  for (std::size_t i = 0; i + kKeptTimelines < over.size(); ++i) runs_.erase(over[i].second);
 }
 
 std::vector<RunInfo> RunManager::Impl::active_infos() const {
@@ -155,6 +172,8 @@ void RunManager::Impl::work() {
       queue_.pop_front();
     }
     fly(*run);
+    const std::lock_guard lock(mutex_);
+    retire();
   }
 }
 

@@ -19,7 +19,7 @@
 
 namespace overfly::engine {
 
-/// A run that this process was asked for; it stays here after its end.
+/// A run that this process was asked for; it stays here for a while after its end.
 struct ManagedRun {
   std::string id;
   Scenario scenario;
@@ -28,7 +28,8 @@ struct ManagedRun {
 };
 
 struct RunManager::Impl {
-  /// Timelines read from disk that are kept.
+  /// Timelines of runs that are over and are kept in memory: so many read from disk, and so many
+  /// of this process.
   static constexpr std::size_t kKeptTimelines = 8;
 
   explicit Impl(RunManagerOptions manager_options);
@@ -53,6 +54,10 @@ struct RunManager::Impl {
   void work();
   void fly(ManagedRun& run);
   [[nodiscard]] std::string new_id(const std::string& scenario);
+  /// Lets the oldest runs go that are over and can be read from disk. @pre mutex_ is held
+  void retire();
+  /// @pre mutex_ is held
+  [[nodiscard]] std::optional<RunInfo> info_by_key(const std::string& idempotency_key) const;
 
   mutable std::mutex mutex_;
   std::condition_variable wake_;

@@ -263,8 +263,11 @@ Result<Json> RunRecorder::finish(RunStatus status, const std::string& error, Jso
     timeline_->set_metrics(*metrics);
   }
   const Status timed = write_timings(std::move(timings));
-  const Status written = write_manifest();
+  put_run_info(info_, manifest_);
+  const Status written = write_json(manifest_file(folder_), manifest_);
+  // The lock goes before the word spreads: who hears that the run is over may delete it at once.
   lock_.reset();
+  timeline_->set_info(info_);
   if (!metrics) return metrics.error();
   if (!timed) return timed.error();
   if (!written) return written.error();

@@ -71,7 +71,7 @@ FileResolver::FileResolver(Json& document, fs::path base) : base_(std::move(base
 fs::path FileResolver::resolve(Json& field) const {
   const std::string text = field.get<std::string>();
   const bool beside_scenario = text.starts_with("./") || text.starts_with("../") || !has_data_;
-  const fs::path file = ((beside_scenario ? base_ : data_) / text).lexically_normal();
+  fs::path file = ((beside_scenario ? base_ : data_) / text).lexically_normal();
   if (beside_scenario) field = file.string();
   return file;
 }

@@ -1,0 +1,180 @@
+// The runs of a server: started, queued, listed, cancelled, removed, found again.
+#include "server/engine/run_manager.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+
+#include "server/engine/run_folder.hpp"
+#include "server/engine/whole_file.hpp"
+#include "tests/engine/engine_fixture.hpp"
+
+namespace overfly::engine {
+namespace {
+
+namespace fs = std::filesystem;
+using overfly::testing::TemporaryFolder;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+class RunManagerTest : public ::testing::Test {
+ protected:
+  RunManagerTest() {
+    fs::create_directories(folder_.path() / "scenarios");
+    overfly::testing::write_text(folder_.path() / "scenarios" / "small.json",
+                                 testing::small_document().dump());
+  }
+
+  std::unique_ptr<RunManager> manager() {
+    RunManagerOptions options;
+    options.runs_folder = folder_.path() / "runs";
+    options.scenarios_folder = folder_.path() / "scenarios";
+    options.renderer_factory = testing::noop_factory();
+    return std::move(RunManager::create(options).value());
+  }
+
+  /// The run's last status, once it is over.
+  static RunInfo wait_for_end(RunManager& runs, const std::string& id) {
+    const auto timeline = runs.timeline(id).value();
+    std::uint64_t seen = 0;
+    while (true) {
+      seen = timeline->wait_for_change(seen, 1000);
+      const RunInfo info = timeline->info();
+      if (info.status != RunStatus::kQueued && info.status != RunStatus::kRunning) return info;
+    }
+  }
+
+  static void wait_for_first_frame(const RunTimeline& timeline) {
+    std::uint64_t seen = 0;
+    while (timeline.frame_count() == 0) seen = timeline.wait_for_change(seen, 1000);
+  }
+
+  static std::vector<Override> perfect() {
+    return {{"estimators", nlohmann::json::parse(R"([{"name":"p","type":"perfect"}])")}};
+  }
+
+  const fs::path& root() const { return folder_.path(); }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+TEST_F(RunManagerTest, FliesAScenarioAndFindsItAgainInANewProcess) {
+  std::string id;
+  {
+    const auto runs = manager();
+    const auto started = runs->start("small", perfect());
+    ASSERT_TRUE(started.ok()) << started.error().message;
+    id = started->id;
+    EXPECT_THAT(id, HasSubstr("small"));
+    const RunInfo done = wait_for_end(*runs, id);
+    EXPECT_EQ(done.status, RunStatus::kCompleted) << done.error;
+    EXPECT_EQ(done.id, id);
+    EXPECT_EQ(runs->world(id).value()->attribution(), done.attribution);
+  }
+  const auto runs = manager();
+  ASSERT_EQ(runs->runs().size(), 1U);
+  EXPECT_EQ(runs->runs()[0].id, id);
+  EXPECT_EQ(runs->runs()[0].estimators, std::vector<std::string>{"p"});
+  const auto timeline = runs->timeline(id);
+  ASSERT_TRUE(timeline.ok()) << timeline.error().message;
+  EXPECT_EQ((*timeline)->frame_count(), 21U);
+  EXPECT_EQ(runs->timeline(id).value(), *timeline) << "read only once";
+  EXPECT_TRUE(runs->world(id).ok());
+  EXPECT_TRUE(runs->remove(id).ok());
+  EXPECT_THAT(runs->runs(), IsEmpty());
+  EXPECT_EQ(runs->remove(id).error().code, ErrorCode::kNotFound);
+}
+
+TEST_F(RunManagerTest, SameIdempotencyKeyGivesTheSameRun) {
+  const auto runs = manager();
+  const std::string first = runs->start("small", {}, "k").value().id;
+  EXPECT_EQ(runs->start("small", {}, "k").value().id, first);
+  const std::string other = runs->start("small", {}, "k2").value().id;
+  EXPECT_NE(other, first);
+  wait_for_end(*runs, other);
+}
+
+TEST_F(RunManagerTest, QueuedRunWaitsCanBeCancelledAndRemoved) {
+  const auto runs = manager();
+  const std::vector<Override> endless = {{"duration_s", 30}, {"camera.rate_hz", 1000}};
+  const std::string first = runs->start("small", endless).value().id;
+  const std::string second = runs->start("small", {}).value().id;
+  wait_for_first_frame(*runs->timeline(first).value());
+  EXPECT_EQ(runs->timeline(second).value()->info().status, RunStatus::kQueued);
+  EXPECT_EQ(runs->remove(second).error().code, ErrorCode::kConflict);
+  EXPECT_TRUE(runs->cancel(second).ok());
+  EXPECT_EQ(runs->timeline(second).value()->info().status, RunStatus::kCancelled);
+  EXPECT_EQ(runs->cancel(second).error().code, ErrorCode::kConflict);
+  EXPECT_TRUE(runs->remove(second).ok());
+  EXPECT_TRUE(runs->cancel(first).ok());
+  EXPECT_EQ(wait_for_end(*runs, first).status, RunStatus::kCancelled);
+  EXPECT_EQ(runs->cancel(first).error().code, ErrorCode::kConflict);
+}
+
+TEST_F(RunManagerTest, DestructorCancelsWhatFlies) {
+  std::string id;
+  {
+    const auto runs = manager();
+    id = runs->start("small", {{"duration_s", 30}, {"camera.rate_hz", 1000}}).value().id;
+    wait_for_first_frame(*runs->timeline(id).value());
+  }
+  EXPECT_EQ(read_run_info(root() / "runs" / id).value().status, RunStatus::kCancelled);
+}
+
+TEST_F(RunManagerTest, RunLeftByAKilledProcessIsInterrupted) {
+  const auto runs = manager();
+  const std::string id = runs->start("small", perfect()).value().id;
+  wait_for_end(*runs, id);
+  // What a kill leaves: "running" in the manifest, no lock held, a line cut short, nothing derived.
+  const fs::path killed = root() / "runs" / "killed";
+  fs::copy(root() / "runs" / id, killed, fs::copy_options::recursive);
+  auto manifest = read_json(manifest_file(killed)).value();
+  manifest["status"] = "running";
+  overfly::testing::write_text(manifest_file(killed), manifest.dump());
+  overfly::testing::write_text(killed / ".running", "");
+  fs::remove(metrics_file(killed));
+  const std::string frames = overfly::testing::read_text(frames_file(killed));
+  overfly::testing::write_text(frames_file(killed), frames.substr(0, frames.size() - 40));
+
+  const auto timeline = runs->timeline("killed");
+  ASSERT_TRUE(timeline.ok()) << timeline.error().message;
+  EXPECT_EQ((*timeline)->info().status, RunStatus::kInterrupted);
+  EXPECT_EQ((*timeline)->frame_count(), 20U);
+  EXPECT_EQ((*timeline)->estimate_count(0), 20U) << "one whose frame is lost is left out";
+  EXPECT_EQ((*timeline)->info().frames, 20);
+  EXPECT_TRUE(runs->remove("killed").ok());
+}
+
+TEST_F(RunManagerTest, RunThatAnotherProcessWritesIsRunningAndStays) {
+  const auto runs = manager();
+  const std::string id = runs->start("small", {}).value().id;
+  wait_for_end(*runs, id);
+  const fs::path other = root() / "runs" / "other";
+  fs::copy(root() / "runs" / id, other, fs::copy_options::recursive);
+  auto manifest = read_json(manifest_file(other)).value();
+  manifest["status"] = "running";
+  overfly::testing::write_text(manifest_file(other), manifest.dump());
+  const RunLock lock = std::move(RunLock::take(other)).value();
+  EXPECT_EQ(runs->timeline("other").value()->info().status, RunStatus::kRunning);
+  EXPECT_EQ(runs->remove("other").error().code, ErrorCode::kConflict);
+  EXPECT_EQ(RunLock::take(other).error().code, ErrorCode::kConflict);
+}
+
+TEST_F(RunManagerTest, RefusesWhatItDoesNotKnow) {
+  const auto runs = manager();
+  EXPECT_EQ(runs->start("no", {}).error().code, ErrorCode::kNotFound);
+  EXPECT_EQ(runs->start("../small", {}).error().code, ErrorCode::kNotFound);
+  const auto bad = runs->start("small", {{"camera.fov_deg", 190}});
+  EXPECT_EQ(bad.error().code, ErrorCode::kInvalidArgument);
+  EXPECT_THAT(bad.error().message, HasSubstr("camera.fov_deg = 190"));
+  EXPECT_EQ(runs->folder("..").error().code, ErrorCode::kNotFound);
+  EXPECT_EQ(runs->folder("a/b").error().code, ErrorCode::kNotFound);
+  EXPECT_EQ(runs->timeline("no").error().code, ErrorCode::kNotFound);
+  EXPECT_EQ(runs->scenario("small").value().at("camera").at("width_px"), 160);
+  ASSERT_EQ(runs->scenarios().size(), 1U);
+}
+
+}  // namespace
+}  // namespace overfly::engine
