@@ -94,7 +94,7 @@ Result<ToyTruth> FlightRun::toy_truth(double scene_depth_m) const {
     if (!state) return state.error();
     poses.push_back({t_ns, state->T_world_body * T_body_camera_});
   }
-  Result<Trajectory> trajectory = Trajectory::from_poses(std::move(poses));
+  Result<Trajectory> trajectory = Trajectory::from_poses(poses);
   if (!trajectory) return trajectory.error();
   return ToyTruth{std::move(*trajectory), scene_depth_m};
 }

@@ -68,7 +68,7 @@ RunInfo RunManager::Impl::enqueue(Scenario scenario, const std::string& idempote
   if (std::optional<RunInfo> earlier = info_by_key(idempotency_key)) return *earlier;
   auto run = std::make_shared<ManagedRun>();
   run->id = new_id(scenario.name);
-  const RunInfo info = queued_info(run->id, scenario);
+  RunInfo info = queued_info(run->id, scenario);
   run->timeline = std::make_shared<RunTimeline>(info, info.estimators);
   run->scenario = std::move(scenario);
   runs_[run->id] = run;

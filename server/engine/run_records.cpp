@@ -89,7 +89,7 @@ Result<Trajectory> truth_of(const RunRecords& records) {
   for (const FrameRecord& frame : records.frames) {
     poses.push_back({frame.row.t_ns, frame.row.T_world_camera});
   }
-  return Trajectory::from_poses(std::move(poses));
+  return Trajectory::from_poses(poses);
 }
 
 EstimateTrack track_of(const EstimatorRecords& estimator) {
