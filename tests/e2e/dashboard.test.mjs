@@ -18,6 +18,7 @@ const kSizes = [
 ];
 
 let broken = false;
+let dashboard;
 
 /** The steps of one session: after one that failed the others would only wait in vain. */
 function step(name, body) {
@@ -27,7 +28,12 @@ function step(name, body) {
       return;
     }
     broken = true;
-    await body();
+    try {
+      await body();
+    } catch (error) {
+      await dashboard?.screenshot('failed');
+      throw error;
+    }
     broken = false;
   });
 }
@@ -38,7 +44,6 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
   let runs;
   let server;
   let browser;
-  let dashboard;
   let run;
 
   before(async () => {
@@ -77,7 +82,8 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
     await dashboard.field('duration_s').fill(String(kFlight_s));
     await dashboard.chooseEstimators('feature');
     run = await dashboard.launch();
-    await dashboard.untilFrames(['scene', 'camera', 'plots'], 5);
+    // The first flight ever over the built-in world has to make that world.
+    await dashboard.untilFrames(['scene', 'camera', 'plots'], 5, kFlightPatience_ms);
     assert.ok((await dashboard.picture('camera')).deviation > 5, 'the camera image is empty');
     assert.ok((await dashboard.picture('scene')).deviation > 5, 'the 3D view is empty');
     const seen = await dashboard.frame('camera');
@@ -93,8 +99,7 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
   });
 
   step('shows the same instant in every panel after a seek on the time line', async () => {
-    await dashboard.clickAt('.track .bar', 0.5);
-    await dashboard.untilSameInstant();
+    await dashboard.seekAt('.track .bar', 0.5);
     const { frame, t_ns } = await dashboard.playback();
     assert.ok(Math.abs(frame - (kFlight_s * kRate_hz) / 2) < 20, `frame ${frame}`);
     assert.equal(t_ns, Math.round((frame * 1e9) / kRate_hz));
@@ -106,11 +111,8 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
   });
 
   step('seeks by a click in a plot', async () => {
-    await dashboard.clickAt('.plot[data-axis=y_m] .u-over', 0.8);
-    await dashboard.until(
-      () => Number(document.querySelector('[data-panel=timeline]').dataset.frame) > 400,
-    );
-    await dashboard.untilSameInstant();
+    await dashboard.seekAt('.plot[data-axis=y_m] .u-over', 0.8);
+    assert.ok(Math.abs((await dashboard.frame('camera')) - kFlight_s * kRate_hz * 0.8) < 20);
     for (const size of kSizes) {
       await dashboard.page.setViewportSize(size);
       await dashboard.untilSameInstant();
@@ -153,10 +155,10 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
     await page.keyboard.press('Home');
     await dashboard.untilCursor(0);
     await page.locator('#speed').selectOption('0.5');
-    await dashboard.until(() => document.querySelector('#speed').value === '0.5');
+    await dashboard.untilSpeed(0.5);
     await page.keyboard.press('+');
     await page.keyboard.press('+');
-    await dashboard.until(() => document.querySelector('#speed').value === '2');
+    await dashboard.untilSpeed(2);
     await page.keyboard.press('Space');
     await dashboard.untilPlaying(true);
     await dashboard.untilFrames(['timeline', 'camera', 'scene'], 20);
@@ -164,7 +166,7 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
     await dashboard.untilPlaying(false);
     await dashboard.untilSameInstant();
     await page.keyboard.press('-');
-    await dashboard.until(() => document.querySelector('#speed').value === '1');
+    await dashboard.untilSpeed(1);
   });
 
   step('turns, zooms and switches the 3D view', async () => {
@@ -203,11 +205,9 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
     for (const mode of modes) {
       await dashboard.page.locator('#alignment').selectOption(mode);
       const figures = alignments[mode];
-      await dashboard.until(
-        (wanted) => document.querySelector('.errors [data-row=scale] td')?.textContent === wanted,
-        fixed(figures.scale, 4),
-      );
+      await dashboard.page.locator(`.errors[data-alignment="${mode}"]`).waitFor();
       const rows = await dashboard.errors();
+      assert.equal(plain(rows.scale[0]), fixed(figures.scale, 4), mode);
       assert.equal(plain(rows.position_rmse_m[0]), fixed(figures.position_rmse_m, 3), mode);
       assert.equal(
         plain(rows.position_rmse_hold_m[0]),
@@ -228,7 +228,7 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
   });
 
   step('fits both screens without scrolling', async () => {
-    await dashboard.clickAt('.track .bar', 0.9);
+    await dashboard.seekAt('.track .bar', 0.9);
     await dashboard.page.mouse.move(2, 2);
     for (const { width, height } of kSizes) {
       await dashboard.page.setViewportSize({ width, height });

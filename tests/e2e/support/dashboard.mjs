@@ -78,7 +78,7 @@ export class Dashboard {
     }, panel);
   }
 
-  async untilFrames(panels, least = 0) {
+  async untilFrames(panels, least = 0, timeout = kPatience_ms) {
     await this.until(
       ([names, low]) =>
         names.every(
@@ -86,6 +86,7 @@ export class Dashboard {
             Number(document.querySelector(`[data-panel="${name}"]`)?.dataset.frame ?? -1) >= low,
         ),
       [panels, least],
+      timeout,
     );
   }
 
@@ -119,6 +120,13 @@ export class Dashboard {
     );
   }
 
+  async untilSpeed(speed) {
+    await this.until((wanted) => {
+      const { dataset } = document.querySelector('[data-panel=timeline]');
+      return dataset.speed === wanted && document.querySelector('#speed').value === wanted;
+    }, String(speed));
+  }
+
   async untilCursor(frame) {
     await this.until(
       (wanted) => document.querySelector('[data-panel=timeline]').dataset.frame === String(wanted),
@@ -126,10 +134,16 @@ export class Dashboard {
     );
   }
 
-  /** Clicks at a share of the width of the time line or of a plot. */
-  async clickAt(selector, share) {
+  /** Clicks at a share of the width of the time line or of a plot and waits for another instant. */
+  async seekAt(selector, share) {
+    const { frame } = await this.playback();
     const box = await this.page.locator(selector).first().boundingBox();
     await this.page.mouse.click(box.x + box.width * share, box.y + box.height / 2);
+    await this.until(
+      (before) => document.querySelector('[data-panel=timeline]').dataset.frame !== String(before),
+      frame,
+    );
+    await this.untilSameInstant();
   }
 
   /** A digest of what a panel's canvas shows. */

@@ -44,11 +44,13 @@ export class Player {
   }
 
   setSpeed(value: number): void {
+    this.store.state.wantedSpeed = value;
     this.command({ type: 'speed', value });
   }
 
   changeSpeed(direction: 1 | -1): void {
-    const speed = this.store.state.playback?.speed ?? 1;
+    const { playback, wantedSpeed } = this.store.state;
+    const speed = wantedSpeed ?? playback?.speed ?? 1;
     const next =
       direction > 0
         ? kSpeeds.find((value) => value > speed * 1.001)

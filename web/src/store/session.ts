@@ -60,6 +60,7 @@ export class Session implements StreamListener {
     state.data = new RunData();
     state.metrics = null;
     state.playback = null;
+    state.wantedSpeed = null;
     this.pendingSeek_ns = t_ns;
     this.subscribed = '';
     this.client?.attach(id);
@@ -76,6 +77,7 @@ export class Session implements StreamListener {
 
   onState(state: ConnectionState): void {
     this.store.state.connection = state;
+    this.store.state.wantedSpeed = null;
     if (state.status === 'open') this.subscribed = '';
     this.store.change('connection');
   }
@@ -142,7 +144,9 @@ export class Session implements StreamListener {
   }
 
   private onPlayback(playback: Playback): void {
-    this.store.state.playback = playback;
+    const { state } = this.store;
+    state.playback = playback;
+    if (playback.speed === state.wantedSpeed) state.wantedSpeed = null;
     this.store.change('playback');
     if (this.pendingSeek_ns === null) return;
     const t_ns = this.pendingSeek_ns;

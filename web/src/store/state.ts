@@ -40,6 +40,8 @@ export interface State {
   data: RunData;
   metrics: Metrics | null;
   playback: Playback | null;
+  /** Asked for and not confirmed yet. */
+  wantedSpeed: number | null;
   pictures: Map<string, Picture>;
   alignment: string;
   sceneMode: SceneMode;
@@ -63,6 +65,7 @@ export function initialState(): State {
     data: new RunData(),
     metrics: null,
     playback: null,
+    wantedSpeed: null,
     pictures: new Map(),
     alignment: kDefaultAlignment,
     sceneMode: 'chase',

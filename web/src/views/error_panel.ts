@@ -4,7 +4,7 @@ import { alignmentModes, errorTable } from '../store/error_table';
 import { kNothing } from '../store/format';
 import type { State, Topic } from '../store/state';
 import { estimateColour, kStateColours } from './colours';
-import { h, rebuild, setText } from './dom';
+import { h, rebuild, setAttribute, setText } from './dom';
 import type { Panel } from './panel';
 import { frameOf, makePanel } from './panel';
 import type { Context, View } from './view';
@@ -76,6 +76,7 @@ export class ErrorPanel implements View {
         ),
       ),
     ]);
+    setAttribute(this.table, 'data-alignment', scored ? state.alignment : null);
     this.drawStates(state);
   }
 

@@ -84,6 +84,7 @@ export class Timeline implements View {
     setAttribute(this.root, 'data-frame', frame === null ? null : String(frame));
     setAttribute(this.root, 'data-t-ns', playback === null ? null : String(playback.t_ns));
     setAttribute(this.root, 'data-playing', playing ? 'true' : 'false');
+    setAttribute(this.root, 'data-speed', playback === null ? null : String(playback.speed));
     this.showSpeed(playback?.speed ?? 1);
     setAttribute(this.loop, 'aria-pressed', playback?.loop === true ? 'true' : 'false');
     setAttribute(this.live, 'aria-pressed', playback?.live === true ? 'true' : 'false');

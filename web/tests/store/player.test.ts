@@ -29,10 +29,14 @@ describe('Player', () => {
     expect(viewing.socket.last().type).toBe('pause');
   });
 
-  it('walks through the speeds and stops at the limits', () => {
+  it('walks through the speeds without waiting for answers and stops at the limits', () => {
     viewing.watch();
     viewing.player.changeSpeed(1);
     expect(viewing.socket.last()).toMatchObject({ type: 'speed', value: 2 });
+    viewing.player.changeSpeed(1);
+    expect(viewing.socket.last()).toMatchObject({ type: 'speed', value: 5 });
+    viewing.socket.receive({ type: 'playback', ...samplePlayback({ speed: 2 }) });
+    viewing.socket.receive({ type: 'playback', ...samplePlayback({ speed: 5 }) });
     viewing.socket.receive({ type: 'playback', ...samplePlayback({ speed: 0.1 }) });
     const sent = viewing.socket.sent.length;
     viewing.player.changeSpeed(-1);
