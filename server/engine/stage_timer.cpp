@@ -1,6 +1,7 @@
 #include "server/engine/stage_timer.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace overfly::engine {
@@ -8,7 +9,8 @@ namespace {
 
 /// Nearest-rank quantile of sorted values.
 double quantile(const std::vector<double>& sorted, double share) {
-  const auto rank = static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1) + 0.5);
+  const auto rank =
+      static_cast<std::size_t>(std::lround(share * static_cast<double>(sorted.size() - 1)));
   return sorted[rank];
 }
 
