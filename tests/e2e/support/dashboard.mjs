@@ -136,6 +136,8 @@ export class Dashboard {
 
   /** Clicks at a share of the width of the time line or of a plot and waits for another instant. */
   async seekAt(selector, share) {
+    // A view that just came to rest may still move by a frame: that is not the click's doing.
+    await this.untilSameInstant();
     const { frame } = await this.playback();
     const box = await this.page.locator(selector).first().boundingBox();
     await this.page.mouse.click(box.x + box.width * share, box.y + box.height / 2);
