@@ -10,6 +10,8 @@ namespace {
 constexpr double kStepPx = 3.0;      // wing tips closer than this in the image are merged
 constexpr double kEdgeShare = 0.09;  // of the width, on each side
 constexpr float kSurfaceAlpha = 0.62F;
+/// Whose ribbon it is must be seen in its own shade too.
+constexpr float kDimmest = 0.7F;
 
 /// One cross-section of the strip, camera frame.
 struct Section {
@@ -62,7 +64,8 @@ class RibbonBuilder {
     const Eigen::Vector3d up_world = (a.up_world + b.up_world).normalized();
     const Eigen::Vector3d up_camera = solid_.view().R_camera_world * up_world;
     const bool from_above = up_camera.dot(middle_a) < 0.0;
-    const float light = from_above ? sunlight(up_world) : 0.8F * sunlight(-up_world);
+    const float light =
+        std::max(kDimmest, from_above ? sunlight(up_world) : 0.8F * sunlight(-up_world));
     add_strip(a, b, 0.0, kEdgeShare, colour.shaded(0.6F * light), solid_);
     Rgba surface = colour.shaded(light);
     surface.a = kSurfaceAlpha;

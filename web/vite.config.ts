@@ -6,6 +6,7 @@ export default defineConfig(({ mode }) => {
   return {
     base: './',
     build: { target: 'es2022', assetsInlineLimit: 0, sourcemap: false },
-    server: { proxy: { '/api': { target: OVERFLY_URL, ws: true } } },
+    // By number: a bare container may not know the name localhost.
+    server: { host: '127.0.0.1', proxy: { '/api': { target: OVERFLY_URL, ws: true } } },
   };
 });
