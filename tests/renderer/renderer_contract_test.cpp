@@ -24,7 +24,10 @@ class RendererContract : public ::testing::TestWithParam<const char*> {
   void SetUp() override {
     camera_ = PinholeCamera::from_fov(320, 240, rad_from_deg(84.872), FovAxis::kHorizontal).value();
     renderer_ = create(natural_ground());
-    if (renderer_ == nullptr) GTEST_SKIP() << "no EGL here: " << probe_egl().error().message;
+    if (renderer_ != nullptr) return;
+    const auto egl = probe_egl();
+    ASSERT_FALSE(egl.ok()) << "EGL works here, yet the renderer did not start";
+    GTEST_SKIP() << "no EGL here: " << egl.error().message;
   }
 
   static std::unique_ptr<Renderer> create(std::shared_ptr<const terrain::TileSource> tiles) {
