@@ -34,7 +34,10 @@ struct ImageBuffer {
   }
 };
 
-using Image = ImageBuffer<std::uint8_t>;  ///< 8 bit, grey or RGB
-using DepthImage = ImageBuffer<float>;    ///< z along the optical axis [m]; +infinity = sky
+using Image = ImageBuffer<std::uint8_t>;     ///< 8 bit, grey or RGB
+using Image16 = ImageBuffer<std::uint16_t>;  ///< more than 8 bit, grey or RGB
+/// Linear radiance, grey or RGB; 1 = what the imagery shows as white.
+using RadianceImage = ImageBuffer<float>;
+using DepthImage = ImageBuffer<float>;  ///< z along the optical axis [m]; +infinity = sky
 
 }  // namespace overfly

@@ -1,5 +1,6 @@
 // A renderer without graphics: the same checks and records as the real one, and images that are
 // a pattern of their pose.
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -33,23 +34,36 @@ Image pattern(int width_px, int height_px, int channels, const Pose& pose) {
   return image;
 }
 
+RadianceImage radiance_of(const Image& image) {
+  RadianceImage radiance(image.width_px, image.height_px, image.channels);
+  std::transform(image.data.begin(), image.data.end(), radiance.data.begin(), [](std::uint8_t v) {
+    return static_cast<float>(v) / 255.0F;
+  });
+  return radiance;
+}
+
 class NoopRenderer final : public Renderer {
  public:
   explicit NoopRenderer(std::shared_ptr<const terrain::TileSource> tiles)
       : tiles_(std::move(tiles)), patches_(tiles_) {}
 
-  Result<CameraFrame> render_camera(const PinholeCamera& camera,
-                                    const Pose& T_world_camera,
-                                    std::int64_t t_ns,
-                                    PixelFormat format) override {
-    if (Status s = check_camera_request(*tiles_, camera, T_world_camera); !s) return s.error();
+  using Renderer::render_camera;
+  using Renderer::render_depth;
+
+  Result<CameraFrame> render_camera(const CameraRequest& request) override {
+    if (Status s = check_camera_request(*tiles_, request); !s) return s.error();
+    const PinholeCamera& camera = request.camera.pinhole();
     CameraFrame frame;
-    frame.t_ns = t_ns;
-    frame.T_world_camera = T_world_camera;
-    frame.camera = camera;
-    const int channels = format == PixelFormat::kGrey8 ? 1 : 3;
-    frame.image = pattern(camera.width_px, camera.height_px, channels, T_world_camera);
-    const FrameStatistics statistics = measure(View::from(camera, T_world_camera));
+    frame.t_ns = request.t_ns;
+    frame.T_world_camera = request.T_world_camera.at(request.t_ns);
+    frame.camera = request.camera;
+    frame.image = pattern(
+        camera.width_px, camera.height_px, channel_count(request.format), frame.T_world_camera);
+    if (is_linear(request.format)) {
+      frame.radiance = radiance_of(frame.image);
+      frame.image = {};
+    }
+    const FrameStatistics statistics = measure(View::from(camera, frame.T_world_camera));
     frame.texels_per_pixel_min = statistics.texels_per_pixel_min;
     frame.texels_per_pixel_median = statistics.texels_per_pixel_median;
     frame.void_fraction = statistics.void_fraction;
@@ -58,10 +72,10 @@ class NoopRenderer final : public Renderer {
   }
 
   /// Depth of the level plane through the ground below the camera.
-  Result<DepthImage> render_depth(const PinholeCamera& camera,
-                                  const Pose& T_world_camera) override {
-    if (Status s = check_camera_request(*tiles_, camera, T_world_camera); !s) return s.error();
-    const View view = View::from(camera, T_world_camera);
+  Result<DepthImage> render_depth(const CameraRequest& request) override {
+    if (Status s = check_camera_request(*tiles_, request); !s) return s.error();
+    const PinholeCamera& camera = request.camera.pinhole();
+    const View view = View::from(camera, request.T_world_camera.at(request.t_ns));
     const Eigen::Vector3d& p = view.position_world;
     const double height_m = p.z() - tiles_->ground_up_m(p.x(), p.y());
     const Eigen::Vector3d down_camera = -view.R_camera_world.col(2);

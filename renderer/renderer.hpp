@@ -1,5 +1,6 @@
-// The renderer's port: views of the world, off-screen. One implementation draws with
-// OpenGL over EGL; a no-op one serves tests without a GPU. Both pass one contract test.
+// The renderer's port: views of the world, off-screen. One implementation draws with OpenGL over
+// EGL, one casts rays on the CPU (the camera alone), and a no-op one serves tests without either.
+// All pass one contract test.
 #pragma once
 
 #include <array>
@@ -10,6 +11,8 @@
 #include <vector>
 
 #include "core/camera.hpp"
+#include "core/camera_model.hpp"
+#include "core/camera_motion.hpp"
 #include "core/image.hpp"
 #include "core/pose.hpp"
 #include "core/result.hpp"
@@ -17,15 +20,77 @@
 
 namespace overfly::renderer {
 
-enum class PixelFormat { kGrey8, kRgb8 };
+enum class PixelFormat {
+  kGrey8,
+  kRgb8,
+  /// Linear radiance: the imagery's sRGB transfer function (IEC 61966-2-1) undone before texels
+  /// are filtered; what a sensor model starts from.
+  kGreyLinear,
+  kRgbLinear,
+};
+
+[[nodiscard]] constexpr bool is_linear(PixelFormat format) {
+  return format == PixelFormat::kGreyLinear || format == PixelFormat::kRgbLinear;
+}
+[[nodiscard]] constexpr int channel_count(PixelFormat format) {
+  return format == PixelFormat::kGrey8 || format == PixelFormat::kGreyLinear ? 1 : 3;
+}
+
+enum class RenderQuality {
+  kTrilinear,  ///< one trilinear sample a pixel
+  kReference,  ///< the mean of 2 x 2 of them, at +-1/4 px
+};
+
+/// Homogeneous air between the camera and the ground (Koschmieder's law): what arrives from a
+/// range d is L exp(-extinction d) + airlight (1 - exp(-extinction d)).
+struct Atmosphere {
+  double extinction_per_m = 0.0;  ///< 0 = clear; 3.912 / extinction = the meteorological visibility
+  /// Of the air at the horizon, as the imagery encodes it (sRGB), in [0, 1].
+  std::array<float, 3> airlight_rgb{0.72F, 0.80F, 0.88F};
+};
+
+/// What is asked of the aircraft's camera.
+struct CameraRequest {
+  CameraModel camera;
+  CameraMotion T_world_camera;
+  std::int64_t t_ns = 0;         ///< mid exposure of the middle row
+  std::int64_t exposure_ns = 0;  ///< of each row; 0 = an instant, without motion blur
+  /// From the first row's mid exposure to the last row's; 0 = a global shutter. Row y of H is
+  /// exposed around t_ns + readout_ns (y / (H - 1) - 1/2).
+  std::int64_t readout_ns = 0;
+  PixelFormat format = PixelFormat::kGrey8;
+  RenderQuality quality = RenderQuality::kTrilinear;
+  Atmosphere atmosphere;
+  /// Of the camera; lets the ground ahead be fetched early, and changes nothing in the image.
+  Eigen::Vector3d velocity_world_m_s = Eigen::Vector3d::Zero();
+  /// True: the image waits for every tile at the detail it needs. False: a tile that is not there
+  /// in time is drawn from a coarser one that is, and counted.
+  bool wait_for_tiles = true;
+
+  /// A camera that stands still.
+  static CameraRequest still(const CameraModel& camera,
+                             const Pose& T_world_camera,
+                             std::int64_t t_ns,
+                             PixelFormat format) {
+    CameraRequest request;
+    request.camera = camera;
+    request.T_world_camera = T_world_camera;
+    request.t_ns = t_ns;
+    request.format = format;
+    return request;
+  }
+  /// Middle of a row's exposure, the row counted from the top; between rows where it is no integer.
+  [[nodiscard]] std::int64_t row_time_ns(double row) const;
+};
 
 /// One image of the aircraft's camera, with all that makes it: the pose in the record is the
 /// pose that was drawn.
 struct CameraFrame {
-  Image image;
+  Image image;             ///< of the 8-bit formats; else empty
+  RadianceImage radiance;  ///< of the linear formats; else empty
   std::int64_t t_ns = 0;
-  Pose T_world_camera;
-  PinholeCamera camera;
+  Pose T_world_camera;  ///< at t_ns
+  CameraModel camera;
   /// Linear texels of the finest imagery per image pixel, over pixels that see ground with
   /// imagery: below 0.5 the imagery, not the camera, limits the result. 0 when none does.
   double texels_per_pixel_min = 0.0;
@@ -34,6 +99,8 @@ struct CameraFrame {
   double void_fraction = 0.0;
   /// Depth of the ground along the optical axis [m]; empty when the axis meets the sky.
   std::optional<double> axis_depth_m;
+  /// Tiles that were late and replaced by coarser ones; 0 whenever the request waited.
+  int late_tiles = 0;
 };
 
 /// A trajectory drawn as a strip between the wing tips, tilting with the roll.
@@ -72,7 +139,7 @@ struct SceneContent {
 };
 
 struct RendererInfo {
-  std::string backend;     ///< "egl" or "noop"
+  std::string backend;     ///< "egl", "raycast" or "noop"
   std::string device;      ///< GL_RENDERER
   std::string gl_version;  ///< GL_VERSION
   bool software = true;    ///< true when the CPU draws
@@ -83,16 +150,26 @@ class Renderer {
  public:
   virtual ~Renderer() = default;
 
-  /// Draws the camera's image; every tile it needs is there, at the detail it needs.
-  /// Errors: kInvalidArgument for a bad camera or a pose that is not finite or below the ground
-  /// by more than 1 m; kIo when a tile cannot be read.
-  [[nodiscard]] virtual Result<CameraFrame> render_camera(const PinholeCamera& camera,
-                                                          const Pose& T_world_camera,
-                                                          std::int64_t t_ns,
-                                                          PixelFormat format) = 0;
-  /// Depth along the optical axis of the same image [m].
-  [[nodiscard]] virtual Result<DepthImage> render_depth(const PinholeCamera& camera,
-                                                        const Pose& T_world_camera) = 0;
+  /// Draws the camera's image.
+  /// Errors: kInvalidArgument for a bad camera, times below 0, or a pose that is not finite or
+  /// below the ground by more than 1 m; kIo when a tile cannot be read; kUnsupported naming what
+  /// this renderer cannot do.
+  [[nodiscard]] virtual Result<CameraFrame> render_camera(const CameraRequest& request) = 0;
+  /// Depth along the optical axis of the same image [m], each row at its mid exposure; sky and
+  /// pixels that no ray reaches are +infinity.
+  [[nodiscard]] virtual Result<DepthImage> render_depth(const CameraRequest& request) = 0;
+
+  /// The same for a camera that stands still.
+  [[nodiscard]] Result<CameraFrame> render_camera(const CameraModel& camera,
+                                                  const Pose& T_world_camera,
+                                                  std::int64_t t_ns,
+                                                  PixelFormat format) {
+    return render_camera(CameraRequest::still(camera, T_world_camera, t_ns, format));
+  }
+  [[nodiscard]] Result<DepthImage> render_depth(const CameraModel& camera,
+                                                const Pose& T_world_camera) {
+    return render_depth(CameraRequest::still(camera, T_world_camera, 0, PixelFormat::kGrey8));
+  }
   /// Draws an RGB view of the scene.
   [[nodiscard]] virtual Result<Image> render_scene(const SceneView& view,
                                                    const SceneContent& content) = 0;

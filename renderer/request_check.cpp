@@ -3,6 +3,8 @@
 #include <cmath>
 #include <string>
 
+#include "core/time.hpp"
+
 namespace overfly::renderer {
 
 namespace {
@@ -29,15 +31,45 @@ Status check_pose(const Pose& pose) {
   return {};
 }
 
+Status check_shutter(const CameraRequest& request) {
+  const auto check = [](const char* field, std::int64_t value_ns) -> Status {
+    if (value_ns >= 0 && value_ns <= kNsPerS) return {};
+    return Error{
+        ErrorCode::kInvalidArgument,
+        std::string(field) + " = " + std::to_string(value_ns) + " ns: must be in [0, 1000000000]"};
+  };
+  if (Status status = check("exposure_ns", request.exposure_ns); !status) return status;
+  return check("readout_ns", request.readout_ns);
+}
+
+Status check_air(const Atmosphere& air) {
+  if (!(air.extinction_per_m >= 0.0 && air.extinction_per_m <= 1.0)) {
+    return Error{
+        ErrorCode::kInvalidArgument,
+        "extinction_per_m = " + std::to_string(air.extinction_per_m) + ": must be in [0, 1]"};
+  }
+  return {};
+}
+
 }  // namespace
 
-Status check_camera_request(const terrain::TileSource& tiles,
-                            const PinholeCamera& camera,
-                            const Pose& T_world_camera) {
-  if (Status status = camera.validate(); !status) return status.error().in("camera");
-  if (Status status = check_size(camera.width_px, camera.height_px); !status) return status;
-  if (Status status = check_pose(T_world_camera); !status) return status;
-  const Eigen::Vector3d& p = T_world_camera.translation;
+std::int64_t CameraRequest::row_time_ns(double row) const {
+  const int rows = camera.pinhole().height_px;
+  if (readout_ns == 0 || rows < 2) return t_ns;
+  const double share = row / (rows - 1) - 0.5;
+  return t_ns + std::llround(share * static_cast<double>(readout_ns));
+}
+
+Status check_camera_request(const terrain::TileSource& tiles, const CameraRequest& request) {
+  if (Status status = request.camera.validate(); !status) return status.error().in("camera");
+  const PinholeCamera& pinhole = request.camera.pinhole();
+  if (Status status = check_size(pinhole.width_px, pinhole.height_px); !status) return status;
+  if (Status status = check_shutter(request); !status) return status;
+  if (Status status = check_air(request.atmosphere); !status) return status;
+  for (const StampedPose& stamped : request.T_world_camera.poses()) {
+    if (Status status = check_pose(stamped.pose); !status) return status;
+  }
+  const Eigen::Vector3d p = request.T_world_camera.at(request.t_ns).translation;
   const double below_m = tiles.ground_up_m(p.x(), p.y()) - p.z();
   if (below_m > kMaxDepthBelowGroundM) {
     return Error{ErrorCode::kInvalidArgument,

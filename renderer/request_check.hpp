@@ -12,11 +12,10 @@ namespace overfly::renderer {
 inline constexpr int kMaxImageSidePx = 8192;
 inline constexpr double kMaxDepthBelowGroundM = 1.0;
 
-/// Errors: kInvalidArgument for a bad or too large camera, a pose that is not finite, or an
-/// optical centre more than kMaxDepthBelowGroundM below the ground.
+/// Errors: kInvalidArgument for a bad or too large camera, times below 0, air that is none, a
+/// pose that is not finite, or an optical centre more than kMaxDepthBelowGroundM below the ground.
 [[nodiscard]] Status check_camera_request(const terrain::TileSource& tiles,
-                                          const PinholeCamera& camera,
-                                          const Pose& T_world_camera);
+                                          const CameraRequest& request);
 
 /// The pinhole camera of a scene view. Errors: kInvalidArgument naming the field.
 [[nodiscard]] Result<PinholeCamera> camera_of(const SceneView& view);

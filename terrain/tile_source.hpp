@@ -67,6 +67,13 @@ class TileSource : public HeightQuery {
 
   /// The ground's point in the world frame above a place of the map plane [m].
   [[nodiscard]] virtual Eigen::Vector3d world_from_map(double x_map_m, double y_map_m) const = 0;
+  /// The same of elevation averaged to posts about `spacing_m` apart: what far ground is drawn
+  /// from, so that a wide view needs little memory. Not finer than the elevation itself.
+  [[nodiscard]] virtual Eigen::Vector3d coarse_world_from_map(double x_map_m,
+                                                              double y_map_m,
+                                                              double /*spacing_m*/) const {
+    return world_from_map(x_map_m, y_map_m);
+  }
   /// The map position of the ground on the vertical world line through (east, north) [m].
   [[nodiscard]] virtual Eigen::Vector2d map_from_world(double east_m, double north_m) const = 0;
   /// True where there is imagery.

@@ -20,6 +20,19 @@ namespace {
 constexpr float kSkyRgb[3] = {0.72F, 0.80F, 0.88F};
 constexpr float kSkyGrey = 0.7864F;  // BT.601 luma of kSkyRgb
 
+Status check_supported(const CameraRequest& request) {
+  const auto unsupported = [](const char* what) {
+    return Error{ErrorCode::kUnsupported, std::string("the OpenGL renderer has no ") + what};
+  };
+  if (!request.camera.distortion().none()) return unsupported("lens distortion");
+  if (request.exposure_ns != 0 && !request.T_world_camera.still()) return unsupported("blur");
+  if (request.readout_ns != 0 && !request.T_world_camera.still()) {
+    return unsupported("rolling shutter");
+  }
+  if (is_linear(request.format)) return unsupported("linear radiance");
+  return {};
+}
+
 class EglRenderer final : public Renderer {
  public:
   EglRenderer(std::unique_ptr<EglContext> context,
@@ -44,12 +57,16 @@ class EglRenderer final : public Renderer {
   EglRenderer(const EglRenderer&) = delete;
   EglRenderer& operator=(const EglRenderer&) = delete;
 
-  Result<CameraFrame> render_camera(const PinholeCamera& camera,
-                                    const Pose& T_world_camera,
-                                    std::int64_t t_ns,
-                                    PixelFormat format) override {
-    if (Status s = check_camera_request(*tiles_, camera, T_world_camera); !s) return s.error();
+  using Renderer::render_camera;
+  using Renderer::render_depth;
+
+  Result<CameraFrame> render_camera(const CameraRequest& request) override {
+    if (Status s = check_camera_request(*tiles_, request); !s) return s.error();
+    if (Status s = check_supported(request); !s) return s.error();
     if (Status s = context_->make_current(); !s) return s.error();
+    const PinholeCamera& camera = request.camera.pinhole();
+    const Pose T_world_camera = request.T_world_camera.at(request.t_ns);
+    const PixelFormat format = request.format;
     const TargetFormat target_format =
         format == PixelFormat::kGrey8 ? TargetFormat::kGrey8 : TargetFormat::kRgba8;
     const Result<RenderTarget*> target = target_for(camera, target_format);
@@ -69,9 +86,9 @@ class EglRenderer final : public Renderer {
     if (!drawn) return drawn.error();
 
     CameraFrame frame;
-    frame.t_ns = t_ns;
+    frame.t_ns = request.t_ns;
     frame.T_world_camera = T_world_camera;
-    frame.camera = camera;
+    frame.camera = request.camera;
     const FrameStatistics statistics =
         measure_frame(mesh, view, *tiles_, [&](const terrain::TileId& tile, double u, double v) {
           return textures_.has_imagery(tile, format, u, v);
@@ -85,10 +102,12 @@ class EglRenderer final : public Renderer {
     return frame;
   }
 
-  Result<DepthImage> render_depth(const PinholeCamera& camera,
-                                  const Pose& T_world_camera) override {
-    if (Status s = check_camera_request(*tiles_, camera, T_world_camera); !s) return s.error();
+  Result<DepthImage> render_depth(const CameraRequest& request) override {
+    if (Status s = check_camera_request(*tiles_, request); !s) return s.error();
+    if (Status s = check_supported(request); !s) return s.error();
     if (Status s = context_->make_current(); !s) return s.error();
+    const PinholeCamera& camera = request.camera.pinhole();
+    const Pose T_world_camera = request.T_world_camera.at(request.t_ns);
     const Result<RenderTarget*> target = target_for(camera, TargetFormat::kDepthM);
     if (!target.ok()) return target.error();
     const GroundMesh mesh = build_ground_mesh(patches_, View::from(camera, T_world_camera), {});

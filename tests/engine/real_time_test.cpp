@@ -93,15 +93,14 @@ class SlowRenderer final : public renderer::Renderer {
  public:
   SlowRenderer(std::unique_ptr<renderer::Renderer> inner, RunClock& clock, std::int64_t work_ns)
       : inner_(std::move(inner)), clock_(clock), work_ns_(work_ns) {}
-  Result<renderer::CameraFrame> render_camera(const PinholeCamera& camera,
-                                              const Pose& T_world_camera,
-                                              std::int64_t t_ns,
-                                              renderer::PixelFormat format) override {
+  using Renderer::render_camera;
+  using Renderer::render_depth;
+  Result<renderer::CameraFrame> render_camera(const renderer::CameraRequest& request) override {
     clock_.sleep_until_ns(clock_.now_ns() + work_ns_);
-    return inner_->render_camera(camera, T_world_camera, t_ns, format);
+    return inner_->render_camera(request);
   }
-  Result<DepthImage> render_depth(const PinholeCamera& camera, const Pose& T) override {
-    return inner_->render_depth(camera, T);
+  Result<DepthImage> render_depth(const renderer::CameraRequest& request) override {
+    return inner_->render_depth(request);
   }
   Result<Image> render_scene(const renderer::SceneView& view,
                              const renderer::SceneContent& content) override {

@@ -47,7 +47,7 @@ TEST_P(RendererContract, FrameCarriesItsRequest) {
   EXPECT_EQ(frame->t_ns, 1234);
   EXPECT_EQ(frame->T_world_camera.translation, pose.translation);
   EXPECT_EQ(frame->T_world_camera.rotation.coeffs(), pose.rotation.coeffs());
-  EXPECT_EQ(frame->camera.fx_px, camera_.fx_px);
+  EXPECT_EQ(frame->camera.pinhole().fx_px, camera_.fx_px);
   EXPECT_EQ(frame->image.width_px, 320);
   EXPECT_EQ(frame->image.height_px, 240);
   EXPECT_EQ(frame->image.channels, 1);

@@ -23,7 +23,7 @@ cv::Mat mat_of(const Image& image) {
 /// The first frame as the second camera sees it: every pixel of the second goes through its own
 /// depth and both poses to its place in the first.
 cv::Mat warped(const CameraFrame& first, const Pose& second, const DepthImage& second_depth) {
-  const PinholeCamera& camera = first.camera;
+  const PinholeCamera& camera = first.camera.pinhole();
   const Pose T_first_second = first.T_world_camera.inverse() * second;
   cv::Mat map(camera.height_px, camera.width_px, CV_32FC2);
   for (int y = 0; y < camera.height_px; ++y) {

@@ -1,0 +1,57 @@
+// Tiles as renderers draw them, in memory within a budget, fetched ahead by threads of its own.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/image.hpp"
+#include "core/result.hpp"
+#include "renderer/renderer.hpp"
+#include "terrain/tile_source.hpp"
+
+namespace overfly::renderer {
+
+/// One tile's texels with their border, and their halvings down to 1 x 1 (tile_pixels.hpp).
+/// Immutable: shared between the store and those who draw from it.
+struct TilePixels {
+  std::vector<Image> levels;           ///< kGrey8: 1 channel; kRgb8: RGB and validity as alpha
+  std::vector<Image16> linear_levels;  ///< kGreyLinear, kRgbLinear likewise; 65535 = 1.0
+  /// Validity, an eighth of the tile's texels a side; empty where all are valid.
+  Image valid;
+
+  [[nodiscard]] std::size_t bytes() const;
+};
+
+struct TileStoreOptions {
+  std::size_t budget_bytes = std::size_t{512} << 20U;
+  int threads = 1;  ///< that fetch ahead; 0 = none, everything is read when it is asked for
+};
+
+/// Thread-safe. Which tiles are in memory never changes a value that `get` returns.
+class TileStore {
+ public:
+  TileStore(std::shared_ptr<const terrain::TileSource> tiles, const TileStoreOptions& options);
+  ~TileStore();
+  TileStore(const TileStore&) = delete;
+  TileStore& operator=(const TileStore&) = delete;
+
+  /// The tile, read now if it is not there. Errors: kIo naming the tile, when it cannot be read.
+  [[nodiscard]] Result<std::shared_ptr<const TilePixels>> get(const terrain::TileId& id,
+                                                              PixelFormat format);
+  /// The tile if it is there, else null, and the tile is asked for.
+  [[nodiscard]] std::shared_ptr<const TilePixels> find(const terrain::TileId& id,
+                                                       PixelFormat format);
+  /// Asks for tiles that will be needed, the most urgent first; replaces what was asked before.
+  void prefetch(std::span<const terrain::TileId> ids, PixelFormat format);
+
+  [[nodiscard]] std::size_t held_bytes() const;
+  [[nodiscard]] const terrain::TileSource& tiles() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace overfly::renderer
