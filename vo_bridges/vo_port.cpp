@@ -2,6 +2,14 @@
 
 namespace overfly {
 
+namespace {
+
+bool same_lens(const Distortion& a, const Distortion& b) {
+  return a.model == b.model && a.k == b.k;
+}
+
+}  // namespace
+
 Status validate_vo_frame(const VoFrame& frame, const VoFrame* previous) {
   const std::string where = "frame " + std::to_string(frame.index);
   const auto bad = [&](const std::string& what) {
@@ -20,13 +28,20 @@ Status validate_vo_frame(const VoFrame& frame, const VoFrame* previous) {
                std::to_string(frame.intrinsics.width_px) + " x " +
                std::to_string(frame.intrinsics.height_px) + " px");
   }
-  if (previous == nullptr) return {};
+  if (previous == nullptr) {
+    // Only once: it looks along the whole lens.
+    Status status = CameraModel(frame.intrinsics, frame.distortion).validate();
+    return status ? status : status.error().in(where);
+  }
   if (frame.index <= previous->index || frame.t_ns <= previous->t_ns) {
     return bad("not after frame " + std::to_string(previous->index));
   }
   if (frame.intrinsics.width_px != previous->intrinsics.width_px ||
       frame.intrinsics.height_px != previous->intrinsics.height_px) {
     return bad("the image size changed in flight");
+  }
+  if (!same_lens(frame.distortion, previous->distortion)) {
+    return bad("the lens distortion changed in flight");
   }
   return {};
 }

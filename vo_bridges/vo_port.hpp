@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/camera.hpp"
+#include "core/camera_model.hpp"
 #include "core/estimate.hpp"
 #include "core/image.hpp"
 #include "core/result.hpp"
@@ -32,6 +33,7 @@ struct VoFrame {
   std::int64_t exposure_ns = 0;        ///< 0 = not known
   std::shared_ptr<const Image> image;  ///< 8-bit grey
   PinholeCamera intrinsics;
+  Distortion distortion;       ///< of the lens the image was taken through; none = a pinhole
   std::vector<ImuSample> imu;  ///< since the frame before; empty without an IMU
 };
 
@@ -53,10 +55,10 @@ class VoPort {
   /// The parameters in force, by their names in the field, as printed into the run's manifest.
   [[nodiscard]] virtual std::map<std::string, std::string> effective_parameters() const = 0;
   /// Takes the next frame and answers for it. Frames come with increasing index and time, all
-  /// with the intrinsics and size of the first.
+  /// with the size, intrinsics and distortion of the first.
   /// A lost track is a state, not an error. Errors: kInvalidArgument for an empty or colour image,
-  /// for a changed size, and for a frame not after the one before; kInternal when the estimator
-  /// is gone for good (the run is CRASHED).
+  /// for a bad camera or one that changes, and for a frame not after the one before; kInternal when
+  /// the estimator is gone for good (the run is CRASHED).
   [[nodiscard]] virtual Result<VoEstimate> track(const VoFrame& frame) = 0;
   /// Forgets every frame, as newly created; what set_debug said stays.
   virtual void reset() = 0;

@@ -27,8 +27,9 @@ int tracked_points(const FeatureParameters& parameters) {
   return std::max(100, static_cast<int>(parameters.features / kFeaturesPerPoint));
 }
 
-TrackerOptions tracker_options(const FeatureParameters& parameters) {
+TrackerOptions tracker_options(const FeatureParameters& parameters, const Rectifier& rectifier) {
   TrackerOptions options;
+  options.seen = rectifier.seen();
   options.max_points = tracked_points(parameters);
   return options;
 }
@@ -48,10 +49,11 @@ MapperOptions mapper_options(const FeatureParameters& parameters) {
 
 }  // namespace
 
-FeatureOdometry::Parts::Parts(const PinholeCamera& camera, const FeatureParameters& parameters)
-    : initialiser(camera, initialiser_options(parameters)),
-      tracker(camera, tracker_options(parameters)),
-      mapper(camera, mapper_options(parameters)) {}
+FeatureOdometry::Parts::Parts(const CameraModel& camera, const FeatureParameters& parameters)
+    : rectifier(camera),
+      initialiser(camera.pinhole(), initialiser_options(parameters)),
+      tracker(camera.pinhole(), tracker_options(parameters, rectifier)),
+      mapper(camera.pinhole(), mapper_options(parameters)) {}
 
 FeatureOdometry::FeatureOdometry(const FeatureParameters& parameters)
     : parameters_(parameters), orb_(parameters) {}
@@ -87,7 +89,8 @@ Result<VoEstimate> FeatureOdometry::track(const VoFrame& frame) {
   }
   if (!parts_) {
     camera_ = frame.intrinsics;
-    parts_ = std::make_unique<Parts>(camera_, parameters_);
+    parts_ = std::make_unique<Parts>(CameraModel(camera_, frame.distortion), parameters_);
+    orb_.look_only_at(parts_->rectifier.seen());
   }
   VoEstimate estimate;
   Outcome outcome;
@@ -96,7 +99,7 @@ Result<VoEstimate> FeatureOdometry::track(const VoFrame& frame) {
     FrameImage image{frame.index, frame.t_ns, {}};
     {
       const Stopwatch pyramid_watch(estimate.timing_ms, "pyramid");
-      image.pyramid = build_pyramid(frame.image);
+      image.pyramid = build_pyramid(parts_->rectifier.rectify(frame.image));
     }
     const bool repeated = previous_ && previous_->image->data == frame.image->data;
     const double expected_px =

@@ -11,6 +11,7 @@
 #include "odometry/feature/mapper.hpp"
 #include "odometry/feature/motion_model.hpp"
 #include "odometry/feature/orb.hpp"
+#include "odometry/feature/rectifier.hpp"
 #include "odometry/feature/relocaliser.hpp"
 #include "odometry/feature/tracker.hpp"
 
@@ -32,7 +33,8 @@ class FeatureOdometry final : public VoPort {
  private:
   /// The parts that need the camera, made at the first frame.
   struct Parts {
-    Parts(const PinholeCamera& camera, const FeatureParameters& parameters);
+    Parts(const CameraModel& camera, const FeatureParameters& parameters);
+    Rectifier rectifier;
     Initialiser initialiser;
     Tracker tracker;
     Mapper mapper;

@@ -87,6 +87,11 @@ std::vector<Corner> take_in_rounds(std::vector<std::vector<Corner>> cells, int w
   return taken;
 }
 
+cv::Size level_size(const cv::Size& full, double scale) {
+  return {static_cast<int>(std::lround(full.width / scale)),
+          static_cast<int>(std::lround(full.height / scale))};
+}
+
 }  // namespace
 
 CellGrid CellGrid::over(int width_px, int height_px, int cells) {
@@ -136,12 +141,22 @@ OrbExtractor::OrbExtractor(const FeatureParameters& parameters) : parameters_(pa
   }
 }
 
+void OrbExtractor::look_only_at(const cv::Mat& seen) {
+  masks_.clear();
+  if (seen.empty() || cv::countNonZero(seen) == seen.cols * seen.rows) return;
+  const cv::Mat kernel = cv::Mat::ones(2 * kMarginPx + 1, 2 * kMarginPx + 1, CV_8U);
+  for (const double scale : scales_) {
+    cv::Mat& mask = masks_.emplace_back();
+    cv::resize(seen, mask, level_size(seen.size(), scale), 0.0, 0.0, cv::INTER_NEAREST);
+    cv::erode(mask, mask, kernel);
+  }
+}
+
 void OrbExtractor::load(const cv::Mat& image) {
   levels_.assign(1, image);
   smoothed_.assign(scales_.size(), cv::Mat());
   for (std::size_t l = 1; l < scales_.size(); ++l) {
-    const cv::Size size(static_cast<int>(std::lround(image.cols / scales_[l])),
-                        static_cast<int>(std::lround(image.rows / scales_[l])));
+    const cv::Size size = level_size(image.size(), scales_[l]);
     if (std::min(size.width, size.height) < 4 * kMarginPx) break;
     cv::Mat smaller;
     cv::resize(levels_.back(), smaller, size, 0.0, 0.0, cv::INTER_LINEAR);
@@ -151,6 +166,7 @@ void OrbExtractor::load(const cv::Mat& image) {
 
 std::vector<Corner> OrbExtractor::detect_level(int level, const CellGrid* wanted) const {
   const cv::Mat& image = levels_[static_cast<std::size_t>(level)];
+  const cv::Mat mask = masks_.empty() ? cv::Mat() : masks_[static_cast<std::size_t>(level)];
   // Of the sizes as rounded, not the nominal scale.
   const Eigen::Array2d scale(static_cast<double>(levels_[0].cols) / image.cols,
                              static_cast<double>(levels_[0].rows) / image.rows);
@@ -170,9 +186,11 @@ std::vector<Corner> OrbExtractor::detect_level(int level, const CellGrid* wanted
       if (found.empty()) cv::FAST(image(cell), found, parameters_.min_fast_threshold, true);
       std::vector<Corner>& corners = cells.emplace_back();
       for (const cv::KeyPoint& keypoint : found) {
+        const Eigen::Vector2i pixel(static_cast<int>(keypoint.pt.x) + cell.x,
+                                    static_cast<int>(keypoint.pt.y) + cell.y);
+        if (!mask.empty() && mask.at<std::uint8_t>(pixel.y(), pixel.x()) == 0) continue;
         Corner& corner = corners.emplace_back();
-        corner.level_pixel = {static_cast<int>(keypoint.pt.x) + cell.x,
-                              static_cast<int>(keypoint.pt.y) + cell.y};
+        corner.level_pixel = pixel;
         corner.pixel = (corner.level_pixel.cast<double>().array() + 0.5) * scale - 0.5;
         corner.scale_level = level;
         corner.response = keypoint.response;

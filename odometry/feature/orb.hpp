@@ -51,6 +51,9 @@ class OrbExtractor {
   /// then with the minimum; a level takes its share of `features` in rounds over the cells.
   /// @param wanted looks only near marked cells; null = everywhere
   [[nodiscard]] std::vector<Corner> detect(const cv::Mat& image, const CellGrid* wanted = nullptr);
+  /// From now on finds corners only where `seen` is not 0, as far from the rest as from the image's
+  /// border. @param seen  CV_8U of the images' size; empty = everywhere
+  void look_only_at(const cv::Mat& seen);
   /// Makes an image the one that `describe` looks at, without looking for corners.
   void load(const cv::Mat& image);
   /// Descriptor of a corner of the image last given to `detect` or `load`.
@@ -65,6 +68,7 @@ class OrbExtractor {
   std::vector<double> scales_;
   std::vector<int> shares_;
   std::vector<cv::Mat> levels_;
+  std::vector<cv::Mat> masks_;     ///< of the levels: not 0 where a corner may be; empty = all
   std::vector<cv::Mat> smoothed_;  ///< made when first asked for
 };
 

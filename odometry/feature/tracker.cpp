@@ -43,6 +43,11 @@ std::vector<Tracker::Projection> Tracker::project(const Pose& T_camera_vo, const
         pixel->y() > camera_.height_px - 1 - kBorderPx) {
       continue;
     }
+    if (!options_.seen.empty() &&
+        options_.seen.at<std::uint8_t>(static_cast<int>(pixel->y()),
+                                       static_cast<int>(pixel->x())) == 0) {
+      continue;
+    }
     Projection& cell = cells[grid.index(*pixel)];
     // Later points replace equals: the newer patch is nearer in view.
     if (cell.point == nullptr || point.keyframes.size() >= cell.point->keyframes.size()) {

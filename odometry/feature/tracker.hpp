@@ -17,6 +17,7 @@ struct TrackerOptions {
   int local_keyframes = 40;  ///< points last seen in so many newest keyframes are searched
   float min_correlation = 0.8F;
   int min_inliers = 40;
+  cv::Mat seen;  ///< CV_8U, 0 where the image shows nothing; empty = it shows ground everywhere
 };
 
 struct TrackedPoint {
