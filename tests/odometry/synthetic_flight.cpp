@@ -121,10 +121,31 @@ float SyntheticGround::sample(double east_m, double north_m, double footprint_m)
   return (1.0F - share) * at(fine) + (share > 0.0F ? share * at(coarse) : 0.0F);
 }
 
-Image SyntheticGround::render(const PinholeCamera& camera,
+const std::vector<Eigen::Vector3d>& SyntheticGround::rays_of(const CameraModel& camera) const {
+  const PinholeCamera& pinhole = camera.pinhole();
+  const PinholeCamera& known = rays_camera_.pinhole();
+  if (!rays_.empty() && pinhole.K() == known.K() && pinhole.width_px == known.width_px &&
+      pinhole.height_px == known.height_px &&
+      camera.distortion().model == rays_camera_.distortion().model &&
+      camera.distortion().k == rays_camera_.distortion().k) {
+    return rays_;
+  }
+  rays_camera_ = camera;
+  rays_.clear();
+  for (int y = 0; y < pinhole.height_px; ++y) {
+    for (int x = 0; x < pinhole.width_px; ++x) {
+      rays_.push_back(camera.ray(Eigen::Vector2d(x, y)).value());
+    }
+  }
+  return rays_;
+}
+
+Image SyntheticGround::render(const CameraModel& camera_model,
                               const Pose& T_world_camera,
                               double noise,
                               std::uint64_t noise_seed) const {
+  const PinholeCamera& camera = camera_model.pinhole();
+  const std::vector<Eigen::Vector3d>& rays = rays_of(camera_model);
   Image image(camera.width_px, camera.height_px, 1, 200);
   std::mt19937_64 rng(noise_seed);
   const Eigen::Matrix3d R = T_world_camera.rotation.toRotationMatrix();
@@ -132,8 +153,8 @@ Image SyntheticGround::render(const PinholeCamera& camera,
   for (int y = 0; y < camera.height_px; ++y) {
     for (int x = 0; x < camera.width_px; ++x) {
       const Eigen::Vector3d ray =
-          R * Eigen::Vector3d(
-                  (x - camera.cx_px) / camera.fx_px, (y - camera.cy_px) / camera.fy_px, 1.0);
+          R * rays[static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width_px) +
+                   static_cast<std::size_t>(x)];
       if (ray.z() > -0.02) continue;  // sky
       double along = -eye.z() / ray.z();
       if (relief_m_ != 0.0) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/camera.hpp"
+#include "core/camera_model.hpp"
 #include "core/image.hpp"
 #include "core/pose.hpp"
 
@@ -27,7 +28,8 @@ class SyntheticGround {
 
   [[nodiscard]] double height_m(double east_m, double north_m) const;
   /// Trilinear samples along every pixel's ray; `noise` is a standard deviation [grey levels].
-  [[nodiscard]] Image render(const PinholeCamera& camera,
+  /// Lenses are for the same camera over many images: their rays are found once.
+  [[nodiscard]] Image render(const CameraModel& camera,
                              const Pose& T_world_camera,
                              double noise,
                              std::uint64_t noise_seed) const;
@@ -35,7 +37,11 @@ class SyntheticGround {
  private:
   [[nodiscard]] float sample(double east_m, double north_m, double footprint_m) const;
 
+  [[nodiscard]] const std::vector<Eigen::Vector3d>& rays_of(const CameraModel& camera) const;
+
   std::vector<Image> mips_;
+  mutable CameraModel rays_camera_;
+  mutable std::vector<Eigen::Vector3d> rays_;  ///< of rays_camera_, row by row
   double texel_m_;
   double relief_m_;
 };
