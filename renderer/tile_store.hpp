@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -22,11 +23,24 @@ struct TilePixels {
   Image valid;
 
   [[nodiscard]] std::size_t bytes() const;
+  /// True where there is imagery. @param u, v  in the tile with its border, in [0, 1]
+  [[nodiscard]] bool has_imagery(double u, double v) const;
 };
+
+/// A tile in a format, with its mip levels.
+[[nodiscard]] TilePixels tile_pixels_from(const terrain::Tile& tile, PixelFormat format);
 
 struct TileStoreOptions {
   std::size_t budget_bytes = std::size_t{512} << 20U;
   int threads = 1;  ///< that fetch ahead; 0 = none, everything is read when it is asked for
+};
+
+/// What the store has done so far.
+struct TileStoreCounts {
+  std::int64_t read_on_demand = 0;  ///< tiles that a `get` had to wait for
+  std::int64_t read_ahead = 0;      ///< tiles that the store's threads read
+  std::int64_t let_go = 0;          ///< tiles dropped to keep the budget
+  double ahead_cpu_s = 0.0;         ///< CPU time of the store's threads
 };
 
 /// Thread-safe. Which tiles are in memory never changes a value that `get` returns.
@@ -40,13 +54,21 @@ class TileStore {
   /// The tile, read now if it is not there. Errors: kIo naming the tile, when it cannot be read.
   [[nodiscard]] Result<std::shared_ptr<const TilePixels>> get(const terrain::TileId& id,
                                                               PixelFormat format);
-  /// The tile if it is there, else null, and the tile is asked for.
+  /// The tile if it is there, else null, and the tile is asked for (without threads: read).
   [[nodiscard]] std::shared_ptr<const TilePixels> find(const terrain::TileId& id,
                                                        PixelFormat format);
+  /// The tile if it is there, else null.
+  [[nodiscard]] std::shared_ptr<const TilePixels> peek(const terrain::TileId& id,
+                                                       PixelFormat format);
   /// Asks for tiles that will be needed, the most urgent first; replaces what was asked before.
+  /// What was used since the last call but one is not dropped to make room for them.
   void prefetch(std::span<const terrain::TileId> ids, PixelFormat format);
+  /// Waits until the threads have nothing left to do.
+  void wait_until_idle();
 
+  /// Bytes of the tiles kept here; tiles that others still hold and the store let go do not count.
   [[nodiscard]] std::size_t held_bytes() const;
+  [[nodiscard]] TileStoreCounts counts() const;
   [[nodiscard]] const terrain::TileSource& tiles() const;
 
  private:

@@ -1,0 +1,290 @@
+#include "renderer/tile_store.hpp"
+
+#include <algorithm>
+#include <condition_variable>
+#include <ctime>
+#include <deque>
+#include <list>
+#include <map>
+#include <mutex>
+#include <set>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "renderer/tile_pixels.hpp"
+
+namespace overfly::renderer {
+
+using terrain::TileId;
+
+namespace {
+
+constexpr int kValidStep = 8;
+/// Requests of `find` that wait; older ones are forgotten, whoever needs them asks again.
+constexpr std::size_t kMaxAsked = 256;
+
+Image thinned(const Image& valid) {
+  const bool all_valid =
+      std::all_of(valid.data.begin(), valid.data.end(), [](auto value) { return value != 0; });
+  if (all_valid) return {};
+  Image thin(valid.width_px / kValidStep, valid.height_px / kValidStep, 1);
+  for (int y = 0; y < thin.height_px; ++y) {
+    for (int x = 0; x < thin.width_px; ++x) {
+      thin.at(x, y) = valid.at(x * kValidStep + kValidStep / 2, y * kValidStep + kValidStep / 2);
+    }
+  }
+  return thin;
+}
+
+double thread_cpu_s() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) * 1e-9;
+}
+
+}  // namespace
+
+std::size_t TilePixels::bytes() const {
+  std::size_t sum = valid.data.size();
+  for (const Image& level : levels) sum += level.data.size();
+  for (const Image16& level : linear_levels) sum += level.data.size() * sizeof(std::uint16_t);
+  return sum;
+}
+
+bool TilePixels::has_imagery(double u, double v) const {
+  if (valid.empty()) return true;
+  const int x = std::clamp(static_cast<int>(u * valid.width_px), 0, valid.width_px - 1);
+  const int y = std::clamp(static_cast<int>(v * valid.height_px), 0, valid.height_px - 1);
+  return valid.at(x, y) != 0;
+}
+
+TilePixels tile_pixels_from(const terrain::Tile& tile, PixelFormat format) {
+  TilePixels pixels;
+  pixels.valid = thinned(tile.valid);
+  switch (format) {
+    case PixelFormat::kGrey8:
+      pixels.levels = mip_chain(grey_from_rgb(tile.rgb));
+      break;
+    case PixelFormat::kRgb8:
+      pixels.levels = mip_chain(with_alpha(tile.rgb, tile.valid));
+      break;
+    case PixelFormat::kGreyLinear:
+      pixels.linear_levels = mip_chain(linear_grey_from_rgb(tile.rgb));
+      break;
+    case PixelFormat::kRgbLinear:
+      pixels.linear_levels = mip_chain(linear_with_alpha(tile.rgb, tile.valid));
+      break;
+  }
+  return pixels;
+}
+
+/// Everything behind the lock, and the threads.
+struct TileStore::State {
+  using Key = std::pair<TileId, PixelFormat>;
+  using Pixels = std::shared_ptr<const TilePixels>;
+  using Order = std::list<Key>;  // last used first
+  struct Entry {
+    Pixels pixels;
+    std::size_t bytes = 0;
+    std::uint64_t round = 0;  // of prefetch calls, when it was last of use
+    Order::iterator place;
+  };
+
+  State(std::shared_ptr<const terrain::TileSource> source, const TileStoreOptions& wanted)
+      : tiles(std::move(source)), options(wanted) {
+    for (int i = 0; i < options.threads; ++i) threads.emplace_back([this] { fetch_ahead(); });
+  }
+
+  ~State() {
+    {
+      const std::lock_guard lock(mutex);
+      stopping = true;
+    }
+    work.notify_all();
+    for (std::thread& thread : threads) thread.join();
+  }
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+
+  /// The entry, marked as used. Under the lock.
+  Pixels use(const Key& key) {
+    const auto found = entries.find(key);
+    if (found == entries.end()) return nullptr;
+    found->second.round = round;
+    order.splice(order.begin(), order, found->second.place);
+    return found->second.pixels;
+  }
+
+  /// Keeps a tile and drops those used longest ago. Under the lock.
+  void keep(const Key& key, const Pixels& pixels) {
+    order.push_front(key);
+    const std::size_t bytes = pixels->bytes();
+    entries.emplace(key, Entry{pixels, bytes, round, order.begin()});
+    held_bytes += bytes;
+    while (held_bytes > options.budget_bytes && !order.empty()) {
+      const auto oldest = entries.find(order.back());
+      held_bytes -= oldest->second.bytes;
+      entries.erase(oldest);
+      order.pop_back();
+      ++counts.let_go;
+    }
+  }
+
+  /// Reads a tile that this thread has put into `loading`; the lock is open meanwhile.
+  Result<Pixels> load(const Key& key, std::unique_lock<std::mutex>& lock) {
+    lock.unlock();
+    Result<terrain::Tile> tile = tiles->tile(key.first);
+    Pixels pixels;
+    if (tile.ok()) {
+      pixels = std::make_shared<const TilePixels>(tile_pixels_from(*tile, key.second));
+    }
+    lock.lock();
+    loading.erase(key);
+    if (pixels != nullptr) keep(key, pixels);
+    loaded.notify_all();
+    if (pixels != nullptr) return pixels;
+    const TileId& id = key.first;
+    return tile.error().in("tile " + std::to_string(id.level) + "/" + std::to_string(id.col) + "/" +
+                           std::to_string(id.row));
+  }
+
+  Result<Pixels> get(const Key& key) {
+    std::unique_lock lock(mutex);
+    while (true) {
+      if (Pixels pixels = use(key); pixels != nullptr) return pixels;
+      if (loading.insert(key).second) break;
+      loaded.wait(lock);
+    }
+    ++counts.read_on_demand;
+    return load(key, lock);
+  }
+
+  Pixels find(const Key& key) {
+    if (threads.empty()) {
+      Result<Pixels> read = get(key);
+      return read.ok() ? *read : nullptr;
+    }
+    const std::lock_guard lock(mutex);
+    if (Pixels pixels = use(key); pixels != nullptr) return pixels;
+    if (loading.count(key) != 0 || std::find(asked.begin(), asked.end(), key) != asked.end()) {
+      return nullptr;
+    }
+    asked.push_back(key);
+    if (asked.size() > kMaxAsked) asked.pop_front();
+    work.notify_one();
+    return nullptr;
+  }
+
+  void prefetch(std::span<const TileId> ids, PixelFormat format) {
+    const std::lock_guard lock(mutex);
+    ++round;
+    ahead.clear();
+    // From the least urgent on, so that the most urgent one is dropped last.
+    for (std::size_t i = ids.size(); i-- > 0;) (void)use({ids[i], format});
+    for (const TileId& id : ids) {
+      if (const Key key{id, format}; entries.count(key) == 0) ahead.push_back(key);
+    }
+    if (!ahead.empty()) work.notify_all();
+  }
+
+  /// True when the tile that would have to go is still of use. Under the lock.
+  [[nodiscard]] bool full() const {
+    if (order.empty() || held_bytes + entries.at(order.back()).bytes <= options.budget_bytes) {
+      return false;
+    }
+    return entries.at(order.back()).round + 1 >= round;
+  }
+
+  /// The next tile to read, put into `loading`. Under the lock.
+  bool take_next(Key& key) {
+    const auto take_from = [&](std::deque<Key>& queue) {
+      while (!queue.empty()) {
+        key = queue.front();
+        queue.pop_front();
+        if (entries.count(key) == 0 && loading.insert(key).second) return true;
+      }
+      return false;
+    };
+    if (take_from(asked)) return true;
+    if (!ahead.empty() && full()) ahead.clear();
+    return take_from(ahead);
+  }
+
+  void fetch_ahead() {
+    std::unique_lock lock(mutex);
+    while (!stopping) {
+      Key key;
+      if (!take_next(key)) {
+        loaded.notify_all();
+        work.wait(lock);
+        continue;
+      }
+      ++counts.read_ahead;
+      const double before_s = thread_cpu_s();
+      // A tile that cannot be read is reported to whoever gets it.
+      (void)load(key, lock);
+      counts.ahead_cpu_s += thread_cpu_s() - before_s;
+    }
+  }
+
+  std::shared_ptr<const terrain::TileSource> tiles;
+  TileStoreOptions options;
+  mutable std::mutex mutex;
+  std::condition_variable loaded;  // a tile was read, or a thread ran out of work
+  std::condition_variable work;    // something was asked for, or the end
+  std::map<Key, Entry> entries;
+  Order order;
+  std::size_t held_bytes = 0;
+  std::set<Key> loading;
+  std::deque<Key> asked;  // by find
+  std::deque<Key> ahead;  // by prefetch
+  std::uint64_t round = 0;
+  bool stopping = false;
+  TileStoreCounts counts;
+  std::vector<std::thread> threads;
+};
+
+TileStore::TileStore(std::shared_ptr<const terrain::TileSource> tiles,
+                     const TileStoreOptions& options)
+    : state_(std::make_unique<State>(std::move(tiles), options)) {}
+
+TileStore::~TileStore() = default;
+
+Result<std::shared_ptr<const TilePixels>> TileStore::get(const TileId& id, PixelFormat format) {
+  return state_->get({id, format});
+}
+
+std::shared_ptr<const TilePixels> TileStore::find(const TileId& id, PixelFormat format) {
+  return state_->find({id, format});
+}
+
+std::shared_ptr<const TilePixels> TileStore::peek(const TileId& id, PixelFormat format) {
+  const std::lock_guard lock(state_->mutex);
+  return state_->use({id, format});
+}
+
+void TileStore::prefetch(std::span<const TileId> ids, PixelFormat format) {
+  if (!state_->threads.empty()) state_->prefetch(ids, format);
+}
+
+void TileStore::wait_until_idle() {
+  std::unique_lock lock(state_->mutex);
+  state_->loaded.wait(lock, [this] {
+    return state_->loading.empty() && state_->asked.empty() && state_->ahead.empty();
+  });
+}
+
+std::size_t TileStore::held_bytes() const {
+  const std::lock_guard lock(state_->mutex);
+  return state_->held_bytes;
+}
+
+TileStoreCounts TileStore::counts() const {
+  const std::lock_guard lock(state_->mutex);
+  return state_->counts;
+}
+
+const terrain::TileSource& TileStore::tiles() const { return *state_->tiles; }
+
+}  // namespace overfly::renderer
