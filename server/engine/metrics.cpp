@@ -140,7 +140,10 @@ Json json_from(const evaluation::AlignmentScore& score) {
                         {"translation_percent", error.translation_percent},
                         {"rotation_deg_per_100m", error.rotation_deg_per_100m}});
   }
+  Json S_world_vo = json_from(Pose{score.S_world_vo.rotation, score.S_world_vo.translation});
+  S_world_vo["scale"] = score.S_world_vo.scale;
   return {{"scale", score.S_world_vo.scale},
+          {"S_world_vo", std::move(S_world_vo)},
           {"matched", score.matched},
           {"position_rmse_m", score.position_m.rmse},
           {"position_mean_m", score.position_m.mean},
@@ -191,6 +194,8 @@ Json metrics_from(const RunRecords& records) {
   for (const EstimatorRecords& estimator : records.estimators) {
     Json entry = json_from(score_of(records, trajectory, estimator));
     const std::vector<std::int64_t> dropped = dropped_frames(estimator);
+    const auto initial = initial_frame(records, estimator);
+    entry["map_id"] = initial ? Json(initial->map_id) : Json(nullptr);
     entry["type"] = estimator.type;
     entry["test_estimator"] = is_test_estimator(estimator.type);
     entry["dropped_frames"] = dropped.size();

@@ -185,6 +185,12 @@ void RunManager::Impl::fly(ManagedRun& run) {
   run_options.timeline = run.timeline;
   run_options.publish_images = true;
   run_options.worlds = &worlds;
+  run_options.notice = [&run](const std::string& text) {
+    // The run's own next change of its info takes it away again.
+    RunInfo info = run.timeline->info();
+    info.notice = text;
+    run.timeline->set_info(info);
+  };
   const Result<RunResult> result = run_scenario(run.scenario, run_options);
   // The run itself tells its timeline how it ended; only one that could not even make its folder
   // has had no chance to.

@@ -67,6 +67,9 @@ struct RunInfo {
   std::string pacing;
   std::vector<std::string> estimators;
   std::string attribution;
+  /// What it is busy with before its first frame ("making the built-in world: 30 %"); empty
+  /// otherwise. Of this process only: no file keeps it.
+  std::string notice;
 };
 
 /// Thread-safe. Rows are only ever appended and are numbered from 0: a reader asks for the rows

@@ -126,7 +126,7 @@ Result<Picture> ViewPainter::paint_scene(const PictureRequest& request,
                                          const FrameRow& row) {
   auto view = renderers_.of_run(request.run_id);
   if (!view) return view.error();
-  ViewRibbons& ribbons = ribbons_of(timeline);
+  ViewRibbons& ribbons = ribbons_of(timeline, request.scene.alignment);
   ribbons.refresh();
   const auto scene = scene_view(request.scene, row.T_world_body, ribbons.centre(), *(*view)->tiles);
   const auto content = scene_content(*timeline, ribbons, row, request.live);
@@ -136,15 +136,16 @@ Result<Picture> ViewPainter::paint_scene(const PictureRequest& request,
   return encoder_.encode({row.frame, row.t_ns, shared}, request.quality, shared->width_px);
 }
 
-ViewRibbons& ViewPainter::ribbons_of(const std::shared_ptr<RunTimeline>& timeline) {
+ViewRibbons& ViewPainter::ribbons_of(const std::shared_ptr<RunTimeline>& timeline,
+                                     const std::string& alignment) {
   const auto known =
       std::find_if(ribbons_.begin(), ribbons_.end(), [&](const ViewRibbons& ribbons) {
-        return ribbons.timeline() == timeline;
+        return ribbons.timeline() == timeline && ribbons.alignment() == alignment;
       });
   if (known != ribbons_.end()) {
     ribbons_.splice(ribbons_.begin(), ribbons_, known);
   } else {
-    ribbons_.emplace_front(timeline);
+    ribbons_.emplace_front(timeline, alignment);
     if (ribbons_.size() > kMaxRibbons) ribbons_.pop_back();
   }
   return ribbons_.front();

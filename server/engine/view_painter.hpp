@@ -3,6 +3,7 @@
 
 #include <list>
 #include <memory>
+#include <string>
 
 #include "server/engine/view_encoding.hpp"
 #include "server/engine/view_renderers.hpp"
@@ -29,12 +30,13 @@ class ViewPainter {
   [[nodiscard]] Result<Picture> paint_scene(const PictureRequest& request,
                                             const std::shared_ptr<RunTimeline>& timeline,
                                             const FrameRow& row);
-  ViewRibbons& ribbons_of(const std::shared_ptr<RunTimeline>& timeline);
+  ViewRibbons& ribbons_of(const std::shared_ptr<RunTimeline>& timeline,
+                          const std::string& alignment);
 
   RunManager& runs_;
   ViewRenderers renderers_;
   PictureEncoder encoder_;
-  std::list<ViewRibbons> ribbons_;  ///< of the runs watched last
+  std::list<ViewRibbons> ribbons_;  ///< of the runs and alignments watched last
 };
 
 }  // namespace overfly::engine

@@ -37,11 +37,21 @@ std::array<float, 3> estimator_rgb(std::size_t estimator) {
   return kEstimatorRgb[estimator % kEstimatorRgb.size()];
 }
 
-ViewRibbons::ViewRibbons(std::shared_ptr<const RunTimeline> timeline)
+ViewRibbons::ViewRibbons(std::shared_ptr<const RunTimeline> timeline, std::string alignment)
     : timeline_(std::move(timeline)),
+      alignment_(std::move(alignment)),
       box_min_(Eigen::Vector3d::Constant(kFar)),
       box_max_(Eigen::Vector3d::Constant(-kFar)),
-      estimates_(timeline_->estimators().size()) {}
+      estimates_(timeline_->estimators().size()) {
+  for (std::size_t i = 0; i < estimates_.size(); ++i) {
+    if (auto found = RowAlignment::of(*timeline_, i, alignment_)) estimates_[i].alignment = *found;
+  }
+}
+
+std::optional<Pose> ViewRibbons::T_world_body(std::size_t estimator, const EstimateRow& row) const {
+  const std::optional<RowAlignment>& alignment = estimates_.at(estimator).alignment;
+  return alignment ? alignment->T_world_body(row) : std::nullopt;
+}
 
 void ViewRibbons::refresh() {
   refresh_truth();
@@ -69,7 +79,8 @@ void ViewRibbons::refresh_estimate(std::size_t estimator) {
     if (rows.empty()) return;
     for (const EstimateRow& row : rows) {
       const std::size_t index = estimate.rows_seen++;
-      if (!row.T_world_body) {
+      const std::optional<Pose> T_world_body = this->T_world_body(estimator, row);
+      if (!T_world_body) {
         estimate.open = false;
         continue;
       }
@@ -82,7 +93,7 @@ void ViewRibbons::refresh_estimate(std::size_t estimator) {
         continue;
       }
       estimate.pieces.back().t_ns.push_back(row.sample.t_ns);
-      estimate.pieces.back().T_world_body.push_back(*row.T_world_body);
+      estimate.pieces.back().T_world_body.push_back(*T_world_body);
     }
   }
 }

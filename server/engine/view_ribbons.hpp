@@ -5,9 +5,12 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "renderer/renderer.hpp"
+#include "server/engine/row_alignment.hpp"
 #include "server/engine/run_timeline.hpp"
 
 namespace overfly::engine {
@@ -18,7 +21,9 @@ inline constexpr std::array<float, 3> kTruthRgb = {0.90F, 0.15F, 0.15F};
 
 class ViewRibbons {
  public:
-  explicit ViewRibbons(std::shared_ptr<const RunTimeline> timeline);
+  /// @param alignment  of the estimates; one that cannot be had so has no ribbon
+  explicit ViewRibbons(std::shared_ptr<const RunTimeline> timeline,
+                       std::string alignment = kRecordedAlignment);
 
   /// Takes in the rows since the last call: every third, which is less than a wing span apart.
   void refresh();
@@ -28,6 +33,10 @@ class ViewRibbons {
   /// Centre of the box around the flown trajectory; zero before the first frame [m].
   [[nodiscard]] Eigen::Vector3d centre() const;
   [[nodiscard]] const std::shared_ptr<const RunTimeline>& timeline() const { return timeline_; }
+  [[nodiscard]] const std::string& alignment() const { return alignment_; }
+  /// Where an estimate's row lies under the alignment; empty while not tracking.
+  [[nodiscard]] std::optional<Pose> T_world_body(std::size_t estimator,
+                                                 const EstimateRow& row) const;
 
  private:
   /// Poses without a gap.
@@ -39,12 +48,14 @@ class ViewRibbons {
   struct Estimate {
     std::size_t rows_seen = 0;
     bool open = false;  ///< the last piece may go on
+    std::optional<RowAlignment> alignment;
     std::vector<Piece> pieces;
   };
   void refresh_truth();
   void refresh_estimate(std::size_t estimator);
 
   std::shared_ptr<const RunTimeline> timeline_;
+  std::string alignment_;
   std::size_t rows_seen_ = 0;
   Piece truth_;
   Eigen::Vector3d box_min_;

@@ -52,9 +52,10 @@ renderer::SceneContent scene_content(const RunTimeline& timeline,
   content.aircraft.push_back(truth);
   for (std::size_t i = 0; i < timeline.estimators().size(); ++i) {
     const auto estimate = timeline.estimate_at(i, row.t_ns);
-    if (estimate && estimate->T_world_body) {
+    const auto T_world_body = estimate ? ribbons.T_world_body(i, *estimate) : std::nullopt;
+    if (T_world_body) {
       renderer::SceneContent::Aircraft ghost;
-      ghost.T_world_body = *estimate->T_world_body;
+      ghost.T_world_body = *T_world_body;
       ghost.rgb = estimator_rgb(i);
       ghost.ghost = true;
       content.aircraft.push_back(ghost);

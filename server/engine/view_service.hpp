@@ -24,12 +24,14 @@ struct SceneSettings {
   bool follow = true;          ///< orbit and top: target = aircraft, else the trajectory's centre
   int width_px = 960;          ///< in [64, 1920]
   int height_px = 720;         ///< in [64, 1440]
+  std::string alignment = "init_scale";  ///< of the estimates shown
 };
 
 struct PictureRequest {
   std::string run_id;
   enum class Kind { kCamera, kDebug, kScene } kind = Kind::kCamera;
   std::size_t estimator = 0;  ///< kDebug
+  std::string camera;         ///< kCamera: its name; empty = the first one
   std::int64_t t_ns = 0;      ///< the frame at or before it
   bool live = false;          ///< the newest picture of a running run, if it has one
   SceneSettings scene;        ///< kScene
