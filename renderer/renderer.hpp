@@ -143,6 +143,9 @@ struct RendererInfo {
   std::string device;      ///< GL_RENDERER
   std::string gl_version;  ///< GL_VERSION
   bool software = true;    ///< true when the CPU draws
+  /// What was asked for by RendererOptions::device, what came of it and why; empty when nothing
+  /// was asked for.
+  std::string device_note;
 };
 
 /// Views of one world. Not thread-safe: create, use and destroy on one thread.
@@ -176,8 +179,16 @@ class Renderer {
   [[nodiscard]] virtual RendererInfo info() const = 0;
 };
 
+class TileStore;
+
 struct RendererOptions {
-  std::size_t tile_cache_bytes = std::size_t{512} << 20U;  ///< textures kept, > 64 MiB
+  /// Tiles kept in memory, and as many again as textures; > 64 MiB.
+  std::size_t tile_cache_bytes = std::size_t{512} << 20U;
+  /// Shared with other renderers of the same world; null = one of its own.
+  std::shared_ptr<TileStore> tile_store;
+  /// The EGL device: "" = the first that works, "0" = by index, "0000:01:00.0" = by PCI address,
+  /// "software". Where it does not work the software renderer draws, and RendererInfo says so.
+  std::string device;
 };
 
 /// Draws with OpenGL on an EGL device or the surfaceless platform, without a display.
