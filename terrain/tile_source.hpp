@@ -61,6 +61,9 @@ struct Tile {
 class TileSource : public HeightQuery {
  public:
   [[nodiscard]] virtual const TileGrid& grid() const = 0;
+  /// Texel size of what was photographed [m]: coarser than grid().texel_m where finer levels are
+  /// synthetic. What texels per pixel are counted in.
+  [[nodiscard]] virtual double real_texel_m() const { return grid().texel_m; }
   [[nodiscard]] virtual TileCoverage coverage(const TileId& id) const = 0;
   /// Reads a tile with its border. Errors: kIo when a file cannot be read.
   [[nodiscard]] virtual Result<Tile> tile(const TileId& id) const = 0;
