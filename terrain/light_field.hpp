@@ -1,0 +1,50 @@
+// Inside terrain only: the light at the nodes of a lattice over the ground.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+
+#include "terrain/cloud_field.hpp"
+#include "terrain/height_lattice.hpp"
+#include "terrain/light.hpp"
+
+namespace overfly::terrain {
+
+/// Share of the sun's disc above a straight horizon.
+/// @param above_rad  of the disc's centre over the horizon
+[[nodiscard]] double visible_disc(double above_rad);
+
+/// What a node is worth depends on its place alone, so neighbouring tiles agree.
+class LightField {
+ public:
+  LightField(std::shared_ptr<const TileSource> tiles,
+             const LightOptions& options,
+             double spacing_m);
+
+  [[nodiscard]] double spacing_m(int lattice) const { return heights_.spacing_m(lattice); }
+
+  /// Light over that of open flat ground, in [0, kMaxLight], at nodes
+  /// [i, i + columns) x [j, j + rows) of a lattice (numbered as in HeightLattice).
+  [[nodiscard]] ImageBuffer<float> nodes(int lattice, int i, int j, int columns, int rows) const;
+
+ private:
+  /// The map around a place, to the first order.
+  struct Chart {
+    Eigen::Matrix2d world_per_map;
+    Eigen::Vector2d sunward_map;  ///< map metres for a metre towards the sun, seen from above
+  };
+  [[nodiscard]] Chart chart(int lattice, int block_i, int block_j) const;
+  [[nodiscard]] double sunlight(
+      const Chart& chart, HeightLattice::Reader& heights, int lattice, int i, int j) const;
+  [[nodiscard]] double horizon_rad(
+      const Chart& chart, HeightLattice::Reader& heights, int lattice, int i, int j) const;
+
+  std::shared_ptr<const TileSource> tiles_;
+  LightOptions options_;
+  Eigen::Vector3d sun_;
+  HeightLattice heights_;
+  CloudField clouds_;
+  double highest_up_m_ = 0.0;
+};
+
+}  // namespace overfly::terrain
