@@ -4,8 +4,6 @@
 
 namespace overfly::renderer {
 
-using LatticePoint = GroundPatches::LatticePoint;
-
 GroundCorners::GroundCorners() : slots_(8192) {}
 
 std::size_t GroundCorners::slot_of(const LatticePoint& at) const {
@@ -21,10 +19,13 @@ std::size_t GroundCorners::slot_of(const LatticePoint& at) const {
   return slot;
 }
 
-void GroundCorners::add(const LatticePoint& at, const Eigen::Vector3d& point) {
+void GroundCorners::add(const LatticePoint& at, const Eigen::Vector3d& point, int level) {
   Slot& slot = slots_[slot_of(at)];
-  if (slot.point != nullptr) return;
-  slot = {at, &point};
+  if (slot.point != nullptr) {
+    if (level < slot.level) slot = {at, &point, level};
+    return;
+  }
+  slot = {at, &point, level};
   if (2 * ++used_ > slots_.size()) grow();
 }
 

@@ -10,23 +10,26 @@
 namespace overfly::renderer {
 
 /// A set of lattice points with their ground points. Where a small square meets a large one, the
-/// large one finds here the corners that lie on its side and takes them over, so that the mesh
-/// has neither gaps nor T-junctions.
+/// large one finds here the corners that lie on its side and takes them over, and where patches
+/// of different levels know different heights of a corner, all take the finest patch's: so that
+/// the mesh has neither gaps nor T-junctions.
 class GroundCorners {
  public:
   GroundCorners();
 
   /// @param point  must outlive the set
-  void add(const GroundPatches::LatticePoint& at, const Eigen::Vector3d& point);
+  /// @param level  of the patch that knows it; the lowest wins, equal ones know the same
+  void add(const LatticePoint& at, const Eigen::Vector3d& point, int level);
   /// The corner at a place, or null.
-  [[nodiscard]] const Eigen::Vector3d* find(const GroundPatches::LatticePoint& at) const;
+  [[nodiscard]] const Eigen::Vector3d* find(const LatticePoint& at) const;
 
  private:
   struct Slot {
-    GroundPatches::LatticePoint at{};
+    LatticePoint at{};
     const Eigen::Vector3d* point = nullptr;  // null: free
+    int level = 0;
   };
-  [[nodiscard]] std::size_t slot_of(const GroundPatches::LatticePoint& at) const;
+  [[nodiscard]] std::size_t slot_of(const LatticePoint& at) const;
   void grow();
 
   std::vector<Slot> slots_;  // open addressing, a power of two, at most half full

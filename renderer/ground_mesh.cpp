@@ -62,8 +62,18 @@ class Builder {
 
   std::uint32_t vertex(int column, int row) {
     std::uint32_t& index = vertex_at_[row * kPoints + column];
-    if (index == kNone) index = append_vertex(leaf_->patch->point(column, row), column, row);
+    if (index == kNone) index = append_vertex(point(column, row), column, row);
     return index;
+  }
+
+  /// The patch's own ground point, or on its rim the one that all its neighbours use.
+  [[nodiscard]] const Eigen::Vector3d& point(int column, int row) const {
+    const auto on_rim = [](int i) { return i == 0 || i == kPatchCells; };
+    if (on_rim(column) || on_rim(row)) {
+      const Eigen::Vector3d* shared = corners_.find(lattice_point(leaf_->patch->id, column, row));
+      if (shared != nullptr) return *shared;
+    }
+    return leaf_->patch->point(column, row);
   }
 
   void append_square(const GroundSquare& square) {
@@ -93,28 +103,27 @@ class Builder {
   std::uint32_t centre(const GroundSquare& square) {
     const int half = (1 << square.t) / 2;
     if (half > 0) return vertex(square.column + half, square.row + half);
-    const GroundPatch& patch = *leaf_->patch;
-    const Eigen::Vector3d mean = 0.5 * (patch.point(square.column + 1, square.row) +
-                                        patch.point(square.column, square.row + 1));
+    const Eigen::Vector3d mean =
+        0.5 * (point(square.column + 1, square.row) + point(square.column, square.row + 1));
     return append_vertex(mean, square.column + 0.5, square.row + 0.5);
   }
 
   /// Appends the side's first vertex and the corners of smaller squares that lie on the side.
   void append_side(std::uint32_t first, int c0, int r0, int c1, int r1) {
     rim_.push_back(first);
-    const auto from = GroundPatches::lattice_point(leaf_->patch->id, c0, r0);
-    const auto to = GroundPatches::lattice_point(leaf_->patch->id, c1, r1);
+    const auto from = lattice_point(leaf_->patch->id, c0, r0);
+    const auto to = lattice_point(leaf_->patch->id, c1, r1);
     append_between(from, to, {c0 * 1.0, r0 * 1.0}, {c1 * 1.0, r1 * 1.0});
   }
 
   /// Whoever divides a square or patch adds the middles of its sides, so that a side without a
   /// corner in its middle has none.
-  void append_between(const GroundPatches::LatticePoint& from,
-                      const GroundPatches::LatticePoint& to,
+  void append_between(const LatticePoint& from,
+                      const LatticePoint& to,
                       const Eigen::Vector2d& from_cell,
                       const Eigen::Vector2d& to_cell) {
     if (std::abs(from[0] - to[0]) + std::abs(from[1] - to[1]) < 2) return;
-    const GroundPatches::LatticePoint middle{(from[0] + to[0]) / 2, (from[1] + to[1]) / 2};
+    const LatticePoint middle{(from[0] + to[0]) / 2, (from[1] + to[1]) / 2};
     const Eigen::Vector3d* point = corners_.find(middle);
     if (point == nullptr) return;
     const Eigen::Vector2d cell = 0.5 * (from_cell + to_cell);

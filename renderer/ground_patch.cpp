@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace overfly::renderer {
 
@@ -11,23 +12,56 @@ using terrain::TileId;
 namespace {
 
 constexpr double kEarthRadiusM = 6371000.0;
-constexpr std::size_t kMaxPatches = 6000;  // some 60 MB when a quarter of them is sampled
+/// What a patch without points takes, with its place in the containers.
+constexpr std::size_t kOutlineBytes = sizeof(GroundPatch) + 160;
 
-/// Largest distance between the ground's points in a square and the square's two triangles, which
-/// meet on the diagonal from the north-east to the south-west.
-double square_error_m(const GroundPatch& patch, int column, int row, int cells) {
+/// The ground at a lattice over a patch, row by row from the north.
+std::vector<Eigen::Vector3d> sample_lattice(const terrain::TileSource& tiles,
+                                            const TileId& id,
+                                            int points_a_side,
+                                            double spacing_m) {
+  const terrain::TileGrid& grid = tiles.grid();
+  const double size_m = std::ldexp(terrain::kTileTexels * grid.texel_m, id.level);
+  const double step_m = size_m / (points_a_side - 1);
+  std::vector<Eigen::Vector3d> points;
+  points.reserve(static_cast<std::size_t>(points_a_side) * points_a_side);
+  for (int row = 0; row < points_a_side; ++row) {
+    // Patches that share a place must compute the same coordinates for it: from its whole number
+    // of steps, which is exact whatever the patch's level.
+    const double y_m = grid.top_y_m - (id.row * (points_a_side - 1.0) + row) * step_m;
+    for (int column = 0; column < points_a_side; ++column) {
+      const double x_m = grid.left_x_m + (id.col * (points_a_side - 1.0) + column) * step_m;
+      points.push_back(tiles.coarse_world_from_map(x_m, y_m, spacing_m));
+    }
+  }
+  return points;
+}
+
+constexpr int kFinePoints = 2 * kPatchCells + 1;
+
+/// Largest distance between a square's two triangles, which meet on the diagonal from the
+/// north-east to the south-west, and the ground at points half a cell apart.
+/// @param fine  kFinePoints^2 points over the whole patch
+double square_error_m(const GroundPatch& patch,
+                      const std::vector<Eigen::Vector3d>& fine,
+                      int column,
+                      int row,
+                      int cells) {
   const Eigen::Vector3d& north_west = patch.point(column, row);
   const Eigen::Vector3d& north_east = patch.point(column + cells, row);
   const Eigen::Vector3d& south_west = patch.point(column, row + cells);
   const Eigen::Vector3d& south_east = patch.point(column + cells, row + cells);
-  const double scale = 1.0 / cells;
+  const int steps = 2 * cells;
+  const double scale = 1.0 / steps;
   double worst_squared = 0.0;
-  for (int j = 0; j <= cells; ++j) {
-    for (int i = 0; i <= cells; ++i) {
+  for (int j = 0; j <= steps; ++j) {
+    const Eigen::Vector3d* ground =
+        &fine[static_cast<std::size_t>(2 * row + j) * kFinePoints + 2 * column];
+    const double b = j * scale;
+    for (int i = 0; i <= steps; ++i) {
       const double a = i * scale;
-      const double b = j * scale;
-      Eigen::Vector3d difference = -patch.point(column + i, row + j);
-      if (i + j <= cells) {
+      Eigen::Vector3d difference = -ground[i];
+      if (i + j <= steps) {
         difference += (1.0 - a - b) * north_west + a * north_east + b * south_west;
       } else {
         difference += (a + b - 1.0) * south_east + (1.0 - a) * south_west + (1.0 - b) * north_east;
@@ -40,7 +74,12 @@ double square_error_m(const GroundPatch& patch, int column, int row, int cells) 
 
 }  // namespace
 
-std::size_t GroundPatches::Hash::operator()(const TileId& id) const {
+LatticePoint lattice_point(const TileId& id, int column, int row) {
+  const int scale = 1 << (id.level - kFinestPatchLevel);
+  return {(id.col * kPatchCells + column) * scale, (id.row * kPatchCells + row) * scale};
+}
+
+std::size_t GroundPatchStore::Hash::operator()(const TileId& id) const {
   std::uint64_t h = static_cast<std::uint32_t>(id.col);
   h = (h << 32U) ^ static_cast<std::uint32_t>(id.row) ^
       (static_cast<std::uint64_t>(id.level) << 58U);
@@ -48,53 +87,65 @@ std::size_t GroundPatches::Hash::operator()(const TileId& id) const {
   return h ^ (h >> 29U);
 }
 
-GroundPatches::GroundPatches(std::shared_ptr<const terrain::TileSource> tiles)
-    : tiles_(std::move(tiles)) {}
+GroundPatchStore::GroundPatchStore(std::shared_ptr<const terrain::TileSource> tiles,
+                                   std::size_t budget_bytes)
+    : tiles_(std::move(tiles)), budget_bytes_(budget_bytes) {}
 
-TileId GroundPatches::tile_of(const TileId& id) {
-  if (id.level >= 0) return id;
-  return {0, id.col >> -id.level, id.row >> -id.level};
+std::size_t GroundPatchStore::held_bytes() const {
+  const std::lock_guard lock(mutex_);
+  return held_bytes_;
 }
 
-bool GroundPatches::above_imagery(const TileId& id) const {
-  return id.level >= tiles_->grid().levels && id.col == 0 && id.row == 0;
-}
-
-GroundPatches::LatticePoint GroundPatches::lattice_point(const TileId& id, int column, int row) {
-  const int scale = 1 << (id.level - kFinestPatchLevel);
-  return {(id.col * kPatchCells + column) * scale, (id.row * kPatchCells + row) * scale};
-}
-
-Eigen::Vector3d GroundPatches::ground_point(const LatticePoint& at) const {
-  const terrain::TileGrid& grid = tiles_->grid();
-  const double step_m =
-      std::ldexp(terrain::kTileTexels * grid.texel_m, kFinestPatchLevel - kLog2PatchCells);
-  return tiles_->world_from_map(grid.left_x_m + at[0] * step_m, grid.top_y_m - at[1] * step_m);
-}
-
-TileCoverage GroundPatches::coverage_of(const TileId& id) const {
-  if (id.level >= tiles_->grid().levels) {
-    return above_imagery(id) ? TileCoverage::kPartial : TileCoverage::kNone;
-  }
-  return tiles_->coverage(tile_of(id));
-}
-
-GroundPatch& GroundPatches::outline(const TileId& id) {
-  const auto [entry, is_new] = patches_.try_emplace(id);
-  GroundPatch& patch = entry->second;
-  patch.last_use = view_;
-  if (!is_new) return patch;
-  patch.id = id;
-  patch.size_map_m = std::ldexp(terrain::kTileTexels * tiles_->grid().texel_m, id.level);
-  patch.coverage = coverage_of(id);
-  constexpr int kStep = kPatchCells / kOutlineCells;
-  for (int row = 0; row <= kOutlineCells; ++row) {
-    for (int column = 0; column <= kOutlineCells; ++column) {
-      const Eigen::Vector3d point = ground_point(lattice_point(id, column * kStep, row * kStep));
-      patch.outline[row * (kOutlineCells + 1) + column] = point;
-      patch.bounds.extend(point);
+std::shared_ptr<GroundPatch> GroundPatchStore::outline(const TileId& id) {
+  std::shared_ptr<GroundPatch> patch;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto [entry, is_new] = patches_.try_emplace(id);
+    if (is_new) {
+      entry->second.patch = std::make_shared<GroundPatch>();
+      entry->second.patch->id = id;
+      order_.push_front(id);
+      entry->second.place = order_.begin();
+      entry->second.bytes = kOutlineBytes;
+      held_bytes_ += kOutlineBytes;
+    } else {
+      order_.splice(order_.begin(), order_, entry->second.place);
     }
+    patch = entry->second.patch;
   }
+  std::call_once(patch->outlined, [&] { make_outline(*patch); });
+  return patch;
+}
+
+void GroundPatchStore::add_bytes(const TileId& id, std::size_t bytes) {
+  const std::lock_guard lock(mutex_);
+  if (const auto found = patches_.find(id); found != patches_.end()) {
+    found->second.bytes += bytes;
+    held_bytes_ += bytes;
+  }
+  // A view that has the patch still holds it.
+  while (held_bytes_ > budget_bytes_ && !order_.empty()) {
+    const auto oldest = patches_.find(order_.back());
+    held_bytes_ -= oldest->second.bytes;
+    patches_.erase(oldest);
+    order_.pop_back();
+  }
+}
+
+TileCoverage GroundPatchStore::coverage_of(const TileId& id) const {
+  if (id.level >= tiles_->grid().levels) {
+    return id.col == 0 && id.row == 0 ? TileCoverage::kPartial : TileCoverage::kNone;
+  }
+  return tiles_->coverage(GroundPatches::tile_of(id));
+}
+
+void GroundPatchStore::make_outline(GroundPatch& patch) const {
+  patch.size_map_m = std::ldexp(terrain::kTileTexels * tiles_->grid().texel_m, patch.id.level);
+  patch.coverage = coverage_of(patch.id);
+  const std::vector<Eigen::Vector3d> points =
+      sample_lattice(*tiles_, patch.id, kOutlineCells + 1, patch.size_map_m / (2.0 * kPatchCells));
+  std::copy(points.begin(), points.end(), patch.outline.begin());
+  for (const Eigen::Vector3d& point : points) patch.bounds.extend(point);
   // Room for the relief between the outline's points: for large patches the whole range of
   // heights, for small ones a share of what the outline shows.
   const Eigen::Vector2d range_m = tiles_->height_range_m();
@@ -104,38 +155,47 @@ GroundPatch& GroundPatches::outline(const TileId& id) {
                           0.5 + patch.size_map_m * patch.size_map_m / (4.0 * kEarthRadiusM);
   patch.bounds.min().z() -= margin_m;
   patch.bounds.max().z() += margin_m;
-  return patch;
 }
 
-void GroundPatches::sample(GroundPatch& patch) const {
-  if (!patch.points.empty()) return;
-  patch.points.reserve((kPatchCells + 1) * (kPatchCells + 1));
-  for (int row = 0; row <= kPatchCells; ++row) {
-    for (int column = 0; column <= kPatchCells; ++column) {
-      patch.points.push_back(ground_point(lattice_point(patch.id, column, row)));
-    }
-  }
-  for (int t = 1; t <= kLog2PatchCells; ++t) {
-    const int cells = 1 << t;
-    for (int row = 0; row < kPatchCells; row += cells) {
-      for (int column = 0; column < kPatchCells; column += cells) {
-        patch.square_error_m[t].push_back(
-            static_cast<float>(square_error_m(patch, column, row, cells)));
+void GroundPatchStore::sample(GroundPatch& patch) {
+  std::call_once(patch.sampled, [&] {
+    const double cell_m = patch.size_map_m / kPatchCells;
+    patch.points = sample_lattice(*tiles_, patch.id, kPatchCells + 1, 0.5 * cell_m);
+    // What a finer mesh of this place would show: the lattice of the patches one level below.
+    const std::vector<Eigen::Vector3d> fine =
+        sample_lattice(*tiles_, patch.id, kFinePoints, 0.25 * cell_m);
+    std::size_t bytes = patch.points.size() * sizeof(Eigen::Vector3d);
+    for (int t = 0; t <= kLog2PatchCells; ++t) {
+      const int cells = 1 << t;
+      std::vector<float>& errors = patch.square_error_m[t];
+      for (int row = 0; row < kPatchCells; row += cells) {
+        for (int column = 0; column < kPatchCells; column += cells) {
+          errors.push_back(static_cast<float>(square_error_m(patch, fine, column, row, cells)));
+        }
       }
+      bytes += errors.size() * sizeof(float);
     }
-  }
+    add_bytes(patch.id, bytes);
+  });
 }
 
-void GroundPatches::end_view() {
-  ++view_;
-  if (patches_.size() <= kMaxPatches) return;
-  std::vector<std::uint64_t> uses;
-  uses.reserve(patches_.size());
-  for (const auto& [id, patch] : patches_) uses.push_back(patch.last_use);
-  const auto middle = uses.begin() + static_cast<std::ptrdiff_t>(uses.size() / 2);
-  std::nth_element(uses.begin(), middle, uses.end());
-  const std::uint64_t oldest_kept = *middle;
-  std::erase_if(patches_, [&](const auto& entry) { return entry.second.last_use < oldest_kept; });
+GroundPatches::GroundPatches(std::shared_ptr<const terrain::TileSource> tiles)
+    : GroundPatches(std::make_shared<GroundPatchStore>(std::move(tiles))) {}
+
+GroundPatches::GroundPatches(std::shared_ptr<GroundPatchStore> store) : store_(std::move(store)) {}
+
+GroundPatch& GroundPatches::outline(const TileId& id) {
+  in_use_.push_back(store_->outline(id));
+  return *in_use_.back();
+}
+
+TileId GroundPatches::tile_of(const TileId& id) {
+  if (id.level >= 0) return id;
+  return {0, id.col >> -id.level, id.row >> -id.level};
+}
+
+bool GroundPatches::above_imagery(const TileId& id) const {
+  return id.level >= tiles().grid().levels && id.col == 0 && id.row == 0;
 }
 
 }  // namespace overfly::renderer

@@ -8,7 +8,9 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
+#include <list>
 #include <memory>
+#include <mutex>
 #include <unordered_map>
 #include <vector>
 
@@ -21,6 +23,7 @@ inline constexpr int kLog2PatchCells = 5;
 inline constexpr int kPatchCells = 1 << kLog2PatchCells;  ///< cells along a side, at the finest
 inline constexpr int kOutlineCells = 4;                   ///< cells of the coarse outline
 
+/// Written once, by whoever asks first; then read by all threads.
 struct GroundPatch {
   terrain::TileId id;
   double size_map_m = 0.0;
@@ -31,55 +34,83 @@ struct GroundPatch {
 
   /// (kPatchCells + 1)^2 points of the ground; empty until sampled.
   std::vector<Eigen::Vector3d> points;
-  /// Largest distance between the sampled ground in a square of 2^t cells and the square's two
-  /// triangles [m], by t and the square's place; nothing for t = 0.
+  /// Largest distance between the ground in a square of 2^t cells and the square's two triangles
+  /// [m], by t and the square's place. The ground is known there at points half a cell apart.
   std::array<std::vector<float>, kLog2PatchCells + 1> square_error_m;
 
-  std::uint64_t last_use = 0;
+  std::once_flag outlined, sampled;
 
   [[nodiscard]] const Eigen::Vector3d& point(int column, int row) const {
     return points[static_cast<std::size_t>(row) * (kPatchCells + 1) + column];
   }
-  /// @param t  log2 of the square's cells a side, >= 1
+  /// @param t  log2 of the square's cells a side
   [[nodiscard]] float square_error(int t, int column, int row) const {
     return square_error_m[t][static_cast<std::size_t>(row) * (kPatchCells >> t) + column];
   }
 };
 
-/// Samples patches from a tile source and keeps those used last.
+/// A ground point by its place in the lattice of the finest patches' cells, counted from the
+/// grid's corner to the east and to the south.
+using LatticePoint = std::array<std::int32_t, 2>;
+[[nodiscard]] LatticePoint lattice_point(const terrain::TileId& id, int column, int row);
+
+/// Patches that several threads draw from, those used last, within a budget. A patch depends on
+/// its address alone: elevation is averaged to half a cell of its lattice, so that far ground
+/// costs little memory and near ground is as fine as the elevation is.
+class GroundPatchStore {
+ public:
+  explicit GroundPatchStore(std::shared_ptr<const terrain::TileSource> tiles,
+                            std::size_t budget_bytes = std::size_t{96} << 20U);
+
+  /// The patch with its outline.
+  [[nodiscard]] std::shared_ptr<GroundPatch> outline(const terrain::TileId& id);
+  /// Fills points and square_error_m.
+  void sample(GroundPatch& patch);
+
+  [[nodiscard]] const terrain::TileSource& tiles() const { return *tiles_; }
+  [[nodiscard]] std::size_t held_bytes() const;
+
+ private:
+  struct Hash {
+    std::size_t operator()(const terrain::TileId& id) const;
+  };
+  struct Entry {
+    std::shared_ptr<GroundPatch> patch;
+    std::size_t bytes = 0;
+    std::list<terrain::TileId>::iterator place;
+  };
+  void make_outline(GroundPatch& patch) const;
+  [[nodiscard]] terrain::TileCoverage coverage_of(const terrain::TileId& id) const;
+  void add_bytes(const terrain::TileId& id, std::size_t bytes);
+
+  std::shared_ptr<const terrain::TileSource> tiles_;
+  std::size_t budget_bytes_;
+  mutable std::mutex mutex_;
+  std::unordered_map<terrain::TileId, Entry, Hash> patches_;
+  std::list<terrain::TileId> order_;  // last used first
+  std::size_t held_bytes_ = 0;
+};
+
+/// The patches of one view at a time, of one thread.
 class GroundPatches {
  public:
   explicit GroundPatches(std::shared_ptr<const terrain::TileSource> tiles);
-
-  /// A ground point by its place in the lattice of the finest patches' cells, counted from the
-  /// grid's corner to the east and to the south. Patches of any level that share a point get the
-  /// same bits for it.
-  using LatticePoint = std::array<std::int32_t, 2>;
-  [[nodiscard]] static LatticePoint lattice_point(const terrain::TileId& id, int column, int row);
+  explicit GroundPatches(std::shared_ptr<GroundPatchStore> store);
 
   /// The patch with its outline. References stay good until end_view().
   GroundPatch& outline(const terrain::TileId& id);
-  /// Fills points and square_error_m.
-  void sample(GroundPatch& patch) const;
-  /// Forgets the patches used longest ago when there are many.
-  void end_view();
+  void sample(GroundPatch& patch) const { store_->sample(patch); }
+  void end_view() { in_use_.clear(); }
 
-  [[nodiscard]] const terrain::TileSource& tiles() const { return *tiles_; }
+  [[nodiscard]] const terrain::TileSource& tiles() const { return store_->tiles(); }
   /// True where the patch, coarser than the coarsest tile, holds some of the imagery.
   [[nodiscard]] bool above_imagery(const terrain::TileId& id) const;
   /// The tile whose texels cover a patch: itself, or its ancestor of level 0.
   [[nodiscard]] static terrain::TileId tile_of(const terrain::TileId& id);
 
  private:
-  struct Hash {
-    std::size_t operator()(const terrain::TileId& id) const;
-  };
-  [[nodiscard]] Eigen::Vector3d ground_point(const LatticePoint& at) const;
-  [[nodiscard]] terrain::TileCoverage coverage_of(const terrain::TileId& id) const;
-
-  std::shared_ptr<const terrain::TileSource> tiles_;
-  std::unordered_map<terrain::TileId, GroundPatch, Hash> patches_;
-  std::uint64_t view_ = 0;
+  std::shared_ptr<GroundPatchStore> store_;
+  std::vector<std::shared_ptr<GroundPatch>> in_use_;
 };
 
 }  // namespace overfly::renderer

@@ -15,8 +15,9 @@ constexpr double kEarthRadiusM = 6371000.0;
 constexpr double kMaxReachM = 300e3;  // map projections bend beyond
 /// The texel density is taken at the outline's points; between them it may be lower by this.
 constexpr double kDensityMargin = 0.9;
-/// Elevation finer than a patch's 32 cells is followed by splitting it, at most this often.
-constexpr int kMaxReliefSplits = 2;
+/// Elevation finer than a patch's 32 cells is followed by splitting it, until its cells are no
+/// longer than this in the image.
+constexpr double kFinestCellPx = 2.0;
 
 /// How a patch looks in the image.
 struct Appearance {
@@ -87,45 +88,47 @@ class Selector {
     }
     appearance.leaf.textured = patch.coverage != TileCoverage::kNone;
     appearance.leaf.texture = GroundPatches::tile_of(id);
-    const int splits = appearance.leaf.textured ? kMaxReliefSplits : 0;
-    emit(patch, appearance.leaf, splits);
+    emit(patch, appearance.leaf);
   }
 
   /// Keeps a patch, or divides it on where its relief is finer than its cells.
-  void emit(GroundPatch& patch, const GroundLeaf& leaf, int splits_left) {
+  void emit(GroundPatch& patch, const GroundLeaf& leaf) {
     patches_.sample(patch);
-    if (splits_left > 0 && patch.id.level > kFinestPatchLevel &&
-        relief_error_px(leaf) > limits_.max_error_px) {
-      divide(patch, [&](const TileId& id) {
-        GroundPatch& child = patches_.outline(id);
-        if (outside(child.bounds)) return;
-        GroundLeaf child_leaf = measure(child).leaf;
-        child_leaf.texture = leaf.texture;
-        child_leaf.textured = leaf.textured;
-        emit(child, child_leaf, splits_left - 1);
-      });
+    if (!leaf.textured || patch.id.level <= kFinestPatchLevel || !has_finer_relief(leaf)) {
+      leaves_.push_back(leaf);
       return;
     }
-    leaves_.push_back(leaf);
+    divide(patch, [&](const TileId& id) {
+      GroundPatch& child = patches_.outline(id);
+      if (outside(child.bounds)) return;
+      GroundLeaf child_leaf = measure(child).leaf;
+      child_leaf.texture = leaf.texture;
+      child_leaf.textured = leaf.textured;
+      emit(child, child_leaf);
+    });
   }
 
-  /// What the finest mesh of a patch leaves: cells half as long as those of t = 1 have half the
-  /// error of a kinked surface, a quarter of that of a smooth one.
-  [[nodiscard]] static double relief_error_px(const GroundLeaf& leaf) {
-    double worst_px = 0.0;
-    constexpr int kSquares = kPatchCells / 2;
-    for (int row = 0; row < kSquares; ++row) {
-      for (int column = 0; column < kSquares; ++column) {
-        const int corner =
-            row * kOutlineCells / kSquares * kOutlinePoints + column * kOutlineCells / kSquares;
-        const float scale = std::max({leaf.px_per_m_up[corner],
-                                      leaf.px_per_m_up[corner + 1],
-                                      leaf.px_per_m_up[corner + kOutlinePoints],
-                                      leaf.px_per_m_up[corner + kOutlinePoints + 1]});
-        worst_px = std::max(worst_px, 0.5 * scale * leaf.patch->square_error(1, column, row));
+  /// True where the ground between the points of a patch leaves its finest mesh visibly.
+  [[nodiscard]] bool has_finer_relief(const GroundLeaf& leaf) const {
+    const double cell_m = leaf.patch->size_map_m / kPatchCells;
+    constexpr int kCells = kPatchCells / kOutlineCells;
+    for (int row = 0; row < kPatchCells; ++row) {
+      for (int column = 0; column < kPatchCells; ++column) {
+        const int corner = row / kCells * kOutlinePoints + column / kCells;
+        if (cell_m * largest_of(leaf.px_per_map_m, corner) < kFinestCellPx) continue;
+        const float error_m = leaf.patch->square_error(0, column, row);
+        if (error_m * largest_of(leaf.px_per_m_up, corner) > limits_.max_error_px) return true;
       }
     }
-    return worst_px;
+    return false;
+  }
+
+  /// At the corners of the outline's cell whose north-west corner is given.
+  [[nodiscard]] static float largest_of(const std::array<float, 25>& values, int corner) {
+    return std::max({values[corner],
+                     values[corner + 1],
+                     values[corner + kOutlinePoints],
+                     values[corner + kOutlinePoints + 1]});
   }
 
   template <typename Visit>

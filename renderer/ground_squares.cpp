@@ -27,6 +27,7 @@ class Divider {
       divide(t - 1, column + half, row + half);
       return;
     }
+    add_own_corners(1 << t, column, row);
     squares_.push_back({static_cast<std::uint8_t>(t),
                         static_cast<std::uint8_t>(column),
                         static_cast<std::uint8_t>(row)});
@@ -66,15 +67,29 @@ class Divider {
     return result;
   }
 
+  void add(int column, int row) {
+    corners_.add(lattice_point(leaf_.patch->id, column, row),
+                 leaf_.patch->point(column, row),
+                 leaf_.patch->id.level);
+  }
+
+  /// The middles of the sides of a square that is divided.
   void add_corners(int t, int column, int row) {
     const int half = 1 << (t - 1);
-    const auto add = [&](int c, int r) {
-      corners_.add(GroundPatches::lattice_point(leaf_.patch->id, c, r), leaf_.patch->point(c, r));
-    };
     add(column + half, row);
     add(column, row + half);
     add(column + 2 * half, row + half);
     add(column + half, row + 2 * half);
+  }
+
+  /// The corners that a neighbouring patch may know differently: those on the patch's rim.
+  void add_own_corners(int side, int column, int row) {
+    const auto on_rim = [](int i) { return i == 0 || i == kPatchCells; };
+    for (const int c : {column, column + side}) {
+      for (const int r : {row, row + side}) {
+        if (on_rim(c) || on_rim(r)) add(c, r);
+      }
+    }
   }
 
   const GroundLeaf& leaf_;
@@ -101,8 +116,9 @@ void add_division(const GroundPatch& patch, GroundCorners& corners) {
                                     std::pair{0, kMiddle},
                                     std::pair{kLast, kMiddle},
                                     std::pair{kMiddle, kLast}}) {
-    corners.add(GroundPatches::lattice_point(patch.id, column * kCells, row * kCells),
-                patch.outline[row * (kLast + 1) + column]);
+    corners.add(lattice_point(patch.id, column * kCells, row * kCells),
+                patch.outline[row * (kLast + 1) + column],
+                patch.id.level);
   }
 }
 
