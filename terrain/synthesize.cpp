@@ -12,6 +12,7 @@
 
 #include "core/pose.hpp"
 #include "terrain/map_plane.hpp"
+#include "terrain/synthesis/site.hpp"
 #include "terrain/synthesis/world_files.hpp"
 #include "terrain/world.hpp"
 
@@ -21,8 +22,6 @@ namespace {
 
 /// Raised whenever the landscape changes, so that cached worlds of before are not mistaken for it.
 constexpr int kLandscapeVersion = 4;
-constexpr double kDefaultLatDeg = 39.35;
-constexpr double kDefaultLonDeg = -86.03;
 /// Texels per side are a multiple of this, so that all overviews are exact.
 constexpr int kSideStepPx = 32;
 
@@ -47,34 +46,6 @@ Status check(const SynthesisOptions& options) {
   }
   if (!(std::abs(lon_deg) <= 180.0)) return outside("center_lon_deg", lon_deg, "[-180, 180]");
   return {};
-}
-
-/// The UTM zone and the landscape's place in it.
-Result<synthesis::Site> choose_site(const SynthesisOptions& options) {
-  double lat_deg = deg_from_rad(options.center_lat_rad);
-  double lon_deg = deg_from_rad(options.center_lon_rad);
-  if (options.center_lat_rad == 0.0 && options.center_lon_rad == 0.0) {
-    lat_deg = kDefaultLatDeg;
-    lon_deg = kDefaultLonDeg;
-  }
-  synthesis::Site site;
-  const int zone = std::min(60, static_cast<int>(std::floor((lon_deg + 180.0) / 6.0)) + 1);
-  site.epsg = (lat_deg >= 0.0 ? 32600 : 32700) + zone;
-  OGRSpatialReference crs;
-  if (crs.importFromEPSG(site.epsg) != OGRERR_NONE) {
-    return Error{ErrorCode::kInternal, "PROJ does not know EPSG:" + std::to_string(site.epsg)};
-  }
-  crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-  auto transform = CrsTransform::create(wgs84_crs(), crs, "built-in world");
-  if (!transform) return transform.error();
-  Eigen::Matrix2Xd point(2, 1);
-  point << lon_deg, lat_deg;
-  if (!(*transform)->apply(point)) {
-    return Error{ErrorCode::kInternal, "the world's middle has no place in its UTM zone"};
-  }
-  site.middle_x_m = std::round(point(0, 0));
-  site.middle_y_m = std::round(point(1, 0));
-  return site;
 }
 
 Result<WorldSpec::Runway> runway_of(const synthesis::Landscape& land, const synthesis::Site& site) {
@@ -102,7 +73,10 @@ Result<WorldSpec::Runway> runway_of(const synthesis::Landscape& land, const synt
 Status write_world(const fs::path& folder,
                    const SynthesisOptions& options,
                    const Progress& progress) {
-  auto site = choose_site(options);
+  const bool somewhere = options.center_lat_rad != 0.0 || options.center_lon_rad != 0.0;
+  auto site = somewhere ? synthesis::choose_site(deg_from_rad(options.center_lat_rad),
+                                                 deg_from_rad(options.center_lon_rad))
+                        : synthesis::choose_site();
   if (!site) return site.error();
   const int steps =
       static_cast<int>(std::ceil(options.size_m / options.texel_m / kSideStepPx - 1e-9));
@@ -169,31 +143,8 @@ Status synthesize_world(const fs::path& folder,
                         const Progress& progress) {
   Status sane = check(options);
   if (!sane) return sane;
-  std::error_code failed;
-  if (fs::exists(folder, failed) &&
-      !(fs::is_directory(folder, failed) && fs::is_empty(folder, failed))) {
-    return Error{ErrorCode::kConflict,
-                 folder.string() + ": exists already and is not an empty folder"};
-  }
-  const fs::path target = fs::absolute(folder).lexically_normal();
-  const fs::path parent = (target.has_filename() ? target : target.parent_path()).parent_path();
-  fs::create_directories(parent, failed);
-  std::string part = (parent / ".overfly-world-XXXXXX").string();
-  if (mkdtemp(part.data()) == nullptr) {
-    return Error{ErrorCode::kIo, parent.string() + ": cannot be written to"};
-  }
-  fs::permissions(part,
-                  fs::perms::owner_all | fs::perms::group_read | fs::perms::group_exec |
-                      fs::perms::others_read | fs::perms::others_exec,
-                  failed);
-  Status written = write_world(part, options, progress);
-  if (written) {
-    fs::rename(part, target, failed);
-    if (failed) written = Error{ErrorCode::kIo, target.string() + ": " + failed.message()};
-  }
-  if (!written) fs::remove_all(part, failed);
-  if (written && progress) progress(1.0);
-  return written;
+  return synthesis::make_folder_whole(
+      folder, [&](const fs::path& part) { return write_world(part, options, progress); }, progress);
 }
 
 Status ensure_world(const fs::path& folder,

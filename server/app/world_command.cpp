@@ -11,6 +11,7 @@
 #include "server/app/stop_signal.hpp"
 #include "server/app/world_argument.hpp"
 #include "terrain/synthesize.hpp"
+#include "terrain/synthesize_strip.hpp"
 
 namespace overfly::app {
 namespace {
@@ -20,6 +21,12 @@ struct SynthesizeArguments {
   terrain::SynthesisOptions options;
   double center_lat_deg = 0.0;
   double center_lon_deg = 0.0;
+  bool quiet = false;
+};
+
+struct StripArguments {
+  std::string out;
+  terrain::StripOptions options;
   bool quiet = false;
 };
 
@@ -45,6 +52,39 @@ int synthesize(SynthesizeArguments arguments) {
   if (!status) return report(status.error());
   std::cout << arguments.out << "/world.json\n";
   return kExitOk;
+}
+
+int synthesize_strip(const StripArguments& arguments) {
+  const std::atomic<bool>& stop = catch_stop_signals();
+  Status status;
+  {
+    ProgressDisplay display(arguments.quiet);
+    status = terrain::synthesize_strip(arguments.out, arguments.options, [&](double share) {
+      display.show(share, "strip of seed " + std::to_string(arguments.options.seed));
+      return !stop.load();
+    });
+  }
+  if (!status) return report(status.error());
+  std::cout << arguments.out << "/world.json\n";
+  return kExitOk;
+}
+
+void add_synthesize_strip(CLI::App& world, int& exit_code) {
+  const auto arguments = std::make_shared<StripArguments>();
+  terrain::StripOptions& options = arguments->options;
+  CLI::App* command =
+      world.add_subcommand("synthesize-strip", "Make a long strip of land for endurance flights");
+  command->add_option("--out", arguments->out, "Folder to make")->required();
+  command->add_option("--seed", options.seed, "Another seed, another landscape")
+      ->capture_default_str();
+  command->add_option("--length-m", options.length_m, "West to east")->capture_default_str();
+  command->add_option("--width-m", options.width_m, "South to north")->capture_default_str();
+  command->add_option("--texel-m", options.texel_m, "Imagery resolution")->capture_default_str();
+  command->add_option("--post-m", options.post_m, "Elevation's spacing")->capture_default_str();
+  command->add_option("--relief-m", options.relief_m, "Height between valley and hilltop")
+      ->capture_default_str();
+  command->add_flag("--quiet", arguments->quiet, "No progress");
+  command->callback([arguments, &exit_code] { exit_code = synthesize_strip(*arguments); });
 }
 
 void add_synthesize(CLI::App& world, int& exit_code) {
@@ -74,6 +114,7 @@ void add_world_command(CLI::App& app, int& exit_code) {
   infos->add_option("world", *world, kWorldHelp)->required();
   infos->callback([world, &exit_code] { exit_code = info(*world); });
   add_synthesize(*command, exit_code);
+  add_synthesize_strip(*command, exit_code);
 }
 
 }  // namespace overfly::app

@@ -1,0 +1,27 @@
+// Inside synthesis only: where a synthesised world lies, and how its folder comes to be.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+
+#include "core/result.hpp"
+#include "terrain/synthesis/world_files.hpp"
+
+namespace overfly::terrain::synthesis {
+
+inline constexpr double kDefaultLatDeg = 39.35;
+inline constexpr double kDefaultLonDeg = -86.03;
+
+/// The UTM zone of a place, and the landscape's middle in it. Errors: kInternal.
+[[nodiscard]] Result<Site> choose_site(double lat_deg = kDefaultLatDeg,
+                                       double lon_deg = kDefaultLonDeg);
+
+/// Fills a new folder: `write` is given a temporary one, which is renamed when it succeeds and
+/// removed when not.
+/// Errors: kConflict if `folder` exists and is not an empty folder; kIo; those of `write`.
+[[nodiscard]] Status make_folder_whole(
+    const std::filesystem::path& folder,
+    const std::function<Status(const std::filesystem::path& part)>& write,
+    const std::function<bool(double)>& progress);
+
+}  // namespace overfly::terrain::synthesis
