@@ -1,6 +1,10 @@
 // The camera's image chain, from the radiance at the lens to digital numbers, in physical order:
 // defocus, vignetting, exposure, photo-electrons, shot noise, full well, read noise, gain,
-// quantisation, response curve. Every stage is off by default.
+// quantisation, response curve. Every stage is off by default: an enabled sensor without a stage
+// gives the imagery's own picture. Equations and sources: docs/CAMERA.md.
+//
+// A colour image passes the chain channel by channel: three equal sensors behind ideal colour
+// filters, without a Bayer mosaic.
 #pragma once
 
 #include <array>
@@ -23,27 +27,44 @@ struct Vignette {
   [[nodiscard]] double transmission(double r) const;
 };
 
-/// Digital numbers of the sensor against what the file holds.
+enum class ResponseShape {
+  kSrgb,   ///< IEC 61966-2-1, as the imagery is encoded: the picture passes through
+  kGamma,  ///< output = input^(1 / gamma); gamma 1 = linear, as of a camera for measuring
+  kTable,  ///< linear between the table's values
+};
+
+/// "srgb", "gamma", "table".
+[[nodiscard]] const char* to_string(ResponseShape shape);
+[[nodiscard]] std::optional<ResponseShape> response_shape_from(const std::string& text);
+
+/// Digital numbers of the converter against what the file holds, both as shares of the largest.
 struct ResponseCurve {
-  double gamma = 1.0;  ///< output = input^(1 / gamma), both in [0, 1]; 1 = linear
-  /// Instead of gamma: output at evenly spread inputs, strictly growing from 0 to 1; >= 2 values.
+  ResponseShape shape = ResponseShape::kSrgb;
+  double gamma = 1.0;  ///< of kGamma, in [0.1, 10]
+  /// Of kTable: output at evenly spread inputs, strictly growing from 0 to 1; >= 2 values.
   std::vector<double> table;
+
+  static ResponseCurve linear() { return {ResponseShape::kGamma, 1.0, {}}; }
+  [[nodiscard]] bool is_linear() const { return shape == ResponseShape::kGamma && gamma == 1.0; }
   [[nodiscard]] double operator()(double input) const;
   [[nodiscard]] double inverse(double output) const;
 };
 
+/// Metering on the mean of the whole image. The longest useful exposure first, then gain.
 struct AutoExposure {
-  double target_mean = 0.45;  ///< of the digital numbers, as a share of the largest
+  /// Grey level (share of the largest number in the file) that the mean light is brought to.
+  double target_mean = 0.45;
   double min_exposure_s = 20e-6;
   double max_exposure_s = 20e-3;
   double max_gain = 8.0;  ///< used only once the exposure is at its longest
-  int settle_frames = 8;  ///< after a step of the light within +-3 stops, to 5 % of the target
+  /// After a step of the light within +-3 stops, to 5 % of the target; in [4, 1000].
+  int settle_frames = 8;
 };
 
 /// Parameters of a sensor. The default one passes the picture through: 8 bit, sRGB response.
 struct SensorModel {
-  bool enabled = false;  ///< false: the imagery's own digital numbers, no stage at all
-  double defocus_sigma_px = 0.0;
+  bool enabled = false;           ///< false: the imagery's own digital numbers, no stage at all
+  double defocus_sigma_px = 0.0;  ///< Gaussian, cut at 4 sigma; in [0, 50]
   std::optional<Vignette> vignette;
   double exposure_s = 2e-3;
   double readout_s = 0.0;  ///< first row to last; 0 = global shutter
@@ -51,16 +72,26 @@ struct SensorModel {
   /// Electrons that radiance 1 leaves in a pixel in one second.
   double electrons_per_s = 5e6;
   bool shot_noise = false;
+  double prnu = 0.0;          ///< fixed pattern: relative standard deviation of the pixels' gain
+  double dsnu_e = 0.0;        ///< fixed pattern: standard deviation of the pixels' offset
   double full_well_e = 0.0;   ///< 0 = none
   double read_noise_e = 0.0;  ///< standard deviation
-  double gain_dn_per_e =
-      0.0;       ///< at bit depth `bits`; 0 = full scale at electrons_per_s * exposure_s
-  int bits = 8;  ///< in [8, 16]; more than 8 makes 16-bit images
+  /// Digital numbers of depth `bits` per electron, K of EMVA 1288; 0 = full scale at what radiance
+  /// 1 leaves in `exposure_s`, or at the full well where that is less.
+  double gain_dn_per_e = 0.0;
+  double black_level_dn = 0.0;  ///< of depth `bits`, added before quantisation
+  int bits = 8;                 ///< of the image, in [8, 16]; more than 8 makes 16-bit images
+  /// Of the converter before the response, in [bits, 16]; 0 = `bits` at a linear response, else
+  /// 4 more (16 at most), so that the curve leaves no gaps in the dark.
+  int adc_bits = 0;
   ResponseCurve response;
   std::optional<AutoExposure> auto_exposure;
 
   /// Errors: kInvalidArgument naming field, value and limit.
   [[nodiscard]] Status validate() const;
+  /// The gain and the converter's depth in effect, the zeros above resolved.
+  [[nodiscard]] double effective_gain_dn_per_e() const;
+  [[nodiscard]] int effective_adc_bits() const;
 };
 
 struct ExposureSetting {
@@ -71,20 +102,28 @@ struct ExposureSetting {
 /// What the sensor made of one radiance image.
 struct SensorImage {
   Image image;      ///< 8 bit; of deeper sensors the high 8 bits
-  Image16 image16;  ///< of sensors deeper than 8 bit, left-aligned as raw numbers; else empty
+  Image16 image16;  ///< of sensors deeper than 8 bit: raw numbers, 0 to 2^bits - 1; else empty
   ExposureSetting setting;
-  double saturated_fraction = 0.0;  ///< of the pixels at full scale or full well
+  double saturated_fraction = 0.0;  ///< of the samples at full scale or full well
   double mean_level = 0.0;          ///< of the digital numbers before response, in [0, 1]
 };
+
+/// The vector units that a sensor may use. The image does not depend on them; for tests and
+/// figures.
+enum class VectorUnits { kBest, kNone, kAvx2, kAvx512 };
+/// Whether this machine has them.
+[[nodiscard]] bool supported(VectorUnits units);
 
 /// One camera's sensor. Deterministic: the same seed, frames and radiances give the same bytes,
 /// whatever the machine's vector units.
 class Sensor {
  public:
-  /// Errors: as SensorModel::validate.
+  /// Errors: as SensorModel::validate (`enabled` is not looked at); a vignette that leaves (0, 1]
+  /// within the image; a camera that is not valid. @pre supported(units)
   static Result<std::unique_ptr<Sensor>> create(const SensorModel& model,
                                                 const CameraModel& camera,
-                                                std::uint64_t seed);
+                                                std::uint64_t seed,
+                                                VectorUnits units = VectorUnits::kBest);
   virtual ~Sensor() = default;
 
   /// The exposure of the next frame: fixed, or what auto-exposure chose from the frames before.
