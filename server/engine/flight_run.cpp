@@ -7,6 +7,25 @@ namespace {
 
 Error stopped() { return {ErrorCode::kCancelled, "cancelled"}; }
 
+FrameRecord record_from(const MadeFrame& made, const CameraShot& shot, const CameraSpec& camera) {
+  FrameRecord record;
+  record.row.frame = made.frame;
+  record.row.t_ns = made.t_ns;
+  record.row.T_world_camera = shot.drawn.T_world_camera;
+  record.row.T_world_body = shot.drawn.T_world_camera * camera.T_body_camera.inverse();
+  record.row.texels_per_pixel_median = shot.drawn.texels_per_pixel_median;
+  record.row.texels_per_pixel_min = shot.drawn.texels_per_pixel_min;
+  record.row.void_fraction = shot.drawn.void_fraction;
+  record.row.exposure_ns = shot.setting.exposure_ns;
+  record.row.gain = shot.setting.gain;
+  record.row.saturated_fraction = shot.saturated_fraction;
+  record.row.late_tiles = shot.drawn.late_tiles;
+  record.row.stamp_offset_ns = shot.stamp_ns - made.t_ns;
+  record.row.faults = shot.faults;
+  record.axis_depth_m = shot.drawn.axis_depth_m;
+  return record;
+}
+
 }  // namespace
 
 FlightRun::FlightRun(const Scenario& scenario, const RunOptions& options, RunRecorder& recorder)
@@ -39,15 +58,10 @@ nlohmann::json FlightRun::timings() const {
 
 Status FlightRun::fly() {
   using Step = Status (FlightRun::*)();
-  const std::pair<const char*, Step> steps[] = {{"open_world", &FlightRun::open_world},
-                                                {"plan_flight", &FlightRun::plan_flight},
-                                                {"open_renderer", &FlightRun::open_renderer},
-                                                {"open_estimators", &FlightRun::open_estimators},
-                                                {"describe", &FlightRun::describe}};
-  for (const auto& step : steps) {
+  const Step steps[] = {&FlightRun::open_maker, &FlightRun::open_estimators, &FlightRun::describe};
+  for (const Step& step : steps) {
     if (cancelled()) return stopped();
-    Status status = stages_.measure(step.first, [&] { return (this->*step.second)(); });
-    if (!status) return status;
+    if (Status status = (this->*step)(); !status) return status;
   }
   loop_begin_ns_ = clock_.now_ns();
   Status flown = scenario_.pacing == Pacing::kRealTime ? fly_real_time() : fly_lockstep();
@@ -57,12 +71,12 @@ Status FlightRun::fly() {
     return 0;
   });
   Status recorded = record_events();
-  renderer_.reset();
+  maker_.reset();
   return flown ? recorded : flown;
 }
 
 Status FlightRun::fly_lockstep() {
-  for (std::int64_t k = 0; k < frames_total_; ++k) {
+  for (std::int64_t k = 0; k < maker_->frames_total(); ++k) {
     if (cancelled()) return stopped();
     Status status = fly_frame(k, true);
     if (!status && status.error().code == ErrorCode::kNotFound) return {};
@@ -75,7 +89,7 @@ Status FlightRun::fly_real_time() {
   clock_.enter();
   const std::int64_t start_ns = clock_.now_ns();
   Status status;
-  for (std::int64_t k = 0; k < frames_total_ && status; ++k) {
+  for (std::int64_t k = 0; k < maker_->frames_total() && status; ++k) {
     if (cancelled()) {
       status = stopped();
       break;
@@ -96,16 +110,8 @@ Status FlightRun::fly_real_time() {
 }
 
 Status FlightRun::fly_frame(std::int64_t k, bool wait_for_estimators) {
-  const std::int64_t t_ns = frame_time_ns(k, scenario_.rate);
-  const Result<AircraftState> state =
-      stages_.measure("truth", [&] { return truth_->state_at(t_ns); });
-  if (!state) return state.error();
-  const Pose T_world_camera = state->T_world_body * T_body_camera_;
-  Result<renderer::CameraFrame> drawn = stages_.measure("render", [&] {
-    return renderer_->render_camera(
-        scenario_.camera, T_world_camera, t_ns, renderer::PixelFormat::kGrey8);
-  });
-  if (!drawn) return drawn.error().in("frame " + std::to_string(k));
+  Result<MadeFrame> made = maker_->make(k);
+  if (!made) return made.error();
 
   // While this frame was drawn, the estimators worked on the one before.
   if (wait_for_estimators) {
@@ -116,22 +122,15 @@ Status FlightRun::fly_frame(std::int64_t k, bool wait_for_estimators) {
   }
   if (Status status = record_events(); !status) return status;
 
-  FrameRecord record;
-  record.row.frame = k;
-  record.row.t_ns = t_ns;
-  record.row.T_world_camera = drawn->T_world_camera;
-  record.row.T_world_body = drawn->T_world_camera * T_body_camera_.inverse();
-  record.row.texels_per_pixel_median = drawn->texels_per_pixel_median;
-  record.row.texels_per_pixel_min = drawn->texels_per_pixel_min;
-  record.row.void_fraction = drawn->void_fraction;
-  record.axis_depth_m = drawn->axis_depth_m;
-  const auto image = std::make_shared<const Image>(std::move(drawn->image));
+  CameraShot& shot = made->shots.front();
+  const FrameRecord record = record_from(*made, shot, scenario_.cameras.front());
+  const auto image = std::make_shared<const Image>(std::move(shot.image));
   for (auto& worker : workers_) {
     VoFrame frame;
     frame.index = k;
-    frame.t_ns = t_ns;
+    frame.t_ns = shot.stamp_ns;
     frame.image = image;
-    frame.intrinsics = scenario_.camera;
+    frame.intrinsics = scenario_.cameras.front().model.pinhole();
     worker->submit(std::move(frame));
   }
   Status recorded = stages_.measure("record", [&] { return recorder_.add_frame(record, image); });

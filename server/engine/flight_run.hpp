@@ -7,13 +7,12 @@
 #include <vector>
 
 #include "core/result.hpp"
-#include "core/truth_source.hpp"
 #include "server/engine/estimator_factory.hpp"
 #include "server/engine/estimator_worker.hpp"
+#include "server/engine/frame_maker.hpp"
 #include "server/engine/run.hpp"
 #include "server/engine/run_recorder.hpp"
 #include "server/engine/stage_timer.hpp"
-#include "terrain/world.hpp"
 
 namespace overfly::engine {
 
@@ -29,16 +28,14 @@ class FlightRun {
   [[nodiscard]] nlohmann::json timings() const;
 
  private:
-  Status open_world();
-  Status plan_flight();
-  Status open_renderer();
+  Status open_maker();
+  Status describe_world();
   Status open_estimators();
   Status describe();
-  [[nodiscard]] Result<ToyTruth> toy_truth(double scene_depth_m) const;
 
   Status fly_lockstep();
   Status fly_real_time();
-  /// Truth, image and record of frame k, and its way to the estimators.
+  /// Image and record of frame k, and its way to the estimators.
   /// Errors: kNotFound at the end of a flight whose length was not known.
   Status fly_frame(std::int64_t k, bool wait_for_estimators);
   Status record_events();
@@ -52,11 +49,7 @@ class FlightRun {
   std::int64_t begin_ns_ = 0;
   std::int64_t loop_begin_ns_ = 0;  ///< 0 = no frame yet
 
-  std::shared_ptr<const terrain::World> world_;
-  std::unique_ptr<TruthSource> truth_;
-  std::int64_t frames_total_ = 0;
-  Pose T_body_camera_{R_body_camera_nadir(), Eigen::Vector3d::Zero()};
-  std::unique_ptr<renderer::Renderer> renderer_;
+  std::unique_ptr<FrameMaker> maker_;
   std::vector<std::unique_ptr<EstimatorWorker>> workers_;
 };
 

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/result.hpp"
-#include "renderer/renderer.hpp"
+#include "server/engine/renderer_factory.hpp"
 #include "server/engine/run_timeline.hpp"
 #include "server/engine/scenario.hpp"
 #include "vo_bridges/vo_port.hpp"
@@ -17,10 +17,6 @@ namespace overfly::engine {
 
 class RunClock;
 class WorldCache;
-
-/// Makes the renderer of a run, on the run's thread.
-using RendererFactory = std::function<Result<std::unique_ptr<renderer::Renderer>>(
-    std::shared_ptr<const terrain::TileSource>)>;
 
 /// Makes an estimator instead of the one that its type names.
 using EstimatorFactory = std::function<Result<std::unique_ptr<VoPort>>(const EstimatorSpec&)>;

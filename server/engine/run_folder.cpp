@@ -52,6 +52,7 @@ RunInfo info_or_throw(const Json& manifest) {
   info.frames = manifest.at("frames").get<std::int64_t>();
   info.frames_total = manifest.at("frames_total").get<std::int64_t>();
   info.pacing = manifest.at("pacing").get<std::string>();
+  info.texture_limited = manifest.value("texture_limited", false);
   for (const Json& estimator : manifest.at("estimators")) {
     info.estimators.push_back(estimator.at("name").get<std::string>());
   }
@@ -96,6 +97,7 @@ void put_run_info(const RunInfo& info, Json& manifest) {
   manifest["frames"] = info.frames;
   manifest["frames_total"] = info.frames_total;
   manifest["pacing"] = info.pacing;
+  if (info.texture_limited) manifest["texture_limited"] = true;
 }
 
 Result<RunInfo> read_run_info(const fs::path& folder) {

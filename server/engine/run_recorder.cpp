@@ -124,10 +124,11 @@ Status RunRecorder::write_manifest() {
 void RunRecorder::set_mount(const Pose& T_body_camera) {
   records_.T_body_camera = T_body_camera;
   for (EstimatorState& estimator : estimators_) estimator.alignment = LiveAlignment(T_body_camera);
-  manifest_["camera"] = json_from(scenario_.camera);
+  const PinholeCamera& camera = scenario_.cameras.front().model.pinhole();
+  manifest_["camera"] = json_from(camera);
   manifest_["camera"]["rate_hz"] = scenario_.rate.hz();
   manifest_["camera"]["T_body_camera"] = json_from(T_body_camera);
-  timeline_->set_camera(scenario_.camera, T_body_camera);
+  timeline_->set_camera(camera, T_body_camera);
 }
 
 void RunRecorder::set_length(std::int64_t duration_ns, std::int64_t frames_total) {
@@ -231,7 +232,7 @@ Status RunRecorder::log_transition(std::size_t estimator, const EstimateRecord& 
 }
 
 Status RunRecorder::log(std::int64_t t_ns, const std::string& level, const std::string& text) {
-  const LogRow row{t_ns, level, text};
+  const LogRow row{t_ns, level, text, ""};
   timeline_->append_log(row);
   return log_lines_->append(json_from(row));
 }

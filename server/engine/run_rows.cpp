@@ -49,11 +49,16 @@ Json json_from(const FrameRecord& record) {
   Json value = {{"frame", row.frame},
                 {"t_ns", row.t_ns},
                 {"T_world_camera", json_from(row.T_world_camera)},
-                {"exposure_ns", record.exposure_ns},
+                {"exposure_ns", row.exposure_ns},
                 {"texels_per_pixel",
                  {{"min", row.texels_per_pixel_min}, {"median", row.texels_per_pixel_median}}},
                 {"void_fraction", row.void_fraction}};
   if (record.axis_depth_m) value["axis_depth_m"] = *record.axis_depth_m;
+  if (row.exposure_ns != 0) value["gain"] = row.gain;
+  if (row.saturated_fraction > 0.0) value["saturated_fraction"] = row.saturated_fraction;
+  if (row.late_tiles != 0) value["late_tiles"] = row.late_tiles;
+  if (row.stamp_offset_ns != 0) value["stamp_offset_ns"] = row.stamp_offset_ns;
+  if (!row.faults.empty()) value["faults"] = row.faults;
   return value;
 }
 
@@ -75,7 +80,9 @@ Json json_from(const EstimateRecord& record) {
 }
 
 Json json_from(const LogRow& row) {
-  return {{"t_ns", row.t_ns}, {"level", row.level}, {"text", row.text}};
+  Json value = {{"t_ns", row.t_ns}, {"level", row.level}, {"text", row.text}};
+  if (!row.kind.empty()) value["kind"] = row.kind;
+  return value;
 }
 
 Result<Pose> pose_from(const Json& value) {
@@ -102,7 +109,12 @@ Result<FrameRecord> frame_record_from(const Json& value, const Pose& T_body_came
     record.row.t_ns = value.at("t_ns").get<std::int64_t>();
     record.row.T_world_camera = pose_or_throw(value.at("T_world_camera"));
     record.row.T_world_body = record.row.T_world_camera * T_body_camera.inverse();
-    record.exposure_ns = value.at("exposure_ns").get<std::int64_t>();
+    record.row.exposure_ns = value.at("exposure_ns").get<std::int64_t>();
+    record.row.gain = value.value("gain", 1.0);
+    record.row.saturated_fraction = value.value("saturated_fraction", 0.0);
+    record.row.late_tiles = value.value("late_tiles", 0);
+    record.row.stamp_offset_ns = value.value("stamp_offset_ns", std::int64_t{0});
+    record.row.faults = value.value("faults", std::vector<std::string>{});
     record.row.texels_per_pixel_min = value.at("texels_per_pixel").at("min").get<double>();
     record.row.texels_per_pixel_median = value.at("texels_per_pixel").at("median").get<double>();
     record.row.void_fraction = value.at("void_fraction").get<double>();
@@ -141,7 +153,8 @@ Result<LogRow> log_row_from(const Json& value) {
   return guarded<LogRow>([&] {
     return LogRow{value.at("t_ns").get<std::int64_t>(),
                   value.at("level").get<std::string>(),
-                  value.at("text").get<std::string>()};
+                  value.at("text").get<std::string>(),
+                  value.value("kind", "")};
   });
 }
 

@@ -16,7 +16,6 @@ namespace overfly::engine {
 /// One line of frames.jsonl.
 struct FrameRecord {
   FrameRow row;
-  std::int64_t exposure_ns = 0;
   std::optional<double> axis_depth_m;  ///< of the ground along the optical axis
 };
 

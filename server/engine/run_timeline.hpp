@@ -31,6 +31,12 @@ struct FrameRow {
   double texels_per_pixel_median = 0.0;
   double texels_per_pixel_min = 0.0;
   double void_fraction = 0.0;
+  std::int64_t exposure_ns = 0;      ///< 0 = not known
+  double gain = 1.0;                 ///< of auto-exposure, times the sensor's own
+  double saturated_fraction = 0.0;   ///< of the pixels
+  int late_tiles = 0;                ///< drawn from coarser ones
+  std::int64_t stamp_offset_ns = 0;  ///< of the stamp that estimators were told, less t_ns
+  std::vector<std::string> faults;   ///< kinds of those in force
 };
 
 /// One estimator's answer to a frame, in its own frame and, once aligned, in the world.
@@ -44,6 +50,7 @@ struct LogRow {
   std::int64_t t_ns = 0;
   std::string level;  ///< "info", "warning", "error"
   std::string text;
+  std::string kind = {};  ///< "fault" where a fault of the scenario begins or ends; else empty
 };
 
 /// A picture that belongs to a frame; shared, never written to after it is made.
@@ -67,6 +74,8 @@ struct RunInfo {
   std::string pacing;
   std::vector<std::string> estimators;
   std::string attribution;
+  /// The imagery, not the camera, limits the result: fewer than 0.5 texels a pixel (median).
+  bool texture_limited = false;
   /// What it is busy with before its first frame ("making the built-in world: 30 %"); empty
   /// otherwise. Of this process only: no file keeps it.
   std::string notice;

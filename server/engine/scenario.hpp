@@ -11,10 +11,10 @@
 #include <variant>
 #include <vector>
 
-#include "core/camera.hpp"
 #include "core/result.hpp"
 #include "core/time.hpp"
 #include "flight/flight.hpp"
+#include "server/engine/camera_spec.hpp"
 #include "terrain/world.hpp"
 
 namespace overfly::engine {
@@ -64,8 +64,9 @@ struct Scenario {
   /// Stops the flight early [s].
   std::optional<double> duration_s;
 
-  PinholeCamera camera;
-  FrameRate rate;
+  /// At least one; the first is the main one, whose rows are frames.jsonl.
+  std::vector<CameraSpec> cameras{CameraSpec{}};
+  FrameRate rate;  ///< of all cameras: they have common time stamps
   std::vector<EstimatorSpec> estimators;
   Pacing pacing = Pacing::kLockstep;
 

@@ -64,13 +64,15 @@ Status read_camera(Json& document, Scenario& scenario) {
                    "camera.fx_px = " + camera.at("fx_px").dump() +
                        ": must not be given with camera.fov_deg or camera.fov_axis"};
     }
-    scenario.camera.width_px = width;
-    scenario.camera.height_px = height;
-    scenario.camera.fx_px = camera.at("fx_px").get<double>();
-    scenario.camera.fy_px = camera.at("fy_px").get<double>();
-    scenario.camera.cx_px = camera.value("cx_px", 0.5 * (width - 1));
-    scenario.camera.cy_px = camera.value("cy_px", 0.5 * (height - 1));
-    const Status valid = scenario.camera.validate();
+    PinholeCamera given;
+    given.width_px = width;
+    given.height_px = height;
+    given.fx_px = camera.at("fx_px").get<double>();
+    given.fy_px = camera.at("fy_px").get<double>();
+    given.cx_px = camera.value("cx_px", 0.5 * (width - 1));
+    given.cy_px = camera.value("cy_px", 0.5 * (height - 1));
+    scenario.cameras.front().model = given;
+    const Status valid = given.validate();
     return valid ? Status{} : Status{valid.error().in("camera")};
   }
   constexpr double kPaperFovDeg = 84.872;
@@ -83,7 +85,7 @@ Status read_camera(Json& document, Scenario& scenario) {
   const double fov_rad = rad_from_deg(camera.at("fov_deg").get<double>());
   const Result<PinholeCamera> made = PinholeCamera::from_fov(width, height, fov_rad, axis);
   if (!made) return made.error().in("camera");
-  scenario.camera = *made;
+  scenario.cameras.front().model = *made;
   return {};
 }
 

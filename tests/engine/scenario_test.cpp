@@ -36,10 +36,10 @@ std::string fault_of(const Json& document, const std::vector<std::string>& texts
 TEST(Scenario, FillsInTheDefaultsOfThePaper) {
   const Result<Scenario> scenario = resolve_scenario(course_document(), {}, "/tmp");
   ASSERT_TRUE(scenario.ok()) << scenario.error().message;
-  EXPECT_EQ(scenario->camera.width_px, 1280);
-  EXPECT_EQ(scenario->camera.height_px, 960);
-  EXPECT_NEAR(scenario->camera.fx_px, 700.006, 0.001);
-  EXPECT_EQ(scenario->camera.cx_px, 639.5);
+  EXPECT_EQ(scenario->cameras.front().model.pinhole().width_px, 1280);
+  EXPECT_EQ(scenario->cameras.front().model.pinhole().height_px, 960);
+  EXPECT_NEAR(scenario->cameras.front().model.pinhole().fx_px, 700.006, 0.001);
+  EXPECT_EQ(scenario->cameras.front().model.pinhole().cx_px, 639.5);
   EXPECT_EQ(scenario->rate.numerator, 31);
   EXPECT_EQ(scenario->pacing, Pacing::kLockstep);
   EXPECT_TRUE(scenario->estimators.empty());
@@ -77,8 +77,8 @@ TEST(Scenario, TakesFocalLengthsAndCentresThePrincipalPoint) {
                        overrides({"camera.fx_px=500", "camera.fy_px=501", "camera.width_px=640"}),
                        "/tmp");
   ASSERT_TRUE(scenario.ok()) << scenario.error().message;
-  EXPECT_EQ(scenario->camera.fy_px, 501.0);
-  EXPECT_EQ(scenario->camera.cx_px, 319.5);
+  EXPECT_EQ(scenario->cameras.front().model.pinhole().fy_px, 501.0);
+  EXPECT_EQ(scenario->cameras.front().model.pinhole().cx_px, 319.5);
 }
 
 TEST(ScenarioOverride, IsJsonElseText) {

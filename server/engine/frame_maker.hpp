@@ -1,0 +1,108 @@
+// Frames as the aircraft's cameras take them: world, truth and renderer in one place, so that
+// whoever makes the frames of a scenario again gets the same bytes.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/image.hpp"
+#include "core/result.hpp"
+#include "core/trajectory.hpp"
+#include "core/truth_source.hpp"
+#include "renderer/renderer.hpp"
+#include "renderer/sensor/sensor.hpp"
+#include "server/engine/renderer_factory.hpp"
+#include "server/engine/scenario.hpp"
+#include "server/engine/stage_timer.hpp"
+#include "terrain/world.hpp"
+
+namespace overfly::engine {
+
+class WorldCache;
+
+/// What one camera made of one frame.
+struct CameraShot {
+  std::size_t camera = 0;           ///< index into Scenario::cameras
+  std::string name;                 ///< of the camera
+  renderer::CameraRequest request;  ///< as drawn
+  /// What the renderer said of it; the images have moved on.
+  renderer::CameraFrame drawn;
+  Image image;      ///< as the camera gives it, grey or RGB; of deeper sensors the high 8 bits
+  Image16 image16;  ///< of sensors deeper than 8 bit; else empty
+  renderer::ExposureSetting setting;  ///< exposure 0 = a camera without a sensor model
+  double saturated_fraction = 0.0;
+  std::int64_t stamp_ns = 0;        ///< what estimators are told; the truth is MadeFrame::t_ns
+  std::vector<std::string> faults;  ///< names of those in force
+  bool delivered = true;            ///< false: lost on its way to the estimators
+};
+
+/// One instant, seen by all cameras.
+struct MadeFrame {
+  std::int64_t frame = 0;
+  std::int64_t t_ns = 0;
+  AircraftState state;
+  std::vector<CameraShot> shots;  ///< in the order of Scenario::cameras
+};
+
+struct FrameMakerOptions {
+  RendererFactory renderer_factory;           ///< EGL where it is empty
+  WorldCache* worlds = nullptr;               ///< opened worlds to share; its own when null
+  const std::atomic<bool>* cancel = nullptr;  ///< stops the opening
+  /// What takes long while it opens, one line at a time.
+  std::function<void(const std::string&)> notice;
+  StageTimer* stages = nullptr;  ///< where the time is booked
+  bool wait_for_tiles = true;    ///< see renderer::CameraRequest
+};
+
+/// Used and destroyed on one thread.
+class FrameMaker {
+ public:
+  /// Opens the world, plans the flight and makes the renderer.
+  /// @param scenario  must outlive the maker
+  /// Errors: kCancelled; whatever world, flight and renderer say.
+  static Result<std::unique_ptr<FrameMaker>> open(const Scenario& scenario,
+                                                  const FrameMakerOptions& options = {});
+
+  /// Frames of the flight; of a flight of unknown length those of a day.
+  [[nodiscard]] std::int64_t frames_total() const { return frames_total_; }
+  /// Empty for a flight whose end is not known beforehand.
+  [[nodiscard]] std::optional<std::int64_t> duration_ns() const { return duration_ns_; }
+  [[nodiscard]] const terrain::World& world() const { return *world_; }
+  [[nodiscard]] renderer::Renderer& renderer() { return *renderer_; }
+  [[nodiscard]] std::string flight_description() const { return truth_->description(); }
+
+  /// Frame k as every camera sees it. k must grow from call to call.
+  /// Errors: kNotFound after the end of a flight whose length was not known; as the renderer's.
+  [[nodiscard]] Result<MadeFrame> make(std::int64_t k);
+
+  /// T_world_camera of every frame of one camera, by the stamps that estimators are told.
+  [[nodiscard]] Result<Trajectory> rehearse(std::size_t camera) const;
+  /// Depth of the ground along a camera's axis at t = 0 [m]; empty when it meets the sky.
+  [[nodiscard]] Result<std::optional<double>> depth_at_start(std::size_t camera);
+
+ private:
+  FrameMaker(const Scenario& scenario, const FrameMakerOptions& options);
+  Status open_world();
+  Status plan_flight();
+  Status open_renderer();
+  [[nodiscard]] Result<CameraShot> take(std::size_t camera,
+                                        std::int64_t t_ns,
+                                        const AircraftState& state);
+
+  const Scenario& scenario_;
+  FrameMakerOptions options_;
+  std::unique_ptr<StageTimer> own_stages_;
+  StageTimer& stages_;
+  std::shared_ptr<const terrain::World> world_;
+  std::unique_ptr<TruthSource> truth_;
+  std::optional<std::int64_t> duration_ns_;
+  std::int64_t frames_total_ = 0;
+  std::unique_ptr<renderer::Renderer> renderer_;
+};
+
+}  // namespace overfly::engine
