@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kOctaves = 6;
 constexpr float kGain = 0.5F;
-constexpr float kEdge = 0.07F;  // half width of a shadow's soft edge, in thickness
+constexpr float kEdge = 0.04F;  // half width of a shadow's soft edge, in thickness
 
 float shade(float thickness, float threshold) {
   return synthesis::smoothstep(threshold - kEdge, threshold + kEdge, thickness);
