@@ -4,8 +4,7 @@ namespace overfly::renderer {
 
 namespace {
 
-/// The finaliser of SplitMix64 (Steele, Lea, Flood 2014, "Fast splittable pseudorandom number
-/// generators", OOPSLA, figure 16).
+/// The finaliser of SplitMix64.
 std::uint64_t mixed(std::uint64_t value) {
   value = (value ^ (value >> 30U)) * 0xbf58476d1ce4e5b9U;
   value = (value ^ (value >> 27U)) * 0x94d049bb133111ebU;
@@ -15,6 +14,11 @@ std::uint64_t mixed(std::uint64_t value) {
 constexpr std::uint64_t kGoldenGamma = 0x9e3779b97f4a7c15U;
 
 }  // namespace
+
+double SeededSequence::next() {
+  state_ += kGoldenGamma;
+  return static_cast<double>(mixed(state_) >> 11U) * 0x1p-53;
+}
 
 NoiseKey noise_key(std::uint64_t seed, std::int64_t frame, NoiseStage stage) {
   std::uint64_t state = mixed(seed + kGoldenGamma);

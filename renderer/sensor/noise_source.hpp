@@ -32,6 +32,18 @@ struct NoiseKey {
 
 [[nodiscard]] NoiseKey noise_key(std::uint64_t seed, std::int64_t frame, NoiseStage stage);
 
+/// A short sequence of numbers for places and phases: SplitMix64 (Steele, Lea, Flood 2014, "Fast
+/// splittable pseudorandom number generators", OOPSLA, figure 16).
+class SeededSequence {
+ public:
+  explicit SeededSequence(std::uint64_t seed) : state_(seed) {}
+  /// Uniform in [0, 1), 53 bits.
+  [[nodiscard]] double next();
+
+ private:
+  std::uint64_t state_;
+};
+
 inline constexpr int kPairs = 128;
 /// Samples that are worked on together; sample i of a chunk belongs to pair i % kPairs.
 inline constexpr int kChunk = 2 * kPairs;

@@ -2,40 +2,12 @@
 #include <cmath>
 #include <string>
 
+#include "renderer/sensor/number_limit.hpp"
 #include "renderer/sensor/sensor.hpp"
 
 namespace overfly::renderer {
 
 namespace {
-
-/// The check of one number: name, value and closed limits.
-struct Limit {
-  const char* field;
-  double value;
-  double low;
-  double high;
-};
-
-std::string number(double value) {
-  std::string text(32, '\0');
-  const int length = std::snprintf(text.data(), text.size(), "%.6g", value);
-  text.resize(static_cast<std::size_t>(length));
-  return text;
-}
-
-Status check(const Limit& limit) {
-  if (limit.value >= limit.low && limit.value <= limit.high) return {};
-  return Error{ErrorCode::kInvalidArgument,
-               std::string(limit.field) + " = " + number(limit.value) + ": must be in [" +
-                   number(limit.low) + ", " + number(limit.high) + "]"};
-}
-
-Status check_all(std::initializer_list<Limit> limits) {
-  for (const Limit& limit : limits) {
-    if (Status status = check(limit); !status) return status;
-  }
-  return {};
-}
 
 Status check_table(const std::vector<double>& table) {
   const auto fault = [](const std::string& text) {
@@ -45,13 +17,13 @@ Status check_table(const std::vector<double>& table) {
     return fault("has " + std::to_string(table.size()) + " values: at least 2 are needed");
   }
   if (table.front() != 0.0 || table.back() != 1.0) {
-    return fault("runs from " + number(table.front()) + " to " + number(table.back()) +
+    return fault("runs from " + number_text(table.front()) + " to " + number_text(table.back()) +
                  ": must run from 0 to 1");
   }
   for (std::size_t i = 1; i < table.size(); ++i) {
     if (!(table[i] > table[i - 1])) {
-      return fault("value " + std::to_string(i) + " = " + number(table[i]) +
-                   ": must be larger than the one before, " + number(table[i - 1]));
+      return fault("value " + std::to_string(i) + " = " + number_text(table[i]) +
+                   ": must be larger than the one before, " + number_text(table[i - 1]));
     }
   }
   return {};
@@ -60,13 +32,13 @@ Status check_table(const std::vector<double>& table) {
 Status check_response(const ResponseCurve& response) {
   if (response.shape == ResponseShape::kTable) return check_table(response.table);
   if (response.shape == ResponseShape::kGamma) {
-    return check({"response.gamma", response.gamma, 0.1, 10.0});
+    return check_limits({{"response.gamma", response.gamma, 0.1, 10.0}});
   }
   return {};
 }
 
 Status check_auto_exposure(const AutoExposure& automatic) {
-  return check_all({
+  return check_limits({
       {"auto_exposure.target_mean", automatic.target_mean, 0.01, 0.95},
       {"auto_exposure.min_exposure_s", automatic.min_exposure_s, 1e-6, 1.0},
       {"auto_exposure.max_exposure_s", automatic.max_exposure_s, automatic.min_exposure_s, 1.0},
@@ -83,7 +55,7 @@ double Vignette::transmission(double r) const {
 }
 
 Status SensorModel::validate() const {
-  Status numbers = check_all({
+  Status numbers = check_limits({
       {"defocus_sigma_px", defocus_sigma_px, 0.0, 50.0},
       {"exposure_s", exposure_s, 1e-6, 1.0},
       {"readout_s", readout_s, 0.0, 1.0},
@@ -98,8 +70,9 @@ Status SensorModel::validate() const {
   });
   if (!numbers) return numbers;
   if (adc_bits != 0) {
-    const Limit limit{"adc_bits", static_cast<double>(adc_bits), static_cast<double>(bits), 16};
-    if (Status status = check(limit); !status) return status;
+    const NumberLimit limit{
+        "adc_bits", static_cast<double>(adc_bits), static_cast<double>(bits), 16};
+    if (Status status = check_limits({limit}); !status) return status;
   }
   if (vignette && !(std::isfinite(vignette->transmission(1.0)))) {
     return Error{ErrorCode::kInvalidArgument, "vignette: a coefficient is not finite"};
