@@ -63,9 +63,8 @@ Status copy_to(GDALDataset* source, const char* format, const fs::path& file, ch
   return io_error(file, reason);
 }
 
-}  // namespace
-
-Status write_png(const fs::path& file, const Image& image) {
+template <typename T>
+Status write_png_of(const fs::path& file, const ImageBuffer<T>& image, GDALDataType type) {
   initialise_gdal();
   if (image.empty() || (image.channels != 1 && image.channels != 3)) {
     return Error{ErrorCode::kInvalidArgument,
@@ -74,10 +73,50 @@ Status write_png(const fs::path& file, const Image& image) {
                      std::to_string(image.channels) + " channels: must be grey or RGB, not empty"};
   }
   const DatasetPtr source =
-      in_memory(image.data.data(), image.width_px, image.height_px, image.channels, GDT_Byte);
+      in_memory(image.data.data(), image.width_px, image.height_px, image.channels, type);
   CPLStringList options;
   options.SetNameValue("ZLEVEL", "4");
   return copy_to(source.get(), "PNG", file, options.List());
+}
+
+}  // namespace
+
+Status write_png(const fs::path& file, const Image& image) {
+  return write_png_of(file, image, GDT_Byte);
+}
+
+Status write_png(const fs::path& file, const Image16& image) {
+  return write_png_of(file, image, GDT_UInt16);
+}
+
+Result<Image16> read_png16(const fs::path& file) {
+  auto dataset = open_raster(file);
+  if (!dataset) return dataset.error();
+  GDALDataset& source = **dataset;
+  if (source.GetRasterBand(1)->GetRasterDataType() != GDT_UInt16) {
+    return Error{ErrorCode::kUnreadable, file.string() + ": samples are not 16 bit"};
+  }
+  Image16 image(
+      source.GetRasterXSize(), source.GetRasterYSize(), source.GetRasterCount() >= 3 ? 3 : 1);
+  const GdalMessages messages;
+  if (source.RasterIO(GF_Read,
+                      0,
+                      0,
+                      image.width_px,
+                      image.height_px,
+                      image.data.data(),
+                      image.width_px,
+                      image.height_px,
+                      GDT_UInt16,
+                      image.channels,
+                      nullptr,
+                      GSpacing{2} * image.channels,
+                      GSpacing{2} * image.channels * image.width_px,
+                      2,
+                      nullptr) != CE_None) {
+    return Error{ErrorCode::kUnreadable, file.string() + ": " + messages.text()};
+  }
+  return image;
 }
 
 Result<Image> read_png(const fs::path& file) {

@@ -12,6 +12,13 @@ namespace overfly::terrain {
 /// Errors: kInvalidArgument for an empty image or other channels; kIo naming the file.
 [[nodiscard]] Status write_png(const std::filesystem::path& file, const Image& image);
 
+/// The same with 16 bits a sample.
+[[nodiscard]] Status write_png(const std::filesystem::path& file, const Image16& image);
+
+/// Reads a 16-bit grey or RGB picture. Errors: kNotFound; kUnreadable, also for samples of other
+/// types.
+[[nodiscard]] Result<Image16> read_png16(const std::filesystem::path& file);
+
 /// Reads any 8-bit picture that GDAL knows; palettes become RGB, alpha is dropped.
 /// Errors: kNotFound, kUnreadable.
 [[nodiscard]] Result<Image> read_png(const std::filesystem::path& file);

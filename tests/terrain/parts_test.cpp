@@ -156,6 +156,27 @@ TEST(ImageFile, PngReadsBackExactly) {
   EXPECT_EQ(files, 1) << "no side-car file";
 }
 
+TEST(ImageFile, DeepPngReadsBackExactlyWithSixteenBitSamples) {
+  TemporaryFolder folder;
+  for (const int channels : {1, 3}) {
+    Image16 image(41, 23, channels);
+    for (std::size_t i = 0; i < image.data.size(); ++i) {
+      image.data[i] = static_cast<std::uint16_t>(i * 2654435761U >> 7U);
+    }
+    ASSERT_TRUE(write_png(folder.path() / "a.png", image));
+    const auto read = read_png16(folder.path() / "a.png");
+    ASSERT_TRUE(read) << read.error().message;
+    EXPECT_EQ(read->channels, channels);
+    EXPECT_EQ(read->data, image.data);
+    // The header's bit depth: RFC 2083, section 4.1.1.
+    EXPECT_EQ(testing::read_text(folder.path() / "a.png")[24], 16);
+    EXPECT_FALSE(read_png(folder.path() / "a.png")) << "would lose the low 8 bits";
+  }
+  ASSERT_TRUE(write_png(folder.path() / "b.png", Image(2, 2, 1)));
+  EXPECT_FALSE(read_png16(folder.path() / "b.png"));
+  EXPECT_FALSE(write_png(folder.path() / "c.png", Image16()));
+}
+
 TEST(ImageFile, ErrorsNameTheFile) {
   TemporaryFolder folder;
   const Status empty = write_png(folder.path() / "a.png", Image());
