@@ -50,6 +50,11 @@ Result<StreamWish> read_stream(const json& entry, const std::string& where) {
   if (!is_picture_stream(wish.name)) {
     fields.fault("name", ": must be \"camera\", \"scene\" or \"debug/NAME\"");
   }
+  wish.camera = fields.text("camera").value_or("");
+  if (wish.camera.size() > kMaxNameBytes) fields.fault("camera", ": is too long a name");
+  if (!wish.camera.empty() && wish.name != "camera") {
+    fields.fault("camera", ": is for the stream \"camera\" only");
+  }
   wish.max_hz = fields.number("max_hz", 0.1, 120.0).value_or(wish.max_hz);
   wish.quality = static_cast<int>(fields.integer("quality", 1, 100).value_or(wish.quality));
   wish.max_width_px =
@@ -74,7 +79,9 @@ ClientCommand read_subscribe(JsonFields* fields) {
       return command;
     }
     for (const StreamWish& other : command.streams) {
-      if (other.name == wish->name) fields->fault("streams", ": " + wish->name + " comes twice");
+      if (other.name == wish->name && other.camera == wish->camera) {
+        fields->fault("streams", ": " + wish->name + " comes twice");
+      }
     }
     command.streams.push_back(std::move(*wish));
   }
@@ -138,6 +145,11 @@ ClientCommand read_loop(JsonFields* fields) {
   return LoopCommand{fields->boolean("value").value_or(false)};
 }
 
+ClientCommand read_align(JsonFields* fields) {
+  fields->require("mode");
+  return AlignCommand{fields->text("mode").value_or("")};
+}
+
 template <typename Command>
 ClientCommand read_plain(JsonFields* /*fields*/) {
   return Command{};
@@ -155,7 +167,8 @@ const std::map<std::string, std::function<ClientCommand(JsonFields*)>>& readers(
       {"step", read_step},
       {"speed", read_speed},
       {"loop", read_loop},
-      {"live", read_plain<LiveCommand>}};
+      {"live", read_plain<LiveCommand>},
+      {"align", read_align}};
   return table;
 }
 

@@ -19,6 +19,7 @@ struct StreamWish {
   double max_hz = 31.0;
   int quality = 75;
   int max_width_px = 1280;
+  std::string camera = {};  ///< of the stream "camera"; empty = the run's first
   bool operator==(const StreamWish&) const = default;
 };
 
@@ -57,6 +58,10 @@ struct LoopCommand {
   bool value = false;
 };
 struct LiveCommand {};
+/// Where the estimates of `playback` and of the scene lie.
+struct AlignCommand {
+  std::string mode;
+};
 
 using ClientCommand = std::variant<AttachCommand,
                                    DetachCommand,
@@ -68,7 +73,8 @@ using ClientCommand = std::variant<AttachCommand,
                                    StepCommand,
                                    SpeedCommand,
                                    LoopCommand,
-                                   LiveCommand>;
+                                   LiveCommand,
+                                   AlignCommand>;
 
 struct ClientMessage {
   std::optional<std::int64_t> request;  ///< to be repeated in the answer, also in an error

@@ -63,7 +63,7 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession> {
  private:
   void on_read(const error_code& error);
   void refuse(const error_code& error);
-  void dispatch(const HttpRequest& request);
+  void dispatch(HttpRequest request);
   [[nodiscard]] std::optional<HttpResponse> forbidden(const HttpRequest& request) const;
   void answer(std::uint64_t number, HttpResponse response);
   void write(HttpResponse response);
@@ -154,7 +154,7 @@ std::optional<HttpResponse> HttpSession::forbidden(const HttpRequest& request) c
   return std::nullopt;
 }
 
-void HttpSession::dispatch(const HttpRequest& request) {
+void HttpSession::dispatch(HttpRequest request) {
   if (auto response = forbidden(request)) {
     write(std::move(*response));
     return;
@@ -174,19 +174,21 @@ void HttpSession::dispatch(const HttpRequest& request) {
     if (error) return;
     self->answer(number, error_response(503, "timeout", "the answer took too long"));
   });
-  context_->router.handle(
-      request, [weak = weak_from_this(), context = context_, number](HttpResponse response) {
-        context->gate.run([&] {
-          const auto self = weak.lock();
-          if (!self) return;
-          asio::post(self->stream_.get_executor(),
-                     [weak, number, response = std::move(response)]() mutable {
-                       if (const auto session = weak.lock()) {
-                         session->answer(number, std::move(response));
-                       }
-                     });
-        });
-      });
+  const Respond respond = [weak = weak_from_this(), context = context_, number](HttpResponse made) {
+    context->gate.run([&] {
+      const auto self = weak.lock();
+      if (!self) return;
+      asio::post(self->stream_.get_executor(),
+                 [weak, number, response = std::move(made)]() mutable {
+                   if (const auto session = weak.lock()) {
+                     session->answer(number, std::move(response));
+                   }
+                 });
+    });
+  };
+  context_->offload([context = context_, respond, asked = std::move(request)] {
+    context->router.handle(asked, respond);
+  });
 }
 
 void HttpSession::answer(std::uint64_t number, HttpResponse response) {

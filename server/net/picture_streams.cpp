@@ -23,16 +23,18 @@ PictureRequest::Kind kind_of(const std::string& name) {
 void PictureStreams::subscribe(const std::vector<StreamWish>& wishes) {
   std::vector<Stream> before = std::move(streams_);
   streams_.clear();
-  for (const Stream& stream : before) sequences_[stream.wish.name] = stream.sequence;
+  const auto key_of = [](const StreamWish& wish) { return StreamKey(wish.name, wish.camera); };
+  for (const Stream& stream : before) sequences_[key_of(stream.wish)] = stream.sequence;
   for (const StreamWish& wish : wishes) {
     const auto kept = std::find_if(before.begin(), before.end(), [&](const Stream& stream) {
-      return stream.wish.name == wish.name;
+      return key_of(stream.wish) == key_of(wish);
     });
     Stream stream;
     if (kept != before.end()) stream = std::move(*kept);
-    const auto [id, is_new] = ids_.emplace(wish.name, static_cast<std::uint32_t>(ids_.size() + 1));
+    const auto [id, is_new] =
+        ids_.emplace(key_of(wish), static_cast<std::uint32_t>(ids_.size() + 1));
     stream.id = id->second;
-    stream.sequence = is_new ? 0 : sequences_[wish.name];
+    stream.sequence = is_new ? 0 : sequences_[key_of(wish)];
     stream.wish = wish;
     stream.slot.set_max_hz(wish.max_hz);
     streams_.push_back(std::move(stream));
@@ -48,6 +50,12 @@ void PictureStreams::set_view(const ViewCommand& command) {
   scene_.follow = command.follow.value_or(scene_.follow);
   scene_.width_px = command.width_px.value_or(scene_.width_px);
   scene_.height_px = command.height_px.value_or(scene_.height_px);
+  ++view_change_;
+}
+
+void PictureStreams::set_alignment(const std::string& mode) {
+  if (scene_.alignment == mode) return;
+  scene_.alignment = mode;
   ++view_change_;
 }
 
@@ -68,6 +76,7 @@ std::optional<PictureRequest> PictureStreams::request_of(const Stream& stream,
   request.t_ns = instant.t_ns;
   request.live = instant.live;
   request.scene = scene_;
+  request.camera = stream.wish.camera;
   request.quality = stream.wish.quality;
   request.max_width_px = stream.wish.max_width_px;
   if (request.kind == PictureRequest::Kind::kDebug) {
@@ -158,7 +167,9 @@ bool PictureStreams::waiting() const {
 nlohmann::json PictureStreams::streams_json() const {
   nlohmann::json list = nlohmann::json::array();
   for (const Stream& stream : streams_) {
-    list.push_back({{"id", stream.id}, {"name", stream.wish.name}});
+    nlohmann::json entry = {{"id", stream.id}, {"name", stream.wish.name}};
+    if (!stream.wish.camera.empty()) entry["camera"] = stream.wish.camera;
+    list.push_back(std::move(entry));
   }
   return {{"type", "streams"}, {"streams", std::move(list)}};
 }

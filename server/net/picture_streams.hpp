@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/result.hpp"
@@ -31,6 +32,8 @@ class PictureStreams {
   /// Replaces the set of streams; one that stays keeps its number, as does one that comes back.
   void subscribe(const std::vector<StreamWish>& wishes);
   void set_view(const ViewCommand& command);
+  /// The alignment of the estimates in the scene.
+  void set_alignment(const std::string& mode);
   /// What was on its way is no longer wanted: another run is watched, or none.
   void restart();
   /// Every stream sends the picture of the present instant again.
@@ -66,8 +69,9 @@ class PictureStreams {
   static void tell_error(Stream* stream, const Error& error, ViewerPort* port);
 
   std::vector<Stream> streams_;
-  std::map<std::string, std::uint32_t> ids_;        ///< of every name ever subscribed
-  std::map<std::string, std::uint32_t> sequences_;  ///< of streams not subscribed now
+  using StreamKey = std::pair<std::string, std::string>;  ///< name and camera
+  std::map<StreamKey, std::uint32_t> ids_;                ///< of all ever subscribed
+  std::map<StreamKey, std::uint32_t> sequences_;          ///< of streams not subscribed now
   engine::SceneSettings scene_;
   std::uint64_t change_ = 0;
   std::uint64_t view_change_ = 0;

@@ -56,25 +56,28 @@ std::optional<EstimateRow> continuation(const RunTimeline& timeline,
                                         const EstimateRow& row,
                                         std::int64_t frame_period_ns) {
   const auto next = timeline.estimate_at(estimator, row.sample.t_ns + frame_period_ns);
-  const bool same_track = next && next->T_world_body && next->sample.t_ns > row.sample.t_ns &&
-                          next->sample.map_id == row.sample.map_id;
+  const bool same_track =
+      next && next->sample.t_ns > row.sample.t_ns && next->sample.map_id == row.sample.map_id;
   return same_track ? next : std::nullopt;
 }
 
 json estimate_json(const RunTimeline& timeline,
                    std::size_t estimator,
+                   const EstimatePlaces& places,
                    std::int64_t t_ns,
                    std::int64_t frame_period_ns) {
   const auto row = timeline.estimate_at(estimator, t_ns);
   if (!row) return {{"state", to_string(TrackingState::kInitialising)}, {"pose", nullptr}};
   json pose = nullptr;
-  if (row->T_world_body) {
-    Pose T_world_body = *row->T_world_body;
-    if (const auto next = continuation(timeline, estimator, *row, frame_period_ns)) {
+  const auto& place = places.of_estimator.at(estimator);
+  if (auto T_world_body = place ? place->T_world_body(*row) : std::nullopt) {
+    const auto next = continuation(timeline, estimator, *row, frame_period_ns);
+    const auto T_world_body_next = next ? place->T_world_body(*next) : std::nullopt;
+    if (T_world_body_next) {
       const double alpha = share(row->sample.t_ns, next->sample.t_ns, t_ns);
-      T_world_body = interpolate(T_world_body, *next->T_world_body, std::min(alpha, 1.0));
+      T_world_body = interpolate(*T_world_body, *T_world_body_next, std::min(alpha, 1.0));
     }
-    pose = pose_json(T_world_body);
+    pose = pose_json(*T_world_body);
   }
   return {{"state", to_string(row->sample.state)}, {"pose", std::move(pose)}};
 }
@@ -87,13 +90,25 @@ std::int64_t frame_period_ns(const RunTimeline& timeline) {
 
 }  // namespace
 
-json playback_json(const RunTimeline& timeline, const PlaybackCursor& cursor) {
+EstimatePlaces EstimatePlaces::of(const RunTimeline& timeline, const std::string& mode) {
+  EstimatePlaces places;
+  places.mode = mode;
+  for (std::size_t i = 0; i < timeline.estimators().size(); ++i) {
+    const auto place = engine::RowAlignment::of(timeline, i, mode);
+    places.of_estimator.push_back(place ? std::optional(*place) : std::nullopt);
+  }
+  return places;
+}
+
+json playback_json(const RunTimeline& timeline,
+                   const PlaybackCursor& cursor,
+                   const EstimatePlaces& places) {
   const std::int64_t t_ns = cursor.t_ns();
   const auto row = timeline.frame_at(t_ns);
   json estimates = json::object();
   const std::int64_t period_ns = frame_period_ns(timeline);
   for (std::size_t i = 0; i < timeline.estimators().size(); ++i) {
-    estimates[timeline.estimators()[i]] = estimate_json(timeline, i, t_ns, period_ns);
+    estimates[timeline.estimators()[i]] = estimate_json(timeline, i, places, t_ns, period_ns);
   }
   return {{"type", "playback"},
           {"t_ns", t_ns},
@@ -104,6 +119,7 @@ json playback_json(const RunTimeline& timeline, const PlaybackCursor& cursor) {
           {"loop", cursor.loop()},
           {"begin_ns", 0},
           {"end_ns", cursor.end_ns()},
+          {"alignment", places.mode},
           {"truth", row ? truth_json(timeline, *row, t_ns) : json(nullptr)},
           {"estimates", std::move(estimates)}};
 }

@@ -4,16 +4,29 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
+#include <vector>
 
+#include "server/engine/row_alignment.hpp"
 #include "server/engine/run_timeline.hpp"
 #include "server/net/playback_cursor.hpp"
 
 namespace overfly::net {
 
+/// Where the estimates lie: one place for each estimator, empty where it has no such alignment.
+struct EstimatePlaces {
+  std::string mode = engine::kRecordedAlignment;
+  std::vector<std::optional<engine::RowAlignment>> of_estimator;
+
+  /// @pre check_alignment says that the run has this mode
+  static EstimatePlaces of(const engine::RunTimeline& timeline, const std::string& mode);
+};
+
 /// The `playback` message: cursor, truth and estimates at its instant, interpolated between
 /// frames. Before the first frame `frame` is -1 and `truth` null.
 [[nodiscard]] nlohmann::json playback_json(const engine::RunTimeline& timeline,
-                                           const PlaybackCursor& cursor);
+                                           const PlaybackCursor& cursor,
+                                           const EstimatePlaces& places);
 
 /// Stamp of the last recorded frame; 0 before the first.
 [[nodiscard]] std::int64_t end_of(const engine::RunTimeline& timeline);

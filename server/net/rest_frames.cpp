@@ -65,11 +65,12 @@ void add_frame_routes(RestRouter* router, engine::RunManager* runs, engine::View
     request.t_ns = *t_ns;
     request.quality = kQuality;
     request.max_width_px = kFullWidth;
+    request.camera = call.query_or("camera", "");
     views->request((*next_client)++, 0, request, [respond](const Result<Picture>& picture) {
       respond(picture_response(picture));
     });
   };
-  router->add("GET", "/api/v1/runs/{id}/frames/{file}", handler);
+  router->add("GET", "/api/v1/runs/{id}/frames/{file}", handler, {"camera"});
 }
 
 }  // namespace overfly::net

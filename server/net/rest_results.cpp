@@ -3,6 +3,7 @@
 #include <iterator>
 #include <system_error>
 
+#include "server/engine/row_alignment.hpp"
 #include "server/net/error_response.hpp"
 #include "server/net/rest_api.hpp"
 #include "server/net/row_encoder.hpp"
@@ -48,33 +49,49 @@ HttpResponse manifest(RunManager* runs, const std::string& id) {
       *folder / "manifest.json", "application/json", "run " + id + " has no manifest yet");
 }
 
-json columns_of(const RunTimeline& timeline, const std::string& name) {
+Result<json> columns_of(const RunTimeline& timeline,
+                        const std::string& name,
+                        const std::string& alignment) {
   if (name == kTruth) return truth_columns(timeline.frames(0, timeline.frame_count()));
   const auto& names = timeline.estimators();
   const auto index =
       static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-  return estimate_columns(timeline.estimates(index, 0, timeline.estimate_count(index)));
+  const auto placed = engine::RowAlignment::of(timeline, index, alignment);
+  if (!placed) return placed.error();
+  return estimate_columns(timeline.estimates(index, 0, timeline.estimate_count(index)), *placed);
+}
+
+/// The parameters `format` and `alignment` for the trajectory of `name`.
+Status check_trajectory_query(const RouteCall& call, const std::string& name) {
+  const std::string format = call.query_or("format", "tum");
+  if (format != "tum" && format != "json") {
+    return Error{ErrorCode::kInvalidArgument,
+                 "format = " + format + ": must be \"tum\" or \"json\""};
+  }
+  if (call.query.contains("alignment") && (format == "tum" || name == kTruth)) {
+    return Error{ErrorCode::kInvalidArgument,
+                 "alignment = " + call.query.at("alignment") +
+                     ": is for an estimate with format=json (a TUM file has no alignment)"};
+  }
+  return {};
 }
 
 HttpResponse trajectory(RunManager* runs, const RouteCall& call) {
-  if (const Status status = call.allow_query({"format"}); !status) {
-    return error_response(status.error());
-  }
-  const auto format = call.query.find("format");
-  const std::string wanted = format == call.query.end() ? "tum" : format->second;
-  if (wanted != "tum" && wanted != "json") {
-    return error_response(
-        {ErrorCode::kInvalidArgument, "format = " + wanted + ": must be \"tum\" or \"json\""});
-  }
   const std::string& id = call.path.at("id");
   const std::string& name = call.path.at("name");
+  if (const Status status = check_trajectory_query(call, name); !status) {
+    return error_response(status.error());
+  }
   const auto timeline = runs->timeline(id);
   if (!timeline) return error_response(timeline.error());
   const auto& names = (*timeline)->estimators();
   if (name != kTruth && std::find(names.begin(), names.end(), name) == names.end()) {
     return error_response({ErrorCode::kNotFound, "run " + id + " has no trajectory " + name});
   }
-  if (wanted == "json") return json_response(200, columns_of(**timeline, name));
+  if (call.query_or("format", "tum") == "json") {
+    return json_or_error(
+        columns_of(**timeline, name, call.query_or("alignment", engine::kRecordedAlignment)));
+  }
   const auto folder = runs->folder(id);
   if (!folder) return error_response(folder.error());
   const std::string file_name = name + ".tum";
@@ -98,7 +115,8 @@ void add_result_routes(RestRouter* router, RunManager* runs) {
   router->add(
       "GET",
       "/api/v1/runs/{id}/trajectories/{name}",
-      [runs](const RouteCall& call, const Respond& respond) { respond(trajectory(runs, call)); });
+      [runs](const RouteCall& call, const Respond& respond) { respond(trajectory(runs, call)); },
+      {"format", "alignment"});
 }
 
 }  // namespace overfly::net

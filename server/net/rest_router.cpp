@@ -40,21 +40,36 @@ HttpResponse method_not_allowed(const std::string& method, const std::set<std::s
   return response;
 }
 
-}  // namespace
-
-Status RouteCall::allow_query(const std::vector<std::string>& known) const {
+Status check_query(const std::map<std::string, std::string>& query,
+                   const std::vector<std::string>& known) {
+  std::string names;
+  for (const std::string& name : known) names += (names.empty() ? "" : ", ") + name;
   for (const auto& [name, value] : query) {
-    if (std::find(known.begin(), known.end(), name) == known.end()) {
-      return Error{ErrorCode::kInvalidArgument, "query." + name + ": is not a known parameter"};
-    }
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    return Error{ErrorCode::kInvalidArgument,
+                 "query." + name + ": is not a known parameter, there " +
+                     (names.empty() ? "are none here" : "are: " + names)};
   }
   return {};
 }
 
-void RestRouter::add(const std::string& method, const std::string& pattern, Handler handler) {
+}  // namespace
+
+std::string RouteCall::query_or(const std::string& name, const std::string& absent) const {
+  const auto found = query.find(name);
+  return found == query.end() ? absent : found->second;
+}
+
+void RestRouter::add(const std::string& method,
+                     const std::string& pattern,
+                     Handler handler,
+                     std::vector<std::string> known_query) {
   const auto url = parse_target(pattern);
-  routes_.push_back(
-      {method, pattern, url ? url->segments : std::vector<std::string>{}, std::move(handler)});
+  routes_.push_back({method,
+                     pattern,
+                     url ? url->segments : std::vector<std::string>{},
+                     std::move(handler),
+                     std::move(known_query)});
 }
 
 void RestRouter::handle(const HttpRequest& request, const Respond& respond) const {
@@ -69,6 +84,10 @@ void RestRouter::handle(const HttpRequest& request, const Respond& respond) cons
     auto captures = match(route.segments, url->segments);
     if (!captures) continue;
     if (route.method == method) {
+      if (const Status status = check_query(url->query, route.query); !status) {
+        respond(error_response(status.error()));
+        return;
+      }
       route.handler({request, std::move(*captures), url->query}, respond);
       return;
     }

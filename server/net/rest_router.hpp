@@ -14,12 +14,12 @@ namespace overfly::net {
 
 /// A request that matched a route.
 struct RouteCall {
-  const HttpRequest& request;               ///< lives until the handler returns, no longer
-  std::map<std::string, std::string> path;  ///< values of the pattern's {names}, decoded
-  std::map<std::string, std::string> query;
+  const HttpRequest& request;                ///< lives until the handler returns, no longer
+  std::map<std::string, std::string> path;   ///< values of the pattern's {names}, decoded
+  std::map<std::string, std::string> query;  ///< only names that the route knows
 
-  /// Errors: kInvalidArgument naming a query parameter that is not in `known`.
-  [[nodiscard]] Status allow_query(const std::vector<std::string>& known) const;
+  /// Value of a query parameter, or what stands for its absence.
+  [[nodiscard]] std::string query_or(const std::string& name, const std::string& absent) const;
 };
 
 class RestRouter {
@@ -31,11 +31,16 @@ class RestRouter {
     std::string pattern;  ///< "/api/v1/runs/{id}"
     std::vector<std::string> segments;
     Handler handler;
+    std::vector<std::string> query;  ///< parameters that it knows
   };
 
-  void add(const std::string& method, const std::string& pattern, Handler handler);
+  void add(const std::string& method,
+           const std::string& pattern,
+           Handler handler,
+           std::vector<std::string> known_query = {});
 
-  /// Answers 404 for an unknown path, 405 with `Allow` for a known path's other methods.
+  /// Answers 404 for an unknown path, 405 with `Allow` for a known path's other methods, 400 naming
+  /// a query parameter that the route does not know.
   /// HEAD is served by GET's handler: the caller leaves the body out.
   void handle(const HttpRequest& request, const Respond& respond) const;
   [[nodiscard]] const std::vector<Route>& routes() const { return routes_; }

@@ -79,7 +79,8 @@ json truth_columns(const std::vector<engine::FrameRow>& rows) {
   return columns;
 }
 
-json estimate_columns(const std::vector<engine::EstimateRow>& rows) {
+json estimate_columns(const std::vector<engine::EstimateRow>& rows,
+                      const engine::RowAlignment& alignment) {
   using Row = engine::EstimateRow;
   json columns = json::object();
   columns["frame"] = column(rows, [](const Row& row) { return row.sample.frame; });
@@ -87,7 +88,7 @@ json estimate_columns(const std::vector<engine::EstimateRow>& rows) {
   columns["state"] = column(rows, [](const Row& row) { return to_string(row.sample.state); });
   columns["latency_ms"] = column(rows, [](const Row& row) { return rounded(row.latency_ms, 1e3); });
   add_pose_columns(
-      rows, [](const Row& row) { return row.T_world_body; }, &columns);
+      rows, [&](const Row& row) { return alignment.T_world_body(row); }, &columns);
   return columns;
 }
 
@@ -112,7 +113,8 @@ json run_json(const engine::RunInfo& info) {
           {"frames_total", info.frames_total},
           {"pacing", info.pacing},
           {"estimators", info.estimators},
-          {"attribution", info.attribution}};
+          {"attribution", info.attribution},
+          {"notice", info.notice.empty() ? json(nullptr) : json(info.notice)}};
 }
 
 }  // namespace overfly::net

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/pose.hpp"
+#include "server/engine/row_alignment.hpp"
 #include "server/engine/run_timeline.hpp"
 
 namespace overfly::net {
@@ -17,7 +18,9 @@ namespace overfly::net {
 
 /// Columns of the stream `truth`, of `estimate/NAME`, and of `log`.
 [[nodiscard]] nlohmann::json truth_columns(const std::vector<engine::FrameRow>& rows);
-[[nodiscard]] nlohmann::json estimate_columns(const std::vector<engine::EstimateRow>& rows);
+/// Estimates lie where `alignment` says, by default where they were recorded.
+[[nodiscard]] nlohmann::json estimate_columns(const std::vector<engine::EstimateRow>& rows,
+                                              const engine::RowAlignment& alignment = {});
 [[nodiscard]] nlohmann::json log_columns(const std::vector<engine::LogRow>& rows);
 
 [[nodiscard]] nlohmann::json run_json(const engine::RunInfo& info);

@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "server/net/json_text.hpp"
-#include "server/net/playback_state.hpp"
 #include "server/net/row_encoder.hpp"
 
 namespace overfly::net {
@@ -33,7 +32,15 @@ RunWatch::RunWatch(std::shared_ptr<const engine::RunTimeline> timeline,
                    const std::map<std::string, std::size_t>& resume)
     : timeline_(std::move(timeline)),
       feed_(timeline_, resume),
-      cursor_(is_running(timeline_->info().status)) {}
+      cursor_(is_running(timeline_->info().status)),
+      places_(EstimatePlaces::of(*timeline_, engine::kRecordedAlignment)) {}
+
+Status RunWatch::align(const std::string& mode) {
+  if (Status status = engine::check_alignment(*timeline_, mode); !status) return status;
+  places_ = EstimatePlaces::of(*timeline_, mode);
+  playback_due_ = true;
+  return {};
+}
 
 void RunWatch::refresh(std::int64_t now_ns) {
   const std::uint64_t revision = timeline_->revision();
@@ -107,7 +114,7 @@ void RunWatch::tell_playback(ViewerPort* port, std::int64_t now_ns) {
   cursor_told_ = now;
   end_told_ns_ = cursor_.end_ns();
   playback_at_ns_ = now_ns;
-  port->send_text(to_text(playback_json(*timeline_, cursor_)));
+  port->send_text(to_text(playback_json(*timeline_, cursor_, places_)));
 }
 
 }  // namespace overfly::net

@@ -9,6 +9,7 @@
 
 #include "server/engine/run_timeline.hpp"
 #include "server/net/playback_cursor.hpp"
+#include "server/net/playback_state.hpp"
 #include "server/net/row_feed.hpp"
 #include "server/net/viewer_port.hpp"
 
@@ -28,6 +29,8 @@ class RunWatch {
   /// Sends what is due of `run`, `rows`, `metrics` and `playback`. Rows wait while the connection
   /// has much unsent: nothing is lost, the run keeps them.
   void tell(ViewerPort* port, std::int64_t now_ns);
+  /// Estimates lie where this alignment says. Errors: as engine::check_alignment.
+  Status align(const std::string& mode);
   /// The next tell() sends `playback` whatever its rate.
   void cursor_commanded() { playback_due_ = true; }
   /// True while rows wait for the connection.
@@ -50,6 +53,7 @@ class RunWatch {
   std::shared_ptr<const engine::RunTimeline> timeline_;
   RowFeed feed_;
   PlaybackCursor cursor_;
+  EstimatePlaces places_;
   std::optional<std::uint64_t> revision_;       ///< that the cursor knows
   std::optional<std::uint64_t> rows_revision_;  ///< that the rows told belong to
   std::optional<std::uint64_t> run_revision_;

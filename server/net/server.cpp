@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/thread_pool.hpp>
+#include <chrono>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -13,9 +16,19 @@
 
 namespace overfly::net {
 
+namespace {
+
+/// Each reads at most one run from disk at a time; the others answer meanwhile.
+constexpr std::size_t kWorkers = 4;
+/// How long viewers have to answer the close frame when the server shuts down.
+constexpr std::chrono::seconds kFarewell{2};
+
+}  // namespace
+
 struct Server::Impl {
   std::shared_ptr<ServerContext> context;
   boost::asio::io_context loop;
+  boost::asio::thread_pool workers{kWorkers};
   std::vector<std::thread> threads;
   std::uint16_t port = 0;
 };
@@ -23,7 +36,12 @@ struct Server::Impl {
 Server::Server() : impl_(std::make_unique<Impl>()) {}
 
 Server::~Server() {
-  if (impl_->context) impl_->context->gate.close();
+  if (impl_->context) {
+    impl_->context->sessions.close_all(kFarewell);
+    impl_->context->gate.close();
+  }
+  impl_->workers.stop();
+  impl_->workers.join();
   impl_->loop.stop();
   for (std::thread& thread : impl_->threads) thread.join();
 }
@@ -44,6 +62,9 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options,
   add_run_routes(&context->router, &runs);
   add_result_routes(&context->router, &runs);
   add_frame_routes(&context->router, &runs, &views);
+  context->offload = [workers = &server->impl_->workers](std::function<void()> work) {
+    boost::asio::post(*workers, std::move(work));
+  };
   server->impl_->context = context;
   const auto port = listen(&server->impl_->loop, context);
   if (!port) return port.error();

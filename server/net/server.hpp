@@ -44,7 +44,7 @@ class Server {
   static Result<std::unique_ptr<Server>> start(const ServerOptions& options,
                                                engine::RunManager& runs,
                                                engine::ViewService& views);
-  ~Server();  ///< closes every connection and joins
+  ~Server();  ///< tells every viewer that it goes (close code 1001) and joins
 
   [[nodiscard]] std::uint16_t port() const;
   [[nodiscard]] std::string url() const;

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <string>
 
@@ -10,6 +11,7 @@
 #include "server/engine/view_service.hpp"
 #include "server/net/rest_router.hpp"
 #include "server/net/server.hpp"
+#include "server/net/session_registry.hpp"
 #include "server/net/static_files.hpp"
 
 namespace overfly::net {
@@ -52,6 +54,9 @@ struct ServerContext {
   RestRouter router;
   StaticFiles files;
   CallbackGate gate;
+  SessionRegistry sessions;
+  /// Runs what may take long (reading a run from disk) on a thread that serves no connection.
+  std::function<void(std::function<void()>)> offload;
   std::atomic<std::uint64_t> next_client{1};  ///< numbers clients of the view service
   std::atomic<std::size_t> connections{0};
 };

@@ -29,7 +29,8 @@ void answer(const std::optional<std::int64_t>& request, const Status& status, Vi
 struct Viewer::CommandVisitor {
   Viewer& viewer;
 
-  Status operator()(const AttachCommand& command) const { return viewer.attach(command); }
+  /// Answered when the run is open.
+  Status operator()(const AttachCommand& /*command*/) const { return {}; }
   Status operator()(const DetachCommand& /*command*/) const {
     viewer.detach();
     return {};
@@ -58,6 +59,7 @@ struct Viewer::CommandVisitor {
   Status operator()(const LoopCommand& command) const {
     return with_cursor([&](PlaybackCursor* cursor) { cursor->set_loop(command.value); });
   }
+  Status operator()(const AlignCommand& command) const { return viewer.align(command); }
   Status operator()(const LiveCommand& /*command*/) const {
     bool live = false;
     Status status = with_cursor([&](PlaybackCursor* cursor) { live = cursor->go_live(); });
@@ -83,21 +85,55 @@ void Viewer::greet(const std::string& connection_name) {
 }
 
 void Viewer::handle(const std::string& text, std::int64_t now_ns) {
+  if (opening_) {
+    waiting_.push_back(text);
+  } else {
+    carry_out(text, now_ns);
+  }
+}
+
+void Viewer::carry_out(const std::string& text, std::int64_t now_ns) {
   if (watch_) watch_->refresh(now_ns);
   const ClientMessage message = parse_client_message(text);
+  if (const auto* command = std::get_if<AttachCommand>(&message.command);
+      command != nullptr && message.status) {
+    opening_ = Opening{message.request, *command};
+    port_.open_run(command->run_id);
+    return;
+  }
   const Status status =
       message.status ? std::visit(CommandVisitor{*this}, message.command) : message.status;
   answer(message.request, status, &port_);
   tick(now_ns);
 }
 
-Status Viewer::attach(const AttachCommand& command) {
-  auto timeline = runs_.timeline(command.run_id);
-  if (!timeline) return timeline.error();
+void Viewer::run_opened(Result<std::shared_ptr<engine::RunTimeline>> timeline,
+                        std::int64_t now_ns) {
+  if (!opening_) return;
+  const Opening opening = *std::exchange(opening_, std::nullopt);
+  if (timeline) attach(opening.command, std::move(*timeline));
+  answer(opening.request, timeline ? Status() : Status(timeline.error()), &port_);
+  tick(now_ns);
+  while (!opening_ && !waiting_.empty()) {
+    const std::string text = std::move(waiting_.front());
+    waiting_.pop_front();
+    carry_out(text, now_ns);
+  }
+}
+
+void Viewer::attach(const AttachCommand& command,
+                    std::shared_ptr<const engine::RunTimeline> timeline) {
   pictures_.restart();
+  pictures_.set_alignment(engine::kRecordedAlignment);
   run_id_ = command.run_id;
-  watch_.emplace(std::move(*timeline), command.resume);
+  watch_.emplace(std::move(timeline), command.resume);
   streams_due_ = true;
+}
+
+Status Viewer::align(const AlignCommand& command) {
+  if (!watch_) return Error{ErrorCode::kConflict, "no run is attached"};
+  if (Status status = watch_->align(command.mode); !status) return status;
+  pictures_.set_alignment(command.mode);
   return {};
 }
 

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
+#include <memory>
 #include <optional>
 #include <string>
 
-#include "server/engine/run_manager.hpp"
+#include "server/engine/run_timeline.hpp"
 #include "server/net/client_message.hpp"
 #include "server/net/picture_streams.hpp"
 #include "server/net/run_watch.hpp"
@@ -16,13 +18,17 @@ namespace overfly::net {
 
 class Viewer {
  public:
-  /// Both must outlive the viewer.
-  Viewer(engine::RunManager& runs, ViewerPort& port) : runs_(runs), port_(port) {}
+  /// @param port  must outlive the viewer
+  explicit Viewer(ViewerPort& port) : port_(port) {}
 
   /// Sends `hello`.
   void greet(const std::string& connection_name);
-  /// Takes one text message and answers it. @param now_ns  monotonic wall clock, here and below
+  /// Takes one text message and answers it, at once or, while a run is being opened, after that:
+  /// messages are carried out in order. @param now_ns  monotonic wall clock, here and below
   void handle(const std::string& text, std::int64_t now_ns);
+  /// True while so many messages wait for a run to open that no more should be read.
+  [[nodiscard]] bool full() const { return waiting_.size() >= kMaxWaiting; }
+  void run_opened(Result<std::shared_ptr<engine::RunTimeline>> timeline, std::int64_t now_ns);
   /// Sends what is due.
   void tick(std::int64_t now_ns);
   void picture_ready(const PictureTicket& ticket,
@@ -34,15 +40,24 @@ class Viewer {
   [[nodiscard]] std::optional<std::int64_t> tick_after_ns() const;
 
  private:
+  static constexpr std::size_t kMaxWaiting = 64;
   struct CommandVisitor;
-  Status attach(const AttachCommand& command);
+  /// An `attach` that waits for its run.
+  struct Opening {
+    std::optional<std::int64_t> request;
+    AttachCommand command;
+  };
+  void carry_out(const std::string& text, std::int64_t now_ns);
+  void attach(const AttachCommand& command, std::shared_ptr<const engine::RunTimeline> timeline);
   void detach();
+  Status align(const AlignCommand& command);
   Status seek(const SeekCommand& command);
   Status step(const StepCommand& command);
   void pump_pictures(std::int64_t now_ns);
 
-  engine::RunManager& runs_;
   ViewerPort& port_;
+  std::optional<Opening> opening_;
+  std::deque<std::string> waiting_;  ///< messages that came after the `attach` being carried out
   std::string run_id_;
   std::optional<RunWatch> watch_;
   PictureStreams pictures_;

@@ -28,6 +28,9 @@ class ViewerPort {
                             std::shared_ptr<const std::vector<std::uint8_t>> jpeg) = 0;
   /// Has it drawn; once it is there the connection calls Viewer::picture_ready.
   virtual void draw(const PictureTicket& ticket, const engine::PictureRequest& request) = 0;
+  /// Opens a run, which may mean to read it from disk; once that is done, not before it returns,
+  /// the connection calls Viewer::run_opened.
+  virtual void open_run(const std::string& run_id) = 0;
   /// Bytes accepted by send_* that are not on the wire yet.
   [[nodiscard]] virtual std::size_t unsent_bytes() const = 0;
 };

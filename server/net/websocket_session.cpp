@@ -27,6 +27,7 @@ using beast::error_code;
 constexpr std::uint16_t kTooSlow = 4000;
 /// How long a client that is too slow has to take what is on its way before the close frame.
 constexpr std::chrono::seconds kCloseGrace{5};
+constexpr std::chrono::seconds kFarewellGrace{1};
 
 std::int64_t monotonic_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
@@ -53,11 +54,12 @@ class WebSocketSession final : public ViewerPort,
       : context_(std::move(context)),
         ws_(std::move(socket)),
         timer_(ws_.get_executor()),
-        viewer_(context_->runs, *this),
+        viewer_(*this),
         client_(context_->next_client++) {
     ++context_->connections;
   }
   ~WebSocketSession() override {
+    if (registered_) context_->sessions.remove(*registered_);
     context_->views.forget(client_);
     --context_->connections;
   }
@@ -69,6 +71,7 @@ class WebSocketSession final : public ViewerPort,
                     const PictureHeader& header,
                     std::shared_ptr<const std::vector<std::uint8_t>> jpeg) override;
   void draw(const PictureTicket& ticket, const engine::PictureRequest& request) override;
+  void open_run(const std::string& run_id) override;
   [[nodiscard]] std::size_t unsent_bytes() const override { return unsent_bytes_; }
 
  private:
@@ -81,6 +84,8 @@ class WebSocketSession final : public ViewerPort,
   void on_timer(const error_code& error);
   void check_pace();
   void close_too_slow();
+  void go_away();
+  void close_with(const websocket::close_reason& reason, std::chrono::seconds grace);
   void send_close_frame();
   void end();
 
@@ -93,6 +98,10 @@ class WebSocketSession final : public ViewerPort,
   bool writing_ = false;
   bool closing_ = false;
   bool ended_ = false;
+  websocket::close_reason reason_;  ///< once closing_
+  std::optional<std::uint64_t> registered_;
+  std::shared_ptr<WebSocketSession>
+      unread_;  ///< itself, while it does not read: the viewer is full
   asio::steady_timer timer_;
   Viewer viewer_;
   std::uint64_t client_;
@@ -114,6 +123,12 @@ void WebSocketSession::run(const http::request<http::string_body>& upgrade) {
   ws_.auto_fragment(false);
   ws_.async_accept(upgrade, [self = shared_from_this()](const error_code& error) {
     if (error) return;
+    const std::weak_ptr<WebSocketSession> weak = self;
+    self->registered_ = self->context_->sessions.add([weak, executor = self->ws_.get_executor()] {
+      asio::post(executor, [weak] {
+        if (const auto session = weak.lock()) session->go_away();
+      });
+    });
     self->viewer_.greet("c" + std::to_string(self->client_));
     self->read();
   });
@@ -137,7 +152,31 @@ void WebSocketSession::on_read(const error_code& error) {
     schedule();
   }
   read_buffer_.consume(read_buffer_.size());
-  read();
+  if (viewer_.full()) {
+    unread_ = shared_from_this();
+  } else {
+    read();
+  }
+}
+
+void WebSocketSession::open_run(const std::string& run_id) {
+  context_->offload([weak = weak_from_this(), context = context_, run_id] {
+    auto timeline = context->runs.timeline(run_id);
+    context->gate.run([&] {
+      const auto self = weak.lock();
+      if (!self) return;
+      asio::post(self->ws_.get_executor(), [weak, opened = std::move(timeline)]() mutable {
+        const auto session = weak.lock();
+        if (!session || session->closing_ || session->ended_) return;
+        session->viewer_.run_opened(std::move(opened), monotonic_ns());
+        session->schedule();
+        if (session->unread_ && !session->viewer_.full()) {
+          session->unread_.reset();
+          session->read();
+        }
+      });
+    });
+  });
 }
 
 void WebSocketSession::send_text(std::string text) {
@@ -243,15 +282,26 @@ void WebSocketSession::check_pace() {
   }
 }
 
-/// The message on its way cannot be taken back: the close frame follows it, or the connection
-/// ends without one when the client takes nothing at all.
 void WebSocketSession::close_too_slow() {
   if (closing_) return;
+  context_->log("warning", "a client is too slow and is disconnected (it may resume)");
+  close_with({static_cast<websocket::close_code>(kTooSlow), "too slow"}, kCloseGrace);
+}
+
+void WebSocketSession::go_away() {
+  close_with({websocket::close_code::going_away, "the server shuts down"}, kFarewellGrace);
+}
+
+/// The message on its way cannot be taken back: the close frame follows it, or the connection
+/// ends without one when the client takes nothing at all.
+void WebSocketSession::close_with(const websocket::close_reason& reason,
+                                  std::chrono::seconds grace) {
+  if (closing_ || ended_) return;
   closing_ = true;
+  reason_ = reason;
   if (queue_.size() > 1) queue_.erase(queue_.begin() + 1, queue_.end());
   context_->views.forget(client_);
-  context_->log("warning", "a client is too slow and is disconnected (it may resume)");
-  timer_.expires_after(kCloseGrace);
+  timer_.expires_after(grace);
   timer_.async_wait([weak = weak_from_this()](const error_code& error) {
     const auto self = weak.lock();
     if (self && !error) self->end();
@@ -260,13 +310,13 @@ void WebSocketSession::close_too_slow() {
 }
 
 void WebSocketSession::send_close_frame() {
-  const websocket::close_reason reason(static_cast<websocket::close_code>(kTooSlow), "too slow");
-  ws_.async_close(reason, [self = shared_from_this()](const error_code&) { self->end(); });
+  ws_.async_close(reason_, [self = shared_from_this()](const error_code&) { self->end(); });
 }
 
 void WebSocketSession::end() {
   if (ended_) return;
   ended_ = true;
+  unread_.reset();
   timer_.cancel();
   context_->views.forget(client_);
   beast::get_lowest_layer(ws_).close();

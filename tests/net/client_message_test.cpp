@@ -51,6 +51,7 @@ TEST(ClientMessage, ReadsEachPlaybackCommand) {
   parse_as<PlayCommand>(R"({"type":"play"})");
   parse_as<PauseCommand>(R"({"type":"pause"})");
   parse_as<LiveCommand>(R"({"type":"live"})");
+  EXPECT_EQ(parse_as<AlignCommand>(R"({"type":"align","mode":"sim3"})").mode, "sim3");
   EXPECT_EQ(parse_as<SeekCommand>(R"({"type":"seek","t_ns":5000000000})").t_ns, 5'000'000'000);
   EXPECT_EQ(parse_as<SeekCommand>(R"({"type":"seek","frame":12})").frame, 12);
   EXPECT_EQ(parse_as<StepCommand>(R"({"type":"step","frames":-3})").frames, -3);

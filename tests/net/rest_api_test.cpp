@@ -114,6 +114,9 @@ TEST_F(RestApiTest, AnswersEveryRouteAsDocumented) {
   check("GET", trajectories, run + "/trajectories/none", 404);
   check("GET", trajectories, run + "/trajectories/truth?format=xml", 400);
   check("GET", trajectories, run + "/trajectories/truth?fromat=tum", 400);
+  check("GET", trajectories, run + "/trajectories/perfect?format=json&alignment=sim3", 200);
+  check("GET", trajectories, run + "/trajectories/perfect?format=json&alignment=sim4", 400);
+  check("GET", trajectories, run + "/trajectories/perfect?alignment=sim3", 400);
   const std::string frames = one + "/frames/{file}";
   const Answer frame = check("GET", frames, run + "/frames/17.jpg", 200);
   const auto image = engine::decode_jpeg(

@@ -48,6 +48,26 @@ TEST(RestRouter, TellsUnknownPathsFromWrongMethods) {
   EXPECT_TRUE(allow_seen);
 }
 
+TEST(RestRouter, RefusesParametersThatTheRouteDoesNotKnow) {
+  RestRouter router = example();
+  router.add("GET",
+             "/pictures",
+             [](const RouteCall& call, const Respond& respond) {
+               HttpResponse response;
+               response.body = call.query_or("size", "small");
+               respond(response);
+             },
+             {"size", "camera"});
+  EXPECT_EQ(ask(router, "GET", "/pictures?size=big").body, "big");
+  EXPECT_EQ(ask(router, "GET", "/pictures").body, "small");
+  const HttpResponse wrong = ask(router, "GET", "/pictures?size=big&seize=1");
+  EXPECT_EQ(wrong.status, 400);
+  EXPECT_NE(wrong.body.find("query.seize"), std::string::npos);
+  EXPECT_NE(wrong.body.find("size, camera"), std::string::npos);
+  EXPECT_EQ(ask(router, "GET", "/runs/a?x=1").status, 400);
+  EXPECT_EQ(ask(router, "DELETE", "/runs/a?x=1").status, 400);
+}
+
 TEST(ErrorResponse, ListsTheFieldsAtFault) {
   const HttpResponse response = error_response({ErrorCode::kInvalidArgument,
                                                 "camera.fov_deg = 190: must be in (0, 180)\n"

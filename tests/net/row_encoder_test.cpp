@@ -52,6 +52,9 @@ TEST(RowEncoder, SaysNullForARunWithoutError) {
   EXPECT_TRUE(run_json(info).at("error").is_null());
   info.error = "bad";
   EXPECT_EQ(run_json(info).at("error"), "bad");
+  EXPECT_TRUE(run_json(info).at("notice").is_null());
+  info.notice = "making the built-in world: 30 %";
+  EXPECT_EQ(run_json(info).at("notice"), info.notice);
 }
 
 }  // namespace

@@ -2,8 +2,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <memory>
 #include <numeric>
 #include <random>
+#include <thread>
 
 #include "server/engine/jpeg.hpp"
 #include "tests/net/test_client.hpp"
@@ -198,6 +201,89 @@ TEST(WebSocket, FollowsALiveRunAndLeavesItByASeek) {
       [](const json& message) { return is_playback(message) && !message.at("live"); });
   EXPECT_EQ(end.at("t_ns"), end.at("end_ns"));
   EXPECT_EQ(client.command({{"type", "live"}}).at("code"), "conflict");
+}
+
+TEST(WebSocket, ShowsEstimatesByTheAlignmentAskedFor) {
+  TestServer server;
+  const std::string id = server.fly("tiny");
+  WebSocketClient client(server.port());
+  const json align = {{"type", "align"}, {"mode", "sim3"}};
+  EXPECT_EQ(client.command(align).at("code"), "conflict");
+  client.command({{"type", "attach"}, {"run", id}});
+  EXPECT_EQ(client.wait_until(is_playback).at("alignment"), "init_scale");
+  EXPECT_EQ(client.command({{"type", "align"}, {"mode", "sim4"}}).at("code"), "invalid_argument");
+  // In its own frame, `none`, the estimate starts elsewhere than in the world.
+  EXPECT_EQ(client.command({{"type", "align"}, {"mode", "none"}}).at("type"), "ok");
+  client.command({{"type", "seek"}, {"frame", 40}});
+  const auto at_40 = [](const json& message) {
+    return is_playback(message) && message.at("frame") == 40;
+  };
+  json playback = client.wait_until(at_40);
+  EXPECT_EQ(playback.at("alignment"), "none");
+  const json columns =
+      ask(server.port(),
+          "GET",
+          "/api/v1/runs/" + id + "/trajectories/perfect?format=json&alignment=none")
+          .json();
+  EXPECT_EQ(playback["estimates"]["perfect"]["pose"]["z_m"], columns["z_m"][40]);
+  EXPECT_GT(std::abs(playback["truth"]["z_m"].get<double>() - columns["z_m"][40].get<double>()),
+            10.0);
+  client.command(align);
+  playback = client.wait_until(at_40);
+  EXPECT_EQ(playback.at("alignment"), "sim3");
+  EXPECT_NEAR(playback["estimates"]["perfect"]["pose"]["z_m"], playback["truth"]["z_m"], 0.05);
+  client.command({{"type", "attach"}, {"run", id}});
+  EXPECT_EQ(client.wait_until(is_playback).at("alignment"), "init_scale");
+}
+
+TEST(WebSocket, NumbersAStreamByItsCamera) {
+  TestServer server;
+  const std::string id = server.fly("tiny");
+  WebSocketClient client(server.port());
+  const auto number_of = [&](const json& stream) {
+    EXPECT_EQ(
+        client.command({{"type", "subscribe"}, {"streams", json::array({stream})}}).at("type"),
+        "ok");
+    const json told = client.wait_for("streams").at("streams").at(0);
+    EXPECT_EQ(told.value("camera", ""), stream.value("camera", ""));
+    return told.at("id").get<int>();
+  };
+  const int first = number_of({{"name", "camera"}});
+  EXPECT_NE(number_of({{"name", "camera"}, {"camera", "tail"}}), first);
+  EXPECT_EQ(number_of({{"name", "camera"}}), first);
+  const json scene = {{"name", "scene"}, {"camera", "tail"}};
+  EXPECT_EQ(client.command({{"type", "subscribe"}, {"streams", json::array({scene})}}).at("code"),
+            "invalid_argument");
+}
+
+TEST(WebSocket, CarriesOutCommandsInOrderWhileARunIsOpened) {
+  TestServer server;
+  const std::string id = server.fly("tiny");
+  WebSocketClient client(server.port());
+  for (int i = 0; i < 300; ++i) {
+    client.send({{"type", "attach"}, {"run", i % 3 == 2 ? "none" : id}, {"request", 2 * i}});
+    client.send({{"type", "seek"}, {"frame", i % 60}, {"request", 2 * i + 1}});
+  }
+  for (int request = 0; request < 600; ++request) {
+    const json answer = client.wait_until([](const json& message) {
+      return message.at("type") == "ok" || message.at("type") == "error";
+    });
+    ASSERT_EQ(answer.at("request"), request);
+    EXPECT_EQ(answer.at("type"), request % 6 == 4 ? "error" : "ok");
+  }
+}
+
+TEST(WebSocket, TellsItsViewersWhenTheServerShutsDown) {
+  auto server = std::make_unique<TestServer>();
+  const std::string id = server->fly("tiny");
+  WebSocketClient watching(server->port());
+  watching.command({{"type", "attach"}, {"run", id}});
+  WebSocketClient idle(server->port());
+  idle.wait_for("hello");
+  std::thread stop([&] { server.reset(); });
+  EXPECT_EQ(watching.read_to_end(), 1001);
+  EXPECT_EQ(idle.read_to_end(), 1001);
+  stop.join();
 }
 
 TEST(WebSocket, AnswersWhatItDoesNotUnderstandAndStaysOpen) {
