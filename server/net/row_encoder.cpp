@@ -1,5 +1,6 @@
 #include "server/net/row_encoder.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -55,6 +56,43 @@ json column(const Rows& rows, ValueOf value_of) {
   return values;
 }
 
+/// Adds a column unless every value of it is null: most runs have no sensor and no fault.
+template <typename ValueOf>
+void add_if_said(const std::vector<engine::FrameRow>& rows,
+                 const char* name,
+                 ValueOf value_of,
+                 json* columns) {
+  json values = column(rows, value_of);
+  const bool said =
+      std::any_of(values.begin(), values.end(), [](const json& value) { return !value.is_null(); });
+  if (said) (*columns)[name] = std::move(values);
+}
+
+/// What sensor, tiles and faults did to each frame.
+void add_image_columns(const std::vector<engine::FrameRow>& rows, json* columns) {
+  using Row = engine::FrameRow;
+  constexpr double kDigits = 1e6;
+  const auto add = [&](const char* name, auto value_of) {
+    add_if_said(rows, name, value_of, columns);
+  };
+  add("exposure_ns",
+      [](const Row& row) { return row.exposure_ns == 0 ? json(nullptr) : json(row.exposure_ns); });
+  add("gain", [](const Row& row) {
+    return row.exposure_ns == 0 ? json(nullptr) : rounded(row.gain, kDigits);
+  });
+  add("saturated_fraction", [](const Row& row) {
+    const bool known = row.exposure_ns != 0 || row.saturated_fraction > 0.0;
+    return known ? rounded(row.saturated_fraction, kDigits) : json(nullptr);
+  });
+  add("late_tiles",
+      [](const Row& row) { return row.late_tiles == 0 ? json(nullptr) : json(row.late_tiles); });
+  add("stamp_offset_ns", [](const Row& row) {
+    return row.stamp_offset_ns == 0 ? json(nullptr) : json(row.stamp_offset_ns);
+  });
+  add("faults",
+      [](const Row& row) { return row.faults.empty() ? json(nullptr) : json(row.faults); });
+}
+
 }  // namespace
 
 json pose_json(const Pose& T_world_body) {
@@ -74,6 +112,7 @@ json truth_columns(const std::vector<engine::FrameRow>& rows) {
       column(rows, [](const Row& row) { return rounded(row.texels_per_pixel_median, kDigits); });
   columns["void_fraction"] =
       column(rows, [](const Row& row) { return rounded(row.void_fraction, kDigits); });
+  add_image_columns(rows, &columns);
   add_pose_columns(
       rows, [](const Row& row) { return std::optional<Pose>(row.T_world_body); }, &columns);
   return columns;
@@ -98,6 +137,8 @@ json log_columns(const std::vector<engine::LogRow>& rows) {
   columns["t_ns"] = column(rows, [](const Row& row) { return row.t_ns; });
   columns["level"] = column(rows, [](const Row& row) { return row.level; });
   columns["text"] = column(rows, [](const Row& row) { return row.text; });
+  columns["kind"] = column(
+      rows, [](const Row& row) { return row.kind.empty() ? json(nullptr) : json(row.kind); });
   return columns;
 }
 
@@ -114,6 +155,7 @@ json run_json(const engine::RunInfo& info) {
           {"pacing", info.pacing},
           {"estimators", info.estimators},
           {"attribution", info.attribution},
+          {"texture_limited", info.texture_limited},
           {"notice", info.notice.empty() ? json(nullptr) : json(info.notice)}};
 }
 

@@ -35,6 +35,24 @@ TEST(RowEncoder, GivesEveryColumnOneValueARow) {
   EXPECT_TRUE(columns["void_fraction"][0].is_null());
 }
 
+TEST(RowEncoder, SaysWhatTheSensorAndTheFaultsDidWhereTheyDid) {
+  const engine::FrameRow plain;
+  engine::FrameRow row;
+  row.exposure_ns = 2'000'000;
+  row.gain = 1.5;
+  row.late_tiles = 3;
+  row.stamp_offset_ns = -4000;
+  row.faults = {"blackout", "stamp_offset"};
+  const auto columns = truth_columns({plain, row});
+  EXPECT_EQ(columns.at("exposure_ns").dump(), "[null,2000000]");
+  EXPECT_EQ(columns.at("gain").dump(), "[null,1.5]");
+  EXPECT_EQ(columns.at("saturated_fraction").dump(), "[null,0.0]");
+  EXPECT_EQ(columns.at("late_tiles").dump(), "[null,3]");
+  EXPECT_EQ(columns.at("stamp_offset_ns").dump(), "[null,-4000]");
+  EXPECT_EQ(columns.at("faults").dump(), R"([null,["blackout","stamp_offset"]])");
+  EXPECT_FALSE(truth_columns({plain}).contains("faults"));
+}
+
 TEST(RowEncoder, LeavesPosesOutWhileNotTracking) {
   engine::EstimateRow lost;
   lost.sample.state = TrackingState::kLost;
