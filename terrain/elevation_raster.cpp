@@ -6,23 +6,15 @@
 
 #include "core/pose.hpp"
 #include "terrain/datum_shift.hpp"
+#include "terrain/elevation_units.hpp"
 #include "terrain/geoid.hpp"
 #include "terrain/raster_bands.hpp"
 
 namespace overfly::terrain {
 namespace {
 
-/// Posts kept of one file at most (160 MB).
-constexpr double kMaxPosts = 40e6;
-constexpr double kFootM = 0.3048;
-constexpr double kUsSurveyFootM = 1200.0 / 3937.0;
-
-struct PostWindow {
-  int column = 0;
-  int row = 0;
-  int columns = 0;
-  int rows = 0;
-};
+/// Nodes a side of the lattice that holds the geoid's separation.
+constexpr int kLatticeNodes = 65;
 
 PlaneFunction posts_of(const MapPlane& plane,
                        const CrsTransform& crs_from_wgs84,
@@ -40,207 +32,6 @@ PlaneFunction posts_of(const MapPlane& plane,
   };
 }
 
-/// The file's posts that the area needs, one beyond its edge.
-PostWindow window_over(const SmoothMap<2>& post_from_map, int width, int height) {
-  const MapRect& area = post_from_map.domain();
-  Eigen::Vector2d low(1e18, 1e18);
-  Eigen::Vector2d high(-1e18, -1e18);
-  constexpr int kSteps = 32;
-  for (int j = 0; j <= kSteps; ++j) {
-    for (int i = 0; i <= kSteps; ++i) {
-      const Eigen::Vector2d post =
-          post_from_map(area.x_min + (area.x_max - area.x_min) * i / kSteps,
-                        area.y_min + (area.y_max - area.y_min) * j / kSteps);
-      low = low.cwiseMin(post);
-      high = high.cwiseMax(post);
-    }
-  }
-  constexpr double kMargin = 4.0;
-  const auto clamped = [](double value, int size) {
-    return static_cast<int>(std::clamp(value, 0.0, static_cast<double>(size)));
-  };
-  PostWindow window;
-  window.column = clamped(std::floor(low.x() - kMargin), width);
-  window.row = clamped(std::floor(low.y() - kMargin), height);
-  window.columns = clamped(std::ceil(high.x() + kMargin), width) - window.column;
-  window.rows = clamped(std::ceil(high.y() + kMargin), height) - window.row;
-  return window;
-}
-
-/// Metres per unit of the heights: said by the caller, the band, or the vertical CRS.
-double unit_of(GDALDataset& dataset,
-               const ElevationLayer& layer,
-               const OGRSpatialReference& crs,
-               std::vector<std::string>& warnings) {
-  if (layer.unit_m) return *layer.unit_m;
-  std::string unit = dataset.GetRasterBand(1)->GetUnitType();
-  std::transform(unit.begin(), unit.end(), unit.begin(), [](unsigned char c) {
-    return static_cast<char>(std::tolower(c));
-  });
-  if (unit == "m" || unit == "metre" || unit == "meter" || unit == "metres" || unit == "meters") {
-    return 1.0;
-  }
-  if (unit.find("us") != std::string::npos && unit.find('f') != std::string::npos) {
-    return kUsSurveyFootM;
-  }
-  if (unit == "ft" || unit == "foot" || unit == "feet") return kFootM;
-  if (crs.IsVertical() != 0) return crs.GetTargetLinearUnits("VERT_CS");
-  const bool feet = crs.IsProjected() != 0 && std::abs(crs.GetLinearUnits() - 1.0) > 1e-3;
-  if (!unit.empty() || feet) {
-    warnings.push_back(layer.file.string() + ": unit of the heights is " +
-                       (unit.empty() ? "not said" : "\"" + unit + "\"") +
-                       "; taken as metres. If they are feet, the ground is 3.28 times too high: "
-                       "say \"unit_m\" in the manifest");
-  }
-  return 1.0;
-}
-
-VerticalDatum datum_of(const ElevationLayer& layer, const OGRSpatialReference& crs) {
-  if (layer.datum != VerticalDatum::kUnknown) return layer.datum;
-  if (crs.IsVertical() == 0) return VerticalDatum::kUnknown;
-  const char* name = crs.GetAttrValue("VERT_CS");
-  const std::string text = name != nullptr ? name : "";
-  if (text.find("NAVD88") != std::string::npos) return VerticalDatum::kNavd88;
-  if (text.find("EGM2008") != std::string::npos) return VerticalDatum::kEgm2008;
-  if (text.find("EGM96") != std::string::npos) return VerticalDatum::kEgm96;
-  return VerticalDatum::kUnknown;
-}
-
-/// Marks posts without data as NaN and scales the others to metres.
-/// @return posts whose value no ground on earth has, without being declared as nodata
-std::size_t to_metres(GDALRasterBand& band, double unit_m, HeightGrid& grid) {
-  int has_nodata = 0;
-  const double nodata = band.GetNoDataValue(&has_nodata);
-  const double scale = band.GetScale() * unit_m;
-  const double offset = band.GetOffset() * unit_m;
-  constexpr double kLowestM = -12000.0;
-  constexpr double kHighestM = 9000.0;
-  std::size_t implausible = 0;
-  for (float& height : grid.heights_m) {
-    const bool declared = has_nodata != 0 && height == static_cast<float>(nodata);
-    const double metres = height * scale + offset;
-    if (!declared && metres >= kLowestM && metres <= kHighestM) {
-      height = static_cast<float>(metres);
-      continue;
-    }
-    if (!declared && !std::isnan(height)) ++implausible;
-    height = std::numeric_limits<float>::quiet_NaN();
-  }
-  return implausible;
-}
-
-/// Adds the geoid's separation, interpolated between the nodes of a lattice over the posts.
-Status add_separation(const GeoidModel& model,
-                      const GeoTransform& transform,
-                      const CrsTransform& wgs84_from_crs,
-                      const PostWindow& window,
-                      HeightGrid& grid) {
-  constexpr int kNodes = 65;
-  Eigen::Matrix2Xd points(2, kNodes * kNodes);
-  for (int j = 0; j < kNodes; ++j) {
-    for (int i = 0; i < kNodes; ++i) {
-      const double px = window.column + 0.5 + (window.columns - 1.0) * i / (kNodes - 1);
-      const double py = window.row + 0.5 + (window.rows - 1.0) * j / (kNodes - 1);
-      transform.crs_from_pixel(px, py, points(0, j * kNodes + i), points(1, j * kNodes + i));
-    }
-  }
-  if (!wgs84_from_crs.apply(points)) {
-    return Error{ErrorCode::kInvalidArgument, "posts have no place in WGS84"};
-  }
-  const Eigen::VectorXd separation = geoid_separation_m(model, points * rad_from_deg(1.0));
-  HeightGrid lattice;
-  lattice.columns = kNodes;
-  lattice.rows = kNodes;
-  lattice.heights_m.assign(separation.data(), separation.data() + separation.size());
-  const double step_u = (kNodes - 1.0) / std::max(1, grid.columns - 1);
-  const double step_v = (kNodes - 1.0) / std::max(1, grid.rows - 1);
-  for (int row = 0; row < grid.rows; ++row) {
-    for (int column = 0; column < grid.columns; ++column) {
-      grid.at(column, row) += static_cast<float>(lattice.bilinear(column * step_u, row * step_v));
-    }
-  }
-  return {};
-}
-
-Result<HeightGrid> read_posts(GDALDataset& dataset,
-                              const PostWindow& window,
-                              const std::string& file) {
-  HeightGrid grid;
-  grid.columns = window.columns;
-  grid.rows = window.rows;
-  grid.heights_m.resize(static_cast<std::size_t>(window.columns) * window.rows);
-  const GdalMessages messages;
-  if (dataset.GetRasterBand(1)->RasterIO(GF_Read,
-                                         window.column,
-                                         window.row,
-                                         window.columns,
-                                         window.rows,
-                                         grid.heights_m.data(),
-                                         window.columns,
-                                         window.rows,
-                                         GDT_Float32,
-                                         0,
-                                         0,
-                                         nullptr) != CE_None) {
-    return Error{ErrorCode::kUnreadable, file + ": heights cannot be read: " + messages.text()};
-  }
-  return grid;
-}
-
-/// Turns raw values into metres above the ellipsoid; doubts go to `warnings`.
-Status to_ellipsoidal_metres(GDALDataset& dataset,
-                             const ElevationLayer& layer,
-                             const Georeference& place,
-                             const PostWindow& window,
-                             HeightGrid& grid,
-                             std::vector<std::string>& warnings) {
-  const std::string file = layer.file.string();
-  const double unit_m = unit_of(dataset, layer, place.crs, warnings);
-  const std::size_t implausible = to_metres(*dataset.GetRasterBand(1), unit_m, grid);
-  if (implausible > 0) {
-    warnings.push_back(file + ": " + std::to_string(implausible) +
-                       " heights outside -12000 to 9000 m are taken as missing");
-  }
-  auto wgs84_from_crs = CrsTransform::create(place.crs, wgs84_crs(), file);
-  if (!wgs84_from_crs) return wgs84_from_crs.error();
-  Eigen::Matrix2Xd middle(2, 1);
-  place.transform.crs_from_pixel(window.column + 0.5 * window.columns,
-                                 window.row + 0.5 * window.rows,
-                                 middle(0, 0),
-                                 middle(1, 0));
-  if (auto doubt = datum_shift_doubt(place.crs, middle(0, 0), middle(1, 0), file)) {
-    warnings.push_back(std::move(*doubt));
-  }
-  if (!(*wgs84_from_crs)->apply(middle)) {
-    return Error{ErrorCode::kInvalidArgument, file + ": its middle has no place in WGS84"};
-  }
-  middle *= rad_from_deg(1.0);
-  const auto geoid = choose_geoid(datum_of(layer, place.crs),
-                                  layer.geoid_separation_m,
-                                  middle(1, 0),
-                                  middle(0, 0),
-                                  file,
-                                  warnings);
-  if (!geoid) return {};
-  const Status added = add_separation(*geoid, place.transform, **wgs84_from_crs, window, grid);
-  return added ? Status() : Status(added.error().in(file));
-}
-
-/// Errors: kInvalidArgument when the file has no posts there, kUnsupported when it has too many.
-Status check_window(const PostWindow& window, const std::string& file) {
-  if (window.columns < 1 || window.rows < 1) {
-    return Error{ErrorCode::kInvalidArgument,
-                 file + ": elevation lies nowhere near the imagery; check both georeferences"};
-  }
-  if (static_cast<double>(window.columns) * window.rows > kMaxPosts) {
-    return Error{ErrorCode::kUnsupported,
-                 file + ": " + std::to_string(window.columns) + " x " +
-                     std::to_string(window.rows) + " posts around the imagery, limit " +
-                     std::to_string(static_cast<int>(kMaxPosts)) + "; resample it first"};
-  }
-  return {};
-}
-
 /// Distance between posts on the map at the middle of the fitted area.
 double spacing_of(const SmoothMap<2>& post_from_map) {
   const MapRect& area = post_from_map.domain();
@@ -252,60 +43,267 @@ double spacing_of(const SmoothMap<2>& post_from_map) {
   return 1.0 / std::max(east.norm(), north.norm());
 }
 
+/// The lattice of separations over posts [column, column + columns) x [row, row + rows).
+Result<HeightGrid> separation_lattice(const GeoidModel& model,
+                                      const GeoTransform& transform,
+                                      const CrsTransform& wgs84_from_crs,
+                                      const Eigen::Vector4d& window,
+                                      const std::string& file) {
+  Eigen::Matrix2Xd points(2, kLatticeNodes * kLatticeNodes);
+  for (int j = 0; j < kLatticeNodes; ++j) {
+    for (int i = 0; i < kLatticeNodes; ++i) {
+      const double px = window[0] + 0.5 + (window[2] - 1.0) * i / (kLatticeNodes - 1);
+      const double py = window[1] + 0.5 + (window[3] - 1.0) * j / (kLatticeNodes - 1);
+      const Eigen::Index at = static_cast<Eigen::Index>(j) * kLatticeNodes + i;
+      transform.crs_from_pixel(px, py, points(0, at), points(1, at));
+    }
+  }
+  if (!wgs84_from_crs.apply(points)) {
+    return Error{ErrorCode::kInvalidArgument, file + ": posts have no place in WGS84"};
+  }
+  const Eigen::VectorXd separation = geoid_separation_m(model, points * rad_from_deg(1.0));
+  HeightGrid lattice;
+  lattice.columns = kLatticeNodes;
+  lattice.rows = kLatticeNodes;
+  lattice.heights_m.assign(separation.data(), separation.data() + separation.size());
+  return lattice;
+}
+
+std::string relation_of(const std::optional<GeoidModel>& geoid) {
+  if (!geoid) return "heights as they are";
+  if (!geoid->grid.empty()) return geoid->grid;
+  if (geoid->constant_m) return "constant " + std::to_string(*geoid->constant_m);
+  return "built-in table";
+}
+
 }  // namespace
 
-Result<ElevationRaster> ElevationRaster::load(const ElevationLayer& layer,
-                                              const MapPlane& plane,
-                                              const MapRect& area,
-                                              std::vector<std::string>& warnings) {
-  const std::string file = layer.file.string();
+Result<std::shared_ptr<const ElevationRaster>> ElevationRaster::open(
+    const ElevationLayer& layer,
+    const MapPlane& plane,
+    const MapRect& area,
+    std::shared_ptr<BlockCache> cache,
+    std::vector<std::string>& warnings) {
+  auto raster = std::make_shared<ElevationRaster>();
+  raster->file_ = layer.file.string();
   initialise_gdal();
   GdalMessages messages;
-  auto dataset = open_raster(layer.file);
-  if (!dataset) return dataset.error();
+  auto opened = open_raster(layer.file);
+  if (!opened) return opened.error();
+  GDALDataset& dataset = **opened;
+  raster->file_columns_ = dataset.GetRasterXSize();
+  raster->file_rows_ = dataset.GetRasterYSize();
   auto place = read_georeference(
-      **dataset, layer.file, layer.crs, messages.empty() ? std::string() : messages.text());
+      dataset, layer.file, layer.crs, messages.empty() ? std::string() : messages.text());
   if (!place) return place.error();
-  const Status whole = check_blocks(**dataset, layer.file);
-  if (!whole) return whole.error();
-  auto crs_from_wgs84 = CrsTransform::create(wgs84_crs(), place->crs, file);
-  if (!crs_from_wgs84) return crs_from_wgs84.error();
+  Status good = check_height_band(dataset, raster->file_, warnings);
+  if (good) good = check_blocks(dataset, layer.file);
+  if (good) good = raster->find_window(plane, area, *place);
+  if (good) good = raster->find_conversion(dataset, layer, *place, warnings);
+  if (!good) return good.error();
+  raster->pool_ = std::make_unique<DatasetPool>(layer.file, 0);
+  raster->pool_->put(std::move(*opened));
+  raster->posts_ = std::make_unique<PagedHeights>(
+      raster->window_.columns,
+      raster->window_.rows,
+      std::move(cache),
+      [owner = raster.get()](int, int column, int row) -> Result<HeightGrid> {
+        return owner->posts_block(column, row);
+      });
+  return std::shared_ptr<const ElevationRaster>(std::move(raster));
+}
 
+Status ElevationRaster::find_window(const MapPlane& plane,
+                                    const MapRect& area,
+                                    const Georeference& place) {
+  auto crs_from_wgs84 = CrsTransform::create(wgs84_crs(), place.crs, file_);
+  if (!crs_from_wgs84) return crs_from_wgs84.error();
   constexpr double kTolerancePosts = 1e-3;
-  auto post_from_map =
-      SmoothMap<2>::fit(area, posts_of(plane, **crs_from_wgs84, place->transform), kTolerancePosts);
-  if (!post_from_map) {
+  post_from_map_ =
+      SmoothMap<2>::fit(area, posts_of(plane, **crs_from_wgs84, place.transform), kTolerancePosts);
+  if (!post_from_map_) {
     return Error{ErrorCode::kInvalidArgument,
-                 file +
+                 file_ +
                      ": its coordinate reference system has no smooth relation to the map plane "
                      "around the imagery"};
   }
-  const PostWindow window =
-      window_over(*post_from_map, (*dataset)->GetRasterXSize(), (*dataset)->GetRasterYSize());
-  const Status sane = check_window(window, file);
-  if (!sane) return sane.error();
-  auto grid = read_posts(**dataset, window, file);
-  if (!grid) return grid.error();
-  const Status converted = to_ellipsoidal_metres(**dataset, layer, *place, window, *grid, warnings);
-  if (!converted) return converted.error();
+  Eigen::Vector2d low(1e18, 1e18);
+  Eigen::Vector2d high(-1e18, -1e18);
+  constexpr int kSteps = 32;
+  for (int j = 0; j <= kSteps; ++j) {
+    for (int i = 0; i <= kSteps; ++i) {
+      const Eigen::Vector2d post =
+          (*post_from_map_)(area.x_min + (area.x_max - area.x_min) * i / kSteps,
+                            area.y_min + (area.y_max - area.y_min) * j / kSteps);
+      low = low.cwiseMin(post);
+      high = high.cwiseMax(post);
+    }
+  }
+  constexpr double kMargin = 4.0;
+  const auto clamped = [](double value, int size) {
+    return static_cast<int>(std::clamp(value, 0.0, static_cast<double>(size)));
+  };
+  window_.column = clamped(std::floor(low.x() - kMargin), file_columns_);
+  window_.row = clamped(std::floor(low.y() - kMargin), file_rows_);
+  window_.columns = clamped(std::ceil(high.x() + kMargin), file_columns_) - window_.column;
+  window_.rows = clamped(std::ceil(high.y() + kMargin), file_rows_) - window_.row;
+  if (window_.columns < 1 || window_.rows < 1) {
+    return Error{ErrorCode::kInvalidArgument,
+                 file_ + ": elevation lies nowhere near the imagery; check both georeferences"};
+  }
+  post_from_map_->shift(Eigen::Vector2d(-window_.column, -window_.row));
+  spacing_m_ = spacing_of(*post_from_map_);
+  return {};
+}
 
-  ElevationRaster raster{file, std::move(*grid), std::move(*post_from_map), 0.0};
-  raster.post_from_map.shift(Eigen::Vector2d(-window.column, -window.row));
-  raster.spacing_m = spacing_of(raster.post_from_map);
-  return raster;
+Status ElevationRaster::find_conversion(GDALDataset& dataset,
+                                        const ElevationLayer& layer,
+                                        const Georeference& place,
+                                        std::vector<std::string>& warnings) {
+  GDALRasterBand& band = *dataset.GetRasterBand(1);
+  const double unit_m = height_unit_m(dataset, layer, place.crs, warnings);
+  scale_m_ = band.GetScale() * unit_m;
+  offset_m_ = band.GetOffset() * unit_m;
+  int has_nodata = 0;
+  const double nodata = band.GetNoDataValue(&has_nodata);
+  if (has_nodata != 0) nodata_ = nodata;
+  if (layer.nodata) nodata_ = layer.nodata;
+  masked_ = (band.GetMaskFlags() & (GMF_ALL_VALID | GMF_NODATA)) == 0;
+
+  auto wgs84_from_crs = CrsTransform::create(place.crs, wgs84_crs(), file_);
+  if (!wgs84_from_crs) return wgs84_from_crs.error();
+  Eigen::Matrix2Xd middle(2, 1);
+  place.transform.crs_from_pixel(window_.column + 0.5 * window_.columns,
+                                 window_.row + 0.5 * window_.rows,
+                                 middle(0, 0),
+                                 middle(1, 0));
+  if (auto doubt = datum_shift_doubt(place.crs, middle(0, 0), middle(1, 0), file_)) {
+    warnings.push_back(std::move(*doubt));
+  }
+  if (!(*wgs84_from_crs)->apply(middle)) {
+    return Error{ErrorCode::kInvalidArgument, file_ + ": its middle has no place in WGS84"};
+  }
+  middle *= rad_from_deg(1.0);
+  const auto geoid = choose_geoid(height_datum(layer, place.crs),
+                                  layer.geoid_separation_m,
+                                  middle(1, 0),
+                                  middle(0, 0),
+                                  file_,
+                                  warnings);
+  relation_ = relation_of(geoid);
+  if (!geoid) return {};
+  auto lattice = separation_lattice(
+      *geoid,
+      place.transform,
+      **wgs84_from_crs,
+      Eigen::Vector4d(window_.column, window_.row, window_.columns, window_.rows),
+      file_);
+  if (!lattice) return lattice.error();
+  separation_m_ = std::move(*lattice);
+  return {};
+}
+
+Result<RawPosts> ElevationRaster::read(int column, int row, int columns, int rows) const {
+  RawPosts posts;
+  posts.grid.columns = columns;
+  posts.grid.rows = rows;
+  posts.grid.heights_m.resize(static_cast<std::size_t>(columns) * rows);
+  auto dataset = pool_->take();
+  if (!dataset) return dataset.error();
+  const GdalMessages messages;
+  GDALRasterBand* band = (*dataset)->GetRasterBand(1);
+  const auto read_into = [&](GDALRasterBand* from, void* data, GDALDataType type) {
+    return from->RasterIO(GF_Read,
+                          window_.column + column,
+                          window_.row + row,
+                          columns,
+                          rows,
+                          data,
+                          columns,
+                          rows,
+                          type,
+                          0,
+                          0,
+                          nullptr);
+  };
+  CPLErr outcome = read_into(band, posts.grid.heights_m.data(), GDT_Float32);
+  std::vector<std::uint8_t> mask;
+  if (outcome == CE_None && masked_) {
+    mask.resize(posts.grid.heights_m.size());
+    outcome = read_into(band->GetMaskBand(), mask.data(), GDT_Byte);
+  }
+  pool_->put(std::move(*dataset));
+  if (outcome != CE_None) {
+    return Error{ErrorCode::kIo, file_ + ": heights cannot be read: " + messages.text()};
+  }
+  for (std::size_t i = 0; i < mask.size(); ++i) {
+    if (mask[i] == 0) posts.grid.heights_m[i] = std::numeric_limits<float>::quiet_NaN();
+  }
+  to_metres(posts, column, row);
+  return posts;
+}
+
+/// Marks posts without data as NaN and turns the others into metres above the ellipsoid.
+void ElevationRaster::to_metres(RawPosts& posts, int column, int row) const {
+  constexpr double kLowestM = -12000.0;
+  constexpr double kHighestM = 9000.0;
+  for (float& height : posts.grid.heights_m) {
+    const bool declared = nodata_ && height == static_cast<float>(*nodata_);
+    const double metres = height * scale_m_ + offset_m_;
+    if (!declared && metres >= kLowestM && metres <= kHighestM) {
+      height = static_cast<float>(metres);
+      continue;
+    }
+    if (!declared && !std::isnan(height)) ++posts.implausible;
+    height = std::numeric_limits<float>::quiet_NaN();
+  }
+  if (separation_m_.columns == 0) return;
+  const double step_u = (kLatticeNodes - 1.0) / std::max(1, window_.columns - 1);
+  const double step_v = (kLatticeNodes - 1.0) / std::max(1, window_.rows - 1);
+  for (int j = 0; j < posts.grid.rows; ++j) {
+    for (int i = 0; i < posts.grid.columns; ++i) {
+      posts.grid.at(i, j) +=
+          static_cast<float>(separation_m_.bilinear((column + i) * step_u, (row + j) * step_v));
+    }
+  }
+}
+
+Result<HeightGrid> ElevationRaster::posts_block(int column, int row) const {
+  const int left = column * kBlockPosts;
+  const int top = row * kBlockPosts;
+  auto read = this->read(left,
+                         top,
+                         std::min(kBlockPosts + 1, window_.columns - left),
+                         std::min(kBlockPosts + 1, window_.rows - top));
+  if (!read) return read.error();
+  if (read->implausible > 0) implausible_ = true;
+  if (read->grid.columns > kBlockPosts && read->grid.rows > kBlockPosts) {
+    return std::move(read->grid);
+  }
+  HeightGrid block;
+  block.columns = kBlockPosts + 1;
+  block.rows = kBlockPosts + 1;
+  block.heights_m.resize(static_cast<std::size_t>(block.columns) * block.rows);
+  for (int j = 0; j < block.rows; ++j) {
+    for (int i = 0; i < block.columns; ++i) {
+      block.at(i, j) =
+          read->grid.at(std::min(i, read->grid.columns - 1), std::min(j, read->grid.rows - 1));
+    }
+  }
+  return block;
 }
 
 bool ElevationRaster::covers(double x_map_m, double y_map_m) const {
-  if (!post_from_map.domain().contains(x_map_m, y_map_m)) return false;
-  const Eigen::Vector2d post = post_from_map(x_map_m, y_map_m);
-  return post.x() >= -0.5 && post.y() >= -0.5 && post.x() <= grid.columns - 0.5 &&
-         post.y() <= grid.rows - 0.5;
+  if (!post_from_map_->domain().contains(x_map_m, y_map_m)) return false;
+  const Eigen::Vector2d post = (*post_from_map_)(x_map_m, y_map_m);
+  return post.x() >= -0.5 && post.y() >= -0.5 && post.x() <= window_.columns - 0.5 &&
+         post.y() <= window_.rows - 0.5;
 }
 
 double ElevationRaster::height_m(double x_map_m, double y_map_m) const {
   if (!covers(x_map_m, y_map_m)) return std::numeric_limits<double>::quiet_NaN();
-  const Eigen::Vector2d post = post_from_map(x_map_m, y_map_m);
-  return grid.bilinear(post.x(), post.y());
+  const Eigen::Vector2d post = (*post_from_map_)(x_map_m, y_map_m);
+  return posts_->bilinear(0, post.x(), post.y());
 }
 
 }  // namespace overfly::terrain

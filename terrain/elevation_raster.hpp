@@ -1,35 +1,88 @@
-// Inside terrain only: one elevation file as ellipsoidal heights in metres at its own posts.
+// Inside terrain only: one elevation file as ellipsoidal heights in metres at its own posts, read
+// in pieces.
 #pragma once
 
+#include <atomic>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "terrain/height_grid.hpp"
+#include "terrain/gdal_dataset.hpp"
+#include "terrain/height_pyramid.hpp"
 #include "terrain/map_plane.hpp"
 #include "terrain/smooth_map.hpp"
 #include "terrain/world.hpp"
 
 namespace overfly::terrain {
 
-struct ElevationRaster {
-  std::string file;
-  HeightGrid grid;  ///< NaN where the file has no data
-  SmoothMap<2> post_from_map;
-  double spacing_m = 0.0;  ///< between posts on the map, at the area's middle
-
-  /// Reads the posts over `area` of the map plane and converts them to metres above the ellipsoid.
-  /// Doubts about unit, datum and implausible values go to `warnings`.
+/// Thread-safe after `open`.
+class ElevationRaster {
+ public:
+  /// Opens the file and works out which of its posts lie over `area` of the map plane and how they
+  /// become metres above the ellipsoid. Doubts about unit and datum go to `warnings`.
+  /// @param cache  holds the posts that `height_m` read
   /// Errors: kNotFound, kUnreadable, kInvalidArgument naming the file.
-  static Result<ElevationRaster> load(const ElevationLayer& layer,
-                                      const MapPlane& plane,
-                                      const MapRect& area,
-                                      std::vector<std::string>& warnings);
+  static Result<std::shared_ptr<const ElevationRaster>> open(const ElevationLayer& layer,
+                                                             const MapPlane& plane,
+                                                             const MapRect& area,
+                                                             std::shared_ptr<BlockCache> cache,
+                                                             std::vector<std::string>& warnings);
 
-  /// True within half a post of the file's posts.
+  /// Posts of the window over the area, NaN where the file has no data.
+  /// Errors: kIo with GDAL's reason.
+  [[nodiscard]] Result<RawPosts> read(int column, int row, int columns, int rows) const;
+
+  /// True within half a post of the window's posts.
   [[nodiscard]] bool covers(double x_map_m, double y_map_m) const;
-  /// NaN outside and where there is no data.
+  /// NaN outside, where there is no data and where the file cannot be read (see `fault`).
   [[nodiscard]] double height_m(double x_map_m, double y_map_m) const;
+  [[nodiscard]] std::optional<Error> fault() const { return posts_->fault(); }
+
+  /// True when `height_m` met values that no ground on earth has.
+  [[nodiscard]] bool implausible_seen() const { return implausible_; }
+
+  [[nodiscard]] const std::string& file() const { return file_; }
+  [[nodiscard]] const SmoothMap<2>& post_from_map() const { return *post_from_map_; }
+  [[nodiscard]] int columns() const { return window_.columns; }
+  [[nodiscard]] int rows() const { return window_.rows; }
+  /// Distance between posts on the map at the area's middle [m].
+  [[nodiscard]] double spacing_m() const { return spacing_m_; }
+  /// How its heights were related to the ellipsoid: the grid's name, a constant, or nothing.
+  [[nodiscard]] const std::string& relation() const { return relation_; }
+
+ private:
+  /// The part of the file that is used, in its posts.
+  struct Window {
+    int column = 0;
+    int row = 0;
+    int columns = 0;
+    int rows = 0;
+  };
+
+  Status find_window(const MapPlane& plane, const MapRect& area, const Georeference& place);
+  Status find_conversion(GDALDataset& dataset,
+                         const ElevationLayer& layer,
+                         const Georeference& place,
+                         std::vector<std::string>& warnings);
+  void to_metres(RawPosts& posts, int column, int row) const;
+  [[nodiscard]] Result<HeightGrid> posts_block(int column, int row) const;
+
+  std::string file_;
+  std::unique_ptr<DatasetPool> pool_;
+  int file_columns_ = 0;
+  int file_rows_ = 0;
+  Window window_;
+  std::optional<SmoothMap<2>> post_from_map_;
+  double spacing_m_ = 0.0;
+  double scale_m_ = 1.0;  ///< metres per unit of the raster
+  double offset_m_ = 0.0;
+  std::optional<double> nodata_;
+  bool masked_ = false;      ///< a mask band says where there is data
+  HeightGrid separation_m_;  ///< of the datum's zero, on a lattice over the window; may be empty
+  std::string relation_;
+  mutable std::atomic<bool> implausible_{false};
+  std::unique_ptr<PagedHeights> posts_;
 };
 
 }  // namespace overfly::terrain

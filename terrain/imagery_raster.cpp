@@ -16,9 +16,8 @@ int ceil_div(int a, int b) { return (a + b - 1) / b; }
 }  // namespace
 
 Result<std::shared_ptr<const ImageryRaster>> ImageryRaster::open(
-    const std::filesystem::path& file,
-    const std::optional<std::string>& crs,
-    std::vector<std::string>& warnings) {
+    const ImageryLayer& layer, std::vector<std::string>& warnings) {
+  const std::filesystem::path& file = layer.file;
   auto raster = std::make_shared<ImageryRaster>();
   raster->file_ = file;
   initialise_gdal();
@@ -29,8 +28,8 @@ Result<std::shared_ptr<const ImageryRaster>> ImageryRaster::open(
   raster->width_px_ = dataset.GetRasterXSize();
   raster->height_px_ = dataset.GetRasterYSize();
   raster->format_ = dataset.GetDriver()->GetDescription();
-  auto place =
-      read_georeference(dataset, file, crs, messages.empty() ? std::string() : messages.text());
+  auto place = read_georeference(
+      dataset, file, layer.crs, messages.empty() ? std::string() : messages.text());
   if (!place) return place.error();
   raster->georeference_ = *place;
   Eigen::Vector2d middle;
@@ -39,7 +38,7 @@ Result<std::shared_ptr<const ImageryRaster>> ImageryRaster::open(
   if (auto doubt = datum_shift_doubt(place->crs, middle.x(), middle.y(), file.string())) {
     warnings.push_back(std::move(*doubt));
   }
-  auto bands = find_bands(dataset, file.string(), warnings);
+  auto bands = find_bands(dataset, file.string(), layer.nodata, warnings);
   if (!bands) return bands.error();
   raster->bands_ = *bands;
   const Status whole = check_blocks(dataset, file);

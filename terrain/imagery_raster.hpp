@@ -10,6 +10,7 @@
 #include "terrain/area_average.hpp"
 #include "terrain/gdal_dataset.hpp"
 #include "terrain/raster_bands.hpp"
+#include "terrain/world.hpp"
 
 namespace overfly::terrain {
 
@@ -20,8 +21,7 @@ class ImageryRaster {
   /// Opens the file and checks it: bands, georeference, that its blocks lie inside the file, and
   /// which of its overviews are area averages (others are not used).
   /// Errors: kNotFound, kUnreadable, kInvalidArgument naming the file.
-  static Result<std::shared_ptr<const ImageryRaster>> open(const std::filesystem::path& file,
-                                                           const std::optional<std::string>& crs,
+  static Result<std::shared_ptr<const ImageryRaster>> open(const ImageryLayer& layer,
                                                            std::vector<std::string>& warnings);
 
   /// Texels [x, x + width) x [y, y + height) of a level; void outside the file.

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "core/pose.hpp"
@@ -19,7 +20,7 @@ Result<Rasters> open_imagery(const WorldSpec& spec, std::vector<std::string>& wa
   }
   Rasters rasters;
   for (const ImageryLayer& layer : spec.imagery) {
-    auto raster = ImageryRaster::open(layer.file, layer.crs, warnings);
+    auto raster = ImageryRaster::open(layer, warnings);
     if (!raster) return raster.error();
     rasters.push_back(std::move(*raster));
   }
@@ -38,9 +39,9 @@ Result<std::vector<MappedImagery>> map_imagery(const Rasters& rasters, const Wor
   return layers;
 }
 
-/// Elevation as far around the imagery as memory allows, at most to about the horizon of a
-/// low flight.
-Result<ElevationModel> load_elevation(const WorldSpec& spec,
+/// Elevation as far around the imagery as is quickly read, at most to about the horizon of a low
+/// flight.
+Result<ElevationModel> open_elevation(const WorldSpec& spec,
                                       const WorldLayout& layout,
                                       std::vector<std::string>& warnings) {
   if (spec.elevation.empty()) {
@@ -52,11 +53,17 @@ Result<ElevationModel> load_elevation(const WorldSpec& spec,
     return ElevationModel::flat(spec.ground_height_m.value_or(0.0));
   }
   constexpr double kReachesM[] = {30e3, 10e3, 3e3, 300.0};
+  constexpr double kMaxPosts = 40e6;
   Error last;
   for (const double reach_m : kReachesM) {
     std::vector<std::string> doubts;
-    auto model = ElevationModel::load(
-        spec.elevation, layout.plane, layout.extent, layout.extent.grown(reach_m), doubts);
+    const bool least = reach_m == kReachesM[3];
+    auto model = ElevationModel::open(spec.elevation,
+                                      layout.plane,
+                                      layout.extent,
+                                      layout.extent.grown(reach_m),
+                                      least ? std::numeric_limits<double>::max() : kMaxPosts,
+                                      doubts);
     if (model) {
       warnings.insert(warnings.end(), doubts.begin(), doubts.end());
       return model;
@@ -129,8 +136,12 @@ Result<World> open_world(const WorldSpec& spec) {
   if (!sane) return sane.error();
   auto imagery = map_imagery(*rasters, *layout);
   if (!imagery) return imagery.error();
-  auto elevation = load_elevation(spec, *layout, world.warnings);
+  auto elevation = open_elevation(spec, *layout, world.warnings);
   if (!elevation) return elevation.error();
+  if (elevation->heights() != nullptr) {
+    const Status surveyed = elevation->survey(world.warnings);
+    if (!surveyed) return surveyed.error();
+  }
 
   if (!world.spec.origin) {
     const MapRect& all = layout->extent;

@@ -42,7 +42,11 @@ Status find_range(GDALDataset& dataset, const std::string& file, RasterBands& ba
     return Error{ErrorCode::kUnreadable, file + ": cannot be read: " + messages.text()};
   }
   int has_nodata = 0;
-  const auto nodata = static_cast<float>(band->GetNoDataValue(&has_nodata));
+  auto nodata = static_cast<float>(band->GetNoDataValue(&has_nodata));
+  if (bands.nodata) {
+    has_nodata = 1;
+    nodata = static_cast<float>(*bands.nodata);
+  }
   std::erase_if(sample, [&](float v) { return !std::isfinite(v) || (has_nodata && v == nodata); });
   if (sample.empty()) return {};
   std::sort(sample.begin(), sample.end());
@@ -128,6 +132,7 @@ CPLErr read_rescaled(GDALDataset& dataset, const RasterBands& bands, int x, int 
 
 /// A texel is void when every colour band says so (nodata 0 must not pierce a dark red).
 CPLErr read_mask(GDALDataset& dataset, const RasterBands& bands, int x, int y, Image& valid) {
+  if (bands.nodata) return read_nodata(dataset, bands, x, y, valid);
   std::fill(valid.data.begin(), valid.data.end(), std::uint8_t{0});
   Image one(valid.width_px, valid.height_px, 1);
   for (int c = 0; c < 3; ++c) {
@@ -151,6 +156,37 @@ CPLErr read_mask(GDALDataset& dataset, const RasterBands& bands, int x, int y, I
       if (one.data[i] >= 128) valid.data[i] = 255;
     }
     if ((flags & (GMF_PER_DATASET | GMF_ALPHA)) != 0) break;
+  }
+  return CE_None;
+}
+
+/// A texel is void when every colour band has the manifest's value.
+CPLErr read_nodata(GDALDataset& dataset, const RasterBands& bands, int x, int y, Image& valid) {
+  std::vector<float> values(valid.data.size());
+  std::vector<std::uint8_t> differs(valid.data.size(), 0);
+  const auto nodata = static_cast<float>(*bands.nodata);
+  for (int c = 0; c < 3; ++c) {
+    if (c > 0 && bands.rgb[c] == bands.rgb[0]) break;
+    const CPLErr outcome = dataset.GetRasterBand(bands.rgb[c])
+                               ->RasterIO(GF_Read,
+                                          x,
+                                          y,
+                                          valid.width_px,
+                                          valid.height_px,
+                                          values.data(),
+                                          valid.width_px,
+                                          valid.height_px,
+                                          GDT_Float32,
+                                          0,
+                                          0,
+                                          nullptr);
+    if (outcome != CE_None) return outcome;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (values[i] != nodata) differs[i] = 1;
+    }
+  }
+  for (std::size_t i = 0; i < differs.size(); ++i) {
+    if (differs[i] == 0) valid.data[i] = 0;
   }
   return CE_None;
 }
@@ -187,8 +223,10 @@ void paint_voids(Patch& patch) {
 
 Result<RasterBands> find_bands(GDALDataset& dataset,
                                const std::string& file,
+                               const std::optional<double>& nodata,
                                std::vector<std::string>& warnings) {
   RasterBands bands;
+  bands.nodata = nodata;
   const int count = dataset.GetRasterCount();
   if (const int red = band_of(dataset, GCI_RedBand); red > 0) {
     const int green = band_of(dataset, GCI_GreenBand);
@@ -210,7 +248,7 @@ Result<RasterBands> find_bands(GDALDataset& dataset,
                        std::to_string(bands.low) + " to " + std::to_string(bands.high) +
                        " are shown as 0 to 255");
   }
-  bands.has_mask = bands.has_mask || has_mask(dataset, bands);
+  bands.has_mask = bands.has_mask || bands.nodata || has_mask(dataset, bands);
   return bands;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,16 +16,20 @@ struct RasterBands {
   bool palette = false;
   std::vector<std::array<std::uint8_t, 4>> colours;  ///< of a palette; the fourth is alpha
   bool has_mask = false;
+  /// Value that marks void texels, said by the manifest in place of the file.
+  std::optional<double> nodata;
   /// 8-bit value = (value - low) * 255 / (high - low), for bands that are not 8 bit.
   bool rescaled = false;
   double low = 0.0;
   double high = 255.0;
 };
 
-/// Finds them; what was assumed goes to `warnings`.
+/// Finds them; what was assumed goes to `warnings`. `nodata` takes the place of the file's own
+/// mask.
 /// Errors: kUnreadable naming the file for complex samples.
 [[nodiscard]] Result<RasterBands> find_bands(GDALDataset& dataset,
                                              const std::string& file,
+                                             const std::optional<double>& nodata,
                                              std::vector<std::string>& warnings);
 
 /// Reads a window that lies inside the dataset. Errors: kIo with GDAL's reason.

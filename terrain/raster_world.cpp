@@ -88,6 +88,8 @@ Result<Tile> RasterWorld::tile(const TileId& id) const {
     return Error{ErrorCode::kInvalidArgument,
                  "tile level = " + std::to_string(id.level) + ": must be in [0, 24)"};
   }
+  // Heights cannot say that they failed: the next tile does, so that a flight ends and says why.
+  if (const Status heights = elevation_.status(); !heights) return heights.error();
   std::optional<Tile> result;
   for (const MappedImagery& layer : imagery_) {
     auto read = layer.read(id);
@@ -109,6 +111,12 @@ Result<Tile> RasterWorld::tile(const TileId& id) const {
 
 Eigen::Vector3d RasterWorld::world_from_map(double x_map_m, double y_map_m) const {
   return geodesy_.world(x_map_m, y_map_m, elevation_.height_m(x_map_m, y_map_m));
+}
+
+Eigen::Vector3d RasterWorld::coarse_world_from_map(double x_map_m,
+                                                   double y_map_m,
+                                                   double spacing_m) const {
+  return geodesy_.world(x_map_m, y_map_m, elevation_.coarse_height_m(x_map_m, y_map_m, spacing_m));
 }
 
 Eigen::Vector2d RasterWorld::map_from_world(double east_m, double north_m) const {

@@ -60,12 +60,16 @@ class RasterWorld final : public TileSource {
   [[nodiscard]] TileCoverage coverage(const TileId& id) const override;
   [[nodiscard]] Result<Tile> tile(const TileId& id) const override;
   [[nodiscard]] Eigen::Vector3d world_from_map(double x_map_m, double y_map_m) const override;
+  [[nodiscard]] Eigen::Vector3d coarse_world_from_map(double x_map_m,
+                                                      double y_map_m,
+                                                      double spacing_m) const override;
   [[nodiscard]] Eigen::Vector2d map_from_world(double east_m, double north_m) const override;
   [[nodiscard]] double ground_up_m(double east_m, double north_m) const override;
   [[nodiscard]] bool has_imagery(double x_map_m, double y_map_m) const override;
   [[nodiscard]] const LocalFrame& frame() const override { return frame_; }
   [[nodiscard]] Eigen::Vector2d height_range_m() const override { return elevation_.range_m(); }
   [[nodiscard]] std::string attribution() const override { return attribution_; }
+  [[nodiscard]] Status status() const override { return elevation_.status(); }
 
   [[nodiscard]] const std::vector<MappedImagery>& imagery() const { return imagery_; }
   [[nodiscard]] const ElevationModel& elevation() const { return elevation_; }

@@ -40,6 +40,7 @@ class TileDecorator : public TileSource {
   [[nodiscard]] const LocalFrame& frame() const override { return base_->frame(); }
   [[nodiscard]] Eigen::Vector2d height_range_m() const override { return base_->height_range_m(); }
   [[nodiscard]] std::string attribution() const override { return base_->attribution(); }
+  [[nodiscard]] Status status() const override { return base_->status(); }
 
  protected:
   [[nodiscard]] const TileSource& base() const { return *base_; }

@@ -87,6 +87,9 @@ class TileSource : public HeightQuery {
   [[nodiscard]] virtual Eigen::Vector2d height_range_m() const = 0;
   /// Credit line of the imagery and elevation.
   [[nodiscard]] virtual std::string attribution() const = 0;
+  /// kIo once a height could not be read (a file cut short, a disk taken away): look-ups of heights
+  /// have no way to say so and answer with the lowest ground. `tile` repeats it.
+  [[nodiscard]] virtual Status status() const { return {}; }
 };
 
 }  // namespace overfly::terrain

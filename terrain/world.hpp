@@ -17,7 +17,9 @@ struct ImageryLayer {
   std::filesystem::path file;
   std::string attribution;
   /// Coordinate reference system where the file names none, as "EPSG:2994".
-  std::optional<std::string> crs;
+  std::optional<std::string> crs{};
+  /// Texels whose colour bands all have this value are void, whatever the file says.
+  std::optional<double> nodata{};
 };
 
 struct ElevationLayer {
@@ -29,7 +31,9 @@ struct ElevationLayer {
   std::optional<double> unit_m;
   std::string attribution;
   /// Coordinate reference system where the file names none, as "EPSG:2994".
-  std::optional<std::string> crs;
+  std::optional<std::string> crs{};
+  /// Value of posts without data, in place of the one that the file declares.
+  std::optional<double> nodata{};
 };
 
 /// What a world is made of; layers in priority order, the first one wins.

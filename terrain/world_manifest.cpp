@@ -108,6 +108,7 @@ struct Reader {
     layer.file = file_of(in);
     layer.attribution = in.text("attribution").value_or("");
     layer.crs = in.text("crs");
+    layer.nodata = in.number("nodata", -1e38, 1e38);
     in.reject_unknown();
     return layer;
   }
@@ -135,6 +136,7 @@ struct Reader {
     layer.unit_m = in.number("unit_m", 1e-4, 1e4);
     layer.attribution = in.text("attribution").value_or("");
     layer.crs = in.text("crs");
+    layer.nodata = in.number("nodata", -1e38, 1e38);
     in.reject_unknown();
     return layer;
   }
@@ -203,6 +205,7 @@ Json to_json(const WorldSpec& spec, const fs::path& folder) {
   for (const ImageryLayer& layer : spec.imagery) {
     Json entry{{"file", path_in(folder, layer.file)}};
     if (layer.crs) entry["crs"] = *layer.crs;
+    if (layer.nodata) entry["nodata"] = *layer.nodata;
     if (!layer.attribution.empty()) entry["attribution"] = layer.attribution;
     json["imagery"].push_back(entry);
   }
@@ -212,6 +215,7 @@ Json to_json(const WorldSpec& spec, const fs::path& folder) {
     if (layer.geoid_separation_m) entry["geoid_separation_m"] = *layer.geoid_separation_m;
     if (layer.unit_m) entry["unit_m"] = *layer.unit_m;
     if (layer.crs) entry["crs"] = *layer.crs;
+    if (layer.nodata) entry["nodata"] = *layer.nodata;
     if (!layer.attribution.empty()) entry["attribution"] = layer.attribution;
     json["elevation"].push_back(entry);
   }

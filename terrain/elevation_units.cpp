@@ -1,0 +1,82 @@
+#include "terrain/elevation_units.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace overfly::terrain {
+namespace {
+
+constexpr double kFootM = 0.3048;
+constexpr double kUsSurveyFootM = 1200.0 / 3937.0;
+
+bool is_metre(const std::string& unit) {
+  return unit == "m" || unit == "metre" || unit == "meter" || unit == "metres" || unit == "meters";
+}
+
+}  // namespace
+
+double height_unit_m(GDALDataset& dataset,
+                     const ElevationLayer& layer,
+                     const OGRSpatialReference& crs,
+                     std::vector<std::string>& warnings) {
+  if (layer.unit_m) return *layer.unit_m;
+  std::string unit = dataset.GetRasterBand(1)->GetUnitType();
+  std::transform(unit.begin(), unit.end(), unit.begin(), [](unsigned char c) {
+    return static_cast<char>(std::tolower(c));
+  });
+  const bool vertical_feet =
+      crs.IsVertical() != 0 && std::abs(crs.GetTargetLinearUnits("VERT_CS") - 1.0) > 1e-3;
+  if (is_metre(unit) && vertical_feet) {
+    warnings.push_back(layer.file.string() +
+                       ": the band says heights in metres, its vertical reference system feet; "
+                       "taken as metres. If they are feet, the ground is 3.28 times too high: say "
+                       "\"unit_m\" in the manifest");
+  }
+  if (is_metre(unit)) return 1.0;
+  if (unit.find("us") != std::string::npos && unit.find('f') != std::string::npos) {
+    return kUsSurveyFootM;
+  }
+  if (unit == "ft" || unit == "foot" || unit == "feet") return kFootM;
+  if (crs.IsVertical() != 0) return crs.GetTargetLinearUnits("VERT_CS");
+  const bool feet = crs.IsProjected() != 0 && std::abs(crs.GetLinearUnits() - 1.0) > 1e-3;
+  if (!unit.empty() || feet) {
+    warnings.push_back(layer.file.string() + ": unit of the heights is " +
+                       (unit.empty() ? "not said" : "\"" + unit + "\"") +
+                       "; taken as metres. If they are feet, the ground is 3.28 times too high: "
+                       "say \"unit_m\" in the manifest");
+  }
+  return 1.0;
+}
+
+VerticalDatum height_datum(const ElevationLayer& layer, const OGRSpatialReference& crs) {
+  if (layer.datum != VerticalDatum::kUnknown) return layer.datum;
+  if (crs.IsVertical() == 0) return VerticalDatum::kUnknown;
+  const char* name = crs.GetAttrValue("VERT_CS");
+  const std::string text = name != nullptr ? name : "";
+  if (text.find("NAVD88") != std::string::npos) return VerticalDatum::kNavd88;
+  if (text.find("EGM2008") != std::string::npos) return VerticalDatum::kEgm2008;
+  if (text.find("EGM96") != std::string::npos) return VerticalDatum::kEgm96;
+  return VerticalDatum::kUnknown;
+}
+
+Status check_height_band(GDALDataset& dataset,
+                         const std::string& file,
+                         std::vector<std::string>& warnings) {
+  GDALRasterBand* band = dataset.GetRasterBand(1);
+  if (GDALDataTypeIsComplex(band->GetRasterDataType()) != 0) {
+    return Error{ErrorCode::kInvalidArgument, file + ": has complex samples, not heights"};
+  }
+  if (band->GetRasterDataType() != GDT_Byte) return {};
+  if (dataset.GetRasterCount() >= 3 || band->GetColorTable() != nullptr) {
+    return Error{ErrorCode::kInvalidArgument,
+                 file +
+                     ": is a picture (8-bit colours), not elevation; is it listed in the wrong "
+                     "place?"};
+  }
+  warnings.push_back(file +
+                     ": elevation has 8 bits: 256 heights in steps of one unit, so it may be a "
+                     "picture of the relief; the ground will have terraces");
+  return {};
+}
+
+}  // namespace overfly::terrain
