@@ -1,5 +1,7 @@
 #include "renderer/frame_statistics.hpp"
 
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -78,21 +80,39 @@ class SeenTriangle {
 /// The grid of rays over the image.
 class RayGrid {
  public:
-  explicit RayGrid(const View& view) : view_(view), hits_(kColumns * kRows) {}
+  RayGrid(const View& view, const CameraModel& camera) : view_(view), camera_(camera) {
+    for (int row = 0; row < kRows; ++row) {
+      for (int column = 0; column < kColumns; ++column) add_ray(pixel(column, row));
+    }
+  }
 
   void add(const SeenTriangle& triangle, const GroundBatch& batch) {
+    const double texels = triangle.doubled_area_texels() * std::ldexp(1.0, 2 * batch.texture.level);
+    const double scale = texels / triangle.doubled_area_m2();
+    const auto test = [&](std::size_t i) {
+      const Ray& ray = rays_[i];
+      if (!triangle.intersect(ray.direction, hits_[i])) return;
+      hits_[i].texels_per_px = std::sqrt(hits_[i].texels_per_px * scale * ray.plane_area_per_px);
+      hits_[i].batch = &batch;
+    };
+    if (!camera_.distortion().none()) {
+      // The rays are no grid in the plane: look at each.
+      Eigen::AlignedBox2d box;
+      bool in_front = true;
+      for (const Eigen::Vector3d& p : triangle.points()) {
+        in_front = in_front && p.z() > 0.0;
+        box.extend(Eigen::Vector2d(p.head<2>() / p.z()));
+      }
+      for (std::size_t i = 0; i < rays_.size(); ++i) {
+        if (!in_front || box.contains(rays_[i].direction.head<2>())) test(i);
+      }
+      return;
+    }
     int left = 0, right = kColumns - 1, top = 0, bottom = kRows - 1;
     bound(triangle, left, right, top, bottom);
-    if (left > right || top > bottom) return;
-    const PinholeCamera& camera = view_.camera;
-    const double texels = triangle.doubled_area_texels() * std::ldexp(1.0, 2 * batch.texture.level);
-    const double scale = texels / (triangle.doubled_area_m2() * camera.fx_px * camera.fy_px);
     for (int row = top; row <= bottom; ++row) {
       for (int column = left; column <= right; ++column) {
-        Hit& hit = hits_[row * kColumns + column];
-        if (!triangle.intersect(camera.ray(pixel(column, row)), hit)) continue;
-        hit.texels_per_px = std::sqrt(hit.texels_per_px * scale);
-        hit.batch = &batch;
+        test(static_cast<std::size_t>(row) * kColumns + column);
       }
     }
   }
@@ -100,9 +120,27 @@ class RayGrid {
   [[nodiscard]] const std::vector<Hit>& hits() const { return hits_; }
 
  private:
+  struct Ray {
+    Eigen::Vector3d direction;       // z = 1
+    double plane_area_per_px = 0.0;  // of the plane z = 1
+  };
+
+  void add_ray(const Eigen::Vector2d& at) {
+    const std::optional<Eigen::Vector3d> ray = camera_.ray(at);
+    hits_.emplace_back();
+    if (!ray) {
+      rays_.push_back({{std::numeric_limits<double>::quiet_NaN(), 0.0, 1.0}, 0.0});
+      return;
+    }
+    Eigen::Matrix2d J = Eigen::Matrix2d::Identity();
+    if (!camera_.distortion().none()) (void)camera_.distort(ray->head<2>(), &J);
+    const PinholeCamera& pinhole = camera_.pinhole();
+    rays_.push_back({*ray, 1.0 / (pinhole.fx_px * pinhole.fy_px * std::abs(J.determinant()))});
+  }
+
   [[nodiscard]] Eigen::Vector2d pixel(int column, int row) const {
-    return {(column + 0.5) * view_.camera.width_px / kColumns - 0.5,
-            (row + 0.5) * view_.camera.height_px / kRows - 0.5};
+    return {(column + 0.5) * camera_.pinhole().width_px / kColumns - 0.5,
+            (row + 0.5) * camera_.pinhole().height_px / kRows - 0.5};
   }
 
   /// Narrows the range of rays to those that may meet the triangle.
@@ -127,6 +165,8 @@ class RayGrid {
   }
 
   const View& view_;
+  const CameraModel& camera_;
+  std::vector<Ray> rays_;
   std::vector<Hit> hits_;
 };
 
@@ -166,11 +206,25 @@ std::optional<double> axis_depth(const GroundMesh& mesh,
 
 }  // namespace
 
+ImageryQuery imagery_query(const terrain::TileSource& tiles) {
+  return [&tiles](const terrain::TileId& tile, double u, double v) {
+    const terrain::TileGrid& grid = tiles.grid();
+    const double side_m = grid.tile_m(tile.level);
+    const auto place_m = [&](int index, double texture) {
+      const double texels = texture * kTextureTexels - terrain::kTileBorder;
+      return (index + texels / terrain::kTileTexels) * side_m;
+    };
+    return tiles.has_imagery(grid.left_x_m + place_m(tile.col, u),
+                             grid.top_y_m - place_m(tile.row, v));
+  };
+}
+
 FrameStatistics measure_frame(const GroundMesh& mesh,
                               const View& view,
-                              const HeightQuery& ground,
+                              const CameraModel& camera,
+                              const terrain::TileSource& tiles,
                               const ImageryQuery& has_imagery) {
-  RayGrid grid(view);
+  RayGrid grid(view, camera);
   for (const GroundBatch& batch : mesh.batches) {
     for (std::uint32_t i = batch.first_index; i < batch.first_index + batch.index_count; i += 3) {
       grid.add(SeenTriangle(mesh.vertices[mesh.indices[i]],
@@ -179,13 +233,15 @@ FrameStatistics measure_frame(const GroundMesh& mesh,
                batch);
     }
   }
+  // Levels finer than the photograph are synthetic: they do not count.
+  const double real_share = tiles.grid().texel_m / tiles.real_texel_m();
   FrameStatistics statistics;
   std::vector<double> texels;
   int void_rays = 0;
   for (const Hit& hit : grid.hits()) {
     if (hit.batch == nullptr) continue;
     if (hit.batch->textured && has_imagery(hit.batch->texture, hit.u, hit.v)) {
-      texels.push_back(hit.texels_per_px);
+      texels.push_back(real_share * hit.texels_per_px);
     } else {
       ++void_rays;
     }
@@ -197,7 +253,7 @@ FrameStatistics measure_frame(const GroundMesh& mesh,
     statistics.texels_per_pixel_median = *middle;
     statistics.texels_per_pixel_min = *std::min_element(texels.begin(), texels.end());
   }
-  statistics.axis_depth_m = axis_depth(mesh, view, ground);
+  statistics.axis_depth_m = axis_depth(mesh, view, tiles);
   return statistics;
 }
 

@@ -4,7 +4,7 @@
 #include <functional>
 #include <optional>
 
-#include "core/height_query.hpp"
+#include "core/camera_model.hpp"
 #include "renderer/ground_mesh.hpp"
 
 namespace overfly::renderer {
@@ -19,14 +19,20 @@ struct FrameStatistics {
 /// True where a textured tile has imagery at texture coordinates (u, v).
 using ImageryQuery = std::function<bool(const terrain::TileId& tile, double u, double v)>;
 
+/// Asks the tile source itself. @param tiles  must outlive the query
+[[nodiscard]] ImageryQuery imagery_query(const terrain::TileSource& tiles);
+
 /// Measures a frame on a grid of 40 x 30 rays through the mesh that was drawn, one at the centre
 /// of each 1/40 x 1/30 of the image: void_fraction has a step of 1/1200, and details smaller than
 /// a cell may be missed by the minimum. Texels per pixel are those of level 0, the root of their
 /// number per pixel area. The axis depth is refined on the ground itself (to 1 mm).
+/// @param mesh    of a view that sees all rays of the camera (covering_pinhole)
+/// @param camera  whose pixels are counted
 /// @pre all triangles face the camera, as build_ground_mesh leaves them
 [[nodiscard]] FrameStatistics measure_frame(const GroundMesh& mesh,
                                             const View& view,
-                                            const HeightQuery& ground,
+                                            const CameraModel& camera,
+                                            const terrain::TileSource& tiles,
                                             const ImageryQuery& has_imagery);
 
 }  // namespace overfly::renderer

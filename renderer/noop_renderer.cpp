@@ -7,6 +7,7 @@
 
 #include "renderer/frame_statistics.hpp"
 #include "renderer/ground_mesh.hpp"
+#include "renderer/image_parts.hpp"
 #include "renderer/renderer.hpp"
 #include "renderer/request_check.hpp"
 
@@ -63,7 +64,10 @@ class NoopRenderer final : public Renderer {
       frame.radiance = radiance_of(frame.image);
       frame.image = {};
     }
-    const FrameStatistics statistics = measure(View::from(camera, frame.T_world_camera));
+    const View view = View::from(covering_pinhole(request.camera), frame.T_world_camera);
+    const GroundMesh mesh = build_ground_mesh(patches_, view, {});
+    const FrameStatistics statistics =
+        measure_frame(mesh, view, request.camera, *tiles_, imagery_query(*tiles_));
     frame.texels_per_pixel_min = statistics.texels_per_pixel_min;
     frame.texels_per_pixel_median = statistics.texels_per_pixel_median;
     frame.void_fraction = statistics.void_fraction;
@@ -99,20 +103,6 @@ class NoopRenderer final : public Renderer {
   [[nodiscard]] RendererInfo info() const override { return {"noop", "none", "none", true, ""}; }
 
  private:
-  FrameStatistics measure(const View& view) {
-    const terrain::TileGrid& grid = tiles_->grid();
-    const GroundMesh mesh = build_ground_mesh(patches_, view, {});
-    return measure_frame(mesh, view, *tiles_, [&](const terrain::TileId& tile, double u, double v) {
-      constexpr double kTexels = terrain::kTileTexels + 2 * terrain::kTileBorder;
-      const double texel_m = grid.tile_m(tile.level) / terrain::kTileTexels;
-      const double x_m = grid.left_x_m + tile.col * grid.tile_m(tile.level) +
-                         (u * kTexels - terrain::kTileBorder) * texel_m;
-      const double y_m = grid.top_y_m - tile.row * grid.tile_m(tile.level) -
-                         (v * kTexels - terrain::kTileBorder) * texel_m;
-      return tiles_->has_imagery(x_m, y_m);
-    });
-  }
-
   std::shared_ptr<const terrain::TileSource> tiles_;
   GroundPatches patches_;
 };

@@ -183,7 +183,7 @@ class TileStore;
 
 struct RendererOptions {
   /// Tiles kept in memory, and as many again as textures; > 64 MiB.
-  std::size_t tile_cache_bytes = std::size_t{512} << 20U;
+  std::size_t tile_cache_bytes = std::size_t{256} << 20U;
   /// Shared with other renderers of the same world; null = one of its own.
   std::shared_ptr<TileStore> tile_store;
   /// The EGL device: "" = the first that works, "0" = by index, "0000:01:00.0" = by PCI address,

@@ -134,7 +134,7 @@ std::string gl_string(GLenum name) {
 
 }  // namespace
 
-Result<std::unique_ptr<EglContext>> EglContext::create() {
+Result<std::unique_ptr<EglContext>> EglContext::create(const std::string& /*device*/) {
   const Result<EGLDisplay> display = shared_display();
   if (!display.ok()) return display.error();
   eglBindAPI(EGL_OPENGL_API);

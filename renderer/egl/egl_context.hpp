@@ -15,7 +15,7 @@ class EglContext {
  public:
   /// Makes a context and leaves it current. OpenGL 4.5 core, or 3.3 core with
   /// ARB_clip_control. Errors: kUnsupported with what EGL said and which package is missing.
-  static Result<std::unique_ptr<EglContext>> create();
+  static Result<std::unique_ptr<EglContext>> create(const std::string& device = "");
   ~EglContext();
   EglContext(const EglContext&) = delete;
   EglContext& operator=(const EglContext&) = delete;

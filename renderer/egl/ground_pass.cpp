@@ -1,5 +1,7 @@
 #include "renderer/egl/ground_pass.hpp"
 
+#include <algorithm>
+#include <utility>
 #include <vector>
 
 namespace overfly::renderer::egl {
@@ -9,13 +11,16 @@ namespace {
 constexpr const char* kVertexSource = R"(#version 330 core
 uniform vec4 projection;
 uniform float near;
+uniform vec3 window;
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec2 texel;
 out vec2 uv;
+out vec3 place_m;
 out float depth_m;
 out float clarity;
 void main() {
-  uv = texel;
+  uv = texel * window.x + window.yz;
+  place_m = position;
   depth_m = position.z;
   // By vertex: at the horizon's slivers a sample outside its triangle would extrapolate depth.
   clarity = exp(-max(position.z, 0.0) / 9000.0);
@@ -28,6 +33,23 @@ uniform sampler2D tile;
 in vec2 uv;
 out vec4 colour;
 void main() { colour = texture(tile, uv); }
+)";
+
+constexpr const char* kAirySource = R"(#version 330 core
+uniform sampler2D tile;
+uniform float extinction;
+uniform vec3 airlight;
+uniform vec4 lod_bias;
+uniform vec2 size_px;
+in vec2 uv;
+in vec3 place_m;
+out vec4 colour;
+void main() {
+  vec2 at = gl_FragCoord.xy / size_px;
+  float bias = mix(mix(lod_bias.x, lod_bias.y, at.x), mix(lod_bias.z, lod_bias.w, at.x), at.y);
+  float clear = exp(-extinction * length(place_m));
+  colour = vec4(mix(airlight, texture(tile, uv, bias).rgb, clear), 1.0);
+}
 )";
 
 constexpr const char* kHazySource = R"(#version 330 core
@@ -68,15 +90,18 @@ void set_projection(const GlProgram& program, const PinholeCamera& camera) {
 Result<GroundPass> GroundPass::create() {
   Result<GlProgram> colour = GlProgram::link(kVertexSource, kColourSource);
   if (!colour.ok()) return colour.error();
+  Result<GlProgram> airy = GlProgram::link(kVertexSource, kAirySource);
+  if (!airy.ok()) return airy.error();
   Result<GlProgram> hazy = GlProgram::link(kVertexSource, kHazySource);
   if (!hazy.ok()) return hazy.error();
   Result<GlProgram> depth = GlProgram::link(kVertexSource, kDepthSource);
   if (!depth.ok()) return depth.error();
-  return GroundPass(std::move(*colour), std::move(*hazy), std::move(*depth));
+  return GroundPass(std::move(*colour), std::move(*airy), std::move(*hazy), std::move(*depth));
 }
 
-GroundPass::GroundPass(GlProgram colour, GlProgram hazy, GlProgram depth)
+GroundPass::GroundPass(GlProgram colour, GlProgram airy, GlProgram hazy, GlProgram depth)
     : colour_(std::move(colour)),
+      airy_(std::move(airy)),
       hazy_(std::move(hazy)),
       depth_(std::move(depth)),
       vertex_array_(GlVertexArray::make()),
@@ -107,39 +132,60 @@ void GroundPass::upload(const GroundMesh& mesh) {
 
 Status GroundPass::find_textures(const GroundMesh& mesh,
                                  TileTextures& textures,
-                                 PixelFormat format) {
-  names_.clear();
+                                 const GroundLook& look) {
+  tiles_.clear();
   for (const GroundBatch& batch : mesh.batches) {
     if (!batch.textured) {
-      names_.push_back(textures.void_texture(format));
+      tiles_.push_back({textures.void_texture(look.format), 1.0F, {}});
       continue;
     }
-    const Result<GLuint> texture = textures.texture(batch.texture, format);
-    if (!texture.ok()) return texture.error();
-    names_.push_back(*texture);
+    const Result<DrawnTile> tile =
+        textures.texture(batch.texture, look.format, look.wait_for_tiles);
+    if (!tile.ok()) return tile.error();
+    tiles_.push_back(*tile);
   }
   return {};
+}
+
+const GlProgram& GroundPass::use_program(const GroundLook& look, const PinholeCamera& camera) {
+  const auto& bias = look.lod_bias;
+  const bool plain = look.extinction_per_m == 0.0 &&
+                     std::all_of(bias.begin(), bias.end(), [](float b) { return b == 0.0F; });
+  const GlProgram* program = plain ? &colour_ : &airy_;
+  if (look.output == GroundLook::Output::kHazyColour) program = &hazy_;
+  if (look.output == GroundLook::Output::kDepthM) program = &depth_;
+  program->use();
+  set_projection(*program, camera);
+  glUniform3fv(program->uniform("haze"), 1, kHazeRgb);
+  glUniform1f(program->uniform("extinction"), static_cast<float>(look.extinction_per_m));
+  glUniform3fv(program->uniform("airlight"), 1, look.airlight.data());
+  glUniform4fv(program->uniform("lod_bias"), 1, bias.data());
+  glUniform2f(program->uniform("size_px"),
+              static_cast<float>(camera.width_px),
+              static_cast<float>(camera.height_px));
+  glUniform3f(program->uniform("window"), 1.0F, 0.0F, 0.0F);
+  return *program;
 }
 
 Status GroundPass::draw(const GroundMesh& mesh,
                         const PinholeCamera& camera,
                         TileTextures& textures,
-                        PixelFormat format,
-                        Output output) {
-  if (output != Output::kDepthM) {
-    if (Status status = find_textures(mesh, textures, format); !status) return status;
+                        const GroundLook& look) {
+  const bool coloured = look.output != GroundLook::Output::kDepthM;
+  if (coloured) {
+    if (Status status = find_textures(mesh, textures, look); !status) return status;
   }
-  const GlProgram& program = output == Output::kColour       ? colour_
-                             : output == Output::kHazyColour ? hazy_
-                                                             : depth_;
-  program.use();
-  set_projection(program, camera);
-  glUniform3fv(program.uniform("haze"), 1, kHazeRgb);
+  const GlProgram& program = use_program(look, camera);
   const GLint textured = program.uniform("textured");
+  const GLint window = program.uniform("window");
   upload(mesh);
   for (std::size_t i = 0; i < mesh.batches.size(); ++i) {
     const GroundBatch& batch = mesh.batches[i];
-    if (output != Output::kDepthM) glBindTexture(GL_TEXTURE_2D, names_[i]);
+    if (coloured) {
+      const DrawnTile& tile = tiles_[i];
+      glBindTexture(GL_TEXTURE_2D, tile.texture);
+      glUniform3f(window, tile.scale, tile.offset[0], tile.offset[1]);
+    }
     glUniform1i(textured, batch.textured ? 1 : 0);
     glDrawElements(GL_TRIANGLES,
                    static_cast<GLsizei>(batch.index_count),

@@ -1,6 +1,7 @@
 // Draws a ground mesh.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "renderer/egl/gl_program.hpp"
 #include "renderer/egl/tile_textures.hpp"
 #include "renderer/ground_mesh.hpp"
+#include "renderer/renderer.hpp"
 
 namespace overfly::renderer::egl {
 
@@ -24,34 +26,44 @@ inline constexpr float kHazeRgb[3] = {0.84F, 0.89F, 0.93F};
 /// The window's row 0 is the image's row 0, and the centre of pixel i is at window i + 0.5.
 void set_projection(const GlProgram& program, const PinholeCamera& camera);
 
-class GroundPass {
- public:
+/// How the ground is drawn.
+struct GroundLook {
   enum class Output {
     kColour,
     kHazyColour,  ///< fades into kHazeRgb with distance; ground without imagery is earth-coloured
     kDepthM,
   };
+  Output output = Output::kColour;
+  PixelFormat format = PixelFormat::kGrey8;  ///< of the textures; ignored for depth
+  bool wait_for_tiles = true;
+  /// Of kColour: the air between the camera and the ground, its light in the format's own terms.
+  double extinction_per_m = 0.0;
+  std::array<float, 3> airlight{};
+  /// Of kColour: added to the level of detail at the image's corners, between them bilinear.
+  std::array<float, 4> lod_bias{};
+};
 
+class GroundPass {
+ public:
   static Result<GroundPass> create();
 
   /// Draws into the bound target, which is cleared except for colour.
-  /// @param format  of the textures; ignored for depth
   /// Errors: kIo when a tile cannot be read.
   Status draw(const GroundMesh& mesh,
               const PinholeCamera& camera,
               TileTextures& textures,
-              PixelFormat format,
-              Output output);
+              const GroundLook& look);
 
  private:
-  GroundPass(GlProgram colour, GlProgram hazy, GlProgram depth);
-  Status find_textures(const GroundMesh& mesh, TileTextures& textures, PixelFormat format);
+  GroundPass(GlProgram colour, GlProgram airy, GlProgram hazy, GlProgram depth);
+  Status find_textures(const GroundMesh& mesh, TileTextures& textures, const GroundLook& look);
+  const GlProgram& use_program(const GroundLook& look, const PinholeCamera& camera);
   void upload(const GroundMesh& mesh);
 
-  GlProgram colour_, hazy_, depth_;
+  GlProgram colour_, airy_, hazy_, depth_;
   GlVertexArray vertex_array_;
   GlBuffer vertices_, indices_;
-  std::vector<GLuint> names_;  // of the batches being drawn
+  std::vector<DrawnTile> tiles_;  // of the batches being drawn
 };
 
 }  // namespace overfly::renderer::egl

@@ -14,8 +14,11 @@ GLenum internal_format(TargetFormat format) {
       return GL_R8;
     case TargetFormat::kRgba8:
       return GL_RGBA8;
+    case TargetFormat::kGreyFloat:
     case TargetFormat::kDepthM:
       return GL_R32F;
+    case TargetFormat::kRgbaFloat:
+      return GL_RGBA32F;
   }
   return GL_RGBA8;
 }
@@ -81,29 +84,43 @@ void RenderTarget::bind_for_reading() const {
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
 }
 
-void RenderTarget::read(Image& image) const {
-  bind_for_reading();
-  if (format_ == TargetFormat::kGrey8) {
-    image = Image(width_px_, height_px_, 1);
-    glReadPixels(0, 0, width_px_, height_px_, GL_RED, GL_UNSIGNED_BYTE, image.data.data());
-    return;
-  }
-  // Reading RGB directly takes a slow path in software drivers.
-  std::vector<std::uint8_t> rgba(static_cast<std::size_t>(width_px_) * height_px_ * 4);
-  glReadPixels(0, 0, width_px_, height_px_, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
-  image = Image(width_px_, height_px_, 3);
+namespace {
+
+/// Reading RGB directly takes a slow path in software drivers.
+template <typename T>
+ImageBuffer<T> read_rgb(int width_px, int height_px, GLenum type) {
+  std::vector<T> rgba(static_cast<std::size_t>(width_px) * height_px * 4);
+  glReadPixels(0, 0, width_px, height_px, GL_RGBA, type, rgba.data());
+  ImageBuffer<T> image(width_px, height_px, 3);
   const std::size_t pixels = rgba.size() / 4;
   for (std::size_t i = 0; i < pixels; ++i) {
     image.data[3 * i] = rgba[4 * i];
     image.data[3 * i + 1] = rgba[4 * i + 1];
     image.data[3 * i + 2] = rgba[4 * i + 2];
   }
+  return image;
 }
 
-void RenderTarget::read(DepthImage& depth) const {
+}  // namespace
+
+void RenderTarget::read(Image& image) const {
   bind_for_reading();
-  depth = DepthImage(width_px_, height_px_, 1);
-  glReadPixels(0, 0, width_px_, height_px_, GL_RED, GL_FLOAT, depth.data.data());
+  if (format_ != TargetFormat::kGrey8) {
+    image = read_rgb<std::uint8_t>(width_px_, height_px_, GL_UNSIGNED_BYTE);
+    return;
+  }
+  image = Image(width_px_, height_px_, 1);
+  glReadPixels(0, 0, width_px_, height_px_, GL_RED, GL_UNSIGNED_BYTE, image.data.data());
+}
+
+void RenderTarget::read(ImageBuffer<float>& values) const {
+  bind_for_reading();
+  if (format_ == TargetFormat::kRgbaFloat) {
+    values = read_rgb<float>(width_px_, height_px_, GL_FLOAT);
+    return;
+  }
+  values = ImageBuffer<float>(width_px_, height_px_, 1);
+  glReadPixels(0, 0, width_px_, height_px_, GL_RED, GL_FLOAT, values.data.data());
 }
 
 }  // namespace overfly::renderer::egl

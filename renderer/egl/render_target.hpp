@@ -7,7 +7,7 @@
 
 namespace overfly::renderer::egl {
 
-enum class TargetFormat { kGrey8, kRgba8, kDepthM };
+enum class TargetFormat { kGrey8, kRgba8, kGreyFloat, kRgbaFloat, kDepthM };
 
 /// A colour buffer with a depth buffer. Image row 0 is the window's row 0: what is drawn must
 /// have y pointing down, and rows are read in image order.
@@ -25,8 +25,8 @@ class RenderTarget {
 
   /// Reads what was drawn: grey from kGrey8, RGB from kRgba8.
   void read(Image& image) const;
-  /// Reads a kDepthM target.
-  void read(DepthImage& depth) const;
+  /// Reads a float target: one channel from kDepthM and kGreyFloat, RGB from kRgbaFloat.
+  void read(ImageBuffer<float>& values) const;
 
  private:
   RenderTarget() = default;

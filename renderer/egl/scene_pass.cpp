@@ -176,14 +176,16 @@ Result<Image> ScenePass::draw(const SceneContent& content,
   glClearDepth(0.0);
   glClear(GL_DEPTH_BUFFER_BIT);
   const GroundMesh mesh = build_ground_mesh(patches, view, kSceneMesh);
-  const Status drawn =
-      ground.draw(mesh, view.camera, textures, PixelFormat::kRgb8, GroundPass::Output::kHazyColour);
+  GroundLook look;
+  look.output = GroundLook::Output::kHazyColour;
+  look.format = PixelFormat::kRgb8;
+  const Status drawn = ground.draw(mesh, view.camera, textures, look);
   if (!drawn) return drawn.error();
   draw_triangles(solid, false);
   draw_triangles(translucent, true);
   Image image;
   target_->read(image);
-  textures.end_view();
+  (void)textures.end_view();
   return image;
 }
 

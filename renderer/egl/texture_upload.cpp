@@ -1,8 +1,16 @@
 #include "renderer/egl/texture_upload.hpp"
 
+#include <cstdint>
+
 namespace overfly::renderer::egl {
 
-GlTexture upload_texture(const std::vector<Image>& levels) {
+namespace {
+
+template <typename T>
+GlTexture upload(const std::vector<ImageBuffer<T>>& levels) {
+  constexpr bool kDeep = sizeof(T) == sizeof(std::uint16_t);
+  constexpr GLint kGrey = kDeep ? GL_R16 : GL_R8;
+  constexpr GLint kColour = kDeep ? GL_RGBA16 : GL_RGBA8;
   GlTexture texture = GlTexture::make();
   glBindTexture(GL_TEXTURE_2D, texture.name());
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
@@ -10,12 +18,12 @@ GlTexture upload_texture(const std::vector<Image>& levels) {
   for (std::size_t i = 0; i < levels.size(); ++i) {
     glTexImage2D(GL_TEXTURE_2D,
                  static_cast<GLint>(i),
-                 grey ? GL_R8 : GL_RGBA8,
+                 grey ? kGrey : kColour,
                  levels[i].width_px,
                  levels[i].height_px,
                  0,
                  grey ? GL_RED : GL_RGBA,
-                 GL_UNSIGNED_BYTE,
+                 kDeep ? GL_UNSIGNED_SHORT : GL_UNSIGNED_BYTE,
                  levels[i].data.data());
   }
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, static_cast<GLint>(levels.size()) - 1);
@@ -24,6 +32,14 @@ GlTexture upload_texture(const std::vector<Image>& levels) {
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
   return texture;
+}
+
+}  // namespace
+
+GlTexture upload_texture(const std::vector<Image>& levels) { return upload(levels); }
+
+GlTexture upload_texture(const TilePixels& pixels) {
+  return pixels.levels.empty() ? upload(pixels.linear_levels) : upload(pixels.levels);
 }
 
 }  // namespace overfly::renderer::egl

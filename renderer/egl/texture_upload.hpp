@@ -5,10 +5,13 @@
 
 #include "core/image.hpp"
 #include "renderer/egl/gl_objects.hpp"
+#include "renderer/tile_store.hpp"
 
 namespace overfly::renderer::egl {
 
 /// A texture of an image (grey or RGBA) and its mip levels, trilinear, clamped at the edges.
 [[nodiscard]] GlTexture upload_texture(const std::vector<Image>& levels);
+/// The same of a tile, in its 8 or 16 bits.
+[[nodiscard]] GlTexture upload_texture(const TilePixels& pixels);
 
 }  // namespace overfly::renderer::egl

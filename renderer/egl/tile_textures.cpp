@@ -1,11 +1,9 @@
 #include "renderer/egl/tile_textures.hpp"
 
 #include <algorithm>
-#include <string>
-#include <vector>
+#include <cmath>
 
 #include "renderer/egl/texture_upload.hpp"
-#include "renderer/tile_pixels.hpp"
 
 namespace overfly::renderer::egl {
 
@@ -13,67 +11,101 @@ using terrain::TileId;
 
 namespace {
 
-constexpr int kValidStep = 8;
-
-/// Grey, or RGB with the imagery's validity as alpha.
-Image in_format(const terrain::Tile& tile, PixelFormat format) {
-  return format == PixelFormat::kGrey8 ? grey_from_rgb(tile.rgb) : with_alpha(tile.rgb, tile.valid);
-}
-
-Image thinned(const Image& valid) {
-  const bool all_valid =
-      std::all_of(valid.data.begin(), valid.data.end(), [](auto value) { return value != 0; });
-  if (all_valid) return {};
-  Image thin(valid.width_px / kValidStep, valid.height_px / kValidStep, 1);
-  for (int y = 0; y < thin.height_px; ++y) {
-    for (int x = 0; x < thin.width_px; ++x) {
-      thin.at(x, y) = valid.at(x * kValidStep + kValidStep / 2, y * kValidStep + kValidStep / 2);
-    }
-  }
-  return thin;
+/// Where a tile lies in its ancestor `steps` levels up, in texture coordinates with borders.
+DrawnTile window_in(const TileId& id, int steps) {
+  constexpr double kSide = terrain::kTileTexels + 2.0 * terrain::kTileBorder;
+  const double scale = std::ldexp(1.0, -steps);
+  const auto offset = [&](int place) {
+    const int within = place - ((place >> steps) * (1 << steps));
+    return static_cast<float>(
+        (terrain::kTileBorder * (1.0 - scale) + within * scale * terrain::kTileTexels) / kSide);
+  };
+  return {0, static_cast<float>(scale), {offset(id.col), offset(id.row)}};
 }
 
 }  // namespace
 
-TileTextures::TileTextures(std::shared_ptr<const terrain::TileSource> tiles,
-                           std::size_t budget_bytes)
-    : tiles_(std::move(tiles)), budget_bytes_(budget_bytes) {}
+TileTextures::TileTextures(std::shared_ptr<TileStore> store, std::size_t budget_bytes)
+    : store_(std::move(store)), budget_bytes_(budget_bytes) {}
 
-Result<GLuint> TileTextures::texture(const TileId& id, PixelFormat format) {
-  const Key key{id, format};
-  if (const auto found = by_key_.find(key); found != by_key_.end()) {
-    entries_.splice(entries_.begin(), entries_, found->second);
-    return found->second->texture.name();
-  }
-  Result<terrain::Tile> tile = tiles_->tile(id);
-  if (!tile.ok()) {
-    return tile.error().in("tile " + std::to_string(id.level) + "/" + std::to_string(id.col) + "/" +
-                           std::to_string(id.row));
-  }
+TileTextures::Entry* TileTextures::find(const Key& key) {
+  const auto found = by_key_.find(key);
+  if (found == by_key_.end()) return nullptr;
+  entries_.splice(entries_.begin(), entries_, found->second);
+  return &*found->second;
+}
+
+TileTextures::Entry& TileTextures::upload(const Key& key, const TilePixels& pixels) {
   Entry entry;
   entry.key = key;
-  entry.valid = thinned(tile->valid);
-  const std::vector<Image> levels = mip_chain(in_format(*tile, format));
-  for (const Image& level : levels) entry.bytes += level.data.size();
-  entry.texture = upload_texture(levels);
+  entry.valid = pixels.valid;
+  entry.bytes = pixels.bytes();
+  entry.texture = upload_texture(pixels);
   held_bytes_ += entry.bytes;
   entries_.push_front(std::move(entry));
   by_key_.emplace(key, entries_.begin());
-  return entries_.front().texture.name();
+  return entries_.front();
+}
+
+Result<DrawnTile> TileTextures::texture(const TileId& id, PixelFormat format, bool wait) {
+  const Key key{id, format};
+  if (const Entry* entry = find(key); entry != nullptr) return DrawnTile{entry->texture.name()};
+  if (!wait) {
+    const std::shared_ptr<const TilePixels> pixels = store_->find(id, format);
+    return pixels != nullptr ? DrawnTile{upload(key, *pixels).texture.name()} : coarser(key);
+  }
+  const auto pixels = store_->get(id, format);
+  if (!pixels.ok()) return pixels.error();
+  return DrawnTile{upload(key, **pixels).texture.name()};
+}
+
+Result<DrawnTile> TileTextures::coarser(const Key& key) {
+  const auto& [id, format] = key;
+  const int coarsest = std::max(store_->tiles().grid().levels - 1, id.level);
+  for (int level = id.level + 1; level <= coarsest; ++level) {
+    const int steps = level - id.level;
+    const Key above{{level, id.col >> steps, id.row >> steps}, format};
+    const Entry* entry = find(above);
+    if (entry == nullptr) {
+      std::shared_ptr<const TilePixels> pixels = store_->peek(above.first, format);
+      if (pixels == nullptr && level == coarsest) {
+        // Nothing at all is there: the one tile that covers the world is worth its time.
+        auto read = store_->get(above.first, format);
+        if (!read.ok()) return read.error();
+        pixels = *read;
+      }
+      if (pixels == nullptr) continue;
+      entry = &upload(above, *pixels);
+    }
+    DrawnTile drawn = window_in(id, steps);
+    drawn.texture = entry->texture.name();
+    late_.insert_or_assign(key, Substitute{above.first, drawn});
+    return drawn;
+  }
+  auto read = store_->get(id, format);
+  if (!read.ok()) return read.error();
+  return DrawnTile{upload(key, **read).texture.name()};
 }
 
 GLuint TileTextures::void_texture(PixelFormat format) {
-  GlTexture& texture = format == PixelFormat::kGrey8 ? void_grey_ : void_rgb_;
+  GlTexture& texture = void_[format];
   if (texture.name() == 0) {
     terrain::Tile nothing{Image(1, 1, 3), Image(1, 1, 1)};
     std::copy(std::begin(terrain::kVoidRgb), std::end(terrain::kVoidRgb), nothing.rgb.data.begin());
-    texture = upload_texture({in_format(nothing, format)});
+    texture = upload_texture(tile_pixels_from(nothing, format));
   }
   return texture.name();
 }
 
 bool TileTextures::has_imagery(const TileId& id, PixelFormat format, double u, double v) {
-  const auto found = by_key_.find({id, format});
+  Key key{id, format};
+  if (const auto late = late_.find(key); late != late_.end()) {
+    const DrawnTile& drawn = late->second.drawn;
+    u = drawn.scale * u + drawn.offset[0];
+    v = drawn.scale * v + drawn.offset[1];
+    key.first = late->second.id;
+  }
+  const auto found = by_key_.find(key);
   if (found == by_key_.end()) return false;
   const Image& valid = found->second->valid;
   if (valid.empty()) return true;
@@ -82,7 +114,7 @@ bool TileTextures::has_imagery(const TileId& id, PixelFormat format, double u, d
   return valid.at(x, y) != 0;
 }
 
-void TileTextures::end_view() {
+int TileTextures::end_view() {
   // Called after a view is drawn: the newest entries are that view's, so that a budget smaller
   // than one view still leaves nothing of older ones.
   while (held_bytes_ > budget_bytes_ && !entries_.empty()) {
@@ -90,6 +122,9 @@ void TileTextures::end_view() {
     by_key_.erase(entries_.back().key);
     entries_.pop_back();
   }
+  const int late = static_cast<int>(late_.size());
+  late_.clear();
+  return late;
 }
 
 }  // namespace overfly::renderer::egl

@@ -1,6 +1,7 @@
 // Tiles on the GPU.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <list>
 #include <map>
@@ -10,44 +11,65 @@
 #include "core/result.hpp"
 #include "renderer/egl/gl_objects.hpp"
 #include "renderer/renderer.hpp"
+#include "renderer/tile_store.hpp"
 #include "terrain/tile_source.hpp"
 
 namespace overfly::renderer::egl {
 
-/// Loads tiles as textures with mip levels and keeps those used last within a budget. Tiles of
-/// the view being drawn stay, even if they alone exceed it.
+/// A texture to draw a tile from.
+struct DrawnTile {
+  GLuint texture = 0;
+  /// Texture coordinates in it: scale * (u, v) + offset; (1, 0, 0) unless the tile was late.
+  float scale = 1.0F;
+  std::array<float, 2> offset{};
+};
+
+/// Uploads tiles of a store as textures and keeps those used last within a budget. Tiles of the
+/// view being drawn stay, even if they alone exceed it.
 class TileTextures {
  public:
-  TileTextures(std::shared_ptr<const terrain::TileSource> tiles, std::size_t budget_bytes);
+  TileTextures(std::shared_ptr<TileStore> store, std::size_t budget_bytes);
 
-  /// The texture of a tile, loaded if need be. Good until end_view().
-  /// Errors: kIo when the tile cannot be read.
-  Result<GLuint> texture(const terrain::TileId& id, PixelFormat format);
+  /// The texture of a tile. Good until end_view().
+  /// @param wait  true: reads the tile if need be; false: takes the nearest coarser tile there is
+  /// Errors: kIo when a tile cannot be read.
+  Result<DrawnTile> texture(const terrain::TileId& id, PixelFormat format, bool wait);
   /// A texture of the void's colour.
   GLuint void_texture(PixelFormat format);
   /// True where the tile has imagery. @pre its texture was asked for in this view
   [[nodiscard]] bool has_imagery(const terrain::TileId& id, PixelFormat format, double u, double v);
   /// Lets the textures used longest ago go until the budget holds.
-  void end_view();
+  /// @return how many tiles of the view were late
+  int end_view();
 
   [[nodiscard]] std::size_t held_bytes() const { return held_bytes_; }
+  [[nodiscard]] const std::shared_ptr<TileStore>& store() const { return store_; }
 
  private:
   using Key = std::pair<terrain::TileId, PixelFormat>;
   struct Entry {
     Key key;
     GlTexture texture;
-    Image valid;  // an eighth of the tile's texels a side; empty where all are valid
+    Image valid;  // as TilePixels::valid
     std::size_t bytes = 0;
   };
   using Entries = std::list<Entry>;  // last used first
+  struct Substitute {
+    terrain::TileId id;  // the coarser tile
+    DrawnTile drawn;
+  };
 
-  std::shared_ptr<const terrain::TileSource> tiles_;
+  Entry* find(const Key& key);
+  Entry& upload(const Key& key, const TilePixels& pixels);
+  Result<DrawnTile> coarser(const Key& key);
+
+  std::shared_ptr<TileStore> store_;
   std::size_t budget_bytes_;
   std::size_t held_bytes_ = 0;
   Entries entries_;
   std::map<Key, Entries::iterator> by_key_;
-  GlTexture void_grey_, void_rgb_;
+  std::map<Key, Substitute> late_;  // of this view
+  std::map<PixelFormat, GlTexture> void_;
 };
 
 }  // namespace overfly::renderer::egl

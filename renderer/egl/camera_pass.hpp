@@ -1,0 +1,48 @@
+// Draws the camera's image: pinhole pictures, and what is put together from them.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "core/image.hpp"
+#include "core/result.hpp"
+#include "renderer/egl/ground_pass.hpp"
+#include "renderer/egl/target_pool.hpp"
+#include "renderer/egl/tile_textures.hpp"
+#include "renderer/ground_patch.hpp"
+#include "renderer/part_sampling.hpp"
+#include "renderer/renderer.hpp"
+
+namespace overfly::renderer::egl {
+
+class CameraPass {
+ public:
+  /// All must outlive the pass.
+  CameraPass(GroundPatches& patches, GroundPass& ground, TileTextures& textures)
+      : patches_(patches), ground_(ground), textures_(textures) {}
+
+  /// Draws the image or radiance and what the frame says of it; the rest of the frame stays.
+  /// Errors: kIo when a tile cannot be read; kUnsupported when there is no such framebuffer.
+  Status draw(const CameraRequest& request, CameraFrame& frame);
+  /// Errors: kUnsupported when there is no such framebuffer.
+  Result<DepthImage> depth(const CameraRequest& request);
+
+ private:
+  Status draw_plain(const CameraRequest& request, CameraFrame& frame);
+  Status draw_composed(const CameraRequest& request, CameraFrame& frame);
+  Result<RenderTarget*> draw_picture(const CameraRequest& request,
+                                     const GroundMesh& mesh,
+                                     const PinholeCamera& camera,
+                                     const GroundLook& look,
+                                     TargetFormat target);
+  const TapRays& rays_of(const CameraModel& camera, RenderQuality quality);
+
+  GroundPatches& patches_;
+  GroundPass& ground_;
+  TileTextures& textures_;
+  TargetPool targets_;
+  std::optional<TapRays> rays_;
+  ImageBuffer<float> picture_;
+};
+
+}  // namespace overfly::renderer::egl
