@@ -130,36 +130,6 @@ CPLErr read_rescaled(GDALDataset& dataset, const RasterBands& bands, int x, int 
   return CE_None;
 }
 
-/// A texel is void when every colour band says so (nodata 0 must not pierce a dark red).
-CPLErr read_mask(GDALDataset& dataset, const RasterBands& bands, int x, int y, Image& valid) {
-  if (bands.nodata) return read_nodata(dataset, bands, x, y, valid);
-  std::fill(valid.data.begin(), valid.data.end(), std::uint8_t{0});
-  Image one(valid.width_px, valid.height_px, 1);
-  for (int c = 0; c < 3; ++c) {
-    if (c > 0 && bands.rgb[c] == bands.rgb[0]) break;
-    GDALRasterBand* band = dataset.GetRasterBand(bands.rgb[c]);
-    const int flags = band->GetMaskFlags();
-    const CPLErr outcome = band->GetMaskBand()->RasterIO(GF_Read,
-                                                         x,
-                                                         y,
-                                                         valid.width_px,
-                                                         valid.height_px,
-                                                         one.data.data(),
-                                                         valid.width_px,
-                                                         valid.height_px,
-                                                         GDT_Byte,
-                                                         0,
-                                                         0,
-                                                         nullptr);
-    if (outcome != CE_None) return outcome;
-    for (std::size_t i = 0; i < one.data.size(); ++i) {
-      if (one.data[i] >= 128) valid.data[i] = 255;
-    }
-    if ((flags & (GMF_PER_DATASET | GMF_ALPHA)) != 0) break;
-  }
-  return CE_None;
-}
-
 /// A texel is void when every colour band has the manifest's value.
 CPLErr read_nodata(GDALDataset& dataset, const RasterBands& bands, int x, int y, Image& valid) {
   std::vector<float> values(valid.data.size());
@@ -187,6 +157,36 @@ CPLErr read_nodata(GDALDataset& dataset, const RasterBands& bands, int x, int y,
   }
   for (std::size_t i = 0; i < differs.size(); ++i) {
     if (differs[i] == 0) valid.data[i] = 0;
+  }
+  return CE_None;
+}
+
+/// A texel is void when every colour band says so (nodata 0 must not pierce a dark red).
+CPLErr read_mask(GDALDataset& dataset, const RasterBands& bands, int x, int y, Image& valid) {
+  if (bands.nodata) return read_nodata(dataset, bands, x, y, valid);
+  std::fill(valid.data.begin(), valid.data.end(), std::uint8_t{0});
+  Image one(valid.width_px, valid.height_px, 1);
+  for (int c = 0; c < 3; ++c) {
+    if (c > 0 && bands.rgb[c] == bands.rgb[0]) break;
+    GDALRasterBand* band = dataset.GetRasterBand(bands.rgb[c]);
+    const int flags = band->GetMaskFlags();
+    const CPLErr outcome = band->GetMaskBand()->RasterIO(GF_Read,
+                                                         x,
+                                                         y,
+                                                         valid.width_px,
+                                                         valid.height_px,
+                                                         one.data.data(),
+                                                         valid.width_px,
+                                                         valid.height_px,
+                                                         GDT_Byte,
+                                                         0,
+                                                         0,
+                                                         nullptr);
+    if (outcome != CE_None) return outcome;
+    for (std::size_t i = 0; i < one.data.size(); ++i) {
+      if (one.data[i] >= 128) valid.data[i] = 255;
+    }
+    if ((flags & (GMF_PER_DATASET | GMF_ALPHA)) != 0) break;
   }
   return CE_None;
 }
