@@ -1,0 +1,70 @@
+// Inside download only: one request's answer as a raster with a place.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "terrain/download.hpp"
+#include "terrain/download/polite_fetcher.hpp"
+#include "terrain/gdal_dataset.hpp"
+
+namespace overfly::terrain::download {
+
+enum class Payload {
+  kGeoTiff,  ///< brings its place with it, which is checked
+  kPicture,  ///< PNG, JPEG and the like; its place is that of the request
+};
+
+/// Heights below or above these are no heights [m].
+inline constexpr double kLowestHeightM = -12000.0;
+inline constexpr double kHighestHeightM = 12000.0;
+inline constexpr float kNoHeight = -999999.0F;
+
+/// A part of a layer: pixels [column, column + width) x [row, row + height) of it.
+struct Chunk {
+  std::string url;
+  std::filesystem::path file;
+  int column_px = 0;
+  int row_px = 0;
+  int width_px = 0;
+  int height_px = 0;
+  Payload payload = Payload::kGeoTiff;
+  /// Accept that the service has nothing there (404, 204): tiles of a template.
+  bool may_be_absent = false;
+};
+
+/// The raster of which chunks are parts.
+struct ChunkLayer {
+  std::string what;
+  std::string source;
+  std::string attribution;
+  std::string crs;    ///< "EPSG:26916"
+  double left = 0.0;  ///< CRS coordinates of the north-west corner
+  double top = 0.0;
+  double pixel = 1.0;
+  int width_px = 0;
+  int height_px = 0;
+  bool heights = false;  ///< one band of 32-bit float, else three bands of 8 bit
+  std::vector<Chunk> chunks;
+  double transfer_bytes_per_px = 3.0;
+};
+
+/// Judges an answer without writing it: HTML or JSON instead of an image, a damaged or truncated
+/// raster (every block is read), wrong size, type or place.
+[[nodiscard]] Verdict judge_chunk(const ChunkLayer& layer,
+                                  const Chunk& chunk,
+                                  const HttpReply& reply);
+
+/// Writes a judged answer beside its name and renames it. Errors: kIo.
+[[nodiscard]] Status write_chunk(const Chunk& chunk, const HttpReply& reply);
+
+/// True if an earlier download left this chunk whole; a damaged one is removed.
+[[nodiscard]] bool chunk_is_there(const ChunkLayer& layer, const Chunk& chunk);
+
+/// What a service that answers with words says: the message of an ArcGIS error, the title of a
+/// page, or the first words.
+[[nodiscard]] std::string words_of(const HttpReply& reply);
+
+}  // namespace overfly::terrain::download

@@ -1,0 +1,61 @@
+// Inside download only: requests repeated with patience.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <mutex>
+#include <random>
+#include <string>
+
+#include "core/result.hpp"
+#include "terrain/download.hpp"
+#include "terrain/download/http_get.hpp"
+
+namespace overfly::terrain::download {
+
+/// What the one who asked thinks of an answer.
+struct Verdict {
+  enum class Kind { kGood, kAbsent, kTryAgain, kFailed };
+  Kind kind = Kind::kGood;
+  std::string reason;
+};
+
+/// Shared by all threads of a download. Failures that may pass (no answer, 408, 429, 5xx, damaged
+/// answers) are tried again after a wait that doubles, with jitter; a wait that the service asks
+/// for holds back every request to it.
+class PoliteFetcher {
+ public:
+  PoliteFetcher(const DownloadOptions& options, const std::atomic<bool>& stop)
+      : options_(options), stop_(stop) {}
+
+  using Judge = std::function<Verdict(const HttpReply&)>;
+  /// The last answer and the verdict on it, kGood or kAbsent.
+  struct Outcome {
+    HttpReply reply;
+    Verdict verdict;
+  };
+  /// @param judge  of answers with status 200; also sees 204 and 404, which it may call absent
+  /// Errors: kIo naming the address, the last reason and the number of attempts; kCancelled.
+  [[nodiscard]] Result<Outcome> get(const std::string& url, const Judge& judge);
+
+  [[nodiscard]] int repeated() const { return repeated_.load(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  [[nodiscard]] Verdict judged(const HttpReply& reply, const Judge& judge) const;
+  /// Waits for the time from which the service wants to be asked. False when stopped.
+  [[nodiscard]] bool wait_for_turn();
+  [[nodiscard]] bool pause(double wait_s);
+  [[nodiscard]] double back_off_s(int attempt);
+  void hold_back(double wait_s);
+
+  const DownloadOptions& options_;
+  const std::atomic<bool>& stop_;
+  std::atomic<int> repeated_{0};
+  std::mutex mutex_;
+  Clock::time_point not_before_{};
+  std::minstd_rand jitter_{std::random_device{}()};  // spreads clients, decides no result
+};
+
+}  // namespace overfly::terrain::download
