@@ -146,6 +146,8 @@ struct RendererInfo {
   /// What was asked for by RendererOptions::device, what came of it and why; empty when nothing
   /// was asked for.
   std::string device_note;
+  /// Why the camera is drawn by this backend; empty where there was no choice.
+  std::string camera_note;
 };
 
 /// Views of one world. Not thread-safe: create, use and destroy on one thread.
@@ -181,6 +183,13 @@ class Renderer {
 
 class TileStore;
 
+/// Who draws the aircraft's camera. Scene views always come from OpenGL.
+enum class CameraBackend {
+  kAuto,     ///< OpenGL on a GPU; without one the ray-caster, which is faster and equally right
+  kEgl,      ///< OpenGL, on whatever device there is
+  kRaycast,  ///< the ray-caster on the CPU
+};
+
 struct RendererOptions {
   /// Tiles kept in memory, and as many again as textures; > 64 MiB.
   std::size_t tile_cache_bytes = std::size_t{256} << 20U;
@@ -189,11 +198,23 @@ struct RendererOptions {
   /// The EGL device: "" = the first that works, "0" = by index, "0000:01:00.0" = by PCI address,
   /// "software". Where it does not work the software renderer draws, and RendererInfo says so.
   std::string device;
+  CameraBackend camera_backend = CameraBackend::kAuto;  ///< of create_renderer()
+  int threads = 0;  ///< of the ray-caster; 0 = one a core, at most 8. They change no image
 };
+
+/// The renderer for this machine: the camera by the backend that the options name, scene views by
+/// OpenGL. Where OpenGL does not work the camera still does, and scene views are kUnsupported.
+/// Errors: as create_egl_renderer, for CameraBackend::kEgl alone.
+[[nodiscard]] Result<std::unique_ptr<Renderer>> create_renderer(
+    std::shared_ptr<const terrain::TileSource> tiles, const RendererOptions& options = {});
 
 /// Draws with OpenGL on an EGL device or the surfaceless platform, without a display.
 /// Errors: kUnsupported with what EGL said and which package is missing.
 [[nodiscard]] Result<std::unique_ptr<Renderer>> create_egl_renderer(
+    std::shared_ptr<const terrain::TileSource> tiles, const RendererOptions& options = {});
+
+/// Casts rays on the CPU; has no scene views.
+[[nodiscard]] std::unique_ptr<Renderer> create_raycast_renderer(
     std::shared_ptr<const terrain::TileSource> tiles, const RendererOptions& options = {});
 
 /// Draws nothing: images are a deterministic pattern of their pose. For tests without EGL.

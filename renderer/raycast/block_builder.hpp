@@ -1,0 +1,55 @@
+// Casts the rays of one row of cells and makes blocks of what they hit.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "renderer/raycast/blocks.hpp"
+#include "renderer/raycast/ground_caster.hpp"
+#include "renderer/raycast/ray_grid.hpp"
+#include "renderer/raycast/shutter.hpp"
+
+namespace overfly::renderer::raycast {
+
+/// Displacement in the image by interpolating between the rays of a block [px].
+inline constexpr double kBlockErrorPx = 0.1;
+
+/// What one ray hit.
+struct Node {
+  Eigen::Vector2d ray{0.0, 0.0};  ///< camera frame, z = 1
+  GroundHit hit;
+  double inverse_depth = 0.0;  ///< [1 / m]; 0 = sky
+  double u = 0.0, v = 0.0;     ///< texels of level 0
+  double px_per_m = 0.0;       ///< displacement in the image by the ground's height
+  double range_m = 0.0;
+};
+
+struct BlockSettings {
+  const CameraRequest* request = nullptr;
+  const RayGrid* rays = nullptr;
+  const ShutterPoses* poses = nullptr;
+  const GroundCaster* caster = nullptr;
+  const terrain::TileSource* tiles = nullptr;
+  bool depth_only = false;  ///< blocks for a depth image: heights count wherever they are seen from
+};
+
+/// d(texel of level 0) / d(pixel) on the ground's tangent plane at a hit.
+/// @param ray             of the hit, camera frame, z = 1
+/// @param step_x, step_y  what the ray changes by from pixel to pixel
+[[nodiscard]] Eigen::Matrix2d texel_jacobian(const GroundHit& hit,
+                                             const RowPose& pose,
+                                             const Eigen::Vector2d& ray,
+                                             const Eigen::Vector2d& step_x,
+                                             const Eigen::Vector2d& step_y);
+
+/// Casts the rays of a row of nodes. @param row  in [0, rays.rows()]
+void cast_row(const BlockSettings& settings, int row, std::vector<Node>& nodes);
+
+/// Makes the blocks of the cells between two rows of nodes. @param row  of the upper nodes
+void build_band(const BlockSettings& settings,
+                int row,
+                const std::vector<Node>& upper,
+                const std::vector<Node>& lower,
+                Band& band);
+
+}  // namespace overfly::renderer::raycast

@@ -1,0 +1,59 @@
+// Draws frames: casts their rays, finds their tiles, paints them.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "core/image.hpp"
+#include "renderer/raycast/block_builder.hpp"
+#include "renderer/raycast/painter.hpp"
+#include "renderer/raycast/raycast_renderer.hpp"
+#include "renderer/raycast/texel_tiles.hpp"
+#include "renderer/raycast/worker_pool.hpp"
+
+namespace overfly::renderer::raycast {
+
+class FrameCaster {
+ public:
+  FrameCaster(std::shared_ptr<const terrain::TileSource> tiles, const RaycastOptions& options);
+
+  /// Errors: kIo when a tile cannot be read.
+  [[nodiscard]] Result<CameraFrame> draw(const CameraRequest& request);
+  [[nodiscard]] DepthImage depth(const CameraRequest& request);
+  [[nodiscard]] int threads() const { return pool_.threads(); }
+  [[nodiscard]] SampleKernel kernel() const { return kernel_; }
+
+ private:
+  /// What one frame's drawing shares.
+  struct Frame {
+    const CameraRequest& request;
+    const RayGrid& rays;
+    GroundCaster caster;
+    std::map<terrain::TileId, FoundTile> found;
+    std::set<terrain::TileId> late;
+  };
+  const RayGrid& rays_of(const CameraModel& camera);
+  Frame begin(const CameraRequest& request);
+  /// Blocks of one instant of the exposure, in bands_.
+  void cast(const Frame& frame, const ShutterPoses& poses, bool depth_only);
+  /// Finds the tiles that the bands need. Errors: kIo.
+  Status find_tiles(Frame& frame);
+  void paint(const Painter& painter, const Canvas& canvas);
+  Status draw_instants(Frame& frame, CameraFrame& drawn);
+  void measure(Frame& frame, CameraFrame& drawn) const;
+  void look_ahead(const Frame& frame);
+
+  std::shared_ptr<const terrain::TileSource> tiles_;
+  WorkerPool pool_;
+  SampleKernel kernel_;
+  HeightField field_;
+  TexelTiles texels_;
+  std::optional<RayGrid> rays_;
+  std::vector<std::vector<Node>> nodes_;            // by row of nodes
+  std::vector<Band> bands_;                         // by row of cells
+  std::vector<std::vector<FoundTile>> band_tiles_;  // what stands for each band's tiles
+};
+
+}  // namespace overfly::renderer::raycast

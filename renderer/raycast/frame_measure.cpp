@@ -1,0 +1,91 @@
+#include "renderer/raycast/frame_measure.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "renderer/raycast/block_builder.hpp"
+#include "renderer/raycast/block_places.hpp"
+
+namespace overfly::renderer::raycast {
+
+namespace {
+
+constexpr int kColumns = 40;
+constexpr int kRows = 30;
+
+/// The depth on the optical axis, refined on the ground itself by secant steps (to 1 mm).
+std::optional<double> axis_depth(const Pose& T_world_camera,
+                                 const GroundCaster& caster,
+                                 const HeightQuery& ground) {
+  const RowPose pose = RowPose::of(T_world_camera);
+  const Eigen::Vector3d axis = pose.R_world_camera.col(2);
+  const GroundHit hit = caster.cast(pose.position, axis, 0.0);
+  if (hit.sky()) return std::nullopt;
+  const auto clearance_m = [&](double depth_m) {
+    const Eigen::Vector3d p = pose.position + depth_m * axis;
+    return p.z() - ground.ground_up_m(p.x(), p.y());
+  };
+  double depth_m = hit.depth;
+  double previous_m = depth_m - std::max(0.1, 1e-3 * depth_m);
+  double previous_clearance_m = clearance_m(previous_m);
+  for (int step = 0; step < 6; ++step) {
+    const double now_m = clearance_m(depth_m);
+    if (std::abs(now_m) < 1e-3 || now_m == previous_clearance_m) break;
+    const double next_m = depth_m - now_m * (depth_m - previous_m) / (now_m - previous_clearance_m);
+    // The ray is near the ground already: a far jump means a fold, where the cast ray is better.
+    if (!(std::abs(next_m - hit.depth) < 0.02 * hit.depth + 1.0)) return hit.depth;
+    previous_m = depth_m;
+    previous_clearance_m = now_m;
+    depth_m = next_m;
+  }
+  return depth_m;
+}
+
+}  // namespace
+
+FrameStatistics measure_rays(const CameraModel& camera,
+                             const ShutterPoses& poses,
+                             const Pose& T_world_camera,
+                             const GroundCaster& caster,
+                             const HeightQuery& ground,
+                             const ImageryAt& has_imagery) {
+  const PinholeCamera& size = camera.pinhole();
+  std::vector<double> texels;
+  int void_rays = 0;
+  for (int row = 0; row < kRows; ++row) {
+    const double y_px = (row + 0.5) * size.height_px / kRows - 0.5;
+    const RowPose& pose = poses.at(std::floor(2.0 * y_px) / 2.0);
+    double guess = 0.0;
+    for (int column = 0; column < kColumns; ++column) {
+      const double x_px = (column + 0.5) * size.width_px / kColumns - 0.5;
+      const auto ray = camera.ray({x_px, y_px});
+      const auto right = camera.ray({x_px + 0.5, y_px}), left = camera.ray({x_px - 0.5, y_px});
+      const auto down = camera.ray({x_px, y_px + 0.5}), up = camera.ray({x_px, y_px - 0.5});
+      if (!ray || !right || !left || !down || !up) continue;
+      const GroundHit hit = caster.cast(pose.position, pose.R_world_camera * *ray, guess);
+      guess = hit.depth;
+      if (hit.sky()) continue;
+      const Eigen::Matrix2d J = texel_jacobian(
+          hit, pose, ray->head<2>(), (*right - *left).head<2>(), (*down - *up).head<2>());
+      const Eigen::Vector2d at = hit.texel();
+      if (has_imagery(at.x(), at.y(), texel_lod(J(0, 0), J(1, 0), J(0, 1), J(1, 1)))) {
+        texels.push_back(std::sqrt(std::abs(J.determinant())));
+      } else {
+        ++void_rays;
+      }
+    }
+  }
+  FrameStatistics statistics;
+  statistics.void_fraction = static_cast<double>(void_rays) / (kColumns * kRows);
+  if (!texels.empty()) {
+    const auto middle = texels.begin() + static_cast<std::ptrdiff_t>(texels.size() / 2);
+    std::nth_element(texels.begin(), middle, texels.end());
+    statistics.texels_per_pixel_median = *middle;
+    statistics.texels_per_pixel_min = *std::min_element(texels.begin(), texels.end());
+  }
+  statistics.axis_depth_m = axis_depth(T_world_camera, caster, ground);
+  return statistics;
+}
+
+}  // namespace overfly::renderer::raycast

@@ -1,0 +1,79 @@
+// The ground of a view as a quadtree of height tiles, as fine as the image can show.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "renderer/raycast/height_tile.hpp"
+
+namespace overfly::renderer::raycast {
+
+/// Displacement in the image by what the height tiles leave out [px].
+inline constexpr double kSurfaceErrorPx = 0.05;
+/// Cells of the height tiles are at most this large in the image, so that a hill on a plain cannot
+/// hide between their posts.
+inline constexpr double kMaxCellPx = 16.0;
+/// And they need not be smaller than this.
+inline constexpr double kMinCellPx = 1.0;
+
+/// All places and directions of a view's rays, roughly.
+struct ViewSweep {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< world frame [m]
+  double slack_m = 0.0;  ///< the rays begin within this of the position
+  /// Inward normals of planes through the position that hold all rays (unit length); zero for none.
+  std::array<Eigen::Vector3d, 4> side_normals{};
+  /// Along the edges between the planes; empty lengths where there are none.
+  std::array<Eigen::Vector3d, 4> corners{};
+  bool bounded = false;     ///< corners are known
+  double px_per_rad = 1.0;  ///< at the image's sharpest place
+};
+
+/// A node of the quadtree over the ground that the view shows.
+struct GroundNode {
+  const HeightTile* tile = nullptr;
+  double east_m = 0.0, north_m = 0.0, side_m = 0.0;
+  double highest_m = -1e9;  ///< up coordinate of what is drawn below this node
+  std::int32_t parent = -1;
+  /// By (north half) * 2 + (east half); -1 = out of view; all -1 and `leaf` = draw the tile itself.
+  std::array<std::int32_t, 4> children{-1, -1, -1, -1};
+  bool leaf = false;
+};
+
+struct GroundTree {
+  std::vector<GroundNode> nodes;
+  /// 3 x 3 squares around the camera; -1 = out of view.
+  std::array<std::int32_t, 9> roots{};
+  double east_m = 0.0, north_m = 0.0, side_m = 0.0;  ///< of the south-western root
+  double highest_m = -1e9;
+  double steepest = 0.0;  ///< bound of the slope anywhere
+};
+
+/// Samples height tiles and keeps those used last. What it keeps changes no value.
+class HeightField {
+ public:
+  explicit HeightField(std::shared_ptr<const terrain::TileSource> tiles);
+
+  /// The ground of a view. Good until the next call.
+  [[nodiscard]] const GroundTree& select(const ViewSweep& view);
+  [[nodiscard]] const TexelMap& map() const { return map_; }
+
+ private:
+  const HeightTile& tile(const HeightTileId& id);
+  std::int32_t visit(const HeightTileId& id, std::int32_t parent, const ViewSweep& view);
+  [[nodiscard]] bool outside(const HeightTile& tile, const ViewSweep& view) const;
+  [[nodiscard]] bool fine_enough(const HeightTile& tile, const ViewSweep& view) const;
+  [[nodiscard]] double reach_m(const ViewSweep& view) const;
+  void forget_old();
+
+  std::shared_ptr<const terrain::TileSource> tiles_;
+  TexelMap map_;
+  std::map<HeightTileId, std::unique_ptr<HeightTile>> kept_;
+  std::uint64_t view_ = 0;
+  GroundTree tree_;
+};
+
+}  // namespace overfly::renderer::raycast

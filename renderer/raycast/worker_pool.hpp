@@ -1,0 +1,29 @@
+// A few threads that share out the parts of one image.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+namespace overfly::renderer::raycast {
+
+/// Threads that wait between images. The caller's thread works too, so that a pool of one has none
+/// of its own.
+class WorkerPool {
+ public:
+  /// @param threads  that work at once, >= 1
+  explicit WorkerPool(int threads);
+  ~WorkerPool();
+  WorkerPool(const WorkerPool&) = delete;
+  WorkerPool& operator=(const WorkerPool&) = delete;
+
+  /// Calls job(i) once for every i in [0, jobs), in any order and on any of the threads; returns
+  /// when all are done. @param job  does not throw
+  void run(int jobs, const std::function<void(int)>& job);
+  [[nodiscard]] int threads() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace overfly::renderer::raycast
