@@ -4,7 +4,7 @@
 // Words: the hash pcg4d (Jarzynski, Olano 2020, "Hash functions for GPU rendering", JCGT 9(3),
 // section 4.1) of a running number and three odd words made of seed, frame and stage.
 // Normals: Box and Muller 1958; logarithm, sine and cosine are polynomials (Chebyshev
-// interpolation, absolute error below 2e-6, 2e-6 and 7e-6), because the C library's functions
+// interpolation, errors below 1e-5, 1.4e-4 and 7e-6), because the C library's functions
 // differ in the last bit between machines.
 //
 // Loops run over arrays of a fixed length, which the compiler turns into vector code.
@@ -44,22 +44,21 @@ class SeededSequence {
   std::uint64_t state_;
 };
 
-inline constexpr int kPairs = 128;
-/// Samples that are worked on together; sample i of a chunk belongs to pair i % kPairs.
-inline constexpr int kChunk = 2 * kPairs;
+inline constexpr int kQuads = 64;
+/// Samples that are worked on together; one hash serves samples i, kQuads + i, 2 kQuads + i, ...
+inline constexpr int kChunk = 4 * kQuads;
 
 /// Must be inlined to be compiled for the vector units of the caller.
 #define OVERFLY_LANES static inline __attribute__((always_inline))
 
-/// Two random words for each sample of a chunk.
+/// A random word for each sample of a chunk.
 struct alignas(64) ChunkWords {
-  std::array<std::uint32_t, kChunk> first;
-  std::array<std::uint32_t, kChunk> second;
+  std::array<std::uint32_t, kChunk> of;
 };
 
-/// @param counter  of the chunk's first pair; chunks are kPairs apart
+/// @param counter  of the chunk's first hash; chunks are kQuads apart
 OVERFLY_LANES void draw_words(const NoiseKey& key, std::uint32_t counter, ChunkWords& words) {
-  for (int i = 0; i < kPairs; ++i) {
+  for (int i = 0; i < kQuads; ++i) {
     std::uint32_t x = (counter + static_cast<std::uint32_t>(i)) * 1664525U + 1013904223U;
     std::uint32_t y = key.y;
     std::uint32_t z = key.z;
@@ -76,10 +75,10 @@ OVERFLY_LANES void draw_words(const NoiseKey& key, std::uint32_t counter, ChunkW
     y += z * x;
     z += x * y;
     w += y * z;
-    words.first[i] = x;
-    words.second[i] = y;
-    words.first[kPairs + i] = z;
-    words.second[kPairs + i] = w;
+    words.of[i] = x;
+    words.of[kQuads + i] = y;
+    words.of[2 * kQuads + i] = z;
+    words.of[3 * kQuads + i] = w;
   }
 }
 
@@ -88,59 +87,47 @@ OVERFLY_LANES float uniform(std::uint32_t word) {
   return (static_cast<float>(static_cast<std::int32_t>(word >> 1U)) + 0.5F) * 0x1p-31F;
 }
 
+/// a b + c, rounded once, as IEEE 754 defines it: one instruction where the vector units have it,
+/// else the C library's, slow and of the same result.
+OVERFLY_LANES float fused(float a, float b, float c) { return __builtin_fmaf(a, b, c); }
+
 /// ln(u), u in (0, 1]: exponent and a polynomial in the mantissa m - 1, m in [sqrt(1/2), sqrt(2)).
 OVERFLY_LANES float natural_log(float u) {
   constexpr std::int32_t kSqrtHalf = 0x3f3504f3;
   const auto bits = std::bit_cast<std::int32_t>(u);
   const std::int32_t exponent = (bits - kSqrtHalf) >> 23;
   const float f = std::bit_cast<float>(bits - exponent * (1 << 23)) - 1.0F;
-  float p = 0.11657806F;
-  p = p * f - 0.1857384F;
-  p = p * f + 0.20525444F;
-  p = p * f - 0.24920336F;
-  p = p * f + 0.33313563F;
-  p = p * f - 0.50000877F;
-  p = p * f + 1.000001F;
-  return p * f + static_cast<float>(exponent) * 0.69314718F;
+  float p = -0.14021623F;
+  p = fused(p, f, 0.21965709F);
+  p = fused(p, f, -0.25433356F);
+  p = fused(p, f, 0.33265906F);
+  p = fused(p, f, -0.4998948F);
+  p = fused(p, f, 1.0000037F);
+  return fused(p, f, static_cast<float>(exponent) * 0.69314718F);
 }
 
-/// Two independent standard normals from two words: r cos(a), r sin(a), r = sqrt(-2 ln u), with a
-/// in [-pi/2, pi/2) and the sign of both from one bit.
-OVERFLY_LANES void normal_pair(std::uint32_t first,
-                               std::uint32_t second,
-                               float& cosine,
-                               float& sine) {
-  const float r2 = -2.0F * natural_log(uniform(first));
-  const float r = std::sqrt(r2 > 0.0F ? r2 : 0.0F);
-  const auto sign = static_cast<std::int32_t>(second << 31U);
-  const float signed_r = std::bit_cast<float>(std::bit_cast<std::int32_t>(r) ^ sign);
-  // In units of pi/2, in [-1, 1).
-  const float x = static_cast<float>(static_cast<std::int32_t>(second)) * 0x1p-31F;
-  const float x2 = x * x;
-  float s = -0.0043705859F;
-  s = s * x2 + 0.079500007F;
-  s = s * x2 - 0.64592572F;
-  s = s * x2 + 1.5707951F;
-  float c = -0.019092757F;
-  c = c * x2 + 0.25257577F;
-  c = c * x2 - 1.2334828F;
-  c = c * x2 + 0.9999932F;
-  cosine = signed_r * c;
-  sine = signed_r * (s * x);
-}
-
-/// Two independent fields of standard normals for a chunk.
-struct alignas(64) ChunkNormals {
-  std::array<float, kChunk> first;
-  std::array<float, kChunk> second;
+/// Two independent standard normals.
+struct NormalPair {
+  float first;
+  float second;
 };
 
-OVERFLY_LANES void draw_normals(const NoiseKey& key, std::uint32_t counter, ChunkNormals& normals) {
-  ChunkWords words;
-  draw_words(key, counter, words);
-  for (int i = 0; i < kChunk; ++i) {
-    normal_pair(words.first[i], words.second[i], normals.first[i], normals.second[i]);
-  }
+/// r cos(a), r sin(a) with r = sqrt(-2 ln u): the word's upper 20 bits make u = 1 - k / 2^20 (so
+/// that no normal lies beyond 5.3), the next 11 the angle in (-pi/2, pi/2), the last the sign of
+/// the cosine. Bits become floats as mantissas of numbers in [1, 2) and [2, 4).
+OVERFLY_LANES NormalPair normal_pair(std::uint32_t word) {
+  const std::uint32_t upper = ((word >> 9U) & 0x007ffff8U) | 0x3f800000U;
+  const float u = 2.0F - std::bit_cast<float>(upper);
+  const float r = std::sqrt(std::abs(2.0F * natural_log(u)));
+  // In units of pi/2, in (-1, 1), half a step off -1.
+  const std::uint32_t middle = ((word << 11U) & 0x007ff000U) | 0x40000000U;
+  const float x = std::bit_cast<float>(middle) - (3.0F - 0x1p-11F);
+  const float x2 = x * x;
+  const float s = fused(fused(0.07293465F, x2, -0.64345777F), x2, 1.5706574F);
+  const float c =
+      fused(fused(fused(-0.019092757F, x2, 0.25257577F), x2, -1.2334828F), x2, 0.9999932F);
+  const std::uint32_t signed_r = std::bit_cast<std::uint32_t>(r) ^ (word << 31U);
+  return {std::bit_cast<float>(signed_r) * c, r * (s * x)};
 }
 
 }  // namespace overfly::renderer

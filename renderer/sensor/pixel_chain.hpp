@@ -1,7 +1,9 @@
 // The stages that act on each sample by itself, from light to the converter's number.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <limits>
 
 #include "renderer/sensor/noise_source.hpp"
 #include "renderer/sensor/sensor.hpp"
@@ -16,10 +18,9 @@ inline constexpr float kExactPoissonBelowE = 24.0F;
 /// The stages' constants for one frame.
 struct PixelChain {
   float electrons_per_radiance = 1.0F;
-  bool vignetting = false;
-  std::array<float, 3> vignette{};
+  std::array<float, 3> vignette{};  ///< a1, a2, a3; 0 = none
   bool shot_noise = false;
-  float full_well_e = 0.0F;  ///< 0 = none
+  float full_well_e = std::numeric_limits<float>::max();
   float read_noise_e = 0.0F;
   float dn_per_e = 1.0F;  ///< of the converter, gain included
   float black_dn = 0.0F;
@@ -36,7 +37,7 @@ struct SensorRow {
   float y_term = 0.0F;
   const float* gain_pattern = nullptr;      ///< of each sample, factor; null = 1
   const float* offset_pattern_e = nullptr;  ///< of each sample; null = 0
-  std::uint32_t counter = 0;                ///< of the row's first pair
+  std::uint32_t counter = 0;                ///< of the row's first hash
 };
 
 struct RowResult {
@@ -45,9 +46,9 @@ struct RowResult {
   std::uint64_t saturated = 0;       ///< at the largest number or the full well, added to
 };
 
-/// Pairs' counters that a row of this many samples takes.
+/// Hashes that a row of this many samples takes.
 [[nodiscard]] constexpr std::uint32_t counters_per_row(int samples) {
-  return static_cast<std::uint32_t>((samples + kChunk - 1) / kChunk * kPairs);
+  return static_cast<std::uint32_t>((samples + kChunk - 1) / kChunk * kQuads);
 }
 
 using ExposeRow = void (*)(const PixelChain& chain, const SensorRow& row, RowResult& result);

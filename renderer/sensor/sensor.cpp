@@ -40,11 +40,11 @@ Status check_vignette(const Vignette& vignette, const PinholeCamera& pinhole) {
 std::vector<float> pattern(std::uint64_t seed, NoiseStage stage, std::size_t samples) {
   const NoiseKey key = noise_key(seed, 0, stage);
   std::vector<float> values(samples);
-  ChunkNormals normals;
+  ChunkWords words;
   for (std::size_t start = 0; start < samples; start += kChunk) {
-    draw_normals(key, static_cast<std::uint32_t>(start / 2), normals);
+    draw_words(key, static_cast<std::uint32_t>(start / 4), words);
     const std::size_t count = std::min<std::size_t>(kChunk, samples - start);
-    std::copy_n(normals.first.begin(), count, values.begin() + static_cast<std::ptrdiff_t>(start));
+    for (std::size_t i = 0; i < count; ++i) values[start + i] = normal_pair(words.of[i]).first;
   }
   return values;
 }
@@ -74,6 +74,7 @@ class ModelledSensor final : public Sensor {
         control_(model) {
     const int adc_bits = model.effective_adc_bits();
     if (!model.response.is_linear() || adc_bits != model.bits) table_ = response_table(model);
+    if (model.bits == 8) table_8bit_.assign(table_.begin(), table_.end());
     largest_adc_ = (1 << adc_bits) - 1;
     adc_per_dn_ = static_cast<double>(largest_adc_) / ((1 << model.bits) - 1);
   }
@@ -112,7 +113,7 @@ class ModelledSensor final : public Sensor {
       const double dx = (x - pinhole_.cx_px) * scale;
       x_term_.push_back(static_cast<float>(dx * dx));
     }
-    numbers_.resize(static_cast<std::size_t>(counters_per_row(samples)) * 2);
+    numbers_.resize(static_cast<std::size_t>(counters_per_row(samples)) * 4);
     const std::size_t all = static_cast<std::size_t>(samples) * pinhole_.height_px;
     gain_pattern_.clear();
     offset_pattern_e_.clear();
@@ -131,12 +132,11 @@ class ModelledSensor final : public Sensor {
     PixelChain chain;
     chain.electrons_per_radiance =
         static_cast<float>(model_.electrons_per_s * s_from_ns(setting.exposure_ns));
-    chain.vignetting = model_.vignette.has_value();
-    for (std::size_t i = 0; chain.vignetting && i < 3; ++i) {
+    for (std::size_t i = 0; model_.vignette && i < 3; ++i) {
       chain.vignette[i] = static_cast<float>(model_.vignette->a[i]);
     }
     chain.shot_noise = model_.shot_noise;
-    chain.full_well_e = static_cast<float>(model_.full_well_e);
+    if (model_.full_well_e > 0.0) chain.full_well_e = static_cast<float>(model_.full_well_e);
     chain.read_noise_e = static_cast<float>(model_.read_noise_e);
     chain.dn_per_e =
         static_cast<float>(model_.effective_gain_dn_per_e() * setting.gain * adc_per_dn_);
@@ -174,16 +174,26 @@ class ModelledSensor final : public Sensor {
 
   /// From the converter's numbers of a row to the file's.
   void respond(int samples, std::size_t start, SensorImage& made) {
-    if (!table_.empty()) {
-      for (int i = 0; i < samples; ++i) numbers_[i] = table_[numbers_[i]];
+    std::uint8_t* eight_bits = &made.image.data[start];
+    if (model_.bits == 8) {
+      respond_8bit(numbers_.data(), samples, eight_bits);
+      return;
     }
+    std::uint16_t* deep = &made.image16.data[start];
+    for (int i = 0; i < samples; ++i) deep[i] = table_.empty() ? numbers_[i] : table_[numbers_[i]];
     const int shift = model_.bits - 8;
-    std::uint8_t* low = &made.image.data[start];
-    for (int i = 0; i < samples; ++i) low[i] = static_cast<std::uint8_t>(numbers_[i] >> shift);
-    if (model_.bits > 8) {
-      std::copy_n(numbers_.begin(),
-                  samples,
-                  made.image16.data.begin() + static_cast<std::ptrdiff_t>(start));
+    for (int i = 0; i < samples; ++i) eight_bits[i] = static_cast<std::uint8_t>(deep[i] >> shift);
+  }
+
+  /// The pointers do not overlap: without saying so, bytes written might be anything's.
+  void respond_8bit(const std::uint16_t* __restrict numbers,
+                    int samples,
+                    std::uint8_t* __restrict out) const {
+    if (table_.empty()) {
+      for (int i = 0; i < samples; ++i) out[i] = static_cast<std::uint8_t>(numbers[i]);
+    } else {
+      const std::uint8_t* __restrict table = table_8bit_.data();
+      for (int i = 0; i < samples; ++i) out[i] = table[numbers[i]];
     }
   }
 
@@ -192,7 +202,8 @@ class ModelledSensor final : public Sensor {
   std::uint64_t seed_;
   ExposeRow expose_row_;
   ExposureControl control_;
-  std::vector<std::uint16_t> table_;  ///< empty = the converter's numbers are the file's
+  std::vector<std::uint16_t> table_;      ///< empty = the converter's numbers are the file's
+  std::vector<std::uint8_t> table_8bit_;  ///< the same for 8-bit images
   int largest_adc_ = 255;
   double adc_per_dn_ = 1.0;  ///< converter's numbers per number of depth `bits`
   int channels_ = 0;         ///< that the following are made for
