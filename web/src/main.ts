@@ -7,6 +7,8 @@ import './styles/side.css';
 import './styles/timeline.css';
 import { RestClient } from './connection/rest_client';
 import { StreamClient } from './connection/stream_client';
+import { Alignment } from './store/alignment';
+import { Cameras } from './store/cameras';
 import { Catalogue } from './store/catalogue';
 import { Notices } from './store/notices';
 import { Player } from './store/player';
@@ -38,7 +40,10 @@ const scene = new SceneControl(store, client);
 const rest = new RestClient('api/v1', (url, init) => fetch(url, init));
 const catalogue = new Catalogue(store, rest, session, notices, later, newKey);
 
-const context = { store, session, player, scene, catalogue, notices, client };
+const alignment = new Alignment(store, rest, session, notices);
+const cameras = new Cameras(store, rest);
+
+const context = { store, session, player, scene, catalogue, alignment, cameras, notices, client };
 scene.setMode(store.state.sceneMode);
 showScreen(context, document.body);
 followAddress(context);

@@ -1,7 +1,8 @@
 // The REST interface as typed calls.
 import type { Fault } from '../protocol/faults';
 import { readFaults } from '../protocol/faults';
-import type { Json, JsonObject, Run, ScenarioEntry } from '../protocol/rest_types';
+import type { Cell } from '../protocol/messages';
+import type { Json, JsonObject, Manifest, Run, ScenarioEntry } from '../protocol/rest_types';
 
 /** An answer that was no success; `status` 0 = the server did not answer. */
 export class RestError extends Error {
@@ -30,6 +31,21 @@ export class RestClient {
 
   async scenario(name: string): Promise<JsonObject> {
     return (await this.call('GET', `/scenarios/${encodeURIComponent(name)}`)) as JsonObject;
+  }
+
+  async scenarioSchema(): Promise<JsonObject> {
+    return (await this.call('GET', '/scenario-schema')) as JsonObject;
+  }
+
+  async manifest(run: string): Promise<Manifest> {
+    return (await this.call('GET', `/runs/${encodeURIComponent(run)}/manifest`)) as Manifest;
+  }
+
+  /** Columns of an estimate placed by an alignment of the score. */
+  async estimate(run: string, name: string, alignment: string): Promise<Record<string, Cell[]>> {
+    const place = `/runs/${encodeURIComponent(run)}/trajectories/${encodeURIComponent(name)}`;
+    const query = `?format=json&alignment=${encodeURIComponent(alignment)}`;
+    return (await this.call('GET', place + query)) as Record<string, Cell[]>;
   }
 
   async runs(): Promise<Run[]> {

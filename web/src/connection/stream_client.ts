@@ -55,6 +55,11 @@ export interface StreamClientOptions {
 
 const kCloseTooSlow = 4000;
 
+/** Under which name the pictures of a stream come. */
+export function picturesOf(stream: string, camera?: string): string {
+  return camera === undefined ? stream : `${stream}/${camera}`;
+}
+
 export class StreamClient {
   private socket: Socket | null = null;
   private greeted = false;
@@ -135,7 +140,9 @@ export class StreamClient {
     if (message.type === 'hello') {
       this.onHello(message);
     } else if (message.type === 'streams') {
-      this.names = new Map(message.streams.map(({ id, name }) => [id, name]));
+      this.names = new Map(
+        message.streams.map(({ id, name, camera }) => [id, picturesOf(name, camera)]),
+      );
     } else if (message.type === 'ok' || message.type === 'error') {
       this.onAnswer(message);
     } else {

@@ -17,6 +17,8 @@ export interface SceneView {
 
 export interface PictureStream {
   name: string;
+  /** Which camera, where there are several; by default the first. */
+  camera?: string;
   max_hz?: number;
   quality?: number;
   max_width_px?: number;
@@ -37,7 +39,8 @@ export type ClientMessage =
   | { type: 'step'; frames: number }
   | { type: 'speed'; value: number }
   | { type: 'loop'; value: boolean }
-  | { type: 'live' };
+  | { type: 'live' }
+  | { type: 'align'; mode: string };
 
 export interface PoseValues {
   x_m: number;
@@ -62,11 +65,13 @@ export interface Playback {
   loop: boolean;
   begin_ns: number;
   end_ns: number;
+  /** Where the estimates lie. */
+  alignment: string;
   truth: PoseValues | null;
   estimates: Record<string, EstimateInstant>;
 }
 
-export type Cell = number | string | null;
+export type Cell = number | string | null | string[];
 
 export interface Rows {
   stream: string;
@@ -80,7 +85,7 @@ export type ServerMessage =
   | { type: 'ok'; request?: number }
   | { type: 'error'; request?: number; code: string; message: string }
   | { type: 'run'; run: Run }
-  | { type: 'streams'; streams: { id: number; name: string }[] }
+  | { type: 'streams'; streams: { id: number; name: string; camera?: string }[] }
   | ({ type: 'rows' } & Rows)
   | { type: 'metrics'; metrics: Metrics }
   | ({ type: 'playback' } & Playback);

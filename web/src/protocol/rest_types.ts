@@ -15,6 +15,22 @@ export interface Run {
   pacing: string;
   estimators: string[];
   attribution: string;
+  /** The imagery, not the camera, limits the result. */
+  texture_limited: boolean;
+  /** What the run is busy with before its first frame. */
+  notice: string | null;
+}
+
+/** One camera of a run, as its manifest lists it. */
+export interface CameraInfo {
+  name: string;
+  width_px: number;
+  height_px: number;
+  distortion?: { model: string } | null;
+}
+
+export interface Manifest {
+  cameras?: CameraInfo[];
 }
 
 export interface ScenarioEntry {
@@ -38,6 +54,8 @@ export interface AlignmentErrors {
   rotation_euler_norm_rmse_deg?: number | null;
   /** Why this alignment has no numbers. */
   error?: string | null;
+  /** Takes the estimate into the world; runs recorded earlier lack it. */
+  S_world_vo?: object | null;
 }
 
 export interface EstimatorMetrics {
@@ -53,6 +71,11 @@ export interface Metrics {
   camera?: {
     frames?: number;
     texels_per_pixel?: { min?: number | null; median?: number | null };
+  };
+  texture?: {
+    texels_per_pixel_median?: number | null;
+    texels_per_pixel_min?: number | null;
+    texture_limited?: boolean;
   };
 }
 

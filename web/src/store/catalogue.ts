@@ -5,6 +5,7 @@ import type { Fault } from '../protocol/faults';
 import { isActive } from '../protocol/rest_types';
 import { overridesOf } from './launch_form';
 import type { Notices } from './notices';
+import { sectionFaults, sectionOverrides } from './scenario_schema';
 import type { Session } from './session';
 import type { Store } from './state';
 
@@ -47,10 +48,23 @@ export class Catalogue {
     if (state.scenarioName === null && first !== undefined) await this.selectScenario(first.name);
   }
 
+  /** Opens the editor of the scenario's sections. */
+  async openEditor(): Promise<void> {
+    const { state } = this.store;
+    try {
+      state.scenarioSchema ??= await this.rest.scenarioSchema();
+      state.editorOpen = true;
+    } catch (error) {
+      this.notices.error(textOf(error));
+    }
+    this.store.change('launch', 'help');
+  }
+
   async selectScenario(name: string): Promise<void> {
     const { state } = this.store;
     state.scenarioName = name;
     state.scenarioDocument = null;
+    state.scenarioEdits = new Map();
     state.launchFaults = [];
     this.store.change('launch');
     const entry = state.scenarios?.find((scenario) => scenario.name === name);
@@ -73,11 +87,16 @@ export class Catalogue {
     const { state } = this.store;
     const { scenarioName, scenarioDocument } = state;
     if (scenarioName === null || scenarioDocument === null || state.launching) return;
-    const { overrides, faults } = overridesOf(scenarioDocument, texts);
+    const { overrides: fields, faults } = overridesOf(scenarioDocument, texts);
+    const { scenarioEdits, scenarioSchema } = state;
+    for (const [section, text] of scenarioEdits) {
+      faults.push(...sectionFaults(scenarioSchema ?? {}, section, text));
+    }
     state.launchFaults = faults;
     this.store.change('launch');
     if (faults.length > 0) return;
     state.launching = true;
+    const overrides = { ...sectionOverrides(scenarioEdits), ...fields };
     try {
       const run = await this.rest.startRun(scenarioName, overrides, this.newKey());
       state.runs = [run, ...(state.runs ?? []).filter(({ id }) => id !== run.id)];

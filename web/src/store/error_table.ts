@@ -1,5 +1,5 @@
 // metrics.json made into the error table: one column an estimator, one row a figure.
-import type { AlignmentErrors, EstimatorMetrics, Metrics } from '../protocol/rest_types';
+import type { AlignmentErrors, EstimatorMetrics, Metrics, Run } from '../protocol/rest_types';
 import { formatNumber, formatPercent, kNothing } from './format';
 
 export const kDefaultAlignment = 'init_scale';
@@ -103,14 +103,35 @@ export function errorTable(metrics: Metrics, mode: string): ErrorTable {
   };
 }
 
-function numberOf(value: number | string | null | undefined): number | null {
+function numberOf(value: unknown): number | null {
   return typeof value === 'number' ? value : null;
 }
 
-/** Median texels per pixel when it is below the limit, else null. */
-export function textureLimited(metrics: Metrics | null): number | null {
-  const median = metrics?.camera?.texels_per_pixel?.median;
-  return typeof median === 'number' && median < kTextureLimit ? median : null;
+/** Median over the run of the texels per pixel; null while it is not known. */
+export function texelsPerPixel(metrics: Metrics | null): number | null {
+  return (
+    metrics?.texture?.texels_per_pixel_median ?? metrics?.camera?.texels_per_pixel?.median ?? null
+  );
+}
+
+/** Whether the imagery, not the camera, limits what the run says about its estimators. */
+export function textureLimited(run: Run | null, metrics: Metrics | null): boolean {
+  if (run?.texture_limited === true || metrics?.texture?.texture_limited === true) return true;
+  const median = texelsPerPixel(metrics);
+  return metrics?.texture === undefined && median !== null && median > 0 && median < kTextureLimit;
+}
+
+/** What it means and what to do about it. */
+export function textureHint(median: number | null): string {
+  const found =
+    median === null
+      ? 'Few texels per pixel'
+      : `${formatNumber(median, 2)} texels per pixel (median of the run)`;
+  return (
+    `${found}: below ${kTextureLimit} the imagery, not the camera, limits the result. ` +
+    'The errors say more about the imagery than about the estimators. Fly higher, use a wider ' +
+    'field of view or fewer pixels, or give the world finer imagery.'
+  );
 }
 
 function outcomeText({ outcome, outcome_time_s }: EstimatorMetrics): string {

@@ -5,13 +5,27 @@ import { Table } from './table';
 export const kAxes = ['x_m', 'y_m', 'z_m', 'roll_deg', 'pitch_deg', 'yaw_deg'] as const;
 export type Axis = (typeof kAxes)[number];
 
-export type TruthColumn = 'frame' | 't_ns' | Axis | 'texels_per_pixel' | 'void_fraction';
+/** What is known of a frame's image; NaN where nothing is. */
+export const kImageColumns = [
+  'texels_per_pixel',
+  'void_fraction',
+  'exposure_ns',
+  'gain',
+  'saturated_fraction',
+  'late_tiles',
+  'stamp_offset_ns',
+] as const;
+export type ImageColumn = (typeof kImageColumns)[number];
+
+export type TruthColumn = 'frame' | 't_ns' | Axis | ImageColumn;
 export type EstimateColumn = 'frame' | 't_ns' | Axis | 'latency_ms';
 
 export interface LogLine {
   t_ns: number;
   level: string;
   text: string;
+  /** 'fault' where one of the scenario begins or ends; else empty. */
+  kind: string;
 }
 
 export interface EstimateRows {
@@ -22,13 +36,9 @@ export interface EstimateRows {
 const kEstimatePrefix = 'estimate/';
 
 export class RunData {
-  readonly truth = new Table<TruthColumn>([
-    'frame',
-    't_ns',
-    ...kAxes,
-    'texels_per_pixel',
-    'void_fraction',
-  ]);
+  readonly truth = new Table<TruthColumn>(['frame', 't_ns', ...kAxes, ...kImageColumns]);
+  /** Faults of the scenario in force at each frame. */
+  readonly faults: (readonly string[])[] = [];
   readonly estimates = new Map<string, EstimateRows>();
   readonly log: LogLine[] = [];
   /** Grows when rows are replaced: what was computed from them is then out of date. */
@@ -45,6 +55,7 @@ export class RunData {
     if (rows.seq < known) this.generation += 1;
     if (rows.stream === 'truth') {
       this.truth.write(rows.seq, count, rows.columns);
+      this.faults.splice(rows.seq, Infinity, ...faultLists(rows.columns['faults'], count));
     } else if (rows.stream === 'log') {
       this.log.splice(rows.seq, Infinity, ...logLines(rows.columns, count));
     } else if (rows.stream.startsWith(kEstimatePrefix)) {
@@ -76,11 +87,30 @@ export class RunData {
   private estimate(name: string): EstimateRows {
     let rows = this.estimates.get(name);
     if (rows === undefined) {
-      rows = { table: new Table(['frame', 't_ns', ...kAxes, 'latency_ms']), states: [] };
+      rows = estimateRows({});
       this.estimates.set(name, rows);
     }
     return rows;
   }
+}
+
+/** Rows of an estimate from their columns. */
+export function estimateRows(columns: Record<string, Cell[]>): EstimateRows {
+  const rows: EstimateRows = {
+    table: new Table(['frame', 't_ns', ...kAxes, 'latency_ms']),
+    states: (columns['state'] ?? []).map(String),
+  };
+  rows.table.write(0, columns['frame']?.length ?? 0, columns);
+  return rows;
+}
+
+const kNoFaults: readonly string[] = [];
+
+function faultLists(cells: readonly Cell[] | undefined, count: number): (readonly string[])[] {
+  return Array.from({ length: count }, (_, i) => {
+    const cell = cells?.[i];
+    return Array.isArray(cell) ? cell : kNoFaults;
+  });
 }
 
 function logLines(columns: Record<string, Cell[]>, count: number): LogLine[] {
@@ -88,5 +118,6 @@ function logLines(columns: Record<string, Cell[]>, count: number): LogLine[] {
     t_ns: Number(columns['t_ns']?.[i] ?? 0),
     level: String(columns['level']?.[i] ?? 'info'),
     text: String(columns['text']?.[i] ?? ''),
+    kind: String(columns['kind']?.[i] ?? ''),
   }));
 }

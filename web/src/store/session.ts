@@ -20,6 +20,8 @@ export class Session implements StreamListener {
   private readonly decoder: PictureDecoder;
   /** Where to go once the run just attached tells its playback. */
   private pendingSeek_ns: number | null = null;
+  /** Where a live viewer was when the connection was lost: its place, should the run be over. */
+  private livePlace_ns: number | null = null;
   private pictureWidth_px = 640;
   private subscribed = '';
 
@@ -61,10 +63,21 @@ export class Session implements StreamListener {
     state.metrics = null;
     state.playback = null;
     state.wantedSpeed = null;
+    state.aligned = null;
+    state.cameras = [];
+    state.camera = null;
     this.pendingSeek_ns = t_ns;
+    this.livePlace_ns = null;
     this.subscribed = '';
     this.client?.attach(id);
-    this.store.change('run', 'rows', 'log', 'metrics', 'playback', 'pictures', 'scene');
+    this.store.change('run', 'rows', 'log', 'metrics', 'playback', 'pictures', 'scene', 'cameras');
+  }
+
+  /** Shows another camera of the run; null = the first. */
+  setCamera(name: string | null): void {
+    this.store.state.camera = name;
+    this.subscribe();
+    this.store.change('cameras', 'pictures');
   }
 
   /** How wide camera and debug images are shown, in device pixels. */
@@ -119,8 +132,11 @@ export class Session implements StreamListener {
     const { playback } = this.store.state;
     if (playback === null) return [];
     const commands: ClientMessage[] = [];
+    const { aligned } = this.store.state;
+    if (aligned !== null) commands.push({ type: 'align', mode: aligned.mode });
     if (playback.speed !== 1) commands.push({ type: 'speed', value: playback.speed });
     if (playback.loop) commands.push({ type: 'loop', value: true });
+    this.livePlace_ns = playback.live ? playback.t_ns : null;
     if (!playback.live) {
       commands.push({ type: 'seek', t_ns: playback.t_ns });
       commands.push({ type: playback.playing ? 'play' : 'pause' });
@@ -140,7 +156,10 @@ export class Session implements StreamListener {
   private onRows(rows: ServerMessage & { type: 'rows' }): void {
     const { state } = this.store;
     if (state.data.apply(rows)) this.store.change(rows.stream === 'log' ? 'log' : 'rows');
-    else if (state.runId !== null) this.client?.attach(state.runId);
+    else if (state.runId !== null) {
+      this.client?.attach(state.runId);
+      if (state.aligned !== null) this.command({ type: 'align', mode: state.aligned.mode });
+    }
   }
 
   private onPlayback(playback: Playback): void {
@@ -148,6 +167,9 @@ export class Session implements StreamListener {
     state.playback = playback;
     if (playback.speed === state.wantedSpeed) state.wantedSpeed = null;
     this.store.change('playback');
+    const place_ns = this.livePlace_ns;
+    this.livePlace_ns = null;
+    if (place_ns !== null && !playback.live) this.command({ type: 'seek', t_ns: place_ns });
     if (this.pendingSeek_ns === null) return;
     const t_ns = this.pendingSeek_ns;
     this.pendingSeek_ns = null;
@@ -156,12 +178,18 @@ export class Session implements StreamListener {
   }
 
   private subscribe(): void {
-    const { run } = this.store.state;
+    const { run, camera } = this.store.state;
     if (run === null || this.store.state.runId === null) return;
     const max_width_px = this.pictureWidth_px;
     const streams: PictureStream[] = [
       { name: 'scene', max_hz: 20, quality: 80 },
-      { name: 'camera', max_hz: 31, quality: 75, max_width_px },
+      {
+        name: 'camera',
+        ...(camera === null ? {} : { camera }),
+        max_hz: 31,
+        quality: 75,
+        max_width_px,
+      },
       ...run.estimators.map((name) => ({
         name: `debug/${name}`,
         max_hz: 15,

@@ -1,9 +1,11 @@
 // Everything the screen shows, in one place, and who wants to know when it changes.
 import type { ConnectionState } from '../connection/stream_client';
+import { picturesOf } from '../connection/stream_client';
 import type { Fault } from '../protocol/faults';
 import type { Playback, SceneMode, SceneView } from '../protocol/messages';
-import type { JsonObject, Metrics, Run, ScenarioEntry } from '../protocol/rest_types';
+import type { CameraInfo, JsonObject, Metrics, Run, ScenarioEntry } from '../protocol/rest_types';
 import { kDefaultAlignment } from './error_table';
+import type { EstimateRows } from './run_data';
 import { RunData } from './run_data';
 
 /** A decoded picture and the instant it belongs to. */
@@ -24,6 +26,13 @@ export interface Notice {
 
 export type SceneOrbit = Pick<SceneView, 'azimuth_deg' | 'elevation_deg' | 'distance_m' | 'follow'>;
 
+/** Estimates placed by another alignment than the one that their rows come with. */
+export interface AlignedEstimates {
+  mode: string;
+  /** An estimator that has no such alignment is not here. */
+  estimates: Map<string, EstimateRows>;
+}
+
 export interface State {
   connection: ConnectionState;
   /** null until they were read. */
@@ -32,6 +41,10 @@ export interface State {
   listError: string | null;
   scenarioName: string | null;
   scenarioDocument: JsonObject | null;
+  scenarioSchema: JsonObject | null;
+  /** Sections of the scenario edited as JSON: text by the section's name. */
+  scenarioEdits: Map<string, string>;
+  editorOpen: boolean;
   launchFaults: Fault[];
   launching: boolean;
   /** The run being watched; `run` is null until the list or the stream has told about it. */
@@ -43,7 +56,13 @@ export interface State {
   /** Asked for and not confirmed yet. */
   wantedSpeed: number | null;
   pictures: Map<string, Picture>;
+  /** Chosen by the viewer; shown once the run is scored. */
   alignment: string;
+  aligned: AlignedEstimates | null;
+  /** Of the run being watched; empty until its manifest was read. */
+  cameras: CameraInfo[];
+  /** null = the first. */
+  camera: string | null;
   sceneMode: SceneMode;
   sceneOrbits: Record<SceneMode, SceneOrbit>;
   notices: Notice[];
@@ -58,6 +77,9 @@ export function initialState(): State {
     listError: null,
     scenarioName: null,
     scenarioDocument: null,
+    scenarioSchema: null,
+    scenarioEdits: new Map(),
+    editorOpen: false,
     launchFaults: [],
     launching: false,
     runId: null,
@@ -68,6 +90,9 @@ export function initialState(): State {
     wantedSpeed: null,
     pictures: new Map(),
     alignment: kDefaultAlignment,
+    aligned: null,
+    cameras: [],
+    camera: null,
     sceneMode: 'chase',
     sceneOrbits: {
       chase: { azimuth_deg: 20, elevation_deg: 18, distance_m: 40, follow: true },
@@ -77,6 +102,23 @@ export function initialState(): State {
     notices: [],
     helpOpen: false,
   };
+}
+
+/** The alignment in which estimates are drawn now. */
+export function shownAlignment(state: State): string {
+  return state.aligned?.mode ?? kDefaultAlignment;
+}
+
+/** Rows of an estimate as they are to be drawn. */
+export function shownEstimate(state: State, name: string): EstimateRows | undefined {
+  return state.aligned === null
+    ? state.data.estimates.get(name)
+    : state.aligned.estimates.get(name);
+}
+
+/** Under which name the pictures of the chosen camera come. */
+export function cameraPictures(state: State): string {
+  return picturesOf('camera', state.camera ?? undefined);
 }
 
 /** Views draw themselves for the topics that changed since the last frame. */
@@ -91,6 +133,7 @@ export type Topic =
   | 'playback'
   | 'pictures'
   | 'scene'
+  | 'cameras'
   | 'notices'
   | 'help';
 

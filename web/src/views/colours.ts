@@ -21,3 +21,18 @@ export const kStateColours: Readonly<Record<string, string>> = {
   TRACKING: '#3fb950',
   LOST: '#e5534b',
 };
+
+const kFaultColours: Readonly<Record<string, string>> = {
+  dropped_frames: '#ff7b72',
+  frozen_frame: '#79c0ff',
+  blackout: '#d0d7de',
+  saturation_burst: '#f2cc60',
+  dirt: '#c08a4e',
+  water_drop: '#56d4dd',
+  stamp_jitter: '#d2a8ff',
+  stamp_offset: '#ff9bce',
+};
+
+export function faultColour(kind: string): string {
+  return kFaultColours[kind] ?? '#eab766';
+}

@@ -1,7 +1,14 @@
 // Errors of the estimates as the server scored them; the screen computes none.
 import type { ErrorRow, ErrorTable } from '../store/error_table';
-import { alignmentModes, errorTable } from '../store/error_table';
-import { kNothing } from '../store/format';
+import { canBeDrawn } from '../store/alignment';
+import {
+  alignmentModes,
+  errorTable,
+  texelsPerPixel,
+  textureHint,
+  textureLimited,
+} from '../store/error_table';
+import { formatNumber, kNothing } from '../store/format';
 import type { State, Topic } from '../store/state';
 import { estimateColour, kStateColours } from './colours';
 import { h, rebuild, setAttribute, setText } from './dom';
@@ -21,14 +28,14 @@ export class ErrorPanel implements View {
     this.panel.tools.append(h('label', { for: 'alignment' }, 'Alignment'), this.alignment);
     this.panel.body.append(this.table);
     this.alignment.addEventListener('change', () => {
-      context.store.state.alignment = this.alignment.value;
-      context.store.change('metrics');
+      void context.alignment.choose(this.alignment.value);
     });
   }
 
   update(changed: ReadonlySet<Topic>): void {
     const { state } = this.context.store;
     if (changed.has('metrics') || changed.has('run')) {
+      void this.context.alignment.refresh();
       this.drawModes(state);
       this.draw(state);
     }
@@ -47,6 +54,10 @@ export class ErrorPanel implements View {
     if (!shown.includes(state.alignment)) state.alignment = shown[0] ?? state.alignment;
     this.alignment.value = state.alignment;
     this.alignment.disabled = modes.length === 0;
+    const drawn = canBeDrawn(state.metrics, state.alignment);
+    this.alignment.title = drawn
+      ? 'Of the errors, the plots and the 3D view'
+      : 'Of the errors only: this run does not say where its estimates lie by this alignment';
   }
 
   private draw(state: State): void {
@@ -61,7 +72,8 @@ export class ErrorPanel implements View {
         : { estimators: Object.fromEntries(names.map((name) => [name, { outcome: '' }])) },
       state.alignment,
     );
-    rebuild(this.table, JSON.stringify([table, names]), () => [
+    const texture = textureOf(state);
+    rebuild(this.table, JSON.stringify([table, names, texture]), () => [
       h('thead', {}, headRow(table, names)),
       h(
         'tbody',
@@ -74,6 +86,7 @@ export class ErrorPanel implements View {
             cells.map((cell) => h('td', {}, cell)),
           ),
         ),
+        textureRow(texture, names.length),
       ),
     ]);
     setAttribute(this.table, 'data-alignment', scored ? state.alignment : null);
@@ -115,6 +128,26 @@ function outcomeRow(table: ErrorTable, scored: boolean): HTMLElement {
         : h('td', { class: 'pending' }, 'not scored yet'),
     ),
   );
+}
+
+interface Texture {
+  median: number | null;
+  limited: boolean;
+}
+
+function textureOf({ run, metrics }: State): Texture {
+  return { median: texelsPerPixel(metrics), limited: textureLimited(run, metrics) };
+}
+
+/** Of the run, not of an estimator: one cell across. */
+function textureRow({ median, limited }: Texture, columns: number): HTMLElement {
+  const row = { key: 'texture', label: 'Texture', unit: 'texels/px', hint: 'Median of the run' };
+  const badge = limited ? h('span', { class: 'chip small texture-limited' }, 'limited') : null;
+  const title = limited ? textureHint(median) : row.hint;
+  const value = formatNumber(median, 2);
+  return tableRow(row, [
+    h('td', { colspan: columns, title, class: limited ? 'bad' : '' }, badge, ` ${value}`),
+  ]);
 }
 
 function tableRow(row: Omit<ErrorRow, 'cells'>, cells: HTMLElement[]): HTMLElement {

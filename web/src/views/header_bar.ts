@@ -1,6 +1,6 @@
 // The line on top: which run this is, how it stands, and whether the server is there.
 import type { State, Topic } from '../store/state';
-import { textureLimited } from '../store/error_table';
+import { texelsPerPixel, textureHint, textureLimited } from '../store/error_table';
 import { formatNumber, formatPercent } from '../store/format';
 import { h, setAttribute, setText } from './dom';
 import type { Context, View } from './view';
@@ -70,14 +70,11 @@ export class HeaderBar implements View {
     this.error.title = run?.error ?? '';
     setText(this.attribution, run?.attribution ?? '');
     this.attribution.title = run?.attribution ?? '';
-    const median = textureLimited(state.metrics);
-    this.flag.hidden = median === null;
-    setText(
-      this.flag,
-      median === null ? '' : `Texture-limited: ${formatNumber(median, 2)} texels/px`,
-    );
-    this.flag.title =
-      'The imagery has less detail than the camera: errors say more about it than about the estimator';
+    const median = texelsPerPixel(state.metrics);
+    this.flag.hidden = !textureLimited(run, state.metrics);
+    const figure = median === null ? '' : `: ${formatNumber(median, 2)} texels/px`;
+    setText(this.flag, `Texture-limited${figure}`);
+    this.flag.title = textureHint(median);
     document.title = run === null ? 'Overfly' : `${run.title} · Overfly`;
   }
 

@@ -6,6 +6,8 @@ import { h, rebuild, setAttribute, setText } from './dom';
 import { makePanel } from './panel';
 import type { Context, View } from './view';
 
+const kEditLabel = 'Edit JSON';
+
 interface Field {
   spec: FieldSpec;
   row: HTMLElement;
@@ -19,6 +21,16 @@ export class Launcher implements View {
   private readonly description = h('p', { class: 'scenario-description' });
   private readonly fieldArea = h('div', { class: 'fields' });
   private readonly faults = h('div', { class: 'form-faults', role: 'alert' });
+  private readonly editor = h(
+    'button',
+    {
+      class: 'secondary',
+      type: 'button',
+      'data-role': 'edit-json',
+      title: 'Camera, lens, sensor, faults, light and everything else of the scenario',
+    },
+    kEditLabel,
+  );
   private readonly button = h('button', { class: 'primary', type: 'submit' }, 'Launch flight');
   private fields: Field[] = [];
   private documentShown: object | null = null;
@@ -46,8 +58,9 @@ export class Launcher implements View {
       this.description,
       this.fieldArea,
       this.faults,
-      this.button,
+      h('div', { class: 'launch-buttons' }, this.button, this.editor),
     );
+    this.editor.addEventListener('click', () => void context.catalogue.openEditor());
     panel.body.append(form);
   }
 
@@ -59,6 +72,9 @@ export class Launcher implements View {
     this.updateFaults();
     this.button.disabled =
       state.launching || state.scenarioDocument === null || state.connection.status !== 'open';
+    const edits = [...state.scenarioEdits].filter(([, text]) => text.trim() !== '');
+    setText(this.editor, edits.length === 0 ? kEditLabel : `${kEditLabel} (${edits.length})`);
+    this.editor.disabled = state.scenarioDocument === null;
     setText(this.button, state.launching ? 'Launching' : 'Launch flight');
   }
 

@@ -1,4 +1,4 @@
-// The aircraft's camera, and what the estimators draw of it.
+// Panels that show the pictures of a stream; here that of what the estimators draw.
 import type { Playback } from '../protocol/messages';
 import type { State, Topic } from '../store/state';
 import { h, rebuild } from './dom';
@@ -7,10 +7,12 @@ import { makePanel } from './panel';
 import { PictureCanvas } from './picture_canvas';
 import type { Context, View } from './view';
 
-abstract class PicturePanel implements View {
+export abstract class PicturePanel implements View {
   readonly root: HTMLElement;
   protected readonly panel: Panel;
   private readonly picture: PictureCanvas;
+  /** Frame of the picture shown. */
+  protected frame: number | null = null;
 
   constructor(
     protected readonly context: Context,
@@ -24,11 +26,13 @@ abstract class PicturePanel implements View {
   }
 
   update(changed: ReadonlySet<Topic>): void {
-    if (!changed.has('pictures') && !changed.has('playback') && !changed.has('run')) return;
+    const matters = ['pictures', 'playback', 'run', 'cameras'] as const;
+    if (!matters.some((topic) => changed.has(topic))) return;
     const { state } = this.context.store;
     const stream = this.streamOf(state);
     const picture = stream === null ? null : (state.pictures.get(stream) ?? null);
     this.picture.show(picture);
+    this.frame = picture?.frame ?? null;
     const still = standingStill(state);
     this.picture.markStale(still?.t_ns ?? null);
     this.panel.showFrame(picture?.frame ?? null, still?.frame ?? null);
@@ -37,25 +41,6 @@ abstract class PicturePanel implements View {
 
   protected abstract streamOf(state: State): string | null;
   protected abstract emptyText(state: State): string;
-}
-
-export class CameraPanel extends PicturePanel {
-  constructor(context: Context) {
-    super(context, 'camera', 'Camera');
-    new ResizeObserver(([entry]) => {
-      if (entry === undefined) return;
-      const width_px = entry.contentRect.width * window.devicePixelRatio;
-      context.session.setPictureWidth(width_px > 660 ? 1280 : 640);
-    }).observe(this.panel.body);
-  }
-
-  protected override streamOf(): string {
-    return 'camera';
-  }
-
-  protected override emptyText(state: State): string {
-    return waitingText(state);
-  }
 }
 
 /** One tab for each estimator where there are several. */
@@ -119,9 +104,15 @@ export function standingStill({ playback }: State): Playback | null {
   return playback === null || playback.playing ? null : playback;
 }
 
+function sentence(text: string): string {
+  return text.charAt(0).toUpperCase() + text.slice(1);
+}
+
 export function waitingText(state: State): string {
   if (state.runId === null) return 'Choose a run, or launch one.';
   if (state.run?.status === 'queued') return 'The run waits for its turn.';
   if (state.run?.status === 'failed') return 'The run failed.';
+  // The first flight over a world has to make it.
+  if (state.run !== null && state.run.notice !== null) return sentence(state.run.notice);
   return 'Waiting for the first picture';
 }

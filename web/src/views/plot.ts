@@ -1,21 +1,27 @@
-// One curve plot over time: truth and estimates of one axis, with a playback cursor. A click or
-// drag seeks.
+// One plot of curves over time, with a playback cursor. A click or drag seeks.
 import uPlot from 'uplot';
-import type { Axis } from '../store/run_data';
-import { kAxes } from '../store/run_data';
-import { estimateColour, kTruthColour } from './colours';
 import { h, perFrame, setText } from './dom';
 import { formatNumber } from '../store/format';
 import type { Span } from '../store/time_window';
 import { paddedRange } from './plot_range';
 
 export interface PlotOptions {
-  axis: Axis;
+  /** Names the plot in the page. */
+  key: string;
   label: string;
-  unit: 'm' | 'deg';
+  unit: string;
+  /** Of the values beside the title. */
+  digits: number;
+  /** The axis spans at least so much, so that noise does not fill the plot. */
+  least: number;
+  /** Of each curve; the first lies below the others and is wider. */
+  colours: readonly string[];
   /** Whether the time axis has numbers. */
   timeLabels: boolean;
-  estimators: number;
+  /** Tells where the mouse is: one plot of a group speaks for all. */
+  leads: boolean;
+  /** A value below which something is wrong: a dashed line. */
+  limit?: number;
   onSeek: (t_s: number) => void;
   onHover: (index: number | null) => void;
   /** Above 1 shows more; 0 shows all. */
@@ -30,7 +36,7 @@ const kTruthWidth_px = 3;
 const kEstimateWidth_px = 1.25;
 const kZoom_per_px = 0.0015;
 const kSyncKey = 'overfly-plots';
-const kLeastSpan = { m: 2, deg: 4 } as const;
+const kLimitColour = '#eab766';
 
 export type Curve = ArrayLike<number | null>;
 
@@ -44,10 +50,7 @@ export class Plot {
   private cursor_s: number | null = null;
 
   constructor(private readonly options: PlotOptions) {
-    const colours = [
-      kTruthColour,
-      ...Array.from({ length: options.estimators }, (_, i) => estimateColour(i)),
-    ];
+    const { colours } = options;
     this.readouts = colours.map((colour) =>
       h('span', { class: 'readout', style: `color:${colour}` }),
     );
@@ -58,17 +61,18 @@ export class Plot {
       h('span', { class: 'unit' }, options.unit),
       ...this.readouts,
     );
-    this.root = h('div', { class: 'plot', 'data-axis': options.axis }, title, this.area);
+    this.root = h('div', { class: 'plot', 'data-axis': options.key }, title, this.area);
     this.plot = new uPlot(this.uplotOptions(colours), [[], ...colours.map(() => [])], this.area);
     this.plot.over.append(this.cursor);
     this.seekable(this.plot.over);
     new ResizeObserver(() => this.fit()).observe(this.area);
   }
 
-  setData(t_s: Float64Array, truth: Float64Array, estimates: Curve[], span_s: Span): void {
+  /** @param curves  one a colour */
+  setData(t_s: Float64Array, curves: Curve[], span_s: Span): void {
     this.span_s = span_s;
     // uPlot reads the series by index only; its type asks for one kind of array.
-    this.plot.setData([t_s, truth, ...estimates] as unknown as uPlot.AlignedData, true);
+    this.plot.setData([t_s, ...curves] as unknown as uPlot.AlignedData, true);
   }
 
   moveCursor(t_s: number | null): void {
@@ -76,9 +80,9 @@ export class Plot {
     this.placeCursor(this.plot);
   }
 
-  /** Values beside the title: the truth's, then each estimate's. */
+  /** Values beside the title, one a curve. */
   showValues(values: (number | null | undefined)[]): void {
-    const digits = this.options.unit === 'm' ? 1 : 2;
+    const { digits } = this.options;
     this.readouts.forEach((readout, i) => setText(readout, formatNumber(values[i], digits)));
   }
 
@@ -123,9 +127,25 @@ export class Plot {
     over.addEventListener('pointerleave', () => this.options.onHover(null));
   }
 
-  private uplotOptions(colours: string[]): uPlot.Options {
+  private drawLimit(plot: uPlot): void {
+    const { limit } = this.options;
+    if (limit === undefined) return;
+    const { left, width, top, height } = plot.bbox;
+    const y = plot.valToPos(limit, 'y', true);
+    if (y < top || y > top + height) return;
+    plot.ctx.save();
+    plot.ctx.strokeStyle = kLimitColour;
+    plot.ctx.setLineDash([6, 4]);
+    plot.ctx.beginPath();
+    plot.ctx.moveTo(left, y);
+    plot.ctx.lineTo(left + width, y);
+    plot.ctx.stroke();
+    plot.ctx.restore();
+  }
+
+  private uplotOptions(colours: readonly string[]): uPlot.Options {
     const axis = { stroke: kText, font: kFont, grid: { stroke: kGrid, width: 1 } };
-    const { axis: name, timeLabels, onHover } = this.options;
+    const { timeLabels, onHover, leads, least } = this.options;
     return {
       width: 200,
       height: 100,
@@ -139,7 +159,7 @@ export class Plot {
       },
       scales: {
         x: { time: false, range: () => [...this.span_s] },
-        y: { range: (_, low, high) => paddedRange(low, high, kLeastSpan[this.options.unit]) },
+        y: { range: (_, low, high) => paddedRange(low, high, least) },
       },
       axes: [
         timeLabels
@@ -159,11 +179,10 @@ export class Plot {
       ],
       hooks: {
         // Only now the scales are those of the data.
-        draw: [(plot: uPlot) => this.placeCursor(plot)],
+        draw: [(plot: uPlot) => this.placeCursor(plot), (plot: uPlot) => this.drawLimit(plot)],
         setCursor: [
           (plot: uPlot) => {
-            // One plot speaks for all: the cursor is the same in each.
-            if (name === kAxes[0]) onHover(plot.cursor.idx ?? null);
+            if (leads) onHover(plot.cursor.idx ?? null);
           },
         ],
       },

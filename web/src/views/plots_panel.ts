@@ -1,41 +1,38 @@
-// Six plots of the pose over time, drawn at most 15 times a second.
-import { formatTime, wrapDegrees } from '../store/format';
-import type { Axis } from '../store/run_data';
-import { kAxes } from '../store/run_data';
+// Plots over time, drawn at most 15 times a second: the pose, or the camera's image.
+import { formatTime } from '../store/format';
+import { lastAtOrBefore } from '../store/table';
 import type { Span } from '../store/time_window';
 import { following, zoomed } from '../store/time_window';
-import { EstimateCurve, isAngle, TruthCurve } from '../store/series';
+import { shownAlignment } from '../store/state';
 import type { Topic } from '../store/state';
-import { h, setText } from './dom';
+import { h, rebuild, setAttribute, setText } from './dom';
 import type { Panel } from './panel';
 import { frameOf, makePanel } from './panel';
-import { Plot } from './plot';
+import type { Strip } from './plot_strips';
+import { imageStrips, poseStrips } from './plot_strips';
 import type { Context, View } from './view';
 
 const kRedraw_ms = 1000 / 15;
 
-const kLabels: Record<Axis, string> = {
-  x_m: 'x east',
-  y_m: 'y north',
-  z_m: 'z up',
-  roll_deg: 'Roll',
-  pitch_deg: 'Pitch',
-  yaw_deg: 'Yaw',
-};
-
-interface AxisPlot {
-  axis: Axis;
-  plot: Plot;
-  truth: TruthCurve;
-  estimates: EstimateCurve[];
-}
+const kGroups = [
+  { name: 'pose', label: 'Pose', hint: 'Position and attitude: truth and estimates' },
+  { name: 'image', label: 'Image', hint: 'Texels per pixel, exposure and saturation' },
+] as const;
+type Group = (typeof kGroups)[number]['name'];
 
 export class PlotsPanel implements View {
   readonly root: HTMLElement;
   private readonly panel: Panel;
   private readonly grid = h('div', { class: 'plot-grid' });
+  private readonly tabs = h('span', { class: 'tabs' });
+  private readonly alignment = h('span', {
+    class: 'alignment-note',
+    'data-role': 'alignment',
+    title: 'How the estimates are laid onto the truth (chosen above the errors)',
+  });
   private readonly hoverTime = h('span', { class: 'hover-time' });
-  private plots: AxisPlot[] = [];
+  private group: Group = 'pose';
+  private strips: Strip[] = [];
   private key = '';
   private t_s = new Float64Array(0);
   private drawn_ms = -Infinity;
@@ -45,8 +42,8 @@ export class PlotsPanel implements View {
   private window_s: Span | null = null;
 
   constructor(private readonly context: Context) {
-    this.panel = makePanel('plots', 'Pose over time [s]', true);
-    this.panel.tools.append(this.hoverTime);
+    this.panel = makePanel('plots', 'Over time [s]', true);
+    this.panel.tools.append(this.tabs, this.alignment, this.hoverTime);
     this.panel.body.append(this.grid);
     this.root = this.panel.root;
     this.build();
@@ -69,21 +66,13 @@ export class PlotsPanel implements View {
   }
 
   private draw(): void {
-    const { run, runId, data } = this.context.store.state;
-    const names = run?.estimators ?? [];
-    if (this.key !== `${String(runId)}/${data.generation}/${names.join('/')}`) this.build();
-    const t_ns = data.truth.column('t_ns');
+    const { state } = this.context.store;
+    if (this.key !== this.wantedKey()) this.build();
+    const t_ns = state.data.truth.column('t_ns');
     if (this.t_s.length !== t_ns.length) this.t_s = t_ns.map((t) => t / 1e9);
     const span_s = this.window_s ?? this.whole();
-    for (const { plot, truth, estimates } of this.plots) {
-      const curve = truth.update(data);
-      const others = names.map((name, i) => {
-        const rows = data.estimates.get(name);
-        return rows === undefined ? [] : (estimates[i]?.update(data, rows, curve) ?? []);
-      });
-      plot.setData(this.t_s, curve, others, span_s);
-    }
-    this.panel.showEmpty(runId === null ? 'Poses of the flight appear here.' : null);
+    for (const strip of this.strips) strip.draw(state, this.t_s, span_s);
+    this.panel.showEmpty(state.runId === null ? 'Poses of the flight appear here.' : null);
     this.moveCursor();
   }
 
@@ -108,70 +97,78 @@ export class PlotsPanel implements View {
     this.drawSoon();
   }
 
+  /** Equal as long as the plots need not be made anew. */
+  private wantedKey(): string {
+    const { state } = this.context.store;
+    const names = state.run?.estimators ?? [];
+    const parts = [String(state.runId), state.data.generation, this.group, shownAlignment(state)];
+    return [...parts, ...names].join('/');
+  }
+
   private build(): void {
-    const { run, runId, data } = this.context.store.state;
-    const names = run?.estimators ?? [];
-    this.key = `${String(runId)}/${data.generation}/${names.join('/')}`;
-    this.window_s = null;
-    for (const { plot } of this.plots) plot.destroy();
-    this.plots = kAxes.map((axis, index) => ({
-      axis,
-      truth: new TruthCurve(axis),
-      estimates: names.map(() => new EstimateCurve(axis)),
-      plot: new Plot({
-        axis,
-        label: kLabels[axis],
-        unit: isAngle(axis) ? 'deg' : 'm',
-        timeLabels: index >= 3,
-        estimators: names.length,
-        onSeek: (t_s) => this.context.player.seekTime(t_s * 1e9),
-        onHover: (row) => this.hover(row),
-        onZoom: (centre_s, factor) => this.zoom(centre_s, factor),
-      }),
-    }));
-    this.grid.replaceChildren(...this.plots.map(({ plot }) => plot.root));
+    const { state } = this.context.store;
+    const names = state.run?.estimators ?? [];
+    const [run] = this.key.split('/', 1);
+    if (run !== String(state.runId)) this.window_s = null;
+    this.key = this.wantedKey();
+    for (const { plot } of this.strips) plot.destroy();
+    const actions = {
+      onSeek: (t_s: number) => this.context.player.seekTime(t_s * 1e9),
+      onHover: (row: number | null) => this.hover(row),
+      onZoom: (centre_s: number, factor: number) => this.zoom(centre_s, factor),
+    };
+    this.strips = this.group === 'pose' ? poseStrips(names, actions) : imageStrips(actions);
+    setAttribute(this.grid, 'data-group', this.group);
+    this.grid.replaceChildren(...this.strips.map(({ plot }) => plot.root));
+    const drawn = this.group === 'pose' && names.length > 0;
+    setText(this.alignment, drawn ? `estimates by ${shownAlignment(state)}` : '');
+    this.drawTabs();
+  }
+
+  private drawTabs(): void {
+    rebuild(this.tabs, this.group, () =>
+      kGroups.map(({ name, label, hint }) =>
+        h(
+          'button',
+          {
+            class: 'tab',
+            title: hint,
+            'data-group': name,
+            'aria-pressed': name === this.group ? 'true' : 'false',
+            onclick: () => {
+              this.group = name;
+              this.draw();
+            },
+          },
+          label,
+        ),
+      ),
+    );
   }
 
   private moveCursor(): void {
     const { playback } = this.context.store.state;
-    for (const { plot } of this.plots)
-      plot.moveCursor(playback === null ? null : playback.t_ns / 1e9);
+    const t_s = playback === null ? null : playback.t_ns / 1e9;
+    for (const { plot } of this.strips) plot.moveCursor(t_s);
     this.panel.showFrame(frameOf(playback));
-    if (this.hovered === null) this.showPlaybackValues();
+    if (this.hovered === null) this.showCursorValues();
   }
 
-  private showPlaybackValues(): void {
-    const { playback, run } = this.context.store.state;
-    for (const { axis, plot } of this.plots) {
-      const poses = [
-        playback?.truth,
-        ...(run?.estimators ?? []).map((name) => playback?.estimates[name]?.pose),
-      ];
-      plot.showValues(poses.map((pose) => pose?.[axis]));
-    }
+  private showCursorValues(): void {
+    const { state } = this.context.store;
+    const row = lastAtOrBefore(
+      state.data.truth.column('frame'),
+      state.playback === null ? -1 : state.playback.frame,
+    );
+    for (const strip of this.strips) strip.showCursor(state, row);
   }
 
   /** Values under the mouse in place of those at the cursor. */
   private hover(row: number | null): void {
     this.hovered = row;
-    const { data, run } = this.context.store.state;
-    setText(this.hoverTime, row === null ? '' : formatTime(data.truth.at('t_ns', row)));
-    if (row === null) {
-      this.showPlaybackValues();
-      return;
-    }
-    for (const { axis, plot, estimates, truth } of this.plots) {
-      const curve = truth.update(data);
-      const others = (run?.estimators ?? []).map((name, i) => {
-        const rows = data.estimates.get(name);
-        return rows === undefined ? null : estimates[i]?.update(data, rows, curve)[row];
-      });
-      const values = [data.truth.at(axis, row), ...others];
-      plot.showValues(
-        values.map((value) =>
-          isAngle(axis) && typeof value === 'number' ? wrapDegrees(value) : value,
-        ),
-      );
-    }
+    const { state } = this.context.store;
+    setText(this.hoverTime, row === null ? '' : formatTime(state.data.truth.at('t_ns', row)));
+    if (row === null) this.showCursorValues();
+    else for (const strip of this.strips) strip.showRow(state, row);
   }
 }

@@ -1,4 +1,5 @@
 // The server's runs, newest first.
+import { textureHint } from '../store/error_table';
 import { formatDate, formatNumber } from '../store/format';
 import type { Run } from '../protocol/rest_types';
 import { isActive } from '../protocol/rest_types';
@@ -69,7 +70,22 @@ export class RunList implements View {
             )
           : null,
       ),
-      h('span', { class: 'chip small', 'data-status': run.status }, run.status),
+      h(
+        'span',
+        { class: 'run-chips' },
+        h('span', { class: 'chip small', 'data-status': run.status }, run.status),
+        run.texture_limited
+          ? h(
+              'span',
+              {
+                class: 'chip small texture-limited',
+                'data-role': 'texture-limited',
+                title: textureHint(null),
+              },
+              'texture-limited',
+            )
+          : null,
+      ),
       isActive(run) ? this.cancelButton(run) : this.deleteButton(run),
     );
   }

@@ -1,5 +1,6 @@
 // The 3D view: drawn by the server, steered here. Drag turns, the wheel zooms.
 import type { SceneMode } from '../protocol/messages';
+import { shownAlignment } from '../store/state';
 import type { Topic } from '../store/state';
 import { h, perFrame } from './dom';
 import { formatNumber } from '../store/format';
@@ -86,12 +87,16 @@ export class ScenePanel implements View {
     const angles = `${formatNumber(orbit.azimuth_deg, 0)}° ${formatNumber(orbit.elevation_deg, 0)}°`;
     setText(this.readout, `${angles} · ${formatNumber(orbit.distance_m, 0)} m`);
     const names = state.run?.estimators ?? [];
-    rebuild(this.legend, `${String(state.runId)} ${names.join(' ')}`, () =>
+    const alignment = shownAlignment(state);
+    rebuild(this.legend, `${String(state.runId)} ${alignment} ${names.join(' ')}`, () =>
       state.runId === null
         ? []
         : [
             legendEntry('truth', kTruthColour),
             ...names.map((name, index) => legendEntry(name, estimateColour(index))),
+            ...(names.length === 0
+              ? []
+              : [h('span', { class: 'alignment-note' }, `by ${alignment}`)]),
           ],
     );
   }

@@ -1,4 +1,5 @@
 // Everything in its place.
+import { CameraPanel } from './camera_panel';
 import { ErrorPanel } from './error_panel';
 import { h } from './dom';
 import { HeaderBar } from './header_bar';
@@ -6,9 +7,10 @@ import { HelpOverlay } from './help_overlay';
 import { Launcher } from './launcher';
 import { LogPanel } from './log_panel';
 import { NoticesView } from './notices_view';
-import { CameraPanel, DebugPanel } from './picture_panel';
+import { DebugPanel } from './picture_panel';
 import { PlotsPanel } from './plots_panel';
 import { RunList } from './run_list';
+import { ScenarioEditor } from './scenario_editor';
 import { ScenePanel } from './scene_panel';
 import { listenToKeys } from './shortcuts';
 import { Timeline } from './timeline';
@@ -25,6 +27,7 @@ const kEverything = new Set([
   'playback',
   'pictures',
   'scene',
+  'cameras',
   'notices',
   'help',
 ] as const);
@@ -36,7 +39,7 @@ export function showScreen(context: Context, place: HTMLElement): void {
   const centre = [new ScenePanel(context), new PlotsPanel(context)];
   const right = [new CameraPanel(context), new DebugPanel(context), new ErrorPanel(context)];
   const timeline = new Timeline(context);
-  const above = [new NoticesView(context), new HelpOverlay(context)];
+  const above = [new NoticesView(context), new HelpOverlay(context), new ScenarioEditor(context)];
   const views: View[] = [header, ...left, ...centre, ...right, timeline, ...above];
   const column = (name: string, parts: View[]) =>
     h('div', { class: `column ${name}` }, ...parts.map(({ root }) => root));

@@ -99,7 +99,7 @@ export function listenToKeys(context: Context): void {
 
 /** Whether what has the focus needs the key itself. */
 function wantsKey({ target, key }: KeyboardEvent): boolean {
-  if (target instanceof HTMLSelectElement) return true;
+  if (target instanceof HTMLSelectElement || target instanceof HTMLTextAreaElement) return true;
   if (target instanceof HTMLInputElement && target.type !== 'checkbox') return true;
   return key === ' ' && (target instanceof HTMLButtonElement || target instanceof HTMLInputElement);
 }
@@ -128,6 +128,7 @@ function toggleHelp(store: Context['store']): void {
 
 function restoreScreen(store: Context['store']): void {
   store.state.helpOpen = false;
+  store.state.editorOpen = false;
   store.change('help');
   document.querySelector('.panel.expanded')?.classList.remove('expanded');
 }

@@ -2,11 +2,16 @@
 import { formatTime } from '../store/format';
 import type { EstimateRows } from '../store/run_data';
 import type { Topic } from '../store/state';
-import { kStateColours } from './colours';
-import { h, perFrame, setText } from './dom';
+import { faultMeaning, FaultSpans, kindsOf } from '../store/fault_spans';
+import type { FaultSpan } from '../store/fault_spans';
+import { faultColour, kStateColours } from './colours';
+import { h, perFrame, rebuild, setAttribute, setText } from './dom';
 import type { Context } from './view';
 
 const kStripHeight_px = 4;
+/** A fault of one frame is still to be seen. */
+const kLeastFault_px = 2;
+const kMostFaults = 4;
 
 export class TimelineTrack {
   readonly root: HTMLElement;
@@ -14,7 +19,11 @@ export class TimelineTrack {
   private readonly strips = h('canvas', { class: 'strips' });
   private readonly head = h('div', { class: 'head' });
   private readonly tip = h('div', { class: 'tip', hidden: true });
+  private readonly faults = h('canvas', { class: 'fault-lane' });
+  private readonly legend = h('div', { class: 'fault-legend', 'data-role': 'fault-legend' });
   private readonly bar: HTMLElement;
+  private spans = new FaultSpans();
+  private spansOf = '';
   /** Where the mouse holds the head, until the server says it is there. */
   private held_ns: number | null = null;
 
@@ -23,15 +32,23 @@ export class TimelineTrack {
     this.root = h(
       'div',
       { class: 'track', role: 'slider', tabindex: 0, 'aria-label': 'Time', 'aria-valuemin': 0 },
+      this.faults,
       this.bar,
+      this.legend,
       this.tip,
     );
     this.scrub();
-    new ResizeObserver(() => this.drawStrips()).observe(this.bar);
+    new ResizeObserver(() => {
+      this.drawStrips();
+      this.drawFaults();
+    }).observe(this.bar);
   }
 
   update(changed: ReadonlySet<Topic>): void {
-    if (changed.has('rows') || changed.has('run')) this.drawStrips();
+    if (changed.has('rows') || changed.has('run')) {
+      this.drawStrips();
+      this.drawFaults();
+    }
     if (changed.has('playback') || changed.has('run')) this.moveHead();
   }
 
@@ -95,6 +112,59 @@ export class TimelineTrack {
     }
   }
 
+  /** One lane for all: where several are in force, the later kinds are drawn below. */
+  private drawFaults(): void {
+    const { runId, data } = this.context.store.state;
+    const key = `${String(runId)}/${data.generation}`;
+    if (this.spansOf !== key) {
+      this.spansOf = key;
+      this.spans = new FaultSpans();
+    }
+    const spans = this.spans.update(data);
+    const kinds = kindsOf(spans);
+    this.faults.width = Math.max(1, Math.round(this.bar.clientWidth * window.devicePixelRatio));
+    this.faults.height = Math.max(
+      1,
+      Math.round(this.faults.clientHeight * window.devicePixelRatio),
+    );
+    const pen = this.faults.getContext('2d');
+    if (pen !== null) this.paintSpans(pen, spans, kinds);
+    setAttribute(this.root, 'data-faults', kinds.length === 0 ? null : kinds.join(' '));
+    rebuild(this.legend, kinds.join(' '), () => kinds.map(legendEntry));
+  }
+
+  private paintSpans(
+    pen: CanvasRenderingContext2D,
+    spans: readonly FaultSpan[],
+    kinds: readonly string[],
+  ): void {
+    const span_ns = this.span_ns();
+    const { width, height } = pen.canvas;
+    const lane = height / kinds.length;
+    const least = kLeastFault_px * window.devicePixelRatio;
+    for (const { kind, begin_ns, end_ns } of spans) {
+      const x = (begin_ns / span_ns) * width;
+      const length = Math.max(least, ((end_ns - begin_ns) / span_ns) * width);
+      pen.fillStyle = faultColour(kind);
+      pen.fillRect(x, kinds.indexOf(kind) * lane, length, Math.max(1, lane));
+    }
+  }
+
+  /** What the tip says of the faults at a time. */
+  private faultText(t_ns: number): string {
+    const slack_ns = (kLeastFault_px / this.bar.clientWidth) * this.span_ns();
+    const here = this.spans.spans.filter(
+      ({ begin_ns, end_ns }) => t_ns >= begin_ns - slack_ns && t_ns <= end_ns + slack_ns,
+    );
+    const lines = here.slice(0, kMostFaults).map(({ kind, begin_ns, end_ns, frames }) => {
+      const { label, hint } = faultMeaning(kind);
+      const when = `${formatTime(begin_ns)} to ${formatTime(end_ns)}`;
+      return `${label}, ${when}, ${frames} frame${frames === 1 ? '' : 's'}: ${hint}`;
+    });
+    if (here.length > kMostFaults) lines.push(`and ${here.length - kMostFaults} more`);
+    return lines.map((line) => `\n${line}`).join('');
+  }
+
   private timeAt(event: PointerEvent): number {
     const box = this.bar.getBoundingClientRect();
     const share = Math.min(1, Math.max(0, (event.clientX - box.left) / box.width));
@@ -118,7 +188,8 @@ export class TimelineTrack {
       if (this.root.hasPointerCapture(event.pointerId)) hold(event);
       this.tip.hidden = false;
       this.tip.style.left = `${event.clientX - this.root.getBoundingClientRect().left}px`;
-      setText(this.tip, formatTime(this.timeAt(event)));
+      const t_ns = this.timeAt(event);
+      setText(this.tip, formatTime(t_ns) + this.faultText(t_ns));
     });
     this.root.addEventListener('pointerleave', () => {
       this.tip.hidden = true;
@@ -129,4 +200,14 @@ export class TimelineTrack {
     this.root.addEventListener('pointerup', release);
     this.root.addEventListener('pointercancel', release);
   }
+}
+
+function legendEntry(kind: string): HTMLElement {
+  const { label, hint } = faultMeaning(kind);
+  return h(
+    'span',
+    { title: hint, 'data-fault-kind': kind },
+    h('i', { style: `background:${faultColour(kind)}` }),
+    label,
+  );
 }

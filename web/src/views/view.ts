@@ -1,4 +1,6 @@
 // What every part of the screen is.
+import type { Alignment } from '../store/alignment';
+import type { Cameras } from '../store/cameras';
 import type { Store, Topic } from '../store/state';
 import type { Player } from '../store/player';
 import type { SceneControl } from '../store/scene_control';
@@ -20,6 +22,8 @@ export interface Context {
   player: Player;
   scene: SceneControl;
   catalogue: Catalogue;
+  alignment: Alignment;
+  cameras: Cameras;
   notices: Notices;
   client: StreamClient;
 }

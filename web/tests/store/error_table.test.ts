@@ -1,6 +1,13 @@
 import { describe, expect, it } from 'vitest';
 import type { Metrics } from '../../src/protocol/rest_types';
-import { alignmentModes, errorTable, textureLimited } from '../../src/store/error_table';
+import {
+  alignmentModes,
+  errorTable,
+  texelsPerPixel,
+  textureHint,
+  textureLimited,
+} from '../../src/store/error_table';
+import { sampleRun } from '../support/samples';
 
 const metrics: Metrics = {
   estimators: {
@@ -52,9 +59,20 @@ describe('errorTable', () => {
 
 describe('textureLimited', () => {
   it('speaks up below half a texel a pixel only', () => {
-    expect(textureLimited(metrics)).toBe(0.49);
-    expect(textureLimited({ camera: { texels_per_pixel: { median: 0.5 } } })).toBeNull();
-    expect(textureLimited({})).toBeNull();
-    expect(textureLimited(null)).toBeNull();
+    expect(textureLimited(null, metrics)).toBe(true);
+    expect(textureLimited(null, { camera: { texels_per_pixel: { median: 0.5 } } })).toBe(false);
+    expect(textureLimited(null, {})).toBe(false);
+    expect(textureLimited(null, null)).toBe(false);
+  });
+
+  it("believes the server's own word", () => {
+    const texture = { texels_per_pixel_median: 0.49, texture_limited: false };
+    expect(textureLimited(null, { ...metrics, texture })).toBe(false);
+    expect(textureLimited(sampleRun({ texture_limited: true }), null)).toBe(true);
+  });
+
+  it('says the figure, what it means and what to do', () => {
+    expect(textureHint(texelsPerPixel(metrics))).toMatch(/0\.49 texels per pixel.*Fly higher/u);
+    expect(textureHint(null)).toMatch(/imagery, not the camera, limits/u);
   });
 });

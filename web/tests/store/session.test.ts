@@ -1,5 +1,6 @@
 import { beforeEach, describe, expect, it } from 'vitest';
-import { samplePlayback } from '../support/samples';
+import { cameraPictures } from '../../src/store/state';
+import { samplePlayback, sampleRun } from '../support/samples';
 import { Viewing } from '../support/viewing';
 
 let viewing: Viewing;
@@ -36,6 +37,46 @@ describe('Session', () => {
     const attach = viewing.socket.sent.find(({ type }) => type === 'attach');
     expect(attach).toMatchObject({ run: 'r1', resume: { truth: 63 } });
     expect(viewing.socket.types().slice(-3)).toEqual(['speed', 'seek', 'pause']);
+  });
+
+  it('keeps the place of a live viewer whose run ended while the connection was lost', () => {
+    const { session, socket } = viewing;
+    session.selectRun('r1');
+    socket.receive({ type: 'run', run: sampleRun({ status: 'running' }) });
+    const live = samplePlayback({ t_ns: 1.2e9, live: true, playing: true });
+    socket.receive({ type: 'playback', ...live });
+    socket.lose();
+    viewing.timers.fire();
+    viewing.socket.hello();
+    viewing.socket.receive({ type: 'run', run: sampleRun() });
+    expect(viewing.socket.types()).not.toContain('seek');
+    viewing.socket.receive({ type: 'playback', ...samplePlayback() });
+    expect(viewing.socket.last()).toMatchObject({ type: 'seek', t_ns: 1.2e9 });
+  });
+
+  it('stays live after a lost connection while the run goes on', () => {
+    viewing.session.selectRun('r1');
+    viewing.socket.receive({ type: 'run', run: sampleRun({ status: 'running' }) });
+    const live = samplePlayback({ t_ns: 1.2e9, live: true, playing: true });
+    viewing.socket.receive({ type: 'playback', ...live });
+    viewing.socket.lose();
+    viewing.timers.fire();
+    viewing.socket.hello();
+    viewing.socket.receive({ type: 'run', run: sampleRun({ status: 'running' }) });
+    viewing.socket.receive({ type: 'playback', ...samplePlayback({ live: true, t_ns: 1.5e9 }) });
+    expect(viewing.socket.types()).not.toContain('seek');
+  });
+
+  it('asks for the pictures of the camera chosen', () => {
+    viewing.watch();
+    viewing.session.setCamera('tail');
+    expect(viewing.socket.last()).toMatchObject({
+      type: 'subscribe',
+      streams: [{ name: 'scene' }, { name: 'camera', camera: 'tail' }, { name: 'debug/feature' }],
+    });
+    expect(cameraPictures(viewing.store.state)).toBe('camera/tail');
+    viewing.session.selectRun('r2');
+    expect(cameraPictures(viewing.store.state)).toBe('camera');
   });
 
   it('asks again for rows when some are missing', () => {

@@ -16,6 +16,8 @@ export function sampleRun(change: Partial<Run> = {}): Run {
     pacing: 'lockstep',
     estimators: ['feature'],
     attribution: '',
+    texture_limited: false,
+    notice: null,
     ...change,
   };
 }
@@ -30,6 +32,7 @@ export function samplePlayback(change: Partial<Playback> = {}): Playback {
     loop: false,
     begin_ns: 0,
     end_ns: 2e9,
+    alignment: 'init_scale',
     truth: null,
     estimates: {},
     ...change,

@@ -1,0 +1,79 @@
+// The alignment of the estimates: chosen by the viewer, computed by the server, drawn everywhere.
+import type { RestClient } from '../connection/rest_client';
+import { RestError } from '../connection/rest_client';
+import type { Metrics } from '../protocol/rest_types';
+import { kDefaultAlignment } from './error_table';
+import type { Notices } from './notices';
+import { estimateRows } from './run_data';
+import type { Session } from './session';
+import { shownAlignment } from './state';
+import type { Store } from './state';
+
+/** Whether the score says where the estimates lie by this alignment. */
+export function canBeDrawn(metrics: Metrics | null, mode: string): boolean {
+  if (mode === kDefaultAlignment) return true;
+  return Object.values(metrics?.estimators ?? {}).some(
+    ({ alignments }) => typeof alignments?.[mode]?.S_world_vo === 'object',
+  );
+}
+
+export class Alignment {
+  private readonly tried = new Set<string>();
+
+  constructor(
+    private readonly store: Store,
+    private readonly rest: RestClient,
+    private readonly session: Session,
+    private readonly notices: Notices,
+  ) {}
+
+  async choose(mode: string): Promise<void> {
+    this.store.state.alignment = mode;
+    this.tried.clear();
+    this.store.change('metrics');
+    await this.refresh();
+  }
+
+  /** Brings what is drawn to what is chosen, as far as the run's score allows. */
+  async refresh(): Promise<void> {
+    const { state } = this.store;
+    const { metrics, runId } = state;
+    const mode = canBeDrawn(metrics, state.alignment) ? state.alignment : kDefaultAlignment;
+    if (runId === null || metrics === null || mode === shownAlignment(state)) return;
+    if (mode === kDefaultAlignment) {
+      state.aligned = null;
+      this.tell(mode);
+      return;
+    }
+    const attempt = `${runId}/${mode}`;
+    if (this.tried.has(attempt)) return;
+    this.tried.add(attempt);
+    const names = state.run?.estimators ?? Object.keys(metrics.estimators ?? {});
+    const placed = await Promise.all(
+      names.map(async (name) => [name, await this.place(runId, name, mode)] as const),
+    );
+    const now = this.store.state;
+    if (now.runId !== runId || now.alignment !== mode) return;
+    const estimates = new Map(placed.flatMap(([name, rows]) => (rows ? [[name, rows]] : [])));
+    if (estimates.size === 0) return;
+    this.tried.delete(attempt);
+    now.aligned = { mode, estimates };
+    this.tell(mode);
+  }
+
+  private tell(mode: string): void {
+    this.session.command({ type: 'align', mode });
+    this.store.change('rows', 'metrics', 'scene');
+  }
+
+  /** null where this estimate has no such alignment. */
+  private async place(run: string, name: string, mode: string) {
+    try {
+      return estimateRows(await this.rest.estimate(run, name, mode));
+    } catch (error) {
+      const refused = error instanceof RestError && error.status === 409;
+      if (!refused) this.notices.error(`Estimate ${name} by ${mode}: ${String(error)}`);
+      return null;
+    }
+  }
+}

@@ -1,0 +1,95 @@
+// Faults of the scenario as spans of time, and what each kind means.
+import type { RunData } from './run_data';
+
+export interface FaultSpan {
+  kind: string;
+  begin_ns: number;
+  /** Stamp of the first frame after it; of the last one where the fault lasts on. */
+  end_ns: number;
+  frames: number;
+}
+
+interface FaultMeaning {
+  label: string;
+  /** Stands over the camera's picture: what is shown is not what the estimators got. */
+  mark: string | null;
+  hint: string;
+}
+
+const kMeanings: Readonly<Record<string, FaultMeaning>> = {
+  dropped_frames: {
+    label: 'Dropped frames',
+    mark: 'Frame dropped',
+    hint: 'the estimators never get these images',
+  },
+  frozen_frame: {
+    label: 'Frozen frame',
+    mark: 'Image frozen',
+    hint: 'the last image again and again, with new time stamps',
+  },
+  blackout: { label: 'Blackout', mark: 'Blackout', hint: 'no light reaches the sensor' },
+  saturation_burst: {
+    label: 'Saturation burst',
+    mark: null,
+    hint: 'light on the lens: a flash, or the sun',
+  },
+  dirt: { label: 'Dirt', mark: null, hint: 'specks on the lens' },
+  water_drop: { label: 'Water drop', mark: null, hint: 'drops on the lens' },
+  stamp_jitter: {
+    label: 'Stamp jitter',
+    mark: null,
+    hint: 'the time stamps that the estimators are told scatter',
+  },
+  stamp_offset: {
+    label: 'Stamp offset',
+    mark: null,
+    hint: 'the time stamps that the estimators are told are off by a constant',
+  },
+};
+
+export function faultMeaning(kind: string): FaultMeaning {
+  return kMeanings[kind] ?? { label: kind.replaceAll('_', ' '), mark: null, hint: '' };
+}
+
+/** Kinds in the order in which the time line stacks and colours them. */
+export const kFaultKinds: readonly string[] = Object.keys(kMeanings);
+
+/** Grows with the rows: only those since the last call are read. */
+export class FaultSpans {
+  readonly spans: FaultSpan[] = [];
+  private readonly open = new Map<string, FaultSpan>();
+  private taken = 0;
+
+  update({ truth, faults }: RunData): readonly FaultSpan[] {
+    const stamps = truth.column('t_ns');
+    for (; this.taken < stamps.length; this.taken += 1) {
+      const t_ns = stamps[this.taken] ?? 0;
+      const now = faults[this.taken] ?? [];
+      for (const [kind, span] of this.open) {
+        span.end_ns = t_ns;
+        if (!now.includes(kind)) this.open.delete(kind);
+      }
+      for (const kind of new Set(now)) this.go(kind, t_ns);
+    }
+    return this.spans;
+  }
+
+  private go(kind: string, t_ns: number): void {
+    let span = this.open.get(kind);
+    if (span === undefined) {
+      span = { kind, begin_ns: t_ns, end_ns: t_ns, frames: 0 };
+      this.open.set(kind, span);
+      this.spans.push(span);
+    }
+    span.frames += 1;
+  }
+}
+
+/** Kinds that the run has, in their order, unknown ones last. */
+export function kindsOf(spans: readonly FaultSpan[]): string[] {
+  const place = (kind: string) => {
+    const index = kFaultKinds.indexOf(kind);
+    return index < 0 ? kFaultKinds.length : index;
+  };
+  return [...new Set(spans.map(({ kind }) => kind))].sort((a, b) => place(a) - place(b));
+}

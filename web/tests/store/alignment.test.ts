@@ -1,0 +1,104 @@
+import { beforeEach, describe, expect, it } from 'vitest';
+import { RestClient } from '../../src/connection/rest_client';
+import { Alignment, canBeDrawn } from '../../src/store/alignment';
+import { Cameras } from '../../src/store/cameras';
+import { Notices } from '../../src/store/notices';
+import { shownAlignment, shownEstimate } from '../../src/store/state';
+import { samplePlayback } from '../support/samples';
+import { Viewing } from '../support/viewing';
+
+const metrics = {
+  estimators: {
+    feature: {
+      outcome: 'COMPLETED',
+      alignments: { init_scale: { S_world_vo: {} }, sim3: { S_world_vo: {} }, se3: { scale: 1 } },
+    },
+  },
+};
+
+let viewing: Viewing;
+let asked: string[];
+let answer: () => Response;
+
+function rest(): RestClient {
+  return new RestClient('api', (url) => {
+    asked.push(url);
+    return Promise.resolve(answer());
+  });
+}
+
+beforeEach(() => {
+  viewing = new Viewing();
+  asked = [];
+  answer = () =>
+    Response.json({ frame: [0, 1], t_ns: [0, 1], state: ['TRACKING', 'LOST'], x_m: [7, null] });
+  viewing.watch();
+});
+
+describe('Alignment', () => {
+  const alignment = () =>
+    new Alignment(
+      viewing.store,
+      rest(),
+      viewing.session,
+      new Notices(viewing.store, () => undefined),
+    );
+
+  it('draws the estimates as the server places them, and has the views do so', async () => {
+    viewing.socket.receive({ type: 'metrics', metrics });
+    const chosen = alignment();
+    await chosen.choose('sim3');
+    expect(asked).toEqual(['api/runs/r1/trajectories/feature?format=json&alignment=sim3']);
+    expect(viewing.socket.last()).toMatchObject({ type: 'align', mode: 'sim3' });
+    expect(shownAlignment(viewing.store.state)).toBe('sim3');
+    expect(shownEstimate(viewing.store.state, 'feature')?.table.at('x_m', 0)).toBe(7);
+    await chosen.choose('init_scale');
+    expect(viewing.socket.last()).toMatchObject({ type: 'align', mode: 'init_scale' });
+    expect(viewing.store.state.aligned).toBeNull();
+  });
+
+  it('stays with what rows say where the score has no transform', async () => {
+    viewing.socket.receive({ type: 'metrics', metrics });
+    await alignment().choose('se3');
+    expect(asked).toEqual([]);
+    expect(viewing.store.state.alignment).toBe('se3');
+    expect(shownAlignment(viewing.store.state)).toBe('init_scale');
+    expect(canBeDrawn(metrics, 'sim3')).toBe(true);
+    expect(canBeDrawn(null, 'sim3')).toBe(false);
+  });
+
+  it('asks once for what the server refuses', async () => {
+    answer = () => Response.json({ error: { code: 'conflict', message: 'no' } }, { status: 409 });
+    viewing.socket.receive({ type: 'metrics', metrics });
+    const chosen = alignment();
+    await chosen.choose('sim3');
+    await chosen.refresh();
+    expect(asked).toHaveLength(1);
+    expect(shownAlignment(viewing.store.state)).toBe('init_scale');
+    expect(viewing.store.state.notices).toEqual([]);
+  });
+
+  it('is asked for again after a lost connection', async () => {
+    viewing.socket.receive({ type: 'metrics', metrics });
+    await alignment().choose('sim3');
+    viewing.socket.lose();
+    viewing.timers.fire();
+    viewing.socket.hello();
+    expect(viewing.socket.types()).toContain('align');
+  });
+});
+
+describe('Cameras', () => {
+  it('are read once a run has frames', async () => {
+    answer = () => Response.json({ cameras: [{ name: 'front', width_px: 64, height_px: 48 }] });
+    const cameras = new Cameras(viewing.store, rest());
+    viewing.socket.receive({ type: 'playback', ...samplePlayback({ frame: -1 }) });
+    await cameras.refresh();
+    expect(asked).toEqual([]);
+    viewing.socket.receive({ type: 'playback', ...samplePlayback() });
+    await cameras.refresh();
+    await cameras.refresh();
+    expect(asked).toEqual(['api/runs/r1/manifest']);
+    expect(viewing.store.state.cameras.map(({ name }) => name)).toEqual(['front']);
+  });
+});
