@@ -60,14 +60,18 @@ ImageBuffer<float> block_details(const ImageBuffer<float>& image, const ImageBuf
       const float b = image.at(2 * x + 1, 2 * y);
       const float c = image.at(2 * x, 2 * y + 1);
       const float d = image.at(2 * x + 1, 2 * y + 1);
-      details.at(x, y, 0) =
+      const float across =
           0.25F * (b + d - a - c) - 0.125F * (means.at(x + 1, y) - means.at(x - 1, y));
-      details.at(x, y, 1) =
+      const float down =
           0.25F * (c + d - a - b) - 0.125F * (means.at(x, y + 1) - means.at(x, y - 1));
-      details.at(x, y, 2) =
+      const float diagonal =
           0.25F * (a + d - b - c) - (means.at(x - 1, y - 1) + means.at(x + 1, y + 1) -
                                      means.at(x + 1, y - 1) - means.at(x - 1, y + 1)) /
                                         64.0F;
+      if (std::isnan(across + down + diagonal)) continue;  // a void texel among them
+      details.at(x, y, 0) = across;
+      details.at(x, y, 1) = down;
+      details.at(x, y, 2) = diagonal;
     }
   }
   return details;

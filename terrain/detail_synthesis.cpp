@@ -15,6 +15,19 @@ constexpr int kSide = kTileTexels + 2 * kTileBorder;
 int floor_shift(int value, int shift) { return value >> shift; }
 int ceil_shift(int value, int shift) { return -((-value) >> shift); }
 
+/// A square of a patch; beyond its rim void.
+Patch part_of(const Patch& patch, int left, int top, int side) {
+  Patch part = void_patch(side, side);
+  const int x_begin = std::max(left, 0);
+  const int x_end = std::min(left + side, patch.rgb.width_px);
+  for (int y = std::max(top, 0); y < std::min(top + side, patch.rgb.height_px); ++y) {
+    const auto count = static_cast<std::size_t>(x_end - x_begin);
+    std::copy_n(&patch.rgb.at(x_begin, y), 3 * count, &part.rgb.at(x_begin - left, y - top));
+    std::copy_n(&patch.valid.at(x_begin, y), count, &part.valid.at(x_begin - left, y - top));
+  }
+  return part;
+}
+
 }  // namespace
 
 DetailSynthesis::DetailSynthesis(const DetailOptions& options, const DetailStatistics& statistics)
@@ -50,14 +63,23 @@ DetailSynthesis::Region DetailSynthesis::base_region(const Tile& parent,
   const int mask = (1 << finer) - 1;
   const int left = kTileBorder + (col & mask) * share + low;
   const int top = kTileBorder + (row & mask) * share + low;
-  const ImageBuffer<float> image = luma_of(parent);
+  // The contrast looks four texels further, on blocks that begin at even texels.
+  constexpr int kLook = 4;
+  const int cut_x = (left - kLook) & ~1;
+  const int cut_y = (top - kLook) & ~1;
+  const int cut_side = (high - low + 2 * kLook + 3) & ~1;
+  const Patch around = part_of(parent, cut_x, cut_y, cut_side);
+  const ImageBuffer<float> image = luma_of(around);
   const ImageBuffer<float> contrast = local_contrast(block_details(image, block_means(image)));
   Region region(low, low, high - low, high - low);
   for (int y = 0; y < high - low; ++y) {
     for (int x = 0; x < high - low; ++x) {
-      region.contrast.at(x, y) = contrast.at(left + x, top + y);
-      region.valid.at(x, y) = parent.valid.at(left + x, top + y);
-      for (int c = 0; c < 3; ++c) region.rgb.at(x, y, c) = parent.rgb.at(left + x, top + y, c);
+      const int px = left - cut_x + x;
+      const int py = top - cut_y + y;
+      region.contrast.at(x, y) = contrast.at(px, py);
+      region.valid.at(x, y) = around.valid.at(px, py);
+      region.all_valid = region.all_valid && around.valid.at(px, py) != 0;
+      for (int c = 0; c < 3; ++c) region.rgb.at(x, y, c) = around.rgb.at(px, py, c);
     }
   }
   return region;
@@ -74,7 +96,7 @@ void DetailSynthesis::refine_texel(
   const float contrast = coarse.contrast.at(x, y);
   const std::uint8_t valid = coarse.valid.at(x, y);
   float around = 1.0F;  // 0 at the imagery's edge, where the neighbours say nothing
-  for (int j = -1; j <= 1; ++j) {
+  for (int j = coarse.all_valid ? 2 : -1; j <= 1; ++j) {
     for (int i = -1; i <= 1; ++i) around *= coarse.valid.at(x + i, y + j) != 0 ? 1.0F : 0.0F;
   }
   const auto at = [&](int i, int j, int c) { return coarse.rgb.at(x + i, y + j, c); };
@@ -113,6 +135,7 @@ DetailSynthesis::Region DetailSynthesis::refined(const Region& coarse,
                                                  const std::array<int, 2>& origin,
                                                  const std::array<int, 4>& wanted) const {
   Region fine(wanted[0], wanted[1], wanted[2], wanted[3]);
+  fine.all_valid = coarse.all_valid;
   for (int y = 1; y + 1 < coarse.rgb.height_px; ++y) {
     for (int x = 1; x + 1 < coarse.rgb.width_px; ++x) {
       Random random = draw(origin[0] + coarse.x + x, origin[1] + coarse.y + y, octave);

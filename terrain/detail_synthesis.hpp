@@ -25,6 +25,7 @@ class DetailSynthesis {
     ImageBuffer<float> rgb;       ///< three channels
     ImageBuffer<float> contrast;  ///< of the imagery there
     Image valid;                  ///< 0 where there is no imagery
+    bool all_valid = true;
 
     Region(int left, int top, int width, int height)
         : x(left),
