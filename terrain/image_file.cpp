@@ -175,4 +175,37 @@ Status write_geotiff_depth(const fs::path& file, const DepthImage& depth) {
   return copy_to(source.get(), "GTiff", file, options.List());
 }
 
+namespace {
+
+template <typename T>
+Status write_floats(const fs::path& file, const ImageBuffer<T>& image, GDALDataType type) {
+  initialise_gdal();
+  if (image.empty() || (image.channels != 1 && image.channels != 3)) {
+    return Error{ErrorCode::kInvalidArgument,
+                 file.string() + ": image of " + std::to_string(image.width_px) + " x " +
+                     std::to_string(image.height_px) + " px with " +
+                     std::to_string(image.channels) +
+                     " channels: must have one or three, not empty"};
+  }
+  const DatasetPtr source =
+      in_memory(image.data.data(), image.width_px, image.height_px, image.channels, type);
+  CPLStringList options;
+  options.SetNameValue("COMPRESS", "DEFLATE");
+  options.SetNameValue("PREDICTOR", "3");
+  options.SetNameValue("ZLEVEL", "1");
+  options.SetNameValue("INTERLEAVE", "PIXEL");
+  options.SetNameValue("PHOTOMETRIC", image.channels == 3 ? "RGB" : "MINISBLACK");
+  return copy_to(source.get(), "GTiff", file, options.List());
+}
+
+}  // namespace
+
+Status write_tiff(const fs::path& file, const ImageBuffer<float>& image) {
+  return write_floats(file, image, GDT_Float32);
+}
+
+Status write_tiff(const fs::path& file, const ImageBuffer<double>& image) {
+  return write_floats(file, image, GDT_Float64);
+}
+
 }  // namespace overfly::terrain

@@ -28,4 +28,10 @@ namespace overfly::terrain {
 [[nodiscard]] Status write_geotiff_depth(const std::filesystem::path& file,
                                          const DepthImage& depth);
 
+/// Writes 32- or 64-bit floats of one or three channels as a TIFF without georeference, pixel by
+/// pixel; infinities and NaN are written as such. Errors: as write_png.
+[[nodiscard]] Status write_tiff(const std::filesystem::path& file, const ImageBuffer<float>& image);
+[[nodiscard]] Status write_tiff(const std::filesystem::path& file,
+                                const ImageBuffer<double>& image);
+
 }  // namespace overfly::terrain

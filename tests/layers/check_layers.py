@@ -45,6 +45,8 @@ THIRD_PARTY = [
     (r"boost/", ["server/net"], False),
     (r"openssl/", ["server/net"], False),
     (r"(turbojpeg|jpeglib)\.h$", ["server/engine"], False),
+    (r"libdeflate\.h$", ["server/engine"], False),
+    (r"vpx/", ["server/engine"], False),
     (r"nlohmann/", ["terrain", "server/engine", "server/net", "server/app"], None),
     (r"CLI/", ["server/app"], None),
     (r"spdlog/", ["server/app"], None),
