@@ -2,6 +2,7 @@
 
 #include <cpl_conv.h>
 
+#include <atomic>
 #include <cmath>
 
 namespace overfly::terrain {
@@ -55,12 +56,23 @@ Result<DatasetPtr> open_raster(const fs::path& file, int level) {
   return dataset;
 }
 
+namespace {
+
+/// Handles that wait in all pools together.
+std::atomic<int>& idle_handles() {
+  static std::atomic<int> count{0};
+  return count;
+}
+
+}  // namespace
+
 Result<DatasetPtr> DatasetPool::take() {
   {
     const std::lock_guard lock(mutex_);
     if (!idle_.empty()) {
       DatasetPtr dataset = std::move(idle_.back());
       idle_.pop_back();
+      --idle_handles();
       return dataset;
     }
   }
@@ -68,9 +80,15 @@ Result<DatasetPtr> DatasetPool::take() {
 }
 
 void DatasetPool::put(DatasetPtr dataset) {
+  // A world of a thousand files must not use up the process's file descriptors.
+  constexpr int kMostIdle = 400;
+  if (idle_handles() >= kMostIdle) return;
   const std::lock_guard lock(mutex_);
+  ++idle_handles();
   idle_.push_back(std::move(dataset));
 }
+
+DatasetPool::~DatasetPool() { idle_handles() -= static_cast<int>(idle_.size()); }
 
 void GeoTransform::crs_from_pixel(double px, double py, double& x, double& y) const {
   x = g[0] + g[1] * px + g[2] * py;

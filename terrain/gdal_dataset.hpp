@@ -48,6 +48,9 @@ class GdalMessages {
 class DatasetPool {
  public:
   DatasetPool(std::filesystem::path file, int level) : file_(std::move(file)), level_(level) {}
+  ~DatasetPool();
+  DatasetPool(const DatasetPool&) = delete;
+  DatasetPool& operator=(const DatasetPool&) = delete;
 
   /// A handle that nobody else uses; give it back with `put`.
   [[nodiscard]] Result<DatasetPtr> take();

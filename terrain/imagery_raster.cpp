@@ -2,14 +2,52 @@
 
 #include <algorithm>
 #include <cmath>
+#include <list>
 
 #include "terrain/datum_shift.hpp"
 
 namespace overfly::terrain {
 namespace {
 
-/// Texels of the in-memory levels at most, about (64 Mi texels = 256 MB).
-constexpr double kPyramidTexels = 64.0 * 1024 * 1024;
+/// Texels of the finest in-memory level of one file at most (16 MB).
+constexpr double kPyramidTexels = 4.0 * 1024 * 1024;
+/// Of all files together.
+constexpr std::size_t kPyramidBytes = std::size_t{384} << 20U;
+
+/// Holds on to the coarse levels used last, whatever file they are of; the others are made again
+/// when asked for.
+class KeptLevels {
+ public:
+  void keep(const std::shared_ptr<const std::vector<Patch>>& levels) {
+    const std::lock_guard lock(mutex_);
+    const auto found = std::find(kept_.begin(), kept_.end(), levels);
+    if (found != kept_.end()) {
+      kept_.splice(kept_.begin(), kept_, found);
+      return;
+    }
+    kept_.push_front(levels);
+    bytes_ += bytes_of(*levels);
+    while (bytes_ > kPyramidBytes && kept_.size() > 1) {
+      bytes_ -= bytes_of(*kept_.back());
+      kept_.pop_back();
+    }
+  }
+
+ private:
+  static std::size_t bytes_of(const std::vector<Patch>& levels) {
+    std::size_t bytes = 0;
+    for (const Patch& level : levels) bytes += level.rgb.data.size() + level.valid.data.size();
+    return bytes;
+  }
+  std::mutex mutex_;
+  std::list<std::shared_ptr<const std::vector<Patch>>> kept_;
+  std::size_t bytes_ = 0;
+};
+
+KeptLevels& kept_levels() {
+  static KeptLevels kept;
+  return kept;
+}
 
 int ceil_div(int a, int b) { return (a + b - 1) / b; }
 
@@ -41,26 +79,48 @@ Result<std::shared_ptr<const ImageryRaster>> ImageryRaster::open(
   auto bands = find_bands(dataset, file.string(), layer.nodata, warnings);
   if (!bands) return bands.error();
   raster->bands_ = *bands;
-  const Status whole = check_blocks(dataset, file);
-  if (!whole) return whole.error();
-
   Stored base;
   base.width_px = raster->width_px_;
   base.height_px = raster->height_px_;
   base.pool = std::make_unique<DatasetPool>(file, 0);
-  raster->stored_.push_back(std::move(base));
-  raster->add_overviews(dataset);
-  raster->stored_.front().pool->put(std::move(*opened));
-
-  // The in-memory levels start where the stored ones are left behind, later if they were too big.
-  raster->pyramid_level_ = raster->stored_.back().level + 2;
-  const double texels = static_cast<double>(raster->width_px_) * raster->height_px_;
-  while (texels / std::pow(4.0, raster->pyramid_level_) > kPyramidTexels) ++raster->pyramid_level_;
-  raster->pyramid_ = std::make_unique<Pyramid>();
+  base.pool->put(std::move(*opened));
+  raster->pyramid_->stored.push_back(std::move(base));
   return std::shared_ptr<const ImageryRaster>(std::move(raster));
 }
 
-void ImageryRaster::add_overviews(GDALDataset& dataset) {
+Status ImageryRaster::prepare() const {
+  std::call_once(pyramid_->prepared, [this] { pyramid_->state = look_at_blocks(); });
+  return pyramid_->state;
+}
+
+Status ImageryRaster::look_at_blocks() const {
+  auto dataset = pyramid_->stored.front().pool->take();
+  if (!dataset) return dataset.error();
+  const Status whole = check_blocks(**dataset, file_);
+  if (!whole) return whole;
+  add_overviews(**dataset);
+  pyramid_->stored.front().pool->put(std::move(*dataset));
+  // The in-memory levels start where the stored ones are left behind, later if they were too big.
+  int& level = pyramid_->first_level;
+  level = pyramid_->stored.back().level + 2;
+  const double texels = static_cast<double>(width_px_) * height_px_;
+  while (texels / std::pow(4.0, level) > kPyramidTexels) ++level;
+  return {};
+}
+
+std::optional<std::string> ImageryRaster::slowness() const {
+  const Stored& coarsest = pyramid_->stored.back();
+  const double texels = static_cast<double>(coarsest.width_px) * coarsest.height_px;
+  constexpr double kMany = 256e6;
+  if (texels < kMany) return std::nullopt;
+  return file_.string() + ": has no area-averaged overviews below " +
+         std::to_string(coarsest.width_px) + " x " + std::to_string(coarsest.height_px) +
+         " px: far views read " + std::to_string(static_cast<long>(texels / 1e6)) +
+         " million texels; `overfly world build` makes them quick";
+}
+
+void ImageryRaster::add_overviews(GDALDataset& dataset) const {
+  std::vector<Stored>& all = pyramid_->stored;
   GDALRasterBand* band = dataset.GetRasterBand(bands_.rgb[0]);
   for (int i = 0; i < band->GetOverviewCount(); ++i) {
     GDALRasterBand* overview = band->GetOverview(i);
@@ -74,11 +134,11 @@ void ImageryRaster::add_overviews(GDALDataset& dataset) {
     const double power = std::pow(2.0, stored.level);
     const bool power_of_two = std::abs(stored.ratio_x / power - 1.0) < 0.02 &&
                               std::abs(stored.ratio_y / power - 1.0) < 0.02;
-    if (!power_of_two || stored.level <= stored_.back().level) continue;
+    if (!power_of_two || stored.level <= all.back().level) continue;
     stored.pool = std::make_unique<DatasetPool>(file_, i + 1);
     // Coarse tiles are then made afresh, which costs time and nothing else.
-    if (!overview_is_average(stored_.back(), stored)) return;
-    stored_.push_back(std::move(stored));
+    if (!overview_is_average(all.back(), stored)) return;
+    all.push_back(std::move(stored));
   }
 }
 
@@ -153,8 +213,8 @@ Result<Patch> ImageryRaster::read_stored(
 /// The coarsest stored texels that can make a level: the level itself where it is exact, else
 /// texels of at most half its size, so that their shifts average out.
 const ImageryRaster::Stored& ImageryRaster::source_for(int level) const {
-  const Stored* best = &stored_.front();
-  for (const Stored& stored : stored_) {
+  const Stored* best = &pyramid_->stored.front();
+  for (const Stored& stored : pyramid_->stored) {
     if (stored.level <= (stored.exact() ? level : level - 1)) best = &stored;
   }
   return *best;
@@ -174,27 +234,30 @@ Result<Patch> ImageryRaster::read_averaged(
       *fine, x * step_x - first_x, step_x, y * step_y - first_y, step_y, width, height);
 }
 
-void ImageryRaster::build_pyramid() const {
-  const int level = pyramid_level_;
+Result<ImageryRaster::Levels> ImageryRaster::make_levels() const {
+  const int level = pyramid_->first_level;
   const Stored& source = source_for(level);
   Patch first = void_patch(ceil_div(width_px_, 1 << level), ceil_div(height_px_, 1 << level));
-  const int width = first.rgb.width_px;
-  constexpr int kRows = 16;
-  for (int y = 0; y < first.rgb.height_px; y += kRows) {
-    const int rows = std::min(kRows, first.rgb.height_px - y);
-    auto strip = read_averaged(source, level, 0, y, width, rows);
-    if (!strip) {
-      pyramid_->error = strip.error();
-      return;
+  // Pieces whose texels of the source take some 16 MB, in the order of the file's rows.
+  const int step = 1 << std::max(0, level - source.level);
+  const int columns = std::max(1, 8192 / step);
+  const int rows = std::max(1, 512 / step);
+  for (int y = 0; y < first.rgb.height_px; y += rows) {
+    for (int x = 0; x < first.rgb.width_px; x += columns) {
+      const int width = std::min(columns, first.rgb.width_px - x);
+      const int height = std::min(rows, first.rgb.height_px - y);
+      auto piece = read_averaged(source, level, x, y, width, height);
+      if (!piece) return piece.error();
+      for (int v = 0; v < height; ++v) {
+        std::copy_n(&piece->rgb.at(0, v), 3 * width, &first.rgb.at(x, y + v));
+        std::copy_n(&piece->valid.at(0, v), width, &first.valid.at(x, y + v));
+      }
     }
-    const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(y) * width;
-    std::copy(strip->rgb.data.begin(), strip->rgb.data.end(), first.rgb.data.begin() + 3 * at);
-    std::copy(strip->valid.data.begin(), strip->valid.data.end(), first.valid.data.begin() + at);
   }
-  pyramid_->levels.push_back(std::move(first));
-  while (true) {
-    const Patch& finest = pyramid_->levels.back();
-    if (finest.rgb.width_px == 1 && finest.rgb.height_px == 1) return;
+  Levels levels;
+  levels.push_back(std::move(first));
+  while (levels.back().rgb.width_px > 1 || levels.back().rgb.height_px > 1) {
+    const Patch& finest = levels.back();
     Patch next = area_average(finest,
                               0.0,
                               2.0,
@@ -202,19 +265,35 @@ void ImageryRaster::build_pyramid() const {
                               2.0,
                               ceil_div(finest.rgb.width_px, 2),
                               ceil_div(finest.rgb.height_px, 2));
-    pyramid_->levels.push_back(std::move(next));
+    levels.push_back(std::move(next));
   }
+  return levels;
+}
+
+Result<std::shared_ptr<const ImageryRaster::Levels>> ImageryRaster::coarse_levels() const {
+  const std::lock_guard lock(pyramid_->mutex);
+  std::shared_ptr<const Levels> levels = pyramid_->levels.lock();
+  if (!levels) {
+    auto made = make_levels();
+    if (!made) return made.error();
+    levels = std::make_shared<const Levels>(std::move(*made));
+    pyramid_->levels = levels;
+  }
+  kept_levels().keep(levels);
+  return levels;
 }
 
 Result<Patch> ImageryRaster::read(int level, int x, int y, int width, int height) const {
+  const Status prepared = prepare();
+  if (!prepared) return prepared.error();
   const Stored& stored = source_for(level);
   if (stored.level == level && stored.exact()) return read_stored(stored, x, y, width, height);
-  if (level < pyramid_level_) return read_averaged(stored, level, x, y, width, height);
-  std::call_once(pyramid_->once, [this] { build_pyramid(); });
-  if (pyramid_->error) return *pyramid_->error;
+  if (level < pyramid_->first_level) return read_averaged(stored, level, x, y, width, height);
+  auto levels = coarse_levels();
+  if (!levels) return levels.error();
   const std::size_t index =
-      std::min<std::size_t>(level - pyramid_level_, pyramid_->levels.size() - 1);
-  const Patch& whole = pyramid_->levels[index];
+      std::min<std::size_t>(level - pyramid_->first_level, (*levels)->size() - 1);
+  const Patch& whole = (**levels)[index];
   Patch patch = void_patch(width, height);
   for (int v = std::max(0, -y); v < std::min(height, whole.rgb.height_px - y); ++v) {
     for (int u = std::max(0, -x); u < std::min(width, whole.rgb.width_px - x); ++u) {

@@ -18,11 +18,17 @@ namespace overfly::terrain {
 /// [i 2^L, (i + 1) 2^L) x [j 2^L, (j + 1) 2^L). Thread-safe after `open`.
 class ImageryRaster {
  public:
-  /// Opens the file and checks it: bands, georeference, that its blocks lie inside the file, and
-  /// which of its overviews are area averages (others are not used).
+  /// Opens the file and checks its bands and georeference.
   /// Errors: kNotFound, kUnreadable, kInvalidArgument naming the file.
   static Result<std::shared_ptr<const ImageryRaster>> open(const ImageryLayer& layer,
                                                            std::vector<std::string>& warnings);
+
+  /// What reading needs, once: that the file's blocks lie inside it, and which of its overviews are
+  /// area averages (others are not used). `read` does it if it was not done before.
+  /// Errors: kUnreadable.
+  [[nodiscard]] Status prepare() const;
+  /// A warning where far views must read much of the file; call after `prepare`.
+  [[nodiscard]] std::optional<std::string> slowness() const;
 
   /// Texels [x, x + width) x [y, y + height) of a level; void outside the file.
   /// Errors: kIo with GDAL's reason.
@@ -49,21 +55,27 @@ class ImageryRaster {
       return ratio_x == static_cast<double>(1 << level) && ratio_y == ratio_x;
     }
   };
-  /// Levels that no overview holds, made once when first asked for.
+  using Levels = std::vector<Patch>;
+  /// Levels that no overview holds, made when asked for and kept while memory allows.
   struct Pyramid {
-    std::once_flag once;
-    std::vector<Patch> levels;  ///< the first is pyramid_level_
-    std::optional<Error> error;
+    std::once_flag prepared;
+    Status state;
+    std::vector<Stored> stored;
+    int first_level = 0;  ///< of `levels`: where the stored ones are too fine
+    std::mutex mutex;
+    std::weak_ptr<const Levels> levels;
   };
 
-  void add_overviews(GDALDataset& dataset);
+  [[nodiscard]] Status look_at_blocks() const;
+  void add_overviews(GDALDataset& dataset) const;
   [[nodiscard]] bool overview_is_average(const Stored& finer, const Stored& coarser) const;
   [[nodiscard]] Result<Patch> read_stored(
       const Stored& stored, int x, int y, int width, int height) const;
   [[nodiscard]] Result<Patch> read_averaged(
       const Stored& stored, int level, int x, int y, int width, int height) const;
   [[nodiscard]] const Stored& source_for(int level) const;
-  void build_pyramid() const;
+  [[nodiscard]] Result<std::shared_ptr<const Levels>> coarse_levels() const;
+  [[nodiscard]] Result<Levels> make_levels() const;
 
   std::filesystem::path file_;
   Georeference georeference_;
@@ -71,10 +83,7 @@ class ImageryRaster {
   std::string format_;
   int width_px_ = 0;
   int height_px_ = 0;
-  std::vector<Stored> stored_;
-  /// First level kept in memory: where the stored ones are too fine to be averaged on the fly.
-  int pyramid_level_ = 0;
-  std::unique_ptr<Pyramid> pyramid_;
+  std::unique_ptr<Pyramid> pyramid_ = std::make_unique<Pyramid>();
 };
 
 }  // namespace overfly::terrain

@@ -35,10 +35,12 @@ Eigen::Vector2d texel_size_px(const SmoothMap<2>& pixel_from_map, double texel_m
 Result<MappedImagery> MappedImagery::aligned(std::shared_ptr<const ImageryRaster> raster,
                                              const TileGrid& grid,
                                              int pad_x,
-                                             int pad_y) {
+                                             int pad_y,
+                                             std::optional<ValidityGrid> validity) {
   MappedImagery layer(std::move(raster), grid);
   layer.pad_x_ = pad_x;
   layer.pad_y_ = pad_y;
+  layer.validity_ = std::move(validity);
   const Status read = layer.read_validity();
   if (!read) return read.error();
   return layer;
@@ -46,7 +48,8 @@ Result<MappedImagery> MappedImagery::aligned(std::shared_ptr<const ImageryRaster
 
 Result<MappedImagery> MappedImagery::warped(std::shared_ptr<const ImageryRaster> raster,
                                             const MapPlane& plane,
-                                            const TileGrid& grid) {
+                                            const TileGrid& grid,
+                                            std::optional<ValidityGrid> validity) {
   MappedImagery layer(std::move(raster), grid);
   const Georeference& place = layer.raster_->georeference();
   const std::string file = layer.raster_->file().string();
@@ -72,13 +75,14 @@ Result<MappedImagery> MappedImagery::warped(std::shared_ptr<const ImageryRaster>
                      "plane over the imagery"};
   }
   layer.texel_px_ = texel_size_px(*layer.pixel_from_map_, grid.texel_m);
+  layer.validity_ = std::move(validity);
   const Status read = layer.read_validity();
   if (!read) return read.error();
   return layer;
 }
 
 Status MappedImagery::read_validity() {
-  if (!raster_->has_mask()) return {};
+  if (!raster_->has_mask() || validity_) return {};
   auto validity = ValidityGrid::read(*raster_);
   if (!validity) return validity.error();
   validity_ = std::move(*validity);

@@ -16,14 +16,17 @@ class MappedImagery {
  public:
   /// The layer whose own grid the tiles use: grid texel (0, 0) is file texel (-pad_x, -pad_y),
   /// with pads that are multiples of 2^(levels - 1).
+  /// @param validity  that of the raster, where it was read before
   static Result<MappedImagery> aligned(std::shared_ptr<const ImageryRaster> raster,
                                        const TileGrid& grid,
                                        int pad_x,
-                                       int pad_y);
+                                       int pad_y,
+                                       std::optional<ValidityGrid> validity = {});
   /// A layer that is resampled. Errors: kInvalidArgument if its CRS has no place for the grid.
   static Result<MappedImagery> warped(std::shared_ptr<const ImageryRaster> raster,
                                       const MapPlane& plane,
-                                      const TileGrid& grid);
+                                      const TileGrid& grid,
+                                      std::optional<ValidityGrid> validity = {});
 
   /// The tile's texels as far as this layer has them. Errors: kIo.
   [[nodiscard]] Result<Patch> read(const TileId& id) const;
@@ -32,6 +35,10 @@ class MappedImagery {
   [[nodiscard]] bool has_imagery(double x_map_m, double y_map_m) const;
   [[nodiscard]] bool resampled() const { return pixel_from_map_.has_value(); }
   [[nodiscard]] const ImageryRaster& raster() const { return *raster_; }
+  /// Null where every texel of the file is valid.
+  [[nodiscard]] const ValidityGrid* validity() const { return validity_ ? &*validity_ : nullptr; }
+  /// Size of a file's texel on the map [m].
+  [[nodiscard]] double file_texel_m() const { return grid_.texel_m / texel_px_.minCoeff(); }
 
  private:
   MappedImagery(std::shared_ptr<const ImageryRaster> raster, const TileGrid& grid)

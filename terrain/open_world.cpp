@@ -4,6 +4,7 @@
 #include <set>
 
 #include "core/pose.hpp"
+#include "terrain/cache/world_cache.hpp"
 #include "terrain/file_digest.hpp"
 #include "terrain/raster_world.hpp"
 #include "terrain/world.hpp"
@@ -27,12 +28,32 @@ Result<Rasters> open_imagery(const WorldSpec& spec, std::vector<std::string>& wa
   return rasters;
 }
 
-Result<std::vector<MappedImagery>> map_imagery(const Rasters& rasters, const WorldLayout& layout) {
+/// What reading the files themselves needs.
+Status prepare(const Rasters& rasters, std::vector<std::string>& warnings) {
+  for (const auto& raster : rasters) {
+    const Status prepared = raster->prepare();
+    if (!prepared) return prepared;
+    if (auto slow = raster->slowness()) warnings.push_back(std::move(*slow));
+  }
+  return {};
+}
+
+Result<std::vector<MappedImagery>> map_imagery(const Rasters& rasters,
+                                               const WorldLayout& layout,
+                                               const WorldCache* cache) {
   std::vector<MappedImagery> layers;
   for (std::size_t i = 0; i < rasters.size(); ++i) {
-    auto layer = i == 0 && layout.first_aligned
-                     ? MappedImagery::aligned(rasters[i], layout.grid, layout.pad_x, layout.pad_y)
-                     : MappedImagery::warped(rasters[i], layout.plane, layout.grid);
+    std::optional<ValidityGrid> validity;
+    if (cache != nullptr) {
+      auto kept = cache->validity(static_cast<int>(i));
+      if (!kept) return kept.error();
+      validity = std::move(*kept);
+    }
+    auto layer =
+        i == 0 && layout.first_aligned
+            ? MappedImagery::aligned(
+                  rasters[i], layout.grid, layout.pad_x, layout.pad_y, std::move(validity))
+            : MappedImagery::warped(rasters[i], layout.plane, layout.grid, std::move(validity));
     if (!layer) return layer.error();
     layers.push_back(std::move(*layer));
   }
@@ -105,8 +126,17 @@ Status check_spec(const WorldSpec& spec, const WorldLayout& layout) {
   return {};
 }
 
-Status add_digests(World& world) {
+Status add_digests(World& world, const WorldCache* cache) {
   const auto add = [&](const std::filesystem::path& file) -> Status {
+    if (cache != nullptr) {
+      for (const CacheSource& source : cache->header().sources) {
+        if (source_path(world.spec, source) != std::filesystem::absolute(file).lexically_normal()) {
+          continue;
+        }
+        world.data_hashes.emplace_back(file.string(), source.digest);
+        return {};
+      }
+    }
     auto digest = file_digest(file);
     if (!digest) return digest.error();
     world.data_hashes.emplace_back(file.string(), *digest);
@@ -123,6 +153,31 @@ Status add_digests(World& world) {
   return {};
 }
 
+/// Looks for a cache that fits; says in the world what it found.
+std::shared_ptr<const WorldCache> find_cache(const WorldSpec& spec,
+                                             const WorldLayout& layout,
+                                             const ElevationModel& elevation,
+                                             World& world) {
+  WorldCache::Found found = WorldCache::find(spec);
+  if (found.cache && found.cache->header().layout != world_fingerprint(layout.grid, elevation)) {
+    found.cache = nullptr;
+    found.stale = "PROJ or its grids relate these files to the earth in another way now";
+  }
+  world.cache = "none";
+  if (found.cache) {
+    constexpr double kMega = 1e-6;
+    world.cache = "in use: " + found.cache->folder().string() + ", " +
+                  std::to_string(
+                      static_cast<long>(kMega * static_cast<double>(found.cache->header().bytes))) +
+                  " MB";
+  } else if (!found.stale.empty()) {
+    world.cache = "stale: " + found.stale;
+    world.warnings.push_back(spec.cache_folder.string() + ": is not used, " + found.stale +
+                             "; the files are read directly. Run `overfly world build`");
+  }
+  return found.cache;
+}
+
 }  // namespace
 
 Result<World> open_world(const WorldSpec& spec) {
@@ -134,13 +189,19 @@ Result<World> open_world(const WorldSpec& spec) {
   if (!layout) return layout.error();
   const Status sane = check_spec(spec, *layout);
   if (!sane) return sane.error();
-  auto imagery = map_imagery(*rasters, *layout);
-  if (!imagery) return imagery.error();
   auto elevation = open_elevation(spec, *layout, world.warnings);
   if (!elevation) return elevation.error();
+  const auto cache = find_cache(spec, *layout, *elevation, world);
+  if (!cache) {
+    const Status prepared = prepare(*rasters, world.warnings);
+    if (!prepared) return prepared.error();
+  }
+  auto imagery = map_imagery(*rasters, *layout, cache.get());
+  if (!imagery) return imagery.error();
   if (elevation->heights() != nullptr) {
-    const Status surveyed = elevation->survey(world.warnings);
-    if (!surveyed) return surveyed.error();
+    const Status ready =
+        cache ? elevation->use(cache, world.warnings) : elevation->survey(world.warnings);
+    if (!ready) return ready.error();
   }
 
   if (!world.spec.origin) {
@@ -162,8 +223,9 @@ Result<World> open_world(const WorldSpec& spec) {
                                               std::move(*elevation),
                                               std::move(*geodesy),
                                               frame,
-                                              credit_line(spec));
-  const Status hashed = add_digests(world);
+                                              credit_line(spec),
+                                              cache);
+  const Status hashed = add_digests(world, cache.get());
   if (!hashed) return hashed.error();
   return world;
 }

@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cstdio>
 
 namespace overfly::terrain {
 
@@ -76,6 +77,20 @@ Eigen::Vector2d MapGeodesy::map_near(double east_m, double north_m) const {
   return middle_map_m_ + map_per_world_ * (Eigen::Vector2d(east_m, north_m) - middle_world_m_);
 }
 
+std::string world_fingerprint(const TileGrid& grid, const ElevationModel& elevation) {
+  char text[256];
+  std::snprintf(text,
+                sizeof(text),
+                "%d levels, %d x %d tiles of %.17g m from %.17g %.17g; ",
+                grid.levels,
+                grid.cols,
+                grid.rows,
+                grid.texel_m,
+                grid.left_x_m,
+                grid.top_y_m);
+  return text + elevation.fingerprint();
+}
+
 TileCoverage RasterWorld::coverage(const TileId& id) const {
   TileCoverage best = TileCoverage::kNone;
   for (const MappedImagery& layer : imagery_) best = std::max(best, layer.coverage(id));
@@ -90,6 +105,7 @@ Result<Tile> RasterWorld::tile(const TileId& id) const {
   }
   // Heights cannot say that they failed: the next tile does, so that a flight ends and says why.
   if (const Status heights = elevation_.status(); !heights) return heights.error();
+  if (cache_ && cache_->holds(id.level)) return cache_->tile(id);
   std::optional<Tile> result;
   for (const MappedImagery& layer : imagery_) {
     auto read = layer.read(id);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "terrain/cache/world_cache.hpp"
 #include "terrain/elevation_model.hpp"
 #include "terrain/map_plane.hpp"
 #include "terrain/mapped_imagery.hpp"
@@ -48,13 +49,15 @@ class RasterWorld final : public TileSource {
               ElevationModel elevation,
               MapGeodesy geodesy,
               const LocalFrame& frame,
-              std::string attribution)
+              std::string attribution,
+              std::shared_ptr<const WorldCache> cache)
       : grid_(grid),
         imagery_(std::move(imagery)),
         elevation_(std::move(elevation)),
         geodesy_(std::move(geodesy)),
         frame_(frame),
-        attribution_(std::move(attribution)) {}
+        attribution_(std::move(attribution)),
+        cache_(std::move(cache)) {}
 
   [[nodiscard]] const TileGrid& grid() const override { return grid_; }
   [[nodiscard]] TileCoverage coverage(const TileId& id) const override;
@@ -81,6 +84,10 @@ class RasterWorld final : public TileSource {
   MapGeodesy geodesy_;
   LocalFrame frame_;
   std::string attribution_;
+  std::shared_ptr<const WorldCache> cache_;  ///< null where tiles are made of the files
 };
+
+/// Grid and heights in words: equal for equal places of tiles and posts.
+[[nodiscard]] std::string world_fingerprint(const TileGrid& grid, const ElevationModel& elevation);
 
 }  // namespace overfly::terrain

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "terrain/imagery_raster.hpp"
@@ -15,6 +16,12 @@ class ValidityGrid {
   /// Reads the mask once. Errors: kIo.
   static Result<ValidityGrid> read(const ImageryRaster& raster);
 
+  /// As bytes and back; empty if they are not those of a grid.
+  [[nodiscard]] std::vector<std::uint8_t> to_bytes() const;
+  static std::optional<ValidityGrid> from_bytes(const std::vector<std::uint8_t>& bytes);
+
+  /// Share of the cells that are mostly void.
+  [[nodiscard]] double void_share() const;
   /// Whether most of the cell around a file texel is valid; false outside the file.
   [[nodiscard]] bool valid_at(double px, double py) const;
   /// Coverage of a rectangle of file texels, cells counted whole.
@@ -25,6 +32,8 @@ class ValidityGrid {
   [[nodiscard]] Cell cell(int column, int row) const {
     return cells_[static_cast<std::size_t>(row) * columns_ + column];
   }
+
+  Status read_cells(const ImageryRaster& raster, int column, int row, int columns);
 
   int cell_px_ = 1;
   int columns_ = 0;

@@ -53,6 +53,9 @@ struct WorldSpec {
     double heading_rad = 0.0;
   };
   std::optional<Runway> runway;
+  /// Where `overfly world build` keeps what it made of these files; empty = nowhere. Of a manifest
+  /// that was read: the folder beside it, world.json's is world.cache.
+  std::filesystem::path cache_folder{};
 };
 
 /// Reads a world manifest (JSON, format in docs/WORLDS.md). Relative files are relative to it.
@@ -61,6 +64,9 @@ struct WorldSpec {
 [[nodiscard]] Status write_world_manifest(const std::filesystem::path& manifest,
                                           const WorldSpec& spec);
 
+/// The folder of a manifest's cache: beside it, with the extension "cache".
+[[nodiscard]] std::filesystem::path cache_folder_of(const std::filesystem::path& manifest);
+
 /// An opened world, with what was doubtful about its files.
 struct World {
   std::shared_ptr<const TileSource> tiles;
@@ -68,8 +74,11 @@ struct World {
   std::vector<std::string> warnings;  ///< each names file, what was assumed, and the possible error
   /// SHA-256 or size-and-time digests of the files, for the run's manifest: (file, digest).
   std::vector<std::pair<std::string, std::string>> data_hashes;
+  /// State of its cache, for people: "none", "in use: FOLDER, 120 MB", "stale: REASON".
+  std::string cache;
 };
 
+/// Opens the files, or what `build_world` made of them where that is up to date.
 /// Errors: kUnreadable or kInvalidArgument naming the file: no or broken georeference, missing
 /// CRS, imagery and elevation that do not overlap, a file GDAL cannot read.
 [[nodiscard]] Result<World> open_world(const WorldSpec& spec);

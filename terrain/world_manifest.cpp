@@ -255,7 +255,13 @@ Result<WorldSpec> read_world_manifest(const fs::path& manifest) {
   Reader reader{manifest.string(), manifest.parent_path(), std::nullopt};
   WorldSpec spec = reader.world(json);
   if (reader.error) return *reader.error;
+  spec.cache_folder = cache_folder_of(manifest);
   return spec;
+}
+
+fs::path cache_folder_of(const fs::path& manifest) {
+  fs::path folder = manifest;
+  return folder.replace_extension(".cache");
 }
 
 Status write_world_manifest(const fs::path& manifest, const WorldSpec& spec) {

@@ -113,6 +113,7 @@ void add_world_command(CLI::App& app, int& exit_code) {
   CLI::App* infos = command->add_subcommand("info", "Extent, resolution, layers, warnings");
   infos->add_option("world", *world, kWorldHelp)->required();
   infos->callback([world, &exit_code] { exit_code = info(*world); });
+  add_world_build_command(*command, exit_code);
   add_world_download_command(*command, exit_code);
   add_synthesize(*command, exit_code);
   add_synthesize_strip(*command, exit_code);

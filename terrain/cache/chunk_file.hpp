@@ -1,0 +1,27 @@
+// Inside terrain only: a file of a few dozen independent pieces, written whole or not at all.
+//
+// Layout, little-endian: "OVFCHNK1", uint32 count, then per piece uint64 offset, uint32 size,
+// uint32 check (Adler-32 of the piece, RFC 1950); then the pieces. Size 0 = there is none.
+#pragma once
+
+#include <filesystem>
+
+#include "core/result.hpp"
+#include "terrain/cache/block_codec.hpp"
+
+namespace overfly::terrain {
+
+/// Writes under another name and renames, so that a reader, a second writer or a killed program
+/// never leaves half a file. Errors: kIo.
+[[nodiscard]] Status write_chunk(const std::filesystem::path& file,
+                                 const std::vector<Bytes>& pieces);
+
+/// One piece; empty where there is none. Errors: kIo naming the file when it is missing, cut short
+/// or damaged.
+[[nodiscard]] Result<Bytes> read_piece(const std::filesystem::path& file, int index);
+
+/// Writes a file whole. Errors: kIo.
+[[nodiscard]] Status write_whole(const std::filesystem::path& file,
+                                 std::span<const std::uint8_t> bytes);
+
+}  // namespace overfly::terrain

@@ -1,0 +1,77 @@
+// Inside terrain only: a world's tiles and heights as made before, kept beside its manifest.
+//
+// CACHE/KEY/cache.json says what it was made from and is written last; CACHE/KEY/tiles/LEVEL/ and
+// CACHE/KEY/heights/LEVEL/ hold chunks; CACHE/KEY/validity-N says where layer N has texels.
+#pragma once
+
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "terrain/cache/cache_key.hpp"
+#include "terrain/elevation_model.hpp"
+#include "terrain/tile_source.hpp"
+#include "terrain/validity_grid.hpp"
+
+namespace overfly::terrain {
+
+inline constexpr int kChunkTiles = 8;   ///< tiles along a chunk's side
+inline constexpr int kChunkBlocks = 4;  ///< blocks of heights along a chunk's side
+
+/// What cache.json says.
+struct CacheHeader {
+  std::string fields;
+  std::vector<CacheSource> sources;
+  std::string layout;  ///< fingerprint of grid and heights
+  int levels = 0;      ///< of tiles
+  /// Per level, the chunks that hold tiles.
+  std::vector<std::set<std::pair<int, int>>> chunks;
+  HeightSurvey survey;
+  std::vector<bool> masked;  ///< per imagery layer: has a validity file
+  std::uint64_t bytes = 0;
+};
+
+[[nodiscard]] std::filesystem::path tile_chunk_path(const std::filesystem::path& folder,
+                                                    int level,
+                                                    int column,
+                                                    int row);
+[[nodiscard]] std::filesystem::path height_chunk_path(const std::filesystem::path& folder,
+                                                      int level,
+                                                      int column,
+                                                      int row);
+[[nodiscard]] std::filesystem::path validity_path(const std::filesystem::path& folder, int layer);
+
+/// Writes cache.json: from then on the folder counts. Errors: kIo.
+[[nodiscard]] Status write_header(const std::filesystem::path& folder, const CacheHeader& header);
+
+class WorldCache final : public HeightStore {
+ public:
+  /// What was found beside a manifest: a cache that fits, or why not.
+  struct Found {
+    std::shared_ptr<const WorldCache> cache;
+    std::string stale;  ///< of one that does not fit: what is different
+  };
+  [[nodiscard]] static Found find(const WorldSpec& spec);
+
+  WorldCache(std::filesystem::path folder, CacheHeader header)
+      : folder_(std::move(folder)), header_(std::move(header)) {}
+
+  /// A tile of a level that the cache holds. Errors: kIo naming the file.
+  [[nodiscard]] Result<Tile> tile(const TileId& id) const;
+  [[nodiscard]] bool holds(int level) const { return level >= 0 && level < header_.levels; }
+  [[nodiscard]] const HeightSurvey& survey() const override { return header_.survey; }
+  [[nodiscard]] Result<HeightGrid> block(int level, int column, int row) const override;
+  /// Empty for a layer without mask. Errors: kIo.
+  [[nodiscard]] Result<std::optional<ValidityGrid>> validity(int layer) const;
+
+  [[nodiscard]] const CacheHeader& header() const { return header_; }
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+
+ private:
+  std::filesystem::path folder_;
+  CacheHeader header_;
+};
+
+}  // namespace overfly::terrain
