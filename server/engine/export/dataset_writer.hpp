@@ -1,0 +1,67 @@
+// Data sets as others lay them out: one writer for each format.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/geodesy.hpp"
+#include "core/result.hpp"
+#include "flight/imu.hpp"
+#include "server/engine/frame_maker.hpp"
+#include "server/engine/scenario.hpp"
+
+namespace overfly::engine {
+
+enum class DatasetFormat { kTumMono, kEuroc, kKitti, kPng };
+
+/// "tum-mono", "euroc", "kitti", "png".
+[[nodiscard]] const char* to_string(DatasetFormat format);
+[[nodiscard]] std::optional<DatasetFormat> dataset_format_from(const std::string& text);
+
+/// What a writer knows before the first frame.
+struct DatasetPlan {
+  std::filesystem::path folder;     ///< exists and is empty
+  std::vector<CameraSpec> cameras;  ///< those to write, in their order
+  FrameRate rate;
+  std::int64_t last_frame = 0;    ///< the highest index that may come
+  std::int64_t epoch_utc_ns = 0;  ///< Unix time of t = 0
+  flight::ImuModel imu_model;
+  std::vector<flight::ImuReading> imu;  ///< of the time span exported; EuRoC alone
+  std::vector<AircraftState> states;    ///< one for each IMU sample
+};
+
+/// Takes the frames in order and writes their images at once, the text files at the end. Images
+/// that were lost on their way (CameraShot::delivered) are not part of a data set.
+class DatasetWriter {
+ public:
+  virtual ~DatasetWriter() = default;
+
+  /// @param frame  its shots are of the plan's cameras, in their order
+  /// Errors: kIo naming the file.
+  [[nodiscard]] virtual Status add(const MadeFrame& frame) = 0;
+  /// Writes what describes the images that were added; nothing may be added after that.
+  [[nodiscard]] virtual Status finish() = 0;
+};
+
+/// Errors: kUnsupported when the format cannot hold what the plan asks, naming camera and reason.
+[[nodiscard]] Result<std::unique_ptr<DatasetWriter>> create_dataset_writer(DatasetFormat format,
+                                                                           const DatasetPlan& plan);
+
+/// The writers of each format (create_dataset_writer chooses).
+[[nodiscard]] Result<std::unique_ptr<DatasetWriter>> create_tum_mono_writer(const DatasetPlan&);
+[[nodiscard]] Result<std::unique_ptr<DatasetWriter>> create_euroc_writer(const DatasetPlan&);
+[[nodiscard]] Result<std::unique_ptr<DatasetWriter>> create_kitti_writer(const DatasetPlan&);
+[[nodiscard]] Result<std::unique_ptr<DatasetWriter>> create_png_writer(const DatasetPlan&);
+
+/// An image of a shot as a file: 16 bit where the sensor is deeper than 8 (and `deep` is set).
+[[nodiscard]] Status write_shot(const std::filesystem::path& file,
+                                const CameraShot& shot,
+                                bool deep = true);
+/// Creates a folder with its parents. Errors: kIo naming it.
+[[nodiscard]] Status make_folder(const std::filesystem::path& folder);
+
+}  // namespace overfly::engine
