@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
   add_render_command(app, exit_code);
   add_world_command(app, exit_code);
   add_scenario_command(app, exit_code);
+  add_export_command(app, exit_code);
   add_bench_command(app, exit_code);
   add_doctor_command(app, exit_code);
   try {
