@@ -148,6 +148,42 @@ TEST(Noise, NeighboursRowsFramesAndSeedsAreUncorrelated) {
   }
 }
 
+/// One of the four lanes that a hash serves, first of each pair.
+std::vector<float> lane_of_normals(std::uint64_t seed, std::int64_t frame, int lane, int chunks) {
+  const NoiseKey key = noise_key(seed, frame, NoiseStage::kTemporal);
+  std::vector<float> normals;
+  ChunkWords words;
+  for (int chunk = 0; chunk < chunks; ++chunk) {
+    draw_words(key, static_cast<std::uint32_t>(chunk * kQuads), words);
+    for (int i = 0; i < kQuads; ++i) {
+      normals.push_back(normal_pair(words.of[lane * kQuads + i]).first);
+    }
+  }
+  return normals;
+}
+
+TEST(Noise, ManyFramesAreUncorrelatedInEveryLaneOfTheHash) {
+  constexpr int kFrames = 20;
+  constexpr int kChunks = 160;
+  for (int lane = 0; lane < 4; ++lane) {
+    std::vector<std::vector<float>> frames;
+    for (int i = 0; i < kFrames; ++i) frames.push_back(lane_of_normals(1, i, lane, kChunks));
+    double sum_of_squares = 0.0;
+    int pairs = 0;
+    for (int a = 0; a < kFrames; ++a) {
+      for (int b = 0; b < a; ++b, ++pairs) {
+        double product = 0.0;
+        for (std::size_t i = 0; i < frames[a].size(); ++i) product += frames[a][i] * frames[b][i];
+        // Of independent normals: normal with a variance of their number.
+        const double deviations = product / std::sqrt(static_cast<double>(frames[a].size()));
+        EXPECT_LT(std::abs(deviations), 5.0) << "lane " << lane << ", frames " << a << ' ' << b;
+        sum_of_squares += deviations * deviations;
+      }
+    }
+    EXPECT_NEAR(sum_of_squares / pairs, 1.0, 5.0 * std::sqrt(2.0 / pairs)) << "lane " << lane;
+  }
+}
+
 TEST(Noise, ReadNoiseHasItsStandardDeviation) {
   std::vector<double> values = noise_image(5, 11);
   for (double& value : values) value = (value - 0.5 * 65535.0) / 1000.0;
