@@ -23,7 +23,8 @@ Image paint(double right_px, double down_px) {
   Image image(kWidth, kHeight, 1);
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {
-      const double grey = overfly::testing::natural_paint(0.3 * (x - right_px), -0.3 * (y - down_px));
+      const double grey =
+          overfly::testing::natural_paint(0.3 * (x - right_px), -0.3 * (y - down_px));
       image.at(x, y) = static_cast<std::uint8_t>(std::clamp(grey + 0.5, 0.0, 255.0));
     }
   }
