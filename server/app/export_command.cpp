@@ -29,8 +29,8 @@ struct ExportArguments {
   std::optional<double> to_s;
   int threads = -1;  // -1 = as the scenario says
   flight::ImuModel imu;
-  std::string view = "both";
-  int quality = 70;
+  std::string video;  ///< what is shown; empty = no video, of webm both views
+  int video_quality = 70;
   bool json = false;
   bool quiet = false;
 };
@@ -78,11 +78,17 @@ int tell(const ExportArguments& arguments,
   return kExitCancelled;
 }
 
+engine::VideoLook look_of(const ExportArguments& arguments) {
+  engine::VideoLook look;
+  look.view = engine::video_view_from(arguments.video).value_or(engine::VideoView::kBoth);
+  look.quality = arguments.video_quality;
+  return look;
+}
+
 int export_as_video(const ExportArguments& arguments, const engine::ExportSource& source) {
   engine::VideoOptions options;
   options.file = arguments.out;
-  options.quality = arguments.quality;
-  options.view = engine::video_view_from(arguments.view).value_or(engine::VideoView::kBoth);
+  options.look = look_of(arguments);
   if (arguments.cameras.size() > 1 || !arguments.truth.empty()) {
     return report({ErrorCode::kInvalidArgument, "webm: takes one --camera and no --truth"});
   }
@@ -110,6 +116,7 @@ int export_as_dataset(const ExportArguments& arguments,
   options.format = format;
   options.cameras = arguments.cameras;
   options.imu = arguments.imu;
+  if (!arguments.video.empty()) options.video = look_of(arguments);
   for (const std::string& name : arguments.truth) {
     const auto kind = engine::truth_kind_from(name);
     if (!kind) {
@@ -138,11 +145,21 @@ int export_as_dataset(const ExportArguments& arguments,
 }
 
 int export_source(const ExportArguments& arguments) {
+  if (arguments.format == "rosbag" || arguments.format == "lcm") {
+    return report({ErrorCode::kUnsupported,
+                   "format = " + arguments.format +
+                       ": this build has no bridge to ROS or LCM and writes no logs of theirs; "
+                       "must be tum-mono, euroc, kitti, png or webm"});
+  }
+  const auto format = engine::dataset_format_from(arguments.format);
+  if (!format && arguments.format != "webm") {
+    return report(
+        {ErrorCode::kInvalidArgument,
+         "format = " + arguments.format + ": must be one of tum-mono, euroc, kitti, png, webm"});
+  }
   const auto source = open_source(arguments);
   if (!source) return report(source.error());
-  if (const auto format = engine::dataset_format_from(arguments.format)) {
-    return export_as_dataset(arguments, *format, *source);
-  }
+  if (format) return export_as_dataset(arguments, *format, *source);
   return export_as_video(arguments, *source);
 }
 
@@ -179,9 +196,10 @@ void add_export_command(CLI::App& app, int& exit_code) {
       app.add_subcommand("export", "Write a run or scenario as a data set or a video");
   command->add_option("source", arguments->source, "Run folder, or scenario file (JSON)")
       ->required();
-  command->add_option("--format", arguments->format, "Layout")
-      ->required()
-      ->check(CLI::IsMember({"tum-mono", "euroc", "kitti", "png", "webm"}));
+  command
+      ->add_option(
+          "--format", arguments->format, "tum-mono, euroc, kitti, png, or webm for a video alone")
+      ->required();
   command->add_option("--out", arguments->out, "Folder to make; of webm the file")->required();
   command
       ->add_option("--truth",
@@ -198,10 +216,13 @@ void add_export_command(CLI::App& app, int& exit_code) {
   command->add_option("--threads", arguments->threads, "Of the ray-caster; 0 = one a core")
       ->check(CLI::Range(0, 64));
   add_imu_options(*command, arguments->imu);
-  command->add_option("--view", arguments->view, "webm: what is shown")
-      ->check(CLI::IsMember({"camera", "chase", "both"}))
-      ->capture_default_str();
-  command->add_option("--quality", arguments->quality, "webm: 1 to 100")
+  command
+      ->add_option(
+          "--video",
+          arguments->video,
+          "What a video shows: of webm (default both), else of video.webm beside the images")
+      ->check(CLI::IsMember({"camera", "chase", "both"}));
+  command->add_option("--video-quality", arguments->video_quality, "1 to 100")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
   command->add_flag("--json", arguments->json, "Print a summary with wall times as JSON");

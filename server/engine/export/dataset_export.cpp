@@ -117,6 +117,9 @@ Status check_options(const ExportOptions& options) {
     return Error{ErrorCode::kInvalidArgument,
                  "from = " + std::to_string(options.from_s) + " s: must be at least 0"};
   }
+  if (options.video) {
+    if (Status status = options.video->validate(); !status) return status;
+  }
   return options.imu.validate();
 }
 
@@ -148,27 +151,56 @@ Result<DatasetPlan> make_plan(const ExportSource& source,
   return plan;
 }
 
+/// Everything that is made of a frame.
+class FrameOutputs {
+ public:
+  FrameOutputs(const ExportOptions& options,
+               FrameMaker& maker,
+               DatasetWriter& writer,
+               StageTimer& stages)
+      : writer_(writer),
+        truth_(options.folder, options.truth, maker.renderer(), *maker.world().tiles),
+        stages_(stages) {
+    if (options.video) video_.emplace(options.folder / "video.webm", *options.video, maker);
+  }
+
+  Status add(const MadeFrame& frame) {
+    const auto names = stages_.measure("write_images", [&] { return writer_.add(frame); });
+    if (!names) return names.error();
+    Status status = stages_.measure("write_truth", [&] { return truth_.add(frame, *names); });
+    if (!status || !video_) return status;
+    return stages_.measure("write_video", [&] { return video_->add(frame); });
+  }
+
+  Status finish(const FrameRate& rate) {
+    Status status = writer_.finish();
+    if (!status || !video_) return status;
+    return video_->finish(rate);
+  }
+
+ private:
+  DatasetWriter& writer_;
+  TruthWriter truth_;
+  std::optional<FlightVideo> video_;
+  StageTimer& stages_;
+};
+
 Status write_frames(const ExportOptions& options,
+                    const FrameRate& rate,
                     FrameSequence& frames,
-                    DatasetWriter& writer,
-                    StageTimer& stages,
+                    FrameOutputs& outputs,
                     ExportSummary& summary) {
-  TruthWriter truth(
-      options.folder, options.truth, frames.maker().renderer(), *frames.maker().world().tiles);
   while (keeps_going(options)) {
-    Result<std::optional<MadeFrame>> frame = frames.next();
+    const Result<std::optional<MadeFrame>> frame = frames.next();
     if (!frame) return frame.error();
-    if (!frame->has_value()) return writer.finish();
-    const MadeFrame& made = **frame;
-    Status status = stages.measure("write_images", [&] { return writer.add(made); });
-    if (status) status = stages.measure("write_truth", [&] { return truth.add(made); });
-    if (!status) return status;
+    if (!frame->has_value()) return outputs.finish(rate);
+    if (Status status = outputs.add(**frame); !status) return status;
     ++summary.frames;
-    summary.images += images_in(made);
+    summary.images += images_in(**frame);
     if (options.progress) options.progress(summary.frames, frames.count());
   }
   summary.cancelled = true;
-  return writer.finish();
+  return outputs.finish(rate);
 }
 
 }  // namespace
@@ -195,7 +227,8 @@ Result<ExportSummary> export_dataset(const ExportSource& source, const ExportOpt
 
   ExportSummary summary;
   summary.attribution = (*frames)->maker().world().tiles->attribution();
-  Status status = write_frames(options, **frames, **writer, stages, summary);
+  FrameOutputs outputs(options, (*frames)->maker(), **writer, stages);
+  Status status = write_frames(options, source.scenario.rate, **frames, outputs, summary);
   if (status) status = write_origin(source, options, summary, **frames);
   if (!status) return status.error();
   summary.stages = stages.summary();

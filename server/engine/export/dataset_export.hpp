@@ -13,6 +13,7 @@
 #include "core/result.hpp"
 #include "server/engine/export/dataset_writer.hpp"
 #include "server/engine/export/export_source.hpp"
+#include "server/engine/export/flight_video.hpp"
 #include "server/engine/export/truth_writer.hpp"
 
 namespace overfly::engine {
@@ -23,9 +24,10 @@ struct ExportOptions {
   std::set<TruthKind> truth;  ///< images beside each frame
   /// Names; empty = all of them (EuRoC, PNG), the first (TUM mono, KITTI).
   std::vector<std::string> cameras;
-  double from_s = 0.0;         ///< frames stamped in [from_s, to_s]
-  std::optional<double> to_s;  ///< to the end where it is not given
-  flight::ImuModel imu;        ///< of EuRoC
+  double from_s = 0.0;             ///< frames stamped in [from_s, to_s]
+  std::optional<double> to_s;      ///< to the end where it is not given
+  flight::ImuModel imu;            ///< of EuRoC
+  std::optional<VideoLook> video;  ///< as video.webm beside the images, of the first camera
 
   RendererFactory renderer_factory;           ///< as the engine's default where it is empty
   const std::atomic<bool>* cancel = nullptr;  ///< stops after the frame at hand

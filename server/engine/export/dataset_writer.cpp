@@ -2,8 +2,6 @@
 
 #include <system_error>
 
-#include "server/engine/export/png_file.hpp"
-
 namespace overfly::engine {
 
 const char* to_string(DatasetFormat format) {
@@ -43,11 +41,6 @@ Result<std::unique_ptr<DatasetWriter>> create_dataset_writer(DatasetFormat forma
       break;
   }
   return create_png_writer(plan);
-}
-
-Status write_shot(const std::filesystem::path& file, const CameraShot& shot, bool deep) {
-  if (deep && !shot.image16.empty()) return write_png_file(file, shot.image16);
-  return write_png_file(file, shot.image);
 }
 
 Status make_folder(const std::filesystem::path& folder) {

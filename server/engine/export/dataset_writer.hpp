@@ -41,8 +41,9 @@ class DatasetWriter {
   virtual ~DatasetWriter() = default;
 
   /// @param frame  its shots are of the plan's cameras, in their order
+  /// @return for each shot the name of its image without folder and ending; empty for a lost one
   /// Errors: kIo naming the file.
-  [[nodiscard]] virtual Status add(const MadeFrame& frame) = 0;
+  [[nodiscard]] virtual Result<std::vector<std::string>> add(const MadeFrame& frame) = 0;
   /// Writes what describes the images that were added; nothing may be added after that.
   [[nodiscard]] virtual Status finish() = 0;
 };
@@ -57,10 +58,6 @@ class DatasetWriter {
 [[nodiscard]] Result<std::unique_ptr<DatasetWriter>> create_kitti_writer(const DatasetPlan&);
 [[nodiscard]] Result<std::unique_ptr<DatasetWriter>> create_png_writer(const DatasetPlan&);
 
-/// An image of a shot as a file: 16 bit where the sensor is deeper than 8 (and `deep` is set).
-[[nodiscard]] Status write_shot(const std::filesystem::path& file,
-                                const CameraShot& shot,
-                                bool deep = true);
 /// Creates a folder with its parents. Errors: kIo naming it.
 [[nodiscard]] Status make_folder(const std::filesystem::path& folder);
 

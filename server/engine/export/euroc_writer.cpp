@@ -3,6 +3,7 @@
 // origin the IMU sits; reference = the world frame (east-north-up).
 #include "server/engine/export/dataset_writer.hpp"
 #include "server/engine/export/export_text.hpp"
+#include "server/engine/export/png_file.hpp"
 #include "server/engine/whole_file.hpp"
 
 namespace overfly::engine {
@@ -86,16 +87,18 @@ class EurocWriter final : public DatasetWriter {
                        std::string("comment: Overfly, aircraft body forward-right-down\n"));
   }
 
-  Status add(const MadeFrame& frame) override {
+  Result<std::vector<std::string>> add(const MadeFrame& frame) override {
+    std::vector<std::string> names(frame.shots.size());
     for (std::size_t i = 0; i < frame.shots.size(); ++i) {
       const CameraShot& shot = frame.shots[i];
       if (!shot.delivered) continue;
-      const std::string stamp = std::to_string(epoch_ns_ + shot.stamp_ns);
-      lists_[i] += stamp + "," + stamp + ".png\n";
-      const Status status = write_shot(camera_folder(i) / "data" / (stamp + ".png"), shot);
-      if (!status) return status;
+      names[i] = std::to_string(epoch_ns_ + shot.stamp_ns);
+      lists_[i] += names[i] + "," + names[i] + ".png\n";
+      const Status status =
+          write_png_file(camera_folder(i) / "data" / (names[i] + ".png"), shot.image);
+      if (!status) return status.error();
     }
-    return {};
+    return names;
   }
 
   Status finish() override {

@@ -25,9 +25,10 @@ class KittiWriter final : public DatasetWriter {
     return write_whole(folder_ / "calib.txt", calib);
   }
 
-  Status add(const MadeFrame& frame) override {
+  Result<std::vector<std::string>> add(const MadeFrame& frame) override {
     const CameraShot& shot = frame.shots.front();
-    if (!shot.delivered) return {};  // the format counts images: one that is lost has no line
+    // The format counts images: one that is lost has no line.
+    if (!shot.delivered) return std::vector<std::string>(1);
     const Pose& T_world_camera = shot.drawn.T_world_camera;
     if (written_ == 0) {
       T_first_world_ = T_world_camera.inverse();
@@ -35,7 +36,10 @@ class KittiWriter final : public DatasetWriter {
     }
     times_ += seconds_text(shot.stamp_ns - first_ns_) + "\n";
     poses_ += matrix_rows(T_first_world_ * T_world_camera, 3, " ") + "\n";
-    return write_shot(images_ / (padded(written_++, 6) + ".png"), shot);
+    const std::string name = padded(written_++, 6);
+    const Status status = write_png_file(images_ / (name + ".png"), shot.image);
+    if (!status) return status.error();
+    return std::vector<std::string>{name};
   }
 
   Status finish() override {

@@ -2,6 +2,7 @@
 // cameras.json.
 #include "server/engine/export/dataset_writer.hpp"
 #include "server/engine/export/export_text.hpp"
+#include "server/engine/export/png_file.hpp"
 #include "server/engine/run_rows.hpp"
 #include "server/engine/whole_file.hpp"
 
@@ -45,15 +46,19 @@ class PngWriter final : public DatasetWriter {
     return write_json(folder_ / "cameras.json", list);
   }
 
-  Status add(const MadeFrame& frame) override {
+  Result<std::vector<std::string>> add(const MadeFrame& frame) override {
+    std::vector<std::string> names(frame.shots.size());
     for (std::size_t i = 0; i < frame.shots.size(); ++i) {
       const CameraShot& shot = frame.shots[i];
-      const std::string file = "images/" + cameras_[i].name + "/" + padded(frame.frame, 6) + ".png";
+      if (shot.delivered) names[i] = padded(frame.frame, 6);
+      const std::string file = "images/" + cameras_[i].name + "/" + names[i] + ".png";
       rows_[i] += row_of(frame, shot, shot.delivered ? file : "");
       if (!shot.delivered) continue;
-      if (Status status = write_shot(folder_ / file, shot); !status) return status;
+      const Status status = shot.image16.empty() ? write_png_file(folder_ / file, shot.image)
+                                                 : write_png_file(folder_ / file, shot.image16);
+      if (!status) return status.error();
     }
-    return {};
+    return names;
   }
 
   Status finish() override {

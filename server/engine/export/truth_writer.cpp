@@ -51,14 +51,15 @@ TruthWriter::TruthWriter(fs::path folder,
                          const terrain::TileSource& tiles)
     : folder_(std::move(folder)), kinds_(std::move(kinds)), renderer_(renderer), tiles_(tiles) {}
 
-Status TruthWriter::add(const MadeFrame& frame) {
+Status TruthWriter::add(const MadeFrame& frame, const std::vector<std::string>& names) {
   if (kinds_.empty()) return {};
   for (std::size_t i = 0; i < frame.shots.size(); ++i) {
     const CameraShot& shot = frame.shots[i];
     if (i >= cameras_.size()) {
       cameras_.push_back({renderer::PixelRays(shot.request.camera), std::nullopt});
     }
-    Status status = add_shot(frame.frame, shot, cameras_[i]);
+    if (names[i].empty()) continue;
+    Status status = add_shot(names[i], shot, cameras_[i]);
     if (!status) return status.error().in("truth of frame " + std::to_string(frame.frame));
   }
   return {};
@@ -66,61 +67,66 @@ Status TruthWriter::add(const MadeFrame& frame) {
 
 Result<fs::path> TruthWriter::file_of(TruthKind kind,
                                       const std::string& camera,
-                                      std::int64_t frame,
-                                      const std::string& ending) const {
+                                      const std::string& file_name) const {
   const fs::path folder = folder_ / "truth" / to_string(kind) / camera;
   if (Status status = make_folder(folder); !status) return status.error();
-  return folder / (padded(frame, 6) + ending);
+  return folder / file_name;
 }
 
-Status TruthWriter::add_shot(std::int64_t frame, const CameraShot& shot, Camera& camera) {
+Status TruthWriter::add_shot(const std::string& name, const CameraShot& shot, Camera& camera) {
   const Result<DepthImage> depth = renderer_.render_depth(shot.request);
   if (!depth) return depth.error();
-  if (wants(TruthKind::kDepth)) {
-    const auto file = file_of(TruthKind::kDepth, shot.name, frame, ".tif");
-    if (!file) return file.error();
-    if (Status status = terrain::write_tiff(*file, *depth); !status) return status;
-  }
-  if (wants(TruthKind::kRange)) {
-    const auto file = file_of(TruthKind::kRange, shot.name, frame, ".tif");
-    if (!file) return file.error();
-    const DepthImage range = renderer::range_image(camera.rays, *depth);
-    if (Status status = terrain::write_tiff(*file, range); !status) return status;
-  }
+  if (Status status = write_depths(name, shot, *depth, camera.rays); !status) return status;
   renderer::PointImage points = renderer::world_points(camera.rays, shot.request, *depth);
-  if (Status status = write_pointwise(frame, shot, points); !status) return status;
+  if (Status status = write_pointwise(name, shot, points); !status) return status;
   if (!wants(TruthKind::kFlow)) return {};
   if (camera.before) {
-    const auto file = file_of(TruthKind::kFlow, shot.name, camera.before->frame, ".flo");
+    const auto file = file_of(TruthKind::kFlow, shot.name, camera.before->name + ".flo");
     if (!file) return file.error();
     const Status status =
         write_flow(*file, renderer::optical_flow(camera.before->points, shot.request, *depth));
     if (!status) return status;
   }
-  camera.before = Before{frame, std::move(points)};
+  camera.before = Before{name, std::move(points)};
   return {};
 }
 
-Status TruthWriter::write_pointwise(std::int64_t frame,
+Status TruthWriter::write_depths(const std::string& name,
+                                 const CameraShot& shot,
+                                 const DepthImage& depth,
+                                 const renderer::PixelRays& rays) const {
+  if (wants(TruthKind::kDepth)) {
+    const auto file = file_of(TruthKind::kDepth, shot.name, name + ".tif");
+    if (!file) return file.error();
+    if (Status status = terrain::write_tiff(*file, depth); !status) return status;
+  }
+  if (wants(TruthKind::kRange)) {
+    const auto file = file_of(TruthKind::kRange, shot.name, name + ".tif");
+    if (!file) return file.error();
+    return terrain::write_tiff(*file, renderer::range_image(rays, depth));
+  }
+  return {};
+}
+
+Status TruthWriter::write_pointwise(const std::string& name,
                                     const CameraShot& shot,
                                     const renderer::PointImage& points) const {
   if (wants(TruthKind::kWorld)) {
-    const auto file = file_of(TruthKind::kWorld, shot.name, frame, ".tif");
+    const auto file = file_of(TruthKind::kWorld, shot.name, name + ".tif");
     if (!file) return file.error();
     if (Status status = terrain::write_tiff(*file, points); !status) return status;
   }
   if (wants(TruthKind::kNormal)) {
-    const auto file = file_of(TruthKind::kNormal, shot.name, frame, ".tif");
+    const auto file = file_of(TruthKind::kNormal, shot.name, name + ".tif");
     if (!file) return file.error();
     const renderer::VectorImage normals =
         renderer::surface_normals(points, tiles_, shot.request, renderer::NormalFrame::kWorld);
     if (Status status = terrain::write_tiff(*file, normals); !status) return status;
   }
   if (wants(TruthKind::kMask)) {
-    const auto file = file_of(TruthKind::kMask, shot.name, frame, ".png");
+    const auto file = file_of(TruthKind::kMask, shot.name, name + ".png");
     if (!file) return file.error();
-    const Image mask = renderer::validity_mask(points, tiles_);
-    if (Status status = write_png_file(*file, mask); !status) return status;
+    return write_png_file(*file, renderer::validity_mask(points, tiles_));
   }
   return {};
 }

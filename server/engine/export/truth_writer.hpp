@@ -19,8 +19,8 @@ enum class TruthKind { kDepth, kRange, kNormal, kFlow, kWorld, kMask };
 [[nodiscard]] const char* to_string(TruthKind kind);
 [[nodiscard]] std::optional<TruthKind> truth_kind_from(const std::string& text);
 
-/// Writes truth/KIND/CAMERA/NNNNNN.EXT for each frame (docs/EXPORT.md): TIFF of floats; `.flo` for
-/// the flow, whose file is that of the frame that it starts from (so the last frame has none);
+/// Writes truth/KIND/CAMERA/NAME.EXT for each image (docs/EXPORT.md): TIFF of floats; `.flo` for
+/// the flow, whose file is that of the image that it starts from (so the last one has none);
 /// PNG for the mask.
 class TruthWriter {
  public:
@@ -31,13 +31,14 @@ class TruthWriter {
               const terrain::TileSource& tiles);
 
   /// @param frame  its shots are of the same cameras each time
+  /// @param names  of the shots' files, without ending; a shot with an empty one is left out
   /// Errors: as the renderer's; kIo.
-  [[nodiscard]] Status add(const MadeFrame& frame);
+  [[nodiscard]] Status add(const MadeFrame& frame, const std::vector<std::string>& names);
 
  private:
   /// What the flow from a frame needs once the next one is there.
   struct Before {
-    std::int64_t frame = 0;
+    std::string name;
     renderer::PointImage points;
   };
   /// One camera, from frame to frame.
@@ -46,15 +47,18 @@ class TruthWriter {
     std::optional<Before> before;
   };
 
-  Status add_shot(std::int64_t frame, const CameraShot& shot, Camera& camera);
-  Status write_pointwise(std::int64_t frame,
+  Status add_shot(const std::string& name, const CameraShot& shot, Camera& camera);
+  Status write_depths(const std::string& name,
+                      const CameraShot& shot,
+                      const DepthImage& depth,
+                      const renderer::PixelRays& rays) const;
+  Status write_pointwise(const std::string& name,
                          const CameraShot& shot,
                          const renderer::PointImage& points) const;
   [[nodiscard]] bool wants(TruthKind kind) const { return kinds_.contains(kind); }
   [[nodiscard]] Result<std::filesystem::path> file_of(TruthKind kind,
                                                       const std::string& camera,
-                                                      std::int64_t frame,
-                                                      const std::string& ending) const;
+                                                      const std::string& file_name) const;
 
   std::filesystem::path folder_;
   std::set<TruthKind> kinds_;

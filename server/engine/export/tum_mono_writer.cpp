@@ -54,14 +54,16 @@ class TumMonoWriter final : public DatasetWriter {
                           renderer::vignette_map(camera_.sensor, camera_.model));
   }
 
-  Status add(const MadeFrame& frame) override {
+  Result<std::vector<std::string>> add(const MadeFrame& frame) override {
     const CameraShot& shot = frame.shots.front();
     truth_.push_back({frame.t_ns, shot.drawn.T_world_camera});
-    if (!shot.delivered) return {};
+    if (!shot.delivered) return std::vector<std::string>(1);
     const std::string id = padded(frame.frame, digits_);
     times_ += id + " " + seconds_text(shot.stamp_ns) + " " +
               number_text(static_cast<double>(shot.setting.exposure_ns) * 1e-6) + "\n";
-    return write_png_file(folder_ / "images" / (id + ".png"), grey_of(shot.image));
+    const Status status = write_png_file(folder_ / "images" / (id + ".png"), grey_of(shot.image));
+    if (!status) return status.error();
+    return std::vector<std::string>{id};
   }
 
   Status finish() override {

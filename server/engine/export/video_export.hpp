@@ -1,4 +1,4 @@
-// A video of a flight: what the camera sees, the aircraft from behind, or both side by side.
+// A flight as a video file alone.
 #pragma once
 
 #include <atomic>
@@ -10,21 +10,14 @@
 
 #include "core/result.hpp"
 #include "server/engine/export/export_source.hpp"
+#include "server/engine/export/flight_video.hpp"
 
 namespace overfly::engine {
 
-enum class VideoView { kCamera, kChase, kBoth };
-
-/// "camera", "chase", "both".
-[[nodiscard]] const char* to_string(VideoView view);
-[[nodiscard]] std::optional<VideoView> video_view_from(const std::string& text);
-
 struct VideoOptions {
   std::filesystem::path file;  ///< .webm; must not exist
-  VideoView view = VideoView::kBoth;
-  int quality = 70;         ///< [1, 100], see VideoSettings
-  int max_height_px = 720;  ///< taller images are made smaller by a whole factor; >= 16
-  std::string camera;       ///< name; empty = the first
+  VideoLook look;
+  std::string camera;  ///< name; empty = the first
   double from_s = 0.0;
   std::optional<double> to_s;
 
@@ -40,9 +33,7 @@ struct VideoSummary {
   std::string attribution;
 };
 
-/// Stamps in the file are the flight's, to the millisecond, from the first frame shown on. An image
-/// that was lost on its way is shown all the same: the video is for people.
-/// Errors: kConflict for a file that exists; as FrameSequence's and Vp9Encoder's; kIo. The file
+/// Errors: kConflict for a file that exists; as VideoLook, FrameSequence and FlightVideo. The file
 /// appears whole or not at all.
 [[nodiscard]] Result<VideoSummary> export_video(const ExportSource& source,
                                                 const VideoOptions& options);
