@@ -200,7 +200,8 @@ void JsonSchema::apply_defaults(const Json& unresolved, Json& value) const {
   const Json& node = resolved(unresolved);
   if (value.is_object()) {
     for (const auto& [key, child] : keyword(node, "properties").items()) {
-      const Json& property = resolved(child);
+      // A default beside a $ref goes before that of what it refers to.
+      const Json& property = child.contains("default") ? child : resolved(child);
       if (!value.contains(key) && property.contains("default")) value[key] = property.at("default");
       if (value.contains(key)) apply_defaults(child, value[key]);
     }

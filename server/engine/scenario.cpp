@@ -65,6 +65,7 @@ Result<Scenario> resolve_scenario(Json document,
   }
   if (!faults.empty()) return Error{ErrorCode::kInvalidArgument, faults};
   put_name(document, "scenario");
+  if (!document.contains("cameras")) document.emplace("camera", Json::object());
   schema().apply_defaults(document);
   return scenario_from(std::move(document), base);
 }

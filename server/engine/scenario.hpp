@@ -15,6 +15,9 @@
 #include "core/time.hpp"
 #include "flight/flight.hpp"
 #include "server/engine/camera_spec.hpp"
+#include "server/engine/fault_spec.hpp"
+#include "terrain/detail.hpp"
+#include "terrain/light.hpp"
 #include "terrain/world.hpp"
 
 namespace overfly::engine {
@@ -25,9 +28,24 @@ enum class Pacing {
 };
 
 struct EstimatorSpec {
-  std::string name;  ///< unique in the scenario; names the files
-  std::string type;  ///< "feature", "perfect", "drifting"
+  std::string name;        ///< unique in the scenario; names the files
+  std::string type;        ///< "feature", "perfect", "drifting"
+  std::size_t camera = 0;  ///< index of the camera whose images it gets
   std::map<std::string, double> parameters;
+};
+
+/// Light on the ground; the sun by its direction, or where it stands at a time.
+struct LightSpec {
+  terrain::LightOptions options;
+  std::optional<std::int64_t> time_unix_ns;
+};
+
+struct RendererChoice {
+  std::string camera = "auto";  ///< "auto", "egl", "raycast"
+  std::string device;           ///< as renderer::RendererOptions::device
+  int threads = 0;              ///< of the ray-caster; 0 = chosen
+
+  [[nodiscard]] bool operator==(const RendererChoice&) const = default;
 };
 
 struct BuiltinWorld {
@@ -67,7 +85,11 @@ struct Scenario {
   /// At least one; the first is the main one, whose rows are frames.jsonl.
   std::vector<CameraSpec> cameras{CameraSpec{}};
   FrameRate rate;  ///< of all cameras: they have common time stamps
+  std::vector<FaultSpec> faults;
   std::vector<EstimatorSpec> estimators;
+  RendererChoice renderer;
+  std::optional<LightSpec> light;                ///< empty = the imagery's own
+  std::optional<terrain::DetailOptions> detail;  ///< synthetic texels; empty = none
   Pacing pacing = Pacing::kLockstep;
 
   bool record_frames = false;    ///< camera images as frames/NNNNNN.jpg

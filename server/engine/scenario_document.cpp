@@ -3,7 +3,10 @@
 #include <set>
 #include <utility>
 
+#include "server/engine/scenario_camera.hpp"
+#include "server/engine/scenario_faults.hpp"
 #include "server/engine/scenario_layers.hpp"
+#include "server/engine/scenario_light.hpp"
 
 namespace overfly::engine {
 namespace {
@@ -51,44 +54,6 @@ Status read_flight(Json& document, const FileResolver& files, Scenario& scenario
   return {};
 }
 
-Status read_camera(Json& document, Scenario& scenario) {
-  Json& camera = document.at("camera");
-  const int width = camera.at("width_px").get<int>();
-  const int height = camera.at("height_px").get<int>();
-  const Result<FrameRate> rate = FrameRate::from_hz(camera.at("rate_hz").get<double>());
-  if (!rate) return rate.error().in("camera");
-  scenario.rate = *rate;
-  if (camera.contains("fx_px")) {
-    if (camera.contains("fov_deg") || camera.contains("fov_axis")) {
-      return Error{ErrorCode::kInvalidArgument,
-                   "camera.fx_px = " + camera.at("fx_px").dump() +
-                       ": must not be given with camera.fov_deg or camera.fov_axis"};
-    }
-    PinholeCamera given;
-    given.width_px = width;
-    given.height_px = height;
-    given.fx_px = camera.at("fx_px").get<double>();
-    given.fy_px = camera.at("fy_px").get<double>();
-    given.cx_px = camera.value("cx_px", 0.5 * (width - 1));
-    given.cy_px = camera.value("cy_px", 0.5 * (height - 1));
-    scenario.cameras.front().model = given;
-    const Status valid = given.validate();
-    return valid ? Status{} : Status{valid.error().in("camera")};
-  }
-  constexpr double kPaperFovDeg = 84.872;
-  if (!camera.contains("fov_deg")) camera["fov_deg"] = kPaperFovDeg;
-  if (!camera.contains("fov_axis")) camera["fov_axis"] = "horizontal";
-  const std::string axis_name = camera.at("fov_axis").get<std::string>();
-  const FovAxis axis = axis_name == "vertical"   ? FovAxis::kVertical
-                       : axis_name == "diagonal" ? FovAxis::kDiagonal
-                                                 : FovAxis::kHorizontal;
-  const double fov_rad = rad_from_deg(camera.at("fov_deg").get<double>());
-  const Result<PinholeCamera> made = PinholeCamera::from_fov(width, height, fov_rad, axis);
-  if (!made) return made.error().in("camera");
-  scenario.cameras.front().model = *made;
-  return {};
-}
-
 Status read_estimators(const Json& document, Scenario& scenario) {
   std::set<std::string> names;
   for (const Json& entry : document.at("estimators")) {
@@ -101,9 +66,31 @@ Status read_estimators(const Json& document, Scenario& scenario) {
                    "estimators." + std::to_string(scenario.estimators.size()) + ".name = \"" +
                        spec.name + "\": must be unique"};
     }
+    if (entry.contains("camera")) {
+      const std::string path = "estimators." + std::to_string(scenario.estimators.size());
+      const auto camera = camera_index(scenario, entry.at("camera"), path + ".camera");
+      if (!camera) return camera.error();
+      spec.camera = *camera;
+    }
     scenario.estimators.push_back(std::move(spec));
   }
   return {};
+}
+
+/// A log of camera poses gives the body by a nadir mount.
+Status check_camera_poses(const Scenario& scenario) {
+  const auto* log = std::get_if<LoggedFlight>(&scenario.flight);
+  if (log == nullptr || !log->camera_poses) return {};
+  const Pose nadir{R_body_camera_nadir(), Eigen::Vector3d::Zero()};
+  const Pose& mount = scenario.cameras.front().T_body_camera;
+  constexpr double kRounding = 1e-9;
+  if (mount.translation.norm() < kRounding &&
+      rotation_angle_rad(mount.rotation, nadir.rotation) < kRounding) {
+    return {};
+  }
+  return Error{ErrorCode::kInvalidArgument,
+               "flight.log.camera_poses = true: the first camera must be mounted nadir, at the "
+               "body's origin"};
 }
 
 Status read_all(Json& document, const fs::path& base, Scenario& scenario) {
@@ -122,7 +109,11 @@ Status read_all(Json& document, const fs::path& base, Scenario& scenario) {
   scenario.record_debug_hz = document.at("recording").at("debug_hz").get<double>();
   read_world(document, files, scenario);
   if (Status status = read_flight(document, files, scenario); !status) return status;
-  if (Status status = read_camera(document, scenario); !status) return status;
+  if (Status status = read_cameras(document, scenario); !status) return status;
+  if (Status status = check_camera_poses(scenario); !status) return status;
+  if (Status status = read_faults(document, scenario); !status) return status;
+  read_renderer(document, scenario);
+  if (Status status = read_light_and_detail(document, scenario); !status) return status;
   return read_estimators(document, scenario);
 }
 

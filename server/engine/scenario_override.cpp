@@ -33,10 +33,14 @@ std::optional<std::size_t> index_from(const std::string& text) {
   return index;
 }
 
-/// A world or a flight is of one kind only: naming another kind replaces it.
+/// A world or a flight is of one kind only: naming another kind replaces it; and so with `camera`
+/// and `cameras`.
 void make_room_for_kind(Json& document, const std::vector<std::string>& parts) {
   static const std::vector<std::pair<std::string, std::vector<std::string>>> kinds = {
       {"world", {"builtin", "manifest", "imagery"}}, {"flight", {"course", "log"}}};
+  // One camera or a list of them: the whole of one takes the other's place.
+  if (parts.size() == 1 && parts[0] == "cameras") document.erase("camera");
+  if (parts.size() == 1 && parts[0] == "camera") document.erase("cameras");
   if (parts.size() < 2) return;
   for (const auto& [field, names] : kinds) {
     if (parts[0] != field || !document.contains(field) || !document[field].is_object()) continue;

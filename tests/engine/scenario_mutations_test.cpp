@@ -22,6 +22,50 @@ struct Mutant {
   Json document;
 };
 
+/// Several cameras, light, detail and faults.
+Json cameras_seed() {
+  return Json::parse(R"({
+    "format_version": 1, "world": {"builtin": {}}, "flight": {"course": {}},
+    "cameras": [
+      {"name": "a", "mount": {"facing": "forward", "roll_deg": 1, "pitch_deg": 2, "yaw_deg": 3,
+                              "p_body_m": [1, 2, 3]}},
+      {"name": "b", "mount": {"q_xyzw": [0, 0, 0, 1]}, "color": "rgb", "quality": "reference"}],
+    "renderer": {"camera": "raycast", "device": "0", "threads": 2},
+    "light": {"time_utc": "2026-06-21T17:30Z", "ambient": 0.3, "hill_shading": 0.5,
+              "cast_shadows": 0.5,
+              "clouds": {"cover": 0.2, "size_m": 300, "strength": 0.5, "seed": 2}},
+    "detail": {"octaves": 2, "strength": 0.5, "seed": 3},
+    "faults": [
+      {"kind": "dropped_frames", "at_s": 1, "duration_s": 2, "camera": "a", "every": 2},
+      {"kind": "dropped_frames", "at_s": 1, "probability": 0.5},
+      {"kind": "water_drop", "at_s": 1, "strength": 0.5, "radius_px": 20, "count": 2},
+      {"kind": "stamp_jitter", "at_s": 1, "sigma_ms": 2},
+      {"kind": "stamp_offset", "at_s": 1, "offset_ms": -20}],
+    "estimators": [{"name": "e", "type": "feature", "camera": "b"}]})");
+}
+
+/// One camera with all that it can have.
+Json camera_seed() {
+  return Json::parse(R"({
+    "format_version": 1, "world": {"builtin": {}}, "flight": {"course": {}},
+    "light": {"sun_azimuth_deg": 120, "sun_elevation_deg": 40},
+    "camera": {
+      "bits": 12, "rate_hz": 20,
+      "distortion": {"model": "fov", "coefficients": [0.5]},
+      "atmosphere": {"visibility_km": 10, "airlight_rgb": [184, 204, 224]},
+      "sensor": {"defocus_sigma_px": 0.5, "vignette": [-0.1, 0, 0], "exposure_ms": 2,
+                 "readout_ms": 10, "motion_blur": true, "electrons_per_s": 5000000,
+                 "shot_noise": true, "prnu": 0.01, "dsnu_e": 1, "full_well_e": 10000,
+                 "read_noise_e": 5, "gain_dn_per_e": 0.1, "black_level_dn": 4, "adc_bits": 12,
+                 "response": {"shape": "table", "table": [0, 0.6, 1]},
+                 "auto_exposure": {"target_mean": 0.4, "min_exposure_ms": 0.1,
+                                   "max_exposure_ms": 10, "max_gain": 4, "settle_frames": 6}},
+      "vibration": {"engine_rpm": 5000, "engine_rotation_rms_mrad": [1],
+                    "engine_translation_rms_mm": [1], "noise_rotation_rms_mrad": [1, 1, 1],
+                    "noise_translation_rms_mm": [1, 1, 1], "noise_low_hz": 5,
+                    "noise_high_hz": 100, "mount_natural_hz": 30, "mount_damping": 0.2}}})");
+}
+
 /// Documents that between them use every field of the format.
 std::vector<Mutant> seeds() {
   Json course = Json::parse(R"({
@@ -49,7 +93,11 @@ std::vector<Mutant> seeds() {
   Json builtin = Json::parse(R"({
     "format_version": 1, "world": {"builtin": {"seed": 7}},
     "flight": {"course": {"start": "runway"}}})");
-  return {{"course", course}, {"log", log}, {"builtin", builtin}};
+  return {{"course", course},
+          {"log", log},
+          {"builtin", builtin},
+          {"cameras", cameras_seed()},
+          {"camera", camera_seed()}};
 }
 
 /// Every place in a document, as JSON pointers.

@@ -106,6 +106,21 @@ TEST(ScenarioOverride, ReachesArraysAndReplacesTheKindOfWorld) {
   EXPECT_THAT(fault_of(document, {"format_version.x=1"}), HasSubstr("no object or array"));
 }
 
+TEST(ScenarioOverride, WholeCamerasTakeTheCamerasPlaceAndBack) {
+  Json document = course_document();
+  document["camera"] = {{"width_px", 320}};
+  const char* two = R"(cameras=[{"name":"a"},{"name":"b"}])";
+  const auto several = resolve_scenario(document, overrides({two}), "/");
+  ASSERT_TRUE(several.ok()) << several.error().message;
+  EXPECT_EQ(several->cameras.size(), 2U);
+  const auto one = resolve_scenario(document, overrides({two, R"(camera={"name":"c"})"}), "/");
+  ASSERT_TRUE(one.ok()) << one.error().message;
+  ASSERT_EQ(one->cameras.size(), 1U);
+  EXPECT_EQ(one->cameras[0].name, "c");
+  EXPECT_THAT(fault_of(document, {two, "camera.width_px=64"}),
+              HasSubstr("must not be given with cameras"));
+}
+
 TEST(Scenario, FindsFilesInDataOrBesideItselfAndItsCopyMeansTheSame) {
   const TemporaryFolder folder;
   const char* text = R"({"format_version": 1, "data": "d",
