@@ -1,6 +1,7 @@
 #include "server/engine/frame_maker.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "server/engine/truth.hpp"
@@ -11,22 +12,6 @@ namespace {
 
 bool is_set(const std::atomic<bool>* flag) { return flag != nullptr && flag->load(); }
 
-renderer::CameraRequest request_for(const CameraSpec& camera,
-                                    std::int64_t t_ns,
-                                    const AircraftState& state,
-                                    bool wait_for_tiles) {
-  renderer::CameraRequest request;
-  request.camera = camera.model;
-  request.T_world_camera = state.T_world_body * camera.T_body_camera;
-  request.t_ns = t_ns;
-  request.format = camera.rgb ? renderer::PixelFormat::kRgb8 : renderer::PixelFormat::kGrey8;
-  request.quality = camera.quality;
-  request.atmosphere = camera.atmosphere;
-  request.velocity_world_m_s = state.v_body_world_m_s;
-  request.wait_for_tiles = wait_for_tiles;
-  return request;
-}
-
 }  // namespace
 
 FrameMaker::FrameMaker(const Scenario& scenario, const FrameMakerOptions& options)
@@ -34,7 +19,8 @@ FrameMaker::FrameMaker(const Scenario& scenario, const FrameMakerOptions& option
       options_(options),
       own_stages_(options.stages == nullptr ? std::make_unique<StageTimer>(machine_clock())
                                             : nullptr),
-      stages_(options.stages == nullptr ? *own_stages_ : *options.stages) {}
+      stages_(options.stages == nullptr ? *own_stages_ : *options.stages),
+      faults_(scenario) {}
 
 Result<std::unique_ptr<FrameMaker>> FrameMaker::open(const Scenario& scenario,
                                                      const FrameMakerOptions& options) {
@@ -42,7 +28,8 @@ Result<std::unique_ptr<FrameMaker>> FrameMaker::open(const Scenario& scenario,
   std::unique_ptr<FrameMaker> maker(new FrameMaker(scenario, options));
   const std::pair<const char*, Step> steps[] = {{"open_world", &FrameMaker::open_world},
                                                 {"plan_flight", &FrameMaker::plan_flight},
-                                                {"open_renderer", &FrameMaker::open_renderer}};
+                                                {"open_renderer", &FrameMaker::open_renderer},
+                                                {"open_cameras", &FrameMaker::open_cameras}};
   for (const auto& step : steps) {
     if (is_set(options.cancel)) return Error{ErrorCode::kCancelled, "cancelled"};
     Status status = maker->stages_.measure(step.first, [&] { return ((*maker).*step.second)(); });
@@ -72,8 +59,8 @@ Status FrameMaker::open_world() {
 Status FrameMaker::plan_flight() {
   Result<std::unique_ptr<TruthSource>> truth = create_truth(scenario_, *world_);
   if (!truth) return truth.error();
-  truth_ = std::move(*truth);
-  duration_ns_ = truth_->duration_ns();
+  duration_ns_ = (*truth)->duration_ns();
+  truth_ = std::make_unique<TruthWindow>(std::move(*truth));
   if (scenario_.duration_s) {
     const std::int64_t wanted_ns = ns_from_s(*scenario_.duration_s);
     duration_ns_ = duration_ns_ ? std::min(*duration_ns_, wanted_ns) : wanted_ns;
@@ -85,10 +72,22 @@ Status FrameMaker::plan_flight() {
 
 Status FrameMaker::open_renderer() {
   Result<std::unique_ptr<renderer::Renderer>> made =
-      options_.renderer_factory ? options_.renderer_factory(world_->tiles)
-                                : renderer::create_egl_renderer(world_->tiles);
+      make_renderer(scenario_, world_->tiles, options_.renderer_factory);
   if (!made) return made.error();
   renderer_ = std::move(*made);
+  return {};
+}
+
+Status FrameMaker::open_cameras() {
+  raster_ns_ = std::numeric_limits<std::int64_t>::max();
+  for (std::size_t i = 0; i < scenario_.cameras.size(); ++i) {
+    auto unit = CameraUnit::create(scenario_.cameras[i], i, scenario_.seed);
+    if (!unit) return unit.error();
+    half_window_ns_ = std::max(half_window_ns_, (*unit)->half_window_ns());
+    raster_ns_ = std::min(raster_ns_, (*unit)->raster_ns());
+    if (faults_.may_freeze(i)) (*unit)->keep_last_image();
+    cameras_.push_back(std::move(*unit));
+  }
   return {};
 }
 
@@ -96,12 +95,12 @@ Result<MadeFrame> FrameMaker::make(std::int64_t k) {
   MadeFrame made;
   made.frame = k;
   made.t_ns = frame_time_ns(k, scenario_.rate);
-  const Result<AircraftState> state =
-      stages_.measure("truth", [&] { return truth_->state_at(made.t_ns); });
-  if (!state) return state.error();
-  made.state = *state;
-  for (std::size_t i = 0; i < scenario_.cameras.size(); ++i) {
-    Result<CameraShot> shot = take(i, made.t_ns, *state);
+  const Result<std::vector<AircraftState>> states = stages_.measure(
+      "truth", [&] { return truth_->around(made.t_ns, half_window_ns_, raster_ns_); });
+  if (!states) return states.error();
+  made.state = (*states)[states->size() / 2];
+  for (std::size_t i = 0; i < cameras_.size(); ++i) {
+    Result<CameraShot> shot = take(i, k, *states);
     if (!shot) return shot.error().in("frame " + std::to_string(k));
     made.shots.push_back(std::move(*shot));
   }
@@ -109,19 +108,27 @@ Result<MadeFrame> FrameMaker::make(std::int64_t k) {
 }
 
 Result<CameraShot> FrameMaker::take(std::size_t camera,
-                                    std::int64_t t_ns,
-                                    const AircraftState& state) {
-  const CameraSpec& spec = scenario_.cameras[camera];
+                                    std::int64_t k,
+                                    const std::vector<AircraftState>& states) {
+  const std::int64_t t_ns = states[states.size() / 2].t_ns;
   CameraShot shot;
   shot.camera = camera;
-  shot.name = spec.name;
-  shot.stamp_ns = t_ns;
-  shot.request = request_for(spec, t_ns, state, options_.wait_for_tiles);
+  shot.name = scenario_.cameras[camera].name;
+  const FrameFaults faults = faults_.at(camera, k, t_ns);
+  shot.stamp_ns = faults.stamp_ns;
+  shot.faults = faults.names;
+  shot.delivered = !faults.dropped;
+  CameraUnit& unit = *cameras_[camera];
+  Result<renderer::CameraRequest> request = unit.request(states, t_ns);
+  if (!request) return request.error();
+  request->wait_for_tiles = options_.wait_for_tiles;
+  shot.request = std::move(*request);
   Result<renderer::CameraFrame> drawn =
       stages_.measure("render", [&] { return renderer_->render_camera(shot.request); });
   if (!drawn) return drawn.error();
-  shot.drawn = std::move(*drawn);
-  shot.image = std::move(shot.drawn.image);
+  const Status developed =
+      stages_.measure("sensor", [&] { return unit.develop(std::move(*drawn), faults, k, shot); });
+  if (!developed) return developed.error();
   return shot;
 }
 
@@ -129,14 +136,15 @@ Result<Trajectory> FrameMaker::rehearse(std::size_t camera) const {
   // A flight of its own: a truth source never goes back in time.
   const Result<std::unique_ptr<TruthSource>> truth = create_truth(scenario_, *world_);
   if (!truth) return truth.error();
-  const Pose& T_body_camera = scenario_.cameras[camera].T_body_camera;
+  FaultSchedule faults(scenario_);
   std::vector<StampedPose> poses;
   for (std::int64_t k = 0; k < frames_total_; ++k) {
     const std::int64_t t_ns = frame_time_ns(k, scenario_.rate);
     const Result<AircraftState> state = (*truth)->state_at(t_ns);
     if (!state && state.error().code == ErrorCode::kNotFound) break;
     if (!state) return state.error();
-    poses.push_back({t_ns, state->T_world_body * T_body_camera});
+    poses.push_back({faults.at(camera, k, t_ns).stamp_ns,
+                     cameras_[camera]->T_world_camera(state->T_world_body, t_ns)});
   }
   return Trajectory::from_poses(poses);
 }
@@ -146,9 +154,11 @@ Result<std::optional<double>> FrameMaker::depth_at_start(std::size_t camera) {
   if (!truth) return truth.error();
   const Result<AircraftState> first = (*truth)->state_at(0);
   if (!first) return first.error();
-  const CameraSpec& spec = scenario_.cameras[camera];
-  const Result<renderer::CameraFrame> frame = renderer_->render_camera(
-      spec.model, first->T_world_body * spec.T_body_camera, 0, renderer::PixelFormat::kGrey8);
+  const Result<renderer::CameraFrame> frame =
+      renderer_->render_camera(scenario_.cameras[camera].model,
+                               cameras_[camera]->T_world_camera(first->T_world_body, 0),
+                               0,
+                               renderer::PixelFormat::kGrey8);
   if (!frame) return frame.error();
   return frame->axis_depth_m;
 }

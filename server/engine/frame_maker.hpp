@@ -10,44 +10,21 @@
 #include <string>
 #include <vector>
 
-#include "core/image.hpp"
 #include "core/result.hpp"
 #include "core/trajectory.hpp"
-#include "core/truth_source.hpp"
 #include "renderer/renderer.hpp"
-#include "renderer/sensor/sensor.hpp"
+#include "server/engine/camera_shot.hpp"
+#include "server/engine/camera_unit.hpp"
+#include "server/engine/fault_schedule.hpp"
 #include "server/engine/renderer_factory.hpp"
 #include "server/engine/scenario.hpp"
 #include "server/engine/stage_timer.hpp"
+#include "server/engine/truth_window.hpp"
 #include "terrain/world.hpp"
 
 namespace overfly::engine {
 
 class WorldCache;
-
-/// What one camera made of one frame.
-struct CameraShot {
-  std::size_t camera = 0;           ///< index into Scenario::cameras
-  std::string name;                 ///< of the camera
-  renderer::CameraRequest request;  ///< as drawn
-  /// What the renderer said of it; the images have moved on.
-  renderer::CameraFrame drawn;
-  Image image;      ///< as the camera gives it, grey or RGB; of deeper sensors the high 8 bits
-  Image16 image16;  ///< of sensors deeper than 8 bit; else empty
-  renderer::ExposureSetting setting;  ///< exposure 0 = a camera without a sensor model
-  double saturated_fraction = 0.0;
-  std::int64_t stamp_ns = 0;        ///< what estimators are told; the truth is MadeFrame::t_ns
-  std::vector<std::string> faults;  ///< names of those in force
-  bool delivered = true;            ///< false: lost on its way to the estimators
-};
-
-/// One instant, seen by all cameras.
-struct MadeFrame {
-  std::int64_t frame = 0;
-  std::int64_t t_ns = 0;
-  AircraftState state;
-  std::vector<CameraShot> shots;  ///< in the order of Scenario::cameras
-};
 
 struct FrameMakerOptions {
   RendererFactory renderer_factory;           ///< EGL where it is empty
@@ -67,6 +44,7 @@ class FrameMaker {
   /// Errors: kCancelled; whatever world, flight and renderer say.
   static Result<std::unique_ptr<FrameMaker>> open(const Scenario& scenario,
                                                   const FrameMakerOptions& options = {});
+  static Result<std::unique_ptr<FrameMaker>> open(Scenario&&, const FrameMakerOptions&) = delete;
 
   /// Frames of the flight; of a flight of unknown length those of a day.
   [[nodiscard]] std::int64_t frames_total() const { return frames_total_; }
@@ -74,7 +52,7 @@ class FrameMaker {
   [[nodiscard]] std::optional<std::int64_t> duration_ns() const { return duration_ns_; }
   [[nodiscard]] const terrain::World& world() const { return *world_; }
   [[nodiscard]] renderer::Renderer& renderer() { return *renderer_; }
-  [[nodiscard]] std::string flight_description() const { return truth_->description(); }
+  [[nodiscard]] std::string flight_description() const { return truth_->source().description(); }
 
   /// Frame k as every camera sees it. k must grow from call to call.
   /// Errors: kNotFound after the end of a flight whose length was not known; as the renderer's.
@@ -90,19 +68,24 @@ class FrameMaker {
   Status open_world();
   Status plan_flight();
   Status open_renderer();
+  Status open_cameras();
   [[nodiscard]] Result<CameraShot> take(std::size_t camera,
-                                        std::int64_t t_ns,
-                                        const AircraftState& state);
+                                        std::int64_t k,
+                                        const std::vector<AircraftState>& states);
 
   const Scenario& scenario_;
   FrameMakerOptions options_;
   std::unique_ptr<StageTimer> own_stages_;
   StageTimer& stages_;
   std::shared_ptr<const terrain::World> world_;
-  std::unique_ptr<TruthSource> truth_;
+  std::unique_ptr<TruthWindow> truth_;
   std::optional<std::int64_t> duration_ns_;
   std::int64_t frames_total_ = 0;
   std::unique_ptr<renderer::Renderer> renderer_;
+  FaultSchedule faults_;
+  std::vector<std::unique_ptr<CameraUnit>> cameras_;
+  std::int64_t half_window_ns_ = 0;  ///< of the camera that needs the longest
+  std::int64_t raster_ns_ = 0;       ///< of the one that needs the finest
 };
 
 }  // namespace overfly::engine

@@ -1,0 +1,51 @@
+// The truth around each frame: where the aircraft was while the shutter was open.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/result.hpp"
+#include "core/truth_source.hpp"
+
+namespace overfly::engine {
+
+/// The state dt_ns away by its velocity and rate alone.
+[[nodiscard]] AircraftState extrapolated(const AircraftState& state, std::int64_t dt_ns);
+
+/// Asks a truth source on fixed rasters around growing times. What a window shares with the one
+/// before is answered from memory, since the source never goes back: between the samples then asked
+/// for, linear in position and SLERP in rotation.
+class TruthWindow {
+ public:
+  explicit TruthWindow(std::unique_ptr<TruthSource> source) : source_(std::move(source)) {}
+
+  /// States at t_ns + j step_ns, j in [-n, n], n = ceil(half_ns / step_ns): the middle one is that
+  /// at t_ns. Before t = 0 and after the flight's end the aircraft goes on as it began and ended.
+  /// t_ns must not fall from call to call.
+  /// @param step_ns  > 0
+  /// Errors: kNotFound when the flight has ended at t_ns; as TruthSource::state_at.
+  [[nodiscard]] Result<std::vector<AircraftState>> around(std::int64_t t_ns,
+                                                          std::int64_t half_ns,
+                                                          std::int64_t step_ns);
+  [[nodiscard]] const TruthSource& source() const { return *source_; }
+
+ private:
+  [[nodiscard]] Result<AircraftState> at(std::int64_t t_ns);
+  [[nodiscard]] AircraftState remembered(std::int64_t t_ns) const;
+  void forget_before(std::int64_t t_ns);
+
+  /// When the source was first asked beyond the flight's end, and what it said.
+  struct End {
+    std::int64_t t_ns = 0;
+    Error error;
+  };
+
+  std::unique_ptr<TruthSource> source_;
+  std::optional<End> ended_;
+  std::deque<AircraftState> known_;  ///< by time; the one before the present window is the first
+};
+
+}  // namespace overfly::engine

@@ -1,0 +1,96 @@
+// The truth while the shutter is open.
+#include "server/engine/truth_window.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "core/time.hpp"
+
+namespace overfly::engine {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+
+/// 20 m/s east and 0.5 rad/s of yaw for 1 s. Fails a test that goes back in time.
+class Turning final : public TruthSource {
+ public:
+  Result<AircraftState> state_at(std::int64_t t_ns) override {
+    EXPECT_GE(t_ns, last_ns_) << "asked for the past";
+    last_ns_ = t_ns;
+    ++asked_;
+    if (t_ns > kNsPerS) return Error{ErrorCode::kNotFound, "the flight is over"};
+    return truth(t_ns);
+  }
+  std::optional<std::int64_t> duration_ns() const override { return kNsPerS; }
+  std::string description() const override { return "turning"; }
+
+  static AircraftState truth(std::int64_t t_ns) {
+    AircraftState state;
+    state.t_ns = t_ns;
+    state.T_world_body.translation = {20.0 * s_from_ns(t_ns), 0.0, 100.0};
+    state.T_world_body.rotation =
+        Eigen::AngleAxisd(0.5 * s_from_ns(t_ns), Eigen::Vector3d::UnitZ());
+    state.v_body_world_m_s = {20.0, 0.0, 0.0};
+    state.omega_body_rad_s = {0.0, 0.0, 0.5};
+    return state;
+  }
+  static int asked_;
+
+ private:
+  std::int64_t last_ns_ = std::numeric_limits<std::int64_t>::min();
+};
+int Turning::asked_ = 0;
+
+void expect_truth(const AircraftState& state) {
+  const AircraftState truth = Turning::truth(state.t_ns);
+  EXPECT_LT((state.T_world_body.translation - truth.T_world_body.translation).norm(), 1e-9);
+  EXPECT_LT(rotation_angle_rad(state.T_world_body.rotation, truth.T_world_body.rotation), 1e-7);
+}
+
+TEST(TruthWindow, LiesOnARasterAroundTheFrameAndReachesItsEnds) {
+  TruthWindow window(std::make_unique<Turning>());
+  const auto states = window.around(100 * kMs, 3 * kMs + 1, kMs);
+  ASSERT_TRUE(states.ok());
+  ASSERT_EQ(states->size(), 9U);
+  for (std::int64_t j = -4; j <= 4; ++j) {
+    EXPECT_EQ((*states)[static_cast<std::size_t>(j + 4)].t_ns, 100 * kMs + j * kMs);
+  }
+  for (const AircraftState& state : *states) expect_truth(state);
+}
+
+TEST(TruthWindow, OfAnInstantAsksOnce) {
+  Turning::asked_ = 0;
+  TruthWindow window(std::make_unique<Turning>());
+  const auto states = window.around(100 * kMs, 0, kMs);
+  ASSERT_TRUE(states.ok());
+  EXPECT_EQ(states->size(), 1U);
+  EXPECT_EQ(Turning::asked_, 1);
+}
+
+TEST(TruthWindow, GoesOnBeforeTheBeginningAndAfterTheEnd) {
+  TruthWindow window(std::make_unique<Turning>());
+  const auto first = window.around(0, 5 * kMs, kMs);
+  ASSERT_TRUE(first.ok());
+  EXPECT_EQ(first->front().t_ns, -5 * kMs);
+  for (const AircraftState& state : *first) expect_truth(state);
+  const auto last = window.around(kNsPerS, 5 * kMs, kMs);
+  ASSERT_TRUE(last.ok());
+  EXPECT_EQ(last->back().t_ns, kNsPerS + 5 * kMs);
+  for (const AircraftState& state : *last) expect_truth(state);
+  EXPECT_EQ(window.around(kNsPerS + kMs, 0, kMs).error().code, ErrorCode::kNotFound);
+}
+
+TEST(TruthWindow, SharesWhatOverlapsWithoutGoingBack) {
+  // 32 ms apart, 25 ms to either side, on a raster that does not divide the step.
+  TruthWindow window(std::make_unique<Turning>());
+  for (std::int64_t t_ns = 0; t_ns < 900 * kMs; t_ns += 32'258'065) {
+    const auto states = window.around(t_ns, 25 * kMs, kMs);
+    ASSERT_TRUE(states.ok());
+    for (const AircraftState& state : *states) expect_truth(state);
+  }
+}
+
+}  // namespace
+}  // namespace overfly::engine
