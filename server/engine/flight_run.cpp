@@ -12,7 +12,10 @@ FrameRecord record_from(const MadeFrame& made, const CameraShot& shot, const Cam
   record.row.frame = made.frame;
   record.row.t_ns = made.t_ns;
   record.row.T_world_camera = shot.drawn.T_world_camera;
-  record.row.T_world_body = shot.drawn.T_world_camera * camera.T_body_camera.inverse();
+  record.shaken = camera.vibration.enabled;
+  record.row.T_world_body = record.shaken
+                                ? made.state.T_world_body
+                                : shot.drawn.T_world_camera * camera.T_body_camera.inverse();
   record.row.texels_per_pixel_median = shot.drawn.texels_per_pixel_median;
   record.row.texels_per_pixel_min = shot.drawn.texels_per_pixel_min;
   record.row.void_fraction = shot.drawn.void_fraction;
@@ -26,6 +29,21 @@ FrameRecord record_from(const MadeFrame& made, const CameraShot& shot, const Cam
   return record;
 }
 
+VoFrame vo_frame_from(const MadeFrame& made,
+                      const CameraShot& shot,
+                      const CameraSpec& camera,
+                      std::shared_ptr<const Image> grey) {
+  VoFrame frame;
+  frame.camera_id = camera.name;
+  frame.index = made.frame;
+  frame.t_ns = shot.stamp_ns;
+  frame.exposure_ns = shot.setting.exposure_ns;
+  frame.image = std::move(grey);
+  frame.intrinsics = camera.model.pinhole();
+  frame.distortion = camera.model.distortion();
+  return frame;
+}
+
 }  // namespace
 
 FlightRun::FlightRun(const Scenario& scenario, const RunOptions& options, RunRecorder& recorder)
@@ -34,7 +52,8 @@ FlightRun::FlightRun(const Scenario& scenario, const RunOptions& options, RunRec
       recorder_(recorder),
       clock_(options.clock != nullptr ? *options.clock : machine_clock()),
       stages_(clock_),
-      begin_ns_(clock_.now_ns()) {}
+      begin_ns_(clock_.now_ns()),
+      fault_news_(scenario) {}
 
 bool FlightRun::cancelled() const { return options_.cancel != nullptr && options_.cancel->load(); }
 
@@ -53,6 +72,8 @@ nlohmann::json FlightRun::timings() const {
           {"loop_wall_s", loop_s},
           {"flight_s", flight_s},
           {"flight_s_per_wall_s", loop_s > 0.0 ? flight_s / loop_s : 0.0},
+          {"late_tiles", late_tiles_},
+          {"frames_with_late_tiles", frames_with_late_tiles_},
           {"stages", stages_.summary()}};
 }
 
@@ -122,20 +143,39 @@ Status FlightRun::fly_frame(std::int64_t k, bool wait_for_estimators) {
   }
   if (Status status = record_events(); !status) return status;
 
-  CameraShot& shot = made->shots.front();
-  const FrameRecord record = record_from(*made, shot, scenario_.cameras.front());
-  const auto image = std::make_shared<const Image>(std::move(shot.image));
-  for (auto& worker : workers_) {
-    VoFrame frame;
-    frame.index = k;
-    frame.t_ns = shot.stamp_ns;
-    frame.image = image;
-    frame.intrinsics = scenario_.cameras.front().model.pinhole();
-    worker->submit(std::move(frame));
-  }
-  Status recorded = stages_.measure("record", [&] { return recorder_.add_frame(record, image); });
+  if (Status status = tell_faults(made->t_ns); !status) return status;
+  Status delivered = deliver(*made);
   if (options_.progress) options_.progress(recorder_.info());
-  return recorded;
+  return delivered;
+}
+
+Status FlightRun::deliver(MadeFrame& made) {
+  for (CameraShot& shot : made.shots) {
+    const CameraSpec& camera = scenario_.cameras[shot.camera];
+    const FrameRecord record = record_from(made, shot, camera);
+    late_tiles_ += record.row.late_tiles;
+    frames_with_late_tiles_ += record.row.late_tiles > 0 ? 1 : 0;
+    std::shared_ptr<const Image> image;
+    if (shot.delivered) image = std::make_shared<const Image>(std::move(shot.image));
+    const auto grey =
+        image && image->channels != 1 ? std::make_shared<const Image>(grey_of(*image)) : image;
+    for (std::size_t i = 0; i < workers_.size() && grey; ++i) {
+      if (scenario_.estimators[i].camera != shot.camera) continue;
+      workers_[i]->submit(vo_frame_from(made, shot, camera, grey));
+    }
+    Status recorded =
+        stages_.measure("record", [&] { return recorder_.add_frame(record, image, shot.camera); });
+    if (!recorded) return recorded;
+  }
+  return {};
+}
+
+Status FlightRun::tell_faults(std::int64_t t_ns) {
+  for (const FaultNews::Line& line : fault_news_.at(t_ns)) {
+    const char* level = line.begins ? "warning" : "info";
+    if (Status status = recorder_.log(t_ns, level, line.text, "fault"); !status) return status;
+  }
+  return {};
 }
 
 Status FlightRun::record_events() {

@@ -38,7 +38,10 @@ class FlightRun {
   /// Image and record of frame k, and its way to the estimators.
   /// Errors: kNotFound at the end of a flight whose length was not known.
   Status fly_frame(std::int64_t k, bool wait_for_estimators);
+  /// Hands each estimator its camera's image, and records all cameras.
+  Status deliver(MadeFrame& made);
   Status record_events();
+  Status tell_faults(std::int64_t t_ns);
   [[nodiscard]] bool cancelled() const;
 
   const Scenario& scenario_;
@@ -50,6 +53,9 @@ class FlightRun {
   std::int64_t loop_begin_ns_ = 0;  ///< 0 = no frame yet
 
   std::unique_ptr<FrameMaker> maker_;
+  FaultNews fault_news_;
+  std::int64_t late_tiles_ = 0;
+  std::int64_t frames_with_late_tiles_ = 0;
   std::vector<std::unique_ptr<EstimatorWorker>> workers_;
 };
 

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "server/engine/flight_run.hpp"
+#include "server/engine/scenario_light.hpp"
 
 namespace overfly::engine {
 namespace {
@@ -27,7 +28,7 @@ Status FlightRun::open_maker() {
 
   const std::optional<std::int64_t> duration_ns = maker_->duration_ns();
   recorder_.set_length(duration_ns.value_or(0), duration_ns ? maker_->frames_total() : 0);
-  recorder_.set_mount(scenario_.cameras.front().T_body_camera);
+  recorder_.set_cameras();
   recorder_.manifest()["flight"] = {{"description", maker_->flight_description()}};
   if (Status status = describe_world(); !status) return status;
   const renderer::RendererInfo info = maker_->renderer().info();
@@ -35,7 +36,12 @@ Status FlightRun::open_maker() {
                                       {"device", info.device},
                                       {"gl_version", info.gl_version},
                                       {"software", info.software}};
-  return recorder_.log(0, "info", "drawn by " + info.backend + ": " + info.device);
+  Json& renderer = recorder_.manifest()["renderer"];
+  if (!info.device_note.empty()) renderer["device_note"] = info.device_note;
+  if (!info.camera_note.empty()) renderer["camera_note"] = info.camera_note;
+  std::string line = "drawn by " + info.backend + ": " + info.device;
+  if (!info.camera_note.empty()) line += " (" + info.camera_note + ")";
+  return recorder_.log(0, "info", line);
 }
 
 Status FlightRun::describe_world() {
@@ -54,6 +60,12 @@ Status FlightRun::describe_world() {
                                     {{"lat_deg", deg_from_rad(origin.lat_rad)},
                                      {"lon_deg", deg_from_rad(origin.lon_rad)},
                                      {"alt_ellipsoid_m", origin.alt_ellipsoid_m}}}};
+  const Result<WorldDress> dress = world_dress(scenario_, origin);
+  if (!dress) return dress.error();
+  for (const auto& [field, text] : *dress) {
+    recorder_.manifest()["world"][field] = text;
+    if (Status status = recorder_.log(0, "info", field + ": " + text); !status) return status;
+  }
   for (const std::string& warning : world.warnings) {
     if (Status status = recorder_.log(0, "warning", warning); !status) return status;
   }
@@ -61,16 +73,17 @@ Status FlightRun::describe_world() {
 }
 
 Status FlightRun::open_estimators() {
-  const auto truth = [&]() -> Result<ToyTruth> {
-    const Result<std::optional<double>> depth_m = maker_->depth_at_start(0);
+  const auto truth_for = [&](std::size_t camera) -> Result<ToyTruth> {
+    const Result<std::optional<double>> depth_m = maker_->depth_at_start(camera);
     if (!depth_m) return depth_m.error();
-    Result<Trajectory> trajectory = maker_->rehearse(0);
+    Result<Trajectory> trajectory = maker_->rehearse(camera);
     if (!trajectory) return trajectory.error();
     return ToyTruth{std::move(*trajectory), depth_m->value_or(0.0)};
   };
   return stages_.measure("open_estimators", [&]() -> Status {
     for (std::size_t i = 0; i < scenario_.estimators.size(); ++i) {
       const EstimatorSpec& spec = scenario_.estimators[i];
+      const auto truth = [&] { return truth_for(spec.camera); };
       Result<std::unique_ptr<VoPort>> port = options_.estimator_factory
                                                  ? options_.estimator_factory(spec)
                                                  : create_estimator(spec, scenario_.seed, truth);

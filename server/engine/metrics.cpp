@@ -1,6 +1,5 @@
 #include "server/engine/metrics.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <map>
@@ -9,6 +8,7 @@
 
 #include "core/time.hpp"
 #include "core/trajectory_io.hpp"
+#include "server/engine/camera_metrics.hpp"
 #include "server/engine/run_folder.hpp"
 #include "server/engine/whole_file.hpp"
 
@@ -21,48 +21,6 @@ using Json = nlohmann::json;
 template <typename Value>
 Json or_null(const std::optional<Value>& value) {
   return value ? Json(*value) : Json(nullptr);
-}
-
-double median_of(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  if (values.size() % 2 == 1) return *middle;
-  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
-}
-
-/// [[first, last], ...] of ascending frame numbers.
-Json ranges_of(const std::vector<std::int64_t>& frames) {
-  Json ranges = Json::array();
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    if (i > 0 && frames[i] == frames[i - 1] + 1) {
-      ranges.back()[1] = frames[i];
-    } else {
-      ranges.push_back({frames[i], frames[i]});
-    }
-  }
-  return ranges;
-}
-
-Json camera_metrics(const RunRecords& records) {
-  std::vector<double> texels;
-  double texels_min = 0.0;
-  double void_sum = 0.0;
-  double void_max = 0.0;
-  for (const FrameRecord& frame : records.frames) {
-    void_sum += frame.row.void_fraction;
-    void_max = std::max(void_max, frame.row.void_fraction);
-    if (frame.row.texels_per_pixel_median <= 0.0) continue;  // no imagery in sight
-    texels_min = texels.empty() ? frame.row.texels_per_pixel_min
-                                : std::min(texels_min, frame.row.texels_per_pixel_min);
-    texels.push_back(frame.row.texels_per_pixel_median);
-  }
-  const double count = std::max<double>(1.0, static_cast<double>(records.frames.size()));
-  return {{"frames", records.frames.size()},
-          {"late_frames", records.late_frames.size()},
-          {"late_frame_ranges", ranges_of(records.late_frames)},
-          {"texels_per_pixel", {{"min", texels_min}, {"median", median_of(texels)}}},
-          {"void_fraction", {{"mean", void_sum / count}, {"max", void_max}}}};
 }
 
 Json flight_metrics(const RunRecords& records, const Trajectory& truth) {
@@ -83,7 +41,7 @@ evaluation::Score score_of(const RunRecords& records,
                            const Trajectory& truth,
                            const EstimatorRecords& estimator) {
   evaluation::Options options;
-  options.T_body_camera = records.T_body_camera;
+  options.T_body_camera = records.mount_of(estimator.camera);
   if (const auto initial = initial_frame(records, estimator)) {
     options.init_true_depth_m = initial->true_depth_m;
   }
@@ -107,6 +65,12 @@ Status write_trajectories(const fs::path& folder,
                           const RunRecords& records,
                           const Trajectory& truth) {
   if (Status status = write_tum(truth_file(folder), truth); !status) return status;
+  for (std::size_t i = 0; i < records.other_cameras.size(); ++i) {
+    const Result<Trajectory> seen = truth_of(records, i + 1);
+    if (!seen) return seen.error();
+    const fs::path file = camera_truth_file(folder, records.other_cameras[i].name);
+    if (Status status = write_tum(file, *seen); !status) return status;
+  }
   for (const EstimatorRecords& estimator : records.estimators) {
     const auto initial = initial_frame(records, estimator);
     Trajectory trajectory;
@@ -192,7 +156,8 @@ Json metrics_from(const RunRecords& records) {
   const Trajectory trajectory = truth ? *truth : Trajectory();
   Json estimators = Json::object();
   for (const EstimatorRecords& estimator : records.estimators) {
-    Json entry = json_from(score_of(records, trajectory, estimator));
+    const Result<Trajectory> seen = truth_of(records, estimator.camera);
+    Json entry = json_from(score_of(records, seen ? *seen : Trajectory(), estimator));
     const std::vector<std::int64_t> dropped = dropped_frames(estimator);
     const auto initial = initial_frame(records, estimator);
     entry["map_id"] = initial ? Json(initial->map_id) : Json(nullptr);
@@ -202,10 +167,13 @@ Json metrics_from(const RunRecords& records) {
     entry["dropped_frame_ranges"] = ranges_of(dropped);
     estimators[estimator.name] = std::move(entry);
   }
-  return {{"format_version", 1},
-          {"camera", camera_metrics(records)},
-          {"flight", flight_metrics(records, trajectory)},
-          {"estimators", std::move(estimators)}};
+  Json metrics = {{"format_version", 1},
+                  {"camera", camera_metrics(records)},
+                  {"texture", texture_json(records.frames)},
+                  {"flight", flight_metrics(records, trajectory)},
+                  {"estimators", std::move(estimators)}};
+  if (!records.other_cameras.empty()) metrics["cameras"] = other_cameras_metrics(records);
+  return metrics;
 }
 
 Result<Json> write_derived(const fs::path& folder, const RunRecords& records) {

@@ -22,6 +22,10 @@ namespace overfly::engine {
 /// estimators have an outcome only.
 [[nodiscard]] nlohmann::json metrics_from(const RunRecords& records);
 
+/// True when the imagery under any camera is too coarse: metrics' `texture`, or that of one of
+/// `cameras`.
+[[nodiscard]] bool is_texture_limited(const nlohmann::json& metrics);
+
 /// Writes truth.tum, estimates/NAME.tum and metrics.json, each whole.
 /// @return the metrics. Errors: kIo.
 [[nodiscard]] Result<nlohmann::json> write_derived(const std::filesystem::path& folder,

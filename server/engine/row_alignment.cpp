@@ -40,6 +40,14 @@ Result<Similarity> similarity_from(const Json& value) {
   return Similarity{scale->get<double>(), T->rotation, T->translation};
 }
 
+/// The mount of the camera whose images an estimator gets.
+Pose mount_of_estimator(const RunTimeline& timeline, std::size_t estimator) {
+  const std::vector<std::string> names = timeline.info().estimator_cameras;
+  if (estimator >= names.size()) return timeline.T_body_camera();
+  const Result<std::size_t> camera = timeline.camera_index(names[estimator]);
+  return camera ? timeline.cameras()[*camera].T_body_camera : timeline.T_body_camera();
+}
+
 }  // namespace
 
 Result<RowAlignment> RowAlignment::of(const RunTimeline& timeline,
@@ -69,7 +77,8 @@ Result<RowAlignment> RowAlignment::of(const RunTimeline& timeline,
   const Result<Similarity> S_world_vo = similarity_from(*transform);
   if (!S_world_vo) return S_world_vo.error();
   RowAlignment alignment;
-  alignment.scored_ = Scored{*S_world_vo, timeline.T_body_camera().inverse(), map_id->get<int>()};
+  alignment.scored_ =
+      Scored{*S_world_vo, mount_of_estimator(timeline, estimator).inverse(), map_id->get<int>()};
   return alignment;
 }
 

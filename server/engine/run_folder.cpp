@@ -55,6 +55,10 @@ RunInfo info_or_throw(const Json& manifest) {
   info.texture_limited = manifest.value("texture_limited", false);
   for (const Json& estimator : manifest.at("estimators")) {
     info.estimators.push_back(estimator.at("name").get<std::string>());
+    info.estimator_cameras.push_back(estimator.value("camera", ""));
+  }
+  for (const Json& camera : manifest.value("cameras", Json::array())) {
+    info.cameras.push_back(camera.at("name").get<std::string>());
   }
   info.attribution = manifest.at("world").value("attribution", "");
   return info;
@@ -76,6 +80,18 @@ fs::path estimate_file(const fs::path& folder, const std::string& estimator) {
 
 fs::path estimate_tum_file(const fs::path& folder, const std::string& estimator) {
   return folder / "estimates" / (estimator + ".tum");
+}
+
+fs::path camera_frames_file(const fs::path& folder, const std::string& camera) {
+  return folder / "cameras" / (camera + ".jsonl");
+}
+
+fs::path camera_truth_file(const fs::path& folder, const std::string& camera) {
+  return folder / "cameras" / (camera + ".tum");
+}
+
+fs::path frame_image_file(const fs::path& folder, const std::string& camera, std::int64_t frame) {
+  return folder / "frames" / camera / numbered_jpg(frame);
 }
 
 fs::path frame_image_file(const fs::path& folder, std::int64_t frame) {

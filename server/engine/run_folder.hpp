@@ -26,6 +26,15 @@ inline constexpr int kRunFormatVersion = 1;
                                                   const std::string& estimator);
 [[nodiscard]] std::filesystem::path estimate_tum_file(const std::filesystem::path& folder,
                                                       const std::string& estimator);
+/// cameras/NAME.jsonl and cameras/NAME.tum, of all cameras but the main one
+[[nodiscard]] std::filesystem::path camera_frames_file(const std::filesystem::path& folder,
+                                                       const std::string& camera);
+[[nodiscard]] std::filesystem::path camera_truth_file(const std::filesystem::path& folder,
+                                                      const std::string& camera);
+/// frames/NAME/NNNNNN.jpg, of all cameras but the main one
+[[nodiscard]] std::filesystem::path frame_image_file(const std::filesystem::path& folder,
+                                                     const std::string& camera,
+                                                     std::int64_t frame);
 /// frames/NNNNNN.jpg and debug/NAME/NNNNNN.jpg
 [[nodiscard]] std::filesystem::path frame_image_file(const std::filesystem::path& folder,
                                                      std::int64_t frame);

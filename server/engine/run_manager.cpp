@@ -129,19 +129,15 @@ Result<fs::path> RunManager::folder(const std::string& id) const {
   return place;
 }
 
-Result<std::shared_ptr<const terrain::TileSource>> RunManager::world(const std::string& id) {
-  Result<std::shared_ptr<const terrain::World>> world = Error{};
-  if (std::optional<Scenario> scenario = impl_->active_scenario(id)) {
-    world = impl_->worlds.get(*scenario, {});
-  } else {
-    const Result<fs::path> place = folder(id);
-    if (!place) return place.error();
-    Result<Scenario> loaded = load_scenario(scenario_file(*place));
-    if (!loaded) return loaded.error();
-    world = impl_->worlds.get(*loaded, {});
-  }
-  if (!world) return world.error();
-  return std::shared_ptr<const terrain::TileSource>((*world)->tiles);
+Result<Scenario> RunManager::scenario_of(const std::string& id) const {
+  if (std::optional<Scenario> scenario = impl_->active_scenario(id)) return *scenario;
+  const Result<fs::path> place = folder(id);
+  if (!place) return place.error();
+  return load_scenario(scenario_file(*place));
+}
+
+Result<std::shared_ptr<const terrain::World>> RunManager::world(const Scenario& scenario) {
+  return impl_->worlds.get(scenario, {});
 }
 
 const RendererFactory& RunManager::renderer_factory() const {

@@ -51,8 +51,10 @@ class RunManager {
   Status remove(const std::string& id);
   /// Folder of a run. Errors: kNotFound, also for an id that is no plain folder name.
   [[nodiscard]] Result<std::filesystem::path> folder(const std::string& id) const;
-  /// The world of a run, shared between its views. Errors: as open_world.
-  [[nodiscard]] Result<std::shared_ptr<const terrain::TileSource>> world(const std::string& id);
+  /// The scenario that a run flies or flew. Errors: kNotFound; as load_scenario.
+  [[nodiscard]] Result<Scenario> scenario_of(const std::string& id) const;
+  /// The world of a scenario, shared with runs and views over it. Errors: as open_scenario_world.
+  [[nodiscard]] Result<std::shared_ptr<const terrain::World>> world(const Scenario& scenario);
   [[nodiscard]] const RendererFactory& renderer_factory() const;
 
  private:

@@ -39,9 +39,25 @@ Json estimators_json(const Scenario& scenario) {
   for (const EstimatorSpec& spec : scenario.estimators) {
     estimators.push_back({{"name", spec.name},
                           {"type", spec.type},
+                          {"camera", scenario.cameras[spec.camera].name},
                           {"test_estimator", is_test_estimator(spec.type)}});
   }
   return estimators;
+}
+
+Json camera_json(const CameraSpec& spec, const FrameRate& rate) {
+  Json entry = json_from(spec.model);
+  entry["name"] = spec.name;
+  entry["rate_hz"] = rate.hz();
+  entry["T_body_camera"] = json_from(spec.T_body_camera);
+  entry["color"] = spec.rgb ? "rgb" : "grey";
+  entry["bits"] = spec.sensor.bits;
+  entry["sensor"] = spec.sensor.enabled;
+  if (!spec.sensor.enabled) return entry;
+  entry["readout_ns"] = ns_from_s(spec.sensor.readout_s);
+  entry["gain_dn_per_e"] = spec.sensor.effective_gain_dn_per_e();
+  entry["adc_bits"] = spec.sensor.effective_adc_bits();
+  return entry;
 }
 
 Status write_jpeg(const fs::path& file, const Image& image, int quality) {
@@ -71,9 +87,20 @@ Result<std::unique_ptr<RunRecorder>> RunRecorder::create(const fs::path& folder,
   info.pacing = to_string(scenario.pacing);
   info.status = RunStatus::kRunning;
   info.estimators.clear();
+  info.estimator_cameras.clear();
   for (const EstimatorSpec& spec : scenario.estimators) {
     info.estimators.push_back(spec.name);
-    recorder->records_.estimators.push_back({spec.name, spec.type, {}});
+    info.estimator_cameras.push_back(scenario.cameras[spec.camera].name);
+    recorder->records_.estimators.push_back({spec.name, spec.type, {}, spec.camera});
+  }
+  info.cameras.clear();
+  for (const CameraSpec& camera : scenario.cameras) {
+    info.cameras.push_back(camera.name);
+    if (info.cameras.size() == 1) {
+      recorder->records_.T_body_camera = camera.T_body_camera;
+    } else {
+      recorder->records_.other_cameras.push_back({camera.name, camera.T_body_camera, {}});
+    }
   }
   if (info.created_utc.empty()) info.created_utc = utc_text(utc_now_ns());
   if (!timeline) timeline = std::make_shared<RunTimeline>(info, info.estimators);
@@ -97,21 +124,36 @@ Status RunRecorder::open_files() {
   }
   std::error_code failure;
   fs::create_directories(folder_ / "estimates", failure);
-  if (scenario_.record_frames) fs::create_directories(folder_ / "frames", failure);
-  Result<LineFile> frames = LineFile::create(frames_file(folder_));
-  if (!frames) return frames.error();
-  frame_lines_ = std::move(frames).value();
+  if (Status status = open_camera_files(); !status) return status;
   Result<LineFile> log = LineFile::create(log_file(folder_));
   if (!log) return log.error();
   log_lines_ = std::move(log).value();
   for (const std::string& name : info_.estimators) {
     Result<LineFile> lines = LineFile::create(estimate_file(folder_, name));
     if (!lines) return lines.error();
-    estimators_.push_back({std::move(lines).value(), LiveAlignment(records_.T_body_camera)});
+    const std::size_t camera = records_.estimators[estimators_.size()].camera;
+    estimators_.push_back({std::move(lines).value(), LiveAlignment(records_.mount_of(camera))});
     if (scenario_.record_debug_hz > 0.0) fs::create_directories(folder_ / "debug" / name, failure);
   }
   if (failure) return Error{ErrorCode::kIo, folder_.string() + ": " + failure.message()};
   timeline_->set_info(info_);
+  return {};
+}
+
+Status RunRecorder::open_camera_files() {
+  std::error_code failure;
+  const bool several = info_.cameras.size() > 1;
+  if (several) fs::create_directories(folder_ / "cameras", failure);
+  for (std::size_t i = 0; i < info_.cameras.size(); ++i) {
+    const std::string& name = info_.cameras[i];
+    const fs::path images = frame_image_file(folder_, i == 0 ? "" : name, 0).parent_path();
+    if (scenario_.record_frames) fs::create_directories(images, failure);
+    if (failure) return Error{ErrorCode::kIo, folder_.string() + ": " + failure.message()};
+    Result<LineFile> lines =
+        LineFile::create(i == 0 ? frames_file(folder_) : camera_frames_file(folder_, name));
+    if (!lines) return lines.error();
+    frame_lines_.push_back(std::move(lines).value());
+  }
   return {};
 }
 
@@ -121,14 +163,19 @@ Status RunRecorder::write_manifest() {
   return write_json(manifest_file(folder_), manifest_);
 }
 
-void RunRecorder::set_mount(const Pose& T_body_camera) {
-  records_.T_body_camera = T_body_camera;
-  for (EstimatorState& estimator : estimators_) estimator.alignment = LiveAlignment(T_body_camera);
-  const PinholeCamera& camera = scenario_.cameras.front().model.pinhole();
-  manifest_["camera"] = json_from(camera);
+void RunRecorder::set_cameras() {
+  std::vector<RunCamera> cameras;
+  Json entries = Json::array();
+  for (const CameraSpec& spec : scenario_.cameras) {
+    cameras.push_back({spec.name, spec.model, spec.T_body_camera});
+    entries.push_back(camera_json(spec, scenario_.rate));
+  }
+  const CameraSpec& main = scenario_.cameras.front();
+  manifest_["camera"] = json_from(main.model.pinhole());
   manifest_["camera"]["rate_hz"] = scenario_.rate.hz();
-  manifest_["camera"]["T_body_camera"] = json_from(T_body_camera);
-  timeline_->set_camera(camera, T_body_camera);
+  manifest_["camera"]["T_body_camera"] = json_from(main.T_body_camera);
+  manifest_["cameras"] = std::move(entries);
+  timeline_->set_cameras(std::move(cameras));
 }
 
 void RunRecorder::set_length(std::int64_t duration_ns, std::int64_t frames_total) {
@@ -141,15 +188,22 @@ void RunRecorder::set_attribution(const std::string& attribution) {
 }
 
 Status RunRecorder::add_frame(const FrameRecord& record,
-                              const std::shared_ptr<const Image>& image) {
-  if (Status status = frame_lines_->append(json_from(record)); !status) return status;
-  records_.frames.push_back(record);
-  timeline_->append_frame(record.row);
-  if (publish_images_) timeline_->set_live_camera({record.row.frame, record.row.t_ns, image});
-  if (scenario_.record_frames) {
-    const fs::path file = frame_image_file(folder_, record.row.frame);
+                              const std::shared_ptr<const Image>& image,
+                              std::size_t camera) {
+  const std::int64_t frame = record.row.frame;
+  if (Status status = frame_lines_[camera].append(json_from(record)); !status) return status;
+  std::vector<FrameRecord>& frames =
+      camera == 0 ? records_.frames : records_.other_cameras[camera - 1].frames;
+  frames.push_back(record);
+  timeline_->append_frame(record.row, camera);
+  if (publish_images_ && image) timeline_->set_live_camera({frame, record.row.t_ns, image}, camera);
+  if (scenario_.record_frames && image) {
+    const fs::path file = camera == 0
+                              ? frame_image_file(folder_, frame)
+                              : frame_image_file(folder_, scenario_.cameras[camera].name, frame);
     if (Status status = write_jpeg(file, *image, kFrameQuality); !status) return status;
   }
+  if (camera != 0) return {};
   ++info_.frames;
   timeline_->set_info(info_);
   return {};
@@ -157,16 +211,7 @@ Status RunRecorder::add_frame(const FrameRecord& record,
 
 Status RunRecorder::add_late_frame(std::int64_t frame, std::int64_t t_ns) {
   records_.late_frames.push_back(frame);
-  return frame_lines_->append({{"frame", frame}, {"t_ns", t_ns}, {"late", true}});
-}
-
-const FrameRecord* RunRecorder::frame_record(std::int64_t frame) const {
-  const auto found = std::lower_bound(
-      records_.frames.begin(),
-      records_.frames.end(),
-      frame,
-      [](const FrameRecord& record, std::int64_t number) { return record.row.frame < number; });
-  return found != records_.frames.end() && found->row.frame == frame ? &*found : nullptr;
+  return frame_lines_.front().append({{"frame", frame}, {"t_ns", t_ns}, {"late", true}});
 }
 
 Status RunRecorder::add_event(std::size_t estimator, EstimatorEvent event) {
@@ -184,7 +229,8 @@ Status RunRecorder::add_answer(std::size_t estimator, EstimatorEvent& event) {
   EstimateRow row;
   row.sample = event.record.sample;
   row.latency_ms = event.latency_ms;
-  if (const FrameRecord* frame = frame_record(row.sample.frame)) {
+  const std::size_t camera = records_.estimators[estimator].camera;
+  if (const FrameRecord* frame = frame_record(records_, camera, row.sample.frame)) {
     row.T_world_body =
         state.alignment.add(row.sample, frame->row.T_world_camera, frame->axis_depth_m);
   }
@@ -231,8 +277,11 @@ Status RunRecorder::log_transition(std::size_t estimator, const EstimateRecord& 
                                                                 : " initialises"));
 }
 
-Status RunRecorder::log(std::int64_t t_ns, const std::string& level, const std::string& text) {
-  const LogRow row{t_ns, level, text, ""};
+Status RunRecorder::log(std::int64_t t_ns,
+                        const std::string& level,
+                        const std::string& text,
+                        const std::string& kind) {
+  const LogRow row{t_ns, level, text, kind};
   timeline_->append_log(row);
   return log_lines_->append(json_from(row));
 }
@@ -257,6 +306,7 @@ Result<Json> RunRecorder::finish(RunStatus status, const std::string& error, Jso
   info_.status = status;
   info_.error = error;
   Result<Json> metrics = write_derived(folder_, records_);
+  info_.texture_limited = metrics && is_texture_limited(*metrics);
   if (!metrics) {
     info_.status = RunStatus::kFailed;
     if (info_.error.empty()) info_.error = metrics.error().message;

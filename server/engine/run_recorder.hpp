@@ -35,14 +35,22 @@ class RunRecorder {
   [[nodiscard]] nlohmann::json& manifest() { return manifest_; }
   Status write_manifest();
 
-  void set_mount(const Pose& T_body_camera);
+  /// Tells manifest and timeline of the cameras.
+  void set_cameras();
   void set_length(std::int64_t duration_ns, std::int64_t frames_total);
   void set_attribution(const std::string& attribution);
 
-  Status add_frame(const FrameRecord& record, const std::shared_ptr<const Image>& image);
+  /// The main camera's (0) record first, then those of the others.
+  /// @param image  null when it got lost: then there is none to keep or to show
+  Status add_frame(const FrameRecord& record,
+                   const std::shared_ptr<const Image>& image,
+                   std::size_t camera = 0);
   Status add_late_frame(std::int64_t frame, std::int64_t t_ns);
   Status add_event(std::size_t estimator, EstimatorEvent event);
-  Status log(std::int64_t t_ns, const std::string& level, const std::string& text);
+  Status log(std::int64_t t_ns,
+             const std::string& level,
+             const std::string& text,
+             const std::string& kind = "");
 
   /// Derives trajectories and metrics, writes timings and the final manifest, lets the folder go.
   /// @param timings  wall-clock facts to put beside the estimators'
@@ -64,10 +72,10 @@ class RunRecorder {
 
   RunRecorder(std::filesystem::path folder, RunLock lock, const Scenario& scenario);
   Status open_files();
+  Status open_camera_files();
   Status add_answer(std::size_t estimator, EstimatorEvent& event);
   Status log_transition(std::size_t estimator, const EstimateRecord& record);
   Status keep_debug_image(std::size_t estimator, EstimatorEvent& event);
-  [[nodiscard]] const FrameRecord* frame_record(std::int64_t frame) const;
   Status write_timings(nlohmann::json timings) const;
 
   std::filesystem::path folder_;
@@ -78,7 +86,7 @@ class RunRecorder {
   RunInfo info_;
   nlohmann::json manifest_ = nlohmann::json::object();
   RunRecords records_;
-  std::optional<LineFile> frame_lines_;
+  std::vector<LineFile> frame_lines_;  ///< by camera
   std::optional<LineFile> log_lines_;
   std::vector<EstimatorState> estimators_;
 };

@@ -36,6 +36,25 @@ Status read_mount(const Json& manifest, RunRecords& records) {
   return {};
 }
 
+/// Cameras besides the main one, and whose images each estimator got.
+Status read_cameras(const Json& manifest, RunRecords& records) {
+  std::vector<std::string> names;
+  for (const Json& camera : manifest.value("cameras", Json::array())) {
+    names.push_back(camera.at("name").get<std::string>());
+    if (names.size() == 1) continue;
+    const Result<Pose> mount = pose_from(camera.at("T_body_camera"));
+    if (!mount) return mount.error().in("cameras." + names.back() + ".T_body_camera");
+    records.other_cameras.push_back({names.back(), *mount, {}});
+  }
+  for (std::size_t i = 0; i < records.estimators.size(); ++i) {
+    const std::string camera = manifest.at("estimators").at(i).value("camera", "");
+    const auto named = std::find(names.begin(), names.end(), camera);
+    if (named == names.end()) continue;
+    records.estimators[i].camera = static_cast<std::size_t>(named - names.begin());
+  }
+  return {};
+}
+
 Status read_frames(const fs::path& folder, RunRecords& records) {
   return for_each_row(frames_file(folder), [&](const Json& line) -> Status {
     if (line.is_object() && line.value("late", false)) {
@@ -45,6 +64,16 @@ Status read_frames(const fs::path& folder, RunRecords& records) {
     Result<FrameRecord> record = frame_record_from(line, records.T_body_camera);
     if (!record) return record.error();
     records.frames.push_back(std::move(*record));
+    return {};
+  });
+}
+
+Status read_camera_frames(const fs::path& folder, CameraRecords& camera) {
+  const fs::path file = camera_frames_file(folder, camera.name);
+  return for_each_row(file, [&](const Json& line) -> Status {
+    Result<FrameRecord> record = frame_record_from(line, camera.T_body_camera);
+    if (!record) return record.error();
+    camera.frames.push_back(std::move(*record));
     return {};
   });
 }
@@ -71,25 +100,40 @@ Result<RunRecords> read_run_records(const fs::path& folder) {
     if (Status status = read_mount(*manifest, records); !status) return status.error().in(origin);
     for (const Json& entry : manifest->at("estimators")) {
       records.estimators.push_back(
-          {entry.at("name").get<std::string>(), entry.at("type").get<std::string>(), {}});
+          {entry.at("name").get<std::string>(), entry.at("type").get<std::string>(), {}, 0});
+    }
+    if (Status status = read_cameras(*manifest, records); !status) {
+      return status.error().in(origin);
     }
   } catch (const Json::exception& error) {
     return Error{ErrorCode::kUnreadable, origin + ": " + error.what()};
   }
   if (Status status = read_frames(folder, records); !status) return status.error();
+  for (CameraRecords& camera : records.other_cameras) {
+    if (Status status = read_camera_frames(folder, camera); !status) return status.error();
+  }
   for (EstimatorRecords& estimator : records.estimators) {
     if (Status status = read_estimator(folder, estimator); !status) return status.error();
   }
   return records;
 }
 
-Result<Trajectory> truth_of(const RunRecords& records) {
+Result<Trajectory> truth_of(const RunRecords& records, std::size_t camera) {
   std::vector<StampedPose> poses;
-  poses.reserve(records.frames.size());
-  for (const FrameRecord& frame : records.frames) {
+  poses.reserve(records.frames_of(camera).size());
+  for (const FrameRecord& frame : records.frames_of(camera)) {
     poses.push_back({frame.row.t_ns, frame.row.T_world_camera});
   }
   return Trajectory::from_poses(poses);
+}
+
+const FrameRecord* frame_record(const RunRecords& records, std::size_t camera, std::int64_t frame) {
+  const std::vector<FrameRecord>& frames = records.frames_of(camera);
+  const auto found = std::lower_bound(
+      frames.begin(), frames.end(), frame, [](const FrameRecord& record, std::int64_t number) {
+        return record.row.frame < number;
+      });
+  return found != frames.end() && found->row.frame == frame ? &*found : nullptr;
 }
 
 EstimateTrack track_of(const EstimatorRecords& estimator) {
@@ -117,12 +161,7 @@ std::optional<InitialFrame> initial_frame(const RunRecords& records,
       });
   const EstimateSample& sample = first.at(longest->first)->sample;
   InitialFrame initial{sample.frame, sample.map_id, std::nullopt, sample.scene_depth};
-  const auto frame = std::lower_bound(
-      records.frames.begin(),
-      records.frames.end(),
-      sample.frame,
-      [](const FrameRecord& record, std::int64_t number) { return record.row.frame < number; });
-  if (frame != records.frames.end() && frame->row.frame == sample.frame) {
+  if (const FrameRecord* frame = frame_record(records, estimator.camera, sample.frame)) {
     initial.true_depth_m = frame->axis_depth_m;
   }
   return initial;

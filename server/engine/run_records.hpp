@@ -16,13 +16,30 @@ struct EstimatorRecords {
   std::string name;
   std::string type;
   std::vector<EstimateRecord> records;  ///< by frame, drops among them
+  std::size_t camera = 0;               ///< index: 0 = the main one
+};
+
+/// Of a camera that is not the main one.
+struct CameraRecords {
+  std::string name;
+  Pose T_body_camera{R_body_camera_nadir(), Eigen::Vector3d::Zero()};
+  std::vector<FrameRecord> frames;
 };
 
 struct RunRecords {
   Pose T_body_camera{R_body_camera_nadir(), Eigen::Vector3d::Zero()};
   std::vector<FrameRecord> frames;
-  std::vector<std::int64_t> late_frames;  ///< never drawn, since their time had passed
+  std::vector<CameraRecords> other_cameras;  ///< all but the main one, which is above
+  std::vector<std::int64_t> late_frames;     ///< never drawn, since their time had passed
   std::vector<EstimatorRecords> estimators;
+
+  /// By index; 0 = the main camera.
+  [[nodiscard]] const Pose& mount_of(std::size_t camera) const {
+    return camera == 0 ? T_body_camera : other_cameras.at(camera - 1).T_body_camera;
+  }
+  [[nodiscard]] const std::vector<FrameRecord>& frames_of(std::size_t camera) const {
+    return camera == 0 ? frames : other_cameras.at(camera - 1).frames;
+  }
 };
 
 /// True for the types that are given the truth.
@@ -32,8 +49,12 @@ struct RunRecords {
 /// Errors: kNotFound without a manifest; kUnreadable naming file and row.
 [[nodiscard]] Result<RunRecords> read_run_records(const std::filesystem::path& folder);
 
-/// T_world_camera of every frame.
-[[nodiscard]] Result<Trajectory> truth_of(const RunRecords& records);
+/// T_world_camera of every frame of a camera.
+[[nodiscard]] Result<Trajectory> truth_of(const RunRecords& records, std::size_t camera = 0);
+/// A camera's record of one frame; null when there is none.
+[[nodiscard]] const FrameRecord* frame_record(const RunRecords& records,
+                                              std::size_t camera,
+                                              std::int64_t frame);
 /// The answers of one estimator without the drops.
 [[nodiscard]] EstimateTrack track_of(const EstimatorRecords& estimator);
 

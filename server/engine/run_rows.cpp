@@ -1,5 +1,6 @@
 #include "server/engine/run_rows.hpp"
 
+#include <algorithm>
 #include <functional>
 #include <vector>
 
@@ -44,6 +45,17 @@ Json json_from(const PinholeCamera& camera) {
           {"cy_px", camera.cy_px}};
 }
 
+Json json_from(const CameraModel& camera) {
+  Json value = json_from(camera.pinhole());
+  const Distortion& distortion = camera.distortion();
+  const auto count = static_cast<std::size_t>(coefficient_count(distortion.model));
+  Json coefficients = Json::array();
+  for (std::size_t i = 0; i < count; ++i) coefficients.push_back(distortion.k[i]);
+  value["distortion"] = {{"model", to_string(distortion.model)},
+                         {"coefficients", std::move(coefficients)}};
+  return value;
+}
+
 Json json_from(const FrameRecord& record) {
   const FrameRow& row = record.row;
   Json value = {{"frame", row.frame},
@@ -54,6 +66,7 @@ Json json_from(const FrameRecord& record) {
                  {{"min", row.texels_per_pixel_min}, {"median", row.texels_per_pixel_median}}},
                 {"void_fraction", row.void_fraction}};
   if (record.axis_depth_m) value["axis_depth_m"] = *record.axis_depth_m;
+  if (record.shaken) value["T_world_body"] = json_from(row.T_world_body);
   if (row.exposure_ns != 0) value["gain"] = row.gain;
   if (row.saturated_fraction > 0.0) value["saturated_fraction"] = row.saturated_fraction;
   if (row.late_tiles != 0) value["late_tiles"] = row.late_tiles;
@@ -102,6 +115,21 @@ Result<PinholeCamera> camera_from(const Json& value) {
   });
 }
 
+Result<CameraModel> camera_model_from(const Json& value) {
+  const Result<PinholeCamera> pinhole = camera_from(value);
+  if (!pinhole) return pinhole.error();
+  if (!value.contains("distortion")) return CameraModel(*pinhole);
+  return guarded<CameraModel>([&] {
+    const Json& lens = value.at("distortion");
+    Distortion distortion;
+    distortion.model =
+        distortion_model_from(lens.at("model").get<std::string>()).value_or(DistortionModel::kNone);
+    const auto k = lens.at("coefficients").get<std::vector<double>>();
+    std::copy_n(k.begin(), std::min(k.size(), distortion.k.size()), distortion.k.begin());
+    return CameraModel(*pinhole, distortion);
+  });
+}
+
 Result<FrameRecord> frame_record_from(const Json& value, const Pose& T_body_camera) {
   return guarded<FrameRecord>([&] {
     FrameRecord record;
@@ -109,6 +137,8 @@ Result<FrameRecord> frame_record_from(const Json& value, const Pose& T_body_came
     record.row.t_ns = value.at("t_ns").get<std::int64_t>();
     record.row.T_world_camera = pose_or_throw(value.at("T_world_camera"));
     record.row.T_world_body = record.row.T_world_camera * T_body_camera.inverse();
+    record.shaken = value.contains("T_world_body");
+    if (record.shaken) record.row.T_world_body = pose_or_throw(value.at("T_world_body"));
     record.row.exposure_ns = value.at("exposure_ns").get<std::int64_t>();
     record.row.gain = value.value("gain", 1.0);
     record.row.saturated_fraction = value.value("saturated_fraction", 0.0);

@@ -17,6 +17,8 @@ namespace overfly::engine {
 struct FrameRecord {
   FrameRow row;
   std::optional<double> axis_depth_m;  ///< of the ground along the optical axis
+  /// The camera shakes on its mount: the body's pose is not that of the camera at rest.
+  bool shaken = false;
 };
 
 /// One line of estimates/NAME.jsonl: an answer, or a frame that a busy estimator never got.
@@ -30,6 +32,8 @@ struct EstimateRecord {
 /// {"p_m": [x, y, z], "q_xyzw": [x, y, z, w]}
 [[nodiscard]] nlohmann::json json_from(const Pose& T);
 [[nodiscard]] nlohmann::json json_from(const PinholeCamera& camera);
+/// With `distortion` {"model", "coefficients"}.
+[[nodiscard]] nlohmann::json json_from(const CameraModel& camera);
 [[nodiscard]] nlohmann::json json_from(const FrameRecord& record);
 [[nodiscard]] nlohmann::json json_from(const EstimateRecord& record);
 [[nodiscard]] nlohmann::json json_from(const LogRow& row);
@@ -37,6 +41,8 @@ struct EstimateRecord {
 // The way back. Errors: kUnreadable naming the field.
 [[nodiscard]] Result<Pose> pose_from(const nlohmann::json& value);
 [[nodiscard]] Result<PinholeCamera> camera_from(const nlohmann::json& value);
+/// Without a distortion where none is named.
+[[nodiscard]] Result<CameraModel> camera_model_from(const nlohmann::json& value);
 /// `T_body_camera` gives the row its pose of the body.
 [[nodiscard]] Result<FrameRecord> frame_record_from(const nlohmann::json& value,
                                                     const Pose& T_body_camera);

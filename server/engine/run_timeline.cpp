@@ -49,7 +49,7 @@ const char* to_string(RunStatus status) {
 RunTimeline::RunTimeline(RunInfo info, std::vector<std::string> estimators)
     : info_(std::move(info)),
       estimators_(std::move(estimators)),
-      T_body_camera_{R_body_camera_nadir(), Eigen::Vector3d::Zero()},
+      cameras_(1),
       estimates_(estimators_.size()) {}
 
 RunInfo RunTimeline::info() const {
@@ -59,12 +59,28 @@ RunInfo RunTimeline::info() const {
 
 PinholeCamera RunTimeline::camera() const {
   const std::lock_guard lock(mutex_);
-  return camera_;
+  return cameras_.front().camera.model.pinhole();
+}
+
+std::vector<RunCamera> RunTimeline::cameras() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<RunCamera> cameras;
+  for (const CameraRows& entry : cameras_) cameras.push_back(entry.camera);
+  return cameras;
+}
+
+Result<std::size_t> RunTimeline::camera_index(const std::string& name) const {
+  if (name.empty()) return std::size_t{0};
+  const std::lock_guard lock(mutex_);
+  for (std::size_t i = 0; i < cameras_.size(); ++i) {
+    if (cameras_[i].camera.name == name) return i;
+  }
+  return Error{ErrorCode::kNotFound, "camera \"" + name + "\": the run has none of that name"};
 }
 
 Pose RunTimeline::T_body_camera() const {
   const std::lock_guard lock(mutex_);
-  return T_body_camera_;
+  return cameras_.front().camera.T_body_camera;
 }
 
 nlohmann::json RunTimeline::metrics() const {
@@ -72,9 +88,11 @@ nlohmann::json RunTimeline::metrics() const {
   return metrics_;
 }
 
-std::vector<FrameRow> RunTimeline::frames(std::size_t first, std::size_t limit) const {
+std::vector<FrameRow> RunTimeline::frames(std::size_t first,
+                                          std::size_t limit,
+                                          std::size_t camera) const {
   const std::lock_guard lock(mutex_);
-  return slice(frames_, first, limit);
+  return slice(cameras_.at(camera).rows, first, limit);
 }
 
 std::vector<EstimateRow> RunTimeline::estimates(std::size_t estimator,
@@ -91,7 +109,7 @@ std::vector<LogRow> RunTimeline::logs(std::size_t first, std::size_t limit) cons
 
 std::size_t RunTimeline::frame_count() const {
   const std::lock_guard lock(mutex_);
-  return frames_.size();
+  return cameras_.front().rows.size();
 }
 
 std::size_t RunTimeline::estimate_count(std::size_t estimator) const {
@@ -99,9 +117,9 @@ std::size_t RunTimeline::estimate_count(std::size_t estimator) const {
   return estimates_.at(estimator).rows.size();
 }
 
-std::optional<FrameRow> RunTimeline::frame_at(std::int64_t t_ns) const {
+std::optional<FrameRow> RunTimeline::frame_at(std::int64_t t_ns, std::size_t camera) const {
   const std::lock_guard lock(mutex_);
-  return last_at(frames_, t_ns, [](const FrameRow& row) { return row.t_ns; });
+  return last_at(cameras_.at(camera).rows, t_ns, [](const FrameRow& row) { return row.t_ns; });
 }
 
 std::optional<EstimateRow> RunTimeline::estimate_at(std::size_t estimator,
@@ -111,9 +129,9 @@ std::optional<EstimateRow> RunTimeline::estimate_at(std::size_t estimator,
       estimates_.at(estimator).rows, t_ns, [](const EstimateRow& row) { return row.sample.t_ns; });
 }
 
-std::optional<StampedImage> RunTimeline::live_camera() const {
+std::optional<StampedImage> RunTimeline::live_camera(std::size_t camera) const {
   const std::lock_guard lock(mutex_);
-  return live_camera_;
+  return cameras_.at(camera).live;
 }
 
 std::optional<StampedImage> RunTimeline::live_debug(std::size_t estimator) const {
@@ -142,11 +160,15 @@ void RunTimeline::changed() {
   changed_.notify_all();
 }
 
-void RunTimeline::set_camera(const PinholeCamera& camera, const Pose& T_body_camera) {
+void RunTimeline::set_cameras(std::vector<RunCamera> cameras) {
   const std::lock_guard lock(mutex_);
-  camera_ = camera;
-  T_body_camera_ = T_body_camera;
+  cameras_.clear();
+  for (RunCamera& camera : cameras) cameras_.push_back({std::move(camera), {}, {}});
   changed();
+}
+
+void RunTimeline::set_camera(const PinholeCamera& camera, const Pose& T_body_camera) {
+  set_cameras({{"", camera, T_body_camera}});
 }
 
 void RunTimeline::set_info(const RunInfo& info) {
@@ -155,7 +177,7 @@ void RunTimeline::set_info(const RunInfo& info) {
   const bool live = info.status == RunStatus::kQueued || info.status == RunStatus::kRunning;
   if (!live) {
     // Pictures of a run that is over are read from its folder or drawn again.
-    live_camera_.reset();
+    for (CameraRows& camera : cameras_) camera.live.reset();
     for (EstimatorRows& rows : estimates_) {
       rows.debug.reset();
       rows.points.clear();
@@ -164,9 +186,9 @@ void RunTimeline::set_info(const RunInfo& info) {
   changed();
 }
 
-void RunTimeline::append_frame(const FrameRow& row) {
+void RunTimeline::append_frame(const FrameRow& row, std::size_t camera) {
   const std::lock_guard lock(mutex_);
-  frames_.push_back(row);
+  cameras_.at(camera).rows.push_back(row);
   changed();
 }
 
@@ -188,9 +210,9 @@ void RunTimeline::set_metrics(nlohmann::json metrics) {
   changed();
 }
 
-void RunTimeline::set_live_camera(StampedImage image) {
+void RunTimeline::set_live_camera(StampedImage image, std::size_t camera) {
   const std::lock_guard lock(mutex_);
-  live_camera_ = std::move(image);
+  cameras_.at(camera).live = std::move(image);
   changed();
 }
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "core/camera.hpp"
+#include "core/camera_model.hpp"
 #include "core/estimate.hpp"
 #include "core/image.hpp"
 #include "core/pose.hpp"
@@ -73,12 +73,21 @@ struct RunInfo {
   std::int64_t frames_total = 0;
   std::string pacing;
   std::vector<std::string> estimators;
+  std::vector<std::string> estimator_cameras;  ///< whose images each estimator gets
   std::string attribution;
+  std::vector<std::string> cameras;  ///< names, the main one first
   /// The imagery, not the camera, limits the result: fewer than 0.5 texels a pixel (median).
   bool texture_limited = false;
   /// What it is busy with before its first frame ("making the built-in world: 30 %"); empty
   /// otherwise. Of this process only: no file keeps it.
   std::string notice;
+};
+
+/// One camera of a run.
+struct RunCamera {
+  std::string name;
+  CameraModel model;
+  Pose T_body_camera{R_body_camera_nadir(), Eigen::Vector3d::Zero()};
 };
 
 /// Thread-safe. Rows are only ever appended and are numbered from 0: a reader asks for the rows
@@ -92,14 +101,20 @@ class RunTimeline {
 
   [[nodiscard]] RunInfo info() const;
   [[nodiscard]] const std::vector<std::string>& estimators() const { return estimators_; }
-  /// Camera of the run and its mount.
+  /// The cameras, the main one first; there is always one.
+  [[nodiscard]] std::vector<RunCamera> cameras() const;
+  /// Index of a camera by its name; empty name = the main one. Errors: kNotFound naming it.
+  [[nodiscard]] Result<std::size_t> camera_index(const std::string& name) const;
+  /// Main camera of the run and its mount.
   [[nodiscard]] PinholeCamera camera() const;
   [[nodiscard]] Pose T_body_camera() const;
   /// Empty object until the run is scored.
   [[nodiscard]] nlohmann::json metrics() const;
 
-  /// Copies rows [first, first + at most `limit`).
-  [[nodiscard]] std::vector<FrameRow> frames(std::size_t first, std::size_t limit) const;
+  /// Copies rows [first, first + at most `limit`); of the main camera where none is named.
+  [[nodiscard]] std::vector<FrameRow> frames(std::size_t first,
+                                             std::size_t limit,
+                                             std::size_t camera = 0) const;
   [[nodiscard]] std::vector<EstimateRow> estimates(std::size_t estimator,
                                                    std::size_t first,
                                                    std::size_t limit) const;
@@ -107,12 +122,12 @@ class RunTimeline {
   [[nodiscard]] std::size_t frame_count() const;
   [[nodiscard]] std::size_t estimate_count(std::size_t estimator) const;
   /// Row of the last frame stamped at or before t; empty before the first.
-  [[nodiscard]] std::optional<FrameRow> frame_at(std::int64_t t_ns) const;
+  [[nodiscard]] std::optional<FrameRow> frame_at(std::int64_t t_ns, std::size_t camera = 0) const;
   [[nodiscard]] std::optional<EstimateRow> estimate_at(std::size_t estimator,
                                                        std::int64_t t_ns) const;
 
   /// The newest pictures of a live run; empty after it.
-  [[nodiscard]] std::optional<StampedImage> live_camera() const;
+  [[nodiscard]] std::optional<StampedImage> live_camera(std::size_t camera = 0) const;
   [[nodiscard]] std::optional<StampedImage> live_debug(std::size_t estimator) const;
   /// Sparse map points seen last, world frame.
   [[nodiscard]] std::vector<Eigen::Vector3f> live_points(std::size_t estimator) const;
@@ -123,13 +138,15 @@ class RunTimeline {
   std::uint64_t wait_for_change(std::uint64_t seen, std::int64_t timeout_ms) const;
 
   // The writer's side: the run that feeds it.
-  void set_camera(const PinholeCamera& camera, const Pose& T_body_camera);
+  /// @pre !cameras.empty(), and no frame is there yet
+  void set_cameras(std::vector<RunCamera> cameras);
+  void set_camera(const PinholeCamera& camera, const Pose& T_body_camera);  ///< the only one
   void set_info(const RunInfo& info);
-  void append_frame(const FrameRow& row);
+  void append_frame(const FrameRow& row, std::size_t camera = 0);
   void append_estimate(std::size_t estimator, const EstimateRow& row);
   void append_log(const LogRow& row);
   void set_metrics(nlohmann::json metrics);
-  void set_live_camera(StampedImage image);
+  void set_live_camera(StampedImage image, std::size_t camera = 0);
   void set_live_debug(std::size_t estimator, StampedImage image);
   void set_live_points(std::size_t estimator, std::vector<Eigen::Vector3f> points_world);
 
@@ -139,6 +156,11 @@ class RunTimeline {
     std::optional<StampedImage> debug;
     std::vector<Eigen::Vector3f> points;
   };
+  struct CameraRows {
+    RunCamera camera;
+    std::vector<FrameRow> rows;
+    std::optional<StampedImage> live;
+  };
   void changed();
 
   mutable std::mutex mutex_;
@@ -146,13 +168,10 @@ class RunTimeline {
   std::uint64_t revision_ = 0;
   RunInfo info_;
   std::vector<std::string> estimators_;
-  PinholeCamera camera_;
-  Pose T_body_camera_;
+  std::vector<CameraRows> cameras_;
   nlohmann::json metrics_ = nlohmann::json::object();
-  std::vector<FrameRow> frames_;
   std::vector<EstimatorRows> estimates_;
   std::vector<LogRow> logs_;
-  std::optional<StampedImage> live_camera_;
 };
 
 }  // namespace overfly::engine

@@ -13,7 +13,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
-using FramesByNumber = std::unordered_map<std::int64_t, const FrameRecord*>;
 
 /// Latencies by frame, as timings.json has them once the run is over.
 std::unordered_map<std::int64_t, double> read_latencies(const Json& timings,
@@ -32,21 +31,20 @@ std::unordered_map<std::int64_t, double> read_latencies(const Json& timings,
   return latencies;
 }
 
-void append_estimates(const EstimatorRecords& estimator,
+void append_estimates(const RunRecords& records,
                       std::size_t index,
-                      const FramesByNumber& frames,
                       const Json& timings,
                       RunTimeline& timeline) {
+  const EstimatorRecords& estimator = records.estimators[index];
   const auto latencies = read_latencies(timings, estimator.name);
-  LiveAlignment alignment(timeline.T_body_camera());
+  LiveAlignment alignment(records.mount_of(estimator.camera));
   for (const EstimateRecord& record : estimator.records) {
-    const auto frame = frames.find(record.sample.frame);
+    const FrameRecord* frame = frame_record(records, estimator.camera, record.sample.frame);
     // A kill can cut the frames' file shorter than this one.
-    if (record.dropped || frame == frames.end()) continue;
+    if (record.dropped || frame == nullptr) continue;
     EstimateRow row;
     row.sample = record.sample;
-    row.T_world_body = alignment.add(
-        record.sample, frame->second->row.T_world_camera, frame->second->axis_depth_m);
+    row.T_world_body = alignment.add(record.sample, frame->row.T_world_camera, frame->axis_depth_m);
     const auto latency = latencies.find(record.sample.frame);
     if (latency != latencies.end()) row.latency_ms = latency->second;
     timeline.append_estimate(index, row);
@@ -68,15 +66,31 @@ Status append_logs(const fs::path& folder, RunTimeline& timeline) {
 Status append_records(const fs::path& folder, const RunRecords& records, RunTimeline& timeline) {
   Json timings = Json::object();
   if (Result<Json> read = read_json(timings_file(folder)); read) timings = std::move(*read);
-  FramesByNumber frames;
-  for (const FrameRecord& record : records.frames) {
-    timeline.append_frame(record.row);
-    frames.emplace(record.row.frame, &record);
+  for (const FrameRecord& record : records.frames) timeline.append_frame(record.row);
+  for (std::size_t i = 0; i < records.other_cameras.size(); ++i) {
+    for (const FrameRecord& record : records.other_cameras[i].frames) {
+      timeline.append_frame(record.row, i + 1);
+    }
   }
   for (std::size_t i = 0; i < records.estimators.size(); ++i) {
-    append_estimates(records.estimators[i], i, frames, timings, timeline);
+    append_estimates(records, i, timings, timeline);
   }
   return append_logs(folder, timeline);
+}
+
+/// Runs of one camera may say so in `camera` alone.
+Status tell_cameras(const Json& manifest, const RunRecords& records, RunTimeline& timeline) {
+  if (!manifest.contains("camera")) return {};
+  Json entries = manifest.value("cameras", Json::array());
+  if (entries.empty()) entries.push_back(manifest.at("camera"));
+  std::vector<RunCamera> cameras;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const Result<CameraModel> model = camera_model_from(entries[i]);
+    if (!model) return model.error().in("cameras." + std::to_string(i));
+    cameras.push_back({entries[i].value("name", ""), *model, records.mount_of(i)});
+  }
+  timeline.set_cameras(std::move(cameras));
+  return {};
 }
 
 }  // namespace
@@ -90,10 +104,8 @@ Result<std::shared_ptr<RunTimeline>> RunTimeline::open(const fs::path& folder) {
   if (!records) return records.error();
 
   auto timeline = std::make_shared<RunTimeline>(*info, info->estimators);
-  if (manifest->contains("camera")) {
-    const Result<PinholeCamera> camera = camera_from(manifest->at("camera"));
-    if (!camera) return camera.error().in(manifest_file(folder).string() + ": camera");
-    timeline->set_camera(*camera, records->T_body_camera);
+  if (Status status = tell_cameras(*manifest, *records, *timeline); !status) {
+    return status.error().in(manifest_file(folder).string());
   }
   if (Status status = append_records(folder, *records, *timeline); !status) return status.error();
   if (fs::exists(metrics_file(folder))) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <limits>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -17,11 +18,11 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMaxRibbons = 4;
 
-std::optional<FrameRow> row_of(const RunTimeline& timeline, const PictureRequest& request) {
-  if (!request.live) return timeline.frame_at(request.t_ns);
-  const std::size_t count = timeline.frame_count();
-  if (count == 0) return std::nullopt;
-  return timeline.frames(count - 1, 1).front();
+std::optional<FrameRow> row_of(const RunTimeline& timeline,
+                               const PictureRequest& request,
+                               std::size_t camera) {
+  if (!request.live) return timeline.frame_at(request.t_ns, camera);
+  return timeline.frame_at(std::numeric_limits<std::int64_t>::max(), camera);
 }
 
 /// Number of the last picture NNNNNN.jpg in a folder at or before `frame`.
@@ -57,11 +58,13 @@ std::int64_t stamp_before(const RunTimeline& timeline, const FrameRow& row, std:
 Result<Picture> ViewPainter::paint(const PictureRequest& request) {
   auto timeline = runs_.timeline(request.run_id);
   if (!timeline) return timeline.error();
-  const auto row = row_of(**timeline, request);
+  const Result<std::size_t> camera = (*timeline)->camera_index(request.camera);
+  if (!camera) return camera.error();
+  const auto row = row_of(**timeline, request, *camera);
   if (!row) return Error{ErrorCode::kNotFound, "run " + request.run_id + " has no frame yet"};
   switch (request.kind) {
     case PictureRequest::Kind::kCamera:
-      return paint_camera(request, **timeline, *row);
+      return paint_camera(request, **timeline, *camera, *row);
     case PictureRequest::Kind::kDebug:
       return paint_debug(request, **timeline, *row);
     case PictureRequest::Kind::kScene:
@@ -72,25 +75,24 @@ Result<Picture> ViewPainter::paint(const PictureRequest& request) {
 
 Result<Picture> ViewPainter::paint_camera(const PictureRequest& request,
                                           const RunTimeline& timeline,
+                                          std::size_t camera,
                                           const FrameRow& row) {
-  const auto live = timeline.live_camera();
+  const auto live = timeline.live_camera(camera);
   if (live && live->image && (request.live || live->frame == row.frame)) {
     return encoder_.encode(*live, request.quality, request.max_width_px);
   }
   const auto folder = runs_.folder(request.run_id);
   if (!folder) return folder.error();
-  const fs::path recorded = frame_image_file(*folder, row.frame);
+  const fs::path recorded = camera == 0 ? frame_image_file(*folder, row.frame)
+                                        : frame_image_file(*folder, request.camera, row.frame);
   std::error_code error;
   if (fs::is_regular_file(recorded, error)) {
     return encoder_.encode_file(
         recorded, row.frame, row.t_ns, request.quality, request.max_width_px);
   }
-  auto view = renderers_.of_run(request.run_id);
-  if (!view) return view.error();
-  auto frame = (*view)->renderer->render_camera(
-      timeline.camera(), row.T_world_camera, row.t_ns, renderer::PixelFormat::kGrey8);
-  if (!frame) return frame.error();
-  const auto image = std::make_shared<const Image>(std::move(frame->image));
+  Result<Image> made = renderers_.remake(request.run_id, camera, row);
+  if (!made) return made.error();
+  const auto image = std::make_shared<const Image>(std::move(*made));
   return encoder_.encode({row.frame, row.t_ns, image}, request.quality, request.max_width_px);
 }
 
@@ -128,7 +130,8 @@ Result<Picture> ViewPainter::paint_scene(const PictureRequest& request,
   if (!view) return view.error();
   ViewRibbons& ribbons = ribbons_of(timeline, request.scene.alignment);
   ribbons.refresh();
-  const auto scene = scene_view(request.scene, row.T_world_body, ribbons.centre(), *(*view)->tiles);
+  const auto scene =
+      scene_view(request.scene, row.T_world_body, ribbons.centre(), *(*view)->world->tiles);
   const auto content = scene_content(*timeline, ribbons, row, request.live);
   auto image = (*view)->renderer->render_scene(scene, content);
   if (!image) return image.error();

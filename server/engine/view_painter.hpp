@@ -23,6 +23,7 @@ class ViewPainter {
  private:
   [[nodiscard]] Result<Picture> paint_camera(const PictureRequest& request,
                                              const RunTimeline& timeline,
+                                             std::size_t camera,
                                              const FrameRow& row);
   [[nodiscard]] Result<Picture> paint_debug(const PictureRequest& request,
                                             const RunTimeline& timeline,

@@ -11,21 +11,49 @@ constexpr std::size_t kMaxRenderers = 2;
 
 }  // namespace
 
+Result<const Scenario*> ViewRenderers::scenario_of(const std::string& run_id) {
+  if (!scenario_ || scenario_run_id_ != run_id) {
+    Result<Scenario> read = runs_.scenario_of(run_id);
+    if (!read) return read.error();
+    scenario_ = std::move(*read);
+    scenario_run_id_ = run_id;
+  }
+  return &*scenario_;
+}
+
 Result<ViewRenderers::WorldView*> ViewRenderers::of_run(const std::string& run_id) {
-  auto tiles = runs_.world(run_id);
-  if (!tiles) return tiles.error();
-  const auto known = std::find_if(
-      views_.begin(), views_.end(), [&](const WorldView& view) { return view.tiles == *tiles; });
+  const Result<const Scenario*> scenario = scenario_of(run_id);
+  if (!scenario) return scenario.error();
+  auto world = runs_.world(**scenario);
+  if (!world) return world.error();
+  const RendererChoice& choice = (*scenario)->renderer;
+  const auto known = std::find_if(views_.begin(), views_.end(), [&](const WorldView& view) {
+    return view.world == *world && view.choice == choice;
+  });
   if (known != views_.end()) {
     views_.splice(views_.begin(), views_, known);
     return &views_.front();
   }
   while (views_.size() >= kMaxRenderers) views_.pop_back();
-  const RendererFactory& factory = runs_.renderer_factory();
-  auto renderer = factory ? factory(*tiles) : renderer::create_egl_renderer(*tiles);
+  auto renderer = make_renderer(**scenario, (*world)->tiles, runs_.renderer_factory());
   if (!renderer) return renderer.error();
-  views_.push_front({*tiles, std::move(*renderer)});
+  views_.push_front({*world, choice, std::move(*renderer), "", nullptr});
   return &views_.front();
+}
+
+Result<Image> ViewRenderers::remake(const std::string& run_id,
+                                    std::size_t camera,
+                                    const FrameRow& row) {
+  const Result<WorldView*> view = of_run(run_id);
+  if (!view) return view.error();
+  WorldView& found = **view;
+  if (!found.frames || found.run_id != run_id) {
+    auto frames = FrameRemaker::create(*scenario_, found.world);
+    if (!frames) return frames.error();
+    found.frames = std::move(*frames);
+    found.run_id = run_id;
+  }
+  return found.frames->make(camera, row, *found.renderer);
 }
 
 }  // namespace overfly::engine

@@ -3,10 +3,12 @@
 
 #include <list>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "core/result.hpp"
 #include "renderer/renderer.hpp"
+#include "server/engine/frame_remaker.hpp"
 #include "server/engine/run_manager.hpp"
 
 namespace overfly::engine {
@@ -17,14 +19,26 @@ class ViewRenderers {
   explicit ViewRenderers(RunManager& runs) : runs_(runs) {}
 
   struct WorldView {
-    std::shared_ptr<const terrain::TileSource> tiles;
+    std::shared_ptr<const terrain::World> world;
+    RendererChoice choice;
     std::unique_ptr<renderer::Renderer> renderer;
+    std::string run_id;                    ///< that `frames` makes again
+    std::unique_ptr<FrameRemaker> frames;  ///< null until asked for
   };
-  /// Valid until the next call. Errors: as RunManager::world and the renderer factory.
+  /// The view of a run's world, drawn as its scenario asks. Valid until the next call. Errors: as
+  /// RunManager::world and the renderer factory.
   [[nodiscard]] Result<WorldView*> of_run(const std::string& run_id);
+  /// One image of one of the run's cameras, made again. Errors: as of_run and FrameRemaker.
+  [[nodiscard]] Result<Image> remake(const std::string& run_id,
+                                     std::size_t camera,
+                                     const FrameRow& row);
 
  private:
+  [[nodiscard]] Result<const Scenario*> scenario_of(const std::string& run_id);
+
   RunManager& runs_;
+  std::string scenario_run_id_;  ///< whose scenario was read last
+  std::optional<Scenario> scenario_;
   std::list<WorldView> views_;  ///< the one used last is in front
 };
 
