@@ -20,6 +20,7 @@ struct RunArguments {
   std::string scenario;
   std::string out;
   std::vector<std::string> sets;
+  std::string renderer;
   bool json = false;
   bool quiet = false;
 };
@@ -31,6 +32,7 @@ Result<engine::Scenario> load(const RunArguments& arguments) {
     if (!change) return change.error();
     overrides.push_back(std::move(*change));
   }
+  if (!arguments.renderer.empty()) overrides.push_back({"renderer.camera", arguments.renderer});
   Result<engine::Scenario> scenario = engine::load_scenario(arguments.scenario, overrides);
   if (!scenario) return scenario.error();
   if (Status status = engine::check_scenario(*scenario); !status) return status.error();
@@ -64,8 +66,8 @@ int run(const RunArguments& arguments) {
   if (arguments.json) {
     std::cout << result->metrics.dump(2) << "\n";
   } else {
-    std::cout << score_table(result->metrics, "init_scale") << "run folder: " << arguments.out
-              << "\n";
+    std::cout << score_table(result->metrics, "init_scale") << camera_notes(result->metrics)
+              << "run folder: " << arguments.out << "\n";
   }
   if (result->info.status == engine::RunStatus::kCancelled) {
     std::cerr << "cancelled after frame " << result->info.frames << "\n";
@@ -83,6 +85,8 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command->add_option("--out", arguments->out, "Run folder to make")->required();
   command->add_option("--set", arguments->sets, "Override a field: path=value, e.g. seed=2")
       ->allow_extra_args(false);
+  command->add_option("--renderer", arguments->renderer, "What draws the camera's image")
+      ->check(CLI::IsMember({"auto", "egl", "raycast"}));
   command->add_flag("--json", arguments->json, "Print metrics.json instead of a table");
   command->add_flag("--quiet", arguments->quiet, "No progress");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });

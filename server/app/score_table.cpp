@@ -27,7 +27,42 @@ std::string outcome_text(const Json& score) {
   return text;
 }
 
+std::string notes_of(const std::string& name, const Json& camera, const Json& texture) {
+  std::string notes;
+  if (texture.value("texture_limited", false)) {
+    notes += formatted(
+        "warning: texture_limited: %s sees %.2f texels per pixel (median), below 0.5: the imagery, "
+        "not the camera, limits the result\n",
+        name.c_str(),
+        texture.at("texels_per_pixel_median").get<double>());
+  }
+  if (camera.contains("late_tiles")) {
+    notes += formatted("warning: %s: %lld tiles came late and were drawn coarser, in %lld frames\n",
+                       name.c_str(),
+                       camera.at("late_tiles").at("tiles").get<long long>(),    // NOLINT: printf
+                       camera.at("late_tiles").at("frames").get<long long>());  // NOLINT: printf
+  }
+  const Json faults = camera.value("faults", Json::object());
+  for (const auto& [kind, frames] : faults.items()) {
+    notes += formatted("fault: %s of %s, %lld frames\n",
+                       kind.c_str(),
+                       name.c_str(),
+                       frames.get<long long>());  // NOLINT(google-runtime-int): printf
+  }
+  return notes;
+}
+
 }  // namespace
+
+std::string camera_notes(const Json& metrics) {
+  const Json none = Json::object();
+  std::string notes = notes_of("the camera", metrics.at("camera"), metrics.value("texture", none));
+  const Json cameras = metrics.value("cameras", none);
+  for (const auto& [name, camera] : cameras.items()) {
+    notes += notes_of("camera " + name, camera, camera.value("texture", none));
+  }
+  return notes;
+}
 
 std::string score_table(const Json& metrics, const std::string& mode) {
   const Json& estimators = metrics.at("estimators");

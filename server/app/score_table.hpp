@@ -13,4 +13,8 @@ namespace overfly::app {
 [[nodiscard]] std::string alignment_table(const nlohmann::json& alignments,
                                           const nlohmann::json& unavailable);
 
+/// What to know of the images before trusting the scores, a line each: imagery that limits the
+/// result, late tiles, faults. Empty when there is nothing to say.
+[[nodiscard]] std::string camera_notes(const nlohmann::json& metrics);
+
 }  // namespace overfly::app
