@@ -195,6 +195,9 @@ Status ElevationModel::merge(const MapRect& area,
 Status ElevationModel::survey(std::vector<std::string>& warnings) {
   auto survey = parts_->pyramid->survey();
   if (!survey) return survey.error();
+  for (const RasterPtr& raster : parts_->rasters) {
+    survey->implausible_layers.push_back(raster->implausible_seen());
+  }
   if (survey->posts > kManyPosts) {
     warnings.push_back(what_ + ": " + std::to_string(static_cast<long long>(survey->posts)) +
                        " posts are read whenever this world is opened; `overfly world build` makes "
@@ -224,11 +227,11 @@ Status ElevationModel::take(const HeightSurvey& survey, std::vector<std::string>
     warnings.push_back(what_ + ": " + std::to_string(static_cast<long long>(survey.implausible)) +
                        " heights outside -12000 to 9000 m are taken as missing");
   }
-  for (const RasterPtr& raster : parts_->rasters) {
-    if (survey.implausible == 0 && raster->implausible_seen()) {
-      warnings.push_back(raster->file() +
-                         ": heights outside -12000 to 9000 m are taken as missing");
-    }
+  const std::size_t layers = std::min(parts_->rasters.size(), survey.implausible_layers.size());
+  for (std::size_t i = 0; survey.implausible == 0 && i < layers; ++i) {
+    if (!survey.implausible_layers[i]) continue;
+    warnings.push_back(parts_->rasters[i]->file() +
+                       ": heights outside -12000 to 9000 m are taken as missing");
   }
   if (survey.voids >= survey.posts) {
     return Error{ErrorCode::kInvalidArgument, what_ + ": has no heights near the imagery"};

@@ -11,6 +11,7 @@
 #include <functional>
 #include <memory>
 #include <unordered_map>
+#include <vector>
 
 #include "terrain/height_blocks.hpp"
 
@@ -32,6 +33,7 @@ struct HeightSurvey {
   double posts = 0;
   double voids = 0;
   double implausible = 0;
+  std::vector<bool> implausible_layers;  ///< of several: each that had such values
 };
 
 /// Thread-safe after `survey`.

@@ -44,7 +44,32 @@ std::uint64_t get(const std::uint8_t* in, int bytes) {
 
 Error damaged(const fs::path& file, const std::string& how) {
   return {ErrorCode::kIo,
-          file.string() + ": " + how + "; remove the world's cache and run `overfly world build`"};
+          file.string() + ": " + how + "; `overfly world build` mends the world's cache"};
+}
+
+Result<Bytes> read_piece(std::ifstream& in, const fs::path& file, int index) {
+  in.seekg(0);
+  std::uint8_t head[kHeadBytes];
+  if (!in.read(reinterpret_cast<char*>(head), kHeadBytes)) {
+    return damaged(file, "is missing or cut short");
+  }
+  if (std::memcmp(head, kMagic, kMagicBytes) != 0 ||
+      static_cast<std::uint64_t>(index) >= get(head + kMagicBytes, 4)) {
+    return damaged(file, "is not a part of this cache");
+  }
+  std::uint8_t row[kRowBytes];
+  in.seekg(static_cast<std::streamoff>(kHeadBytes + kRowBytes * static_cast<std::size_t>(index)));
+  if (!in.read(reinterpret_cast<char*>(row), kRowBytes)) return damaged(file, "is cut short");
+  constexpr std::uint64_t kLargest = std::uint64_t{64} << 20U;
+  const std::uint64_t size = get(row + 8, 4);
+  if (size > kLargest) return damaged(file, "is damaged");
+  Bytes piece(size);
+  in.seekg(static_cast<std::streamoff>(get(row, 8)));
+  if (!in.read(reinterpret_cast<char*>(piece.data()), static_cast<std::streamsize>(size))) {
+    return damaged(file, "is cut short");
+  }
+  if (adler32(piece) != get(row + 12, 4)) return damaged(file, "is damaged");
+  return piece;
 }
 
 }  // namespace
@@ -86,29 +111,25 @@ Status write_chunk(const fs::path& file, const std::vector<Bytes>& pieces) {
   return write_whole(file, bytes);
 }
 
-Result<Bytes> read_piece(const fs::path& file, int index) {
+Status check_chunk(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::uint8_t head[kHeadBytes];
   if (!in.read(reinterpret_cast<char*>(head), kHeadBytes)) {
     return damaged(file, "is missing or cut short");
   }
-  if (std::memcmp(head, kMagic, kMagicBytes) != 0 ||
-      static_cast<std::uint64_t>(index) >= get(head + kMagicBytes, 4)) {
-    return damaged(file, "is not a part of this cache");
+  // Zeros are what a disk that lost its power may leave.
+  const auto count = static_cast<int>(get(head + kMagicBytes, 4));
+  if (count <= 0) return damaged(file, "is damaged");
+  for (int i = 0; i < count; ++i) {
+    const auto piece = read_piece(in, file, i);
+    if (!piece) return piece.error();
   }
-  std::uint8_t row[kRowBytes];
-  in.seekg(static_cast<std::streamoff>(kHeadBytes + kRowBytes * static_cast<std::size_t>(index)));
-  if (!in.read(reinterpret_cast<char*>(row), kRowBytes)) return damaged(file, "is cut short");
-  constexpr std::uint64_t kLargest = std::uint64_t{64} << 20U;
-  const std::uint64_t size = get(row + 8, 4);
-  if (size > kLargest) return damaged(file, "is damaged");
-  Bytes piece(size);
-  in.seekg(static_cast<std::streamoff>(get(row, 8)));
-  if (!in.read(reinterpret_cast<char*>(piece.data()), static_cast<std::streamsize>(size))) {
-    return damaged(file, "is cut short");
-  }
-  if (adler32(piece) != get(row + 12, 4)) return damaged(file, "is damaged");
-  return piece;
+  return {};
+}
+
+Result<Bytes> read_piece(const fs::path& file, int index) {
+  std::ifstream in(file, std::ios::binary);
+  return read_piece(in, file, index);
 }
 
 }  // namespace overfly::terrain

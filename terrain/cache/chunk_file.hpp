@@ -20,6 +20,9 @@ namespace overfly::terrain {
 /// or damaged.
 [[nodiscard]] Result<Bytes> read_piece(const std::filesystem::path& file, int index);
 
+/// Reads all of it. Errors: kIo as `read_piece`.
+[[nodiscard]] Status check_chunk(const std::filesystem::path& file);
+
 /// Writes a file whole. Errors: kIo.
 [[nodiscard]] Status write_whole(const std::filesystem::path& file,
                                  std::span<const std::uint8_t> bytes);

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "terrain/cache/chunk_file.hpp"
+#include "terrain/file_digest.hpp"
 
 namespace overfly::terrain {
 namespace fs = std::filesystem;
@@ -38,18 +39,27 @@ CacheHeader header_from(const Json& json) {
                    survey.at("highest_m").get<double>(),
                    survey.at("posts").get<double>(),
                    survey.at("voids").get<double>(),
-                   survey.at("implausible").get<double>()};
+                   survey.at("implausible").get<double>(),
+                   survey.at("implausible_layers").get<std::vector<bool>>()};
   for (const Json& masked : json.at("masked")) header.masked.push_back(masked.get<bool>());
   header.bytes = json.at("bytes").get<std::uint64_t>();
   return header;
 }
 
+std::string check_of(const Json& json) {
+  const std::string text = json.dump();
+  return sha256_hex({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+}
+
 /// Empty if the file is not whole or of another version.
 std::optional<CacheHeader> read_header(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
-  const Json json = Json::parse(in, nullptr, false);
+  Json json = Json::parse(in, nullptr, false);
   if (json.is_discarded()) return std::nullopt;
   try {
+    const auto check = json.at("check").get<std::string>();
+    json.erase("check");
+    if (check != check_of(json)) return std::nullopt;
     return header_from(json);
   } catch (const Json::exception&) {
     return std::nullopt;
@@ -91,9 +101,11 @@ Status write_header(const fs::path& folder, const CacheHeader& header) {
                      {"highest_m", header.survey.highest_m},
                      {"posts", header.survey.posts},
                      {"voids", header.survey.voids},
-                     {"implausible", header.survey.implausible}};
+                     {"implausible", header.survey.implausible},
+                     {"implausible_layers", header.survey.implausible_layers}};
   json["masked"] = header.masked;
   json["bytes"] = header.bytes;
+  json["check"] = check_of(json);
   const std::string text = json.dump(1) + "\n";
   return write_whole(folder / "cache.json",
                      {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
@@ -115,7 +127,7 @@ WorldCache::Found WorldCache::find(const WorldSpec& spec) {
   for (const fs::path& folder : folders) {
     auto header = read_header(folder / "cache.json");
     if (!header) {
-      found.stale = "its cache.json cannot be read";
+      found.stale = "its cache.json is damaged or of another version";
       continue;
     }
     found.stale = header->fields != fields ? "the manifest has changed"

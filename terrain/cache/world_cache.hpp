@@ -22,12 +22,13 @@ inline constexpr int kChunkBlocks = 4;  ///< blocks of heights along a chunk's s
 
 /// What cache.json says.
 struct CacheHeader {
+  using Chunks = std::set<std::pair<int, int>>;  ///< (column, row)
   std::string fields;
   std::vector<CacheSource> sources;
   std::string layout;  ///< fingerprint of grid and heights
   int levels = 0;      ///< of tiles
   /// Per level, the chunks that hold tiles.
-  std::vector<std::set<std::pair<int, int>>> chunks;
+  std::vector<Chunks> chunks;
   HeightSurvey survey;
   std::vector<bool> masked;  ///< per imagery layer: has a validity file
   std::uint64_t bytes = 0;
