@@ -100,7 +100,9 @@ class NoopRenderer final : public Renderer {
     return pattern(view.width_px, view.height_px, 3, view.T_world_camera);
   }
 
-  [[nodiscard]] RendererInfo info() const override { return {"noop", "none", "none", true, "", ""}; }
+  [[nodiscard]] RendererInfo info() const override {
+    return {"noop", "none", "none", true, "", ""};
+  }
 
  private:
   std::shared_ptr<const terrain::TileSource> tiles_;

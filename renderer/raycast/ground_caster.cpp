@@ -18,7 +18,7 @@ struct TileRay {
   double d_column, d_row, d_height;  // per unit of the parameter
 
   TileRay(const GroundNode& node, const Eigen::Vector3d& o, const Eigen::Vector3d& d) {
-    const double scale = 1.0 / node.tile->spacing_m;
+    const double scale = node.tile->per_m;
     column = (o.x() - node.east_m) * scale;
     row = (o.y() - node.north_m) * scale;
     height = o.z() - node.tile->up_m;
@@ -120,11 +120,13 @@ GroundHit march_tile(const GroundNode& node, const TileRay& ray, double from, do
 
 Eigen::Vector2d GroundHit::texel() const {
   const HeightTile& tile = *node->tile;
-  const auto at = [&](int dc, int dr) -> Eigen::Vector2d {
-    return tile.texel_at(column + dc, row + dr).cast<double>();
-  };
-  return tile.texel + (1.0 - up) * ((1.0 - across) * at(0, 0) + across * at(1, 0)) +
-         up * ((1.0 - across) * at(0, 1) + across * at(1, 1));
+  const Eigen::Vector2d sw = tile.texel_at(column, row).cast<double>();
+  const Eigen::Vector2d se = tile.texel_at(column + 1, row).cast<double>();
+  const Eigen::Vector2d nw = tile.texel_at(column, row + 1).cast<double>();
+  const Eigen::Vector2d ne = tile.texel_at(column + 1, row + 1).cast<double>();
+  const Eigen::Vector2d south = sw + across * (se - sw);
+  const Eigen::Vector2d north = nw + across * (ne - nw);
+  return tile.texel + (south + up * (north - south));
 }
 
 Eigen::Vector2d GroundHit::slope() const {
@@ -158,10 +160,12 @@ const GroundNode* GroundCaster::leaf_at(double east_m, double north_m) const {
 
 GroundHit GroundCaster::cast(const Eigen::Vector3d& origin,
                              const Eigen::Vector3d& direction,
-                             double guess) const {
-  const double level = direction.head<2>().norm();
-  if (guess > 0.0 && -direction.z() > tree_.steepest * level) {
-    const GroundHit hit = descend(origin, direction, guess);
+                             double guess,
+                             const GroundNode* near) const {
+  const double steepest = tree_.steepest;
+  if (guess > 0.0 && direction.z() < 0.0 &&
+      direction.z() * direction.z() > steepest * steepest * direction.head<2>().squaredNorm()) {
+    const GroundHit hit = descend(origin, direction, guess, near);
     if (!hit.sky()) return hit;
   }
   return march(origin, direction);
@@ -169,29 +173,44 @@ GroundHit GroundCaster::cast(const Eigen::Vector3d& origin,
 
 GroundHit GroundCaster::descend(const Eigen::Vector3d& origin,
                                 const Eigen::Vector3d& direction,
-                                double guess) const {
+                                double guess,
+                                const GroundNode* near) const {
   double t = guess;
+  const GroundNode* node = near;
   for (int i = 0; i < 8; ++i) {
-    const GroundNode* node =
-        leaf_at(origin.x() + t * direction.x(), origin.y() + t * direction.y());
+    const double east_m = origin.x() + t * direction.x();
+    const double north_m = origin.y() + t * direction.y();
+    if (node == nullptr || !node->holds(east_m, north_m)) node = leaf_at(east_m, north_m);
     if (node == nullptr) return {};
-    const TileRay ray(*node, origin, direction);
-    const double e = ray.column + t * ray.d_column;
-    const double n = ray.row + t * ray.d_row;
-    const int column = std::clamp(static_cast<int>(e), 0, kTileCells - 1);
-    const int row = std::clamp(static_cast<int>(n), 0, kTileCells - 1);
-    const Bilinear cell(*node->tile, column, row);
-    const double x = e - column, y = n - row;
-    const double slope_east = cell.a + cell.c * y, slope_north = cell.b + cell.c * x;
+    const HeightTile& tile = *node->tile;
+    const double scale = tile.per_m;
+    const double e = (east_m - node->east_m) * scale;
+    const double n = (north_m - node->north_m) * scale;
+    const int column = std::min(static_cast<int>(e), kTileCells - 1);
+    const int row = std::min(static_cast<int>(n), kTileCells - 1);
+    const Bilinear cell(tile, column, row);
+    const double x = e - column;
+    const double y = n - row;
+    const double slope_east = cell.a + cell.c * y;
+    const double slope_north = cell.b + cell.c * x;
     const double clearance =
-        ray.height + t * ray.d_height - (cell.sw + slope_east * x + cell.b * y);
-    const double rate = ray.d_height - slope_east * ray.d_column - slope_north * ray.d_row;
+        origin.z() + t * direction.z() - tile.up_m - (cell.sw + slope_east * x + cell.b * y);
+    const double rate =
+        direction.z() - scale * (slope_east * direction.x() + slope_north * direction.y());
     if (!(rate < 0.0)) return {};
     const double step = clearance / rate;
     t -= step;
     if (!(t > 0.0)) return {};
-    // A ten-millionth of the depth is a ten-thousandth of a pixel.
-    if (std::abs(step) < 1e-7 * t) return hit_at(*node, ray, column, row, t);
+    // What is left is far smaller than the step: a thousandth of a pixel at most, at a kink.
+    if (std::abs(step) > 1e-5 * t) continue;
+    GroundHit hit;
+    hit.depth = std::max(t, kNearest);
+    hit.node = node;
+    hit.column = column;
+    hit.row = row;
+    hit.across = x - step * direction.x() * scale;
+    hit.up = y - step * direction.y() * scale;
+    return hit;
   }
   return {};
 }
@@ -248,7 +267,7 @@ double relief_around(const GroundTree& tree, const GroundHit& hit, double size_m
   const GroundNode* node = hit.node;
   int column = hit.column, row = hit.row;
   while (true) {
-    const double cells = size_m / node->tile->spacing_m;
+    const double cells = size_m * node->tile->per_m;
     if (cells <= 2.0) {
       // Within a kink's reach the deviation shrinks with the size.
       return node->tile->deviation(1, column, row) * 0.5 * cells;

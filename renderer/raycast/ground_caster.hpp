@@ -35,9 +35,11 @@ class GroundCaster {
   /// The first ground along a ray.
   /// @param direction  any length
   /// @param guess      a depth near the answer, or 0
+  /// @param near       a leaf near the answer, or null: makes the search shorter
   [[nodiscard]] GroundHit cast(const Eigen::Vector3d& origin,
                                const Eigen::Vector3d& direction,
-                               double guess) const;
+                               double guess,
+                               const GroundNode* near = nullptr) const;
 
   [[nodiscard]] const GroundTree& tree() const { return tree_; }
 
@@ -45,7 +47,8 @@ class GroundCaster {
   [[nodiscard]] const GroundNode* leaf_at(double east_m, double north_m) const;
   [[nodiscard]] GroundHit descend(const Eigen::Vector3d& origin,
                                   const Eigen::Vector3d& direction,
-                                  double guess) const;
+                                  double guess,
+                                  const GroundNode* near) const;
   [[nodiscard]] GroundHit march(const Eigen::Vector3d& origin,
                                 const Eigen::Vector3d& direction) const;
 

@@ -41,6 +41,11 @@ struct GroundNode {
   /// By (north half) * 2 + (east half); -1 = out of view; all -1 and `leaf` = draw the tile itself.
   std::array<std::int32_t, 4> children{-1, -1, -1, -1};
   bool leaf = false;
+
+  [[nodiscard]] bool holds(double at_east_m, double at_north_m) const {
+    return at_east_m >= east_m && at_east_m < east_m + side_m && at_north_m >= north_m &&
+           at_north_m < north_m + side_m;
+  }
 };
 
 struct GroundTree {

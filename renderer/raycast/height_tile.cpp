@@ -160,6 +160,7 @@ HeightTile HeightTile::sample(const HeightTileId& id, const TexelMap& map) {
   HeightTile tile;
   tile.id = id;
   tile.spacing_m = id.spacing_m();
+  tile.per_m = 1.0 / tile.spacing_m;
   tile.east_m = id.col * id.side_m();
   tile.north_m = id.row * id.side_m();
   sample_posts(tile, map);

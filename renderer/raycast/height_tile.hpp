@@ -51,6 +51,7 @@ struct HeightTile {
   HeightTileId id;
   double east_m = 0.0, north_m = 0.0;  ///< south-west corner
   double spacing_m = 0.0;
+  double per_m = 0.0;                  ///< cells per metre
   double up_m = 0.0;                   ///< what `height_m` counts from
   Eigen::Vector2d texel = {0.0, 0.0};  ///< what `texels` count from
   std::array<float, kTilePosts * kTilePosts> height_m{};

@@ -32,7 +32,10 @@ class RendererContract : public ::testing::TestWithParam<const char*> {
 
   static std::unique_ptr<Renderer> create(std::shared_ptr<const terrain::TileSource> tiles) {
     if (std::string(GetParam()) == "noop") return create_noop_renderer(std::move(tiles));
-    auto renderer = create_egl_renderer(std::move(tiles));
+    RendererOptions options;
+    options.camera_backend =
+        std::string(GetParam()) == "raycast" ? CameraBackend::kRaycast : CameraBackend::kEgl;
+    auto renderer = create_renderer(std::move(tiles), options);
     return renderer.ok() ? std::move(*renderer) : nullptr;
   }
 
@@ -187,6 +190,11 @@ TEST_P(RendererContract, SceneHasTheViewsSize) {
   view.height_px = 200;
   view.T_world_camera = nadir_pose(0, 0, 400);
   const auto image = renderer_->render_scene(view, {});
+  if (const auto egl = probe_egl(); !egl.ok() && std::string(GetParam()) == "raycast") {
+    ASSERT_FALSE(image.ok());
+    EXPECT_EQ(image.error().code, ErrorCode::kUnsupported);
+    GTEST_SKIP() << "no EGL here: " << egl.error().message;
+  }
   ASSERT_TRUE(image.ok()) << image.error().message;
   EXPECT_EQ(image->width_px, 320);
   EXPECT_EQ(image->height_px, 200);
@@ -204,7 +212,7 @@ TEST_P(RendererContract, InfoNamesTheBackend) {
 
 INSTANTIATE_TEST_SUITE_P(Renderers,
                          RendererContract,
-                         ::testing::Values("egl", "noop"),
+                         ::testing::Values("egl", "raycast", "noop"),
                          [](const auto& suite) { return std::string(suite.param); });
 
 }  // namespace
