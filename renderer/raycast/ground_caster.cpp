@@ -11,6 +11,9 @@ namespace {
 constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kFarthest = 1e7;  // of a ray's parameter
 constexpr double kNearest = 0.05;  // a camera in the ground sees the ground right before it
+/// A square is chosen by a place this far ahead along each axis (metres, or cells of a tile), so
+/// that a ray on a square's side is in the square that it goes to, however slowly.
+constexpr double kAhead = 1e-7;
 
 /// A ray in the cells of one tile: place and height as functions of the ray's parameter.
 struct TileRay {
@@ -89,11 +92,13 @@ GroundHit march_tile(const GroundNode& node, const TileRay& ray, double from, do
   const HeightTile& tile = *node.tile;
   int k = kLog2TileCells;
   double t = from;
+  const double ahead_columns = std::copysign(kAhead, ray.d_column);
+  const double ahead_rows = std::copysign(kAhead, ray.d_row);
   while (t < to) {
-    const int column =
-        std::clamp(static_cast<int>(std::floor(ray.column + t * ray.d_column)), 0, kTileCells - 1);
-    const int row =
-        std::clamp(static_cast<int>(std::floor(ray.row + t * ray.d_row)), 0, kTileCells - 1);
+    const double at_column = std::floor(ray.column + t * ray.d_column + ahead_columns);
+    const double at_row = std::floor(ray.row + t * ray.d_row + ahead_rows);
+    const int column = std::clamp(static_cast<int>(at_column), 0, kTileCells - 1);
+    const int row = std::clamp(static_cast<int>(at_row), 0, kTileCells - 1);
     const int side = 1 << k;
     const int low_column = column & ~(side - 1);
     const int low_row = row & ~(side - 1);
@@ -222,12 +227,11 @@ GroundHit GroundCaster::march(const Eigen::Vector3d& origin,
     if (!(direction.z() < 0.0)) return {};
     t = (tree_.highest_m - origin.z()) / direction.z();
   }
-  const double speed = direction.head<2>().norm();
-  // A tenth of a micrometre over a square's side is surely in the next one.
-  const double nudge = speed > 0.0 ? 1e-7 / speed : kNever;
+  const double ahead_east_m = std::copysign(kAhead, direction.x());
+  const double ahead_north_m = std::copysign(kAhead, direction.y());
   while (true) {
-    const double east_m = origin.x() + t * direction.x();
-    const double north_m = origin.y() + t * direction.y();
+    const double east_m = origin.x() + t * direction.x() + ahead_east_m;
+    const double north_m = origin.y() + t * direction.y() + ahead_north_m;
     if (direction.z() > 0.0 && origin.z() + t * direction.z() > tree_.highest_m) return {};
     const double col = std::floor((east_m - tree_.east_m) / tree_.side_m);
     const double row = std::floor((north_m - tree_.north_m) / tree_.side_m);
@@ -243,13 +247,13 @@ GroundHit GroundCaster::march(const Eigen::Vector3d& origin,
       const GroundNode* node = at >= 0 ? &tree_.nodes[at] : nullptr;
       const double lowest = origin.z() + direction.z() * (direction.z() < 0.0 ? end : t);
       if (node == nullptr || lowest > node->highest_m) {
-        t = end + nudge;
+        t = end;
         break;
       }
       if (node->leaf) {
         const GroundHit hit = march_tile(*node, TileRay(*node, origin, direction), t, end);
         if (!hit.sky()) return hit;
-        t = end + nudge;
+        t = end;
         break;
       }
       side *= 0.5;
