@@ -70,7 +70,7 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
 
   step("shows the server's limit at the field that breaks it", async () => {
     await dashboard.field('flight.course.airspeed_m_s').fill('999');
-    await dashboard.page.locator('button.primary').click();
+    await dashboard.page.getByRole('button', { name: 'Launch flight' }).click();
     const fault = dashboard.page.locator('[data-fault="flight.course.airspeed_m_s"]');
     await fault.waitFor({ state: 'visible' });
     assert.match(await fault.innerText(), /must be/);

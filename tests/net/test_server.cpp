@@ -1,5 +1,7 @@
 #include "tests/net/test_server.hpp"
 
+#include <algorithm>
+#include <chrono>
 #include <stdexcept>
 
 #include "renderer/renderer.hpp"
@@ -65,6 +67,11 @@ TestServer::TestServer(const net::ServerLimits& limits) {
   server_options.port = 0;
   server_options.web_folder = web;
   server_options.limits = limits;
+  server_options.log = [this](const std::string& /*level*/, const std::string& text) {
+    const std::lock_guard lock(log_mutex_);
+    log_.push_back(text);
+    logged_.notify_all();
+  };
   auto server = net::Server::start(server_options, *runs_, *views_);
   require(server.ok(), server.ok() ? "" : server.error().message);
   server_ = std::move(*server);
@@ -80,6 +87,16 @@ std::string TestServer::fly(const std::string& scenario_name) {
   std::string id = start(scenario_name);
   wait_for_end(id);
   return id;
+}
+
+void TestServer::wait_for_log(const std::string& part) {
+  std::unique_lock lock(log_mutex_);
+  const bool seen = logged_.wait_for(lock, std::chrono::seconds(30), [&] {
+    return std::any_of(log_.begin(), log_.end(), [&](const std::string& line) {
+      return line.find(part) != std::string::npos;
+    });
+  });
+  require(seen, "nothing logged about: " + part);
 }
 
 void TestServer::wait_for_end(const std::string& id) {

@@ -1,9 +1,12 @@
 // A whole server on a free loopback port, over a small world, with a renderer that needs no GPU.
 #pragma once
 
+#include <condition_variable>
 #include <memory>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "server/engine/run_manager.hpp"
 #include "server/engine/view_service.hpp"
@@ -30,9 +33,14 @@ class TestServer {
   /// Starts a run and waits for its end.
   std::string fly(const std::string& scenario);
   void wait_for_end(const std::string& id);
+  /// Waits until the server has logged a line with `part` in it. Throws after 30 s.
+  void wait_for_log(const std::string& part);
 
  private:
   TemporaryFolder folder_;
+  std::mutex log_mutex_;
+  std::condition_variable logged_;
+  std::vector<std::string> log_;
   std::unique_ptr<engine::RunManager> runs_;
   std::unique_ptr<engine::ViewService> views_;
   std::unique_ptr<net::Server> server_;

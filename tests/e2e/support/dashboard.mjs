@@ -47,7 +47,7 @@ export class Dashboard {
   /** Presses the button and waits for the run. @return its id */
   async launch() {
     const before = await this.runId();
-    await this.page.locator('button.primary').click();
+    await this.page.getByRole('button', { name: 'Launch flight' }).click();
     await this.until((id) => {
       const chosen = document.querySelector('.run[aria-current=true]');
       return chosen !== null && chosen.dataset.run !== id;
