@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -42,32 +43,63 @@ double gap_share(const TileSource& tiles) {
   return static_cast<double>(gaps) / (kSteps * kSteps);
 }
 
-std::string layers(const World& world) {
+std::string imagery_lines(const RasterWorld& source) {
   std::string text;
-  const auto* source = dynamic_cast<const RasterWorld*>(world.tiles.get());
-  if (source == nullptr) return text;
-  for (const MappedImagery& layer : source->imagery()) {
+  for (const MappedImagery& layer : source.imagery()) {
     const ImageryRaster& raster = layer.raster();
-    text += line("imagery: %s, %s, %d x %d px, %s, %s%s",
+    const ValidityGrid* validity = layer.validity();
+    text += line("imagery: %s, %s, %d x %d px of %.4g m, %s, %s",
                  raster.file().string().c_str(),
                  raster.format().c_str(),
                  raster.width_px(),
                  raster.height_px(),
+                 layer.file_texel_m(),
                  crs_name(raster.georeference().crs).c_str(),
-                 layer.resampled() ? "resampled onto the map" : "used texel for texel",
-                 raster.has_mask() ? ", masked" : "");
-  }
-  for (const ElevationLayer& layer : world.spec.elevation) {
-    text += line(
-        "elevation: %s, vertical datum %s", layer.file.string().c_str(), to_string(layer.datum));
-  }
-  if (world.spec.elevation.empty()) {
-    text += line("elevation: none, flat ground at %.2f m above the ellipsoid",
-                 world.tiles->height_range_m().x());
-  } else {
-    text += line("elevation posts: every %.2f m", source->elevation().spacing_m());
+                 layer.resampled() ? "resampled onto the map" : "used texel for texel");
+    if (validity != nullptr) {
+      text += line("  masked: %.2f %% of it is void", 100.0 * validity->void_share());
+    }
   }
   return text;
+}
+
+std::string elevation_lines(const World& world, const RasterWorld& source) {
+  std::string text;
+  if (world.spec.elevation.empty()) {
+    return line("elevation: none, flat ground at %.2f m above the ellipsoid",
+                world.tiles->height_range_m().x());
+  }
+  const std::vector<std::string> relations = source.elevation().relations();
+  for (std::size_t i = 0; i < world.spec.elevation.size(); ++i) {
+    const ElevationLayer& layer = world.spec.elevation[i];
+    text += line("elevation: %s, vertical datum %s, to the ellipsoid by %s",
+                 layer.file.string().c_str(),
+                 to_string(layer.datum),
+                 i < relations.size() ? relations[i].c_str() : "nothing");
+  }
+  return text + line("elevation posts: every %.2f m", source.elevation().spacing_m());
+}
+
+/// Latitudes and longitudes between which the imagery lies.
+std::string bounds_line(const TileSource& tiles) {
+  const TileGrid& grid = tiles.grid();
+  double low_lat = 90.0;
+  double high_lat = -90.0;
+  double low_lon = 540.0;
+  double high_lon = -540.0;
+  constexpr int kSteps = 8;
+  for (int j = 0; j <= kSteps; ++j) {
+    for (int i = 0; i <= kSteps; ++i) {
+      const Geodetic at = tiles.frame().geodetic_from_world(tiles.world_from_map(
+          grid.left_x_m + grid.width_m * i / kSteps, grid.top_y_m - grid.height_m * j / kSteps));
+      low_lat = std::min(low_lat, deg_from_rad(at.lat_rad));
+      high_lat = std::max(high_lat, deg_from_rad(at.lat_rad));
+      low_lon = std::min(low_lon, deg_from_rad(at.lon_rad));
+      high_lon = std::max(high_lon, deg_from_rad(at.lon_rad));
+    }
+  }
+  return line(
+      "bounds: %.6f to %.6f deg N, %.6f to %.6f deg E", low_lat, high_lat, low_lon, high_lon);
 }
 
 }  // namespace
@@ -83,18 +115,22 @@ std::string describe(const World& world) {
                deg_from_rad(origin.lon_rad),
                origin.alt_ellipsoid_m);
   text += line("extent: %.0f x %.0f m", grid.width_m, grid.height_m);
+  text += bounds_line(tiles);
   text += line("resolution: %.4g m per texel, %d levels", grid.texel_m, grid.levels);
   text += line("imagery gaps: %.2f %% of the extent", 100.0 * gap_share(tiles));
   text += line("ground: %.1f to %.1f m above the ellipsoid",
                tiles.height_range_m().x(),
                tiles.height_range_m().y());
-  text += layers(world);
+  if (const auto* source = dynamic_cast<const RasterWorld*>(world.tiles.get())) {
+    text += imagery_lines(*source) + elevation_lines(world, *source);
+  }
   if (world.spec.runway) {
     text += line("runway: north threshold %.7f deg N, %.7f deg E, take-off heading %.1f deg",
                  deg_from_rad(world.spec.runway->lat_rad),
                  deg_from_rad(world.spec.runway->lon_rad),
                  deg_from_rad(world.spec.runway->heading_rad));
   }
+  text += "cache: " + world.cache + "\n";
   for (const std::string& warning : world.warnings) text += "warning: " + warning + "\n";
   const std::string credit = tiles.attribution();
   text += "attribution: " + (credit.empty() ? "none given" : credit) + "\n";

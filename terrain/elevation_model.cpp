@@ -193,6 +193,10 @@ Status ElevationModel::merge(const MapRect& area,
 }
 
 Status ElevationModel::survey(std::vector<std::string>& warnings) {
+  for (const RasterPtr& raster : parts_->rasters) {
+    const Status whole = raster->check(warnings);
+    if (!whole) return whole;
+  }
   auto survey = parts_->pyramid->survey();
   if (!survey) return survey.error();
   for (const RasterPtr& raster : parts_->rasters) {
@@ -234,7 +238,13 @@ Status ElevationModel::take(const HeightSurvey& survey, std::vector<std::string>
                        ": heights outside -12000 to 9000 m are taken as missing");
   }
   if (survey.voids >= survey.posts) {
-    return Error{ErrorCode::kInvalidArgument, what_ + ": has no heights near the imagery"};
+    std::string why = ": has no heights near the imagery";
+    if (survey.implausible > 0) {
+      why +=
+          ", only values outside -12000 to 9000 m; if their unit is not the metre, say "
+          "\"unit_m\" in the manifest";
+    }
+    return Error{ErrorCode::kInvalidArgument, what_ + why};
   }
   if (survey.voids > 0) {
     warnings.push_back(what_ + ": " + std::to_string(static_cast<long long>(survey.voids)) +
@@ -279,6 +289,13 @@ Status ElevationModel::status() const {
   return {};
 }
 
+std::vector<std::string> ElevationModel::relations() const {
+  std::vector<std::string> all;
+  if (!parts_) return all;
+  for (const RasterPtr& raster : parts_->rasters) all.push_back(raster->relation());
+  return all;
+}
+
 std::string ElevationModel::fingerprint() const {
   if (!parts_) return "flat";
   const PagedHeights& shape = parts_->pyramid->filled();
@@ -296,7 +313,7 @@ std::string ElevationModel::fingerprint() const {
                 known.x_min,
                 known.y_min);
   std::string result = text;
-  for (const RasterPtr& raster : parts_->rasters) result += "; " + raster->relation();
+  for (const std::string& relation : relations()) result += "; " + relation;
   return result;
 }
 

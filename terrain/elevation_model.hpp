@@ -63,6 +63,8 @@ class ElevationModel {
   [[nodiscard]] Status status() const;
   /// What the posts are and how they became ellipsoidal: equal for equal heights.
   [[nodiscard]] std::string fingerprint() const;
+  /// How each layer became ellipsoidal: the grid's name, a constant, or nothing.
+  [[nodiscard]] std::vector<std::string> relations() const;
   /// Null for flat ground.
   [[nodiscard]] const PagedHeights* heights() const { return parts_ ? parts_->heights : nullptr; }
   [[nodiscard]] const HeightSurvey& survey_result() const { return survey_; }

@@ -7,6 +7,7 @@
 #include "core/pose.hpp"
 #include "terrain/datum_shift.hpp"
 #include "terrain/elevation_units.hpp"
+#include "terrain/file_soundness.hpp"
 #include "terrain/geoid.hpp"
 #include "terrain/raster_bands.hpp"
 
@@ -97,7 +98,6 @@ Result<std::shared_ptr<const ElevationRaster>> ElevationRaster::open(
       dataset, layer.file, layer.crs, messages.empty() ? std::string() : messages.text());
   if (!place) return place.error();
   Status good = check_height_band(dataset, raster->file_, warnings);
-  if (good) good = check_blocks(dataset, layer.file);
   if (good) good = raster->find_window(plane, area, *place);
   if (good) good = raster->find_conversion(dataset, layer, *place, warnings);
   if (!good) return good.error();
@@ -111,6 +111,14 @@ Result<std::shared_ptr<const ElevationRaster>> ElevationRaster::open(
         return owner->posts_block(column, row);
       });
   return std::shared_ptr<const ElevationRaster>(std::move(raster));
+}
+
+Status ElevationRaster::check(std::vector<std::string>& warnings) const {
+  auto dataset = pool_->take();
+  if (!dataset) return dataset.error();
+  Status whole = check_whole(**dataset, file_, warnings);
+  pool_->put(std::move(*dataset));
+  return whole;
 }
 
 Status ElevationRaster::find_window(const MapPlane& plane,
@@ -177,6 +185,9 @@ Status ElevationRaster::find_conversion(GDALDataset& dataset,
                                  window_.row + 0.5 * window_.rows,
                                  middle(0, 0),
                                  middle(1, 0));
+  if (auto doubt = place_doubt(place, file_columns_, file_rows_, file_)) {
+    warnings.push_back(std::move(*doubt));
+  }
   if (auto doubt = datum_shift_doubt(place.crs, middle(0, 0), middle(1, 0), file_)) {
     warnings.push_back(std::move(*doubt));
   }

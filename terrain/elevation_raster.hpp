@@ -29,6 +29,8 @@ class ElevationRaster {
                                                              std::shared_ptr<BlockCache> cache,
                                                              std::vector<std::string>& warnings);
 
+  /// Looks for signs of a damaged file. Errors: kUnreadable, kNotFound naming it.
+  [[nodiscard]] Status check(std::vector<std::string>& warnings) const;
   /// Posts of the window over the area, NaN where the file has no data.
   /// Errors: kIo with GDAL's reason.
   [[nodiscard]] Result<RawPosts> read(int column, int row, int columns, int rows) const;

@@ -38,12 +38,14 @@ double height_unit_m(GDALDataset& dataset,
   }
   if (unit == "ft" || unit == "foot" || unit == "feet") return kFootM;
   if (crs.IsVertical() != 0) return crs.GetTargetLinearUnits("VERT_CS");
-  const bool feet = crs.IsProjected() != 0 && std::abs(crs.GetLinearUnits() - 1.0) > 1e-3;
-  if (!unit.empty() || feet) {
-    warnings.push_back(layer.file.string() + ": unit of the heights is " +
-                       (unit.empty() ? "not said" : "\"" + unit + "\"") +
-                       "; taken as metres. If they are feet, the ground is 3.28 times too high: "
-                       "say \"unit_m\" in the manifest");
+  if (!unit.empty()) {
+    warnings.push_back(layer.file.string() + ": unit of the heights is \"" + unit +
+                       "\", which is not known here; taken as metres: say \"unit_m\" in the "
+                       "manifest if they are something else");
+  } else if (crs.IsProjected() != 0 && std::abs(crs.GetLinearUnits() - 1.0) > 1e-3) {
+    warnings.push_back(layer.file.string() +
+                       ": unit of the heights is not said; taken as metres. If they are feet, the "
+                       "ground is 3.28 times too high: say \"unit_m\" in the manifest");
   }
   return 1.0;
 }

@@ -2,8 +2,11 @@
 
 #include <cpl_conv.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
+
+#include "terrain/file_soundness.hpp"
 
 namespace overfly::terrain {
 namespace fs = std::filesystem;
@@ -28,9 +31,12 @@ void CPL_STDCALL GdalMessages::collect(CPLErr severity, CPLErrorNum, const char*
   auto* self = static_cast<GdalMessages*>(CPLGetErrorHandlerUserData());
   constexpr std::size_t kLongest = 600;
   if (severity < CE_Warning || self->text_.size() > kLongest) return;
-  if (self->text_.find(message) != std::string::npos) return;
+  std::string line = message;
+  std::replace(line.begin(), line.end(), '\n', ' ');
+  while (!line.empty() && line.back() == ' ') line.pop_back();
+  if (self->text_.find(line) != std::string::npos) return;
   if (!self->text_.empty()) self->text_ += "; ";
-  self->text_ += message;
+  self->text_ += line;
 }
 
 std::string GdalMessages::text() const { return text_.empty() ? "no reason given" : text_; }
@@ -40,6 +46,9 @@ Result<DatasetPtr> open_raster(const fs::path& file, int level) {
   std::error_code ignored;
   if (!fs::exists(file, ignored)) {
     return Error{ErrorCode::kNotFound, file.string() + ": no such file"};
+  }
+  if (fs::is_regular_file(file, ignored) && fs::file_size(file, ignored) == 0) {
+    return Error{ErrorCode::kUnreadable, file.string() + ": is empty (0 bytes)"};
   }
   GdalMessages messages;
   CPLStringList options;
@@ -168,6 +177,8 @@ Result<Georeference> read_georeference(GDALDataset& dataset,
   const Status in_range =
       check_range(place, dataset.GetRasterXSize(), dataset.GetRasterYSize(), file.string());
   if (!in_range) return in_range.error();
+  const Status sized = check_pixel_size(place, file.string());
+  if (!sized) return sized.error();
   return place;
 }
 

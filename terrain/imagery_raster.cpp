@@ -5,6 +5,7 @@
 #include <list>
 
 #include "terrain/datum_shift.hpp"
+#include "terrain/file_soundness.hpp"
 
 namespace overfly::terrain {
 namespace {
@@ -76,6 +77,9 @@ Result<std::shared_ptr<const ImageryRaster>> ImageryRaster::open(
   if (auto doubt = datum_shift_doubt(place->crs, middle.x(), middle.y(), file.string())) {
     warnings.push_back(std::move(*doubt));
   }
+  if (auto doubt = place_doubt(*place, raster->width_px_, raster->height_px_, file.string())) {
+    warnings.push_back(std::move(*doubt));
+  }
   auto bands = find_bands(dataset, file.string(), layer.nodata, warnings);
   if (!bands) return bands.error();
   raster->bands_ = *bands;
@@ -94,12 +98,15 @@ Status ImageryRaster::prepare() const {
 }
 
 Status ImageryRaster::look_at_blocks() const {
+  const GdalMessages quiet;
   auto dataset = pyramid_->stored.front().pool->take();
   if (!dataset) return dataset.error();
-  const Status whole = check_blocks(**dataset, file_);
+  const Status whole = check_whole(**dataset, file_, pyramid_->doubts);
   if (!whole) return whole;
   add_overviews(**dataset);
   pyramid_->stored.front().pool->put(std::move(*dataset));
+  const Status sampled = look_for_a_picture();
+  if (!sampled) return sampled;
   // The in-memory levels start where the stored ones are left behind, later if they were too big.
   int& level = pyramid_->first_level;
   level = pyramid_->stored.back().level + 2;
@@ -108,15 +115,40 @@ Status ImageryRaster::look_at_blocks() const {
   return {};
 }
 
-std::optional<std::string> ImageryRaster::slowness() const {
+std::vector<std::string> ImageryRaster::doubts() const {
+  std::vector<std::string> all = pyramid_->doubts;
   const Stored& coarsest = pyramid_->stored.back();
   const double texels = static_cast<double>(coarsest.width_px) * coarsest.height_px;
   constexpr double kMany = 256e6;
-  if (texels < kMany) return std::nullopt;
-  return file_.string() + ": has no area-averaged overviews below " +
-         std::to_string(coarsest.width_px) + " x " + std::to_string(coarsest.height_px) +
-         " px: far views read " + std::to_string(static_cast<long>(texels / 1e6)) +
-         " million texels; `overfly world build` makes them quick";
+  if (texels >= kMany) {
+    all.push_back(file_.string() + ": has no area-averaged overviews below " +
+                  std::to_string(coarsest.width_px) + " x " + std::to_string(coarsest.height_px) +
+                  " px: far views read " + std::to_string(static_cast<long>(texels / 1e6)) +
+                  " million texels; `overfly world build` makes them quick");
+  }
+  return all;
+}
+
+/// Tiles that a service had nothing for are often of one colour, without a mask.
+Status ImageryRaster::look_for_a_picture() const {
+  std::optional<std::array<std::uint8_t, 3>> first;
+  // A few samples clear nearly every file; more are taken before one is suspected.
+  for (const int steps : {5, 32}) {
+    for (int i = 0; i < steps * steps; ++i) {
+      const auto x = static_cast<int>((i % steps + 0.5) / steps * width_px_);
+      const auto y = static_cast<int>((i / steps + 0.5) / steps * height_px_);
+      const auto texel = read_stored(pyramid_->stored.front(), x, y, 1, 1);
+      if (!texel) return texel.error();
+      if (texel->valid.data[0] == 0) return {};  // a mask says what is missing
+      const auto& rgb = texel->rgb.data;
+      if (!first) first = {rgb[0], rgb[1], rgb[2]};
+      if (!std::equal(first->begin(), first->end(), rgb.begin())) return {};
+    }
+  }
+  pyramid_->doubts.push_back(file_.string() + ": all of 1024 samples have one colour (" +
+                             std::to_string((*first)[0]) + ", " + std::to_string((*first)[1]) +
+                             ", " + std::to_string((*first)[2]) + "); is it an empty tile?");
+  return {};
 }
 
 void ImageryRaster::add_overviews(GDALDataset& dataset) const {

@@ -27,8 +27,9 @@ class ImageryRaster {
   /// area averages (others are not used). `read` does it if it was not done before.
   /// Errors: kUnreadable.
   [[nodiscard]] Status prepare() const;
-  /// A warning where far views must read much of the file; call after `prepare`.
-  [[nodiscard]] std::optional<std::string> slowness() const;
+  /// Warnings of a file that may be damaged, is of one colour, or must be read to a large part for
+  /// far views; call after `prepare`.
+  [[nodiscard]] std::vector<std::string> doubts() const;
 
   /// Texels [x, x + width) x [y, y + height) of a level; void outside the file.
   /// Errors: kIo with GDAL's reason.
@@ -60,6 +61,7 @@ class ImageryRaster {
   struct Pyramid {
     std::once_flag prepared;
     Status state;
+    std::vector<std::string> doubts;
     std::vector<Stored> stored;
     int first_level = 0;  ///< of `levels`: where the stored ones are too fine
     std::mutex mutex;
@@ -67,6 +69,7 @@ class ImageryRaster {
   };
 
   [[nodiscard]] Status look_at_blocks() const;
+  [[nodiscard]] Status look_for_a_picture() const;
   void add_overviews(GDALDataset& dataset) const;
   [[nodiscard]] bool overview_is_average(const Stored& finer, const Stored& coarser) const;
   [[nodiscard]] Result<Patch> read_stored(

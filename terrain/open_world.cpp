@@ -33,7 +33,8 @@ Status prepare(const Rasters& rasters, std::vector<std::string>& warnings) {
   for (const auto& raster : rasters) {
     const Status prepared = raster->prepare();
     if (!prepared) return prepared;
-    if (auto slow = raster->slowness()) warnings.push_back(std::move(*slow));
+    const std::vector<std::string> doubts = raster->doubts();
+    warnings.insert(warnings.end(), doubts.begin(), doubts.end());
   }
   return {};
 }
@@ -58,6 +59,22 @@ Result<std::vector<MappedImagery>> map_imagery(const Rasters& rasters,
     layers.push_back(std::move(*layer));
   }
   return layers;
+}
+
+/// A layer without a texel is worth a word, a world without one an error.
+Status check_picture(const std::vector<MappedImagery>& layers, std::vector<std::string>& warnings) {
+  std::size_t empty = 0;
+  for (const MappedImagery& layer : layers) {
+    if (layer.validity() == nullptr || layer.validity()->any()) continue;
+    ++empty;
+    warnings.push_back(layer.raster().file().string() +
+                       ": every texel is void by its mask or nodata value; it shows nothing");
+  }
+  if (empty < layers.size()) return {};
+  return Error{ErrorCode::kInvalidArgument,
+               layers.front().raster().file().string() +
+                   ": every texel is void by its mask or nodata value: there is no picture to fly "
+                   "over"};
 }
 
 /// Elevation as far around the imagery as is quickly read, at most to about the horizon of a low
@@ -198,6 +215,8 @@ Result<World> open_world(const WorldSpec& spec) {
   }
   auto imagery = map_imagery(*rasters, *layout, cache.get());
   if (!imagery) return imagery.error();
+  const Status picture = check_picture(*imagery, world.warnings);
+  if (!picture) return picture.error();
   if (elevation->heights() != nullptr) {
     const Status ready =
         cache ? elevation->use(cache, world.warnings) : elevation->survey(world.warnings);

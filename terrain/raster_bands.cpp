@@ -276,32 +276,4 @@ Result<Patch> read_bands(GDALDataset& dataset,
   return patch;
 }
 
-Status check_blocks(GDALDataset& dataset, const std::filesystem::path& file) {
-  if (std::string(dataset.GetDriver()->GetDescription()) != "GTiff") return {};
-  std::error_code failed;
-  const auto file_bytes = std::filesystem::file_size(file, failed);
-  if (failed) return {};
-  GDALRasterBand* band = dataset.GetRasterBand(1);
-  int block_width = 0;
-  int block_height = 0;
-  band->GetBlockSize(&block_width, &block_height);
-  const int columns = (band->GetXSize() + block_width - 1) / block_width;
-  const int rows = (band->GetYSize() + block_height - 1) / block_height;
-  for (int y = 0; y < rows; ++y) {
-    for (int x = 0; x < columns; ++x) {
-      const std::string at = std::to_string(x) + "_" + std::to_string(y);
-      const char* offset = band->GetMetadataItem(("BLOCK_OFFSET_" + at).c_str(), "TIFF");
-      const char* size = band->GetMetadataItem(("BLOCK_SIZE_" + at).c_str(), "TIFF");
-      if (offset == nullptr || size == nullptr) continue;
-      const unsigned long long end = std::stoull(offset) + std::stoull(size);
-      if (end > file_bytes) {
-        return Error{ErrorCode::kUnreadable,
-                     file.string() + ": is truncated: block " + at + " ends at byte " +
-                         std::to_string(end) + ", the file has " + std::to_string(file_bytes)};
-      }
-    }
-  }
-  return {};
-}
-
 }  // namespace overfly::terrain

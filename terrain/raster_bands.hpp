@@ -41,7 +41,4 @@ struct RasterBands {
                                        int width,
                                        int height);
 
-/// Errors: kUnreadable if a block of a (Geo)TIFF reaches beyond the end of the file.
-[[nodiscard]] Status check_blocks(GDALDataset& dataset, const std::filesystem::path& file);
-
 }  // namespace overfly::terrain

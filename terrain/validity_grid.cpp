@@ -82,6 +82,10 @@ std::optional<ValidityGrid> ValidityGrid::from_bytes(const std::vector<std::uint
   return grid;
 }
 
+bool ValidityGrid::any() const {
+  return std::any_of(cells_.begin(), cells_.end(), [](Cell cell) { return cell != Cell::kNone; });
+}
+
 double ValidityGrid::void_share() const {
   double voids = 0.0;
   for (const Cell cell : cells_) voids += cell < Cell::kMost ? 1.0 : 0.0;

@@ -20,6 +20,8 @@ class ValidityGrid {
   [[nodiscard]] std::vector<std::uint8_t> to_bytes() const;
   static std::optional<ValidityGrid> from_bytes(const std::vector<std::uint8_t>& bytes);
 
+  /// Whether there is any valid texel.
+  [[nodiscard]] bool any() const;
   /// Share of the cells that are mostly void.
   [[nodiscard]] double void_share() const;
   /// Whether most of the cell around a file texel is valid; false outside the file.

@@ -1,0 +1,183 @@
+#include "terrain/file_soundness.hpp"
+
+#include <cpl_minixml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "terrain/map_plane.hpp"
+
+namespace overfly::terrain {
+namespace fs = std::filesystem;
+namespace {
+
+/// Errors: kUnreadable if a block of the band reaches beyond the end of the file.
+Status check_blocks(GDALRasterBand& band, const fs::path& file, std::uintmax_t file_bytes) {
+  int block_width = 0;
+  int block_height = 0;
+  band.GetBlockSize(&block_width, &block_height);
+  const int columns = (band.GetXSize() + block_width - 1) / block_width;
+  const int rows = (band.GetYSize() + block_height - 1) / block_height;
+  for (int y = 0; y < rows; ++y) {
+    for (int x = 0; x < columns; ++x) {
+      const std::string at = std::to_string(x) + "_" + std::to_string(y);
+      const char* offset = band.GetMetadataItem(("BLOCK_OFFSET_" + at).c_str(), "TIFF");
+      const char* size = band.GetMetadataItem(("BLOCK_SIZE_" + at).c_str(), "TIFF");
+      if (offset == nullptr || size == nullptr) continue;
+      const unsigned long long end = std::stoull(offset) + std::stoull(size);
+      if (end > file_bytes) {
+        return Error{ErrorCode::kUnreadable,
+                     file.string() + ": is truncated: block " + at + " ends at byte " +
+                         std::to_string(end) + ", the file has " + std::to_string(file_bytes)};
+      }
+    }
+  }
+  return {};
+}
+
+Status check_tiff(GDALDataset& dataset, const fs::path& file) {
+  std::error_code failed;
+  const auto file_bytes = fs::file_size(file, failed);
+  if (failed) return {};
+  Status whole = check_blocks(*dataset.GetRasterBand(1), file, file_bytes);
+  const int last = dataset.GetRasterCount();
+  // Bands may lie one after the other.
+  if (whole && last > 1) whole = check_blocks(*dataset.GetRasterBand(last), file, file_bytes);
+  return whole;
+}
+
+/// Files that the description of a virtual raster names, in its order.
+void add_sources(const CPLXMLNode* node, const fs::path& folder, std::vector<fs::path>& sources) {
+  for (; node != nullptr; node = node->psNext) {
+    if (node->eType != CXT_Element) continue;
+    if (std::string(node->pszValue) == "SourceFilename") {
+      fs::path source = CPLGetXMLValue(node, nullptr, "");
+      const bool relative = std::string(CPLGetXMLValue(node, "relativeToVRT", "0")) == "1";
+      if (relative) source = folder / source;
+      if (std::find(sources.begin(), sources.end(), source) == sources.end()) {
+        sources.push_back(std::move(source));
+      }
+    } else {
+      add_sources(node->psChild, folder, sources);
+    }
+  }
+}
+
+Status check_sources(GDALDataset& dataset,
+                     const fs::path& file,
+                     std::vector<std::string>& warnings) {
+  char** description = dataset.GetMetadata("xml:VRT");
+  if (description == nullptr || description[0] == nullptr) return {};
+  const std::unique_ptr<CPLXMLNode, decltype(&CPLDestroyXMLNode)> xml(
+      CPLParseXMLString(description[0]), &CPLDestroyXMLNode);
+  std::vector<fs::path> sources;
+  add_sources(xml.get(), file.parent_path(), sources);
+  for (const fs::path& source : sources) {
+    // What is no plain file (another server, a part of an archive) is for GDAL to find.
+    if (source.string().starts_with("/vsi") || source.string().find(':') != std::string::npos) {
+      continue;
+    }
+    auto opened = open_raster(source);
+    if (!opened) return opened.error().in(file.string() + ": is made of");
+    const Status whole = check_whole(**opened, source, warnings);
+    if (!whole) return whole.error().in(file.string() + ": is made of");
+  }
+  return {};
+}
+
+/// Formats that are read from the start stumble over a cut before they reach the end.
+Status check_last_row(GDALDataset& dataset,
+                      const fs::path& file,
+                      std::vector<std::string>& warnings) {
+  const GdalMessages messages;
+  GDALRasterBand* band = dataset.GetRasterBand(dataset.GetRasterCount());
+  const int width = band->GetXSize();
+  std::vector<float> row(static_cast<std::size_t>(width));
+  const CPLErr outcome = band->RasterIO(
+      GF_Read, 0, band->GetYSize() - 1, width, 1, row.data(), width, 1, GDT_Float32, 0, 0, nullptr);
+  if (outcome != CE_None) {
+    return Error{ErrorCode::kUnreadable,
+                 file.string() + ": its last row cannot be read: " + messages.text()};
+  }
+  if (!messages.empty()) {
+    warnings.push_back(file.string() +
+                       ": may be damaged; reading its last row, GDAL said: " + messages.text());
+  }
+  return {};
+}
+
+}  // namespace
+
+Status check_whole(GDALDataset& dataset, const fs::path& file, std::vector<std::string>& warnings) {
+  const std::string format = dataset.GetDriver()->GetDescription();
+  if (format == "GTiff") return check_tiff(dataset, file);
+  if (format == "VRT") return check_sources(dataset, file, warnings);
+  return check_last_row(dataset, file, warnings);
+}
+
+Status check_pixel_size(const Georeference& place, const std::string& file) {
+  const double* g = place.transform.g;
+  constexpr double kEarthRadiusM = 6371e3;
+  const double unit_m = place.crs.IsGeographic() != 0 ? place.crs.GetAngularUnits() * kEarthRadiusM
+                                                      : place.crs.GetLinearUnits();
+  for (const double size_m : {std::hypot(g[1], g[4]) * unit_m, std::hypot(g[2], g[5]) * unit_m}) {
+    if (size_m >= 1e-3 && size_m <= 100e3) continue;
+    char text[32];
+    std::snprintf(text, sizeof(text), "%.3g", size_m);
+    const char* name = nullptr;
+    if (place.crs.IsGeographic() != 0) {
+      (void)place.crs.GetAngularUnits(&name);
+    } else {
+      (void)place.crs.GetLinearUnits(&name);
+    }
+    return Error{ErrorCode::kInvalidArgument,
+                 file + ": pixels are " + text +
+                     " m on the ground: must be in [0.001, 100000]; is its georeference in the "
+                     "unit of its coordinate reference system (" +
+                     (name != nullptr ? name : "unknown") + ")?"};
+  }
+  return {};
+}
+
+std::optional<std::string> place_doubt(const Georeference& place,
+                                       int width_px,
+                                       int height_px,
+                                       const std::string& file) {
+  double west = 0.0;
+  double south = 0.0;
+  double east = 0.0;
+  double north = 0.0;
+  const char* area = nullptr;
+  if (!place.crs.GetAreaOfUse(&west, &south, &east, &north, &area) || west > east ||
+      west < -180.0) {
+    return std::nullopt;
+  }
+  const auto transform = CrsTransform::create(place.crs, wgs84_crs(), file);
+  if (!transform) return std::nullopt;
+  Eigen::Matrix2Xd middle(2, 1);
+  place.transform.crs_from_pixel(0.5 * width_px, 0.5 * height_px, middle(0, 0), middle(1, 0));
+  if (!(*transform)->apply(middle)) return std::nullopt;  // laying out the world says so
+  const double lon = middle(0, 0);
+  const double lat = middle(1, 0);
+  const double outside = std::max({west - lon, lon - east, south - lat, lat - north, 0.0});
+  constexpr double kFarDeg = 3.0;
+  if (outside < kFarDeg) return std::nullopt;
+  char text[400];
+  std::snprintf(text,
+                sizeof(text),
+                ": its middle lies at %.4f deg N, %.4f deg E, %.0f deg outside the area of its "
+                "coordinate reference system (%.0f to %.0f deg N, %.0f to %.0f deg E); are its "
+                "coordinates in the right unit and zone?",
+                lat,
+                lon,
+                outside,
+                south,
+                north,
+                west,
+                east);
+  return file + text;
+}
+
+}  // namespace overfly::terrain
