@@ -1,26 +1,16 @@
 #include "renderer/bench_probe.hpp"
 
-#include <algorithm>
 #include <chrono>
-#include <ctime>
 #include <functional>
 #include <optional>
+
+#include "renderer/process_cost.hpp"
 
 namespace overfly::renderer {
 
 namespace {
 
-double process_cpu_ms() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
+double median(const std::vector<double>& values) { return quantile(values, 0.5); }
 
 /// The costs of one kind of call, in order.
 struct Series {

@@ -4,12 +4,14 @@
 #include <filesystem>
 #include <iomanip>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "renderer/bench_probe.hpp"
+#include "server/app/bench_fly.hpp"
 #include "server/app/bench_folder.hpp"
 #include "server/app/commands.hpp"
 #include "server/app/exit_code.hpp"
@@ -31,6 +33,9 @@ struct BenchArguments {
   double flight_s = 10.0;
   int repetitions = 20;
   bool json = false;
+  double fly_km = 0.0;  // 0 = the usual measurements
+  int fly_cache_mib = 256;
+  renderer::EnduranceOptions endurance;
 };
 
 Result<engine::Scenario> bench_scenario(double flight_s) {
@@ -181,16 +186,22 @@ Result<Json> measure(const BenchArguments& arguments, ProgressDisplay& display) 
               {"flight", std::move(*flight)}};
 }
 
-int bench(const BenchArguments& arguments) {
+int bench(BenchArguments& arguments) {
   (void)catch_stop_signals();
+  const bool long_flight = arguments.fly_km > 0.0;
+  arguments.endurance.length_m = 1000.0 * arguments.fly_km;
+  arguments.endurance.tile_cache_bytes = static_cast<std::size_t>(arguments.fly_cache_mib) << 20U;
   Result<Json> result = Error{};
   {
     ProgressDisplay display(arguments.json);
-    result = measure(arguments, display);
+    result =
+        long_flight ? bench_long_flight(arguments.endurance, display) : measure(arguments, display);
   }
   if (!result) return report(result.error());
   if (arguments.json) {
     std::cout << result->dump(2) << "\n";
+  } else if (long_flight) {
+    print_long_flight(*result);
   } else {
     print_table(*result);
   }
@@ -209,6 +220,24 @@ void add_bench_command(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   command->add_flag("--json", arguments->json, "Print JSON");
+  command
+      ->add_option("--fly-km",
+                   arguments->fly_km,
+                   "Instead: fly this far over a strip of 0.5 m/px in lockstep")
+      ->check(CLI::Range(1.5, 390.0));
+  command->add_option("--fly-hz", arguments->endurance.rate_hz, "Frames per second of that flight")
+      ->check(CLI::Range(0.1, 1000.0))
+      ->capture_default_str();
+  command->add_option("--fly-camera", arguments->endurance.camera_backend, "What draws that flight")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, renderer::CameraBackend>{
+              {"auto", renderer::CameraBackend::kAuto},
+              {"egl", renderer::CameraBackend::kEgl},
+              {"raycast", renderer::CameraBackend::kRaycast}},
+          CLI::ignore_case));
+  command->add_option("--fly-cache-mib", arguments->fly_cache_mib, "Tiles kept in memory [MiB]")
+      ->check(CLI::Range(1, 65536))
+      ->capture_default_str();
   command->callback([arguments, &exit_code] { exit_code = bench(*arguments); });
 }
 

@@ -70,6 +70,8 @@ ProceduralGround::ProceduralGround(Options options)
   grid_.left_x_m =
       options_.map_offset_m + options_.centre_east_m - 0.5 * options_.cols * grid_.tile_m(0);
   grid_.top_y_m = options_.map_offset_m + 0.5 * options_.rows * grid_.tile_m(0);
+  grid_.width_m = grid_.cols * grid_.tile_m(0);
+  grid_.height_m = grid_.rows * grid_.tile_m(0);
   grid_.levels = 1;
   while ((1 << (grid_.levels - 1)) < std::max(options_.cols, options_.rows)) ++grid_.levels;
 }
