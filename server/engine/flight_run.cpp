@@ -163,8 +163,8 @@ Status FlightRun::deliver(MadeFrame& made) {
       if (scenario_.estimators[i].camera != shot.camera) continue;
       workers_[i]->submit(vo_frame_from(made, shot, camera, grey));
     }
-    Status recorded =
-        stages_.measure("record", [&] { return recorder_.add_frame(record, image, shot.camera); });
+    Status recorded = stages_.measure(
+        "record", [&] { return recorder_.add_frame(record, image, shot.image16, shot.camera); });
     if (!recorded) return recorded;
   }
   return {};

@@ -28,7 +28,7 @@ Status FlightRun::open_maker() {
 
   const std::optional<std::int64_t> duration_ns = maker_->duration_ns();
   recorder_.set_length(duration_ns.value_or(0), duration_ns ? maker_->frames_total() : 0);
-  recorder_.set_cameras();
+  if (Status status = recorder_.set_cameras(); !status) return status;
   recorder_.manifest()["flight"] = {{"description", maker_->flight_description()}};
   if (Status status = describe_world(); !status) return status;
   const renderer::RendererInfo info = maker_->renderer().info();

@@ -17,11 +17,13 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-std::string numbered_jpg(std::int64_t frame) {
+std::string numbered(std::int64_t frame, const char* suffix) {
   std::array<char, 32> name{};
-  std::snprintf(name.data(), name.size(), "%06lld.jpg", static_cast<long long>(frame));  // NOLINT
-  return name.data();
+  std::snprintf(name.data(), name.size(), "%06lld", static_cast<long long>(frame));  // NOLINT
+  return name.data() + std::string(suffix);
 }
+
+std::string numbered_jpg(std::int64_t frame) { return numbered(frame, ".jpg"); }
 
 std::optional<RunStatus> run_status_from(const std::string& text) {
   for (RunStatus status : {RunStatus::kQueued,
@@ -92,6 +94,10 @@ fs::path camera_truth_file(const fs::path& folder, const std::string& camera) {
 
 fs::path frame_image_file(const fs::path& folder, const std::string& camera, std::int64_t frame) {
   return folder / "frames" / camera / numbered_jpg(frame);
+}
+
+fs::path deep_frame_file(const fs::path& folder, const std::string& camera, std::int64_t frame) {
+  return folder / "frames16" / camera / numbered(frame, ".png");
 }
 
 fs::path frame_image_file(const fs::path& folder, std::int64_t frame) {

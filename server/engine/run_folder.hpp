@@ -31,10 +31,14 @@ inline constexpr int kRunFormatVersion = 1;
                                                        const std::string& camera);
 [[nodiscard]] std::filesystem::path camera_truth_file(const std::filesystem::path& folder,
                                                       const std::string& camera);
-/// frames/NAME/NNNNNN.jpg, of all cameras but the main one
+/// frames/NAME/NNNNNN.jpg; of the main camera, whose name is left empty, frames/NNNNNN.jpg
 [[nodiscard]] std::filesystem::path frame_image_file(const std::filesystem::path& folder,
                                                      const std::string& camera,
                                                      std::int64_t frame);
+/// frames16/NAME/NNNNNN.png, likewise, of sensors deeper than 8 bit
+[[nodiscard]] std::filesystem::path deep_frame_file(const std::filesystem::path& folder,
+                                                    const std::string& camera,
+                                                    std::int64_t frame);
 /// frames/NNNNNN.jpg and debug/NAME/NNNNNN.jpg
 [[nodiscard]] std::filesystem::path frame_image_file(const std::filesystem::path& folder,
                                                      std::int64_t frame);

@@ -4,8 +4,10 @@
 #include <utility>
 
 #include "server/engine/build_info.hpp"
+#include "server/engine/export/png_file.hpp"
 #include "server/engine/jpeg.hpp"
 #include "server/engine/metrics.hpp"
+#include "server/engine/run_calibration.hpp"
 
 namespace overfly::engine {
 namespace {
@@ -146,8 +148,13 @@ Status RunRecorder::open_camera_files() {
   if (several) fs::create_directories(folder_ / "cameras", failure);
   for (std::size_t i = 0; i < info_.cameras.size(); ++i) {
     const std::string& name = info_.cameras[i];
-    const fs::path images = frame_image_file(folder_, i == 0 ? "" : name, 0).parent_path();
-    if (scenario_.record_frames) fs::create_directories(images, failure);
+    const std::string of = i == 0 ? "" : name;
+    if (scenario_.record_frames) {
+      fs::create_directories(frame_image_file(folder_, of, 0).parent_path(), failure);
+      if (!failure && scenario_.cameras[i].sensor.bits > 8) {
+        fs::create_directories(deep_frame_file(folder_, of, 0).parent_path(), failure);
+      }
+    }
     if (failure) return Error{ErrorCode::kIo, folder_.string() + ": " + failure.message()};
     Result<LineFile> lines =
         LineFile::create(i == 0 ? frames_file(folder_) : camera_frames_file(folder_, name));
@@ -163,12 +170,13 @@ Status RunRecorder::write_manifest() {
   return write_json(manifest_file(folder_), manifest_);
 }
 
-void RunRecorder::set_cameras() {
+Status RunRecorder::set_cameras() {
   std::vector<RunCamera> cameras;
   Json entries = Json::array();
   for (const CameraSpec& spec : scenario_.cameras) {
     cameras.push_back({spec.name, spec.model, spec.T_body_camera});
     entries.push_back(camera_json(spec, scenario_.rate));
+    if (Status status = write_calibration(folder_, spec); !status) return status;
   }
   const CameraSpec& main = scenario_.cameras.front();
   manifest_["camera"] = json_from(main.model.pinhole());
@@ -176,6 +184,7 @@ void RunRecorder::set_cameras() {
   manifest_["camera"]["T_body_camera"] = json_from(main.T_body_camera);
   manifest_["cameras"] = std::move(entries);
   timeline_->set_cameras(std::move(cameras));
+  return {};
 }
 
 void RunRecorder::set_length(std::int64_t duration_ns, std::int64_t frames_total) {
@@ -189,6 +198,7 @@ void RunRecorder::set_attribution(const std::string& attribution) {
 
 Status RunRecorder::add_frame(const FrameRecord& record,
                               const std::shared_ptr<const Image>& image,
+                              const Image16& deep,
                               std::size_t camera) {
   const std::int64_t frame = record.row.frame;
   if (Status status = frame_lines_[camera].append(json_from(record)); !status) return status;
@@ -198,15 +208,24 @@ Status RunRecorder::add_frame(const FrameRecord& record,
   timeline_->append_frame(record.row, camera);
   if (publish_images_ && image) timeline_->set_live_camera({frame, record.row.t_ns, image}, camera);
   if (scenario_.record_frames && image) {
-    const fs::path file = camera == 0
-                              ? frame_image_file(folder_, frame)
-                              : frame_image_file(folder_, scenario_.cameras[camera].name, frame);
-    if (Status status = write_jpeg(file, *image, kFrameQuality); !status) return status;
+    if (Status status = keep_image(frame, *image, deep, camera); !status) return status;
   }
   if (camera != 0) return {};
   ++info_.frames;
   timeline_->set_info(info_);
   return {};
+}
+
+Status RunRecorder::keep_image(std::int64_t frame,
+                               const Image& image,
+                               const Image16& deep,
+                               std::size_t camera) {
+  const std::string of = camera == 0 ? "" : scenario_.cameras[camera].name;
+  if (Status status = write_jpeg(frame_image_file(folder_, of, frame), image, kFrameQuality);
+      !status) {
+    return status;
+  }
+  return deep.empty() ? Status() : write_png_file(deep_frame_file(folder_, of, frame), deep);
 }
 
 Status RunRecorder::add_late_frame(std::int64_t frame, std::int64_t t_ns) {
@@ -306,6 +325,10 @@ Result<Json> RunRecorder::finish(RunStatus status, const std::string& error, Jso
   info_.status = status;
   info_.error = error;
   Result<Json> metrics = write_derived(folder_, records_);
+  for (std::size_t i = 0; i < scenario_.cameras.size() && metrics; ++i) {
+    const Status kept = write_times(folder_, scenario_.cameras[i], records_.frames_of(i));
+    if (!kept) metrics = kept.error();
+  }
   info_.texture_limited = metrics && is_texture_limited(*metrics);
   if (!metrics) {
     info_.status = RunStatus::kFailed;

@@ -35,16 +35,18 @@ class RunRecorder {
   [[nodiscard]] nlohmann::json& manifest() { return manifest_; }
   Status write_manifest();
 
-  /// Tells manifest and timeline of the cameras.
-  void set_cameras();
+  /// Tells manifest and timeline of the cameras, and keeps their photometric calibration.
+  Status set_cameras();
   void set_length(std::int64_t duration_ns, std::int64_t frames_total);
   void set_attribution(const std::string& attribution);
 
   /// The main camera's (0) record first, then those of the others.
   /// @param image  null when it got lost: then there is none to keep or to show
+  /// @param deep   the same of a sensor deeper than 8 bit, else empty
   Status add_frame(const FrameRecord& record,
                    const std::shared_ptr<const Image>& image,
-                   std::size_t camera = 0);
+                   const Image16& deep,
+                   std::size_t camera);
   Status add_late_frame(std::int64_t frame, std::int64_t t_ns);
   Status add_event(std::size_t estimator, EstimatorEvent event);
   Status log(std::int64_t t_ns,
@@ -73,6 +75,10 @@ class RunRecorder {
   RunRecorder(std::filesystem::path folder, RunLock lock, const Scenario& scenario);
   Status open_files();
   Status open_camera_files();
+  Status keep_image(std::int64_t frame,
+                    const Image& image,
+                    const Image16& deep,
+                    std::size_t camera);
   Status add_answer(std::size_t estimator, EstimatorEvent& event);
   Status log_transition(std::size_t estimator, const EstimateRecord& record);
   Status keep_debug_image(std::size_t estimator, EstimatorEvent& event);
