@@ -93,19 +93,20 @@ OVERFLY_LANES float uniform(std::uint32_t word) {
 /// else the C library's, slow and of the same result.
 OVERFLY_LANES float fused(float a, float b, float c) { return __builtin_fmaf(a, b, c); }
 
-/// ln(u), u in (0, 1]: exponent and a polynomial in the mantissa m - 1, m in [sqrt(1/2), sqrt(2)).
-OVERFLY_LANES float natural_log(float u) {
+/// -2 ln(u) >= 0, u in (0, 1]: exponent and a polynomial in the mantissa m - 1, m in
+/// [sqrt(1/2), sqrt(2)).
+OVERFLY_LANES float minus_two_log(float u) {
   constexpr std::int32_t kSqrtHalf = 0x3f3504f3;
   const auto bits = std::bit_cast<std::int32_t>(u);
   const std::int32_t exponent = (bits - kSqrtHalf) >> 23;
   const float f = std::bit_cast<float>(bits - exponent * (1 << 23)) - 1.0F;
-  float p = -0.14021623F;
-  p = fused(p, f, 0.21965709F);
-  p = fused(p, f, -0.25433356F);
-  p = fused(p, f, 0.33265906F);
-  p = fused(p, f, -0.4998948F);
-  p = fused(p, f, 1.0000037F);
-  return fused(p, f, static_cast<float>(exponent) * 0.69314718F);
+  float p = 0.28043246F;
+  p = fused(p, f, -0.43931418F);
+  p = fused(p, f, 0.50866712F);
+  p = fused(p, f, -0.66531812F);
+  p = fused(p, f, 0.9997896F);
+  p = fused(p, f, -2.0000074F);
+  return fused(p, f, static_cast<float>(exponent) * -1.38629436F);
 }
 
 /// Two independent standard normals.
@@ -120,7 +121,7 @@ struct NormalPair {
 OVERFLY_LANES NormalPair normal_pair(std::uint32_t word) {
   const std::uint32_t upper = ((word >> 9U) & 0x007ffff8U) | 0x3f800000U;
   const float u = 2.0F - std::bit_cast<float>(upper);
-  const float r = std::sqrt(std::abs(2.0F * natural_log(u)));
+  const float r = std::sqrt(minus_two_log(u));
   // In units of pi/2, in (-1, 1), half a step off -1.
   const std::uint32_t middle = ((word << 11U) & 0x007ff000U) | 0x40000000U;
   const float x = std::bit_cast<float>(middle) - (3.0F - 0x1p-11F);

@@ -10,20 +10,28 @@ namespace {
 
 using Lanes = std::array<float, kChunk>;
 
-/// Keeps conversions to integers defined; far above any full well.
-constexpr float kMostElectrons = 1e9F;
+/// The light this many samples on is fetched early: a page of memory, beyond which the processor
+/// does not look by itself.
+constexpr int kAhead = 1024;
+
+OVERFLY_LANES void fetch_ahead(const SensorRow& row, int start) {
+  constexpr int kCacheLine = 16;
+  const int end = std::min(start + kAhead + kChunk, row.readable);
+  for (int i = start + kAhead; i < end; i += kCacheLine) __builtin_prefetch(row.radiance + i);
+}
 
 /// What the light of a chunk leaves on average, the pattern of the pixels' gains included.
 /// @return whether any sample is below kExactPoissonBelowE
 OVERFLY_LANES bool mean_electrons(
     const PixelChain& chain, const SensorRow& row, int start, int count, Lanes& mean_e) {
+  fetch_ahead(row, start);
   if (count < kChunk) mean_e.fill(kExactPoissonBelowE);
   for (int i = 0; i < count; ++i) {
     const float r2 = row.x_term[start + i] + row.y_term;
     const float transmission = fused(
         r2, fused(r2, fused(r2, chain.vignette[2], chain.vignette[1]), chain.vignette[0]), 1.0F);
     const float mean = row.radiance[start + i] * chain.electrons_per_radiance * transmission;
-    mean_e[i] = std::min(std::max(mean, 0.0F), kMostElectrons);
+    mean_e[i] = std::max(mean, 0.0F);
   }
   if (row.gain_pattern != nullptr) {
     for (int i = 0; i < count; ++i) {
@@ -116,10 +124,12 @@ struct Chunk {
   ChunkWords words;  ///< of all but kNothing
   int start = 0;
   int count = kChunk;  ///< samples that are in the image
+  bool has_offsets = false;
 };
 
 /// From mean electrons to the converter's numbers.
-template <Drawn kDrawn, bool kWholeChunk>
+/// @tparam kPlain  the chunk is whole and has no offsets
+template <Drawn kDrawn, bool kPlain>
 OVERFLY_LANES void convert(const PixelChain& chain, const Chunk& chunk, RowResult& result) {
   const auto largest = static_cast<float>(chain.largest_dn);
   const float black_and_half = chain.black_dn + 0.5F;
@@ -141,11 +151,12 @@ OVERFLY_LANES void convert(const PixelChain& chain, const Chunk& chunk, RowResul
     }
     const bool full = electrons >= chain.full_well_e;
     const float kept_e = std::min(electrons, chain.full_well_e);
-    const float signal_e = fused(chain.read_noise_e, read_z, kept_e + chunk.offset_e[i]);
+    const float charge_e = kPlain ? kept_e : kept_e + chunk.offset_e[i];
+    const float signal_e = fused(chain.read_noise_e, read_z, charge_e);
     const float dn = fused(signal_e, chain.dn_per_e, black_and_half);
     const auto number = static_cast<std::int32_t>(std::min(std::max(dn, 0.0F), largest));
     numbers[i] = static_cast<std::uint16_t>(number);
-    const bool counts = kWholeChunk || i < chunk.count;
+    const bool counts = kPlain || i < chunk.count;
     sum += counts ? static_cast<std::uint32_t>(number) : 0U;
     saturated += static_cast<std::uint32_t>(counts & (full | (number == chain.largest_dn)));
   }
@@ -155,7 +166,7 @@ OVERFLY_LANES void convert(const PixelChain& chain, const Chunk& chunk, RowResul
 
 template <Drawn kDrawn>
 OVERFLY_LANES void convert(const PixelChain& chain, const Chunk& chunk, RowResult& result) {
-  if (chunk.count == kChunk) {
+  if (chunk.count == kChunk && !chunk.has_offsets) {
     convert<kDrawn, true>(chain, chunk, result);
   } else {
     convert<kDrawn, false>(chain, chunk, result);
@@ -189,6 +200,7 @@ OVERFLY_LANES void expose_chunk(const PixelChain& chain,
 OVERFLY_LANES void expose_chunks(const PixelChain& chain, const SensorRow& row, RowResult& result) {
   Chunk chunk;
   chunk.offset_e.fill(0.0F);
+  chunk.has_offsets = row.offset_pattern_e != nullptr;
   for (; chunk.start < row.samples; chunk.start += kChunk) {
     chunk.count = std::min(kChunk, row.samples - chunk.start);
     expose_chunk(chain, row, chunk, result);

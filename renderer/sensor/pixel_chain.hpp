@@ -31,8 +31,9 @@ struct PixelChain {
 
 /// One row of samples; colours are neighbours.
 struct SensorRow {
-  const float* radiance = nullptr;
+  const float* radiance = nullptr;  ///< finite
   int samples = 0;
+  int readable = 0;               ///< samples from `radiance` to the end of the image
   const float* x_term = nullptr;  ///< of each sample: (x - cx)^2 / (half diagonal)^2
   float y_term = 0.0F;
   const float* gain_pattern = nullptr;      ///< of each sample, factor; null = 1

@@ -159,6 +159,7 @@ class ModelledSensor final : public Sensor {
       SensorRow row;
       row.radiance = &radiance.data[start];
       row.samples = samples;
+      row.readable = static_cast<int>(radiance.data.size() - start);
       row.x_term = x_term_.data();
       row.y_term = static_cast<float>(dy * dy);
       if (!gain_pattern_.empty()) row.gain_pattern = &gain_pattern_[start];
@@ -193,6 +194,7 @@ class ModelledSensor final : public Sensor {
       for (int i = 0; i < samples; ++i) out[i] = static_cast<std::uint8_t>(numbers[i]);
     } else {
       const std::uint8_t* __restrict table = table_8bit_.data();
+#pragma GCC unroll 8
       for (int i = 0; i < samples; ++i) out[i] = table[numbers[i]];
     }
   }

@@ -128,7 +128,7 @@ class Sensor {
 
   /// The exposure of the next frame: fixed, or what auto-exposure chose from the frames before.
   [[nodiscard]] virtual ExposureSetting next_setting() const = 0;
-  /// @param radiance  grey or RGB, of the camera's size, taken with next_setting()
+  /// @param radiance  finite; grey or RGB, of the camera's size, taken with next_setting()
   /// @param frame     index of the frame, the noise's second seed
   [[nodiscard]] virtual SensorImage expose(const RadianceImage& radiance, std::int64_t frame) = 0;
 };
