@@ -1,10 +1,11 @@
 // One viewer's session with the real server: launch, watch, pause, seek, change the speed, read
 // the error, come back.
 import assert from 'node:assert/strict';
-import { after, before, describe, it } from 'node:test';
+import { after, before, describe } from 'node:test';
 import { browserMissing, openBrowser } from './support/browser.mjs';
 import { Dashboard } from './support/dashboard.mjs';
 import { getJson, makeRunsFolder, serverMissing, startServer } from './support/server.mjs';
+import { makeStep } from './support/steps.mjs';
 
 const kFlight_s = 20;
 const kRate_hz = 31;
@@ -17,27 +18,8 @@ const kSizes = [
   { width: 1920, height: 1080 },
 ];
 
-let broken = false;
 let dashboard;
-
-/** The steps of one session: after one that failed the others would only wait in vain. */
-function step(name, body) {
-  it(name, async (t) => {
-    if (broken) {
-      t.skip('an earlier step failed');
-      return;
-    }
-    broken = true;
-    try {
-      await body();
-    } catch (error) {
-      await dashboard?.screenshot('failed');
-      throw error;
-    }
-    broken = false;
-  });
-}
-
+const step = makeStep(() => dashboard);
 const skip = serverMissing() || browserMissing();
 
 describe('the dashboard', { skip, timeout: 900_000 }, () => {
