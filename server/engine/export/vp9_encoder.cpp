@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -76,6 +77,7 @@ struct Vp9Encoder::State {
   vpx_codec_ctx_t codec{};
   bool opened = false;
   VideoSettings settings;
+  std::optional<std::int64_t> last_ms;
 
   ~State() {
     if (opened) vpx_codec_destroy(&codec);
@@ -133,6 +135,12 @@ Result<std::vector<VideoPacket>> Vp9Encoder::encode(const Image& rgb, std::int64
                      " channels: must be RGB of " + std::to_string(settings.width_px) + " x " +
                      std::to_string(settings.height_px)};
   }
+  if (state_->last_ms && t_ms <= *state_->last_ms) {
+    return Error{ErrorCode::kInvalidArgument,
+                 "video: an image at " + std::to_string(t_ms) + " ms after one at " +
+                     std::to_string(*state_->last_ms) + " ms: stamps must grow"};
+  }
+  state_->last_ms = t_ms;
   PlanarImage planar = planar_from_rgb(rgb);
   const auto width = static_cast<unsigned>(settings.width_px);
   vpx_image_t image;

@@ -36,6 +36,7 @@ class Vp9Encoder {
 
   /// @param rgb   of the settings' size, 3 channels
   /// @param t_ms  later than the one before
+  /// Errors: kInvalidArgument for an image of another size or an earlier stamp; kInternal.
   [[nodiscard]] Result<std::vector<VideoPacket>> encode(const Image& rgb, std::int64_t t_ms);
 
  private:
