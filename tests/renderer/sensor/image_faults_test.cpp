@@ -106,7 +106,7 @@ TEST(ImageFaults, DirtOnlyDarkensAndStaysInItsPlace) {
 }
 
 TEST(ImageFaults, ADropShowsATurnedImageInsideItsRimAndNothingOutside) {
-  const ImageFault fault{ImageFaultKind::kWaterDrop, 1.0, 30.0, 1, 23};
+  const ImageFault fault{ImageFaultKind::kWaterDrop, 1.0, 30.0, 1, 58};
   const RadianceImage before = slope();
   const RadianceImage after = spoiled(fault, before);
   double sum_x = 0.0;
