@@ -143,8 +143,8 @@ struct RendererInfo {
   std::string device;      ///< GL_RENDERER
   std::string gl_version;  ///< GL_VERSION
   bool software = true;    ///< true when the CPU draws
-  /// What was asked for by RendererOptions::device, what came of it and why; empty when nothing
-  /// was asked for.
+  /// What was asked for by RendererOptions::device, what came of it and why; where nothing was
+  /// asked for, which devices do not work; else empty.
   std::string device_note;
   /// Why the camera is drawn by this backend; empty where there was no choice.
   std::string camera_note;
@@ -222,6 +222,17 @@ struct RendererOptions {
     std::shared_ptr<const terrain::TileSource> tiles);
 
 /// What EGL offers on this machine, without a world (for `overfly doctor`).
-[[nodiscard]] Result<RendererInfo> probe_egl();
+[[nodiscard]] Result<RendererInfo> probe_egl(const std::string& device = "");
+
+/// A device that RendererOptions::device can name.
+struct GraphicsDevice {
+  int index = 0;
+  std::string pci_address;  ///< empty where it has none or it is not known
+  RendererInfo info;        ///< empty where it does not work
+  std::string fault;        ///< why it does not work; empty where it does
+};
+
+/// Opens each device that EGL offers once; none where there is no EGL.
+[[nodiscard]] std::vector<GraphicsDevice> list_graphics_devices();
 
 }  // namespace overfly::renderer

@@ -114,10 +114,12 @@ Result<std::unique_ptr<Renderer>> create_egl_renderer(
                                          options.tile_cache_bytes));
 }
 
-Result<RendererInfo> probe_egl() {
-  const Result<std::unique_ptr<egl::EglContext>> context = egl::EglContext::create("");
+Result<RendererInfo> probe_egl(const std::string& device) {
+  const Result<std::unique_ptr<egl::EglContext>> context = egl::EglContext::create(device);
   if (!context.ok()) return context.error();
   return (*context)->info();
 }
+
+std::vector<GraphicsDevice> list_graphics_devices() { return egl::list_devices(); }
 
 }  // namespace overfly::renderer

@@ -30,6 +30,25 @@ Check check_drawing() {
       ""};
 }
 
+Check check_devices() {
+  std::string text;
+  bool fault = false;
+  for (const renderer::GraphicsDevice& device : renderer::list_graphics_devices()) {
+    text += (text.empty() ? "" : "; ") + std::to_string(device.index) + " = ";
+    if (!device.pci_address.empty()) text += device.pci_address + ", ";
+    fault = fault || !device.fault.empty();
+    text += device.fault.empty() ? device.info.device : "does not work (" + device.fault + ")";
+    if (device.fault.empty() && device.info.software) text += " (software)";
+  }
+  const char* const name = "devices (EGL)";
+  if (text.empty()) return {name, CheckLevel::kOk, "none to choose from", ""};
+  if (!fault) return {name, CheckLevel::kOk, text, ""};
+  return {name,
+          CheckLevel::kWarning,
+          text,
+          "check the driver's EGL library and the rights of /dev/dri/*, /dev/nvidia*"};
+}
+
 Check check_raster_drivers() {
   const terrain::Installation found = terrain::probe_installation();
   std::string missing;
@@ -138,6 +157,7 @@ std::vector<Check> all_checks(const fs::path& runs_folder) {
   constexpr std::uintmax_t kWorldBytes = std::uintmax_t{1} << 30U;
   constexpr std::uintmax_t kRunBytes = std::uintmax_t{256} << 20U;
   return {check_drawing(),
+          check_devices(),
           check_raster_drivers(),
           check_projections(),
           check_folder("cache of built-in worlds",

@@ -1,0 +1,60 @@
+#include "renderer/device_choice.hpp"
+
+#include <algorithm>
+#include <regex>
+
+namespace overfly::renderer {
+
+Result<DeviceWish> DeviceWish::parse(const std::string& text) {
+  static const std::regex number("[0-9]{1,3}");
+  static const std::regex address("([0-9a-fA-F]{4,8}:)?[0-9a-fA-F]{2}:[0-9a-fA-F]{2}\\.[0-7]");
+  DeviceWish wish;
+  if (text == "software") {
+    wish.software = true;
+  } else if (std::regex_match(text, number)) {
+    wish.index = std::stoi(text);
+  } else if (std::regex_match(text, address)) {
+    wish.pci_address = text;
+    std::transform(text.begin(), text.end(), wish.pci_address.begin(), [](char c) {
+      return c >= 'A' && c <= 'F' ? static_cast<char>(c - 'A' + 'a') : c;
+    });
+    if (std::count(text.begin(), text.end(), ':') == 1) wish.pci_address.insert(0, "0000:");
+  } else if (!text.empty()) {
+    return Error{ErrorCode::kInvalidArgument,
+                 "device \"" + text +
+                     "\": must be empty, an index, a PCI address such as 0000:01:00.0, or "
+                     "\"software\""};
+  }
+  return wish;
+}
+
+bool asks_for(const DeviceWish& wish, const OfferedDevice& device) {
+  if (wish.index) return device.index == *wish.index;
+  if (!wish.pci_address.empty()) return device.pci_address == wish.pci_address;
+  return wish.software ? device.software : true;
+}
+
+std::vector<std::size_t> devices_to_try(const DeviceWish& wish,
+                                        const std::vector<OfferedDevice>& offered) {
+  std::vector<std::size_t> order;
+  const auto add = [&](const auto& suits) {
+    for (std::size_t i = 0; i < offered.size(); ++i) {
+      const bool known = std::find(order.begin(), order.end(), i) != order.end();
+      if (!known && suits(offered[i])) order.push_back(i);
+    }
+  };
+  const auto platform = [](const OfferedDevice& device) { return device.index < 0; };
+  const auto software = [](const OfferedDevice& device) { return device.software; };
+  if (wish.any()) {
+    add([](const OfferedDevice& device) { return device.index >= 0 && !device.software; });
+    add(platform);
+    add(software);
+  } else {
+    if (!wish.software) add([&](const OfferedDevice& device) { return asks_for(wish, device); });
+    add(software);
+    add(platform);
+  }
+  return order;
+}
+
+}  // namespace overfly::renderer
