@@ -100,6 +100,11 @@ TEST_P(PhotonTransfer, SlopeIsTheGainAndInterceptTheDarkNoise) {
           static_cast<float>(share * full_scale_e / (model.electrons_per_s * exposure_s));
       points.push_back(transfer_point(*sensor, flat_field(kWidth, kHeight, radiance), frame));
       points.back().mean -= model.black_level_dn;
+      // Quantisation and gain are unbiased: the mean is known to sigma / sqrt(n).
+      EXPECT_NEAR(points.back().mean,
+                  share * full_scale_e * gain,
+                  5.0 * std::sqrt(points.back().variance / (kWidth * kHeight)) + 1e-6 * (1 << bits))
+          << share;
       frame += 2;
     }
   }
