@@ -48,8 +48,9 @@ Status write_times(const fs::path& run_folder,
   for (const FrameRecord& frame : frames) {
     const FrameRow& row = frame.row;
     if (got_lost(row)) continue;
+    // Gain brightens as exposure does, and the format knows no other factor.
     text += padded(row.frame, kFrameDigits) + " " + seconds_text(row.t_ns + row.stamp_offset_ns) +
-            " " + number_text(1e-6 * static_cast<double>(row.exposure_ns)) + "\n";
+            " " + number_text(1e-6 * static_cast<double>(row.exposure_ns) * row.gain) + "\n";
   }
   return write_whole(calibration_folder(run_folder, camera.name) / "times.txt", text);
 }

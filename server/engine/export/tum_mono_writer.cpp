@@ -59,8 +59,11 @@ class TumMonoWriter final : public DatasetWriter {
     truth_.push_back({frame.t_ns, shot.drawn.T_world_camera});
     if (!shot.delivered) return std::vector<std::string>(1);
     const std::string id = padded(frame.frame, digits_);
-    times_ += id + " " + seconds_text(shot.stamp_ns) + " " +
-              number_text(static_cast<double>(shot.setting.exposure_ns) * 1e-6) + "\n";
+    // Gain brightens as exposure does, and the format knows no other factor.
+    times_ +=
+        id + " " + seconds_text(shot.stamp_ns) + " " +
+        number_text(static_cast<double>(shot.setting.exposure_ns) * 1e-6 * shot.setting.gain) +
+        "\n";
     const Status status = write_png_file(folder_ / "images" / (id + ".png"), grey_of(shot.image));
     if (!status) return status.error();
     return std::vector<std::string>{id};
