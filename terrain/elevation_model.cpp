@@ -121,9 +121,10 @@ Result<ElevationModel> ElevationModel::open(const std::vector<ElevationLayer>& l
   const RasterPtr& first = parts.rasters.front();
   const double share = covered_share(parts.rasters, imagery);
   if (share == 0.0) {
-    return Error{
-        ErrorCode::kInvalidArgument,
-        first->file() + ": elevation does not overlap the imagery; check both georeferences"};
+    return Error{ErrorCode::kInvalidArgument,
+                 first->file() +
+                     ": elevation does not overlap the imagery; check both georeferences" +
+                     first->whereabouts()};
   }
   if (share < 0.999) {
     warnings.push_back(first->file() + ": elevation covers " + percent(share) +

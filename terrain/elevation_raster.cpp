@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 #include "core/pose.hpp"
@@ -121,6 +122,27 @@ Status ElevationRaster::check(std::vector<std::string>& warnings) const {
   return whole;
 }
 
+/// Where imagery and elevation are, for an error.
+std::string ElevationRaster::places_of(const MapPlane& plane,
+                                       const MapRect& area,
+                                       const Georeference& place) const {
+  Eigen::Matrix2Xd imagery(2, 1);
+  imagery << 0.5 * (area.x_min + area.x_max), 0.5 * (area.y_min + area.y_max);
+  Eigen::Matrix2Xd posts(2, 1);
+  place.transform.crs_from_pixel(0.5 * file_columns_, 0.5 * file_rows_, posts(0, 0), posts(1, 0));
+  const auto to_wgs84 = CrsTransform::create(place.crs, wgs84_crs(), file_);
+  if (!to_wgs84 || !plane.geodetic_from_map(imagery) || !(*to_wgs84)->apply(posts)) return "";
+  char text[160];
+  std::snprintf(text,
+                sizeof(text),
+                " (imagery around %.3f deg N, %.3f deg E; elevation around %.3f deg N, %.3f deg E)",
+                deg_from_rad(imagery(1, 0)),
+                deg_from_rad(imagery(0, 0)),
+                posts(1, 0),
+                posts(0, 0));
+  return text;
+}
+
 Status ElevationRaster::find_window(const MapPlane& plane,
                                     const MapRect& area,
                                     const Georeference& place) {
@@ -147,6 +169,7 @@ Status ElevationRaster::find_window(const MapPlane& plane,
       high = high.cwiseMax(post);
     }
   }
+  whereabouts_ = places_of(plane, area, place);
   constexpr double kMargin = 4.0;
   const auto clamped = [](double value, int size) {
     return static_cast<int>(std::clamp(value, 0.0, static_cast<double>(size)));
@@ -157,7 +180,8 @@ Status ElevationRaster::find_window(const MapPlane& plane,
   window_.rows = clamped(std::ceil(high.y() + kMargin), file_rows_) - window_.row;
   if (window_.columns < 1 || window_.rows < 1) {
     return Error{ErrorCode::kInvalidArgument,
-                 file_ + ": elevation lies nowhere near the imagery; check both georeferences"};
+                 file_ + ": elevation lies nowhere near the imagery; check both georeferences" +
+                     whereabouts_};
   }
   post_from_map_->shift(Eigen::Vector2d(-window_.column, -window_.row));
   spacing_m_ = spacing_of(*post_from_map_);

@@ -48,6 +48,8 @@ class ElevationRaster {
   [[nodiscard]] const SmoothMap<2>& post_from_map() const { return *post_from_map_; }
   [[nodiscard]] int columns() const { return window_.columns; }
   [[nodiscard]] int rows() const { return window_.rows; }
+  /// Where imagery and elevation lie, in brackets, for an error.
+  [[nodiscard]] const std::string& whereabouts() const { return whereabouts_; }
   /// Distance between posts on the map at the area's middle [m].
   [[nodiscard]] double spacing_m() const { return spacing_m_; }
   /// How its heights were related to the ellipsoid: the grid's name, a constant, or nothing.
@@ -70,7 +72,12 @@ class ElevationRaster {
   void to_metres(RawPosts& posts, int column, int row) const;
   [[nodiscard]] Result<HeightGrid> posts_block(int column, int row) const;
 
+  [[nodiscard]] std::string places_of(const MapPlane& plane,
+                                      const MapRect& area,
+                                      const Georeference& place) const;
+
   std::string file_;
+  std::string whereabouts_;
   std::unique_ptr<DatasetPool> pool_;
   int file_columns_ = 0;
   int file_rows_ = 0;

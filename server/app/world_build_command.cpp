@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,8 @@ struct BuildArguments {
   std::string out;
   std::string datum;
   std::string attribution;
+  std::string name;
+  std::optional<double> ground_height_m;
   bool quiet = false;
 };
 
@@ -61,7 +64,9 @@ Result<terrain::WorldSpec> spec_of(const BuildArguments& arguments) {
   for (auto& layer : spec->elevation) layer.datum = *datum;
   for (auto& layer : spec->elevation) layer.attribution = arguments.attribution;
   for (auto& layer : spec->imagery) layer.attribution = arguments.attribution;
-  spec->name = fs::path(arguments.out).filename().string();
+  spec->name =
+      arguments.name.empty() ? fs::path(arguments.out).filename().string() : arguments.name;
+  spec->ground_height_m = arguments.ground_height_m;
   return spec;
 }
 
@@ -123,6 +128,10 @@ void add_world_build_command(CLI::App& world, int& exit_code) {
                       arguments->datum,
                       "Of elevation files: ellipsoid, egm96, egm2008, navd88, unknown");
   command->add_option("--attribution", arguments->attribution, "Credit line of the files");
+  command->add_option("--name", arguments->name, "Of the new world; else its folder's");
+  command->add_option("--ground-height-m",
+                      arguments->ground_height_m,
+                      "Above the ellipsoid, of a new world without elevation files");
   command->add_flag("--quiet", arguments->quiet, "No progress");
   command->callback([arguments, &exit_code] { exit_code = build(*arguments); });
 }

@@ -218,10 +218,10 @@ TEST_F(BrokenInput, AsElevationIsNamedInTheseWords) {
        "outside its coordinate reference system"},
       {"elsewhere",
        [](RasterFile& r) { (*r.transform)[0] += 3000.0; },
-       "error: bad: elevation does not overlap the imagery; check both georeferences"},
+       "error: bad: elevation does not overlap the imagery; check both georeferences (*"},
       {"in another zone",
        [](RasterFile& r) { r.crs = "EPSG:32617"; },
-       "error: bad: elevation lies nowhere near the imagery; check both georeferences"},
+       "error: bad: elevation lies nowhere near the imagery; check both georeferences (*"},
       {"over a part of the imagery",
        [](RasterFile& r) { (*r.transform)[0] += 500.0; },
        "warning: bad: elevation covers 50 % of the imagery; the ground beyond goes on with the "
