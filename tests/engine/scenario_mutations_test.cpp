@@ -16,6 +16,10 @@ namespace overfly::engine {
 namespace {
 
 using Json = nlohmann::json;
+using ::testing::AllOf;
+using ::testing::AnyOf;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 struct Mutant {
   std::string name;
@@ -189,7 +193,11 @@ TEST(ScenarioMutations, EachHasAVerdictAndInvalidOnesNameAField) {
         {{"name", mutant.name}, {"document", mutant.document}, {"valid", faults.empty()}});
     if (faults.empty()) continue;
     ++invalid;
-    for (const auto& [path, text] : faults) EXPECT_THAT(text, ::testing::HasSubstr(path));
+    for (const auto& [path, text] : faults) {
+      EXPECT_THAT(text, HasSubstr(path));
+      EXPECT_THAT(text, AnyOf(HasSubstr(": must be "), HasSubstr(": no such field")))
+          << mutant.name;
+    }
   }
   const int valid = static_cast<int>(verdicts.size()) - invalid;
   EXPECT_GE(verdicts.size(), 200U);
@@ -198,6 +206,33 @@ TEST(ScenarioMutations, EachHasAVerdictAndInvalidOnesNameAField) {
   if (const char* file = std::getenv("OVERFLY_VERDICTS_FILE"); file != nullptr) {
     overfly::testing::write_text(file, verdicts.dump());
   }
+}
+
+/// One number of each field moved out of its limits: the message has file, field, value and limit.
+TEST(ScenarioMutations, BadNumberNamesFileFieldValueAndLimit) {
+  const overfly::testing::TemporaryFolder folder;
+  const auto file = folder.path() / "bad.json";
+  int tried = 0;
+  for (const Mutant& seed : seeds()) {
+    std::vector<Json::json_pointer> places;
+    collect_places(seed.document, Json::json_pointer(), places);
+    for (const Json::json_pointer& place : places) {
+      const bool open_ended = place.to_string().find("/parameters/") != std::string::npos;
+      if (!seed.document.at(place).is_number() || open_ended) continue;
+      Json document = seed.document;
+      document[place] = -1e15;
+      overfly::testing::write_text(file, document.dump());
+      const Result<Scenario> scenario = load_scenario(file, {});
+      ASSERT_FALSE(scenario.ok()) << seed.name << place.to_string();
+      std::string field = place.to_string().substr(1);
+      std::replace(field.begin(), field.end(), '/', '.');
+      EXPECT_THAT(
+          scenario.error().message,
+          AllOf(StartsWith(file.string() + ": "), HasSubstr(field + " = -1e+15: must be ")));
+      ++tried;
+    }
+  }
+  EXPECT_GE(tried, 80);
 }
 
 /// What passes the schema either resolves or is refused for a reason that is not a bug.
