@@ -6,6 +6,7 @@
 #include <string>
 
 #include "server/app/commands.hpp"
+#include "server/app/doctor_camera.hpp"
 #include "server/app/doctor_checks.hpp"
 #include "server/app/exit_code.hpp"
 #include "server/app/version.hpp"
@@ -45,7 +46,25 @@ void add_doctor_command(CLI::App& app, int& exit_code) {
   const auto json = std::make_shared<bool>(false);
   command->add_option("--runs", *runs, "Folder of the runs")->capture_default_str();
   command->add_flag("--json", *json, "Print JSON");
-  command->callback([runs, json, &exit_code] { exit_code = doctor(*runs, *json); });
+  const auto camera = std::make_shared<DoctorCameraArguments>();
+  const auto wanted = std::make_shared<bool>(false);
+  CLI::Option* self_test = command->add_flag(
+      "--camera",
+      *wanted,
+      "Take images onto the next by depth and pose instead, and print the residual");
+  command
+      ->add_option("--scenario", camera->scenario, "--camera: its cameras, not the built-in ones")
+      ->needs(self_test);
+  command->add_option("--pairs", camera->pairs, "--camera: of frames, spread over the flight")
+      ->needs(self_test)
+      ->capture_default_str();
+  command->add_option("--limit-px", camera->limit_px, "--camera: of the median residual")
+      ->needs(self_test)
+      ->capture_default_str();
+  command->callback([runs, json, camera, wanted, &exit_code] {
+    camera->json = *json;
+    exit_code = *wanted ? check_cameras(*camera) : doctor(*runs, *json);
+  });
 }
 
 }  // namespace overfly::app

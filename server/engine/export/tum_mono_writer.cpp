@@ -110,6 +110,9 @@ Result<std::unique_ptr<DatasetWriter>> create_tum_mono_writer(const DatasetPlan&
                  "tum-mono holds one camera, " + std::to_string(plan.cameras.size()) +
                      " are asked for: name one with --camera"};
   }
+  // Before anything is written: a refused export leaves the folder as it was.
+  const auto lens = lens_text(plan.cameras.front());
+  if (!lens) return lens.error();
   auto writer = std::make_unique<TumMonoWriter>(plan);
   if (Status status = writer->begin(); !status) return status.error();
   return std::unique_ptr<DatasetWriter>(std::move(writer));
