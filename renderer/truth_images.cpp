@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "renderer/row_projector.hpp"
+#include "terrain/drape.hpp"
 
 namespace overfly::renderer {
 namespace {
@@ -137,7 +138,10 @@ Image validity_mask(const PointImage& points, const terrain::TileSource& tiles) 
       const Eigen::Vector3d p = point_at(points, x, y);
       if (!p.allFinite()) continue;
       const Eigen::Vector2d map = tiles.map_from_world(p.x(), p.y());
-      mask.at(x, y) = tiles.has_imagery(map.x(), map.y()) ? kMaskImagery : kMaskVoid;
+      mask.at(x, y) = kMaskVoid;
+      if (!tiles.has_imagery(map.x(), map.y())) continue;
+      const double stretch = terrain::drape_stretch(tiles, map.x(), map.y());
+      mask.at(x, y) = stretch > terrain::kSmearedStretch ? kMaskSmeared : kMaskImagery;
     }
   }
   return mask;

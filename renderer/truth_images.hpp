@@ -41,8 +41,11 @@ enum class NormalFrame {
 };
 
 /// Values of the validity mask.
-inline constexpr std::uint8_t kMaskNothing = 0;    ///< sky, or no ray
-inline constexpr std::uint8_t kMaskVoid = 128;     ///< ground without imagery
+inline constexpr std::uint8_t kMaskNothing = 0;  ///< sky, or no ray
+inline constexpr std::uint8_t kMaskVoid = 128;   ///< ground without imagery
+/// Ground whose imagery is smeared: too steep to be photographed from above
+/// (terrain::kSmearedStretch).
+inline constexpr std::uint8_t kMaskSmeared = 192;
 inline constexpr std::uint8_t kMaskImagery = 255;  ///< ground with imagery
 
 /// Distance from the camera to the ground along each pixel's ray [m]: depth * |ray|.
@@ -72,7 +75,8 @@ inline constexpr std::uint8_t kMaskImagery = 255;  ///< ground with imagery
                                        const CameraRequest& other,
                                        const DepthImage& other_depth);
 
-/// One channel of kMaskNothing, kMaskVoid, kMaskImagery.
+/// One channel of kMaskNothing, kMaskVoid, kMaskSmeared, kMaskImagery.
+/// Cost: four height queries a pixel.
 [[nodiscard]] Image validity_mask(const PointImage& points, const terrain::TileSource& tiles);
 
 }  // namespace overfly::renderer

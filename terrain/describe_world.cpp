@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "core/pose.hpp"
+#include "terrain/drape.hpp"
 #include "terrain/geoid.hpp"
 #include "terrain/raster_world.hpp"
 #include "terrain/world.hpp"
@@ -118,6 +119,8 @@ std::string describe(const World& world) {
   text += bounds_line(tiles);
   text += line("resolution: %.4g m per texel, %d levels", grid.texel_m, grid.levels);
   text += line("imagery gaps: %.2f %% of the extent", 100.0 * gap_share(tiles));
+  text += line("smeared: %.2f %% of the imagery lies on slopes above 60 deg",
+               100.0 * stretched_share(tiles));
   text += line("ground: %.1f to %.1f m above the ellipsoid",
                tiles.height_range_m().x(),
                tiles.height_range_m().y());

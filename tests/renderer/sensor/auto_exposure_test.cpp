@@ -47,6 +47,7 @@ double target_level(const SensorModel& model) {
 /// Runs frames at one light. @return the levels
 std::vector<double> run(Sensor& sensor, double light, int frames, std::int64_t& frame) {
   std::vector<double> levels;
+  levels.reserve(static_cast<std::size_t>(frames));
   const RadianceImage image = ground(light);
   for (int i = 0; i < frames; ++i) levels.push_back(sensor.expose(image, frame++).mean_level);
   return levels;

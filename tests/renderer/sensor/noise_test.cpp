@@ -167,6 +167,7 @@ TEST(Noise, ManyFramesAreUncorrelatedInEveryLaneOfTheHash) {
   constexpr int kChunks = 160;
   for (int lane = 0; lane < 4; ++lane) {
     std::vector<std::vector<float>> frames;
+    frames.reserve(kFrames);
     for (int i = 0; i < kFrames; ++i) frames.push_back(lane_of_normals(1, i, lane, kChunks));
     double sum_of_squares = 0.0;
     int pairs = 0;
