@@ -14,17 +14,21 @@ namespace {
 /// but the depth that flow and warping use; taken as this much of a change seen from the side.
 constexpr double kLeastSide = 0.1;
 
+/// @param near  a node whose ground is near this ray's, or null
 Node cast_node(const BlockSettings& settings,
                const RowPose& pose,
                const Eigen::Vector2d& ray,
-               double guess) {
+               const Node* near) {
   Node node;
   node.ray = ray;
   if (!ray.allFinite()) return node;
   const Eigen::Vector3d direction = pose.R_world_camera.col(0) * ray.x() +
                                     pose.R_world_camera.col(1) * ray.y() +
                                     pose.R_world_camera.col(2);
-  node.hit = settings.caster->cast(pose.position, direction, guess);
+  node.hit = settings.caster->cast(pose.position,
+                                   direction,
+                                   near != nullptr ? near->hit.depth : 0.0,
+                                   near != nullptr ? near->hit.node : nullptr);
   if (node.hit.sky()) return node;
   node.inverse_depth = 1.0 / node.hit.depth;
   const Eigen::Vector2d texel = node.hit.texel();
@@ -96,11 +100,17 @@ class BandBuilder {
            b * ((1.0 - a) * c[2]->ray + a * c[3]->ray);
   }
 
+  static const Node* farthest_corner(const Patch& patch) {
+    return *std::max_element(
+        patch.corners.begin(), patch.corners.end(), [](const Node* a, const Node* b) {
+          return a->hit.depth < b->hit.depth;
+        });
+  }
+
   [[nodiscard]] Node cast_in(const Patch& patch, double a, double b) const {
     const double row = patch.y - 0.5 + b * patch.rows;
-    double guess = 0.0;
-    for (const Node* node : patch.corners) guess = std::max(guess, node->hit.depth);
-    return cast_node(settings_, settings_.poses->at(row), ray_in(patch, a, b), guess);
+    return cast_node(
+        settings_, settings_.poses->at(row), ray_in(patch, a, b), farthest_corner(patch));
   }
 
   void divide(const Patch& patch) {
@@ -156,7 +166,7 @@ class BandBuilder {
       w[i] = c[i]->inverse_depth;
       u[i] = (c[i]->u - block.u) * w[i];
       v[i] = (c[i]->v - block.v) * w[i];
-      clear[i] = std::exp(-air_per_m_ * c[i]->range_m);
+      clear[i] = transmission(*c[i]);
     }
     for (int i = 0; i < 4; ++i) {
       const int along_x = i | 1, along_y = i | 2;
@@ -176,6 +186,10 @@ class BandBuilder {
     block.lod = bilinear(patch, lod);
     block.clear = bilinear(patch, clear);
     keep(block);
+  }
+
+  [[nodiscard]] double transmission(const Node& node) const {
+    return air_per_m_ > 0.0 ? std::exp(-air_per_m_ * node.range_m) : 1.0;
   }
 
   void add_pixels(const Patch& patch) {
@@ -200,9 +214,7 @@ class BandBuilder {
     const double b = (y + 0.5 + dy) / patch.rows;
     const Eigen::Vector2d ray = ray_in(patch, a, b);
     const RowPose& pose = settings_.poses->at(patch.y + y);
-    double guess = 0.0;
-    for (const Node* node : patch.corners) guess = std::max(guess, node->hit.depth);
-    const Node node = cast_node(settings_, pose, ray, guess);
+    const Node node = cast_node(settings_, pose, ray, farthest_corner(patch));
     if (node.hit.sky()) {
       band_.blocks.push_back(block);
       return;
@@ -211,7 +223,7 @@ class BandBuilder {
     block.u = node.u;
     block.v = node.v;
     block.inverse_depth = {static_cast<float>(node.inverse_depth), 0.0F, 0.0F, 0.0F};
-    block.clear = {static_cast<float>(std::exp(-air_per_m_ * node.range_m)), 0.0F, 0.0F, 0.0F};
+    block.clear = {static_cast<float>(transmission(node)), 0.0F, 0.0F, 0.0F};
     const Eigen::Vector2d step_x = (ray_in(patch, 1.0, b) - ray_in(patch, 0.0, b)) / patch.columns;
     const Eigen::Vector2d step_y = (ray_in(patch, a, 1.0) - ray_in(patch, a, 0.0)) / patch.rows;
     const Eigen::Matrix2d J = texel_jacobian(node.hit, pose, ray, step_x, step_y);
@@ -263,10 +275,9 @@ void cast_row(const BlockSettings& settings, int row, std::vector<Node>& nodes) 
   const RowPose& pose = settings.poses->at(rays.top_px(row) - 0.5);
   nodes.clear();
   nodes.reserve(static_cast<std::size_t>(rays.columns()) + 1);
-  double guess = 0.0;
   for (int column = 0; column <= rays.columns(); ++column) {
-    nodes.push_back(cast_node(settings, pose, rays.ray(column, row), guess));
-    guess = nodes.back().hit.depth;
+    const Node* left = nodes.empty() ? nullptr : &nodes.back();
+    nodes.push_back(cast_node(settings, pose, rays.ray(column, row), left));
   }
 }
 

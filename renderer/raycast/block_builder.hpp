@@ -12,7 +12,7 @@
 namespace overfly::renderer::raycast {
 
 /// Displacement in the image by interpolating between the rays of a block [px].
-inline constexpr double kBlockErrorPx = 0.1;
+inline constexpr double kBlockErrorPx = 0.2;
 
 /// What one ray hit.
 struct Node {

@@ -16,7 +16,8 @@ using terrain::TileId;
 
 namespace {
 
-constexpr double kAheadS = 1.5;  // of flight whose tiles are asked for
+constexpr std::size_t kMaxCameras = 8;  // whose rays are kept
+constexpr double kAheadS = 1.5;         // of flight whose tiles are asked for
 
 int chosen_threads(int wanted) {
   if (wanted > 0) return wanted;
@@ -58,8 +59,15 @@ FrameCaster::FrameCaster(std::shared_ptr<const terrain::TileSource> tiles,
       texels_(chosen_store(tiles_, options), options.tile_cache_bytes) {}
 
 const RayGrid& FrameCaster::rays_of(const CameraModel& camera) {
-  if (!rays_ || !rays_->is_of(camera)) rays_.emplace(camera);
-  return *rays_;
+  const auto known = std::find_if(
+      rays_.begin(), rays_.end(), [&](const RayGrid& rays) { return rays.is_of(camera); });
+  if (known != rays_.end()) {
+    rays_.splice(rays_.begin(), rays_, known);
+  } else {
+    rays_.emplace_front(camera);
+    if (rays_.size() > kMaxCameras) rays_.pop_back();
+  }
+  return rays_.front();
 }
 
 FrameCaster::Frame FrameCaster::begin(const CameraRequest& request) {
@@ -147,7 +155,7 @@ Status FrameCaster::draw_instants(Frame& frame, CameraFrame& drawn) {
   return {};
 }
 
-void FrameCaster::measure(Frame& frame, CameraFrame& drawn) const {
+void FrameCaster::measure(const Frame& frame, CameraFrame& drawn) {
   const int levels = tiles_->grid().levels;
   const auto has_imagery = [&](double u, double v, double lod) {
     const int level = std::clamp(static_cast<int>(std::floor(lod)), 0, levels - 1);
@@ -171,7 +179,8 @@ void FrameCaster::measure(Frame& frame, CameraFrame& drawn) const {
                                                   drawn.T_world_camera,
                                                   frame.caster,
                                                   *tiles_,
-                                                  has_imagery);
+                                                  has_imagery,
+                                                  pool_);
   drawn.texels_per_pixel_min = statistics.texels_per_pixel_min;
   drawn.texels_per_pixel_median = statistics.texels_per_pixel_median;
   drawn.void_fraction = statistics.void_fraction;

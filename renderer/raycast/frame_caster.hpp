@@ -1,8 +1,8 @@
 // Draws frames: casts their rays, finds their tiles, paints them.
 #pragma once
 
+#include <list>
 #include <memory>
-#include <optional>
 #include <set>
 #include <vector>
 
@@ -42,7 +42,7 @@ class FrameCaster {
   Status find_tiles(Frame& frame);
   void paint(const Painter& painter, const Canvas& canvas);
   Status draw_instants(Frame& frame, CameraFrame& drawn);
-  void measure(Frame& frame, CameraFrame& drawn) const;
+  void measure(const Frame& frame, CameraFrame& drawn);
   void look_ahead(const Frame& frame);
 
   std::shared_ptr<const terrain::TileSource> tiles_;
@@ -50,7 +50,7 @@ class FrameCaster {
   SampleKernel kernel_;
   HeightField field_;
   TexelTiles texels_;
-  std::optional<RayGrid> rays_;
+  std::list<RayGrid> rays_;                         // of the cameras drawn last, the last first
   std::vector<std::vector<Node>> nodes_;            // by row of nodes
   std::vector<Band> bands_;                         // by row of cells
   std::vector<std::vector<FoundTile>> band_tiles_;  // what stands for each band's tiles

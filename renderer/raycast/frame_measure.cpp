@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "renderer/raycast/block_builder.hpp"
@@ -42,6 +43,12 @@ std::optional<double> axis_depth(const Pose& T_world_camera,
   return depth_m;
 }
 
+/// What one row of rays sees.
+struct RowMeasure {
+  std::vector<double> texels;
+  int void_rays = 0;
+};
+
 }  // namespace
 
 FrameStatistics measure_rays(const CameraModel& camera,
@@ -49,32 +56,40 @@ FrameStatistics measure_rays(const CameraModel& camera,
                              const Pose& T_world_camera,
                              const GroundCaster& caster,
                              const HeightQuery& ground,
-                             const ImageryAt& has_imagery) {
+                             const ImageryAt& has_imagery,
+                             WorkerPool& pool) {
   const PinholeCamera& size = camera.pinhole();
-  std::vector<double> texels;
-  int void_rays = 0;
-  for (int row = 0; row < kRows; ++row) {
+  std::array<RowMeasure, kRows> rows;
+  pool.run(kRows, [&](int row) {
+    RowMeasure& seen = rows[row];
     const double y_px = (row + 0.5) * size.height_px / kRows - 0.5;
     const RowPose& pose = poses.at(std::floor(2.0 * y_px) / 2.0);
-    double guess = 0.0;
+    GroundHit last;
     for (int column = 0; column < kColumns; ++column) {
       const double x_px = (column + 0.5) * size.width_px / kColumns - 0.5;
       const auto ray = camera.ray({x_px, y_px});
       const auto right = camera.ray({x_px + 0.5, y_px}), left = camera.ray({x_px - 0.5, y_px});
       const auto down = camera.ray({x_px, y_px + 0.5}), up = camera.ray({x_px, y_px - 0.5});
       if (!ray || !right || !left || !down || !up) continue;
-      const GroundHit hit = caster.cast(pose.position, pose.R_world_camera * *ray, guess);
-      guess = hit.depth;
+      const GroundHit hit =
+          caster.cast(pose.position, pose.R_world_camera * *ray, last.depth, last.node);
+      last = hit;
       if (hit.sky()) continue;
       const Eigen::Matrix2d J = texel_jacobian(
           hit, pose, ray->head<2>(), (*right - *left).head<2>(), (*down - *up).head<2>());
       const Eigen::Vector2d at = hit.texel();
       if (has_imagery(at.x(), at.y(), texel_lod(J(0, 0), J(1, 0), J(0, 1), J(1, 1)))) {
-        texels.push_back(std::sqrt(std::abs(J.determinant())));
+        seen.texels.push_back(std::sqrt(std::abs(J.determinant())));
       } else {
-        ++void_rays;
+        ++seen.void_rays;
       }
     }
+  });
+  std::vector<double> texels;
+  int void_rays = 0;
+  for (const RowMeasure& row : rows) {
+    texels.insert(texels.end(), row.texels.begin(), row.texels.end());
+    void_rays += row.void_rays;
   }
   FrameStatistics statistics;
   statistics.void_fraction = static_cast<double>(void_rays) / (kColumns * kRows);

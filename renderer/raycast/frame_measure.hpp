@@ -6,10 +6,12 @@
 #include "renderer/frame_statistics.hpp"
 #include "renderer/raycast/ground_caster.hpp"
 #include "renderer/raycast/shutter.hpp"
+#include "renderer/raycast/worker_pool.hpp"
 
 namespace overfly::renderer::raycast {
 
-/// True where there is imagery. @param u, v  texels of level 0; @param lod  at which it is drawn
+/// True where there is imagery; called by several threads at once. @param u, v  texels of level 0;
+/// @param lod  at which it is drawn
 using ImageryAt = std::function<bool(double u, double v, double lod)>;
 
 /// Measures on the same 40 x 30 rays as measure_frame() does; the axis depth by casting it.
@@ -19,6 +21,7 @@ using ImageryAt = std::function<bool(double u, double v, double lod)>;
                                            const Pose& T_world_camera,
                                            const GroundCaster& caster,
                                            const HeightQuery& ground,
-                                           const ImageryAt& has_imagery);
+                                           const ImageryAt& has_imagery,
+                                           WorkerPool& pool);
 
 }  // namespace overfly::renderer::raycast

@@ -8,8 +8,7 @@ namespace overfly::renderer::raycast {
 namespace {
 
 constexpr double kEarthRadiusM = 6371000.0;
-constexpr double kMaxReachM = 300e3;     // map projections bend beyond
-constexpr std::size_t kMaxTiles = 3000;  // some 75 MB
+constexpr double kMaxReachM = 300e3;  // map projections bend beyond
 constexpr double kNearestM = 0.5;
 
 /// Lowest and highest up coordinate of a tile's ground, with room for what its posts do not show.
@@ -23,8 +22,8 @@ Eigen::Vector2d height_bounds(const HeightTile& tile, double relief_m) {
 
 }  // namespace
 
-HeightField::HeightField(std::shared_ptr<const terrain::TileSource> tiles)
-    : tiles_(std::move(tiles)), map_(TexelMap::of(*tiles_)) {}
+HeightField::HeightField(std::shared_ptr<const terrain::TileSource> tiles, std::size_t max_tiles)
+    : tiles_(std::move(tiles)), map_(TexelMap::of(*tiles_)), max_tiles_(max_tiles) {}
 
 const HeightTile& HeightField::tile(const HeightTileId& id) {
   std::unique_ptr<HeightTile>& kept = kept_[id];
@@ -59,8 +58,7 @@ bool HeightField::fine_enough(const HeightTile& tile, const ViewSweep& view) con
   const double cell_px = tile.spacing_m * px_per_m;
   if (cell_px > kMaxCellPx) return false;
   if (cell_px < 2.0 * kMinCellPx) return true;
-  const std::vector<float>& hidden_m = tile.deviation_m[0];
-  return *std::max_element(hidden_m.begin(), hidden_m.end()) * px_per_m < kSurfaceErrorPx;
+  return tile.hidden_m * px_per_m < kSurfaceErrorPx;
 }
 
 std::int32_t HeightField::visit(const HeightTileId& id,
@@ -144,7 +142,7 @@ const GroundTree& HeightField::select(const ViewSweep& view) {
 }
 
 void HeightField::forget_old() {
-  if (kept_.size() <= kMaxTiles) return;
+  if (kept_.size() <= max_tiles_) return;
   std::vector<std::uint64_t> uses;
   uses.reserve(kept_.size());
   for (const auto& [id, kept] : kept_) uses.push_back(kept->last_use);

@@ -57,14 +57,19 @@ struct GroundTree {
   double steepest = 0.0;  ///< bound of the slope anywhere
 };
 
+inline constexpr std::size_t kMaxHeightTiles = 3000;  ///< some 75 MB
+
 /// Samples height tiles and keeps those used last. What it keeps changes no value.
 class HeightField {
  public:
-  explicit HeightField(std::shared_ptr<const terrain::TileSource> tiles);
+  /// @param max_tiles  kept; those of the view selected last are kept in any case
+  explicit HeightField(std::shared_ptr<const terrain::TileSource> tiles,
+                       std::size_t max_tiles = kMaxHeightTiles);
 
   /// The ground of a view. Good until the next call.
   [[nodiscard]] const GroundTree& select(const ViewSweep& view);
   [[nodiscard]] const TexelMap& map() const { return map_; }
+  [[nodiscard]] std::size_t held_tiles() const { return kept_.size(); }
 
  private:
   const HeightTile& tile(const HeightTileId& id);
@@ -76,6 +81,7 @@ class HeightField {
 
   std::shared_ptr<const terrain::TileSource> tiles_;
   TexelMap map_;
+  std::size_t max_tiles_;
   std::map<HeightTileId, std::unique_ptr<HeightTile>> kept_;
   std::uint64_t view_ = 0;
   GroundTree tree_;

@@ -138,6 +138,7 @@ void measure_deviations(HeightTile& tile) {
   for (int row = 0; row < kTileCells; ++row) {
     for (int column = 0; column < kTileCells; ++column) {
       tile.deviation_m[0].push_back(0.5F * tile.deviation(1, column, row));
+      tile.hidden_m = std::max(tile.hidden_m, tile.deviation_m[0].back());
     }
   }
 }

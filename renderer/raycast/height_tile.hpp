@@ -61,6 +61,7 @@ struct HeightTile {
   /// Largest vertical distance between the posts in a square of 2^k cells and the bilinear surface
   /// through its corners; for k = 0 what may lie between the posts.
   std::array<std::vector<float>, kLog2TileCells + 1> deviation_m;
+  float hidden_m = 0.0F;  ///< the largest of deviation_m[0]
   float lowest_m = 0.0F;
   float steepest = 0.0F;  ///< bound of the slope's length between the posts
   std::uint64_t last_use = 0;

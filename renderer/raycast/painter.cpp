@@ -17,37 +17,47 @@ Bilinear4 moved(const Bilinear4& f, float x, float y, float scale) {
           f[3] * scale};
 }
 
-void fill(float* values, const Colour& colour, int channels) {
+void fill(const Block& block, const Colour& colour, int channels, float* values) {
   for (int c = 0; c < channels; ++c) {
-    std::fill_n(values + c * kBlockPixels, kBlockPixels, colour[c]);
+    std::fill_n(values + c * kBlockPixels, block.rows * kBlockSide, colour[c]);
   }
 }
 
+template <int kChannels>
 void put_bytes(const Block& block, const float* values, const Canvas& canvas) {
-  const int channels = canvas.channels;
+  const auto byte = [](float value) { return static_cast<std::uint8_t>(value + 0.5F); };
   for (int y = 0; y < block.rows; ++y) {
     std::uint8_t* out =
         canvas.bytes +
-        (static_cast<std::size_t>(block.y + y) * canvas.width_px + block.x) * channels;
-    for (int c = 0; c < channels; ++c) {
+        (static_cast<std::size_t>(block.y + y) * canvas.width_px + block.x) * kChannels;
+    for (int c = 0; c < kChannels; ++c) {
       const float* row = values + c * kBlockPixels + y * kBlockSide;
-      for (int x = 0; x < block.columns; ++x) {
-        out[x * channels + c] = static_cast<std::uint8_t>(row[x] + 0.5F);
+      if (block.columns == kBlockSide) {  // a length that the compiler knows
+        for (int x = 0; x < kBlockSide; ++x) out[x * kChannels + c] = byte(row[x]);
+      } else {
+        for (int x = 0; x < block.columns; ++x) out[x * kChannels + c] = byte(row[x]);
       }
     }
   }
 }
 
+template <int kChannels>
 void add_sums(const Block& block, const float* values, const Canvas& canvas) {
-  const int channels = canvas.channels;
   for (int y = 0; y < block.rows; ++y) {
     float* out = canvas.sums +
-                 (static_cast<std::size_t>(block.y + y) * canvas.width_px + block.x) * channels;
-    for (int c = 0; c < channels; ++c) {
+                 (static_cast<std::size_t>(block.y + y) * canvas.width_px + block.x) * kChannels;
+    for (int c = 0; c < kChannels; ++c) {
       const float* row = values + c * kBlockPixels + y * kBlockSide;
-      for (int x = 0; x < block.columns; ++x) out[x * channels + c] += canvas.weight * row[x];
+      for (int x = 0; x < block.columns; ++x) out[x * kChannels + c] += canvas.weight * row[x];
     }
   }
+}
+
+using Put = void (*)(const Block& block, const float* values, const Canvas& canvas);
+
+Put put_of(const Canvas& canvas) {
+  if (canvas.bytes != nullptr) return canvas.channels == 1 ? put_bytes<1> : put_bytes<3>;
+  return canvas.channels == 1 ? add_sums<1> : add_sums<3>;
 }
 
 }  // namespace
@@ -63,7 +73,7 @@ Painter::Painter(const CameraRequest& request, SampleKernel kernel)
 void Painter::paint(const Band& band,
                     const std::vector<FoundTile>& tiles,
                     const Canvas& canvas) const {
-  const auto put = canvas.bytes != nullptr ? put_bytes : add_sums;
+  const Put put = put_of(canvas);
   float values[kMaxValues];
   for (std::size_t i = 0; i < band.blocks.size(); ++i) {
     const Block& block = band.blocks[i];
@@ -85,9 +95,9 @@ void Painter::colour_of(const Block& block,
                         float* values) const {
   switch (block.kind) {
     case Block::Kind::kSky:
-      return fill(values, colours_.sky, channels_);
+      return fill(block, colours_.sky, channels_, values);
     case Block::Kind::kVoid:
-      fill(values, colours_.nothing, channels_);
+      fill(block, colours_.nothing, channels_, values);
       break;
     case Block::Kind::kGround:
       sample(block, tiles[block.tile], values);
@@ -100,6 +110,7 @@ void Painter::sample(const Block& block, const FoundTile& tile, float* values) c
   const float per_texel = std::ldexp(1.0F, -tile.id.level);
   const double side = static_cast<double>(terrain::kTileTexels) * (1 << tile.id.level);
   TexelBlock texels;
+  texels.columns = block.columns;
   texels.rows = block.rows;
   texels.u0 = static_cast<float>((block.u - tile.id.col * side) * per_texel) +
               static_cast<float>(terrain::kTileBorder);

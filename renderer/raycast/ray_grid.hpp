@@ -9,7 +9,7 @@
 
 namespace overfly::renderer::raycast {
 
-inline constexpr int kCellPx = 8;  ///< side of a cell, where the lens allows
+inline constexpr int kCellPx = 16;  ///< side of a cell, where the lens allows
 /// What bilinear interpolation of rays within a cell may be off [px].
 inline constexpr double kLensErrorPx = 0.02;
 

@@ -7,20 +7,20 @@
 namespace overfly::renderer::raycast {
 
 /// Side of the square of pixels that a kernel fills.
-inline constexpr int kBlockSide = 8;
+inline constexpr int kBlockSide = 16;
 inline constexpr int kBlockPixels = kBlockSide * kBlockSide;
 
 /// A block's place in a tile: u = u0 + numerator_u / inverse_depth, in texels of the tile's own
 /// level from its border's corner.
 struct TexelBlock {
-  int rows = 0;
+  int columns = 0, rows = 0;  ///< at most kBlockSide
   float u0 = 0.0F, v0 = 0.0F;
   Bilinear4 numerator_u{}, numerator_v{}, inverse_depth{};
   Bilinear4 lod{};  ///< of the tile's own level
 };
 
-/// Samples 8 columns of the block's rows. @param out  by plane, then row, then column: in the
-/// texels' own units. Values right of the block are of no use.
+/// Samples a block. @param out  by plane, then row, then column, kBlockPixels a plane and
+/// kBlockSide a row: in the texels' own units. Values right of the block are of no use.
 using SampleKernel = void (*)(const TexelBlock& block, const PackedTile& tile, float* out);
 
 /// The plain kernel, which says what the others must give to the last bit.

@@ -61,7 +61,7 @@ void sample_plain(const TexelBlock& block, const PackedTile& tile, float* out) {
   };
   for (int row = 0; row < block.rows; ++row) {
     const auto y = static_cast<float>(row);
-    for (int column = 0; column < kBlockSide; ++column) {
+    for (int column = 0; column < block.columns; ++column) {
       const auto x = static_cast<float>(column);
       const float depth = 1.0F / value(block.inverse_depth, x, y);
       const float u = block.u0 + value(block.numerator_u, x, y) * depth;
