@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "core/pose.hpp"
@@ -22,10 +23,19 @@ struct CallCost {
 class QuadProbe {
  public:
   /// Errors: as create_egl_renderer.
-  static Result<std::unique_ptr<QuadProbe>> create();
+  static Result<std::unique_ptr<QuadProbe>> create(const std::string& device = "");
   virtual ~QuadProbe() = default;
-  /// Draws and reads back once. Errors: kInternal when the context is lost.
+  /// Draws and reads back once. Errors of all: kInternal when the context is lost.
   virtual Status draw() = 0;
+  /// Asks for the drawing alone.
+  virtual Status draw_only() = 0;
+  /// Waits until all that was asked for is drawn.
+  virtual Status wait() = 0;
+  /// Reads back what was drawn.
+  virtual Status read() = 0;
+  /// The same with three copies in flight: takes the oldest when they are.
+  virtual Status read_piped() = 0;
+  [[nodiscard]] virtual RendererInfo info() const = 0;
 };
 
 struct RenderCosts {
@@ -47,5 +57,30 @@ struct RenderCosts {
     const std::shared_ptr<const terrain::TileSource>& tiles,
     const std::vector<Pose>& T_world_camera,
     int repetitions);
+
+/// What bounds the camera's rate at 1280 x 960 grey here, and how near it comes.
+struct RateCosts {
+  RendererInfo renderer;
+  double memcpy_ms = 0.0;    ///< of the image's bytes between two buffers in memory
+  double readback_ms = 0.0;  ///< of an image that is drawn already
+  double readback_per_memcpy = 0.0;
+  double fill_per_s = 0.0;  ///< quads that are drawn and not read back: the fill ceiling
+  double copy_per_s = 0.0;  ///< images read back and not drawn: the copy ceiling
+  /// Camera frames drawn and in memory, by how many are in flight.
+  struct Rate {
+    int in_flight = 1;
+    double per_s = 0.0;
+  };
+  std::vector<Rate> camera;
+};
+
+/// Measures it, everything in turn `rounds` times; medians.
+/// @param T_world_camera  at least one
+/// Errors: as measure_render_costs.
+[[nodiscard]] Result<RateCosts> measure_rate_costs(
+    const std::shared_ptr<const terrain::TileSource>& tiles,
+    const std::vector<Pose>& T_world_camera,
+    int rounds,
+    const std::string& device);
 
 }  // namespace overfly::renderer

@@ -67,7 +67,7 @@ class Track {
 
 /// What the counted frames cost, in flight order.
 struct Series {
-  std::vector<double> cpu_ms, wall_ms, resident_mb;
+  std::vector<double> cpu_ms, thread_cpu_ms, wall_ms, resident_mb;
 
   void summarise(EnduranceReport& report) const {
     report.frames_counted = static_cast<int>(cpu_ms.size());
@@ -75,6 +75,8 @@ struct Series {
     report.cpu_ms_p99 = quantile(cpu_ms, 0.99);
     report.cpu_ms_p999 = quantile(cpu_ms, 0.999);
     report.cpu_ms_max = quantile(cpu_ms, 1.0);
+    report.thread_cpu_ms_median = quantile(thread_cpu_ms, 0.5);
+    report.thread_cpu_ms_p999 = quantile(thread_cpu_ms, 0.999);
     report.wall_ms_median = quantile(wall_ms, 0.5);
     report.wall_ms_max = quantile(wall_ms, 1.0);
     report.resident_peak_mb = quantile(resident_mb, 1.0);
@@ -133,6 +135,7 @@ class Flight {
   Status draw(Renderer& renderer, int number) {
     const double t_s = number / options_.rate_hz;
     const CameraRequest request = track_.request(t_s);
+    const double drawing_from_ms = thread_cpu_ms();
     const auto before = std::chrono::steady_clock::now();
     const Result<CameraFrame> drawn = renderer.render_camera(request);
     if (!drawn.ok()) return drawn.error();
@@ -146,6 +149,7 @@ class Flight {
     if (counted) {
       series_.resident_mb.push_back(resident_mb());
       series_.wall_ms.push_back(wall.count());
+      series_.thread_cpu_ms.push_back(own_ms - drawing_from_ms);
     }
     // From frame to frame, so that what other threads do between two frames counts; without what
     // this thread did to measure.

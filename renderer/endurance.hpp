@@ -42,6 +42,9 @@ struct EnduranceReport {
   double cpu_ms_p99 = 0.0;
   double cpu_ms_p999 = 0.0;
   double cpu_ms_max = 0.0;
+  /// Of these, the thread that draws: what is left is the rasteriser's and the readers' ahead.
+  double thread_cpu_ms_median = 0.0;
+  double thread_cpu_ms_p999 = 0.0;
   double wall_ms_median = 0.0;  ///< of drawing
   double wall_ms_max = 0.0;
   /// Resident memory of the process [MB]: the medians of the counted flight's tenths, in order.

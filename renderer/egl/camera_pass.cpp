@@ -97,28 +97,50 @@ Result<RenderTarget*> CameraPass::draw_picture(const CameraRequest& request,
 }
 
 Status CameraPass::draw(const CameraRequest& request, CameraFrame& frame) {
-  const Status status =
-      is_plain(request) ? draw_plain(request, frame) : draw_composed(request, frame);
+  Status status;
+  if (is_plain(request)) {
+    const Result<RenderTarget*> target = draw_plain(request, frame);
+    if (!target.ok()) {
+      status = target.error();
+    } else if (is_linear(request.format)) {
+      (*target)->read(frame.radiance);
+    } else {
+      (*target)->read(frame.image);
+    }
+  } else {
+    status = draw_composed(request, frame);
+  }
   frame.late_tiles = textures_.end_view();
   return status;
 }
 
-Status CameraPass::draw_plain(const CameraRequest& request, CameraFrame& frame) {
+Result<bool> CameraPass::draw_into(PixelRing& ring,
+                                   const CameraRequest& request,
+                                   CameraFrame& frame) {
+  if (!is_plain(request) || is_linear(request.format)) {
+    if (Status status = draw(request, frame); !status) return status.error();
+    return false;
+  }
+  const Result<RenderTarget*> target = draw_plain(request, frame);
+  if (target.ok()) ring.push(**target);
+  frame.late_tiles = textures_.end_view();
+  if (!target.ok()) return target.error();
+  return true;
+}
+
+Result<RenderTarget*> CameraPass::draw_plain(const CameraRequest& request, CameraFrame& frame) {
   const View view = View::from(request.camera.pinhole(), request.T_world_camera.at(request.t_ns));
   const GroundMesh mesh = build_ground_mesh(patches_, view, {});
-  const Result<RenderTarget*> target =
+  Result<RenderTarget*> target =
       draw_picture(request, mesh, view.camera, look_of(request), target_of(request.format));
-  if (!target.ok()) return target.error();
+  if (!target.ok()) return target;
+  // A GPU starts now; the frame is measured meanwhile.
+  glFlush();
   const auto has_imagery = [&](const terrain::TileId& tile, double u, double v) {
     return textures_.has_imagery(tile, request.format, u, v);
   };
   note(measure_frame(mesh, view, request.camera, patches_.tiles(), has_imagery), frame);
-  if (is_linear(request.format)) {
-    (*target)->read(frame.radiance);
-  } else {
-    (*target)->read(frame.image);
-  }
-  return {};
+  return target;
 }
 
 const TapRays& CameraPass::rays_of(const CameraModel& camera, RenderQuality quality) {

@@ -7,6 +7,7 @@
 #include "core/image.hpp"
 #include "core/result.hpp"
 #include "renderer/egl/ground_pass.hpp"
+#include "renderer/egl/pixel_ring.hpp"
 #include "renderer/egl/target_pool.hpp"
 #include "renderer/egl/tile_textures.hpp"
 #include "renderer/ground_patch.hpp"
@@ -24,11 +25,14 @@ class CameraPass {
   /// Draws the image or radiance and what the frame says of it; the rest of the frame stays.
   /// Errors: kIo when a tile cannot be read; kUnsupported when there is no such framebuffer.
   Status draw(const CameraRequest& request, CameraFrame& frame);
+  /// The same, but where the image is one 8-bit picture it goes into the ring.
+  /// @return true where it did, and the frame's image is empty
+  Result<bool> draw_into(PixelRing& ring, const CameraRequest& request, CameraFrame& frame);
   /// Errors: kUnsupported when there is no such framebuffer.
   Result<DepthImage> depth(const CameraRequest& request);
 
  private:
-  Status draw_plain(const CameraRequest& request, CameraFrame& frame);
+  Result<RenderTarget*> draw_plain(const CameraRequest& request, CameraFrame& frame);
   Status draw_composed(const CameraRequest& request, CameraFrame& frame);
   Result<RenderTarget*> draw_picture(const CameraRequest& request,
                                      const GroundMesh& mesh,

@@ -1,7 +1,10 @@
 #include <algorithm>
+#include <string>
 #include <utility>
 
+#include "renderer/camera_pipeline.hpp"
 #include "renderer/egl/camera_pass.hpp"
+#include "renderer/egl/camera_queue.hpp"
 #include "renderer/egl/egl_context.hpp"
 #include "renderer/egl/ground_pass.hpp"
 #include "renderer/egl/scene_pass.hpp"
@@ -15,14 +18,15 @@ namespace overfly::renderer {
 namespace egl {
 namespace {
 
-class EglRenderer final : public Renderer {
+class EglRenderer final : public Renderer, public CameraPipeline {
  public:
   EglRenderer(std::unique_ptr<EglContext> context,
               GroundPass ground,
               ScenePass scene,
               std::shared_ptr<TileStore> store,
               std::shared_ptr<GroundPatchStore> patches,
-              std::size_t texture_bytes)
+              std::size_t texture_bytes,
+              std::size_t in_flight)
       : context_(std::move(context)),
         tiles_(store->tiles()),
         patches_(patches),
@@ -30,7 +34,8 @@ class EglRenderer final : public Renderer {
         ground_(std::move(ground)),
         scene_(std::move(scene)),
         camera_(patches_, ground_, textures_),
-        ahead_(store, patches) {
+        ahead_(store, patches),
+        queue_(in_flight) {
     glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
     glDisable(GL_DITHER);
   }
@@ -49,13 +54,24 @@ class EglRenderer final : public Renderer {
     if (Status s = check_camera_request(tiles_, request); !s) return s.error();
     if (Status s = context_->make_current(); !s) return s.error();
     ahead_.expect(request);
-    CameraFrame frame;
-    frame.t_ns = request.t_ns;
-    frame.T_world_camera = request.T_world_camera.at(request.t_ns);
-    frame.camera = request.camera;
+    CameraFrame frame = frame_of(request);
     if (Status s = camera_.draw(request, frame); !s) return s.error();
     if (Status s = tiles_.status(); !s) return s.error();
     return frame;
+  }
+
+  Status begin(const CameraRequest& request) override {
+    if (queue_.full()) return Error{ErrorCode::kConflict, "as many images as fit are in flight"};
+    if (Status s = check_camera_request(tiles_, request); !s) return s;
+    if (Status s = context_->make_current(); !s) return s;
+    ahead_.expect(request);
+    if (Status s = queue_.begin(camera_, request, frame_of(request)); !s) return s;
+    return tiles_.status();
+  }
+
+  Result<CameraFrame> finish() override {
+    if (Status s = context_->make_current(); !s) return s.error();
+    return queue_.finish();
   }
 
   Result<DepthImage> render_depth(const CameraRequest& request) override {
@@ -80,6 +96,15 @@ class EglRenderer final : public Renderer {
   }
 
  private:
+  /// What is known of a frame before it is drawn.
+  static CameraFrame frame_of(const CameraRequest& request) {
+    CameraFrame frame;
+    frame.t_ns = request.t_ns;
+    frame.T_world_camera = request.T_world_camera.at(request.t_ns);
+    frame.camera = request.camera;
+    return frame;
+  }
+
   std::unique_ptr<EglContext> context_;  // first: goes last
   const terrain::TileSource& tiles_;     // of the store in textures_
   GroundPatches patches_;
@@ -88,30 +113,53 @@ class EglRenderer final : public Renderer {
   ScenePass scene_;
   CameraPass camera_;
   ViewAhead ahead_;
+  CameraQueue queue_;
 };
+
+Result<std::unique_ptr<EglRenderer>> create(std::shared_ptr<const terrain::TileSource> tiles,
+                                            const RendererOptions& options,
+                                            int in_flight) {
+  Result<std::unique_ptr<EglContext>> context = EglContext::create(options.device);
+  if (!context.ok()) return context.error();
+  Result<GroundPass> ground = GroundPass::create();
+  if (!ground.ok()) return ground.error();
+  Result<ScenePass> scene = ScenePass::create();
+  if (!scene.ok()) return scene.error();
+  std::shared_ptr<TileStore> store = options.tile_store;
+  if (store == nullptr) {
+    store = std::make_shared<TileStore>(tiles, TileStoreOptions{options.tile_cache_bytes, 1});
+  }
+  return std::make_unique<EglRenderer>(std::move(*context),
+                                       std::move(*ground),
+                                       std::move(*scene),
+                                       std::move(store),
+                                       std::make_shared<GroundPatchStore>(std::move(tiles)),
+                                       options.tile_cache_bytes,
+                                       static_cast<std::size_t>(in_flight));
+}
 
 }  // namespace
 }  // namespace egl
 
 Result<std::unique_ptr<Renderer>> create_egl_renderer(
     std::shared_ptr<const terrain::TileSource> tiles, const RendererOptions& options) {
-  Result<std::unique_ptr<egl::EglContext>> context = egl::EglContext::create(options.device);
-  if (!context.ok()) return context.error();
-  Result<egl::GroundPass> ground = egl::GroundPass::create();
-  if (!ground.ok()) return ground.error();
-  Result<egl::ScenePass> scene = egl::ScenePass::create();
-  if (!scene.ok()) return scene.error();
-  std::shared_ptr<TileStore> store = options.tile_store;
-  if (store == nullptr) {
-    store = std::make_shared<TileStore>(tiles, TileStoreOptions{options.tile_cache_bytes, 1});
+  Result<std::unique_ptr<egl::EglRenderer>> renderer = egl::create(std::move(tiles), options, 1);
+  if (!renderer.ok()) return renderer.error();
+  return std::unique_ptr<Renderer>(std::move(*renderer));
+}
+
+Result<std::unique_ptr<CameraPipeline>> CameraPipeline::create(
+    std::shared_ptr<const terrain::TileSource> tiles,
+    const RendererOptions& options,
+    int in_flight) {
+  if (in_flight < 1 || in_flight > 16) {
+    return Error{ErrorCode::kInvalidArgument,
+                 "in_flight is " + std::to_string(in_flight) + ", must be in [1, 16]"};
   }
-  return std::unique_ptr<Renderer>(
-      std::make_unique<egl::EglRenderer>(std::move(*context),
-                                         std::move(*ground),
-                                         std::move(*scene),
-                                         std::move(store),
-                                         std::make_shared<GroundPatchStore>(std::move(tiles)),
-                                         options.tile_cache_bytes));
+  Result<std::unique_ptr<egl::EglRenderer>> renderer =
+      egl::create(std::move(tiles), options, in_flight);
+  if (!renderer.ok()) return renderer.error();
+  return std::unique_ptr<CameraPipeline>(std::move(*renderer));
 }
 
 Result<RendererInfo> probe_egl(const std::string& device) {

@@ -7,6 +7,7 @@
 #include "renderer/egl/egl_context.hpp"
 #include "renderer/egl/gl_objects.hpp"
 #include "renderer/egl/gl_program.hpp"
+#include "renderer/egl/pixel_ring.hpp"
 #include "renderer/egl/render_target.hpp"
 #include "renderer/egl/texture_upload.hpp"
 #include "renderer/tile_pixels.hpp"
@@ -71,6 +72,12 @@ class EglQuadProbe final : public QuadProbe {
   EglQuadProbe& operator=(const EglQuadProbe&) = delete;
 
   Status draw() override {
+    if (Status status = draw_only(); !status) return status;
+    target_.read(image_);
+    return {};
+  }
+
+  Status draw_only() override {
     if (Status status = context_->make_current(); !status) return status;
     target_.bind();
     glDisable(GL_DEPTH_TEST);
@@ -78,8 +85,33 @@ class EglQuadProbe final : public QuadProbe {
     glBindVertexArray(vertex_array_.name());
     glBindTexture(GL_TEXTURE_2D, texture_.name());
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+    return {};
+  }
+
+  Status wait() override {
+    if (Status status = context_->make_current(); !status) return status;
+    glFinish();
+    return {};
+  }
+
+  Status read() override {
+    if (Status status = context_->make_current(); !status) return status;
     target_.read(image_);
     return {};
+  }
+
+  Status read_piped() override {
+    if (Status status = context_->make_current(); !status) return status;
+    if (ring_.full()) {
+      if (Status status = ring_.pop(image_); !status) return status;
+    }
+    ring_.push(target_);
+    return {};
+  }
+
+  [[nodiscard]] RendererInfo info() const override {
+    (void)context_->make_current();
+    return context_->info();
   }
 
  private:
@@ -88,14 +120,15 @@ class EglQuadProbe final : public QuadProbe {
   GlProgram program_;
   GlTexture texture_;
   GlVertexArray vertex_array_;
+  PixelRing ring_{3};
   Image image_;
 };
 
 }  // namespace
 }  // namespace egl
 
-Result<std::unique_ptr<QuadProbe>> QuadProbe::create() {
-  Result<std::unique_ptr<egl::EglContext>> context = egl::EglContext::create();
+Result<std::unique_ptr<QuadProbe>> QuadProbe::create(const std::string& device) {
+  Result<std::unique_ptr<egl::EglContext>> context = egl::EglContext::create(device);
   if (!context.ok()) return context.error();
   Result<egl::RenderTarget> target =
       egl::RenderTarget::create(egl::kWidthPx, egl::kHeightPx, egl::TargetFormat::kGrey8, 0);

@@ -92,16 +92,17 @@ ImageBuffer<T> read_rgb(int width_px, int height_px, GLenum type) {
   std::vector<T> rgba(static_cast<std::size_t>(width_px) * height_px * 4);
   glReadPixels(0, 0, width_px, height_px, GL_RGBA, type, rgba.data());
   ImageBuffer<T> image(width_px, height_px, 3);
-  const std::size_t pixels = rgba.size() / 4;
-  for (std::size_t i = 0; i < pixels; ++i) {
-    image.data[3 * i] = rgba[4 * i];
-    image.data[3 * i + 1] = rgba[4 * i + 1];
-    image.data[3 * i + 2] = rgba[4 * i + 2];
-  }
+  rgb_from_rgba(rgba.data(), image.data.data(), rgba.size() / 4);
   return image;
 }
 
 }  // namespace
+
+void RenderTarget::read_to_buffer() const {
+  bind_for_reading();
+  const GLenum format = format_ == TargetFormat::kGrey8 ? GL_RED : GL_RGBA;
+  glReadPixels(0, 0, width_px_, height_px_, format, GL_UNSIGNED_BYTE, nullptr);
+}
 
 void RenderTarget::read(Image& image) const {
   bind_for_reading();
@@ -109,7 +110,9 @@ void RenderTarget::read(Image& image) const {
     image = read_rgb<std::uint8_t>(width_px_, height_px_, GL_UNSIGNED_BYTE);
     return;
   }
-  image = Image(width_px_, height_px_, 1);
+  if (image.width_px != width_px_ || image.height_px != height_px_ || image.channels != 1) {
+    image = Image(width_px_, height_px_, 1);
+  }
   glReadPixels(0, 0, width_px_, height_px_, GL_RED, GL_UNSIGNED_BYTE, image.data.data());
 }
 

@@ -1,6 +1,8 @@
 // An off-screen image to draw into and read back.
 #pragma once
 
+#include <cstddef>
+
 #include "core/image.hpp"
 #include "core/result.hpp"
 #include "renderer/egl/gl_objects.hpp"
@@ -8,6 +10,16 @@
 namespace overfly::renderer::egl {
 
 enum class TargetFormat { kGrey8, kRgba8, kGreyFloat, kRgbaFloat, kDepthM };
+
+/// Drops the alpha of so many pixels.
+template <typename T>
+void rgb_from_rgba(const T* rgba, T* rgb, std::size_t pixels) {
+  for (std::size_t i = 0; i < pixels; ++i) {
+    rgb[3 * i] = rgba[4 * i];
+    rgb[3 * i + 1] = rgba[4 * i + 1];
+    rgb[3 * i + 2] = rgba[4 * i + 2];
+  }
+}
 
 /// A colour buffer with a depth buffer. Image row 0 is the window's row 0: what is drawn must
 /// have y pointing down, and rows are read in image order.
@@ -23,6 +35,12 @@ class RenderTarget {
     return width_px == width_px_ && height_px == height_px_;
   }
 
+  [[nodiscard]] int width_px() const { return width_px_; }
+  [[nodiscard]] int height_px() const { return height_px_; }
+  [[nodiscard]] TargetFormat format() const { return format_; }
+
+  /// Starts to copy an 8-bit target into the bound pixel buffer, as red or RGBA.
+  void read_to_buffer() const;
   /// Reads what was drawn: grey from kGrey8, RGB from kRgba8.
   void read(Image& image) const;
   /// Reads a float target: one channel from kDepthM and kGreyFloat, RGB from kRgbaFloat.

@@ -1,5 +1,6 @@
 // overfly bench: what drawing, encoding and tracking cost on this machine.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <iomanip>
@@ -83,6 +84,45 @@ Result<Json> bench_drawing(const terrain::World& world,
               {"camera_per_quad", costs->camera_per_quad}};
 }
 
+/// What bounds the camera's frame rate, and how near it comes.
+Result<Json> bench_rates(const terrain::World& world,
+                         const std::vector<Pose>& poses,
+                         const BenchArguments& arguments) {
+  const int rounds = std::clamp(arguments.repetitions / 4, 1, 50);
+  const auto costs =
+      renderer::measure_rate_costs(world.tiles, poses, rounds, arguments.endurance.device);
+  if (!costs) return costs.error();
+  Json camera = Json::array();
+  for (const auto& rate : costs->camera) {
+    camera.push_back({{"in_flight", rate.in_flight}, {"per_s", rate.per_s}});
+  }
+  return Json{{"device", costs->renderer.device},
+              {"device_note", costs->renderer.device_note},
+              {"software", costs->renderer.software},
+              {"memcpy_ms", costs->memcpy_ms},
+              {"readback_ms", costs->readback_ms},
+              {"readback_per_memcpy", costs->readback_per_memcpy},
+              {"fill_per_s", costs->fill_per_s},
+              {"copy_per_s", costs->copy_per_s},
+              {"camera_grey_1280x960", std::move(camera)}};
+}
+
+void print_rates(const Json& rates) {
+  const auto number = [&](const char* name) { return rates.at(name).get<double>(); };
+  std::cout << "device                  " << rates.at("device").get<std::string>()
+            << (rates.at("software").get<bool>() ? " (software)" : "") << "\n";
+  const auto note = rates.at("device_note").get<std::string>();
+  if (!note.empty()) std::cout << "                        " << note << "\n";
+  std::cout << "readback 1280x960 grey  " << std::setw(8) << number("readback_ms") << " ms, memcpy "
+            << number("memcpy_ms") << " ms: " << number("readback_per_memcpy") << " times\n"
+            << "ceilings                " << std::setw(8) << number("fill_per_s")
+            << " quads/s filled, " << number("copy_per_s") << " images/s copied\n";
+  for (const Json& rate : rates.at("camera_grey_1280x960")) {
+    std::cout << "camera, in flight: " << rate.at("in_flight").get<int>() << "    " << std::setw(8)
+              << rate.at("per_s").get<double>() << " frames/s with readback\n";
+  }
+}
+
 Result<Json> bench_encoding(const terrain::World& world, const Pose& T_world_camera, int times) {
   const auto renderer = renderer::create_egl_renderer(world.tiles);
   if (!renderer) return renderer.error();
@@ -143,6 +183,7 @@ void print_table(const Json& result) {
   }
   std::cout << "camera frame / quad     " << std::setw(8)
             << result.at("drawing").at("camera_per_quad").get<double>() << " Q (CPU time)\n";
+  print_rates(result.at("rates"));
   for (const auto& [name, cost] : result.at("encoding").items()) {
     std::cout << std::left << std::setw(24) << name << std::right << std::setw(8)
               << cost.at("wall_ms").get<double>() << " ms wall " << std::setw(8)
@@ -175,6 +216,8 @@ Result<Json> measure(const BenchArguments& arguments, ProgressDisplay& display) 
   display.note("drawing ...");
   Result<Json> drawing = bench_drawing(**world, *poses, arguments.repetitions);
   if (!drawing) return drawing.error();
+  Result<Json> rates = bench_rates(**world, *poses, arguments);
+  if (!rates) return rates.error();
   display.note("encoding ...");
   Result<Json> encoding = bench_encoding(**world, poses->front(), arguments.repetitions);
   if (!encoding) return encoding.error();
@@ -182,6 +225,7 @@ Result<Json> measure(const BenchArguments& arguments, ProgressDisplay& display) 
   Result<Json> flight = bench_flight(*scenario, worlds);
   if (!flight) return flight.error();
   return Json{{"drawing", std::move(*drawing)},
+              {"rates", std::move(*rates)},
               {"encoding", std::move(*encoding)},
               {"flight", std::move(*flight)}};
 }
@@ -220,6 +264,9 @@ void add_bench_command(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   command->add_flag("--json", arguments->json, "Print JSON");
+  command->add_option("--device",
+                      arguments->endurance.device,
+                      "EGL device: an index, a PCI address or \"software\"");
   command
       ->add_option("--fly-km",
                    arguments->fly_km,
@@ -235,6 +282,11 @@ void add_bench_command(CLI::App& app, int& exit_code) {
               {"egl", renderer::CameraBackend::kEgl},
               {"raycast", renderer::CameraBackend::kRaycast}},
           CLI::ignore_case));
+  command
+      ->add_option(
+          "--fly-threads", arguments->endurance.threads, "Of the ray-caster; 0 = one a core")
+      ->check(CLI::Range(0, 64))
+      ->capture_default_str();
   command->add_option("--fly-cache-mib", arguments->fly_cache_mib, "Tiles kept in memory [MiB]")
       ->check(CLI::Range(1, 65536))
       ->capture_default_str();

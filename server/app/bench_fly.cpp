@@ -43,6 +43,8 @@ Json json_of(const renderer::EnduranceOptions& options, const renderer::Enduranc
             {"p99", report.cpu_ms_p99},
             {"p99_9", report.cpu_ms_p999},
             {"max", report.cpu_ms_max}}},
+          {"drawing_thread_cpu_ms",
+           {{"median", report.thread_cpu_ms_median}, {"p99_9", report.thread_cpu_ms_p999}}},
           {"p99_9_per_median", report.cpu_ms_p999 / report.cpu_ms_median},
           {"wall_ms", {{"median", report.wall_ms_median}, {"max", report.wall_ms_max}}},
           {"resident_mb",
@@ -52,6 +54,9 @@ Json json_of(const renderer::EnduranceOptions& options, const renderer::Enduranc
             {"loaded", loaded},
             {"read_ahead", report.tiles.read_ahead},
             {"read_on_demand", report.tiles.read_on_demand},
+            {"ahead_cpu_ms_per_tile",
+             1e3 * report.tiles.ahead_cpu_s /
+                 static_cast<double>(std::max<std::int64_t>(report.tiles.read_ahead, 1))},
             {"evicted", report.tiles.let_go},
             {"late", report.late_tiles}}},
           {"digest", hex(report.digest)}};
@@ -102,6 +107,8 @@ void print_long_flight(const Json& result) {
             << number("/cpu_ms/p99") << " ms, p99.9 " << number("/cpu_ms/p99_9") << " ms ("
             << number("/p99_9_per_median") << " medians), max " << number("/cpu_ms/max")
             << " ms, over " << whole("/frames_counted") << " frames\n"
+            << "  the drawing thread's  median " << number("/drawing_thread_cpu_ms/median")
+            << " ms, p99.9 " << number("/drawing_thread_cpu_ms/p99_9") << " ms\n"
             << "resident memory         ";
   for (const Json& tenth : result.at("resident_mb").at("median_by_tenth")) {
     std::cout << std::llround(tenth.get<double>()) << " ";
@@ -109,8 +116,9 @@ void print_long_flight(const Json& result) {
   std::cout << "MB (medians of the flight's tenths), peak " << number("/resident_mb/peak")
             << " MB\n"
             << "tiles                   " << whole("/tiles/loaded") << " loaded ("
-            << whole("/tiles/read_on_demand") << " on demand), " << whole("/tiles/evicted")
-            << " evicted, " << whole("/tiles/late") << " late, at most "
+            << whole("/tiles/read_on_demand") << " on demand; ahead, "
+            << number("/tiles/ahead_cpu_ms_per_tile") << " ms of CPU each), "
+            << whole("/tiles/evicted") << " evicted, " << whole("/tiles/late") << " late, at most "
             << number("/tiles/peak_bytes") / 1e6 << " MB kept\n"
             << "digest of the images    " << result.at("digest").get<std::string>() << "\n";
 }
