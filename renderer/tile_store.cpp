@@ -1,6 +1,7 @@
 #include "renderer/tile_store.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <condition_variable>
 #include <ctime>
 #include <deque>
@@ -23,6 +24,8 @@ namespace {
 constexpr int kValidStep = 8;
 /// Requests of `find` that wait; older ones are forgotten, whoever needs them asks again.
 constexpr std::size_t kMaxAsked = 256;
+/// Of a thread between two tiles that are read ahead, per time spent on the last.
+constexpr double kRestPerWork = 2.0;
 
 Image thinned(const Image& valid) {
   const bool all_valid =
@@ -196,8 +199,9 @@ struct TileStore::State {
     return entries.at(order.back()).round + 1 >= round;
   }
 
-  /// The next tile to read, put into `loading`. Under the lock.
-  bool take_next(Key& key) {
+  /// The next tile to read, put into `loading`; `urgent` when someone draws without it. Under the
+  /// lock.
+  bool take_next(Key& key, bool& urgent) {
     const auto take_from = [&](std::deque<Key>& queue) {
       while (!queue.empty()) {
         key = queue.front();
@@ -206,7 +210,8 @@ struct TileStore::State {
       }
       return false;
     };
-    if (take_from(asked)) return true;
+    urgent = take_from(asked);
+    if (urgent) return true;
     if (!ahead.empty() && full()) ahead.clear();
     return take_from(ahead);
   }
@@ -215,7 +220,8 @@ struct TileStore::State {
     std::unique_lock lock(mutex);
     while (!stopping) {
       Key key;
-      if (!take_next(key)) {
+      bool urgent = false;
+      if (!take_next(key, urgent)) {
         loaded.notify_all();
         work.wait(lock);
         continue;
@@ -224,7 +230,13 @@ struct TileStore::State {
       const double before_s = thread_cpu_s();
       // A tile that cannot be read is reported to whoever gets it.
       (void)load(key, lock);
-      counts.ahead_cpu_s += thread_cpu_s() - before_s;
+      const double spent_s = thread_cpu_s() - before_s;
+      counts.ahead_cpu_s += spent_s;
+      if (urgent) continue;
+      // Tiles ahead have seconds to come: leave the processor to the frames in between.
+      work.wait_for(lock, std::chrono::duration<double>(kRestPerWork * spent_s), [this] {
+        return stopping || !asked.empty();
+      });
     }
   }
 

@@ -1,5 +1,6 @@
 #include "renderer/view_ahead.hpp"
 
+#include <chrono>
 #include <cmath>
 #include <condition_variable>
 #include <cstdlib>
@@ -84,6 +85,7 @@ struct ViewAhead::State {
     };
     for (int i = 1; i <= kViews; ++i) {
       for (const CameraRequest& request : requests) {
+        const double before_s = thread_cpu_s();
         Pose pose = request.T_world_camera.at(request.t_ns);
         pose.translation += request.velocity_world_m_s * (kAheadS * i / kViews);
         // The checks of a request and its depth read the elevation below the camera.
@@ -93,6 +95,8 @@ struct ViewAhead::State {
           if (leaf.textured) add(leaf.texture);
         }
         patches.end_view();
+        // There is time: leave the processor to the frames in between.
+        std::this_thread::sleep_for(std::chrono::duration<double>(thread_cpu_s() - before_s));
       }
     }
     const int levels = tiles->tiles().grid().levels;
