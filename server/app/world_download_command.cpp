@@ -131,6 +131,8 @@ void add_world_download_command(CLI::App& world, int& exit_code) {
       ->add_option("--elevation-service", options.elevation_service, "Address of that of heights")
       ->capture_default_str();
   command->add_option("--parallel", options.parallel, "Requests at a time")->capture_default_str();
+  command->add_option("--chunk-px", options.chunk_px, "Side of the largest image asked for")
+      ->capture_default_str();
   command->add_option("--attempts", options.attempts, "Of one request")->capture_default_str();
   command->add_option("--most-requests", options.most_requests, "A larger plan is refused")
       ->capture_default_str();

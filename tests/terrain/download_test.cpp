@@ -1,121 +1,31 @@
-// Downloads from a server on the loopback that answers as the services do, errors included.
+// Downloads from a server on the loopback that answers as the services do.
 #include "terrain/download.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
 
 #include "core/pose.hpp"
-#include "terrain/download/http_get.hpp"
 #include "terrain/world.hpp"
-#include "tests/support/support.hpp"
-#include "tests/terrain/image_service.hpp"
-#include "tests/terrain/local_http_server.hpp"
+#include "tests/terrain/download_fixture.hpp"
 
 namespace overfly::terrain {
 namespace {
 
+using testing::answer_rightly;
+using testing::expect_right_places;
 using testing::HttpAnswer;
 using testing::HttpRequest;
 using testing::LocalHttpServer;
-using testing::TemporaryFolder;
+using testing::words;
 
-HttpAnswer answer_rightly(const HttpRequest& request) {
-  if (request.path.find("/exportImage") != std::string::npos) return testing::export_image(request);
-  return testing::image_service_description(300);
-}
-
-HttpAnswer words(int status, const std::string& type, const std::string& body) {
-  HttpAnswer answer;
-  answer.status = status;
-  answer.content_type = type;
-  answer.body = body;
-  return answer;
-}
-
-/// Counts how often each address was asked.
-class Counter {
- public:
-  int operator()(const HttpRequest& request) {
-    const std::lock_guard lock(mutex_);
-    return ++counts_[request.path +
-                     (request.query.contains("bbox") ? request.query.at("bbox") : "")];
-  }
-
- private:
-  std::mutex mutex_;
-  std::map<std::string, int> counts_;
-};
-
-class Download : public ::testing::Test {
- protected:
-  /// 600 m in southern Indiana at 1 m: four requests of imagery, one of elevation.
-  [[nodiscard]] DownloadOptions options_for(const LocalHttpServer& server) const {
-    DownloadOptions options;
-    options.center_lat_rad = rad_from_deg(39.35);
-    options.center_lon_rad = rad_from_deg(-86.03);
-    options.size_m = 500.0;
-    options.imagery_m = 1.0;
-    options.elevation_m = 10.0;
-    options.elevation_margin_m = 200.0;
-    options.folder = folder_.path() / "world";
-    options.imagery_service = server.address() + "/naip/ImageServer";
-    options.elevation_service = server.address() + "/3dep/ImageServer";
-    options.first_wait_s = 0.01;
-    options.stall_s = 5.0;
-    return options;
-  }
-  /// The message of a download that must fail.
-  [[nodiscard]] std::string failure(const LocalHttpServer::Handler& handler) const {
-    const LocalHttpServer server(handler);
-    DownloadOptions options = options_for(server);
-    options.attempts = 2;
-    const auto report = download_world(options);
-    EXPECT_FALSE(report) << "the download was accepted";
-    EXPECT_FALSE(std::filesystem::exists(options.folder / "world.json"));
-    EXPECT_FALSE(std::filesystem::exists(options.folder / "imagery.tif"));
-    return report ? std::string() : report.error().message;
-  }
-  TemporaryFolder folder_;
-};
-
-/// Every texel and height of a downloaded world is that of its place.
-void expect_right_places(const std::filesystem::path& manifest) {
-  auto spec = read_world_manifest(manifest);
-  ASSERT_TRUE(spec) << spec.error().message;
-  for (ElevationLayer& layer : spec->elevation) layer.geoid_separation_m = -33.0;
-  const auto world = open_world(*spec);
-  ASSERT_TRUE(world) << world.error().message;
-  const TileGrid& grid = world->tiles->grid();
-  EXPECT_NEAR(grid.texel_m, 1.0, 1e-9);
-  const auto tile = world->tiles->tile({0, 0, 0});
-  ASSERT_TRUE(tile);
-  int wrong = 0;
-  for (int y = 0; y < 500; y += 7) {
-    for (int x = 0; x < 500; x += 7) {
-      const double east = grid.left_x_m + x + 0.5;
-      const double north = grid.top_y_m - y - 0.5;
-      wrong += tile->rgb.at(x + kTileBorder, y + kTileBorder, 0) !=
-               (static_cast<int>(std::floor(east / 5.0)) & 255);
-      wrong += tile->rgb.at(x + kTileBorder, y + kTileBorder, 1) !=
-               (static_cast<int>(std::floor(north / 5.0)) & 255);
-    }
-  }
-  EXPECT_EQ(wrong, 0);
-  const double x = grid.left_x_m + 250.0;
-  const double y = grid.top_y_m - 250.0;
-  const Geodetic ground =
-      world->tiles->frame().geodetic_from_world(world->tiles->world_from_map(x, y));
-  // Posts 10 m apart of hills some km long: bilinear between them to 2 cm; heights less the geoid
-  // separation, unless PROJ has the datum's own grid here.
-  EXPECT_NEAR(ground.alt_ellipsoid_m, testing::service_height_m(x, y) - 33.0, 2.0);
-  EXPECT_NEAR(deg_from_rad(ground.lat_rad), 39.35, 1e-4);
-  EXPECT_NEAR(deg_from_rad(ground.lon_rad), -86.03, 1e-4);
-}
+class Download : public testing::DownloadFixture {};
 
 TEST_F(Download, MakesAWorldThatOpensInTheRightPlace) {
-  const LocalHttpServer server(answer_rightly);
+  const LocalHttpServer server([](const HttpRequest& request) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(30));  // so that requests overlap
+    return answer_rightly(request);
+  });
   double last_share = 0.0;
   const auto report = download_world(options_for(server), [&](double share, const std::string&) {
     EXPECT_GE(share, last_share);
@@ -125,7 +35,7 @@ TEST_F(Download, MakesAWorldThatOpensInTheRightPlace) {
   ASSERT_TRUE(report) << report.error().message;
   EXPECT_EQ(report->fetched, 5);
   EXPECT_TRUE(report->warnings.empty());
-  EXPECT_LE(server.most_at_a_time(), 2);
+  EXPECT_EQ(server.most_at_a_time(), 2);
   EXPECT_FALSE(std::filesystem::exists(folder_.path() / "world" / "chunks"));
   expect_right_places(report->manifest);
   const std::string manifest = testing::read_text(report->manifest);
@@ -175,77 +85,6 @@ TEST_F(Download, AssumesLimitsWhereTheServiceCannotBeAsked) {
   EXPECT_EQ(plan->warnings.size(), 2U);
 }
 
-TEST_F(Download, RepeatsWhatMayPass) {
-  // Every address fails once, each in one of the ways services have.
-  Counter count;
-  std::atomic<int> kind{0};
-  const LocalHttpServer server([&](const HttpRequest& request) {
-    if (count(request) > 1 || request.path.find("exportImage") == std::string::npos) {
-      return answer_rightly(request);
-    }
-    switch (kind++ % 5) {
-      case 0:
-        return words(503, "text/html", "<html><title>busy</title></html>");
-      case 1:
-        return words(200, "application/json", R"({"error":{"code":500,"message":"Error"}})");
-      case 2:
-        return words(200, "text/html", "<html><title>Sorry</title></html>");
-      case 3: {
-        HttpAnswer cut = answer_rightly(request);
-        cut.cut_after = cut.body.size() / 2;
-        return cut;
-      }
-      default: {
-        HttpAnswer cut = answer_rightly(request);  // a cut that the length does not betray
-        cut.body.resize(cut.body.size() / 2);
-        return cut;
-      }
-    }
-  });
-  const auto report = download_world(options_for(server));
-  ASSERT_TRUE(report) << report.error().message;
-  EXPECT_EQ(report->repeated, 5);
-  expect_right_places(report->manifest);
-}
-
-TEST_F(Download, WaitsAsLongAsTheServiceAsks) {
-  Counter count;
-  const LocalHttpServer server([&](const HttpRequest& request) {
-    if (request.query.contains("bbox") && count(request) == 1) {
-      HttpAnswer busy = words(429, "text/plain", "slow down");
-      busy.headers.emplace_back("Retry-After: 1");
-      return busy;
-    }
-    return answer_rightly(request);
-  });
-  DownloadOptions options = options_for(server);
-  options.elevation_source = kNoSource;
-  options.ground_height_m = 200.0;
-  options.size_m = 200.0;
-  const auto start = std::chrono::steady_clock::now();
-  const auto report = download_world(options);
-  ASSERT_TRUE(report) << report.error().message;
-  EXPECT_EQ(report->repeated, 1);
-  EXPECT_GE(std::chrono::steady_clock::now() - start, std::chrono::milliseconds(990));
-}
-
-TEST_F(Download, GivesUpWhereTheServiceAsksForMoreThanTheLimit) {
-  const std::string message = failure([](const HttpRequest& request) {
-    if (!request.query.contains("bbox")) return answer_rightly(request);
-    HttpAnswer busy = words(503, "text/plain", "maintenance");
-    busy.headers.emplace_back("Retry-After: 7200");
-    return busy;
-  });
-  EXPECT_NE(message.find("asks to wait 7200 s, limit 300 s"), std::string::npos) << message;
-}
-
-TEST_F(Download, ReadsARetryDate) {
-  EXPECT_EQ(download::retry_after_s("120", 0), 120.0);
-  // RFC 9110's example date is 784111777 s after the epoch.
-  EXPECT_EQ(download::retry_after_s("Sun, 06 Nov 1994 08:49:37 GMT", 784111777 - 30), 30.0);
-  EXPECT_FALSE(download::retry_after_s("soon", 0));
-}
-
 TEST_F(Download, FollowsRedirects) {
   const LocalHttpServer server([](const HttpRequest& request) {
     if (request.path.rfind("/moved", 0) == 0 || !request.query.contains("bbox")) {
@@ -263,79 +102,27 @@ TEST_F(Download, FollowsRedirects) {
   expect_right_places(report->manifest);
 }
 
-TEST_F(Download, SaysWhatIsWrongWithAnAnswer) {
-  struct Case {
-    const char* expected;
-    LocalHttpServer::Handler image;
-  };
-  const auto changed = [](const HttpRequest& request, const char* field, const std::string& value) {
-    HttpRequest other = request;
-    other.query[field] = value;
-    return testing::export_image(other);
-  };
-  const Case cases[] = {
-      {"code 400, \"Invalid bbox\" (attempt 2 of 2)",
-       [](const HttpRequest&) {
-         return words(
-             200, "application/json", R"({"error":{"code":400,"message":"Invalid bbox"}})");
-       }},
-      {"HTTP status 403", [](const HttpRequest&) { return words(403, "text/plain", "no"); }},
-      {"HTTP status 404", [](const HttpRequest&) { return words(404, "text/plain", "no"); }},
-      {"the service answers in words: Sorry",
-       [](const HttpRequest&) {
-         return words(200, "text/html", "<html><title>Sorry</title></html>");
-       }},
-      {"asked for 300 x 300",
-       [&](const HttpRequest& request) { return changed(request, "size", "256,256"); }},
-      {"has the coordinate reference system",
-       [&](const HttpRequest& request) { return changed(request, "imageSR", "26917"); }},
-      {"lies elsewhere",
-       [&](const HttpRequest& request) {
-         return changed(request, "bbox", "583000,4356000,583300,4356300");
-       }},
-      {"asked for 8 bit",
-       [&](const HttpRequest& request) { return changed(request, "pixelType", "F32"); }},
-      {"no image that can be read",
-       [](const HttpRequest&) { return words(200, "image/tiff", "II*\1garbage"); }},
-  };
-  for (const Case& wrong : cases) {
-    const std::string message = failure([&](const HttpRequest& request) {
-      return request.path == "/naip/ImageServer/exportImage" ? wrong.image(request)
-                                                             : answer_rightly(request);
-    });
-    EXPECT_NE(message.find(wrong.expected), std::string::npos) << message;
-    EXPECT_NE(message.find("/naip/ImageServer/exportImage?bbox="), std::string::npos) << message;
-    std::filesystem::remove_all(folder_.path() / "world");
-  }
-}
-
-TEST_F(Download, GoesOnWhereItStopped) {
-  std::atomic<int> images{0};
-  std::atomic<bool> broken{true};
-  const LocalHttpServer server([&](const HttpRequest& request) {
-    if (!request.query.contains("bbox")) return answer_rightly(request);
-    if (broken.load() && ++images > 3) return words(500, "text/plain", "down");
-    return answer_rightly(request);
-  });
+TEST_F(Download, CountsRowsAsTheTemplateDoes) {
+  // The same tile by the numbers of XYZ, of TMS (rows from the south) and of WMTS.
+  const LocalHttpServer server(answer_rightly);
   DownloadOptions options = options_for(server);
-  options.attempts = 1;
-  options.parallel = 1;
-  ASSERT_FALSE(download_world(options));
-  // One of the three chunks is damaged on the disk meanwhile, and a part of one lies about.
-  const std::filesystem::path chunks = options.folder / "chunks";
-  ASSERT_TRUE(std::filesystem::exists(chunks / "imagery_0_0.tif"));
-  std::filesystem::resize_file(chunks / "imagery_0_0.tif", 5000);
-  std::ofstream(chunks / "imagery_300_300.tif.part") << "half";
-  broken.store(false);
-  const auto report = download_world(options);
-  ASSERT_TRUE(report) << report.error().message;
-  EXPECT_EQ(report->reused, 2);
-  EXPECT_EQ(report->fetched, 3);
-  expect_right_places(report->manifest);
-  // Asked again, there is nothing left to do.
-  const int before = server.requests();
-  ASSERT_TRUE(download_world(options));
-  EXPECT_EQ(server.requests() - before, 2) << "only the services' limits are asked";
+  options.imagery_attribution = "Test tiles";
+  options.elevation_source = kNoSource;
+  options.ground_height_m = 180.0;
+  const auto first_url = [&](const std::string& source) {
+    options.imagery_source = server.address() + source;
+    const auto plan = plan_download(options);
+    EXPECT_TRUE(plan) << plan.error().message;
+    return plan ? plan->layers[0].requests[0].url.substr(server.address().size()) : std::string();
+  };
+  int z = 0, x = 0, y = 0, from_south = 0;
+  ASSERT_EQ(std::sscanf(first_url("/{z}/{x}/{y}.png").c_str(), "/%d/%d/%d.png", &z, &x, &y), 3);
+  ASSERT_EQ(std::sscanf(first_url("/{-y}/{z}/{x}").c_str(), "/%d/%d/%d", &from_south, &z, &x), 3);
+  EXPECT_EQ(from_south, (1 << z) - 1 - y);
+  EXPECT_EQ(first_url("/wmts?Service=WMTS&Request=GetTile&TileMatrix={TileMatrix}&"
+                      "TileRow={TileRow}&TileCol={TileCol}"),
+            "/wmts?Service=WMTS&Request=GetTile&TileMatrix=" + std::to_string(z) +
+                "&TileRow=" + std::to_string(y) + "&TileCol=" + std::to_string(x));
 }
 
 TEST_F(Download, DoesNotMixTwoDownloadsInOneFolder) {
@@ -346,18 +133,6 @@ TEST_F(Download, DoesNotMixTwoDownloadsInOneFolder) {
   const auto other = download_world(options);
   ASSERT_FALSE(other);
   EXPECT_EQ(other.error().code, ErrorCode::kConflict);
-}
-
-TEST_F(Download, StopsWhenToldTo) {
-  const LocalHttpServer server([](const HttpRequest& request) {
-    if (request.query.contains("bbox")) std::this_thread::sleep_for(std::chrono::milliseconds(300));
-    return answer_rightly(request);
-  });
-  int calls = 0;
-  const auto report =
-      download_world(options_for(server), [&](double, const std::string&) { return ++calls < 2; });
-  ASSERT_FALSE(report);
-  EXPECT_EQ(report.error().code, ErrorCode::kCancelled);
 }
 
 TEST_F(Download, TakesTilesOfATemplateToTheirPlace) {

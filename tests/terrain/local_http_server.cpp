@@ -95,6 +95,7 @@ void LocalHttpServer::serve(int socket) {
   while (now > most && !most_at_a_time_.compare_exchange_weak(most, now)) {
   }
   const HttpAnswer answer = handler_(parse(head));
+  --running_;  // before the client can know that it may ask again
   std::string text = "HTTP/1.1 " + std::to_string(answer.status) +
                      " Test\r\nContent-Type: " + answer.content_type +
                      "\r\nContent-Length: " + std::to_string(answer.body.size()) +
@@ -103,7 +104,6 @@ void LocalHttpServer::serve(int socket) {
   send_all(socket,
            text + "\r\n" + answer.body.substr(0, answer.cut_after.value_or(answer.body.size())));
   ::shutdown(socket, SHUT_WR);
-  --running_;
 }
 
 }  // namespace overfly::testing

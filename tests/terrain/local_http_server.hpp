@@ -38,6 +38,7 @@ class LocalHttpServer {
   /// "http://127.0.0.1:PORT"
   [[nodiscard]] std::string address() const;
   [[nodiscard]] int requests() const { return requests_.load(); }
+  /// Requests whose answer was being thought out.
   [[nodiscard]] int most_at_a_time() const { return most_at_a_time_.load(); }
 
  private:
