@@ -1,0 +1,79 @@
+// Tiles that come late: never in lockstep, counted and reported in real time.
+#include <gtest/gtest.h>
+
+#include "server/engine/run_clock.hpp"
+#include "tests/engine/engine_fixture.hpp"
+
+namespace overfly::engine {
+namespace {
+
+using Json = nlohmann::json;
+
+/// Time passes only while somebody sleeps.
+class JumpingClock final : public RunClock {
+ public:
+  std::int64_t now_ns() override { return now_ns_; }
+  void sleep_until_ns(std::int64_t t_ns) override { now_ns_ = std::max(now_ns_, t_ns); }
+  void enter() override {}
+  void leave() override {}
+
+ private:
+  std::int64_t now_ns_ = 0;
+};
+
+/// Two tiles are late at every image that does not wait for them.
+class Paging final : public renderer::Renderer {
+ public:
+  explicit Paging(std::unique_ptr<renderer::Renderer> inner) : inner_(std::move(inner)) {}
+  using Renderer::render_camera;
+  using Renderer::render_depth;
+  Result<renderer::CameraFrame> render_camera(const renderer::CameraRequest& request) override {
+    auto frame = inner_->render_camera(request);
+    if (frame && !request.wait_for_tiles) frame->late_tiles = 2;
+    return frame;
+  }
+  Result<DepthImage> render_depth(const renderer::CameraRequest& request) override {
+    return inner_->render_depth(request);
+  }
+  Result<Image> render_scene(const renderer::SceneView& view,
+                             const renderer::SceneContent& content) override {
+    return inner_->render_scene(view, content);
+  }
+  renderer::RendererInfo info() const override { return inner_->info(); }
+
+ private:
+  std::unique_ptr<renderer::Renderer> inner_;
+};
+
+RunResult flown(const std::string& pacing, const std::filesystem::path& folder) {
+  JumpingClock clock;
+  RunOptions options;
+  options.folder = folder;
+  options.clock = &clock;
+  options.renderer_factory = [](std::shared_ptr<const terrain::TileSource> tiles) {
+    return Result<std::unique_ptr<renderer::Renderer>>(
+        std::make_unique<Paging>(renderer::create_noop_renderer(std::move(tiles))));
+  };
+  auto run = run_scenario(testing::small_scenario({"pacing=" + pacing, "duration_s=1"}), options);
+  if (!run) throw std::runtime_error(run.error().message);
+  return std::move(*run);
+}
+
+TEST(LateTiles, AreCountedInRealTime) {
+  const overfly::testing::TemporaryFolder folder;
+  const RunResult run = flown("real_time", folder.path() / "r");
+  EXPECT_EQ(run.metrics.at("camera").at("late_tiles"), (Json{{"tiles", 22}, {"frames", 11}}));
+  const auto opened = RunTimeline::open(folder.path() / "r");
+  ASSERT_TRUE(opened.ok()) << opened.error().message;
+  for (const FrameRow& row : (*opened)->frames(0, 100)) EXPECT_EQ(row.late_tiles, 2);
+}
+
+TEST(LateTiles, AreWaitedForInLockstep) {
+  const overfly::testing::TemporaryFolder folder;
+  const RunResult run = flown("lockstep", folder.path() / "r");
+  EXPECT_EQ(run.metrics.at("camera").at("frames"), 11);
+  EXPECT_FALSE(run.metrics.at("camera").contains("late_tiles"));
+}
+
+}  // namespace
+}  // namespace overfly::engine
