@@ -1,6 +1,7 @@
 #include "server/engine/camera_check.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -16,22 +17,53 @@ constexpr double kMostLost = 0.05;
 
 /// What the comparison needs of one frame.
 struct Drawn {
-  Image image;
+  RadianceImage radiance;
   DepthImage depth;
 };
+
+/// The range of radiance that is spread over the 256 grey levels.
+struct Range {
+  float low = 0.0F;
+  float high = 1.0F;
+};
+
+/// All but the darkest and the brightest percent.
+Range range_of(const RadianceImage& image) {
+  std::vector<float> values = image.data;
+  const auto at = [&](double share) {
+    const auto place = values.begin() +
+                       static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), place, values.end());
+    return *place;
+  };
+  const float low = at(0.01);
+  return {low, std::max(at(0.99), low + 1e-3F)};
+}
+
+/// Grey levels as fine as the ground's contrast allows: on faint texture the rounding to the
+/// camera's own 8 bits stays where it was when the image moves by nearly whole pixels, and
+/// registration then reads 0.05 px that no geometry put there.
+Image stretched(const RadianceImage& radiance, const Range& range) {
+  Image image(radiance.width_px, radiance.height_px, 1);
+  std::transform(radiance.data.begin(), radiance.data.end(), image.data.begin(), [&](float value) {
+    const float level = 255.0F * (value - range.low) / (range.high - range.low);
+    return static_cast<std::uint8_t>(std::lround(std::clamp(level, 0.0F, 255.0F)));
+  });
+  return image;
+}
 
 Result<Drawn> draw(renderer::Renderer& renderer, const renderer::CameraRequest& request) {
   Result<renderer::CameraFrame> frame = renderer.render_camera(request);
   if (!frame) return frame.error();
   Result<DepthImage> depth = renderer.render_depth(request);
   if (!depth) return depth.error();
-  return Drawn{std::move(frame->image), std::move(*depth)};
+  return Drawn{std::move(frame->radiance), std::move(*depth)};
 }
 
 Result<renderer::Registration> compare(renderer::Renderer& renderer,
                                        renderer::CameraRequest first,
                                        renderer::CameraRequest second) {
-  first.format = second.format = renderer::PixelFormat::kGrey8;
+  first.format = second.format = renderer::PixelFormat::kGreyLinear;
   const Result<Drawn> now = draw(renderer, first);
   if (!now) return now.error();
   const Result<Drawn> next = draw(renderer, second);
@@ -39,8 +71,11 @@ Result<renderer::Registration> compare(renderer::Renderer& renderer,
   const renderer::PixelRays rays(first.camera);
   const renderer::PointImage points = renderer::world_points(rays, first, now->depth);
   const renderer::VectorImage flow = renderer::optical_flow(points, second, next->depth);
-  const renderer::WarpedImage predicted = renderer::warp_along(next->image, flow);
-  return renderer::register_images(predicted.image, now->image, predicted.valid);
+  const Range range = range_of(now->radiance);
+  const renderer::WarpedImage predicted =
+      renderer::warp_along(stretched(next->radiance, range), flow);
+  return renderer::register_images(
+      predicted.image, stretched(now->radiance, range), predicted.valid);
 }
 
 /// Sensor and faults change pictures, not geometry: they would only blunt the measurement.
