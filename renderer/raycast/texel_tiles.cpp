@@ -55,6 +55,13 @@ void TexelTiles::prefetch(const std::vector<TileId>& ids, PixelFormat format) {
     return entries_.count({id, format}) == 0;
   });
   store_->prefetch(missing, format);
+  // One a frame, so that a row of tiles that comes into view does not cost one frame all of them.
+  for (const TileId& id : missing) {
+    const auto pixels = store_->peek(id, format);
+    if (pixels == nullptr) continue;
+    if (held_bytes_ + 2 * pixels->bytes() < budget_bytes_) (void)keep({id, format}, *pixels);
+    break;
+  }
 }
 
 void TexelTiles::trim() {

@@ -28,7 +28,7 @@ class TexelTiles {
   /// What is there now: the tile, or the nearest coarser one; the missing one is asked for. The
   /// coarsest of all is waited for. Errors: kIo.
   [[nodiscard]] Result<FoundTile> find(const terrain::TileId& id, PixelFormat format);
-  /// Asks for tiles that a later frame will need.
+  /// Asks for tiles that a later frame will need, and packs one of those that are there.
   void prefetch(const std::vector<terrain::TileId>& ids, PixelFormat format);
   /// Lets the tiles used longest ago go until the budget holds. Call between frames.
   void trim();
