@@ -15,6 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kFrameDigits = 6;  ///< as of the images in frames/
+constexpr double kNsPerMs = 1e6;
 
 bool got_lost(const FrameRow& row) {
   const std::string dropped = to_string(FaultKind::kDroppedFrames);
