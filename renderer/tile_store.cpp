@@ -134,10 +134,23 @@ struct TileStore::State {
     }
   }
 
+  /// Leaves the processor to the frames in between, unless someone draws without a tile.
+  void rest(double spent_s, std::unique_lock<std::mutex>& lock) {
+    work.wait_for(lock, std::chrono::duration<double>(kRestPerWork * spent_s), [this] {
+      return stopping || waiting > 0 || !asked.empty();
+    });
+  }
+
   /// Reads a tile that this thread has put into `loading`; the lock is open meanwhile.
-  Result<Pixels> load(const Key& key, std::unique_lock<std::mutex>& lock) {
+  Result<Pixels> load(const Key& key, bool urgent, std::unique_lock<std::mutex>& lock) {
     lock.unlock();
+    const double before_s = thread_cpu_s();
     Result<terrain::Tile> tile = tiles->tile(key.first);
+    if (!urgent) {
+      lock.lock();
+      rest(thread_cpu_s() - before_s, lock);
+      lock.unlock();
+    }
     Pixels pixels;
     if (tile.ok()) {
       pixels = std::make_shared<const TilePixels>(tile_pixels_from(*tile, key.second));
@@ -157,10 +170,13 @@ struct TileStore::State {
     while (true) {
       if (Pixels pixels = use(key); pixels != nullptr) return pixels;
       if (loading.insert(key).second) break;
+      ++waiting;
+      work.notify_all();
       loaded.wait(lock);
+      --waiting;
     }
     ++counts.read_on_demand;
-    return load(key, lock);
+    return load(key, true, lock);
   }
 
   Pixels find(const Key& key) {
@@ -229,14 +245,12 @@ struct TileStore::State {
       ++counts.read_ahead;
       const double before_s = thread_cpu_s();
       // A tile that cannot be read is reported to whoever gets it.
-      (void)load(key, lock);
+      (void)load(key, urgent, lock);
       const double spent_s = thread_cpu_s() - before_s;
       counts.ahead_cpu_s += spent_s;
       if (urgent) continue;
-      // Tiles ahead have seconds to come: leave the processor to the frames in between.
-      work.wait_for(lock, std::chrono::duration<double>(kRestPerWork * spent_s), [this] {
-        return stopping || !asked.empty();
-      });
+      // Tiles ahead have seconds to come.
+      rest(spent_s, lock);
     }
   }
 
@@ -253,6 +267,7 @@ struct TileStore::State {
   std::deque<Key> ahead;  // by prefetch
   std::uint64_t round = 0;
   bool stopping = false;
+  int waiting = 0;  // who needs a tile that is being read
   TileStoreCounts counts;
   std::vector<std::thread> threads;
 };
