@@ -11,7 +11,8 @@
 namespace overfly::engine {
 
 /// Encodes grey or RGB, 8 or 16 bit. Lossless; every row is filtered with "up" and compressed at
-/// the lowest level, which costs a fifth of the usual time and some 3 % of size on ground imagery.
+/// the lowest level: a seventh of the processor time of libpng's defaults for 13 % more bytes
+/// (1280 x 960 grey of the built-in world: 8.7 ms instead of 59 ms).
 /// The bytes depend on the image and the libdeflate version alone.
 /// @pre the image is not empty and has 1 or 3 channels
 [[nodiscard]] std::vector<std::uint8_t> encode_png(const Image& image);
