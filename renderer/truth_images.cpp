@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "renderer/row_projector.hpp"
-#include "terrain/drape.hpp"
 
 namespace overfly::renderer {
 namespace {
@@ -19,6 +18,16 @@ constexpr double kHiddenM = 0.3;
 Eigen::Vector3d point_at(const PointImage& points, int x, int y) {
   const double* p = &points.at(x, y);
   return {p[0], p[1], p[2]};
+}
+
+/// Upward unit normal by central differences.
+Eigen::Vector3d normal_at(const HeightQuery& ground, const Eigen::Vector3d& p, double step_m) {
+  const double east = ground.ground_up_m(p.x() + step_m, p.y());
+  const double west = ground.ground_up_m(p.x() - step_m, p.y());
+  const double north = ground.ground_up_m(p.x(), p.y() + step_m);
+  const double south = ground.ground_up_m(p.x(), p.y() - step_m);
+  return Eigen::Vector3d((west - east) / (2.0 * step_m), (south - north) / (2.0 * step_m), 1.0)
+      .normalized();
 }
 
 /// The farthest of the four depths around a place in the image: across a ridge the place belongs
@@ -97,13 +106,7 @@ VectorImage surface_normals(const PointImage& points,
     for (int x = 0; x < points.width_px; ++x) {
       const Eigen::Vector3d p = point_at(points, x, y);
       if (!p.allFinite()) continue;
-      const double east = ground.ground_up_m(p.x() + step_m, p.y());
-      const double west = ground.ground_up_m(p.x() - step_m, p.y());
-      const double north = ground.ground_up_m(p.x(), p.y() + step_m);
-      const double south = ground.ground_up_m(p.x(), p.y() - step_m);
-      const Eigen::Vector3d normal_world =
-          Eigen::Vector3d((west - east) / (2.0 * step_m), (south - north) / (2.0 * step_m), 1.0)
-              .normalized();
+      const Eigen::Vector3d normal_world = normal_at(ground, p, step_m);
       const Eigen::Vector3f normal = (R_frame_world * normal_world).cast<float>();
       std::copy(normal.data(), normal.data() + 3, &normals.at(x, y));
     }
@@ -133,6 +136,8 @@ VectorImage optical_flow(const PointImage& points,
 
 Image validity_mask(const PointImage& points, const terrain::TileSource& tiles) {
   Image mask(points.width_px, points.height_px, 1, kMaskNothing);
+  // As terrain's drape_stretch(), which `overfly world info` uses.
+  const double step_m = std::max(0.1, 0.25 * tiles.real_texel_m());
   for (int y = 0; y < points.height_px; ++y) {
     for (int x = 0; x < points.width_px; ++x) {
       const Eigen::Vector3d p = point_at(points, x, y);
@@ -140,8 +145,8 @@ Image validity_mask(const PointImage& points, const terrain::TileSource& tiles) 
       const Eigen::Vector2d map = tiles.map_from_world(p.x(), p.y());
       mask.at(x, y) = kMaskVoid;
       if (!tiles.has_imagery(map.x(), map.y())) continue;
-      const double stretch = terrain::drape_stretch(tiles, map.x(), map.y());
-      mask.at(x, y) = stretch > terrain::kSmearedStretch ? kMaskSmeared : kMaskImagery;
+      const bool steep = normal_at(tiles, p, step_m).z() < kSmearedNormalUp;
+      mask.at(x, y) = steep ? kMaskSmeared : kMaskImagery;
     }
   }
   return mask;

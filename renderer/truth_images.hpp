@@ -43,9 +43,10 @@ enum class NormalFrame {
 /// Values of the validity mask.
 inline constexpr std::uint8_t kMaskNothing = 0;  ///< sky, or no ray
 inline constexpr std::uint8_t kMaskVoid = 128;   ///< ground without imagery
-/// Ground whose imagery is smeared: too steep to be photographed from above
-/// (terrain::kSmearedStretch).
+/// Ground whose imagery is smeared, too steep to be photographed from above: beyond 60 deg a texel
+/// is stretched to more than twice its length.
 inline constexpr std::uint8_t kMaskSmeared = 192;
+inline constexpr double kSmearedNormalUp = 0.5;    ///< cosine of that slope
 inline constexpr std::uint8_t kMaskImagery = 255;  ///< ground with imagery
 
 /// Distance from the camera to the ground along each pixel's ray [m]: depth * |ray|.

@@ -30,6 +30,15 @@ TEST(SunPosition, MatchesTheExampleOfTheSolarPositionAlgorithm) {
   EXPECT_NEAR(azimuth_deg(sun), 194.34024, 0.01);
 }
 
+TEST(SunPosition, MatchesTheExampleOfAstronomicalAlgorithms) {
+  // Meeus 1998, example 25.a: 1992-10-13 at 0 h of dynamical time (59 s before universal time):
+  // declination -7.78507 deg. At the pole that is the elevation, less a parallax of 8.7".
+  const Geodetic pole = geodetic_from_deg(90.0, 0.0, 0.0);
+  EXPECT_NEAR(elevation_deg(sun_position(utc_ns(1992, 10, 12, 23, 59, 1), pole)),
+              -7.78507 - 8.7 / 3600.0,
+              1e-4);
+}
+
 TEST(SunPosition, StandsOnTheEquatorAtTheEquinoxes) {
   // At the pole the elevation is the declination. Moments: the almanacs' for 2020, to the minute;
   // the declination moves by 0.0003 deg in one.

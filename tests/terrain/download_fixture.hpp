@@ -39,6 +39,9 @@ class DownloadFixture : public ::testing::Test {
   [[nodiscard]] terrain::DownloadOptions options_for(const LocalHttpServer& server) const;
   /// The message of a download that must fail.
   [[nodiscard]] std::string failure(const LocalHttpServer::Handler& handler) const;
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_.path(); }
+
+ private:
   TemporaryFolder folder_;
 };
 

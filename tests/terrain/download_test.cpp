@@ -36,7 +36,7 @@ TEST_F(Download, MakesAWorldThatOpensInTheRightPlace) {
   EXPECT_EQ(report->fetched, 5);
   EXPECT_TRUE(report->warnings.empty());
   EXPECT_EQ(server.most_at_a_time(), 2);
-  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "world" / "chunks"));
+  EXPECT_FALSE(std::filesystem::exists(folder() / "world" / "chunks"));
   expect_right_places(report->manifest);
   const std::string manifest = testing::read_text(report->manifest);
   EXPECT_NE(manifest.find("USDA NAIP imagery, USGS The National Map (Test Survey)"),
@@ -71,7 +71,7 @@ TEST_F(Download, PlansWithoutFetchingAnImage) {
   EXPECT_EQ(plan->layers[1].width_px, 91);
   EXPECT_EQ(plan->layers[0].crs, "EPSG:26916");
   EXPECT_NE(plan->layers[0].requests[0].url.find("&size=300,300&"), std::string::npos);
-  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "world"));
+  EXPECT_FALSE(std::filesystem::exists(folder() / "world"));
 }
 
 TEST_F(Download, AssumesLimitsWhereTheServiceCannotBeAsked) {
@@ -211,7 +211,7 @@ TEST_F(Download, AsksAWebMapServiceByItsTemplate) {
 
 TEST_F(Download, RefusesWhatCannotBeMeant) {
   DownloadOptions options;
-  options.folder = folder_.path() / "world";
+  options.folder = folder() / "world";
   const auto message = [&] {
     const auto plan = plan_download(options);
     return plan ? std::string("accepted") : plan.error().message;

@@ -136,7 +136,7 @@ TEST_F(DownloadTrouble, SaysWhatIsWrongWithAnAnswer) {
     });
     EXPECT_NE(message.find(wrong.expected), std::string::npos) << message;
     EXPECT_NE(message.find("/naip/ImageServer/exportImage?bbox="), std::string::npos) << message;
-    std::filesystem::remove_all(folder_.path() / "world");
+    std::filesystem::remove_all(folder() / "world");
   }
 }
 
