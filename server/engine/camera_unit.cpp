@@ -91,6 +91,7 @@ Result<renderer::CameraRequest> CameraUnit::request(
     std::int64_t t_ns,
     const std::optional<renderer::ExposureSetting>& setting) const {
   std::vector<StampedPose> poses;
+  poses.reserve(states.size());
   for (const AircraftState& state : states) {
     poses.push_back({state.t_ns, T_world_camera(state.T_world_body, state.t_ns)});
   }

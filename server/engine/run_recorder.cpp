@@ -172,6 +172,7 @@ Status RunRecorder::write_manifest() {
 
 Status RunRecorder::set_cameras() {
   std::vector<RunCamera> cameras;
+  cameras.reserve(scenario_.cameras.size());
   Json entries = Json::array();
   for (const CameraSpec& spec : scenario_.cameras) {
     cameras.push_back({spec.name, spec.model, spec.T_body_camera});
