@@ -54,8 +54,9 @@ int print_plan(const DownloadArguments& arguments) {
   for (const terrain::DownloadPlan::Layer& layer : plan->layers) {
     std::cout << layer.what << ": " << layer.width_px << " x " << layer.height_px << " px of "
               << layer.pixel_m << " m in " << layer.crs << ", " << layer.requests.size()
-              << " requests, about " << megabytes(layer.transfer_bytes) << "\n  from "
-              << layer.source << "\n  credit: " << layer.attribution << '\n';
+              << (layer.requests.size() == 1 ? " request" : " requests") << ", about "
+              << megabytes(layer.transfer_bytes) << "\n  from " << layer.source
+              << "\n  credit: " << layer.attribution << '\n';
     transfer_bytes += layer.transfer_bytes;
     disk_bytes += layer.disk_bytes;
     if (!arguments.list) continue;
