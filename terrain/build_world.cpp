@@ -20,7 +20,7 @@ Status write_validity(const RasterWorld& world, const fs::path& folder, CacheHea
     header.masked.push_back(validity != nullptr);
     if (validity == nullptr) continue;
     const fs::path file = validity_path(folder, static_cast<int>(i));
-    const Status written = write_chunk(file, {pack_bytes(validity->to_bytes())});
+    Status written = write_chunk(file, {pack_bytes(validity->to_bytes())});
     if (!written) return written;
   }
   return {};

@@ -195,7 +195,7 @@ Status ElevationModel::merge(const MapRect& area,
 
 Status ElevationModel::survey(std::vector<std::string>& warnings) {
   for (const RasterPtr& raster : parts_->rasters) {
-    const Status whole = raster->check(warnings);
+    Status whole = raster->check(warnings);
     if (!whole) return whole;
   }
   auto survey = parts_->pyramid->survey();

@@ -101,11 +101,11 @@ Status ImageryRaster::look_at_blocks() const {
   const GdalMessages quiet;
   auto dataset = pyramid_->stored.front().pool->take();
   if (!dataset) return dataset.error();
-  const Status whole = check_whole(**dataset, file_, pyramid_->doubts);
+  Status whole = check_whole(**dataset, file_, pyramid_->doubts);
   if (!whole) return whole;
   add_overviews(**dataset);
   pyramid_->stored.front().pool->put(std::move(*dataset));
-  const Status sampled = look_for_a_picture();
+  Status sampled = look_for_a_picture();
   if (!sampled) return sampled;
   // The in-memory levels start where the stored ones are left behind, later if they were too big.
   int& level = pyramid_->first_level;
@@ -135,8 +135,10 @@ Status ImageryRaster::look_for_a_picture() const {
   // A few samples clear nearly every file; more are taken before one is suspected.
   for (const int steps : {5, 32}) {
     for (int i = 0; i < steps * steps; ++i) {
-      const auto x = static_cast<int>((i % steps + 0.5) / steps * width_px_);
-      const auto y = static_cast<int>((i / steps + 0.5) / steps * height_px_);
+      const int column = i % steps;
+      const int row = i / steps;
+      const auto x = static_cast<int>((column + 0.5) / steps * width_px_);
+      const auto y = static_cast<int>((row + 0.5) / steps * height_px_);
       const auto texel = read_stored(pyramid_->stored.front(), x, y, 1, 1);
       if (!texel) return texel.error();
       if (texel->valid.data[0] == 0) return {};  // a mask says what is missing

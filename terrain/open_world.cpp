@@ -31,7 +31,7 @@ Result<Rasters> open_imagery(const WorldSpec& spec, std::vector<std::string>& wa
 /// What reading the files themselves needs.
 Status prepare(const Rasters& rasters, std::vector<std::string>& warnings) {
   for (const auto& raster : rasters) {
-    const Status prepared = raster->prepare();
+    Status prepared = raster->prepare();
     if (!prepared) return prepared;
     const std::vector<std::string> doubts = raster->doubts();
     warnings.insert(warnings.end(), doubts.begin(), doubts.end());

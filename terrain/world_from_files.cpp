@@ -40,6 +40,7 @@ std::vector<Layer> finest_first(std::vector<Sized<Layer>> sized) {
   std::stable_sort(
       sized.begin(), sized.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<Layer> layers;
+  layers.reserve(sized.size());
   for (auto& [size, layer] : sized) layers.push_back(std::move(layer));
   return layers;
 }

@@ -115,7 +115,7 @@ Status CacheBuilder::make_one(const Job& job) {
   auto pieces = job.heights ? heights(job) : tiles(job, any);
   if (!pieces) return pieces.error();
   if (stop_ || !any) return {};
-  const Status written = write_chunk(file, *pieces);
+  Status written = write_chunk(file, *pieces);
   if (!written) return written;
   ++made_;
   note(job);
@@ -186,7 +186,7 @@ Status CacheBuilder::run(const Work& work,
   working_ = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   std::vector<std::thread> threads;
   for (int i = working_; i > 0; --i) threads.emplace_back([&] { take_jobs(work); });
-  const Status reported = report_until_done(doing, progress);
+  Status reported = report_until_done(doing, progress);
   for (std::thread& thread : threads) thread.join();
   if (error_) return *error_;
   return reported;

@@ -34,7 +34,7 @@ Status add_files(const fs::path& file, std::set<fs::path>& files, int depth) {
     std::error_code ignored;
     if (!fs::is_regular_file(other, ignored)) continue;
     if (other.extension() == ".vrt") {
-      const Status added = add_files(other, files, depth + 1);
+      Status added = add_files(other, files, depth + 1);
       if (!added) return added;
     }
     files.insert(other);
