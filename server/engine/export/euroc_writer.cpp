@@ -77,7 +77,7 @@ class EurocWriter final : public DatasetWriter {
   Status begin(const DatasetPlan& plan) {
     for (std::size_t i = 0; i < plan.cameras.size(); ++i) {
       if (Status status = make_folder(camera_folder(i) / "data"); !status) return status;
-      const Status status =
+      Status status =
           write_whole(camera_folder(i) / "sensor.yaml", camera_text(plan.cameras[i], plan.rate));
       if (!status) return status;
     }
@@ -103,7 +103,7 @@ class EurocWriter final : public DatasetWriter {
 
   Status finish() override {
     for (std::size_t i = 0; i < lists_.size(); ++i) {
-      const Status status =
+      Status status =
           write_whole(camera_folder(i) / "data.csv", "#timestamp [ns],filename\n" + lists_[i]);
       if (!status) return status;
     }

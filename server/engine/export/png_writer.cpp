@@ -63,7 +63,7 @@ class PngWriter final : public DatasetWriter {
 
   Status finish() override {
     for (std::size_t i = 0; i < cameras_.size(); ++i) {
-      const Status status = write_whole(folder_ / (cameras_[i].name + ".csv"), rows_[i]);
+      Status status = write_whole(folder_ / (cameras_[i].name + ".csv"), rows_[i]);
       if (!status) return status;
     }
     return {};

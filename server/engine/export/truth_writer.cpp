@@ -83,7 +83,7 @@ Status TruthWriter::add_shot(const std::string& name, const CameraShot& shot, Ca
   if (camera.before) {
     const auto file = file_of(TruthKind::kFlow, shot.name, camera.before->name + ".flo");
     if (!file) return file.error();
-    const Status status =
+    Status status =
         write_flow(*file, renderer::optical_flow(camera.before->points, shot.request, *depth));
     if (!status) return status;
   }
