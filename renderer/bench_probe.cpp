@@ -92,13 +92,16 @@ class Measurement {
 
 Result<RenderCosts> measure_render_costs(const std::shared_ptr<const terrain::TileSource>& tiles,
                                          const std::vector<Pose>& T_world_camera,
-                                         int repetitions) {
+                                         int repetitions,
+                                         const std::string& device) {
   if (T_world_camera.empty() || repetitions < 1) {
     return Error{ErrorCode::kInvalidArgument, "render costs need a pose and a repetition"};
   }
-  const Result<std::unique_ptr<QuadProbe>> quad = QuadProbe::create();
+  const Result<std::unique_ptr<QuadProbe>> quad = QuadProbe::create(device);
   if (!quad.ok()) return quad.error();
-  const Result<std::unique_ptr<Renderer>> renderer = create_egl_renderer(tiles);
+  RendererOptions options;
+  options.device = device;
+  const Result<std::unique_ptr<Renderer>> renderer = create_egl_renderer(tiles, options);
   if (!renderer.ok()) return renderer.error();
   Measurement measurement(**renderer, **quad);
   for (const Pose& pose : T_world_camera) {

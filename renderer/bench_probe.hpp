@@ -56,7 +56,8 @@ struct RenderCosts {
 [[nodiscard]] Result<RenderCosts> measure_render_costs(
     const std::shared_ptr<const terrain::TileSource>& tiles,
     const std::vector<Pose>& T_world_camera,
-    int repetitions);
+    int repetitions,
+    const std::string& device = "");
 
 /// What bounds the camera's rate at 1280 x 960 grey here, and how near it comes.
 struct RateCosts {

@@ -15,18 +15,37 @@ GlTexture upload(const std::vector<ImageBuffer<T>>& levels) {
   glBindTexture(GL_TEXTURE_2D, texture.name());
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   const bool grey = levels.front().channels == 1;
-  for (std::size_t i = 0; i < levels.size(); ++i) {
-    glTexImage2D(GL_TEXTURE_2D,
-                 static_cast<GLint>(i),
-                 grey ? kGrey : kColour,
-                 levels[i].width_px,
-                 levels[i].height_px,
-                 0,
-                 grey ? GL_RED : GL_RGBA,
-                 kDeep ? GL_UNSIGNED_SHORT : GL_UNSIGNED_BYTE,
-                 levels[i].data.data());
+  const GLint internal = grey ? kGrey : kColour;
+  const GLenum format = grey ? GL_RED : GL_RGBA;
+  const GLenum type = kDeep ? GL_UNSIGNED_SHORT : GL_UNSIGNED_BYTE;
+  const auto count = static_cast<GLint>(levels.size());
+  // At once where it can be: a GPU's driver then neither moves nor checks the texture later.
+  const bool at_once = epoxy_gl_version() >= 42 || epoxy_has_gl_extension("GL_ARB_texture_storage");
+  if (at_once) {
+    glTexStorage2D(GL_TEXTURE_2D,
+                   count,
+                   static_cast<GLenum>(internal),
+                   levels.front().width_px,
+                   levels.front().height_px);
   }
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, static_cast<GLint>(levels.size()) - 1);
+  for (GLint i = 0; i < count; ++i) {
+    const ImageBuffer<T>& level = levels[static_cast<std::size_t>(i)];
+    if (at_once) {
+      glTexSubImage2D(
+          GL_TEXTURE_2D, i, 0, 0, level.width_px, level.height_px, format, type, level.data.data());
+      continue;
+    }
+    glTexImage2D(GL_TEXTURE_2D,
+                 i,
+                 internal,
+                 level.width_px,
+                 level.height_px,
+                 0,
+                 format,
+                 type,
+                 level.data.data());
+  }
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, count - 1);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);

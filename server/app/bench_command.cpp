@@ -73,8 +73,9 @@ Json json_of(const renderer::CallCost& cost) {
 
 Result<Json> bench_drawing(const terrain::World& world,
                            const std::vector<Pose>& poses,
-                           int repetitions) {
-  const auto costs = renderer::measure_render_costs(world.tiles, poses, repetitions);
+                           const BenchArguments& arguments) {
+  const auto costs = renderer::measure_render_costs(
+      world.tiles, poses, arguments.repetitions, arguments.endurance.device);
   if (!costs) return costs.error();
   return Json{{"quad", json_of(costs->quad)},
               {"camera_grey_1280x960", json_of(costs->camera_grey)},
@@ -214,7 +215,7 @@ Result<Json> measure(const BenchArguments& arguments, ProgressDisplay& display) 
   const auto poses = course_poses(*scenario, **world, 12);
   if (!poses) return poses.error();
   display.note("drawing ...");
-  Result<Json> drawing = bench_drawing(**world, *poses, arguments.repetitions);
+  Result<Json> drawing = bench_drawing(**world, *poses, arguments);
   if (!drawing) return drawing.error();
   Result<Json> rates = bench_rates(**world, *poses, arguments);
   if (!rates) return rates.error();
