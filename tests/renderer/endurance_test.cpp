@@ -74,7 +74,8 @@ TEST_P(Endurance, FiveKilometresLookTheSameCrampedColdAndWarm) {
   EXPECT_EQ(cold->digest, warm->digest);
   EXPECT_EQ(cold->digest, cramped->digest);
   EXPECT_EQ(cold->late_tiles + warm->late_tiles + cramped->late_tiles, 0);
-  // The second flight found its tiles in memory: what it reads, the first had no time to read ahead.
+  // The second flight found its tiles in memory: what it reads, the first had no time to read
+  // ahead.
   EXPECT_LE(warm->tiles.read_ahead + warm->tiles.read_on_demand, read + read / 5);
   // How many depends on how fast this machine draws: nothing holds a flight back here.
   EXPECT_GT(cold->tiles.read_ahead, 0);
