@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "renderer/raycast/block_places.hpp"
 
@@ -13,6 +12,10 @@ namespace {
 /// The camera seen from straight above the ground: a change of height moves nothing in the image,
 /// but the depth that flow and warping use; taken as this much of a change seen from the side.
 constexpr double kLeastSide = 0.1;
+constexpr int kFewPixels = 4;  ///< blocks are not divided below: each pixel has its ray
+/// A bound of the error this many times too large may still hide a good block.
+constexpr double kLooseBound = 4.0;
+constexpr double kMuchLonger = 1.5;  ///< of a block's sides: only the longer one is halved
 
 /// @param near  a node whose ground is near this ray's, or null
 Node cast_node(const BlockSettings& settings,
@@ -25,6 +28,7 @@ Node cast_node(const BlockSettings& settings,
   const Eigen::Vector3d direction = pose.R_world_camera.col(0) * ray.x() +
                                     pose.R_world_camera.col(1) * ray.y() +
                                     pose.R_world_camera.col(2);
+  node.direction = direction;
   node.hit = settings.caster->cast(pose.position,
                                    direction,
                                    near != nullptr ? near->hit.depth : 0.0,
@@ -38,6 +42,7 @@ Node cast_node(const BlockSettings& settings,
   node.range_m = node.hit.depth * length;
   const double side =
       settings.depth_only ? 1.0 : std::max(direction.head<2>().norm() / length, kLeastSide);
+  node.drop = std::abs(direction.z()) / length;
   node.px_per_m = settings.rays->px_per_rad() * side / node.range_m;
   return node;
 }
@@ -62,14 +67,8 @@ class BandBuilder {
     const auto skies = std::count_if(
         patch.corners.begin(), patch.corners.end(), [](auto* node) { return node->hit.sky(); });
     if (skies == 4) return add_sky(patch);
-    double error_px = std::numeric_limits<double>::infinity();
-    if (skies == 0) error_px = interpolation_error_px(patch);
-    if (error_px <= kBlockErrorPx) return add_ground(patch);
-    // Halving a block divides its error by two to four.
-    constexpr double kHopeless = 16.0;
-    if (std::max(patch.columns, patch.rows) <= 2 || error_px > kHopeless * kBlockErrorPx) {
-      return add_pixels(patch);
-    }
+    if (skies == 0 && flat_enough(patch)) return add_ground(patch);
+    if (patch.columns * patch.rows <= kFewPixels) return add_pixels(patch);
     divide(patch);
   }
 
@@ -93,6 +92,28 @@ class BandBuilder {
     return worst_px;
   }
 
+  /// True where interpolation is good to kBlockErrorPx. The measured relief bounds the error,
+  /// mostly by several times: where it leaves room, the ray through the patch's middle decides,
+  /// where the deviation of a smooth surface is largest. It also finds what stands before the
+  /// corners' ground.
+  [[nodiscard]] bool flat_enough(const Patch& patch) const {
+    const double bound_px = interpolation_error_px(patch);
+    if (bound_px > kLooseBound * kBlockErrorPx) return false;
+    const auto& c = patch.corners;
+    const bool alone = std::all_of(c.begin(), c.end(), [&](const Node* node) {
+      return settings_.caster->meets_ground_once(node->direction);
+    });
+    if (bound_px <= kBlockErrorPx && alone) return true;
+    const Node middle = cast_in(patch, 0.5, 0.5);
+    if (middle.hit.sky()) return false;
+    const double expected = 0.25 * (c[0]->inverse_depth + c[1]->inverse_depth +
+                                    c[2]->inverse_depth + c[3]->inverse_depth);
+    // The ground's height here off the patch's surface, from the distance between them on the ray.
+    const double off_m = std::abs(1.0 - middle.inverse_depth / expected) * middle.range_m;
+    const double limit_px = bound_px <= kBlockErrorPx ? kBlockErrorPx : 0.5 * kBlockErrorPx;
+    return off_m * middle.drop * middle.px_per_m <= limit_px;
+  }
+
   /// The ray at a place of a patch, in [0, 1]^2.
   static Eigen::Vector2d ray_in(const Patch& patch, double a, double b) {
     const auto& c = patch.corners;
@@ -113,7 +134,45 @@ class BandBuilder {
         settings_, settings_.poses->at(row), ray_in(patch, a, b), farthest_corner(patch));
   }
 
+  /// Distance over the ground between two rays' hits; far where one of them meets the sky.
+  static double apart(const Node& a, const Node& b) {
+    if (a.hit.sky() || b.hit.sky()) return a.hit.sky() == b.hit.sky() ? 0.0 : 1e9;
+    return std::hypot(a.u - b.u, a.v - b.v);
+  }
+
+  /// Halves the side that is longer on the ground, or both.
   void divide(const Patch& patch) {
+    const auto& c = patch.corners;
+    const double wide = std::max(apart(*c[0], *c[1]), apart(*c[2], *c[3]));
+    const double high = std::max(apart(*c[0], *c[2]), apart(*c[1], *c[3]));
+    if (patch.rows == 1 || (patch.columns > 1 && wide > kMuchLonger * high)) {
+      divide_columns(patch);
+    } else if (patch.columns == 1 || high > kMuchLonger * wide) {
+      divide_rows(patch);
+    } else {
+      divide_both(patch);
+    }
+  }
+
+  void divide_columns(const Patch& patch) {
+    const int left = (patch.columns + 1) / 2;
+    const double a = static_cast<double>(left) / patch.columns;
+    const Node top = cast_in(patch, a, 0.0), bottom = cast_in(patch, a, 1.0);
+    const auto& c = patch.corners;
+    add({patch.x, patch.y, left, patch.rows, {c[0], &top, c[2], &bottom}});
+    add({patch.x + left, patch.y, patch.columns - left, patch.rows, {&top, c[1], &bottom, c[3]}});
+  }
+
+  void divide_rows(const Patch& patch) {
+    const int upper = (patch.rows + 1) / 2;
+    const double b = static_cast<double>(upper) / patch.rows;
+    const Node west = cast_in(patch, 0.0, b), east = cast_in(patch, 1.0, b);
+    const auto& c = patch.corners;
+    add({patch.x, patch.y, patch.columns, upper, {c[0], c[1], &west, &east}});
+    add({patch.x, patch.y + upper, patch.columns, patch.rows - upper, {&west, &east, c[2], c[3]}});
+  }
+
+  void divide_both(const Patch& patch) {
     const int left = (patch.columns + 1) / 2;
     const int upper = (patch.rows + 1) / 2;
     const double a = static_cast<double>(left) / patch.columns;
@@ -124,11 +183,9 @@ class BandBuilder {
     const auto& c = patch.corners;
     const int right = patch.columns - left, lower = patch.rows - upper;
     add({patch.x, patch.y, left, upper, {c[0], &top, &west, &middle}});
-    if (right > 0) add({patch.x + left, patch.y, right, upper, {&top, c[1], &middle, &east}});
-    if (lower > 0) add({patch.x, patch.y + upper, left, lower, {&west, &middle, c[2], &bottom}});
-    if (right > 0 && lower > 0) {
-      add({patch.x + left, patch.y + upper, right, lower, {&middle, &east, &bottom, c[3]}});
-    }
+    add({patch.x + left, patch.y, right, upper, {&top, c[1], &middle, &east}});
+    add({patch.x, patch.y + upper, left, lower, {&west, &middle, c[2], &bottom}});
+    add({patch.x + left, patch.y + upper, right, lower, {&middle, &east, &bottom, c[3]}});
   }
 
   Block block_of(const Patch& patch) const {

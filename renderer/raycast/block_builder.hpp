@@ -16,7 +16,9 @@ inline constexpr double kBlockErrorPx = 0.2;
 
 /// What one ray hit.
 struct Node {
-  Eigen::Vector2d ray{0.0, 0.0};  ///< camera frame, z = 1
+  Eigen::Vector2d ray{0.0, 0.0};             ///< camera frame, z = 1
+  Eigen::Vector3d direction{0.0, 0.0, 1.0};  ///< the same in the world
+  double drop = 0.0;                         ///< height per length along the ray
   GroundHit hit;
   double inverse_depth = 0.0;  ///< [1 / m]; 0 = sky
   double u = 0.0, v = 0.0;     ///< texels of level 0

@@ -19,6 +19,7 @@ constexpr double kAhead = 1e-7;
 struct TileRay {
   double column, row, height;        // at parameter 0, cells and metres
   double d_column, d_row, d_height;  // per unit of the parameter
+  double per_column, per_row;        // of the parameter
 
   TileRay(const GroundNode& node, const Eigen::Vector3d& o, const Eigen::Vector3d& d) {
     const double scale = node.tile->per_m;
@@ -28,14 +29,16 @@ struct TileRay {
     d_column = d.x() * scale;
     d_row = d.y() * scale;
     d_height = d.z();
+    per_column = 1.0 / d_column;
+    per_row = 1.0 / d_row;
   }
 };
 
-/// Parameter at which a coordinate moving from `from` at rate `rate` leaves [low, low + side].
-double leave(double from, double rate, double low, double side) {
-  if (rate > 0.0) return (low + side - from) / rate;
-  if (rate < 0.0) return (low - from) / rate;
-  return kNever;
+/// Parameter at which a coordinate moving from `from` leaves [low, low + side].
+/// @param per_rate  of the parameter per unit of the coordinate, infinite where it stands still
+double leave(double from, double per_rate, double low, double side) {
+  if (std::isinf(per_rate)) return kNever;
+  return ((per_rate > 0.0 ? low + side : low) - from) * per_rate;
 }
 
 /// A cell's bilinear surface: h = sw + a e + b n + c e n over (e, n) in [0, 1]^2.
@@ -102,8 +105,8 @@ GroundHit march_tile(const GroundNode& node, const TileRay& ray, double from, do
     const int side = 1 << k;
     const int low_column = column & ~(side - 1);
     const int low_row = row & ~(side - 1);
-    const double out = std::min({leave(ray.column, ray.d_column, low_column, side),
-                                 leave(ray.row, ray.d_row, low_row, side),
+    const double out = std::min({leave(ray.column, ray.per_column, low_column, side),
+                                 leave(ray.row, ray.per_row, low_row, side),
                                  to});
     const double end = std::max(out, t + 1e-9 * (1.0 + t));
     const double lowest = ray.height + ray.d_height * (ray.d_height < 0.0 ? end : t);
@@ -167,9 +170,7 @@ GroundHit GroundCaster::cast(const Eigen::Vector3d& origin,
                              const Eigen::Vector3d& direction,
                              double guess,
                              const GroundNode* near) const {
-  const double steepest = tree_.steepest;
-  if (guess > 0.0 && direction.z() < 0.0 &&
-      direction.z() * direction.z() > steepest * steepest * direction.head<2>().squaredNorm()) {
+  if (guess > 0.0 && meets_ground_once(direction)) {
     const GroundHit hit = descend(origin, direction, guess, near);
     if (!hit.sky()) return hit;
   }
@@ -227,6 +228,8 @@ GroundHit GroundCaster::march(const Eigen::Vector3d& origin,
     if (!(direction.z() < 0.0)) return {};
     t = (tree_.highest_m - origin.z()) / direction.z();
   }
+  const double per_east = 1.0 / direction.x();
+  const double per_north = 1.0 / direction.y();
   const double ahead_east_m = std::copysign(kAhead, direction.x());
   const double ahead_north_m = std::copysign(kAhead, direction.y());
   while (true) {
@@ -241,8 +244,8 @@ GroundHit GroundCaster::march(const Eigen::Vector3d& origin,
     double low_north = tree_.north_m + row * tree_.side_m;
     double side = tree_.side_m;
     while (true) {
-      double end = std::min(leave(origin.x(), direction.x(), low_east, side),
-                            leave(origin.y(), direction.y(), low_north, side));
+      double end = std::min(leave(origin.x(), per_east, low_east, side),
+                            leave(origin.y(), per_north, low_north, side));
       end = std::max(std::min(end, kFarthest), t);
       const GroundNode* node = at >= 0 ? &tree_.nodes[at] : nullptr;
       const double lowest = origin.z() + direction.z() * (direction.z() < 0.0 ? end : t);

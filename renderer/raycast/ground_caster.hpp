@@ -41,6 +41,13 @@ class GroundCaster {
                                double guess,
                                const GroundNode* near = nullptr) const;
 
+  /// True for a direction steeper than all ground: nothing can stand before what it meets.
+  [[nodiscard]] bool meets_ground_once(const Eigen::Vector3d& direction) const {
+    const double slope = tree_.steepest;
+    return direction.z() < 0.0 &&
+           direction.z() * direction.z() > slope * slope * direction.head<2>().squaredNorm();
+  }
+
   [[nodiscard]] const GroundTree& tree() const { return tree_; }
 
  private:
