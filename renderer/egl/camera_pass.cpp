@@ -81,7 +81,7 @@ Result<RenderTarget*> CameraPass::draw_picture(const CameraRequest& request,
                                                const PinholeCamera& camera,
                                                const GroundLook& look,
                                                TargetFormat format) {
-  const Result<RenderTarget*> target = targets_.get(camera.width_px, camera.height_px, format);
+  Result<RenderTarget*> target = targets_.get(camera.width_px, camera.height_px, format);
   if (!target.ok()) return target;
   (*target)->bind();
   if (format == TargetFormat::kDepthM) {

@@ -23,8 +23,8 @@ class EglRenderer final : public Renderer, public CameraPipeline {
   EglRenderer(std::unique_ptr<EglContext> context,
               GroundPass ground,
               ScenePass scene,
-              std::shared_ptr<TileStore> store,
-              std::shared_ptr<GroundPatchStore> patches,
+              const std::shared_ptr<TileStore>& store,
+              const std::shared_ptr<GroundPatchStore>& patches,
               std::size_t texture_bytes,
               std::size_t in_flight)
       : context_(std::move(context)),
