@@ -16,8 +16,11 @@ using terrain::TileId;
 
 namespace {
 
-constexpr std::size_t kMaxCameras = 8;  // whose rays are kept
-constexpr double kAheadS = 1.5;         // of flight whose tiles are asked for
+constexpr std::size_t kMaxCameras = 8;   // whose rays are kept
+constexpr double kAheadS = 1.5;          // of flight whose tiles are asked for
+constexpr double kHeightsAheadS = 0.75;  // and whose heights are sampled, a tile a frame
+/// To each side of the way, in tiles, so that a roll finds its tiles as well.
+constexpr double kAsideTiles = 0.25;
 
 int chosen_threads(int wanted) {
   if (wanted > 0) return wanted;
@@ -187,21 +190,26 @@ void FrameCaster::measure(const Frame& frame, CameraFrame& drawn) {
   drawn.axis_depth_m = statistics.axis_depth_m;
 }
 
-/// Asks for the frame's tiles moved along the camera's way over the map.
+/// Asks for the frame's tiles moved along the camera's way over the map, samples heights there.
 void FrameCaster::look_ahead(const Frame& frame) {
   const CameraRequest& request = frame.request;
   const Eigen::Vector2d way_m = kAheadS * request.velocity_world_m_s.head<2>();
   if (way_m.squaredNorm() == 0.0) return;
   const TexelMap& map = field_.map();
   const Eigen::Vector2d way = map.map_per_world * way_m / tiles_->grid().texel_m;
+  const Eigen::Vector2d along = way.normalized();
   std::set<TileId> ahead;
   for (const auto& [id, found] : frame.found) {
     const double side = static_cast<double>(terrain::kTileTexels) * (1 << id.level);
     for (const double share : {0.5, 1.0}) {
-      for (const double rounding : {0.0, 0.999}) {
-        ahead.insert({id.level,
-                      static_cast<int>(std::floor(id.col + share * way.x() / side + rounding)),
-                      static_cast<int>(std::floor(id.row - share * way.y() / side + rounding))});
+      for (const double aside : {-kAsideTiles, kAsideTiles}) {
+        const double col = id.col + share * way.x() / side - aside * along.y();
+        const double row = id.row - share * way.y() / side - aside * along.x();
+        for (const double rounding : {0.0, 0.999}) {
+          ahead.insert({id.level,
+                        static_cast<int>(std::floor(col + rounding)),
+                        static_cast<int>(std::floor(row + rounding))});
+        }
       }
     }
   }
@@ -210,6 +218,9 @@ void FrameCaster::look_ahead(const Frame& frame) {
     return tiles_->coverage(id) != terrain::TileCoverage::kNone;
   });
   texels_.prefetch(ids, request.format);
+  ViewSweep later = sweep_of(request, frame.rays);
+  later.position += kHeightsAheadS * request.velocity_world_m_s;
+  field_.prepare(later);
 }
 
 Result<CameraFrame> FrameCaster::draw(const CameraRequest& request) {

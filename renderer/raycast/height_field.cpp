@@ -120,16 +120,22 @@ double HeightField::reach_m(const ViewSweep& view) const {
   return std::min(1.05 * reach_m + 10.0 + 2.0 * view.slack_m, horizon_m);
 }
 
+HeightTileId HeightField::first_root(const ViewSweep& view) const {
+  const double reach = reach_m(view);
+  int level = kLog2TileCells;
+  while (level < 24 && HeightTileId{level, 0, 0}.side_m() < reach) ++level;
+  const double side_m = HeightTileId{level, 0, 0}.side_m();
+  return {level,
+          static_cast<std::int32_t>(std::floor(view.position.x() / side_m)) - 1,
+          static_cast<std::int32_t>(std::floor(view.position.y() / side_m)) - 1};
+}
+
 const GroundTree& HeightField::select(const ViewSweep& view) {
   ++view_;
   tree_ = {};
   tree_.roots.fill(-1);
-  const double reach = reach_m(view);
-  int level = kLog2TileCells;
-  while (level < 24 && HeightTileId{level, 0, 0}.side_m() < reach) ++level;
+  const auto [level, col, row] = first_root(view);
   tree_.side_m = HeightTileId{level, 0, 0}.side_m();
-  const auto col = static_cast<std::int32_t>(std::floor(view.position.x() / tree_.side_m)) - 1;
-  const auto row = static_cast<std::int32_t>(std::floor(view.position.y() / tree_.side_m)) - 1;
   tree_.east_m = col * tree_.side_m;
   tree_.north_m = row * tree_.side_m;
   for (int i = 0; i < 9; ++i) {
@@ -139,6 +145,28 @@ const GroundTree& HeightField::select(const ViewSweep& view) {
   }
   forget_old();
   return tree_;
+}
+
+void HeightField::prepare(const ViewSweep& later) {
+  const auto [level, col, row] = first_root(later);
+  for (int i = 0; i < 9; ++i) {
+    if (prepare_below({level, col + i % 3, row + i / 3}, later)) return;
+  }
+}
+
+bool HeightField::prepare_below(const HeightTileId& id, const ViewSweep& later) {
+  const auto known = kept_.find(id);
+  if (known == kept_.end()) {
+    (void)tile(id);
+    return true;
+  }
+  if (outside(*known->second, later) || fine_enough(*known->second, later)) return false;
+  for (int i = 0; i < 4; ++i) {
+    if (prepare_below({id.level - 1, 2 * id.col + (i & 1), 2 * id.row + (i >> 1)}, later)) {
+      return true;
+    }
+  }
+  return false;
 }
 
 void HeightField::forget_old() {

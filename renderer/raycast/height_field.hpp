@@ -68,12 +68,18 @@ class HeightField {
 
   /// The ground of a view. Good until the next call.
   [[nodiscard]] const GroundTree& select(const ViewSweep& view);
+  /// Samples one of the tiles that a later view will need and that is not there yet.
+  void prepare(const ViewSweep& later);
   [[nodiscard]] const TexelMap& map() const { return map_; }
   [[nodiscard]] std::size_t held_tiles() const { return kept_.size(); }
 
  private:
   const HeightTile& tile(const HeightTileId& id);
   std::int32_t visit(const HeightTileId& id, std::int32_t parent, const ViewSweep& view);
+  /// The south-western of the 3 x 3 squares around a view.
+  [[nodiscard]] HeightTileId first_root(const ViewSweep& view) const;
+  /// True once a tile was sampled.
+  bool prepare_below(const HeightTileId& id, const ViewSweep& later);
   [[nodiscard]] bool outside(const HeightTile& tile, const ViewSweep& view) const;
   [[nodiscard]] bool fine_enough(const HeightTile& tile, const ViewSweep& view) const;
   [[nodiscard]] double reach_m(const ViewSweep& view) const;
