@@ -14,7 +14,7 @@ namespace {
 constexpr double kLeastSide = 0.1;
 constexpr int kFewPixels = 4;  ///< blocks are not divided below: each pixel has its ray
 /// A bound of the error this many times too large may still hide a good block.
-constexpr double kLooseBound = 4.0;
+constexpr double kLooseBound = 12.0;
 constexpr double kMuchLonger = 1.5;  ///< of a block's sides: only the longer one is halved
 
 /// @param near  a node whose ground is near this ray's, or null

@@ -98,8 +98,8 @@ GroundHit march_tile(const GroundNode& node, const TileRay& ray, double from, do
   const double ahead_columns = std::copysign(kAhead, ray.d_column);
   const double ahead_rows = std::copysign(kAhead, ray.d_row);
   while (t < to) {
-    const double at_column = std::floor(ray.column + t * ray.d_column + ahead_columns);
-    const double at_row = std::floor(ray.row + t * ray.d_row + ahead_rows);
+    const double at_column = ray.column + t * ray.d_column + ahead_columns;
+    const double at_row = ray.row + t * ray.d_row + ahead_rows;
     const int column = std::clamp(static_cast<int>(at_column), 0, kTileCells - 1);
     const int row = std::clamp(static_cast<int>(at_row), 0, kTileCells - 1);
     const int side = 1 << k;
