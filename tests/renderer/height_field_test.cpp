@@ -60,5 +60,22 @@ TEST(HeightField, KeepsABoundedNumberOfTilesOverFiveKilometres) {
   EXPECT_GT(unbounded.held_tiles(), 2 * most);
 }
 
+TEST(HeightField, PreparesALaterViewOneTileAtATime) {
+  HeightField field(hills());
+  const RayGrid rays(request_at(0.0).camera);
+  const ViewSweep later = sweep_of(request_at(600.0), rays);
+  (void)field.select(sweep_of(request_at(0.0), rays));
+  const std::size_t first = field.held_tiles();
+  for (std::size_t before = 0; field.held_tiles() != before;) {
+    before = field.held_tiles();
+    field.prepare(later);
+    ASSERT_LE(field.held_tiles(), before + 1);
+  }
+  const std::size_t prepared = field.held_tiles();
+  EXPECT_GT(prepared, first);
+  (void)field.select(later);
+  EXPECT_EQ(field.held_tiles(), prepared) << "the view itself found tiles missing";
+}
+
 }  // namespace
 }  // namespace overfly::renderer::raycast
