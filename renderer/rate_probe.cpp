@@ -50,8 +50,7 @@ class PipedCamera {
       }
       if (i >= count) continue;
       const Pose& pose = poses[next_++ % poses.size()];
-      const Status begun =
-          pipeline_->begin(CameraRequest::still(camera, pose, 0, PixelFormat::kGrey8));
+      Status begun = pipeline_->begin(CameraRequest::still(camera, pose, 0, PixelFormat::kGrey8));
       if (!begun) return begun;
     }
     return {};

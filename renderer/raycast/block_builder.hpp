@@ -26,6 +26,10 @@ struct Node {
   double range_m = 0.0;
 };
 
+struct alignas(kCacheLineBytes) NodeRow {
+  std::vector<Node> nodes;
+};
+
 struct BlockSettings {
   const CameraRequest* request = nullptr;
   const RayGrid* rays = nullptr;

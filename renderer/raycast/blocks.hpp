@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -29,8 +30,11 @@ struct Block {
   Bilinear4 clear{};  ///< transmission of the air, 1 in a vacuum
 };
 
+/// What one thread writes while another writes the next: each on its own line of the cache.
+inline constexpr std::size_t kCacheLineBytes = 64;
+
 /// The blocks of one row of cells, from left to right, and the tiles that they need.
-struct Band {
+struct alignas(kCacheLineBytes) Band {
   std::vector<Block> blocks;
   std::vector<terrain::TileId> tiles;
 };

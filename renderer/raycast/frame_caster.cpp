@@ -90,9 +90,10 @@ void FrameCaster::cast(const Frame& frame, const ShutterPoses& poses, bool depth
   const int rows = frame.rays.rows();
   nodes_.resize(rows + 1);
   bands_.resize(rows);
-  pool_.run(rows + 1, [&](int row) { cast_row(settings, row, nodes_[row]); });
-  pool_.run(rows,
-            [&](int row) { build_band(settings, row, nodes_[row], nodes_[row + 1], bands_[row]); });
+  pool_.run(rows + 1, [&](int row) { cast_row(settings, row, nodes_[row].nodes); });
+  pool_.run(rows, [&](int row) {
+    build_band(settings, row, nodes_[row].nodes, nodes_[row + 1].nodes, bands_[row]);
+  });
 }
 
 Status FrameCaster::find_tiles(Frame& frame) {
@@ -152,7 +153,7 @@ Status FrameCaster::draw_instants(Frame& frame, CameraFrame& drawn) {
     drawn.radiance = std::move(sums);
   } else if (instants > 1) {
     std::transform(sums.data.begin(), sums.data.end(), drawn.image.data.begin(), [](float value) {
-      return static_cast<std::uint8_t>(value + 0.5F);
+      return static_cast<std::uint8_t>(rounded(value));
     });
   }
   return {};

@@ -51,7 +51,7 @@ class FrameCaster {
   HeightField field_;
   TexelTiles texels_;
   std::list<RayGrid> rays_;                         // of the cameras drawn last, the last first
-  std::vector<std::vector<Node>> nodes_;            // by row of nodes
+  std::vector<NodeRow> nodes_;                      // by row of nodes
   std::vector<Band> bands_;                         // by row of cells
   std::vector<std::vector<FoundTile>> band_tiles_;  // what stands for each band's tiles
 };

@@ -25,7 +25,7 @@ void fill(const Block& block, const Colour& colour, int channels, float* values)
 
 template <int kChannels>
 void put_bytes(const Block& block, const float* values, const Canvas& canvas) {
-  const auto byte = [](float value) { return static_cast<std::uint8_t>(value + 0.5F); };
+  const auto byte = [](float value) { return static_cast<std::uint8_t>(rounded(value)); };
   for (int y = 0; y < block.rows; ++y) {
     std::uint8_t* out =
         canvas.bytes +
@@ -74,7 +74,7 @@ void Painter::paint(const Band& band,
                     const std::vector<FoundTile>& tiles,
                     const Canvas& canvas) const {
   const Put put = put_of(canvas);
-  float values[kMaxValues];
+  float values[kMaxValues] = {};
   for (std::size_t i = 0; i < band.blocks.size(); ++i) {
     const Block& block = band.blocks[i];
     colour_of(block, tiles, values);

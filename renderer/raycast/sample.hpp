@@ -1,10 +1,18 @@
 // Trilinear samples of a tile over a block of pixels.
 #pragma once
 
+#include <cstdint>
+
 #include "renderer/raycast/blocks.hpp"
 #include "renderer/raycast/packed_tile.hpp"
 
 namespace overfly::renderer::raycast {
+
+/// The nearest integer, half up. @param value  >= 0
+inline std::int32_t rounded(float value) {
+  // NOLINTNEXTLINE(bugprone-incorrect-roundings): right from 0 up, and as the vector units do it
+  return static_cast<std::int32_t>(value + 0.5F);
+}
 
 /// Side of the square of pixels that a kernel fills.
 inline constexpr int kBlockSide = 16;

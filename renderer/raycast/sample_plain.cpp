@@ -32,8 +32,8 @@ Footprint footprint(const PackedTile& tile, int mip, float u, float v) {
 float narrow_sample(const std::uint16_t* pairs, const Footprint& at) {
   const std::int32_t west = pairs[at.element];
   const std::int32_t east = pairs[at.element + 1];
-  const auto down = static_cast<std::int32_t>(at.down * static_cast<float>(kRowOne) + 0.5F);
-  const auto across = static_cast<std::int32_t>(at.across * static_cast<float>(kColumnOne) + 0.5F);
+  const auto down = rounded(at.down * static_cast<float>(kRowOne));
+  const auto across = rounded(at.across * static_cast<float>(kColumnOne));
   const std::int32_t left = (west & 255) * (kRowOne - down) + (west >> 8) * down;
   const std::int32_t right = (east & 255) * (kRowOne - down) + (east >> 8) * down;
   return static_cast<float>(left * (kColumnOne - across) + right * across) * kPerProduct;

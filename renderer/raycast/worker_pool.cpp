@@ -9,30 +9,51 @@
 
 namespace overfly::renderer::raycast {
 
+namespace {
+
+/// An image is cast in several rounds a few milliseconds long: a thread that sleeps in between
+/// takes longer to wake than the gap lasts. It looks again this often before it does: some 100 us.
+constexpr int kLooksBeforeSleep = 600;
+
+template <typename Condition>
+bool comes_soon(const Condition& condition) {
+  for (int i = 0; i < kLooksBeforeSleep; ++i) {
+    if (condition()) return true;
+    std::this_thread::yield();
+  }
+  return false;
+}
+
+}  // namespace
+
 struct WorkerPool::State {
   void work() {
     for (int i = next++; i < jobs; i = next++) (*job)(i);
   }
 
+  [[nodiscard]] bool called(std::uint64_t seen) const { return stopping || round != seen; }
+
   void serve() {
     std::uint64_t seen = 0;
-    std::unique_lock lock(mutex);
     while (true) {
-      begin.wait(lock, [&] { return stopping || round != seen; });
+      if (!comes_soon([&] { return called(seen); })) {
+        std::unique_lock lock(mutex);
+        begin.wait(lock, [&] { return called(seen); });
+      }
       if (stopping) return;
       seen = round;
-      lock.unlock();
       work();
-      lock.lock();
-      if (--busy == 0) done.notify_one();
+      if (--busy > 0) continue;
+      const std::lock_guard lock(mutex);
+      done.notify_one();
     }
   }
 
   std::mutex mutex;
   std::condition_variable begin, done;
-  std::uint64_t round = 0;
-  int busy = 0;  // threads that have not finished this round
-  bool stopping = false;
+  std::atomic<std::uint64_t> round{0};
+  std::atomic<int> busy{0};  // threads that have not finished this round
+  std::atomic<bool> stopping{false};
   const std::function<void(int)>* job = nullptr;
   int jobs = 0;
   std::atomic<int> next{0};
@@ -69,8 +90,10 @@ void WorkerPool::run(int jobs, const std::function<void(int)>& job) {
   }
   state_->begin.notify_all();
   state_->work();
+  const auto all_done = [&] { return state_->busy == 0; };
+  if (comes_soon(all_done)) return;
   std::unique_lock lock(state_->mutex);
-  state_->done.wait(lock, [&] { return state_->busy == 0; });
+  state_->done.wait(lock, all_done);
 }
 
 }  // namespace overfly::renderer::raycast
