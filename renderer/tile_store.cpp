@@ -25,7 +25,7 @@ constexpr int kValidStep = 8;
 /// Requests of `find` that wait; older ones are forgotten, whoever needs them asks again.
 constexpr std::size_t kMaxAsked = 256;
 /// Of a thread between two tiles that are read ahead, per time spent on the last.
-constexpr double kRestPerWork = 2.0;
+constexpr double kRestPerWork = 6.0;
 
 Image thinned(const Image& valid) {
   const bool all_valid =

@@ -218,7 +218,8 @@ void FrameCaster::look_ahead(const Frame& frame) {
   std::copy_if(ahead.begin(), ahead.end(), std::back_inserter(ids), [&](const TileId& id) {
     return tiles_->coverage(id) != terrain::TileCoverage::kNone;
   });
-  texels_.prefetch(ids, request.format);
+  // Work for later frames is shared out among them: texels in one, heights in another.
+  if (texels_.prefetch(ids, request.format)) return;
   ViewSweep later = sweep_of(request, frame.rays);
   later.position += kHeightsAheadS * request.velocity_world_m_s;
   field_.prepare(later);

@@ -49,7 +49,7 @@ Result<FoundTile> TexelTiles::find(const TileId& id, PixelFormat format) {
   return get(coarser, format);
 }
 
-void TexelTiles::prefetch(const std::vector<TileId>& ids, PixelFormat format) {
+bool TexelTiles::prefetch(const std::vector<TileId>& ids, PixelFormat format) {
   std::vector<TileId> missing;
   std::copy_if(ids.begin(), ids.end(), std::back_inserter(missing), [&](const TileId& id) {
     return entries_.count({id, format}) == 0;
@@ -59,9 +59,11 @@ void TexelTiles::prefetch(const std::vector<TileId>& ids, PixelFormat format) {
   for (const TileId& id : missing) {
     const auto pixels = store_->peek(id, format);
     if (pixels == nullptr) continue;
-    if (held_bytes_ + 2 * pixels->bytes() < budget_bytes_) (void)keep({id, format}, *pixels);
-    break;
+    if (held_bytes_ + 2 * pixels->bytes() >= budget_bytes_) return false;
+    (void)keep({id, format}, *pixels);
+    return true;
   }
+  return false;
 }
 
 void TexelTiles::trim() {

@@ -29,7 +29,8 @@ class TexelTiles {
   /// coarsest of all is waited for. Errors: kIo.
   [[nodiscard]] Result<FoundTile> find(const terrain::TileId& id, PixelFormat format);
   /// Asks for tiles that a later frame will need, and packs one of those that are there.
-  void prefetch(const std::vector<terrain::TileId>& ids, PixelFormat format);
+  /// @return true when it packed one
+  bool prefetch(const std::vector<terrain::TileId>& ids, PixelFormat format);
   /// Lets the tiles used longest ago go until the budget holds. Call between frames.
   void trim();
 
