@@ -67,7 +67,8 @@ bool TexelTiles::prefetch(const std::vector<TileId>& ids, PixelFormat format) {
 }
 
 void TexelTiles::trim() {
-  while (held_bytes_ > budget_bytes_ && !order_.empty()) {
+  const std::size_t most_bytes = budget_bytes_ - budget_bytes_ / 8;
+  while (held_bytes_ > most_bytes && !order_.empty()) {
     const auto oldest = entries_.find(order_.back());
     held_bytes_ -= oldest->second.texels->bytes();
     entries_.erase(oldest);

@@ -31,7 +31,8 @@ class TexelTiles {
   /// Asks for tiles that a later frame will need, and packs one of those that are there.
   /// @return true when it packed one
   bool prefetch(const std::vector<terrain::TileId>& ids, PixelFormat format);
-  /// Lets the tiles used longest ago go until the budget holds. Call between frames.
+  /// Lets the tiles used longest ago go until the budget holds, with an eighth of it to spare: for
+  /// what is packed ahead of the next frames. Call between frames.
   void trim();
 
  private:
