@@ -13,8 +13,9 @@ namespace {
 /// but the depth that flow and warping use; taken as this much of a change seen from the side.
 constexpr double kLeastSide = 0.1;
 constexpr int kFewPixels = 4;  ///< blocks are not divided below: each pixel has its ray
-/// A bound of the error this many times too large may still hide a good block.
-constexpr double kLooseBound = 12.0;
+/// A bound of the error this many times too large may still hide a good block of an image; a depth
+/// image shows more of the ground than an image does, and keeps to the bound.
+constexpr double kLooseBound = 4.0;
 constexpr double kMuchLonger = 1.5;  ///< of a block's sides: only the longer one is halved
 
 /// @param near  a node whose ground is near this ray's, or null
@@ -98,7 +99,8 @@ class BandBuilder {
   /// corners' ground.
   [[nodiscard]] bool flat_enough(const Patch& patch) const {
     const double bound_px = interpolation_error_px(patch);
-    if (bound_px > kLooseBound * kBlockErrorPx) return false;
+    const double loose = settings_.depth_only ? 1.0 : kLooseBound;
+    if (bound_px > loose * kBlockErrorPx) return false;
     const auto& c = patch.corners;
     const bool alone = std::all_of(c.begin(), c.end(), [&](const Node* node) {
       return settings_.caster->meets_ground_once(node->direction);
