@@ -8,6 +8,8 @@
 #include <limits>
 #include <vector>
 
+#include "renderer/ground_ray.hpp"
+
 namespace overfly::renderer {
 
 namespace {
@@ -170,7 +172,7 @@ class RayGrid {
   std::vector<Hit> hits_;
 };
 
-/// The mesh's depth on the optical axis, refined on the ground itself by secant steps.
+/// The mesh's depth on the optical axis, refined on the ground itself.
 std::optional<double> axis_depth(const GroundMesh& mesh,
                                  const View& view,
                                  const HeightQuery& ground) {
@@ -184,24 +186,7 @@ std::optional<double> axis_depth(const GroundMesh& mesh,
   }
   if (!std::isfinite(hit.depth_m)) return std::nullopt;
   const Eigen::Vector3d axis_world = view.R_camera_world.row(2).transpose();
-  const auto clearance_m = [&](double depth_m) {
-    const Eigen::Vector3d p = view.position_world + depth_m * axis_world;
-    return p.z() - ground.ground_up_m(p.x(), p.y());
-  };
-  double depth_m = hit.depth_m;
-  double previous_m = depth_m - std::max(0.1, 1e-3 * depth_m);
-  double previous_clearance_m = clearance_m(previous_m);
-  for (int step = 0; step < 6; ++step) {
-    const double now_m = clearance_m(depth_m);
-    if (std::abs(now_m) < 1e-3 || now_m == previous_clearance_m) break;
-    const double next_m = depth_m - now_m * (depth_m - previous_m) / (now_m - previous_clearance_m);
-    // The mesh is near the ground already: a far jump means a fold, where the mesh is better.
-    if (!(std::abs(next_m - hit.depth_m) < 0.02 * hit.depth_m + 1.0)) return hit.depth_m;
-    previous_m = depth_m;
-    previous_clearance_m = now_m;
-    depth_m = next_m;
-  }
-  return depth_m;
+  return refine_depth(ground, view.position_world, axis_world, hit.depth_m);
 }
 
 }  // namespace

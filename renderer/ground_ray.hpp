@@ -18,4 +18,14 @@ namespace overfly::renderer {
                                                             const Eigen::Vector3d& direction_world,
                                                             double max_range_m);
 
+/// Refines the depth at which a model of the ground (a mesh, cells of rays) says that a ray meets
+/// it, on the ground itself, by secant steps to 1 mm of clearance.
+/// @param direction_world  whose length counts as a depth of 1
+/// @return depth_m itself where the ground is farther from it than 2 % and 1 m: a fold in between,
+/// where the model is better
+[[nodiscard]] double refine_depth(const HeightQuery& ground,
+                                  const Eigen::Vector3d& origin_world,
+                                  const Eigen::Vector3d& direction_world,
+                                  double depth_m);
+
 }  // namespace overfly::renderer

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "renderer/ground_ray.hpp"
 #include "renderer/raycast/block_builder.hpp"
 #include "renderer/raycast/block_places.hpp"
 
@@ -15,7 +16,7 @@ namespace {
 constexpr int kColumns = 40;
 constexpr int kRows = 30;
 
-/// The depth on the optical axis, refined on the ground itself by secant steps (to 1 mm).
+/// The depth on the optical axis.
 std::optional<double> axis_depth(const Pose& T_world_camera,
                                  const GroundCaster& caster,
                                  const HeightQuery& ground) {
@@ -23,24 +24,7 @@ std::optional<double> axis_depth(const Pose& T_world_camera,
   const Eigen::Vector3d axis = pose.R_world_camera.col(2);
   const GroundHit hit = caster.cast(pose.position, axis, 0.0);
   if (hit.sky()) return std::nullopt;
-  const auto clearance_m = [&](double depth_m) {
-    const Eigen::Vector3d p = pose.position + depth_m * axis;
-    return p.z() - ground.ground_up_m(p.x(), p.y());
-  };
-  double depth_m = hit.depth;
-  double previous_m = depth_m - std::max(0.1, 1e-3 * depth_m);
-  double previous_clearance_m = clearance_m(previous_m);
-  for (int step = 0; step < 6; ++step) {
-    const double now_m = clearance_m(depth_m);
-    if (std::abs(now_m) < 1e-3 || now_m == previous_clearance_m) break;
-    const double next_m = depth_m - now_m * (depth_m - previous_m) / (now_m - previous_clearance_m);
-    // The ray is near the ground already: a far jump means a fold, where the cast ray is better.
-    if (!(std::abs(next_m - hit.depth) < 0.02 * hit.depth + 1.0)) return hit.depth;
-    previous_m = depth_m;
-    previous_clearance_m = now_m;
-    depth_m = next_m;
-  }
-  return depth_m;
+  return refine_depth(ground, pose.position, axis, hit.depth);
 }
 
 /// What one row of rays sees.
