@@ -13,8 +13,7 @@
 #include <vector>
 
 #include "renderer/bench_probe.hpp"
-#include "terrain/world.hpp"
-#include "tests/renderer/procedural_ground.hpp"
+#include "tests/bench/bench_ground.hpp"
 
 namespace overfly::renderer {
 namespace {
@@ -187,27 +186,12 @@ OVERFLY_PER_QUAD(exposure_10_ms, [](int i) { return moving(i, 0.01, 0.0); });
 BENCHMARK(depth_per_quad)->Iterations(1)->Unit(benchmark::kMillisecond);
 BENCHMARK(speedup)->Arg(2)->Iterations(1)->Unit(benchmark::kMillisecond);
 
-/// The world of a manifest, or painted hills.
-bool open_tiles(int argc, char** argv) {
-  if (argc < 2 || argv[1][0] == '-') {
-    tiles = overfly::testing::natural_ground();
-    return true;
-  }
-  const auto spec = terrain::read_world_manifest(argv[1]);
-  const auto world = spec.ok() ? terrain::open_world(*spec) : spec.error();
-  if (!world.ok()) {
-    std::fprintf(stderr, "%s\n", world.error().message.c_str());
-    return false;
-  }
-  tiles = world->tiles;
-  return true;
-}
-
 }  // namespace
 }  // namespace overfly::renderer
 
 int main(int argc, char** argv) {
-  if (!overfly::renderer::open_tiles(argc, argv)) return 1;
+  overfly::renderer::tiles = overfly::testing::bench_ground(argc, argv);
+  if (overfly::renderer::tiles == nullptr) return 1;
   benchmark::Initialize(&argc, argv);
   benchmark::RunSpecifiedBenchmarks();
   return 0;
