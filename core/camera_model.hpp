@@ -35,8 +35,7 @@ struct Distortion {
 class CameraModel {
  public:
   CameraModel() = default;
-  CameraModel(const PinholeCamera& pinhole,  // NOLINT(google-explicit-constructor): no lens
-              const Distortion& distortion = {});
+  CameraModel(const PinholeCamera& pinhole, const Distortion& distortion = {});
 
   [[nodiscard]] const PinholeCamera& pinhole() const { return pinhole_; }  ///< size and K
   [[nodiscard]] const Distortion& distortion() const { return distortion_; }

@@ -14,7 +14,7 @@ namespace overfly {
 class CameraMotion {
  public:
   /// A camera that stands still.
-  CameraMotion(const Pose& T_world_camera = {});  // NOLINT(google-explicit-constructor): see above
+  CameraMotion(const Pose& T_world_camera = {});
   /// Errors: kInvalidArgument for no pose, and as Trajectory's.
   static Result<CameraMotion> from_poses(const std::vector<StampedPose>& T_world_camera);
 

@@ -29,7 +29,6 @@ std::uint64_t HeightLattice::key_of(int lattice, int chunk_i, int chunk_j) {
 
 HeightLattice::Heights HeightLattice::read(int lattice, int chunk_i, int chunk_j) const {
   constexpr int kNodes = 1 << kLog2Chunk;
-  // NOLINTNEXTLINE(modernize-avoid-c-arrays): a buffer's owner
   std::shared_ptr<float[]> heights(new float[static_cast<std::size_t>(kNodes) * kNodes]);
   for (int j = 0; j < kNodes; ++j) {
     for (int i = 0; i < kNodes; ++i) {

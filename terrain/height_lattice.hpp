@@ -36,7 +36,7 @@ class HeightLattice {
    private:
     struct Slot {
       std::uint64_t key = ~std::uint64_t{0};
-      std::shared_ptr<const float[]> heights;  // NOLINT(modernize-avoid-c-arrays): a buffer's owner
+      std::shared_ptr<const float[]> heights;
     };
     [[nodiscard]] const float* chunk(int lattice, int chunk_i, int chunk_j);
 
@@ -45,8 +45,8 @@ class HeightLattice {
   };
 
  private:
-  static constexpr int kLog2Chunk = 6;             ///< a chunk has 64 x 64 nodes
-  using Heights = std::shared_ptr<const float[]>;  // NOLINT(modernize-avoid-c-arrays): as above
+  static constexpr int kLog2Chunk = 6;  ///< a chunk has 64 x 64 nodes
+  using Heights = std::shared_ptr<const float[]>;
 
   [[nodiscard]] static std::uint64_t key_of(int lattice, int chunk_i, int chunk_j);
   [[nodiscard]] Heights read(int lattice, int chunk_i, int chunk_j) const;

@@ -9,7 +9,7 @@ namespace overfly::odometry {
 Pyramid build_pyramid(std::shared_ptr<const Image> image) {
   Pyramid pyramid;
   // OpenCV has no view of constant data; nothing here writes to it.
-  auto* data = const_cast<std::uint8_t*>(image->data.data());  // NOLINT(*-const-cast)
+  auto* data = const_cast<std::uint8_t*>(image->data.data());
   pyramid.levels.emplace_back(image->height_px, image->width_px, CV_8U, data);
   pyramid.source = std::move(image);
   while (pyramid.level_count() < kPyramidLevels) {

@@ -10,7 +10,7 @@ namespace overfly::renderer::egl {
 
 /// An offset into the bound buffer, as OpenGL's calls want it.
 inline const void* buffer_offset(std::size_t bytes) {
-  return reinterpret_cast<const void*>(bytes);  // NOLINT(performance-no-int-to-ptr)
+  return reinterpret_cast<const void*>(bytes);  // NOLINT(performance-no-int-to-ptr): GL's offsets
 }
 
 /// One GL name of the kind that Traits makes and deletes.

@@ -119,7 +119,7 @@ void print_table(const Findings& findings, double limit_px) {
       std::printf("%-16s %-8s %7lld %8d %10.4f %8.4f %+.3f%+.3f %8.2f\n",
                   row.camera.c_str(),
                   row.backend.c_str(),
-                  static_cast<long long>(pair.frame),  // NOLINT(google-runtime-int): printf's
+                  static_cast<long long>(pair.frame),
                   r.patches,
                   r.median_px,
                   r.p95_px,

@@ -103,7 +103,7 @@ Check check_folder(const std::string& name,
 /// Where the built-in worlds are kept (terrain/synthesize.hpp).
 fs::path cache_folder() {
   const auto variable = [](const char* name) -> std::string {
-    const char* value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe)
+    const char* value = std::getenv(name);
     return value != nullptr ? value : "";
   };
   if (std::string own = variable("OVERFLY_CACHE"); !own.empty()) return own;

@@ -14,7 +14,7 @@ using Json = nlohmann::json;
   va_list arguments;
   va_start(arguments, format);
   // The analyzer does not see that va_start has set it.
-  // NOLINTNEXTLINE(clang-analyzer-valist.Uninitialized)
+  // NOLINTNEXTLINE(clang-analyzer-valist.Uninitialized): va_start is above
   std::vsnprintf(line.data(), line.size(), format, arguments);
   va_end(arguments);
   return line.data();
@@ -39,15 +39,13 @@ std::string notes_of(const std::string& name, const Json& camera, const Json& te
   if (camera.contains("late_tiles")) {
     notes += formatted("warning: %s: %lld tiles came late and were drawn coarser, in %lld frames\n",
                        name.c_str(),
-                       camera.at("late_tiles").at("tiles").get<long long>(),    // NOLINT: printf
-                       camera.at("late_tiles").at("frames").get<long long>());  // NOLINT: printf
+                       camera.at("late_tiles").at("tiles").get<long long>(),
+                       camera.at("late_tiles").at("frames").get<long long>());
   }
   const Json faults = camera.value("faults", Json::object());
   for (const auto& [kind, frames] : faults.items()) {
-    notes += formatted("fault: %s of %s, %lld frames\n",
-                       kind.c_str(),
-                       name.c_str(),
-                       frames.get<long long>());  // NOLINT(google-runtime-int): printf
+    notes += formatted(
+        "fault: %s of %s, %lld frames\n", kind.c_str(), name.c_str(), frames.get<long long>());
   }
   return notes;
 }
@@ -80,7 +78,7 @@ std::string score_table(const Json& metrics, const std::string& mode) {
                        name.c_str(),
                        outcome_text(score).c_str(),
                        100.0 * score.at("coverage").get<double>(),
-                       score.at("dropped_frames").get<long long>());  // NOLINT(google-runtime-int)
+                       score.at("dropped_frames").get<long long>());
     const Json& alignments = score.at("alignments");
     if (alignments.contains(mode)) {
       const Json& alignment = alignments.at(mode);

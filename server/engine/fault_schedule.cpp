@@ -34,7 +34,7 @@ double normal(std::uint64_t seed, std::int64_t frame) {
 
 std::string seconds_text(std::int64_t duration_ns) {
   std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%g s", s_from_ns(duration_ns));  // NOLINT(cert-err33-c)
+  std::snprintf(text.data(), text.size(), "%g s", s_from_ns(duration_ns));
   return text.data();
 }
 

@@ -39,7 +39,7 @@ Result<std::vector<std::uint8_t>> encode_jpeg(const Image& image, int quality) {
   if (!handle) return Error{ErrorCode::kInternal, "JPEG encoder: out of memory"};
   const bool grey = image.channels == 1;
   unsigned char* bytes = nullptr;
-  unsigned long size = 0;  // NOLINT(google-runtime-int): turbojpeg's type
+  unsigned long size = 0;
   const int status = tjCompress2(handle.get(),
                                  image.data.data(),
                                  image.width_px,

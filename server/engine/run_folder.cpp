@@ -19,7 +19,7 @@ using Json = nlohmann::json;
 
 std::string numbered(std::int64_t frame, const char* suffix) {
   std::array<char, 32> name{};
-  std::snprintf(name.data(), name.size(), "%06lld", static_cast<long long>(frame));  // NOLINT
+  std::snprintf(name.data(), name.size(), "%06lld", static_cast<long long>(frame));
   return name.data() + std::string(suffix);
 }
 

@@ -22,8 +22,7 @@ Result<RunLock> RunLock::take(const fs::path& folder) {
   const fs::path file = lock_file(folder);
   const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   if (descriptor < 0) {
-    return Error{ErrorCode::kIo,
-                 file.string() + ": cannot create: " + std::strerror(errno)};  // NOLINT
+    return Error{ErrorCode::kIo, file.string() + ": cannot create: " + std::strerror(errno)};
   }
   if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
     ::close(descriptor);

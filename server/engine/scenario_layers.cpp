@@ -60,7 +60,7 @@ terrain::WorldSpec layers_from(Json& world, const FileResolver& files, const std
 
 FileResolver::FileResolver(Json& document, fs::path base) : base_(std::move(base)), data_(base_) {
   if (!document.contains("data")) return;
-  const char* from_environment = std::getenv("OVERFLY_DATA");  // NOLINT(concurrency-mt-unsafe)
+  const char* from_environment = std::getenv("OVERFLY_DATA");
   const bool replaced = from_environment != nullptr && *from_environment != '\0';
   data_ = replaced ? fs::absolute(from_environment) : base_ / document["data"].get<std::string>();
   data_ = data_.lexically_normal();

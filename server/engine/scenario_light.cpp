@@ -23,7 +23,6 @@ Result<std::int64_t> unix_ns_from(const std::string& text, const std::string& pa
   int hour = 0;
   int minute = 0;
   int second = 0;
-  // NOLINTNEXTLINE(cert-err34-c,cppcoreguidelines-pro-type-vararg): the schema's pattern has passed
   std::sscanf(text.c_str(), "%d-%u-%uT%d:%d:%d", &year, &month, &day, &hour, &minute, &second);
   const std::chrono::year_month_day date{
       std::chrono::year(year), std::chrono::month(month), std::chrono::day(day)};

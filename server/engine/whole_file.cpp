@@ -16,8 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 Error io_error(const fs::path& file, const char* action) {
-  return {ErrorCode::kIo,
-          file.string() + ": cannot " + action + ": " + std::strerror(errno)};  // NOLINT
+  return {ErrorCode::kIo, file.string() + ": cannot " + action + ": " + std::strerror(errno)};
 }
 
 /// Writes all bytes, however often the system takes only a part.

@@ -13,7 +13,7 @@
 
 namespace overfly::terrain {
 namespace fs = std::filesystem;
-using namespace download;  // NOLINT(google-build-using-namespace): the room's own inner part
+using namespace download;
 
 namespace {
 

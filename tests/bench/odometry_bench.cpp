@@ -46,10 +46,8 @@ const std::vector<VoFrame>& frames() {
 
 double detection_ms() {
   const Image& image = *frames().front().image;
-  const cv::Mat view(image.height_px,
-                     image.width_px,
-                     CV_8U,
-                     const_cast<std::uint8_t*>(image.data.data()));  // NOLINT(*-const-cast)
+  const cv::Mat view(
+      image.height_px, image.width_px, CV_8U, const_cast<std::uint8_t*>(image.data.data()));
   OrbExtractor orb(FeatureParameters{});
   const auto start = std::chrono::steady_clock::now();
   constexpr int kRepeats = 10;

@@ -7,7 +7,7 @@
 
 namespace overfly::testing {
 
-using namespace terrain;  // NOLINT(google-build-using-namespace): this file is about that room
+using namespace terrain;
 
 HttpAnswer answer_rightly(const HttpRequest& request) {
   if (request.path.find("/exportImage") != std::string::npos) return export_image(request);

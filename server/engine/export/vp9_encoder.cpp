@@ -154,7 +154,7 @@ Result<std::vector<VideoPacket>> Vp9Encoder::encode(const Image& rgb, std::int64
   image.planes[VPX_PLANE_V] = planar.v.data();
   image.stride[VPX_PLANE_Y] = settings.width_px;
   image.stride[VPX_PLANE_U] = image.stride[VPX_PLANE_V] = settings.width_px / 2;
-  constexpr unsigned long kDurationMs = 1;  // NOLINT(google-runtime-int): libvpx's type
+  constexpr unsigned long kDurationMs = 1;
   if (vpx_codec_encode(&state_->codec, &image, t_ms, kDurationMs, 0, VPX_DL_REALTIME) !=
       VPX_CODEC_OK) {
     return state_->failure("encoding the image at " + std::to_string(t_ms) + " ms");
