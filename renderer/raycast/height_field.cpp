@@ -26,10 +26,17 @@ HeightField::HeightField(std::shared_ptr<const terrain::TileSource> tiles, std::
     : tiles_(std::move(tiles)), map_(TexelMap::of(*tiles_)), max_tiles_(max_tiles) {}
 
 const HeightTile& HeightField::tile(const HeightTileId& id) {
-  std::unique_ptr<HeightTile>& kept = kept_[id];
-  if (kept == nullptr) kept = std::make_unique<HeightTile>(HeightTile::sample(id, map_));
-  kept->last_use = view_;
-  return *kept;
+  const auto [place, added] = kept_.try_emplace(id);
+  Kept& kept = place->second;
+  if (added) {
+    kept.tile = std::make_unique<HeightTile>(HeightTile::sample(id, map_));
+    order_.push_front(id);
+    kept.place = order_.begin();
+  } else {
+    order_.splice(order_.begin(), order_, kept.place);
+  }
+  kept.tile->last_use = view_;
+  return *kept.tile;
 }
 
 bool HeightField::outside(const HeightTile& tile, const ViewSweep& view) const {
@@ -160,7 +167,8 @@ bool HeightField::prepare_below(const HeightTileId& id, const ViewSweep& later) 
     (void)tile(id);
     return true;
   }
-  if (outside(*known->second, later) || fine_enough(*known->second, later)) return false;
+  const HeightTile& here = *known->second.tile;
+  if (outside(here, later) || fine_enough(here, later)) return false;
   for (int i = 0; i < 4; ++i) {
     if (prepare_below({id.level - 1, 2 * id.col + (i & 1), 2 * id.row + (i >> 1)}, later)) {
       return true;
@@ -170,17 +178,13 @@ bool HeightField::prepare_below(const HeightTileId& id, const ViewSweep& later) 
 }
 
 void HeightField::forget_old() {
-  if (kept_.size() <= max_tiles_) return;
-  std::vector<std::uint64_t> uses;
-  uses.reserve(kept_.size());
-  for (const auto& [id, kept] : kept_) uses.push_back(kept->last_use);
-  const auto middle = uses.begin() + static_cast<std::ptrdiff_t>(uses.size() / 2);
-  std::nth_element(uses.begin(), middle, uses.end());
-  const std::uint64_t oldest_kept = *middle;
-  // The tiles of the view just selected stay: the tree points to them.
-  std::erase_if(kept_, [&](const auto& entry) {
-    return entry.second->last_use < std::min(oldest_kept, view_);
-  });
+  while (kept_.size() > max_tiles_) {
+    const auto oldest = kept_.find(order_.back());
+    // The tiles of the view just selected stay: the tree points to them.
+    if (oldest->second.tile->last_use == view_) return;
+    kept_.erase(oldest);
+    order_.pop_back();
+  }
 }
 
 }  // namespace overfly::renderer::raycast

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <list>
 #include <map>
 #include <memory>
 #include <vector>
@@ -74,6 +75,11 @@ class HeightField {
   [[nodiscard]] std::size_t held_tiles() const { return kept_.size(); }
 
  private:
+  using Order = std::list<HeightTileId>;  // last used first
+  struct Kept {
+    std::unique_ptr<HeightTile> tile;
+    Order::iterator place;
+  };
   const HeightTile& tile(const HeightTileId& id);
   std::int32_t visit(const HeightTileId& id, std::int32_t parent, const ViewSweep& view);
   /// The south-western of the 3 x 3 squares around a view.
@@ -83,12 +89,14 @@ class HeightField {
   [[nodiscard]] bool outside(const HeightTile& tile, const ViewSweep& view) const;
   [[nodiscard]] bool fine_enough(const HeightTile& tile, const ViewSweep& view) const;
   [[nodiscard]] double reach_m(const ViewSweep& view) const;
+  /// Drops what was used longest ago, tile by tile, so that no frame pays for many.
   void forget_old();
 
   std::shared_ptr<const terrain::TileSource> tiles_;
   TexelMap map_;
   std::size_t max_tiles_;
-  std::map<HeightTileId, std::unique_ptr<HeightTile>> kept_;
+  std::map<HeightTileId, Kept> kept_;
+  Order order_;
   std::uint64_t view_ = 0;
   GroundTree tree_;
 };
