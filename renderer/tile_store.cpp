@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
 #include <ctime>
 #include <deque>
@@ -38,6 +39,22 @@ Image thinned(const Image& valid) {
     }
   }
   return thin;
+}
+
+/// Has the elevation under a tile read, about as finely as who draws the tile will want it.
+void touch_heights(const terrain::TileSource& tiles, const TileId& id) {
+  constexpr int kSteps = 4;
+  constexpr double kSpacingTexels = 8.0;
+  const terrain::TileGrid& grid = tiles.grid();
+  const double texel_m = std::ldexp(grid.texel_m, id.level);
+  const double side_m = terrain::kTileTexels * texel_m;
+  for (int j = 0; j <= kSteps; ++j) {
+    for (int i = 0; i <= kSteps; ++i) {
+      const double x_m = grid.left_x_m + (id.col + static_cast<double>(i) / kSteps) * side_m;
+      const double y_m = grid.top_y_m - (id.row + static_cast<double>(j) / kSteps) * side_m;
+      (void)tiles.coarse_world_from_map(x_m, y_m, kSpacingTexels * texel_m);
+    }
+  }
 }
 
 double thread_cpu_s() {
@@ -147,6 +164,7 @@ struct TileStore::State {
     const double before_s = thread_cpu_s();
     Result<terrain::Tile> tile = tiles->tile(key.first);
     if (!urgent) {
+      touch_heights(*tiles, key.first);
       lock.lock();
       rest(thread_cpu_s() - before_s, lock);
       lock.unlock();

@@ -21,7 +21,7 @@ struct Recent {
   BlockKey key;
   BlockPtr block;
 };
-constexpr std::size_t kRecent = 16;
+constexpr std::size_t kRecent = 128;
 
 std::size_t slot_of(const BlockKey& key) {
   const auto mixed = static_cast<std::uint64_t>(key.column) + 5U * static_cast<unsigned>(key.row) +

@@ -17,7 +17,7 @@ namespace overfly::terrain {
 
 /// Posts along a block's side; it also holds the first row and column of its neighbours to the
 /// south and east, so that one block answers for every place within it.
-inline constexpr int kBlockPosts = 256;
+inline constexpr int kBlockPosts = 64;
 
 struct BlockKey {
   std::uint64_t owner = 0;

@@ -17,8 +17,8 @@
 
 namespace overfly::terrain {
 
-inline constexpr int kChunkTiles = 8;   ///< tiles along a chunk's side
-inline constexpr int kChunkBlocks = 4;  ///< blocks of heights along a chunk's side
+inline constexpr int kChunkTiles = 8;    ///< tiles along a chunk's side
+inline constexpr int kChunkBlocks = 16;  ///< blocks of heights along a chunk's side
 
 /// What cache.json says.
 struct CacheHeader {
