@@ -35,6 +35,8 @@ struct VoFrame {
   PinholeCamera intrinsics;
   Distortion distortion;       ///< of the lens the image was taken through; none = a pinhole
   std::vector<ImuSample> imu;  ///< since the frame before; empty without an IMU
+  /// crc32_of(*image), where known: what an estimator beyond this process received must equal it.
+  std::optional<std::uint32_t> image_crc32;
 };
 
 /// The estimator's answer to one frame.
@@ -44,6 +46,14 @@ struct VoEstimate {
   std::vector<Eigen::Vector3f> map_points_vo;  ///< sparse map seen now, in vo units; may be empty
   std::map<std::string, double> timing_ms;     ///< wall time by stage
   std::map<std::string, double> counters;      ///< e.g. features, inliers, keyframes
+  /// Of the image as it arrived where the estimator runs, as far as that place tells.
+  std::optional<std::uint32_t> image_crc32;
+};
+
+/// What an estimator's own process has used since it began.
+struct ResourceUse {
+  double cpu_s = 0.0;  ///< of all its threads
+  double peak_memory_mb = 0.0;
 };
 
 class VoPort {
@@ -64,7 +74,17 @@ class VoPort {
   virtual void reset() = 0;
   /// Whether `track` should make debug images and map points (they cost time). Default: no.
   virtual void set_debug(bool wanted) = 0;
+  /// Lines that the estimator said since the last call, without line ends: what it logged, and what
+  /// its process wrote. May be called from another thread than `track`.
+  [[nodiscard]] virtual std::vector<std::string> take_log() { return {}; }
+  /// Of the estimator's own process; empty for one that runs in ours, or where nobody knows.
+  /// May be called from another thread than `track`.
+  [[nodiscard]] virtual std::optional<ResourceUse> resource_use() const { return std::nullopt; }
 };
+
+/// CRC-32 of the image's bytes, row by row, as zlib and PNG compute it: what the frames of several
+/// estimators are compared by.
+[[nodiscard]] std::uint32_t crc32_of(const Image& image);
 
 /// Checks what every estimator asks of a frame; `previous` is the frame before, or null.
 [[nodiscard]] Status validate_vo_frame(const VoFrame& frame, const VoFrame* previous);

@@ -50,7 +50,8 @@ THIRD_PARTY = [
     (r"nlohmann/", ["terrain", "server/engine", "server/net", "server/app"], None),
     (r"CLI/", ["server/app"], None),
     (r"spdlog/", ["server/app"], None),
-    (r"(lcm|ros)/", ["vo_bridges"], False),
+    (r"(lcm|ros|rosbag|sensor_msgs|geometry_msgs|nav_msgs|std_msgs|tf2_msgs|rosgraph_msgs)/",
+     ["vo_bridges"], False),
 ]
 # nlohmann's documents are the engine's vocabulary and may stand in its headers, not in terrain's.
 JSON_IN_HEADERS = ["server/engine", "server/net", "server/app"]

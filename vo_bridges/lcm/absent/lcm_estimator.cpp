@@ -1,0 +1,13 @@
+// The door where LCM is not built in.
+#include "vo_bridges/lcm/lcm_estimator.hpp"
+
+namespace overfly {
+
+bool lcm_is_built_in() { return false; }
+
+Result<std::unique_ptr<VoPort>> create_lcm_estimator(const LcmEstimatorOptions& /*options*/) {
+  return Error{ErrorCode::kUnsupported,
+               "this build does not speak LCM: install liblcm-dev and liblcm-bin, and build again"};
+}
+
+}  // namespace overfly

@@ -1,0 +1,43 @@
+// An estimator that is a ROS 1 node: images go out on topics, poses come back on others.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "core/result.hpp"
+#include "vo_bridges/vo_port.hpp"
+
+namespace overfly {
+
+/// What the estimator publishes its pose as.
+enum class Ros1PoseType { kPoseStamped, kPoseWithCovarianceStamped, kOdometry, kTf };
+
+struct Ros1EstimatorOptions {
+  std::string master_uri = "http://127.0.0.1:11311";
+  std::string node_name = "overfly";
+  std::string image_topic = "/camera/image_raw";
+  std::string camera_info_topic = "/camera/camera_info";
+  std::string pose_topic = "/vo/pose";  ///< not used with kTf
+  Ros1PoseType pose_type = Ros1PoseType::kPoseStamped;
+  std::string debug_image_topic;        ///< empty = none
+  std::string camera_frame = "camera";  ///< frame_id of images; with kTf the pose's child
+  std::string vo_frame = "world";       ///< with kTf the pose's parent
+  /// True where the pose says camera from VO frame (T_camera_vo), as ORB-SLAM2's Tcw.
+  bool pose_is_camera_from_world = false;
+  bool publish_clock = true;  ///< /clock, for nodes under use_sim_time
+  int queue_size = 8;         ///< of each topic, in [1, 1000]
+  /// True: wait for the pose of each frame once it has published a first one. False: by the clock.
+  bool lockstep = true;
+  double start_timeout_s = 30.0;  ///< for the master and for a subscriber of the images
+  double answer_timeout_s = 2.0;
+};
+
+/// True where this build speaks ROS 1.
+[[nodiscard]] bool ros1_is_built_in();
+
+/// Errors: kUnsupported where ROS 1 is not built in; kInvalidArgument naming the option; kNotFound
+/// when no master answers, or nobody subscribes to the images, in time.
+[[nodiscard]] Result<std::unique_ptr<VoPort>> create_ros1_estimator(
+    const Ros1EstimatorOptions& options);
+
+}  // namespace overfly
