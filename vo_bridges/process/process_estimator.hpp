@@ -23,10 +23,11 @@ struct ProcessEstimatorOptions {
   /// True: every frame is answered before the next one is sent. False: the estimator may be told to
   /// hurry; it still answers each frame it gets.
   bool lockstep = true;
-  double start_timeout_s = 30.0;   ///< until its hello, in (0, 3600]
+  double rate_hz = 0.0;           ///< of the camera, told with its calibration; 0 = not known
+  double start_timeout_s = 30.0;  ///< until it is ready, and again once it is calibrated; (0, 3600]
   double answer_timeout_s = 20.0;  ///< for one frame, in (0, 3600]
   std::vector<int> cpus;           ///< the child may run on; empty = all
-  double memory_limit_mb = 0.0;    ///< of the child's address space; 0 = none
+  double memory_limit_mb = 0.0;    ///< of the child's address space [1e6 bytes]; 0 = none
   /// Where the child's stdout and stderr go, in full (up to 64 MB); empty = only to take_log().
   std::filesystem::path output_file;
 };

@@ -1,0 +1,578 @@
+// Plugs an estimator into Overfly's process door (docs/VO_PROTOCOL.md). One header, so that it can
+// be copied into any project; C++17, standard library and POSIX:
+//
+//   struct Mine : overfly_vo::Estimator { ... };
+//   int main() { Mine mine; return overfly_vo::run(mine); }
+#pragma once
+
+#include <netdb.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/mman.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <locale>
+#include <map>
+#include <mutex>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace overfly_vo {
+
+/// By name; numbers as decimals with a point, flags as "true" or "false".
+using Parameters = std::map<std::string, std::string>;
+
+enum class State : std::uint32_t { kInitialising = 0, kTracking = 1, kLost = 2 };
+enum class Level : std::uint32_t { kDebug = 0, kInfo = 1, kWarning = 2, kError = 3 };
+
+struct Calibration {
+  std::string camera;
+  int width_px = 0;
+  int height_px = 0;
+  double fx_px = 0.0, fy_px = 0.0, cx_px = 0.0, cy_px = 0.0;  ///< (0, 0) = centre of a pixel
+  std::string distortion = "none";              ///< "none", "radtan", "equidistant", "fov"
+  std::vector<double> distortion_coefficients;  ///< in the model's order
+  double rate_hz = 0.0;                         ///< 0 = not known
+};
+
+struct ImuSample {
+  std::int64_t t_ns = 0;
+  std::array<double, 3> acceleration_m_s2{};  ///< specific force, body axes (forward-right-down)
+  std::array<double, 3> angular_rate_rad_s{};
+};
+
+struct Frame {
+  std::int64_t index = 0;        ///< gaps are dropped frames
+  std::int64_t t_ns = 0;         ///< mid exposure of the middle row
+  std::int64_t exposure_ns = 0;  ///< 0 = not known
+  int width_px = 0;
+  int height_px = 0;
+  const std::uint8_t* pixels = nullptr;  ///< grey, without padding; valid during track()
+  bool debug_wanted = false;             ///< debug image and map points are
+  std::vector<ImuSample> imu;            ///< since the frame before
+};
+
+struct DebugImage {
+  int width_px = 0;  ///< at most the frame's, as the height
+  int height_px = 0;
+  int channels = 3;                  ///< 1 grey, 3 RGB
+  std::vector<std::uint8_t> pixels;  ///< without padding; empty = no image
+};
+
+struct Answer {
+  State state = State::kInitialising;
+  std::uint32_t map_id = 0;  ///< one more each time the estimator starts over by itself
+  /// T_vo_camera, camera axes x right, y down, z forward. Counts only while tracking.
+  std::array<double, 3> position{};
+  std::array<double, 4> quaternion_xyzw{0.0, 0.0, 0.0, 1.0};
+  double scene_depth = 0.0;                ///< median, in the units of position; 0 = not known
+  std::map<std::string, double> counters;  ///< names without spaces
+  std::map<std::string, double> timings_ms;
+  DebugImage debug_image;                        ///< only where it is wanted
+  std::vector<std::array<float, 3>> map_points;  ///< likewise; in the frame of position
+};
+
+namespace detail {
+class Connection;
+}
+
+/// Any exception thrown from a method becomes an error line in the run's log, and ends the session.
+class Estimator {
+ public:
+  virtual ~Estimator() = default;
+  virtual std::string name() const = 0;
+  virtual std::string version() const = 0;
+  /// Takes the parameters wanted and returns all that are in force. Throw for one that is not
+  /// known: to ignore it would falsify an experiment. Called once, first. As it stands: has none.
+  virtual Parameters configure(const Parameters& wanted) {
+    if (!wanted.empty()) throw std::invalid_argument("unknown parameter " + wanted.begin()->first);
+    return {};
+  }
+  /// Comes before the first frame; a later call brings another camera and means reset() as well.
+  virtual void calibrate(const Calibration& calibration) = 0;
+  virtual Answer track(const Frame& frame) = 0;
+  /// Forgets every frame: as newly calibrated.
+  virtual void reset() = 0;
+
+ protected:
+  /// A line for the run's log; from any thread, while run() runs.
+  void log(Level level, const std::string& line);
+  /// Parameters as read back from the running system, where configure() could not know them yet.
+  void tell_parameters(const Parameters& effective);
+
+ private:
+  friend int run(Estimator& estimator, const char* address);
+  detail::Connection* connection_ = nullptr;
+};
+
+/// Serves frames until the server says stop. Returns the program's exit code: 0 after a stop, 1
+/// when something failed (said on stderr). `address`: of the server; null = $OVERFLY_VO_ADDRESS.
+int run(Estimator& estimator, const char* address = nullptr);
+
+// What follows is how it is done.
+namespace detail {
+
+enum Type : std::uint16_t {
+  kHello = 1,
+  kReady = 2,
+  kCalibration = 3,
+  kFrame = 4,
+  kAnswer = 5,
+  kDebugImage = 6,
+  kMapPoints = 7,
+  kParameters = 8,
+  kLog = 9,
+  kReset = 10,
+  kStop = 11
+};
+constexpr std::size_t kHeaderBytes = 12;
+constexpr std::size_t kPayloadLimitBytes = 64U << 20U;
+
+/// Little-endian, whatever the machine.
+template <typename T>
+void put(std::string* to, T value) {
+  static_assert(sizeof(T) <= 8);
+  std::uint64_t bits = 0;
+  if constexpr (sizeof(T) == 4) {
+    std::uint32_t half = 0;
+    std::memcpy(&half, &value, 4);
+    bits = half;
+  } else if constexpr (sizeof(T) == 2) {
+    bits = value;
+  } else {
+    std::memcpy(&bits, &value, 8);
+  }
+  for (std::size_t i = 0; i < sizeof(T); ++i) to->push_back(static_cast<char>(bits >> (8 * i)));
+}
+
+template <typename T>
+T get(const std::string& from, std::size_t offset) {
+  if (offset + sizeof(T) > from.size()) throw std::runtime_error("a message is too short");
+  std::uint64_t bits = 0;
+  for (std::size_t i = 0; i < sizeof(T); ++i) {
+    bits |= std::uint64_t{static_cast<unsigned char>(from[offset + i])} << (8 * i);
+  }
+  T value;
+  if constexpr (sizeof(T) == 8) {
+    std::memcpy(&value, &bits, 8);
+  } else {
+    value = static_cast<T>(bits);
+  }
+  return value;
+}
+
+inline std::string text_of(double value) {
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  text.precision(17);
+  text << value;
+  return text.str();
+}
+
+inline std::vector<double> numbers_from(const std::string& text) {
+  std::istringstream in(text);
+  in.imbue(std::locale::classic());
+  std::vector<double> numbers;
+  for (double number = 0.0; in >> number;) numbers.push_back(number);
+  return numbers;
+}
+
+inline double number_from(const std::string& text) {
+  const std::vector<double> numbers = numbers_from(text);
+  if (numbers.size() != 1) throw std::runtime_error("'" + text + "' is not a number");
+  return numbers[0];
+}
+
+/// Cuts "key value" lines.
+inline std::vector<std::pair<std::string, std::string>> lines_of(const std::string& text) {
+  std::vector<std::pair<std::string, std::string>> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) {
+    const std::size_t space = line.find(' ');
+    lines.emplace_back(line.substr(0, space),
+                       space == std::string::npos ? "" : line.substr(space + 1));
+  }
+  return lines;
+}
+
+/// CRC-32 as zlib's, eight bytes at a time (Sarwate 1988).
+inline std::uint32_t crc32_of(const std::uint8_t* bytes, std::size_t count) {
+  static const auto tables = [] {
+    std::array<std::array<std::uint32_t, 256>, 8> made{};
+    for (std::uint32_t byte = 0; byte < 256; ++byte) {
+      std::uint32_t rest = byte;
+      for (int k = 0; k < 8; ++k) rest = (rest >> 1U) ^ ((rest & 1U) != 0 ? 0xEDB88320U : 0U);
+      made[0][byte] = rest;
+    }
+    for (std::size_t k = 1; k < 8; ++k) {
+      for (std::size_t byte = 0; byte < 256; ++byte) {
+        made[k][byte] = (made[k - 1][byte] >> 8U) ^ made[0][made[k - 1][byte] & 255U];
+      }
+    }
+    return made;
+  }();
+  std::uint32_t rest = 0xFFFFFFFFU;
+  std::size_t i = 0;
+  for (; i + 8 <= count; i += 8) {
+    std::uint32_t next = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+      next ^= tables[7 - k][(bytes[i + k] ^ (rest >> (8 * k))) & 255U] ^
+              tables[3 - k][bytes[i + 4 + k]];
+    }
+    rest = next;
+  }
+  for (; i < count; ++i) rest = (rest >> 8U) ^ tables[0][(rest ^ bytes[i]) & 255U];
+  return ~rest;
+}
+
+struct Message {
+  std::uint16_t type = 0;
+  std::string payload;
+};
+
+class Connection {
+ public:
+  explicit Connection(const std::string& address) {
+    if (address.rfind("unix:", 0) == 0) {
+      connect_unix(address.substr(5));
+    } else if (address.rfind("tcp:", 0) == 0) {
+      connect_tcp(address.substr(4));
+    } else {
+      throw std::runtime_error("OVERFLY_VO_ADDRESS = '" + address +
+                               "': must be unix:PATH or tcp:HOST:PORT");
+    }
+  }
+  ~Connection() {
+    if (memory_ != MAP_FAILED) ::munmap(memory_, memory_bytes_);
+    if (memory_file_ >= 0) ::close(memory_file_);
+    ::close(socket_);
+  }
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+
+  bool local() const { return local_; }
+
+  void send(Type type, const std::string& payload) {
+    std::string bytes = "OVVO";
+    put<std::uint16_t>(&bytes, 1);
+    put<std::uint16_t>(&bytes, type);
+    put<std::uint32_t>(&bytes, static_cast<std::uint32_t>(payload.size()));
+    bytes += payload;
+    const std::lock_guard<std::mutex> lock(sending_);
+    for (std::size_t sent = 0; sent < bytes.size();) {
+      const ssize_t n = ::send(socket_, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
+      if (n < 0 && errno == EINTR) continue;
+      if (n <= 0) throw std::runtime_error("the server is gone");
+      sent += static_cast<std::size_t>(n);
+    }
+  }
+
+  Message receive() {
+    const std::string header = receive_bytes(kHeaderBytes);
+    if (header.compare(0, 4, "OVVO") != 0) throw std::runtime_error("not the OVVO protocol");
+    const auto version = get<std::uint16_t>(header, 4);
+    if (version != 1) {
+      throw std::runtime_error("the server speaks version " + std::to_string(version) +
+                               " of the protocol: must be 1");
+    }
+    const auto length = get<std::uint32_t>(header, 8);
+    if (length > kPayloadLimitBytes) throw std::runtime_error("a message is too long");
+    return {get<std::uint16_t>(header, 6), receive_bytes(length)};
+  }
+
+  /// Maps the memory whose descriptor came with the calibration.
+  void map_frames(std::size_t slots, std::size_t slot_bytes) {
+    if (memory_ != MAP_FAILED) ::munmap(memory_, memory_bytes_);
+    slot_bytes_ = slot_bytes;
+    memory_bytes_ = slots * slot_bytes;
+    memory_ = ::mmap(nullptr, memory_bytes_, PROT_READ, MAP_SHARED, memory_file_, 0);
+    if (memory_ == MAP_FAILED) throw std::runtime_error("cannot map the shared frames");
+    ::close(memory_file_);
+    memory_file_ = -1;
+  }
+  const std::uint8_t* slot(std::size_t number, std::size_t bytes) const {
+    if (memory_ == MAP_FAILED || bytes > slot_bytes_ ||
+        (number + 1) * slot_bytes_ > memory_bytes_) {
+      throw std::runtime_error("a frame lies outside of the shared memory");
+    }
+    return static_cast<const std::uint8_t*>(memory_) + number * slot_bytes_;
+  }
+
+ private:
+  void connect_unix(const std::string& path) {
+    sockaddr_un name{};
+    name.sun_family = AF_UNIX;
+    if (path.size() >= sizeof(name.sun_path)) throw std::runtime_error(path + " is too long");
+    std::memcpy(name.sun_path, path.c_str(), path.size() + 1);
+    socket_ = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    if (::connect(socket_, reinterpret_cast<const sockaddr*>(&name), sizeof(name)) != 0) {
+      throw std::runtime_error("cannot connect to " + path + ": " + std::strerror(errno));
+    }
+    local_ = true;
+  }
+
+  void connect_tcp(const std::string& host_port) {
+    const std::size_t colon = host_port.rfind(':');
+    if (colon == std::string::npos) throw std::runtime_error("tcp:" + host_port + ": no port");
+    addrinfo hints{};
+    hints.ai_socktype = SOCK_STREAM;
+    addrinfo* found = nullptr;
+    const std::string host = host_port.substr(0, colon);
+    if (::getaddrinfo(host.c_str(), host_port.c_str() + colon + 1, &hints, &found) != 0) {
+      throw std::runtime_error("cannot find " + host_port);
+    }
+    for (const addrinfo* at = found; at != nullptr && socket_ < 0; at = at->ai_next) {
+      socket_ = ::socket(at->ai_family, at->ai_socktype | SOCK_CLOEXEC, at->ai_protocol);
+      if (socket_ >= 0 && ::connect(socket_, at->ai_addr, at->ai_addrlen) != 0) {
+        ::close(socket_);
+        socket_ = -1;
+      }
+    }
+    ::freeaddrinfo(found);
+    if (socket_ < 0) throw std::runtime_error("cannot connect to " + host_port);
+    const int on = 1;
+    ::setsockopt(socket_, IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
+  }
+
+  /// Also takes the descriptor that may come along.
+  std::string receive_bytes(std::size_t count) {
+    std::string bytes(count, '\0');
+    for (std::size_t got = 0; got < count;) {
+      iovec part{bytes.data() + got, count - got};
+      alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(int))> control{};
+      msghdr message{};
+      message.msg_iov = &part;
+      message.msg_iovlen = 1;
+      message.msg_control = control.data();
+      message.msg_controllen = control.size();
+      const ssize_t n = ::recvmsg(socket_, &message, MSG_CMSG_CLOEXEC);
+      if (n < 0 && errno == EINTR) continue;
+      if (n <= 0) throw std::runtime_error("the server is gone");
+      got += static_cast<std::size_t>(n);
+      const cmsghdr* with = CMSG_FIRSTHDR(&message);
+      if (with != nullptr && with->cmsg_type == SCM_RIGHTS) {
+        if (memory_file_ >= 0) ::close(memory_file_);
+        std::memcpy(&memory_file_, CMSG_DATA(with), sizeof(int));
+      }
+    }
+    return bytes;
+  }
+
+  int socket_ = -1;
+  bool local_ = false;
+  std::mutex sending_;
+  int memory_file_ = -1;
+  void* memory_ = MAP_FAILED;
+  std::size_t memory_bytes_ = 0;
+  std::size_t slot_bytes_ = 0;
+};
+
+inline std::string text_of(const Parameters& parameters) {
+  std::string text;
+  for (const auto& [name, value] : parameters) {
+    text.append(name).append(" ").append(value).append("\n");
+  }
+  return text;
+}
+
+inline void ready(Connection& connection, Type answered) {
+  std::string payload;
+  put<std::uint32_t>(&payload, answered);
+  connection.send(kReady, payload);
+}
+
+inline Calibration calibration_from(const std::string& text, Connection& connection) {
+  Calibration calibration;
+  std::map<std::string, std::string> lines;
+  for (const auto& [key, value] : lines_of(text)) lines[key] = value;
+  calibration.camera = lines["camera"];
+  calibration.width_px = static_cast<int>(number_from(lines["width_px"]));
+  calibration.height_px = static_cast<int>(number_from(lines["height_px"]));
+  calibration.fx_px = number_from(lines["fx_px"]);
+  calibration.fy_px = number_from(lines["fy_px"]);
+  calibration.cx_px = number_from(lines["cx_px"]);
+  calibration.cy_px = number_from(lines["cy_px"]);
+  calibration.distortion = lines["distortion"];
+  calibration.distortion_coefficients = numbers_from(lines["distortion_coefficients"]);
+  calibration.rate_hz = number_from(lines["rate_hz"]);
+  if (lines.count("frame_slots") != 0) {
+    connection.map_frames(static_cast<std::size_t>(number_from(lines["frame_slots"])),
+                          static_cast<std::size_t>(number_from(lines["frame_slot_bytes"])));
+  }
+  return calibration;
+}
+
+inline Frame frame_from(const std::string& payload, const Connection& connection) {
+  Frame frame;
+  frame.index = get<std::int64_t>(payload, 0);
+  frame.t_ns = get<std::int64_t>(payload, 8);
+  frame.exposure_ns = get<std::int64_t>(payload, 16);
+  frame.width_px = static_cast<int>(get<std::uint32_t>(payload, 24));
+  frame.height_px = static_cast<int>(get<std::uint32_t>(payload, 28));
+  const auto flags = get<std::uint32_t>(payload, 36);
+  frame.debug_wanted = (flags & 1U) != 0;
+  std::size_t at = 48;
+  for (auto left = get<std::uint32_t>(payload, 44); left > 0; --left, at += 56) {
+    ImuSample sample;
+    sample.t_ns = get<std::int64_t>(payload, at);
+    for (std::size_t k = 0; k < 3; ++k) {
+      sample.acceleration_m_s2[k] = get<double>(payload, at + 8 + 8 * k);
+      sample.angular_rate_rad_s[k] = get<double>(payload, at + 32 + 8 * k);
+    }
+    frame.imu.push_back(sample);
+  }
+  const std::size_t bytes =
+      static_cast<std::size_t>(frame.width_px) * static_cast<std::size_t>(frame.height_px);
+  if ((flags & 2U) != 0) {
+    frame.pixels = connection.slot(get<std::uint32_t>(payload, 40), bytes);
+  } else {
+    if (payload.size() != at + bytes) throw std::runtime_error("a frame of the wrong length");
+    frame.pixels = reinterpret_cast<const std::uint8_t*>(payload.data()) + at;
+  }
+  return frame;
+}
+
+inline void send_debug(Connection& connection, const Frame& frame, const Answer& answer) {
+  const DebugImage& image = answer.debug_image;
+  if (!image.pixels.empty()) {
+    std::string payload;
+    put<std::int64_t>(&payload, frame.index);
+    for (const int value : {image.width_px, image.height_px, image.channels, 0}) {
+      put<std::uint32_t>(&payload, static_cast<std::uint32_t>(value));
+    }
+    payload.append(reinterpret_cast<const char*>(image.pixels.data()), image.pixels.size());
+    connection.send(kDebugImage, payload);
+  }
+  if (!answer.map_points.empty()) {
+    std::string payload;
+    put<std::int64_t>(&payload, frame.index);
+    put<std::uint32_t>(&payload, static_cast<std::uint32_t>(answer.map_points.size()));
+    put<std::uint32_t>(&payload, 0);
+    for (const auto& point : answer.map_points) {
+      for (const float value : point) put<float>(&payload, value);
+    }
+    connection.send(kMapPoints, payload);
+  }
+}
+
+inline std::string payload_of(const Answer& answer, std::int64_t index, std::uint32_t crc32) {
+  std::string payload;
+  put<std::int64_t>(&payload, index);
+  put<std::uint32_t>(&payload, static_cast<std::uint32_t>(answer.state));
+  put<std::uint32_t>(&payload, answer.map_id);
+  for (const double value : answer.position) put<double>(&payload, value);
+  for (const double value : answer.quaternion_xyzw) put<double>(&payload, value);
+  put<double>(&payload, answer.scene_depth);
+  put<std::uint32_t>(&payload, crc32);
+  put<std::uint32_t>(&payload, 1);  // the CRC was computed
+  for (const auto& [name, value] : answer.counters) {
+    payload += "counter " + name + " " + text_of(value) + "\n";
+  }
+  for (const auto& [name, value] : answer.timings_ms) {
+    payload += "timing_ms " + name + " " + text_of(value) + "\n";
+  }
+  return payload;
+}
+
+inline void answer_frame(Estimator& estimator, Connection& connection, const std::string& payload) {
+  const Frame frame = frame_from(payload, connection);
+  const std::uint32_t crc32 = crc32_of(
+      frame.pixels,
+      static_cast<std::size_t>(frame.width_px) * static_cast<std::size_t>(frame.height_px));
+  const Answer answer = estimator.track(frame);
+  if (frame.debug_wanted) send_debug(connection, frame, answer);
+  connection.send(kAnswer, payload_of(answer, frame.index, crc32));
+}
+
+inline void greet(Estimator& estimator, Connection& connection) {
+  connection.send(kHello,
+                  "protocol 1\nname " + estimator.name() + "\nversion " + estimator.version() +
+                      (connection.local() ? "\nshared_memory true\n" : "\n"));
+  const Message hello = connection.receive();
+  if (hello.type != kHello) throw std::runtime_error("the server did not say hello");
+  Parameters wanted;
+  for (const auto& [key, value] : lines_of(hello.payload)) {
+    if (key != "parameter") continue;
+    for (const auto& [name, text] : lines_of(value)) wanted[name] = text;
+  }
+  connection.send(kParameters, text_of(estimator.configure(wanted)));
+  ready(connection, kHello);
+}
+
+inline void serve(Estimator& estimator, Connection& connection) {
+  for (;;) {
+    const Message message = connection.receive();
+    if (message.type == kStop) return;
+    if (message.type == kFrame) {
+      answer_frame(estimator, connection, message.payload);
+    } else if (message.type == kCalibration) {
+      estimator.calibrate(calibration_from(message.payload, connection));
+      ready(connection, kCalibration);
+    } else if (message.type == kReset) {
+      estimator.reset();
+      ready(connection, kReset);
+    }
+  }
+}
+
+inline void log_line(Connection& connection, Level level, const std::string& line) {
+  std::string payload;
+  put<std::uint32_t>(&payload, static_cast<std::uint32_t>(level));
+  connection.send(kLog, payload + line.substr(0, 4096));
+}
+
+}  // namespace detail
+
+inline void Estimator::log(Level level, const std::string& line) {
+  if (connection_ != nullptr) detail::log_line(*connection_, level, line);
+}
+
+inline void Estimator::tell_parameters(const Parameters& effective) {
+  if (connection_ != nullptr) {
+    connection_->send(detail::kParameters, detail::text_of(effective));
+  }
+}
+
+inline int run(Estimator& estimator, const char* address) {
+  std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);  // the last line before a crash must be kept
+  if (address == nullptr) address = std::getenv("OVERFLY_VO_ADDRESS");
+  if (address == nullptr) {
+    std::fprintf(stderr, "OVERFLY_VO_ADDRESS is not set: this program is started by overfly\n");
+    return 1;
+  }
+  try {
+    detail::Connection connection(address);
+    estimator.connection_ = &connection;
+    try {
+      detail::greet(estimator, connection);
+      detail::serve(estimator, connection);
+    } catch (const std::exception& failure) {
+      std::fprintf(stderr, "%s: %s\n", estimator.name().c_str(), failure.what());
+      try {
+        detail::log_line(connection, Level::kError, failure.what());
+      } catch (const std::exception&) {  // the server is gone: stderr has it
+      }
+      estimator.connection_ = nullptr;
+      return 1;
+    }
+    estimator.connection_ = nullptr;
+    return 0;
+  } catch (const std::exception& failure) {
+    std::fprintf(stderr, "%s\n", failure.what());
+    return 1;
+  }
+}
+
+}  // namespace overfly_vo

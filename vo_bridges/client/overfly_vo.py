@@ -1,0 +1,268 @@
+"""Plugs an estimator into Overfly's process door (docs/VO_PROTOCOL.md).
+
+One file, Python 3.9, standard library only:
+
+    class Mine(overfly_vo.Estimator): ...
+    overfly_vo.run(Mine())
+"""
+
+import array
+import dataclasses
+import mmap
+import os
+import socket
+import struct
+import sys
+import zlib
+
+INITIALISING, TRACKING, LOST = 0, 1, 2
+DEBUG, INFO, WARNING, ERROR = 0, 1, 2, 3
+
+
+@dataclasses.dataclass
+class Calibration:
+    """Pinhole and lens; (0, 0) is the centre of the upper left pixel."""
+    camera: str
+    width_px: int
+    height_px: int
+    fx_px: float
+    fy_px: float
+    cx_px: float
+    cy_px: float
+    distortion: str  # none, radtan, equidistant, fov
+    distortion_coefficients: list  # in the model's order
+    rate_hz: float  # 0 = not known
+
+
+@dataclasses.dataclass
+class Frame:
+    index: int  # gaps are dropped frames
+    t_ns: int  # mid exposure of the middle row
+    exposure_ns: int  # 0 = not known
+    width_px: int
+    height_px: int
+    pixels: memoryview  # grey bytes, row by row, without padding; valid during track()
+    debug_wanted: bool  # debug image and map points are
+    imu: list  # since the frame before: (t_ns, (x, y, z) m/s2, (x, y, z) rad/s), body axes
+
+    def numpy(self):
+        """The pixels as an array of height x width, not copied. Needs numpy."""
+        import numpy
+        return numpy.frombuffer(self.pixels, numpy.uint8).reshape(self.height_px, self.width_px)
+
+
+@dataclasses.dataclass
+class Answer:
+    """The pose is T_vo_camera (camera axes x right, y down, z forward); counts while tracking."""
+    state: int = INITIALISING
+    map_id: int = 0  # one more each time the estimator starts over by itself
+    position: tuple = (0.0, 0.0, 0.0)
+    quaternion_xyzw: tuple = (0.0, 0.0, 0.0, 1.0)
+    scene_depth: float = 0.0  # median, in the units of position; 0 = not known
+    counters: dict = dataclasses.field(default_factory=dict)  # names without spaces
+    timings_ms: dict = dataclasses.field(default_factory=dict)
+    debug_image: tuple = None  # (width_px, height_px, channels 1 or 3, bytes), where wanted
+    map_points: list = ()  # of (x, y, z), in the frame of position, where wanted
+
+
+class Estimator:
+    """What to fill in. An exception becomes an error line in the run's log and ends the session."""
+    name = "unnamed"
+    version = "0"
+    _connection = None
+
+    def configure(self, wanted):
+        """Takes the parameters wanted {name: text}; returns all that are in force {name: value}.
+
+        Raise for one that is not known: to ignore it would falsify an experiment.
+        """
+        if wanted:
+            raise ValueError(f"unknown parameter {sorted(wanted)[0]}")
+        return {}
+
+    def calibrate(self, calibration):
+        """Comes before the first frame; a later call brings another camera and means reset()."""
+
+    def track(self, frame):
+        """Returns an Answer to the Frame."""
+        raise NotImplementedError
+
+    def reset(self):
+        """Forgets every frame: as newly calibrated."""
+
+    def log(self, level, line):
+        """A line for the run's log."""
+        self._connection.send(_LOG, struct.pack("<I", level) + line.encode()[:4096])
+
+    def tell_parameters(self, effective):
+        """Parameters as read back from the running system."""
+        self._connection.send(_PARAMETERS, _text_of(effective))
+
+
+# What follows is how it is done.
+_HELLO, _READY, _CALIBRATION, _FRAME, _ANSWER, _DEBUG_IMAGE = 1, 2, 3, 4, 5, 6
+_MAP_POINTS, _PARAMETERS, _LOG, _RESET, _STOP = 7, 8, 9, 10, 11
+_HEADER = struct.Struct("<4sHHI")
+_FRAME_HEAD = struct.Struct("<qqqIIIIII")
+_IMU = struct.Struct("<q6d")
+
+
+def _text_of(parameters):
+    def text(value):
+        return str(value).lower() if isinstance(value, bool) else str(value)
+    return "".join(f"{name} {text(value)}\n" for name, value in parameters.items()).encode()
+
+
+def _lines(payload):
+    for line in payload.decode().splitlines():
+        key, _, value = line.partition(" ")
+        yield key, value
+
+
+class _Connection:
+    def __init__(self, address):
+        scheme, _, place = address.partition(":")
+        self.local = scheme == "unix"
+        if self.local:
+            self._socket = socket.socket(socket.AF_UNIX)
+            self._socket.connect(place)
+        elif scheme == "tcp":
+            host, _, port = place.rpartition(":")
+            self._socket = socket.create_connection((host, int(port)))
+            self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        else:
+            raise ValueError(
+                f"OVERFLY_VO_ADDRESS = '{address}': must be unix:PATH or tcp:HOST:PORT")
+        self._memory_file = None
+        self._memory = None
+        self._slot_bytes = 0
+
+    def send(self, message_type, payload=b""):
+        self._socket.sendall(_HEADER.pack(b"OVVO", 1, message_type, len(payload)) + payload)
+
+    def receive(self):
+        magic, version, message_type, length = _HEADER.unpack(self._bytes(_HEADER.size))
+        if magic != b"OVVO":
+            raise ConnectionError("not the OVVO protocol")
+        if version != 1:
+            raise ConnectionError(f"the server speaks version {version} of the protocol: must be 1")
+        return message_type, self._bytes(length)
+
+    def map_frames(self, slots, slot_bytes):
+        """Maps the memory whose descriptor came with the calibration."""
+        self._slot_bytes = slot_bytes
+        self._memory = memoryview(
+            mmap.mmap(self._memory_file, slots * slot_bytes, prot=mmap.PROT_READ))
+        os.close(self._memory_file)
+        self._memory_file = None
+
+    def slot(self, number, count):
+        return self._memory[number * self._slot_bytes:][:count]
+
+    def _bytes(self, count):
+        data = bytearray(count)
+        view, got = memoryview(data), 0
+        while got < count:
+            room = socket.CMSG_SPACE(array.array("i").itemsize)
+            n, with_it, _, _ = self._socket.recvmsg_into([view[got:]], room)
+            if n == 0:
+                raise ConnectionError("the server is gone")
+            got += n
+            for _, kind, descriptor in with_it:
+                if kind == socket.SCM_RIGHTS:
+                    self._memory_file = array.array("i", descriptor)[0]
+        return data
+
+
+def _calibration_from(payload, connection):
+    lines = dict(_lines(payload))
+    if "frame_slots" in lines:
+        connection.map_frames(int(lines["frame_slots"]), int(lines["frame_slot_bytes"]))
+    return Calibration(
+        lines["camera"], int(lines["width_px"]), int(lines["height_px"]), float(lines["fx_px"]),
+        float(lines["fy_px"]), float(lines["cx_px"]), float(lines["cy_px"]), lines["distortion"],
+        [float(k) for k in lines.get("distortion_coefficients", "").split()],
+        float(lines["rate_hz"]))
+
+
+def _frame_from(payload, connection):
+    index, t_ns, exposure_ns, width, height, _, flags, slot, samples = (
+        _FRAME_HEAD.unpack_from(payload))
+    at = _FRAME_HEAD.size
+    imu = [(s[0], s[1:4], s[4:7]) for s in _IMU.iter_unpack(payload[at:at + samples * _IMU.size])]
+    count = width * height
+    pixels = (connection.slot(slot, count) if flags & 2 else
+              memoryview(payload)[at + samples * _IMU.size:])
+    if len(pixels) != count:
+        raise ValueError(f"frame {index} has {len(pixels)} pixels: must be {count}")
+    return Frame(index, t_ns, exposure_ns, width, height, pixels, bool(flags & 1), imu)
+
+
+def _send_answer(connection, frame, answer, crc32):
+    if frame.debug_wanted and answer.debug_image:
+        width, height, channels, pixels = answer.debug_image
+        connection.send(_DEBUG_IMAGE, struct.pack("<qIIII", frame.index, width, height, channels, 0)
+                        + bytes(pixels))
+    if frame.debug_wanted and len(answer.map_points):
+        connection.send(_MAP_POINTS, struct.pack("<qII", frame.index, len(answer.map_points), 0)
+                        + b"".join(struct.pack("<3f", *point) for point in answer.map_points))
+    text = "".join(f"counter {name} {float(value)!r}\n" for name, value in answer.counters.items())
+    text += "".join(f"timing_ms {name} {float(value)!r}\n"
+                    for name, value in answer.timings_ms.items())
+    connection.send(_ANSWER, struct.pack("<qII3d4ddII", frame.index, answer.state, answer.map_id,
+                                         *answer.position, *answer.quaternion_xyzw,
+                                         answer.scene_depth, crc32, 1) + text.encode())
+
+
+def _greet(estimator, connection):
+    offer = "shared_memory true\n" if connection.local else ""
+    connection.send(_HELLO, f"protocol 1\nname {estimator.name}\n"
+                            f"version {estimator.version}\n{offer}".encode())
+    message_type, payload = connection.receive()
+    if message_type != _HELLO:
+        raise ConnectionError("the server did not say hello")
+    wanted = {}
+    for key, value in _lines(payload):
+        if key == "parameter":
+            name, _, wanted_value = value.partition(" ")
+            wanted[name] = wanted_value
+    connection.send(_PARAMETERS, _text_of(estimator.configure(wanted)))
+    connection.send(_READY, struct.pack("<I", _HELLO))
+
+
+def _serve(estimator, connection):
+    while True:
+        message_type, payload = connection.receive()
+        if message_type == _STOP:
+            return
+        if message_type == _FRAME:
+            frame = _frame_from(payload, connection)
+            crc32 = zlib.crc32(frame.pixels)
+            _send_answer(connection, frame, estimator.track(frame), crc32)
+        elif message_type == _CALIBRATION:
+            estimator.calibrate(_calibration_from(payload, connection))
+            connection.send(_READY, struct.pack("<I", _CALIBRATION))
+        elif message_type == _RESET:
+            estimator.reset()
+            connection.send(_READY, struct.pack("<I", _RESET))
+
+
+def run(estimator, address=None):
+    """Serves frames until the server says stop; on a failure ends the program with code 1.
+
+    `address`: of the server; None = $OVERFLY_VO_ADDRESS.
+    """
+    sys.stdout.reconfigure(line_buffering=True)  # the last line before a crash must be kept
+    address = address or os.environ.get("OVERFLY_VO_ADDRESS")
+    if not address:
+        sys.exit("OVERFLY_VO_ADDRESS is not set: this program is started by overfly")
+    connection = estimator._connection = _Connection(address)
+    try:
+        _greet(estimator, connection)
+        _serve(estimator, connection)
+    except Exception as failure:
+        try:
+            estimator.log(ERROR, f"{type(failure).__name__}: {failure}")
+        except OSError:
+            pass  # the server is gone: stderr has it
+        raise
