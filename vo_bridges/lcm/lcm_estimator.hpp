@@ -5,25 +5,33 @@
 #include <string>
 
 #include "core/result.hpp"
+#include "vo_bridges/parameter.hpp"
 #include "vo_bridges/vo_port.hpp"
 
 namespace overfly {
 
 struct LcmEstimatorOptions {
-  /// As lcm_create's: "udpm://239.255.76.67:7667?ttl=0", "memq://", "file://...".
+  /// "udpm://239.255.76.67:7667?ttl=0", "memq://" (within one process: tests), or
+  /// "file:///PATH?mode=w" (records what is published, and answers nothing: not in lockstep).
+  /// Where udpm has no recv_buf_size, one of at least 2 MiB is asked for.
   std::string url = "udpm://239.255.76.67:7667?ttl=0";
-  std::string channel_prefix = "OVERFLY_";  ///< of IMAGE, CALIBRATION, TIME, POSE, STATUS, DEBUG
-  bool lockstep = true;                     ///< wait for the answer to each frame
-  double start_timeout_s = 30.0;            ///< in lockstep: for the answer to the first frame
-  double answer_timeout_s =
-      5.0;  ///< in lockstep: for a frame's answer; then it counts as unanswered
+  /// Of IMAGE, CALIBRATION, TIME, POSE, STATUS, DEBUG: letters, digits, "_", "-", "/".
+  std::string channel_prefix = "OVERFLY_";
+  /// True: a lost image is sent again, and the first one waits for the estimator to start.
+  bool lockstep = true;
+  double start_timeout_s = 30.0;  ///< for the estimator to be there and answer its first frame
+  /// For a frame's answer, in real time as in lockstep; then it counts as unanswered.
+  double answer_timeout_s = 5.0;
+  VoParameters parameters;  ///< told to the estimator with the calibration
 };
 
 /// True where this build speaks LCM.
 [[nodiscard]] bool lcm_is_built_in();
 
-/// Errors: kUnsupported where LCM is not built in; kInvalidArgument for a URL that LCM does not
-/// take; kIo where it cannot be opened (no multicast route, say).
+/// Errors: kUnsupported where LCM is not built in; kInvalidArgument naming the option, its value
+/// and limit; kIo where LCM cannot be opened (no multicast route, say). Its `track` fails with
+/// kInternal when no estimator is there in time, and when one has left five frames in a row without
+/// a word.
 [[nodiscard]] Result<std::unique_ptr<VoPort>> create_lcm_estimator(
     const LcmEstimatorOptions& options);
 

@@ -1,0 +1,267 @@
+#include "vo_bridges/lcm/lcm_estimator.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "vo_bridges/lcm/lcm_door.hpp"
+#include "vo_bridges/lcm/lcm_link.hpp"
+
+namespace overfly {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::nanoseconds;
+
+/// While nobody is there: how often the calibration is published.
+constexpr std::chrono::milliseconds kAnnouncePeriod{250};
+/// While an answer is missing: how often it is asked for.
+constexpr std::chrono::milliseconds kAskPeriod{1000};
+/// In lockstep an image is sent so many times at most.
+constexpr int kMostSends = 5;
+/// Frames in a row without a word, after which the estimator is given up.
+constexpr int kMostSilentFrames = 5;
+/// LCM's limit of a channel's name is 63 characters.
+constexpr std::size_t kLongestPrefix = 48;
+
+nanoseconds from_seconds(double time_s) {
+  return std::chrono::duration_cast<nanoseconds>(std::chrono::duration<double>(time_s));
+}
+
+/// What went wrong so far, as counters name it.
+std::map<std::string, std::int64_t> faults_of(LcmLink& link) {
+  const AnswerCounts counts = link.answers().counts();
+  return {{"answers_late", counts.late},
+          {"answers_duplicate", counts.duplicate},
+          {"answers_unknown", counts.unknown + link.outdated()},
+          {"answers_out_of_order", counts.out_of_order},
+          {"messages_refused", link.far_end().refused()}};
+}
+
+class LcmEstimator final : public VoPort {
+ public:
+  LcmEstimator(std::unique_ptr<LcmLink> link, LcmEstimatorOptions options, bool hears)
+      : link_(std::move(link)), options_(std::move(options)), hears_(hears) {}
+
+  [[nodiscard]] std::string type() const override { return "lcm"; }
+  [[nodiscard]] std::map<std::string, std::string> effective_parameters() const override {
+    return link_->far_end().parameters();
+  }
+  [[nodiscard]] Result<VoEstimate> track(const VoFrame& frame) override;
+  void reset() override;
+  void set_debug(bool wanted) override { link_->set_debug(wanted); }
+  [[nodiscard]] std::vector<std::string> take_log() override { return link_->far_end().take_log(); }
+  [[nodiscard]] std::optional<ResourceUse> resource_use() const override {
+    return link_->far_end().resource_use();
+  }
+
+ private:
+  using Answer = std::optional<VoEstimate>;
+
+  Result<Answer> ask(const VoFrame& frame);
+  Result<bool> wait_for_estimator();
+  Result<Answer> wait_for_answer(const VoFrame& frame, Clock::time_point deadline);
+  Error no_estimator() const;
+  VoEstimate complete(Answer answer, const VoFrame& frame);
+
+  std::unique_ptr<LcmLink> link_;
+  const LcmEstimatorOptions options_;
+  const bool hears_;  ///< false: nothing can be heard from this network
+  std::optional<VoFrame> previous_;
+  std::optional<Error> gone_;
+  Clock::time_point start_deadline_;
+  bool first_asked_ = false;
+  int silent_frames_ = 0;
+  std::int64_t images_lost_ = 0;
+  std::int64_t images_lost_told_ = 0;
+  std::map<std::string, std::int64_t> faults_told_;
+  bool had_pose_ = false;
+  int map_id_ = 0;
+};
+
+Result<VoEstimate> LcmEstimator::track(const VoFrame& frame) {
+  const VoFrame* const previous = previous_ ? &*previous_ : nullptr;
+  if (Status status = validate_vo_frame(frame, previous); !status) return status.error();
+  if (gone_) return *gone_;
+  previous_ = frame;
+  previous_->image.reset();  // its size stays in the intrinsics
+  Result<Answer> answer = ask(frame);
+  if (!answer) {
+    gone_ = answer.error();
+    return *gone_;
+  }
+  return complete(std::move(*answer), frame);
+}
+
+/// Errors: the estimator is gone for good. Empty: no answer to this frame.
+Result<LcmEstimator::Answer> LcmEstimator::ask(const VoFrame& frame) {
+  if (link_->session() == 0 || !first_asked_) {
+    overfly_lcm::calibration_t calibration = calibration_message(
+        frame.camera_id, frame.intrinsics, frame.distortion, options_.parameters);
+    calibration.utime = frame.t_ns / 1000;
+    calibration.lockstep = options_.lockstep ? 1 : 0;
+    link_->begin(std::move(calibration));
+    start_deadline_ = Clock::now() + from_seconds(options_.start_timeout_s);
+    first_asked_ = true;
+    if (Status status = link_->announce(); !status) return status.error();
+  }
+  if (!hears_) {
+    if (Status status = link_->send(frame); !status) return status.error();
+    return Answer{};
+  }
+  const Result<bool> ready = wait_for_estimator();
+  if (!ready) return ready.error();
+  if (!*ready) return Answer{};
+  const auto answer_deadline = Clock::now() + from_seconds(options_.answer_timeout_s);
+  const bool starting = options_.lockstep && !had_pose_ && silent_frames_ == 0;
+  return wait_for_answer(frame,
+                         starting ? std::max(start_deadline_, answer_deadline) : answer_deadline);
+}
+
+Result<bool> LcmEstimator::wait_for_estimator() {
+  const auto patience = Clock::now() + from_seconds(options_.answer_timeout_s);
+  const auto deadline = options_.lockstep ? start_deadline_ : std::min(start_deadline_, patience);
+  while (!link_->far_end().wait_until_ready(
+      link_->session(), std::min<nanoseconds>(kAnnouncePeriod, deadline - Clock::now()))) {
+    if (Clock::now() >= start_deadline_) return no_estimator();
+    if (Clock::now() >= deadline) return false;
+    if (Status status = link_->announce(); !status) return status.error();
+  }
+  return true;
+}
+
+Result<LcmEstimator::Answer> LcmEstimator::wait_for_answer(const VoFrame& frame,
+                                                           Clock::time_point deadline) {
+  if (Status status = link_->send(frame); !status) return status.error();
+  int sends = 1;
+  while (Clock::now() < deadline) {
+    Answer answer = link_->answers().wait(
+        frame.t_ns, std::min<nanoseconds>(kAskPeriod, deadline - Clock::now()));
+    Status sent;
+    if (!answer) {
+      sent = link_->ask_again();
+    } else if (!answer->counters.contains(kImageLost)) {
+      silent_frames_ = 0;
+      return answer;
+    } else {
+      ++images_lost_;
+      silent_frames_ = 0;
+      if (!options_.lockstep || sends == kMostSends) return Answer{};
+      ++sends;
+      sent = link_->send(frame);
+    }
+    if (!sent) return sent.error();
+  }
+  link_->answers().give_up(frame.t_ns);
+  link_->far_end().say("no answer to frame " + std::to_string(frame.index) + " in time");
+  if (++silent_frames_ < kMostSilentFrames) return Answer{};
+  return Error{ErrorCode::kInternal,
+               "the estimator on " + options_.url + " left " + std::to_string(kMostSilentFrames) +
+                   " frames in a row unanswered, the last one frame " +
+                   std::to_string(frame.index)};
+}
+
+Error LcmEstimator::no_estimator() const {
+  return {ErrorCode::kInternal,
+          "no estimator on " + options_.url + ": nobody answered " + options_.channel_prefix +
+              "CALIBRATION by " + options_.channel_prefix +
+              "STATUS within start_timeout_s = " + std::to_string(options_.start_timeout_s) +
+              "; is it running, with the same URL and prefix? `overfly doctor` checks the network"};
+}
+
+VoEstimate LcmEstimator::complete(Answer answer, const VoFrame& frame) {
+  VoEstimate estimate;
+  if (answer) {
+    estimate = std::move(*answer);
+    had_pose_ = had_pose_ || estimate.sample.state == TrackingState::kTracking;
+    map_id_ = std::max(map_id_, estimate.sample.map_id);
+  } else {
+    estimate.sample.state = had_pose_ ? TrackingState::kLost : TrackingState::kInitialising;
+    estimate.counters["unanswered"] = 1.0;
+  }
+  estimate.sample.frame = frame.index;
+  estimate.sample.t_ns = frame.t_ns;
+  estimate.sample.map_id = map_id_;
+  const std::int64_t lost = images_lost_ - std::exchange(images_lost_told_, images_lost_);
+  if (lost > 0) estimate.counters[kImageLost] = static_cast<double>(lost);
+  for (const auto& [name, count] : faults_of(*link_)) {
+    const std::int64_t told = std::exchange(faults_told_[name], count);
+    if (count > told) estimate.counters[name] = static_cast<double>(count - told);
+  }
+  return estimate;
+}
+
+void LcmEstimator::reset() {
+  previous_.reset();
+  gone_.reset();
+  first_asked_ = false;
+  silent_frames_ = 0;
+  had_pose_ = false;
+  map_id_ = 0;
+}
+
+Error bad(const std::string& field, const std::string& value, const std::string& limit) {
+  return {ErrorCode::kInvalidArgument, field + " = " + value + ": must be " + limit};
+}
+
+Status check_timeout(const std::string& name, double time_s) {
+  constexpr double kLongest_s = 86400.0;
+  if (time_s > 0.0 && time_s <= kLongest_s) return {};
+  return bad(name, std::to_string(time_s), "in (0, 86400]");
+}
+
+Status check(const LcmEstimatorOptions& options, const LcmUrl& url) {
+  const bool plain = std::all_of(
+      options.channel_prefix.begin(), options.channel_prefix.end(), [](unsigned char c) {
+        return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '/';
+      });
+  if (!plain || options.channel_prefix.size() > kLongestPrefix) {
+    return bad("channel_prefix",
+               "\"" + options.channel_prefix + "\"",
+               "at most 48 letters, digits, \"_\", \"-\" and \"/\"");
+  }
+  if (Status status = check_timeout("start_timeout_s", options.start_timeout_s); !status) {
+    return status;
+  }
+  if (Status status = check_timeout("answer_timeout_s", options.answer_timeout_s); !status) {
+    return status;
+  }
+  if (url.provider != "file") return {};
+  const auto mode = url.options.find("mode");
+  if (mode == url.options.end() || mode->second != "w") {
+    return bad("url", options.url, "file:///PATH?mode=w: a log that is played takes no images");
+  }
+  if (options.lockstep) {
+    return bad("url", options.url, "another one in lockstep: a log answers nothing");
+  }
+  return {};
+}
+
+}  // namespace
+
+bool lcm_is_built_in() { return true; }
+
+Result<std::unique_ptr<VoPort>> create_lcm_estimator_on(std::shared_ptr<LcmNode> node,
+                                                        const LcmEstimatorOptions& options) {
+  const Result<LcmUrl> url = parse_lcm_url(options.url);
+  if (!url) return url.error();
+  if (Status status = check(options, *url); !status) return status.error();
+  Result<std::unique_ptr<LcmLink>> link =
+      LcmLink::open(std::move(node), options.channel_prefix, url->provider != "file");
+  if (!link) return link.error();
+  return std::unique_ptr<VoPort>(
+      std::make_unique<LcmEstimator>(std::move(*link), options, url->provider != "file"));
+}
+
+Result<std::unique_ptr<VoPort>> create_lcm_estimator(const LcmEstimatorOptions& options) {
+  const Result<LcmUrl> url = parse_lcm_url(options.url);
+  if (!url) return url.error();
+  if (Status status = check(options, *url); !status) return status.error();
+  Result<std::shared_ptr<LcmNode>> node = LcmNode::open(with_receive_buffer(*url));
+  if (!node) return node.error();
+  return create_lcm_estimator_on(std::move(*node), options);
+}
+
+}  // namespace overfly

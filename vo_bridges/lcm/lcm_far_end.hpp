@@ -1,0 +1,49 @@
+// What is known of the estimator at the other end of an LCM network besides its answers.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <overfly_lcm/status_t.hpp>
+#include <string>
+#include <vector>
+
+#include "vo_bridges/vo_port.hpp"
+
+namespace overfly {
+
+/// All methods may be called from any thread.
+class LcmFarEnd {
+ public:
+  void hear(const overfly_lcm::status_t& status);
+  /// Whether it has said that it follows a session; waits for that up to a time.
+  [[nodiscard]] bool wait_until_ready(std::int64_t session, std::chrono::nanoseconds timeout);
+
+  /// A message that cannot be understood.
+  void refuse(const std::string& channel, const std::string& why);
+  [[nodiscard]] std::int64_t refused() const;
+  /// Adds a line of ours to its log.
+  void say(const std::string& line);
+
+  [[nodiscard]] std::vector<std::string> take_log();
+  [[nodiscard]] std::optional<ResourceUse> resource_use() const;
+  /// Its name and version as "estimator", and the parameters it told.
+  [[nodiscard]] std::map<std::string, std::string> parameters() const;
+
+ private:
+  void add_line(const std::string& line);
+
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::optional<std::int64_t> session_;
+  std::map<std::string, std::string> parameters_;
+  std::optional<ResourceUse> resource_use_;
+  std::deque<std::string> log_;
+  std::int64_t refused_ = 0;
+};
+
+}  // namespace overfly

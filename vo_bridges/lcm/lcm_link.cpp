@@ -1,0 +1,144 @@
+#include "vo_bridges/lcm/lcm_link.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+namespace overfly {
+namespace {
+
+/// Unlike that of any run before, here or elsewhere: the time in microseconds since 1970, and one
+/// more where that was taken within this process.
+std::int64_t new_session() {
+  static std::atomic<std::int64_t> last = 0;
+  const std::int64_t now = std::chrono::duration_cast<std::chrono::microseconds>(
+                               std::chrono::system_clock::now().time_since_epoch())
+                               .count();
+  std::int64_t before = last.load();
+  while (!last.compare_exchange_weak(before, std::max(before + 1, now))) {
+  }
+  return std::max(before + 1, now);
+}
+
+}  // namespace
+
+Result<std::unique_ptr<LcmLink>> LcmLink::open(std::shared_ptr<LcmNode> node,
+                                               const std::string& prefix,
+                                               bool hears) {
+  std::unique_ptr<LcmLink> link(new LcmLink(std::move(node), prefix));
+  if (!hears) return link;
+  if (Status status = link->subscribe(); !status) return status.error();
+  link->node_->start();
+  return link;
+}
+
+LcmLink::~LcmLink() {
+  if (session() != 0) {
+    time_.ended = 1;
+    // Nobody is there to tell when this fails.
+    static_cast<void>(publish_message(*node_, prefix_ + "TIME", time_));
+  }
+  node_->stop();
+}
+
+Status LcmLink::subscribe() {
+  using Method = void (LcmLink::*)(std::span<const std::uint8_t>);
+  const auto hear = [this](const std::string& name, Method method) {
+    return node_->subscribe(prefix_ + name, [this, method](std::span<const std::uint8_t> bytes) {
+      (this->*method)(bytes);
+    });
+  };
+  if (Status status = hear("POSE", &LcmLink::hear_pose); !status) return status;
+  if (Status status = hear("STATUS", &LcmLink::hear_status); !status) return status;
+  return hear("DEBUG", &LcmLink::hear_debug);
+}
+
+void LcmLink::begin(overfly_lcm::calibration_t calibration) {
+  calibration_ = std::move(calibration);
+  calibration_.session = new_session();
+  answers_.forget();
+  time_ = {};
+  time_.utime = calibration_.utime;
+  time_.session = calibration_.session;
+  width_px_ = calibration_.width;
+  height_px_ = calibration_.height;
+  sequence_ = 0;
+  session_ = calibration_.session;
+}
+
+Status LcmLink::announce() {
+  return publish_message(*node_, prefix_ + "CALIBRATION", calibration_);
+}
+
+Status LcmLink::send(const VoFrame& frame) {
+  overfly_lcm::image_t message =
+      image_message(*frame.image, frame.index, frame.t_ns, frame.exposure_ns, frame.image_crc32);
+  message.session = session();
+  message.sequence = ++sequence_;
+  message.debug_wanted = debug_wanted_ ? 1 : 0;
+  answers_.expect(frame.t_ns);
+  time_.utime = message.utime;
+  time_.t_ns = frame.t_ns;
+  time_.frame = frame.index;
+  time_.sequence = message.sequence;
+  time_.attempt = 0;
+  if (Status status = publish_message(*node_, prefix_ + "IMAGE", message); !status) return status;
+  return ask_again();
+}
+
+Status LcmLink::ask_again() {
+  ++time_.attempt;
+  return publish_message(*node_, prefix_ + "TIME", time_);
+}
+
+void LcmLink::hear_pose(std::span<const std::uint8_t> bytes) {
+  const auto message = decode_message<overfly_lcm::pose_t>(bytes);
+  if (!message) return far_end_.refuse(prefix_ + "POSE", "not an overfly_lcm.pose_t");
+  if (message->session != session()) {
+    ++outdated_;
+    return;
+  }
+  VoEstimate estimate;
+  if (message->image_received == 0) {
+    // One about an image that was sent again since is of no use.
+    if (message->sequence != sequence_) return;
+    estimate.counters[kImageLost] = 1.0;
+  } else if (Result<VoEstimate> understood = estimate_from(*message); understood) {
+    estimate = std::move(*understood);
+    if (message->debug_sent != 0) attach_debug(estimate);
+  } else {
+    far_end_.refuse(prefix_ + "POSE", understood.error().message);
+    estimate.sample.state = TrackingState::kLost;
+  }
+  answers_.deliver(message->t_ns, std::move(estimate));
+}
+
+void LcmLink::attach_debug(VoEstimate& estimate) {
+  if (!debug_wanted_) return;
+  if (debug_t_ns_ != estimate.sample.t_ns) {
+    // It is published before its pose: it will not come any more.
+    estimate.counters["debug_lost"] = 1.0;
+    return;
+  }
+  estimate.debug_image = std::move(debug_.image);
+  estimate.map_points_vo = std::move(debug_.map_points_vo);
+  debug_t_ns_ = -1;
+}
+
+void LcmLink::hear_debug(std::span<const std::uint8_t> bytes) {
+  const auto message = decode_message<overfly_lcm::debug_t>(bytes);
+  if (!message) return far_end_.refuse(prefix_ + "DEBUG", "not an overfly_lcm.debug_t");
+  if (message->session != session()) return;
+  Result<DebugView> view = debug_view_from(*message, width_px_, height_px_);
+  if (!view) return far_end_.refuse(prefix_ + "DEBUG", view.error().message);
+  debug_t_ns_ = message->t_ns;
+  debug_ = std::move(*view);
+}
+
+void LcmLink::hear_status(std::span<const std::uint8_t> bytes) {
+  const auto message = decode_message<overfly_lcm::status_t>(bytes);
+  if (!message) return far_end_.refuse(prefix_ + "STATUS", "not an overfly_lcm.status_t");
+  far_end_.hear(*message);
+}
+
+}  // namespace overfly

@@ -1,0 +1,83 @@
+// The conversation with one estimator over LCM: sessions, images out, answers in.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <overfly_lcm/calibration_t.hpp>
+#include <overfly_lcm/sim_time_t.hpp>
+#include <span>
+#include <string>
+
+#include "core/result.hpp"
+#include "vo_bridges/lcm/lcm_far_end.hpp"
+#include "vo_bridges/lcm/lcm_messages.hpp"
+#include "vo_bridges/lcm/lcm_node.hpp"
+#include "vo_bridges/stamped_answers.hpp"
+
+namespace overfly {
+
+/// What an answer says, as a counter, when the image it answers was lost on its way.
+inline constexpr const char* kImageLost = "images_lost";
+
+class LcmLink {
+ public:
+  /// @param node    not started yet
+  /// @param prefix  of every channel
+  /// @param hears   whether anything can be heard (not from a log that is written)
+  /// Errors: kIo.
+  static Result<std::unique_ptr<LcmLink>> open(std::shared_ptr<LcmNode> node,
+                                               const std::string& prefix,
+                                               bool hears);
+  /// Says that the session has ended.
+  ~LcmLink();
+  LcmLink(const LcmLink&) = delete;
+  LcmLink& operator=(const LcmLink&) = delete;
+
+  /// Begins a session, the first or one that makes the estimator forget the one before.
+  void begin(overfly_lcm::calibration_t calibration);
+  [[nodiscard]] std::int64_t session() const { return session_.load(); }
+  /// Publishes the calibration: whoever hears it for the first time starts anew.
+  [[nodiscard]] Status announce();
+  /// Publishes an image, and the time after it. Its answer is expected from now on.
+  [[nodiscard]] Status send(const VoFrame& frame);
+  /// Publishes the time of the image again: the estimator repeats its answer, or says that the
+  /// image was lost.
+  [[nodiscard]] Status ask_again();
+
+  void set_debug(bool wanted) { debug_wanted_ = wanted; }
+  [[nodiscard]] StampedAnswers& answers() { return answers_; }
+  [[nodiscard]] LcmFarEnd& far_end() { return far_end_; }
+  [[nodiscard]] const LcmFarEnd& far_end() const { return far_end_; }
+  /// Answers of sessions that are over.
+  [[nodiscard]] std::int64_t outdated() const { return outdated_.load(); }
+
+ private:
+  LcmLink(std::shared_ptr<LcmNode> node, std::string prefix)
+      : node_(std::move(node)), prefix_(std::move(prefix)) {}
+  Status subscribe();
+  void hear_pose(std::span<const std::uint8_t> bytes);
+  void hear_debug(std::span<const std::uint8_t> bytes);
+  void hear_status(std::span<const std::uint8_t> bytes);
+  void attach_debug(VoEstimate& estimate);
+
+  std::shared_ptr<LcmNode> node_;
+  const std::string prefix_;
+  LcmFarEnd far_end_;
+  StampedAnswers answers_;
+  overfly_lcm::calibration_t calibration_{};
+  overfly_lcm::sim_time_t time_{};  ///< published last
+  std::atomic<std::int64_t> session_ = 0;
+  std::atomic<std::int64_t> sequence_ = 0;  ///< of the image published last
+  std::atomic<int> width_px_ = 0;
+  std::atomic<int> height_px_ = 0;
+  std::atomic<bool> debug_wanted_ = false;
+  std::atomic<std::int64_t> outdated_ = 0;
+  /// The debug message that came last, touched by the node's thread alone.
+  std::int64_t debug_t_ns_ = -1;
+  DebugView debug_;
+};
+
+}  // namespace overfly

@@ -1,0 +1,62 @@
+// Our values as LCM messages, and theirs as ours.
+#pragma once
+
+#include <cstdint>
+#include <exception>
+#include <map>
+#include <optional>
+#include <overfly_lcm/calibration_t.hpp>
+#include <overfly_lcm/debug_t.hpp>
+#include <overfly_lcm/image_t.hpp>
+#include <overfly_lcm/pose_t.hpp>
+#include <span>
+#include <string>
+
+#include "core/camera_model.hpp"
+#include "core/result.hpp"
+#include "vo_bridges/parameter.hpp"
+#include "vo_bridges/vo_port.hpp"
+
+namespace overfly {
+
+/// Grey or RGB; session, sequence and what is wanted stay 0.
+/// @param crc32  of the image, where it is known already
+[[nodiscard]] overfly_lcm::image_t image_message(const Image& image,
+                                                 std::int64_t frame,
+                                                 std::int64_t t_ns,
+                                                 std::int64_t exposure_ns,
+                                                 std::optional<std::uint32_t> crc32);
+
+/// Time, session and lockstep stay 0.
+[[nodiscard]] overfly_lcm::calibration_t calibration_message(const std::string& camera,
+                                                             const PinholeCamera& pinhole,
+                                                             const Distortion& distortion,
+                                                             const VoParameters& parameters);
+
+/// Without the debug image. Errors: kUnreadable naming the field, its value and what it must be.
+[[nodiscard]] Result<VoEstimate> estimate_from(const overfly_lcm::pose_t& message);
+
+/// What a PREFIX_DEBUG message shows.
+struct DebugView {
+  std::optional<Image> image;
+  std::vector<Eigen::Vector3f> map_points_vo;
+};
+/// Errors: kUnreadable, as of estimate_from.
+[[nodiscard]] Result<DebugView> debug_view_from(const overfly_lcm::debug_t& message,
+                                                int largest_width_px,
+                                                int largest_height_px);
+
+/// Empty for bytes that are not such a message.
+template <typename Message>
+[[nodiscard]] std::optional<Message> decode_message(std::span<const std::uint8_t> bytes) {
+  Message message;
+  // lcm-gen's code trusts the lengths in a message: the containers throw where they are absurd.
+  try {
+    if (message.decode(bytes.data(), 0, static_cast<int>(bytes.size())) < 0) return std::nullopt;
+  } catch (const std::exception&) {
+    return std::nullopt;
+  }
+  return message;
+}
+
+}  // namespace overfly

@@ -1,0 +1,77 @@
+#include "vo_bridges/lcm/lcm_node.hpp"
+
+#include <lcm/lcm.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <utility>
+
+namespace overfly {
+
+Result<std::shared_ptr<LcmNode>> LcmNode::open(const LcmUrl& url) {
+  if (url.provider == "udpm") {
+    // LCM itself would wait ten seconds for its own packet, and say less.
+    if (Status status = probe_multicast(url.address()); !status) return status.error();
+  }
+  lcm_t* const lcm = lcm_create(url.text().c_str());
+  if (lcm == nullptr) return Error{ErrorCode::kIo, "LCM cannot open " + url.text()};
+  const std::shared_ptr<LcmNode> node(new LcmNode(lcm));
+  node->stop_fd_ = eventfd(0, EFD_CLOEXEC);
+  if (node->stop_fd_ < 0) return Error{ErrorCode::kIo, "LCM: no file descriptor is left"};
+  return node;
+}
+
+LcmNode::~LcmNode() {
+  stop();
+  lcm_destroy(lcm_);
+  if (stop_fd_ >= 0) close(stop_fd_);
+}
+
+Status LcmNode::subscribe(const std::string& channel, Handler handler) {
+  subscriptions_.push_back(std::make_unique<Subscription>(Subscription{std::move(handler)}));
+  const auto call = [](const lcm_recv_buf_t* received, const char* /*channel*/, void* context) {
+    static_cast<const Subscription*>(context)->handler(
+        {static_cast<const std::uint8_t*>(received->data), received->data_size});
+  };
+  if (lcm_subscribe(lcm_, channel.c_str(), call, subscriptions_.back().get()) == nullptr) {
+    return Error{ErrorCode::kIo, "LCM cannot subscribe to " + channel};
+  }
+  return {};
+}
+
+void LcmNode::start() {
+  thread_ = std::thread([this] { hear(); });
+}
+
+void LcmNode::stop() {
+  if (!thread_.joinable()) return;
+  eventfd_write(stop_fd_, 1);
+  thread_.join();
+}
+
+void LcmNode::hear() {
+  std::array<pollfd, 2> sources{{{stop_fd_, POLLIN, 0}, {lcm_get_fileno(lcm_), POLLIN, 0}}};
+  while (true) {
+    if (poll(sources.data(), sources.size(), -1) < 0) {
+      if (errno == EINTR) continue;
+      return;
+    }
+    if (sources[0].revents != 0) return;
+    // A log that is played ends with an error: there is nothing more to hear.
+    if (sources[1].revents != 0 && lcm_handle(lcm_) != 0) return;
+  }
+}
+
+Status LcmNode::publish(const std::string& channel, std::span<const std::uint8_t> message) {
+  if (lcm_publish(
+          lcm_, channel.c_str(), message.data(), static_cast<unsigned int>(message.size())) != 0) {
+    return Error{ErrorCode::kIo,
+                 "LCM cannot publish " + std::to_string(message.size()) + " bytes on " + channel};
+  }
+  return {};
+}
+
+}  // namespace overfly
