@@ -86,7 +86,8 @@ struct Answer {
 
 namespace detail {
 class Connection;
-}
+class Greeting;
+}  // namespace detail
 
 /// Any exception thrown from a method becomes an error line in the run's log, and ends the session.
 class Estimator {
@@ -111,10 +112,14 @@ class Estimator {
   void log(Level level, const std::string& line);
   /// Parameters as read back from the running system, where configure() could not know them yet.
   void tell_parameters(const Parameters& effective);
+  /// Whether each frame is waited for; in real time (false) be quick. Known from configure() on.
+  bool lockstep() const { return lockstep_; }
 
  private:
   friend int run(Estimator& estimator, const char* address);
+  friend class detail::Greeting;
   detail::Connection* connection_ = nullptr;
+  bool lockstep_ = true;
 };
 
 /// Serves frames until the server says stop. Returns the program's exit code: 0 after a stop, 1
@@ -496,6 +501,11 @@ inline void answer_frame(Estimator& estimator, Connection& connection, const std
   connection.send(kAnswer, payload_of(answer, frame.index, crc32));
 }
 
+class Greeting {
+ public:
+  static void set_lockstep(Estimator* estimator, bool lockstep) { estimator->lockstep_ = lockstep; }
+};
+
 inline void greet(Estimator& estimator, Connection& connection) {
   connection.send(kHello,
                   "protocol 1\nname " + estimator.name() + "\nversion " + estimator.version() +
@@ -504,6 +514,7 @@ inline void greet(Estimator& estimator, Connection& connection) {
   if (hello.type != kHello) throw std::runtime_error("the server did not say hello");
   Parameters wanted;
   for (const auto& [key, value] : lines_of(hello.payload)) {
+    if (key == "lockstep") Greeting::set_lockstep(&estimator, value == "true");
     if (key != "parameter") continue;
     for (const auto& [name, text] : lines_of(value)) wanted[name] = text;
   }
