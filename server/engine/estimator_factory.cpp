@@ -1,26 +1,48 @@
 #include "server/engine/estimator_factory.hpp"
 
+#include <map>
 #include <utility>
 
 #include "odometry/feature/feature_odometry.hpp"
+#include "server/engine/estimator_doors.hpp"
 #include "vo_bridges/toy/toy_estimators.hpp"
 
 namespace overfly::engine {
 namespace {
 
-Result<std::unique_ptr<VoPort>> create_feature(const EstimatorSpec& spec, std::uint64_t seed) {
-  std::map<std::string, double> values = spec.parameters;
-  values.try_emplace("seed", static_cast<double>(seed));
-  const auto parameters = odometry::feature_parameters_from(values);
+using Port = Result<std::unique_ptr<VoPort>>;
+
+/// Switches as 1 and 0. Errors: kInvalidArgument for a text.
+Result<std::map<std::string, double>> numbers_of(const VoParameters& parameters) {
+  std::map<std::string, double> numbers;
+  for (const auto& [name, value] : parameters) {
+    if (const double* number = std::get_if<double>(&value)) {
+      numbers[name] = *number;
+    } else if (const bool* flag = std::get_if<bool>(&value)) {
+      numbers[name] = *flag ? 1.0 : 0.0;
+    } else {
+      return Error{ErrorCode::kInvalidArgument,
+                   "parameters." + name + " = \"" + text_of(value) + "\": must be a number"};
+    }
+  }
+  return numbers;
+}
+
+Port create_feature(const EstimatorSpec& spec, std::uint64_t seed) {
+  auto values = numbers_of(spec.parameters);
+  if (!values) return values.error();
+  values->try_emplace("seed", static_cast<double>(seed));
+  const auto parameters = odometry::feature_parameters_from(*values);
   if (!parameters) return parameters.error();
   return odometry::create_feature_odometry(*parameters);
 }
 
-Result<ToyParameters> toy_parameters_from(const std::map<std::string, double>& values,
-                                          double scene_depth_m) {
+Result<ToyParameters> toy_parameters_from(const VoParameters& given, double scene_depth_m) {
+  const auto values = numbers_of(given);
+  if (!values) return values.error();
   ToyParameters parameters;
   parameters.scene_depth_m = scene_depth_m;
-  for (const auto& [key, value] : values) {
+  for (const auto& [key, value] : *values) {
     if (key == "scale") {
       parameters.scale = value;
     } else if (key == "drift") {
@@ -35,8 +57,10 @@ Result<ToyParameters> toy_parameters_from(const std::map<std::string, double>& v
   return parameters;
 }
 
-Result<std::unique_ptr<VoPort>> create_toy(const EstimatorSpec& spec,
-                                           const std::function<Result<ToyTruth>()>& truth) {
+Port create_toy(const EstimatorSpec& spec, const std::function<Result<ToyTruth>()>& truth) {
+  if (!truth) {
+    return Error{ErrorCode::kInvalidArgument, spec.type + ": needs the truth, and there is none"};
+  }
   const Result<ToyTruth> known = truth();
   if (!known) return known.error();
   const Result<ToyParameters> parameters =
@@ -46,13 +70,23 @@ Result<std::unique_ptr<VoPort>> create_toy(const EstimatorSpec& spec,
                                 : create_drifting_estimator(known->T_world_camera, *parameters);
 }
 
+Port create(const EstimatorSpec& spec,
+            const EstimatorSetting& setting,
+            const std::function<Result<ToyTruth>()>& truth) {
+  if (spec.type == "feature") return create_feature(spec, setting.seed);
+  if (is_test_estimator(spec.type)) return create_toy(spec, truth);
+  if (is_outside_estimator(spec.type)) return create_outside_estimator(spec, setting);
+  return Error{ErrorCode::kInvalidArgument,
+               "type = \"" + spec.type +
+                   "\": must be one of feature, perfect, drifting, process, lcm, ros1"};
+}
+
 }  // namespace
 
 Result<std::unique_ptr<VoPort>> create_estimator(const EstimatorSpec& spec,
-                                                 std::uint64_t seed,
+                                                 const EstimatorSetting& setting,
                                                  const std::function<Result<ToyTruth>()>& truth) {
-  Result<std::unique_ptr<VoPort>> port =
-      spec.type == "feature" ? create_feature(spec, seed) : create_toy(spec, truth);
+  Port port = create(spec, setting, truth);
   if (!port) return port.error().in("estimator \"" + spec.name + "\"");
   return port;
 }

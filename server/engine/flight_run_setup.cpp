@@ -84,9 +84,11 @@ Status FlightRun::open_estimators() {
     for (std::size_t i = 0; i < scenario_.estimators.size(); ++i) {
       const EstimatorSpec& spec = scenario_.estimators[i];
       const auto truth = [&] { return truth_for(spec.camera); };
+      const EstimatorSetting setting{
+          scenario_.seed, scenario_.pacing == Pacing::kLockstep, options_.folder};
       Result<std::unique_ptr<VoPort>> port = options_.estimator_factory
                                                  ? options_.estimator_factory(spec)
-                                                 : create_estimator(spec, scenario_.seed, truth);
+                                                 : create_estimator(spec, setting, truth);
       if (!port) return port.error();
       recorder_.manifest()["estimators"][i]["parameters"] = (*port)->effective_parameters();
       workers_.push_back(

@@ -60,6 +60,7 @@ std::vector<std::string> JsonSchema::unknown_keywords() const {
                                               "maxItems",
                                               "additionalProperties",
                                               "minProperties",
+                                              "maxProperties",
                                               "minimum",
                                               "maximum",
                                               "minLength",

@@ -9,6 +9,7 @@
 #include "core/time.hpp"
 #include "core/trajectory_io.hpp"
 #include "server/engine/camera_metrics.hpp"
+#include "server/engine/estimator_spec.hpp"
 #include "server/engine/run_folder.hpp"
 #include "server/engine/whole_file.hpp"
 

@@ -89,8 +89,6 @@ Status read_estimator(const fs::path& folder, EstimatorRecords& estimator) {
 
 }  // namespace
 
-bool is_test_estimator(const std::string& type) { return type == "perfect" || type == "drifting"; }
-
 Result<RunRecords> read_run_records(const fs::path& folder) {
   const Result<Json> manifest = read_json(manifest_file(folder));
   if (!manifest) return manifest.error();

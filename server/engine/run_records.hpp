@@ -42,9 +42,6 @@ struct RunRecords {
   }
 };
 
-/// True for the types that are given the truth.
-[[nodiscard]] bool is_test_estimator(const std::string& type);
-
 /// Reads the line files of a run folder; a kill leaves them readable.
 /// Errors: kNotFound without a manifest; kUnreadable naming file and row.
 [[nodiscard]] Result<RunRecords> read_run_records(const std::filesystem::path& folder);

@@ -15,6 +15,7 @@
 #include "core/time.hpp"
 #include "flight/flight.hpp"
 #include "server/engine/camera_spec.hpp"
+#include "server/engine/estimator_spec.hpp"
 #include "server/engine/fault_spec.hpp"
 #include "terrain/detail.hpp"
 #include "terrain/light.hpp"
@@ -25,13 +26,6 @@ namespace overfly::engine {
 enum class Pacing {
   kLockstep,  ///< each frame waits for every estimator: nothing dropped, byte-identical results
   kRealTime,  ///< frames come at their rate; a busy estimator gets the latest, drops are counted
-};
-
-struct EstimatorSpec {
-  std::string name;        ///< unique in the scenario; names the files
-  std::string type;        ///< "feature", "perfect", "drifting"
-  std::size_t camera = 0;  ///< index of the camera whose images it gets
-  std::map<std::string, double> parameters;
 };
 
 /// Light on the ground; the sun by its direction, or where it stands at a time.

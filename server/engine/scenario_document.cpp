@@ -1,9 +1,9 @@
 #include "server/engine/scenario_document.hpp"
 
-#include <set>
 #include <utility>
 
 #include "server/engine/scenario_camera.hpp"
+#include "server/engine/scenario_estimators.hpp"
 #include "server/engine/scenario_faults.hpp"
 #include "server/engine/scenario_layers.hpp"
 #include "server/engine/scenario_light.hpp"
@@ -54,29 +54,6 @@ Status read_flight(Json& document, const FileResolver& files, Scenario& scenario
   return {};
 }
 
-Status read_estimators(const Json& document, Scenario& scenario) {
-  std::set<std::string> names;
-  for (const Json& entry : document.at("estimators")) {
-    EstimatorSpec spec;
-    spec.name = entry.at("name").get<std::string>();
-    spec.type = entry.at("type").get<std::string>();
-    spec.parameters = entry.at("parameters").get<std::map<std::string, double>>();
-    if (!names.insert(spec.name).second) {
-      return Error{ErrorCode::kInvalidArgument,
-                   "estimators." + std::to_string(scenario.estimators.size()) + ".name = \"" +
-                       spec.name + "\": must be unique"};
-    }
-    if (entry.contains("camera")) {
-      const std::string path = "estimators." + std::to_string(scenario.estimators.size());
-      const auto camera = camera_index(scenario, entry.at("camera"), path + ".camera");
-      if (!camera) return camera.error();
-      spec.camera = *camera;
-    }
-    scenario.estimators.push_back(std::move(spec));
-  }
-  return {};
-}
-
 /// A log of camera poses gives the body by a nadir mount.
 Status check_camera_poses(const Scenario& scenario) {
   const auto* log = std::get_if<LoggedFlight>(&scenario.flight);
@@ -114,7 +91,7 @@ Status read_all(Json& document, const fs::path& base, Scenario& scenario) {
   if (Status status = read_faults(document, scenario); !status) return status;
   read_renderer(document, scenario);
   if (Status status = read_light_and_detail(document, scenario); !status) return status;
-  return read_estimators(document, scenario);
+  return read_estimators(document, base, scenario);
 }
 
 }  // namespace

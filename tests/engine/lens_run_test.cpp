@@ -56,9 +56,7 @@ Flown flown(const std::string& lens, bool blind = false) {
         renderer::create_raycast_renderer(overfly::testing::natural_ground()));
   };
   options.estimator_factory = [&](const EstimatorSpec& spec) {
-    auto port = create_estimator(spec, scenario.seed, []() -> Result<ToyTruth> {
-      return Error{ErrorCode::kInternal, ""};
-    });
+    auto port = create_estimator(spec, {scenario.seed, true, {}});
     if (!blind || !port) return port;
     return Result<std::unique_ptr<VoPort>>(std::make_unique<LensBlind>(std::move(*port)));
   };
