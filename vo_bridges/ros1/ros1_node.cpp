@@ -1,0 +1,145 @@
+#include "vo_bridges/ros1/ros1_node.hpp"
+
+#include <ros/console.h>
+#include <ros/console_backend.h>
+#include <ros/exception.h>
+#include <ros/init.h>
+#include <ros/master.h>
+#include <ros/this_node.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <thread>
+#include <utility>
+
+namespace overfly::ros1 {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+/// The node lives until the process ends: roscpp's threads may log after main() returned.
+Node* the_node = nullptr;
+std::mutex joining;
+
+void log_line(void* /*logger*/,
+              ros::console::Level level,
+              const char* text,
+              const char* /*file*/,
+              const char* /*function*/,
+              int /*line*/) {
+  if (level >= ros::console::levels::Warn) the_node->say(std::string("ROS: ") + text);
+}
+
+/// Errors: kNotFound.
+Status await_master(const XmlRpcAddress& master, std::chrono::nanoseconds patience) {
+  const Clock::time_point end = Clock::now() + patience;
+  for (;;) {
+    const auto left = std::max<std::chrono::nanoseconds>(end - Clock::now(), 1ms);
+    const Result<int> pid = ask_master_pid(master, std::min<std::chrono::nanoseconds>(left, 2s));
+    if (pid) return {};
+    if (Clock::now() + 100ms > end) {
+      return Error{ErrorCode::kNotFound,
+                   "no ROS master answers at " + master.uri() + " within " +
+                       std::to_string(std::chrono::duration<double>(patience).count()) +
+                       " s: start one with roscore"};
+    }
+    std::this_thread::sleep_for(100ms);
+  }
+}
+
+/// A second node of a name would make the master end the first one.
+/// Errors: kConflict.
+Status check_name_is_free(const XmlRpcAddress& master, const std::string& name) {
+  Result<XmlRpc::XmlRpcValue> uri = call_xml_rpc(master, "lookupNode", {name, name}, 2s);
+  if (!uri || uri->getType() != XmlRpc::XmlRpcValue::TypeString) return {};
+  const auto address = parse_xml_rpc_address(static_cast<std::string>(*uri));
+  if (!address || !call_xml_rpc(*address, "getPid", {name}, 2s)) return {};  // it died
+  return Error{ErrorCode::kConflict,
+               "node_name = " + name + ": the master at " + master.uri() +
+                   " has a node of that name already"};
+}
+
+/// Without this roscpp listens on every interface.
+void stay_on_loopback() {
+  // NOLINTBEGIN(concurrency-mt-unsafe): roscpp reads it from here alone, in its own threads
+  if (std::getenv("ROS_IP") == nullptr && std::getenv("ROS_HOSTNAME") == nullptr) {
+    setenv("ROS_IP", "127.0.0.1", 0);
+  }
+  // NOLINTEND(concurrency-mt-unsafe)
+}
+
+}  // namespace
+
+Node::Node(XmlRpcAddress master, std::string name)
+    : master_(std::move(master)), name_(std::move(name)) {}
+
+bool Node::alive() { return ros::ok() && !ros::isShuttingDown(); }
+
+Result<Node*> Node::join(const XmlRpcAddress& master,
+                         const std::string& name,
+                         std::chrono::nanoseconds patience) {
+  const std::lock_guard lock(joining);
+  if (the_node != nullptr && the_node->master_ != master) {
+    return Error{ErrorCode::kConflict,
+                 "master_uri = " + master.uri() + ": this process is a node of the master at " +
+                     the_node->master_.uri() +
+                     " already, and ROS lets a process have one: start another overfly"};
+  }
+  if (Status status = await_master(master, patience); !status) return status.error();
+  if (the_node == nullptr) {
+    if (Status status = check_name_is_free(master, "/" + name); !status) return status.error();
+    if (Status status = start(master, name); !status) return status.error();
+  }
+  if (!alive()) {
+    return Error{ErrorCode::kInternal,
+                 "the ROS node " + the_node->name_ +
+                     " of this process was told to end (rosnode kill): start overfly again"};
+  }
+  return the_node;
+}
+
+Status Node::start(const XmlRpcAddress& master, const std::string& name) {
+  ROSCONSOLE_AUTOINIT;
+  the_node = new Node(master, "/" + name);
+  ros::console::backend::function_print = log_line;
+  std::map<std::string, std::string> settings = {{"__master", master.uri()}};
+  if (master.is_loopback()) stay_on_loopback();
+  try {
+    ros::init(settings, name, ros::init_options::NoSigintHandler | ros::init_options::NoRosout);
+    ros::master::setRetryTimeout(ros::WallDuration(5.0));
+    ros::start();
+    the_node->name_ = ros::this_node::getName();  // with the namespace of ROS_NAMESPACE
+  } catch (const std::exception& failure) {
+    return Error{ErrorCode::kInternal, std::string("ROS cannot be started: ") + failure.what()};
+  }
+  return {};
+}
+
+Status Node::claim(const std::string& topic) {
+  const std::lock_guard lock(mutex_);
+  if (claimed_.insert(topic).second) return {};
+  return Error{
+      ErrorCode::kConflict,
+      "topic " + topic + ": another estimator of this process publishes there; each needs its own"};
+}
+
+void Node::release(const std::string& topic) {
+  const std::lock_guard lock(mutex_);
+  claimed_.erase(topic);
+}
+
+void Node::add_log(const std::shared_ptr<LineLog>& log) {
+  const std::lock_guard lock(mutex_);
+  std::erase_if(logs_, [](const std::weak_ptr<LineLog>& known) { return known.expired(); });
+  logs_.push_back(log);
+}
+
+void Node::say(const std::string& line) {
+  const std::lock_guard lock(mutex_);
+  for (const std::weak_ptr<LineLog>& known : logs_) {
+    if (const std::shared_ptr<LineLog> log = known.lock()) log->add(line);
+  }
+}
+
+}  // namespace overfly::ros1

@@ -1,0 +1,57 @@
+// Looks after the master while an estimator is in use: roscpp does not notice that it is gone, nor
+// that another one took its place.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "vo_bridges/ros1/ros1_log.hpp"
+#include "vo_bridges/ros1/ros1_master.hpp"
+
+namespace overfly::ros1 {
+
+/// A topic as the master knows it.
+struct TopicRegistration {
+  std::string topic;
+  std::string type;  ///< "sensor_msgs/Image"
+  bool published = true;
+};
+
+/// Asks the master once a second. Logs when it goes and when it comes back; one that was started
+/// anew is told of the topics again, as it knows nothing.
+class MasterWatch {
+ public:
+  MasterWatch(XmlRpcAddress master,
+              std::string node_name,
+              std::vector<TopicRegistration> topics,
+              std::shared_ptr<LineLog> log);
+  ~MasterWatch();
+  MasterWatch(const MasterWatch&) = delete;
+  MasterWatch& operator=(const MasterWatch&) = delete;
+
+  [[nodiscard]] bool master_answers() const { return answers_; }
+
+ private:
+  void run();
+  void look();
+  void register_again();
+
+  const XmlRpcAddress master_;
+  const std::string node_name_;
+  const std::vector<TopicRegistration> topics_;
+  const std::shared_ptr<LineLog> log_;
+  std::optional<int> pid_;
+  std::atomic<bool> answers_{true};
+  std::mutex mutex_;
+  std::condition_variable ended_;
+  bool end_ = false;
+  std::thread thread_;
+};
+
+}  // namespace overfly::ros1
