@@ -1,0 +1,41 @@
+#include "vo_bridges/ros1/ros1_debug_images.hpp"
+
+#include <cstdlib>
+#include <utility>
+
+#include "vo_bridges/ros1/answer_patience.hpp"
+
+namespace overfly::ros1 {
+namespace {
+
+/// An image that is drawn after the pose was published takes that long at most, on a busy machine.
+constexpr std::chrono::milliseconds kPatience{250};
+
+}  // namespace
+
+bool DebugImages::has(std::int64_t stamp_ns) const {
+  if (!newest_) return false;
+  const auto newest_ns = static_cast<std::int64_t>(newest_->header.stamp.toNSec());
+  return std::abs(newest_ns - stamp_ns) <= kStampToleranceNs;
+}
+
+void DebugImages::deliver(const ImageMessage::ConstPtr& image) {
+  const std::lock_guard lock(mutex_);
+  newest_ = image;
+  came_.notify_all();
+}
+
+ImageMessage::ConstPtr DebugImages::take(std::int64_t stamp_ns) {
+  std::unique_lock lock(mutex_);
+  if (comes_in_time_) came_.wait_for(lock, kPatience, [&] { return has(stamp_ns); });
+  comes_in_time_ = has(stamp_ns);
+  return std::exchange(newest_, nullptr);
+}
+
+void DebugImages::forget() {
+  const std::lock_guard lock(mutex_);
+  newest_.reset();
+  comes_in_time_ = true;
+}
+
+}  // namespace overfly::ros1
