@@ -1,0 +1,20 @@
+// Parameters of estimators on ROS's parameter server.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "core/result.hpp"
+#include "vo_bridges/parameter.hpp"
+
+namespace overfly::ros1 {
+
+/// Sets parameters below a namespace; whole numbers as such, since nodes tell them from others.
+/// Errors: kInternal naming the parameter.
+[[nodiscard]] Status write_parameters(const std::string& name_space,
+                                      const VoParameters& parameters);
+
+/// All parameters below a namespace, by their names there ("tracker/levels"), as text.
+[[nodiscard]] std::map<std::string, std::string> read_parameters(const std::string& name_space);
+
+}  // namespace overfly::ros1

@@ -1,0 +1,214 @@
+#include "vo_bridges/ros1/ros1_session.hpp"
+
+#include <cmath>
+#include <thread>
+#include <utility>
+
+#include "vo_bridges/ros1/ros1_messages.hpp"
+#include "vo_bridges/ros1/ros1_options.hpp"
+#include "vo_bridges/ros1/ros1_parameters.hpp"
+
+namespace overfly::ros1 {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::int64_t kSecondNs = 1'000'000'000;
+
+AnswerPatience::Clock::duration seconds(double value) {
+  return std::chrono::duration_cast<AnswerPatience::Clock::duration>(
+      std::chrono::duration<double>(value));
+}
+
+/// Waits until `done`. @return whether it is
+template <typename Condition>
+bool wait_until(AnswerPatience::Clock::time_point end, const Condition& done) {
+  while (!done()) {
+    if (AnswerPatience::Clock::now() >= end) return false;
+    std::this_thread::sleep_for(5ms);  // roscpp has no event for it
+  }
+  return true;
+}
+
+/// 1, 10, 100, ...: what happens to each frame does not fill the log.
+bool worth_a_line(std::int64_t count) {
+  while (count >= 10 && count % 10 == 0) count /= 10;
+  return count == 1;
+}
+
+}  // namespace
+
+Session::Session(Node& node, const Ros1EstimatorOptions& options)
+    : node_(node),
+      options_(options),
+      patience_(options.lockstep, seconds(options.answer_timeout_s)),
+      offset_ns_(kSecondNs) {
+  node_.add_log(log_);
+}
+
+Status Session::begin(Clock::time_point end) {
+  auto topics = Topics::open(node_, options_, handlers(), log_);
+  if (!topics) return topics.error();
+  topics_ = std::move(*topics);
+  watch_ =
+      std::make_unique<MasterWatch>(node_.master(), node_.name(), topics_->registrations(), log_);
+  if (!wait_until(end, [&] { return topics_->somebody_sees_images(); })) {
+    return Error{ErrorCode::kNotFound,
+                 "nobody subscribes to " + options_.image_topic + " at the ROS master " +
+                     node_.master().uri() + " within " + std::to_string(options_.start_timeout_s) +
+                     " s: start the estimator's node, or set image_topic to what it listens to"};
+  }
+  // The other topics of the node are connected a moment later; it need not have them.
+  const bool whole = wait_until(Clock::now() + 500ms, [&] {
+    return topics_->somebody_sees_calibration() && topics_->somebody_tells_poses();
+  });
+  if (!whole && !topics_->somebody_tells_poses()) {
+    log_->add("nobody publishes poses on " +
+              (options_.pose_type == Ros1PoseType::kTf ? "/tf" : options_.pose_topic) + " yet");
+  }
+  return {};
+}
+
+TopicHandlers Session::handlers() {
+  return {
+      [this](std::int64_t stamp_ns, const std::optional<Pose>& pose) { take_pose(stamp_ns, pose); },
+      [this](const ImageMessage::ConstPtr& image) {
+        if (debug_) debug_images_.deliver(image);
+      }};
+}
+
+void Session::take_pose(std::int64_t stamp_ns, const std::optional<Pose>& published) {
+  VoEstimate answer;
+  if (published) {
+    answer.sample.state = TrackingState::kTracking;
+    answer.sample.T_vo_camera = T_vo_camera_from(*published, options_);
+  } else {
+    answer.sample.state = TrackingState::kLost;
+    if (worth_a_line(++unusable_)) {
+      log_->add(std::to_string(unusable_) +
+                " poses were none: not finite, or a quaternion that is not of length 1");
+    }
+  }
+  patience_.answered(stamp_ns, Clock::now());
+  if (!answers_.deliver(stamp_ns, std::move(answer))) report_strays();
+}
+
+void Session::report_strays() {
+  const AnswerCounts counts = answers_.counts();
+  const auto report = [this](std::int64_t now, std::int64_t before, const char* what) {
+    if (now != before && worth_a_line(now)) log_->add(std::to_string(now) + what);
+  };
+  report(counts.late, reported_.late, " poses came too late for their frames");
+  report(counts.duplicate, reported_.duplicate, " poses were second ones to their frames");
+  report(counts.unknown,
+         reported_.unknown,
+         " poses bear the stamp of no frame: it must be that of the image");
+  reported_ = counts;
+}
+
+Error Session::gone() const {
+  std::string message =
+      "nobody subscribes to " + options_.image_topic + " any more: the estimator's node has ended";
+  if (!watch_->master_answers()) {
+    message += "; nor does the ROS master at " + node_.master().uri() + " answer";
+  }
+  return {ErrorCode::kInternal, message};
+}
+
+Status Session::await_estimator() {
+  if (!Node::alive()) {
+    return Error{ErrorCode::kInternal, "the ROS node of this process was told to end"};
+  }
+  if (topics_->somebody_sees_images()) {
+    alone_since_.reset();
+    return {};
+  }
+  if (!alone_since_) alone_since_ = Clock::now();
+  // Without a master nobody can come back.
+  if (!watch_->master_answers()) return gone();
+  if (options_.lockstep) {
+    const auto end = Clock::now() + seconds(options_.answer_timeout_s);
+    if (!wait_until(end, [&] { return topics_->somebody_sees_images(); })) return gone();
+    alone_since_.reset();
+    return {};
+  }
+  if (Clock::now() - *alone_since_ > seconds(options_.start_timeout_s)) return gone();
+  return {};
+}
+
+Result<VoEstimate> Session::track(const VoFrame& frame) {
+  const VoFrame* const previous = previous_ ? &*previous_ : nullptr;
+  if (Status status = validate_vo_frame(frame, previous); !status) return status.error();
+  if (!ended_) {
+    if (Status status = await_estimator(); !status) ended_ = status.error();
+  }
+  if (ended_) return *ended_;
+  previous_ = frame;
+  previous_->image.reset();  // its size stays in the intrinsics
+  return exchange(frame);
+}
+
+VoEstimate Session::exchange(const VoFrame& frame) {
+  const std::int64_t stamp_ns = stamp_of(frame.t_ns);
+  answers_.expect(stamp_ns);
+  auto wait = patience_.begin(stamp_ns, Clock::now());
+  if (alone_since_) wait = 0ns;
+  topics_->publish(frame, stamp_ns);
+  std::optional<VoEstimate> answer = answers_.take(stamp_ns, wait);
+  VoEstimate estimate;
+  if (answer) {
+    estimate = std::move(*answer);
+  } else {
+    patience_.gave_up();
+    estimate.counters["unanswered"] = 1.0;
+    estimate.sample.state = TrackingState::kLost;
+  }
+  estimate.sample.frame = frame.index;
+  estimate.sample.t_ns = frame.t_ns;
+  if (estimate.sample.state == TrackingState::kTracking) {
+    tracked_ = true;
+    topics_->publish_estimate(estimate.sample.T_vo_camera, stamp_ns);
+  } else if (!tracked_) {
+    estimate.sample.state = TrackingState::kInitialising;
+  }
+  if (debug_) add_debug_image(frame, stamp_ns, estimate);
+  return estimate;
+}
+
+void Session::add_debug_image(const VoFrame& frame, std::int64_t stamp_ns, VoEstimate& estimate) {
+  if (options_.debug_image_topic.empty()) return;
+  const ImageMessage::ConstPtr message = debug_images_.take(stamp_ns);
+  if (!message) return;
+  Result<Image> image =
+      rgb_image_from(*message, frame.intrinsics.width_px, frame.intrinsics.height_px);
+  if (image) {
+    estimate.debug_image = std::move(*image);
+  } else {
+    log_->add(image.error().message);
+  }
+}
+
+void Session::reset() {
+  // Later than anything that was sent: no answer from before can be taken for one to come.
+  if (previous_) offset_ns_ = stamp_of(previous_->t_ns) + kSecondNs;
+  previous_.reset();
+  tracked_ = false;
+  answers_.forget();
+  patience_.forget();
+  debug_images_.forget();
+  if (options_.reset_topic.empty()) {
+    log_->add("no reset_topic: the estimator was not told of a reset");
+  } else {
+    topics_->publish_reset();
+  }
+}
+
+std::map<std::string, std::string> Session::effective_parameters() const {
+  std::map<std::string, std::string> all = effective(options_);
+  if (!options_.parameter_namespace.empty() && watch_->master_answers()) {
+    all.merge(read_parameters(options_.parameter_namespace));
+  }
+  return all;
+}
+
+}  // namespace overfly::ros1

@@ -1,0 +1,69 @@
+// An estimator behind ROS topics.
+#pragma once
+
+#include <atomic>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "vo_bridges/ros1/answer_patience.hpp"
+#include "vo_bridges/ros1/ros1_debug_images.hpp"
+#include "vo_bridges/ros1/ros1_log.hpp"
+#include "vo_bridges/ros1/ros1_node.hpp"
+#include "vo_bridges/ros1/ros1_topics.hpp"
+#include "vo_bridges/ros1/ros1_watch.hpp"
+#include "vo_bridges/stamped_answers.hpp"
+#include "vo_bridges/vo_port.hpp"
+
+namespace overfly::ros1 {
+
+class Session final : public VoPort {
+ public:
+  Session(Node& node, const Ros1EstimatorOptions& options);
+
+  /// Opens the topics and waits for a subscriber of the images.
+  /// Errors: as create_ros1_estimator's.
+  [[nodiscard]] Status begin(AnswerPatience::Clock::time_point end);
+
+  [[nodiscard]] std::string type() const override { return "ros1"; }
+  [[nodiscard]] std::map<std::string, std::string> effective_parameters() const override;
+  [[nodiscard]] Result<VoEstimate> track(const VoFrame& frame) override;
+  void reset() override;
+  void set_debug(bool wanted) override { debug_ = wanted; }
+  [[nodiscard]] std::vector<std::string> take_log() override { return log_->take(); }
+
+ private:
+  using Clock = AnswerPatience::Clock;
+
+  [[nodiscard]] TopicHandlers handlers();
+  void take_pose(std::int64_t stamp_ns, const std::optional<Pose>& published);
+  void report_strays();
+  [[nodiscard]] Status await_estimator();
+  [[nodiscard]] Error gone() const;
+  [[nodiscard]] VoEstimate exchange(const VoFrame& frame);
+  void add_debug_image(const VoFrame& frame, std::int64_t stamp_ns, VoEstimate& estimate);
+  /// Time on ROS: it never runs back, not even at a reset, and 0 means no time there.
+  [[nodiscard]] std::int64_t stamp_of(std::int64_t t_ns) const { return t_ns + offset_ns_; }
+
+  Node& node_;
+  const Ros1EstimatorOptions options_;
+  const std::shared_ptr<LineLog> log_ = std::make_shared<LineLog>();
+  StampedAnswers answers_{kStampToleranceNs};
+  AnswerPatience patience_;
+  DebugImages debug_images_;
+  std::atomic<bool> debug_ = false;
+  std::atomic<std::int64_t> unusable_ = 0;  ///< poses that were none
+  AnswerCounts reported_;                   ///< strays that the log has; of the topics' thread
+  std::optional<VoFrame> previous_;
+  bool tracked_ = false;
+  std::int64_t offset_ns_;
+  std::optional<Clock::time_point> alone_since_;
+  std::optional<Error> ended_;
+  // Last, so that nothing comes in any more when the rest goes.
+  std::unique_ptr<Topics> topics_;
+  std::unique_ptr<MasterWatch> watch_;
+};
+
+}  // namespace overfly::ros1

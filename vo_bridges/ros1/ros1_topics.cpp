@@ -1,0 +1,204 @@
+#include "vo_bridges/ros1/ros1_topics.hpp"
+
+#include <ros/single_subscriber_publisher.h>
+
+#include <utility>
+
+#include "vo_bridges/ros1/ros1_messages.hpp"
+
+namespace overfly::ros1 {
+namespace {
+
+constexpr const char* kClock = "/clock";
+constexpr const char* kTransforms = "/tf";
+
+std::int64_t ns_of(const ros::Time& time) { return static_cast<std::int64_t>(time.toNSec()); }
+
+/// "world" and "/world" name the same frame: tf2 knows no leading slash, tf had one.
+bool same_frame(const std::string& a, const std::string& b) {
+  const auto bare = [](const std::string& name) {
+    return std::string_view(name).substr(name.starts_with('/') ? 1 : 0);
+  };
+  return bare(a) == bare(b);
+}
+
+}  // namespace
+
+Topics::Topics(Node& node,
+               const Ros1EstimatorOptions& options,
+               TopicHandlers handlers,
+               std::shared_ptr<LineLog> log)
+    : node_(node), options_(options), handlers_(std::move(handlers)), log_(std::move(log)) {
+  handle_.setCallbackQueue(&queue_);
+}
+
+Topics::~Topics() {
+  poses_.shutdown();
+  debug_images_.shutdown();
+  for (ros::Publisher* publisher : {&images_, &infos_, &clock_, &resets_, &transforms_}) {
+    publisher->shutdown();
+  }
+  spinner_.stop();
+  queue_.disable();
+  if (has_image_topic_) node_.release(options_.image_topic);
+  if (has_clock_) node_.release(kClock);
+}
+
+Result<std::unique_ptr<Topics>> Topics::open(Node& node,
+                                             const Ros1EstimatorOptions& options,
+                                             TopicHandlers handlers,
+                                             std::shared_ptr<LineLog> log) {
+  std::unique_ptr<Topics> topics(new Topics(node, options, std::move(handlers), std::move(log)));
+  topics->spinner_.start();
+  // First what comes in: an estimator may answer the moment that it sees an image.
+  Status status = topics->subscribe_all();
+  if (status) status = topics->advertise_all();
+  if (!status) return status.error();
+  return topics;
+}
+
+template <typename M>
+Status Topics::advertise(const std::string& topic, ros::Publisher& publisher) {
+  const auto told = [this, topic](const char* what) {
+    return [this, topic, what](const ros::SingleSubscriberPublisher& subscriber) {
+      log_->add(subscriber.getSubscriberName() + what + topic);
+    };
+  };
+  try {
+    publisher = handle_.advertise<M>(topic,
+                                     static_cast<std::uint32_t>(options_.queue_size),
+                                     told(" subscribed to "),
+                                     told(" left "));
+  } catch (const std::exception& failure) {
+    return Error{ErrorCode::kInternal, "topic " + topic + ": " + failure.what()};
+  }
+  if (!publisher) {
+    return Error{ErrorCode::kInternal, "topic " + topic + ": ROS does not let us publish it"};
+  }
+  registrations_.push_back({publisher.getTopic(), ros::message_traits::datatype<M>(), true});
+  return {};
+}
+
+Status Topics::advertise_all() {
+  if (Status status = node_.claim(options_.image_topic); !status) return status;
+  has_image_topic_ = true;
+  Status status = advertise<CameraInfoMessage>(options_.camera_info_topic, infos_);
+  if (status && options_.publish_clock) {
+    has_clock_ = node_.claim(kClock).ok();
+    if (has_clock_) {
+      status = advertise<ClockMessage>(kClock, clock_);
+    } else {
+      log_->add("another estimator of this process publishes /clock");
+    }
+  }
+  if (status && !options_.reset_topic.empty()) {
+    status = advertise<EmptyMessage>(options_.reset_topic, resets_);
+  }
+  if (status && options_.publish_tf) {
+    status = advertise<TransformsMessage>(kTransforms, transforms_);
+  }
+  return status ? advertise<ImageMessage>(options_.image_topic, images_) : status;
+}
+
+template <typename M, typename Handle>
+Status Topics::subscribe(const std::string& topic, Handle handle, ros::Subscriber& subscriber) {
+  using Pointer = typename M::ConstPtr;
+  try {
+    subscriber = handle_.subscribe<M>(topic,
+                                      static_cast<std::uint32_t>(options_.queue_size),
+                                      boost::function<void(const Pointer&)>(std::move(handle)),
+                                      ros::VoidConstPtr(),
+                                      ros::TransportHints().tcpNoDelay());
+  } catch (const std::exception& failure) {
+    return Error{ErrorCode::kInternal, "topic " + topic + ": " + failure.what()};
+  }
+  if (!subscriber) {
+    return Error{ErrorCode::kInternal, "topic " + topic + ": ROS does not let us subscribe"};
+  }
+  registrations_.push_back({subscriber.getTopic(), ros::message_traits::datatype<M>(), false});
+  return {};
+}
+
+Status Topics::subscribe_pose() {
+  const std::string& topic = options_.pose_topic;
+  switch (options_.pose_type) {
+    case Ros1PoseType::kPoseStamped:
+      return subscribe<PoseStampedMessage>(
+          topic,
+          [this](const PoseStampedMessage::ConstPtr& message) {
+            handlers_.pose(ns_of(message->header.stamp), pose_from(message->pose));
+          },
+          poses_);
+    case Ros1PoseType::kPoseWithCovarianceStamped:
+      return subscribe<PoseWithCovarianceStampedMessage>(
+          topic,
+          [this](const PoseWithCovarianceStampedMessage::ConstPtr& message) {
+            handlers_.pose(ns_of(message->header.stamp), pose_from(message->pose.pose));
+          },
+          poses_);
+    case Ros1PoseType::kOdometry:
+      return subscribe<OdometryMessage>(
+          topic,
+          [this](const OdometryMessage::ConstPtr& message) {
+            handlers_.pose(ns_of(message->header.stamp), pose_from(message->pose.pose));
+          },
+          poses_);
+    case Ros1PoseType::kTf:
+      break;
+  }
+  return subscribe<TransformsMessage>(
+      kTransforms,
+      [this](const TransformsMessage::ConstPtr& message) {
+        for (const TransformStampedMessage& transform : message->transforms) {
+          if (!same_frame(transform.header.frame_id, options_.vo_frame)) continue;
+          if (!same_frame(transform.child_frame_id, options_.camera_frame)) continue;
+          handlers_.pose(ns_of(transform.header.stamp), pose_from(transform.transform));
+        }
+      },
+      poses_);
+}
+
+Status Topics::subscribe_all() {
+  if (Status status = subscribe_pose(); !status || options_.debug_image_topic.empty()) {
+    return status;
+  }
+  return subscribe<ImageMessage>(
+      options_.debug_image_topic,
+      [this](const ImageMessage::ConstPtr& message) { handlers_.debug_image(message); },
+      debug_images_);
+}
+
+void Topics::publish(const VoFrame& frame, std::int64_t stamp_ns) {
+  const ros::Time stamp = time_from_ns(stamp_ns);
+  if (has_clock_) {
+    ClockMessage now;
+    now.clock = stamp;
+    clock_.publish(now);
+  }
+  CameraInfoMessage info = message_from(frame.intrinsics, frame.distortion);
+  info.header.stamp = stamp;
+  info.header.frame_id = options_.camera_frame;
+  infos_.publish(info);
+  image_ = message_from(*frame.image);
+  image_.header = info.header;
+  images_.publish(image_);
+}
+
+void Topics::publish_reset() {
+  if (resets_) resets_.publish(EmptyMessage());
+}
+
+void Topics::publish_estimate(const Pose& T_vo_camera, std::int64_t stamp_ns) {
+  if (!transforms_) return;
+  TransformsMessage message;
+  message.transforms.resize(1);
+  message.transforms[0].header.stamp = time_from_ns(stamp_ns);
+  message.transforms[0].header.frame_id = options_.vo_frame;
+  message.transforms[0].child_frame_id = options_.camera_frame;
+  message.transforms[0].transform = transform_message_from(T_vo_camera);
+  transforms_.publish(message);
+}
+
+std::vector<TopicRegistration> Topics::registrations() const { return registrations_; }
+
+}  // namespace overfly::ros1
