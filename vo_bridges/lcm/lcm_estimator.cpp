@@ -18,7 +18,7 @@ using std::chrono::nanoseconds;
 /// While nobody is there: how often the calibration is published.
 constexpr std::chrono::milliseconds kAnnouncePeriod{250};
 /// While an answer is missing: how often it is asked for.
-constexpr std::chrono::milliseconds kAskPeriod{1000};
+constexpr std::chrono::milliseconds kAskPeriod{200};
 /// In lockstep an image is sent so many times at most.
 constexpr int kMostSends = 5;
 /// Frames in a row without a word, after which the estimator is given up.

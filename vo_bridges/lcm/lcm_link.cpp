@@ -98,6 +98,9 @@ void LcmLink::hear_pose(std::span<const std::uint8_t> bytes) {
     ++outdated_;
     return;
   }
+  // An answer that was repeated on request, and has come already, is no fault.
+  const std::pair answers_to(message->session, message->t_ns);
+  if (message->attempt > 1 && answers_to == answered_) return;
   VoEstimate estimate;
   if (message->image_received == 0) {
     // One about an image that was sent again since is of no use.
@@ -110,6 +113,7 @@ void LcmLink::hear_pose(std::span<const std::uint8_t> bytes) {
     far_end_.refuse(prefix_ + "POSE", understood.error().message);
     estimate.sample.state = TrackingState::kLost;
   }
+  if (message->image_received != 0) answered_ = answers_to;
   answers_.deliver(message->t_ns, std::move(estimate));
 }
 

@@ -10,6 +10,7 @@
 #include <overfly_lcm/sim_time_t.hpp>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "core/result.hpp"
 #include "vo_bridges/lcm/lcm_far_end.hpp"
@@ -75,6 +76,8 @@ class LcmLink {
   std::atomic<int> height_px_ = 0;
   std::atomic<bool> debug_wanted_ = false;
   std::atomic<std::int64_t> outdated_ = 0;
+  /// Session and stamp of the image answered last; touched by the node's thread alone.
+  std::pair<std::int64_t, std::int64_t> answered_{0, 0};
   /// The debug message that came last, touched by the node's thread alone.
   std::int64_t debug_t_ns_ = -1;
   DebugView debug_;
