@@ -1,0 +1,53 @@
+// Images, calibration and truth as a ROS 1 bag (format 2.0), for tools that read those.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "core/camera_model.hpp"
+#include "core/image.hpp"
+#include "core/pose.hpp"
+#include "core/result.hpp"
+
+namespace overfly {
+
+/// Writes messages in the order of the calls. Stamps are Unix times, in [0, 2^32 s); each is also
+/// the time at which the bag has the message.
+class Ros1BagWriter {
+ public:
+  /// Errors: kUnsupported where ROS 1 is not built in; kIo naming the file.
+  [[nodiscard]] static Result<std::unique_ptr<Ros1BagWriter>> create(
+      const std::filesystem::path& file);
+  virtual ~Ros1BagWriter() = default;
+
+  /// sensor_msgs/Image: mono8 or rgb8, mono16 or rgb16. Errors: kIo naming the file.
+  [[nodiscard]] virtual Status add_image(const std::string& topic,
+                                         const std::string& frame_id,
+                                         std::int64_t stamp_ns,
+                                         const Image& image) = 0;
+  [[nodiscard]] virtual Status add_image(const std::string& topic,
+                                         const std::string& frame_id,
+                                         std::int64_t stamp_ns,
+                                         const Image16& image) = 0;
+  /// sensor_msgs/CameraInfo (the lenses: README.md beside this file).
+  [[nodiscard]] virtual Status add_camera_info(const std::string& topic,
+                                               const std::string& frame_id,
+                                               std::int64_t stamp_ns,
+                                               const CameraModel& camera) = 0;
+  /// geometry_msgs/PoseStamped of a frame in `parent_frame`.
+  [[nodiscard]] virtual Status add_pose(const std::string& topic,
+                                        const std::string& parent_frame,
+                                        std::int64_t stamp_ns,
+                                        const Pose& T_parent_child) = 0;
+  /// tf2_msgs/TFMessage with one transform, on /tf.
+  [[nodiscard]] virtual Status add_transform(const std::string& parent_frame,
+                                             const std::string& child_frame,
+                                             std::int64_t stamp_ns,
+                                             const Pose& T_parent_child) = 0;
+  /// Writes the index; nothing may be added after that. Errors: kIo naming the file.
+  [[nodiscard]] virtual Status close() = 0;
+};
+
+}  // namespace overfly
