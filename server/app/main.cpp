@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
   int exit_code = kExitOk;
   add_run_command(app, exit_code);
   add_serve_command(app, exit_code);
+  add_track_command(app, exit_code);
   add_evaluate_command(app, exit_code);
   add_render_command(app, exit_code);
   add_world_command(app, exit_code);

@@ -1,0 +1,124 @@
+#include "server/engine/dataset/track_report.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+
+#include "core/time.hpp"
+#include "server/engine/metrics.hpp"
+
+namespace overfly::engine {
+namespace {
+
+using Json = nlohmann::json;
+
+std::optional<std::string> crash_of(const TrackedDataset& tracked) {
+  if (tracked.records.empty() || tracked.records.back().crash.empty()) return std::nullopt;
+  return tracked.records.back().crash;
+}
+
+Json dataset_json(const Dataset& dataset) {
+  return {{"folder", dataset.folder.string()},
+          {"layout", to_string(dataset.layout)},
+          {"camera_name", dataset.camera_name},
+          {"images", dataset.images.size()},
+          {"duration_s", s_from_ns(dataset.images.back().t_ns - dataset.images.front().t_ns)},
+          {"camera", json_from(dataset.camera)},
+          {"notes", dataset.notes}};
+}
+
+Json states_json(const TrackedDataset& tracked) {
+  Json states = {{"INITIALISING", 0}, {"TRACKING", 0}, {"LOST", 0}};
+  for (const EstimateRecord& record : tracked.records) {
+    Json& count = states.at(to_string(record.sample.state));
+    count = count.get<int>() + 1;
+  }
+  return states;
+}
+
+/// Seconds from the first image to the first tracked one; null where there is none.
+Json initialised_after_s(const TrackedDataset& tracked) {
+  for (const EstimateRecord& record : tracked.records) {
+    if (record.sample.state != TrackingState::kTracking) continue;
+    return s_from_ns(record.sample.t_ns - tracked.records.front().sample.t_ns);
+  }
+  return nullptr;
+}
+
+int maps_of(const TrackedDataset& tracked) {
+  std::set<int> maps;
+  for (const EstimateRecord& record : tracked.records) {
+    if (record.sample.state == TrackingState::kTracking) maps.insert(record.sample.map_id);
+  }
+  return static_cast<int>(maps.size());
+}
+
+Json resources_json(const TrackedDataset& tracked) {
+  const std::vector<double>& ms = tracked.tracking.ms;
+  const double wall_s = 1e-3 * std::accumulate(ms.begin(), ms.end(), 0.0);
+  return {{"of", tracked.own_process ? "the estimator's process" : "this process"},
+          {"cpu_s", tracked.resources.cpu_s},
+          {"cpu_percent", wall_s > 0.0 ? 100.0 * tracked.resources.cpu_s / wall_s : 0.0},
+          {"peak_memory_mb", tracked.resources.peak_memory_mb}};
+}
+
+}  // namespace
+
+Result<Trajectory> camera_truth(const Dataset& dataset,
+                                const TrajectoryFile& truth,
+                                std::vector<std::string>& notes) {
+  if (truth.format != TrajectoryFormat::kEuroc || !dataset.T_body_camera) return truth.trajectory;
+  std::vector<StampedPose> poses = truth.trajectory.poses();
+  for (StampedPose& stamped : poses) stamped.pose = stamped.pose * *dataset.T_body_camera;
+  notes.emplace_back("the truth is the body's; the camera's is made with T_BS");
+  return Trajectory::from_poses(poses);
+}
+
+evaluation::Score score_of(const TrackedDataset& tracked,
+                           const Trajectory& T_world_camera,
+                           bool truth_has_times,
+                           std::optional<double> init_true_depth_m) {
+  evaluation::Options options;
+  options.init_true_depth_m = init_true_depth_m;
+  EstimateTrack track = track_of(tracked);
+  if (!truth_has_times) {
+    // Line i of a file without times is the i-th image.
+    options.association = evaluation::Association::kIndex;
+    for (std::size_t i = 0; i < track.samples.size(); ++i) {
+      track.samples[i].frame = static_cast<std::int64_t>(i);
+    }
+  }
+  evaluation::Score score = evaluation::score(T_world_camera, track, options);
+  if (crash_of(tracked)) {
+    score.outcome = evaluation::Outcome::kCrashed;
+    score.outcome_time_s = s_from_ns(track.samples.back().t_ns);
+  }
+  return score;
+}
+
+Json report_json(const Dataset& dataset,
+                 const TrackedDataset& tracked,
+                 const std::optional<evaluation::Score>& score) {
+  Json stages = Json::object();
+  for (const auto& [stage, durations] : tracked.stages) stages[stage] = durations.summary();
+  const std::optional<std::string> crash = crash_of(tracked);
+  Json report = {{"dataset", dataset_json(dataset)},
+                 {"estimator", {{"type", tracked.type}, {"parameters", tracked.parameters}}},
+                 {"frames", tracked.records.size()},
+                 {"complete", tracked.records.size() == dataset.images.size() && !crash},
+                 {"states", states_json(tracked)},
+                 {"initialised_after_s", initialised_after_s(tracked)},
+                 {"maps", maps_of(tracked)},
+                 {"unanswered", tracked.unanswered},
+                 {"hash_mismatches", tracked.hash_mismatches},
+                 {"crash", crash ? Json(*crash) : Json(nullptr)},
+                 {"timing",
+                  {{"read", tracked.reading.summary()},
+                   {"track", tracked.tracking.summary()},
+                   {"stages", std::move(stages)}}},
+                 {"resources", resources_json(tracked)}};
+  if (score) report["score"] = json_from(*score);
+  return report;
+}
+
+}  // namespace overfly::engine
