@@ -386,8 +386,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadOption{"Start", [](auto& o) { o.start_timeout_s = 0.0; }, "start_timeout_s = 0.0"},
         BadOption{"Answer", [](auto& o) { o.answer_timeout_s = -1.0; }, "answer_timeout_s = -1.0"},
         BadOption{"Url", [](auto& o) { o.url = "nonsense"; }, "PROVIDER://NETWORK"},
-        BadOption{"PlayedLog", [](auto& o) { o.url = "file:///tmp/x.lcm"; }, "mode=w"},
-        BadOption{"LockstepLog", [](auto& o) { o.url = "file:///tmp/x.lcm?mode=w"; }, "lockstep"}),
+        BadOption{"PlayedLog", [](auto& o) { o.url = "file:///x.lcm"; }, "mode=w"},
+        BadOption{"LockstepLog", [](auto& o) { o.url = "file:///x.lcm?mode=w"; }, "lockstep"}),
     [](const auto& instance) { return instance.param.name; });
 
 }  // namespace

@@ -1,0 +1,181 @@
+// The LCM door on a real network (UDP multicast on this machine) and on log files.
+#include <gmock/gmock.h>
+
+#include <chrono>
+#include <lcm/lcm-cpp.hpp>
+#include <thread>
+
+#include "tests/support/support.hpp"
+#include "tests/vo_bridges/lcm/lcm_test_estimator.hpp"
+#include "vo_bridges/lcm/lcm_messages.hpp"
+
+namespace overfly {
+namespace {
+
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using testing::LcmPair;
+using ::testing::Pair;
+using testing::varied_frames;
+
+/// Skips where images of full size cannot come through without loss.
+class LcmUdp : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (const std::string reason = testing::multicast_missing(); !reason.empty()) {
+      GTEST_SKIP() << reason;
+    }
+    options_.url = testing::private_udp_url();
+    options_.channel_prefix =
+        ::testing::UnitTest::GetInstance()->current_test_info()->name() + std::string("_");
+  }
+
+  LcmEstimatorOptions options_;
+};
+
+#define OVERFLY_RECEIVE_BUFFER_OR_SKIP()                             \
+  if (largest_receive_buffer_bytes() < kSmallestReceiveBuffer_bytes) \
+  GTEST_SKIP() << "net.core.rmem_max = " << largest_receive_buffer_bytes() << " is below 2 MiB"
+
+TEST_F(LcmUdp, CarriesImagesOfFullSizeByteForByteInLockstep) {
+  OVERFLY_RECEIVE_BUFFER_OR_SKIP();
+  const LcmPair pair = testing::make_udp_pair({}, options_, options_.url);
+  pair.door->set_debug(true);
+  const auto frames = varied_frames(20, 1280, 960);
+  for (const VoFrame& frame : frames) {
+    const auto estimate = pair.door->track(frame);
+    ASSERT_TRUE(estimate.ok()) << estimate.error().message;
+    EXPECT_EQ(estimate->image_crc32, crc32_of(*frame.image));
+    ASSERT_TRUE(estimate->debug_image.has_value());
+    EXPECT_EQ(estimate->debug_image->data, std::vector<std::uint8_t>(640 * 480 * 3, 77));
+  }
+  ASSERT_EQ(pair.far_end->images().size(), frames.size());
+  EXPECT_EQ(pair.far_end->images().back().data, frames.back().image->data);
+}
+
+/// The far end's socket holds a fraction of an image: packets are lost, LCM drops the images, and
+/// the times that follow tell.
+TEST_F(LcmUdp, CountsTheImagesThatASmallReceiveBufferLoses) {
+  options_.lockstep = false;
+  const LcmPair pair = testing::make_udp_pair({}, options_, options_.url + "&recv_buf_size=4096");
+  double lost = 0.0;
+  for (const VoFrame& frame : varied_frames(5, 1280, 960)) {
+    auto estimate = pair.door->track(frame);
+    ASSERT_TRUE(estimate.ok()) << estimate.error().message;
+    lost += estimate->counters["images_lost"];
+  }
+  EXPECT_GE(lost, 1.0);
+  EXPECT_EQ(static_cast<double>(pair.far_end->images().size()) + lost, 5.0);
+}
+
+TEST_F(LcmUdp, SaysThatTheSessionHasEnded) {
+  LcmPair pair = testing::make_udp_pair({}, options_, options_.url);
+  ASSERT_TRUE(pair.door->track(varied_frames(1).front()).ok());
+  pair.door.reset();
+  const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+  while (!pair.far_end->ended() && std::chrono::steady_clock::now() < patience) {
+    std::this_thread::yield();
+  }
+  EXPECT_TRUE(pair.far_end->ended());
+}
+
+TEST_F(LcmUdp, KeepsTwoEstimatorsApartByTheirPrefixes) {
+  LcmEstimatorOptions other = options_;
+  other.channel_prefix += "2_";
+  const LcmPair first = testing::make_udp_pair({}, options_, options_.url);
+  const LcmPair second = testing::make_udp_pair({}, other, options_.url);
+  for (const VoFrame& frame : varied_frames(3)) {
+    ASSERT_TRUE(first.door->track(frame).ok());
+    const auto estimate = second.door->track(frame);
+    ASSERT_TRUE(estimate.ok());
+    EXPECT_FALSE(estimate->counters.contains("answers_unknown"));
+  }
+  EXPECT_EQ(first.far_end->images().size(), 3U);
+  EXPECT_EQ(second.far_end->images().size(), 3U);
+}
+
+/// Channels and images of a log, read by LCM itself.
+struct ReadLog {
+  std::vector<std::string> channels;
+  std::vector<overfly_lcm::image_t> images;
+};
+
+ReadLog read_log(const std::filesystem::path& file) {
+  ReadLog read;
+  lcm::LogFile log(file.string(), "r");
+  EXPECT_TRUE(log.good());
+  while (const lcm::LogEvent* event = log.readNextEvent()) {
+    read.channels.push_back(event->channel);
+    if (event->channel != "OVERFLY_IMAGE") continue;
+    read.images.emplace_back();
+    EXPECT_GT(read.images.back().decode(event->data, 0, event->datalen), 0);
+  }
+  return read;
+}
+
+class LcmFile : public ::testing::Test {
+ protected:
+  /// Flies without lockstep into a log.
+  void record(const std::vector<VoFrame>& frames) {
+    LcmEstimatorOptions options;
+    options.url = "file://" + file_.string() + "?mode=w";
+    options.lockstep = false;
+    const auto door = create_lcm_estimator(options);
+    ASSERT_TRUE(door.ok()) << door.error().message;
+    for (const VoFrame& frame : frames) {
+      const auto estimate = (*door)->track(frame);
+      ASSERT_TRUE(estimate.ok()) << estimate.error().message;
+      EXPECT_EQ(estimate->sample.state, TrackingState::kInitialising);
+      EXPECT_THAT(estimate->counters, ElementsAre(Pair("unanswered", 1.0)));
+    }
+  }
+
+  testing::TemporaryFolder folder_;
+  std::filesystem::path file_ = folder_.path() / "door.lcm";
+};
+
+TEST_F(LcmFile, RecordsWhatTheDoorPublishes) {
+  const auto frames = varied_frames(2, 320, 240);
+  record(frames);
+  const ReadLog log = read_log(file_);
+  EXPECT_THAT(log.channels,
+              ElementsAre("OVERFLY_CALIBRATION",
+                          "OVERFLY_IMAGE",
+                          "OVERFLY_TIME",
+                          "OVERFLY_IMAGE",
+                          "OVERFLY_TIME",
+                          "OVERFLY_TIME"));
+  ASSERT_EQ(log.images.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(log.images[i].data, frames[i].image->data);
+    EXPECT_EQ(log.images[i].t_ns, frames[i].t_ns);
+  }
+}
+
+TEST_F(LcmFile, IsPlayedToAnEstimatorByLcm) {
+  const auto frames = varied_frames(4);
+  record(frames);
+  const auto node =
+      LcmNode::open(parse_lcm_url("file://" + file_.string() + "?speed=0").value()).value();
+  testing::LcmTestEstimator estimator(node, "OVERFLY_", {});
+  node->start();
+  const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+  while (!estimator.ended() && std::chrono::steady_clock::now() < patience) {
+    std::this_thread::yield();
+  }
+  ASSERT_EQ(estimator.images().size(), 4U);
+  EXPECT_EQ(estimator.images().back().data, frames.back().image->data);
+  node->stop();
+}
+
+TEST_F(LcmFile, ThatCannotBeMadeIsAnError) {
+  LcmEstimatorOptions options;
+  options.url = "file://" + (folder_.path() / "none" / "x.lcm").string() + "?mode=w";
+  options.lockstep = false;
+  const auto door = create_lcm_estimator(options);
+  ASSERT_FALSE(door.ok());
+  EXPECT_EQ(door.error().code, ErrorCode::kIo);
+}
+
+}  // namespace
+}  // namespace overfly

@@ -1,0 +1,87 @@
+#include "vo_bridges/lcm/lcm_url.hpp"
+
+#include <gmock/gmock.h>
+
+namespace overfly {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(LcmUrl, ReadsProviderNetworkAndOptions) {
+  const auto url = parse_lcm_url("udpm://239.1.2.3:7000?ttl=1&recv_buf_size=5000");
+  ASSERT_TRUE(url.ok());
+  EXPECT_EQ(url->provider, "udpm");
+  EXPECT_EQ(url->address(), "239.1.2.3");
+  EXPECT_EQ(url->port(), 7000);
+  EXPECT_EQ(url->options.at("ttl"), "1");
+  EXPECT_EQ(url->options.at("recv_buf_size"), "5000");
+}
+
+TEST(LcmUrl, HasTheNetworkOfLcmWhereNoneIsNamed) {
+  for (const char* text : {"udpm://", "udpm://:", "udpm://?ttl=0", "udpm://:7667"}) {
+    const auto url = parse_lcm_url(text);
+    ASSERT_TRUE(url.ok()) << text;
+    EXPECT_EQ(url->address(), "239.255.76.67") << text;
+    EXPECT_EQ(url->port(), 7667) << text;
+  }
+}
+
+TEST(LcmUrl, IsWrittenAsItWasRead) {
+  for (const char* text : {"udpm://239.255.76.67:7667?ttl=0",
+                           "memq://",
+                           "file:///logs/a b.lcm?mode=w",
+                           "udpm://239.0.0.1?recv_buf_size=1&ttl=2"}) {
+    EXPECT_EQ(parse_lcm_url(text)->text(), text);
+  }
+}
+
+TEST(LcmUrl, GetsAReceiveBufferForImagesWhereItNamesNone) {
+  const LcmUrl url = with_receive_buffer(parse_lcm_url("udpm://239.255.76.67:7667?ttl=0").value());
+  EXPECT_GE(std::stoll(url.options.at("recv_buf_size")), 2 << 20);
+  EXPECT_TRUE(parse_lcm_url(url.text()).ok());
+}
+
+TEST(LcmUrl, KeepsTheReceiveBufferThatItNames) {
+  const auto own = parse_lcm_url("udpm://?recv_buf_size=5000").value();
+  EXPECT_EQ(with_receive_buffer(own).options.at("recv_buf_size"), "5000");
+  EXPECT_EQ(with_receive_buffer(parse_lcm_url("memq://").value()).text(), "memq://");
+}
+
+struct BadUrl {
+  const char* text;
+  const char* complaint;
+};
+
+TEST(LcmUrl, NamesWhatIsWrong) {
+  const BadUrl cases[] = {
+      {"", "PROVIDER://NETWORK"},
+      {"239.255.76.67:7667", "PROVIDER://NETWORK"},
+      {"tcpq://localhost", "provider tcpq: must be udpm, memq or file"},
+      {"udpm://127.0.0.1:7667", "address 127.0.0.1: must be in 224.0.0.0"},
+      {"udpm://240.0.0.1:7667", "address 240.0.0.1"},
+      {"udpm://example.org:7667", "address example.org"},
+      {"udpm://239.0.0.1:0", "port 0: must be in [1, 65535]"},
+      {"udpm://239.0.0.1:65536", "port 65536"},
+      {"udpm://239.0.0.1:7667x", "port 7667x"},
+      {"udpm://?ttl=256", "ttl = 256: must be in [0, 255]"},
+      {"udpm://?ttl=-1", "ttl = -1"},
+      {"udpm://?recv_buf_size=0", "recv_buf_size = 0"},
+      {"udpm://?recv_buf_size=2M", "recv_buf_size = 2M"},
+      {"udpm://?size=2", "option size: udpm has none of that name"},
+      {"udpm://?ttl", "option \"ttl\": must be NAME=VALUE"},
+      {"udpm://?ttl=0&ttl=1", "option ttl: there twice"},
+      {"memq://name", "network name: memq has none"},
+      {"memq://?ttl=0", "option ttl"},
+      {"file://", "no path"},
+  };
+  for (const BadUrl& bad : cases) {
+    const auto url = parse_lcm_url(bad.text);
+    ASSERT_FALSE(url.ok()) << bad.text;
+    EXPECT_EQ(url.error().code, ErrorCode::kInvalidArgument);
+    EXPECT_THAT(url.error().message, HasSubstr(bad.complaint));
+    EXPECT_THAT(url.error().message, HasSubstr(bad.text));
+  }
+}
+
+}  // namespace
+}  // namespace overfly
