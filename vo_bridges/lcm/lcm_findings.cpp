@@ -1,0 +1,36 @@
+#include "vo_bridges/lcm/lcm_findings.hpp"
+
+#include <lcm/lcm.h>
+
+#include "vo_bridges/lcm/lcm_node.hpp"
+#include "vo_bridges/lcm/lcm_url.hpp"
+
+namespace overfly {
+
+LcmFindings lcm_findings_from(const std::string& multicast_fault, long long receive_buffer_bytes) {
+  const std::string version = "LCM " + std::to_string(LCM_MAJOR_VERSION) + "." +
+                              std::to_string(LCM_MINOR_VERSION) + "." +
+                              std::to_string(LCM_MICRO_VERSION);
+  if (!multicast_fault.empty()) {
+    return {false,
+            version + ", but " + multicast_fault,
+            "ip link set lo multicast on; ip route add 224.0.0.0/4 dev lo; let the firewall pass "
+            "UDP to 224.0.0.0/4"};
+  }
+  const std::string buffer = "net.core.rmem_max = " + std::to_string(receive_buffer_bytes);
+  if (receive_buffer_bytes > 0 && receive_buffer_bytes < kSmallestReceiveBuffer_bytes) {
+    return {false,
+            version + ", multicast comes back, but " + buffer +
+                " lets receivers lose most packets of a large image",
+            "sysctl -w net.core.rmem_max=8388608 (and into /etc/sysctl.d)"};
+  }
+  return {true, version + ", multicast comes back, " + buffer, ""};
+}
+
+LcmFindings lcm_findings() {
+  const Status multicast = probe_multicast(parse_lcm_url("udpm://").value().address());
+  return lcm_findings_from(multicast ? "" : multicast.error().message,
+                           largest_receive_buffer_bytes());
+}
+
+}  // namespace overfly
