@@ -2,7 +2,7 @@
 // be copied into any project; C++17, standard library and POSIX:
 //
 //   struct Mine : overfly_vo::Estimator { ... };
-//   int main() { Mine mine; return overfly_vo::run(mine); }
+//   int main() { return overfly_vo::run(Mine()); }
 #pragma once
 
 #include <netdb.h>
@@ -77,12 +77,21 @@ struct Answer {
   /// T_vo_camera, camera axes x right, y down, z forward. Counts only while tracking.
   std::array<double, 3> position{};
   std::array<double, 4> quaternion_xyzw{0.0, 0.0, 0.0, 1.0};
-  double scene_depth = 0.0;                ///< median, in the units of position; 0 = not known
-  std::map<std::string, double> counters;  ///< names without spaces
-  std::map<std::string, double> timings_ms;
-  DebugImage debug_image;                        ///< only where it is wanted
-  std::vector<std::array<float, 3>> map_points;  ///< likewise; in the frame of position
+  double scene_depth = 0.0;                  ///< median, in the units of position; 0 = not known
+  std::map<std::string, double> counters{};  ///< names without spaces
+  std::map<std::string, double> timings_ms{};
+  DebugImage debug_image{};                        ///< only where it is wanted
+  std::vector<std::array<float, 3>> map_points{};  ///< likewise; in the frame of position
 };
+
+/// The frame in RGB, to draw on.
+inline DebugImage picture_of(const Frame& frame) {
+  DebugImage picture{frame.width_px, frame.height_px, 3, {}};
+  const auto width = static_cast<std::size_t>(frame.width_px);
+  picture.pixels.resize(3 * width * static_cast<std::size_t>(frame.height_px));
+  for (std::size_t i = 0; i < picture.pixels.size(); ++i) picture.pixels[i] = frame.pixels[i / 3];
+  return picture;
+}
 
 namespace detail {
 class Connection;
@@ -94,7 +103,7 @@ class Estimator {
  public:
   virtual ~Estimator() = default;
   virtual std::string name() const = 0;
-  virtual std::string version() const = 0;
+  virtual std::string version() const { return "0"; }
   /// Takes the parameters wanted and returns all that are in force. Throw for one that is not
   /// known: to ignore it would falsify an experiment. Called once, first. As it stands: has none.
   virtual Parameters configure(const Parameters& wanted) {
@@ -125,6 +134,7 @@ class Estimator {
 /// Serves frames until the server says stop. Returns the program's exit code: 0 after a stop, 1
 /// when something failed (said on stderr). `address`: of the server; null = $OVERFLY_VO_ADDRESS.
 int run(Estimator& estimator, const char* address = nullptr);
+inline int run(Estimator&& estimator) { return run(estimator); }
 
 // What follows is how it is done.
 namespace detail {

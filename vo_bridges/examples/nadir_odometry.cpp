@@ -1,0 +1,59 @@
+// An example: a camera that looks straight down on flat ground. Shifts both halves of each frame
+// over the one before until they fit (Lucas, Kanade 1981); together they tell way, turn and climb.
+// Unit: the height at the start. Takes bank and relief for motion: to start from, not to compete.
+#include <Eigen/Dense>
+#include <complex>
+
+#include "vo_bridges/client/overfly_vo.hpp"
+
+using namespace overfly_vo;
+using Complex = std::complex<double>;  // x + iy of the image: a product turns and stretches
+using Image = Eigen::MatrixXd;
+
+struct NadirOdometry final : Estimator {
+  double focal = 1.0;  // [px / 4]
+  Image before;        // the last frame, shrunk by 4
+  Complex left, right, place, heading;
+
+  /// Where the part of `now` from column x0 on lies in before; not a number where it fits nowhere.
+  Complex shift_of(const Image& now, long x0, Complex shift) const {
+    const long rim = now.rows() / 6, rows = now.rows() - 2 * rim, cols = now.cols() / 2 - 2 * rim;
+    for (int round = 0; round < 30 && std::abs(shift) < double(rim - 1); ++round) {
+      const double x = std::floor(shift.real()), s = shift.real() - x;
+      const double y = std::floor(shift.imag()), t = shift.imag() - y;
+      const Image at = before.block(rim + long(y), x0 + rim + long(x), rows + 1, cols + 1);
+      const Image flat = at.leftCols(cols) * (1 - s) + at.rightCols(cols) * s;
+      Eigen::MatrixX2d J(rows * cols, 2);  // how the brightness changes with the shift
+      J.col(0) = (at.rightCols(cols) - at.leftCols(cols)).topRows(rows).reshaped();
+      J.col(1) = (flat.bottomRows(rows) - flat.topRows(rows)).reshaped();
+      const Image error = flat.topRows(rows) - now.block(rim, x0 + rim, rows, cols);
+      const Eigen::Vector2d step = J.householderQr().solve(error.reshaped() + t * J.col(1));
+      shift -= Complex(step.x(), step.y());
+      if (step.norm() < 1e-3) return shift;
+    }
+    return NAN;
+  }
+  std::string name() const override { return "nadir_odometry"; }
+  void calibrate(const Calibration& camera) override { focal = camera.fx_px / 4; }
+  void reset() override { before.resize(0, 0); }
+  Answer track(const Frame& frame) override {
+    Image now = Image::Zero(frame.height_px / 4, frame.width_px / 4);
+    for (long y = 0; y < 4 * now.rows(); ++y)
+      for (long x = 0; x < 4 * now.cols(); ++x)
+        now(y / 4, x / 4) += frame.pixels[y * frame.width_px + x];
+    if (before.size() == 0) before = now, place = left = right = 0, heading = 1;
+    left = shift_of(now, 0, left), right = shift_of(now, now.cols() / 2, right);
+    place += heading * (left + right) / (2 * focal);
+    heading *= 1.0 + (right - left) * 2.0 / double(now.cols());
+    const double depth = std::abs(heading), half = std::arg(heading) / 2;
+    Answer answer{std::isnan(depth) ? State::kLost : State::kTracking};  // once lost, for good
+    answer.position = {place.real(), place.imag(), 1 - depth};
+    answer.quaternion_xyzw = {0, 0, std::sin(half), std::cos(half)};
+    answer.scene_depth = depth;
+    if (frame.debug_wanted) answer.debug_image = picture_of(frame);
+    before = now;
+    return answer;
+  }
+};
+
+int main() { return run(NadirOdometry()); }

@@ -1,0 +1,58 @@
+#!/usr/bin/env python3
+"""An example: a camera that looks straight down and keeps its heading and its height.
+
+Shifts the sums of the brightness of each row, and of each column, over those of the frame before
+until they fit. Unit: the height. A turn, bank or climb breaks it: to start from, not to compete.
+"""
+import math
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "client"))
+import overfly_vo  # noqa: E402
+
+
+def shift_of(now, before, shift):
+    """Where in `before` the middle of `now` lies [px], searched from `shift` on (Gauss-Newton)."""
+    rim = len(now) // 4
+    for _ in range(30):
+        whole = math.floor(shift) if math.isfinite(shift) else rim
+        if not -rim <= whole < rim:
+            break
+        rise = error = 0.0
+        for i in range(rim, len(now) - rim):
+            slope = before[i + whole + 1] - before[i + whole]
+            rise += slope * slope
+            error += slope * (before[i + whole] + (shift - whole) * slope - now[i])
+        step = error / rise if rise > 0.0 else math.inf
+        shift -= step
+        if abs(step) < 1e-3:
+            return shift
+    return math.nan
+
+
+class ShiftOdometry(overfly_vo.Estimator):
+    name = "shift_odometry"
+
+    def calibrate(self, calibration):
+        self.focal_px = calibration.fx_px
+        self.reset()
+
+    def reset(self):
+        self.before, self.shift, self.position = None, (0.0, 0.0), (0.0, 0.0)
+
+    def track(self, frame):
+        columns = [sum(frame.pixels[x::frame.width_px]) for x in range(frame.width_px)]
+        rows = [sum(frame.pixels[y * frame.width_px:(y + 1) * frame.width_px])
+                for y in range(frame.height_px)]
+        now, before = (columns, rows), self.before or (columns, rows)
+        self.shift = tuple(shift_of(*pair) for pair in zip(now, before, self.shift))
+        self.before = now
+        self.position = tuple(p + s / self.focal_px for p, s in zip(self.position, self.shift))
+        state = overfly_vo.TRACKING if math.isfinite(sum(self.position)) else overfly_vo.LOST
+        picture = (frame.width_px, frame.height_px, 1, frame.pixels)
+        return overfly_vo.Answer(state=state, position=(*self.position, 0.0), scene_depth=1.0,
+                                 debug_image=picture if frame.debug_wanted else None)
+
+
+overfly_vo.run(ShiftOdometry())

@@ -1,0 +1,41 @@
+// Memory shared with a local estimator: images reach it without passing through a socket.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "core/image.hpp"
+#include "vo_bridges/process/file_descriptor.hpp"
+
+namespace overfly::process {
+
+/// A memory file of slots used in turn. Only this process can write to it, and nobody can cut it.
+class FrameMemory {
+ public:
+  static constexpr std::size_t kSlots = 2;
+
+  /// Empty where this machine cannot make such memory: frames then go through the socket.
+  static std::optional<FrameMemory> create(std::size_t slot_bytes);
+
+  FrameMemory(FrameMemory&& other) noexcept;
+  FrameMemory& operator=(FrameMemory&& other) noexcept;
+  ~FrameMemory();
+
+  [[nodiscard]] std::size_t slot_bytes() const { return slot_bytes_; }
+  /// Another descriptor of the file, to be given away.
+  [[nodiscard]] FileDescriptor descriptor() const;
+  /// Copies the image into the slot used longest ago and returns its number.
+  /// @pre the image has at most slot_bytes()
+  [[nodiscard]] std::uint32_t store(const Image& image);
+
+ private:
+  FrameMemory() = default;
+
+  FileDescriptor file_;
+  std::uint8_t* bytes_ = nullptr;
+  std::size_t slot_bytes_ = 0;
+  std::uint32_t next_slot_ = 0;
+};
+
+}  // namespace overfly::process

@@ -1,0 +1,58 @@
+// What the messages of the process protocol say, in the room's own types (docs/VO_PROTOCOL.md).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/result.hpp"
+#include "vo_bridges/parameter.hpp"
+#include "vo_bridges/process/wire.hpp"
+#include "vo_bridges/vo_port.hpp"
+
+namespace overfly::process {
+
+/// What an estimator said of itself.
+struct EstimatorHello {
+  std::string name;
+  std::string version;
+  bool takes_shared_memory = false;
+};
+
+/// The memory that frames go through; no slots = through the socket.
+struct FrameSlots {
+  std::size_t count = 0;
+  std::size_t bytes_each = 0;
+};
+
+/// How one frame goes out.
+struct FrameSending {
+  std::uint32_t crc32 = 0;
+  bool debug_wanted = false;
+  bool in_shared_memory = false;
+  std::uint32_t slot = 0;
+};
+
+[[nodiscard]] std::string server_hello(bool lockstep, const VoParameters& wanted);
+[[nodiscard]] std::string calibration_message(const VoFrame& frame,
+                                              double rate_hz,
+                                              const FrameSlots& slots);
+/// All but the pixels, which follow where they are not in shared memory.
+[[nodiscard]] std::string frame_message(const VoFrame& frame, const FrameSending& sending);
+
+/// Errors of all that parse: kInternal saying what is wrong with which field, and its value.
+[[nodiscard]] Result<EstimatorHello> hello_from(std::string_view payload);
+/// The answer to `frame`; its pose normalised.
+[[nodiscard]] Result<VoEstimate> answer_from(std::string_view payload, const VoFrame& frame);
+/// RGB, whatever it came as.
+[[nodiscard]] Result<Image> debug_image_from(std::string_view payload, const VoFrame& frame);
+[[nodiscard]] Result<std::vector<Eigen::Vector3f>> map_points_from(std::string_view payload,
+                                                                   const VoFrame& frame);
+[[nodiscard]] Result<std::map<std::string, std::string>> parameters_from(std::string_view payload);
+/// One line, warnings and errors marked as such.
+[[nodiscard]] Result<std::string> log_line_from(std::string_view payload);
+
+}  // namespace overfly::process

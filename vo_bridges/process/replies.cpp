@@ -1,0 +1,192 @@
+// What an estimator says, checked field by field: nothing of it is believed before.
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include "vo_bridges/process/messages.hpp"
+
+namespace overfly::process {
+
+namespace {
+
+constexpr std::size_t kNameLimitBytes = 128;
+
+Error bad(const std::string& what) { return {ErrorCode::kInternal, what}; }
+
+Error wrong_length(const char* message, std::size_t bytes, const std::string& limit) {
+  return bad(std::string(message) + " has " + std::to_string(bytes) + " bytes: must be " + limit);
+}
+
+bool is_name(std::string_view text) {
+  if (text.empty() || text.size() > kNameLimitBytes) return false;
+  for (const char c : text) {
+    if (c <= ' ' || c > '~') return false;
+  }
+  return true;
+}
+
+Status check_frame(const char* message, std::int64_t index, const VoFrame& frame) {
+  if (index == frame.index) return {};
+  return bad(std::string(message) + " is for frame " + std::to_string(index) + ": frame " +
+             std::to_string(frame.index) + " is under way");
+}
+
+Status read_pose(ByteReader* reader, EstimateSample* sample) {
+  for (int i = 0; i < 3; ++i) sample->T_vo_camera.translation[i] = reader->f64();
+  for (int i = 0; i < 4; ++i) sample->T_vo_camera.rotation.coeffs()[i] = reader->f64();  // x y z w
+  const double depth = reader->f64();
+  if (sample->state != TrackingState::kTracking) {
+    sample->T_vo_camera = {};
+    return {};
+  }
+  const double norm = sample->T_vo_camera.rotation.norm();
+  if (!sample->T_vo_camera.translation.allFinite()) return bad("the position is not finite");
+  if (!(std::abs(norm - 1.0) <= 1e-3)) {
+    return bad("the quaternion has length " + std::to_string(norm) + ": must be 1");
+  }
+  // A quaternion that is of length 1 to the last digits stays as it came.
+  if (std::abs(norm - 1.0) > 1e-12) sample->T_vo_camera.rotation.normalize();
+  if (!std::isfinite(depth) || depth < 0.0) {
+    return bad("scene depth = " + std::to_string(depth) + ": must be 0 or more and finite");
+  }
+  if (depth > 0.0) sample->scene_depth = depth;
+  return {};
+}
+
+/// "counter NAME VALUE" and "timing_ms NAME VALUE".
+Status read_figures(std::string_view text, VoEstimate* estimate) {
+  for (const auto& [key, value] : lines_of(text)) {
+    const bool counter = key == "counter";
+    if (!counter && key != "timing_ms") continue;
+    const std::size_t space = value.find(' ');
+    const std::string_view name = value.substr(0, space);
+    const std::string_view digits =
+        space == std::string_view::npos ? std::string_view{} : value.substr(space + 1);
+    double number = 0.0;
+    const auto [end, failure] = std::from_chars(digits.begin(), digits.end(), number);
+    if (!is_name(name) || failure != std::errc{} || end != digits.end() || !std::isfinite(number)) {
+      return bad(std::string("'") + printable(key) + " " + printable(value, 80) +
+                 "': must be a name and a finite number");
+    }
+    (counter ? estimate->counters : estimate->timing_ms)[std::string(name)] = number;
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<EstimatorHello> hello_from(std::string_view payload) {
+  EstimatorHello hello;
+  bool version_said = false;
+  for (const auto& [key, value] : lines_of(payload)) {
+    if (key == "protocol") {
+      version_said = true;
+      if (value != std::to_string(kProtocolVersion)) {
+        return bad("the estimator speaks version '" + printable(value, 40) +
+                   "' of the protocol: this is version " + std::to_string(kProtocolVersion));
+      }
+    }
+    if (key == "name") hello.name = printable(value, kNameLimitBytes);
+    if (key == "version") hello.version = printable(value, kNameLimitBytes);
+    if (key == "shared_memory") hello.takes_shared_memory = value == "true";
+  }
+  if (!version_said) return bad("HELLO lacks 'protocol': " + shown(payload));
+  if (hello.name.empty()) return bad("HELLO lacks 'name': " + shown(payload));
+  return hello;
+}
+
+Result<VoEstimate> answer_from(std::string_view payload, const VoFrame& frame) {
+  ByteReader reader(payload);
+  const std::int64_t index = reader.i64();
+  const std::uint32_t state = reader.u32();
+  const std::uint32_t map_id = reader.u32();
+  if (payload.size() < 88) return wrong_length("ANSWER", payload.size(), "88 or more");
+  if (Status status = check_frame("ANSWER", index, frame); !status) return status.error();
+  if (state > 2) return bad("state = " + std::to_string(state) + ": must be 0, 1 or 2");
+  if (map_id > static_cast<std::uint32_t>(std::numeric_limits<int>::max())) {
+    return bad("map_id = " + std::to_string(map_id) + ": is too large");
+  }
+  VoEstimate estimate;
+  estimate.sample.frame = frame.index;
+  estimate.sample.t_ns = frame.t_ns;
+  estimate.sample.state = static_cast<TrackingState>(state);
+  estimate.sample.map_id = static_cast<int>(map_id);
+  if (Status status = read_pose(&reader, &estimate.sample); !status) return status.error();
+  const std::uint32_t crc32 = reader.u32();
+  const std::uint32_t flags = reader.u32();
+  if ((flags & 1U) != 0) estimate.image_crc32 = crc32;
+  if (Status status = read_figures(reader.rest(), &estimate); !status) return status.error();
+  return estimate;
+}
+
+Result<Image> debug_image_from(std::string_view payload, const VoFrame& frame) {
+  ByteReader reader(payload);
+  const std::int64_t index = reader.i64();
+  const std::uint32_t width = reader.u32();
+  const std::uint32_t height = reader.u32();
+  const std::uint32_t channels = reader.u32();
+  reader.u32();
+  if (!reader.complete()) return wrong_length("DEBUG_IMAGE", payload.size(), "24 or more");
+  if (Status status = check_frame("DEBUG_IMAGE", index, frame); !status) return status.error();
+  const PinholeCamera& camera = frame.intrinsics;
+  if (width < 1 || height < 1 || width > static_cast<std::uint32_t>(camera.width_px) ||
+      height > static_cast<std::uint32_t>(camera.height_px) || (channels != 1 && channels != 3)) {
+    return bad("DEBUG_IMAGE is " + std::to_string(width) + " x " + std::to_string(height) +
+               " px of " + std::to_string(channels) + " channels: must be at most " +
+               std::to_string(camera.width_px) + " x " + std::to_string(camera.height_px) +
+               " px of 1 or 3 channels");
+  }
+  const std::string_view pixels = reader.rest();
+  const std::size_t bytes = std::size_t{width} * height * channels;
+  if (pixels.size() != bytes) {
+    return wrong_length("DEBUG_IMAGE", payload.size(), std::to_string(24 + bytes));
+  }
+  Image image(static_cast<int>(width), static_cast<int>(height), 3);
+  for (std::size_t i = 0; i < image.data.size(); ++i) {
+    image.data[i] = static_cast<std::uint8_t>(pixels[channels == 3 ? i : i / 3]);
+  }
+  return image;
+}
+
+Result<std::vector<Eigen::Vector3f>> map_points_from(std::string_view payload,
+                                                     const VoFrame& frame) {
+  ByteReader reader(payload);
+  const std::int64_t index = reader.i64();
+  const std::uint32_t count = reader.u32();
+  reader.u32();
+  if (!reader.complete()) return wrong_length("MAP_POINTS", payload.size(), "16 or more");
+  if (Status status = check_frame("MAP_POINTS", index, frame); !status) return status.error();
+  if (reader.rest().size() != std::size_t{count} * 12) {
+    return wrong_length("MAP_POINTS", payload.size(), std::to_string(16 + std::size_t{count} * 12));
+  }
+  std::vector<Eigen::Vector3f> points(count);
+  for (Eigen::Vector3f& point : points) {
+    for (int i = 0; i < 3; ++i) point[i] = reader.f32();
+    if (!point.allFinite()) return bad("MAP_POINTS has a point that is not finite");
+  }
+  return points;
+}
+
+Result<std::map<std::string, std::string>> parameters_from(std::string_view payload) {
+  std::map<std::string, std::string> parameters;
+  for (const auto& [name, value] : lines_of(payload)) {
+    if (!is_name(name)) {
+      return bad("PARAMETERS names '" + printable(name, 80) +
+                 "': must be 1 to 128 visible ASCII characters");
+    }
+    parameters[std::string(name)] = printable(value);
+  }
+  return parameters;
+}
+
+Result<std::string> log_line_from(std::string_view payload) {
+  ByteReader reader(payload);
+  const std::uint32_t level = reader.u32();
+  if (!reader.complete() || level > 3) {
+    return bad("LOG has no level of 0 to 3: " + shown(payload));
+  }
+  const char* const mark = level == 3 ? "error: " : level == 2 ? "warning: " : "";
+  return mark + printable(reader.rest());
+}
+
+}  // namespace overfly::process

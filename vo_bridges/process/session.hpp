@@ -1,0 +1,81 @@
+// The conversation with one estimator, from its start to its end.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/result.hpp"
+#include "vo_bridges/process/channel.hpp"
+#include "vo_bridges/process/child_process.hpp"
+#include "vo_bridges/process/frame_memory.hpp"
+#include "vo_bridges/process/listener.hpp"
+#include "vo_bridges/process/messages.hpp"
+#include "vo_bridges/process/process_estimator.hpp"
+
+namespace overfly::process {
+
+/// One thread at a time, but for the three methods that say otherwise. The first error ends the
+/// session: the child is killed, and every later call fails with the same error.
+class Session {
+ public:
+  /// Starts the child or waits for the estimator, says hello, and waits until it is ready.
+  /// Errors: as create_process_estimator.
+  static Result<std::unique_ptr<Session>> open(const ProcessEstimatorOptions& options);
+  /// Says stop, waits a little, then kills.
+  ~Session();
+
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  /// Tells the camera and waits until the estimator is ready for its frames.
+  [[nodiscard]] Status calibrate(const VoFrame& frame);
+  /// Sends the frame and waits for its answer; empty when it does not come in time. Such a frame is
+  /// waited for before the next one is sent.
+  [[nodiscard]] Result<std::optional<VoEstimate>> track(const VoFrame& frame, bool debug_wanted);
+  [[nodiscard]] Status reset();
+
+  /// From any thread.
+  [[nodiscard]] std::map<std::string, std::string> parameters() const;
+  [[nodiscard]] std::vector<std::string> take_log() { return output_->take_lines(); }
+  [[nodiscard]] std::optional<ResourceUse> resource_use() const;
+
+ private:
+  explicit Session(const ProcessEstimatorOptions& options) : options_(options) {}
+  [[nodiscard]] Status connect(Listener listener, Clock::time_point deadline);
+  [[nodiscard]] Status greet(Clock::time_point deadline);
+  /// Waits until READY says that it is done with `done`; what it still says of frames is passed
+  /// over.
+  [[nodiscard]] Status wait_ready(MessageType done, Clock::time_point deadline);
+  /// Waits for the answer to the frame under way; empty at the deadline.
+  [[nodiscard]] Result<std::optional<VoEstimate>> wait_answer(Clock::time_point deadline);
+  void send(const VoFrame& frame, bool debug_wanted);
+  /// Whether `message` was one that may come at any time.
+  [[nodiscard]] Result<bool> take_notice(const Message& message);
+  [[nodiscard]] Status take_debug(const Message& message, VoEstimate* extra) const;
+  [[nodiscard]] std::string described() const;
+  /// Ends the session for this reason: says how the child ended and what it last said.
+  Error end(const Error& why);
+
+  ProcessEstimatorOptions options_;
+  std::shared_ptr<ChildOutput> output_ = std::make_shared<ChildOutput>();
+  std::unique_ptr<ChildProcess> child_;
+  std::optional<Channel> channel_;
+  bool local_ = false;
+  int peer_pid_ = 0;
+  EstimatorHello hello_;
+  std::optional<FrameMemory> memory_;
+  std::optional<VoFrame> under_way_;  // sent and not answered; without its image
+  bool debug_under_way_ = false;
+  VoEstimate extra_;  // debug image and map points of it
+  Clock::time_point sent_at_;
+  std::optional<Error> ended_;
+  mutable std::mutex mutex_;
+  std::map<std::string, std::string> parameters_;
+};
+
+}  // namespace overfly::process

@@ -1,0 +1,150 @@
+// How a session goes on, frame by frame.
+#include <utility>
+
+#include "vo_bridges/process/session.hpp"
+
+namespace overfly::process {
+
+namespace {
+
+/// A frame without an answer for so many times the timeout is the last one.
+constexpr double kTimeoutsToGiveUp = 3.0;
+
+Clock::time_point after_s(double seconds) {
+  return Clock::now() +
+         std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+}
+
+}  // namespace
+
+Status Session::calibrate(const VoFrame& frame) {
+  if (ended_) return *ended_;
+  const std::size_t pixels = frame.image->data.size();
+  memory_.reset();
+  if (local_ && hello_.takes_shared_memory) memory_ = FrameMemory::create(pixels);
+  FrameSlots slots;
+  FileDescriptor descriptor;
+  if (memory_) {
+    slots = {FrameMemory::kSlots, memory_->slot_bytes()};
+    descriptor = memory_->descriptor();
+  }
+  output_->say(memory_ ? "frames go through shared memory" : "frames go through the socket");
+  channel_->begin_frame(pixels);
+  channel_->enqueue(
+      calibration_message(frame, options_.rate_hz, slots), nullptr, std::move(descriptor));
+  Status ready = wait_ready(MessageType::kCalibration, after_s(options_.start_timeout_s));
+  if (!ready) return end(ready.error());
+  return {};
+}
+
+void Session::send(const VoFrame& frame, bool debug_wanted) {
+  FrameSending sending;
+  sending.crc32 = frame.image_crc32 ? *frame.image_crc32 : crc32_of(*frame.image);
+  sending.debug_wanted = debug_wanted;
+  if (memory_) {
+    sending.in_shared_memory = true;
+    sending.slot = memory_->store(*frame.image);
+  }
+  channel_->begin_frame(frame.image->data.size());
+  channel_->enqueue(frame_message(frame, sending), memory_ ? nullptr : frame.image);
+  under_way_ = frame;
+  under_way_->image.reset();
+  debug_under_way_ = debug_wanted;
+  extra_ = {};
+  sent_at_ = Clock::now();
+}
+
+Result<bool> Session::take_notice(const Message& message) {
+  if (message.type == MessageType::kLog) {
+    const Result<std::string> line = log_line_from(message.payload);
+    if (!line) return line.error();
+    output_->say(*line);
+    return true;
+  }
+  if (message.type == MessageType::kParameters) {
+    const auto told = parameters_from(message.payload);
+    if (!told) return told.error();
+    const std::lock_guard lock(mutex_);
+    for (const auto& [name, value] : *told) parameters_[name] = value;
+    return true;
+  }
+  return false;
+}
+
+Status Session::take_debug(const Message& message, VoEstimate* extra) const {
+  if (message.type == MessageType::kDebugImage) {
+    Result<Image> image = debug_image_from(message.payload, *under_way_);
+    if (!image) return image.error();
+    if (debug_under_way_) extra->debug_image = std::move(image).value();
+    return {};
+  }
+  auto points = map_points_from(message.payload, *under_way_);
+  if (!points) return points.error();
+  if (debug_under_way_) extra->map_points_vo = std::move(points).value();
+  return {};
+}
+
+Result<std::optional<VoEstimate>> Session::wait_answer(Clock::time_point deadline) {
+  for (;;) {
+    Result<std::optional<Message>> message = channel_->next(deadline);
+    if (!message) return message.error();
+    if (!*message) return std::optional<VoEstimate>{};
+    const Result<bool> noticed = take_notice(**message);
+    if (!noticed) return noticed.error();
+    if (*noticed) {
+      if (Clock::now() >= deadline) return std::optional<VoEstimate>{};
+      continue;
+    }
+    const MessageType type = (*message)->type;
+    if (type == MessageType::kDebugImage || type == MessageType::kMapPoints) {
+      if (Status status = take_debug(**message, &extra_); !status) return status.error();
+      continue;
+    }
+    if (type != MessageType::kAnswer) {
+      return Error{ErrorCode::kInternal,
+                   "the estimator sent " + name_of(type) + " where ANSWER to frame " +
+                       std::to_string(under_way_->index) + " must come"};
+    }
+    Result<VoEstimate> estimate = answer_from((*message)->payload, *under_way_);
+    if (!estimate)
+      return estimate.error().in("ANSWER to frame " + std::to_string(under_way_->index));
+    estimate->debug_image = std::move(extra_.debug_image);
+    estimate->map_points_vo = std::move(extra_.map_points_vo);
+    under_way_.reset();
+    return std::optional<VoEstimate>(std::move(estimate).value());
+  }
+}
+
+Result<std::optional<VoEstimate>> Session::track(const VoFrame& frame, bool debug_wanted) {
+  if (ended_) return *ended_;
+  const auto deadline = after_s(options_.answer_timeout_s);
+  if (under_way_) {
+    const Result<std::optional<VoEstimate>> late = wait_answer(deadline);
+    if (!late) return end(late.error());
+  }
+  Result<std::optional<VoEstimate>> answer = std::optional<VoEstimate>{};
+  if (!under_way_) {
+    send(frame, debug_wanted);
+    answer = wait_answer(deadline);
+    if (!answer) return end(answer.error());
+  }
+  if (*answer) return answer;
+  const double silent_s = std::chrono::duration<double>(Clock::now() - sent_at_).count();
+  if (silent_s < kTimeoutsToGiveUp * options_.answer_timeout_s) return std::optional<VoEstimate>{};
+  return end({ErrorCode::kInternal,
+              "the estimator hangs: frame " + std::to_string(under_way_->index) +
+                  " was not answered within " + std::to_string(std::lround(silent_s * 10.0) / 10) +
+                  " s"});
+}
+
+Status Session::reset() {
+  if (ended_) return *ended_;
+  channel_->begin_frame(0);
+  channel_->enqueue(message_of(MessageType::kReset));
+  Status ready = wait_ready(MessageType::kReset, after_s(options_.answer_timeout_s));
+  if (!ready) return end(ready.error());
+  under_way_.reset();
+  return {};
+}
+
+}  // namespace overfly::process

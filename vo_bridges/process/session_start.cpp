@@ -1,0 +1,178 @@
+// How a session begins and ends.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "vo_bridges/process/process_usage.hpp"
+#include "vo_bridges/process/session.hpp"
+
+namespace overfly::process {
+
+namespace {
+
+using std::chrono::milliseconds;
+
+/// What an estimator has to end by itself after STOP.
+constexpr milliseconds kStopPatience(3000);
+/// What a program whose connection broke has to finish dying, for its last words to be whole.
+constexpr milliseconds kDeathPatience(1000);
+
+std::string seconds_text(double seconds) { return text_of(ParameterValue(seconds)) + " s"; }
+
+}  // namespace
+
+Result<std::unique_ptr<Session>> Session::open(const ProcessEstimatorOptions& options) {
+  std::unique_ptr<Session> session(new Session(options));
+  const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                           std::chrono::duration<double>(options.start_timeout_s));
+  if (Status status = session->output_->open_file(options.output_file); !status) {
+    return status.error();
+  }
+  Result<Listener> listener =
+      options.listen.empty() ? Listener::open_private() : Listener::open(options.listen);
+  if (!listener) return listener.error();
+  if (!options.command.empty()) {
+    const ChildCommand command{options.command,
+                               {"OVERFLY_VO_ADDRESS=" + listener->address()},
+                               options.working_folder,
+                               options.cpus,
+                               options.memory_limit_mb};
+    Result<std::unique_ptr<ChildProcess>> child = ChildProcess::start(command, session->output_);
+    if (!child) return child.error();
+    session->child_ = std::move(child).value();
+  }
+  Status status = session->connect(std::move(listener).value(), deadline);
+  if (status) status = session->greet(deadline);
+  if (!status) return session->end(status.error());
+  return session;
+}
+
+Status Session::connect(Listener listener, Clock::time_point deadline) {
+  constexpr milliseconds kStep(50);
+  while (Clock::now() < deadline) {
+    // Asked before accept: a child that connected, and ended, is still heard.
+    const bool child_gone = child_ != nullptr && !child_->running();
+    Result<std::optional<Peer>> peer = listener.accept(kStep);
+    if (!peer) return peer.error();
+    if (*peer) {
+      local_ = (*peer)->local;
+      peer_pid_ = (*peer)->pid;
+      channel_.emplace(std::move((*peer)->socket));
+      return {};
+    }
+    if (child_gone) {
+      return Error{ErrorCode::kInternal, "the estimator ended before it said hello"};
+    }
+  }
+  return Error{ErrorCode::kInternal,
+               "no estimator connected to " + listener.address() + " within " +
+                   seconds_text(options_.start_timeout_s)};
+}
+
+Status Session::greet(Clock::time_point deadline) {
+  Result<std::optional<Message>> message = channel_->next(deadline);
+  if (!message) return message.error();
+  if (!*message) {
+    return Error{ErrorCode::kInternal,
+                 "the estimator connected, but did not say hello within " +
+                     seconds_text(options_.start_timeout_s)};
+  }
+  if ((*message)->type != MessageType::kHello) {
+    return Error{ErrorCode::kInternal,
+                 "the estimator began with " + name_of((*message)->type) + ": must be HELLO"};
+  }
+  Result<EstimatorHello> hello = hello_from((*message)->payload);
+  if (!hello) return hello.error();
+  hello_ = std::move(hello).value();
+  {
+    const std::lock_guard lock(mutex_);
+    parameters_["estimator.name"] = hello_.name;
+    parameters_["estimator.version"] = hello_.version;
+  }
+  channel_->enqueue(server_hello(options_.lockstep, options_.parameters));
+  return wait_ready(MessageType::kHello, deadline);
+}
+
+Status Session::wait_ready(MessageType done, Clock::time_point deadline) {
+  const auto begin = Clock::now();
+  for (;;) {
+    Result<std::optional<Message>> message = channel_->next(deadline);
+    if (!message) return message.error();
+    if (!*message) {
+      const double waited_s = std::chrono::duration<double>(Clock::now() - begin).count();
+      return Error{ErrorCode::kInternal,
+                   "the estimator was not ready after " + name_of(done) + " within " +
+                       seconds_text(std::round(waited_s * 100.0) / 100.0)};
+    }
+    const Result<bool> noticed = take_notice(**message);
+    if (!noticed) return noticed.error();
+    if (*noticed) continue;
+    const MessageType type = (*message)->type;
+    const bool of_a_frame = type == MessageType::kAnswer || type == MessageType::kDebugImage ||
+                            type == MessageType::kMapPoints;
+    if (of_a_frame && under_way_ && done == MessageType::kReset) continue;
+    if (type != MessageType::kReady) {
+      return Error{ErrorCode::kInternal,
+                   "the estimator sent " + name_of(type) + " where READY for " + name_of(done) +
+                       " must come"};
+    }
+    if (ByteReader((*message)->payload).u32() == static_cast<std::uint32_t>(done)) return {};
+    return Error{
+        ErrorCode::kInternal,
+        "the estimator is ready for " + shown((*message)->payload) + ", not for " + name_of(done)};
+  }
+}
+
+std::string Session::described() const {
+  if (!hello_.name.empty()) return "estimator " + hello_.name;
+  return options_.command.empty() ? options_.listen : std::string("'") + options_.command[0] + "'";
+}
+
+Error Session::end(const Error& why) {
+  if (ended_) return *ended_;
+  std::string text = described() + ": " + why.message;
+  const bool ends_by_itself = channel_ && channel_->closed();
+  channel_.reset();
+  if (child_) {
+    const bool by_itself = child_->wait(ends_by_itself ? kDeathPatience : milliseconds(0));
+    if (by_itself) output_->wait_closed(kDeathPatience);
+    const std::string how = child_->how_it_ended();
+    child_->stop();
+    if (by_itself) text += "; it " + how;
+    text += output_->last_words();
+  }
+  ended_ = Error{why.code, text};
+  return *ended_;
+}
+
+Session::~Session() {
+  if (channel_ && !ended_) {
+    channel_->enqueue(message_of(MessageType::kStop));
+    channel_->begin_frame(0);
+    const auto deadline = Clock::now() + (child_ ? kStopPatience : kDeathPatience);
+    // Read on: an estimator that still says something must not wait for us with its end.
+    for (bool open = true; open && Clock::now() < deadline;) {
+      const Result<std::optional<Message>> message = channel_->next(deadline);
+      open = message.ok() && message->has_value();
+      if (open) static_cast<void>(take_notice(**message));
+    }
+    channel_.reset();
+    if (child_) {
+      child_->wait(std::max(milliseconds(0),
+                            std::chrono::duration_cast<milliseconds>(deadline - Clock::now())));
+    }
+  }
+  if (child_) child_->stop();
+}
+
+std::optional<ResourceUse> Session::resource_use() const {
+  if (child_) return child_->resource_use();
+  return peer_pid_ > 0 ? usage_of(peer_pid_) : std::nullopt;
+}
+
+std::map<std::string, std::string> Session::parameters() const {
+  const std::lock_guard lock(mutex_);
+  return parameters_;
+}
+
+}  // namespace overfly::process
