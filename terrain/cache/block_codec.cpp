@@ -16,7 +16,7 @@ enum TileFlag : std::uint8_t { kGrey = 1, kMasked = 2 };
 
 /// First byte: the method, index into kMethods.
 Bytes compress(const Bytes& plain) {
-  for (std::uint8_t method = 0; method < std::size(kMethods); ++method) {
+  for (std::size_t method = 0; method < std::size(kMethods); ++method) {
     const CPLCompressor* compressor = CPLGetCompressor(kMethods[method]);
     if (compressor == nullptr) continue;
     CPLStringList options;
@@ -29,7 +29,7 @@ Bytes compress(const Bytes& plain) {
     }
     const auto* begin = static_cast<const std::uint8_t*>(out);
     Bytes packed(size + 1);
-    packed[0] = method;
+    packed[0] = static_cast<std::uint8_t>(method);
     std::copy(begin, begin + size, packed.begin() + 1);
     VSIFree(out);
     return packed;
