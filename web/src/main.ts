@@ -5,6 +5,7 @@ import './styles/layout.css';
 import './styles/panels.css';
 import './styles/side.css';
 import './styles/timeline.css';
+import './styles/estimators.css';
 import { RestClient } from './connection/rest_client';
 import { StreamClient } from './connection/stream_client';
 import { Alignment } from './store/alignment';

@@ -1,5 +1,5 @@
 // Messages of the WebSocket /api/v1/stream; docs/PROTOCOL.md is the contract.
-import type { Metrics, Run } from './rest_types';
+import type { EstimatorStatus, Metrics, Run } from './rest_types';
 
 export const kProtocolVersion = 1;
 
@@ -87,5 +87,6 @@ export type ServerMessage =
   | { type: 'run'; run: Run }
   | { type: 'streams'; streams: { id: number; name: string; camera?: string }[] }
   | ({ type: 'rows' } & Rows)
+  | { type: 'estimators'; estimators: Record<string, EstimatorStatus> }
   | { type: 'metrics'; metrics: Metrics }
   | ({ type: 'playback' } & Playback);

@@ -10,6 +10,7 @@ const kRequired: Record<ServerMessage['type'], Record<string, string>> = {
   run: { run: 'object' },
   streams: { streams: 'object' },
   rows: { stream: 'string', seq: 'number', columns: 'object' },
+  estimators: { estimators: 'object' },
   metrics: { metrics: 'object' },
   playback: { t_ns: 'number', frame: 'number', playing: 'boolean', estimates: 'object' },
 };

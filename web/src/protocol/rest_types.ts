@@ -79,6 +79,37 @@ export interface Metrics {
   };
 }
 
+export interface LatencySummary {
+  median: number;
+  p95: number;
+  p99: number;
+  max: number;
+}
+
+export interface EstimatorUse {
+  cpu_s: number;
+  /** Of one processor. */
+  cpu_percent: number;
+  /** null for one that shares the server's process. */
+  peak_memory_mb: number | null;
+  measured: 'process' | 'calling_thread';
+}
+
+/** How an estimator fares in its run. */
+export interface EstimatorStatus {
+  /** STARTING, a tracking state, or CRASHED. */
+  state: string;
+  /** Why it is gone. */
+  crash: string | null;
+  answered: number;
+  dropped: number;
+  unanswered: number;
+  hashes_compared: number;
+  hash_mismatches: number;
+  latency_ms: LatencySummary | null;
+  resources: EstimatorUse | null;
+}
+
 export function isActive(run: Run): boolean {
   return run.status === 'queued' || run.status === 'running';
 }

@@ -122,10 +122,10 @@ export function fieldsOf(document: JsonObject): FieldSpec[] {
   );
 }
 
-/** What a field shows for a document: text of a number or choice, comma-separated estimators. */
+/** What a field shows for a document: text of a number or choice, estimators' names by commas. */
 export function fieldText(document: JsonObject, field: FieldSpec): string {
   const value = valueAt(document, field.path);
-  if (field.kind === 'estimators') return estimatorsOf(value).map(typeOf).join(',');
+  if (field.kind === 'estimators') return estimatorsOf(value).map(nameOf).join(',');
   return typeof value === 'number' || typeof value === 'string' ? String(value) : '';
 }
 
@@ -169,15 +169,15 @@ function estimatorsOf(value: Json | undefined): JsonObject[] {
   );
 }
 
-function typeOf(estimator: JsonObject): string {
-  const type = estimator['type'];
-  return typeof type === 'string' ? type : '';
+function nameOf(estimator: JsonObject): string {
+  const name = estimator['name'];
+  return typeof name === 'string' ? name : '';
 }
 
-/** Estimators that the document has keep their parameters. */
+/** Estimators that the document has stay as they are; others are native ones, named as their type. */
 function estimatorList(text: string, known: JsonObject[]): Json[] {
   return text
     .split(',')
-    .filter((type) => type !== '')
-    .map((type) => known.find((entry) => typeOf(entry) === type) ?? { name: type, type });
+    .filter((name) => name !== '')
+    .map((name) => known.find((entry) => nameOf(entry) === name) ?? { name, type: name });
 }

@@ -26,6 +26,8 @@ export interface LogLine {
   text: string;
   /** 'fault' where one of the scenario begins or ends; else empty. */
   kind: string;
+  /** The estimator that said it; empty = the range. */
+  source: string;
 }
 
 export interface EstimateRows {
@@ -119,5 +121,6 @@ function logLines(columns: Record<string, Cell[]>, count: number): LogLine[] {
     level: String(columns['level']?.[i] ?? 'info'),
     text: String(columns['text']?.[i] ?? ''),
     kind: String(columns['kind']?.[i] ?? ''),
+    source: String(columns['source']?.[i] ?? ''),
   }));
 }

@@ -61,6 +61,7 @@ export class Session implements StreamListener {
     state.run = state.runs?.find((run) => run.id === id) ?? null;
     state.data = new RunData();
     state.metrics = null;
+    state.statuses = {};
     state.playback = null;
     state.wantedSpeed = null;
     state.aligned = null;
@@ -70,7 +71,8 @@ export class Session implements StreamListener {
     this.livePlace_ns = null;
     this.subscribed = '';
     this.client?.attach(id);
-    this.store.change('run', 'rows', 'log', 'metrics', 'playback', 'pictures', 'scene', 'cameras');
+    this.store.change('run', 'rows', 'log', 'metrics', 'estimators', 'playback');
+    this.store.change('pictures', 'scene', 'cameras');
   }
 
   /** Shows another camera of the run; null = the first. */
@@ -104,6 +106,9 @@ export class Session implements StreamListener {
     } else if (message.type === 'metrics') {
       state.metrics = message.metrics;
       this.store.change('metrics');
+    } else if (message.type === 'estimators') {
+      state.statuses = message.estimators;
+      this.store.change('estimators');
     } else if (message.type === 'playback') {
       this.onPlayback(message);
     } else if (message.type === 'error') {

@@ -3,7 +3,14 @@ import type { ConnectionState } from '../connection/stream_client';
 import { picturesOf } from '../connection/stream_client';
 import type { Fault } from '../protocol/faults';
 import type { Playback, SceneMode, SceneView } from '../protocol/messages';
-import type { CameraInfo, JsonObject, Metrics, Run, ScenarioEntry } from '../protocol/rest_types';
+import type {
+  CameraInfo,
+  EstimatorStatus,
+  JsonObject,
+  Metrics,
+  Run,
+  ScenarioEntry,
+} from '../protocol/rest_types';
 import { kDefaultAlignment } from './error_table';
 import type { EstimateRows } from './run_data';
 import { RunData } from './run_data';
@@ -52,6 +59,8 @@ export interface State {
   run: Run | null;
   data: RunData;
   metrics: Metrics | null;
+  /** How the run's estimators fare, by name. */
+  statuses: Record<string, EstimatorStatus>;
   playback: Playback | null;
   /** Asked for and not confirmed yet. */
   wantedSpeed: number | null;
@@ -86,6 +95,7 @@ export function initialState(): State {
     run: null,
     data: new RunData(),
     metrics: null,
+    statuses: {},
     playback: null,
     wantedSpeed: null,
     pictures: new Map(),
@@ -130,6 +140,7 @@ export type Topic =
   | 'rows'
   | 'log'
   | 'metrics'
+  | 'estimators'
   | 'playback'
   | 'pictures'
   | 'scene'

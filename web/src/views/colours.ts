@@ -20,6 +20,7 @@ export const kStateColours: Readonly<Record<string, string>> = {
   INITIALISING: '#6b7688',
   TRACKING: '#3fb950',
   LOST: '#e5534b',
+  CRASHED: '#ff7b72',
 };
 
 const kFaultColours: Readonly<Record<string, string>> = {

@@ -168,9 +168,9 @@ function valueControl(spec: FieldSpec, text: string, id: string) {
 function estimatorControl(spec: FieldSpec, text: string) {
   const chosen = text.split(',');
   const choices = [...(spec.choices ?? [])];
-  for (const type of chosen) {
-    if (type !== '' && !choices.some(({ value }) => value === type))
-      choices.push({ value: type, label: type });
+  for (const name of chosen) {
+    if (name !== '' && !choices.some(({ value }) => value === name))
+      choices.push({ value: name, label: name });
   }
   const boxes = choices.map(({ value, label }) => {
     const box = h('input', {
@@ -184,8 +184,8 @@ function estimatorControl(spec: FieldSpec, text: string) {
   // In the scenario's order where nothing changed, so that nothing is overridden.
   const read = () => {
     const ticked = boxes.filter(({ box }) => box.checked).map(({ box }) => box.value);
-    const kept = chosen.filter((type) => ticked.includes(type));
-    return [...kept, ...ticked.filter((type) => !chosen.includes(type))].join(',');
+    const kept = chosen.filter((name) => ticked.includes(name));
+    return [...kept, ...ticked.filter((name) => !chosen.includes(name))].join(',');
   };
   return { control: h('div', { class: 'checks' }, ...boxes.map(({ label }) => label)), read };
 }

@@ -34,9 +34,10 @@ export class LogPanel implements View {
     }
     const atEnd = this.list.scrollHeight - this.list.scrollTop - this.list.clientHeight < 24;
     const first = Math.max(this.shown, data.log.length - kMostLines);
-    for (const { t_ns, level, text } of data.log.slice(first)) {
+    for (const { t_ns, level, text, source } of data.log.slice(first)) {
       const time = h('time', {}, formatTime(t_ns));
-      this.list.append(h('li', { 'data-level': level }, time, h('span', {}, text)));
+      const said = source === '' ? text : `${source}: ${text}`;
+      this.list.append(h('li', { 'data-level': level }, time, h('span', {}, said)));
     }
     this.shown = data.log.length;
     while (this.list.children.length > kMostLines) this.list.firstElementChild?.remove();

@@ -1,14 +1,17 @@
-// Plots over time, drawn at most 15 times a second: the pose, or the camera's image.
+// Plots over time, drawn at most 15 times a second: the pose, or the camera's image; or, in their
+// place, how the estimators fare.
+import { needsAttention } from '../store/estimator_status';
 import { formatTime } from '../store/format';
 import { lastAtOrBefore } from '../store/table';
 import type { Span } from '../store/time_window';
 import { following, zoomed } from '../store/time_window';
 import { shownAlignment } from '../store/state';
 import type { Topic } from '../store/state';
+import { EstimatorTable } from './estimator_table';
 import { h, rebuild, setAttribute, setText } from './dom';
 import type { Panel } from './panel';
 import { frameOf, makePanel } from './panel';
-import type { Strip } from './plot_strips';
+import type { PlotActions, Strip } from './plot_strips';
 import { imageStrips, poseStrips } from './plot_strips';
 import type { Context, View } from './view';
 
@@ -17,6 +20,7 @@ const kRedraw_ms = 1000 / 15;
 const kGroups = [
   { name: 'pose', label: 'Pose', hint: 'Position and attitude: truth and estimates' },
   { name: 'image', label: 'Image', hint: 'Texels per pixel, exposure and saturation' },
+  { name: 'estimators', label: 'Estimators', hint: 'State, drops, latency, CPU, memory, log' },
 ] as const;
 type Group = (typeof kGroups)[number]['name'];
 
@@ -24,6 +28,7 @@ export class PlotsPanel implements View {
   readonly root: HTMLElement;
   private readonly panel: Panel;
   private readonly grid = h('div', { class: 'plot-grid' });
+  private readonly statuses = new EstimatorTable();
   private readonly tabs = h('span', { class: 'tabs' });
   private readonly alignment = h('span', {
     class: 'alignment-note',
@@ -44,13 +49,17 @@ export class PlotsPanel implements View {
   constructor(private readonly context: Context) {
     this.panel = makePanel('plots', 'Over time [s]', true);
     this.panel.tools.append(this.tabs, this.alignment, this.hoverTime);
-    this.panel.body.append(this.grid);
+    this.panel.body.append(this.grid, this.statuses.root);
     this.root = this.panel.root;
     this.build();
   }
 
   update(changed: ReadonlySet<Topic>): void {
     if (changed.has('run') || changed.has('rows')) this.drawSoon();
+    if (changed.has('run') || changed.has('estimators') || changed.has('log')) {
+      this.drawTabs();
+      if (this.group === 'estimators') this.statuses.draw(this.context.store.state);
+    }
     if (changed.has('playback')) this.followCursor();
     if (changed.has('playback') || changed.has('run')) this.moveCursor();
   }
@@ -112,12 +121,15 @@ export class PlotsPanel implements View {
     if (run !== String(state.runId)) this.window_s = null;
     this.key = this.wantedKey();
     for (const { plot } of this.strips) plot.destroy();
-    const actions = {
+    const actions: PlotActions = {
       onSeek: (t_s: number) => this.context.player.seekTime(t_s * 1e9),
       onHover: (row: number | null) => this.hover(row),
       onZoom: (centre_s: number, factor: number) => this.zoom(centre_s, factor),
     };
-    this.strips = this.group === 'pose' ? poseStrips(names, actions) : imageStrips(actions);
+    this.strips = this.makeStrips(names, actions);
+    this.grid.hidden = this.group === 'estimators';
+    this.statuses.root.hidden = this.group !== 'estimators';
+    if (this.group === 'estimators') this.statuses.draw(state);
     setAttribute(this.grid, 'data-group', this.group);
     this.grid.replaceChildren(...this.strips.map(({ plot }) => plot.root));
     const drawn = this.group === 'pose' && names.length > 0;
@@ -125,8 +137,14 @@ export class PlotsPanel implements View {
     this.drawTabs();
   }
 
+  private makeStrips(names: readonly string[], actions: PlotActions): Strip[] {
+    if (this.group === 'pose') return poseStrips(names, actions);
+    return this.group === 'image' ? imageStrips(actions) : [];
+  }
+
   private drawTabs(): void {
-    rebuild(this.tabs, this.group, () =>
+    const attention = needsAttention(this.context.store.state.statuses);
+    rebuild(this.tabs, `${this.group} ${attention}`, () =>
       kGroups.map(({ name, label, hint }) =>
         h(
           'button',
@@ -135,6 +153,7 @@ export class PlotsPanel implements View {
             title: hint,
             'data-group': name,
             'aria-pressed': name === this.group ? 'true' : 'false',
+            'data-attention': attention && name === 'estimators',
             onclick: () => {
               this.group = name;
               this.draw();

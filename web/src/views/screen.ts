@@ -24,6 +24,7 @@ const kEverything = new Set([
   'rows',
   'log',
   'metrics',
+  'estimators',
   'playback',
   'pictures',
   'scene',

@@ -43,13 +43,21 @@ describe('the launcher', () => {
     expect(overridesOf(course, texts(course, { estimators: '' })).overrides).toEqual({
       estimators: [],
     });
-    expect(
-      overridesOf(course, texts(course, { estimators: 'feature,drifting' })).overrides,
-    ).toEqual({
+    expect(overridesOf(course, texts(course, { estimators: 'orb,drifting' })).overrides).toEqual({
       estimators: [
         { name: 'orb', type: 'feature', parameters: { features: 900 } },
         { name: 'drifting', type: 'drifting' },
       ],
+    });
+  });
+
+  it('tells two estimators behind one kind of door apart', () => {
+    const orb = { name: 'orb', type: 'process', command: ['orb'] };
+    const svo = { name: 'svo', type: 'process', command: ['svo'] };
+    const doors: JsonObject = { ...course, estimators: [orb, svo] };
+    expect(overridesOf(doors, texts(doors, {})).overrides).toEqual({});
+    expect(overridesOf(doors, texts(doors, { estimators: 'svo' })).overrides).toEqual({
+      estimators: [svo],
     });
   });
 

@@ -22,7 +22,7 @@ describe('RunData', () => {
     data.apply({ stream: 'log', seq: 0, columns: { t_ns: [1], level: ['info'], text: ['hi'] } });
     expect(data.resume()).toEqual({ truth: 3, 'estimate/a': 1, log: 1 });
     expect(data.estimates.get('a')?.states).toEqual(['LOST']);
-    expect(data.log).toEqual([{ t_ns: 1, level: 'info', text: 'hi', kind: '' }]);
+    expect(data.log).toEqual([{ t_ns: 1, level: 'info', text: 'hi', kind: '', source: '' }]);
     expect(data.generation).toBe(0);
   });
 

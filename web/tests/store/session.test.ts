@@ -1,6 +1,6 @@
 import { beforeEach, describe, expect, it } from 'vitest';
 import { cameraPictures } from '../../src/store/state';
-import { samplePlayback, sampleRun } from '../support/samples';
+import { samplePlayback, sampleRun, sampleStatus } from '../support/samples';
 import { Viewing } from '../support/viewing';
 
 let viewing: Viewing;
@@ -65,6 +65,16 @@ describe('Session', () => {
     viewing.socket.receive({ type: 'run', run: sampleRun({ status: 'running' }) });
     viewing.socket.receive({ type: 'playback', ...samplePlayback({ live: true, t_ns: 1.5e9 }) });
     expect(viewing.socket.types()).not.toContain('seek');
+  });
+
+  it('keeps how the estimators fare until another run is watched', () => {
+    viewing.watch();
+    const estimators = { feature: sampleStatus({ dropped: 7 }) };
+    viewing.socket.receive({ type: 'estimators', estimators });
+    expect(viewing.store.state.statuses['feature']?.dropped).toBe(7);
+    expect(viewing.store.take().has('estimators')).toBe(true);
+    viewing.session.selectRun('r2');
+    expect(viewing.store.state.statuses).toEqual({});
   });
 
   it('asks for the pictures of the camera chosen', () => {

@@ -1,6 +1,6 @@
 // Values as the server sends them.
 import type { Playback } from '../../src/protocol/messages';
-import type { Run } from '../../src/protocol/rest_types';
+import type { EstimatorStatus, Run } from '../../src/protocol/rest_types';
 
 export function sampleRun(change: Partial<Run> = {}): Run {
   return {
@@ -35,6 +35,21 @@ export function samplePlayback(change: Partial<Playback> = {}): Playback {
     alignment: 'init_scale',
     truth: null,
     estimates: {},
+    ...change,
+  };
+}
+
+export function sampleStatus(change: Partial<EstimatorStatus> = {}): EstimatorStatus {
+  return {
+    state: 'TRACKING',
+    crash: null,
+    answered: 63,
+    dropped: 0,
+    unanswered: 0,
+    hashes_compared: 63,
+    hash_mismatches: 0,
+    latency_ms: null,
+    resources: null,
     ...change,
   };
 }

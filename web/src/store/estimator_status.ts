@@ -1,0 +1,123 @@
+// How the estimators fare besides where they say the camera is: one row each.
+import type { EstimatorStatus, Run } from '../protocol/rest_types';
+import { formatNumber, kNothing } from './format';
+import type { LogLine } from './run_data';
+
+export interface StatusCell {
+  column: string;
+  text: string;
+  hint: string;
+  bad: boolean;
+}
+
+export interface StatusRow {
+  name: string;
+  state: string;
+  crash: string | null;
+  cells: StatusCell[];
+}
+
+export const kStatusColumns: readonly { key: string; label: string; hint: string }[] = [
+  { key: 'answered', label: 'Answers', hint: 'Frames that it has answered' },
+  { key: 'dropped', label: 'Dropped', hint: 'Frames that came while it was busy' },
+  { key: 'unanswered', label: 'Late', hint: 'Frames taken whose pose did not come back in time' },
+  { key: 'latency', label: 'Latency ms', hint: 'From a frame to its answer: median / 99 %' },
+  { key: 'cpu', label: 'CPU %', hint: 'Of one processor' },
+  { key: 'memory', label: 'Peak MB', hint: "Of the estimator's own process" },
+  { key: 'hashes', label: 'Image hash', hint: 'Images that arrived just as they were sent' },
+];
+
+export function statusRows(
+  run: Run | null,
+  statuses: Readonly<Record<string, EstimatorStatus>>,
+): StatusRow[] {
+  return (run?.estimators ?? []).map((name) => {
+    const status = statuses[name];
+    if (status === undefined) return { name, state: kNothing, crash: null, cells: emptyCells() };
+    return { name, state: status.state, crash: status.crash, cells: cellsOf(status) };
+  });
+}
+
+/** Whether some estimator is gone, or got other images than were sent. */
+export function needsAttention(statuses: Readonly<Record<string, EstimatorStatus>>): boolean {
+  return Object.values(statuses).some(
+    ({ crash, hash_mismatches }) => crash !== null || hash_mismatches > 0,
+  );
+}
+
+/** What estimators said, newest last; `name` null = all of them. */
+export function saidBy(log: readonly LogLine[], most: number): LogLine[] {
+  const said: LogLine[] = [];
+  for (let i = log.length - 1; i >= 0 && said.length < most; i -= 1) {
+    const line = log[i];
+    if (line !== undefined && line.source !== '') said.push(line);
+  }
+  return said.reverse();
+}
+
+function emptyCells(): StatusCell[] {
+  return kStatusColumns.map(({ key, hint }) => ({
+    column: key,
+    text: kNothing,
+    hint,
+    bad: false,
+  }));
+}
+
+function cellsOf(status: EstimatorStatus): StatusCell[] {
+  const given = status.answered + status.dropped + status.unanswered;
+  const share = given === 0 ? 0 : status.dropped / given;
+  const { latency_ms: latency, resources: use } = status;
+  const values: Record<string, Omit<StatusCell, 'column'>> = {
+    answered: plain(String(status.answered)),
+    dropped: {
+      text: status.dropped === 0 ? '0' : `${status.dropped} (${formatNumber(share * 100, 1)} %)`,
+      hint: 'Frames that came while it was busy',
+      bad: false,
+    },
+    unanswered: { ...plain(String(status.unanswered)), bad: status.unanswered > 0 },
+    latency: {
+      text:
+        latency === null
+          ? kNothing
+          : `${formatNumber(latency.median, 1)} / ${formatNumber(latency.p99, 1)}`,
+      hint:
+        latency === null
+          ? ''
+          : `95 %: ${formatNumber(latency.p95, 1)} ms, longest: ${formatNumber(latency.max, 1)} ms`,
+      bad: false,
+    },
+    cpu: {
+      text: formatNumber(use?.cpu_percent, 0),
+      hint:
+        use?.measured === 'process'
+          ? 'Of its own process, all threads'
+          : "Of the server's thread that calls it, without threads of its own",
+      bad: false,
+    },
+    memory: {
+      text: formatNumber(use?.peak_memory_mb, 0),
+      hint: use?.measured === 'process' ? 'Of its own process' : "It shares the server's memory",
+      bad: false,
+    },
+    hashes: hashCell(status),
+  };
+  return kStatusColumns.map(({ key }) => ({ column: key, ...(values[key] ?? plain(kNothing)) }));
+}
+
+function hashCell({
+  hashes_compared,
+  hash_mismatches,
+}: EstimatorStatus): Omit<StatusCell, 'column'> {
+  const hint =
+    hashes_compared === 0
+      ? 'It does not tell what arrived'
+      : `${hashes_compared} images compared, ${hash_mismatches} differ`;
+  if (hashes_compared === 0) return { text: kNothing, hint, bad: false };
+  if (hash_mismatches === 0) return { text: 'equal', hint, bad: false };
+  return { text: `${hash_mismatches} differ`, hint, bad: true };
+}
+
+function plain(text: string): Omit<StatusCell, 'column'> {
+  return { text, hint: '', bad: false };
+}
