@@ -517,9 +517,10 @@ class Greeting {
 };
 
 inline void greet(Estimator& estimator, Connection& connection) {
-  connection.send(kHello,
-                  "protocol 1\nname " + estimator.name() + "\nversion " + estimator.version() +
-                      (connection.local() ? "\nshared_memory true\n" : "\n"));
+  std::string own = "protocol 1\nname ";
+  own.append(estimator.name()).append("\nversion ").append(estimator.version()).append("\n");
+  if (connection.local()) own += "shared_memory true\n";
+  connection.send(kHello, own);
   const Message hello = connection.receive();
   if (hello.type != kHello) throw std::runtime_error("the server did not say hello");
   Parameters wanted;

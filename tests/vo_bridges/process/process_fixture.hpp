@@ -1,0 +1,44 @@
+// What the tests of the process door share.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "vo_bridges/process/process_estimator.hpp"
+
+namespace overfly::testing {
+
+/// The scripted estimator, with timeouts for a test.
+inline ProcessEstimatorOptions scripted(const std::string& behaviour,
+                                        const std::string& argument = "") {
+  ProcessEstimatorOptions options;
+  options.command = {OVERFLY_SCRIPTED_ESTIMATOR, behaviour, argument};
+  options.start_timeout_s = 20.0;
+  options.answer_timeout_s = 20.0;
+  return options;
+}
+
+/// The estimator, which must start.
+inline std::unique_ptr<VoPort> started(const ProcessEstimatorOptions& options) {
+  Result<std::unique_ptr<VoPort>> estimator = create_process_estimator(options);
+  EXPECT_TRUE(estimator.ok()) << (estimator.ok() ? "" : estimator.error().message);
+  return estimator.ok() ? std::move(estimator).value() : nullptr;
+}
+
+/// A picture of smooth spots without a period, as a flat ground shows them to a camera that looks
+/// straight down, `moved` pixels to the right and down of where it began.
+Image ground_image(int width_px, int height_px, double moved_x_px, double moved_y_px);
+
+/// Frames over that ground, each `step_px` on.
+std::vector<VoFrame> ground_frames(
+    int count, double step_x_px, double step_y_px, int width_px = 160, int height_px = 120);
+
+/// Whether a process is there and not a zombie.
+[[nodiscard]] bool alive(int pid);
+/// Waits until it is not, 5 s at most.
+[[nodiscard]] bool gone_soon(int pid);
+
+}  // namespace overfly::testing
