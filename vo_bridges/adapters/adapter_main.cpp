@@ -53,11 +53,10 @@ class Adapter : public overfly_vo::Estimator {
   overfly_vo::Answer track(const overfly_vo::Frame& frame) override {
     const AdapterCamera& camera = session_.camera;
     if (frame.width_px != camera.width_px || frame.height_px != camera.height_px) {
-      throw std::runtime_error("frame " + std::to_string(frame.index) + " is " +
-                               std::to_string(frame.width_px) + " x " +
-                               std::to_string(frame.height_px) + " px: must be " +
-                               std::to_string(camera.width_px) + " x " +
-                               std::to_string(camera.height_px));
+      throw std::runtime_error(
+          "frame " + std::to_string(frame.index) + " is " + std::to_string(frame.width_px) + " x " +
+          std::to_string(frame.height_px) + " px: must be " + std::to_string(camera.width_px) +
+          " x " + std::to_string(camera.height_px));
     }
     AdapterFrame given;
     given.index = frame.index;
@@ -76,9 +75,15 @@ class Adapter : public overfly_vo::Estimator {
   static overfly_vo::Answer answer_from(AdapterAnswer from) {
     overfly_vo::Answer answer;
     switch (from.state) {
-      case AdapterState::kInitialising: answer.state = overfly_vo::State::kInitialising; break;
-      case AdapterState::kTracking: answer.state = overfly_vo::State::kTracking; break;
-      case AdapterState::kLost: answer.state = overfly_vo::State::kLost; break;
+      case AdapterState::kInitialising:
+        answer.state = overfly_vo::State::kInitialising;
+        break;
+      case AdapterState::kTracking:
+        answer.state = overfly_vo::State::kTracking;
+        break;
+      case AdapterState::kLost:
+        answer.state = overfly_vo::State::kLost;
+        break;
     }
     answer.map_id = from.map_id;
     answer.position = from.position_vo;

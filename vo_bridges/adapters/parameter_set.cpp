@@ -43,10 +43,15 @@ void check(const ParameterDeclaration& declaration, const std::string& text) {
   switch (declaration.kind) {
     case ParameterKind::kNumber:
     case ParameterKind::kWhole:
-    case ParameterKind::kAutoNumber: check_number(declaration, text); return;
+    case ParameterKind::kAutoNumber:
+      check_number(declaration, text);
+      return;
     case ParameterKind::kFlag:
-    case ParameterKind::kAutoFlag: check_flag(declaration, text); return;
-    case ParameterKind::kText: break;
+    case ParameterKind::kAutoFlag:
+      check_flag(declaration, text);
+      return;
+    case ParameterKind::kText:
+      break;
   }
   if (text.empty()) throw std::runtime_error("parameter " + declaration.name + " must be given");
 }

@@ -1,7 +1,8 @@
 // Reads members that an upstream class keeps private. C++11.
 //
-// An explicit instantiation may name private members ([temp.explicit]), and hand a pointer to one to
-// a friend function: so the adapter reads the values in force without a patch to upstream's headers.
+// An explicit instantiation may name private members ([temp.explicit]), and hand a pointer to one
+// to a friend function: so the adapter reads the values in force without a patch to upstream's
+// headers.
 //
 //   struct SystemTracker {
 //     typedef Tracking* System::*Pointer;

@@ -27,7 +27,10 @@ RgbImage rgb_of(const AdapterFrame& frame, const AdapterCamera& camera) {
   return image;
 }
 
-void draw_square(RgbImage* image, double x_px, double y_px, const std::array<std::uint8_t, 3>& rgb) {
+void draw_square(RgbImage* image,
+                 double x_px,
+                 double y_px,
+                 const std::array<std::uint8_t, 3>& rgb) {
   if (!(x_px > -4.0 && y_px > -4.0 && x_px < image->width_px + 3 && y_px < image->height_px + 3)) {
     return;
   }
@@ -39,9 +42,9 @@ void draw_square(RgbImage* image, double x_px, double y_px, const std::array<std
       const int y = centre_y + dy;
       const bool edge = std::abs(dx) == 3 || std::abs(dy) == 3;
       if (!edge || x < 0 || y < 0 || x >= image->width_px || y >= image->height_px) continue;
-      const std::size_t pixel = static_cast<std::size_t>(y) *
-                                    static_cast<std::size_t>(image->width_px) +
-                                static_cast<std::size_t>(x);
+      const std::size_t pixel =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(image->width_px) +
+          static_cast<std::size_t>(x);
       for (std::size_t k = 0; k < 3; ++k) image->pixels[3 * pixel + k] = rgb[k];
     }
   }
@@ -52,8 +55,8 @@ std::array<double, 4> quaternion_from(const std::array<double, 9>& R) {
   // Four times the square of each component: 1 + 2 R_ii - trace for x, y, z; 1 + trace for w.
   const std::array<double, 4> squares = {
       {1.0 + 2.0 * R[0] - trace, 1.0 + 2.0 * R[4] - trace, 1.0 + 2.0 * R[8] - trace, 1.0 + trace}};
-  const std::size_t largest = static_cast<std::size_t>(
-      std::max_element(squares.begin(), squares.end()) - squares.begin());
+  const std::size_t largest =
+      static_cast<std::size_t>(std::max_element(squares.begin(), squares.end()) - squares.begin());
   std::array<double, 4> q = {{0.0, 0.0, 0.0, 0.0}};
   const double twice = std::sqrt(squares[largest]);
   q[largest] = 0.5 * twice;

@@ -142,14 +142,15 @@ void set_camera(const AdapterCamera& camera) {
   dso::setGlobalCalib(camera.width_px, camera.height_px, K);
   if (dso::wG[0] != camera.width_px || dso::hG[0] != camera.height_px ||
       dso::benchmarkSetting_width != 0 || dso::benchmarkSetting_height != 0) {
-    throw std::runtime_error(
-        "DSO has resized the frames from " + std::to_string(camera.width_px) + " x " +
-        std::to_string(camera.height_px) + " to " + std::to_string(dso::wG[0]) + " x " +
-        std::to_string(dso::hG[0]) + ": the run's camera would not be the scenario's");
+    throw std::runtime_error("DSO has resized the frames from " + std::to_string(camera.width_px) +
+                             " x " + std::to_string(camera.height_px) + " to " +
+                             std::to_string(dso::wG[0]) + " x " + std::to_string(dso::hG[0]) +
+                             ": the run's camera would not be the scenario's");
   }
   if (dso::pyrLevelsUsed < 3) {
     throw std::runtime_error("frames of " + std::to_string(camera.width_px) + " x " +
-                             std::to_string(camera.height_px) + " px: DSO needs 3 halvings without a"
+                             std::to_string(camera.height_px) +
+                             " px: DSO needs 3 halvings without a"
                              " rest; take a size that 8 divides, and at least 160 x 120");
   }
 }

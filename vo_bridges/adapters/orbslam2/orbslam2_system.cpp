@@ -36,8 +36,8 @@ class OrbSlam2System : public UpstreamSystem {
       throw std::runtime_error("parameter vocabulary = '" + vocabulary + "': no such file");
     }
     const SettingsFile settings(session);
-    system_ = new ORB_SLAM2::System(
-        vocabulary, settings.path(), ORB_SLAM2::System::MONOCULAR, false);
+    system_ =
+        new ORB_SLAM2::System(vocabulary, settings.path(), ORB_SLAM2::System::MONOCULAR, false);
     tracker_ = system_->*member_of(SystemTracker());
     mapper_ = system_->*member_of(SystemMapper());
     loop_closer_ = system_->*member_of(SystemLoopCloser());
@@ -112,7 +112,9 @@ class OrbSlam2System : public UpstreamSystem {
         answer->state = has_pose ? AdapterState::kTracking : AdapterState::kLost;
         if (has_pose) posed_ = true;
         break;
-      case ORB_SLAM2::Tracking::LOST: answer->state = AdapterState::kLost; break;
+      case ORB_SLAM2::Tracking::LOST:
+        answer->state = AdapterState::kLost;
+        break;
       default:
         // It threw its map away (lost with five keyframes or fewer): new origin, new scale.
         if (posed_) ++map_id_;
@@ -182,8 +184,7 @@ class OrbSlam2System : public UpstreamSystem {
   /// speed. The queue is looked at first: mapping says that it is busy before it takes from it.
   void wait_for_mapping(AdapterAnswer* answer) {
     const auto start = std::chrono::steady_clock::now();
-    while (wait_for_mapping_ &&
-           (mapper_->KeyframesInQueue() > 0 || !mapper_->AcceptKeyFrames())) {
+    while (wait_for_mapping_ && (mapper_->KeyframesInQueue() > 0 || !mapper_->AcceptKeyFrames())) {
       ::usleep(200);
     }
     if (wait_for_mapping_) answer->timings_ms["mapping_wait"] = milliseconds_since(start);

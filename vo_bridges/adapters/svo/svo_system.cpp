@@ -94,8 +94,7 @@ class SvoSystem : public UpstreamSystem {
  public:
   explicit SvoSystem(const Session& session)
       : session_(session),
-        depth_filter_thread_(
-            flag_of(session.parameters, "depth_filter_thread", !session.lockstep)),
+        depth_filter_thread_(flag_of(session.parameters, "depth_filter_thread", !session.lockstep)),
         restart_when_paused_(flag_of(session.parameters, "restart_when_paused")),
         camera_(camera_from(session.camera)) {
     write_settings(session.parameters);
@@ -150,7 +149,9 @@ class SvoSystem : public UpstreamSystem {
         answer->state = AdapterState::kTracking;
         posed_ = true;
         break;
-      case svo::FrameHandlerBase::STAGE_RELOCALIZING: answer->state = AdapterState::kLost; break;
+      case svo::FrameHandlerBase::STAGE_RELOCALIZING:
+        answer->state = AdapterState::kLost;
+        break;
       default:
         // Back at the start: the map that had poses is gone, and its scale with it.
         if (posed_) ++map_id_;
