@@ -1,10 +1,12 @@
 #include "server/engine/estimator_worker.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <iterator>
 
 #include "core/time.hpp"
+#include "server/engine/cpu_affinity.hpp"
 
 namespace overfly::engine {
 namespace {
@@ -15,6 +17,11 @@ EstimatorEvent drop_of(const VoFrame& frame) {
   event.record.sample.t_ns = frame.t_ns;
   event.record.dropped = true;
   return event;
+}
+
+/// 0 for a rate of 0.
+std::int64_t period_ns(double rate_hz) {
+  return rate_hz > 0.0 ? std::llround(static_cast<double>(kNsPerS) / rate_hz) : 0;
 }
 
 /// Calls the estimator; whatever a library throws through it is its end, not ours.
@@ -28,9 +35,14 @@ Result<VoEstimate> track_guarded(VoPort& port, const VoFrame& frame) {
 
 }  // namespace
 
-EstimatorWorker::EstimatorWorker(std::unique_ptr<VoPort> port, double debug_hz, RunClock& clock)
-    : port_(std::move(port)), clock_(clock) {
-  if (debug_hz > 0.0) debug_period_ns_ = std::llround(static_cast<double>(kNsPerS) / debug_hz);
+EstimatorWorker::EstimatorWorker(std::unique_ptr<VoPort> port,
+                                 EstimatorWorkerOptions options,
+                                 RunClock& clock)
+    : port_(std::move(port)),
+      options_(std::move(options)),
+      clock_(clock),
+      begin_ns_(clock.now_ns()),
+      debug_period_ns_(period_ns(options_.debug_hz)) {
   thread_ = std::thread([this] { work(); });
 }
 
@@ -68,7 +80,22 @@ std::vector<EstimatorEvent> EstimatorWorker::take_events() {
   return std::exchange(events_, {});
 }
 
+EstimatorUse EstimatorWorker::use() const {
+  EstimatorUse use;
+  use.cpu_s = cpu_s_;
+  if (const std::optional<ResourceUse> own = port_->resource_use()) {
+    use.cpu_s = own->cpu_s;
+    use.peak_memory_mb = own->peak_memory_mb;
+    use.own_process = true;
+  }
+  const double elapsed_s = s_from_ns(clock_.now_ns() - begin_ns_);
+  if (elapsed_s > 0.0) use.cpu_percent = 100.0 * use.cpu_s / elapsed_s;
+  return use;
+}
+
 void EstimatorWorker::work() {
+  // Checked where the estimator was made: a processor that went away since is no reason to stop.
+  (void)bind_thread(options_.cpus);
   std::unique_lock lock(mutex_);
   while (true) {
     changed_.wait(lock, [this] { return stopping_ || waiting_; });
@@ -96,12 +123,19 @@ EstimatorEvent EstimatorWorker::answer(const Waiting& waiting) {
   event.record.sample.state = TrackingState::kLost;
   if (crashed_) return event;
   choose_debug(waiting.frame.t_ns);
-  Result<VoEstimate> estimate = track_guarded(*port_, waiting.frame);
+  Result<VoEstimate> estimate = track(waiting.frame);
+  if (estimate) hold_back(waiting);
   event.latency_ms = static_cast<double>(clock_.now_ns() - waiting.handed_over_ns) * 1e-6;
+  constexpr std::int64_t kAnswersPerUse = 16;
+  if (!estimate || answers_++ % kAnswersPerUse == 0) event.use = use();
   if (!estimate) {
     crashed_ = true;
     event.record.crash = estimate.error().message;
     return event;
+  }
+  event.record.image_crc32 = estimate->image_crc32;
+  if (options_.in_process && !event.record.image_crc32) {
+    event.record.image_crc32 = crc32_of(*waiting.frame.image);
   }
   event.record.sample = estimate->sample;
   event.record.counters = std::move(estimate->counters);
@@ -109,6 +143,21 @@ EstimatorEvent EstimatorWorker::answer(const Waiting& waiting) {
   event.map_points_vo = std::move(estimate->map_points_vo);
   event.timing_ms = std::move(estimate->timing_ms);
   return event;
+}
+
+Result<VoEstimate> EstimatorWorker::track(const VoFrame& frame) {
+  const double before_s = thread_cpu_s();
+  Result<VoEstimate> estimate = track_guarded(*port_, frame);
+  cpu_s_ += thread_cpu_s() - before_s;
+  return estimate;
+}
+
+void EstimatorWorker::hold_back(const Waiting& waiting) {
+  if (options_.throttle_hz <= 0.0) return;
+  // From when it could take the frame, not from when this thread woke up: no drift.
+  const std::int64_t taken_ns = std::max(waiting.handed_over_ns, free_at_ns_);
+  free_at_ns_ = std::max(taken_ns + period_ns(options_.throttle_hz), clock_.now_ns());
+  clock_.sleep_until_ns(free_at_ns_);
 }
 
 void EstimatorWorker::choose_debug(std::int64_t t_ns) {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/result.hpp"
+#include "server/engine/estimator_status.hpp"
 #include "server/engine/run_clock.hpp"
 #include "server/engine/run_rows.hpp"
 #include "vo_bridges/vo_port.hpp"
@@ -26,14 +27,24 @@ struct EstimatorEvent {
   std::optional<Image> debug_image;
   std::vector<Eigen::Vector3f> map_points_vo;
   std::map<std::string, double> timing_ms;
+  /// So far; not with every event.
+  std::optional<EstimatorUse> use;
+};
+
+struct EstimatorWorkerOptions {
+  double debug_hz = 0.0;  ///< rate of debug images, 0 = none
+  /// Frames taken a second at most, as if each took that long; 0 = as fast as the estimator is.
+  double throttle_hz = 0.0;
+  std::vector<int> cpus;  ///< of the thread, and those that the estimator starts from it
+  /// The estimator looks at our own image: its CRC is computed when it is done with it.
+  bool in_process = true;
 };
 
 /// A slot for one frame in front of an estimator: a frame that still waits there when the next one
 /// comes is dropped. Handing over a frame only when idle() makes it lossless.
 class EstimatorWorker {
  public:
-  /// @param debug_hz  rate of debug images, 0 = none
-  EstimatorWorker(std::unique_ptr<VoPort> port, double debug_hz, RunClock& clock);
+  EstimatorWorker(std::unique_ptr<VoPort> port, EstimatorWorkerOptions options, RunClock& clock);
   /// Waits for the frame at work, forgets the one in the slot.
   ~EstimatorWorker();
   EstimatorWorker(const EstimatorWorker&) = delete;
@@ -44,6 +55,14 @@ class EstimatorWorker {
   void wait_until_idle();
   /// Takes what happened since the last call, ordered by frame.
   [[nodiscard]] std::vector<EstimatorEvent> take_events();
+  /// Takes the lines that the estimator said since the last call.
+  [[nodiscard]] std::vector<std::string> take_log() { return port_->take_log(); }
+  /// Read back from the running estimator. @pre idle
+  [[nodiscard]] std::map<std::string, std::string> effective_parameters() const {
+    return port_->effective_parameters();
+  }
+  /// What it has used so far. @pre idle
+  [[nodiscard]] EstimatorUse use() const;
 
  private:
   struct Waiting {
@@ -52,12 +71,19 @@ class EstimatorWorker {
   };
   void work();
   [[nodiscard]] EstimatorEvent answer(const Waiting& waiting);
+  [[nodiscard]] Result<VoEstimate> track(const VoFrame& frame);
+  void hold_back(const Waiting& waiting);
   void choose_debug(std::int64_t t_ns);
 
   std::unique_ptr<VoPort> port_;
+  const EstimatorWorkerOptions options_;
   RunClock& clock_;
+  const std::int64_t begin_ns_;
   std::int64_t debug_period_ns_ = 0;
   std::int64_t next_debug_ns_ = 0;
+  std::int64_t free_at_ns_ = 0;  ///< of a throttled estimator
+  double cpu_s_ = 0.0;           ///< of our thread, in the estimator
+  std::int64_t answers_ = 0;
   bool crashed_ = false;
 
   std::mutex mutex_;

@@ -92,6 +92,7 @@ Status FlightRun::fly() {
     return 0;
   });
   Status recorded = record_events();
+  if (recorded) recorded = close_estimators();
   maker_.reset();
   return flown ? recorded : flown;
 }
@@ -152,16 +153,20 @@ Status FlightRun::fly_frame(std::int64_t k, bool wait_for_estimators) {
 Status FlightRun::deliver(MadeFrame& made) {
   for (CameraShot& shot : made.shots) {
     const CameraSpec& camera = scenario_.cameras[shot.camera];
-    const FrameRecord record = record_from(made, shot, camera);
+    FrameRecord record = record_from(made, shot, camera);
     late_tiles_ += record.row.late_tiles;
     frames_with_late_tiles_ += record.row.late_tiles > 0 ? 1 : 0;
     std::shared_ptr<const Image> image;
     if (shot.delivered) image = std::make_shared<const Image>(std::move(shot.image));
     const auto grey =
         image && image->channels != 1 ? std::make_shared<const Image>(grey_of(*image)) : image;
+    // Once a frame, whoever gets it: so every estimator's image is known to be the same.
+    if (grey) record.row.image_crc32 = stages_.measure("hash", [&] { return crc32_of(*grey); });
     for (std::size_t i = 0; i < workers_.size() && grey; ++i) {
       if (scenario_.estimators[i].camera != shot.camera) continue;
-      workers_[i]->submit(vo_frame_from(made, shot, camera, grey));
+      VoFrame frame = vo_frame_from(made, shot, camera, grey);
+      frame.image_crc32 = record.row.image_crc32;
+      workers_[i]->submit(std::move(frame));
     }
     Status recorded = stages_.measure(
         "record", [&] { return recorder_.add_frame(record, image, shot.image16, shot.camera); });
@@ -183,6 +188,8 @@ Status FlightRun::record_events() {
     for (EstimatorEvent& event : workers_[i]->take_events()) {
       if (Status status = recorder_.add_event(i, std::move(event)); !status) return status;
     }
+    const Status logged = recorder_.add_estimator_log(i, end_ns(), workers_[i]->take_log());
+    if (!logged) return logged;
   }
   return {};
 }

@@ -31,7 +31,10 @@ class FlightRun {
   Status open_maker();
   Status describe_world();
   Status open_estimators();
+  [[nodiscard]] Result<std::unique_ptr<VoPort>> open_estimator(const EstimatorSpec& spec);
   Status describe();
+  /// Reads back what the estimators have used and where their parameters stand, and ends them.
+  Status close_estimators();
 
   Status fly_lockstep();
   Status fly_real_time();

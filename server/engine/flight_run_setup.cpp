@@ -72,32 +72,6 @@ Status FlightRun::describe_world() {
   return {};
 }
 
-Status FlightRun::open_estimators() {
-  const auto truth_for = [&](std::size_t camera) -> Result<ToyTruth> {
-    const Result<std::optional<double>> depth_m = maker_->depth_at_start(camera);
-    if (!depth_m) return depth_m.error();
-    Result<Trajectory> trajectory = maker_->rehearse(camera);
-    if (!trajectory) return trajectory.error();
-    return ToyTruth{std::move(*trajectory), depth_m->value_or(0.0)};
-  };
-  return stages_.measure("open_estimators", [&]() -> Status {
-    for (std::size_t i = 0; i < scenario_.estimators.size(); ++i) {
-      const EstimatorSpec& spec = scenario_.estimators[i];
-      const auto truth = [&] { return truth_for(spec.camera); };
-      const EstimatorSetting setting{
-          scenario_.seed, scenario_.pacing == Pacing::kLockstep, options_.folder};
-      Result<std::unique_ptr<VoPort>> port = options_.estimator_factory
-                                                 ? options_.estimator_factory(spec)
-                                                 : create_estimator(spec, setting, truth);
-      if (!port) return port.error();
-      recorder_.manifest()["estimators"][i]["parameters"] = (*port)->effective_parameters();
-      workers_.push_back(
-          std::make_unique<EstimatorWorker>(std::move(*port), scenario_.record_debug_hz, clock_));
-    }
-    return {};
-  });
-}
-
 Status FlightRun::describe() {
   const bool wall = scenario_.pacing == Pacing::kRealTime;
   recorder_.manifest()["epoch_utc_ns"] =

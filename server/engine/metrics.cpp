@@ -10,6 +10,7 @@
 #include "core/trajectory_io.hpp"
 #include "server/engine/camera_metrics.hpp"
 #include "server/engine/estimator_spec.hpp"
+#include "server/engine/estimator_tally.hpp"
 #include "server/engine/run_folder.hpp"
 #include "server/engine/whole_file.hpp"
 
@@ -164,6 +165,10 @@ Json metrics_from(const RunRecords& records) {
     entry["map_id"] = initial ? Json(initial->map_id) : Json(nullptr);
     entry["type"] = estimator.type;
     entry["test_estimator"] = is_test_estimator(estimator.type);
+    const EstimatorStatus counts = tally_of(records, estimator);
+    entry["unanswered"] = counts.unanswered;
+    entry["hashes_compared"] = counts.hashes_compared;
+    entry["hash_mismatches"] = counts.hash_mismatches;
     entry["dropped_frames"] = dropped.size();
     entry["dropped_frame_ranges"] = ranges_of(dropped);
     estimators[estimator.name] = std::move(entry);

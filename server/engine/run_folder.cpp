@@ -84,6 +84,10 @@ fs::path estimate_tum_file(const fs::path& folder, const std::string& estimator)
   return folder / "estimates" / (estimator + ".tum");
 }
 
+fs::path estimator_output_folder(const fs::path& folder, const std::string& estimator) {
+  return folder / "estimators" / estimator;
+}
+
 fs::path camera_frames_file(const fs::path& folder, const std::string& camera) {
   return folder / "cameras" / (camera + ".jsonl");
 }

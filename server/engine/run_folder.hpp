@@ -26,6 +26,9 @@ inline constexpr int kRunFormatVersion = 1;
                                                   const std::string& estimator);
 [[nodiscard]] std::filesystem::path estimate_tum_file(const std::filesystem::path& folder,
                                                       const std::string& estimator);
+/// estimators/NAME: what the process of an estimator writes
+[[nodiscard]] std::filesystem::path estimator_output_folder(const std::filesystem::path& folder,
+                                                            const std::string& estimator);
 /// cameras/NAME.jsonl and cameras/NAME.tum, of all cameras but the main one
 [[nodiscard]] std::filesystem::path camera_frames_file(const std::filesystem::path& folder,
                                                        const std::string& camera);

@@ -16,7 +16,6 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 constexpr int kFrameQuality = 95;  ///< close to lossless: estimators may be flown again over it
-constexpr int kDebugQuality = 85;
 
 Status make_empty_folder(const fs::path& folder) {
   std::error_code failure;
@@ -234,92 +233,14 @@ Status RunRecorder::add_late_frame(std::int64_t frame, std::int64_t t_ns) {
   return frame_lines_.front().append({{"frame", frame}, {"t_ns", t_ns}, {"late", true}});
 }
 
-Status RunRecorder::add_event(std::size_t estimator, EstimatorEvent event) {
-  EstimatorState& state = estimators_[estimator];
-  if (Status status = state.lines.append(json_from(event.record)); !status) return status;
-  if (!event.record.dropped) {
-    if (Status status = add_answer(estimator, event); !status) return status;
-  }
-  records_.estimators[estimator].records.push_back(std::move(event.record));
-  return {};
-}
-
-Status RunRecorder::add_answer(std::size_t estimator, EstimatorEvent& event) {
-  EstimatorState& state = estimators_[estimator];
-  EstimateRow row;
-  row.sample = event.record.sample;
-  row.latency_ms = event.latency_ms;
-  const std::size_t camera = records_.estimators[estimator].camera;
-  if (const FrameRecord* frame = frame_record(records_, camera, row.sample.frame)) {
-    row.T_world_body =
-        state.alignment.add(row.sample, frame->row.T_world_camera, frame->axis_depth_m);
-  }
-  state.frames.push_back(row.sample.frame);
-  state.latency.ms.push_back(event.latency_ms);
-  for (const auto& [stage, ms] : event.timing_ms) state.stages[stage].ms.push_back(ms);
-  timeline_->append_estimate(estimator, row);
-  if (Status status = keep_debug_image(estimator, event); !status) return status;
-  if (publish_images_ && !event.map_points_vo.empty() && state.alignment.S_world_vo()) {
-    const Similarity S_world_vo = *state.alignment.S_world_vo();
-    for (Eigen::Vector3f& point : event.map_points_vo) {
-      point = (S_world_vo * Eigen::Vector3d(point.cast<double>())).cast<float>();
-    }
-    timeline_->set_live_points(estimator, std::move(event.map_points_vo));
-  }
-  return log_transition(estimator, event.record);
-}
-
-Status RunRecorder::keep_debug_image(std::size_t estimator, EstimatorEvent& event) {
-  if (!event.debug_image) return {};
-  const EstimateSample& sample = event.record.sample;
-  auto image = std::make_shared<const Image>(std::move(*event.debug_image));
-  if (publish_images_) timeline_->set_live_debug(estimator, {sample.frame, sample.t_ns, image});
-  const fs::path file = debug_image_file(folder_, info_.estimators[estimator], sample.frame);
-  return write_jpeg(file, *image, kDebugQuality);
-}
-
-Status RunRecorder::log_transition(std::size_t estimator, const EstimateRecord& record) {
-  EstimatorState& state = estimators_[estimator];
-  const EstimateSample& sample = record.sample;
-  const std::string& name = info_.estimators[estimator];
-  if (!record.crash.empty()) return log(sample.t_ns, "error", name + " crashed: " + record.crash);
-  const TrackingState last = std::exchange(state.last, sample.state);
-  const int last_map_id = std::exchange(state.last_map_id, sample.map_id);
-  if (sample.map_id != last_map_id) {
-    return log(sample.t_ns, "warning", name + " started a new map: origin and scale are new");
-  }
-  if (sample.state == last) return {};
-  const bool lost = sample.state == TrackingState::kLost;
-  return log(sample.t_ns,
-             lost ? "warning" : "info",
-             name + (lost                                       ? " lost track"
-                     : sample.state == TrackingState::kTracking ? " tracks"
-                                                                : " initialises"));
-}
-
 Status RunRecorder::log(std::int64_t t_ns,
                         const std::string& level,
                         const std::string& text,
-                        const std::string& kind) {
-  const LogRow row{t_ns, level, text, kind};
+                        const std::string& kind,
+                        const std::string& source) {
+  const LogRow row{t_ns, level, text, kind, source};
   timeline_->append_log(row);
   return log_lines_->append(json_from(row));
-}
-
-Status RunRecorder::write_timings(Json timings) const {
-  timings["created_utc"] = info_.created_utc;
-  Json estimators = Json::object();
-  for (std::size_t i = 0; i < estimators_.size(); ++i) {
-    const EstimatorState& state = estimators_[i];
-    Json stages = Json::object();
-    for (const auto& [stage, durations] : state.stages) stages[stage] = durations.summary();
-    estimators[info_.estimators[i]] = {{"latency", state.latency.summary()},
-                                       {"stages", std::move(stages)},
-                                       {"frame", state.frames},
-                                       {"latency_ms", state.latency.ms}};
-  }
-  timings["estimators"] = std::move(estimators);
-  return write_json(timings_file(folder_), timings);
 }
 
 Result<Json> RunRecorder::finish(RunStatus status, const std::string& error, Json timings) {

@@ -49,10 +49,17 @@ class RunRecorder {
                    std::size_t camera);
   Status add_late_frame(std::int64_t frame, std::int64_t t_ns);
   Status add_event(std::size_t estimator, EstimatorEvent event);
+  /// Lines that an estimator said; of one that says too much only the first.
+  Status add_estimator_log(std::size_t estimator,
+                           std::int64_t t_ns,
+                           const std::vector<std::string>& lines);
+  /// At the end: what an estimator has used.
+  void set_use(std::size_t estimator, const EstimatorUse& use);
   Status log(std::int64_t t_ns,
              const std::string& level,
              const std::string& text,
-             const std::string& kind = "");
+             const std::string& kind = "",
+             const std::string& source = "");
 
   /// Derives trajectories and metrics, writes timings and the final manifest, lets the folder go.
   /// @param timings  wall-clock facts to put beside the estimators'
@@ -70,6 +77,8 @@ class RunRecorder {
     std::vector<std::int64_t> frames = {};
     DurationList latency = {};
     std::map<std::string, DurationList> stages = {};
+    EstimatorStatus status = {};
+    int log_rows = 0;
   };
 
   RunRecorder(std::filesystem::path folder, RunLock lock, const Scenario& scenario);
@@ -80,6 +89,7 @@ class RunRecorder {
                     const Image16& deep,
                     std::size_t camera);
   Status add_answer(std::size_t estimator, EstimatorEvent& event);
+  void tell_status(std::size_t estimator, const EstimatorEvent& event);
   Status log_transition(std::size_t estimator, const EstimateRecord& record);
   Status keep_debug_image(std::size_t estimator, EstimatorEvent& event);
   Status write_timings(nlohmann::json timings) const;

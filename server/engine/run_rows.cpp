@@ -1,6 +1,9 @@
 #include "server/engine/run_rows.hpp"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdio>
 #include <functional>
 #include <vector>
 
@@ -17,6 +20,23 @@ Result<Row> guarded(const std::function<Row()>& read) {
   } catch (const Json::exception& error) {
     return Error{ErrorCode::kUnreadable, error.what()};
   }
+}
+
+/// Eight hexadecimal digits.
+std::string hex_text(std::uint32_t value) {
+  std::array<char, 9> text{};
+  std::snprintf(text.data(), text.size(), "%08x", value);
+  return text.data();
+}
+
+/// Field `image_crc32`; empty where it is absent.
+std::optional<std::uint32_t> crc32_or_none(const Json& value) {
+  if (!value.contains("image_crc32")) return std::nullopt;
+  const std::string text = value.at("image_crc32").get<std::string>();
+  std::uint32_t crc32 = 0;
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), crc32, 16);
+  if (read.ec != std::errc() || read.ptr != text.data() + text.size()) return std::nullopt;
+  return crc32;
 }
 
 Pose pose_or_throw(const Json& value) {
@@ -65,6 +85,7 @@ Json json_from(const FrameRecord& record) {
                 {"texels_per_pixel",
                  {{"min", row.texels_per_pixel_min}, {"median", row.texels_per_pixel_median}}},
                 {"void_fraction", row.void_fraction}};
+  if (row.image_crc32) value["image_crc32"] = hex_text(*row.image_crc32);
   if (record.axis_depth_m) value["axis_depth_m"] = *record.axis_depth_m;
   if (record.shaken) value["T_world_body"] = json_from(row.T_world_body);
   if (row.exposure_ns != 0) value["gain"] = row.gain;
@@ -88,6 +109,7 @@ Json json_from(const EstimateRecord& record) {
     if (record.sample.scene_depth) value["scene_depth"] = *record.sample.scene_depth;
   }
   if (!record.counters.empty()) value["counters"] = record.counters;
+  if (record.image_crc32) value["image_crc32"] = hex_text(*record.image_crc32);
   if (!record.crash.empty()) value["crash"] = record.crash;
   return value;
 }
@@ -95,6 +117,7 @@ Json json_from(const EstimateRecord& record) {
 Json json_from(const LogRow& row) {
   Json value = {{"t_ns", row.t_ns}, {"level", row.level}, {"text", row.text}};
   if (!row.kind.empty()) value["kind"] = row.kind;
+  if (!row.source.empty()) value["source"] = row.source;
   return value;
 }
 
@@ -148,6 +171,7 @@ Result<FrameRecord> frame_record_from(const Json& value, const Pose& T_body_came
     record.row.texels_per_pixel_min = value.at("texels_per_pixel").at("min").get<double>();
     record.row.texels_per_pixel_median = value.at("texels_per_pixel").at("median").get<double>();
     record.row.void_fraction = value.at("void_fraction").get<double>();
+    record.row.image_crc32 = crc32_or_none(value);
     if (value.contains("axis_depth_m")) {
       record.axis_depth_m = value.at("axis_depth_m").get<double>();
     }
@@ -175,6 +199,7 @@ Result<EstimateRecord> estimate_record_from(const Json& value) {
       record.counters = value.at("counters").get<std::map<std::string, double>>();
     }
     record.crash = value.value("crash", "");
+    record.image_crc32 = crc32_or_none(value);
     return record;
   });
 }
@@ -184,7 +209,8 @@ Result<LogRow> log_row_from(const Json& value) {
     return LogRow{value.at("t_ns").get<std::int64_t>(),
                   value.at("level").get<std::string>(),
                   value.at("text").get<std::string>(),
-                  value.value("kind", "")};
+                  value.value("kind", ""),
+                  value.value("source", "")};
   });
 }
 

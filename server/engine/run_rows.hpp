@@ -27,6 +27,8 @@ struct EstimateRecord {
   std::map<std::string, double> counters;
   bool dropped = false;
   std::string crash;  ///< why the estimator is gone, at the frame where it went; else empty
+  /// Of the image as it arrived where the estimator runs, as far as that place tells.
+  std::optional<std::uint32_t> image_crc32;
 };
 
 /// {"p_m": [x, y, z], "q_xyzw": [x, y, z, w]}

@@ -144,6 +144,14 @@ std::vector<Eigen::Vector3f> RunTimeline::live_points(std::size_t estimator) con
   return estimates_.at(estimator).points;
 }
 
+std::vector<EstimatorStatus> RunTimeline::statuses() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<EstimatorStatus> statuses;
+  statuses.reserve(estimates_.size());
+  for (const EstimatorRows& rows : estimates_) statuses.push_back(rows.status);
+  return statuses;
+}
+
 std::uint64_t RunTimeline::revision() const {
   const std::lock_guard lock(mutex_);
   return revision_;
@@ -201,6 +209,12 @@ void RunTimeline::append_estimate(std::size_t estimator, const EstimateRow& row)
 void RunTimeline::append_log(const LogRow& row) {
   const std::lock_guard lock(mutex_);
   logs_.push_back(row);
+  changed();
+}
+
+void RunTimeline::set_status(std::size_t estimator, const EstimatorStatus& status) {
+  const std::lock_guard lock(mutex_);
+  estimates_.at(estimator).status = status;
   changed();
 }
 

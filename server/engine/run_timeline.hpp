@@ -16,6 +16,7 @@
 #include "core/image.hpp"
 #include "core/pose.hpp"
 #include "core/result.hpp"
+#include "server/engine/estimator_status.hpp"
 
 namespace overfly::engine {
 
@@ -37,6 +38,8 @@ struct FrameRow {
   int late_tiles = 0;                ///< drawn from coarser ones
   std::int64_t stamp_offset_ns = 0;  ///< of the stamp that estimators were told, less t_ns
   std::vector<std::string> faults;   ///< kinds of those in force
+  /// Of the grey image as estimators were sent it; empty where none was.
+  std::optional<std::uint32_t> image_crc32;
 };
 
 /// One estimator's answer to a frame, in its own frame and, once aligned, in the world.
@@ -50,7 +53,8 @@ struct LogRow {
   std::int64_t t_ns = 0;
   std::string level;  ///< "info", "warning", "error"
   std::string text;
-  std::string kind = {};  ///< "fault" where a fault of the scenario begins or ends; else empty
+  std::string kind = {};    ///< "fault" where a fault of the scenario begins or ends; else empty
+  std::string source = {};  ///< estimator that said it; empty = the range
 };
 
 /// A picture that belongs to a frame; shared, never written to after it is made.
@@ -132,6 +136,9 @@ class RunTimeline {
   /// Sparse map points seen last, world frame.
   [[nodiscard]] std::vector<Eigen::Vector3f> live_points(std::size_t estimator) const;
 
+  /// How each estimator fares.
+  [[nodiscard]] std::vector<EstimatorStatus> statuses() const;
+
   /// Grows with every change.
   [[nodiscard]] std::uint64_t revision() const;
   /// Waits until revision() differs from `seen`, or the timeout. @return revision()
@@ -145,6 +152,7 @@ class RunTimeline {
   void append_frame(const FrameRow& row, std::size_t camera = 0);
   void append_estimate(std::size_t estimator, const EstimateRow& row);
   void append_log(const LogRow& row);
+  void set_status(std::size_t estimator, const EstimatorStatus& status);
   void set_metrics(nlohmann::json metrics);
   void set_live_camera(StampedImage image, std::size_t camera = 0);
   void set_live_debug(std::size_t estimator, StampedImage image);
@@ -153,6 +161,7 @@ class RunTimeline {
  private:
   struct EstimatorRows {
     std::vector<EstimateRow> rows;
+    EstimatorStatus status;
     std::optional<StampedImage> debug;
     std::vector<Eigen::Vector3f> points;
   };

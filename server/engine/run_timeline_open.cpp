@@ -2,10 +2,12 @@
 #include <unordered_map>
 #include <utility>
 
+#include "server/engine/estimator_tally.hpp"
 #include "server/engine/live_alignment.hpp"
 #include "server/engine/run_folder.hpp"
 #include "server/engine/run_records.hpp"
 #include "server/engine/run_timeline.hpp"
+#include "server/engine/stage_timer.hpp"
 #include "server/engine/whole_file.hpp"
 
 namespace overfly::engine {
@@ -51,6 +53,22 @@ void append_estimates(const RunRecords& records,
   }
 }
 
+void tell_status(const RunRecords& records,
+                 std::size_t index,
+                 const Json& timings,
+                 RunTimeline& timeline) {
+  const EstimatorRecords& estimator = records.estimators[index];
+  EstimatorStatus status = tally_of(records, estimator);
+  const Json::json_pointer use("/estimators/" + estimator.name + "/resources");
+  if (timings.contains(use)) status.use = estimator_use_from(timings.at(use));
+  DurationList latencies;
+  for (const auto& [frame, ms] : read_latencies(timings, estimator.name)) {
+    latencies.ms.push_back(ms);
+  }
+  status.latency = latencies.latencies();
+  timeline.set_status(index, status);
+}
+
 Status append_logs(const fs::path& folder, RunTimeline& timeline) {
   const fs::path file = log_file(folder);
   const Result<std::vector<Json>> lines = read_lines(file);
@@ -74,6 +92,7 @@ Status append_records(const fs::path& folder, const RunRecords& records, RunTime
   }
   for (std::size_t i = 0; i < records.estimators.size(); ++i) {
     append_estimates(records, i, timings, timeline);
+    tell_status(records, i, timings, timeline);
   }
   return append_logs(folder, timeline);
 }

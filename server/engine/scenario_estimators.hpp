@@ -27,7 +27,7 @@ namespace overfly::engine {
 
 /// Refuses what a scenario may say only where it comes from the machine itself: an estimator whose
 /// command, addresses or files differ from those of every estimator in `trusted`.
-/// Errors: kForbidden naming the field.
+/// Errors: kInvalidArgument naming the field.
 [[nodiscard]] Status check_reach(const Scenario& scenario, const Scenario& trusted);
 
 }  // namespace overfly::engine

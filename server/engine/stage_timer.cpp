@@ -26,7 +26,16 @@ nlohmann::json DurationList::summary() const {
           {"mean_ms", total / static_cast<double>(sorted.size())},
           {"median_ms", quantile(sorted, 0.5)},
           {"p95_ms", quantile(sorted, 0.95)},
+          {"p99_ms", quantile(sorted, 0.99)},
           {"max_ms", sorted.back()}};
+}
+
+std::optional<LatencySummary> DurationList::latencies() const {
+  if (ms.empty()) return std::nullopt;
+  std::vector<double> sorted = ms;
+  std::sort(sorted.begin(), sorted.end());
+  return LatencySummary{
+      quantile(sorted, 0.5), quantile(sorted, 0.95), quantile(sorted, 0.99), sorted.back()};
 }
 
 nlohmann::json StageTimer::summary() const {

@@ -4,9 +4,11 @@
 #include <cstdint>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "server/engine/estimator_status.hpp"
 #include "server/engine/run_clock.hpp"
 
 namespace overfly::engine {
@@ -14,8 +16,10 @@ namespace overfly::engine {
 /// Durations of one kind of work.
 struct DurationList {
   std::vector<double> ms;
-  /// {"count", "total_ms", "mean_ms", "median_ms", "p95_ms", "max_ms"}
+  /// {"count", "total_ms", "mean_ms", "median_ms", "p95_ms", "p99_ms", "max_ms"}
   [[nodiscard]] nlohmann::json summary() const;
+  /// Empty without durations.
+  [[nodiscard]] std::optional<LatencySummary> latencies() const;
 };
 
 /// Durations by stage. Not thread-safe.

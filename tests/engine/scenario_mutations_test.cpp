@@ -70,6 +70,28 @@ Json camera_seed() {
                     "noise_high_hz": 100, "mount_natural_hz": 30, "mount_damping": 0.2}}})");
 }
 
+/// Estimators behind every door.
+Json doors_seed() {
+  return Json::parse(R"({
+    "format_version": 1, "world": {"builtin": {}}, "flight": {"course": {}},
+    "pacing": "real_time",
+    "estimators": [
+      {"name": "child", "type": "process", "command": ["./vo", "--fast"], "cpus": [0, 1],
+       "listen": "unix:vo.sock", "memory_limit_mb": 2000, "start_timeout_s": 60,
+       "answer_timeout_s": 2.5, "throttle_hz": 20,
+       "parameters": {"ini": 20, "fast": true, "vocabulary": "orb.txt"}},
+      {"name": "far", "type": "process", "listen": "tcp:127.0.0.1:9000"},
+      {"name": "lcm", "type": "lcm",
+       "lcm": {"url": "udpm://239.255.76.67:7667?ttl=0", "channel_prefix": "VO_"}},
+      {"name": "ros", "type": "ros1", "ros1": {
+        "master_uri": "http://127.0.0.1:11311", "node_name": "range", "image_topic": "/image",
+        "camera_info_topic": "/info", "pose_topic": "/pose", "pose_type": "odometry",
+        "debug_image_topic": "/debug", "reset_topic": "/reset", "camera_frame": "cam",
+        "vo_frame": "map", "pose_is_camera_from_world": true, "pose_in_body_axes": true,
+        "publish_clock": false, "publish_tf": true, "parameter_namespace": "/svo",
+        "queue_size": 2}}]})");
+}
+
 /// Documents that between them use every field of the format.
 std::vector<Mutant> seeds() {
   Json course = Json::parse(R"({
@@ -101,7 +123,8 @@ std::vector<Mutant> seeds() {
           {"log", log},
           {"builtin", builtin},
           {"cameras", cameras_seed()},
-          {"camera", camera_seed()}};
+          {"camera", camera_seed()},
+          {"doors", doors_seed()}};
 }
 
 /// Every place in a document, as JSON pointers.

@@ -1,0 +1,156 @@
+// Estimators of a scenario: what each door takes, and what it refuses.
+#include "server/engine/scenario_estimators.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "server/engine/estimator_factory.hpp"
+#include "tests/support/support.hpp"
+#include "vo_bridges/lcm/lcm_estimator.hpp"
+
+namespace overfly::engine {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using Json = nlohmann::json;
+
+Result<EstimatorSpec> read(const std::string& entry) {
+  return estimator_from_json(Json::parse(entry), "/scenarios/of/mine");
+}
+
+EstimatorSpec spec_of(const std::string& entry) {
+  Result<EstimatorSpec> spec = read(entry);
+  if (!spec) throw std::runtime_error(spec.error().message);
+  return *spec;
+}
+
+TEST(ScenarioEstimators, ProcessKeepsEveryField) {
+  const EstimatorSpec spec = spec_of(R"({
+    "name": "x", "type": "process", "command": ["bin/vo", "./a.yaml", "b", "../c"],
+    "cpus": [1, 3], "memory_limit_mb": 500, "start_timeout_s": 60, "answer_timeout_s": 2.5,
+    "parameters": {"n": 3, "flag": true, "file": "orb.txt"}})");
+  EXPECT_THAT(
+      spec.command,
+      ElementsAre(
+          "/scenarios/of/mine/bin/vo", "/scenarios/of/mine/a.yaml", "b", "/scenarios/of/c"));
+  EXPECT_THAT(spec.cpus, ElementsAre(1, 3));
+  EXPECT_EQ(spec.memory_limit_mb, 500.0);
+  EXPECT_EQ(spec.start_timeout_s, 60.0);
+  EXPECT_EQ(spec.answer_timeout_s, 2.5);
+  EXPECT_EQ(text_of(spec.parameters.at("n")), "3");
+  EXPECT_EQ(text_of(spec.parameters.at("flag")), "true");
+  EXPECT_EQ(text_of(spec.parameters.at("file")), "orb.txt");
+  EXPECT_THAT(
+      spec_of(R"({"name": "x", "type": "process", "command": ["python3", "./vo.py"]})").command,
+      ElementsAre("python3", "/scenarios/of/mine/vo.py"));
+  EXPECT_EQ(spec_of(R"({"name": "x", "type": "process", "listen": "unix:vo.sock"})").listen,
+            "unix:/scenarios/of/mine/vo.sock");
+  EXPECT_EQ(spec_of(R"({"name": "x", "type": "process", "listen": "unix:/run/vo"})").listen,
+            "unix:/run/vo");
+}
+
+/// A run folder's copy of a scenario is flown again from there.
+TEST(ScenarioEstimators, ResolvedDocumentMeansTheSameProgramElsewhere) {
+  const Json document = Json::parse(R"({
+    "format_version": 1, "world": {"builtin": {}}, "flight": {"course": {}},
+    "estimators": [{"name": "x", "type": "process", "command": ["./vo"], "listen": "unix:s"}]})");
+  const auto first = resolve_scenario(document, {}, "/one");
+  ASSERT_TRUE(first.ok()) << first.error().message;
+  const auto again = resolve_scenario(first->resolved, {}, "/two");
+  ASSERT_TRUE(again.ok()) << again.error().message;
+  EXPECT_THAT(again->estimators[0].command, ElementsAre("/one/vo"));
+  EXPECT_EQ(again->estimators[0].listen, "unix:/one/s");
+}
+
+/// The schema's defaults are those of the doors' own options.
+TEST(ScenarioEstimators, DefaultsAreThoseOfTheDoors) {
+  const Ros1EstimatorOptions ros1 = spec_of(R"({"name": "x", "type": "ros1", "ros1": {}})").ros1;
+  const Ros1EstimatorOptions plain;
+  EXPECT_EQ(ros1.master_uri, plain.master_uri);
+  EXPECT_EQ(ros1.node_name, plain.node_name);
+  EXPECT_EQ(ros1.image_topic, plain.image_topic);
+  EXPECT_EQ(ros1.camera_info_topic, plain.camera_info_topic);
+  EXPECT_EQ(ros1.pose_topic, plain.pose_topic);
+  EXPECT_EQ(ros1.pose_type, plain.pose_type);
+  EXPECT_EQ(ros1.debug_image_topic, plain.debug_image_topic);
+  EXPECT_EQ(ros1.reset_topic, plain.reset_topic);
+  EXPECT_EQ(ros1.camera_frame, plain.camera_frame);
+  EXPECT_EQ(ros1.vo_frame, plain.vo_frame);
+  EXPECT_EQ(ros1.pose_is_camera_from_world, plain.pose_is_camera_from_world);
+  EXPECT_EQ(ros1.pose_in_body_axes, plain.pose_in_body_axes);
+  EXPECT_EQ(ros1.publish_clock, plain.publish_clock);
+  EXPECT_EQ(ros1.publish_tf, plain.publish_tf);
+  EXPECT_EQ(ros1.parameter_namespace, plain.parameter_namespace);
+  EXPECT_EQ(ros1.queue_size, plain.queue_size);
+  const EstimatorSpec lcm = spec_of(R"({"name": "x", "type": "lcm", "lcm": {}})");
+  EXPECT_EQ(lcm.lcm_url, LcmEstimatorOptions().url);
+  EXPECT_EQ(lcm.lcm_channel_prefix, LcmEstimatorOptions().channel_prefix);
+}
+
+struct Refused {
+  const char* entry;
+  const char* why;
+};
+
+TEST(ScenarioEstimators, FieldsOfOtherDoorsAreRefusedByName) {
+  const Refused cases[] = {
+      {R"({"name": "x", "type": "feature", "command": ["vo"]})",
+       R"(estimators.0.command = ["vo"]: must be left out where type is feature)"},
+      {R"({"name": "x", "type": "lcm", "command": ["vo"]})", "where type is lcm"},
+      {R"({"name": "x", "type": "lcm", "cpus": [0]})", "estimators.0.cpus = [0]: must be left out"},
+      {R"({"name": "x", "type": "perfect", "memory_limit_mb": 10})", "memory_limit_mb = 10"},
+      {R"({"name": "x", "type": "process", "command": ["vo"], "ros1": {}})", "estimators.0.ros1"},
+      {R"({"name": "x", "type": "feature", "answer_timeout_s": 1})", "answer_timeout_s = 1"},
+      {R"({"name": "x", "type": "process"})", "estimators.0.command: must be given"},
+      {R"({"name": "x", "type": "process", "listen": "tcp:a:1", "memory_limit_mb": 10})",
+       "left out without a command"},
+      {R"({"name": "x", "type": "process", "command": [""]})",
+       R"(estimators.0.command.0 = "": must name a program)"},
+      {R"({"name": "x", "type": "process", "command": ["a\u0000b"]})", "must hold no NUL"},
+      {R"({"name": "x", "type": "process", "command": []})", "estimators.0.command"},
+      {R"({"name": "x", "type": "process", "listen": "udp:a:1"})", "estimators.0.listen"},
+      {R"({"name": "x", "type": "process", "command": ["vo"], "start_timeout_s": 3601})",
+       "estimators.0.start_timeout_s = 3601: must be in (0, 3600]"},
+      {R"({"name": "x", "type": "feature", "parameters": {"a": [1]}})",
+       "estimators.0.parameters.a = [1]: must be exactly one of a number, true or false, text"},
+      {R"({"name": "x", "type": "feature", "throttle_hz": 20})", "pacing is lockstep"},
+      {R"({"name": "x", "type": "ros1", "ros1": {"pose_type": "pose"}})", "ros1.pose_type"},
+      {R"({"name": "x", "type": "ros1", "ros1": {"image_topic": "a b"}})", "ros1.image_topic"}};
+  for (const Refused& refused : cases) {
+    const Result<EstimatorSpec> spec = read(refused.entry);
+    ASSERT_FALSE(spec.ok()) << refused.entry;
+    EXPECT_EQ(spec.error().code, ErrorCode::kInvalidArgument) << refused.entry;
+    EXPECT_THAT(spec.error().message, HasSubstr(refused.why)) << refused.entry;
+  }
+}
+
+TEST(EstimatorFactory, MakesEstimatorsWithoutAScenario) {
+  EstimatorSpec spec;
+  spec.name = "mine";
+  spec.type = "feature";
+  spec.parameters["features"] = 500.0;
+  const auto port = create_estimator(spec, {7, true, {}});
+  ASSERT_TRUE(port.ok()) << port.error().message;
+  EXPECT_EQ((*port)->effective_parameters().at("features"), "500");
+  EXPECT_EQ((*port)->effective_parameters().at("seed"), "7");
+}
+
+TEST(EstimatorFactory, NamesEstimatorParameterAndLimit) {
+  EstimatorSpec spec;
+  spec.name = "mine";
+  spec.type = "feature";
+  spec.parameters["features"] = std::string("many");
+  const auto text = create_estimator(spec, {});
+  ASSERT_FALSE(text.ok());
+  EXPECT_THAT(text.error().message, HasSubstr("\"mine\""));
+  EXPECT_THAT(text.error().message, HasSubstr("parameters.features = \"many\""));
+  spec.type = "orbslam";
+  spec.parameters.clear();
+  EXPECT_THAT(create_estimator(spec, {}).error().message, HasSubstr("type = \"orbslam\""));
+  spec.type = "perfect";
+  EXPECT_THAT(create_estimator(spec, {}).error().message, HasSubstr("needs the truth"));
+}
+
+}  // namespace
+}  // namespace overfly::engine
