@@ -27,6 +27,7 @@ struct ServeArguments {
   std::string scenarios;
   std::string web;
   int parallel_runs = 1;
+  bool allow_commands = false;
 };
 
 void log_line(const std::string& level, const std::string& text) {
@@ -49,6 +50,7 @@ int serve(const ServeArguments& arguments) {
   manager_options.scenarios_folder =
       arguments.scenarios.empty() ? scenarios_folder() : fs::path(arguments.scenarios);
   manager_options.max_parallel_runs = arguments.parallel_runs;
+  manager_options.allow_commands = arguments.allow_commands;
   const auto runs = engine::RunManager::create(manager_options);
   if (!runs) return report(runs.error());
   engine::ViewService views(**runs);
@@ -83,6 +85,10 @@ void add_serve_command(CLI::App& app, int& exit_code) {
   command->add_option("--parallel-runs", arguments->parallel_runs, "Flights at the same time")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
+  command->add_flag(
+      "--allow-commands",
+      arguments->allow_commands,
+      "Let clients name programs and addresses of estimators, not scenario files alone");
   command->callback([arguments, &exit_code] { exit_code = serve(*arguments); });
 }
 

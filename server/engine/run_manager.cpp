@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "server/engine/run_manager_impl.hpp"
+#include "server/engine/scenario_estimators.hpp"
 
 namespace overfly::engine {
 namespace {
@@ -52,6 +53,17 @@ Result<RunInfo> RunManager::start(const std::string& scenario,
   if (!loaded) return loaded.error();
   if (Status status = check_scenario(*loaded); !status) return status.error();
   return impl_->enqueue(std::move(*loaded), idempotency_key);
+}
+
+Status RunManager::check_overrides(const std::string& scenario,
+                                   const std::vector<Override>& overrides) const {
+  if (impl_->options.allow_commands || overrides.empty()) return {};
+  const Result<fs::path> file = scenario_path(impl_->options.scenarios_folder, scenario);
+  if (!file) return {};
+  const Result<Scenario> trusted = load_scenario(*file);
+  const Result<Scenario> wanted = load_scenario(*file, overrides);
+  // A file at fault that its overrides mend is trusted with nothing.
+  return wanted ? check_reach(*wanted, trusted ? *trusted : Scenario()) : Status();
 }
 
 std::vector<ScenarioEntry> RunManager::scenarios() const {

@@ -24,6 +24,8 @@ struct RunManagerOptions {
   std::filesystem::path scenarios_folder;
   RendererFactory renderer_factory;
   int max_parallel_runs = 1;  ///< further ones wait in a queue
+  /// Overrides may name programs to start and addresses to speak to.
+  bool allow_commands = false;
 };
 
 /// Thread-safe. Owns the threads of the runs; its destructor cancels and joins them.
@@ -41,6 +43,11 @@ class RunManager {
   [[nodiscard]] Result<RunInfo> start(const std::string& scenario,
                                       const std::vector<Override>& overrides,
                                       const std::string& idempotency_key = "");
+  /// Whether a client that is not trusted with this machine may ask for these overrides: they must
+  /// leave commands, sockets and addresses of estimators as the scenario's file has them.
+  /// Errors: kInvalidArgument naming the field. Other faults are left to start().
+  [[nodiscard]] Status check_overrides(const std::string& scenario,
+                                       const std::vector<Override>& overrides) const;
   /// Newest first.
   [[nodiscard]] std::vector<RunInfo> runs() const;
   /// The time line, live or read from disk (cached). Errors: kNotFound, kUnreadable.

@@ -13,7 +13,7 @@ void add_service_routes(RestRouter* router);
 void add_scenario_routes(RestRouter* router, engine::RunManager* runs);
 /// runs, runs/{id}, runs/{id}/cancel
 void add_run_routes(RestRouter* router, engine::RunManager* runs);
-/// runs/{id}/metrics, manifest, trajectories/{name}
+/// runs/{id}/metrics, estimators, manifest, trajectories/{name}
 void add_result_routes(RestRouter* router, engine::RunManager* runs);
 /// runs/{id}/frames/{k}.jpg
 void add_frame_routes(RestRouter* router, engine::RunManager* runs, engine::ViewService* views);

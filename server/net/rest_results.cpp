@@ -42,6 +42,12 @@ HttpResponse metrics(RunManager* runs, const std::string& id) {
   return json_response(200, scores);
 }
 
+HttpResponse estimators(RunManager* runs, const std::string& id) {
+  const auto timeline = runs->timeline(id);
+  if (!timeline) return error_response(timeline.error());
+  return json_response(200, {{"estimators", estimator_statuses_json(**timeline)}});
+}
+
 HttpResponse manifest(RunManager* runs, const std::string& id) {
   const auto folder = runs->folder(id);
   if (!folder) return error_response(folder.error());
@@ -107,6 +113,10 @@ void add_result_routes(RestRouter* router, RunManager* runs) {
   router->add(
       "GET", "/api/v1/runs/{id}/metrics", [runs](const RouteCall& call, const Respond& respond) {
         respond(metrics(runs, call.path.at("id")));
+      });
+  router->add(
+      "GET", "/api/v1/runs/{id}/estimators", [runs](const RouteCall& call, const Respond& respond) {
+        respond(estimators(runs, call.path.at("id")));
       });
   router->add(
       "GET", "/api/v1/runs/{id}/manifest", [runs](const RouteCall& call, const Respond& respond) {

@@ -57,6 +57,8 @@ HttpResponse start_run(RunManager* runs, const HttpRequest& request) {
   }
   const Result<StartBody> start = parse_start(request.body);
   if (!start) return error_response(start.error());
+  const Status reach = runs->check_overrides(start->scenario, start->overrides);
+  if (!reach) return error_response(403, "forbidden", reach.error().message);
   const auto before = key.empty() ? std::vector<engine::RunInfo>() : runs->runs();
   const auto info = runs->start(start->scenario, start->overrides, key);
   if (!info) return error_response(info.error());

@@ -139,7 +139,18 @@ json log_columns(const std::vector<engine::LogRow>& rows) {
   columns["text"] = column(rows, [](const Row& row) { return row.text; });
   columns["kind"] = column(
       rows, [](const Row& row) { return row.kind.empty() ? json(nullptr) : json(row.kind); });
+  columns["source"] = column(
+      rows, [](const Row& row) { return row.source.empty() ? json(nullptr) : json(row.source); });
   return columns;
+}
+
+json estimator_statuses_json(const engine::RunTimeline& timeline) {
+  json statuses = json::object();
+  const std::vector<engine::EstimatorStatus> all = timeline.statuses();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    statuses[timeline.estimators()[i]] = engine::json_from(all[i]);
+  }
+  return statuses;
 }
 
 json run_json(const engine::RunInfo& info) {

@@ -23,6 +23,9 @@ namespace overfly::net {
                                               const engine::RowAlignment& alignment = {});
 [[nodiscard]] nlohmann::json log_columns(const std::vector<engine::LogRow>& rows);
 
+/// {"NAME": status, ...} of a run's estimators, as message `estimators` has them.
+[[nodiscard]] nlohmann::json estimator_statuses_json(const engine::RunTimeline& timeline);
+
 [[nodiscard]] nlohmann::json run_json(const engine::RunInfo& info);
 
 }  // namespace overfly::net

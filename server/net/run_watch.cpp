@@ -54,6 +54,7 @@ void RunWatch::refresh(std::int64_t now_ns) {
 void RunWatch::tell(ViewerPort* port, std::int64_t now_ns) {
   tell_run(port, now_ns);
   tell_rows(port, now_ns);
+  tell_estimators(port, now_ns);
   tell_metrics(port);
   tell_playback(port, now_ns);
 }
@@ -87,6 +88,19 @@ void RunWatch::tell_rows(ViewerPort* port, std::int64_t now_ns) {
     }
     port->send_text(std::move(*message));
   }
+}
+
+void RunWatch::tell_estimators(ViewerPort* port, std::int64_t now_ns) {
+  const std::uint64_t revision = timeline_->revision();
+  if (estimators_revision_ == revision || timeline_->estimators().empty()) return;
+  if (!is_due(estimators_at_ns_, now_ns, kRunPeriodNs)) return;
+  estimators_revision_ = revision;
+  std::string text =
+      to_text({{"type", "estimators"}, {"estimators", estimator_statuses_json(*timeline_)}});
+  if (text == estimators_told_) return;
+  estimators_at_ns_ = now_ns;
+  estimators_told_ = text;
+  port->send_text(std::move(text));
 }
 
 void RunWatch::tell_metrics(ViewerPort* port) {

@@ -26,8 +26,8 @@ class RunWatch {
 
   /// Moves the cursor to now and takes in what the run has recorded.
   void refresh(std::int64_t now_ns);
-  /// Sends what is due of `run`, `rows`, `metrics` and `playback`. Rows wait while the connection
-  /// has much unsent: nothing is lost, the run keeps them.
+  /// Sends what is due of `run`, `rows`, `estimators`, `metrics` and `playback`. Rows wait while
+  /// the connection has much unsent: nothing is lost, the run keeps them.
   void tell(ViewerPort* port, std::int64_t now_ns);
   /// Estimates lie where this alignment says. Errors: as engine::check_alignment.
   Status align(const std::string& mode);
@@ -47,6 +47,7 @@ class RunWatch {
   };
   void tell_run(ViewerPort* port, std::int64_t now_ns);
   void tell_rows(ViewerPort* port, std::int64_t now_ns);
+  void tell_estimators(ViewerPort* port, std::int64_t now_ns);
   void tell_metrics(ViewerPort* port);
   void tell_playback(ViewerPort* port, std::int64_t now_ns);
 
@@ -57,12 +58,15 @@ class RunWatch {
   std::optional<std::uint64_t> revision_;       ///< that the cursor knows
   std::optional<std::uint64_t> rows_revision_;  ///< that the rows told belong to
   std::optional<std::uint64_t> run_revision_;
+  std::optional<std::uint64_t> estimators_revision_;
   std::optional<std::uint64_t> metrics_revision_;
   std::optional<std::int64_t> rows_at_ns_;  ///< when they were told last
   std::optional<std::int64_t> run_at_ns_;
+  std::optional<std::int64_t> estimators_at_ns_;
   std::optional<std::int64_t> playback_at_ns_;
   engine::RunStatus status_told_ = engine::RunStatus::kQueued;
   std::string run_told_;
+  std::string estimators_told_;
   std::string metrics_told_;
   Told cursor_told_;
   std::int64_t end_told_ns_ = -1;

@@ -26,8 +26,9 @@ class RunManagerTest : public ::testing::Test {
                                  testing::small_document().dump());
   }
 
-  std::unique_ptr<RunManager> manager() {
+  std::unique_ptr<RunManager> manager(bool allow_commands = false) {
     RunManagerOptions options;
+    options.allow_commands = allow_commands;
     options.runs_folder = folder_.path() / "runs";
     options.scenarios_folder = folder_.path() / "scenarios";
     options.renderer_factory = testing::noop_factory();
@@ -175,6 +176,30 @@ TEST_F(RunManagerTest, RefusesWhatItDoesNotKnow) {
   EXPECT_EQ(runs->timeline("no").error().code, ErrorCode::kNotFound);
   EXPECT_EQ(runs->scenario("small").value().at("camera").at("width_px"), 160);
   ASSERT_EQ(runs->scenarios().size(), 1U);
+}
+
+/// What a file on the server's disk says may be asked for again, and nothing beyond it.
+TEST_F(RunManagerTest, ClientsMayUseTheCommandsOfScenarioFilesOnly) {
+  nlohmann::json document = testing::small_document();
+  document["estimators"] = nlohmann::json::parse(
+      R"([{"name":"a","type":"process","command":["./vo","--fast"]},{"name":"b","type":"feature"}])");
+  overfly::testing::write_text(root() / "scenarios" / "doors.json", document.dump());
+  const auto runs = manager();
+  const auto check = [&](const char* text) {
+    return runs->check_overrides("doors", {parse_override(text).value()});
+  };
+  EXPECT_TRUE(check("duration_s=1").ok());
+  EXPECT_TRUE(check(R"(estimators.0.parameters={"features":1000})").ok());
+  EXPECT_TRUE(
+      check(R"(estimators.1={"name":"c","type":"process","command":["./vo","--fast"]})").ok());
+  const Status other = check(R"(estimators.0.command=["./vo","--slow"])");
+  ASSERT_FALSE(other.ok());
+  EXPECT_THAT(other.error().message, HasSubstr("estimators.0.command"));
+  EXPECT_FALSE(check(R"(estimators.0.command.0="/bin/sh")").ok());
+  EXPECT_TRUE(
+      manager(true)
+          ->check_overrides("doors", {parse_override(R"(estimators.0.command=["x"])").value()})
+          .ok());
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <map>
 #include <set>
 
 #include "server/engine/jpeg.hpp"
@@ -104,6 +105,12 @@ TEST_F(RestApiTest, AnswersEveryRouteAsDocumented) {
   EXPECT_EQ(check("GET", one, run, 200).json().at("status"), "completed");
   check("GET", one + "/metrics", run + "/metrics", 200);
   check("GET", one + "/manifest", run + "/manifest", 200);
+  const json statuses =
+      check("GET", one + "/estimators", run + "/estimators", 200).json().at("estimators");
+  EXPECT_EQ(statuses.at("perfect").at("state"), "TRACKING");
+  EXPECT_EQ(statuses.at("perfect").at("answered"), 63);
+  EXPECT_EQ(statuses.at("perfect").at("hash_mismatches"), 0);
+  EXPECT_EQ(statuses.at("perfect").at("resources").at("measured"), "calling_thread");
   const std::string trajectories = one + "/trajectories/{name}";
   const Answer tum = check("GET", trajectories, run + "/trajectories/truth", 200);
   EXPECT_GE(std::count(tum.body.begin(), tum.body.end(), '\n'), 62);
@@ -131,7 +138,9 @@ TEST_F(RestApiTest, AnswersEveryRouteAsDocumented) {
   check("POST", one + "/cancel", runs + "/none/cancel", 404);
   check("DELETE", one, run, 204);
   check("DELETE", one, run, 404);
-  for (const char* rest : {"", "/metrics", "/manifest"}) check("GET", one + rest, run + rest, 404);
+  for (const char* rest : {"", "/metrics", "/manifest", "/estimators"}) {
+    check("GET", one + rest, run + rest, 404);
+  }
 
   // Nothing is documented that was not asked for above.
   for (const auto& [path, operations] : api_.at("paths").items()) {
@@ -174,6 +183,33 @@ TEST_F(RestApiTest, StartsRunsWithOverridesAndNamesWhatIsAtFault) {
   const std::string id = good.json().at("id");
   server_.wait_for_end(id);
   EXPECT_EQ(ask(server_.port(), "GET", "/api/v1/runs/" + id).json().at("frames"), 16);
+}
+
+/// What a client could make the server start, listen on, write to, or speak to.
+TEST_F(RestApiTest, RefusesCommandsThatNoScenarioFileHas) {
+  const auto post = [&](const json& body, int status) {
+    return check("POST", "/api/v1/runs", "/api/v1/runs", status, body.dump(), kJson);
+  };
+  const json evil = {{"name", "e"}, {"type", "process"}, {"command", {"/bin/true"}}};
+  const json listening = {{"name", "e"}, {"type", "process"}, {"listen", "tcp:0.0.0.0:9"}};
+  const json writing = {{"name", "e"}, {"type", "lcm"}, {"lcm", {{"url", "file:///etc/x?mode=w"}}}};
+  const json calling = {
+      {"name", "e"}, {"type", "ros1"}, {"ros1", {{"master_uri", "http://example.org:80"}}}};
+  const std::map<std::string, json> wanted = {
+      {"command", evil}, {"listen", listening}, {"lcm.url", writing}, {"ros1.master_uri", calling}};
+  for (const auto& [field, estimator] : wanted) {
+    for (const json& overrides :
+         {json{{"estimators", {estimator}}}, json{{"estimators.0", estimator}}}) {
+      const Answer refused = post({{"scenario", "tiny"}, {"overrides", overrides}}, 403);
+      EXPECT_EQ(refused.json().at("error").at("code"), "forbidden") << field;
+      EXPECT_THAT(refused.body, HasSubstr("estimators.0." + field));
+      EXPECT_THAT(refused.body, HasSubstr("--allow-commands"));
+    }
+  }
+  EXPECT_TRUE(server_.runs().runs().empty());
+  const json scaled = {{"estimators.0.parameters.scale", 2}, {"duration_s", 0.5}};
+  const Answer plain = post({{"scenario", "tiny"}, {"overrides", scaled}}, 201);
+  server_.wait_for_end(plain.json().at("id"));
 }
 
 TEST_F(RestApiTest, GivesTheSameRunForTheSameKey) {

@@ -81,6 +81,12 @@ TEST(WebSocket, TellsAFinishedRunWholeAndWaitsAtItsStart) {
   EXPECT_TRUE(types.contains("run"));
   EXPECT_TRUE(types.contains("streams"));
   EXPECT_TRUE(types.contains("metrics"));
+  const json told = client.wait_until([](const json& m) { return m.at("type") == "estimators"; });
+  const json status = told.at("estimators").at("perfect");
+  EXPECT_EQ(status.at("answered"), 63);
+  EXPECT_EQ(status.at("dropped"), 0);
+  EXPECT_TRUE(status.at("crash").is_null());
+  EXPECT_GE(status.at("latency_ms").at("p99"), status.at("latency_ms").at("median"));
 }
 
 TEST(WebSocket, ResumesAfterTheRowsThatTheClientHas) {
