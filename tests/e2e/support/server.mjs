@@ -18,15 +18,20 @@ export function serverMissing() {
   return false;
 }
 
+/** A file of the source tree. */
+export function sourceFile(file) {
+  return path.join(kRoot, file);
+}
+
 export function makeRunsFolder() {
   const folder = mkdtempSync(path.join(tmpdir(), 'overfly-e2e-'));
   return { folder, remove: () => rmSync(folder, { recursive: true, force: true }) };
 }
 
 /** Resolves when the server has told its address. */
-export async function startServer({ runs, port = 0 }) {
+export async function startServer({ runs, port = 0, scenarios = path.join(kRoot, 'scenarios') }) {
   const args = ['serve', '--port', String(port), '--runs', runs];
-  args.push('--scenarios', path.join(kRoot, 'scenarios'), '--web', kWeb);
+  args.push('--scenarios', scenarios, '--web', kWeb);
   const child = spawn(kProgram, args, { cwd: kRoot, stdio: ['ignore', 'pipe', 'pipe'] });
   let output = '';
   const exited = new Promise((resolve) => child.on('exit', resolve));

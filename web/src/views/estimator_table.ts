@@ -56,7 +56,7 @@ function bodyRows(row: StatusRow, index: number): HTMLElement[] {
   );
   const main = h(
     'tr',
-    { 'data-estimator': row.name },
+    { 'data-status-of': row.name },
     h('th', { scope: 'row', style: `color:${estimateColour(index)}` }, row.name),
     h('td', { 'data-column': 'state', style: `color:${colour}` }, row.state),
     ...cells,

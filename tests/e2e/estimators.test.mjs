@@ -1,0 +1,115 @@
+// One flight, three estimators: a native one, one behind the process door, and one whose program is
+// not there. How each fares is told live and after.
+import assert from 'node:assert/strict';
+import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
+import path from 'node:path';
+import { after, before, describe } from 'node:test';
+import { browserMissing, openBrowser } from './support/browser.mjs';
+import { Dashboard } from './support/dashboard.mjs';
+import {
+  getJson,
+  makeRunsFolder,
+  serverMissing,
+  sourceFile,
+  startServer,
+} from './support/server.mjs';
+import { makeStep } from './support/steps.mjs';
+
+const kFlightPatience_ms = 300_000;
+const kEstimators = [
+  { name: 'feature', type: 'feature', throttle_hz: 5 },
+  {
+    name: 'shift',
+    type: 'process',
+    command: ['python3', sourceFile('vo_bridges/examples/shift_odometry.py')],
+  },
+  { name: 'absent', type: 'process', command: ['./not/there'] },
+];
+
+let dashboard;
+const step = makeStep(() => dashboard);
+const skip = serverMissing() || browserMissing();
+
+describe('a flight with estimators behind doors', { skip, timeout: 600_000 }, () => {
+  let runs;
+  let server;
+  let browser;
+  let run;
+
+  before(async () => {
+    runs = makeRunsFolder();
+    const scenarios = path.join(runs.folder, 'scenarios');
+    mkdirSync(scenarios);
+    const course = JSON.parse(readFileSync(sourceFile('scenarios/course.json'), 'utf8'));
+    const doors = {
+      ...course,
+      name: 'doors',
+      duration_s: 8,
+      camera: { width_px: 320, height_px: 240, rate_hz: 10 },
+      pacing: 'real_time',
+      estimators: kEstimators,
+    };
+    writeFileSync(path.join(scenarios, 'doors.json'), JSON.stringify(doors));
+    server = await startServer({ runs: path.join(runs.folder, 'runs'), scenarios });
+    browser = await openBrowser({ width: 1280, height: 800 });
+    dashboard = new Dashboard(browser.page);
+    await dashboard.open(server.url);
+    await dashboard.chooseScenario('doors');
+  });
+
+  after(async () => {
+    await browser?.close();
+    await server?.stop();
+    runs?.remove();
+  });
+
+  const cell = (name, column) =>
+    dashboard.page
+      .locator(`[data-status-of="${name}"] [data-column="${column}"]`)
+      .innerText();
+
+  step('tells while it flies that an estimator is gone, and why', async () => {
+    run = await dashboard.launch();
+    await dashboard.until(
+      () => document.querySelector('[data-panel=plots] .tab[data-attention]') !== null,
+      undefined,
+      kFlightPatience_ms,
+    );
+    await dashboard.page.locator('[data-panel=plots] .tab[data-group=estimators]').click();
+    assert.equal(await cell('absent', 'state'), 'CRASHED');
+    const reason = await dashboard.page.locator('.statuses .crash').innerText();
+    assert.match(reason, /did not start/);
+    assert.match(reason, /not\/there/);
+  });
+
+  step('tells what the others drop, take and use', async () => {
+    await dashboard.untilStatus(run, 'completed', kFlightPatience_ms);
+    await dashboard.until(
+      () =>
+        document.querySelector('[data-status-of=shift] [data-column=memory]').textContent !== '–',
+    );
+    assert.match(await cell('feature', 'dropped'), /^\d+ \(\d+\.\d %\)$/);
+    assert.equal(await cell('feature', 'hashes'), 'equal');
+    assert.equal(await cell('shift', 'hashes'), 'equal');
+    assert.match(await cell('shift', 'latency'), /^[\d.]+ \/ [\d.]+$/);
+    assert.ok(Number(await cell('shift', 'memory')) > 1);
+    assert.equal(await cell('feature', 'memory'), '–');
+    const { estimators } = await getJson(server.url, `/runs/${run}/estimators`);
+    assert.equal(estimators.absent.state, 'CRASHED');
+    assert.equal(estimators.shift.resources.measured, 'process');
+    await dashboard.screenshot('estimators_1280x800');
+  });
+
+  step('refuses a command that no scenario file has', async () => {
+    const answer = await fetch(`${server.url}/api/v1/runs`, {
+      method: 'POST',
+      headers: { 'content-type': 'application/json' },
+      body: JSON.stringify({
+        scenario: 'doors',
+        overrides: { 'estimators.1.command': ['/bin/true'] },
+      }),
+    });
+    assert.equal(answer.status, 403);
+    assert.match((await answer.json()).error.message, /--allow-commands/);
+  });
+});
