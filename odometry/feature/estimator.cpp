@@ -1,9 +1,6 @@
 #include "odometry/feature/estimator.hpp"
 
 #include <algorithm>
-#include <cstring>
-#include <iomanip>
-#include <sstream>
 #include <utility>
 
 #include "odometry/feature/debug_view.hpp"
@@ -37,13 +34,16 @@ TrackerOptions tracker_options(const FeatureParameters& parameters, const Rectif
 InitialiserOptions initialiser_options(const FeatureParameters& parameters) {
   InitialiserOptions options;
   options.seed = parameters.seed;
+  options.planar_start = parameters.planar_start;
   options.min_tracks = std::min(options.min_tracks, parameters.features / 2);
   return options;
 }
 
-MapperOptions mapper_options(const FeatureParameters& parameters) {
+MapperOptions mapper_options(const FeatureParameters& parameters, const Rectifier& rectifier) {
   MapperOptions options;
   options.cells = tracked_points(parameters);
+  options.scale_factor = parameters.scale_factor;
+  options.seen = rectifier.seen();
   return options;
 }
 
@@ -53,20 +53,13 @@ FeatureOdometry::Parts::Parts(const CameraModel& camera, const FeatureParameters
     : rectifier(camera),
       initialiser(camera.pinhole(), initialiser_options(parameters)),
       tracker(camera.pinhole(), tracker_options(parameters, rectifier)),
-      mapper(camera.pinhole(), mapper_options(parameters)) {}
+      keeper(camera.pinhole(), mapper_options(parameters, rectifier), parameters) {}
 
 FeatureOdometry::FeatureOdometry(const FeatureParameters& parameters)
     : parameters_(parameters), orb_(parameters) {}
 
 std::map<std::string, std::string> FeatureOdometry::effective_parameters() const {
-  std::ostringstream scale;
-  scale << parameters_.scale_factor;
-  return {{"features", std::to_string(parameters_.features)},
-          {"scale_factor", scale.str()},
-          {"levels", std::to_string(parameters_.levels)},
-          {"ini_fast_threshold", std::to_string(parameters_.ini_fast_threshold)},
-          {"min_fast_threshold", std::to_string(parameters_.min_fast_threshold)},
-          {"seed", std::to_string(parameters_.seed)}};
+  return texts_of(parameters_);
 }
 
 void FeatureOdometry::reset() {
@@ -76,11 +69,25 @@ void FeatureOdometry::reset() {
 }
 
 void FeatureOdometry::start_over() {
-  map_.clear();
+  parts_->keeper.clear();
   motion_.reset();
   parts_->initialiser.reset();
   state_ = TrackingState::kInitialising;
+  m_per_unit_ = 1.0;
   ++map_id_;
+}
+
+FrameImage FeatureOdometry::image_of(const VoFrame& frame) const {
+  FrameImage image{frame.index, frame.t_ns, build_pyramid(parts_->rectifier.rectify(frame.image))};
+  if (parameters_.reject_saturated) image.pyramid.burnt = find_burnt(image.pyramid.level(0));
+  return image;
+}
+
+/// Whether the image stood still while the camera should have moved.
+bool FeatureOdometry::frozen(const VoFrame& frame, bool repeated) const {
+  if (!repeated || state_ == TrackingState::kInitialising) return false;
+  const double dt_s = static_cast<double>(frame.t_ns - previous_->t_ns) * 1e-9;
+  return (motion_.rate_rad_s() + motion_.speed()) * camera_.fx_px * dt_s > kFrozenMotionPx;
 }
 
 Result<VoEstimate> FeatureOdometry::track(const VoFrame& frame) {
@@ -96,19 +103,16 @@ Result<VoEstimate> FeatureOdometry::track(const VoFrame& frame) {
   Outcome outcome;
   {
     const Stopwatch stopwatch(estimate.timing_ms, "total");
-    FrameImage image{frame.index, frame.t_ns, {}};
+    FrameImage image;
     {
       const Stopwatch pyramid_watch(estimate.timing_ms, "pyramid");
-      image.pyramid = build_pyramid(parts_->rectifier.rectify(frame.image));
+      image = image_of(frame);
     }
     const bool repeated = previous_ && previous_->image->data == frame.image->data;
-    const double expected_px =
-        (motion_.rate_rad_s() + motion_.speed()) * camera_.fx_px *
-        (previous_ ? static_cast<double>(frame.t_ns - previous_->t_ns) * 1e-9 : 0.0);
-    const bool frozen = repeated && expected_px > kFrozenMotionPx;
+    parts_->keeper.refresh();
     if (state_ == TrackingState::kInitialising) {
       if (!repeated) initialise(image, estimate, outcome);
-    } else if (frozen) {
+    } else if (frozen(frame, repeated)) {
       if (state_ == TrackingState::kTracking) lose();
     } else if (state_ == TrackingState::kTracking) {
       follow(image, estimate, outcome);
@@ -125,12 +129,14 @@ Result<VoEstimate> FeatureOdometry::track(const VoFrame& frame) {
 
 void FeatureOdometry::initialise(const FrameImage& frame, VoEstimate& estimate, Outcome& outcome) {
   const Stopwatch stopwatch(estimate.timing_ms, "initialisation");
-  if (!parts_->initialiser.process(frame, orb_, map_)) return;
-  for (const auto& [id, keyframe] : map_.keyframes()) {
+  Map& first = parts_->keeper.empty_map();
+  if (!parts_->initialiser.process(frame, orb_, first)) return;
+  for (const auto& [id, keyframe] : first.keyframes()) {
     motion_.observe(keyframe.t_ns, keyframe.T_camera_vo);
   }
-  parts_->mapper.add_candidates(orb_, map_);
-  const Keyframe& newest = map_.newest();
+  parts_->keeper.begin();
+  find_scale();
+  const Keyframe& newest = map().newest();
   T_camera_vo_ = newest.T_camera_vo;
   for (const Observation& seen : newest.observations) {
     outcome.tracked.points.push_back({seen.point, seen.pixel, seen.sigma_px});
@@ -139,16 +145,29 @@ void FeatureOdometry::initialise(const FrameImage& frame, VoEstimate& estimate, 
   state_ = TrackingState::kTracking;
 }
 
+/// The height above the ground's plane under the first keyframe makes the units metres; a later
+/// map's height is not known.
+void FeatureOdometry::find_scale() {
+  if (parameters_.initial_height_m <= 0.0 || map_id_ > 0) return;
+  // A plane n.X = 1 is 1 / |n| away.
+  const double height = 1.0 / map().keyframes().begin()->second.plane.coefficients.norm();
+  m_per_unit_ = parameters_.initial_height_m / height;
+}
+
+Pose FeatureOdometry::predicted(std::int64_t t_ns) const {
+  return parameters_.rotation_compensation ? motion_.predict(t_ns) : motion_.predict_unturned(t_ns);
+}
+
 TrackResult FeatureOdometry::track_map(const FrameImage& frame) const {
   // From the prediction; then with a wider search; then as if a turn had just stopped.
-  TrackResult result = parts_->tracker.track(frame.pyramid, motion_.predict(frame.t_ns), 3, map_);
+  const Tracker& tracker = parts_->tracker;
+  TrackResult result = tracker.track(frame.pyramid, predicted(frame.t_ns), 3, map());
   if (!result.tracked) {
-    result =
-        parts_->tracker.track(frame.pyramid, motion_.predict(frame.t_ns), kPyramidLevels, map_);
+    result = tracker.track(frame.pyramid, predicted(frame.t_ns), kPyramidLevels, map());
   }
-  if (!result.tracked) {
-    result = parts_->tracker.track(
-        frame.pyramid, motion_.predict_unturned(frame.t_ns), kPyramidLevels, map_);
+  if (!result.tracked && parameters_.rotation_compensation) {
+    result =
+        tracker.track(frame.pyramid, motion_.predict_unturned(frame.t_ns), kPyramidLevels, map());
   }
   return result;
 }
@@ -166,35 +185,23 @@ void FeatureOdometry::follow(const FrameImage& frame, VoEstimate& estimate, Outc
 }
 
 void FeatureOdometry::accept(const FrameImage& frame, VoEstimate& estimate, Outcome& outcome) {
-  count_sights(outcome.tracked);
+  MapKeeper& keeper = parts_->keeper;
+  keeper.note_sights(outcome.tracked);
   T_camera_vo_ = outcome.tracked.T_camera_vo;
-  if (parts_->mapper.wants_keyframe(frame, outcome.tracked, map_)) {
-    const Stopwatch stopwatch(estimate.timing_ms, "mapping");
-    parts_->mapper.insert_keyframe(frame, outcome.tracked, orb_, map_, estimate.timing_ms);
-    T_camera_vo_ = map_.newest().T_camera_vo;
+  if (keeper.wants_keyframe(frame, outcome.tracked)) {
+    T_camera_vo_ = keeper.insert_keyframe(frame, outcome.tracked, estimate.timing_ms);
     outcome.keyframe = true;
   }
+  keeper.take_timing(estimate.timing_ms);
   motion_.observe(frame.t_ns, T_camera_vo_);
   state_ = TrackingState::kTracking;
-}
-
-void FeatureOdometry::count_sights(const TrackResult& tracked) {
-  const auto count = [&](int id, bool found) {
-    MapPoint* point = map_.point(id);
-    if (point == nullptr) return;
-    ++point->expected;
-    if (found) ++point->found;
-  };
-  for (const TrackedPoint& seen : tracked.points) count(seen.point, true);
-  for (const TrackedPoint& seen : tracked.outliers) count(seen.point, false);
-  for (const int id : tracked.missed) count(id, false);
 }
 
 void FeatureOdometry::lose() {
   state_ = TrackingState::kLost;
   lost_at_ns_ = previous_->t_ns;
   blind_search_s_ = 0.0;
-  if (static_cast<int>(map_.keyframes().size()) < kYoungMap) start_over();
+  if (static_cast<int>(map().keyframes().size()) < kYoungMap) start_over();
 }
 
 void FeatureOdometry::search(const FrameImage& frame, VoEstimate& estimate, Outcome& outcome) {
@@ -204,13 +211,13 @@ void FeatureOdometry::search(const FrameImage& frame, VoEstimate& estimate, Outc
   if (!outcome.tracked.tracked) {
     RelocaliserOptions options;
     options.seed = parameters_.seed + static_cast<std::uint64_t>(frame.index);
-    const Relocalisation found = relocalise(camera_, options, frame.pyramid.level(0), orb_, map_);
+    const Relocalisation found = relocalise(camera_, options, frame.pyramid.level(0), orb_, map());
     estimate.counters["relocalisation_matches"] = found.matches;
     if (found.corners >= kMinCornersToSearch) {
       blind_search_s_ += static_cast<double>(frame.t_ns - previous_->t_ns) * 1e-9;
     }
     if (found.T_camera_vo) {
-      outcome.tracked = parts_->tracker.track(frame.pyramid, *found.T_camera_vo, 2, map_);
+      outcome.tracked = parts_->tracker.track(frame.pyramid, *found.T_camera_vo, 2, map());
     }
   }
   if (outcome.tracked.tracked) {
@@ -226,45 +233,53 @@ void FeatureOdometry::report(const FrameImage& frame,
                              VoEstimate& estimate) {
   estimate.sample.state = state_;
   estimate.sample.map_id = map_id_;
-  const bool tracking = state_ == TrackingState::kTracking;
-  if (tracking) {
-    estimate.sample.T_vo_camera = T_camera_vo_.inverse();
-    std::vector<Eigen::Vector3d> points;
-    for (const TrackedPoint& seen : outcome.tracked.points) {
-      const MapPoint* point = map_.point(seen.point);
-      if (point != nullptr) points.push_back(point->position_vo);
-    }
-    estimate.sample.scene_depth = median_depth(T_camera_vo_, points);
-    if (debug_) {
-      for (const Eigen::Vector3d& p : points) estimate.map_points_vo.push_back(p.cast<float>());
-    }
+  if (state_ == TrackingState::kTracking) report_pose(outcome, estimate);
+  const Map& map = this->map();
+  if (outcome.keyframe) {
+    map_memory_mb_ = static_cast<double>(map.memory_bytes()) / (1024.0 * 1024.0);
   }
   estimate.counters["searched"] = outcome.tracked.searched;
   estimate.counters["inliers"] = static_cast<double>(outcome.tracked.points.size());
   estimate.counters["residual_px"] = outcome.tracked.rms_px;
-  estimate.counters["keyframes"] = static_cast<double>(map_.keyframes().size());
-  estimate.counters["map_points"] = static_cast<double>(map_.points().size());
+  estimate.counters["keyframes"] = map.keyframes().empty() ? 0.0 : map.newest().id + 1.0;
+  estimate.counters["map_points"] = static_cast<double>(map.points().size());
+  estimate.counters["map_memory_mb"] = map.keyframes().empty() ? 0.0 : map_memory_mb_;
   estimate.counters["keyframe"] = outcome.keyframe ? 1.0 : 0.0;
+  if (debug_) draw(frame, outcome, estimate);
+}
+
+void FeatureOdometry::report_pose(const Outcome& outcome, VoEstimate& estimate) const {
+  std::vector<Eigen::Vector3d> points;
+  for (const TrackedPoint& seen : outcome.tracked.points) {
+    const MapPoint* point = map().point(seen.point);
+    if (point != nullptr) points.push_back(point->position_vo);
+  }
+  estimate.sample.T_vo_camera = T_camera_vo_.inverse();
+  estimate.sample.T_vo_camera.translation *= m_per_unit_;
+  estimate.sample.scene_depth = median_depth(T_camera_vo_, points);
+  if (estimate.sample.scene_depth) *estimate.sample.scene_depth *= m_per_unit_;
   if (!debug_) return;
+  for (const Eigen::Vector3d& p : points) {
+    estimate.map_points_vo.push_back((m_per_unit_ * p).cast<float>());
+  }
+}
+
+void FeatureOdometry::draw(const FrameImage& frame,
+                           const Outcome& outcome,
+                           VoEstimate& estimate) const {
   const Stopwatch stopwatch(estimate.timing_ms, "debug_view");
   DebugContent content;
   content.state = state_;
   content.keyframe = outcome.keyframe;
   content.map_id = map_id_;
-  content.keyframes = static_cast<int>(map_.keyframes().size());
-  if (tracking) content.tracked = &outcome.tracked;
+  content.keyframes = static_cast<int>(estimate.counters["keyframes"]);
+  if (state_ == TrackingState::kTracking) content.tracked = &outcome.tracked;
   if (state_ == TrackingState::kInitialising) content.followed = &parts_->initialiser.tracks();
   estimate.debug_image = draw_debug_view(frame.pyramid, content);
 }
 
 Result<std::unique_ptr<VoPort>> create_feature_odometry(const FeatureParameters& parameters) {
-  const Result<FeatureParameters> checked = feature_parameters_from({
-      {"features", parameters.features},
-      {"scale_factor", parameters.scale_factor},
-      {"levels", parameters.levels},
-      {"ini_fast_threshold", parameters.ini_fast_threshold},
-      {"min_fast_threshold", parameters.min_fast_threshold},
-  });
+  const Result<FeatureParameters> checked = feature_parameters_from(values_of(parameters));
   if (!checked) return checked.error();
   return std::unique_ptr<VoPort>(std::make_unique<FeatureOdometry>(parameters));
 }

@@ -7,8 +7,7 @@
 
 #include "odometry/feature/feature_odometry.hpp"
 #include "odometry/feature/initialiser.hpp"
-#include "odometry/feature/map.hpp"
-#include "odometry/feature/mapper.hpp"
+#include "odometry/feature/map_keeper.hpp"
 #include "odometry/feature/motion_model.hpp"
 #include "odometry/feature/orb.hpp"
 #include "odometry/feature/rectifier.hpp"
@@ -37,7 +36,7 @@ class FeatureOdometry final : public VoPort {
     Rectifier rectifier;
     Initialiser initialiser;
     Tracker tracker;
-    Mapper mapper;
+    MapKeeper keeper;
   };
   /// What happened in the frame at hand.
   struct Outcome {
@@ -48,22 +47,29 @@ class FeatureOdometry final : public VoPort {
   void initialise(const FrameImage& frame, VoEstimate& estimate, Outcome& outcome);
   void follow(const FrameImage& frame, VoEstimate& estimate, Outcome& outcome);
   void search(const FrameImage& frame, VoEstimate& estimate, Outcome& outcome);
+  [[nodiscard]] FrameImage image_of(const VoFrame& frame) const;
+  [[nodiscard]] bool frozen(const VoFrame& frame, bool repeated) const;
+  [[nodiscard]] Pose predicted(std::int64_t t_ns) const;
   [[nodiscard]] TrackResult track_map(const FrameImage& frame) const;
   void accept(const FrameImage& frame, VoEstimate& estimate, Outcome& outcome);
   void lose();
   void start_over();
-  void count_sights(const TrackResult& tracked);
+  [[nodiscard]] const Map& map() const { return parts_->keeper.view(); }
+  void find_scale();
   void report(const FrameImage& frame, const Outcome& outcome, VoEstimate& estimate);
+  void report_pose(const Outcome& outcome, VoEstimate& estimate) const;
+  void draw(const FrameImage& frame, const Outcome& outcome, VoEstimate& estimate) const;
 
   FeatureParameters parameters_;
   PinholeCamera camera_;
   OrbExtractor orb_;
   std::unique_ptr<Parts> parts_;
-  Map map_;
   MotionModel motion_;
   TrackingState state_ = TrackingState::kInitialising;
   int map_id_ = 0;
   Pose T_camera_vo_;
+  double m_per_unit_ = 1.0;     ///< of what is reported; 1 where no height is known
+  double map_memory_mb_ = 0.0;  ///< at the last keyframe
   std::optional<VoFrame> previous_;
   std::int64_t lost_at_ns_ = 0;
   double blind_search_s_ = 0.0;  ///< time lost over images that show something

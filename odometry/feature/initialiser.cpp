@@ -38,6 +38,7 @@ void Initialiser::start(const FrameImage& frame, OrbExtractor& orb) {
   H_now_first_.setIdentity();
   H_step_.setIdentity();
   for (const Corner& corner : orb.detect(frame.pyramid.level(0))) {
+    if (frame.pyramid.burnt_at(corner.pixel)) continue;
     Track& track = tracks_.emplace_back();
     track.corner = corner;
     track.patch_level = patch_level_of(corner.scale_level, orb.scale_factor());
@@ -161,7 +162,9 @@ bool Initialiser::reconstruct(const FrameImage& frame, OrbExtractor& orb, Map& m
     to.push_back(track.pixel);
   }
   TwoViewOptions options;
-  options.min_parallax_rad = options_.min_parallax_rad;
+  const bool waited = static_cast<double>(frame.t_ns - first_->t_ns) * 1e-9 > options_.patience_s;
+  options.min_parallax_rad = waited ? options_.least_parallax_rad : options_.min_parallax_rad;
+  options.consider_plane = options_.planar_start;
   options.seed = options_.seed;
   const auto two_views = reconstruct_two_view(camera_, from, to, options);
   if (!two_views) return false;

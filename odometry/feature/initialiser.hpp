@@ -24,9 +24,13 @@ struct FrameImage {
 
 struct InitialiserOptions {
   double min_parallax_rad = 0.07;  ///< 4 deg: depths to 0.1 % with points to 0.1 px
-  double min_motion_rad = 0.035;   ///< median displacement before a reconstruction is tried
-  int attempt_every = 3;           ///< frames
-  int snapshot_every = 6;          ///< frames between the keyframes of the first map
+  /// Slow or high flight takes long to get there: after so long, less will do.
+  double patience_s = 1.2;
+  double least_parallax_rad = 0.026;
+  double min_motion_rad = 0.02;  ///< median displacement before a reconstruction is tried
+  bool planar_start = true;      ///< as in FeatureParameters
+  int attempt_every = 3;         ///< frames
+  int snapshot_every = 6;        ///< frames between the keyframes of the first map
   int min_tracks = 120;
   std::uint64_t seed = 1;
 };

@@ -60,6 +60,42 @@ void Map::forget_images(int keep_newest) {
 
 void Map::clear() { *this = Map(); }
 
+Map Map::newest_part(int keyframes) const {
+  Map part;
+  part.next_keyframe_ = next_keyframe_;
+  part.next_point_ = next_point_;
+  const int first = std::max(first_with_image_, next_keyframe_ - keyframes);
+  part.first_with_image_ = first;
+  for (auto i = keyframes_.lower_bound(first); i != keyframes_.end(); ++i) {
+    const Keyframe& whole = i->second;
+    Keyframe& copy = part.keyframes_[i->first];
+    copy.id = whole.id;
+    copy.frame = whole.frame;
+    copy.t_ns = whole.t_ns;
+    copy.T_camera_vo = whole.T_camera_vo;
+    copy.pyramid = whole.pyramid;
+    copy.plane = whole.plane;
+    if (std::next(i) == keyframes_.end()) copy.observations = whole.observations;
+  }
+  for (const auto& [id, point] : points_) {
+    if (point.source_keyframe >= first) part.points_.emplace_hint(part.points_.end(), id, point);
+  }
+  return part;
+}
+
+std::size_t Map::memory_bytes() const {
+  std::size_t bytes = 0;
+  for (const auto& [id, keyframe] : keyframes_) {
+    for (const cv::Mat& level : keyframe.pyramid.levels) bytes += level.total();
+    bytes += sizeof(Keyframe) + keyframe.observations.capacity() * sizeof(Observation) +
+             keyframe.candidates.capacity() * sizeof(Candidate);
+  }
+  for (const auto& [id, point] : points_) {
+    bytes += sizeof(MapPoint) + point.keyframes.capacity() * sizeof(int);
+  }
+  return bytes;
+}
+
 MapPoint* Map::point(int id) {
   const auto found = points_.find(id);
   return found == points_.end() ? nullptr : &found->second;

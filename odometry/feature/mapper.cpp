@@ -40,26 +40,28 @@ bool Mapper::wants_keyframe(const FrameImage& frame,
          options_.min_tracked_share * static_cast<double>(last.observations.size());
 }
 
-void Mapper::insert_keyframe(const FrameImage& frame,
-                             const TrackResult& tracked,
-                             OrbExtractor& orb,
-                             Map& map,
-                             std::map<std::string, double>& timing_ms) const {
-  {
-    const Stopwatch stopwatch(timing_ms, "triangulation");
-    Keyframe made;
-    made.frame = frame.index;
-    made.t_ns = frame.t_ns;
-    made.T_camera_vo = tracked.T_camera_vo;
-    made.pyramid = frame.pyramid;
-    made.plane = map.newest().plane;
-    Keyframe& keyframe = map.add_keyframe(std::move(made));
-    for (const TrackedPoint& seen : tracked.points) {
-      map.add_observation(keyframe, {seen.point, seen.pixel, seen.sigma_px});
-    }
-    fit_plane(camera_, map, keyframe);
-    triangulate_candidates(orb, map);
+void Mapper::extend(const FrameImage& frame,
+                    const TrackResult& tracked,
+                    Map& map,
+                    std::map<std::string, double>& timing_ms) const {
+  const Stopwatch stopwatch(timing_ms, "triangulation");
+  Keyframe made;
+  made.frame = frame.index;
+  made.t_ns = frame.t_ns;
+  made.T_camera_vo = tracked.T_camera_vo;
+  made.pyramid = frame.pyramid;
+  made.plane = map.newest().plane;
+  Keyframe& keyframe = map.add_keyframe(std::move(made));
+  for (const TrackedPoint& seen : tracked.points) {
+    // A copy of the map may know points that are gone.
+    if (map.point(seen.point) == nullptr) continue;
+    map.add_observation(keyframe, {seen.point, seen.pixel, seen.sigma_px});
   }
+  fit_plane(camera_, map, keyframe);
+  triangulate_candidates(map);
+}
+
+void Mapper::mend(OrbExtractor& orb, Map& map, std::map<std::string, double>& timing_ms) const {
   {
     const Stopwatch stopwatch(timing_ms, "bundle_adjustment");
     adjust_locally(camera_, options_.adjustment, map);
@@ -85,6 +87,7 @@ void Mapper::add_candidates(OrbExtractor& orb, Map& map) const {
     const std::size_t cell = empty.index(corner.pixel);
     const double inverse_depth = keyframe.plane.inverse_depth(camera_.ray(corner.pixel));
     if (empty.marked[cell] == 0 || inverse_depth * kMaxRelativeDepth < usual) continue;
+    if (keyframe.pyramid.burnt_at(corner.pixel)) continue;
     if (best[cell] == nullptr || corner.response > best[cell]->response) best[cell] = &corner;
   }
   for (const Corner* corner : best) {
@@ -93,13 +96,13 @@ void Mapper::add_candidates(OrbExtractor& orb, Map& map) const {
   }
 }
 
-void Mapper::triangulate_candidates(const OrbExtractor& orb, Map& map) const {
+void Mapper::triangulate_candidates(Map& map) const {
   const int newest = map.newest().id;
   for (auto& [id, source] : map.keyframes()) {
     if (id < newest - options_.candidate_keyframes || id == newest) continue;
     for (Candidate& candidate : source.candidates) {
       if (candidate.done) continue;
-      const int level = patch_level_of(candidate.corner.scale_level, orb.scale_factor());
+      const int level = patch_level_of(candidate.corner.scale_level, options_.scale_factor);
       const Search search = triangulate_candidate(source, candidate, level, map);
       if (search == Search::kMissed) ++candidate.misses;
       candidate.done = search == Search::kFound || candidate.misses >= kMaxMisses;

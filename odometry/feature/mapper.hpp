@@ -23,6 +23,8 @@ struct MapperOptions {
   double max_epipolar_px = 1.0;     ///< at the finest level
   int cells = 900;                  ///< of the image; each should hold a point
   int images_kept = 50;             ///< keyframes that can still be searched
+  double scale_factor = 1.2;        ///< of the corners' levels
+  cv::Mat seen;                     ///< as in TrackerOptions
   LocalAdjustment adjustment;
 };
 
@@ -34,19 +36,21 @@ class Mapper {
   [[nodiscard]] bool wants_keyframe(const FrameImage& frame,
                                     const TrackResult& tracked,
                                     const Map& map) const;
-  /// Makes it one: its points' sights, new points with the keyframes before, culling and local
-  /// bundle adjustment. Wall time by stage is added to `timing_ms`.
-  void insert_keyframe(const FrameImage& frame,
-                       const TrackResult& tracked,
-                       OrbExtractor& orb,
-                       Map& map,
-                       std::map<std::string, double>& timing_ms) const;
+  /// Makes it one, with the sights of its points, and finds new points with the keyframes before.
+  /// Wall time by stage is added to `timing_ms`, here and below.
+  void extend(const FrameImage& frame,
+              const TrackResult& tracked,
+              Map& map,
+              std::map<std::string, double>& timing_ms) const;
+  /// Mends the map around the newest keyframe: local bundle adjustment and culling; then looks for
+  /// corners that may become points.
+  void mend(OrbExtractor& orb, Map& map, std::map<std::string, double>& timing_ms) const;
   /// Looks for corners without a point in the newest keyframe.
   void add_candidates(OrbExtractor& orb, Map& map) const;
 
  private:
   enum class Search { kFound, kMissed, kTooNear };
-  void triangulate_candidates(const OrbExtractor& orb, Map& map) const;
+  void triangulate_candidates(Map& map) const;
   Search triangulate_candidate(const Keyframe& source,
                                const Candidate& candidate,
                                int patch_level,

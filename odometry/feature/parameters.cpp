@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "odometry/feature/feature_odometry.hpp"
+#include "vo_bridges/parameter.hpp"
 
 namespace overfly::odometry {
 namespace {
@@ -23,12 +24,27 @@ struct WholeField {
   int FeatureParameters::*field;
 };
 
-constexpr std::array<WholeField, 4> kWholeFields{{
+constexpr std::array<WholeField, 5> kWholeFields{{
     {"features", 100, 20000, &FeatureParameters::features},
     {"levels", 1, 16, &FeatureParameters::levels},
     {"ini_fast_threshold", 1, 100, &FeatureParameters::ini_fast_threshold},
     {"min_fast_threshold", 1, 100, &FeatureParameters::min_fast_threshold},
+    {"threads", 1, 2, &FeatureParameters::threads},
 }};
+
+struct Switch {
+  const char* name;
+  bool FeatureParameters::*field;
+};
+
+constexpr std::array<Switch, 4> kSwitches{{
+    {"rotation_compensation", &FeatureParameters::rotation_compensation},
+    {"planar_start", &FeatureParameters::planar_start},
+    {"low_texture", &FeatureParameters::low_texture},
+    {"reject_saturated", &FeatureParameters::reject_saturated},
+}};
+
+constexpr double kMaxHeightM = 20000.0;
 
 /// Sets one field; false for a name that is not known.
 Result<bool> set_field(const std::string& name, double value, FeatureParameters& parameters) {
@@ -41,6 +57,19 @@ Result<bool> set_field(const std::string& name, double value, FeatureParameters&
                      std::to_string(field.high) + "]");
     }
     parameters.*field.field = static_cast<int>(value);
+    return true;
+  }
+  for (const Switch& option : kSwitches) {
+    if (name != option.name) continue;
+    if (value != 0.0 && value != 1.0) return bad(name, value, "true or false (1 or 0)");
+    parameters.*option.field = value != 0.0;
+    return true;
+  }
+  if (name == "initial_height_m") {
+    if (!(value >= 0.0 && value <= kMaxHeightM)) {
+      return bad(name, value, "in [0, 20000], 0 = not known");
+    }
+    parameters.initial_height_m = value;
     return true;
   }
   if (name == "scale_factor") {
@@ -59,7 +88,31 @@ Result<bool> set_field(const std::string& name, double value, FeatureParameters&
   return false;
 }
 
+std::string known_names() {
+  std::string names;
+  for (const auto& [name, value] : values_of(FeatureParameters{})) {
+    names += (names.empty() ? "" : ", ") + name;
+  }
+  return names;
+}
+
 }  // namespace
+
+std::map<std::string, double> values_of(const FeatureParameters& parameters) {
+  std::map<std::string, double> values{{"scale_factor", parameters.scale_factor},
+                                       {"seed", static_cast<double>(parameters.seed)},
+                                       {"initial_height_m", parameters.initial_height_m}};
+  for (const WholeField& field : kWholeFields) values[field.name] = parameters.*field.field;
+  for (const Switch& option : kSwitches) values[option.name] = parameters.*option.field ? 1.0 : 0.0;
+  return values;
+}
+
+std::map<std::string, std::string> texts_of(const FeatureParameters& parameters) {
+  std::map<std::string, std::string> texts;
+  for (const auto& [name, value] : values_of(parameters)) texts[name] = text_of(value);
+  for (const Switch& option : kSwitches) texts[option.name] = text_of(parameters.*option.field);
+  return texts;
+}
 
 Result<FeatureParameters> feature_parameters_from(const std::map<std::string, double>& values) {
   FeatureParameters parameters;
@@ -68,9 +121,8 @@ Result<FeatureParameters> feature_parameters_from(const std::map<std::string, do
     if (!known) return known.error();
     if (!known.value()) {
       return Error{ErrorCode::kInvalidArgument,
-                   "parameters." + name +
-                       ": not a parameter of the feature estimator (features, scale_factor, "
-                       "levels, ini_fast_threshold, min_fast_threshold, seed)"};
+                   "parameters." + name + ": not a parameter of the feature estimator (" +
+                       known_names() + ")"};
     }
   }
   if (parameters.min_fast_threshold > parameters.ini_fast_threshold) {

@@ -6,6 +6,31 @@
 
 namespace overfly::odometry {
 
+namespace {
+
+constexpr int kFullLevel = 250;     ///< grey level from which a pixel says nothing
+constexpr int kFullShare = 192;     ///< of 255: share of such pixels that makes a cell burnt
+constexpr int kLeastAreaCells = 3;  ///< side of the smallest area
+
+}  // namespace
+
+cv::Mat find_burnt(const cv::Mat& image) {
+  cv::Mat full;
+  cv::threshold(image, full, kFullLevel - 1, 255.0, cv::THRESH_BINARY);
+  const int least_px = kLeastAreaCells * kBurntCellPx;
+  if (cv::countNonZero(full) < least_px * least_px / 2) return {};
+  cv::Mat cells;
+  const cv::Size size((image.cols + kBurntCellPx - 1) / kBurntCellPx,
+                      (image.rows + kBurntCellPx - 1) / kBurntCellPx);
+  cv::resize(full, cells, size, 0.0, 0.0, cv::INTER_AREA);
+  cv::threshold(cells, cells, kFullShare - 1, 255.0, cv::THRESH_BINARY);
+  cv::erode(cells, cells, cv::Mat::ones(kLeastAreaCells, kLeastAreaCells, CV_8U));
+  if (cv::countNonZero(cells) == 0) return {};
+  // Back to the area's size, and one cell more.
+  cv::dilate(cells, cells, cv::Mat::ones(kLeastAreaCells + 2, kLeastAreaCells + 2, CV_8U));
+  return cells;
+}
+
 Pyramid build_pyramid(std::shared_ptr<const Image> image) {
   Pyramid pyramid;
   // OpenCV has no view of constant data; nothing here writes to it.

@@ -30,7 +30,9 @@ Eigen::Matrix2d warp_of(const PinholeCamera& camera,
 }
 
 /// One point of the local map for each cell of the image, best known first.
-std::vector<Tracker::Projection> Tracker::project(const Pose& T_camera_vo, const Map& map) const {
+std::vector<Tracker::Projection> Tracker::project(const Pyramid& image,
+                                                  const Pose& T_camera_vo,
+                                                  const Map& map) const {
   const int oldest = map.newest().id - options_.local_keyframes;
   const CellGrid grid = CellGrid::over(camera_.width_px, camera_.height_px, options_.max_points);
   std::vector<Projection> cells(grid.marked.size());
@@ -48,6 +50,7 @@ std::vector<Tracker::Projection> Tracker::project(const Pose& T_camera_vo, const
                                        static_cast<int>(pixel->x())) == 0) {
       continue;
     }
+    if (image.burnt_at(*pixel)) continue;
     Projection& cell = cells[grid.index(*pixel)];
     // Later points replace equals: the newer patch is nearer in view.
     if (cell.point == nullptr || point.keyframes.size() >= cell.point->keyframes.size()) {
@@ -95,12 +98,13 @@ TrackResult Tracker::track(const Pyramid& image,
                            const Map& map) const {
   TrackResult result;
   result.T_camera_vo = T_predicted;
-  if (!align_coarsely(image, project(T_predicted, map), coarse_level, map, result.T_camera_vo)) {
+  if (!align_coarsely(
+          image, project(image, T_predicted, map), coarse_level, map, result.T_camera_vo)) {
     return result;
   }
   std::vector<PoseObservation> observations;
   std::vector<int> ids;
-  for (const Projection& projection : project(result.T_camera_vo, map)) {
+  for (const Projection& projection : project(image, result.T_camera_vo, map)) {
     const MapPoint& point = *projection.point;
     const auto patch = make_template(map.keyframe(point.source_keyframe).pyramid,
                                      point.source_pixel,

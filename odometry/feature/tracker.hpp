@@ -54,7 +54,9 @@ class Tracker {
 
  private:
   struct Projection;
-  [[nodiscard]] std::vector<Projection> project(const Pose& T_camera_vo, const Map& map) const;
+  [[nodiscard]] std::vector<Projection> project(const Pyramid& image,
+                                                const Pose& T_camera_vo,
+                                                const Map& map) const;
   bool align_coarsely(const Pyramid& image,
                       const std::vector<Projection>& projections,
                       int coarse_level,

@@ -35,6 +35,7 @@ struct TwoViewOptions {
   double sigma_px = 1.0;           ///< noise assumed in scores and checks
   double min_parallax_rad = 0.02;  ///< of the median point
   int min_points = 60;
+  bool consider_plane = true;  ///< else the essential matrix is taken, whatever it is worth
   std::uint64_t seed = 1;
 };
 

@@ -61,7 +61,7 @@ TEST(FeatureParameters, AreReportedByTheirNames) {
   const auto reported = odometry.value()->effective_parameters();
   EXPECT_EQ(reported.at("features"), "2000");
   EXPECT_EQ(reported.at("scale_factor"), "1.2");
-  EXPECT_EQ(reported.size(), 6U);
+  EXPECT_EQ(reported.size(), 12U);
 }
 
 }  // namespace

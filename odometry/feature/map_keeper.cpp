@@ -1,0 +1,143 @@
+#include "odometry/feature/map_keeper.hpp"
+
+#include <utility>
+
+#include "odometry/feature/stopwatch.hpp"
+
+namespace overfly::odometry {
+
+MapKeeper::MapKeeper(const PinholeCamera& camera,
+                     const MapperOptions& options,
+                     const FeatureParameters& parameters)
+    : mapper_(camera, options),
+      images_kept_(options.images_kept),
+      orb_(parameters),
+      threaded_(parameters.threads > 1) {
+  orb_.look_only_at(options.seen);
+  if (threaded_) thread_ = std::thread([this] { run(); });
+}
+
+MapKeeper::~MapKeeper() {
+  if (!threaded_) return;
+  {
+    const std::lock_guard lock(mutex_);
+    stop_ = true;
+    work_.reset();
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+void MapKeeper::begin() {
+  mapper_.add_candidates(orb_, map_);
+  if (!threaded_) return;
+  publish();
+  refresh();
+}
+
+void MapKeeper::clear() {
+  if (threaded_) {
+    {
+      const std::lock_guard lock(mutex_);
+      work_.reset();
+    }
+    wait_until_idle();
+    const std::lock_guard lock(mutex_);
+    published_.reset();
+  }
+  view_.reset();
+  sights_.clear();
+  map_.clear();
+}
+
+const Map& MapKeeper::refresh() {
+  if (threaded_) {
+    const std::lock_guard lock(mutex_);
+    view_ = published_;
+  }
+  return view();
+}
+
+void MapKeeper::note_sights(const TrackResult& tracked) {
+  for (const TrackedPoint& seen : tracked.points) sights_.push_back({seen.point, true});
+  for (const TrackedPoint& seen : tracked.outliers) sights_.push_back({seen.point, false});
+  for (const int id : tracked.missed) sights_.push_back({id, false});
+}
+
+bool MapKeeper::wants_keyframe(const FrameImage& frame, const TrackResult& tracked) const {
+  if (threaded_) {
+    const std::lock_guard lock(mutex_);
+    if (busy_ || work_) return false;
+  }
+  return mapper_.wants_keyframe(frame, tracked, view());
+}
+
+Pose MapKeeper::insert_keyframe(const FrameImage& frame,
+                                const TrackResult& tracked,
+                                std::map<std::string, double>& timing_ms) {
+  Work work{frame, tracked, std::exchange(sights_, {})};
+  if (!threaded_) {
+    map_keyframe(work, timing_ms);
+    return map_.newest().T_camera_vo;
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    work_ = std::move(work);
+  }
+  changed_.notify_all();
+  return tracked.T_camera_vo;
+}
+
+void MapKeeper::take_timing(std::map<std::string, double>& timing_ms) {
+  const std::lock_guard lock(mutex_);
+  for (const auto& [stage, ms] : timing_ms_) timing_ms[stage] += ms;
+  timing_ms_.clear();
+}
+
+void MapKeeper::wait_until_idle() {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return !busy_ && !work_; });
+}
+
+void MapKeeper::run() {
+  std::unique_lock lock(mutex_);
+  while (true) {
+    changed_.wait(lock, [this] { return stop_ || work_; });
+    if (stop_) return;
+    const Work work = *std::exchange(work_, std::nullopt);
+    busy_ = true;
+    lock.unlock();
+    std::map<std::string, double> timing_ms;
+    map_keyframe(work, timing_ms);
+    publish();
+    lock.lock();
+    for (const auto& [stage, ms] : timing_ms) timing_ms_[stage] += ms;
+    busy_ = false;
+    changed_.notify_all();
+  }
+}
+
+void MapKeeper::map_keyframe(const Work& work, std::map<std::string, double>& timing_ms) {
+  const Stopwatch stopwatch(timing_ms, "mapping");
+  count(work.sights);
+  mapper_.extend(work.frame, work.tracked, map_, timing_ms);
+  if (threaded_) publish();
+  mapper_.mend(orb_, map_, timing_ms);
+}
+
+void MapKeeper::count(const std::vector<Sight>& sights) {
+  for (const Sight& sight : sights) {
+    MapPoint* point = map_.point(sight.point);
+    if (point == nullptr) continue;
+    ++point->expected;
+    if (sight.found) ++point->found;
+  }
+}
+
+void MapKeeper::publish() {
+  auto copy = std::make_shared<const Map>(map_.newest_part(images_kept_));
+  const std::lock_guard lock(mutex_);
+  published_ = std::move(copy);
+}
+
+}  // namespace overfly::odometry

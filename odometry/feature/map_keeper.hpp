@@ -1,0 +1,94 @@
+// The map and who works on it: the tracking thread itself, or a thread beside it.
+#pragma once
+
+#include <condition_variable>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "odometry/feature/initialiser.hpp"
+#include "odometry/feature/map.hpp"
+#include "odometry/feature/mapper.hpp"
+#include "odometry/feature/orb.hpp"
+#include "odometry/feature/tracker.hpp"
+
+namespace overfly::odometry {
+
+/// With one thread a keyframe is mapped at once, and `view` is the map itself. With two, a thread
+/// owns the map from `begin` to `clear`; `view` is the newest copy that it published: new points as
+/// soon as they have a depth, then once more after the adjustment.
+///
+/// All calls are for one thread, that which tracks.
+class MapKeeper {
+ public:
+  MapKeeper(const PinholeCamera& camera,
+            const MapperOptions& options,
+            const FeatureParameters& parameters);
+  ~MapKeeper();
+  MapKeeper(const MapKeeper&) = delete;
+  MapKeeper& operator=(const MapKeeper&) = delete;
+
+  /// The empty map, for who makes its first keyframes; `begin` follows when it has them.
+  [[nodiscard]] Map& empty_map() { return map_; }
+  /// The first keyframes are there: looks for corners in the newest, and works from now on.
+  void begin();
+  /// Forgets the map and all work on it.
+  void clear();
+
+  /// Takes what the thread published last. @return stays as it is until the next call of this
+  const Map& refresh();
+  /// As `refresh` returned it, with one thread as it is.
+  [[nodiscard]] const Map& view() const { return view_ ? *view_ : map_; }
+
+  /// Counts for each point whether it was found where it should have been.
+  void note_sights(const TrackResult& tracked);
+  /// Whether a tracked frame should become a keyframe now; no while one is being mapped.
+  [[nodiscard]] bool wants_keyframe(const FrameImage& frame, const TrackResult& tracked) const;
+  /// Makes it one. @return the frame's pose as known now, T_camera_vo
+  Pose insert_keyframe(const FrameImage& frame,
+                       const TrackResult& tracked,
+                       std::map<std::string, double>& timing_ms);
+  /// Adds the wall time that the thread spent since the last call.
+  void take_timing(std::map<std::string, double>& timing_ms);
+  /// Until no keyframe waits or is being mapped.
+  void wait_until_idle();
+
+ private:
+  struct Sight {
+    int point = 0;
+    bool found = false;
+  };
+  struct Work {
+    FrameImage frame;
+    TrackResult tracked;
+    std::vector<Sight> sights;
+  };
+
+  void run();
+  void map_keyframe(const Work& work, std::map<std::string, double>& timing_ms);
+  void count(const std::vector<Sight>& sights);
+  void publish();
+
+  Mapper mapper_;
+  int images_kept_;
+  OrbExtractor orb_;
+  bool threaded_;
+  Map map_;
+  std::vector<Sight> sights_;
+  std::shared_ptr<const Map> view_;  ///< null with one thread
+
+  mutable std::mutex mutex_;  ///< guards all below
+  std::condition_variable changed_;
+  std::optional<Work> work_;
+  bool busy_ = false;
+  bool stop_ = false;
+  std::shared_ptr<const Map> published_;
+  std::map<std::string, double> timing_ms_;
+  std::thread thread_;  ///< last: it ends before what it uses
+};
+
+}  // namespace overfly::odometry
