@@ -28,10 +28,11 @@ Result<std::map<std::string, double>> numbers_of(const VoParameters& parameters)
   return numbers;
 }
 
-Port create_feature(const EstimatorSpec& spec, std::uint64_t seed) {
+Port create_feature(const EstimatorSpec& spec, const EstimatorSetting& setting) {
   auto values = numbers_of(spec.parameters);
   if (!values) return values.error();
-  values->try_emplace("seed", static_cast<double>(seed));
+  values->try_emplace("seed", static_cast<double>(setting.seed));
+  values->try_emplace("threads", setting.lockstep ? 1.0 : 2.0);
   const auto parameters = odometry::feature_parameters_from(*values);
   if (!parameters) return parameters.error();
   return odometry::create_feature_odometry(*parameters);
@@ -73,7 +74,7 @@ Port create_toy(const EstimatorSpec& spec, const std::function<Result<ToyTruth>(
 Port create(const EstimatorSpec& spec,
             const EstimatorSetting& setting,
             const std::function<Result<ToyTruth>()>& truth) {
-  if (spec.type == "feature") return create_feature(spec, setting.seed);
+  if (spec.type == "feature") return create_feature(spec, setting);
   if (is_test_estimator(spec.type)) return create_toy(spec, truth);
   if (is_outside_estimator(spec.type)) return create_outside_estimator(spec, setting);
   return Error{ErrorCode::kInvalidArgument,
