@@ -68,9 +68,11 @@ void MasterWatch::register_again() {
       log_->add(publishers.error().message);
       continue;
     }
-    if (topic.published || !own || publishers->getType() != XmlRpc::XmlRpcValue::TypeArray) {
-      continue;
-    }
+    if (topic.published || !own) continue;
+    // Nobody has told the new master yet of a publisher that we may be connected to.
+    const bool known =
+        publishers->getType() == XmlRpc::XmlRpcValue::TypeArray && publishers->size() > 0;
+    if (!known) continue;
     // Told as a master tells: roscpp then connects to the publishers that it does not know.
     const Status told = tell_publishers(*own, topic.topic, *publishers, 1s);
     if (!told) log_->add(told.error().message);

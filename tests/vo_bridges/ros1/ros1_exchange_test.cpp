@@ -1,0 +1,253 @@
+// What goes back and forth between the door and a node.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+
+#include "tests/vo_bridges/ros1/ros_world.hpp"
+#include "vo_bridges/ros1/ros1_options.hpp"
+
+namespace overfly::testing {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+
+std::unique_ptr<VoPort> created(const Ros1EstimatorOptions& options) {
+  auto port = create_ros1_estimator(options);
+  if (!port) throw std::runtime_error(port.error().message);
+  return std::move(port).value();
+}
+
+VoEstimate tracked(VoPort& port, const VoFrame& frame) {
+  auto estimate = port.track(frame);
+  if (!estimate) throw std::runtime_error(estimate.error().message);
+  return std::move(estimate).value();
+}
+
+/// What the test's node answers: that image, that focal length, and a turn about x.
+void expect_proof(const VoEstimate& estimate, const VoFrame& frame) {
+  ASSERT_EQ(estimate.sample.state, TrackingState::kTracking);
+  const Pose& T = estimate.sample.T_vo_camera;
+  // CRC-32 and a focal length are exact in a double; an inversion costs some last places of 4e9.
+  constexpr double kRounding = 1e-4;
+  EXPECT_NEAR(T.translation.x(), crc32_of(*frame.image), kRounding);
+  EXPECT_NEAR(T.translation.y(), frame.intrinsics.fx_px, kRounding);
+  EXPECT_NEAR(T.translation.z(), 3.0, kRounding);
+  const Eigen::Quaterniond turned(
+      Eigen::AngleAxisd(0.01 * frame.image->data[0], Eigen::Vector3d::UnitX()));
+  EXPECT_NEAR(rotation_angle_rad(T.rotation, turned), 0.0, 1e-9);
+}
+
+class Ros1PoseTypes : public ::testing::TestWithParam<Ros1PoseType> {};
+
+TEST_P(Ros1PoseTypes, CarryThePoseOfEachFrame) {
+  ROS_MASTER_OR_SKIP();
+  Ros1EstimatorOptions options = fresh_options();
+  options.pose_type = GetParam();
+  options.vo_frame = std::string("map_") + ros1::to_string(GetParam());
+  const TestNode node(options);
+  const auto port = created(options);
+  for (const VoFrame& frame : grey_frames(20)) expect_proof(tracked(*port, frame), frame);
+}
+
+INSTANTIATE_TEST_SUITE_P(All,
+                         Ros1PoseTypes,
+                         ::testing::Values(Ros1PoseType::kPoseStamped,
+                                           Ros1PoseType::kPoseWithCovarianceStamped,
+                                           Ros1PoseType::kOdometry,
+                                           Ros1PoseType::kTf),
+                         [](const auto& tested) {
+                           return std::string(ros1::to_string(tested.param));
+                         });
+
+TEST(Ros1Exchange, InvertsPosesOfTheWorldInTheCamera) {
+  ROS_MASTER_OR_SKIP();
+  Ros1EstimatorOptions options = fresh_options();
+  options.pose_is_camera_from_world = true;
+  const TestNode node(options, {"invert=1"});
+  const auto port = created(options);
+  for (const VoFrame& frame : grey_frames(3)) expect_proof(tracked(*port, frame), frame);
+}
+
+TEST(Ros1Exchange, TurnsBodyAxesIntoOpticalOnes) {
+  ROS_MASTER_OR_SKIP();
+  Ros1EstimatorOptions options = fresh_options();
+  options.pose_in_body_axes = true;
+  options.pose_is_camera_from_world = true;
+  const TestNode node(options, {"body_axes=1", "invert=1"});
+  const auto port = created(options);
+  for (const VoFrame& frame : grey_frames(3)) expect_proof(tracked(*port, frame), frame);
+}
+
+TEST(Ros1Exchange, TellsCalibrationTimeAndFrame) {
+  ROS_MASTER_OR_SKIP();
+  Ros1EstimatorOptions options = fresh_options();
+  options.camera_frame = "camera_optical_frame";
+  const TestNode node(options);
+  const auto port = created(options);
+  for (VoFrame frame : grey_frames(3)) {
+    frame.distortion = {DistortionModel::kRadtan, {-0.05, 0.01, 0.002, -0.001, 0.003}};
+    expect_proof(tracked(*port, frame), frame);
+  }
+  EXPECT_TRUE(node.says("image mono8 camera_optical_frame"));
+  EXPECT_TRUE(node.says("camera_info 64 x 48 plumb_bob D -0.05 0.01 0.002 -0.001 0.003 K "));
+  EXPECT_TRUE(node.says("clock 1.000000000")) << "0 means no time on ROS";
+  EXPECT_TRUE(node.says("clock 1.032258065")) << "31 frames a second";
+}
+
+TEST(Ros1Exchange, KeepsTimeFromOthersWhenToldSo) {
+  ROS_MASTER_OR_SKIP();
+  Ros1EstimatorOptions options = fresh_options();
+  options.publish_clock = false;
+  options.publish_tf = true;
+  options.vo_frame = "map_of_looker_on";
+  const TestNode node(options);
+  const auto port = created(options);
+  const std::vector<VoFrame> frames = grey_frames(3);
+  for (const VoFrame& frame : frames) expect_proof(tracked(*port, frame), frame);
+  EXPECT_TRUE(
+      node.says("tf map_of_looker_on -> camera x " + std::to_string(crc32_of(*frames[1].image))));
+  EXPECT_THAT(node.output(), ::testing::Not(HasSubstr("clock")));
+}
+
+TEST(Ros1Exchange, TellsTheNodeOfAResetAndLetsTimeGoOn) {
+  ROS_MASTER_OR_SKIP();
+  Ros1EstimatorOptions options = fresh_options();
+  options.reset_topic = options.pose_topic + "/reset";
+  const TestNode node(options);
+  const auto port = created(options);
+  const std::vector<VoFrame> frames = grey_frames(2);
+  tracked(*port, frames[0]);
+  port->reset();
+  EXPECT_TRUE(node.says("reset"));
+  expect_proof(tracked(*port, frames[0]), frames[0]);
+  EXPECT_TRUE(node.says("clock 2.000000000"));
+}
+
+TEST(Ros1Exchange, SaysThatNobodyWasToldOfAReset) {
+  ROS_MASTER_OR_SKIP();
+  const Ros1EstimatorOptions options = fresh_options();
+  const TestNode node(options);
+  const auto port = created(options);
+  port->reset();
+  EXPECT_THAT(port->take_log(), Contains(HasSubstr("no reset_topic")));
+}
+
+TEST(Ros1Exchange, TakesDebugImagesOfManyEncodingsAndSizes) {
+  ROS_MASTER_OR_SKIP();
+  const Ros1EstimatorOptions options = fresh_options();
+  const TestNode node(options, {"debug_scale=2"});
+  const auto port = created(options);
+  port->set_debug(true);
+  const VoEstimate estimate = tracked(*port, grey_frames(1).front());
+  ASSERT_TRUE(estimate.debug_image);
+  EXPECT_EQ(estimate.debug_image->width_px, 64) << "twice as large as the frame: halved";
+  EXPECT_EQ(estimate.debug_image->data[0], 77);
+}
+
+TEST(Ros1Exchange, SaysWhatIsWrongWithADebugImage) {
+  ROS_MASTER_OR_SKIP();
+  const Ros1EstimatorOptions options = fresh_options();
+  const TestNode node(options, {"debug_encoding=bayer_rggb8"});
+  const auto port = created(options);
+  port->set_debug(true);
+  EXPECT_FALSE(tracked(*port, grey_frames(1).front()).debug_image);
+  EXPECT_THAT(port->take_log(), Contains(HasSubstr("bayer_rggb8")));
+}
+
+TEST(Ros1Exchange, WaitsInLockstepForASlowNode) {
+  ROS_MASTER_OR_SKIP();
+  const Ros1EstimatorOptions options = fresh_options();
+  const TestNode node(options, {"delay_ms=150"});  // of frames that are 32 ms apart
+  const auto port = created(options);
+  for (const VoFrame& frame : grey_frames(5)) expect_proof(tracked(*port, frame), frame);
+}
+
+TEST(Ros1Exchange, GoesByTheClockForANodeThatAnswersSomeFrames) {
+  ROS_MASTER_OR_SKIP();
+  Ros1EstimatorOptions options = fresh_options();
+  options.lockstep = false;
+  options.answer_timeout_s = 600.0;  // which nothing waits for
+  const TestNode node(options, {"every=3"});
+  const auto port = created(options);
+  int answered = 0;
+  int unanswered = 0;
+  for (const VoFrame& frame : grey_frames(30)) {
+    const VoEstimate estimate = tracked(*port, frame);
+    const bool missed = estimate.counters.count("unanswered") != 0;
+    unanswered += missed ? 1 : 0;
+    answered += estimate.sample.state == TrackingState::kTracking ? 1 : 0;
+    EXPECT_EQ(missed, estimate.sample.state != TrackingState::kTracking);
+  }
+  EXPECT_GE(unanswered, 20) << "of 30 frames the node answers 10";
+  EXPECT_GE(answered, 5) << "some may be late on a busy machine";
+}
+
+TEST(Ros1Exchange, IsInitialisingUntilTheFirstPoseAndLostWithoutOne) {
+  ROS_MASTER_OR_SKIP();
+  Ros1EstimatorOptions options = fresh_options();
+  options.answer_timeout_s = 0.3;
+  const TestNode node(options, {"silent_until=4", "every=2"});
+  const auto port = created(options);
+  const std::vector<VoFrame> frames = grey_frames(9);
+  std::vector<TrackingState> states;
+  for (const VoFrame& frame : frames) states.push_back(tracked(*port, frame).sample.state);
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(states[i], TrackingState::kInitialising) << i;
+  EXPECT_EQ(states.back(), TrackingState::kLost) << "the ninth image has no pose";
+}
+
+TEST(Ros1Exchange, CountsPosesThatBelongToNoFrame) {
+  ROS_MASTER_OR_SKIP();
+  Ros1EstimatorOptions options = fresh_options();
+  options.answer_timeout_s = 0.3;
+  const TestNode node(options, {"stamp_off_s=5"});
+  const auto port = created(options);
+  EXPECT_EQ(tracked(*port, grey_frames(1).front()).sample.state, TrackingState::kInitialising);
+  EXPECT_THAT(port->take_log(), Contains(HasSubstr("1 poses bear the stamp of no frame")));
+}
+
+TEST(Ros1Exchange, TakesAPoseThatIsNoneForALostTrack) {
+  ROS_MASTER_OR_SKIP();
+  const Ros1EstimatorOptions options = fresh_options();
+  const TestNode node(options, {"bad_pose=1"});
+  const auto port = created(options);
+  const VoEstimate estimate = tracked(*port, grey_frames(1).front());
+  EXPECT_EQ(estimate.sample.state, TrackingState::kInitialising);
+  EXPECT_EQ(estimate.counters.count("unanswered"), 0U) << "it did answer";
+  EXPECT_THAT(port->take_log(), Contains(HasSubstr("not finite")));
+}
+
+TEST(Ros1Exchange, SetsAndReadsParametersOfTheNode) {
+  ROS_MASTER_OR_SKIP();
+  Ros1EstimatorOptions options = fresh_options();
+  options.parameter_namespace = "/slam_parameters";
+  options.parameters = {{"levels", 8.0},
+                        {"scale", 1.2},
+                        {"loop_closing", false},
+                        {"tracker/mode", std::string("fast")}};
+  const TestNode node(options);
+  const auto port = created(options);
+  const auto parameters = port->effective_parameters();
+  EXPECT_EQ(parameters.at("levels"), "8");
+  EXPECT_EQ(parameters.at("scale"), "1.2");
+  EXPECT_EQ(parameters.at("loop_closing"), "false");
+  EXPECT_EQ(parameters.at("tracker/mode"), "fast");
+  EXPECT_EQ(parameters.at("ros1.pose_type"), "pose_stamped");
+}
+
+TEST(Ros1Exchange, FeedsTwoNodesFromOneProcess) {
+  ROS_MASTER_OR_SKIP();
+  const Ros1EstimatorOptions options[] = {fresh_options(), fresh_options()};
+  const TestNode nodes[] = {TestNode(options[0]), TestNode(options[1])};
+  const auto one = created(options[0]);
+  const auto other = created(options[1]);
+  for (const VoFrame& frame : grey_frames(5)) {
+    expect_proof(tracked(*one, frame), frame);
+    expect_proof(tracked(*other, frame), frame);
+  }
+  EXPECT_THAT(other->take_log(), Contains(HasSubstr("another estimator")));
+}
+
+}  // namespace
+}  // namespace overfly::testing
