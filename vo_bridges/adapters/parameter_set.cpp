@@ -139,6 +139,10 @@ bool flag_of(const ParameterValues& values, const std::string& name, bool automa
 
 std::string text_of_number(double value) {
   char text[32] = {};
+  if (value == std::floor(value) && std::fabs(value) < 1e15) {
+    std::snprintf(text, sizeof(text), "%.0f", value);
+    return text;
+  }
   for (int digits = 1; digits <= 17; ++digits) {
     std::snprintf(text, sizeof(text), "%.*g", digits, value);
     if (std::strtod(text, nullptr) == value) break;

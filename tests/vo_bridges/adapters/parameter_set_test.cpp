@@ -66,7 +66,7 @@ TEST(ParametersInForce, AreComparedAsNumbersOfSinglePrecision) {
 TEST(ParameterText, IsAsShortAsReadsBackTheSame) {
   EXPECT_EQ(text_of_number(0.12), "0.12");
   EXPECT_EQ(text_of_number(20.0), "20");
-  EXPECT_EQ(text_of_number(1e12), "1e+12");
+  EXPECT_EQ(text_of_number(1e20), "1e+20");
 }
 
 TEST(ScenePoints, HaveTheMiddleDepth) {
