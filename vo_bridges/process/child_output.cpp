@@ -32,6 +32,10 @@ void ChildOutput::write_file(std::string_view bytes) {
 void ChildOutput::keep(std::string line) {
   last_.push_back(line);
   if (last_.size() > kLastLines) last_.pop_front();
+  wait_for_taker(std::move(line));
+}
+
+void ChildOutput::wait_for_taker(std::string line) {
   waiting_.push_back(std::move(line));
   if (waiting_.size() > kWaitingLineLimit) {
     waiting_.pop_front();
@@ -57,6 +61,11 @@ void ChildOutput::add(std::string_view bytes) {
 void ChildOutput::say(const std::string& line) {
   const std::lock_guard lock(mutex_);
   keep(line);
+}
+
+void ChildOutput::note(const std::string& line) {
+  const std::lock_guard lock(mutex_);
+  wait_for_taker(line);
 }
 
 void ChildOutput::close() {
@@ -87,8 +96,10 @@ std::vector<std::string> ChildOutput::take_lines() {
 std::string ChildOutput::last_words() const {
   const std::lock_guard lock(mutex_);
   if (last_.empty()) return "; it said nothing";
-  std::string text = "; it last said:";
-  for (const std::string& line : last_) text += " | " + printable(line, 300);
+  std::string text;
+  for (const std::string& line : last_) {
+    text += (text.empty() ? "; it last said: " : " | ") + printable(line, 300);
+  }
   return text;
 }
 

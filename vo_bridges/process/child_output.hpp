@@ -29,6 +29,8 @@ class ChildOutput {
   void add(std::string_view bytes);
   /// A line that came by the protocol.
   void say(const std::string& line);
+  /// A line of ours about it: no word of its own.
+  void note(const std::string& line);
   /// No more bytes will come.
   void close();
   /// Waits until no more bytes will come, or the time is over.
@@ -42,6 +44,7 @@ class ChildOutput {
  private:
   void write_file(std::string_view bytes);
   void keep(std::string line);
+  void wait_for_taker(std::string line);
   void end_line();
 
   mutable std::mutex mutex_;

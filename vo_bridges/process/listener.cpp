@@ -34,13 +34,12 @@ std::optional<sockaddr_un> unix_name(const std::string& path) {
   return name;
 }
 
-/// Whether a socket file is one that a dead program left behind.
+/// Whether a socket file is one that a dead program left behind. A living one refuses a datagram
+/// socket for its type; it must not take us for its estimator.
 bool is_stale(const sockaddr_un& name) {
-  const FileDescriptor probe(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
-  const bool refused =
-      ::connect(probe.get(), reinterpret_cast<const sockaddr*>(&name), sizeof(name)) != 0 &&
-      errno == ECONNREFUSED;
-  return refused;
+  const FileDescriptor probe(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  return ::connect(probe.get(), reinterpret_cast<const sockaddr*>(&name), sizeof(name)) != 0 &&
+         errno == ECONNREFUSED;
 }
 
 /// The port that a socket has got.

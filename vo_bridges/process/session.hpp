@@ -19,6 +19,9 @@
 
 namespace overfly::process {
 
+/// Rounded to a tenth: "0.3 s".
+[[nodiscard]] std::string seconds_text(double seconds);
+
 /// One thread at a time, but for the three methods that say otherwise. The first error ends the
 /// session: the child is killed, and every later call fails with the same error.
 class Session {

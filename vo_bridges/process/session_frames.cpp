@@ -28,7 +28,7 @@ Status Session::calibrate(const VoFrame& frame) {
     slots = {FrameMemory::kSlots, memory_->slot_bytes()};
     descriptor = memory_->descriptor();
   }
-  output_->say(memory_ ? "frames go through shared memory" : "frames go through the socket");
+  output_->note(memory_ ? "frames go through shared memory" : "frames go through the socket");
   channel_->begin_frame(pixels);
   channel_->enqueue(
       calibration_message(frame, options_.rate_hz, slots), nullptr, std::move(descriptor));
@@ -133,8 +133,7 @@ Result<std::optional<VoEstimate>> Session::track(const VoFrame& frame, bool debu
   if (silent_s < kTimeoutsToGiveUp * options_.answer_timeout_s) return std::optional<VoEstimate>{};
   return end({ErrorCode::kInternal,
               "the estimator hangs: frame " + std::to_string(under_way_->index) +
-                  " was not answered within " + std::to_string(std::lround(silent_s * 10.0) / 10) +
-                  " s"});
+                  " was not answered within " + seconds_text(silent_s)});
 }
 
 Status Session::reset() {

@@ -17,9 +17,11 @@ constexpr milliseconds kStopPatience(3000);
 /// What a program whose connection broke has to finish dying, for its last words to be whole.
 constexpr milliseconds kDeathPatience(1000);
 
-std::string seconds_text(double seconds) { return text_of(ParameterValue(seconds)) + " s"; }
-
 }  // namespace
+
+std::string seconds_text(double seconds) {
+  return text_of(ParameterValue(std::round(seconds * 10.0) / 10.0)) + " s";
+}
 
 Result<std::unique_ptr<Session>> Session::open(const ProcessEstimatorOptions& options) {
   std::unique_ptr<Session> session(new Session(options));
@@ -102,7 +104,7 @@ Status Session::wait_ready(MessageType done, Clock::time_point deadline) {
       const double waited_s = std::chrono::duration<double>(Clock::now() - begin).count();
       return Error{ErrorCode::kInternal,
                    "the estimator was not ready after " + name_of(done) + " within " +
-                       seconds_text(std::round(waited_s * 100.0) / 100.0)};
+                       seconds_text(waited_s)};
     }
     const Result<bool> noticed = take_notice(**message);
     if (!noticed) return noticed.error();
@@ -150,11 +152,12 @@ Session::~Session() {
     channel_->enqueue(message_of(MessageType::kStop));
     channel_->begin_frame(0);
     const auto deadline = Clock::now() + (child_ ? kStopPatience : kDeathPatience);
-    // Read on: an estimator that still says something must not wait for us with its end.
+    // Read on: an estimator that still says something must not wait for us with its end. The
+    // connection may outlive it, in a process that it began.
     for (bool open = true; open && Clock::now() < deadline;) {
-      const Result<std::optional<Message>> message = channel_->next(deadline);
-      open = message.ok() && message->has_value();
-      if (open) static_cast<void>(take_notice(**message));
+      const auto message = channel_->next(std::min(deadline, Clock::now() + milliseconds(50)));
+      open = message.ok() && (!child_ || child_->running());
+      if (open && *message) static_cast<void>(take_notice(**message));
     }
     channel_.reset();
     if (child_) {

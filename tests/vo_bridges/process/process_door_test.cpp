@@ -1,0 +1,227 @@
+// What goes through the process door arrives whole, whichever way it goes.
+#include <gmock/gmock.h>
+#include <spawn.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <thread>
+
+#include "tests/support/support.hpp"
+#include "tests/vo_bridges/process/process_fixture.hpp"
+
+namespace overfly {
+namespace {
+
+using ::testing::Contains;
+using testing::ground_frames;
+using ::testing::HasSubstr;
+using ::testing::IsSupersetOf;
+using ::testing::Pair;
+using testing::scripted;
+using testing::started;
+
+/// Flies over the ground and checks that each image arrived as it was sent.
+void expect_whole_images(VoPort& estimator, const std::string& transport) {
+  for (const VoFrame& frame : ground_frames(5, 3.0, 2.0, 640, 480)) {
+    const VoEstimate estimate = estimator.track(frame).value();
+    ASSERT_TRUE(estimate.image_crc32.has_value()) << transport;
+    EXPECT_EQ(*estimate.image_crc32, crc32_of(*frame.image)) << transport;
+    EXPECT_EQ(estimate.counters.at("first_pixel"), frame.image->data[0]) << transport;
+  }
+  EXPECT_THAT(estimator.take_log(), Contains("frames go through " + transport));
+}
+
+TEST(ProcessDoor, ImagesArriveWholeByEachTransport) {
+  expect_whole_images(*started(scripted("good")), "shared memory");
+  expect_whole_images(*started(scripted("by_socket")), "the socket");
+  ProcessEstimatorOptions tcp = scripted("good");
+  tcp.listen = "tcp:127.0.0.1:0";
+  expect_whole_images(*started(tcp), "the socket");
+}
+
+TEST(ProcessDoor, TellsWhatTheEstimatorAnswers) {
+  const auto estimator = started(scripted("good"));
+  estimator->set_debug(true);
+  std::vector<VoFrame> frames = ground_frames(2, 1.0, 1.0);
+  frames[1].exposure_ns = 2'000'000;
+  frames[1].imu = {{frames[0].t_ns, {0.0, 0.0, -9.81}, {0.0, 0.0, 0.5}},
+                   {frames[1].t_ns, {0.0, 0.0, -9.81}, {0.0, 0.0, 0.25}}};
+  EXPECT_EQ(estimator->track(frames[0])->sample.state, TrackingState::kInitialising);
+  const VoEstimate estimate = estimator->track(frames[1]).value();
+  EXPECT_EQ(estimate.sample.state, TrackingState::kTracking);
+  EXPECT_EQ(estimate.sample.T_vo_camera.translation, Eigen::Vector3d(1.0, -2.0, 0.5));
+  EXPECT_EQ(estimate.sample.T_vo_camera.rotation.coeffs(), Eigen::Vector4d(0.0, 0.0, 0.6, 0.8));
+  EXPECT_EQ(estimate.sample.scene_depth, 2.5);
+  EXPECT_EQ(estimate.counters.at("exposure_ns"), 2e6);
+  EXPECT_EQ(estimate.counters.at("turn_z"), 0.25);
+  EXPECT_EQ(estimate.timing_ms.at("match"), 1.5);
+  ASSERT_TRUE(estimate.debug_image.has_value());
+  EXPECT_EQ(estimate.debug_image->data[3], frames[1].image->data[1]);
+  EXPECT_EQ(estimate.map_points_vo,
+            (std::vector<Eigen::Vector3f>{{1.0F, 2.0F, 3.0F}, {-1.0F, 0.0F, 8.5F}}));
+}
+
+TEST(ProcessDoor, TellsTheCameraAndItsLens) {
+  ProcessEstimatorOptions options = scripted("good");
+  options.rate_hz = 31.0;
+  const auto estimator = started(options);
+  VoFrame frame = ground_frames(1, 1.0, 1.0)[0];
+  frame.camera_id = "nadir left";
+  frame.intrinsics = {160, 120, 100.5, 101.25, 79.5, 59.5};
+  frame.distortion = {DistortionModel::kRadtan, {-0.25, 0.125, 0.0, 0.0, 0.0}};
+  ASSERT_TRUE(estimator->track(frame).ok());
+  EXPECT_THAT(estimator->take_log(),
+              IsSupersetOf({"nadir left 160x120 radtan -0.250000 0.125000 0.000000 0.000000 "
+                            "0.000000 at 31.000000",
+                            "100.500000 101.250000 79.500000 59.500000"}));
+}
+
+TEST(ProcessDoor, TellsTheParametersWantedAndHearsThoseInForce) {
+  ProcessEstimatorOptions options = scripted("good");
+  options.parameters = {{"features", 1250.5}, {"loop_closing", true}, {"path", std::string("a b")}};
+  const auto estimator = started(options);
+  EXPECT_EQ(estimator->type(), "process");
+  const std::map<std::string, std::string> expected = {{"estimator.name", "scripted"},
+                                                       {"estimator.version", "1.2 (test)"},
+                                                       {"features", "1250.5"},
+                                                       {"loop_closing", "true"},
+                                                       {"path", "a b"}};
+  EXPECT_EQ(estimator->effective_parameters(), expected);
+  ASSERT_TRUE(estimator->track(ground_frames(1, 1.0, 1.0)[0]).ok());
+  EXPECT_THAT(estimator->effective_parameters(), Contains(Pair("read_back", "ORB 7")));
+}
+
+TEST(ProcessDoor, TellsACameraThatChangedAfterAReset) {
+  const auto estimator = started(scripted("good"));
+  EXPECT_EQ(estimator->track(ground_frames(1, 1.0, 1.0)[0])->counters.at("calibrations"), 1.0);
+  estimator->reset();
+  const VoFrame larger = ground_frames(1, 1.0, 1.0, 320, 240)[0];
+  const VoEstimate estimate = estimator->track(larger).value();
+  EXPECT_EQ(estimate.counters.at("calibrations"), 2.0);
+  EXPECT_EQ(estimate.image_crc32, crc32_of(*larger.image));
+}
+
+TEST(ProcessDoor, WaitsForAnEstimatorThatSomebodyElseStarts) {
+  const testing::TemporaryFolder folder;
+  const std::string path = (folder.path() / "socket").string();
+  ProcessEstimatorOptions options;
+  options.listen = "unix:" + path;
+  pid_t pid = 0;
+  std::thread somebody([&] {
+    while (!std::filesystem::exists(path)) std::this_thread::yield();
+    std::string program = OVERFLY_SCRIPTED_ESTIMATOR;
+    std::string variable = "OVERFLY_VO_ADDRESS=unix:" + path;
+    std::array<char*, 2> argv = {program.data(), nullptr};
+    std::array<char*, 2> envp = {variable.data(), nullptr};
+    ASSERT_EQ(::posix_spawn(&pid, program.c_str(), nullptr, nullptr, argv.data(), envp.data()), 0);
+  });
+  {
+    const auto estimator = started(options);
+    somebody.join();
+    ASSERT_NE(estimator, nullptr);
+    EXPECT_FALSE(std::filesystem::exists(path)) << "one estimator, then the door is shut";
+    expect_whole_images(*estimator, "shared memory");
+    ASSERT_TRUE(estimator->resource_use().has_value());
+    EXPECT_GT(estimator->resource_use()->peak_memory_mb, 1.0);
+  }
+  int status = -1;
+  EXPECT_EQ(::waitpid(pid, &status, 0), pid);
+  EXPECT_EQ(status, 0) << "it ended by itself after the stop";
+}
+
+TEST(ProcessDoor, SaysWhenNobodyConnects) {
+  const testing::TemporaryFolder folder;
+  ProcessEstimatorOptions options;
+  options.listen = "unix:" + (folder.path() / "socket").string();
+  options.start_timeout_s = 0.2;
+  const Error error = create_process_estimator(options).error();
+  EXPECT_EQ(error.code, ErrorCode::kInternal);
+  EXPECT_THAT(error.message, HasSubstr("no estimator connected to " + options.listen));
+}
+
+TEST(ProcessDoor, RefusesAnAddressInUse) {
+  const testing::TemporaryFolder folder;
+  ProcessEstimatorOptions options;
+  options.listen = "unix:" + (folder.path() / "socket").string();
+  options.start_timeout_s = 1.0;
+  Error first;
+  std::thread listening([&] { first = create_process_estimator(options).error(); });
+  while (!std::filesystem::exists(folder.path() / "socket")) std::this_thread::yield();
+  EXPECT_EQ(create_process_estimator(options).error().code, ErrorCode::kConflict);
+  listening.join();
+  EXPECT_THAT(first.message, HasSubstr("no estimator connected")) << "it was not disturbed";
+}
+
+TEST(ProcessDoor, TakesOverTheSocketFileOfADeadProgram) {
+  const testing::TemporaryFolder folder;
+  const std::string path = (folder.path() / "socket").string();
+  sockaddr_un name{};
+  name.sun_family = AF_UNIX;
+  path.copy(name.sun_path, sizeof(name.sun_path) - 1);
+  const int dead = ::socket(AF_UNIX, SOCK_STREAM, 0);
+  ASSERT_EQ(::bind(dead, reinterpret_cast<const sockaddr*>(&name), sizeof(name)), 0);
+  ::close(dead);
+  ProcessEstimatorOptions options = scripted("good");
+  options.listen = "unix:" + path;
+  expect_whole_images(*started(options), "shared memory");
+}
+
+TEST(ProcessDoor, KeepsWhatTheChildWrites) {
+  const testing::TemporaryFolder folder;
+  ProcessEstimatorOptions options = scripted("shout");
+  options.command = {"/bin/sh",
+                     "-c",
+                     "echo first; echo second >&2; pwd; exec \"$0\" good",
+                     OVERFLY_SCRIPTED_ESTIMATOR};
+  options.output_file = folder.path() / "output.log";
+  options.working_folder = folder.path();
+  {
+    const auto estimator = started(options);
+    EXPECT_THAT(estimator->take_log(), IsSupersetOf({std::string("first"), std::string("second")}));
+    EXPECT_THAT(estimator->take_log(), ::testing::IsEmpty());
+  }
+  EXPECT_EQ(testing::read_text(options.output_file),
+            "first\nsecond\n" + std::filesystem::canonical(folder.path()).string() + "\n");
+}
+
+TEST(ProcessDoor, TellsWhatTheChildUses) {
+  const auto estimator = started(scripted("eat", "120"));
+  const ResourceUse before = estimator->resource_use().value();
+  for (const VoFrame& frame : ground_frames(4, 1.0, 1.0)) ASSERT_TRUE(estimator->track(frame).ok());
+  const ResourceUse after = estimator->resource_use().value();
+  // It is busy for 0.3 s of wall time, of which a loaded machine may give it little.
+  EXPECT_GT(after.cpu_s, before.cpu_s + 0.05);
+  EXPECT_LT(after.cpu_s, 5.0);
+  EXPECT_GT(after.peak_memory_mb, 120.0);
+  EXPECT_LT(after.peak_memory_mb, 160.0);
+  EXPECT_LT(before.peak_memory_mb, 40.0) << "the fork's own memory does not count";
+}
+
+TEST(ProcessDoor, BindsTheChildToItsCpus) {
+  ProcessEstimatorOptions options = scripted("good");
+  options.cpus = {0};
+  const auto estimator = started(options);
+  EXPECT_EQ(estimator->track(ground_frames(1, 1.0, 1.0)[0])->counters.at("cpus"), 1.0);
+}
+
+TEST(ProcessDoor, LimitsTheMemoryOfTheChild) {
+#if defined(__SANITIZE_ADDRESS__)
+  GTEST_SKIP() << "the address sanitizer reserves more than any limit";
+#endif
+  ProcessEstimatorOptions options = scripted("eat", "300");
+  options.memory_limit_mb = 200.0;
+  const auto estimator = started(options);
+  const auto frames = ground_frames(3, 1.0, 1.0);
+  ASSERT_TRUE(estimator->track(frames[0]).ok());
+  ASSERT_TRUE(estimator->track(frames[1]).ok());
+  const Result<VoEstimate> estimate = estimator->track(frames[2]);
+  ASSERT_FALSE(estimate.ok());
+  EXPECT_THAT(estimate.error().message, HasSubstr("bad_alloc"));
+}
+
+}  // namespace
+}  // namespace overfly

@@ -1,0 +1,335 @@
+// Estimators that fail: the server goes on, says what happened, and nothing is left of them.
+#include <gmock/gmock.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <functional>
+
+#include "tests/support/support.hpp"
+#include "tests/vo_bridges/process/process_fixture.hpp"
+
+namespace overfly {
+namespace {
+
+using testing::alive;
+using ::testing::AllOf;
+using testing::gone_soon;
+using testing::ground_frames;
+using ::testing::HasSubstr;
+using testing::scripted;
+using testing::started;
+
+/// No child is left: neither running nor waiting to be reaped.
+class ProcessTrouble : public ::testing::Test {
+ protected:
+  void TearDown() override {
+    EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1) << "a child is left";
+    EXPECT_EQ(errno, ECHILD);
+  }
+
+  static Error start_error(const ProcessEstimatorOptions& options) {
+    const auto estimator = create_process_estimator(options);
+    EXPECT_FALSE(estimator.ok());
+    return estimator.ok() ? Error{} : estimator.error();
+  }
+
+  /// The error of the frame after three that went well or not.
+  static Error flight_error(const ProcessEstimatorOptions& options, bool debug = false) {
+    const auto estimator = started(options);
+    if (!estimator) return {};
+    estimator->set_debug(debug);
+    for (const VoFrame& frame : ground_frames(6, 1.0, 1.0, 64, 48)) {
+      const Result<VoEstimate> estimate = estimator->track(frame);
+      if (estimate) continue;
+      VoFrame next = frame;
+      next.index += 1;
+      next.t_ns += 1'000'000;
+      EXPECT_EQ(estimator->track(next).error().message, estimate.error().message)
+          << "the reason stays";
+      return estimate.error();
+    }
+    ADD_FAILURE() << "every frame was answered";
+    return {};
+  }
+
+  static double seconds_of(const std::function<void()>& work) {
+    const auto begin = std::chrono::steady_clock::now();
+    work();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  }
+};
+
+TEST_F(ProcessTrouble, AMissingProgramIsNamed) {
+  ProcessEstimatorOptions options;
+  options.command = {"./no/such/estimator"};
+  EXPECT_EQ(start_error(options).code, ErrorCode::kNotFound);
+  EXPECT_THAT(start_error(options).message,
+              HasSubstr("'./no/such/estimator': there is no such file"));
+  options.command = {"no-such-estimator-anywhere"};
+  EXPECT_EQ(start_error(options).code, ErrorCode::kNotFound);
+  EXPECT_THAT(start_error(options).message, HasSubstr("no such program in $PATH"));
+}
+
+TEST_F(ProcessTrouble, AFileThatCannotBeExecutedIsNamed) {
+  const testing::TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "estimator";
+  testing::write_text(file, "#!/no/such/interpreter\n");
+  ProcessEstimatorOptions options;
+  options.command = {file.string()};
+  EXPECT_EQ(start_error(options).code, ErrorCode::kInvalidArgument);
+  EXPECT_THAT(start_error(options).message, HasSubstr("chmod +x"));
+  std::filesystem::permissions(file, std::filesystem::perms::owner_all);
+  EXPECT_EQ(start_error(options).code, ErrorCode::kNotFound);
+  EXPECT_THAT(start_error(options).message, HasSubstr("interpreter"));
+  testing::write_text(file, "print('hello')\n");
+  EXPECT_THAT(start_error(options).message, HasSubstr("a script begins with #!"));
+  options = scripted("good");
+  options.working_folder = folder.path() / "absent";
+  EXPECT_THAT(start_error(options).message,
+              HasSubstr("working_folder = '" + options.working_folder.string()));
+}
+
+TEST_F(ProcessTrouble, AChildThatEndsAtOnceIsQuoted) {
+  const Error error = start_error(scripted("no_start"));
+  EXPECT_EQ(error.code, ErrorCode::kInternal);
+  EXPECT_THAT(error.message,
+              AllOf(HasSubstr("ended before it said hello"),
+                    HasSubstr("exited with code 3"),
+                    HasSubstr("ORBvoc.txt: no such file")));
+}
+
+TEST_F(ProcessTrouble, ASlowStartIsCutShort) {
+  for (const char* const behaviour : {"slow_start", "silent"}) {
+    ProcessEstimatorOptions options = scripted(behaviour);
+    options.start_timeout_s = 0.3;
+    Error error;
+    EXPECT_LT(seconds_of([&] { error = start_error(options); }), 5.0);
+    EXPECT_EQ(error.code, ErrorCode::kInternal);
+    EXPECT_THAT(error.message, HasSubstr("within 0.3 s")) << behaviour;
+  }
+}
+
+TEST_F(ProcessTrouble, ASlowCalibrationIsCutShort) {
+  ProcessEstimatorOptions options = scripted("slow_calibration");
+  options.start_timeout_s = 1.0;
+  EXPECT_THAT(flight_error(options).message, HasSubstr("was not ready after CALIBRATION"));
+}
+
+TEST_F(ProcessTrouble, AnUnknownParameterEndsTheStart) {
+  ProcessEstimatorOptions options = scripted("good");
+  options.parameters["nonsense"] = 3.0;
+  EXPECT_THAT(start_error(options).message, HasSubstr("error: unknown parameter nonsense"));
+}
+
+TEST_F(ProcessTrouble, GarbageInsteadOfAHelloIsQuoted) {
+  EXPECT_THAT(start_error(scripted("web")).message,
+              AllOf(HasSubstr("47 45 54 20"), HasSubstr("GET / HTTP"), HasSubstr("OVVO")));
+  EXPECT_THAT(start_error(scripted("huge")).message,
+              HasSubstr("HELLO of 4294967295 bytes: must be at most 65536"));
+  EXPECT_THAT(start_error(scripted("server_message")).message,
+              HasSubstr("sent STOP, which it must not"));
+}
+
+TEST_F(ProcessTrouble, AnotherVersionIsRefused) {
+  EXPECT_THAT(start_error(scripted("version_2")).message,
+              HasSubstr("speaks version 2 of the protocol: this is version 1"));
+  EXPECT_THAT(start_error(scripted("text_version_9")).message,
+              HasSubstr("speaks version '9' of the protocol: this is version 1"));
+}
+
+TEST_F(ProcessTrouble, ACrashIsToldWithTheLastWords) {
+  const testing::TemporaryFolder folder;
+  ProcessEstimatorOptions options = scripted("crash");
+  options.output_file = folder.path() / "output.log";
+  const Error error = flight_error(options);
+  EXPECT_EQ(error.code, ErrorCode::kInternal);
+  EXPECT_THAT(error.message,
+              AllOf(HasSubstr("estimator scripted"),
+                    HasSubstr("killed by signal 6"),
+                    HasSubstr("matching 17 features"),
+                    HasSubstr("Segfault ahead, by ? design")));
+  EXPECT_THAT(testing::read_text(options.output_file), HasSubstr("Segfault ahead, by \xFF design"));
+}
+
+TEST_F(ProcessTrouble, AnEndIsToldWithItsCode) {
+  EXPECT_THAT(flight_error(scripted("quit")).message, HasSubstr("exited with code 3"));
+  EXPECT_THAT(flight_error(scripted("throw")).message,
+              AllOf(HasSubstr("exited with code 1"), HasSubstr("error: the map is empty")));
+}
+
+TEST_F(ProcessTrouble, BadAnswersEndTheFlightAndAreQuoted) {
+  EXPECT_THAT(flight_error(scripted("nan_pose")).message,
+              HasSubstr("ANSWER to frame 1: the position is not finite"));
+  EXPECT_THAT(flight_error(scripted("long_quaternion")).message,
+              HasSubstr("quaternion has length"));
+  EXPECT_THAT(flight_error(scripted("bad_state")).message, HasSubstr("state = 7"));
+  EXPECT_THAT(flight_error(scripted("large_debug_image"), true).message,
+              HasSubstr("DEBUG_IMAGE is 64 x 9999 px"));
+}
+
+TEST_F(ProcessTrouble, AFloodOfMessagesEndsTheFlight) {
+  EXPECT_THAT(flight_error(scripted("flood")).message,
+              AllOf(HasSubstr("floods"), HasSubstr("and another thing")));
+}
+
+TEST_F(ProcessTrouble, AFloodOfOutputIsCutInTheFileAndTheFlightGoesOn) {
+  const testing::TemporaryFolder folder;
+  ProcessEstimatorOptions options = scripted("shout");
+  options.output_file = folder.path() / "output.log";
+  const auto estimator = started(options);
+  for (const VoFrame& frame : ground_frames(4, 1.0, 1.0, 64, 48)) {
+    ASSERT_TRUE(estimator->track(frame).ok());
+  }
+  EXPECT_GT(std::filesystem::file_size(options.output_file), 64'000'000U);
+  EXPECT_LT(std::filesystem::file_size(options.output_file), 64'000'100U);
+  EXPECT_LE(estimator->take_log().size(), 2001U);
+}
+
+TEST_F(ProcessTrouble, ALateAnswerLosesOneFrame) {
+  ProcessEstimatorOptions options = scripted("late", "0.6");
+  options.answer_timeout_s = 0.4;
+  const auto estimator = started(options);
+  std::vector<VoEstimate> estimates;
+  for (const VoFrame& frame : ground_frames(5, 1.0, 1.0, 64, 48)) {
+    estimates.push_back(estimator->track(frame).value());
+  }
+  EXPECT_EQ(estimates[1].sample.state, TrackingState::kTracking);
+  EXPECT_EQ(estimates[2].sample.state, TrackingState::kLost);
+  EXPECT_EQ(estimates[2].sample.frame, 2);
+  EXPECT_EQ(estimates[2].counters.at("unanswered"), 1.0);
+  for (const std::size_t i : {3U, 4U}) {
+    EXPECT_EQ(estimates[i].sample.state, TrackingState::kTracking);
+    EXPECT_EQ(estimates[i].sample.T_vo_camera.translation.x(), static_cast<double>(i))
+        << "the pose is that of its own frame";
+    EXPECT_EQ(estimates[i].counters.count("unanswered"), 0U);
+  }
+}
+
+TEST_F(ProcessTrouble, AHangingEstimatorIsGivenUpAfterThreeTimeouts) {
+  ProcessEstimatorOptions options = scripted("hang");
+  options.answer_timeout_s = 0.2;
+  const auto estimator = started(options);
+  std::vector<Result<VoEstimate>> estimates;
+  for (const VoFrame& frame : ground_frames(6, 1.0, 1.0, 64, 48)) {
+    estimates.push_back(estimator->track(frame));
+  }
+  const int pid = static_cast<int>(estimates[0]->counters.at("pid"));
+  for (const std::size_t i : {2U, 3U}) {
+    ASSERT_TRUE(estimates[i].ok());
+    EXPECT_EQ(estimates[i]->sample.state, TrackingState::kLost);
+  }
+  ASSERT_FALSE(estimates[4].ok());
+  EXPECT_EQ(estimates[4].error().code, ErrorCode::kInternal);
+  EXPECT_THAT(estimates[4].error().message,
+              HasSubstr("hangs: frame 2 was not answered within 0.6 s; it last said: camera0"));
+  EXPECT_FALSE(estimates[5].ok());
+  EXPECT_FALSE(alive(pid));
+}
+
+TEST_F(ProcessTrouble, AHangInAResetIsToldWithTheNextFrame) {
+  ProcessEstimatorOptions options = scripted("hang_in_reset");
+  options.answer_timeout_s = 0.3;
+  const auto estimator = started(options);
+  const auto frames = ground_frames(2, 1.0, 1.0, 64, 48);
+  ASSERT_TRUE(estimator->track(frames[0]).ok());
+  estimator->reset();
+  EXPECT_THAT(estimator->track(frames[1]).error().message, HasSubstr("not ready after RESET"));
+}
+
+TEST_F(ProcessTrouble, AResetPassesOverTheAnswerThatIsUnderWay) {
+  ProcessEstimatorOptions options = scripted("late", "0.5");
+  options.answer_timeout_s = 0.3;
+  const auto estimator = started(options);
+  const auto frames = ground_frames(3, 1.0, 1.0, 64, 48);
+  for (const VoFrame& frame : frames) ASSERT_TRUE(estimator->track(frame).ok());
+  estimator->reset();  // while frame 2 is still being thought about
+  const VoEstimate estimate = estimator->track(frames[1]).value();
+  EXPECT_EQ(estimate.counters.count("unanswered"), 0U);
+  EXPECT_EQ(estimate.sample.frame, 1);
+  EXPECT_EQ(estimate.counters.at("calibrations"), 1.0) << "the same camera is not told again";
+}
+
+TEST_F(ProcessTrouble, AChildThatDoesNotStopIsKilled) {
+  int pid = 0;
+  const double took_s = seconds_of([&] {
+    const auto estimator = started(scripted("stubborn"));
+    const auto frames = ground_frames(1, 1.0, 1.0, 64, 48);
+    pid = static_cast<int>(estimator->track(frames[0])->counters.at("pid"));
+  });
+  EXPECT_FALSE(alive(pid));
+  EXPECT_GT(took_s, 2.5) << "it was given time";
+  EXPECT_LT(took_s, 10.0);
+}
+
+TEST_F(ProcessTrouble, GrandchildrenDieWithTheChild) {
+  int grandchild = 0;
+  {
+    const auto estimator = started(scripted("grandchild"));
+    for (const VoFrame& frame : ground_frames(4, 1.0, 1.0, 64, 48)) {
+      grandchild = static_cast<int>(estimator->track(frame)->counters.at("child"));
+    }
+    ASSERT_GT(grandchild, 0);
+    EXPECT_TRUE(alive(grandchild));
+  }
+  EXPECT_TRUE(gone_soon(grandchild));
+}
+
+TEST_F(ProcessTrouble, AKilledServerLeavesNoOrphan) {
+  std::array<int, 2> told{};
+  ASSERT_EQ(::pipe(told.data()), 0);
+  const pid_t server = ::fork();
+  if (server == 0) {
+    const auto estimator = started(scripted("stubborn"));
+    const auto frames = ground_frames(1, 1.0, 1.0, 64, 48);
+    const int pid = static_cast<int>(estimator->track(frames[0])->counters.at("pid"));
+    [[maybe_unused]] const ssize_t written = ::write(told[1], &pid, sizeof(pid));
+    for (;;) ::pause();
+  }
+  int pid = 0;
+  ::close(told[1]);
+  ASSERT_EQ(::read(told[0], &pid, sizeof(pid)), static_cast<ssize_t>(sizeof(pid)));
+  ::close(told[0]);
+  EXPECT_TRUE(alive(pid));
+  ::kill(server, SIGKILL);
+  ::waitpid(server, nullptr, 0);
+  EXPECT_TRUE(gone_soon(pid));
+}
+
+TEST_F(ProcessTrouble, BadOptionsAreNamed) {
+  const auto error_with = [](const std::function<void(ProcessEstimatorOptions*)>& change) {
+    ProcessEstimatorOptions options = scripted("good");
+    change(&options);
+    const Error error = start_error(options);
+    EXPECT_EQ(error.code, ErrorCode::kInvalidArgument);
+    return error.message;
+  };
+  EXPECT_THAT(error_with([](auto* o) { o->command.clear(); }), HasSubstr("command"));
+  EXPECT_THAT(error_with([](auto* o) { o->command = {""}; }), HasSubstr("command[0]"));
+  EXPECT_THAT(error_with([](auto* o) { o->start_timeout_s = 0.0; }),
+              HasSubstr("start_timeout_s = 0"));
+  EXPECT_THAT(error_with([](auto* o) { o->answer_timeout_s = 3601.0; }),
+              HasSubstr("answer_timeout_s = 3601"));
+  EXPECT_THAT(error_with([](auto* o) { o->memory_limit_mb = -1.0; }),
+              HasSubstr("memory_limit_mb = -1"));
+  EXPECT_THAT(error_with([](auto* o) { o->cpus = {0, 1000}; }), HasSubstr("cpus[1] = 1000"));
+  EXPECT_THAT(error_with([](auto* o) { o->parameters["a b"] = 1.0; }), HasSubstr("'a b'"));
+  EXPECT_THAT(error_with([](auto* o) { o->parameters["a"] = std::string("x\ny"); }),
+              HasSubstr("parameters.a"));
+  EXPECT_THAT(error_with([](auto* o) { o->listen = "udp:there"; }),
+              HasSubstr("listen = 'udp:there'"));
+  EXPECT_THAT(error_with([](auto* o) { o->listen = "tcp:127.0.0.1:99999"; }),
+              HasSubstr("[0, 65535]"));
+  EXPECT_THAT(error_with([](auto* o) { o->listen = "unix:" + std::string(120, 'x'); }),
+              HasSubstr("1 to 107 bytes"));
+  EXPECT_THAT(error_with([](auto* o) {
+                o->command.clear();
+                o->listen = "tcp:127.0.0.1:0";
+              }),
+              HasSubstr("port 0"));
+}
+
+}  // namespace
+}  // namespace overfly
