@@ -37,7 +37,7 @@ class DetailedTiles final : public TileDecorator {
   [[nodiscard]] Result<Tile> tile(const TileId& id) const override {
     if (id.level < 0) return base().tile(id);  // which says what is wrong with it
     if (id.level >= octaves_) return base().tile({id.level - octaves_, id.col, id.row});
-    const auto parent = base().tile(parent_of(id));
+    auto parent = base().tile(parent_of(id));
     if (!parent) return parent;
     return synthesis_.tile(*parent, octaves_ - id.level, id.col, id.row);
   }

@@ -168,7 +168,8 @@ Tile DetailSynthesis::tile(const Tile& parent, int finer, int col, int row) cons
   for (std::size_t i = 0; i < tile.valid.data.size(); ++i) {
     if (tile.valid.data[i] == 0) continue;
     for (std::size_t c = 0; c < 3; ++c) {
-      tile.rgb.data[3 * i + c] = static_cast<std::uint8_t>(region.rgb.data[3 * i + c] + 0.5F);
+      tile.rgb.data[3 * i + c] =
+          static_cast<std::uint8_t>(std::floor(region.rgb.data[3 * i + c] + 0.5F));
     }
   }
   return tile;

@@ -35,6 +35,7 @@ class Fetching {
       for (const Chunk& chunk : layer.chunks) jobs_.push_back({&layer, &chunk});
     }
     std::vector<std::thread> threads;
+    threads.reserve(static_cast<std::size_t>(options_.parallel));
     for (int i = 0; i < options_.parallel; ++i) threads.emplace_back([this] { work(); });
     watch();
     for (std::thread& thread : threads) thread.join();
