@@ -25,13 +25,6 @@ class BagWriter final : public Ros1BagWriter {
     return write(topic, frame_id, stamp_ns, ros1::message_from(image));
   }
 
-  Status add_image(const std::string& topic,
-                   const std::string& frame_id,
-                   std::int64_t stamp_ns,
-                   const Image16& image) override {
-    return write(topic, frame_id, stamp_ns, ros1::message_from(image));
-  }
-
   Status add_camera_info(const std::string& topic,
                          const std::string& frame_id,
                          std::int64_t stamp_ns,

@@ -22,15 +22,11 @@ class Ros1BagWriter {
       const std::filesystem::path& file);
   virtual ~Ros1BagWriter() = default;
 
-  /// sensor_msgs/Image: mono8 or rgb8, mono16 or rgb16. Errors: kIo naming the file.
+  /// sensor_msgs/Image: mono8 or rgb8. Errors: kIo naming the file.
   [[nodiscard]] virtual Status add_image(const std::string& topic,
                                          const std::string& frame_id,
                                          std::int64_t stamp_ns,
                                          const Image& image) = 0;
-  [[nodiscard]] virtual Status add_image(const std::string& topic,
-                                         const std::string& frame_id,
-                                         std::int64_t stamp_ns,
-                                         const Image16& image) = 0;
   /// sensor_msgs/CameraInfo (the lenses: README.md beside this file).
   [[nodiscard]] virtual Status add_camera_info(const std::string& topic,
                                                const std::string& frame_id,

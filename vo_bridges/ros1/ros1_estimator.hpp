@@ -36,7 +36,9 @@ struct Ros1EstimatorOptions {
   int queue_size = 8;  ///< of each topic, in [1, 1000]
   /// True: wait for the pose of each frame once it has published a first one. False: by the clock.
   bool lockstep = true;
-  double start_timeout_s = 30.0;  ///< for the master and for a subscriber of the images
+  /// For the master and for a subscriber of images or calibration; again at the first frame, for
+  /// the estimator to load and to advertise its pose.
+  double start_timeout_s = 30.0;
   double answer_timeout_s = 2.0;
   /// Set on the parameter server under `parameter_namespace` before the estimator is waited for.
   VoParameters parameters;
@@ -47,7 +49,7 @@ struct Ros1EstimatorOptions {
 /// True where this build speaks ROS 1.
 [[nodiscard]] bool ros1_is_built_in();
 
-/// Waits for the master, then for a subscriber of the images.
+/// Waits for the master, then for a subscriber of the images or the calibration.
 /// Errors: kUnsupported where ROS 1 is not built in; kInvalidArgument naming the option; kNotFound
 /// when no master answers, or nobody subscribes to the images, in time; kConflict when this process
 /// is the node of another master already, or another of its estimators has the image topic.

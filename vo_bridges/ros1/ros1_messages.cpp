@@ -4,25 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 namespace overfly::ros1 {
 namespace {
 
 namespace encodings = sensor_msgs::image_encodings;
-
-template <typename T>
-ImageMessage image_message(const ImageBuffer<T>& image, const std::string& encoding) {
-  ImageMessage message;
-  message.width = static_cast<std::uint32_t>(image.width_px);
-  message.height = static_cast<std::uint32_t>(image.height_px);
-  message.encoding = encoding;
-  message.is_bigendian = 0;
-  message.step = static_cast<std::uint32_t>(image.width_px * image.channels * sizeof(T));
-  message.data.resize(image.data.size() * sizeof(T));
-  std::memcpy(message.data.data(), image.data.data(), message.data.size());
-  return message;
-}
 
 template <typename Translation, typename Rotation>
 std::optional<Pose> pose_of(const Translation& t, const Rotation& q) {
@@ -64,11 +50,14 @@ ros::Time time_from_ns(std::int64_t t_ns) {
 }
 
 ImageMessage message_from(const Image& image) {
-  return image_message(image, image.channels == 1 ? encodings::MONO8 : encodings::RGB8);
-}
-
-ImageMessage message_from(const Image16& image) {
-  return image_message(image, image.channels == 1 ? encodings::MONO16 : encodings::RGB16);
+  ImageMessage message;
+  message.width = static_cast<std::uint32_t>(image.width_px);
+  message.height = static_cast<std::uint32_t>(image.height_px);
+  message.encoding = image.channels == 1 ? encodings::MONO8 : encodings::RGB8;
+  message.is_bigendian = 0;
+  message.step = static_cast<std::uint32_t>(image.width_px * image.channels);
+  message.data.assign(image.data.begin(), image.data.end());
+  return message;
 }
 
 CameraInfoMessage message_from(const PinholeCamera& c, const Distortion& distortion) {

@@ -21,7 +21,6 @@ namespace overfly::ros1 {
 
 /// Grey as mono8, RGB as rgb8, without a header.
 [[nodiscard]] ImageMessage message_from(const Image& image);
-[[nodiscard]] ImageMessage message_from(const Image16& image);  ///< mono16, rgb16
 
 /// Without a header. Brown's lens is "plumb_bob" (a pinhole too, with zeros), Kannala's is
 /// "equidistant". ROS has no name for the FOV lens: its message says "fov" with one coefficient, so

@@ -52,21 +52,26 @@ Status Session::begin(Clock::time_point end) {
   topics_ = std::move(*topics);
   watch_ =
       std::make_unique<MasterWatch>(node_.master(), node_.name(), topics_->registrations(), log_);
-  if (!wait_until(end, [&] { return topics_->somebody_sees_images(); })) {
-    return Error{ErrorCode::kNotFound,
-                 "nobody subscribes to " + options_.image_topic + " at the ROS master " +
-                     node_.master().uri() + " within " + std::to_string(options_.start_timeout_s) +
-                     " s: start the estimator's node, or set image_topic to what it listens to"};
-  }
-  // The other topics of the node are connected a moment later; it need not have them.
-  const bool whole = wait_until(Clock::now() + 500ms, [&] {
-    return topics_->somebody_sees_calibration() && topics_->somebody_tells_poses();
+  const bool listens = wait_until(end, [&] {
+    // Some nodes ask for the calibration before they ask for images.
+    return topics_->somebody_sees_images() || topics_->somebody_sees_calibration();
   });
-  if (!whole && !topics_->somebody_tells_poses()) {
+  if (listens) return {};
+  return Error{ErrorCode::kNotFound,
+               "nobody subscribes to " + options_.image_topic + " at the ROS master " +
+                   node_.master().uri() + " within " + std::to_string(options_.start_timeout_s) +
+                   " s: start the estimator's node, or set image_topic to what it listens to"};
+}
+
+void Session::await_readiness(const VoFrame& frame) {
+  topics_->publish_calibration(frame, stamp_of(frame.t_ns));
+  const auto end = Clock::now() + seconds(options_.start_timeout_s);
+  (void)wait_until(
+      end, [&] { return topics_->somebody_sees_images() && topics_->somebody_tells_poses(); });
+  if (!topics_->somebody_tells_poses()) {
     log_->add("nobody publishes poses on " +
               (options_.pose_type == Ros1PoseType::kTf ? "/tf" : options_.pose_topic) + " yet");
   }
-  return {};
 }
 
 TopicHandlers Session::handlers() {
@@ -139,6 +144,10 @@ Status Session::await_estimator() {
 Result<VoEstimate> Session::track(const VoFrame& frame) {
   const VoFrame* const previous = previous_ ? &*previous_ : nullptr;
   if (Status status = validate_vo_frame(frame, previous); !status) return status.error();
+  if (!ready_) {
+    await_readiness(frame);
+    ready_ = true;
+  }
   if (!ended_) {
     if (Status status = await_estimator(); !status) ended_ = status.error();
   }

@@ -23,7 +23,7 @@ class Session final : public VoPort {
  public:
   Session(Node& node, const Ros1EstimatorOptions& options);
 
-  /// Opens the topics and waits for a subscriber of the images.
+  /// Opens the topics and waits for a subscriber.
   /// Errors: as create_ros1_estimator's.
   [[nodiscard]] Status begin(AnswerPatience::Clock::time_point end);
 
@@ -40,6 +40,9 @@ class Session final : public VoPort {
   [[nodiscard]] TopicHandlers handlers();
   void take_pose(std::int64_t stamp_ns, const std::optional<Pose>& published);
   void report_strays();
+  /// Nodes load and then advertise their poses, some of them after they got the calibration: no
+  /// frame shall be lost to that.
+  void await_readiness(const VoFrame& frame);
   [[nodiscard]] Status await_estimator();
   [[nodiscard]] Error gone() const;
   [[nodiscard]] VoEstimate exchange(const VoFrame& frame);
@@ -57,6 +60,7 @@ class Session final : public VoPort {
   std::atomic<std::int64_t> unusable_ = 0;  ///< poses that were none
   AnswerCounts reported_;                   ///< strays that the log has; of the topics' thread
   std::optional<VoFrame> previous_;
+  bool ready_ = false;
   bool tracked_ = false;
   std::int64_t offset_ns_;
   std::optional<Clock::time_point> alone_since_;

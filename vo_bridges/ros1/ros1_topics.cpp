@@ -58,7 +58,7 @@ Result<std::unique_ptr<Topics>> Topics::open(Node& node,
 }
 
 template <typename M>
-Status Topics::advertise(const std::string& topic, ros::Publisher& publisher) {
+Status Topics::advertise(const std::string& topic, ros::Publisher& publisher, bool latched) {
   const auto told = [this, topic](const char* what) {
     return [this, topic, what](const ros::SingleSubscriberPublisher& subscriber) {
       log_->add(subscriber.getSubscriberName() + what + topic);
@@ -68,7 +68,9 @@ Status Topics::advertise(const std::string& topic, ros::Publisher& publisher) {
     publisher = handle_.advertise<M>(topic,
                                      static_cast<std::uint32_t>(options_.queue_size),
                                      told(" subscribed to "),
-                                     told(" left "));
+                                     told(" left "),
+                                     ros::VoidConstPtr(),
+                                     latched);
   } catch (const std::exception& failure) {
     return Error{ErrorCode::kInternal, "topic " + topic + ": " + failure.what()};
   }
@@ -82,7 +84,7 @@ Status Topics::advertise(const std::string& topic, ros::Publisher& publisher) {
 Status Topics::advertise_all() {
   if (Status status = node_.claim(options_.image_topic); !status) return status;
   has_image_topic_ = true;
-  Status status = advertise<CameraInfoMessage>(options_.camera_info_topic, infos_);
+  Status status = advertise<CameraInfoMessage>(options_.camera_info_topic, infos_, true);
   if (status && options_.publish_clock) {
     has_clock_ = node_.claim(kClock).ok();
     if (has_clock_) {
@@ -168,7 +170,7 @@ Status Topics::subscribe_all() {
       debug_images_);
 }
 
-void Topics::publish(const VoFrame& frame, std::int64_t stamp_ns) {
+void Topics::publish_calibration(const VoFrame& frame, std::int64_t stamp_ns) {
   const ros::Time stamp = time_from_ns(stamp_ns);
   if (has_clock_) {
     ClockMessage now;
@@ -179,9 +181,14 @@ void Topics::publish(const VoFrame& frame, std::int64_t stamp_ns) {
   info.header.stamp = stamp;
   info.header.frame_id = options_.camera_frame;
   infos_.publish(info);
-  image_ = message_from(*frame.image);
-  image_.header = info.header;
-  images_.publish(image_);
+}
+
+void Topics::publish(const VoFrame& frame, std::int64_t stamp_ns) {
+  publish_calibration(frame, stamp_ns);
+  ImageMessage image = message_from(*frame.image);
+  image.header.stamp = time_from_ns(stamp_ns);
+  image.header.frame_id = options_.camera_frame;
+  images_.publish(image);
 }
 
 void Topics::publish_reset() {

@@ -39,6 +39,8 @@ class Topics {
   Topics(const Topics&) = delete;
   Topics& operator=(const Topics&) = delete;
 
+  /// Time and calibration; who comes later is told the last calibration.
+  void publish_calibration(const VoFrame& frame, std::int64_t stamp_ns);
   /// Time, calibration, then the image: who has the image has the others.
   void publish(const VoFrame& frame, std::int64_t stamp_ns);
   void publish_reset();
@@ -59,7 +61,7 @@ class Topics {
   Status advertise_all();
   Status subscribe_all();
   template <typename M>
-  Status advertise(const std::string& topic, ros::Publisher& publisher);
+  Status advertise(const std::string& topic, ros::Publisher& publisher, bool latched = false);
   template <typename M, typename Handle>
   Status subscribe(const std::string& topic, Handle handle, ros::Subscriber& subscriber);
   Status subscribe_pose();
@@ -71,7 +73,6 @@ class Topics {
   bool has_image_topic_ = false;
   bool has_clock_ = false;
   std::vector<TopicRegistration> registrations_;
-  ImageMessage image_;  ///< kept for its memory
   ros::CallbackQueue queue_;
   ros::NodeHandle handle_;
   ros::Publisher images_, infos_, clock_, resets_, transforms_;

@@ -156,6 +156,14 @@ TEST(Ros1Exchange, SaysWhatIsWrongWithADebugImage) {
   EXPECT_THAT(port->take_log(), Contains(HasSubstr("bayer_rggb8")));
 }
 
+TEST(Ros1Exchange, LosesNoFrameToANodeThatNeedsTheCalibrationFirst) {
+  ROS_MASTER_OR_SKIP();
+  const Ros1EstimatorOptions options = fresh_options();
+  const TestNode node(options, {"wait_for_info=1"});
+  const auto port = created(options);
+  for (const VoFrame& frame : grey_frames(5)) expect_proof(tracked(*port, frame), frame);
+}
+
 TEST(Ros1Exchange, WaitsInLockstepForASlowNode) {
   ROS_MASTER_OR_SKIP();
   const Ros1EstimatorOptions options = fresh_options();

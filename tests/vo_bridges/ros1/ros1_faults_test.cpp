@@ -81,8 +81,8 @@ TEST(Ros1Options, AreCheckedByName) {
 }
 
 TEST(Ros1Faults, SaysThatThereIsNoMaster) {
-  Ros1EstimatorOptions options;
-  options.master_uri = "http://127.0.0.1:1";  // nobody listens there
+  RosMaster::instance().stop();
+  Ros1EstimatorOptions options = fresh_options();
   options.start_timeout_s = 0.3;
   const auto before = std::chrono::steady_clock::now();
   expect_error(create_ros1_estimator(options), ErrorCode::kNotFound, "no ROS master answers at");

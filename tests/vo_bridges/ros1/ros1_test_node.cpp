@@ -3,11 +3,12 @@
 // hundredths of a radian about x.
 //   ros1_test_node image=TOPIC info=TOPIC pose=TOPIC type=TYPE [debug=TOPIC] [reset=TOPIC]
 //     [parent=FRAME child=FRAME] [invert=1] [body_axes=1] [delay_ms=N] [silent_until=N] [every=N]
-//     [stamp_off_s=N] [bad_pose=1] [debug_encoding=NAME] [debug_scale=N]
+//     [wait_for_info=1] [stamp_off_s=N] [bad_pose=1] [debug_encoding=NAME] [debug_scale=N]
 #include <ros/callback_queue.h>
 #include <ros/init.h>
 #include <ros/node_handle.h>
 #include <ros/spinner.h>
+#include <ros/topic.h>
 
 #include <chrono>
 #include <cmath>
@@ -53,6 +54,11 @@ Pose answer_to(const ImageMessage& image, double fx_px) {
 class Estimator {
  public:
   Estimator() {
+    if (number("wait_for_info") != 0) {
+      const auto info = ros::topic::waitForMessage<CameraInfoMessage>(text("info"));
+      if (info) fx_px_ = info->K[0];
+      std::this_thread::sleep_for(std::chrono::milliseconds(300));  // loads
+    }
     const std::string type = text("type");
     const std::string topic = text("pose");
     // Poses and debug images first: who sees that we listen must hear us.
