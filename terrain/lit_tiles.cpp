@@ -121,7 +121,7 @@ Result<std::shared_ptr<const TileSource>> with_light(std::shared_ptr<const TileS
                                                      const LightOptions& options) {
   const Status valid = options.validate();
   if (!valid) return valid.error();
-  return std::shared_ptr<const TileSource>(std::make_shared<LitTiles>(tiles, options));
+  return std::shared_ptr<const TileSource>(std::make_shared<LitTiles>(std::move(tiles), options));
 }
 
 }  // namespace overfly::terrain
