@@ -9,12 +9,12 @@
 #include <util/settings.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <mutex>
 #include <stdexcept>
 
 #include "vo_bridges/adapters/scene_points.hpp"
+#include "vo_bridges/adapters/stopwatch.hpp"
 #include "vo_bridges/adapters/upstream_system.hpp"
 
 namespace overfly_adapters {
@@ -25,6 +25,7 @@ using Points = std::vector<Eigen::Vector3d, Eigen::aligned_allocator<Eigen::Vect
 /// Takes what DSO publishes. In real time its mapping publishes from a thread of its own.
 class Publications : public dso::IOWrap::Output3DWrapper {
  public:
+  EIGEN_MAKE_ALIGNED_OPERATOR_NEW
   void begin_frame(int id) {
     const std::lock_guard<std::mutex> lock(mutex_);
     id_ = id;
@@ -200,13 +201,14 @@ class DsoSystem : public UpstreamSystem {
       if (posed_) ++map_id_;
       start_over();
     }
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch stopwatch;
     add_frame(frame);
-    const std::chrono::duration<double, std::milli> spent =
-        std::chrono::steady_clock::now() - start;
+    const double wall_ms = stopwatch.wall_ms();
+    const double cpu_ms = stopwatch.process_cpu_ms();
     AdapterAnswer answer;
     answer.map_id = map_id_;
-    answer.timings_ms["track"] = spent.count();
+    answer.timings_ms["track"] = wall_ms;
+    answer.timings_ms["track_cpu"] = cpu_ms;
     answer.counters["keyframes"] = publications_->keyframes();
     dso::SE3 T_vo_camera;
     if (system_->isLost) {

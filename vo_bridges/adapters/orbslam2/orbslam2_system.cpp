@@ -3,7 +3,6 @@
 #include <MapPoint.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <cstdio>
 #include <fstream>
 #include <stdexcept>
@@ -11,6 +10,7 @@
 #include "vo_bridges/adapters/orbslam2/orbslam2_internals.hpp"
 #include "vo_bridges/adapters/orbslam2/orbslam2_settings.hpp"
 #include "vo_bridges/adapters/scene_points.hpp"
+#include "vo_bridges/adapters/stopwatch.hpp"
 #include "vo_bridges/adapters/upstream_system.hpp"
 
 namespace overfly_adapters {
@@ -20,11 +20,6 @@ namespace {
 /// each to the database that relocalisation asks. So no loop is ever closed, and the database is
 /// fed: to stop the loop closer's thread instead would starve relocalisation.
 constexpr long unsigned int kNoLoopBefore = 1UL << 62U;
-
-double milliseconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
-      .count();
-}
 
 class OrbSlam2System : public UpstreamSystem {
  public:
@@ -69,9 +64,10 @@ class OrbSlam2System : public UpstreamSystem {
                      const_cast<std::uint8_t*>(frame.pixels))
                  .clone();
     AdapterAnswer answer;
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch stopwatch;
     const cv::Mat T_camera_vo = system_->TrackMonocular(image_, frame.t_s);
-    answer.timings_ms["track"] = milliseconds_since(start);
+    answer.timings_ms["track"] = stopwatch.wall_ms();
+    answer.timings_ms["track_cpu"] = stopwatch.thread_cpu_ms();
     keep_loops_open();  // a reset inside forgets it
     set_state(!T_camera_vo.empty(), &answer);
     if (answer.state == AdapterState::kTracking) {
@@ -81,6 +77,7 @@ class OrbSlam2System : public UpstreamSystem {
     answer.counters["features"] = static_cast<double>(system_->GetTrackedKeyPointsUn().size());
     if (frame.debug_wanted) answer.debug_image = debug_image();
     wait_for_mapping(&answer);
+    answer.timings_ms["track_and_map_cpu"] = stopwatch.process_cpu_ms();
     return answer;
   }
 
@@ -183,11 +180,11 @@ class OrbSlam2System : public UpstreamSystem {
   /// Until its mapping thread has nothing to do: then the result does not hang on the machine's
   /// speed. The queue is looked at first: mapping says that it is busy before it takes from it.
   void wait_for_mapping(AdapterAnswer* answer) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch stopwatch;
     while (wait_for_mapping_ && (mapper_->KeyframesInQueue() > 0 || !mapper_->AcceptKeyFrames())) {
       ::usleep(200);
     }
-    if (wait_for_mapping_) answer->timings_ms["mapping_wait"] = milliseconds_since(start);
+    if (wait_for_mapping_) answer->timings_ms["mapping_wait"] = stopwatch.wall_ms();
     answer->counters["keyframes"] = static_cast<double>(map_->KeyFramesInMap());
     answer->counters["map_points"] = static_cast<double>(map_->MapPointsInMap());
     // It says so of closed loops and of the adjustment after them, of nothing else.

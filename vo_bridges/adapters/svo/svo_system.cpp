@@ -8,10 +8,10 @@
 #include <svo/point.h>
 #include <vikit/pinhole_camera.h>
 
-#include <chrono>
 #include <stdexcept>
 
 #include "vo_bridges/adapters/scene_points.hpp"
+#include "vo_bridges/adapters/stopwatch.hpp"
 #include "vo_bridges/adapters/upstream_system.hpp"
 
 namespace overfly_adapters {
@@ -121,13 +121,14 @@ class SvoSystem : public UpstreamSystem {
                         session_.camera.width_px,
                         CV_8UC1,
                         const_cast<std::uint8_t*>(frame.pixels));
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch stopwatch;
     handler_->addImage(image, frame.t_s);
-    const std::chrono::duration<double, std::milli> spent =
-        std::chrono::steady_clock::now() - start;
+    const double wall_ms = stopwatch.wall_ms();
+    const double cpu_ms = stopwatch.process_cpu_ms();
     AdapterAnswer answer;
     set_state(&answer);
-    answer.timings_ms["track"] = spent.count();
+    answer.timings_ms["track"] = wall_ms;
+    answer.timings_ms["track_cpu"] = cpu_ms;
     answer.counters["features"] = static_cast<double>(handler_->lastNumObservations());
     answer.counters["keyframes"] = static_cast<double>(handler_->map().size());
     if (answer.state == AdapterState::kTracking) set_pose(&answer, frame.debug_wanted);
