@@ -24,6 +24,22 @@ std::int64_t period_ns(double rate_hz) {
   return rate_hz > 0.0 ? std::llround(static_cast<double>(kNsPerS) / rate_hz) : 0;
 }
 
+/// Keeps what a run folder can hold: no number that JSON cannot say, nothing of another frame.
+void tidy(const VoFrame& frame, VoEstimate& estimate) {
+  EstimateSample& sample = estimate.sample;
+  sample.frame = frame.index;
+  sample.t_ns = frame.t_ns;
+  const Pose& T = sample.T_vo_camera;
+  if (!T.translation.allFinite() || !T.rotation.coeffs().allFinite()) {
+    sample.T_vo_camera = Pose();
+    if (sample.state == TrackingState::kTracking) sample.state = TrackingState::kLost;
+  }
+  if (sample.scene_depth && !std::isfinite(*sample.scene_depth)) sample.scene_depth.reset();
+  const auto is_odd = [](const auto& entry) { return !std::isfinite(entry.second); };
+  std::erase_if(estimate.counters, is_odd);
+  std::erase_if(estimate.timing_ms, is_odd);
+}
+
 /// Calls the estimator; whatever a library throws through it is its end, not ours.
 Result<VoEstimate> track_guarded(VoPort& port, const VoFrame& frame) {
   try {
@@ -133,6 +149,7 @@ EstimatorEvent EstimatorWorker::answer(const Waiting& waiting) {
     event.record.crash = estimate.error().message;
     return event;
   }
+  tidy(waiting.frame, *estimate);
   event.record.image_crc32 = estimate->image_crc32;
   if (options_.in_process && !event.record.image_crc32) {
     event.record.image_crc32 = crc32_of(*waiting.frame.image);

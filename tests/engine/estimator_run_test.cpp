@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
 #include <map>
 #include <mutex>
 
@@ -41,10 +43,11 @@ class Witness final : public VoPort {
   struct Habits {
     RunClock* clock = nullptr;
     std::int64_t work_ns = 0;
-    bool far_end = false;          ///< tells the CRC itself, as one behind a door
-    std::int64_t garbled = -1;     ///< frame that reaches it damaged
-    std::int64_t silent = -1;      ///< frame that it does not answer
-    std::vector<std::string> log;  ///< said at its first frame
+    bool far_end = false;               ///< tells the CRC itself, as one behind a door
+    std::int64_t garbled = -1;          ///< frame that reaches it damaged
+    std::int64_t silent = -1;           ///< frame that it does not answer
+    std::int64_t absurd = -1;           ///< frame that it answers with what is no number
+    std::vector<std::string> log = {};  ///< said at its first frame
   };
   using Seen = std::map<std::int64_t, std::uint32_t>;
   Witness(Habits habits, Seen& seen) : habits_(std::move(habits)), seen_(seen) {}
@@ -70,6 +73,12 @@ class Witness final : public VoPort {
     estimate.sample.T_vo_camera.translation.x() = static_cast<double>(frame.index);
     if (habits_.far_end) {
       estimate.image_crc32 = seen_[frame.index] + (frame.index == habits_.garbled ? 1U : 0U);
+    }
+    if (frame.index == habits_.absurd) {
+      estimate.sample.frame = 77;
+      estimate.sample.T_vo_camera.translation.x() = std::nan("");
+      estimate.sample.scene_depth = std::numeric_limits<double>::infinity();
+      estimate.counters = {{"features", std::nan("")}, {"inliers", 3.0}};
     }
     if (frame.index == habits_.silent) {
       estimate.sample.state = TrackingState::kLost;
@@ -216,6 +225,20 @@ TEST(EstimatorRun, DamagedImagesAndMissingAnswersAreCounted) {
   EXPECT_EQ(scores.at("b").at("hash_mismatches"), 0);
   EXPECT_EQ(scores.at("b").at("unanswered"), 1);
   EXPECT_EQ(scores.at("a").at("unanswered"), 0);
+}
+
+/// A run folder with a number that is none could not be read back.
+TEST(EstimatorRun, AnswersThatAreNoNumbersLeaveTheFolderReadable) {
+  Flight flight;
+  flight.overrides = {R"(estimators=[{"name":"a","type":"feature"}])"};
+  flight.habits["a"].absurd = 6;
+  flight.fly();
+  const RunRecords records = flight.records();
+  const EstimateRecord& record = records.estimators[0].records.at(6);
+  EXPECT_EQ(record.sample.frame, 6);
+  EXPECT_EQ(record.sample.state, TrackingState::kLost);
+  EXPECT_FALSE(record.sample.scene_depth.has_value());
+  EXPECT_EQ(record.counters, (std::map<std::string, double>{{"inliers", 3.0}}));
 }
 
 TEST(EstimatorRun, UseStandsInTheTimingsAndReadsBack) {
