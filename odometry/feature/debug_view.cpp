@@ -1,5 +1,6 @@
 #include "odometry/feature/debug_view.hpp"
 
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <opencv2/imgproc.hpp>
@@ -11,6 +12,7 @@ const cv::Scalar kGreen(60, 230, 90);
 const cv::Scalar kRed(240, 70, 60);
 const cv::Scalar kYellow(250, 210, 60);
 const cv::Scalar kBlue(70, 140, 255);
+const cv::Scalar kGrey(150, 150, 150);
 const cv::Scalar kWhite(255, 255, 255);
 const cv::Scalar kBlack(0, 0, 0);
 
@@ -19,7 +21,23 @@ cv::Point scaled(const Eigen::Vector2d& pixel, double scale) {
           static_cast<int>(std::lround(pixel.y() * scale))};
 }
 
+/// Turns burnt-out areas towards magenta.
+void tint_burnt(cv::Mat& canvas, const Pyramid& pyramid, double scale) {
+  if (pyramid.burnt.empty()) return;
+  for (int y = 0; y < canvas.rows; ++y) {
+    for (int x = 0; x < canvas.cols; ++x) {
+      if (pyramid.burnt_at(Eigen::Vector2d(x, y) / scale)) canvas.at<cv::Vec3b>(y, x)[1] /= 2;
+    }
+  }
+}
+
 void draw_points(cv::Mat& canvas, const DebugContent& content, double scale) {
+  for (const Eigen::Vector2d& pixel : content.missed_px) {
+    cv::circle(canvas, scaled(pixel, scale), 2, kGrey, 1, cv::LINE_AA);
+  }
+  for (const Eigen::Vector2d& pixel : content.candidates_px) {
+    cv::circle(canvas, scaled(pixel, scale), 1, kBlue, cv::FILLED);
+  }
   if (content.tracked != nullptr) {
     for (const TrackedPoint& point : content.tracked->points) {
       const int radius = static_cast<int>(std::lround(2.0 * point.sigma_px / sigma_px_of(0)));
@@ -42,12 +60,12 @@ void draw_points(cv::Mat& canvas, const DebugContent& content, double scale) {
   }
 }
 
-void draw_text(cv::Mat& canvas, const DebugContent& content) {
-  char text[160];
+std::string text_of(const DebugContent& content) {
+  std::array<char, 160> text{};
   const std::size_t inliers = content.tracked != nullptr ? content.tracked->points.size() : 0;
   const int searched = content.tracked != nullptr ? content.tracked->searched : 0;
-  std::snprintf(text,
-                sizeof(text),
+  std::snprintf(text.data(),
+                text.size(),
                 "%s  map %d  inliers %zu / %d  keyframes %d%s",
                 to_string(content.state),
                 content.map_id,
@@ -55,9 +73,21 @@ void draw_text(cv::Mat& canvas, const DebugContent& content) {
                 searched,
                 content.keyframes,
                 content.keyframe ? " +1" : "");
+  std::string line = text.data();
+  if (content.timing_ms == nullptr) return line;
+  for (const char* stage : {"tracking", "mapping"}) {
+    const auto spent = content.timing_ms->find(stage);
+    if (spent == content.timing_ms->end()) continue;
+    std::snprintf(text.data(), text.size(), "  %s %.1f ms", stage, spent->second);
+    line += text.data();
+  }
+  return line;
+}
+
+void draw_text(cv::Mat& canvas, const DebugContent& content) {
   cv::rectangle(canvas, cv::Rect(0, canvas.rows - 22, canvas.cols, 22), kBlack, cv::FILLED);
   cv::putText(canvas,
-              text,
+              text_of(content),
               cv::Point(8, canvas.rows - 7),
               cv::FONT_HERSHEY_SIMPLEX,
               0.45,
@@ -74,7 +104,9 @@ Image draw_debug_view(const Pyramid& pyramid, const DebugContent& content) {
   Image image(grey.cols, grey.rows, 3);
   cv::Mat canvas(grey.rows, grey.cols, CV_8UC3, image.data.data());
   cv::cvtColor(grey, canvas, cv::COLOR_GRAY2RGB);
-  draw_points(canvas, content, std::ldexp(1.0, -level));
+  const double scale = std::ldexp(1.0, -level);
+  tint_burnt(canvas, pyramid, scale);
+  draw_points(canvas, content, scale);
   draw_text(canvas, content);
   if (content.keyframe) {
     cv::rectangle(canvas, cv::Rect(0, 0, canvas.cols, canvas.rows), kBlue, 6);

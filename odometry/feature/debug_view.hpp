@@ -1,7 +1,10 @@
 // The picture of what the estimator sees.
 #pragma once
 
+#include <Eigen/Core>
+#include <map>
 #include <string>
+#include <vector>
 
 #include "core/estimate.hpp"
 #include "core/image.hpp"
@@ -17,11 +20,16 @@ struct DebugContent {
   int keyframes = 0;
   const TrackResult* tracked = nullptr;                       ///< null unless tracking
   const std::vector<Initialiser::Track>* followed = nullptr;  ///< null unless initialising
+  std::vector<Eigen::Vector2d> missed_px;      ///< where points were looked for in vain
+  std::vector<Eigen::Vector2d> candidates_px;  ///< corners of a keyframe that wait for a depth
+  /// Wall time by stage; null in lockstep, whose images repeat byte for byte.
+  const std::map<std::string, double>* timing_ms = nullptr;
 };
 
-/// Half-size RGB image: tracked points green (coarse patches larger), rejected ones red, corners
-/// being followed before the first map yellow with their path; a line of text; a frame around
-/// the image of a keyframe. No wall time in it: recorded images repeat byte for byte.
+/// Half-size RGB image. Map points by state: found green (coarse patches larger), found elsewhere
+/// red, not found grey; corners of a new keyframe without a depth blue; before the first map the
+/// corners being followed yellow with their path. Burnt-out areas are tinted. A line of text; a
+/// blue frame around the image of a keyframe.
 [[nodiscard]] Image draw_debug_view(const Pyramid& pyramid, const DebugContent& content);
 
 }  // namespace overfly::odometry

@@ -20,6 +20,11 @@ constexpr int kMinCornersToSearch = 100;
 /// Corners a frame is asked for, per point that is tracked in it.
 constexpr double kFeaturesPerPoint = 2.0;
 
+/// To which patches may rise where finer ones have no texture.
+int coarsest_patch_level(const FeatureParameters& parameters) {
+  return parameters.low_texture ? 3 : 2;
+}
+
 int tracked_points(const FeatureParameters& parameters) {
   return std::max(100, static_cast<int>(parameters.features / kFeaturesPerPoint));
 }
@@ -35,6 +40,7 @@ InitialiserOptions initialiser_options(const FeatureParameters& parameters) {
   InitialiserOptions options;
   options.seed = parameters.seed;
   options.planar_start = parameters.planar_start;
+  options.coarsest_patch_level = coarsest_patch_level(parameters);
   options.min_tracks = std::min(options.min_tracks, parameters.features / 2);
   return options;
 }
@@ -43,6 +49,7 @@ MapperOptions mapper_options(const FeatureParameters& parameters, const Rectifie
   MapperOptions options;
   options.cells = tracked_points(parameters);
   options.scale_factor = parameters.scale_factor;
+  options.coarsest_patch_level = coarsest_patch_level(parameters);
   options.seen = rectifier.seen();
   return options;
 }
@@ -159,9 +166,13 @@ Pose FeatureOdometry::predicted(std::int64_t t_ns) const {
 }
 
 TrackResult FeatureOdometry::track_map(const FrameImage& frame) const {
-  // From the prediction; then with a wider search; then as if a turn had just stopped.
+  // From the prediction; then without the coarse search, which blurred ground misleads; then with
+  // a wider one; then as if a turn had just stopped.
   const Tracker& tracker = parts_->tracker;
   TrackResult result = tracker.track(frame.pyramid, predicted(frame.t_ns), 3, map());
+  if (!result.tracked && parameters_.low_texture) {
+    result = tracker.track(frame.pyramid, predicted(frame.t_ns), 0, map());
+  }
   if (!result.tracked) {
     result = tracker.track(frame.pyramid, predicted(frame.t_ns), kPyramidLevels, map());
   }
@@ -273,7 +284,20 @@ void FeatureOdometry::draw(const FrameImage& frame,
   content.keyframe = outcome.keyframe;
   content.map_id = map_id_;
   content.keyframes = static_cast<int>(estimate.counters["keyframes"]);
-  if (state_ == TrackingState::kTracking) content.tracked = &outcome.tracked;
+  if (parameters_.threads > 1) content.timing_ms = &estimate.timing_ms;
+  if (state_ == TrackingState::kTracking) {
+    content.tracked = &outcome.tracked;
+    for (const int id : outcome.tracked.missed) {
+      const MapPoint* point = map().point(id);
+      const auto pixel = point ? camera_.project(T_camera_vo_ * point->position_vo) : std::nullopt;
+      if (pixel) content.missed_px.push_back(*pixel);
+    }
+    if (outcome.keyframe) {
+      for (const Candidate& candidate : map().newest().candidates) {
+        content.candidates_px.push_back(candidate.corner.pixel);
+      }
+    }
+  }
   if (state_ == TrackingState::kInitialising) content.followed = &parts_->initialiser.tracks();
   estimate.debug_image = draw_debug_view(frame.pyramid, content);
 }

@@ -39,9 +39,14 @@ void Initialiser::start(const FrameImage& frame, OrbExtractor& orb) {
   H_step_.setIdentity();
   for (const Corner& corner : orb.detect(frame.pyramid.level(0))) {
     if (frame.pyramid.burnt_at(corner.pixel)) continue;
+    const auto level = textured_level(frame.pyramid,
+                                      corner.pixel,
+                                      patch_level_of(corner.scale_level, orb.scale_factor()),
+                                      options_.coarsest_patch_level);
+    if (!level) continue;
     Track& track = tracks_.emplace_back();
     track.corner = corner;
-    track.patch_level = patch_level_of(corner.scale_level, orb.scale_factor());
+    track.patch_level = *level;
     track.pixel = corner.pixel;
     origin_.push_back(tracks_.size() - 1);
   }

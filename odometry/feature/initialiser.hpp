@@ -29,6 +29,7 @@ struct InitialiserOptions {
   double least_parallax_rad = 0.026;
   double min_motion_rad = 0.02;  ///< median displacement before a reconstruction is tried
   bool planar_start = true;      ///< as in FeatureParameters
+  int coarsest_patch_level = 2;  ///< as in MapperOptions
   int attempt_every = 3;         ///< frames
   int snapshot_every = 6;        ///< frames between the keyframes of the first map
   int min_tracks = 120;

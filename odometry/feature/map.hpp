@@ -30,7 +30,8 @@ struct Observation {
 struct Candidate {
   Corner corner;
   Descriptor descriptor{};
-  int misses = 0;  ///< keyframes in which it was looked for in vain
+  int patch_level = 0;  ///< pyramid level at which it is searched
+  int misses = 0;       ///< keyframes in which it was looked for in vain
   bool done = false;
 };
 

@@ -92,7 +92,11 @@ void Mapper::add_candidates(OrbExtractor& orb, Map& map) const {
   }
   for (const Corner* corner : best) {
     if (corner == nullptr) continue;
-    keyframe.candidates.push_back({*corner, orb.describe(*corner), 0, false});
+    const auto level = textured_level(keyframe.pyramid,
+                                      corner->pixel,
+                                      patch_level_of(corner->scale_level, options_.scale_factor),
+                                      options_.coarsest_patch_level);
+    if (level) keyframe.candidates.push_back({*corner, orb.describe(*corner), *level, 0, false});
   }
 }
 
@@ -102,8 +106,7 @@ void Mapper::triangulate_candidates(Map& map) const {
     if (id < newest - options_.candidate_keyframes || id == newest) continue;
     for (Candidate& candidate : source.candidates) {
       if (candidate.done) continue;
-      const int level = patch_level_of(candidate.corner.scale_level, options_.scale_factor);
-      const Search search = triangulate_candidate(source, candidate, level, map);
+      const Search search = triangulate_candidate(source, candidate, map);
       if (search == Search::kMissed) ++candidate.misses;
       candidate.done = search == Search::kFound || candidate.misses >= kMaxMisses;
     }
@@ -112,8 +115,8 @@ void Mapper::triangulate_candidates(Map& map) const {
 
 Mapper::Search Mapper::triangulate_candidate(const Keyframe& source,
                                              const Candidate& candidate,
-                                             int patch_level,
                                              Map& map) const {
+  const int patch_level = candidate.patch_level;
   Keyframe& newest = map.newest();
   const Eigen::Vector3d ray = camera_.ray(candidate.corner.pixel);
   const double prior = 1.0 / source.plane.inverse_depth(ray);

@@ -24,6 +24,7 @@ struct MapperOptions {
   int cells = 900;                  ///< of the image; each should hold a point
   int images_kept = 50;             ///< keyframes that can still be searched
   double scale_factor = 1.2;        ///< of the corners' levels
+  int coarsest_patch_level = 2;     ///< to which a patch without texture at its own may rise
   cv::Mat seen;                     ///< as in TrackerOptions
   LocalAdjustment adjustment;
 };
@@ -51,10 +52,7 @@ class Mapper {
  private:
   enum class Search { kFound, kMissed, kTooNear };
   void triangulate_candidates(Map& map) const;
-  Search triangulate_candidate(const Keyframe& source,
-                               const Candidate& candidate,
-                               int patch_level,
-                               Map& map) const;
+  Search triangulate_candidate(const Keyframe& source, const Candidate& candidate, Map& map) const;
   /// Looks for a point in a keyframe that lacks it.
   void observe(const MapPoint& point, Keyframe& keyframe, Map& map) const;
   void cull(Map& map) const;

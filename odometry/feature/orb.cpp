@@ -11,6 +11,9 @@ namespace overfly::odometry {
 namespace {
 
 constexpr int kCellPx = 32;
+/// Threshold of the last attempt on ground of low texture. Noise passes it, too; whether there is
+/// anything to hold on to shows when a patch is made of it.
+constexpr int kFaintest = 2;
 constexpr int kMarginPx = 20;  ///< room for the turned pattern
 constexpr int kPatternRadius = 15;
 
@@ -184,6 +187,9 @@ std::vector<Corner> OrbExtractor::detect_level(int level, const CellGrid* wanted
       const cv::Rect cell(x - 3, y - 3, width + 6, height + 6);
       cv::FAST(image(cell), found, parameters_.ini_fast_threshold, true);
       if (found.empty()) cv::FAST(image(cell), found, parameters_.min_fast_threshold, true);
+      if (found.empty() && parameters_.low_texture) {
+        cv::FAST(image(cell), found, std::min(kFaintest, parameters_.min_fast_threshold), true);
+      }
       std::vector<Corner>& corners = cells.emplace_back();
       for (const cv::KeyPoint& keypoint : found) {
         const Eigen::Vector2i pixel(static_cast<int>(keypoint.pt.x) + cell.x,

@@ -48,7 +48,8 @@ class OrbExtractor {
   explicit OrbExtractor(const FeatureParameters& parameters);
 
   /// Corners of an 8-bit image: each cell of each level asks first with the initial threshold,
-  /// then with the minimum; a level takes its share of `features` in rounds over the cells.
+  /// then with the minimum, with `low_texture` then with 2; a level takes its share of `features`
+  /// in rounds over the cells.
   /// @param wanted looks only near marked cells; null = everywhere
   [[nodiscard]] std::vector<Corner> detect(const cv::Mat& image, const CellGrid* wanted = nullptr);
   /// From now on finds corners only where `seen` is not 0, as far from the rest as from the image's

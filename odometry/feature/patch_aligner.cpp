@@ -154,6 +154,17 @@ std::optional<PatchTemplate> make_template(const Pyramid& source,
   return result;
 }
 
+std::optional<int> textured_level(const Pyramid& image,
+                                  const Eigen::Vector2d& pixel,
+                                  int finest,
+                                  int coarsest) {
+  const int last = std::min(coarsest, image.level_count() - 1);
+  for (int level = finest; level <= last; ++level) {
+    if (make_template(image, pixel, Eigen::Matrix2d::Identity(), level)) return level;
+  }
+  return std::nullopt;
+}
+
 std::optional<PatchMatch> align_patch(const Pyramid& image,
                                       const PatchTemplate& patch,
                                       const Eigen::Vector2d& start_pixel) {

@@ -25,6 +25,13 @@ struct PatchTemplate {
   float energy = 0.0F;             ///< sum of squared values
 };
 
+/// The finest level, at least `finest` and at most `coarsest`, at which the patch around a pixel
+/// has texture to hold on; empty if there is none. Blurred ground is held at coarse levels.
+[[nodiscard]] std::optional<int> textured_level(const Pyramid& image,
+                                                const Eigen::Vector2d& pixel,
+                                                int finest,
+                                                int coarsest);
+
 struct PatchMatch {
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< full-resolution pixel
   float correlation = 0.0F;                         ///< normalised, in [-1, 1]

@@ -68,7 +68,7 @@ bool Tracker::align_coarsely(const Pyramid& image,
                              Pose& T_camera_vo) const {
   const std::size_t stride = std::max<std::size_t>(
       1, projections.size() / static_cast<std::size_t>(options_.coarse_points));
-  bool found = false;
+  bool found = coarse_level < 1;
   for (int level = std::min(coarse_level, image.level_count() - 1); level >= 1; --level) {
     std::vector<PoseObservation> observations;
     for (std::size_t i = level % stride; i < projections.size(); i += stride) {

@@ -46,7 +46,8 @@ class Tracker {
   Tracker(const PinholeCamera& camera, const TrackerOptions& options);
 
   /// @param T_predicted  T_camera_vo to start from
-  /// @param coarse_level pyramid level at which the coarse search starts
+  /// @param coarse_level pyramid level at which the coarse search starts; 0 = the prediction is
+  ///                     good enough without one
   [[nodiscard]] TrackResult track(const Pyramid& image,
                                   const Pose& T_predicted,
                                   int coarse_level,

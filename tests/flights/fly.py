@@ -2,7 +2,8 @@
 """Flies one scenario through the real program and judges its metrics.
 
 Usage: fly.py BINARY RESULTS_FOLDER NAME SCENARIO [--needs FILE] [--set path=value]...
-              [--outcome COMPLETED] [--max-init-scale-rmse-m M]
+              [--outcome COMPLETED] [--max-init-scale-rmse-m M] [--max-sim3-rmse-m M]
+              [--max-rotation-deg D] [--max-start-s S]
 
 Exit code 0 = within the limits, 1 = not, 77 = skipped (the data it needs is absent). The result
 stands in RESULTS_FOLDER/NAME.json for summary.py.
@@ -19,6 +20,18 @@ import time
 SKIPPED = 77
 
 
+def aligned(alignment, field):
+    return lambda estimator: estimator["alignments"].get(alignment, {}).get(field)
+
+
+LIMITS = {
+    "init-scale-rmse-m": aligned("init_scale", "position_rmse_m"),
+    "sim3-rmse-m": aligned("sim3", "position_rmse_m"),
+    "rotation-deg": aligned("init_scale", "rotation_rmse_deg"),
+    "start-s": lambda estimator: estimator.get("initialised_at_s"),
+}
+
+
 def arguments():
     parser = argparse.ArgumentParser()
     parser.add_argument("binary", type=pathlib.Path)
@@ -28,7 +41,8 @@ def arguments():
     parser.add_argument("--needs", type=pathlib.Path)
     parser.add_argument("--set", action="append", default=[])
     parser.add_argument("--outcome")
-    parser.add_argument("--max-init-scale-rmse-m", type=float)
+    for limit in LIMITS:
+        parser.add_argument(f"--max-{limit}", type=float)
     return parser.parse_args()
 
 
@@ -48,10 +62,11 @@ def judge(args, estimator):
     faults = []
     if args.outcome and estimator["outcome"] != args.outcome:
         faults.append(f"outcome {estimator['outcome']}, must be {args.outcome}")
-    if args.max_init_scale_rmse_m is not None:
-        rmse_m = estimator["alignments"].get("init_scale", {}).get("position_rmse_m")
-        if rmse_m is None or not rmse_m <= args.max_init_scale_rmse_m:
-            faults.append(f"init_scale position RMSE {rmse_m} m, limit {args.max_init_scale_rmse_m} m")
+    for name, value_of in LIMITS.items():
+        limit = getattr(args, "max_" + name.replace("-", "_"))
+        value = value_of(estimator)
+        if limit is not None and (value is None or not value <= limit):
+            faults.append(f"{name} {value}, limit {limit}")
     return faults
 
 

@@ -16,7 +16,7 @@ using testing::SyntheticFlightOptions;
 using testing::SyntheticGround;
 
 /// What the camera shows in a frame instead of the ground.
-enum class Fault { kNone, kDropped, kBlack, kFrozen };
+enum class Fault { kNone, kDropped, kBlack, kFrozen, kBurst };
 
 struct Flight {
   std::vector<Pose> truth;              ///< T_world_camera
@@ -30,6 +30,13 @@ struct FlightPlan {
   std::uint64_t seed = 1;
   std::function<Fault(int)> fault = [](int) { return Fault::kNone; };
 };
+
+/// Light on the lens: half of the picture is burnt out.
+void burn(Image& image) {
+  for (int y = 0; y < image.height_px; ++y) {
+    for (int x = 0; x < image.width_px / 2; ++x) image.at(x, y) = 255;
+  }
+}
 
 Flight fly(const FlightPlan& plan) {
   const SyntheticGround ground = SyntheticGround::procedural(1, 1024, 0.8, plan.relief_m);
@@ -54,8 +61,9 @@ Flight fly(const FlightPlan& plan) {
     } else if (fault == Fault::kFrozen) {
       frame.image = last;
     } else {
-      frame.image =
-          std::make_shared<const Image>(ground.render(camera, flight.truth[i], 1.5, i + 1));
+      Image image = ground.render(camera, flight.truth[i], 1.5, i + 1);
+      if (fault == Fault::kBurst) burn(image);
+      frame.image = std::make_shared<const Image>(std::move(image));
     }
     last = frame.image;
     const auto estimate = odometry->track(frame);
@@ -179,6 +187,15 @@ TEST(FeatureOdometry, IsLostOverBlackImagesAndFindsItsMapAgain) {
   EXPECT_LT(errors_of(flight, 300.0).position_m, 0.7);
 }
 
+TEST(FeatureOdometry, TracksBesideAreasThatAreBurntOut) {
+  FlightPlan plan{turning(4.0)};
+  plan.fault = [](int frame) { return middle(frame, Fault::kBurst); };
+  const Flight flight = fly(plan);
+  EXPECT_EQ(count(flight, TrackingState::kLost), 0);
+  EXPECT_EQ(flight.samples.back().state, TrackingState::kTracking);
+  EXPECT_LT(errors_of(flight, 300.0).position_m, 0.5);
+}
+
 TEST(FeatureOdometry, IsLostWhileTheImageIsFrozen) {
   FlightPlan plan{turning(4.0)};
   plan.fault = [](int frame) { return middle(frame, Fault::kFrozen); };
@@ -248,17 +265,19 @@ TEST(FeatureOdometry, NeverStartsWhileOnlyTurning) {
   EXPECT_EQ(count(flight, TrackingState::kTracking), 0);
 }
 
-TEST(FeatureOdometry, ReportsUnitDepthAndStages) {
+/// A short level flight at 40 m/s, 200 m above flat ground, with debug output.
+std::vector<VoEstimate> fly_level(const FeatureParameters& parameters, double duration_s) {
   SyntheticFlightOptions options;
   options.speed_m_s = 40.0;
   options.height_m = 200.0;
-  options.duration_s = 1.2;
+  options.straight_s = 10.0;
+  options.duration_s = duration_s;
   const SyntheticGround ground = SyntheticGround::procedural(1, 512, 1.0, 0.0);
   const auto camera =
       PinholeCamera::from_fov(320, 240, rad_from_deg(84.872), FovAxis::kHorizontal).value();
-  const auto odometry = create_feature_odometry({}).value();
+  const auto odometry = create_feature_odometry(parameters).value();
   odometry->set_debug(true);
-  std::optional<VoEstimate> last;
+  std::vector<VoEstimate> estimates;
   const std::vector<Pose> poses = testing::fly_s_turns(options);
   for (std::size_t i = 0; i < poses.size(); ++i) {
     VoFrame frame;
@@ -266,8 +285,45 @@ TEST(FeatureOdometry, ReportsUnitDepthAndStages) {
     frame.t_ns = frame_time_ns(frame.index, FrameRate{});
     frame.intrinsics = camera;
     frame.image = std::make_shared<const Image>(ground.render(camera, poses[i], 1.0, i + 1));
-    last = odometry->track(frame).value();
+    estimates.push_back(odometry->track(frame).value());
   }
+  return estimates;
+}
+
+TEST(FeatureOdometry, AKnownHeightMakesItsUnitsMetres) {
+  FeatureParameters parameters;
+  parameters.initial_height_m = 200.0;
+  const auto estimates = fly_level(parameters, 1.2);
+  const auto first = std::find_if(estimates.begin(), estimates.end(), [](const VoEstimate& e) {
+    return e.sample.state == TrackingState::kTracking;
+  });
+  ASSERT_LT(first, estimates.end() - 6);
+  const EstimateSample& last = estimates.back().sample;
+  EXPECT_NEAR(last.scene_depth.value(), 200.0, 1.0);
+  const double flown_s = static_cast<double>(last.t_ns - first->sample.t_ns) * 1e-9;
+  const Eigen::Vector3d way = last.T_vo_camera.translation - first->sample.T_vo_camera.translation;
+  EXPECT_NEAR(way.norm(), 40.0 * flown_s, 0.01 * 40.0 * flown_s + 0.1);
+  EXPECT_NEAR(estimates.back().map_points_vo.front().z(), 200.0F, 4.0F);
+}
+
+TEST(FeatureOdometry, TracksWhileAThreadBesideItMaps) {
+  FeatureParameters parameters;
+  parameters.threads = 2;
+  const auto estimates = fly_level(parameters, 2.0);
+  // However late the thread is, the first map stays in view over these 40 m.
+  int tracked = 0;
+  for (const VoEstimate& estimate : estimates) {
+    EXPECT_NE(estimate.sample.state, TrackingState::kLost) << estimate.sample.frame;
+    tracked += estimate.sample.state == TrackingState::kTracking ? 1 : 0;
+  }
+  EXPECT_GT(tracked, 30);
+  EXPECT_EQ(estimates.back().sample.map_id, 0);
+  EXPECT_NEAR(estimates.back().sample.scene_depth.value(), 1.0, 0.01);
+}
+
+TEST(FeatureOdometry, ReportsUnitDepthAndStages) {
+  const auto estimates = fly_level({}, 1.2);
+  const VoEstimate* last = &estimates.back();
   ASSERT_EQ(last->sample.state, TrackingState::kTracking);
   // Flat ground from level flight: every pose sees the depth that the first keyframe had, 1.
   EXPECT_NEAR(last->sample.scene_depth.value(), 1.0, 0.01);
@@ -278,6 +334,9 @@ TEST(FeatureOdometry, ReportsUnitDepthAndStages) {
     EXPECT_TRUE(last->timing_ms.contains(stage)) << stage;
   }
   EXPECT_GT(last->counters.at("keyframes"), 1.0);
+  // Two and more images of 320 x 240 with their smaller levels.
+  EXPECT_GT(last->counters.at("map_memory_mb"), 0.2);
+  EXPECT_LT(last->counters.at("map_memory_mb"), 50.0);
 }
 
 }  // namespace

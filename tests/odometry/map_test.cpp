@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "odometry/feature/tracker.hpp"
+
 namespace overfly::odometry {
 namespace {
 
@@ -92,6 +94,31 @@ TEST(PatchTangents, AreThePlanesStepsOfOnePixel) {
   const Eigen::Vector3d down = on_plane({900.0, 300.5}) - on_plane({900.0, 299.5});
   EXPECT_LT((point.tangents_vo.col(0) - right).norm(), 1e-8);
   EXPECT_LT((point.tangents_vo.col(1) - down).norm(), 1e-8);
+}
+
+TEST(PatchTangents, WarpAgreesWithFiniteDifferences) {
+  const PinholeCamera camera{1280, 960, 700.0, 700.0, 639.5, 479.5};
+  Keyframe source;
+  source.T_camera_vo = {exp_so3({0.1, -0.1, 0.3}), {0.05, 0.02, 0.1}};
+  source.plane.coefficients = {0.1, -0.2, 0.9};
+  const Pose T_other_vo{exp_so3({0.2, 0.1, 0.4}), {0.1, -0.05, 0.15}};
+  // Where the other view sees the plane that a pixel of the source sees.
+  const auto point_at = [&](const Eigen::Vector2d& pixel) -> Eigen::Vector3d {
+    const Eigen::Vector3d ray = camera.ray(pixel);
+    return source.T_camera_vo.inverse() * (ray / source.plane.inverse_depth(ray));
+  };
+  MapPoint point;
+  point.source_pixel = {800.0, 300.0};
+  point.position_vo = point_at(point.source_pixel);
+  set_tangents(camera, source, point);
+  const Eigen::Matrix2d A = warp_of(camera, T_other_vo, point);
+  for (int i = 0; i < 2; ++i) {
+    const Eigen::Vector2d step = 1e-4 * Eigen::Vector2d::Unit(i);
+    const Eigen::Vector2d ahead = *camera.project(T_other_vo * point_at(point.source_pixel + step));
+    const Eigen::Vector2d behind =
+        *camera.project(T_other_vo * point_at(point.source_pixel - step));
+    EXPECT_LT(((ahead - behind) / 2e-4 - A.col(i)).norm(), 1e-5) << "column " << i;
+  }
 }
 
 }  // namespace

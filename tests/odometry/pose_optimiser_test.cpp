@@ -69,6 +69,21 @@ TEST(PoseOptimiser, TooFewPointsLeaveThePoseFinite) {
   EXPECT_LT(fit.inliers, 4);
 }
 
+TEST(PointJacobian, AgreesWithFiniteDifferences) {
+  // As the bundle adjustment takes it: of the pixel by the point in vo.
+  const PinholeCamera cam = camera();
+  const Pose T_camera_vo{exp_so3({0.1, 0.2, -0.3}), {0.1, 0.0, 0.4}};
+  const Eigen::Vector3d point(0.2, -0.1, 0.9);
+  const Matrix23d J = projection_jacobian(cam.fx_px, cam.fy_px, T_camera_vo * point) *
+                      T_camera_vo.rotation.toRotationMatrix();
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Vector3d step = 1e-6 * Eigen::Vector3d::Unit(i);
+    const Eigen::Vector2d ahead = *cam.project(T_camera_vo * (point + step));
+    const Eigen::Vector2d behind = *cam.project(T_camera_vo * (point - step));
+    EXPECT_LT(((ahead - behind) / 2e-6 - J.col(i)).norm(), 1e-4) << "column " << i;
+  }
+}
+
 TEST(PoseJacobian, AgreesWithFiniteDifferences) {
   const PinholeCamera cam = camera();
   const Pose T_camera_vo{exp_so3({0.1, 0.2, -0.3}), {0.1, 0.0, 0.4}};

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "odometry/feature/lie.hpp"
+#include "odometry/feature/triangulation.hpp"
 
 namespace overfly::odometry {
 namespace {
@@ -62,6 +63,58 @@ TEST(TwoView, TakesTheMotionOverReliefFromTheEssentialMatrix) {
   expect_motion(result->T_second_first, 3e-3);
 }
 
+/// Flight straight ahead over a plane by a camera that is tilted forward.
+Pair tilted_views(double tilt_rad, double noise_px) {
+  std::mt19937 rng(17);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  std::normal_distribution<double> normal(0.0, noise_px);
+  const Eigen::Vector3d plane(0.0, std::sin(tilt_rad), std::cos(tilt_rad));
+  const Eigen::Vector3d ahead(0.0, -std::cos(tilt_rad), std::sin(tilt_rad));
+  const Pose T_second_first{Eigen::Quaterniond::Identity(), -0.08 * ahead};
+  Pair pair;
+  while (pair.first.size() < 600) {
+    const Eigen::Vector2d pixel(1280.0 * uniform(rng), 960.0 * uniform(rng));
+    const Eigen::Vector3d ray = camera().ray(pixel);
+    const double along = plane.dot(ray);
+    if (along < 0.05) continue;
+    const auto seen = camera().project(T_second_first * (ray / along));
+    if (!seen) continue;
+    pair.first.push_back(pixel);
+    pair.second.push_back(*seen + Eigen::Vector2d(normal(rng), normal(rng)));
+  }
+  return pair;
+}
+
+TEST(TwoView, TellsThePlanesTwoMotionsApartUpToThirtyDegreesOfTilt) {
+  for (const double tilt_deg : {-30.0, -20.0, -10.0, 0.0, 10.0, 20.0, 30.0}) {
+    const double tilt_rad = rad_from_deg(tilt_deg);
+    const Pair pair = tilted_views(tilt_rad, 0.1);
+    const auto result = reconstruct_two_view(camera(), pair.first, pair.second, {});
+    ASSERT_TRUE(result) << tilt_deg;
+    const Eigen::Vector3d back(0.0, std::cos(tilt_rad), -std::sin(tilt_rad));
+    EXPECT_LT(rotation_angle_rad(result->T_second_first.rotation, Eigen::Quaterniond::Identity()),
+              1e-3)
+        << tilt_deg;
+    EXPECT_GT(back.dot(result->T_second_first.translation), 0.999) << tilt_deg;
+  }
+}
+
+TEST(TwoView, RefusesAPlaneWhoseTwoMotionsLookAlike) {
+  for (const double tilt_deg : {38.0, 45.0, 50.0}) {
+    const Pair pair = tilted_views(rad_from_deg(tilt_deg), 0.1);
+    EXPECT_FALSE(reconstruct_two_view(camera(), pair.first, pair.second, {})) << tilt_deg;
+  }
+}
+
+TEST(TwoView, LeavesThePlaneOutOfAccountWhenToldTo) {
+  const Pair pair = views_of(kMotion, 1.0);
+  TwoViewOptions options;
+  options.consider_plane = false;
+  const auto result = reconstruct_two_view(camera(), pair.first, pair.second, options);
+  ASSERT_TRUE(result);
+  EXPECT_FALSE(result->planar);
+}
+
 TEST(TwoView, RefusesAPureRotation) {
   const Pair pair = views_of({exp_so3({0.05, -0.08, 0.1}), {0.0, 0.0, 0.0}}, 0.3);
   EXPECT_FALSE(reconstruct_two_view(camera(), pair.first, pair.second, {}));
@@ -94,6 +147,27 @@ TEST(HomographyMotions, HoldTheTrueOne) {
 
 TEST(HomographyMotions, AreNoneForARotation) {
   EXPECT_TRUE(motions_of_homography(kMotion.rotation.toRotationMatrix()).empty());
+}
+
+TEST(Triangulation, FindsPointsAndTheirParallax) {
+  const Pose T_second_first{exp_so3({0.1, -0.2, 0.05}), {0.3, -0.1, 0.05}};
+  const Eigen::Vector3d centre = T_second_first.inverse().translation;
+  for (const Eigen::Vector3d& p :
+       {Eigen::Vector3d(0.1, 0.2, 1.0), Eigen::Vector3d(-0.5, 0.3, 2.5)}) {
+    const Eigen::Vector3d q = T_second_first * p;
+    const auto point = triangulate(p / p.z(), q / q.z(), T_second_first);
+    ASSERT_TRUE(point);
+    EXPECT_LT((point->p_first - p).norm(), 1e-12);
+    const double angle = std::acos(p.normalized().dot((p - centre).normalized()));
+    EXPECT_NEAR(point->parallax_rad, angle, 1e-9);
+  }
+}
+
+TEST(Triangulation, HasNoneBehindACameraOrForParallelRays) {
+  const Pose T_second_first{Eigen::Quaterniond::Identity(), {-0.2, 0.0, 0.0}};
+  const Eigen::Vector3d ray(0.1, 0.0, 1.0);
+  EXPECT_FALSE(triangulate(ray, ray, T_second_first));
+  EXPECT_FALSE(triangulate(ray, {0.3, 0.0, 1.0}, T_second_first));  // they meet behind
 }
 
 TEST(EssentialMotions, HoldTheTrueOne) {
