@@ -9,6 +9,8 @@
 #include "server/app/install_paths.hpp"
 #include "server/engine/scenario_list.hpp"
 #include "terrain/installation.hpp"
+#include "vo_bridges/lcm/lcm_findings.hpp"
+#include "vo_bridges/ros1/ros1_findings.hpp"
 
 namespace overfly::app {
 namespace {
@@ -143,12 +145,20 @@ Check check_scenarios() {
           "`overfly scenario list` says why; OVERFLY_DATA names the folder of the data"};
 }
 
-Check check_optional_parts() {
-  return {"optional parts",
-          CheckLevel::kOk,
-          "none in this version: estimators are native; bridges to ROS 1, LCM and other processes "
-          "are not part of it",
-          ""};
+Check check_lcm() {
+  const LcmFindings found = lcm_findings();
+  return {"estimators on LCM",
+          found.usable ? CheckLevel::kOk : CheckLevel::kWarning,
+          found.finding,
+          found.remedy};
+}
+
+Check check_ros1() {
+  const Ros1Findings found = ros1_findings();
+  return {"estimators on ROS 1",
+          found.works ? CheckLevel::kOk : CheckLevel::kWarning,
+          found.finding,
+          found.remedy};
 }
 
 }  // namespace
@@ -167,7 +177,8 @@ std::vector<Check> all_checks(const fs::path& runs_folder) {
           check_folder("run folders", runs_folder, kRunBytes, "name another folder"),
           check_dashboard(),
           check_scenarios(),
-          check_optional_parts()};
+          check_lcm(),
+          check_ros1()};
 }
 
 nlohmann::json json_from(const std::vector<Check>& checks) {

@@ -145,17 +145,11 @@ int export_as_dataset(const ExportArguments& arguments,
 }
 
 int export_source(const ExportArguments& arguments) {
-  if (arguments.format == "rosbag" || arguments.format == "lcm") {
-    return report({ErrorCode::kUnsupported,
-                   "format = " + arguments.format +
-                       ": this build has no bridge to ROS or LCM and writes no logs of theirs; "
-                       "must be tum-mono, euroc, kitti, png or webm"});
-  }
   const auto format = engine::dataset_format_from(arguments.format);
   if (!format && arguments.format != "webm") {
-    return report(
-        {ErrorCode::kInvalidArgument,
-         "format = " + arguments.format + ": must be one of tum-mono, euroc, kitti, png, webm"});
+    return report({ErrorCode::kInvalidArgument,
+                   "format = " + arguments.format +
+                       ": must be one of tum-mono, euroc, kitti, png, lcm, rosbag, webm"});
   }
   const auto source = open_source(arguments);
   if (!source) return report(source.error());
@@ -197,8 +191,9 @@ void add_export_command(CLI::App& app, int& exit_code) {
   command->add_option("source", arguments->source, "Run folder, or scenario file (JSON)")
       ->required();
   command
-      ->add_option(
-          "--format", arguments->format, "tum-mono, euroc, kitti, png, or webm for a video alone")
+      ->add_option("--format",
+                   arguments->format,
+                   "tum-mono, euroc, kitti, png, lcm, rosbag, or webm for a video alone")
       ->required();
   command->add_option("--out", arguments->out, "Folder to make; of webm the file")->required();
   command

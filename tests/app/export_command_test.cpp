@@ -85,10 +85,6 @@ TEST_F(ExportCommand, WritesEveryFormatOfAScenarioAndOfItsRun) {
 }
 
 TEST_F(ExportCommand, NamesWhatIsWrong) {
-  const Outcome bag = exported(scenario_file(), "rosbag", "bag");
-  EXPECT_EQ(bag.exit_code, 4);
-  EXPECT_THAT(bag.err, HasSubstr("no bridge to ROS or LCM"));
-  EXPECT_FALSE(fs::exists(path("bag")));
   const Outcome format = exported(scenario_file(), "kiti", "d");
   EXPECT_EQ(format.exit_code, 2);
   EXPECT_THAT(format.err, HasSubstr("format = kiti: must be one of tum-mono, euroc, kitti, png"));

@@ -11,6 +11,8 @@
 #include "server/engine/run_clock.hpp"
 #include "server/engine/truth.hpp"
 #include "server/engine/whole_file.hpp"
+#include "vo_bridges/lcm/lcm_estimator.hpp"
+#include "vo_bridges/ros1/ros1_estimator.hpp"
 
 namespace overfly::engine {
 namespace {
@@ -113,6 +115,18 @@ Status prepare_folder(const fs::path& folder) {
 }
 
 Status check_options(const ExportOptions& options) {
+  if (options.format == DatasetFormat::kLcm && !lcm_is_built_in()) {
+    return Error{ErrorCode::kUnsupported,
+                 "format = lcm: this build does not speak LCM: install liblcm-dev and liblcm-bin, "
+                 "and build again"};
+  }
+  if (options.format == DatasetFormat::kRosbag && !ros1_is_built_in()) {
+    return Error{
+        ErrorCode::kUnsupported,
+        "format = rosbag: this build writes no ROS bags: install librosbag-storage-dev, "
+        "libroscpp-dev, libsensor-msgs-dev, libnav-msgs-dev and libtf2-msgs-dev, and build "
+        "again"};
+  }
   if (!(options.from_s >= 0.0)) {
     return Error{ErrorCode::kInvalidArgument,
                  "from = " + std::to_string(options.from_s) + " s: must be at least 0"};

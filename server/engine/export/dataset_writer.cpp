@@ -12,6 +12,10 @@ const char* to_string(DatasetFormat format) {
       return "euroc";
     case DatasetFormat::kKitti:
       return "kitti";
+    case DatasetFormat::kLcm:
+      return "lcm";
+    case DatasetFormat::kRosbag:
+      return "rosbag";
     case DatasetFormat::kPng:
       break;
   }
@@ -22,7 +26,9 @@ std::optional<DatasetFormat> dataset_format_from(const std::string& text) {
   for (const DatasetFormat format : {DatasetFormat::kTumMono,
                                      DatasetFormat::kEuroc,
                                      DatasetFormat::kKitti,
-                                     DatasetFormat::kPng}) {
+                                     DatasetFormat::kPng,
+                                     DatasetFormat::kLcm,
+                                     DatasetFormat::kRosbag}) {
     if (text == to_string(format)) return format;
   }
   return std::nullopt;
@@ -37,6 +43,10 @@ Result<std::unique_ptr<DatasetWriter>> create_dataset_writer(DatasetFormat forma
       return create_euroc_writer(plan);
     case DatasetFormat::kKitti:
       return create_kitti_writer(plan);
+    case DatasetFormat::kLcm:
+      return create_lcm_writer(plan);
+    case DatasetFormat::kRosbag:
+      return create_rosbag_writer(plan);
     case DatasetFormat::kPng:
       break;
   }

@@ -16,9 +16,9 @@
 
 namespace overfly::engine {
 
-enum class DatasetFormat { kTumMono, kEuroc, kKitti, kPng };
+enum class DatasetFormat { kTumMono, kEuroc, kKitti, kPng, kLcm, kRosbag };
 
-/// "tum-mono", "euroc", "kitti", "png".
+/// "tum-mono", "euroc", "kitti", "png", "lcm", "rosbag".
 [[nodiscard]] const char* to_string(DatasetFormat format);
 [[nodiscard]] std::optional<DatasetFormat> dataset_format_from(const std::string& text);
 
@@ -57,6 +57,8 @@ class DatasetWriter {
 [[nodiscard]] Result<std::unique_ptr<DatasetWriter>> create_euroc_writer(const DatasetPlan&);
 [[nodiscard]] Result<std::unique_ptr<DatasetWriter>> create_kitti_writer(const DatasetPlan&);
 [[nodiscard]] Result<std::unique_ptr<DatasetWriter>> create_png_writer(const DatasetPlan&);
+[[nodiscard]] Result<std::unique_ptr<DatasetWriter>> create_lcm_writer(const DatasetPlan&);
+[[nodiscard]] Result<std::unique_ptr<DatasetWriter>> create_rosbag_writer(const DatasetPlan&);
 
 /// Creates a folder with its parents. Errors: kIo naming it.
 [[nodiscard]] Status make_folder(const std::filesystem::path& folder);
