@@ -69,6 +69,7 @@ class Estimator:
     """What to fill in. An exception becomes an error line in the run's log and ends the session."""
     name = "unnamed"
     version = "0"
+    lockstep = True  # each frame is waited for; False = be quick, what you miss is dropped
     _connection = None
 
     def configure(self, wanted):
@@ -226,6 +227,8 @@ def _greet(estimator, connection):
         if key == "parameter":
             name, _, wanted_value = value.partition(" ")
             wanted[name] = wanted_value
+        elif key == "lockstep":
+            estimator.lockstep = value == "true"
     connection.send(_PARAMETERS, _text_of(estimator.configure(wanted)))
     connection.send(_READY, struct.pack("<I", _HELLO))
 

@@ -1,5 +1,5 @@
 // The two examples behind the process door do what every estimator must, and find the way.
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "tests/support/support.hpp"
 #include "tests/vo_bridges/process/process_fixture.hpp"
@@ -55,6 +55,29 @@ TEST(ProcessExamples, FindTheWayOverFlatGround) {
   // Grey values are whole numbers: a tenth of a pixel over ten frames is what that leaves.
   EXPECT_LT((last_position_px(cpp_example(), frames) - way_px).norm(), 0.3);
   EXPECT_LT((last_position_px(python_example(), frames) - way_px).norm(), 1.0);
+}
+
+TEST(ProcessExamples, SeeEachImageWholeByEachTransport) {
+  for (const char* const listen : {"", "tcp:127.0.0.1:0"}) {
+    for (ProcessEstimatorOptions options : {cpp_example(), python_example()}) {
+      options.listen = listen;
+      const auto estimator = started(options);
+      ASSERT_NE(estimator, nullptr);
+      for (const VoFrame& frame : ground_frames(3, 1.0, 1.0)) {
+        EXPECT_EQ(estimator->track(frame)->image_crc32, crc32_of(*frame.image))
+            << options.command[0] << " " << listen;
+      }
+    }
+  }
+}
+
+TEST(ProcessExamples, RefuseAParameterThatTheyDoNotKnow) {
+  for (ProcessEstimatorOptions options : {cpp_example(), python_example()}) {
+    options.parameters["nonsense"] = 3.0;
+    const auto estimator = create_process_estimator(options);
+    ASSERT_FALSE(estimator.ok());
+    EXPECT_THAT(estimator.error().message, ::testing::HasSubstr("unknown parameter nonsense"));
+  }
 }
 
 }  // namespace

@@ -114,7 +114,7 @@ TEST_F(ProcessTrouble, ASlowStartIsCutShort) {
 
 TEST_F(ProcessTrouble, ASlowCalibrationIsCutShort) {
   ProcessEstimatorOptions options = scripted("slow_calibration");
-  options.start_timeout_s = 1.0;
+  options.start_timeout_s = 2.0;
   EXPECT_THAT(flight_error(options).message, HasSubstr("was not ready after CALIBRATION"));
 }
 
@@ -189,8 +189,8 @@ TEST_F(ProcessTrouble, AFloodOfOutputIsCutInTheFileAndTheFlightGoesOn) {
 }
 
 TEST_F(ProcessTrouble, ALateAnswerLosesOneFrame) {
-  ProcessEstimatorOptions options = scripted("late", "0.6");
-  options.answer_timeout_s = 0.4;
+  ProcessEstimatorOptions options = scripted("late", "1.5");
+  options.answer_timeout_s = 1.0;
   const auto estimator = started(options);
   std::vector<VoEstimate> estimates;
   for (const VoFrame& frame : ground_frames(5, 1.0, 1.0, 64, 48)) {
@@ -210,7 +210,7 @@ TEST_F(ProcessTrouble, ALateAnswerLosesOneFrame) {
 
 TEST_F(ProcessTrouble, AHangingEstimatorIsGivenUpAfterThreeTimeouts) {
   ProcessEstimatorOptions options = scripted("hang");
-  options.answer_timeout_s = 0.2;
+  options.answer_timeout_s = 0.5;
   const auto estimator = started(options);
   std::vector<Result<VoEstimate>> estimates;
   for (const VoFrame& frame : ground_frames(6, 1.0, 1.0, 64, 48)) {
@@ -224,14 +224,14 @@ TEST_F(ProcessTrouble, AHangingEstimatorIsGivenUpAfterThreeTimeouts) {
   ASSERT_FALSE(estimates[4].ok());
   EXPECT_EQ(estimates[4].error().code, ErrorCode::kInternal);
   EXPECT_THAT(estimates[4].error().message,
-              HasSubstr("hangs: frame 2 was not answered within 0.6 s; it last said: camera0"));
+              HasSubstr("hangs: frame 2 was not answered within 1.5 s; it last said: camera0"));
   EXPECT_FALSE(estimates[5].ok());
   EXPECT_FALSE(alive(pid));
 }
 
 TEST_F(ProcessTrouble, AHangInAResetIsToldWithTheNextFrame) {
   ProcessEstimatorOptions options = scripted("hang_in_reset");
-  options.answer_timeout_s = 0.3;
+  options.answer_timeout_s = 1.0;
   const auto estimator = started(options);
   const auto frames = ground_frames(2, 1.0, 1.0, 64, 48);
   ASSERT_TRUE(estimator->track(frames[0]).ok());
@@ -240,8 +240,8 @@ TEST_F(ProcessTrouble, AHangInAResetIsToldWithTheNextFrame) {
 }
 
 TEST_F(ProcessTrouble, AResetPassesOverTheAnswerThatIsUnderWay) {
-  ProcessEstimatorOptions options = scripted("late", "0.5");
-  options.answer_timeout_s = 0.3;
+  ProcessEstimatorOptions options = scripted("late", "1.3");
+  options.answer_timeout_s = 1.0;
   const auto estimator = started(options);
   const auto frames = ground_frames(3, 1.0, 1.0, 64, 48);
   for (const VoFrame& frame : frames) ASSERT_TRUE(estimator->track(frame).ok());
