@@ -87,8 +87,12 @@ Status RunRecorder::add_answer(std::size_t estimator, EstimatorEvent& event) {
     row.T_world_body =
         state.alignment.add(row.sample, frame->row.T_world_camera, frame->axis_depth_m);
   }
-  state.frames.push_back(row.sample.frame);
-  state.latency.ms.push_back(event.latency_ms);
+  // One that is gone answers nothing, and that at once.
+  const bool gone = !event.record.crash.empty() || !state.status.crash.empty();
+  if (!gone) {
+    state.frames.push_back(row.sample.frame);
+    state.latency.ms.push_back(event.latency_ms);
+  }
   for (const auto& [stage, ms] : event.timing_ms) state.stages[stage].ms.push_back(ms);
   timeline_->append_estimate(estimator, row);
   if (Status status = keep_debug_image(estimator, event); !status) return status;
@@ -117,6 +121,7 @@ Status RunRecorder::log_transition(std::size_t estimator, const EstimateRecord& 
   const EstimateSample& sample = record.sample;
   const std::string& name = info_.estimators[estimator];
   if (!record.crash.empty()) return log(sample.t_ns, "error", name + " crashed: " + record.crash);
+  if (!state.status.crash.empty()) return {};
   const TrackingState last = std::exchange(state.last, sample.state);
   const int last_map_id = std::exchange(state.last_map_id, sample.map_id);
   if (sample.map_id != last_map_id) {

@@ -338,6 +338,9 @@ TEST(EstimatorRun, OneThatDoesNotStartIsCrashedAndTheOthersFly) {
   EXPECT_EQ(state_text(status), "CRASHED");
   EXPECT_THAT(status.crash, AllOf(HasSubstr("did not start"), HasSubstr("/nowhere/at-all")));
   EXPECT_EQ(status.answered, 0);
+  EXPECT_FALSE(status.latency.has_value());
+  EXPECT_THAT(overfly::testing::read_text(log_file(options.folder)),
+              ::testing::Not(HasSubstr("gone lost track")));
 }
 
 TEST(EstimatorRun, ProcessorThatIsNotThereIsTold) {

@@ -99,7 +99,7 @@ TEST(ScenarioOverride, ReachesArraysAndReplacesTheKindOfWorld) {
                                                     "world.manifest=w.json"}),
                                          "/base");
   ASSERT_TRUE(scenario.ok()) << scenario.error().message;
-  EXPECT_EQ(scenario->estimators.at(0).parameters.at("drift"), 0.01);
+  EXPECT_EQ(text_of(scenario->estimators.at(0).parameters.at("drift")), "0.01");
   EXPECT_EQ(std::get<std::filesystem::path>(scenario->world), "/base/w.json");
   EXPECT_THAT(fault_of(document, {"estimators.2.name=e"}), HasSubstr("must be a number in [0, 0]"));
   EXPECT_THAT(fault_of(document, {"seed.x=1", "seed.y.z=2"}), HasSubstr("seed"));
