@@ -135,8 +135,7 @@ Status write_ground(const fs::path& file,
   const int side = 2 * swatch_px;
   auto dataset = create_jpeg_tiff(file, side, side, kOverviews);
   if (!dataset) return dataset.error();
-  const Status placed =
-      place(**dataset, file, strip.site, strip.left_x_m, strip.top_y_m, strip.texel_m);
+  Status placed = place(**dataset, file, strip.site, strip.left_x_m, strip.top_y_m, strip.texel_m);
   if (!placed) return placed;
   LevelWriter writer(**dataset, kOverviews + 1);
   for (int y = 0; y < side; y += kRows) {
@@ -180,12 +179,12 @@ Status write_hills(const fs::path& file,
   auto dataset = create_height_tiff(file, columns, rows);
   if (!dataset) return dataset.error();
   // Posts are pixel centres: the raster's corner lies half a post beyond the outermost.
-  const Status placed = place(**dataset,
-                              file,
-                              strip.site,
-                              strip.left_x_m - kMarginM - 0.5 * post_m,
-                              strip.top_y_m + kMarginM + 0.5 * post_m,
-                              post_m);
+  Status placed = place(**dataset,
+                        file,
+                        strip.site,
+                        strip.left_x_m - kMarginM - 0.5 * post_m,
+                        strip.top_y_m + kMarginM + 0.5 * post_m,
+                        post_m);
   if (!placed) return placed;
   constexpr int kStripRows = 256;
   for (int row = 0; row < rows; row += kStripRows) {
@@ -199,7 +198,7 @@ Status write_hills(const fs::path& file,
             strip.site.base_height_m + 0.5 * relief_m * fractal(x, y, 5, 0.42F, seed));
       }
     }
-    const Status written = write_height_rows(**dataset, file, row, count, posts);
+    Status written = write_height_rows(**dataset, file, row, count, posts);
     if (!written) return written;
     if (progress && !progress(static_cast<double>(row) / rows)) return cancelled(file);
   }
