@@ -208,7 +208,7 @@ TEST(EstimatorRun, ThrottledToTwentyOfThirtyOneHertzDropsTheRest) {
   EXPECT_NEAR(100.0 * dropped / frames, 35.5, 1.0);
   EXPECT_EQ(run.metrics.at("estimators").at("u").at("dropped_frames"), 0);
   // It answers no sooner than one that needs 1 / 20 s.
-  const Json& latency = flight.timings().at("estimators").at("t").at("latency");
+  const Json latency = flight.timings().at("estimators").at("t").at("latency");
   EXPECT_GE(latency.at("median_ms").get<double>(), 50.0);
   EXPECT_LE(latency.at("max_ms").get<double>(), 50.0 + 1000.0 / 31.0 + 50.0);
 }
