@@ -23,7 +23,7 @@ constexpr double kChi2Line = 3.84;
 constexpr double kPlanarRatio = 0.45;
 /// A plane's homography allows two motions. The wrong one's plane is seen edge-on from the first
 /// view, and points beyond its horizon lie behind the camera; where these are fewer than a
-/// twentieth (tilted by 32 deg or more at 69 deg of view) there is no telling.
+/// twentieth (the camera is tilted by some 30 deg at 69 deg of view) there is no telling.
 constexpr double kMostAlike = 0.95;
 
 Eigen::Matrix3d from_null_vector(const Matrix9d& normal_matrix) {

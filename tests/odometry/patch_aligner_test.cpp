@@ -73,7 +73,7 @@ TEST(PatchAligner, TakesTheFinestLevelThatHasTexture) {
   EXPECT_EQ(textured_level(sharp, {120.0, 130.0}, 0, 3), 0);
   EXPECT_EQ(textured_level(sharp, {120.0, 130.0}, 1, 3), 1);
   // The same pattern eight times as large: a fine patch sees too little of it.
-  const Pyramid blurred = image_of(0.04 * kIdentity, {0.0, 0.0}, 0.3, 60.0);
+  const Pyramid blurred = image_of(0.15 * kIdentity, {0.0, 0.0}, 0.3, 60.0);
   const auto level = textured_level(blurred, {120.0, 130.0}, 0, 3);
   ASSERT_TRUE(level);
   EXPECT_GT(*level, 0);
