@@ -207,8 +207,8 @@ Error bad(const std::string& field, const std::string& value, const std::string&
 }
 
 Status check_timeout(const std::string& name, double time_s) {
-  constexpr double kLongest_s = 86400.0;
-  if (time_s > 0.0 && time_s <= kLongest_s) return {};
+  constexpr double kLongestS = 86400.0;
+  if (time_s > 0.0 && time_s <= kLongestS) return {};
   return bad(name, std::to_string(time_s), "in (0, 86400]");
 }
 

@@ -18,7 +18,7 @@ LcmFindings lcm_findings_from(const std::string& multicast_fault, long long rece
             "UDP to 224.0.0.0/4"};
   }
   const std::string buffer = "net.core.rmem_max = " + std::to_string(receive_buffer_bytes);
-  if (receive_buffer_bytes > 0 && receive_buffer_bytes < kSmallestReceiveBuffer_bytes) {
+  if (receive_buffer_bytes > 0 && receive_buffer_bytes < kSmallestReceiveBufferBytes) {
     return {false,
             version + ", multicast comes back, but " + buffer +
                 " lets receivers lose most packets of a large image",

@@ -13,7 +13,7 @@
 #include "core/result.hpp"
 #include "vo_bridges/lcm/lcm_url.hpp"
 
-struct _lcm_t;
+struct _lcm_t;  // NOLINT(bugprone-reserved-identifier): the name that LCM gave it
 
 namespace overfly {
 

@@ -17,7 +17,7 @@ namespace {
 constexpr const char* kAddress = "239.255.76.67";
 constexpr int kPort = 7667;
 /// Two debug images of 1280 x 960 RGB and their bookkeeping.
-constexpr std::int64_t kWantedReceiveBuffer_bytes = std::int64_t{8} << 20U;
+constexpr std::int64_t kWantedReceiveBufferBytes = std::int64_t{8} << 20U;
 
 const std::map<std::string, std::set<std::string>> kOptionsOfProvider = {
     {"udpm", {"recv_buf_size", "ttl"}},
@@ -137,7 +137,7 @@ LcmUrl with_receive_buffer(LcmUrl url) {
   if (url.provider != "udpm") return url;
   // LCM warns on the standard error stream where the kernel gives less than was asked for.
   const std::int64_t size = std::clamp(
-      largest_receive_buffer_bytes(), kSmallestReceiveBuffer_bytes, kWantedReceiveBuffer_bytes);
+      largest_receive_buffer_bytes(), kSmallestReceiveBufferBytes, kWantedReceiveBufferBytes);
   url.options.emplace("recv_buf_size", std::to_string(size));
   return url;
 }

@@ -11,7 +11,7 @@ namespace overfly {
 
 /// What to ask the kernel for at least: an image of 1280 x 960 is 1.2 MB in 830 packets, and of
 /// those the customary 208 KiB lose most.
-inline constexpr std::int64_t kSmallestReceiveBuffer_bytes = std::int64_t{2} << 20U;
+inline constexpr std::int64_t kSmallestReceiveBufferBytes = std::int64_t{2} << 20U;
 
 /// "PROVIDER://NETWORK?NAME=VALUE&..."
 struct LcmUrl {

@@ -14,7 +14,7 @@
 namespace overfly {
 namespace {
 
-constexpr int kPatience_ms = 500;
+constexpr int kPatienceMs = 500;
 
 class Socket {
  public:
@@ -76,7 +76,7 @@ Status probe_multicast(const std::string& address) {
     return failure(address, last_failure());
   }
   pollfd waiting{socket.fd(), POLLIN, 0};
-  if (poll(&waiting, 1, kPatience_ms) != 1) {
+  if (poll(&waiting, 1, kPatienceMs) != 1) {
     return failure(address, "a packet that was sent did not come back");
   }
   return {};

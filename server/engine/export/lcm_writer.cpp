@@ -9,7 +9,7 @@
 namespace overfly::engine {
 namespace {
 
-constexpr std::int64_t kCalibrationPeriod_ns = 1'000'000'000;
+constexpr std::int64_t kCalibrationPeriodNs = 1'000'000'000;
 
 class LcmWriter final : public DatasetWriter {
  public:
@@ -24,7 +24,7 @@ class LcmWriter final : public DatasetWriter {
   Result<std::vector<std::string>> add(const MadeFrame& frame) override {
     if (!next_calibration_ns_ || frame.t_ns >= *next_calibration_ns_) {
       if (Status status = calibrate(frame); !status) return status.error();
-      next_calibration_ns_ = frame.t_ns + kCalibrationPeriod_ns;
+      next_calibration_ns_ = frame.t_ns + kCalibrationPeriodNs;
     }
     std::vector<std::string> names(frame.shots.size());
     for (std::size_t i = 0; i < frame.shots.size(); ++i) {

@@ -35,7 +35,7 @@ TEST(LcmFindings, SayWhatThisMachineOffers) {
   const LcmFindings found = lcm_findings();
   EXPECT_EQ(found.usable,
             testing::multicast_missing().empty() &&
-                largest_receive_buffer_bytes() >= kSmallestReceiveBuffer_bytes);
+                largest_receive_buffer_bytes() >= kSmallestReceiveBufferBytes);
   EXPECT_THAT(found.finding, HasSubstr("LCM 1."));
 }
 

@@ -19,9 +19,9 @@ TEST(LcmLogWriter, WritesEventsThatLcmReadsBack) {
   const testing::TemporaryFolder folder;
   const auto file = folder.path() / "a.lcm";
   const Image image(4, 2, 1, 9);
-  constexpr std::int64_t kEpoch_ns = 1'700'000'000'000'000'000;
+  constexpr std::int64_t kEpochNs = 1'700'000'000'000'000'000;
   {
-    const auto writer = LcmLogWriter::create(file, kEpoch_ns).value();
+    const auto writer = LcmLogWriter::create(file, kEpochNs).value();
     ASSERT_TRUE(writer->write_calibration("C_", "belly", {}, 1'000).ok());
     ASSERT_TRUE(writer->write_image("C_", {3, 97'000'000, 5'000, image}).ok());
     ASSERT_TRUE(

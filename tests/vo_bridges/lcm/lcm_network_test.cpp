@@ -33,8 +33,8 @@ class LcmUdp : public ::testing::Test {
   LcmEstimatorOptions options_;
 };
 
-#define OVERFLY_RECEIVE_BUFFER_OR_SKIP()                             \
-  if (largest_receive_buffer_bytes() < kSmallestReceiveBuffer_bytes) \
+#define OVERFLY_RECEIVE_BUFFER_OR_SKIP()                            \
+  if (largest_receive_buffer_bytes() < kSmallestReceiveBufferBytes) \
   GTEST_SKIP() << "net.core.rmem_max = " << largest_receive_buffer_bytes() << " is below 2 MiB"
 
 TEST_F(LcmUdp, CarriesImagesOfFullSizeByteForByteInLockstep) {
