@@ -1,9 +1,8 @@
 // An example: a camera that looks straight down on flat ground. Shifts both halves of each frame
-// over the one before until they fit (Lucas, Kanade 1981); together they tell way, turn and climb.
+// over the one before until they fit (Baker, Matthews 2004); together they tell way, turn, climb.
 // Unit: the height at the start. Takes bank and relief for motion: to start from, not to compete.
 #include <Eigen/Dense>
 #include <complex>
-
 #include "vo_bridges/client/overfly_vo.hpp"
 
 using namespace overfly_vo;
@@ -18,16 +17,18 @@ struct NadirOdometry final : Estimator {
   /// Where the part of `now` from column x0 on lies in before; not a number where it fits nowhere.
   Complex shift_of(const Image& now, long x0, Complex shift) const {
     const long rim = now.rows() / 6, rows = now.rows() - 2 * rim, cols = now.cols() / 2 - 2 * rim;
+    const auto part = [=](const Image& of, double x, double y) -> Image {  // bilinear
+      const double s = x - std::floor(x), t = y - std::floor(y);
+      const auto at = of.block(rim + long(y - t), x0 + rim + long(x - s), rows + 1, cols + 1);
+      const Image across = at.leftCols(cols) * (1 - s) + at.rightCols(cols) * s;
+      return across.topRows(rows) * (1 - t) + across.bottomRows(rows) * t;
+    };
+    Eigen::MatrixX2d J(rows * cols, 2);  // how the brightness changes with the shift
+    J.col(0) = (part(now, 0.5, 0) - part(now, -0.5, 0)).reshaped();
+    J.col(1) = (part(now, 0, 0.5) - part(now, 0, -0.5)).reshaped();
     for (int round = 0; round < 30 && std::abs(shift) < double(rim - 1); ++round) {
-      const double x = std::floor(shift.real()), s = shift.real() - x;
-      const double y = std::floor(shift.imag()), t = shift.imag() - y;
-      const Image at = before.block(rim + long(y), x0 + rim + long(x), rows + 1, cols + 1);
-      const Image flat = at.leftCols(cols) * (1 - s) + at.rightCols(cols) * s;
-      Eigen::MatrixX2d J(rows * cols, 2);  // how the brightness changes with the shift
-      J.col(0) = (at.rightCols(cols) - at.leftCols(cols)).topRows(rows).reshaped();
-      J.col(1) = (flat.bottomRows(rows) - flat.topRows(rows)).reshaped();
-      const Image error = flat.topRows(rows) - now.block(rim, x0 + rim, rows, cols);
-      const Eigen::Vector2d step = J.householderQr().solve(error.reshaped() + t * J.col(1));
+      const Image error = part(before, shift.real(), shift.imag()) - part(now, 0, 0);
+      const Eigen::Vector2d step = J.householderQr().solve(error.reshaped());
       shift -= Complex(step.x(), step.y());
       if (step.norm() < 1e-3) return shift;
     }
@@ -55,5 +56,4 @@ struct NadirOdometry final : Estimator {
     return answer;
   }
 };
-
 int main() { return run(NadirOdometry()); }

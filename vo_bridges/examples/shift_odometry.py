@@ -15,15 +15,15 @@ import overfly_vo  # noqa: E402
 def shift_of(now, before, shift):
     """Where in `before` the middle of `now` lies [px], searched from `shift` on (Gauss-Newton)."""
     rim = len(now) // 4
+    slopes = [(now[i + 1] - now[i - 1]) / 2 for i in range(rim, len(now) - rim)]
+    rise = sum(slope * slope for slope in slopes)
     for _ in range(30):
         whole = math.floor(shift) if math.isfinite(shift) else rim
         if not -rim <= whole < rim:
             break
-        rise = error = 0.0
-        for i in range(rim, len(now) - rim):
-            slope = before[i + whole + 1] - before[i + whole]
-            rise += slope * slope
-            error += slope * (before[i + whole] + (shift - whole) * slope - now[i])
+        error = sum(slope * ((1 + whole - shift) * before[i + whole]
+                             + (shift - whole) * before[i + whole + 1] - now[i])
+                    for i, slope in enumerate(slopes, rim))
         step = error / rise if rise > 0.0 else math.inf
         shift -= step
         if abs(step) < 1e-3:

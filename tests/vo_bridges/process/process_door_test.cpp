@@ -197,8 +197,10 @@ TEST(ProcessDoor, TellsWhatTheChildUses) {
   EXPECT_GT(after.cpu_s, before.cpu_s + 0.05);
   EXPECT_LT(after.cpu_s, 5.0);
   EXPECT_GT(after.peak_memory_mb, 120.0);
+#if !defined(__SANITIZE_ADDRESS__)  // which needs memory of its own
   EXPECT_LT(after.peak_memory_mb, 160.0);
   EXPECT_LT(before.peak_memory_mb, 40.0) << "the fork's own memory does not count";
+#endif
 }
 
 TEST(ProcessDoor, BindsTheChildToItsCpus) {
