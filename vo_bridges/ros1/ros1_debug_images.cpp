@@ -9,7 +9,7 @@ namespace overfly::ros1 {
 namespace {
 
 /// An image that is drawn after the pose was published takes that long at most, on a busy machine.
-constexpr std::chrono::milliseconds kPatience{250};
+constexpr std::chrono::milliseconds kPatience{1000};
 
 }  // namespace
 

@@ -68,6 +68,10 @@ void Session::await_readiness(const VoFrame& frame) {
   const auto end = Clock::now() + seconds(options_.start_timeout_s);
   (void)wait_until(
       end, [&] { return topics_->somebody_sees_images() && topics_->somebody_tells_poses(); });
+  // What is not needed to fly is connected a moment later, where there is any of it.
+  (void)wait_until(Clock::now() + 500ms, [&] {
+    return topics_->somebody_sees_calibration() && topics_->somebody_draws_debug_images();
+  });
   if (!topics_->somebody_tells_poses()) {
     log_->add("nobody publishes poses on " +
               (options_.pose_type == Ros1PoseType::kTf ? "/tf" : options_.pose_topic) + " yet");

@@ -50,6 +50,10 @@ class Topics {
   [[nodiscard]] bool somebody_sees_images() const { return images_.getNumSubscribers() > 0; }
   [[nodiscard]] bool somebody_sees_calibration() const { return infos_.getNumSubscribers() > 0; }
   [[nodiscard]] bool somebody_tells_poses() const { return poses_.getNumPublishers() > 0; }
+  /// True also where no debug image is asked for.
+  [[nodiscard]] bool somebody_draws_debug_images() const {
+    return !debug_images_ || debug_images_.getNumPublishers() > 0;
+  }
   /// As the master shall know them.
   [[nodiscard]] std::vector<TopicRegistration> registrations() const;
 

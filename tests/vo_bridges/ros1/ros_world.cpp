@@ -82,6 +82,14 @@ bool wait_for(const std::function<bool()>& done, double most_s) {
   return true;
 }
 
+bool logs(VoPort& port, const std::string& text) {
+  std::string all;
+  return wait_for([&] {
+    for (const std::string& line : port.take_log()) all += line + "\n";
+    return all.find(text) != std::string::npos;
+  });
+}
+
 RosMaster::RosMaster() : port_(free_port()), uri_("http://127.0.0.1:" + std::to_string(port_)) {
   setenv("ROS_IP", "127.0.0.1", 1);
   setenv("ROS_LOG_DIR", folder_.path().c_str(), 1);

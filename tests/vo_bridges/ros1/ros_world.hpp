@@ -73,6 +73,9 @@ class TestNode {
 /// Waits until `done`, at most that long. @return whether it is
 [[nodiscard]] bool wait_for(const std::function<bool()>& done, double most_s = 20.0);
 
+/// Waits for the log of an estimator to hold a text.
+[[nodiscard]] bool logs(VoPort& port, const std::string& text);
+
 }  // namespace overfly::testing
 
 /// Starts the master, or skips the test with the reason.
