@@ -1,9 +1,9 @@
 #include "server/engine/dataset/map_cloud.hpp"
 
 #include <bit>
+#include <charconv>
 #include <cmath>
 
-#include "server/engine/export/export_text.hpp"
 #include "server/engine/whole_file.hpp"
 
 namespace overfly::engine {
@@ -22,6 +22,17 @@ std::array<std::int64_t, 3> cell_of(const Eigen::Vector3f& p, double cell) {
                                            : std::bit_cast<std::int32_t>(p[i]);
   }
   return key;
+}
+
+/// The shortest decimals that read back as the same floats.
+std::string point_line(const Eigen::Vector3f& p) {
+  std::array<char, 64> text{};
+  char* at = text.data();
+  for (int i = 0; i < 3; ++i) {
+    at = std::to_chars(at, text.data() + text.size(), p[i]).ptr;
+    *at++ = i < 2 ? ' ' : '\n';
+  }
+  return {text.data(), at};
 }
 
 }  // namespace
@@ -51,7 +62,7 @@ Status write_ply(const std::filesystem::path& file,
                      std::to_string(points.size()) +
                      "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
   for (const Eigen::Vector3f& p : points) {
-    text += number_list({p.x(), p.y(), p.z()}, " ") + "\n";
+    text += point_line(p);
   }
   return write_whole(file, text);
 }
