@@ -1,6 +1,7 @@
 // sensor.yaml of the ASL layout: `key: value` and `key: [list]` lines, lists over several lines.
 // Only that much of YAML: the files of the format have no more.
 #include <Eigen/LU>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <map>
@@ -121,6 +122,9 @@ Result<Distortion> distortion_of(const SensorFile& file) {
   const std::size_t least = lens.model == DistortionModel::kRadtan ? 4 : most;
   const auto k = file.numbers("distortion_coefficients", least, most);
   if (!k) return k.error();
+  // A pinhole, which the format has no name for.
+  const bool all_zero = std::all_of(k->begin(), k->end(), [](double c) { return c == 0.0; });
+  if (lens.model == DistortionModel::kRadtan && all_zero) return Distortion{};
   std::copy(k->begin(), k->end(), lens.k.begin());
   return lens;
 }

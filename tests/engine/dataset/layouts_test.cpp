@@ -81,6 +81,15 @@ TEST(EurocLayout, IsReadWithItsCalibrationFromAnyOfItsFolders) {
   }
 }
 
+TEST(EurocLayout, TakesAZeroRadialLensForAPinhole) {
+  const TemporaryFolder folder;
+  testing::write_euroc(folder.path());
+  change(folder.path() / "mav0/cam0/sensor.yaml",
+         "-0.28340811, 0.07395907, 0.00019359, 1.76187114e-05",
+         "0, 0, 0, 0");
+  EXPECT_TRUE(opened(options_of(folder.path())).camera.distortion().none());
+}
+
 TEST(EurocLayout, SaysWhatIsBroken) {
   const std::string list = "mav0/cam0/data.csv";
   const std::string sensor = "mav0/cam0/sensor.yaml";
