@@ -128,7 +128,7 @@ class OrbSlam2System : public UpstreamSystem {
       double position = 0.0;
       for (int column = 0; column < 3; ++column) {
         const double value = T_camera_vo.at<float>(column, row);
-        R_vo_camera[static_cast<std::size_t>(3 * row + column)] = value;
+        R_vo_camera[3 * static_cast<std::size_t>(row) + static_cast<std::size_t>(column)] = value;
         position -= value * static_cast<double>(T_camera_vo.at<float>(column, 3));
       }
       answer->position_vo[static_cast<std::size_t>(row)] = position;
