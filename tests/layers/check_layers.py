@@ -22,7 +22,7 @@ MAY_INCLUDE = {
     "terrain": ["core/"],
     "renderer": ["core/", "terrain/tile_source.hpp"],
     "flight": ["core/"],
-    "odometry": ["core/", "vo_bridges/vo_port.hpp"],
+    "odometry": ["core/", "vo_bridges/vo_port.hpp", "vo_bridges/parameter.hpp"],
     "vo_bridges": ["core/"],
     "evaluation": ["core/"],
     "server/engine": ["core/", "terrain/", "renderer/", "flight/", "odometry/", "vo_bridges/",
