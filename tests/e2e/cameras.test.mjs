@@ -4,9 +4,9 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import path from 'node:path';
 import { after, before, describe } from 'node:test';
-import { browserMissing, openBrowser } from './support/browser.mjs';
-import { Dashboard } from './support/dashboard.mjs';
-import { makeRunsFolder, serverMissing, startServer } from './support/server.mjs';
+import { browserMissing } from './support/browser.mjs';
+import { serverMissing } from './support/server.mjs';
+import { openStage } from './support/stage.mjs';
 import { makeStep } from './support/steps.mjs';
 
 const kFlight_s = 5;
@@ -21,25 +21,16 @@ const step = makeStep(() => dashboard);
 const skip = serverMissing() || browserMissing();
 
 describe('a flight with two cameras and faults', { skip, timeout: 600_000 }, () => {
-  let runs;
-  let server;
-  let browser;
+  let stage;
   let run;
 
   before(async () => {
-    runs = makeRunsFolder();
-    server = await startServer({ runs: runs.folder });
-    browser = await openBrowser({ width: 1280, height: 800 });
-    dashboard = new Dashboard(browser.page);
-    await dashboard.open(server.url);
+    stage = await openStage({ width: 1280, height: 800 });
+    dashboard = stage.dashboard;
     await dashboard.chooseScenario('camera_faults');
   });
 
-  after(async () => {
-    await browser?.close();
-    await server?.stop();
-    runs?.remove();
-  });
+  after(() => stage?.close());
 
   async function typeFaults(text) {
     await dashboard.page.locator('[data-role=edit-json]').click();
@@ -62,7 +53,7 @@ describe('a flight with two cameras and faults', { skip, timeout: 600_000 }, () 
     await dashboard.field('duration_s').fill(String(kFlight_s));
     run = await dashboard.launch();
     await dashboard.untilStatus(run, 'completed', kFlightPatience_ms);
-    const file = path.join(runs.folder, run, 'scenario.json');
+    const file = path.join(stage.runs.folder, run, 'scenario.json');
     const { faults } = JSON.parse(readFileSync(file, 'utf8'));
     assert.deepEqual(
       faults.map(({ kind }) => kind),

@@ -2,9 +2,9 @@
 // the error, come back.
 import assert from 'node:assert/strict';
 import { after, before, describe } from 'node:test';
-import { browserMissing, openBrowser } from './support/browser.mjs';
-import { Dashboard } from './support/dashboard.mjs';
-import { getJson, makeRunsFolder, serverMissing, startServer } from './support/server.mjs';
+import { browserMissing } from './support/browser.mjs';
+import { getJson, serverMissing, startServer } from './support/server.mjs';
+import { openStage } from './support/stage.mjs';
 import { makeStep } from './support/steps.mjs';
 
 const kFlight_s = 20;
@@ -23,24 +23,15 @@ const step = makeStep(() => dashboard);
 const skip = serverMissing() || browserMissing();
 
 describe('the dashboard', { skip, timeout: 900_000 }, () => {
-  let runs;
-  let server;
-  let browser;
+  let stage;
   let run;
 
   before(async () => {
-    runs = makeRunsFolder();
-    server = await startServer({ runs: runs.folder });
-    browser = await openBrowser(kSizes[0]);
-    dashboard = new Dashboard(browser.page);
-    await dashboard.open(server.url);
+    stage = await openStage(kSizes[0]);
+    dashboard = stage.dashboard;
   });
 
-  after(async () => {
-    await browser?.close();
-    await server?.stop();
-    runs?.remove();
-  });
+  after(() => stage?.close());
 
   step('says what to do when there are no runs', async () => {
     await dashboard.until(() =>
@@ -56,7 +47,7 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
     const fault = dashboard.page.locator('[data-fault="flight.course.airspeed_m_s"]');
     await fault.waitFor({ state: 'visible' });
     assert.match(await fault.innerText(), /must be/);
-    assert.equal((await getJson(server.url, '/runs')).runs.length, 0);
+    assert.equal((await getJson(stage.server.url, '/runs')).runs.length, 0);
     await dashboard.field('flight.course.airspeed_m_s').fill('25');
   });
 
@@ -76,7 +67,7 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
   step('finishes the flight and tells its outcome', async () => {
     await dashboard.untilStatus(run, 'completed', kFlightPatience_ms);
     await dashboard.until(() => document.querySelector('.errors .good, .errors .bad') !== null);
-    const { frames } = await getJson(server.url, `/runs/${run}`);
+    const { frames } = await getJson(stage.server.url, `/runs/${run}`);
     assert.ok(Math.abs(frames - kFlight_s * kRate_hz) <= 1, `${frames} frames`);
   });
 
@@ -105,7 +96,7 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
     const { frame } = await dashboard.playback();
     const shown = await dashboard.page.locator('.plot[data-axis=y_m] .readout').allInnerTexts();
     for (const [i, name] of ['truth', 'feature'].entries()) {
-      const columns = await getJson(server.url, `/runs/${run}/trajectories/${name}?format=json`);
+      const columns = await getJson(stage.server.url, `/runs/${run}/trajectories/${name}?format=json`);
       const y_m = columns.y_m[columns.frame.indexOf(frame)];
       assert.equal(shown[i].replace('−', '-'), y_m.toFixed(1), name);
     }
@@ -178,7 +169,7 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
   });
 
   step('shows the figures of metrics.json for every alignment', async () => {
-    const metrics = await getJson(server.url, `/runs/${run}/metrics`);
+    const metrics = await getJson(stage.server.url, `/runs/${run}/metrics`);
     const { alignments, coverage, dropped_frames, outcome } = metrics.estimators.feature;
     const modes = Object.keys(alignments);
     assert.ok(modes.includes('init_scale'));
@@ -265,11 +256,11 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
 
   step('comes back by itself after the server was away', async () => {
     const { frame } = await dashboard.playback();
-    await server.stop();
+    await stage.server.stop();
     await dashboard.until(
       () => document.querySelector('[data-role=connection]').dataset.status === 'waiting',
     );
-    server = await startServer({ runs: runs.folder, port: server.port });
+    stage.server = await startServer({ runs: stage.runs.folder, port: stage.server.port });
     await dashboard.until(
       () => document.querySelector('[data-role=connection]').dataset.status === 'open',
     );
@@ -298,7 +289,7 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
       (id) => document.querySelector(`.run[data-run="${id}"]`) === null,
       second,
     );
-    const left = (await getJson(server.url, '/runs')).runs.map(({ id }) => id);
+    const left = (await getJson(stage.server.url, '/runs')).runs.map(({ id }) => id);
     assert.deepEqual(left, [run]);
   });
 

@@ -4,15 +4,9 @@ import assert from 'node:assert/strict';
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { after, before, describe } from 'node:test';
-import { browserMissing, openBrowser } from './support/browser.mjs';
-import { Dashboard } from './support/dashboard.mjs';
-import {
-  getJson,
-  makeRunsFolder,
-  serverMissing,
-  sourceFile,
-  startServer,
-} from './support/server.mjs';
+import { browserMissing } from './support/browser.mjs';
+import { getJson, serverMissing, sourceFile } from './support/server.mjs';
+import { openStage } from './support/stage.mjs';
 import { makeStep } from './support/steps.mjs';
 
 const kFlightPatience_ms = 300_000;
@@ -26,42 +20,37 @@ const kEstimators = [
   { name: 'absent', type: 'process', command: ['./not/there'] },
 ];
 
+function writeScenario(folder) {
+  const scenarios = path.join(folder, 'scenarios');
+  mkdirSync(scenarios);
+  const course = JSON.parse(readFileSync(sourceFile('scenarios/course.json'), 'utf8'));
+  const doors = {
+    ...course,
+    name: 'doors',
+    duration_s: 8,
+    camera: { width_px: 320, height_px: 240, rate_hz: 10 },
+    pacing: 'real_time',
+    estimators: kEstimators,
+  };
+  writeFileSync(path.join(scenarios, 'doors.json'), JSON.stringify(doors));
+  return { runs: path.join(folder, 'runs'), scenarios };
+}
+
 let dashboard;
 const step = makeStep(() => dashboard);
 const skip = serverMissing() || browserMissing();
 
 describe('a flight with estimators behind doors', { skip, timeout: 600_000 }, () => {
-  let runs;
-  let server;
-  let browser;
+  let stage;
   let run;
 
   before(async () => {
-    runs = makeRunsFolder();
-    const scenarios = path.join(runs.folder, 'scenarios');
-    mkdirSync(scenarios);
-    const course = JSON.parse(readFileSync(sourceFile('scenarios/course.json'), 'utf8'));
-    const doors = {
-      ...course,
-      name: 'doors',
-      duration_s: 8,
-      camera: { width_px: 320, height_px: 240, rate_hz: 10 },
-      pacing: 'real_time',
-      estimators: kEstimators,
-    };
-    writeFileSync(path.join(scenarios, 'doors.json'), JSON.stringify(doors));
-    server = await startServer({ runs: path.join(runs.folder, 'runs'), scenarios });
-    browser = await openBrowser({ width: 1280, height: 800 });
-    dashboard = new Dashboard(browser.page);
-    await dashboard.open(server.url);
+    stage = await openStage({ width: 1280, height: 800 }, writeScenario);
+    dashboard = stage.dashboard;
     await dashboard.chooseScenario('doors');
   });
 
-  after(async () => {
-    await browser?.close();
-    await server?.stop();
-    runs?.remove();
-  });
+  after(() => stage?.close());
 
   const cell = (name, column) =>
     dashboard.page
@@ -94,14 +83,14 @@ describe('a flight with estimators behind doors', { skip, timeout: 600_000 }, ()
     assert.match(await cell('shift', 'latency'), /^[\d.]+ \/ [\d.]+$/);
     assert.ok(Number(await cell('shift', 'memory')) > 1);
     assert.equal(await cell('feature', 'memory'), '–');
-    const { estimators } = await getJson(server.url, `/runs/${run}/estimators`);
+    const { estimators } = await getJson(stage.server.url, `/runs/${run}/estimators`);
     assert.equal(estimators.absent.state, 'CRASHED');
     assert.equal(estimators.shift.resources.measured, 'process');
     await dashboard.screenshot('estimators_1280x800');
   });
 
   step('refuses a command that no scenario file has', async () => {
-    const answer = await fetch(`${server.url}/api/v1/runs`, {
+    const answer = await fetch(`${stage.server.url}/api/v1/runs`, {
       method: 'POST',
       headers: { 'content-type': 'application/json' },
       body: JSON.stringify({
