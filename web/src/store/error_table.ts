@@ -70,9 +70,15 @@ const kFigures: readonly Figure[] = [
   },
 ];
 
-export function errorTable(metrics: Metrics, mode: string): ErrorTable {
-  const names = Object.keys(metrics.estimators ?? {});
-  const estimators = Object.values(metrics.estimators ?? {});
+export function errorTable(
+  metrics: Metrics,
+  mode: string,
+  order: readonly string[] = [],
+): ErrorTable {
+  const scored = Object.entries(metrics.estimators ?? {});
+  scored.sort(([a], [b]) => order.indexOf(a) - order.indexOf(b));
+  const names = scored.map(([name]) => name);
+  const estimators = scored.map(([, estimator]) => estimator);
   const errors = estimators.map(({ alignments }) => alignments?.[mode] ?? {});
   return {
     estimators: estimators.map((estimator, i) => ({

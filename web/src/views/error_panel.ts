@@ -71,7 +71,9 @@ export class ErrorPanel implements View {
         ? metrics
         : { estimators: Object.fromEntries(names.map((name) => [name, { outcome: '' }])) },
       state.alignment,
+      names,
     );
+    this.table.classList.toggle('many', names.length > 2);
     const texture = textureOf(state);
     rebuild(this.table, JSON.stringify([table, names, texture]), () => [
       h('thead', {}, headRow(table, names)),

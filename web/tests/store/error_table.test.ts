@@ -33,6 +33,13 @@ const metrics: Metrics = {
 };
 
 describe('errorTable', () => {
+  it('keeps the order in which the flight names its estimators', () => {
+    const table = errorTable(metrics, 'init_scale', ['none', 'feature']);
+    expect(table.estimators.map(({ name }) => name)).toEqual(['none', 'feature']);
+    const coverage = table.rows.find(({ key }) => key === 'coverage');
+    expect(coverage?.cells).toEqual(['0.0 %', '50.0 %']);
+  });
+
   it('shows the figures of the chosen alignment beside outcome and coverage', () => {
     const table = errorTable(metrics, 'init_scale');
     expect(table.estimators).toEqual([
