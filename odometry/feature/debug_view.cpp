@@ -1,5 +1,6 @@
 #include "odometry/feature/debug_view.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -8,6 +9,8 @@
 namespace overfly::odometry {
 namespace {
 
+constexpr int kLeastWidthPx = 480;  ///< of the view, where the image has as many
+constexpr double kFontScale = 0.45;
 const cv::Scalar kGreen(60, 230, 90);
 const cv::Scalar kRed(240, 70, 60);
 const cv::Scalar kYellow(250, 210, 60);
@@ -84,13 +87,18 @@ std::string text_of(const DebugContent& content) {
   return line;
 }
 
+/// As large as fits across, up to kFontScale.
 void draw_text(cv::Mat& canvas, const DebugContent& content) {
+  const std::string text = text_of(content);
+  const int width_px =
+      cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, kFontScale, 1, nullptr).width;
+  const double font_scale = kFontScale * std::min(1.0, (canvas.cols - 16.0) / width_px);
   cv::rectangle(canvas, cv::Rect(0, canvas.rows - 22, canvas.cols, 22), kBlack, cv::FILLED);
   cv::putText(canvas,
-              text_of(content),
+              text,
               cv::Point(8, canvas.rows - 7),
               cv::FONT_HERSHEY_SIMPLEX,
-              0.45,
+              font_scale,
               content.state == TrackingState::kLost ? kRed : kWhite,
               1,
               cv::LINE_AA);
@@ -99,7 +107,8 @@ void draw_text(cv::Mat& canvas, const DebugContent& content) {
 }  // namespace
 
 Image draw_debug_view(const Pyramid& pyramid, const DebugContent& content) {
-  const int level = pyramid.level_count() > 1 ? 1 : 0;
+  const bool halved = pyramid.level_count() > 1 && pyramid.level(0).cols >= 2 * kLeastWidthPx;
+  const int level = halved ? 1 : 0;
   const cv::Mat& grey = pyramid.level(level);
   Image image(grey.cols, grey.rows, 3);
   cv::Mat canvas(grey.rows, grey.cols, CV_8UC3, image.data.data());
