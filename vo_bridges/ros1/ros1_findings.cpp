@@ -10,7 +10,7 @@ namespace overfly {
 namespace {
 
 std::string variable(const char* name) {
-  const char* value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): nobody sets it
+  const char* value = std::getenv(name);
   return value != nullptr ? value : "";
 }
 

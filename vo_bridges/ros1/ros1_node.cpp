@@ -62,11 +62,10 @@ Status check_name_is_free(const XmlRpcAddress& master, const std::string& name) 
 
 /// Without this roscpp listens on every interface.
 void stay_on_loopback() {
-  // NOLINTBEGIN(concurrency-mt-unsafe): roscpp reads it from here alone, in its own threads
+  // roscpp reads it from here alone, in its own threads.
   if (std::getenv("ROS_IP") == nullptr && std::getenv("ROS_HOSTNAME") == nullptr) {
     setenv("ROS_IP", "127.0.0.1", 0);
   }
-  // NOLINTEND(concurrency-mt-unsafe)
 }
 
 }  // namespace
