@@ -108,6 +108,9 @@ Status FlightRun::fly_lockstep() {
 }
 
 Status FlightRun::fly_real_time() {
+  Status fetched = stages_.measure("fetch_first_view", [&] { return maker_->fetch_first_view(); });
+  if (!fetched) return fetched;
+  loop_begin_ns_ = clock_.now_ns();
   clock_.enter();
   const std::int64_t start_ns = clock_.now_ns();
   Status status;

@@ -149,18 +149,31 @@ Result<Trajectory> FrameMaker::rehearse(std::size_t camera) const {
   return Trajectory::from_poses(poses);
 }
 
-Result<std::optional<double>> FrameMaker::depth_at_start(std::size_t camera) {
+Result<renderer::CameraFrame> FrameMaker::draw_at_start(std::size_t camera) {
+  // A flight of its own here as well.
   const Result<std::unique_ptr<TruthSource>> truth = create_truth(scenario_, *world_);
   if (!truth) return truth.error();
   const Result<AircraftState> first = (*truth)->state_at(0);
   if (!first) return first.error();
-  const Result<renderer::CameraFrame> frame =
-      renderer_->render_camera(scenario_.cameras[camera].model,
-                               cameras_[camera]->T_world_camera(first->T_world_body, 0),
-                               0,
-                               renderer::PixelFormat::kGrey8);
+  return renderer_->render_camera(scenario_.cameras[camera].model,
+                                  cameras_[camera]->T_world_camera(first->T_world_body, 0),
+                                  0,
+                                  renderer::PixelFormat::kGrey8);
+}
+
+Result<std::optional<double>> FrameMaker::depth_at_start(std::size_t camera) {
+  const Result<renderer::CameraFrame> frame = draw_at_start(camera);
   if (!frame) return frame.error();
   return frame->axis_depth_m;
+}
+
+Status FrameMaker::fetch_first_view() {
+  if (!duration_ns_) return {};
+  for (std::size_t camera = 0; camera < cameras_.size(); ++camera) {
+    const Result<renderer::CameraFrame> frame = draw_at_start(camera);
+    if (!frame) return frame.error().in("camera " + scenario_.cameras[camera].name);
+  }
+  return {};
 }
 
 }  // namespace overfly::engine

@@ -62,6 +62,10 @@ class FrameMaker {
   [[nodiscard]] Result<Trajectory> rehearse(std::size_t camera) const;
   /// Depth of the ground along a camera's axis at t = 0 [m]; empty when it meets the sky.
   [[nodiscard]] Result<std::optional<double>> depth_at_start(std::size_t camera);
+  /// Draws the first frame once and waits for its ground, so that a flight in real time does not
+  /// begin over tiles that are still being read. Nothing for a flight whose end is not known: its
+  /// first pose is not either.
+  Status fetch_first_view();
 
  private:
   FrameMaker(const Scenario& scenario, const FrameMakerOptions& options);
@@ -69,6 +73,7 @@ class FrameMaker {
   Status plan_flight();
   Status open_renderer();
   Status open_cameras();
+  [[nodiscard]] Result<renderer::CameraFrame> draw_at_start(std::size_t camera);
   [[nodiscard]] Result<CameraShot> take(std::size_t camera,
                                         std::int64_t k,
                                         const std::vector<AircraftState>& states);
