@@ -124,7 +124,7 @@ void fill_map(const PinholeCamera& camera,
   }
   for (auto& [id, keyframe] : map.keyframes()) fit_plane(camera, map, keyframe);
   for (auto& [id, point] : map.points()) {
-    set_tangents(camera, map.keyframe(point.source_keyframe), point);
+    set_normal(camera, map.keyframe(point.source_keyframe), point);
   }
 }
 

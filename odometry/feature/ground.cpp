@@ -21,22 +21,13 @@ double median_of(std::vector<double>& values) {
 
 }  // namespace
 
-void set_tangents(const PinholeCamera& camera, const Keyframe& source, MapPoint& point) {
-  // On the plane n.X = d the point at ray r is X = d r / (n.r), so that
-  // dX/dr_x = d / (n.r) (e_x - r n_x / (n.r)), and likewise for y.
+void set_normal(const PinholeCamera& camera, const Keyframe& source, MapPoint& point) {
   const Eigen::Vector3d ray = camera.ray(point.source_pixel);
-  const Eigen::Vector3d p_camera = source.T_camera_vo * point.position_vo;
   const Eigen::Vector3d& n = source.plane.coefficients;
   // A plane seen edge-on tells nothing: take one that faces the camera instead.
   const bool grazing = n.dot(ray) < 0.15 * n.norm() * ray.norm();
-  const Eigen::Vector3d normal = grazing ? Eigen::Vector3d(0.0, 0.0, 1.0) : n;
-  const double along = normal.dot(ray);
-  Matrix32d tangents_camera;
-  tangents_camera.col(0) =
-      p_camera.z() * (Eigen::Vector3d::UnitX() - ray * (normal.x() / along)) / camera.fx_px;
-  tangents_camera.col(1) =
-      p_camera.z() * (Eigen::Vector3d::UnitY() - ray * (normal.y() / along)) / camera.fy_px;
-  point.tangents_vo = source.T_camera_vo.rotation.inverse().toRotationMatrix() * tangents_camera;
+  const Eigen::Vector3d normal = grazing ? Eigen::Vector3d::UnitZ() : n.normalized();
+  point.normal_vo = source.T_camera_vo.rotation.inverse() * normal;
 }
 
 void fit_plane(const PinholeCamera& camera, const Map& map, Keyframe& keyframe) {

@@ -59,13 +59,16 @@ bool Initialiser::follow_coarsely(const FrameImage& frame, Eigen::Matrix3d& H) c
   const std::size_t stride = std::max<std::size_t>(1, tracks_.size() / kCoarseTracks);
   const int coarsest = frame.pyramid.level_count() - 1;
   for (int level = coarsest; level >= 1; --level) {
+    const Eigen::Matrix3d H_first_now = H.inverse();
     std::vector<Eigen::Vector2d> from;
     std::vector<Eigen::Vector2d> to;
     for (std::size_t i = 0; i < tracks_.size(); i += stride) {
       const Eigen::Vector2d& pixel = tracks_[i].corner.pixel;
-      const auto patch = make_template(first_->pyramid, pixel, transfer_jacobian(H, pixel), level);
+      const Eigen::Vector2d start = transfer(H, pixel);
+      const auto patch =
+          make_template(first_->pyramid, pixel, warp_around(H_first_now, start), level);
       if (!patch) continue;
-      const auto match = align_patch(frame.pyramid, *patch, transfer(H, pixel) + tracks_[i].offset);
+      const auto match = align_patch(frame.pyramid, *patch, start + tracks_[i].offset);
       if (!match || match->correlation < kMinCorrelation) continue;
       from.push_back(pixel);
       to.push_back(match->pixel - tracks_[i].offset);
@@ -84,18 +87,18 @@ bool Initialiser::follow_coarsely(const FrameImage& frame, Eigen::Matrix3d& H) c
 bool Initialiser::follow(const FrameImage& frame) {
   Eigen::Matrix3d H = H_step_ * H_now_first_;
   if (!follow_coarsely(frame, H)) return false;
+  const Eigen::Matrix3d H_first_now = H.inverse();
   std::vector<Track> alive;
   std::vector<std::size_t> origin;
   std::vector<Eigen::Vector2d> from;
   std::vector<Eigen::Vector2d> to;
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     Track track = tracks_[i];
-    const auto patch = make_template(first_->pyramid,
-                                     track.corner.pixel,
-                                     transfer_jacobian(H, track.corner.pixel),
-                                     track.patch_level);
+    const Eigen::Vector2d on_plane = transfer(H, track.corner.pixel);
+    const auto patch = make_template(
+        first_->pyramid, track.corner.pixel, warp_around(H_first_now, on_plane), track.patch_level);
     if (!patch) continue;
-    const Eigen::Vector2d start = transfer(H, track.corner.pixel) + track.offset;
+    const Eigen::Vector2d start = on_plane + track.offset;
     const auto match = align_patch(frame.pyramid, *patch, start);
     if (!match || match->correlation < kMinCorrelation ||
         (match->pixel - start).norm() > std::ldexp(kMaxOffsetStepPx, track.patch_level)) {

@@ -12,7 +12,6 @@ using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 using Matrix23d = Eigen::Matrix<double, 2, 3>;
 using Matrix26d = Eigen::Matrix<double, 2, 6>;
-using Matrix32d = Eigen::Matrix<double, 3, 2>;
 
 /// [v]x, the matrix of the cross product.
 [[nodiscard]] inline Eigen::Matrix3d skew(const Eigen::Vector3d& v) {

@@ -59,8 +59,7 @@ struct MapPoint {
   int id = 0;
   int source_keyframe = 0;  ///< whose image holds its patch
   Eigen::Vector2d source_pixel = Eigen::Vector2d::Zero();
-  /// The ground's surface there: steps in vo of one source pixel along x and y.
-  Matrix32d tangents_vo = Matrix32d::Zero();
+  Eigen::Vector3d normal_vo = Eigen::Vector3d::UnitZ();  ///< of the ground there
   Descriptor descriptor{};
   Eigen::Vector3d position_vo = Eigen::Vector3d::Zero();
   std::vector<int> keyframes;  ///< ids, ascending, of those that observe it
@@ -111,8 +110,8 @@ class Map {
   int first_with_image_ = 0;
 };
 
-/// Sets the point's patch tangents from the plane through it in its source keyframe.
-void set_tangents(const PinholeCamera& camera, const Keyframe& source, MapPoint& point);
+/// Sets the ground's normal at a point from the plane of its source keyframe.
+void set_normal(const PinholeCamera& camera, const Keyframe& source, MapPoint& point);
 
 /// Fits the ground's plane to the keyframe's points, robustly; keeps the old one with too few.
 void fit_plane(const PinholeCamera& camera, const Map& map, Keyframe& keyframe);

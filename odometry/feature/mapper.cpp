@@ -128,14 +128,14 @@ Mapper::Search Mapper::triangulate_candidate(const Keyframe& source,
   point.source_pixel = candidate.corner.pixel;
   point.patch_level = patch_level;
   point.descriptor = candidate.descriptor;
-  set_tangents(camera_, source, point);
+  set_normal(camera_, source, point);
   const auto expected = camera_.project(newest.T_camera_vo * point.position_vo);
   if (!expected) return Search::kMissed;
-  const Eigen::Matrix2d A = warp_of(camera_, newest.T_camera_vo, point);
+  const PatchWarp warp = warp_of(camera_, newest.T_camera_vo, source, point);
   // Coarse to fine, for the ground is not quite the plane.
   Eigen::Vector2d pixel = *expected;
   for (int level = patch_level + 2; level >= patch_level; --level) {
-    const auto patch = make_template(source.pyramid, point.source_pixel, A, level);
+    const auto patch = make_template(source.pyramid, point.source_pixel, warp, level);
     const auto match = patch ? align_patch(newest.pyramid, *patch, pixel) : std::nullopt;
     const bool good = match && match->correlation > kMinCorrelation;
     if (!good && level == patch_level) return Search::kMissed;
@@ -152,7 +152,7 @@ Mapper::Search Mapper::triangulate_candidate(const Keyframe& source,
     return Search::kMissed;
   }
   point.position_vo = T_vo_source * triangulated->p_first;
-  set_tangents(camera_, source, point);
+  set_normal(camera_, source, point);
   const int source_id = source.id;
   const MapPoint& added = map.add_point(point);
   map.add_observation(map.keyframe(source_id),
@@ -165,9 +165,10 @@ Mapper::Search Mapper::triangulate_candidate(const Keyframe& source,
 void Mapper::observe(const MapPoint& point, Keyframe& keyframe, Map& map) const {
   const auto expected = camera_.project(keyframe.T_camera_vo * point.position_vo);
   if (!expected) return;
-  const auto patch = make_template(map.keyframe(point.source_keyframe).pyramid,
+  const Keyframe& source = map.keyframe(point.source_keyframe);
+  const auto patch = make_template(source.pyramid,
                                    point.source_pixel,
-                                   warp_of(camera_, keyframe.T_camera_vo, point),
+                                   warp_of(camera_, keyframe.T_camera_vo, source, point),
                                    point.patch_level);
   const auto match = patch ? align_patch(keyframe.pyramid, *patch, *expected) : std::nullopt;
   if (!match || match->correlation < kMinCorrelation) return;

@@ -1,5 +1,6 @@
 #include "odometry/feature/patch_aligner.hpp"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
@@ -30,27 +31,36 @@ float bilinear(const cv::Mat& image, float x, float y) {
          ay * ((1.0F - ax) * bottom[0] + ax * bottom[1]);
 }
 
-/// Samples a (P + 2)^2 patch around centre with the axes' steps in the columns of A.
+/// Samples a (P + 2)^2 patch around a centre, shaped by the warp.
 bool sample_warped(const cv::Mat& image,
                    const Eigen::Vector2f& centre,
                    const Eigen::Matrix2f& A,
+                   const Eigen::Vector2f& g,
                    BorderPatch& patch) {
   const float reach = kHalf + 1.0F;
-  const Eigen::Vector2f extent = reach * A.cwiseAbs().rowwise().sum();
-  if (centre.x() - extent.x() < 0.0F || centre.y() - extent.y() < 0.0F ||
-      centre.x() + extent.x() >= static_cast<float>(image.cols - 1) ||
-      centre.y() + extent.y() >= static_cast<float>(image.rows - 1)) {
-    return false;
+  // A plane in front of both views is not turned over: its corners hold all of the patch.
+  if (g.cwiseAbs().sum() * reach > 0.5F) return false;
+  for (const float u : {-reach, reach}) {
+    for (const float v : {-reach, reach}) {
+      const Eigen::Vector2f d(u, v);
+      const Eigen::Vector2f p = centre + A * d / (1.0F + g.dot(d));
+      if (p.x() < 0.0F || p.y() < 0.0F || p.x() >= static_cast<float>(image.cols - 1) ||
+          p.y() >= static_cast<float>(image.rows - 1)) {
+        return false;
+      }
+    }
   }
   float* out = patch.data();
   for (int row = 0; row < kBorder; ++row) {
-    const float v = static_cast<float>(row) - reach;
-    float x = centre.x() - A(0, 0) * reach + A(0, 1) * v;
-    float y = centre.y() - A(1, 0) * reach + A(1, 1) * v;
+    const Eigen::Vector2f left(-reach, static_cast<float>(row) - reach);
+    const Eigen::Vector2f start = A * left;
+    const float depth = 1.0F + g.dot(left);
     for (int column = 0; column < kBorder; ++column) {
-      *out++ = bilinear(image, x, y);
-      x += A(0, 0);
-      y += A(1, 0);
+      const auto step = static_cast<float>(column);
+      const float scale = 1.0F / (depth + step * g.x());
+      *out++ = bilinear(image,
+                        centre.x() + scale * (start.x() + step * A(0, 0)),
+                        centre.y() + scale * (start.y() + step * A(1, 0)));
     }
   }
   return true;
@@ -87,7 +97,8 @@ bool fill_template(const BorderPatch& patch, PatchTemplate& out) {
   out.gradient_value = {out.value.dot(out.gradient_x), out.value.dot(out.gradient_y)};
   const float half_trace = 0.5F * H.trace();
   const float root = std::sqrt(std::max(0.0F, half_trace * half_trace - H.determinant()));
-  if (half_trace - root < kMinEigenvalue * kPatchArea) return false;
+  out.least_eigenvalue = half_trace - root;
+  if (out.least_eigenvalue < kMinEigenvalue * kPatchArea) return false;
   out.inverse_hessian = H.inverse();
   return true;
 }
@@ -134,20 +145,30 @@ Comparison compare(const PatchTemplate& patch, const PatchVector& sampled) {
 
 }  // namespace
 
+PatchWarp warp_around(const Eigen::Matrix3d& H_source_other, const Eigen::Vector2d& other_pixel) {
+  const Eigen::Vector3d q = H_source_other * other_pixel.homogeneous();
+  PatchWarp warp;
+  warp.g_per_px = H_source_other.block<1, 2>(2, 0).transpose() / q.z();
+  warp.A_source_other =
+      H_source_other.topLeftCorner<2, 2>() / q.z() - q.hnormalized() * warp.g_per_px.transpose();
+  return warp;
+}
+
 std::optional<PatchTemplate> make_template(const Pyramid& source,
                                            const Eigen::Vector2d& source_pixel,
-                                           const Eigen::Matrix2d& A_other_source,
+                                           const PatchWarp& warp,
                                            int level) {
-  const double area = A_other_source.determinant();
-  if (area < 0.1 || area > 10.0) return std::nullopt;
+  const double area = 1.0 / warp.A_source_other.determinant();
+  if (!(area > 0.1 && area < 10.0)) return std::nullopt;
   // Source level whose pixels are nearest in size to the searched level's.
   const int change = static_cast<int>(std::lround(-0.5 * std::log2(area)));
   const int source_level = std::clamp(level + change, 0, source.level_count() - 1);
   const double scale = std::ldexp(1.0, level - source_level);
-  const Eigen::Matrix2f A = (scale * A_other_source.inverse()).cast<float>();
+  const Eigen::Matrix2f A = (scale * warp.A_source_other).cast<float>();
+  const Eigen::Vector2f g = (std::ldexp(1.0, level) * warp.g_per_px).cast<float>();
   const Eigen::Vector2f centre = (source_pixel * std::ldexp(1.0, -source_level)).cast<float>();
   BorderPatch sampled;
-  if (!sample_warped(source.level(source_level), centre, A, sampled)) return std::nullopt;
+  if (!sample_warped(source.level(source_level), centre, A, g, sampled)) return std::nullopt;
   std::optional<PatchTemplate> result(std::in_place);
   result->level = level;
   if (!fill_template(sampled, *result)) return std::nullopt;
@@ -159,10 +180,20 @@ std::optional<int> textured_level(const Pyramid& image,
                                   int finest,
                                   int coarsest) {
   const int last = std::min(coarsest, image.level_count() - 1);
+  std::optional<int> best;
+  float best_information = 0.0F;
   for (int level = finest; level <= last; ++level) {
-    if (make_template(image, pixel, Eigen::Matrix2d::Identity(), level)) return level;
+    const auto patch = make_template(image, pixel, PatchWarp{}, level);
+    if (!patch) continue;
+    // A coarser pixel is 2^level as wide and its share of white noise 2^-level as strong; what
+    // quantisation and interpolation add, half as much at the finest level, stays.
+    const float variance = 1.0F + std::ldexp(0.25F, 2 * level);
+    const float information = patch->least_eigenvalue / variance;
+    if (information <= best_information) continue;
+    best = level;
+    best_information = information;
   }
-  return std::nullopt;
+  return best;
 }
 
 std::optional<PatchMatch> align_patch(const Pyramid& image,

@@ -13,6 +13,18 @@ inline constexpr int kPatchSize = 12;
 inline constexpr int kPatchArea = kPatchSize * kPatchSize;
 using PatchVector = Eigen::Matrix<float, kPatchArea, 1>;  ///< row-major patch
 
+/// How the plane around a patch's middle maps from the view that searches it to its source: the
+/// offset d [px] becomes A d / (1 + g.d). The second term matters where ground is seen obliquely
+/// and at coarse levels, whose patches are wide.
+struct PatchWarp {
+  Eigen::Matrix2d A_source_other = Eigen::Matrix2d::Identity();
+  Eigen::Vector2d g_per_px = Eigen::Vector2d::Zero();
+};
+
+/// The warp of a homography around a pixel of the other view.
+[[nodiscard]] PatchWarp warp_around(const Eigen::Matrix3d& H_source_other,
+                                    const Eigen::Vector2d& other_pixel);
+
 /// A patch as it should look in the image where it is searched, with all that one step of the
 /// search needs. All at one pyramid level.
 struct PatchTemplate {
@@ -23,10 +35,14 @@ struct PatchTemplate {
   Eigen::Matrix2f inverse_hessian;
   Eigen::Vector2f gradient_value;  ///< sum of gradient times value
   float energy = 0.0F;             ///< sum of squared values
+  float least_eigenvalue = 0.0F;   ///< of the Hessian
 };
 
-/// The finest level, at least `finest` and at most `coarsest`, at which the patch around a pixel
-/// has texture to hold on; empty if there is none. Blurred ground is held at coarse levels.
+/// The level, at least `finest` and at most `coarsest`, at which the patch around a pixel tells its
+/// position best; empty if none has texture to hold on. Blurred ground is held at coarse levels.
+///
+/// Method: the position's variance is that of the image over the least eigenvalue of the gradients'
+/// normal matrix (Forstner and Gulch 1987).
 [[nodiscard]] std::optional<int> textured_level(const Pyramid& image,
                                                 const Eigen::Vector2d& pixel,
                                                 int finest,
@@ -39,12 +55,11 @@ struct PatchMatch {
 
 /// Samples the patch around `source_pixel` (full resolution), shaped as the other view sees it.
 ///
-/// @param A_other_source derivative of the other view's pixel by the source's pixel
-/// @param level          pyramid level of the search in the other view
+/// @param level pyramid level of the search in the other view
 /// @return empty where the patch leaves the image, is too distorted, or has no texture to hold on
 std::optional<PatchTemplate> make_template(const Pyramid& source,
                                            const Eigen::Vector2d& source_pixel,
-                                           const Eigen::Matrix2d& A_other_source,
+                                           const PatchWarp& warp,
                                            int level);
 
 /// Moves the patch over the image until it fits best.

@@ -21,12 +21,25 @@ struct Tracker::Projection {
 Tracker::Tracker(const PinholeCamera& camera, const TrackerOptions& options)
     : camera_(camera), options_(options) {}
 
-Eigen::Matrix2d warp_of(const PinholeCamera& camera,
-                        const Pose& T_camera_vo,
-                        const MapPoint& point) {
+PatchWarp warp_of(const PinholeCamera& camera,
+                  const Pose& T_camera_vo,
+                  const Keyframe& source,
+                  const MapPoint& point) {
+  // The plane n.X = n.p in the view: H_source_other = K (R + t n^T / n.p) K^-1 (Hartley and
+  // Zisserman 2003, result 13.1), here for steps of one pixel around the point.
+  const Pose T_source_camera = source.T_camera_vo * T_camera_vo.inverse();
   const Eigen::Vector3d p = T_camera_vo * point.position_vo;
-  return projection_jacobian(camera.fx_px, camera.fy_px, p) *
-         T_camera_vo.rotation.toRotationMatrix() * point.tangents_vo;
+  const Eigen::Vector3d n = T_camera_vo.rotation * point.normal_vo;
+  const Eigen::Matrix3d G = T_source_camera.rotation.toRotationMatrix() +
+                            T_source_camera.translation * n.transpose() / n.dot(p);
+  const Eigen::Vector3d q = G * (p / p.z());
+  const Eigen::Vector2d step(1.0 / (q.z() * camera.fx_px), 1.0 / (q.z() * camera.fy_px));
+  PatchWarp warp;
+  warp.g_per_px = G.block<1, 2>(2, 0).transpose().cwiseProduct(step);
+  warp.A_source_other =
+      Eigen::Vector2d(camera.fx_px, camera.fy_px).asDiagonal() *
+      (G.topLeftCorner<2, 2>() * step.asDiagonal() - q.hnormalized() * warp.g_per_px.transpose());
+  return warp;
 }
 
 /// One point of the local map for each cell of the image, best known first.
@@ -75,10 +88,9 @@ bool Tracker::align_coarsely(const Pyramid& image,
       const MapPoint& point = *projections[i].point;
       const auto start = camera_.project(T_camera_vo * point.position_vo);
       if (!start) continue;
-      const auto patch = make_template(map.keyframe(point.source_keyframe).pyramid,
-                                       point.source_pixel,
-                                       warp_of(camera_, T_camera_vo, point),
-                                       level);
+      const Keyframe& source = map.keyframe(point.source_keyframe);
+      const auto patch = make_template(
+          source.pyramid, point.source_pixel, warp_of(camera_, T_camera_vo, source, point), level);
       if (!patch) continue;
       const auto match = align_patch(image, *patch, *start);
       if (!match || match->correlation < options_.min_correlation) continue;
@@ -106,9 +118,10 @@ TrackResult Tracker::track(const Pyramid& image,
   std::vector<int> ids;
   for (const Projection& projection : project(image, result.T_camera_vo, map)) {
     const MapPoint& point = *projection.point;
-    const auto patch = make_template(map.keyframe(point.source_keyframe).pyramid,
+    const Keyframe& source = map.keyframe(point.source_keyframe);
+    const auto patch = make_template(source.pyramid,
                                      point.source_pixel,
-                                     warp_of(camera_, result.T_camera_vo, point),
+                                     warp_of(camera_, result.T_camera_vo, source, point),
                                      point.patch_level);
     if (!patch) continue;
     ++result.searched;

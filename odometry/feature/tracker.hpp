@@ -6,6 +6,7 @@
 
 #include "core/camera.hpp"
 #include "odometry/feature/map.hpp"
+#include "odometry/feature/patch_aligner.hpp"
 #include "odometry/feature/pose_optimiser.hpp"
 #include "odometry/feature/pyramid.hpp"
 
@@ -68,9 +69,10 @@ class Tracker {
   TrackerOptions options_;
 };
 
-/// Derivative of the pixel in a view by the pixel in the point's source keyframe.
-[[nodiscard]] Eigen::Matrix2d warp_of(const PinholeCamera& camera,
-                                      const Pose& T_camera_vo,
-                                      const MapPoint& point);
+/// From a view to the point's source keyframe, over the ground's plane through the point.
+[[nodiscard]] PatchWarp warp_of(const PinholeCamera& camera,
+                                const Pose& T_camera_vo,
+                                const Keyframe& source,
+                                const MapPoint& point);
 
 }  // namespace overfly::odometry

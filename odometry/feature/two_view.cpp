@@ -189,11 +189,6 @@ Eigen::Vector2d transfer(const Eigen::Matrix3d& H, const Eigen::Vector2d& pixel)
   return (H * pixel.homogeneous()).hnormalized();
 }
 
-Eigen::Matrix2d transfer_jacobian(const Eigen::Matrix3d& H, const Eigen::Vector2d& pixel) {
-  const Eigen::Vector3d q = H * pixel.homogeneous();
-  return (H.topLeftCorner<2, 2>() - q.hnormalized() * H.block<1, 2>(2, 0)) / q.z();
-}
-
 std::optional<HomographyFit> fit_homography(const Pixels& first,
                                             const Pixels& second,
                                             double threshold_px,

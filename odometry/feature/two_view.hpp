@@ -27,9 +27,6 @@ struct HomographyFit {
 
 /// A pixel through a homography.
 [[nodiscard]] Eigen::Vector2d transfer(const Eigen::Matrix3d& H, const Eigen::Vector2d& pixel);
-/// Derivative of `transfer` by the pixel.
-[[nodiscard]] Eigen::Matrix2d transfer_jacobian(const Eigen::Matrix3d& H,
-                                                const Eigen::Vector2d& pixel);
 
 struct TwoViewOptions {
   double sigma_px = 1.0;           ///< noise assumed in scores and checks

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "odometry/feature/tracker.hpp"
+#include "odometry/feature/two_view.hpp"
 
 namespace overfly::odometry {
 namespace {
@@ -77,31 +78,12 @@ TEST(MedianDepth, SpeaksForTheGroundOnTheOpticalAxis) {
   EXPECT_FALSE(median_depth(Pose{}, {}));
 }
 
-TEST(PatchTangents, AreThePlanesStepsOfOnePixel) {
-  Map map;
-  Keyframe& keyframe = map.add_keyframe({});
-  keyframe.T_camera_vo = {exp_so3({0.3, 0.1, -0.2}), {0.1, 0.2, 0.3}};
-  keyframe.plane.coefficients = {0.1, -0.2, 0.8};
-  const auto on_plane = [&](const Eigen::Vector2d& pixel) -> Eigen::Vector3d {
-    const Eigen::Vector3d ray = camera().ray(pixel);
-    return keyframe.T_camera_vo.inverse() * (ray / keyframe.plane.inverse_depth(ray));
-  };
-  MapPoint point;
-  point.source_pixel = {900.0, 300.0};
-  point.position_vo = on_plane(point.source_pixel);
-  set_tangents(camera(), keyframe, point);
-  const Eigen::Vector3d right = on_plane({900.5, 300.0}) - on_plane({899.5, 300.0});
-  const Eigen::Vector3d down = on_plane({900.0, 300.5}) - on_plane({900.0, 299.5});
-  EXPECT_LT((point.tangents_vo.col(0) - right).norm(), 1e-8);
-  EXPECT_LT((point.tangents_vo.col(1) - down).norm(), 1e-8);
-}
-
-TEST(PatchTangents, WarpAgreesWithFiniteDifferences) {
-  const PinholeCamera camera{1280, 960, 700.0, 700.0, 639.5, 479.5};
+TEST(PatchWarp, IsThePlanesMapFromTheOtherViewToTheSource) {
+  const PinholeCamera camera{1280, 960, 700.0, 650.0, 639.5, 479.5};
   Keyframe source;
   source.T_camera_vo = {exp_so3({0.1, -0.1, 0.3}), {0.05, 0.02, 0.1}};
   source.plane.coefficients = {0.1, -0.2, 0.9};
-  const Pose T_other_vo{exp_so3({0.2, 0.1, 0.4}), {0.1, -0.05, 0.15}};
+  const Pose T_other_vo{exp_so3({0.5, 0.3, 0.4}), {0.1, -0.05, 0.15}};
   // Where the other view sees the plane that a pixel of the source sees.
   const auto point_at = [&](const Eigen::Vector2d& pixel) -> Eigen::Vector3d {
     const Eigen::Vector3d ray = camera.ray(pixel);
@@ -110,15 +92,30 @@ TEST(PatchTangents, WarpAgreesWithFiniteDifferences) {
   MapPoint point;
   point.source_pixel = {800.0, 300.0};
   point.position_vo = point_at(point.source_pixel);
-  set_tangents(camera, source, point);
-  const Eigen::Matrix2d A = warp_of(camera, T_other_vo, point);
-  for (int i = 0; i < 2; ++i) {
-    const Eigen::Vector2d step = 1e-4 * Eigen::Vector2d::Unit(i);
-    const Eigen::Vector2d ahead = *camera.project(T_other_vo * point_at(point.source_pixel + step));
-    const Eigen::Vector2d behind =
-        *camera.project(T_other_vo * point_at(point.source_pixel - step));
-    EXPECT_LT(((ahead - behind) / 2e-4 - A.col(i)).norm(), 1e-5) << "column " << i;
+  set_normal(camera, source, point);
+  const PatchWarp warp = warp_of(camera, T_other_vo, source, point);
+  const Eigen::Vector2d middle = *camera.project(T_other_vo * point.position_vo);
+  for (const double x : {-48.0, 0.0, 48.0}) {
+    for (const double y : {-48.0, 0.0, 48.0}) {
+      const Eigen::Vector2d offset(x, y);
+      const Eigen::Vector2d other =
+          *camera.project(T_other_vo * point_at(point.source_pixel + offset));
+      const Eigen::Vector2d d = other - middle;
+      const Eigen::Vector2d back = warp.A_source_other * d / (1.0 + warp.g_per_px.dot(d));
+      EXPECT_LT((back - offset).norm(), 1e-9) << x << ", " << y;
+    }
   }
+}
+
+TEST(PatchWarp, OfAHomographyIsTheHomography) {
+  Eigen::Matrix3d H_source_other;
+  H_source_other << 1.1, 0.2, -30.0, -0.1, 0.9, 12.0, 2e-4, -3e-4, 1.2;
+  const Eigen::Vector2d middle(400.0, 300.0);
+  const PatchWarp warp = warp_around(H_source_other, middle);
+  const Eigen::Vector2d d(30.0, -20.0);
+  const Eigen::Vector2d offset =
+      transfer(H_source_other, middle + d) - transfer(H_source_other, middle);
+  EXPECT_LT((warp.A_source_other * d / (1.0 + warp.g_per_px.dot(d)) - offset).norm(), 1e-9);
 }
 
 }  // namespace

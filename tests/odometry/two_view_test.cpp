@@ -196,9 +196,6 @@ TEST(Homography, IsFoundAmongWrongMatches) {
   EXPECT_GE(fit->inliers, 133);
   for (const Eigen::Vector2d& p : first) {
     EXPECT_LT((transfer(fit->H_second_first, p) - transfer(H, p)).norm(), 1e-3);
-    const Eigen::Matrix2d J = transfer_jacobian(H, p);
-    const Eigen::Vector2d ahead = transfer(H, p + Eigen::Vector2d(1e-4, 0.0));
-    EXPECT_LT(((ahead - transfer(H, p)) / 1e-4 - J.col(0)).norm(), 1e-5);
   }
 }
 
