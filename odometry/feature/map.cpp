@@ -45,16 +45,18 @@ void Map::remove_point(int point) {
 void Map::forget_images(int keep_newest) {
   const int first_kept = next_keyframe_ - keep_newest;
   if (first_kept <= first_with_image_) return;
-  for (int id = first_with_image_; id < first_kept; ++id) {
-    Keyframe& old = keyframe(id);
-    old.pyramid = {};
-    old.candidates.clear();
+  for (auto i = keyframes_.begin(); i->first < first_kept; ++i) {
+    i->second.pyramid = {};
+    i->second.candidates.clear();
   }
   std::vector<int> gone;
   for (const auto& [id, point] : points_) {
     if (point.source_keyframe < first_kept) gone.push_back(id);
   }
   for (const int id : gone) remove_point(id);
+  std::erase_if(keyframes_, [first_kept](const auto& entry) {
+    return entry.first < first_kept && entry.second.observations.empty();
+  });
   first_with_image_ = first_kept;
 }
 

@@ -77,7 +77,8 @@ class Map {
   /// Removes one sight of a point; a point seen from fewer than two keyframes goes.
   void remove_observation(int keyframe, int point);
   void remove_point(int point);
-  /// Drops images (and the points whose patch is in them) of all but the newest keyframes.
+  /// Drops images (and the points whose patch is in them) of all but the newest keyframes, and the
+  /// keyframes that see no point any more.
   void forget_images(int keep_newest);
   void clear();
   /// A copy of what tracking needs: so many of the newest keyframes, of which the newest alone has

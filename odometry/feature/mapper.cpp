@@ -12,12 +12,28 @@ namespace {
 
 constexpr float kMinCorrelation = 0.8F;
 constexpr int kMaxMisses = 3;
+/// Patches of which one starts so near another, at the finer's level, are of the same corner.
+constexpr double kSameCornerPx = 1.5;
 /// A new point's depth relative to the ground's plane: beyond, it is a wrong match.
 constexpr double kMaxDepthRatio = 2.5;
 /// Ground farther than so many median depths gives no parallax in a view's lifetime.
 constexpr double kMaxRelativeDepth = 6.0;
 constexpr int kExpectedBeforeCulling = 12;
 constexpr double kMinFoundShare = 0.25;
+
+/// The point that a keyframe sees at a pixel already; null when none.
+const MapPoint* point_at(const Map& map,
+                         const Keyframe& keyframe,
+                         const Eigen::Vector2d& pixel,
+                         int patch_level) {
+  for (const Observation& seen : keyframe.observations) {
+    const MapPoint* point = map.point(seen.point);
+    if (point == nullptr) continue;
+    const double radius_px = std::ldexp(kSameCornerPx, std::min(patch_level, point->patch_level));
+    if ((seen.pixel - pixel).squaredNorm() < radius_px * radius_px) return point;
+  }
+  return nullptr;
+}
 
 Eigen::Vector3d centre_of(const Pose& T_camera_vo) { return T_camera_vo.inverse().translation; }
 
@@ -108,7 +124,8 @@ void Mapper::triangulate_candidates(Map& map) const {
       if (candidate.done) continue;
       const Search search = triangulate_candidate(source, candidate, map);
       if (search == Search::kMissed) ++candidate.misses;
-      candidate.done = search == Search::kFound || candidate.misses >= kMaxMisses;
+      candidate.done =
+          search == Search::kFound || search == Search::kFused || candidate.misses >= kMaxMisses;
     }
   }
 }
@@ -141,6 +158,10 @@ Mapper::Search Mapper::triangulate_candidate(const Keyframe& source,
     if (!good && level == patch_level) return Search::kMissed;
     if (good) pixel = match->pixel;
   }
+  if (const MapPoint* known = point_at(map, newest, pixel, patch_level)) {
+    fuse(*known, source, map);
+    return Search::kFused;
+  }
   const Pose T_newest_source = newest.T_camera_vo * T_vo_source;
   const auto triangulated = triangulate(ray, camera_.ray(pixel), T_newest_source);
   if (!triangulated) return Search::kTooNear;
@@ -160,6 +181,12 @@ Mapper::Search Mapper::triangulate_candidate(const Keyframe& source,
   map.add_observation(newest, {added.id, pixel, sigma_px_of(patch_level)});
   for (int id = source_id + 1; id < newest.id; ++id) observe(added, map.keyframe(id), map);
   return Search::kFound;
+}
+
+void Mapper::fuse(const MapPoint& known, const Keyframe& source, Map& map) const {
+  const std::vector<int>& seen_from = known.keyframes;
+  if (std::binary_search(seen_from.begin(), seen_from.end(), source.id)) return;
+  observe(known, map.keyframe(source.id), map);
 }
 
 void Mapper::observe(const MapPoint& point, Keyframe& keyframe, Map& map) const {

@@ -50,9 +50,11 @@ class Mapper {
   void add_candidates(OrbExtractor& orb, Map& map) const;
 
  private:
-  enum class Search { kFound, kMissed, kTooNear };
+  enum class Search { kFound, kFused, kMissed, kTooNear };
   void triangulate_candidates(Map& map) const;
   Search triangulate_candidate(const Keyframe& source, const Candidate& candidate, Map& map) const;
+  /// A candidate that is a point already: the point is looked for in the candidate's keyframe.
+  void fuse(const MapPoint& known, const Keyframe& source, Map& map) const;
   /// Looks for a point in a keyframe that lacks it.
   void observe(const MapPoint& point, Keyframe& keyframe, Map& map) const;
   void cull(Map& map) const;

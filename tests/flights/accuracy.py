@@ -8,6 +8,7 @@ Usage: accuracy.py BINARY RESULTS_FOLDER [--worlds mcmillan,builtin] [--airspeed
 
 One flight at a time, in a process of low priority. Each leaves RESULTS_FOLDER/CELL.json, and what
 is there is not flown again: stop it at any time and call it again. --most ends it after N flights.
+Two at once may share the folder, each with cells of its own (--worlds, --seeds).
 --table writes the table of everything that RESULTS_FOLDER holds; with --most 0 it flies nothing.
 
 The images have noise of 1.5 grey levels. A seed draws it and the estimator's random numbers, and is
@@ -96,7 +97,7 @@ def command_of(args, cell, folder):
 
 
 def fly(args, cell, mode, target):
-    folder = args.results / "run"
+    folder = args.results / f"run_{target.stem}"
     shutil.rmtree(folder, ignore_errors=True)
     begin = time.monotonic()
     done = subprocess.run(command_of(args, cell, folder), stdout=subprocess.PIPE,

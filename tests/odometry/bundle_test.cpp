@@ -4,6 +4,8 @@
 
 #include <random>
 
+#include "odometry/feature/bundle_terms.hpp"
+
 namespace overfly::odometry {
 namespace {
 
@@ -90,6 +92,60 @@ TEST(Bundle, RepeatsToTheLastBit) {
   adjust(camera(), a, {});
   adjust(camera(), b, {});
   for (std::size_t i = 0; i < a.points_vo.size(); ++i) EXPECT_EQ(a.points_vo[i], b.points_vo[i]);
+}
+
+TEST(Reprojection, JacobiansAgreeWithFiniteDifferences) {
+  const PinholeCamera lens{1280, 960, 714.0, 690.0, 639.5, 479.5};
+  const Reprojection sight(lens, {0, 0, {500.0, 300.0}, 0.4});
+  const PoseManifold manifold;
+  PoseBlock pose{};
+  store({exp_so3({0.3, -0.2, 0.5}), {0.1, -0.3, 0.4}}, pose.data());
+  const Eigen::Vector3d point(0.2, -0.1, 2.0);
+  const auto error_at = [&](const PoseBlock& at, const Eigen::Vector3d& p) {
+    const double* blocks[] = {at.data(), p.data()};
+    Eigen::Vector2d residual;
+    EXPECT_TRUE(sight.Evaluate(blocks, residual.data(), nullptr));
+    return residual;
+  };
+  Eigen::Matrix<double, 2, 7, Eigen::RowMajor> J_block;
+  Eigen::Matrix<double, 2, 3, Eigen::RowMajor> J_point;
+  double* jacobians[] = {J_block.data(), J_point.data()};
+  const double* blocks[] = {pose.data(), point.data()};
+  Eigen::Vector2d residual;
+  ASSERT_TRUE(sight.Evaluate(blocks, residual.data(), jacobians));
+  Eigen::Matrix<double, 7, 6, Eigen::RowMajor> J_plus;
+  ASSERT_TRUE(manifold.PlusJacobian(pose.data(), J_plus.data()));
+  const Eigen::Matrix<double, 2, 6> J_pose = J_block * J_plus;
+  constexpr double kStep = 1e-6;
+  for (int i = 0; i < 6; ++i) {
+    const auto moved_by = [&](double step) {
+      const Vector6d xi = step * Vector6d::Unit(i);
+      PoseBlock there{};
+      EXPECT_TRUE(manifold.Plus(pose.data(), xi.data(), there.data()));
+      return error_at(there, point);
+    };
+    const Eigen::Vector2d slope = (moved_by(kStep) - moved_by(-kStep)) / (2.0 * kStep);
+    EXPECT_LT((slope - J_pose.col(i)).norm(), 1e-5 * J_pose.norm()) << "pose, " << i;
+  }
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Vector3d step = kStep * Eigen::Vector3d::Unit(i);
+    const Eigen::Vector2d slope =
+        (error_at(pose, point + step) - error_at(pose, point - step)) / (2.0 * kStep);
+    EXPECT_LT((slope - J_point.col(i)).norm(), 1e-5 * J_point.norm()) << "point, " << i;
+  }
+}
+
+TEST(PoseManifold, MinusUndoesPlus) {
+  const PoseManifold manifold;
+  PoseBlock from{};
+  PoseBlock to{};
+  store({exp_so3({0.3, -0.2, 0.5}), {0.1, -0.3, 0.4}}, from.data());
+  Vector6d xi;
+  xi << 0.2, -0.1, 0.3, 0.05, 0.4, -0.2;
+  ASSERT_TRUE(manifold.Plus(from.data(), xi.data(), to.data()));
+  Vector6d back;
+  ASSERT_TRUE(manifold.Minus(to.data(), from.data(), back.data()));
+  EXPECT_LT((back - xi).norm(), 1e-12);
 }
 
 }  // namespace

@@ -200,7 +200,8 @@ TEST(FeatureOdometry, IsLostWhileTheImageIsFrozen) {
   FlightPlan plan{turning(4.0)};
   plan.fault = [](int frame) { return middle(frame, Fault::kFrozen); };
   const Flight flight = fly(plan);
-  EXPECT_EQ(count(flight, TrackingState::kLost), 20);
+  EXPECT_GE(count(flight, TrackingState::kLost), 20);
+  EXPECT_LE(count(flight, TrackingState::kLost), 23);  // and until it has found its map again
   EXPECT_EQ(flight.samples.back().state, TrackingState::kTracking);
   EXPECT_EQ(flight.samples.back().map_id, 0);
 }
