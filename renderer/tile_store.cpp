@@ -14,6 +14,7 @@
 #include <thread>
 #include <utility>
 
+#include "core/processor_time.hpp"
 #include "renderer/tile_pixels.hpp"
 
 namespace overfly::renderer {
@@ -55,12 +56,6 @@ void touch_heights(const terrain::TileSource& tiles, const TileId& id) {
       (void)tiles.coarse_world_from_map(x_m, y_m, kSpacingTexels * texel_m);
     }
   }
-}
-
-double thread_cpu_s() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) * 1e-9;
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/processor_time.hpp"
 #include "renderer/ground_selection.hpp"
 #include "renderer/image_parts.hpp"
 
@@ -24,12 +25,6 @@ constexpr int kViews = 3;
 /// Wider than the camera's image, so that a turn within kAheadS finds its ground as well.
 constexpr double kWidening = 4.0 / 3.0;
 constexpr std::int64_t kEveryNs = static_cast<std::int64_t>(kAheadEveryS * 1e9);
-
-double thread_cpu_s() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) * 1e-9;
-}
 
 PinholeCamera widened(const PinholeCamera& camera) {
   PinholeCamera wide = camera;

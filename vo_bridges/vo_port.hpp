@@ -50,10 +50,12 @@ struct VoEstimate {
   std::optional<std::uint32_t> image_crc32;
 };
 
-/// What an estimator's own process has used since it began.
+/// What an estimator has used since it began.
 struct ResourceUse {
   double cpu_s = 0.0;  ///< of all its threads
   double peak_memory_mb = 0.0;
+  /// True: its own process has used it. False: by its own account, where it runs in ours.
+  bool own_process = true;
 };
 
 class VoPort {
@@ -77,7 +79,7 @@ class VoPort {
   /// Lines that the estimator said since the last call, without line ends: what it logged, and what
   /// its process wrote. May be called from another thread than `track`.
   [[nodiscard]] virtual std::vector<std::string> take_log() { return {}; }
-  /// Of the estimator's own process; empty for one that runs in ours, or where nobody knows.
+  /// Empty where nobody knows.
   /// May be called from another thread than `track`.
   [[nodiscard]] virtual std::optional<ResourceUse> resource_use() const { return std::nullopt; }
 };

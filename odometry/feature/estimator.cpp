@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/processor_time.hpp"
 #include "odometry/feature/debug_view.hpp"
 #include "odometry/feature/stopwatch.hpp"
 
@@ -70,9 +71,10 @@ std::map<std::string, std::string> FeatureOdometry::effective_parameters() const
 }
 
 void FeatureOdometry::reset() {
-  const bool debug = debug_;
-  *this = FeatureOdometry(parameters_);
-  debug_ = debug;
+  FeatureOdometry fresh(parameters_);
+  fresh.debug_ = debug_;
+  fresh.account_ = std::move(account_);
+  *this = std::move(fresh);
 }
 
 void FeatureOdometry::start_over() {
@@ -97,7 +99,21 @@ bool FeatureOdometry::frozen(const VoFrame& frame, bool repeated) const {
   return (motion_.rate_rad_s() + motion_.speed()) * camera_.fx_px * dt_s > kFrozenMotionPx;
 }
 
+std::optional<ResourceUse> FeatureOdometry::resource_use() const {
+  return ResourceUse{account_->cpu_s, account_->peak_memory_mb, false};
+}
+
 Result<VoEstimate> FeatureOdometry::track(const VoFrame& frame) {
+  const double before_s = thread_cpu_s();
+  Result<VoEstimate> estimate = answer(frame);
+  double used_s = thread_cpu_s() - before_s;
+  if (parts_) used_s += parts_->keeper.take_cpu_s();
+  account_->cpu_s = account_->cpu_s + used_s;
+  account_->peak_memory_mb = std::max<double>(account_->peak_memory_mb, map_memory_mb_);
+  return estimate;
+}
+
+Result<VoEstimate> FeatureOdometry::answer(const VoFrame& frame) {
   if (Status status = validate_vo_frame(frame, previous_ ? &*previous_ : nullptr); !status) {
     return status.error();
   }

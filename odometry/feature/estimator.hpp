@@ -1,6 +1,7 @@
 // The estimator behind the port: which of its parts works on a frame, and what state that gives.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -28,6 +29,8 @@ class FeatureOdometry final : public VoPort {
   [[nodiscard]] Result<VoEstimate> track(const VoFrame& frame) override;
   void reset() override;
   void set_debug(bool wanted) override { debug_ = wanted; }
+  /// CPU of both threads; memory of the map at its largest: images, points, observations.
+  [[nodiscard]] std::optional<ResourceUse> resource_use() const override;
 
  private:
   /// The parts that need the camera, made at the first frame.
@@ -38,12 +41,18 @@ class FeatureOdometry final : public VoPort {
     Tracker tracker;
     MapKeeper keeper;
   };
+  /// Since it was created, whatever was reset. Read by other threads.
+  struct Account {
+    std::atomic<double> cpu_s{0.0};
+    std::atomic<double> peak_memory_mb{0.0};
+  };
   /// What happened in the frame at hand.
   struct Outcome {
     TrackResult tracked;
     bool keyframe = false;
   };
 
+  [[nodiscard]] Result<VoEstimate> answer(const VoFrame& frame);
   void initialise(const FrameImage& frame, VoEstimate& estimate, Outcome& outcome);
   void follow(const FrameImage& frame, VoEstimate& estimate, Outcome& outcome);
   void search(const FrameImage& frame, VoEstimate& estimate, Outcome& outcome);
@@ -60,6 +69,7 @@ class FeatureOdometry final : public VoPort {
   void report_pose(const Outcome& outcome, VoEstimate& estimate) const;
   void draw(const FrameImage& frame, const Outcome& outcome, VoEstimate& estimate) const;
 
+  std::unique_ptr<Account> account_ = std::make_unique<Account>();
   FeatureParameters parameters_;
   PinholeCamera camera_;
   OrbExtractor orb_;

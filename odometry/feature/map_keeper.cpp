@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "core/processor_time.hpp"
 #include "odometry/feature/stopwatch.hpp"
 
 namespace overfly::odometry {
@@ -94,6 +95,11 @@ void MapKeeper::take_timing(std::map<std::string, double>& timing_ms) {
   timing_ms_.clear();
 }
 
+double MapKeeper::take_cpu_s() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(cpu_s_, 0.0);
+}
+
 void MapKeeper::wait_until_idle() {
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [this] { return !busy_ && !work_; });
@@ -107,10 +113,13 @@ void MapKeeper::run() {
     const Work work = *std::exchange(work_, std::nullopt);
     busy_ = true;
     lock.unlock();
+    const double before_s = thread_cpu_s();
     std::map<std::string, double> timing_ms;
     map_keyframe(work, timing_ms);
     publish();
+    const double used_s = thread_cpu_s() - before_s;
     lock.lock();
+    cpu_s_ += used_s;
     for (const auto& [stage, ms] : timing_ms) timing_ms_[stage] += ms;
     busy_ = false;
     changed_.notify_all();

@@ -54,6 +54,8 @@ class MapKeeper {
                        std::map<std::string, double>& timing_ms);
   /// Adds the wall time that the thread spent since the last call.
   void take_timing(std::map<std::string, double>& timing_ms);
+  /// Processor time of the thread since the last call [s]; 0 with one thread.
+  [[nodiscard]] double take_cpu_s();
   /// Until no keyframe waits or is being mapped.
   void wait_until_idle();
 
@@ -88,6 +90,7 @@ class MapKeeper {
   bool stop_ = false;
   std::shared_ptr<const Map> published_;
   std::map<std::string, double> timing_ms_;
+  double cpu_s_ = 0.0;
   std::thread thread_;  ///< last: it ends before what it uses
 };
 

@@ -28,12 +28,6 @@ AffinityGuard::~AffinityGuard() {
   if (known_) sched_setaffinity(0, sizeof(before_), &before_);
 }
 
-double thread_cpu_s() {
-  timespec used{};
-  if (clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used) != 0) return 0.0;
-  return static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
-}
-
 double own_peak_memory_mb() {
   rusage use{};
   if (getrusage(RUSAGE_SELF, &use) != 0) return 0.0;

@@ -25,8 +25,6 @@ class AffinityGuard {
   bool known_ = false;
 };
 
-/// Processor time of the calling thread [s].
-[[nodiscard]] double thread_cpu_s();
 /// Largest resident memory of this process so far [MB].
 [[nodiscard]] double own_peak_memory_mb();
 

@@ -1,12 +1,26 @@
 #include "server/engine/estimator_status.hpp"
 
+#include <array>
+#include <utility>
+
 namespace overfly::engine {
 namespace {
 
 using Json = nlohmann::json;
 
-constexpr const char* kOwnProcess = "process";
-constexpr const char* kCallingThread = "calling_thread";
+using Measured = EstimatorUse::Measured;
+
+constexpr std::array<std::pair<Measured, const char*>, 3> kMeasured = {
+    {{Measured::kProcess, "process"},
+     {Measured::kOwnAccount, "own_account"},
+     {Measured::kCallingThread, "calling_thread"}}};
+
+const char* text_of(Measured measured) {
+  for (const auto& [value, text] : kMeasured) {
+    if (value == measured) return text;
+  }
+  return "";
+}
 
 }  // namespace
 
@@ -19,7 +33,7 @@ Json json_from(const EstimatorUse& use) {
   return {{"cpu_s", use.cpu_s},
           {"cpu_percent", use.cpu_percent},
           {"peak_memory_mb", use.peak_memory_mb ? Json(*use.peak_memory_mb) : Json(nullptr)},
-          {"measured", use.own_process ? kOwnProcess : kCallingThread}};
+          {"measured", text_of(use.measured)}};
 }
 
 std::optional<EstimatorUse> estimator_use_from(const Json& value) {
@@ -35,7 +49,9 @@ std::optional<EstimatorUse> estimator_use_from(const Json& value) {
   use.cpu_percent = *number("cpu_percent");
   use.peak_memory_mb = number("peak_memory_mb");
   const auto measured = value.find("measured");
-  use.own_process = measured != value.end() && *measured == kOwnProcess;
+  for (const auto& [known, text] : kMeasured) {
+    if (measured != value.end() && *measured == text) use.measured = known;
+  }
   return use;
 }
 

@@ -14,11 +14,13 @@ namespace overfly::engine {
 struct EstimatorUse {
   double cpu_s = 0.0;
   double cpu_percent = 0.0;  ///< of one processor, since the estimator was started
-  /// Of the estimator's own process; empty for one that runs in ours.
+  /// Empty where it is not known.
   std::optional<double> peak_memory_mb;
-  /// True: of its own process with all threads. False: of the thread in our process that calls it,
-  /// without threads of its own.
-  bool own_process = false;
+  enum class Measured {
+    kProcess,       ///< all threads and the memory of its own process
+    kOwnAccount,    ///< its threads in our process, and the memory that it says it holds
+    kCallingThread  ///< the thread in our process that calls it
+  } measured = Measured::kCallingThread;
 };
 
 /// Of the time from handing over a frame to its answer.

@@ -5,6 +5,7 @@
 #include <exception>
 #include <iterator>
 
+#include "core/processor_time.hpp"
 #include "core/time.hpp"
 #include "server/engine/cpu_affinity.hpp"
 
@@ -102,7 +103,8 @@ EstimatorUse EstimatorWorker::use() const {
   if (const std::optional<ResourceUse> own = port_->resource_use()) {
     use.cpu_s = own->cpu_s;
     use.peak_memory_mb = own->peak_memory_mb;
-    use.own_process = true;
+    use.measured =
+        own->own_process ? EstimatorUse::Measured::kProcess : EstimatorUse::Measured::kOwnAccount;
   }
   const double elapsed_s = s_from_ns(clock_.now_ns() - begin_ns_);
   if (elapsed_s > 0.0) use.cpu_percent = 100.0 * use.cpu_s / elapsed_s;

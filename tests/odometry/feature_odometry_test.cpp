@@ -267,7 +267,7 @@ TEST(FeatureOdometry, NeverStartsWhileOnlyTurning) {
 }
 
 /// A short level flight at 40 m/s, 200 m above flat ground, with debug output.
-std::vector<VoEstimate> fly_level(const FeatureParameters& parameters, double duration_s) {
+std::vector<VoEstimate> fly_level(VoPort& odometry, double duration_s) {
   SyntheticFlightOptions options;
   options.speed_m_s = 40.0;
   options.height_m = 200.0;
@@ -276,8 +276,7 @@ std::vector<VoEstimate> fly_level(const FeatureParameters& parameters, double du
   const SyntheticGround ground = SyntheticGround::procedural(1, 512, 1.0, 0.0);
   const auto camera =
       PinholeCamera::from_fov(320, 240, rad_from_deg(84.872), FovAxis::kHorizontal).value();
-  const auto odometry = create_feature_odometry(parameters).value();
-  odometry->set_debug(true);
+  odometry.set_debug(true);
   std::vector<VoEstimate> estimates;
   const std::vector<Pose> poses = testing::fly_s_turns(options);
   for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -286,9 +285,13 @@ std::vector<VoEstimate> fly_level(const FeatureParameters& parameters, double du
     frame.t_ns = frame_time_ns(frame.index, FrameRate{});
     frame.intrinsics = camera;
     frame.image = std::make_shared<const Image>(ground.render(camera, poses[i], 1.0, i + 1));
-    estimates.push_back(odometry->track(frame).value());
+    estimates.push_back(odometry.track(frame).value());
   }
   return estimates;
+}
+
+std::vector<VoEstimate> fly_level(const FeatureParameters& parameters, double duration_s) {
+  return fly_level(*create_feature_odometry(parameters).value(), duration_s);
 }
 
 TEST(FeatureOdometry, AKnownHeightMakesItsUnitsMetres) {
@@ -338,6 +341,23 @@ TEST(FeatureOdometry, ReportsUnitDepthAndStages) {
   // Two and more images of 320 x 240 with their smaller levels.
   EXPECT_GT(last->counters.at("map_memory_mb"), 0.2);
   EXPECT_LT(last->counters.at("map_memory_mb"), 50.0);
+}
+
+TEST(FeatureOdometry, AccountsForItsThreadsAndItsMap) {
+  for (const int threads : {1, 2}) {
+    FeatureParameters parameters;
+    parameters.threads = threads;
+    const auto estimator = create_feature_odometry(parameters).value();
+    ASSERT_TRUE(estimator->resource_use());
+    EXPECT_FALSE(estimator->resource_use()->own_process);
+    EXPECT_EQ(estimator->resource_use()->cpu_s, 0.0);
+    (void)fly_level(*estimator, 1.2);
+    const ResourceUse use = *estimator->resource_use();
+    EXPECT_GT(use.cpu_s, 0.05);
+    EXPECT_GT(use.peak_memory_mb, 0.2);
+    estimator->reset();
+    EXPECT_GE(estimator->resource_use()->cpu_s, use.cpu_s);
+  }
 }
 
 }  // namespace

@@ -65,7 +65,9 @@ class Pass {
     }
     result_.type = port_.type();
     result_.parameters = port_.effective_parameters();
-    if (const std::optional<ResourceUse> use = port_.resource_use()) {
+    // One in this process, which does nothing else here, is measured as that.
+    const std::optional<ResourceUse> use = port_.resource_use();
+    if (use && use->own_process) {
       result_.resources = *use;
       result_.own_process = true;
     } else {

@@ -90,9 +90,10 @@ export interface EstimatorUse {
   cpu_s: number;
   /** Of one processor. */
   cpu_percent: number;
-  /** null for one that shares the server's process. */
+  /** null where it is not known. */
   peak_memory_mb: number | null;
-  measured: 'process' | 'calling_thread';
+  /** own_account: of its threads in the server, and the memory that it says it holds. */
+  measured: 'process' | 'own_account' | 'calling_thread';
 }
 
 /** How an estimator fares in its run. */

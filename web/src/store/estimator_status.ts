@@ -1,5 +1,5 @@
 // How the estimators fare besides where they say the camera is: one row each.
-import type { EstimatorStatus, Run } from '../protocol/rest_types';
+import type { EstimatorStatus, EstimatorUse, Run } from '../protocol/rest_types';
 import { formatNumber, kNothing } from './format';
 import type { LogLine } from './run_data';
 
@@ -23,9 +23,20 @@ export const kStatusColumns: readonly { key: string; label: string; hint: string
   { key: 'unanswered', label: 'Late', hint: 'Frames taken whose pose did not come back in time' },
   { key: 'latency', label: 'Latency ms', hint: 'From a frame to its answer: median / 99 %' },
   { key: 'cpu', label: 'CPU %', hint: 'Of one processor' },
-  { key: 'memory', label: 'Peak MB', hint: "Of the estimator's own process" },
+  { key: 'memory', label: 'Peak MB', hint: 'Of its own process, or what a native estimator holds' },
   { key: 'hashes', label: 'Image hash', hint: 'Images that arrived just as they were sent' },
 ];
+
+const kCpuHints: Readonly<Record<EstimatorUse['measured'], string>> = {
+  process: 'Of its own process, all threads',
+  own_account: 'Of its threads in the server',
+  calling_thread: "Of the server's thread that calls it",
+};
+const kMemoryHints: Readonly<Record<EstimatorUse['measured'], string>> = {
+  process: 'Of its own process',
+  own_account: "Its map's images, points and sights at their most, in the server's memory",
+  calling_thread: "It shares the server's memory",
+};
 
 export function statusRows(
   run: Run | null,
@@ -89,15 +100,12 @@ function cellsOf(status: EstimatorStatus): StatusCell[] {
     },
     cpu: {
       text: formatNumber(use?.cpu_percent, 0),
-      hint:
-        use?.measured === 'process'
-          ? 'Of its own process, all threads'
-          : "Of the server's thread that calls it, without threads of its own",
+      hint: use ? kCpuHints[use.measured] : '',
       bad: false,
     },
     memory: {
       text: formatNumber(use?.peak_memory_mb, 0),
-      hint: use?.measured === 'process' ? 'Of its own process' : "It shares the server's memory",
+      hint: use ? kMemoryHints[use.measured] : '',
       bad: false,
     },
     hashes: hashCell(status),
