@@ -73,6 +73,7 @@ class LcmEstimator final : public VoPort {
   std::optional<Error> gone_;
   Clock::time_point start_deadline_;
   bool first_asked_ = false;
+  bool waiting_told_ = false;
   int silent_frames_ = 0;
   std::int64_t images_lost_ = 0;
   std::int64_t images_lost_told_ = 0;
@@ -125,6 +126,10 @@ Result<bool> LcmEstimator::wait_for_estimator() {
   const auto deadline = options_.lockstep ? start_deadline_ : std::min(start_deadline_, patience);
   while (!link_->far_end().wait_until_ready(
       link_->session(), std::min<nanoseconds>(kAnnouncePeriod, deadline - Clock::now()))) {
+    if (!std::exchange(waiting_told_, true)) {
+      link_->far_end().say("waits for an estimator that answers " + options_.channel_prefix +
+                           "CALIBRATION on " + options_.url);
+    }
     if (Clock::now() >= start_deadline_) return no_estimator();
     if (Clock::now() >= deadline) return false;
     if (Status status = link_->announce(); !status) return status.error();

@@ -147,6 +147,7 @@ TEST(LcmEstimator, FliesOnInRealTimeUntilTheStartTimeoutWhenNobodyIsThere) {
   ASSERT_TRUE(first.ok());
   EXPECT_EQ(first->sample.state, TrackingState::kInitialising);
   EXPECT_THAT(first->counters, Contains(Pair("unanswered", 1.0)));
+  EXPECT_THAT(pair.door->take_log(), Contains(HasSubstr("waits for an estimator that answers")));
   std::size_t i = 1;
   while (i < frames.size() && pair.door->track(frames[i]).ok()) ++i;
   EXPECT_LT(i, frames.size());
