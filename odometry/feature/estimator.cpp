@@ -283,7 +283,7 @@ void FeatureOdometry::report_pose(const Outcome& outcome, VoEstimate& estimate) 
   }
   estimate.sample.T_vo_camera = T_camera_vo_.inverse();
   estimate.sample.T_vo_camera.translation *= m_per_unit_;
-  estimate.sample.scene_depth = median_depth(T_camera_vo_, points);
+  estimate.sample.scene_depth = axis_depth(T_camera_vo_, points);
   if (estimate.sample.scene_depth) *estimate.sample.scene_depth *= m_per_unit_;
   if (!debug_) return;
   for (const Eigen::Vector3d& p : points) {

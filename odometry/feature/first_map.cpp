@@ -84,17 +84,20 @@ int remove_outliers(const PinholeCamera& camera, Bundle& bundle) {
 }
 
 void normalise_scale(Bundle& bundle) {
-  const auto depth = median_depth(Pose{}, bundle.points_vo);
+  const auto depth = axis_depth(Pose{}, bundle.points_vo);
   if (!depth) return;
   for (Eigen::Vector3d& point : bundle.points_vo) point /= *depth;
   for (Bundle::Camera& camera : bundle.cameras) camera.T_camera_vo.translation /= *depth;
 }
 
-void fill_map(const PinholeCamera& camera,
-              const FirstMapInput& input,
-              const Bundle& bundle,
-              OrbExtractor& orb,
-              Map& map) {
+}  // namespace
+
+void fill_first_map(const PinholeCamera& camera,
+                    const FirstMapInput& input,
+                    const FirstMap& solved,
+                    OrbExtractor& orb,
+                    Map& map) {
+  const Bundle& bundle = solved.bundle;
   std::vector<int> keyframes;
   const auto views = views_of(input);
   for (std::size_t view = 0; view < views.size(); ++view) {
@@ -128,19 +131,15 @@ void fill_map(const PinholeCamera& camera,
   }
 }
 
-}  // namespace
-
-bool make_first_map(const PinholeCamera& camera,
-                    const FirstMapInput& input,
-                    OrbExtractor& orb,
-                    Map& map) {
-  Bundle bundle = bundle_of(camera, input);
+std::optional<FirstMap> solve_first_map(const PinholeCamera& camera, const FirstMapInput& input) {
+  FirstMap solved{bundle_of(camera, input)};
+  Bundle& bundle = solved.bundle;
   BundleOptions options;
   options.max_iterations = 10;
+  solved.rms_sigma = adjust(camera, bundle, options);
+  if (remove_outliers(camera, bundle) < kMinPoints) return std::nullopt;
   adjust(camera, bundle, options);
-  if (remove_outliers(camera, bundle) < kMinPoints) return false;
-  adjust(camera, bundle, options);
-  if (remove_outliers(camera, bundle) < kMinPoints) return false;
+  if (remove_outliers(camera, bundle) < kMinPoints) return std::nullopt;
   // Only points that kept their sights may speak for the scale.
   std::vector<std::uint8_t> kept(bundle.points_vo.size(), 0);
   for (const Bundle::Sight& sight : bundle.sights) kept[static_cast<std::size_t>(sight.point)] = 1;
@@ -148,8 +147,7 @@ bool make_first_map(const PinholeCamera& camera,
     if (kept[i] == 0) bundle.points_vo[i] = Eigen::Vector3d(0.0, 0.0, -1.0);
   }
   normalise_scale(bundle);
-  fill_map(camera, input, bundle, orb, map);
-  return true;
+  return solved;
 }
 
 }  // namespace overfly::odometry

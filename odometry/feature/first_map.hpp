@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/camera.hpp"
+#include "odometry/feature/bundle.hpp"
 #include "odometry/feature/map.hpp"
 #include "odometry/feature/orb.hpp"
 
@@ -29,10 +30,19 @@ struct FirstMapInput {
   Pose T_last_first;
 };
 
-/// Adjusts all views together, scales the first's median depth to 1 and fills the (empty) map.
-/// @return false, with the map left empty, when too few points agree
-bool make_first_map(const PinholeCamera& camera,
+/// All views adjusted together, the ground on the first's optical axis 1 away.
+struct FirstMap {
+  Bundle bundle;
+  double rms_sigma = 0.0;  ///< of all sights, before those that miss were removed
+};
+
+/// @return empty when too few points agree
+[[nodiscard]] std::optional<FirstMap> solve_first_map(const PinholeCamera& camera,
+                                                      const FirstMapInput& input);
+/// Fills an empty map with the keyframes and points.
+void fill_first_map(const PinholeCamera& camera,
                     const FirstMapInput& input,
+                    const FirstMap& solved,
                     OrbExtractor& orb,
                     Map& map);
 

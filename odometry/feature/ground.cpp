@@ -19,28 +19,15 @@ double median_of(std::vector<double>& values) {
   return *middle;
 }
 
-}  // namespace
+struct DepthSample {
+  Eigen::Vector3d ray;
+  double inverse_depth = 0.0;
+};
 
-void set_normal(const PinholeCamera& camera, const Keyframe& source, MapPoint& point) {
-  const Eigen::Vector3d ray = camera.ray(point.source_pixel);
-  const Eigen::Vector3d& n = source.plane.coefficients;
-  // A plane seen edge-on tells nothing: take one that faces the camera instead.
-  const bool grazing = n.dot(ray) < 0.15 * n.norm() * ray.norm();
-  const Eigen::Vector3d normal = grazing ? Eigen::Vector3d::UnitZ() : n.normalized();
-  point.normal_vo = source.T_camera_vo.rotation.inverse() * normal;
-}
-
-void fit_plane(const PinholeCamera& camera, const Map& map, Keyframe& keyframe) {
-  std::vector<std::pair<Eigen::Vector3d, double>> samples;  // ray, inverse depth
-  for (const Observation& seen : keyframe.observations) {
-    const MapPoint* point = map.point(seen.point);
-    if (point == nullptr) continue;
-    const double depth = (keyframe.T_camera_vo * point->position_vo).z();
-    if (depth > 1e-6) samples.emplace_back(camera.ray(seen.pixel), 1.0 / depth);
-  }
-  if (samples.size() < kMinPlanePoints) return;
-  // Iteratively reweighted least squares with Cauchy weights on the relative depth error.
-  Eigen::Vector3d plane = keyframe.plane.coefficients;
+/// The plane (as in GroundPlane) through samples, by iteratively reweighted least squares with
+/// Cauchy weights on the relative error of the depth.
+Eigen::Vector3d plane_of(const std::vector<DepthSample>& samples, const Eigen::Vector3d& start) {
+  Eigen::Vector3d plane = start;
   for (int iteration = 0; iteration < 6; ++iteration) {
     Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
     Eigen::Vector3d b = Eigen::Vector3d::Zero();
@@ -53,21 +40,48 @@ void fit_plane(const PinholeCamera& camera, const Map& map, Keyframe& keyframe) 
     }
     plane = H.ldlt().solve(b);
   }
+  return plane;
+}
+
+}  // namespace
+
+void set_normal(const PinholeCamera& camera, const Keyframe& source, MapPoint& point) {
+  const Eigen::Vector3d ray = camera.ray(point.source_pixel);
+  const Eigen::Vector3d& n = source.plane.coefficients;
+  // A plane seen edge-on tells nothing: take one that faces the camera instead.
+  const bool grazing = n.dot(ray) < 0.15 * n.norm() * ray.norm();
+  const Eigen::Vector3d normal = grazing ? Eigen::Vector3d::UnitZ() : n.normalized();
+  point.normal_vo = source.T_camera_vo.rotation.inverse() * normal;
+}
+
+void fit_plane(const PinholeCamera& camera, const Map& map, Keyframe& keyframe) {
+  std::vector<DepthSample> samples;
+  for (const Observation& seen : keyframe.observations) {
+    const MapPoint* point = map.point(seen.point);
+    if (point == nullptr) continue;
+    const double depth = (keyframe.T_camera_vo * point->position_vo).z();
+    if (depth > 1e-6) samples.push_back({camera.ray(seen.pixel), 1.0 / depth});
+  }
+  if (samples.size() < kMinPlanePoints) return;
+  const Eigen::Vector3d plane = plane_of(samples, keyframe.plane.coefficients);
   if (plane.allFinite() && plane.z() > 0.0) keyframe.plane.coefficients = plane;
 }
 
-std::optional<double> median_depth(const Pose& T_camera_vo,
-                                   const std::vector<Eigen::Vector3d>& points_vo) {
-  std::vector<double> near_axis;
+std::optional<double> axis_depth(const Pose& T_camera_vo,
+                                 const std::vector<Eigen::Vector3d>& points_vo) {
+  std::vector<DepthSample> near_axis;
   std::vector<double> all;
   for (const Eigen::Vector3d& point : points_vo) {
     const Eigen::Vector3d p = T_camera_vo * point;
     if (p.z() <= 0.0) continue;
     all.push_back(p.z());
-    if (p.head<2>().norm() < kAxisTangent * p.z()) near_axis.push_back(p.z());
+    if (p.head<2>().norm() < kAxisTangent * p.z()) near_axis.push_back({p / p.z(), 1.0 / p.z()});
   }
-  if (near_axis.size() >= kMinAxisPoints) return median_of(near_axis);
   if (all.empty()) return std::nullopt;
+  if (near_axis.size() >= kMinAxisPoints) {
+    const Eigen::Vector3d plane = plane_of(near_axis, Eigen::Vector3d::UnitZ());
+    if (plane.allFinite() && plane.z() > 0.0) return 1.0 / plane.z();
+  }
   return median_of(all);
 }
 

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "odometry/feature/first_map.hpp"
-
 namespace overfly::odometry {
 namespace {
 
@@ -13,6 +11,15 @@ constexpr double kPlaneThresholdPx = 3.0;
 constexpr double kMaxOffsetStepPx = 4.0;
 constexpr float kMinCorrelation = 0.85F;
 constexpr int kCoarseTracks = 200;
+/// Of two motions over all views: the better one's residual must be less than so much of the
+/// other's.
+constexpr double kMostAlikeResidual = 0.7;
+
+/// A motion that two views allow, and what all views make of it.
+struct Hypothesis {
+  FirstMapInput input;
+  FirstMap solved;
+};
 
 }  // namespace
 
@@ -174,25 +181,46 @@ bool Initialiser::reconstruct(const FrameImage& frame, OrbExtractor& orb, Map& m
   options.min_parallax_rad = waited ? options_.least_parallax_rad : options_.min_parallax_rad;
   options.consider_plane = options_.planar_start;
   options.seed = options_.seed;
-  const auto two_views = reconstruct_two_view(camera_, from, to, options);
-  if (!two_views) return false;
+  std::optional<Hypothesis> best;
+  for (const TwoViewReconstruction& motion : reconstruct_two_view(camera_, from, to, options)) {
+    Hypothesis hypothesis{input_of(motion, frame), {}};
+    auto solved = solve_first_map(camera_, hypothesis.input);
+    if (!solved) continue;
+    hypothesis.solved = std::move(*solved);
+    if (best) {
+      // A wrong plane fits two views, not all between them as well.
+      const bool better = hypothesis.solved.rms_sigma < best->solved.rms_sigma;
+      const Hypothesis& worse = better ? *best : hypothesis;
+      const Hypothesis& good = better ? hypothesis : *best;
+      if (good.solved.rms_sigma > kMostAlikeResidual * worse.solved.rms_sigma) return false;
+      if (!better) continue;
+    }
+    best = std::move(hypothesis);
+  }
+  if (!best) return false;
+  fill_first_map(camera_, best->input, best->solved, orb, map);
+  return true;
+}
+
+FirstMapInput Initialiser::input_of(const TwoViewReconstruction& motion,
+                                    const FrameImage& frame) const {
   FirstMapInput input;
   input.first = &*first_;
   input.last = &frame;
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
-    if (two_views->good[i] == 0) continue;
+    if (motion.good[i] == 0) continue;
     FirstMapPoint& point = input.points.emplace_back();
     point.corner = tracks_[i].corner;
     point.patch_level = tracks_[i].patch_level;
-    point.p_first = two_views->points_first[i];
+    point.p_first = motion.points_first[i];
     point.last_pixel = tracks_[i].pixel;
     for (const Snapshot& snapshot : snapshots_) {
       point.between_pixels.push_back(snapshot.pixels[origin_[i]]);
     }
   }
   for (const Snapshot& snapshot : snapshots_) input.between.push_back(&snapshot.frame);
-  input.T_last_first = two_views->T_second_first;
-  return make_first_map(camera_, input, orb, map);
+  input.T_last_first = motion.T_second_first;
+  return input;
 }
 
 }  // namespace overfly::odometry

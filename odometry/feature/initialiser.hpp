@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/camera.hpp"
+#include "odometry/feature/first_map.hpp"
 #include "odometry/feature/map.hpp"
 #include "odometry/feature/orb.hpp"
 #include "odometry/feature/patch_aligner.hpp"
@@ -67,6 +68,8 @@ class Initialiser {
   void remember(const FrameImage& frame);
   [[nodiscard]] double median_motion_px() const;
   bool reconstruct(const FrameImage& frame, OrbExtractor& orb, Map& map);
+  [[nodiscard]] FirstMapInput input_of(const TwoViewReconstruction& motion,
+                                       const FrameImage& frame) const;
 
   PinholeCamera camera_;
   InitialiserOptions options_;

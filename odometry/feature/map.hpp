@@ -117,9 +117,10 @@ void set_normal(const PinholeCamera& camera, const Keyframe& source, MapPoint& p
 /// Fits the ground's plane to the keyframe's points, robustly; keeps the old one with too few.
 void fit_plane(const PinholeCamera& camera, const Map& map, Keyframe& keyframe);
 
-/// Median depth in the camera of points: of those near the optical axis, where the alignment
-/// `init_scale` compares it with the ground, if there are enough of them. Empty without points.
-[[nodiscard]] std::optional<double> median_depth(const Pose& T_camera_vo,
-                                                 const std::vector<Eigen::Vector3d>& points_vo);
+/// Depth of the ground on the camera's optical axis, which the alignment `init_scale` compares with
+/// the truth: of a plane through the points near the axis if there are enough of them, else the
+/// median of all. Empty without points in front.
+[[nodiscard]] std::optional<double> axis_depth(const Pose& T_camera_vo,
+                                               const std::vector<Eigen::Vector3d>& points_vo);
 
 }  // namespace overfly::odometry

@@ -23,7 +23,7 @@ constexpr double kChi2Line = 3.84;
 constexpr double kPlanarRatio = 0.45;
 /// A plane's homography allows two motions. The wrong one's plane is seen edge-on from the first
 /// view, and points beyond its horizon lie behind the camera; where these are fewer than a
-/// twentieth (the camera is tilted by some 30 deg at 69 deg of view) there is no telling.
+/// twentieth (the camera is tilted by some 30 deg at 69 deg of view) two views cannot tell.
 constexpr double kMostAlike = 0.95;
 
 Eigen::Matrix3d from_null_vector(const Matrix9d& normal_matrix) {
@@ -224,40 +224,40 @@ std::optional<HomographyFit> fit_homography(const Pixels& first,
   return fit;
 }
 
-std::optional<TwoViewReconstruction> reconstruct_two_view(const PinholeCamera& camera,
-                                                          const Pixels& first,
-                                                          const Pixels& second,
-                                                          const TwoViewOptions& options) {
-  if (static_cast<int>(first.size()) < options.min_points) return std::nullopt;
+std::vector<TwoViewReconstruction> reconstruct_two_view(const PinholeCamera& camera,
+                                                        const Pixels& first,
+                                                        const Pixels& second,
+                                                        const TwoViewOptions& options) {
+  if (static_cast<int>(first.size()) < options.min_points) return {};
   const Pixels a = normalised(camera, first);
   const Pixels b = normalised(camera, second);
   const double sigma = options.sigma_px / camera.fx_px;
   std::mt19937_64 rng(options.seed);
   const Model plane = refined_homography(ransac_homography(a, b, sigma, rng), a, b, sigma);
   const Model general = ransac_essential(a, b, sigma, rng);
-  if (plane.score <= 0.0 && general.score <= 0.0) return std::nullopt;
+  if (plane.score <= 0.0 && general.score <= 0.0) return {};
   const bool planar =
       options.consider_plane && plane.score > kPlanarRatio * (plane.score + general.score);
   const std::vector<Pose> motions =
       planar ? motions_of_homography(plane.matrix) : motions_of_essential(general.matrix);
-  TwoViewReconstruction best;
-  int second_best = 0;
+  std::vector<TwoViewReconstruction> tried;
+  tried.reserve(motions.size());
   for (const Pose& T_second_first : motions) {
-    TwoViewReconstruction tried = triangulate_all(T_second_first, a, b, 2.0 * sigma);
-    if (tried.good_count > best.good_count) {
-      second_best = best.good_count;
-      best = std::move(tried);
-    } else {
-      second_best = std::max(second_best, tried.good_count);
-    }
+    tried.push_back(triangulate_all(T_second_first, a, b, 2.0 * sigma));
+    tried.back().planar = planar;
   }
-  best.planar = planar;
-  if (best.good_count < options.min_points || second_best > kMostAlike * best.good_count ||
-      best.good_count < 0.7 * static_cast<double>(first.size()) ||
-      best.median_parallax_rad < options.min_parallax_rad) {
-    return std::nullopt;
+  std::stable_sort(tried.begin(), tried.end(), [](const auto& x, const auto& y) {
+    return x.good_count > y.good_count;
+  });
+  if (tried.empty() || tried[0].good_count < options.min_points ||
+      tried[0].good_count < 0.7 * static_cast<double>(first.size()) ||
+      tried[0].median_parallax_rad < options.min_parallax_rad) {
+    return {};
   }
-  return best;
+  const double alike = kMostAlike * tried[0].good_count;
+  std::erase_if(tried, [alike](const auto& motion) { return motion.good_count <= alike; });
+  const bool told_apart = tried.size() == 1 || (planar && tried.size() == 2);
+  return told_apart ? tried : std::vector<TwoViewReconstruction>{};
 }
 
 }  // namespace overfly::odometry

@@ -50,8 +50,9 @@ struct TwoViewReconstruction {
 /// Method: scores S_H, S_E and the ratio R_H = S_H / (S_H + S_E) > 0.45 of Mur-Artal, Montiel and
 /// Tardos 2015, section IV, eqs. 2 and 3 (DOI 10.1109/TRO.2015.2463671), with the calibrated
 /// matrix in the place of F.
-/// @return empty when the motion is ambiguous or the parallax still too small
-[[nodiscard]] std::optional<TwoViewReconstruction> reconstruct_two_view(
+/// @return one, or the two motions of a plane where two views cannot tell them apart, the one with
+///   more good points first; empty when the motion is ambiguous or the parallax still too small
+[[nodiscard]] std::vector<TwoViewReconstruction> reconstruct_two_view(
     const PinholeCamera& camera,
     const std::vector<Eigen::Vector2d>& first,
     const std::vector<Eigen::Vector2d>& second,

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "core/time.hpp"
+#include "odometry/feature/lie.hpp"
 #include "synthetic_flight.hpp"
 
 namespace overfly::odometry {
@@ -308,6 +309,51 @@ TEST(FeatureOdometry, AKnownHeightMakesItsUnitsMetres) {
   const Eigen::Vector3d way = last.T_vo_camera.translation - first->sample.T_vo_camera.translation;
   EXPECT_NEAR(way.norm(), 40.0 * flown_s, 0.01 * 40.0 * flown_s + 0.1);
   EXPECT_NEAR(estimates.back().map_points_vo.front().z(), 200.0F, 4.0F);
+}
+
+TEST(FeatureOdometry, StartsOverAPlaneSeenObliquely) {
+  // Two views of a plane allow two motions there; the wrong one turns the camera.
+  SyntheticFlightOptions options;
+  options.speed_m_s = 40.0;
+  options.height_m = 200.0;
+  options.straight_s = 10.0;
+  options.duration_s = 2.5;
+  const SyntheticGround ground = SyntheticGround::procedural(1, 512, 1.0, 0.0);
+  const auto camera =
+      PinholeCamera::from_fov(320, 240, rad_from_deg(84.872), FovAxis::kHorizontal).value();
+  for (const double tilt_deg : {-40.0, 40.0}) {
+    const auto odometry = create_feature_odometry({}).value();
+    std::optional<Pose> T_first;  // of the camera, truth and estimate
+    std::optional<Pose> T_vo_first;
+    std::int64_t first_frame = -1;
+    const std::vector<Pose> poses = testing::fly_s_turns(options);
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      Pose T_world_camera = poses[i];
+      T_world_camera.rotation =
+          T_world_camera.rotation * exp_so3({rad_from_deg(tilt_deg), 0.0, 0.0});
+      VoFrame frame;
+      frame.index = static_cast<std::int64_t>(i);
+      frame.t_ns = frame_time_ns(frame.index, FrameRate{});
+      frame.intrinsics = camera;
+      frame.image =
+          std::make_shared<const Image>(ground.render(camera, T_world_camera, 1.0, i + 1));
+      const EstimateSample sample = odometry->track(frame).value().sample;
+      if (sample.state != TrackingState::kTracking) continue;
+      if (!T_first) {
+        T_first = T_world_camera;
+        T_vo_first = sample.T_vo_camera;
+        first_frame = sample.frame;
+      }
+      const Pose truth = T_first->inverse() * T_world_camera;
+      const Pose told = T_vo_first->inverse() * sample.T_vo_camera;
+      EXPECT_LT(rotation_angle_rad(truth.rotation, told.rotation), rad_from_deg(0.3)) << i;
+      if (truth.translation.norm() > 5.0) {
+        EXPECT_GT(truth.translation.normalized().dot(told.translation.normalized()), 0.999) << i;
+      }
+    }
+    EXPECT_GE(first_frame, 0) << tilt_deg;
+    EXPECT_LT(first_frame, 60) << tilt_deg;
+  }
 }
 
 TEST(FeatureOdometry, TracksWhileAThreadBesideItMaps) {

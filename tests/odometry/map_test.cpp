@@ -72,14 +72,29 @@ TEST(GroundPlane, IsFittedDespiteOutliers) {
   EXPECT_LT((keyframe.plane.coefficients - truth).norm(), 0.01);
 }
 
-TEST(MedianDepth, SpeaksForTheGroundOnTheOpticalAxis) {
+TEST(AxisDepth, IsThePlanesOnTheAxisHoweverTilted) {
+  // Points over the whole image, more of them far than near, on a plane at 2 along the axis.
+  const Eigen::Vector3d plane(0.1, -0.35, 0.5);
+  const Pose T_camera_vo{exp_so3({0.3, 0.1, -0.2}), {0.1, 0.2, 0.3}};
   std::vector<Eigen::Vector3d> points;
-  for (int i = 0; i < 20; ++i) points.emplace_back(0.005 * i, 0.0, 2.0);
+  for (int y = 0; y < 960; y += 20 + y / 20) {
+    for (int x = 10; x < 1280; x += 40) {
+      const Eigen::Vector3d ray = camera().ray({1.0 * x, 1.0 * y});
+      const double wrong = (x + y) % 7 == 0 ? 1.4 : 1.0;
+      points.push_back(T_camera_vo.inverse() * (wrong * ray / plane.dot(ray)));
+    }
+  }
+  EXPECT_NEAR(*axis_depth(T_camera_vo, points), 2.0, 0.01);
+}
+
+TEST(AxisDepth, IsTheMedianWhereFewPointsAreNearTheAxis) {
+  std::vector<Eigen::Vector3d> points(5, Eigen::Vector3d(0.0, 0.0, 2.0));
   for (int i = 0; i < 200; ++i) points.emplace_back(3.0, 0.0, 4.0);
-  EXPECT_DOUBLE_EQ(*median_depth(Pose{}, points), 2.0);
-  points.erase(points.begin(), points.begin() + 10);  // too few are left near the axis
-  EXPECT_DOUBLE_EQ(*median_depth(Pose{}, points), 4.0);
-  EXPECT_FALSE(median_depth(Pose{}, {}));
+  EXPECT_DOUBLE_EQ(*axis_depth(Pose{}, points), 4.0);
+  points.emplace_back(0.0, 0.0, -1.0);
+  EXPECT_DOUBLE_EQ(*axis_depth(Pose{}, points), 4.0);
+  EXPECT_FALSE(axis_depth(Pose{}, {}));
+  EXPECT_FALSE(axis_depth(Pose{}, {{0.0, 0.0, -1.0}}));
 }
 
 TEST(PatchWarp, IsThePlanesMapFromTheOtherViewToTheSource) {
