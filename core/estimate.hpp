@@ -22,7 +22,7 @@ struct EstimateSample {
   std::int64_t t_ns = 0;  ///< stamp of the image it belongs to
   TrackingState state = TrackingState::kInitialising;
   Pose T_vo_camera;                   ///< meaningful only while tracking
-  std::optional<double> scene_depth;  ///< median depth of the scene in vo units
+  std::optional<double> scene_depth;  ///< of the ground on the optical axis, or median [vo units]
   int map_id = 0;                     ///< grows by one with every reset: new origin, new scale
 };
 

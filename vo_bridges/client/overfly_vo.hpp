@@ -77,7 +77,7 @@ struct Answer {
   /// T_vo_camera, camera axes x right, y down, z forward. Counts only while tracking.
   std::array<double, 3> position{};
   std::array<double, 4> quaternion_xyzw{0.0, 0.0, 0.0, 1.0};
-  double scene_depth = 0.0;                  ///< median, in the units of position; 0 = not known
+  double scene_depth = 0.0;                  ///< on the optical axis, or median; 0 = not known
   std::map<std::string, double> counters{};  ///< names without spaces
   std::map<std::string, double> timings_ms{};
   DebugImage debug_image{};                        ///< only where it is wanted

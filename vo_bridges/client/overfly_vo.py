@@ -58,7 +58,7 @@ class Answer:
     map_id: int = 0  # one more each time the estimator starts over by itself
     position: tuple = (0.0, 0.0, 0.0)
     quaternion_xyzw: tuple = (0.0, 0.0, 0.0, 1.0)
-    scene_depth: float = 0.0  # median, in the units of position; 0 = not known
+    scene_depth: float = 0.0  # on the optical axis, or median; 0 = not known
     counters: dict = dataclasses.field(default_factory=dict)  # names without spaces
     timings_ms: dict = dataclasses.field(default_factory=dict)
     debug_image: tuple = None  # (width_px, height_px, channels 1 or 3, bytes), where wanted
