@@ -26,7 +26,7 @@ struct FeatureParameters {
   bool low_texture = true;            ///< blurred ground is held by larger, coarser patches
   bool reject_saturated = true;       ///< nothing is looked for where the image is burnt out
   /// Above ground at the first map [m], in (0, 20000]: poses are in metres. 0 = not known: the
-  /// first map's median depth is 1.
+  /// ground on the axis of the first map's first view is 1 away.
   double initial_height_m = 0.0;
   /// 1 = each keyframe is mapped before the answer: results repeat to the last byte.
   /// 2 = mapping has a thread of its own, as real time needs it.

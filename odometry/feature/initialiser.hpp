@@ -44,7 +44,7 @@ class Initialiser {
   Initialiser(const PinholeCamera& camera, const InitialiserOptions& options);
 
   /// Takes the next frame. On success the map has its first keyframes, the newest of which is this
-  /// frame: the first one's camera is the origin, its median depth is 1.
+  /// frame: the first one's camera is the origin, the ground on its axis 1 away.
   bool process(const FrameImage& frame, OrbExtractor& orb, Map& map);
   void reset();
 
