@@ -164,6 +164,8 @@ def table_lines(results):
         if key[:3] != last:
             last = key[:3]
             yield f"\n### {key[1]}, {key[2]} m/s, {key[0]}\n"
+            commits = sorted({r["commit"] for k in groups if k[:3] == last for r in groups[k]})
+            yield f"Flown by commit {', '.join(commits)}.\n"
             paced = not key[0].startswith("lockstep")
             yield ("| deg/s | height m | seeds | completed | coverage % | start s | Sim3 m "
                    "| `init_scale` m | rotation deg | bar |" + paced * " dropped | late |")
