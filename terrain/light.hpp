@@ -57,7 +57,7 @@ inline constexpr double kMaxLight = 3.0;
 /// Deterministic and thread-safe as the tiles it covers.
 /// Errors: kInvalidArgument as `validate`.
 [[nodiscard]] Result<std::shared_ptr<const TileSource>> with_light(
-    std::shared_ptr<const TileSource> tiles, const LightOptions& options);
+    const std::shared_ptr<const TileSource>& tiles, const LightOptions& options);
 
 /// One line for people: sun, shading, clouds.
 [[nodiscard]] std::string describe(const LightOptions& options);

@@ -117,11 +117,11 @@ class LitTiles final : public TileDecorator {
 
 }  // namespace
 
-Result<std::shared_ptr<const TileSource>> with_light(std::shared_ptr<const TileSource> tiles,
+Result<std::shared_ptr<const TileSource>> with_light(const std::shared_ptr<const TileSource>& tiles,
                                                      const LightOptions& options) {
   const Status valid = options.validate();
   if (!valid) return valid.error();
-  return std::shared_ptr<const TileSource>(std::make_shared<LitTiles>(std::move(tiles), options));
+  return std::shared_ptr<const TileSource>(std::make_shared<LitTiles>(tiles, options));
 }
 
 }  // namespace overfly::terrain

@@ -191,7 +191,7 @@ Status FlightRun::record_events() {
     for (EstimatorEvent& event : workers_[i]->take_events()) {
       if (Status status = recorder_.add_event(i, std::move(event)); !status) return status;
     }
-    const Status logged = recorder_.add_estimator_log(i, end_ns(), workers_[i]->take_log());
+    Status logged = recorder_.add_estimator_log(i, end_ns(), workers_[i]->take_log());
     if (!logged) return logged;
   }
   return {};
