@@ -3,6 +3,7 @@
 #include <ceres/ceres.h>
 
 #include <cmath>
+#include <limits>
 
 #include "odometry/feature/bundle_terms.hpp"
 
@@ -57,6 +58,7 @@ double adjust(const PinholeCamera& camera, Bundle& bundle, const BundleOptions& 
     pose = pose_of(blocks[i].data());
     pose.rotation.normalize();
   }
+  if (!summary.IsSolutionUsable()) return std::numeric_limits<double>::infinity();
   const double count = std::max<double>(1.0, 2.0 * static_cast<double>(bundle.sights.size()));
   return std::sqrt(2.0 * summary.final_cost / count);
 }

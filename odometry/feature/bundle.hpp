@@ -36,7 +36,8 @@ struct BundleOptions {
 ///
 /// Method: Levenberg-Marquardt with the Schur complement over the points (Triggs et al. 2000,
 /// section 6.1) by Ceres, analytic derivatives, one thread: results repeat.
-/// @return root of the mean squared residual after it, in sigmas
+/// @return root of the mean squared residual after it, in sigmas; infinite where a sight's point is
+/// not in front of its camera, which leaves all as it was
 double adjust(const PinholeCamera& camera, Bundle& bundle, const BundleOptions& options);
 
 /// Adjusts the newest keyframe, those most covisible with it, and all points that these see; other

@@ -26,9 +26,10 @@ struct DebugContent {
   const std::map<std::string, double>* timing_ms = nullptr;
 };
 
-/// Half-size RGB image. Map points by state: found green (coarse patches larger), found elsewhere
-/// red, not found grey; corners of a new keyframe without a depth blue; before the first map the
-/// corners being followed yellow with their path. Burnt-out areas are tinted. A line of text; a
+/// RGB image, half as wide and high from 960 px of width on. Map points by state: found green
+/// (coarse patches larger), found elsewhere red, not found grey; corners of a new keyframe without
+/// a depth blue (with one thread: beside tracking they are looked for later); before the first map
+/// the corners being followed yellow with their path. Burnt-out areas are tinted. A line of text; a
 /// blue frame around the image of a keyframe.
 [[nodiscard]] Image draw_debug_view(const Pyramid& pyramid, const DebugContent& content);
 

@@ -17,7 +17,6 @@ constexpr int kYoungMap = 6;
 constexpr double kExtrapolateS = 1.5;
 /// Images that repeat while the camera should have moved by more than this show nothing new.
 constexpr double kFrozenMotionPx = 0.3;
-constexpr int kMinCornersToSearch = 100;
 /// Corners a frame is asked for, per point that is tracked in it.
 constexpr double kFeaturesPerPoint = 2.0;
 
@@ -71,6 +70,10 @@ std::map<std::string, std::string> FeatureOdometry::effective_parameters() const
 }
 
 void FeatureOdometry::reset() {
+  if (parts_) {
+    parts_->keeper.clear();
+    account_->cpu_s = account_->cpu_s + parts_->keeper.take_cpu_s();
+  }
   FeatureOdometry fresh(parameters_);
   fresh.debug_ = debug_;
   fresh.account_ = std::move(account_);
@@ -238,9 +241,10 @@ void FeatureOdometry::search(const FrameImage& frame, VoEstimate& estimate, Outc
   if (!outcome.tracked.tracked) {
     RelocaliserOptions options;
     options.seed = parameters_.seed + static_cast<std::uint64_t>(frame.index);
+    options.min_corners = std::min(options.min_corners, parameters_.features / 2);
     const Relocalisation found = relocalise(camera_, options, frame.pyramid.level(0), orb_, map());
     estimate.counters["relocalisation_matches"] = found.matches;
-    if (found.corners >= kMinCornersToSearch) {
+    if (found.corners >= options.min_corners) {
       blind_search_s_ += static_cast<double>(frame.t_ns - previous_->t_ns) * 1e-9;
     }
     if (found.T_camera_vo) {

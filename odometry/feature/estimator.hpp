@@ -29,7 +29,8 @@ class FeatureOdometry final : public VoPort {
   [[nodiscard]] Result<VoEstimate> track(const VoFrame& frame) override;
   void reset() override;
   void set_debug(bool wanted) override { debug_ = wanted; }
-  /// CPU of both threads; memory of the map at its largest: images, points, observations.
+  /// CPU of both threads; memory of the map at its largest: images, points, observations (with two
+  /// threads of the part that tracking has a copy of).
   [[nodiscard]] std::optional<ResourceUse> resource_use() const override;
 
  private:

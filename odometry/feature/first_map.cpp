@@ -64,7 +64,12 @@ Bundle bundle_of(const PinholeCamera& camera, const FirstMapInput& input) {
 
 /// Removes sights that miss; returns how many points keep two or more.
 int remove_outliers(const PinholeCamera& camera, Bundle& bundle) {
-  std::vector<int> sights(bundle.points_vo.size(), 0);
+  struct Seen {
+    bool first = false;  ///< in the first view, which holds the patch
+    int views = 0;
+    [[nodiscard]] bool enough() const { return first && views >= 2; }
+  };
+  std::vector<Seen> seen(bundle.points_vo.size());
   std::erase_if(bundle.sights, [&](const Bundle::Sight& sight) {
     const auto pixel =
         camera.project(bundle.cameras[static_cast<std::size_t>(sight.camera)].T_camera_vo *
@@ -72,15 +77,15 @@ int remove_outliers(const PinholeCamera& camera, Bundle& bundle) {
     return !pixel || (*pixel - sight.pixel).norm() > kOutlierSigmas * sight.sigma_px;
   });
   for (const Bundle::Sight& sight : bundle.sights) {
-    // The first view holds the patch: without it the point is of no use.
-    if (sight.camera == 0) sights[static_cast<std::size_t>(sight.point)] += 100;
-    ++sights[static_cast<std::size_t>(sight.point)];
+    Seen& point = seen[static_cast<std::size_t>(sight.point)];
+    if (sight.camera == 0) point.first = true;
+    ++point.views;
   }
   std::erase_if(bundle.sights, [&](const Bundle::Sight& sight) {
-    return sights[static_cast<std::size_t>(sight.point)] < 102;
+    return !seen[static_cast<std::size_t>(sight.point)].enough();
   });
   return static_cast<int>(
-      std::count_if(sights.begin(), sights.end(), [](int n) { return n >= 102; }));
+      std::count_if(seen.begin(), seen.end(), [](const Seen& point) { return point.enough(); }));
 }
 
 void normalise_scale(Bundle& bundle) {

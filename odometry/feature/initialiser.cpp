@@ -55,6 +55,7 @@ void Initialiser::start(const FrameImage& frame, OrbExtractor& orb) {
   reset();
   first_ = frame;
   frames_ = 0;
+  snapshot_every_ = options_.snapshot_every;
   H_now_first_.setIdentity();
   H_step_.setIdentity();
   for (const Corner& corner : orb.detect(frame.pyramid.level(0))) {
@@ -151,6 +152,14 @@ void Initialiser::remember(const FrameImage& frame) {
   snapshot.pixels.resize(corner_count_);
   for (std::size_t i = 0; i < tracks_.size(); ++i) snapshot.pixels[origin_[i]] = tracks_[i].pixel;
   snapshots_.push_back(std::move(snapshot));
+  if (static_cast<int>(snapshots_.size()) <= options_.max_snapshots) return;
+  // A camera that stands may wait for long: the views stay spread over the whole wait.
+  std::vector<Snapshot> thinned;
+  for (std::size_t i = 1; i < snapshots_.size(); i += 2) {
+    thinned.push_back(std::move(snapshots_[i]));
+  }
+  snapshots_ = std::move(thinned);
+  snapshot_every_ *= 2;
 }
 
 double Initialiser::median_motion_px() const {
@@ -178,7 +187,7 @@ bool Initialiser::process(const FrameImage& frame, OrbExtractor& orb, Map& map) 
     reset();
     return true;
   }
-  if (frames_ % options_.snapshot_every == 0) remember(frame);
+  if (frames_ % snapshot_every_ == 0) remember(frame);
   return false;
 }
 

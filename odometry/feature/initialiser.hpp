@@ -32,7 +32,8 @@ struct InitialiserOptions {
   bool planar_start = true;      ///< as in FeatureParameters
   int coarsest_patch_level = 2;  ///< as in MapperOptions
   int attempt_every = 3;         ///< frames
-  int snapshot_every = 6;        ///< frames between the keyframes of the first map
+  int snapshot_every = 6;        ///< frames between the keyframes of the first map, at first
+  int max_snapshots = 32;  ///< when they are full, every second goes, and they come half as often
   int min_tracks = 120;
   std::uint64_t seed = 1;
 };
@@ -78,6 +79,7 @@ class Initialiser {
   std::vector<std::size_t> origin_;  ///< of each track: index of its corner in the first image
   std::size_t corner_count_ = 0;
   std::vector<Snapshot> snapshots_;
+  int snapshot_every_ = 1;  ///< frames
   Eigen::Matrix3d H_now_first_ = Eigen::Matrix3d::Identity();
   Eigen::Matrix3d H_step_ = Eigen::Matrix3d::Identity();
   int frames_ = 0;

@@ -82,7 +82,7 @@ class Map {
   void forget_images(int keep_newest);
   void clear();
   /// A copy of what tracking needs: so many of the newest keyframes, of which the newest alone has
-  /// its observations and none has candidates, and the points that were seen from them.
+  /// its observations and none has candidates, and the points whose patch is in them.
   [[nodiscard]] Map newest_part(int keyframes) const;
   /// Of images, points, observations and candidates [bytes].
   [[nodiscard]] std::size_t memory_bytes() const;

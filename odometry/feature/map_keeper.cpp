@@ -45,6 +45,7 @@ void MapKeeper::clear() {
     wait_until_idle();
     const std::lock_guard lock(mutex_);
     published_.reset();
+    failure_ = nullptr;
   }
   view_.reset();
   sights_.clear();
@@ -54,15 +55,19 @@ void MapKeeper::clear() {
 const Map& MapKeeper::refresh() {
   if (threaded_) {
     const std::lock_guard lock(mutex_);
+    if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
     view_ = published_;
   }
   return view();
 }
 
 void MapKeeper::note_sights(const TrackResult& tracked) {
-  for (const TrackedPoint& seen : tracked.points) sights_.push_back({seen.point, true});
-  for (const TrackedPoint& seen : tracked.outliers) sights_.push_back({seen.point, false});
-  for (const int id : tracked.missed) sights_.push_back({id, false});
+  for (const TrackedPoint& seen : tracked.points) {
+    ++sights_[seen.point].expected;
+    ++sights_[seen.point].found;
+  }
+  for (const TrackedPoint& seen : tracked.outliers) ++sights_[seen.point].expected;
+  for (const int id : tracked.missed) ++sights_[id].expected;
 }
 
 bool MapKeeper::wants_keyframe(const FrameImage& frame, const TrackResult& tracked) const {
@@ -115,12 +120,18 @@ void MapKeeper::run() {
     lock.unlock();
     const double before_s = thread_cpu_s();
     std::map<std::string, double> timing_ms;
-    map_keyframe(work, timing_ms);
-    publish();
+    std::exception_ptr failure;
+    try {
+      map_keyframe(work, timing_ms);
+      publish();
+    } catch (...) {
+      failure = std::current_exception();
+    }
     const double used_s = thread_cpu_s() - before_s;
     lock.lock();
     cpu_s_ += used_s;
     for (const auto& [stage, ms] : timing_ms) timing_ms_[stage] += ms;
+    if (failure) failure_ = failure;
     busy_ = false;
     changed_.notify_all();
   }
@@ -134,12 +145,12 @@ void MapKeeper::map_keyframe(const Work& work, std::map<std::string, double>& ti
   mapper_.mend(orb_, map_, timing_ms);
 }
 
-void MapKeeper::count(const std::vector<Sight>& sights) {
-  for (const Sight& sight : sights) {
-    MapPoint* point = map_.point(sight.point);
+void MapKeeper::count(const std::map<int, Sights>& sights) {
+  for (const auto& [id, seen] : sights) {
+    MapPoint* point = map_.point(id);
     if (point == nullptr) continue;
-    ++point->expected;
-    if (sight.found) ++point->found;
+    point->expected += seen.expected;
+    point->found += seen.found;
   }
 }
 

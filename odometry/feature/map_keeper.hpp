@@ -2,6 +2,7 @@
 #pragma once
 
 #include <condition_variable>
+#include <exception>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -40,6 +41,7 @@ class MapKeeper {
   void clear();
 
   /// Takes what the thread published last. @return stays as it is until the next call of this
+  /// What the thread has thrown since the last call is thrown here.
   const Map& refresh();
   /// As `refresh` returned it, with one thread as it is.
   [[nodiscard]] const Map& view() const { return view_ ? *view_ : map_; }
@@ -60,19 +62,20 @@ class MapKeeper {
   void wait_until_idle();
 
  private:
-  struct Sight {
-    int point = 0;
-    bool found = false;
+  /// Of a point since the last keyframe, in frames.
+  struct Sights {
+    int expected = 0;
+    int found = 0;
   };
   struct Work {
     FrameImage frame;
     TrackResult tracked;
-    std::vector<Sight> sights;
+    std::map<int, Sights> sights;
   };
 
   void run();
   void map_keyframe(const Work& work, std::map<std::string, double>& timing_ms);
-  void count(const std::vector<Sight>& sights);
+  void count(const std::map<int, Sights>& sights);
   void publish();
 
   Mapper mapper_;
@@ -80,12 +83,13 @@ class MapKeeper {
   OrbExtractor orb_;
   bool threaded_;
   Map map_;
-  std::vector<Sight> sights_;
+  std::map<int, Sights> sights_;     ///< by the point's id
   std::shared_ptr<const Map> view_;  ///< null with one thread
 
   mutable std::mutex mutex_;  ///< guards all below
   std::condition_variable changed_;
   std::optional<Work> work_;
+  std::exception_ptr failure_;
   bool busy_ = false;
   bool stop_ = false;
   std::shared_ptr<const Map> published_;

@@ -203,7 +203,7 @@ void Mapper::observe(const MapPoint& point, Keyframe& keyframe, Map& map) const 
   map.add_observation(keyframe, {point.id, match->pixel, sigma_px_of(point.patch_level)});
 }
 
-/// Points that are too seldom found where they should be, or behind a camera, go.
+/// Points that are too seldom found where they should be go.
 void Mapper::cull(Map& map) const {
   std::vector<int> gone;
   for (const auto& [id, point] : map.points()) {

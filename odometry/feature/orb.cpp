@@ -95,6 +95,11 @@ cv::Size level_size(const cv::Size& full, double scale) {
           static_cast<int>(std::lround(full.height / scale))};
 }
 
+/// A level in which no corner keeps its margin on both sides.
+bool too_small(const cv::Size& level) {
+  return std::min(level.width, level.height) < 4 * kMarginPx;
+}
+
 }  // namespace
 
 CellGrid CellGrid::over(int width_px, int height_px, int cells) {
@@ -149,8 +154,10 @@ void OrbExtractor::look_only_at(const cv::Mat& seen) {
   if (seen.empty() || cv::countNonZero(seen) == seen.cols * seen.rows) return;
   const cv::Mat kernel = cv::Mat::ones(2 * kMarginPx + 1, 2 * kMarginPx + 1, CV_8U);
   for (const double scale : scales_) {
+    const cv::Size size = level_size(seen.size(), scale);
+    if (too_small(size)) break;
     cv::Mat& mask = masks_.emplace_back();
-    cv::resize(seen, mask, level_size(seen.size(), scale), 0.0, 0.0, cv::INTER_NEAREST);
+    cv::resize(seen, mask, size, 0.0, 0.0, cv::INTER_NEAREST);
     cv::erode(mask, mask, kernel);
   }
 }
@@ -160,7 +167,7 @@ void OrbExtractor::load(const cv::Mat& image) {
   smoothed_.assign(scales_.size(), cv::Mat());
   for (std::size_t l = 1; l < scales_.size(); ++l) {
     const cv::Size size = level_size(image.size(), scales_[l]);
-    if (std::min(size.width, size.height) < 4 * kMarginPx) break;
+    if (too_small(size)) break;
     cv::Mat smaller;
     cv::resize(levels_.back(), smaller, size, 0.0, 0.0, cv::INTER_LINEAR);
     levels_.push_back(smaller);

@@ -11,8 +11,6 @@
 namespace overfly::odometry {
 namespace {
 
-constexpr int kMinCorners = 100;
-
 std::vector<PoseObservation> match_points(const RelocaliserOptions& options,
                                           const std::vector<Corner>& corners,
                                           OrbExtractor& orb,
@@ -75,14 +73,21 @@ std::optional<Pose> pose_of_four(const PinholeCamera& camera,
   return pose;
 }
 
+bool agrees(const PinholeCamera& camera,
+            const PoseObservation& match,
+            const Pose& pose,
+            double threshold_px) {
+  const auto pixel = camera.project(pose * match.point_vo);
+  return pixel && (*pixel - match.pixel).norm() < threshold_px;
+}
+
 int count_inliers(const PinholeCamera& camera,
                   const std::vector<PoseObservation>& matches,
                   const Pose& pose,
                   double threshold_px) {
   return static_cast<int>(
       std::count_if(matches.begin(), matches.end(), [&](const PoseObservation& match) {
-        const auto pixel = camera.project(pose * match.point_vo);
-        return pixel && (*pixel - match.pixel).norm() < threshold_px;
+        return agrees(camera, match, pose, threshold_px);
       }));
 }
 
@@ -96,7 +101,7 @@ Relocalisation relocalise(const PinholeCamera& camera,
   Relocalisation result;
   const std::vector<Corner> corners = orb.detect(image);
   result.corners = static_cast<int>(corners.size());
-  if (result.corners < kMinCorners) return result;
+  if (result.corners < options.min_corners) return result;
   const std::vector<PoseObservation> matches = match_points(options, corners, orb, map);
   result.matches = static_cast<int>(matches.size());
   if (result.matches < options.min_inliers) return result;
@@ -119,7 +124,11 @@ Relocalisation relocalise(const PinholeCamera& camera,
   if (best < options.min_inliers) return result;
   PoseFitOptions fit_options;
   fit_options.outlier = options.threshold_px;
-  result.T_camera_vo = optimise_pose(camera, best_pose, matches, fit_options).T_camera_vo;
+  std::vector<PoseObservation> agreeing;
+  for (const PoseObservation& match : matches) {
+    if (agrees(camera, match, best_pose, options.threshold_px)) agreeing.push_back(match);
+  }
+  result.T_camera_vo = optimise_pose(camera, best_pose, agreeing, fit_options).T_camera_vo;
   return result;
 }
 

@@ -12,6 +12,7 @@ namespace overfly::odometry {
 
 struct RelocaliserOptions {
   int keyframes = 40;     ///< whose points are compared
+  int min_corners = 100;  ///< an image that offers fewer shows nothing
   int max_distance = 64;  ///< bits
   double ratio = 0.85;    ///< best to second-best distance
   int rounds = 300;       ///< of RANSAC

@@ -215,11 +215,8 @@ std::optional<HomographyFit> fit_homography(const Pixels& first,
   if (model.score <= 0.0) return std::nullopt;
   HomographyFit fit;
   fit.H_second_first = N.inverse() * model.matrix * N;
-  fit.inlier.assign(first.size(), 0);
   for (std::size_t i = 0; i < first.size(); ++i) {
-    if ((transfer(fit.H_second_first, first[i]) - second[i]).norm() > threshold_px) continue;
-    fit.inlier[i] = 1;
-    ++fit.inliers;
+    if ((transfer(fit.H_second_first, first[i]) - second[i]).norm() <= threshold_px) ++fit.inliers;
   }
   return fit;
 }

@@ -16,7 +16,6 @@ namespace overfly::odometry {
 /// Method: direct linear transform (Hartley and Zisserman 2003, algorithm 4.1) in RANSAC.
 struct HomographyFit {
   Eigen::Matrix3d H_second_first = Eigen::Matrix3d::Identity();  ///< pixels
-  std::vector<std::uint8_t> inlier;
   int inliers = 0;
 };
 [[nodiscard]] std::optional<HomographyFit> fit_homography(

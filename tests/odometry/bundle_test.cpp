@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <random>
 
 #include "odometry/feature/bundle_terms.hpp"
@@ -84,6 +85,15 @@ TEST(Bundle, GivesWrongSightsLittleWeight) {
                   .norm(),
               2e-3);
   }
+}
+
+TEST(Bundle, SaysWhenAPointIsBehindACamera) {
+  Bundle bundle = exact_bundle();
+  bundle.points_vo[3].z() = -1.0;
+  const Bundle before = bundle;
+  EXPECT_EQ(adjust(camera(), bundle, {}), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(bundle.points_vo[3], before.points_vo[3]);
+  EXPECT_EQ(bundle.cameras[4].T_camera_vo.translation, before.cameras[4].T_camera_vo.translation);
 }
 
 TEST(Bundle, RepeatsToTheLastBit) {

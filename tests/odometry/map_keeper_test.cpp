@@ -3,11 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include <memory>
+#include <chrono>
+#include <stdexcept>
+#include <thread>
 #include <vector>
 
-#include "core/time.hpp"
-#include "synthetic_flight.hpp"
+#include "level_scene.hpp"
 
 namespace overfly::odometry {
 namespace {
@@ -20,13 +21,8 @@ struct Followed {
 
 /// Follows a level flight; with two threads it waits for each keyframe's mapping.
 Followed follow(int threads) {
-  const auto camera =
-      PinholeCamera::from_fov(320, 240, rad_from_deg(84.872), FovAxis::kHorizontal).value();
-  const auto ground = testing::SyntheticGround::procedural(1, 512, 1.0, 5.0);
-  testing::SyntheticFlightOptions flight;
-  flight.speed_m_s = 40.0;
-  flight.height_m = 200.0;
-  flight.duration_s = 1.6;
+  const testing::LevelScene scene;
+  const PinholeCamera& camera = scene.camera();
   FeatureParameters parameters;
   parameters.features = 600;
   parameters.threads = threads;
@@ -37,11 +33,8 @@ Followed follow(int threads) {
   Followed followed;
   Pose T_camera_vo;
   std::map<std::string, double> timing_ms;
-  const std::vector<Pose> truth = testing::fly_s_turns(flight);
-  for (std::size_t i = 0; i < truth.size(); ++i) {
-    const auto index = static_cast<std::int64_t>(i);
-    const auto image = std::make_shared<const Image>(ground.render(camera, truth[i], 1.0, i + 1));
-    const FrameImage frame{index, frame_time_ns(index, FrameRate{}), build_pyramid(image)};
+  for (std::size_t i = 0; i < scene.T_world_camera().size(); ++i) {
+    const FrameImage frame = scene.frame(i);
     if (keeper.view().keyframes().empty()) {
       if (!initialiser.process(frame, orb, keeper.empty_map())) continue;
       keeper.begin();
@@ -60,6 +53,7 @@ Followed follow(int threads) {
   }
   keeper.take_timing(timing_ms);
   EXPECT_GT(timing_ms["mapping"], 0.0);
+  EXPECT_EQ(keeper.take_cpu_s() > 0.0, threads > 1);
   const Map& map = keeper.refresh();
   followed.keyframes = map.newest().id + 1;
   followed.points = map.points().size();
@@ -80,29 +74,68 @@ TEST(MapKeeper, MapsTheSameBesideTrackingAsBeforeTheAnswer) {
   }
 }
 
-/// A map of two keyframes without images and a plane of points, and a frame of the same view.
-TEST(MapKeeper, ForgetsWhileItsThreadIsAtWork) {
-  const PinholeCamera camera{320, 240, 200.0, 200.0, 159.5, 119.5};
-  FeatureParameters parameters;
-  parameters.threads = 2;
-  MapKeeper keeper(camera, {}, parameters);
-  const auto image = std::make_shared<const Image>(320, 240, 1, std::uint8_t{90});
-  for (int round = 0; round < 3; ++round) {
-    Map& map = keeper.empty_map();
-    for (int i = 0; i < 2; ++i) {
-      Keyframe keyframe;
-      keyframe.frame = i;
-      keyframe.pyramid = build_pyramid(image);
-      map.add_keyframe(keyframe);
+/// Follows nothing, but has a first map and a keyframe to work on beside.
+class MapKeeperAtWork : public ::testing::Test {
+ protected:
+  MapKeeperAtWork() {
+    for (std::size_t i = 0; i < scene_.T_world_camera().size(); ++i) {
+      frames_.push_back(scene_.frame(i));
     }
-    keeper.begin();
-    EXPECT_EQ(keeper.view().keyframes().size(), 2U);
-    std::map<std::string, double> timing_ms;
-    keeper.insert_keyframe({9, 9, build_pyramid(image)}, {}, timing_ms);
-    keeper.clear();
-    EXPECT_TRUE(keeper.refresh().keyframes().empty());
-    EXPECT_TRUE(keeper.empty_map().keyframes().empty());
   }
+  static FeatureParameters parameters() {
+    FeatureParameters parameters;
+    parameters.features = 600;
+    parameters.threads = 2;
+    return parameters;
+  }
+  /// @return the frame after the one that completed the first map
+  std::size_t begin() {
+    Initialiser initialiser(scene_.camera(), {});
+    std::size_t i = 0;
+    while (!initialiser.process(frames_.at(i), orb_, keeper_.empty_map())) ++i;
+    keeper_.begin();
+    return i + 1;
+  }
+
+  testing::LevelScene scene_;
+  std::vector<FrameImage> frames_;
+  OrbExtractor orb_{parameters()};
+  MapKeeper keeper_{scene_.camera(), {}, parameters()};
+  Tracker tracker_{scene_.camera(), {}};
+  std::map<std::string, double> timing_ms_;
+};
+
+TEST_F(MapKeeperAtWork, ForgetsAtAnyMoment) {
+  for (int round = 0; round < 6; ++round) {
+    const std::size_t next = begin();
+    const Map& map = keeper_.refresh();
+    ASSERT_GE(map.keyframes().size(), 2U);
+    const TrackResult tracked =
+        tracker_.track(frames_[next].pyramid, map.newest().T_camera_vo, 3, map);
+    ASSERT_TRUE(tracked.tracked);
+    keeper_.insert_keyframe(frames_[next], tracked, timing_ms_);
+    // From before the thread wakes to after it is done.
+    std::this_thread::sleep_for(std::chrono::milliseconds(4 * round));
+    keeper_.clear();
+    EXPECT_TRUE(keeper_.refresh().keyframes().empty());
+    EXPECT_TRUE(keeper_.empty_map().keyframes().empty());
+  }
+}
+
+TEST_F(MapKeeperAtWork, TellsTheTrackingThreadWhatItsThreadHasThrown) {
+  const std::size_t next = begin();
+  // Its points claim to be seen from a keyframe that never was.
+  for (auto& [id, point] : keeper_.empty_map().points()) point.keyframes.push_back(1000);
+  const Map& map = keeper_.refresh();
+  const TrackResult tracked =
+      tracker_.track(frames_[next].pyramid, map.newest().T_camera_vo, 3, map);
+  keeper_.insert_keyframe(frames_[next], tracked, timing_ms_);
+  keeper_.wait_until_idle();
+  EXPECT_THROW(keeper_.refresh(), std::out_of_range);
+  // Told once; the thread is still there.
+  keeper_.clear();
+  EXPECT_GT(begin(), 0U);
+  EXPECT_FALSE(keeper_.refresh().keyframes().empty());
 }
 
 }  // namespace

@@ -106,6 +106,17 @@ TEST(Rectifier, FindsNoCornerWhereTheLensShowsNothing) {
   }
 }
 
+TEST(Rectifier, MasksNoLevelTooSmallToBeLookedAt) {
+  FeatureParameters parameters;
+  parameters.levels = 11;
+  parameters.scale_factor = 2.0;  // the last is 480 / 1024 rows high
+  OrbExtractor orb(parameters);
+  cv::Mat seen(480, 640, CV_8U, cv::Scalar(255));
+  seen.colRange(0, 40).setTo(0);
+  orb.look_only_at(seen);
+  EXPECT_TRUE(orb.detect(cv::Mat(480, 640, CV_8U, cv::Scalar(90))).empty());
+}
+
 std::vector<VoEstimate> fly(const SyntheticGround& ground, const CameraModel& camera) {
   SyntheticFlightOptions options;
   options.speed_m_s = 40.0;

@@ -1,0 +1,74 @@
+#include "odometry/feature/relocaliser.hpp"
+
+#include <gtest/gtest.h>
+
+#include "level_scene.hpp"
+#include "odometry/feature/map_keeper.hpp"
+
+namespace overfly::odometry {
+namespace {
+
+using testing::LevelScene;
+using testing::SyntheticGround;
+
+/// The first map of a level flight.
+class Relocaliser : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    Initialiser initialiser(scene_.camera(), {});
+    std::size_t i = 0;
+    while (i < scene_.T_world_camera().size() &&
+           !initialiser.process(scene_.frame(i), orb_, map_)) {
+      ++i;
+    }
+    ASSERT_FALSE(map_.keyframes().empty());
+    seen_ = i;
+  }
+
+  [[nodiscard]] Relocalisation found(const FrameImage& frame,
+                                     const RelocaliserOptions& options = {}) {
+    return relocalise(scene_.camera(), options, frame.pyramid.level(0), orb_, map_);
+  }
+
+  LevelScene scene_;
+  OrbExtractor orb_{FeatureParameters{}};
+  Map map_;
+  std::size_t seen_ = 0;  ///< the frame that completed the map
+};
+
+TEST_F(Relocaliser, FindsTheCameraTurnedAndMoved) {
+  const Pose& T_world_first =
+      scene_.T_world_camera()[static_cast<std::size_t>(map_.keyframes().begin()->second.frame)];
+  Pose T_world_camera = scene_.T_world_camera()[seen_];
+  T_world_camera.translation += Eigen::Vector3d(6.0, -4.0, 5.0);
+  T_world_camera.rotation = T_world_camera.rotation * exp_so3({0.05, -0.08, 0.6});
+  const Relocalisation result = found(scene_.frame(seen_ + 1, T_world_camera));
+  EXPECT_GE(result.matches, 25);
+  ASSERT_TRUE(result.T_camera_vo);
+  const Pose truth = (T_world_first.inverse() * T_world_camera).inverse();
+  EXPECT_LT(rotation_angle_rad(result.T_camera_vo->rotation, truth.rotation), rad_from_deg(0.5));
+  // The ground on the first view's axis is 1 away: 200 m but for the relief.
+  EXPECT_LT((200.0 * result.T_camera_vo->translation - truth.translation).norm(), 2.0);
+}
+
+TEST_F(Relocaliser, FindsNothingOverOtherGround) {
+  const SyntheticGround other = SyntheticGround::procedural(9, 512, 1.0, 5.0);
+  const auto image = std::make_shared<const Image>(
+      other.render(scene_.camera(), scene_.T_world_camera()[seen_], 1.0, 1));
+  const Relocalisation result = found({0, 0, build_pyramid(image)});
+  EXPECT_GT(result.corners, 100);
+  EXPECT_FALSE(result.T_camera_vo);
+}
+
+TEST_F(Relocaliser, TakesAnImageOfFewCornersForOneThatShowsNothing) {
+  RelocaliserOptions options;
+  const FrameImage frame = scene_.frame(seen_);
+  options.min_corners = found(frame).corners + 1;
+  const Relocalisation result = found(frame, options);
+  EXPECT_EQ(result.corners, options.min_corners - 1);
+  EXPECT_EQ(result.matches, 0);
+  EXPECT_FALSE(result.T_camera_vo);
+}
+
+}  // namespace
+}  // namespace overfly::odometry
