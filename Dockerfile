@@ -12,7 +12,7 @@ WORKDIR /opt/overfly
 COPY scripts/packages.txt scripts/install-packages scripts/
 COPY --from=build /opt/overfly/runtime-packages.txt .
 RUN scripts/install-packages run \
- && apt-get install -y -qq --no-install-recommends curl $(cat runtime-packages.txt) \
+ && apt-get install -y -qq --no-install-recommends curl tini $(cat runtime-packages.txt) \
  && rm -rf /var/lib/apt/lists/* \
  && useradd --create-home --uid 1000 overfly \
  && install -d -o overfly -g overfly /data/runs /data/cache
@@ -25,5 +25,6 @@ VOLUME ["/data/runs", "/data/cache"]
 EXPOSE 8480
 HEALTHCHECK --interval=30s --timeout=5s --start-period=10s \
   CMD curl -fsS http://127.0.0.1:8480/api/v1/health || exit 1
-ENTRYPOINT ["/opt/overfly/build/release/overfly"]
+# The first process of a container must reap what estimators leave behind.
+ENTRYPOINT ["tini", "-s", "--", "/opt/overfly/build/release/overfly"]
 CMD ["serve", "--address", "0.0.0.0", "--runs", "/data/runs", "--scenarios", "/opt/overfly/scenarios", "--web", "/opt/overfly/web/dist"]

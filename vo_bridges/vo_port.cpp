@@ -82,6 +82,12 @@ Status validate_vo_frame(const VoFrame& frame, const VoFrame* previous) {
       frame.intrinsics.height_px != previous->intrinsics.height_px) {
     return bad("the image size changed in flight");
   }
+  const PinholeCamera& now = frame.intrinsics;
+  const PinholeCamera& first = previous->intrinsics;
+  if (now.fx_px != first.fx_px || now.fy_px != first.fy_px || now.cx_px != first.cx_px ||
+      now.cy_px != first.cy_px) {
+    return bad("the intrinsics changed in flight");
+  }
   if (!same_lens(frame.distortion, previous->distortion)) {
     return bad("the lens distortion changed in flight");
   }

@@ -66,6 +66,12 @@ class VoPort {
   [[nodiscard]] virtual std::string type() const = 0;
   /// The parameters in force, by their names in the field, as printed into the run's manifest.
   [[nodiscard]] virtual std::map<std::string, std::string> effective_parameters() const = 0;
+  /// Tells the estimator its camera and waits until it is ready for images, so that no frame is
+  /// lost to its start. May be left out: `track` does what is missing. Once, before the first
+  /// frame.
+  /// @param first  as the first frame will be, without its image
+  /// Errors: as `track`; kCancelled.
+  [[nodiscard]] virtual Status prepare(const VoFrame& /*first*/) { return {}; }
   /// Takes the next frame and answers for it. Frames come with increasing index and time, all
   /// with the size, intrinsics and distortion of the first.
   /// A lost track is a state, not an error. Errors: kInvalidArgument for an empty or colour image,

@@ -121,6 +121,17 @@ TEST_P(VoPortContract, AnswersEachFrameWithItsIndexAndTime) {
   }
 }
 
+TEST_P(VoPortContract, AnswersTheSameWhenItWasPrepared) {
+  VoFrame first = frames_[0];
+  first.image = nullptr;
+  const Status ready = estimator_->prepare(first);
+  ASSERT_TRUE(ready.ok()) << ready.error().message;
+  const std::unique_ptr<VoPort> unprepared = GetParam().create();
+  for (const VoFrame& frame : frames_) {
+    expect_same(answer(*estimator_, frame), answer(*unprepared, frame));
+  }
+}
+
 TEST_P(VoPortContract, TakesGapsOfDroppedFrames) {
   answer(*estimator_, frames_[0]);
   const EstimateSample sample = answer(*estimator_, frames_[3]).sample;
@@ -169,6 +180,13 @@ TEST_P(VoPortContract, RefusesAChangedSize) {
   answer(*estimator_, frames_[0]);
   const Image& image = *frames_[1].image;
   expect_refused(with_image(frames_[1], image.width_px / 2, image.height_px / 2, 1));
+}
+
+TEST_P(VoPortContract, RefusesChangedIntrinsics) {
+  answer(*estimator_, frames_[0]);
+  VoFrame zoomed = frames_[1];
+  zoomed.intrinsics.fx_px *= 1.01;
+  expect_refused(zoomed);
 }
 
 TEST_P(VoPortContract, RefusesFramesOutOfOrder) {

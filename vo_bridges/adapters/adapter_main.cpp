@@ -22,7 +22,8 @@ class Adapter : public overfly_vo::Estimator {
     session_.parameters = upstream_parameters().resolve(wanted);
     asked_for_ = upstream_parameters().asked_for(wanted);
     session_.lockstep = lockstep();
-    overfly_vo::Parameters in_force = session_.parameters;
+    // What the adapter is to choose by itself is known once the system runs: calibrate() tells it.
+    overfly_vo::Parameters in_force = decided(session_.parameters);
     const auto preset = wanted.find("preset");
     if (preset != wanted.end()) in_force["preset"] = preset->second;
     return in_force;

@@ -93,10 +93,7 @@ ParameterValues ParameterSet::asked_for(const ParameterValues& wanted) const {
   ParameterValues values = preset_of(wanted).values;
   for (const auto& value : wanted) values[value.first] = value.second;
   values.erase("preset");
-  for (auto value = values.begin(); value != values.end();) {
-    value = value->second == "auto" ? values.erase(value) : std::next(value);
-  }
-  return values;
+  return decided(std::move(values));
 }
 
 const ParameterDeclaration* ParameterSet::find(const std::string& name) const {
@@ -126,6 +123,13 @@ std::string ParameterSet::known_names() const {
   std::string names;
   for (const ParameterDeclaration& declaration : declarations_) names += ", " + declaration.name;
   return names;
+}
+
+ParameterValues decided(ParameterValues values) {
+  for (auto value = values.begin(); value != values.end();) {
+    value = value->second == "auto" ? values.erase(value) : std::next(value);
+  }
+  return values;
 }
 
 double number_of(const ParameterValues& values, const std::string& name) {

@@ -55,6 +55,8 @@ class ParameterSet {
   std::vector<Preset> presets_;
 };
 
+/// Without those that are "auto".
+ParameterValues decided(ParameterValues values);
 /// Of a resolved value.
 double number_of(const ParameterValues& values, const std::string& name);
 /// "auto" becomes `automatic`.

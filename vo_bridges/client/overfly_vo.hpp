@@ -15,6 +15,7 @@
 
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -78,7 +79,7 @@ struct Answer {
   std::array<double, 3> position{};
   std::array<double, 4> quaternion_xyzw{0.0, 0.0, 0.0, 1.0};
   double scene_depth = 0.0;                  ///< on the optical axis, or median; 0 = not known
-  std::map<std::string, double> counters{};  ///< names without spaces
+  std::map<std::string, double> counters{};  ///< names without spaces; not finite = left out
   std::map<std::string, double> timings_ms{};
   DebugImage debug_image{};                        ///< only where it is wanted
   std::vector<std::array<float, 3>> map_points{};  ///< likewise; in the frame of position
@@ -153,7 +154,7 @@ enum Type : std::uint16_t {
   kStop = 11
 };
 constexpr std::size_t kHeaderBytes = 12;
-constexpr std::size_t kPayloadLimitBytes = 64U << 20U;
+constexpr std::size_t kPayloadLimitBytes = 65U << 20U;
 
 /// Little-endian, whatever the machine.
 template <typename T>
@@ -278,6 +279,12 @@ class Connection {
   Connection& operator=(const Connection&) = delete;
 
   bool local() const { return local_; }
+  /// True the first time alone.
+  bool first_not_finite() {
+    const bool first = !not_finite_seen_;
+    not_finite_seen_ = true;
+    return first;
+  }
 
   void send(Type type, const std::string& payload) {
     std::string bytes = "OVVO";
@@ -387,6 +394,7 @@ class Connection {
 
   int socket_ = -1;
   bool local_ = false;
+  bool not_finite_seen_ = false;
   std::mutex sending_;
   int memory_file_ = -1;
   void* memory_ = MAP_FAILED;
@@ -482,7 +490,25 @@ inline void send_debug(Connection& connection, const Frame& frame, const Answer&
   }
 }
 
-inline std::string payload_of(const Answer& answer, std::int64_t index, std::uint32_t crc32) {
+/// "KEY NAME VALUE" lines of the finite values; `not_finite`: the first other one, as "KEY NAME".
+inline std::string figures_text(const std::string& key,
+                                const std::map<std::string, double>& figures,
+                                std::string* not_finite) {
+  std::string text;
+  for (const auto& [name, value] : figures) {
+    if (std::isfinite(value)) {
+      text += key + " " + name + " " + text_of(value) + "\n";
+    } else if (not_finite->empty()) {
+      *not_finite = key + " " + name;
+    }
+  }
+  return text;
+}
+
+inline std::string payload_of(const Answer& answer,
+                              std::int64_t index,
+                              std::uint32_t crc32,
+                              std::string* not_finite) {
   std::string payload;
   put<std::int64_t>(&payload, index);
   put<std::uint32_t>(&payload, static_cast<std::uint32_t>(answer.state));
@@ -492,13 +518,15 @@ inline std::string payload_of(const Answer& answer, std::int64_t index, std::uin
   put<double>(&payload, answer.scene_depth);
   put<std::uint32_t>(&payload, crc32);
   put<std::uint32_t>(&payload, 1);  // the CRC was computed
-  for (const auto& [name, value] : answer.counters) {
-    payload += "counter " + name + " " + text_of(value) + "\n";
-  }
-  for (const auto& [name, value] : answer.timings_ms) {
-    payload += "timing_ms " + name + " " + text_of(value) + "\n";
-  }
+  payload += figures_text("counter", answer.counters, not_finite);
+  payload += figures_text("timing_ms", answer.timings_ms, not_finite);
   return payload;
+}
+
+inline void log_line(Connection& connection, Level level, const std::string& line) {
+  std::string payload;
+  put<std::uint32_t>(&payload, static_cast<std::uint32_t>(level));
+  connection.send(kLog, payload + line.substr(0, 4096));
 }
 
 inline void answer_frame(Estimator& estimator, Connection& connection, const std::string& payload) {
@@ -508,7 +536,14 @@ inline void answer_frame(Estimator& estimator, Connection& connection, const std
       static_cast<std::size_t>(frame.width_px) * static_cast<std::size_t>(frame.height_px));
   const Answer answer = estimator.track(frame);
   if (frame.debug_wanted) send_debug(connection, frame, answer);
-  connection.send(kAnswer, payload_of(answer, frame.index, crc32));
+  std::string not_finite;
+  const std::string answered = payload_of(answer, frame.index, crc32, &not_finite);
+  if (!not_finite.empty() && connection.first_not_finite()) {
+    log_line(connection,
+             Level::kWarning,
+             not_finite + " is not finite: such values are left out, this one and those to come");
+  }
+  connection.send(kAnswer, answered);
 }
 
 class Greeting {
@@ -547,12 +582,6 @@ inline void serve(Estimator& estimator, Connection& connection) {
       ready(connection, kReset);
     }
   }
-}
-
-inline void log_line(Connection& connection, Level level, const std::string& line) {
-  std::string payload;
-  put<std::uint32_t>(&payload, static_cast<std::uint32_t>(level));
-  connection.send(kLog, payload + line.substr(0, 4096));
 }
 
 }  // namespace detail

@@ -8,6 +8,7 @@ One file, Python 3.9, standard library only:
 
 import array
 import dataclasses
+import math
 import mmap
 import os
 import socket
@@ -59,7 +60,7 @@ class Answer:
     position: tuple = (0.0, 0.0, 0.0)
     quaternion_xyzw: tuple = (0.0, 0.0, 0.0, 1.0)
     scene_depth: float = 0.0  # on the optical axis, or median; 0 = not known
-    counters: dict = dataclasses.field(default_factory=dict)  # names without spaces
+    counters: dict = dataclasses.field(default_factory=dict)  # names without spaces; finite
     timings_ms: dict = dataclasses.field(default_factory=dict)
     debug_image: tuple = None  # (width_px, height_px, channels 1 or 3, bytes), where wanted
     map_points: list = ()  # of (x, y, z), in the frame of position, where wanted
@@ -134,6 +135,7 @@ class _Connection:
         else:
             raise ValueError(
                 f"OVERFLY_VO_ADDRESS = '{address}': must be unix:PATH or tcp:HOST:PORT")
+        self.not_finite_seen = False
         self._memory_file = None
         self._memory = None
         self._slot_bytes = 0
@@ -207,9 +209,18 @@ def _send_answer(connection, frame, answer, crc32):
     if frame.debug_wanted and len(answer.map_points):
         connection.send(_MAP_POINTS, struct.pack("<qII", frame.index, len(answer.map_points), 0)
                         + b"".join(struct.pack("<3f", *point) for point in answer.map_points))
-    text = "".join(f"counter {name} {float(value)!r}\n" for name, value in answer.counters.items())
-    text += "".join(f"timing_ms {name} {float(value)!r}\n"
-                    for name, value in answer.timings_ms.items())
+    figures = [("counter", *item) for item in answer.counters.items()]
+    figures += [("timing_ms", *item) for item in answer.timings_ms.items()]
+    text = ""
+    for key, name, figure in figures:
+        value = float(figure)
+        if math.isfinite(value):
+            text += f"{key} {name} {value!r}\n"
+        elif not connection.not_finite_seen:
+            connection.not_finite_seen = True
+            connection.send(_LOG, struct.pack("<I", WARNING) + (
+                f"{key} {name} is not finite: such values are left out, this one and those to come"
+            ).encode())
     connection.send(_ANSWER, struct.pack("<qII3d4ddII", frame.index, answer.state, answer.map_id,
                                          *answer.position, *answer.quaternion_xyzw,
                                          answer.scene_depth, crc32, 1) + text.encode())

@@ -15,6 +15,7 @@ namespace overfly::process {
 namespace {
 
 constexpr std::size_t kFrameMessageLimit = 10'000;
+/// Of all messages for one frame, beside a debug image as large as it may be.
 constexpr std::size_t kFrameBytesLimit = std::size_t{64} << 20U;
 constexpr std::size_t kReadBytes = 65536;
 
@@ -49,6 +50,10 @@ void Channel::enqueue(std::string bytes,
 
 void Channel::begin_frame(std::size_t pixels) {
   frame_pixels_ = pixels;
+  begin_counts();
+}
+
+void Channel::begin_counts() {
   frame_messages_ = 0;
   frame_bytes_ = 0;
 }
@@ -138,7 +143,9 @@ Result<std::optional<Message>> Channel::take_message() {
   if (waiting.size() < kHeaderBytes + length) return std::optional<Message>{};
   ++frame_messages_;
   frame_bytes_ += kHeaderBytes + length;
-  if (frame_messages_ > kFrameMessageLimit || frame_bytes_ > kFrameBytesLimit) {
+  const std::size_t bytes_limit =
+      kFrameBytesLimit + payload_limit_bytes(MessageType::kDebugImage, frame_pixels_).value_or(0);
+  if (frame_messages_ > kFrameMessageLimit || frame_bytes_ > bytes_limit) {
     return broken("the estimator floods: " + std::to_string(frame_messages_) + " messages, " +
                   std::to_string(frame_bytes_ >> 20U) + " MiB for one frame, the last " +
                   name_of(*type) + " " + shown(waiting.substr(kHeaderBytes, length)));

@@ -32,6 +32,8 @@ class Channel {
   [[nodiscard]] Result<std::optional<Message>> next(Clock::time_point deadline);
   /// From here on the limits of one frame count anew, for a frame of so many pixels.
   void begin_frame(std::size_t pixels);
+  /// The limits count anew; what the frame under way may still bring stays as it was.
+  void begin_counts();
   /// Whether the other side has closed.
   [[nodiscard]] bool closed() const { return closed_; }
 

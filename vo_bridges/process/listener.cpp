@@ -6,6 +6,7 @@
 #include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/un.h>
 
 #include <array>
@@ -32,6 +33,14 @@ std::optional<sockaddr_un> unix_name(const std::string& path) {
   if (path.empty() || path.size() >= sizeof(name.sun_path)) return std::nullopt;
   std::memcpy(name.sun_path, path.c_str(), path.size() + 1);
   return name;
+}
+
+/// What stands at a path, itself and not what it leads to; empty for a socket, and for nothing.
+std::string other_than_socket(const std::string& path) {
+  struct stat status {};
+  if (::lstat(path.c_str(), &status) != 0 || S_ISSOCK(status.st_mode)) return "";
+  if (S_ISLNK(status.st_mode)) return "a link";
+  return S_ISDIR(status.st_mode) ? "a folder" : "a file";
 }
 
 /// Whether a socket file is one that a dead program left behind. A living one refuses a datagram
@@ -63,7 +72,10 @@ Listener::Listener(Listener&& other) noexcept
 
 Listener::~Listener() {
   std::error_code ignored;  // nothing can be done about a file that stays
-  if (!path_.empty()) std::filesystem::remove(path_, ignored);
+  if (std::filesystem::symlink_status(path_, ignored).type() ==
+      std::filesystem::file_type::socket) {
+    std::filesystem::remove(path_, ignored);
+  }
   if (!folder_.empty()) std::filesystem::remove(folder_, ignored);
 }
 
@@ -110,6 +122,10 @@ Result<Listener> Listener::open_unix(const std::string& path) {
   };
   int failed = bind();
   if (failed != 0 && errno == EADDRINUSE) {
+    // Never the user's own file, which refuses a connection as a stale socket does.
+    if (const std::string other = other_than_socket(path); !other.empty()) {
+      return bad_address(address, "is " + other + ", and no socket");
+    }
     if (!is_stale(*name)) {
       return Error{ErrorCode::kConflict, "listen = '" + address + "': is in use"};
     }

@@ -21,7 +21,8 @@ struct Peer {
 /// A listening socket; what it made in the file system is gone with it.
 class Listener {
  public:
-  /// Errors: kInvalidArgument for an address of neither form, or that is not this machine's;
+  /// Errors: kInvalidArgument for an address of neither form, that is not this machine's, or where
+  /// something other than a socket stands;
   /// kConflict for one where somebody listens already; kIo.
   static Result<Listener> open(const std::string& address);
   /// A Unix socket in a new folder that only this user can enter. Errors: kIo.

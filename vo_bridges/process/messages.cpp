@@ -47,10 +47,13 @@ std::string calibration_message(const VoFrame& frame, double rate_hz, const Fram
   return message_of(MessageType::kCalibration, text);
 }
 
+std::size_t frame_payload_bytes(const VoFrame& frame, bool in_shared_memory) {
+  return 48 + 56 * frame.imu.size() + (in_shared_memory ? 0 : frame.image->data.size());
+}
+
 std::string frame_message(const VoFrame& frame, const FrameSending& sending) {
-  const std::size_t pixels = sending.in_shared_memory ? 0 : frame.image->data.size();
   ByteWriter writer;
-  writer.text(header_of(MessageType::kFrame, 48 + 56 * frame.imu.size() + pixels));
+  writer.text(header_of(MessageType::kFrame, frame_payload_bytes(frame, sending.in_shared_memory)));
   writer.i64(frame.index).i64(frame.t_ns).i64(frame.exposure_ns);
   writer.u32(static_cast<std::uint32_t>(frame.image->width_px));
   writer.u32(static_cast<std::uint32_t>(frame.image->height_px));

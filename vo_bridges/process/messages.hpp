@@ -10,6 +10,7 @@
 
 #include "core/result.hpp"
 #include "vo_bridges/parameter.hpp"
+#include "vo_bridges/process/figure_intake.hpp"
 #include "vo_bridges/process/wire.hpp"
 #include "vo_bridges/vo_port.hpp"
 
@@ -40,13 +41,17 @@ struct FrameSending {
 [[nodiscard]] std::string calibration_message(const VoFrame& frame,
                                               double rate_hz,
                                               const FrameSlots& slots);
+/// Length of the payload of a FRAME.
+[[nodiscard]] std::size_t frame_payload_bytes(const VoFrame& frame, bool in_shared_memory);
 /// All but the pixels, which follow where they are not in shared memory.
 [[nodiscard]] std::string frame_message(const VoFrame& frame, const FrameSending& sending);
 
 /// Errors of all that parse: kInternal saying what is wrong with which field, and its value.
 [[nodiscard]] Result<EstimatorHello> hello_from(std::string_view payload);
-/// The answer to `frame`; its pose normalised.
-[[nodiscard]] Result<VoEstimate> answer_from(std::string_view payload, const VoFrame& frame);
+/// The answer to `frame`; its pose normalised, and of its figures those that `figures` takes.
+[[nodiscard]] Result<VoEstimate> answer_from(std::string_view payload,
+                                             const VoFrame& frame,
+                                             FigureIntake* figures);
 /// RGB, whatever it came as.
 [[nodiscard]] Result<Image> debug_image_from(std::string_view payload, const VoFrame& frame);
 [[nodiscard]] Result<std::vector<Eigen::Vector3f>> map_points_from(std::string_view payload,

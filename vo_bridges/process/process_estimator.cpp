@@ -21,13 +21,17 @@ class ProcessEstimator final : public VoPort {
     return session_->parameters();
   }
 
+  [[nodiscard]] Status prepare(const VoFrame& first) override {
+    Status sound = first.intrinsics.validate();
+    if (sound) sound = CameraModel(first.intrinsics, first.distortion).validate();
+    if (!sound) return sound.error().in("frame " + std::to_string(first.index));
+    return calibrate(first);
+  }
+
   [[nodiscard]] Result<VoEstimate> track(const VoFrame& frame) override {
     const VoFrame* const previous = previous_ ? &*previous_ : nullptr;
     if (Status status = validate_vo_frame(frame, previous); !status) return status.error();
-    if (!calibrated_for(frame)) {
-      if (Status status = session_->calibrate(frame); !status) return status.error();
-      calibration_ = without_image(frame);
-    }
+    if (Status status = calibrate(frame); !status) return status.error();
     Result<std::optional<VoEstimate>> answer = session_->track(frame, debug_);
     if (!answer) return answer.error();
     previous_ = without_image(frame);
@@ -59,6 +63,14 @@ class ProcessEstimator final : public VoPort {
     copy.image.reset();
     copy.imu.clear();
     return copy;
+  }
+
+  /// Where the camera is not the one that was told.
+  [[nodiscard]] Status calibrate(const VoFrame& frame) {
+    if (calibrated_for(frame)) return {};
+    if (Status status = session_->calibrate(frame); !status) return status;
+    calibration_ = without_image(frame);
+    return {};
   }
 
   [[nodiscard]] bool calibrated_for(const VoFrame& frame) const {

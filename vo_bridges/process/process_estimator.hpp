@@ -1,6 +1,7 @@
 // An estimator in a process of its own, spoken to over a socket (docs/VO_PROTOCOL.md).
 #pragma once
 
+#include <atomic>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -30,11 +31,15 @@ struct ProcessEstimatorOptions {
   double memory_limit_mb = 0.0;    ///< of the child's address space [1e6 bytes]; 0 = none
   /// Where the child's stdout and stderr go, in full (up to 64 MB); empty = only to take_log().
   std::filesystem::path output_file;
+  /// When it turns true, every wait ends within 50 ms with kCancelled, but for what a child has to
+  /// end by itself after STOP. Null = nobody cancels.
+  const std::atomic<bool>* cancel = nullptr;
 };
 
 /// Starts the child (or waits for the one that connects) and shakes hands.
 /// Errors: kInvalidArgument naming the option; kNotFound for a program that is not there; kInternal
-/// when it does not say hello in time, speaks another version, or dies, with its last lines.
+/// when it does not say hello in time, speaks another version, or dies, with its last lines;
+/// kCancelled.
 [[nodiscard]] Result<std::unique_ptr<VoPort>> create_process_estimator(
     const ProcessEstimatorOptions& options);
 

@@ -54,7 +54,7 @@ Status read_pose(ByteReader* reader, EstimateSample* sample) {
 }
 
 /// "counter NAME VALUE" and "timing_ms NAME VALUE".
-Status read_figures(std::string_view text, VoEstimate* estimate) {
+Status read_figures(std::string_view text, FigureIntake* figures, VoEstimate* estimate) {
   for (const auto& [key, value] : lines_of(text)) {
     const bool counter = key == "counter";
     if (!counter && key != "timing_ms") continue;
@@ -64,11 +64,17 @@ Status read_figures(std::string_view text, VoEstimate* estimate) {
         space == std::string_view::npos ? std::string_view{} : value.substr(space + 1);
     double number = 0.0;
     const auto [end, failure] = std::from_chars(digits.begin(), digits.end(), number);
-    if (!is_name(name) || failure != std::errc{} || end != digits.end() || !std::isfinite(number)) {
+    const bool too_large = failure == std::errc::result_out_of_range;
+    if (!is_name(name) || (failure != std::errc{} && !too_large) || end != digits.end()) {
       return bad(std::string("'") + printable(key) + " " + printable(value, 80) +
-                 "': must be a name and a finite number");
+                 "': must be a name and a number");
     }
-    (counter ? estimate->counters : estimate->timing_ms)[std::string(name)] = number;
+    if (too_large) number = std::numeric_limits<double>::infinity();
+    if (counter) {
+      if (figures->takes_counter(name, number)) estimate->counters[std::string(name)] = number;
+    } else {
+      if (figures->takes_timing(name, number)) estimate->timing_ms[std::string(name)] = number;
+    }
   }
   return {};
 }
@@ -95,7 +101,9 @@ Result<EstimatorHello> hello_from(std::string_view payload) {
   return hello;
 }
 
-Result<VoEstimate> answer_from(std::string_view payload, const VoFrame& frame) {
+Result<VoEstimate> answer_from(std::string_view payload,
+                               const VoFrame& frame,
+                               FigureIntake* figures) {
   ByteReader reader(payload);
   const std::int64_t index = reader.i64();
   const std::uint32_t state = reader.u32();
@@ -115,7 +123,9 @@ Result<VoEstimate> answer_from(std::string_view payload, const VoFrame& frame) {
   const std::uint32_t crc32 = reader.u32();
   const std::uint32_t flags = reader.u32();
   if ((flags & 1U) != 0) estimate.image_crc32 = crc32;
-  if (Status status = read_figures(reader.rest(), &estimate); !status) return status.error();
+  if (Status status = read_figures(reader.rest(), figures, &estimate); !status) {
+    return status.error();
+  }
   return estimate;
 }
 

@@ -23,7 +23,8 @@ namespace overfly::process {
 [[nodiscard]] std::string seconds_text(double seconds);
 
 /// One thread at a time, but for the three methods that say otherwise. The first error ends the
-/// session: the child is killed, and every later call fails with the same error.
+/// session: the child is killed, and every later call fails with the same error. A frame or camera
+/// that cannot be sent (kInvalidArgument) ends nothing.
 class Session {
  public:
   /// Starts the child or waits for the estimator, says hello, and waits until it is ready.
@@ -35,7 +36,7 @@ class Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// Tells the camera and waits until the estimator is ready for its frames.
+  /// Tells the camera and waits until the estimator is ready for its frames; needs no image.
   [[nodiscard]] Status calibrate(const VoFrame& frame);
   /// Sends the frame and waits for its answer; empty when it does not come in time. Such a frame is
   /// waited for before the next one is sent.
@@ -51,6 +52,8 @@ class Session {
   explicit Session(const ProcessEstimatorOptions& options) : options_(options) {}
   [[nodiscard]] Status connect(Listener listener, Clock::time_point deadline);
   [[nodiscard]] Status greet(Clock::time_point deadline);
+  /// As Channel::next; kCancelled soon after the cancel.
+  [[nodiscard]] Result<std::optional<Message>> next(Clock::time_point deadline);
   /// Waits until READY says that it is done with `done`; what it still says of frames is passed
   /// over.
   [[nodiscard]] Status wait_ready(MessageType done, Clock::time_point deadline);
@@ -59,6 +62,7 @@ class Session {
   void send(const VoFrame& frame, bool debug_wanted);
   /// Whether `message` was one that may come at any time.
   [[nodiscard]] Result<bool> take_notice(const Message& message);
+  [[nodiscard]] Status take_parameters(const Message& message);
   [[nodiscard]] Status take_debug(const Message& message, VoEstimate* extra) const;
   [[nodiscard]] std::string described() const;
   /// Ends the session for this reason: says how the child ended and what it last said.
@@ -75,10 +79,12 @@ class Session {
   std::optional<VoFrame> under_way_;  // sent and not answered; without its image
   bool debug_under_way_ = false;
   VoEstimate extra_;  // debug image and map points of it
+  FigureIntake figures_;
   Clock::time_point sent_at_;
   std::optional<Error> ended_;
   mutable std::mutex mutex_;
   std::map<std::string, std::string> parameters_;
+  bool parameters_overflow_noted_ = false;
 };
 
 }  // namespace overfly::process

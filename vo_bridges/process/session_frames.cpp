@@ -9,6 +9,8 @@ namespace {
 
 /// A frame without an answer for so many times the timeout is the last one.
 constexpr double kTimeoutsToGiveUp = 3.0;
+/// Parameters of one session, with the name and the version of its estimator.
+constexpr std::size_t kParameterLimit = 4096;
 
 Clock::time_point after_s(double seconds) {
   return Clock::now() +
@@ -19,9 +21,19 @@ Clock::time_point after_s(double seconds) {
 
 Status Session::calibrate(const VoFrame& frame) {
   if (ended_) return *ended_;
-  const std::size_t pixels = frame.image->data.size();
-  memory_.reset();
-  if (local_ && hello_.takes_shared_memory) memory_ = FrameMemory::create(pixels);
+  const PinholeCamera& camera = frame.intrinsics;
+  const std::size_t pixels =
+      static_cast<std::size_t>(camera.width_px) * static_cast<std::size_t>(camera.height_px);
+  std::optional<FrameMemory> memory;
+  if (local_ && hello_.takes_shared_memory) memory = FrameMemory::create(pixels);
+  if (!memory && pixels > kFramePixelLimit) {
+    return Error{ErrorCode::kInvalidArgument,
+                 "the camera has " + std::to_string(camera.width_px) + " x " +
+                     std::to_string(camera.height_px) + " = " + std::to_string(pixels) +
+                     " pixels: a frame through the socket must have at most " +
+                     std::to_string(kFramePixelLimit)};
+  }
+  memory_ = std::move(memory);
   FrameSlots slots;
   FileDescriptor descriptor;
   if (memory_) {
@@ -62,13 +74,26 @@ Result<bool> Session::take_notice(const Message& message) {
     return true;
   }
   if (message.type == MessageType::kParameters) {
-    const auto told = parameters_from(message.payload);
-    if (!told) return told.error();
-    const std::lock_guard lock(mutex_);
-    for (const auto& [name, value] : *told) parameters_[name] = value;
+    if (Status status = take_parameters(message); !status) return status.error();
     return true;
   }
   return false;
+}
+
+Status Session::take_parameters(const Message& message) {
+  const auto told = parameters_from(message.payload);
+  if (!told) return told.error();
+  const std::lock_guard lock(mutex_);
+  for (const auto& [name, value] : *told) {
+    if (parameters_.size() < kParameterLimit || parameters_.contains(name)) {
+      parameters_[name] = value;
+    } else if (!std::exchange(parameters_overflow_noted_, true)) {
+      output_->note("warning: parameter " + name + " is one too many: must be at most " +
+                    std::to_string(kParameterLimit) +
+                    " in a session; this one and those to come are left out");
+    }
+  }
+  return {};
 }
 
 Status Session::take_debug(const Message& message, VoEstimate* extra) const {
@@ -86,7 +111,7 @@ Status Session::take_debug(const Message& message, VoEstimate* extra) const {
 
 Result<std::optional<VoEstimate>> Session::wait_answer(Clock::time_point deadline) {
   for (;;) {
-    Result<std::optional<Message>> message = channel_->next(deadline);
+    Result<std::optional<Message>> message = next(deadline);
     if (!message) return message.error();
     if (!*message) return std::optional<VoEstimate>{};
     const Result<bool> noticed = take_notice(**message);
@@ -105,7 +130,8 @@ Result<std::optional<VoEstimate>> Session::wait_answer(Clock::time_point deadlin
                    "the estimator sent " + name_of(type) + " where ANSWER to frame " +
                        std::to_string(under_way_->index) + " must come"};
     }
-    Result<VoEstimate> estimate = answer_from((*message)->payload, *under_way_);
+    Result<VoEstimate> estimate = answer_from((*message)->payload, *under_way_, &figures_);
+    for (const std::string& line : figures_.take_notes()) output_->note(line);
     if (!estimate)
       return estimate.error().in("ANSWER to frame " + std::to_string(under_way_->index));
     estimate->debug_image = std::move(extra_.debug_image);
@@ -117,6 +143,14 @@ Result<std::optional<VoEstimate>> Session::wait_answer(Clock::time_point deadlin
 
 Result<std::optional<VoEstimate>> Session::track(const VoFrame& frame, bool debug_wanted) {
   if (ended_) return *ended_;
+  if (const std::size_t bytes = frame_payload_bytes(frame, memory_.has_value());
+      bytes > kFrameLimitBytes) {
+    return Error{ErrorCode::kInvalidArgument,
+                 "frame " + std::to_string(frame.index) + ": with " +
+                     std::to_string(frame.imu.size()) + " inertial samples FRAME has " +
+                     std::to_string(bytes) + " bytes: must be at most " +
+                     std::to_string(kFrameLimitBytes)};
+  }
   const auto deadline = after_s(options_.answer_timeout_s);
   if (under_way_) {
     const Result<std::optional<VoEstimate>> late = wait_answer(deadline);
@@ -138,7 +172,7 @@ Result<std::optional<VoEstimate>> Session::track(const VoFrame& frame, bool debu
 
 Status Session::reset() {
   if (ended_) return *ended_;
-  channel_->begin_frame(0);
+  channel_->begin_counts();  // a debug image may be on its way
   channel_->enqueue(message_of(MessageType::kReset));
   Status ready = wait_ready(MessageType::kReset, after_s(options_.answer_timeout_s));
   if (!ready) return end(ready.error());

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "vo_bridges/cancel.hpp"
 #include "vo_bridges/process/process_usage.hpp"
 #include "vo_bridges/process/session.hpp"
 
@@ -50,11 +51,11 @@ Result<std::unique_ptr<Session>> Session::open(const ProcessEstimatorOptions& op
 }
 
 Status Session::connect(Listener listener, Clock::time_point deadline) {
-  constexpr milliseconds kStep(50);
   while (Clock::now() < deadline) {
+    if (is_cancelled(options_.cancel)) return cancelled("the estimator's connection");
     // Asked before accept: a child that connected, and ended, is still heard.
     const bool child_gone = child_ != nullptr && !child_->running();
-    Result<std::optional<Peer>> peer = listener.accept(kStep);
+    Result<std::optional<Peer>> peer = listener.accept(kCancelPeriod);
     if (!peer) return peer.error();
     if (*peer) {
       local_ = (*peer)->local;
@@ -71,8 +72,17 @@ Status Session::connect(Listener listener, Clock::time_point deadline) {
                    seconds_text(options_.start_timeout_s)};
 }
 
+Result<std::optional<Message>> Session::next(Clock::time_point deadline) {
+  for (;;) {
+    if (is_cancelled(options_.cancel)) return cancelled("the estimator");
+    const auto step = options_.cancel == nullptr ? deadline : Clock::now() + kCancelPeriod;
+    Result<std::optional<Message>> message = channel_->next(std::min(deadline, step));
+    if (!message || *message || Clock::now() >= deadline) return message;
+  }
+}
+
 Status Session::greet(Clock::time_point deadline) {
-  Result<std::optional<Message>> message = channel_->next(deadline);
+  Result<std::optional<Message>> message = next(deadline);
   if (!message) return message.error();
   if (!*message) {
     return Error{ErrorCode::kInternal,
@@ -98,7 +108,7 @@ Status Session::greet(Clock::time_point deadline) {
 Status Session::wait_ready(MessageType done, Clock::time_point deadline) {
   const auto begin = Clock::now();
   for (;;) {
-    Result<std::optional<Message>> message = channel_->next(deadline);
+    Result<std::optional<Message>> message = next(deadline);
     if (!message) return message.error();
     if (!*message) {
       const double waited_s = std::chrono::duration<double>(Clock::now() - begin).count();
@@ -141,7 +151,7 @@ Error Session::end(const Error& why) {
     const std::string how = child_->how_it_ended();
     child_->stop();
     if (by_itself) text += "; it " + how;
-    text += output_->last_words();
+    if (why.code != ErrorCode::kCancelled) text += output_->last_words();
   }
   ended_ = Error{why.code, text};
   return *ended_;
@@ -150,7 +160,7 @@ Error Session::end(const Error& why) {
 Session::~Session() {
   if (channel_ && !ended_) {
     channel_->enqueue(message_of(MessageType::kStop));
-    channel_->begin_frame(0);
+    channel_->begin_counts();
     const auto deadline = Clock::now() + (child_ ? kStopPatience : kDeathPatience);
     // Read on: an estimator that still says something must not wait for us with its end. The
     // connection may outlive it, in a process that it began.

@@ -17,6 +17,10 @@ inline constexpr std::size_t kHeaderBytes = 12;
 inline constexpr std::size_t kTextLimitBytes = 65536;
 inline constexpr std::size_t kLogLineLimitBytes = 4096;
 inline constexpr std::size_t kMapPointLimit = 1'000'000;
+/// Pixels of a FRAME through the socket: 8192 x 8192.
+inline constexpr std::size_t kFramePixelLimit = std::size_t{64} << 20U;
+/// Of a FRAME: those pixels, and 1 MiB for what precedes them.
+inline constexpr std::size_t kFrameLimitBytes = std::size_t{65} << 20U;
 
 enum class MessageType : std::uint16_t {
   kHello = 1,

@@ -7,7 +7,11 @@
 namespace overfly::testing {
 namespace {
 
+using ::testing::_;
+using ::testing::Contains;
 using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::Pair;
 
 class Adapter : public ::testing::TestWithParam<std::string> {};
 
@@ -82,6 +86,19 @@ TEST_P(Adapter, RefusesAParameterThatUpstreamHasNot) {
 TEST_P(Adapter, RefusesAPresetThatIsNotOne) {
   EXPECT_THAT(refusal(GetParam(), {{"preset", std::string("fastest")}}),
               HasSubstr("parameter preset = 'fastest': must be one of "));
+}
+
+TEST_P(Adapter, TellsNoParameterBeforeItIsKnown) {
+  AdapterRun run(GetParam());
+  const auto at_start = run.port().effective_parameters();
+  EXPECT_THAT(at_start, Not(Contains(Pair(_, "auto"))));
+  VoFrame first = ordered_frame(0);
+  first.image = nullptr;
+  ASSERT_TRUE(run.port().prepare(first).ok());
+  const auto prepared = run.port().effective_parameters();
+  EXPECT_GT(prepared.size(), at_start.size());
+  run.track_plain(3);
+  EXPECT_EQ(run.port().effective_parameters(), prepared) << "nothing changes in flight";
 }
 
 TEST_P(Adapter, DrawsAnImageOfTheFramesSizeAndItsMap) {

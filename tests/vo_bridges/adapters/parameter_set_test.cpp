@@ -56,6 +56,11 @@ TEST(ParameterSet, AsksForWhatWasWantedAlone) {
   EXPECT_EQ(asked, (ParameterValues{{"threshold", "2"}, {"ratio", "0.5"}}));
 }
 
+TEST(ParameterSet, TellsOnlyWhatIsDecided) {
+  EXPECT_EQ(decided(example().resolve({{"add", "3"}})),
+            (ParameterValues{{"threshold", "7"}, {"ratio", "0.12"}, {"add", "3"}}));
+}
+
 TEST(ParametersInForce, AreComparedAsNumbersOfSinglePrecision) {
   EXPECT_NO_THROW(check_in_force({{"ratio", "0.12"}}, {{"ratio", "0.119999997"}}));
   EXPECT_NO_THROW(check_in_force({{"threshold", "7.0"}}, {{"threshold", "7"}}));

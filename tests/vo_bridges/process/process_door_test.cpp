@@ -95,6 +95,59 @@ TEST(ProcessDoor, TellsTheParametersWantedAndHearsThoseInForce) {
   EXPECT_THAT(estimator->effective_parameters(), Contains(Pair("read_back", "ORB 7")));
 }
 
+TEST(ProcessDoor, TellsTheCameraBeforeTheFirstFrameWhenItIsPrepared) {
+  const auto estimator = started(scripted("good"));
+  const VoFrame frame = ground_frames(1, 1.0, 1.0)[0];
+  VoFrame first = frame;
+  first.image = nullptr;
+  ASSERT_TRUE(estimator->prepare(first).ok());
+  EXPECT_THAT(estimator->effective_parameters(), Contains(Pair("read_back", "ORB 7")));
+  EXPECT_EQ(estimator->track(frame)->counters.at("calibrations"), 1.0) << "it is told once";
+}
+
+TEST(ProcessDoor, TellsTheCameraOfTheFirstFrameWhenAnotherWasPrepared) {
+  const auto estimator = started(scripted("good"));
+  ASSERT_TRUE(estimator->prepare(ground_frames(1, 1.0, 1.0, 64, 48)[0]).ok());
+  const VoFrame larger = ground_frames(1, 1.0, 1.0)[0];
+  const VoEstimate estimate = estimator->track(larger).value();
+  EXPECT_EQ(estimate.counters.at("calibrations"), 2.0);
+  EXPECT_EQ(estimate.image_crc32, crc32_of(*larger.image));
+}
+
+TEST(ProcessDoor, PreparesNoBadCamera) {
+  const auto estimator = started(scripted("good"));
+  VoFrame first = ground_frames(1, 1.0, 1.0)[0];
+  first.intrinsics.fx_px = -3.0;
+  const Status status = estimator->prepare(first);
+  ASSERT_FALSE(status.ok());
+  EXPECT_EQ(status.error().code, ErrorCode::kInvalidArgument);
+  EXPECT_THAT(status.error().message, HasSubstr("frame 0: fx_px = -3"));
+}
+
+TEST(ProcessDoor, FramesGoThroughTheSocketUpToTheSizeOfTheProtocol) {
+  const auto estimator = started(scripted("by_socket"));
+  VoFrame frame = ground_frames(1, 1.0, 1.0)[0];
+  frame.intrinsics = {8193, 8192, 6000.0, 6000.0, 4096.0, 4095.5};
+  const Status refused = estimator->prepare(frame);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().code, ErrorCode::kInvalidArgument);
+  EXPECT_THAT(refused.error().message,
+              HasSubstr("8193 x 8192 = 67117056 pixels: a frame through the socket must have at "
+                        "most 67108864"));
+  frame.intrinsics.width_px = 8192;
+  frame.image = std::make_shared<const Image>(8192, 8192, 1);
+  frame.imu.resize(1'300'000);
+  const Result<VoEstimate> too_long = estimator->track(frame);
+  ASSERT_FALSE(too_long.ok());
+  EXPECT_THAT(too_long.error().message,
+              HasSubstr("with 1300000 inertial samples FRAME has 139908912 bytes: must be at most "
+                        "68157440"));
+  frame.imu.clear();
+  const Result<VoEstimate> estimate = estimator->track(frame);
+  ASSERT_TRUE(estimate.ok()) << estimate.error().message;
+  EXPECT_EQ(estimate->image_crc32, crc32_of(*frame.image));
+}
+
 TEST(ProcessDoor, TellsACameraThatChangedAfterAReset) {
   const auto estimator = started(scripted("good"));
   EXPECT_EQ(estimator->track(ground_frames(1, 1.0, 1.0)[0])->counters.at("calibrations"), 1.0);
@@ -168,6 +221,29 @@ TEST(ProcessDoor, TakesOverTheSocketFileOfADeadProgram) {
   ProcessEstimatorOptions options = scripted("good");
   options.listen = "unix:" + path;
   expect_whole_images(*started(options), "shared memory");
+}
+
+TEST(ProcessDoor, LeavesAFileThatIsNoSocketAlone) {
+  const testing::TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "notes.txt";
+  const std::filesystem::path link = folder.path() / "link";
+  const std::filesystem::path dangling = folder.path() / "dangling";
+  testing::write_text(file, "of the user\n");
+  std::filesystem::create_symlink(file, link);
+  std::filesystem::create_symlink(folder.path() / "absent", dangling);
+  ProcessEstimatorOptions options = scripted("good");
+  const auto refusal = [&](const std::filesystem::path& path) {
+    options.listen = "unix:" + path.string();
+    const auto estimator = create_process_estimator(options);
+    EXPECT_FALSE(estimator.ok());
+    EXPECT_TRUE(std::filesystem::exists(std::filesystem::symlink_status(path))) << path;
+    return estimator.ok() ? "taken" : estimator.error().message;
+  };
+  EXPECT_EQ(refusal(file), "listen = 'unix:" + file.string() + "': is a file, and no socket");
+  EXPECT_THAT(refusal(link), HasSubstr("': is a link, and no socket"));
+  EXPECT_THAT(refusal(dangling), HasSubstr("': is a link, and no socket"));
+  EXPECT_THAT(refusal(folder.path()), HasSubstr("': is a folder, and no socket"));
+  EXPECT_EQ(testing::read_text(file), "of the user\n");
 }
 
 TEST(ProcessDoor, KeepsWhatTheChildWrites) {

@@ -73,13 +73,16 @@ TEST(ProcessMessages, OfTheClientAreThoseOfTheDocument) {
   answer.position = {1.0, -2.0, 0.5};
   answer.scene_depth = 2.0;
   answer.counters = {{"features", 90.0}};
-  const std::string payload = overfly_vo::detail::payload_of(answer, 7, 0xB63CFBCD);
+  std::string not_finite;
+  const std::string payload = overfly_vo::detail::payload_of(answer, 7, 0xB63CFBCD, &not_finite);
   EXPECT_EQ(message_of(MessageType::kAnswer, payload), documented("answer"));
   EXPECT_EQ(overfly_vo::detail::crc32_of(small_frame().image->data.data(), 4), 0xB63CFBCDU);
 }
 
 TEST(ProcessMessages, ReadTheAnswerOfTheDocument) {
-  const VoEstimate estimate = answer_from(payload_of_document("answer"), small_frame()).value();
+  FigureIntake figures;
+  const VoEstimate estimate =
+      answer_from(payload_of_document("answer"), small_frame(), &figures).value();
   EXPECT_EQ(estimate.sample.frame, 7);
   EXPECT_EQ(estimate.sample.t_ns, 250'000'000);
   EXPECT_EQ(estimate.sample.state, TrackingState::kTracking);
@@ -93,7 +96,8 @@ TEST(ProcessMessages, ReadTheAnswerOfTheDocument) {
 
 TEST(ProcessMessages, RefuseAnAnswerWithABadField) {
   const auto refused = [](const std::string& payload) {
-    const Result<VoEstimate> estimate = answer_from(payload, small_frame());
+    FigureIntake figures;
+    const Result<VoEstimate> estimate = answer_from(payload, small_frame(), &figures);
     return estimate.ok() ? "taken" : estimate.error().message;
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -105,14 +109,30 @@ TEST(ProcessMessages, RefuseAnAnswerWithABadField) {
   EXPECT_THAT(refused(answer_with(64, f64(nan))), HasSubstr("quaternion"));
   EXPECT_THAT(refused(answer_with(72, f64(-2.0))), HasSubstr("scene depth = -2"));
   EXPECT_THAT(refused(answer_with(88, "counter f\xFF")), HasSubstr("'counter f?"));
-  EXPECT_THAT(refused(answer_with(106, "x")), HasSubstr("finite number"));
+  EXPECT_THAT(refused(answer_with(106, "x")), HasSubstr("must be a name and a number"));
   EXPECT_THAT(refused(payload_of_document("answer").substr(0, 87)), HasSubstr("has 87 bytes"));
   EXPECT_THAT(refused(""), HasSubstr("has 0 bytes"));
 }
 
+TEST(ProcessMessages, LeaveOutFiguresThatAreNotFiniteAndNoteTheFirst) {
+  const std::string payload = payload_of_document("answer") +
+                              "counter a nan\ncounter b -inf\ntiming_ms c 1e999\ntiming_ms d 2\n";
+  FigureIntake figures;
+  const Result<VoEstimate> estimate = answer_from(payload, small_frame(), &figures);
+  ASSERT_TRUE(estimate.ok()) << estimate.error().message;
+  EXPECT_EQ(estimate->counters, (std::map<std::string, double>{{"features", 90.0}}));
+  EXPECT_EQ(estimate->timing_ms, (std::map<std::string, double>{{"d", 2.0}}));
+  EXPECT_EQ(figures.take_notes(),
+            (std::vector<std::string>{"warning: counter a is not finite: such values are left out, "
+                                      "this one and those to come"}));
+  ASSERT_TRUE(answer_from(payload, small_frame(), &figures).ok());
+  EXPECT_TRUE(figures.take_notes().empty()) << "it is said once";
+}
+
 TEST(ProcessMessages, PassOverThePoseOfALostFrame) {
   const std::string lost = answer_with(8, u32(2)).replace(24, 8, f64(1e300 * 1e300));
-  const VoEstimate estimate = answer_from(lost, small_frame()).value();
+  FigureIntake figures;
+  const VoEstimate estimate = answer_from(lost, small_frame(), &figures).value();
   EXPECT_EQ(estimate.sample.state, TrackingState::kLost);
   EXPECT_EQ(estimate.sample.T_vo_camera.translation, Eigen::Vector3d::Zero());
   EXPECT_FALSE(estimate.sample.scene_depth.has_value());

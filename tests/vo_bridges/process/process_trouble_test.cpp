@@ -3,10 +3,13 @@
 #include <sys/wait.h>
 
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <functional>
+#include <set>
+#include <thread>
 
 #include "tests/support/support.hpp"
 #include "tests/vo_bridges/process/process_fixture.hpp"
@@ -21,6 +24,37 @@ using testing::ground_frames;
 using ::testing::HasSubstr;
 using testing::scripted;
 using testing::started;
+
+/// Cancels by another thread, a moment after it was made.
+class Cancelling {
+ public:
+  explicit Cancelling(ProcessEstimatorOptions* options) : Cancelling(&own_) {
+    options->cancel = &own_;
+  }
+  explicit Cancelling(std::atomic<bool>* cancel)
+      : thread_([this, cancel] {
+          std::this_thread::sleep_for(std::chrono::milliseconds(300));
+          at_ = std::chrono::steady_clock::now();
+          *cancel = true;
+        }) {}
+
+  ~Cancelling() {
+    if (thread_.joinable()) thread_.join();
+  }
+  Cancelling(const Cancelling&) = delete;
+  Cancelling& operator=(const Cancelling&) = delete;
+
+  /// Seconds since the cancel; once.
+  double ago_s() {
+    thread_.join();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - at_).count();
+  }
+
+ private:
+  std::atomic<bool> own_ = false;
+  std::chrono::steady_clock::time_point at_;
+  std::thread thread_;
+};
 
 /// No child is left: neither running nor waiting to be reaped.
 class ProcessTrouble : public ::testing::Test {
@@ -53,6 +87,15 @@ class ProcessTrouble : public ::testing::Test {
     }
     ADD_FAILURE() << "every frame was answered";
     return {};
+  }
+
+  /// Of the lines of its log those that hold `part`.
+  static std::vector<std::string> lines_with(VoPort& estimator, const std::string& part) {
+    std::vector<std::string> lines;
+    for (const std::string& line : estimator.take_log()) {
+      if (line.find(part) != std::string::npos) lines.push_back(line);
+    }
+    return lines;
   }
 
   static double seconds_of(const std::function<void()>& work) {
@@ -243,6 +286,7 @@ TEST_F(ProcessTrouble, AResetPassesOverTheAnswerThatIsUnderWay) {
   ProcessEstimatorOptions options = scripted("late", "1.3");
   options.answer_timeout_s = 1.0;
   const auto estimator = started(options);
+  estimator->set_debug(true);  // the answer comes with an image
   const auto frames = ground_frames(3, 1.0, 1.0, 64, 48);
   for (const VoFrame& frame : frames) ASSERT_TRUE(estimator->track(frame).ok());
   estimator->reset();  // while frame 2 is still being thought about
@@ -250,6 +294,126 @@ TEST_F(ProcessTrouble, AResetPassesOverTheAnswerThatIsUnderWay) {
   EXPECT_EQ(estimate.counters.count("unanswered"), 0U);
   EXPECT_EQ(estimate.sample.frame, 1);
   EXPECT_EQ(estimate.counters.at("calibrations"), 1.0) << "the same camera is not told again";
+}
+
+TEST_F(ProcessTrouble, AStopHearsTheAnswerThatIsUnderWay) {
+  const testing::TemporaryFolder folder;
+  ProcessEstimatorOptions options = scripted("late", "1.3");
+  options.answer_timeout_s = 1.0;
+  options.output_file = folder.path() / "output.log";
+  {
+    const auto estimator = started(options);
+    estimator->set_debug(true);
+    // An image that the socket does not hold: it must be read to its end.
+    for (const VoFrame& frame : ground_frames(3, 1.0, 1.0, 640, 480)) {
+      ASSERT_TRUE(estimator->track(frame).ok());
+    }
+  }
+  EXPECT_EQ(testing::read_text(options.output_file), "") << "it was not cut off";
+}
+
+TEST_F(ProcessTrouble, FiguresThatAreNotFiniteAreLeftOutWithOneWarning) {
+  const auto estimator = started(scripted("nan_figures"));
+  for (const VoFrame& frame : ground_frames(3, 1.0, 1.0, 64, 48)) {
+    const Result<VoEstimate> estimate = estimator->track(frame);
+    ASSERT_TRUE(estimate.ok()) << estimate.error().message;
+    EXPECT_EQ(estimate->counters.count("parallax"), 0U);
+    EXPECT_EQ(estimate->timing_ms, (std::map<std::string, double>{{"match", 1.5}}));
+  }
+  EXPECT_EQ(lines_with(*estimator, "not finite"),
+            (std::vector<std::string>{"warning: counter parallax is not finite: such values are "
+                                      "left out, this one and those to come"}));
+}
+
+TEST_F(ProcessTrouble, FiguresOfPythonThatAreNotFiniteAreLeftOutWithOneWarning) {
+  const testing::TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "estimator.py";
+  testing::write_text(file,
+                      "import sys\n"
+                      "sys.path.insert(0, sys.argv[1])\n"
+                      "import overfly_vo\n"
+                      "class Odd(overfly_vo.Estimator):\n"
+                      "    def track(self, frame):\n"
+                      "        return overfly_vo.Answer(\n"
+                      "            counters={'a': float('nan'), 'b': 2},\n"
+                      "            timings_ms={'c': float('-inf'), 'd': 0.5})\n"
+                      "overfly_vo.run(Odd())\n");
+  ProcessEstimatorOptions options = scripted("good");
+  options.command = {
+      "python3", "-B", file.string(), testing::source_file("vo_bridges/client").string()};
+  const auto estimator = started(options);
+  for (const VoFrame& frame : ground_frames(3, 1.0, 1.0, 64, 48)) {
+    const Result<VoEstimate> estimate = estimator->track(frame);
+    ASSERT_TRUE(estimate.ok()) << estimate.error().message;
+    EXPECT_EQ(estimate->counters, (std::map<std::string, double>{{"b", 2.0}}));
+    EXPECT_EQ(estimate->timing_ms, (std::map<std::string, double>{{"d", 0.5}}));
+  }
+  EXPECT_THAT(lines_with(*estimator, "not finite"), ::testing::SizeIs(1));
+}
+
+TEST_F(ProcessTrouble, NamesWithoutEndAreCutWithOneWarningForEachKind) {
+  const auto estimator = started(scripted("many_names"));
+  std::set<std::string> counters;
+  std::set<std::string> timings;
+  for (const VoFrame& frame : ground_frames(6, 1.0, 1.0, 64, 48)) {
+    const Result<VoEstimate> estimate = estimator->track(frame);
+    ASSERT_TRUE(estimate.ok()) << estimate.error().message;
+    EXPECT_EQ(estimate->timing_ms.at("match"), 1.5) << "a name that was there goes on";
+    for (const auto& [name, value] : estimate->counters) counters.insert(name);
+    for (const auto& [name, value] : estimate->timing_ms) timings.insert(name);
+  }
+  EXPECT_EQ(counters.size(), 256U);
+  EXPECT_EQ(timings.size(), 256U);
+  EXPECT_EQ(estimator->effective_parameters().size(), 4096U);
+  EXPECT_THAT(lines_with(*estimator, "too many"),
+              ::testing::UnorderedElementsAre(
+                  AllOf(HasSubstr("warning: counter c"), HasSubstr("at most 256")),
+                  AllOf(HasSubstr("warning: timing_ms t"), HasSubstr("at most 256")),
+                  AllOf(HasSubstr("warning: parameter p"), HasSubstr("at most 4096"))));
+}
+
+TEST_F(ProcessTrouble, ACancelEndsTheWaitForAConnection) {
+  const testing::TemporaryFolder folder;
+  ProcessEstimatorOptions options;
+  options.listen = "unix:" + (folder.path() / "socket").string();
+  Cancelling cancelling(&options);
+  EXPECT_EQ(start_error(options).code, ErrorCode::kCancelled);
+  EXPECT_LT(cancelling.ago_s(), 2.0);
+}
+
+TEST_F(ProcessTrouble, ACancelEndsTheWaitForAStart) {
+  ProcessEstimatorOptions options = scripted("slow_start");
+  Cancelling cancelling(&options);
+  const Error error = start_error(options);
+  EXPECT_EQ(error.code, ErrorCode::kCancelled);
+  EXPECT_EQ(error.message, "estimator scripted: stopped while waiting for the estimator");
+  EXPECT_LT(cancelling.ago_s(), 2.0);
+}
+
+TEST_F(ProcessTrouble, ACancelEndsTheWaitForACalibration) {
+  ProcessEstimatorOptions options = scripted("slow_calibration");
+  std::atomic<bool> cancel = false;
+  options.cancel = &cancel;
+  const auto estimator = started(options);
+  Cancelling cancelling(&cancel);
+  EXPECT_EQ(estimator->prepare(ground_frames(1, 1.0, 1.0, 64, 48)[0]).error().code,
+            ErrorCode::kCancelled);
+  EXPECT_LT(cancelling.ago_s(), 2.0);
+}
+
+TEST_F(ProcessTrouble, ACancelEndsTheWaitForAnAnswer) {
+  ProcessEstimatorOptions options = scripted("hang");
+  std::atomic<bool> cancel = false;
+  options.cancel = &cancel;
+  const auto estimator = started(options);
+  const auto frames = ground_frames(4, 1.0, 1.0, 64, 48);
+  ASSERT_TRUE(estimator->track(frames[0]).ok());
+  const int pid = static_cast<int>(estimator->track(frames[1])->counters.at("pid"));
+  Cancelling cancelling(&cancel);
+  EXPECT_EQ(estimator->track(frames[2]).error().code, ErrorCode::kCancelled);
+  EXPECT_LT(cancelling.ago_s(), 2.0);
+  EXPECT_FALSE(alive(pid));
+  EXPECT_EQ(estimator->track(frames[3]).error().code, ErrorCode::kCancelled) << "for good";
 }
 
 TEST_F(ProcessTrouble, AChildThatDoesNotStopIsKilled) {

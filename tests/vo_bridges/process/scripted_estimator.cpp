@@ -82,7 +82,12 @@ class Scripted final : public overfly_vo::Estimator {
     if (behaviour_ == "long_quaternion") answer.quaternion_xyzw[3] = 2.0;
     if (behaviour_ == "bad_state") answer.state = static_cast<overfly_vo::State>(7);
     if (behaviour_ == "large_debug_image") answer.debug_image = {frame.width_px, 9999, 1, {1}};
-    if (behaviour_ == "good" && frame.debug_wanted) {
+    if (behaviour_ == "nan_figures") {
+      answer.counters["parallax"] = std::numeric_limits<double>::quiet_NaN();
+      answer.timings_ms["map"] = std::numeric_limits<double>::infinity();
+    }
+    if (behaviour_ == "many_names") tell_many_names(&answer);
+    if ((behaviour_ == "good" || behaviour_ == "late") && frame.debug_wanted) {
       answer.debug_image = overfly_vo::picture_of(frame);
       answer.map_points = {{1.0F, 2.0F, 3.0F}, {-1.0F, 0.0F, 8.5F}};
     }
@@ -90,6 +95,19 @@ class Scripted final : public overfly_vo::Estimator {
   }
 
  private:
+  /// 200 new counters and timings with each frame, and 1000 parameters.
+  void tell_many_names(Answer* answer) {
+    overfly_vo::Parameters parameters;
+    for (int i = 0; i < 1000; ++i) {
+      const std::string number = std::to_string(1000 * frames_ + i);
+      parameters.emplace("p" + number, number);
+      if (i >= 200) continue;
+      answer->counters["c" + number] = 1.0;
+      answer->timings_ms["t" + number] = 1.0;
+    }
+    tell_parameters(parameters);
+  }
+
   void misbehave() {
     if (behaviour_ == "crash") {
       std::cout << "matching 17 features\n";

@@ -1,0 +1,41 @@
+// The wish to stop, looked at while a door waits for another program.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <string>
+
+#include "core/result.hpp"
+
+namespace overfly {
+
+/// A wait looks at the wish that often: the doors promise 50 ms.
+inline constexpr std::chrono::milliseconds kCancelPeriod{20};
+
+/// @param cancel  may be null: nobody will ask
+[[nodiscard]] inline bool is_cancelled(const std::atomic<bool>* cancel) {
+  return cancel != nullptr && cancel->load();
+}
+
+[[nodiscard]] inline Error cancelled(const std::string& wait) {
+  return {ErrorCode::kCancelled, "stopped while waiting for " + wait};
+}
+
+/// Waits by `wait(timeout)`, again and again, until it gives something, `end`, or the wish to stop.
+/// @return what it gave last
+template <typename Wait>
+[[nodiscard]] auto wait_unless_cancelled(const std::atomic<bool>* cancel,
+                                         std::chrono::steady_clock::time_point end,
+                                         const Wait& wait) {
+  using std::chrono::nanoseconds;
+  for (;;) {
+    const nanoseconds left =
+        std::max<nanoseconds>(end - std::chrono::steady_clock::now(), nanoseconds(0));
+    const bool last = cancel == nullptr || left <= kCancelPeriod;
+    auto got = wait(last ? left : nanoseconds(kCancelPeriod));
+    if (got || last || is_cancelled(cancel)) return got;
+  }
+}
+
+}  // namespace overfly

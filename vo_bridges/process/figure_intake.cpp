@@ -1,0 +1,40 @@
+#include "vo_bridges/process/figure_intake.hpp"
+
+#include <cmath>
+#include <utility>
+
+namespace overfly::process {
+
+bool FigureIntake::takes_counter(std::string_view name, double value) {
+  return takes("counter", &counters_, name, value);
+}
+
+bool FigureIntake::takes_timing(std::string_view name, double value) {
+  return takes("timing_ms", &timings_, name, value);
+}
+
+std::vector<std::string> FigureIntake::take_notes() { return std::exchange(notes_, {}); }
+
+bool FigureIntake::takes(const char* kind, Names* names, std::string_view name, double value) {
+  const std::string named = std::string(kind) + " " + std::string(name);
+  if (!std::isfinite(value)) {
+    if (!std::exchange(not_finite_noted_, true)) {
+      notes_.push_back("warning: " + named +
+                       " is not finite: such values are left out, this one and those to come");
+    }
+    return false;
+  }
+  if (names->known.contains(name)) return true;
+  if (names->known.size() < kNameLimit) {
+    names->known.emplace(name);
+    return true;
+  }
+  if (!std::exchange(names->overflow_noted, true)) {
+    notes_.push_back("warning: " + named + " is one name too many: must be at most " +
+                     std::to_string(kNameLimit) +
+                     " in a session; this one and those to come are left out");
+  }
+  return false;
+}
+
+}  // namespace overfly::process
