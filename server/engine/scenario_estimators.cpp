@@ -8,6 +8,9 @@
 #include "server/engine/scenario_faults.hpp"
 #include "server/engine/scenario_field.hpp"
 #include "server/engine/scenario_layers.hpp"
+#include "vo_bridges/lcm/lcm_estimator.hpp"
+#include "vo_bridges/lcm/lcm_network.hpp"
+#include "vo_bridges/ros1/own_topics.hpp"
 
 namespace overfly::engine {
 namespace {
@@ -173,6 +176,41 @@ Result<EstimatorSpec> read_estimator(Json& entry,
   return spec;
 }
 
+/// Of an estimator on LCM.
+struct LcmChannels {
+  std::string network;
+  std::string prefix;
+  bool operator==(const LcmChannels&) const = default;
+};
+
+LcmChannels lcm_channels(const EstimatorSpec& spec) {
+  const LcmEstimatorOptions plain;
+  return {lcm_network_of(spec.lcm_url.empty() ? plain.url : spec.lcm_url),
+          spec.lcm_channel_prefix.empty() ? plain.channel_prefix : spec.lcm_channel_prefix};
+}
+
+/// Two estimators that share what carries the data of one would answer for each other.
+Status check_apart(const EstimatorSpec& spec, const EstimatorSpec& other, const std::string& path) {
+  const std::string who = "\"" + other.name + "\" and \"" + spec.name + "\"";
+  if (spec.type == "lcm" && other.type == "lcm" && lcm_channels(spec) == lcm_channels(other)) {
+    const auto [network, prefix] = lcm_channels(spec);
+    return bad_field(path + ".lcm.channel_prefix",
+                     prefix,
+                     "differ between estimators " + who + ", which are both on " + network);
+  }
+  if (spec.type != "ros1" || other.type != "ros1") return {};
+  for (const ros1::OwnTopic& mine : ros1::own_topics(spec.ros1)) {
+    for (const ros1::OwnTopic& known : ros1::own_topics(other.ros1)) {
+      if (ros1::bare_name(mine.name) != ros1::bare_name(known.name)) continue;
+      return bad_field(path + ".ros1." + mine.option,
+                       mine.name,
+                       "not be the " + std::string(known.option) + " of another: estimators " +
+                           who + " each need their own");
+    }
+  }
+  return {};
+}
+
 /// The default of a field, or what some trusted estimator has in it.
 template <typename Field>
 bool is_trusted(const EstimatorSpec& spec, const Scenario& trusted, const Field& field) {
@@ -192,6 +230,9 @@ Status read_estimators(Json& document, const fs::path& base, Scenario& scenario)
     if (!spec) return spec.error();
     if (!names.insert(spec->name).second) {
       return bad_field(path + ".name", spec->name, "be unique");
+    }
+    for (const EstimatorSpec& other : scenario.estimators) {
+      if (Status status = check_apart(*spec, other, path); !status) return status;
     }
     scenario.estimators.push_back(std::move(*spec));
   }

@@ -125,6 +125,54 @@ TEST(ScenarioEstimators, FieldsOfOtherDoorsAreRefusedByName) {
   }
 }
 
+std::string verdict_on(const std::string& one, const std::string& other) {
+  const Json document = {{"format_version", 1},
+                         {"world", {{"builtin", Json::object()}}},
+                         {"flight", {{"course", Json::object()}}},
+                         {"estimators",
+                          {Json::parse(R"({"name": "a",)" + one + "}"),
+                           Json::parse(R"({"name": "b",)" + other + "}")}}};
+  const auto scenario = resolve_scenario(document, {}, "/one");
+  return scenario ? "fine" : scenario.error().message;
+}
+
+TEST(ScenarioEstimators, ThatWouldAnswerForEachOtherOnLcmAreRefused) {
+  const std::string plain = R"("type": "lcm")";
+  EXPECT_EQ(verdict_on(plain, R"("type": "lcm", "lcm": {"channel_prefix": "B_"})"), "fine");
+  EXPECT_EQ(verdict_on(plain, R"("type": "lcm", "lcm": {"url": "udpm://239.255.76.68:7667"})"),
+            "fine");
+  for (const char* other :
+       {R"("type": "lcm")", R"("type": "lcm", "lcm": {"url": "udpm://?ttl=1"})"}) {
+    EXPECT_THAT(
+        verdict_on(plain, other),
+        HasSubstr(R"(estimators.1.lcm.channel_prefix = "OVERFLY_": must differ between )"
+                  R"(estimators "a" and "b", which are both on udpm://239.255.76.67:7667)"));
+  }
+}
+
+TEST(ScenarioEstimators, ThatWouldAnswerForEachOtherOnRosAreRefused) {
+  const auto ros1 = [](const std::string& fields) {
+    return R"("type": "ros1", "ros1": {)" + fields + "}";
+  };
+  const std::string one = ros1("");
+  const std::string apart = R"("image_topic": "/b/image", "camera_info_topic": "/b/info")";
+  EXPECT_EQ(verdict_on(one, ros1(apart + R"(, "pose_topic": "/b/pose")")), "fine");
+  EXPECT_THAT(verdict_on(one, ros1(apart)),
+              HasSubstr(R"(estimators.1.ros1.pose_topic = "/vo/pose": must not be the pose_topic )"
+                        R"(of another: estimators "a" and "b" each need their own)"));
+  EXPECT_THAT(verdict_on(one, ros1(R"("image_topic": "/b", "pose_topic": "/c")")),
+              HasSubstr("estimators.1.ros1.camera_info_topic"));
+  EXPECT_THAT(verdict_on(one, ros1(apart + R"(, "pose_topic": "vo/pose")")),
+              HasSubstr("estimators.1.ros1.pose_topic = \"vo/pose\""));
+  EXPECT_THAT(verdict_on(one, ros1(apart + R"(, "pose_topic": "/c",
+                                           "debug_image_topic": "/camera/image_raw")")),
+              HasSubstr("estimators.1.ros1.debug_image_topic"));
+  const std::string tf = R"("pose_type": "tf")";
+  EXPECT_THAT(verdict_on(ros1(tf), ros1(tf + "," + apart)),
+              HasSubstr("estimators.1.ros1.camera_frame = \"camera in world on /tf\""));
+  EXPECT_EQ(verdict_on(ros1(tf), ros1(tf + R"(, "vo_frame": "map",)" + apart)), "fine");
+}
+
 TEST(EstimatorFactory, MakesEstimatorsWithoutAScenario) {
   EstimatorSpec spec;
   spec.name = "mine";

@@ -6,8 +6,11 @@
 #include <cmath>
 #include <utility>
 
+#include "vo_bridges/cancel.hpp"
+#include "vo_bridges/lcm/lcm_claim.hpp"
 #include "vo_bridges/lcm/lcm_door.hpp"
 #include "vo_bridges/lcm/lcm_link.hpp"
+#include "vo_bridges/lcm/lcm_network.hpp"
 
 namespace overfly {
 namespace {
@@ -23,8 +26,8 @@ constexpr std::chrono::milliseconds kAskPeriod{200};
 constexpr int kMostSends = 5;
 /// Frames in a row without a word, after which the estimator is given up.
 constexpr int kMostSilentFrames = 5;
-/// LCM's limit of a channel's name is 63 characters.
-constexpr std::size_t kLongestPrefix = 48;
+/// As scenarios have it; LCM's limit of a channel's name is 63 characters.
+constexpr std::size_t kLongestPrefix = 40;
 
 nanoseconds from_seconds(double time_s) {
   return std::chrono::duration_cast<nanoseconds>(std::chrono::duration<double>(time_s));
@@ -42,13 +45,20 @@ std::map<std::string, std::int64_t> faults_of(LcmLink& link) {
 
 class LcmEstimator final : public VoPort {
  public:
-  LcmEstimator(std::unique_ptr<LcmLink> link, LcmEstimatorOptions options, bool hears)
-      : link_(std::move(link)), options_(std::move(options)), hears_(hears) {}
+  LcmEstimator(std::unique_ptr<LcmLink> link,
+               LcmEstimatorOptions options,
+               bool hears,
+               std::shared_ptr<LcmClaim> claim)
+      : claim_(std::move(claim)),
+        link_(std::move(link)),
+        options_(std::move(options)),
+        hears_(hears) {}
 
   [[nodiscard]] std::string type() const override { return "lcm"; }
   [[nodiscard]] std::map<std::string, std::string> effective_parameters() const override {
     return link_->far_end().parameters();
   }
+  [[nodiscard]] Status prepare(const VoFrame& first) override;
   [[nodiscard]] Result<VoEstimate> track(const VoFrame& frame) override;
   void reset() override;
   void set_debug(bool wanted) override { link_->set_debug(wanted); }
@@ -60,19 +70,24 @@ class LcmEstimator final : public VoPort {
  private:
   using Answer = std::optional<VoEstimate>;
 
+  Status begin_session(const VoFrame& frame);
   Result<Answer> ask(const VoFrame& frame);
-  Result<bool> wait_for_estimator();
+  Result<bool> wait_for_estimator(Clock::time_point deadline);
   Result<Answer> wait_for_answer(const VoFrame& frame, Clock::time_point deadline);
   Error no_estimator() const;
   VoEstimate complete(Answer answer, const VoFrame& frame);
+  /// The estimator is gone for good, unless it was only that we were told to stop.
+  Error ended_by(const Error& error);
 
+  const std::shared_ptr<LcmClaim> claim_;  ///< first, so that it goes last; null of a test's node
   std::unique_ptr<LcmLink> link_;
   const LcmEstimatorOptions options_;
   const bool hears_;  ///< false: nothing can be heard from this network
   std::optional<VoFrame> previous_;
   std::optional<Error> gone_;
   Clock::time_point start_deadline_;
-  bool first_asked_ = false;
+  bool in_session_ = false;
+  bool prepared_ = false;  ///< in a session that has seen no frame
   bool waiting_told_ = false;
   int silent_frames_ = 0;
   std::int64_t images_lost_ = 0;
@@ -89,30 +104,51 @@ Result<VoEstimate> LcmEstimator::track(const VoFrame& frame) {
   previous_ = frame;
   previous_->image.reset();  // its size stays in the intrinsics
   Result<Answer> answer = ask(frame);
-  if (!answer) {
-    gone_ = answer.error();
-    return *gone_;
-  }
+  if (!answer) return ended_by(answer.error());
   return complete(std::move(*answer), frame);
+}
+
+Error LcmEstimator::ended_by(const Error& error) {
+  if (error.code != ErrorCode::kCancelled) gone_ = error;
+  return error;
+}
+
+/// The flight's clock has not begun: there is time to wait, in real time as in lockstep.
+Status LcmEstimator::prepare(const VoFrame& first) {
+  if (gone_) return *gone_;
+  if (in_session_) return {};
+  if (Status status = begin_session(first); !status) return ended_by(status.error());
+  prepared_ = true;
+  if (!hears_) return {};
+  const Result<bool> ready = wait_for_estimator(start_deadline_);
+  return ready ? Status() : Status(ended_by(ready.error()));
+}
+
+Status LcmEstimator::begin_session(const VoFrame& frame) {
+  overfly_lcm::calibration_t calibration =
+      calibration_message(frame.camera_id, frame.intrinsics, frame.distortion, options_.parameters);
+  calibration.utime = frame.t_ns / 1000;
+  calibration.lockstep = options_.lockstep ? 1 : 0;
+  link_->begin(std::move(calibration));
+  start_deadline_ = Clock::now() + from_seconds(options_.start_timeout_s);
+  in_session_ = true;
+  return link_->announce();
 }
 
 /// Errors: the estimator is gone for good. Empty: no answer to this frame.
 Result<LcmEstimator::Answer> LcmEstimator::ask(const VoFrame& frame) {
-  if (link_->session() == 0 || !first_asked_) {
-    overfly_lcm::calibration_t calibration = calibration_message(
-        frame.camera_id, frame.intrinsics, frame.distortion, options_.parameters);
-    calibration.utime = frame.t_ns / 1000;
-    calibration.lockstep = options_.lockstep ? 1 : 0;
-    link_->begin(std::move(calibration));
+  if (!in_session_) {
+    if (Status status = begin_session(frame); !status) return status.error();
+  } else if (std::exchange(prepared_, false)) {
     start_deadline_ = Clock::now() + from_seconds(options_.start_timeout_s);
-    first_asked_ = true;
-    if (Status status = link_->announce(); !status) return status.error();
   }
   if (!hears_) {
     if (Status status = link_->send(frame); !status) return status.error();
     return Answer{};
   }
-  const Result<bool> ready = wait_for_estimator();
+  const auto patience = Clock::now() + from_seconds(options_.answer_timeout_s);
+  const Result<bool> ready =
+      wait_for_estimator(options_.lockstep ? start_deadline_ : std::min(start_deadline_, patience));
   if (!ready) return ready.error();
   if (!*ready) return Answer{};
   const auto answer_deadline = Clock::now() + from_seconds(options_.answer_timeout_s);
@@ -121,11 +157,13 @@ Result<LcmEstimator::Answer> LcmEstimator::ask(const VoFrame& frame) {
                          starting ? std::max(start_deadline_, answer_deadline) : answer_deadline);
 }
 
-Result<bool> LcmEstimator::wait_for_estimator() {
-  const auto patience = Clock::now() + from_seconds(options_.answer_timeout_s);
-  const auto deadline = options_.lockstep ? start_deadline_ : std::min(start_deadline_, patience);
-  while (!link_->far_end().wait_until_ready(
-      link_->session(), std::min<nanoseconds>(kAnnouncePeriod, deadline - Clock::now()))) {
+Result<bool> LcmEstimator::wait_for_estimator(Clock::time_point deadline) {
+  const auto hear = [&](nanoseconds timeout) {
+    return link_->far_end().wait_until_ready(link_->session(), timeout);
+  };
+  while (!wait_unless_cancelled(
+      options_.cancel, std::min(Clock::now() + kAnnouncePeriod, deadline), hear)) {
+    if (is_cancelled(options_.cancel)) return cancelled("an estimator on " + options_.url);
     if (!std::exchange(waiting_told_, true)) {
       link_->far_end().say("waits for an estimator that answers " + options_.channel_prefix +
                            "CALIBRATION on " + options_.url);
@@ -142,10 +180,16 @@ Result<LcmEstimator::Answer> LcmEstimator::wait_for_answer(const VoFrame& frame,
   if (Status status = link_->send(frame); !status) return status.error();
   int sends = 1;
   while (Clock::now() < deadline) {
-    Answer answer = link_->answers().wait(
-        frame.t_ns, std::min<nanoseconds>(kAskPeriod, deadline - Clock::now()));
+    Answer answer = wait_unless_cancelled(
+        options_.cancel, std::min(Clock::now() + kAskPeriod, deadline), [&](nanoseconds timeout) {
+          return link_->answers().wait(frame.t_ns, timeout);
+        });
     Status sent;
     if (!answer) {
+      if (is_cancelled(options_.cancel)) {
+        link_->answers().give_up(frame.t_ns);
+        return cancelled("the answer to frame " + std::to_string(frame.index));
+      }
       sent = link_->ask_again();
     } else if (!answer->counters.contains(kImageLost)) {
       silent_frames_ = 0;
@@ -201,7 +245,8 @@ VoEstimate LcmEstimator::complete(Answer answer, const VoFrame& frame) {
 void LcmEstimator::reset() {
   previous_.reset();
   gone_.reset();
-  first_asked_ = false;
+  in_session_ = false;
+  prepared_ = false;
   silent_frames_ = 0;
   had_pose_ = false;
   map_id_ = 0;
@@ -223,9 +268,10 @@ Status check(const LcmEstimatorOptions& options, const LcmUrl& url) {
         return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '/';
       });
   if (!plain || options.channel_prefix.size() > kLongestPrefix) {
-    return bad("channel_prefix",
-               "\"" + options.channel_prefix + "\"",
-               "at most 48 letters, digits, \"_\", \"-\" and \"/\"");
+    return bad(
+        "channel_prefix",
+        "\"" + options.channel_prefix + "\"",
+        "at most " + std::to_string(kLongestPrefix) + " letters, digits, \"_\", \"-\" and \"/\"");
   }
   if (Status status = check_timeout("start_timeout_s", options.start_timeout_s); !status) {
     return status;
@@ -244,6 +290,19 @@ Status check(const LcmEstimatorOptions& options, const LcmUrl& url) {
   return {};
 }
 
+/// @param url  of the options, which are checked
+Result<std::unique_ptr<VoPort>> create_on(std::shared_ptr<LcmNode> node,
+                                          const LcmEstimatorOptions& options,
+                                          const LcmUrl& url,
+                                          std::shared_ptr<LcmClaim> claim) {
+  const bool hears = url.provider != "file";
+  Result<std::unique_ptr<LcmLink>> link =
+      LcmLink::open(std::move(node), options.channel_prefix, hears);
+  if (!link) return link.error();
+  return std::unique_ptr<VoPort>(
+      std::make_unique<LcmEstimator>(std::move(*link), options, hears, std::move(claim)));
+}
+
 }  // namespace
 
 bool lcm_is_built_in() { return true; }
@@ -253,20 +312,22 @@ Result<std::unique_ptr<VoPort>> create_lcm_estimator_on(std::shared_ptr<LcmNode>
   const Result<LcmUrl> url = parse_lcm_url(options.url);
   if (!url) return url.error();
   if (Status status = check(options, *url); !status) return status.error();
-  Result<std::unique_ptr<LcmLink>> link =
-      LcmLink::open(std::move(node), options.channel_prefix, url->provider != "file");
-  if (!link) return link.error();
-  return std::unique_ptr<VoPort>(
-      std::make_unique<LcmEstimator>(std::move(*link), options, url->provider != "file"));
+  return create_on(std::move(node), options, *url, nullptr);
 }
 
 Result<std::unique_ptr<VoPort>> create_lcm_estimator(const LcmEstimatorOptions& options) {
   const Result<LcmUrl> url = parse_lcm_url(options.url);
   if (!url) return url.error();
   if (Status status = check(options, *url); !status) return status.error();
-  Result<std::shared_ptr<LcmNode>> node = LcmNode::open(with_receive_buffer(*url));
+  std::shared_ptr<LcmClaim> claim;
+  if (url->provider != "memq") {  // a network of one node alone
+    auto taken = LcmClaim::take(lcm_network_of(options.url), options.channel_prefix);
+    if (!taken) return taken.error();
+    claim = std::move(*taken);
+  }
+  Result<std::shared_ptr<LcmNode>> node = LcmNode::open(with_receive_buffer(*url), options.cancel);
   if (!node) return node.error();
-  return create_lcm_estimator_on(std::move(*node), options);
+  return create_on(std::move(*node), options, *url, std::move(claim));
 }
 
 }  // namespace overfly

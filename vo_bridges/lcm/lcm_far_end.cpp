@@ -1,6 +1,10 @@
 #include "vo_bridges/lcm/lcm_far_end.hpp"
 
+#include <cmath>
 #include <iterator>
+
+#include "vo_bridges/lcm/lcm_messages.hpp"
+#include "vo_bridges/process/wire.hpp"
 
 namespace overfly {
 namespace {
@@ -9,6 +13,12 @@ namespace {
 constexpr std::size_t kMostLines = 1000;
 constexpr std::int64_t kMostRefusalsTold = 20;
 constexpr std::size_t kLongestLine = 2000;
+constexpr std::size_t kLongestName = 128;
+
+/// As may stand in a log or a JSON file.
+std::string clean(const std::string& text, std::size_t limit) {
+  return process::printable(text, limit);
+}
 
 }  // namespace
 
@@ -16,11 +26,21 @@ void LcmFarEnd::hear(const overfly_lcm::status_t& status) {
   const std::lock_guard lock(mutex_);
   session_ = status.session;
   parameters_.clear();
-  for (const auto& [name, value] : status.parameters) parameters_[name] = value;
-  if (!status.name.empty()) {
-    parameters_["estimator"] = status.name + (status.version.empty() ? "" : " " + status.version);
+  for (const auto& [name, value] : status.parameters) {
+    if (is_figure_name(name)) {
+      parameters_[name] = clean(value, kLongestLine);
+    } else if (++bad_names_ <= kMostRefusalsTold) {
+      add_line("parameter \"" + clean(name, kLongestName) + "\" left out: its name must be 1 to " +
+               std::to_string(kLongestName) + " printable characters of ASCII without spaces");
+    }
   }
-  if (status.cpu_s >= 0.0 && status.peak_memory_mb >= 0.0) {
+  if (!status.name.empty()) {
+    std::string& estimator = parameters_["estimator"];
+    estimator = clean(status.name, kLongestName);
+    if (!status.version.empty()) estimator += ' ' + clean(status.version, kLongestName);
+  }
+  const bool finite = std::isfinite(status.cpu_s) && std::isfinite(status.peak_memory_mb);
+  if (finite && status.cpu_s >= 0.0 && status.peak_memory_mb >= 0.0) {
     resource_use_ = ResourceUse{status.cpu_s, status.peak_memory_mb};
   }
   for (const std::string& line : status.lines) add_line(line);
@@ -48,7 +68,8 @@ void LcmFarEnd::say(const std::string& line) {
 }
 
 void LcmFarEnd::add_line(const std::string& line) {
-  log_.push_back(line.substr(0, kLongestLine));
+  const std::size_t end = line.find_last_not_of("\r\n") + 1;
+  log_.push_back(clean(line.substr(0, end), kLongestLine));
   if (log_.size() > kMostLines) log_.pop_front();
 }
 

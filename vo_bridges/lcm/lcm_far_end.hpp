@@ -44,6 +44,7 @@ class LcmFarEnd {
   std::optional<ResourceUse> resource_use_;
   std::deque<std::string> log_;
   std::int64_t refused_ = 0;
+  std::int64_t bad_names_ = 0;
 };
 
 }  // namespace overfly

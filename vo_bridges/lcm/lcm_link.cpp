@@ -4,8 +4,13 @@
 #include <chrono>
 #include <utility>
 
+#include "vo_bridges/process/wire.hpp"
+
 namespace overfly {
 namespace {
+
+/// Of counters, and of timings, in a session: each is a column of what is recorded.
+constexpr std::size_t kMostNames = 256;
 
 /// Unlike that of any run before, here or elsewhere: the time in microseconds since 1970, and one
 /// more where that was taken within this process.
@@ -108,6 +113,12 @@ void LcmLink::hear_pose(std::span<const std::uint8_t> bytes) {
     estimate.counters[kImageLost] = 1.0;
   } else if (Result<VoEstimate> understood = estimate_from(*message); understood) {
     estimate = std::move(*understood);
+    if (std::exchange(names_session_, message->session) != message->session) {
+      counters_ = {counters_.what};
+      timings_ = {timings_.what};
+    }
+    limit_names(counters_, estimate.counters);
+    limit_names(timings_, estimate.timing_ms);
     if (message->debug_sent != 0) attach_debug(estimate);
   } else {
     far_end_.refuse(prefix_ + "POSE", understood.error().message);
@@ -115,6 +126,25 @@ void LcmLink::hear_pose(std::span<const std::uint8_t> bytes) {
   }
   if (message->image_received != 0) answered_ = answers_to;
   answers_.deliver(message->t_ns, std::move(estimate));
+}
+
+void LcmLink::limit_names(Names& names, std::map<std::string, double>& figures) {
+  std::erase_if(figures, [&](const auto& figure) {
+    const std::string& name = figure.first;
+    if (names.known.contains(name)) return false;
+    const bool sound = is_figure_name(name);
+    if (sound && names.known.size() < kMostNames) {
+      names.known.insert(name);
+      return false;
+    }
+    if (!std::exchange(sound ? names.limit_told : names.bad_told, true)) {
+      far_end_.say(names.what + (" \"" + process::printable(name, 80)) +
+                   "\" left out, as others like it will be: " +
+                   (sound ? "a session has at most " + std::to_string(kMostNames) + " names of them"
+                          : "names must be 1 to 128 printable characters of ASCII without spaces"));
+    }
+    return true;
+  });
 }
 
 void LcmLink::attach_debug(VoEstimate& estimate) {

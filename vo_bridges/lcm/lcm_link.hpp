@@ -3,11 +3,13 @@
 
 #include <atomic>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <overfly_lcm/calibration_t.hpp>
 #include <overfly_lcm/sim_time_t.hpp>
+#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -63,6 +65,15 @@ class LcmLink {
   void hear_debug(std::span<const std::uint8_t> bytes);
   void hear_status(std::span<const std::uint8_t> bytes);
   void attach_debug(VoEstimate& estimate);
+  /// The names of counters, or of timings, in a session.
+  struct Names {
+    const char* what;
+    std::set<std::string> known{};
+    bool bad_told = false;
+    bool limit_told = false;
+  };
+  /// Leaves out figures whose names are none, and those of names beyond the limit.
+  void limit_names(Names& names, std::map<std::string, double>& figures);
 
   std::shared_ptr<LcmNode> node_;
   const std::string prefix_;
@@ -76,6 +87,10 @@ class LcmLink {
   std::atomic<int> height_px_ = 0;
   std::atomic<bool> debug_wanted_ = false;
   std::atomic<std::int64_t> outdated_ = 0;
+  /// Of the session answered last; touched by the node's thread alone.
+  std::int64_t names_session_ = 0;
+  Names counters_{"counter"};
+  Names timings_{"timing"};
   /// Session and stamp of the image answered last; touched by the node's thread alone.
   std::pair<std::int64_t, std::int64_t> answered_{0, 0};
   /// The debug message that came last, touched by the node's thread alone.

@@ -49,6 +49,12 @@ std::map<std::string, double> numbers_from(const std::vector<overfly_lcm::named_
 
 }  // namespace
 
+bool is_figure_name(const std::string& name) {
+  constexpr std::size_t kLongest = 128;
+  return !name.empty() && name.size() <= kLongest &&
+         std::all_of(name.begin(), name.end(), [](char c) { return c > ' ' && c <= '~'; });
+}
+
 overfly_lcm::image_t image_message(const Image& image,
                                    std::int64_t frame,
                                    std::int64_t t_ns,

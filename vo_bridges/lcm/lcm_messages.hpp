@@ -33,7 +33,12 @@ namespace overfly {
                                                              const Distortion& distortion,
                                                              const VoParameters& parameters);
 
-/// Without the debug image. Errors: kUnreadable naming the field, its value and what it must be.
+/// Whether a name of a parameter, counter or timing is one: 1 to 128 printable characters of ASCII
+/// without spaces, as at the process door.
+[[nodiscard]] bool is_figure_name(const std::string& name);
+
+/// Without the debug image; the names of counters and timings are as they came. Errors: kUnreadable
+/// naming the field, its value and what it must be.
 [[nodiscard]] Result<VoEstimate> estimate_from(const overfly_lcm::pose_t& message);
 
 /// What a PREFIX_DEBUG message shows.

@@ -11,10 +11,10 @@
 
 namespace overfly {
 
-Result<std::shared_ptr<LcmNode>> LcmNode::open(const LcmUrl& url) {
+Result<std::shared_ptr<LcmNode>> LcmNode::open(const LcmUrl& url, const std::atomic<bool>* cancel) {
   if (url.provider == "udpm") {
     // LCM itself would wait ten seconds for its own packet, and say less.
-    if (Status status = probe_multicast(url.address()); !status) return status.error();
+    if (Status status = probe_multicast(url.address(), cancel); !status) return status.error();
   }
   lcm_t* const lcm = lcm_create(url.text().c_str());
   if (lcm == nullptr) return Error{ErrorCode::kIo, "LCM cannot open " + url.text()};

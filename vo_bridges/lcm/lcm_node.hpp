@@ -1,6 +1,7 @@
 // One end of an LCM network: publishes, and hears on a thread of its own.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -22,8 +23,9 @@ class LcmNode {
   /// Called on the node's thread; must neither throw nor stop the node.
   using Handler = std::function<void(std::span<const std::uint8_t> message)>;
 
-  /// Errors: kIo where LCM cannot be opened, with what to do about it.
-  static Result<std::shared_ptr<LcmNode>> open(const LcmUrl& url);
+  /// Errors: kIo where LCM cannot be opened, with what to do about it; kCancelled.
+  static Result<std::shared_ptr<LcmNode>> open(const LcmUrl& url,
+                                               const std::atomic<bool>* cancel = nullptr);
   /// Stops.
   ~LcmNode();
   LcmNode(const LcmNode&) = delete;
@@ -66,7 +68,8 @@ template <typename Message>
 }
 
 /// Whether multicast from this machine comes back to it: a packet is sent to a group and awaited.
-/// Errors: kIo saying what failed and how to mend it.
-[[nodiscard]] Status probe_multicast(const std::string& address);
+/// Errors: kIo saying what failed and how to mend it; kCancelled.
+[[nodiscard]] Status probe_multicast(const std::string& address,
+                                     const std::atomic<bool>* cancel = nullptr);
 
 }  // namespace overfly

@@ -10,12 +10,11 @@
 #include <set>
 #include <string_view>
 
+#include "vo_bridges/lcm/lcm_network.hpp"
+
 namespace overfly {
 namespace {
 
-/// LCM's own network (lcm_create's documentation).
-constexpr const char* kAddress = "239.255.76.67";
-constexpr int kPort = 7667;
 /// Two debug images of 1280 x 960 RGB and their bookkeeping.
 constexpr std::int64_t kWantedReceiveBufferBytes = std::int64_t{8} << 20U;
 
@@ -100,13 +99,13 @@ std::string LcmUrl::text() const {
 
 std::string LcmUrl::address() const {
   std::string address = network.substr(0, network.find(':'));
-  return address.empty() ? kAddress : address;
+  return address.empty() ? kLcmAddress : address;
 }
 
 int LcmUrl::port() const {
   const std::size_t colon = network.find(':');
-  if (colon == std::string::npos) return kPort;
-  return static_cast<int>(integer_from(network.substr(colon + 1)).value_or(kPort));
+  if (colon == std::string::npos) return kLcmPort;
+  return static_cast<int>(integer_from(network.substr(colon + 1)).value_or(kLcmPort));
 }
 
 Result<LcmUrl> parse_lcm_url(const std::string& text) {

@@ -9,12 +9,13 @@
 #include <cstdint>
 #include <system_error>
 
+#include "vo_bridges/cancel.hpp"
 #include "vo_bridges/lcm/lcm_node.hpp"
 
 namespace overfly {
 namespace {
 
-constexpr int kPatienceMs = 500;
+constexpr std::chrono::milliseconds kPatience{500};
 
 class Socket {
  public:
@@ -50,7 +51,7 @@ bool join(int fd, in_addr group) {
 
 }  // namespace
 
-Status probe_multicast(const std::string& address) {
+Status probe_multicast(const std::string& address, const std::atomic<bool>* cancel) {
   const Socket socket;
   sockaddr_in own{};
   own.sin_family = AF_INET;
@@ -76,10 +77,14 @@ Status probe_multicast(const std::string& address) {
     return failure(address, last_failure());
   }
   pollfd waiting{socket.fd(), POLLIN, 0};
-  if (poll(&waiting, 1, kPatienceMs) != 1) {
-    return failure(address, "a packet that was sent did not come back");
-  }
-  return {};
+  const bool back = wait_unless_cancelled(
+      cancel, std::chrono::steady_clock::now() + kPatience, [&](std::chrono::nanoseconds timeout) {
+        const auto timeout_ms = std::chrono::ceil<std::chrono::milliseconds>(timeout);
+        return poll(&waiting, 1, static_cast<int>(timeout_ms.count())) == 1;
+      });
+  if (back) return {};
+  if (is_cancelled(cancel)) return cancelled("multicast to " + address);
+  return failure(address, "a packet that was sent did not come back");
 }
 
 }  // namespace overfly

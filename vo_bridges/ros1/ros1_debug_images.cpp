@@ -3,15 +3,10 @@
 #include <cstdlib>
 #include <utility>
 
+#include "vo_bridges/cancel.hpp"
 #include "vo_bridges/ros1/answer_patience.hpp"
 
 namespace overfly::ros1 {
-namespace {
-
-/// An image that is drawn after the pose was published takes that long at most, on a busy machine.
-constexpr std::chrono::milliseconds kPatience{1000};
-
-}  // namespace
 
 bool DebugImages::has(std::int64_t stamp_ns) const {
   if (!newest_) return false;
@@ -25,10 +20,16 @@ void DebugImages::deliver(const ImageMessage::ConstPtr& image) {
   came_.notify_all();
 }
 
-ImageMessage::ConstPtr DebugImages::take(std::int64_t stamp_ns) {
+ImageMessage::ConstPtr DebugImages::take(std::int64_t stamp_ns,
+                                         std::chrono::nanoseconds patience,
+                                         const std::atomic<bool>* cancel) {
   std::unique_lock lock(mutex_);
-  if (comes_in_time_) came_.wait_for(lock, kPatience, [&] { return has(stamp_ns); });
-  comes_in_time_ = has(stamp_ns);
+  if (comes_in_time_) {
+    const auto end = std::chrono::steady_clock::now() + patience;
+    comes_in_time_ = wait_unless_cancelled(cancel, end, [&](std::chrono::nanoseconds timeout) {
+      return came_.wait_for(lock, timeout, [&] { return has(stamp_ns); });
+    });
+  }
   return std::exchange(newest_, nullptr);
 }
 

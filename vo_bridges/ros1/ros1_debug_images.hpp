@@ -1,6 +1,7 @@
 // The debug images of an estimator, matched to frames.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
@@ -10,14 +11,20 @@
 
 namespace overfly::ros1 {
 
-/// Keeps the newest. One that bears its frame's stamp is waited for a little while it is known to
-/// come; an estimator that stamps otherwise has its newest image taken. May be used from any
-/// thread.
+/// Keeps the newest. May be used from any thread.
 class DebugImages {
  public:
+  /// An image that is drawn after the pose was published takes that long at most, on a busy
+  /// machine.
+  static constexpr std::chrono::milliseconds kPatience{1000};
+
   void deliver(const ImageMessage::ConstPtr& image);
-  /// The image of the frame of that stamp, else the newest that was not taken yet, else null.
-  [[nodiscard]] ImageMessage::ConstPtr take(std::int64_t stamp_ns);
+  /// The image of the frame of that stamp, else the newest that was not taken yet (an estimator may
+  /// stamp otherwise), else null.
+  /// @param patience  for one that bears the stamp, while such are known to come
+  [[nodiscard]] ImageMessage::ConstPtr take(std::int64_t stamp_ns,
+                                            std::chrono::nanoseconds patience,
+                                            const std::atomic<bool>* cancel = nullptr);
   /// Forgets what came for earlier frames.
   void forget();
 

@@ -17,7 +17,7 @@ Result<std::unique_ptr<VoPort>> create_ros1_estimator(const Ros1EstimatorOptions
   const auto patience = std::chrono::duration_cast<Clock::duration>(
       std::chrono::duration<double>(options.start_timeout_s));
   const Clock::time_point end = Clock::now() + patience;
-  const auto node = ros1::Node::join(*master, options.node_name, patience);
+  const auto node = ros1::Node::join(*master, options.node_name, patience, options.cancel);
   if (!node) return node.error();
   if (Status status = ros1::write_parameters(options.parameter_namespace, options.parameters);
       !status) {

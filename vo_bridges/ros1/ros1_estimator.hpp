@@ -2,6 +2,7 @@
 // (vo_bridges/ros1/README.md).
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <string>
 
@@ -14,6 +15,7 @@ namespace overfly {
 /// What the estimator publishes its pose as.
 enum class Ros1PoseType { kPoseStamped, kPoseWithCovarianceStamped, kOdometry, kTf };
 
+/// No two estimators of a process share a topic, nor a transform on /tf.
 struct Ros1EstimatorOptions {
   std::string master_uri = "http://127.0.0.1:11311";
   std::string node_name = "overfly";  ///< of this process: the first estimator's counts
@@ -44,6 +46,8 @@ struct Ros1EstimatorOptions {
   VoParameters parameters;
   std::string
       parameter_namespace;  ///< whose parameters are read back into the result; empty = none
+  /// When it turns true, every wait ends within 50 ms with kCancelled. Null = nobody cancels.
+  const std::atomic<bool>* cancel = nullptr;
 };
 
 /// True where this build speaks ROS 1.
@@ -52,7 +56,7 @@ struct Ros1EstimatorOptions {
 /// Waits for the master, then for a subscriber of the images or the calibration.
 /// Errors: kUnsupported where ROS 1 is not built in; kInvalidArgument naming the option; kNotFound
 /// when no master answers, or nobody subscribes to the images, in time; kConflict when this process
-/// is the node of another master already, or another of its estimators has the image topic.
+/// is the node of another master already, or another of its estimators has a topic; kCancelled.
 [[nodiscard]] Result<std::unique_ptr<VoPort>> create_ros1_estimator(
     const Ros1EstimatorOptions& options);
 

@@ -33,7 +33,7 @@ Ros1Findings ros1_findings() {
     found.remedy = "unset ROS_MASTER_URI, or make it http://HOST:11311";
     return found;
   }
-  const bool answers = ros1::ask_master_pid(*master, std::chrono::seconds(1)).ok();
+  const bool answers = ros1::ask_pid(*master, std::chrono::seconds(1)).ok();
   found.finding += answers ? "a master answers at " + uri : "no master at " + uri;
   const std::string own = variable("ROS_HOSTNAME") + variable("ROS_IP");
   if (!own.empty()) found.finding += "; nodes are told to find us at " + own;

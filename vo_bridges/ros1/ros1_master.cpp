@@ -7,14 +7,12 @@
 #include <charconv>
 #include <limits>
 
+#include "vo_bridges/cancel.hpp"
+
 namespace overfly::ros1 {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double seconds_until(Clock::time_point end) {
-  return std::chrono::duration<double>(end - Clock::now()).count();
-}
 
 /// The third element of [1, message, value].
 /// Errors: kIo.
@@ -35,7 +33,8 @@ Result<XmlRpc::XmlRpcValue> value_of_answer(XmlRpc::XmlRpcValue& answer, const s
 Result<XmlRpc::XmlRpcValue> call(const XmlRpcAddress& address,
                                  const std::string& method,
                                  const XmlRpc::XmlRpcValue& values,
-                                 std::chrono::nanoseconds timeout) {
+                                 std::chrono::nanoseconds timeout,
+                                 const std::atomic<bool>* cancel = nullptr) {
   const std::string what = address.uri() + " " + method;
   const Clock::time_point end = Clock::now() + timeout;
   XmlRpc::XmlRpcValue answer;
@@ -46,10 +45,13 @@ Result<XmlRpc::XmlRpcValue> call(const XmlRpcAddress& address,
       XmlRpc::XmlRpcDispatch dispatch;
       dispatch.addSource(&client,
                          XmlRpc::XmlRpcDispatch::WritableEvent | XmlRpc::XmlRpcDispatch::Exception);
-      dispatch.work(std::max(0.0, seconds_until(end)));
-      dispatch.removeSource(&client);
       // Also true for a connection that was lost: then there is no answer.
-      done = client.executeCheckDone(answer) && answer.valid() && !client.isFault();
+      const bool over = wait_unless_cancelled(cancel, end, [&](std::chrono::nanoseconds left) {
+        dispatch.work(std::chrono::duration<double>(left).count());
+        return client.executeCheckDone(answer);
+      });
+      dispatch.removeSource(&client);
+      done = over && answer.valid() && !client.isFault();
     }
     client.close();
     if (done) return value_of_answer(answer, what);
@@ -91,17 +93,20 @@ Result<XmlRpcAddress> parse_xml_rpc_address(const std::string& uri) {
 Result<XmlRpc::XmlRpcValue> call_xml_rpc(const XmlRpcAddress& address,
                                          const std::string& method,
                                          const std::vector<std::string>& arguments,
-                                         std::chrono::nanoseconds timeout) {
+                                         std::chrono::nanoseconds timeout,
+                                         const std::atomic<bool>* cancel) {
   XmlRpc::XmlRpcValue values;
   for (std::size_t i = 0; i < arguments.size(); ++i) values[static_cast<int>(i)] = arguments[i];
-  return call(address, method, values, timeout);
+  return call(address, method, values, timeout, cancel);
 }
 
-Result<int> ask_master_pid(const XmlRpcAddress& master, std::chrono::nanoseconds timeout) {
-  Result<XmlRpc::XmlRpcValue> pid = call_xml_rpc(master, "getPid", {"/overfly"}, timeout);
+Result<int> ask_pid(const XmlRpcAddress& node,
+                    std::chrono::nanoseconds timeout,
+                    const std::atomic<bool>* cancel) {
+  Result<XmlRpc::XmlRpcValue> pid = call_xml_rpc(node, "getPid", {"/overfly"}, timeout, cancel);
   if (!pid) return pid.error();
   if (pid->getType() != XmlRpc::XmlRpcValue::TypeInt) {
-    return Error{ErrorCode::kIo, master.uri() + " getPid: the answer is no number"};
+    return Error{ErrorCode::kIo, node.uri() + " getPid: the answer is no number"};
   }
   return static_cast<int>(*pid);
 }

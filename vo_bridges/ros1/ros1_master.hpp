@@ -4,6 +4,7 @@
 
 #include <xmlrpcpp/XmlRpcValue.h>
 
+#include <atomic>
 #include <chrono>
 #include <string>
 #include <vector>
@@ -29,17 +30,20 @@ struct XmlRpcAddress {
 
 /// Calls a method of the ROS master or slave interface and gives back the value of its answer
 /// [code, message, value].
+/// @param cancel  may be null; when it turns true, the call ends as if the time were up
 /// Errors: kNotFound when nobody answers in time; kIo for an answer that says it failed, or none of
 /// that form.
 [[nodiscard]] Result<XmlRpc::XmlRpcValue> call_xml_rpc(const XmlRpcAddress& address,
                                                        const std::string& method,
                                                        const std::vector<std::string>& arguments,
-                                                       std::chrono::nanoseconds timeout);
+                                                       std::chrono::nanoseconds timeout,
+                                                       const std::atomic<bool>* cancel = nullptr);
 
-/// The process id of the master, which tells a restarted one from the one before.
+/// The process id of a node, or of the master, where it tells a restarted one from the one before.
 /// Errors: as call_xml_rpc's.
-[[nodiscard]] Result<int> ask_master_pid(const XmlRpcAddress& master,
-                                         std::chrono::nanoseconds timeout);
+[[nodiscard]] Result<int> ask_pid(const XmlRpcAddress& node,
+                                  std::chrono::nanoseconds timeout,
+                                  const std::atomic<bool>* cancel = nullptr);
 
 /// Tells a node who publishes a topic, as the master does. Errors: as call_xml_rpc's.
 [[nodiscard]] Status tell_publishers(const XmlRpcAddress& node,

@@ -12,6 +12,8 @@
 #include <thread>
 #include <utility>
 
+#include "vo_bridges/cancel.hpp"
+
 namespace overfly::ros1 {
 namespace {
 
@@ -20,7 +22,7 @@ using Clock = std::chrono::steady_clock;
 
 /// The node lives until the process ends: roscpp's threads may log after main() returned.
 Node* the_node = nullptr;
-std::mutex joining;
+std::timed_mutex joining;
 
 void log_line(void* /*logger*/,
               ros::console::Level level,
@@ -31,30 +33,36 @@ void log_line(void* /*logger*/,
   if (level >= ros::console::levels::Warn) the_node->say(std::string("ROS: ") + text);
 }
 
-/// Errors: kNotFound.
-Status await_master(const XmlRpcAddress& master, std::chrono::nanoseconds patience) {
+/// Errors: kNotFound; kCancelled.
+Status await_master(const XmlRpcAddress& master,
+                    std::chrono::nanoseconds patience,
+                    const std::atomic<bool>* cancel) {
   const Clock::time_point end = Clock::now() + patience;
   for (;;) {
     const auto left = std::max<std::chrono::nanoseconds>(end - Clock::now(), 1ms);
-    const Result<int> pid = ask_master_pid(master, std::min<std::chrono::nanoseconds>(left, 2s));
+    const Result<int> pid = ask_pid(master, std::min<std::chrono::nanoseconds>(left, 2s), cancel);
     if (pid) return {};
+    if (is_cancelled(cancel)) return cancelled("the ROS master at " + master.uri());
     if (Clock::now() + 100ms > end) {
       return Error{ErrorCode::kNotFound,
                    "no ROS master answers at " + master.uri() + " within " +
                        std::to_string(std::chrono::duration<double>(patience).count()) +
                        " s: start one with roscore"};
     }
-    std::this_thread::sleep_for(100ms);
+    for (int i = 0; i < 5 && !is_cancelled(cancel); ++i) std::this_thread::sleep_for(20ms);
   }
 }
 
 /// A second node of a name would make the master end the first one.
-/// Errors: kConflict.
-Status check_name_is_free(const XmlRpcAddress& master, const std::string& name) {
-  Result<XmlRpc::XmlRpcValue> uri = call_xml_rpc(master, "lookupNode", {name, name}, 2s);
+/// Errors: kConflict; kCancelled.
+Status check_name_is_free(const XmlRpcAddress& master,
+                          const std::string& name,
+                          const std::atomic<bool>* cancel) {
+  Result<XmlRpc::XmlRpcValue> uri = call_xml_rpc(master, "lookupNode", {name, name}, 2s, cancel);
+  if (is_cancelled(cancel)) return cancelled("the ROS master at " + master.uri());
   if (!uri || uri->getType() != XmlRpc::XmlRpcValue::TypeString) return {};
   const auto address = parse_xml_rpc_address(static_cast<std::string>(*uri));
-  if (!address || !call_xml_rpc(*address, "getPid", {name}, 2s)) return {};  // it died
+  if (!address || !call_xml_rpc(*address, "getPid", {name}, 2s, cancel)) return {};  // it died
   return Error{ErrorCode::kConflict,
                "node_name = " + name + ": the master at " + master.uri() +
                    " has a node of that name already"};
@@ -77,17 +85,23 @@ bool Node::alive() { return ros::ok() && !ros::isShuttingDown(); }
 
 Result<Node*> Node::join(const XmlRpcAddress& master,
                          const std::string& name,
-                         std::chrono::nanoseconds patience) {
-  const std::lock_guard lock(joining);
+                         std::chrono::nanoseconds patience,
+                         const std::atomic<bool>* cancel) {
+  std::unique_lock lock(joining, std::defer_lock);
+  while (!lock.try_lock_for(kCancelPeriod)) {
+    if (is_cancelled(cancel)) return cancelled("the ROS master at " + master.uri());
+  }
   if (the_node != nullptr && the_node->master_ != master) {
     return Error{ErrorCode::kConflict,
                  "master_uri = " + master.uri() + ": this process is a node of the master at " +
                      the_node->master_.uri() +
                      " already, and ROS lets a process have one: start another overfly"};
   }
-  if (Status status = await_master(master, patience); !status) return status.error();
+  if (Status status = await_master(master, patience, cancel); !status) return status.error();
   if (the_node == nullptr) {
-    if (Status status = check_name_is_free(master, "/" + name); !status) return status.error();
+    if (Status status = check_name_is_free(master, "/" + name, cancel); !status) {
+      return status.error();
+    }
     if (Status status = start(master, name); !status) return status.error();
   }
   if (!alive()) {
@@ -115,17 +129,21 @@ Status Node::start(const XmlRpcAddress& master, const std::string& name) {
   return {};
 }
 
-Status Node::claim(const std::string& topic) {
+Status Node::claim(const std::vector<OwnTopic>& topics) {
   const std::lock_guard lock(mutex_);
-  if (claimed_.insert(topic).second) return {};
-  return Error{
-      ErrorCode::kConflict,
-      "topic " + topic + ": another estimator of this process publishes there; each needs its own"};
+  for (const OwnTopic& topic : topics) {
+    if (!claimed_.contains(topic.name)) continue;
+    return Error{ErrorCode::kConflict,
+                 std::string(topic.option) + " = " + topic.name +
+                     ": another estimator of this process has it; each needs its own"};
+  }
+  for (const OwnTopic& topic : topics) claimed_.insert(topic.name);
+  return {};
 }
 
-void Node::release(const std::string& topic) {
+void Node::release(const std::vector<OwnTopic>& topics) {
   const std::lock_guard lock(mutex_);
-  claimed_.erase(topic);
+  for (const OwnTopic& topic : topics) claimed_.erase(topic.name);
 }
 
 void Node::add_log(const std::shared_ptr<LineLog>& log) {

@@ -1,6 +1,7 @@
 // The one ROS node that a process can be.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <memory>
 #include <mutex>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "core/result.hpp"
+#include "vo_bridges/ros1/own_topics.hpp"
 #include "vo_bridges/ros1/ros1_log.hpp"
 #include "vo_bridges/ros1/ros1_master.hpp"
 
@@ -21,11 +23,14 @@ class Node {
   /// Begins the node, or finds it. ROS installs no handler of SIGINT; its logging goes to the logs
   /// of the estimators instead of stdout and stderr.
   /// @param patience  for the master to answer
-  /// Errors: kNotFound when the master does not answer in time; kConflict when this process is the
-  /// node of another master, or the master has a living node of that name; kInternal.
+  /// @param cancel    as Ros1EstimatorOptions has it
+  /// Errors: kCancelled; kNotFound when the master does not answer in time; kConflict when this
+  /// process is the node of another master, or the master has a living node of that name;
+  /// kInternal.
   [[nodiscard]] static Result<Node*> join(const XmlRpcAddress& master,
                                           const std::string& name,
-                                          std::chrono::nanoseconds patience);
+                                          std::chrono::nanoseconds patience,
+                                          const std::atomic<bool>* cancel = nullptr);
   Node(const Node&) = delete;
   Node& operator=(const Node&) = delete;
 
@@ -35,9 +40,9 @@ class Node {
   /// False when it was told to end ("rosnode kill").
   [[nodiscard]] static bool alive();
 
-  /// Takes a topic for one publisher. Errors: kConflict.
-  [[nodiscard]] Status claim(const std::string& topic);
-  void release(const std::string& topic);
+  /// Takes topics for one estimator: all or none. Errors: kConflict naming option and topic.
+  [[nodiscard]] Status claim(const std::vector<OwnTopic>& topics);
+  void release(const std::vector<OwnTopic>& topics);
 
   /// What roscpp logs goes to these.
   void add_log(const std::shared_ptr<LineLog>& log);

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cctype>
+#include <vector>
+
+#include "vo_bridges/ros1/own_topics.hpp"
 
 namespace overfly::ros1 {
 namespace {
@@ -55,11 +58,12 @@ Status check_names(const Ros1EstimatorOptions& options) {
                "'" + options.node_name + "'",
                "must be of letters, digits and _, and begin with a letter");
   }
-  if (options.image_topic == options.camera_info_topic) {
-    return bad("camera_info_topic", options.camera_info_topic, "must not be the image_topic");
-  }
-  if (options.debug_image_topic == options.image_topic) {
-    return bad("debug_image_topic", options.image_topic, "must not be the image_topic");
+  const std::vector<OwnTopic> own = own_topics(options);
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      if (bare_name(own[i].name) != bare_name(own[k].name)) continue;
+      return bad(own[i].option, own[i].name, std::string("must not be the ") + own[k].option);
+    }
   }
   return {};
 }

@@ -1,9 +1,11 @@
 #include "vo_bridges/ros1/ros1_session.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <thread>
 #include <utility>
 
+#include "vo_bridges/cancel.hpp"
 #include "vo_bridges/ros1/ros1_messages.hpp"
 #include "vo_bridges/ros1/ros1_options.hpp"
 #include "vo_bridges/ros1/ros1_parameters.hpp"
@@ -14,20 +16,14 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::int64_t kSecondNs = 1'000'000'000;
+/// For each call of a master or node on the way to the node's process.
+constexpr std::chrono::milliseconds kLookTimeout{500};
+/// ROS counts seconds in 32 bits.
+constexpr std::int64_t kEndOfTimeNs = (std::int64_t{1} << 32U) * kSecondNs;
 
 AnswerPatience::Clock::duration seconds(double value) {
   return std::chrono::duration_cast<AnswerPatience::Clock::duration>(
       std::chrono::duration<double>(value));
-}
-
-/// Waits until `done`. @return whether it is
-template <typename Condition>
-bool wait_until(AnswerPatience::Clock::time_point end, const Condition& done) {
-  while (!done()) {
-    if (AnswerPatience::Clock::now() >= end) return false;
-    std::this_thread::sleep_for(5ms);  // roscpp has no event for it
-  }
-  return true;
 }
 
 /// 1, 10, 100, ...: what happens to each frame does not fill the log.
@@ -42,29 +38,60 @@ Session::Session(Node& node, const Ros1EstimatorOptions& options)
     : node_(node),
       options_(options),
       patience_(options.lockstep, seconds(options.answer_timeout_s)),
-      offset_ns_(kSecondNs) {
+      offset_ns_(kSecondNs),
+      earliest_ns_(kSecondNs) {
   node_.add_log(log_);
+}
+
+template <typename Condition>
+bool Session::wait_until(Clock::time_point end, const Condition& done) const {
+  while (!done()) {
+    if (Clock::now() >= end || is_cancelled(options_.cancel)) return false;
+    std::this_thread::sleep_for(5ms);  // roscpp has no event for it
+  }
+  return true;
+}
+
+Result<std::int64_t> Session::stamp_of(const VoFrame& frame) {
+  const auto bad = [&](const std::string& what, std::int64_t value) {
+    return Error{ErrorCode::kInvalidArgument,
+                 what + " of frame " + std::to_string(frame.index) + " = " + std::to_string(value) +
+                     " ns: must be within " + std::to_string(kEndOfTimeNs / kSecondNs) +
+                     " s of 0, as ROS counts seconds in 32 bits"};
+  };
+  if (frame.t_ns < -kEndOfTimeNs || frame.t_ns >= kEndOfTimeNs) return bad("stamp", frame.t_ns);
+  if (!previous_) offset_ns_ = std::max(offset_ns_, earliest_ns_ - frame.t_ns);
+  const std::int64_t stamp_ns = frame.t_ns + offset_ns_;
+  if (stamp_ns >= kEndOfTimeNs) return bad("stamp on ROS", stamp_ns);
+  return stamp_ns;
 }
 
 Status Session::begin(Clock::time_point end) {
   auto topics = Topics::open(node_, options_, handlers(), log_);
   if (!topics) return topics.error();
   topics_ = std::move(*topics);
-  watch_ =
-      std::make_unique<MasterWatch>(node_.master(), node_.name(), topics_->registrations(), log_);
+  node_use_ = std::make_unique<NodeUse>(
+      node_.master(), node_.name(), topics_->image_topic(), topics_->pose_topic());
+  watch_ = std::make_unique<MasterWatch>(
+      node_.master(),
+      node_.name(),
+      topics_->registrations(),
+      log_,
+      [this](const std::atomic<bool>& cancel) { node_use_->look(kLookTimeout, &cancel); });
   const bool listens = wait_until(end, [&] {
     // Some nodes ask for the calibration before they ask for images.
     return topics_->somebody_sees_images() || topics_->somebody_sees_calibration();
   });
   if (listens) return {};
+  if (is_cancelled(options_.cancel)) return cancelled("a subscriber of " + options_.image_topic);
   return Error{ErrorCode::kNotFound,
                "nobody subscribes to " + options_.image_topic + " at the ROS master " +
                    node_.master().uri() + " within " + std::to_string(options_.start_timeout_s) +
                    " s: start the estimator's node, or set image_topic to what it listens to"};
 }
 
-void Session::await_readiness(const VoFrame& frame) {
-  topics_->publish_calibration(frame, stamp_of(frame.t_ns));
+Status Session::await_readiness(const VoFrame& frame, std::int64_t stamp_ns) {
+  topics_->publish_calibration(frame, stamp_ns);
   const auto end = Clock::now() + seconds(options_.start_timeout_s);
   (void)wait_until(
       end, [&] { return topics_->somebody_sees_images() && topics_->somebody_tells_poses(); });
@@ -72,10 +99,14 @@ void Session::await_readiness(const VoFrame& frame) {
   (void)wait_until(Clock::now() + 500ms, [&] {
     return topics_->somebody_sees_calibration() && topics_->somebody_draws_debug_images();
   });
-  if (!topics_->somebody_tells_poses()) {
+  if (is_cancelled(options_.cancel)) return cancelled("the estimator's node to be ready");
+  if (topics_->somebody_tells_poses()) {
+    node_use_->look(kLookTimeout, options_.cancel);
+  } else {
     log_->add("nobody publishes poses on " +
               (options_.pose_type == Ros1PoseType::kTf ? "/tf" : options_.pose_topic) + " yet");
   }
+  return {};
 }
 
 TopicHandlers Session::handlers() {
@@ -137,7 +168,10 @@ Status Session::await_estimator() {
   if (!watch_->master_answers()) return gone();
   if (options_.lockstep) {
     const auto end = Clock::now() + seconds(options_.answer_timeout_s);
-    if (!wait_until(end, [&] { return topics_->somebody_sees_images(); })) return gone();
+    if (!wait_until(end, [&] { return topics_->somebody_sees_images(); })) {
+      if (is_cancelled(options_.cancel)) return cancelled("the estimator's node to be back");
+      return gone();
+    }
     alone_since_.reset();
     return {};
   }
@@ -145,29 +179,46 @@ Status Session::await_estimator() {
   return {};
 }
 
+Status Session::prepare(const VoFrame& first) {
+  if (ready_) return {};
+  const Result<std::int64_t> stamp_ns = stamp_of(first);
+  if (!stamp_ns) return stamp_ns.error();
+  const Status status = await_readiness(first, *stamp_ns);
+  ready_ = status.ok();
+  return status;
+}
+
 Result<VoEstimate> Session::track(const VoFrame& frame) {
   const VoFrame* const previous = previous_ ? &*previous_ : nullptr;
   if (Status status = validate_vo_frame(frame, previous); !status) return status.error();
-  if (!ready_) {
-    await_readiness(frame);
-    ready_ = true;
-  }
+  const Result<std::int64_t> stamp_ns = stamp_of(frame);
+  if (!stamp_ns) return stamp_ns.error();
+  if (Status status = prepare(frame); !status) return status.error();
   if (!ended_) {
-    if (Status status = await_estimator(); !status) ended_ = status.error();
+    if (Status status = await_estimator(); !status) {
+      if (status.error().code == ErrorCode::kCancelled) return status.error();
+      ended_ = status.error();
+    }
   }
   if (ended_) return *ended_;
   previous_ = frame;
   previous_->image.reset();  // its size stays in the intrinsics
-  return exchange(frame);
+  return exchange(frame, *stamp_ns);
 }
 
-VoEstimate Session::exchange(const VoFrame& frame) {
-  const std::int64_t stamp_ns = stamp_of(frame.t_ns);
+Result<VoEstimate> Session::exchange(const VoFrame& frame, std::int64_t stamp_ns) {
   answers_.expect(stamp_ns);
   auto wait = patience_.begin(stamp_ns, Clock::now());
   if (alone_since_) wait = 0ns;
   topics_->publish(frame, stamp_ns);
-  std::optional<VoEstimate> answer = answers_.take(stamp_ns, wait);
+  std::optional<VoEstimate> answer =
+      wait_unless_cancelled(options_.cancel, Clock::now() + wait, [&](std::chrono::nanoseconds t) {
+        return answers_.wait(stamp_ns, t);
+      });
+  if (!answer) answer = answers_.take(stamp_ns, 0ns);
+  if (!answer && is_cancelled(options_.cancel)) {
+    return cancelled("the pose of frame " + std::to_string(frame.index));
+  }
   VoEstimate estimate;
   if (answer) {
     estimate = std::move(*answer);
@@ -190,7 +241,9 @@ VoEstimate Session::exchange(const VoFrame& frame) {
 
 void Session::add_debug_image(const VoFrame& frame, std::int64_t stamp_ns, VoEstimate& estimate) {
   if (options_.debug_image_topic.empty()) return;
-  const ImageMessage::ConstPtr message = debug_images_.take(stamp_ns);
+  // By the clock a picture is not worth a frame.
+  const std::chrono::milliseconds patience = options_.lockstep ? DebugImages::kPatience : 0ms;
+  const ImageMessage::ConstPtr message = debug_images_.take(stamp_ns, patience, options_.cancel);
   if (!message) return;
   Result<Image> image =
       rgb_image_from(*message, frame.intrinsics.width_px, frame.intrinsics.height_px);
@@ -203,7 +256,7 @@ void Session::add_debug_image(const VoFrame& frame, std::int64_t stamp_ns, VoEst
 
 void Session::reset() {
   // Later than anything that was sent: no answer from before can be taken for one to come.
-  if (previous_) offset_ns_ = stamp_of(previous_->t_ns) + kSecondNs;
+  if (previous_) earliest_ns_ = previous_->t_ns + offset_ns_ + kSecondNs;
   previous_.reset();
   tracked_ = false;
   answers_.forget();

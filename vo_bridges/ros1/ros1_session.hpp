@@ -12,6 +12,7 @@
 #include "vo_bridges/ros1/ros1_debug_images.hpp"
 #include "vo_bridges/ros1/ros1_log.hpp"
 #include "vo_bridges/ros1/ros1_node.hpp"
+#include "vo_bridges/ros1/ros1_node_use.hpp"
 #include "vo_bridges/ros1/ros1_topics.hpp"
 #include "vo_bridges/ros1/ros1_watch.hpp"
 #include "vo_bridges/stamped_answers.hpp"
@@ -29,10 +30,14 @@ class Session final : public VoPort {
 
   [[nodiscard]] std::string type() const override { return "ros1"; }
   [[nodiscard]] std::map<std::string, std::string> effective_parameters() const override;
+  [[nodiscard]] Status prepare(const VoFrame& first) override;
   [[nodiscard]] Result<VoEstimate> track(const VoFrame& frame) override;
   void reset() override;
   void set_debug(bool wanted) override { debug_ = wanted; }
   [[nodiscard]] std::vector<std::string> take_log() override { return log_->take(); }
+  [[nodiscard]] std::optional<ResourceUse> resource_use() const override {
+    return node_use_->use();
+  }
 
  private:
   using Clock = AnswerPatience::Clock;
@@ -42,13 +47,20 @@ class Session final : public VoPort {
   void report_strays();
   /// Nodes load and then advertise their poses, some of them after they got the calibration: no
   /// frame shall be lost to that.
-  void await_readiness(const VoFrame& frame);
+  /// Errors: kCancelled.
+  Status await_readiness(const VoFrame& frame, std::int64_t stamp_ns);
   [[nodiscard]] Status await_estimator();
   [[nodiscard]] Error gone() const;
-  [[nodiscard]] VoEstimate exchange(const VoFrame& frame);
+  /// Waits until `done`, `end`, or the wish to stop. @return whether it is done
+  template <typename Condition>
+  [[nodiscard]] bool wait_until(Clock::time_point end, const Condition& done) const;
+  /// Errors: kCancelled.
+  [[nodiscard]] Result<VoEstimate> exchange(const VoFrame& frame, std::int64_t stamp_ns);
   void add_debug_image(const VoFrame& frame, std::int64_t stamp_ns, VoEstimate& estimate);
-  /// Time on ROS: it never runs back, not even at a reset, and 0 means no time there.
-  [[nodiscard]] std::int64_t stamp_of(std::int64_t t_ns) const { return t_ns + offset_ns_; }
+  /// Time on ROS: it never runs back, not even at a reset, and 0 means no time there. The first
+  /// frame after one chooses the offset.
+  /// Errors: kInvalidArgument naming stamp and limit.
+  [[nodiscard]] Result<std::int64_t> stamp_of(const VoFrame& frame);
 
   Node& node_;
   const Ros1EstimatorOptions options_;
@@ -63,10 +75,12 @@ class Session final : public VoPort {
   bool ready_ = false;
   bool tracked_ = false;
   std::int64_t offset_ns_;
+  std::int64_t earliest_ns_;  ///< on ROS, of the first frame
   std::optional<Clock::time_point> alone_since_;
   std::optional<Error> ended_;
   // Last, so that nothing comes in any more when the rest goes.
   std::unique_ptr<Topics> topics_;
+  std::unique_ptr<NodeUse> node_use_;  ///< the watch looks after it
   std::unique_ptr<MasterWatch> watch_;
 };
 

@@ -14,13 +14,7 @@ constexpr const char* kTransforms = "/tf";
 
 std::int64_t ns_of(const ros::Time& time) { return static_cast<std::int64_t>(time.toNSec()); }
 
-/// "world" and "/world" name the same frame: tf2 knows no leading slash, tf had one.
-bool same_frame(const std::string& a, const std::string& b) {
-  const auto bare = [](const std::string& name) {
-    return std::string_view(name).substr(name.starts_with('/') ? 1 : 0);
-  };
-  return bare(a) == bare(b);
-}
+bool same_frame(const std::string& a, const std::string& b) { return bare_name(a) == bare_name(b); }
 
 }  // namespace
 
@@ -40,8 +34,7 @@ Topics::~Topics() {
   }
   spinner_.stop();
   queue_.disable();
-  if (has_image_topic_) node_.release(options_.image_topic);
-  if (has_clock_) node_.release(kClock);
+  node_.release(claimed_);
 }
 
 Result<std::unique_ptr<Topics>> Topics::open(Node& node,
@@ -49,6 +42,7 @@ Result<std::unique_ptr<Topics>> Topics::open(Node& node,
                                              TopicHandlers handlers,
                                              std::shared_ptr<LineLog> log) {
   std::unique_ptr<Topics> topics(new Topics(node, options, std::move(handlers), std::move(log)));
+  if (Status status = topics->claim_all(); !status) return status.error();
   topics->spinner_.start();
   // First what comes in: an estimator may answer the moment that it sees an image.
   Status status = topics->subscribe_all();
@@ -81,13 +75,29 @@ Status Topics::advertise(const std::string& topic, ros::Publisher& publisher, bo
   return {};
 }
 
+Status Topics::claim_all() {
+  std::vector<OwnTopic> topics = own_topics(options_);
+  for (OwnTopic& topic : topics) {
+    if (topic.is_transform) continue;
+    try {
+      topic.name = handle_.resolveName(topic.name);
+    } catch (const std::exception& failure) {
+      return Error{ErrorCode::kInternal,
+                   std::string(topic.option) + " = " + topic.name + ": " + failure.what()};
+    }
+  }
+  if (Status status = node_.claim(topics); !status) return status;
+  claimed_ = std::move(topics);
+  return {};
+}
+
 Status Topics::advertise_all() {
-  if (Status status = node_.claim(options_.image_topic); !status) return status;
-  has_image_topic_ = true;
   Status status = advertise<CameraInfoMessage>(options_.camera_info_topic, infos_, true);
   if (status && options_.publish_clock) {
-    has_clock_ = node_.claim(kClock).ok();
+    const OwnTopic clock{"publish_clock", kClock};
+    has_clock_ = node_.claim({clock}).ok();
     if (has_clock_) {
+      claimed_.push_back(clock);
       status = advertise<ClockMessage>(kClock, clock_);
     } else {
       log_->add("another estimator of this process publishes /clock");

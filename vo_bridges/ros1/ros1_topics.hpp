@@ -30,7 +30,8 @@ struct TopicHandlers {
 
 class Topics {
  public:
-  /// Errors: kConflict for a topic that is in use; kInternal naming a topic that ROS refuses.
+  /// Errors: kConflict for a topic that another estimator of this process has; kInternal naming a
+  /// topic that ROS refuses.
   [[nodiscard]] static Result<std::unique_ptr<Topics>> open(Node& node,
                                                             const Ros1EstimatorOptions& options,
                                                             TopicHandlers handlers,
@@ -54,6 +55,9 @@ class Topics {
   [[nodiscard]] bool somebody_draws_debug_images() const {
     return !debug_images_ || debug_images_.getNumPublishers() > 0;
   }
+  /// As the master knows them, with their slash.
+  [[nodiscard]] std::string image_topic() const { return images_.getTopic(); }
+  [[nodiscard]] std::string pose_topic() const { return poses_.getTopic(); }
   /// As the master shall know them.
   [[nodiscard]] std::vector<TopicRegistration> registrations() const;
 
@@ -62,6 +66,7 @@ class Topics {
          const Ros1EstimatorOptions& options,
          TopicHandlers handlers,
          std::shared_ptr<LineLog> log);
+  Status claim_all();
   Status advertise_all();
   Status subscribe_all();
   template <typename M>
@@ -74,7 +79,7 @@ class Topics {
   const Ros1EstimatorOptions options_;
   const TopicHandlers handlers_;
   const std::shared_ptr<LineLog> log_;
-  bool has_image_topic_ = false;
+  std::vector<OwnTopic> claimed_;
   bool has_clock_ = false;
   std::vector<TopicRegistration> registrations_;
   ros::CallbackQueue queue_;

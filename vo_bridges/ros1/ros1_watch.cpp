@@ -14,11 +14,13 @@ using namespace std::chrono_literals;
 MasterWatch::MasterWatch(XmlRpcAddress master,
                          std::string node_name,
                          std::vector<TopicRegistration> topics,
-                         std::shared_ptr<LineLog> log)
+                         std::shared_ptr<LineLog> log,
+                         std::function<void(const std::atomic<bool>& cancel)> each_second)
     : master_(std::move(master)),
       node_name_(std::move(node_name)),
       topics_(std::move(topics)),
       log_(std::move(log)),
+      each_second_(std::move(each_second)),
       thread_([this] { run(); }) {}
 
 MasterWatch::~MasterWatch() {
@@ -36,11 +38,12 @@ void MasterWatch::run() {
     lock.unlock();
     look();
     lock.lock();
-  } while (!ended_.wait_for(lock, 1s, [this] { return end_; }));
+  } while (!ended_.wait_for(lock, 1s, [this] { return end_.load(); }));
 }
 
 void MasterWatch::look() {
-  const Result<int> pid = ask_master_pid(master_, 1s);
+  const Result<int> pid = ask_pid(master_, 1s, &end_);
+  if (end_) return;
   if (!pid) {
     if (answers_.exchange(false)) {
       log_->add("the ROS master at " + master_.uri() +
@@ -55,6 +58,7 @@ void MasterWatch::look() {
   } else if (was_away) {
     log_->add("the ROS master at " + master_.uri() + " answers again");
   }
+  each_second_(end_);
 }
 
 void MasterWatch::register_again() {

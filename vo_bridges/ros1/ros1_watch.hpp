@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <condition_variable>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -23,14 +24,15 @@ struct TopicRegistration {
   bool published = true;
 };
 
-/// Asks the master once a second. Logs when it goes and when it comes back; one that was started
-/// anew is told of the topics again, as it knows nothing.
+/// Asks the master once a second, and calls `each_second` while it answers. Logs when it goes and
+/// when it comes back; one that was started anew is told of the topics again, as it knows nothing.
 class MasterWatch {
  public:
   MasterWatch(XmlRpcAddress master,
               std::string node_name,
               std::vector<TopicRegistration> topics,
-              std::shared_ptr<LineLog> log);
+              std::shared_ptr<LineLog> log,
+              std::function<void(const std::atomic<bool>& cancel)> each_second);
   ~MasterWatch();
   MasterWatch(const MasterWatch&) = delete;
   MasterWatch& operator=(const MasterWatch&) = delete;
@@ -46,11 +48,12 @@ class MasterWatch {
   const std::string node_name_;
   const std::vector<TopicRegistration> topics_;
   const std::shared_ptr<LineLog> log_;
+  const std::function<void(const std::atomic<bool>& cancel)> each_second_;
   std::optional<int> pid_;
   std::atomic<bool> answers_{true};
   std::mutex mutex_;
   std::condition_variable ended_;
-  bool end_ = false;
+  std::atomic<bool> end_{false};
   std::thread thread_;
 };
 

@@ -20,6 +20,7 @@ class PairPort final : public VoPort {
   [[nodiscard]] std::map<std::string, std::string> effective_parameters() const override {
     return pair_.door->effective_parameters();
   }
+  [[nodiscard]] Status prepare(const VoFrame& first) override { return pair_.door->prepare(first); }
   [[nodiscard]] Result<VoEstimate> track(const VoFrame& frame) override {
     return pair_.door->track(frame);
   }

@@ -2,7 +2,13 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cmath>
+#include <future>
+#include <overfly_lcm/status_t.hpp>
+#include <set>
 
 #include "tests/vo_bridges/lcm/lcm_test_estimator.hpp"
 
@@ -151,6 +157,181 @@ TEST(LcmEstimator, FliesOnInRealTimeUntilTheStartTimeoutWhenNobodyIsThere) {
   std::size_t i = 1;
   while (i < frames.size() && pair.door->track(frames[i]).ok()) ++i;
   EXPECT_LT(i, frames.size());
+}
+
+VoFrame without_image(VoFrame frame) {
+  frame.image.reset();
+  return frame;
+}
+
+TEST(LcmEstimator, IsPreparedBeforeTheFirstFrame) {
+  const LcmPair pair = make_memq_pair({}, impatient(false));
+  const auto frames = varied_frames(2);
+  ASSERT_TRUE(pair.door->prepare(without_image(frames[0])).ok());
+  EXPECT_THAT(pair.door->effective_parameters(), Contains(Pair("nFeatures", "1000")));
+  EXPECT_EQ(pair.far_end->calibration()->fx, frames[0].intrinsics.fx_px);
+  EXPECT_THAT(pair.far_end->images(), IsEmpty());
+  for (const VoFrame& frame : frames) {
+    const auto estimate = pair.door->track(frame);
+    ASSERT_TRUE(estimate.ok());
+    EXPECT_FALSE(estimate->counters.contains("unanswered"));
+  }
+  EXPECT_EQ(pair.far_end->sessions(), 1) << "track begins no other";
+  pair.door->reset();
+  ASSERT_TRUE(pair.door->track(frames[0]).ok());
+  EXPECT_EQ(pair.far_end->sessions(), 2);
+}
+
+TEST(LcmEstimator, LosesNoFrameInRealTimeToALateStartWhenPrepared) {
+  LcmBehaviour behaviour;
+  behaviour.calibrations_missed = 3;
+  LcmEstimatorOptions options;
+  options.lockstep = false;
+  options.answer_timeout_s = 0.2;  // less than it takes to be there
+  const LcmPair pair = make_memq_pair(behaviour, options);
+  ASSERT_TRUE(pair.door->prepare(without_image(varied_frames(1).front())).ok());
+  EXPECT_EQ(pair.far_end->sessions(), 1);
+}
+
+TEST(LcmEstimator, IsGoneForGoodWhenNobodyIsThereToBePrepared) {
+  LcmBehaviour behaviour;
+  behaviour.calibrations_missed = 1000;
+  const LcmPair pair = make_memq_pair(behaviour, impatient(false));
+  const VoFrame frame = varied_frames(1).front();
+  const Status prepared = pair.door->prepare(without_image(frame));
+  ASSERT_FALSE(prepared.ok());
+  EXPECT_EQ(prepared.error().code, ErrorCode::kInternal);
+  EXPECT_THAT(prepared.error().message, HasSubstr("start_timeout_s = 1.0"));
+  EXPECT_EQ(pair.door->track(frame).error().message, prepared.error().message);
+}
+
+/// How long a call takes to end with kCancelled once it is asked to.
+template <typename Call>
+double cancelled_after_s(std::atomic<bool>& cancel, Call call) {
+  auto code = std::async(std::launch::async, call);
+  EXPECT_EQ(code.wait_for(std::chrono::milliseconds(400)), std::future_status::timeout);
+  const auto asked = std::chrono::steady_clock::now();
+  cancel = true;
+  EXPECT_EQ(code.get(), ErrorCode::kCancelled);
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - asked).count();
+}
+
+constexpr double kBusyS = 1.0;  ///< 50 ms on a machine that has time
+
+TEST(LcmEstimator, EndsItsWaitForAnEstimatorWhenCancelled) {
+  LcmBehaviour behaviour;
+  behaviour.calibrations_missed = 1000;
+  for (const bool prepares : {true, false}) {
+    std::atomic<bool> cancel = false;
+    LcmEstimatorOptions options;
+    options.start_timeout_s = 60.0;
+    options.cancel = &cancel;
+    const LcmPair pair = make_memq_pair(behaviour, options);
+    const VoFrame frame = varied_frames(1).front();
+    const double took_s = cancelled_after_s(cancel, [&] {
+      return prepares ? pair.door->prepare(frame).error().code
+                      : pair.door->track(frame).error().code;
+    });
+    EXPECT_LT(took_s, kBusyS);
+  }
+}
+
+TEST(LcmEstimator, EndsItsWaitForAnAnswerWhenCancelled) {
+  LcmBehaviour behaviour;
+  behaviour.loses_pose = [](const overfly_lcm::pose_t& pose) { return pose.frame == 1; };
+  std::atomic<bool> cancel = false;
+  LcmEstimatorOptions options;
+  options.answer_timeout_s = 60.0;
+  options.cancel = &cancel;
+  const LcmPair pair = make_memq_pair(behaviour, options);
+  const auto frames = varied_frames(2);
+  ASSERT_TRUE(pair.door->track(frames[0]).ok());
+  const double took_s =
+      cancelled_after_s(cancel, [&] { return pair.door->track(frames[1]).error().code; });
+  EXPECT_LT(took_s, kBusyS);
+}
+
+template <typename Message>
+std::vector<std::uint8_t> bytes_of(const Message& message) {
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
+  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+  return bytes;
+}
+
+TEST(LcmEstimator, CleansWhatAStatusSays) {
+  const LcmPair pair = make_memq_pair();
+  fly(*pair.door, 1);
+  overfly_lcm::status_t status{};
+  status.session = pair.far_end->calibration()->session;
+  status.name = "my\xFFvo";
+  status.version =
+      "\x01"
+      "1";
+  status.cpu_s = INFINITY;
+  status.parameters.resize(3);
+  status.parameters[0].name = "file";
+  status.parameters[0].value = "caf\xC3\xA9 \xC3";
+  status.parameters[1].name = "bad\xFFname";
+  status.parameters[2].name = std::string(129, 'x');
+  status.nparameters = 3;
+  status.lines = {"at \xFE\n"};
+  status.nlines = 1;
+  pair.far_end->publish_raw("STATUS", bytes_of(status));
+  ASSERT_TRUE(pair.door->track(varied_frames(2).back()).ok());
+  EXPECT_EQ(
+      pair.door->effective_parameters(),
+      (std::map<std::string, std::string>{{"estimator", "my?vo ?1"}, {"file", "caf\xC3\xA9 ?"}}));
+  EXPECT_EQ(pair.door->resource_use()->cpu_s, 1.25) << "of the status before";
+  const auto log = pair.door->take_log();
+  EXPECT_THAT(log, Contains("at ?"));
+  EXPECT_THAT(log, Contains(HasSubstr("parameter \"bad?name\" left out")));
+}
+
+void add_counter(overfly_lcm::pose_t& pose, const std::string& name) {
+  overfly_lcm::named_number_t& counter = pose.counters.emplace_back();
+  counter.name = name;
+  counter.value = 1.0;
+  pose.ncounters = static_cast<std::int32_t>(pose.counters.size());
+}
+
+TEST(LcmEstimator, LeavesOutFiguresWithoutASoundName) {
+  LcmBehaviour behaviour;
+  behaviour.changes_pose = [](overfly_lcm::pose_t& pose) {
+    add_counter(pose, "bad\xFF");
+    add_counter(pose, "");
+    pose.timings_ms[0].name = "two words";
+  };
+  const LcmPair pair = make_memq_pair(behaviour);
+  for (const VoEstimate& estimate : fly(*pair.door, 2)) {
+    EXPECT_EQ(estimate.counters, (std::map<std::string, double>{{"features", 64.0}}));
+    EXPECT_THAT(estimate.timing_ms, IsEmpty());
+  }
+  const auto log = pair.door->take_log();
+  EXPECT_THAT(log, Contains(HasSubstr("timing \"two words\" left out")));
+  EXPECT_EQ(std::count_if(log.begin(),
+                          log.end(),
+                          [](const auto& l) { return l.find("left out") != std::string::npos; }),
+            2)
+      << "once each";
+}
+
+TEST(LcmEstimator, TakesSoManyNamesOfCountersASession) {
+  LcmBehaviour behaviour;
+  behaviour.changes_pose = [](overfly_lcm::pose_t& pose) {
+    for (int i = 0; i < 100; ++i) {
+      add_counter(pose, std::to_string(pose.frame) + "_" + std::to_string(i));
+    }
+  };
+  const LcmPair pair = make_memq_pair(behaviour);
+  std::set<std::string> names;
+  for (const VoEstimate& estimate : fly(*pair.door, 5)) {
+    for (const auto& [name, value] : estimate.counters) names.insert(name);
+    EXPECT_TRUE(estimate.counters.contains("features")) << "a name that is known stays";
+  }
+  EXPECT_EQ(names.size(), 256U);
+  EXPECT_THAT(pair.door->take_log(), Contains(HasSubstr("at most 256 names")));
+  pair.door->reset();
+  EXPECT_TRUE(pair.door->track(varied_frames(1).front())->counters.contains("0_99"));
 }
 
 TEST(LcmEstimator, SendsALostImageAgainInLockstep) {
@@ -385,7 +566,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         BadOption{"Prefix", [](auto& o) { o.channel_prefix = "A.*"; }, "channel_prefix = \"A.*\""},
         BadOption{
-            "LongPrefix", [](auto& o) { o.channel_prefix = std::string(49, 'A'); }, "at most 48"},
+            "LongPrefix", [](auto& o) { o.channel_prefix = std::string(41, 'A'); }, "at most 40"},
         BadOption{"Start", [](auto& o) { o.start_timeout_s = 0.0; }, "start_timeout_s = 0.0"},
         BadOption{"Answer", [](auto& o) { o.answer_timeout_s = -1.0; }, "answer_timeout_s = -1.0"},
         BadOption{"Url", [](auto& o) { o.url = "nonsense"; }, "PROVIDER://NETWORK"},

@@ -26,8 +26,8 @@ class LcmUdp : public ::testing::Test {
       GTEST_SKIP() << reason;
     }
     options_.url = testing::private_udp_url();
-    options_.channel_prefix =
-        ::testing::UnitTest::GetInstance()->current_test_info()->name() + std::string("_");
+    const std::string name = ::testing::UnitTest::GetInstance()->current_test_info()->name();
+    options_.channel_prefix = name.substr(0, 30) + "_";
   }
 
   LcmEstimatorOptions options_;
@@ -92,6 +92,16 @@ TEST_F(LcmUdp, KeepsTwoEstimatorsApartByTheirPrefixes) {
   }
   EXPECT_EQ(first.far_end->images().size(), 3U);
   EXPECT_EQ(second.far_end->images().size(), 3U);
+}
+
+TEST_F(LcmUdp, RefusesChannelsThatAnotherEstimatorHas) {
+  const auto first = create_lcm_estimator(options_);
+  ASSERT_TRUE(first.ok()) << first.error().message;
+  LcmEstimatorOptions second = options_;
+  second.url += "&recv_buf_size=4000000";  // the same network
+  const auto refused = create_lcm_estimator(second);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().code, ErrorCode::kConflict);
 }
 
 /// Channels and images of a log, read by LCM itself.
@@ -166,6 +176,23 @@ TEST_F(LcmFile, IsPlayedToAnEstimatorByLcm) {
   ASSERT_EQ(estimator.images().size(), 4U);
   EXPECT_EQ(estimator.images().back().data, frames.back().image->data);
   node->stop();
+}
+
+TEST_F(LcmFile, IsOfOneEstimatorAtATime) {
+  LcmEstimatorOptions options;
+  options.url = "file://" + file_.string() + "?mode=w";
+  options.lockstep = false;
+  options.channel_prefix = "MINE_";
+  {
+    const auto door = create_lcm_estimator(options);
+    ASSERT_TRUE(door.ok()) << door.error().message;
+    const auto second = create_lcm_estimator(options);
+    ASSERT_FALSE(second.ok());
+    EXPECT_EQ(second.error().code, ErrorCode::kConflict);
+    EXPECT_THAT(second.error().message, ::testing::HasSubstr("channel_prefix = \"MINE_\""));
+    EXPECT_THAT(second.error().message, ::testing::HasSubstr("file://" + file_.string()));
+  }
+  EXPECT_TRUE(create_lcm_estimator(options).ok()) << "one run after another may have it";
 }
 
 TEST_F(LcmFile, ThatCannotBeMadeIsAnError) {

@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include "vo_bridges/lcm/lcm_network.hpp"
+
 namespace overfly {
 namespace {
 
@@ -24,6 +26,17 @@ TEST(LcmUrl, HasTheNetworkOfLcmWhereNoneIsNamed) {
     EXPECT_EQ(url->address(), "239.255.76.67") << text;
     EXPECT_EQ(url->port(), 7667) << text;
   }
+}
+
+TEST(LcmUrl, LeadsToOneNetworkWhateverItsOptions) {
+  const std::string own = "udpm://239.255.76.67:7667";
+  for (const char* url :
+       {"udpm://", "udpm://?ttl=1", "udpm://239.255.76.67?ttl=0", "udpm://:7667"}) {
+    EXPECT_EQ(lcm_network_of(url), own) << url;
+  }
+  EXPECT_EQ(lcm_network_of("udpm://239.255.76.68:1?ttl=0"), "udpm://239.255.76.68:1");
+  EXPECT_EQ(lcm_network_of("file:///a/b.lcm?mode=w"), "file:///a/b.lcm");
+  EXPECT_EQ(lcm_network_of("memq://"), "memq://");
 }
 
 TEST(LcmUrl, IsWrittenAsItWasRead) {

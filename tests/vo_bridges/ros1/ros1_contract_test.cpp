@@ -28,6 +28,7 @@ class WithNode final : public VoPort {
   [[nodiscard]] std::map<std::string, std::string> effective_parameters() const override {
     return port_->effective_parameters();
   }
+  [[nodiscard]] Status prepare(const VoFrame& first) override { return port_->prepare(first); }
   [[nodiscard]] Result<VoEstimate> track(const VoFrame& frame) override {
     return port_->track(frame);
   }

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <utility>
 
 #include "tests/vo_bridges/ros1/ros_world.hpp"
+#include "vo_bridges/process/process_usage.hpp"
 #include "vo_bridges/ros1/ros1_options.hpp"
 
 namespace overfly::testing {
@@ -96,6 +98,56 @@ TEST(Ros1Exchange, TellsCalibrationTimeAndFrame) {
   EXPECT_TRUE(node.says("clock 1.032258065")) << "31 frames a second";
 }
 
+TEST(Ros1Exchange, IsPreparedBeforeTheFirstFrame) {
+  ROS_MASTER_OR_SKIP();
+  Ros1EstimatorOptions options = fresh_options();
+  const TestNode node(options, {"wait_for_info=1"});  // and loads before it takes images
+  const auto port = created(options);
+  const std::vector<VoFrame> frames = grey_frames(3);
+  VoFrame first = frames.front();
+  first.image.reset();
+  ASSERT_TRUE(port->prepare(first).ok());
+  EXPECT_TRUE(logs(*port, "subscribed to " + options.image_topic));
+  EXPECT_THAT(node.output(), ::testing::Not(HasSubstr("image mono8")));
+  for (const VoFrame& frame : frames) expect_proof(tracked(*port, frame), frame);
+  EXPECT_TRUE(node.says("clock 1.000000000"));
+}
+
+TEST(Ros1Exchange, KeepsTimeAboveZeroForStampsBeforeTheFlight) {
+  ROS_MASTER_OR_SKIP();
+  Ros1EstimatorOptions options = fresh_options();
+  options.reset_topic = options.pose_topic + "/reset";
+  const TestNode node(options);
+  const auto port = created(options);
+  std::vector<VoFrame> frames = grey_frames(3);
+  for (VoFrame& frame : frames) frame.t_ns -= 63'000'000'000;  // a fault's offset, and its jitter
+  for (const VoFrame& frame : frames) expect_proof(tracked(*port, frame), frame);
+  EXPECT_TRUE(node.says("clock 1.000000000"));
+  EXPECT_TRUE(node.says("clock 1.032258065"));
+  frames = grey_frames(1);
+  port->reset();
+  frames[0].t_ns = std::int64_t{4'000'000'000} * 1'000'000'000;  // a time since 1970
+  expect_proof(tracked(*port, frames[0]), frames[0]);
+  port->reset();
+  expect_proof(tracked(*port, frames[0]), frames[0]);
+}
+
+TEST(Ros1Exchange, RefusesStampsThatRosCannotSay) {
+  ROS_MASTER_OR_SKIP();
+  const Ros1EstimatorOptions options = fresh_options();
+  const TestNode node(options);
+  const auto port = created(options);
+  for (const std::int64_t t_s : {-5'000'000'000, 4'294'967'296}) {
+    VoFrame frame = grey_frames(1).front();
+    frame.t_ns = t_s * 1'000'000'000;
+    const auto estimate = port->track(frame);
+    ASSERT_FALSE(estimate.ok());
+    EXPECT_EQ(estimate.error().code, ErrorCode::kInvalidArgument);
+    EXPECT_THAT(estimate.error().message, HasSubstr("stamp of frame 0 = " + std::to_string(t_s)));
+    EXPECT_THAT(estimate.error().message, HasSubstr("within 4294967296 s of 0"));
+  }
+}
+
 TEST(Ros1Exchange, KeepsTimeFromOthersWhenToldSo) {
   ROS_MASTER_OR_SKIP();
   Ros1EstimatorOptions options = fresh_options();
@@ -154,6 +206,22 @@ TEST(Ros1Exchange, SaysWhatIsWrongWithADebugImage) {
   port->set_debug(true);
   EXPECT_FALSE(tracked(*port, grey_frames(1).front()).debug_image);
   EXPECT_THAT(port->take_log(), Contains(HasSubstr("bayer_rggb8")));
+}
+
+TEST(Ros1Exchange, WaitsForNoDebugImageByTheClock) {
+  ROS_MASTER_OR_SKIP();
+  Ros1EstimatorOptions options = fresh_options();
+  const std::string topic = std::exchange(options.debug_image_topic, "");
+  const TestNode node(options);  // draws none
+  options.debug_image_topic = topic;
+  options.lockstep = false;
+  const auto port = created(options);
+  port->set_debug(true);
+  const std::vector<VoFrame> frames = grey_frames(3);
+  ASSERT_TRUE(port->prepare(frames[0]).ok());
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_FALSE(tracked(*port, frames[0]).debug_image);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(800));
 }
 
 TEST(Ros1Exchange, LosesNoFrameToANodeThatNeedsTheCalibrationFirst) {
@@ -242,6 +310,25 @@ TEST(Ros1Exchange, SetsAndReadsParametersOfTheNode) {
   EXPECT_EQ(parameters.at("loop_closing"), "false");
   EXPECT_EQ(parameters.at("tracker/mode"), "fast");
   EXPECT_EQ(parameters.at("ros1.pose_type"), "pose_stamped");
+}
+
+TEST(Ros1Exchange, TellsWhatTheNodesProcessUses) {
+  ROS_MASTER_OR_SKIP();
+  const Ros1EstimatorOptions options = fresh_options();
+  TestNode node(options);
+  const auto port = created(options);
+  const std::vector<VoFrame> frames = grey_frames(20);
+  ASSERT_TRUE(port->prepare(frames[0]).ok());
+  ASSERT_TRUE(wait_for([&] { return port->resource_use().has_value(); }));
+  for (const VoFrame& frame : frames) expect_proof(tracked(*port, frame), frame);
+  const std::optional<ResourceUse> use = port->resource_use();
+  ASSERT_TRUE(use);
+  EXPECT_TRUE(use->own_process);
+  EXPECT_NEAR(use->peak_memory_mb, process::usage_of(node.pid())->peak_memory_mb, 1.0);
+  EXPECT_GE(use->cpu_s, 0.0);
+  EXPECT_LE(use->cpu_s, process::usage_of(node.pid())->cpu_s);
+  node.kill();
+  EXPECT_EQ(port->resource_use()->peak_memory_mb, use->peak_memory_mb) << "as it was";
 }
 
 TEST(Ros1Exchange, FeedsTwoNodesFromOneProcess) {

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
 #include <csignal>
 #include <future>
@@ -64,6 +65,10 @@ TEST(Ros1Options, AreCheckedByName) {
   EXPECT_THAT(refused([](Options& o) { o.camera_frame = ""; }), HasSubstr("camera_frame"));
   EXPECT_THAT(refused([](Options& o) { o.parameters["levels"] = 8.0; }),
               HasSubstr("parameter_namespace"));
+  EXPECT_THAT(refused([](Options& o) { o.pose_topic = "camera/image_raw"; }),
+              HasSubstr("pose_topic = camera/image_raw: must not be the image_topic"));
+  EXPECT_THAT(refused([](Options& o) { o.debug_image_topic = o.image_topic; }),
+              HasSubstr("must not be the image_topic"));
   EXPECT_THAT(refused([](Options& o) {
                 o.pose_type = Ros1PoseType::kTf;
                 o.publish_tf = true;
@@ -132,6 +137,101 @@ TEST(Ros1Faults, RefusesATopicThatAnotherEstimatorHas) {
   }
   EXPECT_TRUE(is_tracked(created(options)->track(grey_frames(1).front())))
       << "one run after another may have it";
+}
+
+TEST(Ros1Faults, RefusesWhatWouldMakeEstimatorsAnswerForEachOther) {
+  ROS_MASTER_OR_SKIP();
+  Ros1EstimatorOptions first = fresh_options();
+  first.reset_topic = first.pose_topic + "/reset";
+  const TestNode node(first);
+  const auto port = created(first);
+  using Options = Ros1EstimatorOptions;
+  for (const auto field : {&Options::camera_info_topic,
+                           &Options::pose_topic,
+                           &Options::debug_image_topic,
+                           &Options::reset_topic}) {
+    Options second = fresh_options();
+    second.*field = (first.*field).substr(1);  // the same one without its slash
+    expect_error(create_ros1_estimator(second), ErrorCode::kConflict, first.*field);
+  }
+  Options crossed = fresh_options();
+  crossed.debug_image_topic = first.image_topic;
+  expect_error(create_ros1_estimator(crossed), ErrorCode::kConflict, "debug_image_topic = ");
+}
+
+TEST(Ros1Faults, RefusesATransformThatAnotherEstimatorHas) {
+  ROS_MASTER_OR_SKIP();
+  Ros1EstimatorOptions first = fresh_options();
+  first.pose_type = Ros1PoseType::kTf;
+  const TestNode node(first);
+  const auto port = created(first);
+  Ros1EstimatorOptions second = fresh_options();
+  second.pose_type = Ros1PoseType::kTf;
+  second.vo_frame = "/" + first.vo_frame;
+  expect_error(create_ros1_estimator(second), ErrorCode::kConflict, "camera in world on /tf");
+  second.vo_frame = "map";
+  const TestNode other(second);
+  EXPECT_TRUE(is_tracked(created(second)->track(grey_frames(1).front())));
+}
+
+/// How long a call takes to end with kCancelled once it is asked to.
+template <typename Call>
+double cancelled_after_s(std::atomic<bool>& cancel, Call call) {
+  auto code = std::async(std::launch::async, call);
+  EXPECT_EQ(code.wait_for(500ms), std::future_status::timeout);
+  const auto asked = std::chrono::steady_clock::now();
+  cancel = true;
+  EXPECT_EQ(code.get(), ErrorCode::kCancelled);
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - asked).count();
+}
+
+constexpr double kBusyS = 1.5;  ///< 50 ms on a machine that has time, and the end of the topics
+
+TEST(Ros1Faults, EndsItsWaitForTheMasterWhenCancelled) {
+  RosMaster::instance().stop();
+  std::atomic<bool> cancel = false;
+  Ros1EstimatorOptions options = fresh_options();
+  options.start_timeout_s = 600.0;
+  options.cancel = &cancel;
+  EXPECT_LT(cancelled_after_s(cancel, [&] { return create_ros1_estimator(options).error().code; }),
+            kBusyS);
+}
+
+TEST(Ros1Faults, EndsItsWaitForASubscriberWhenCancelled) {
+  ROS_MASTER_OR_SKIP();
+  std::atomic<bool> cancel = false;
+  Ros1EstimatorOptions options = fresh_options();
+  options.start_timeout_s = 600.0;
+  options.cancel = &cancel;
+  EXPECT_LT(cancelled_after_s(cancel, [&] { return create_ros1_estimator(options).error().code; }),
+            kBusyS);
+}
+
+TEST(Ros1Faults, EndsItsWaitForAReadyNodeWhenCancelled) {
+  ROS_MASTER_OR_SKIP();
+  std::atomic<bool> cancel = false;
+  Ros1EstimatorOptions options = fresh_options();
+  Ros1EstimatorOptions elsewhere = options;
+  elsewhere.pose_topic += "/elsewhere";
+  options.start_timeout_s = 600.0;
+  options.cancel = &cancel;
+  const TestNode node(elsewhere);
+  const auto port = created(options);
+  const VoFrame frame = grey_frames(1).front();
+  EXPECT_LT(cancelled_after_s(cancel, [&] { return port->prepare(frame).error().code; }), kBusyS);
+}
+
+TEST(Ros1Faults, EndsItsWaitForAPoseWhenCancelled) {
+  ROS_MASTER_OR_SKIP();
+  std::atomic<bool> cancel = false;
+  Ros1EstimatorOptions options = fresh_options();
+  options.answer_timeout_s = 600.0;
+  options.cancel = &cancel;
+  const TestNode node(options, {"silent_until=1000"});
+  const auto port = created(options);
+  const VoFrame frame = grey_frames(1).front();
+  ASSERT_TRUE(port->prepare(frame).ok());
+  EXPECT_LT(cancelled_after_s(cancel, [&] { return port->track(frame).error().code; }), kBusyS);
 }
 
 TEST(Ros1Faults, EndsInLockstepWhenTheNodeDies) {

@@ -106,7 +106,7 @@ void RosMaster::start() {
       std::vector<std::string>{"rosmaster", "--core", "-p", std::to_string(port_)},
       folder_.path() / "rosmaster.log");
   const auto address = ros1::parse_xml_rpc_address(uri_).value();
-  const bool up = wait_for([&] { return ros1::ask_master_pid(address, 1s).ok(); });
+  const bool up = wait_for([&] { return ros1::ask_pid(address, 1s).ok(); });
   if (!up) throw std::runtime_error("rosmaster: " + read_text(folder_.path() / "rosmaster.log"));
 }
 

@@ -23,6 +23,7 @@ class Child {
   Child& operator=(const Child&) = delete;
   /// At once, as by a crash.
   void kill();
+  [[nodiscard]] int pid() const { return pid_; }
 
  private:
   pid_t pid_ = -1;
@@ -58,6 +59,7 @@ class TestNode {
   explicit TestNode(const Ros1EstimatorOptions& options,
                     const std::vector<std::string>& arguments = {});
   void kill() { process_->kill(); }
+  [[nodiscard]] int pid() const { return process_->pid(); }
   /// What it printed; waits for a line to be there.
   [[nodiscard]] std::string output() const;
   [[nodiscard]] bool says(const std::string& text) const;
