@@ -37,6 +37,10 @@ Status Trajectory::append(const StampedPose& stamped) {
   return {};
 }
 
+void Trajectory::append_gap() {
+  if (!poses_.empty()) after_gap_.insert(poses_.size());
+}
+
 std::optional<Pose> Trajectory::at(std::int64_t t_ns) const {
   if (poses_.empty() || t_ns < begin_ns() || t_ns > end_ns()) return std::nullopt;
   const auto after = std::lower_bound(
@@ -44,6 +48,7 @@ std::optional<Pose> Trajectory::at(std::int64_t t_ns) const {
         return stamped.t_ns < t;
       });
   if (after->t_ns == t_ns) return after->pose;
+  if (after_gap_.contains(static_cast<std::size_t>(after - poses_.begin()))) return std::nullopt;
   const auto before = std::prev(after);
   const double alpha =
       static_cast<double>(t_ns - before->t_ns) / static_cast<double>(after->t_ns - before->t_ns);
@@ -65,6 +70,7 @@ std::size_t Trajectory::nearest(std::int64_t t_ns) const {
 double Trajectory::path_length_m() const {
   double length_m = 0.0;
   for (std::size_t i = 1; i < poses_.size(); ++i) {
+    if (after_gap_.contains(i)) continue;
     length_m += (poses_[i].pose.translation - poses_[i - 1].pose.translation).norm();
   }
   return length_m;

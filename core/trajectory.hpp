@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "core/pose.hpp"
@@ -25,6 +26,9 @@ class Trajectory {
   /// Appends one pose. Errors: as from_poses.
   Status append(const StampedPose& stamped);
 
+  /// Between the last pose and the next one appended the pose is not known.
+  void append_gap();
+
   [[nodiscard]] const std::vector<StampedPose>& poses() const { return poses_; }
   [[nodiscard]] bool empty() const { return poses_.empty(); }
   [[nodiscard]] std::size_t size() const { return poses_.size(); }
@@ -32,15 +36,16 @@ class Trajectory {
   [[nodiscard]] std::int64_t begin_ns() const { return poses_.front().t_ns; }
   [[nodiscard]] std::int64_t end_ns() const { return poses_.back().t_ns; }
 
-  /// The pose at t: linear in position, SLERP in rotation. Empty outside [begin, end].
+  /// The pose at t: linear in position, SLERP in rotation. Empty outside [begin, end] and in gaps.
   [[nodiscard]] std::optional<Pose> at(std::int64_t t_ns) const;
   /// Index of the pose whose stamp is nearest to t. @pre !empty()
   [[nodiscard]] std::size_t nearest(std::int64_t t_ns) const;
-  /// Length of the polyline through the positions [m].
+  /// Length of the polyline through the positions [m], without gaps.
   [[nodiscard]] double path_length_m() const;
 
  private:
   std::vector<StampedPose> poses_;
+  std::set<std::size_t> after_gap_;  ///< indices of poses
 };
 
 }  // namespace overfly

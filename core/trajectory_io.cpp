@@ -1,8 +1,10 @@
 #include "core/trajectory_io.hpp"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/text_fields.hpp"
@@ -62,6 +64,14 @@ Result<StampedPose> tum_pose(const FieldFile& file, const FieldLine& line) {
   const auto q = rotation_from(file, line, Eigen::Quaterniond(n[6], n[3], n[4], n[5]));
   if (!q) return q.error();
   return StampedPose{*t_ns, {*q, {n[0], n[1], n[2]}}};
+}
+
+/// TUM monoVO's truth says so where the motion capture did not see the camera.
+bool is_unknown(const FieldLine& line) {
+  return line.fields.size() == 8 &&
+         std::all_of(line.fields.begin() + 1, line.fields.end(), [](std::string_view field) {
+           return field == "nan" || field == "NaN";
+         });
 }
 
 /// EuRoC ASL ground truth: t [ns], p_xyz, q_wxyz, and columns that we do not need.
@@ -155,12 +165,20 @@ Result<TrajectoryFile> read_trajectory(const fs::path& path) {
     return result;
   }
   for (const FieldLine& line : file->lines()) {
+    if (result.format == TrajectoryFormat::kTum && is_unknown(line)) {
+      result.trajectory.append_gap();
+      ++result.unknown_poses;
+      continue;
+    }
     const Result<StampedPose> stamped =
         result.format == TrajectoryFormat::kTum ? tum_pose(*file, line) : euroc_pose(*file, line);
     if (!stamped) return stamped.error();
     if (Status status = append(*file, line, &result.trajectory, *stamped); !status) {
       return status.error();
     }
+  }
+  if (result.trajectory.empty()) {
+    return Error{ErrorCode::kUnreadable, path.string() + ": holds no pose but `nan`"};
   }
   return result;
 }

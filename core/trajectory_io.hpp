@@ -18,11 +18,13 @@ struct TrajectoryFile {
   TrajectoryFormat format = TrajectoryFormat::kTum;
   /// False for KITTI poses without a times file: stamps are then the line's number in seconds.
   bool has_times = true;
+  std::size_t unknown_poses = 0;  ///< rows of a TUM file whose pose is `nan`: gaps
   /// `# key value` comments of a TUM file, e.g. init_scene_depth.
   std::map<std::string, std::string> comments;
 };
 
-/// Reads a trajectory, its format told by its content. TUM: `t tx ty tz qx qy qz qw` [s, m];
+/// Reads a trajectory, its format told by its content. TUM: `t tx ty tz qx qy qz qw` [s, m],
+/// seven `nan` where the pose is not known;
 /// KITTI: 12 numbers, row-major 3 x 4, with the times of `times.txt` beside it where there is one
 /// of as many lines; EuRoC: csv `t[ns], p_xyz, q_wxyz, ...`.
 /// Errors: kNotFound; kUnreadable naming file, line, column and value.

@@ -80,11 +80,13 @@ Result<engine::ToyTruth> toy_truth(const engine::Dataset& dataset,
 
 Result<std::unique_ptr<VoPort>> create_port(const TrackArguments& arguments,
                                             const engine::Dataset& dataset,
-                                            const std::optional<Truth>& truth) {
+                                            const std::optional<Truth>& truth,
+                                            const std::atomic<bool>& stop) {
   const Result<engine::EstimatorSpec> spec = estimator_from(arguments);
   if (!spec) return spec.error();
   engine::EstimatorSetting setting;
   setting.seed = arguments.seed;
+  setting.cancel = &stop;
   if (!arguments.estimator_folder.empty()) {
     setting.output_folder = fs::absolute(arguments.estimator_folder);
   }
@@ -132,7 +134,7 @@ int track(const TrackArguments& arguments) {
   if (!dataset) return report(dataset.error());
   const Result<std::optional<Truth>> truth = read_truth(arguments, *dataset);
   if (!truth) return report(truth.error());
-  const Result<std::unique_ptr<VoPort>> port = create_port(arguments, *dataset, *truth);
+  const Result<std::unique_ptr<VoPort>> port = create_port(arguments, *dataset, *truth, stop);
   if (!port) return report(port.error());
   const auto tracked = track_shown(arguments, *dataset, stop, **port);
   if (!tracked) return report(tracked.error());
@@ -142,7 +144,8 @@ int track(const TrackArguments& arguments) {
   if (*truth) {
     std::optional<double> depth_m;
     if (arguments.init_true_depth_m > 0.0) depth_m = arguments.init_true_depth_m;
-    score = engine::score_of(*tracked, (*truth)->T_world_camera, (*truth)->has_times, depth_m);
+    score = engine::score_of(
+        *dataset, *tracked, (*truth)->T_world_camera, (*truth)->has_times, depth_m);
   }
   Json summary = engine::report_json(*dataset, *tracked, score);
   summary["out"] = arguments.out;

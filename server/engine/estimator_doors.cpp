@@ -19,6 +19,7 @@ Port create_process(const EstimatorSpec& spec, const EstimatorSetting& setting) 
   options.rate_hz = setting.rate_hz;
   options.start_timeout_s = spec.start_timeout_s.value_or(options.start_timeout_s);
   options.answer_timeout_s = spec.answer_timeout_s.value_or(options.answer_timeout_s);
+  options.cancel = setting.cancel;
   options.cpus = spec.cpus;
   options.memory_limit_mb = spec.memory_limit_mb;
   if (!setting.output_folder.empty()) options.output_file = setting.output_folder / "output.log";
@@ -33,6 +34,7 @@ Port create_lcm(const EstimatorSpec& spec, const EstimatorSetting& setting) {
   options.lockstep = setting.lockstep;
   options.start_timeout_s = spec.start_timeout_s.value_or(options.start_timeout_s);
   options.answer_timeout_s = spec.answer_timeout_s.value_or(options.answer_timeout_s);
+  options.cancel = setting.cancel;
   return create_lcm_estimator(options);
 }
 
@@ -42,6 +44,7 @@ Port create_ros1(const EstimatorSpec& spec, const EstimatorSetting& setting) {
   options.lockstep = setting.lockstep;
   options.start_timeout_s = spec.start_timeout_s.value_or(options.start_timeout_s);
   options.answer_timeout_s = spec.answer_timeout_s.value_or(options.answer_timeout_s);
+  options.cancel = setting.cancel;
   return create_ros1_estimator(options);
 }
 

@@ -1,6 +1,7 @@
 // Makes estimators, native ones and those behind the doors to other processes.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -27,6 +28,8 @@ struct EstimatorSetting {
   /// output.log. Empty = ours, and no log.
   std::filesystem::path output_folder;
   double rate_hz = 0.0;  ///< of the camera; 0 = not known
+  /// When it turns true the estimator ends its waits; null = never.
+  const std::atomic<bool>* cancel = nullptr;
 };
 
 /// @param truth  asked only for test estimators; may be empty where there is none to give

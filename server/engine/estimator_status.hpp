@@ -13,7 +13,7 @@ namespace overfly::engine {
 /// What an estimator has used of the machine.
 struct EstimatorUse {
   double cpu_s = 0.0;
-  double cpu_percent = 0.0;  ///< of one processor, since the estimator was started
+  double cpu_percent = 0.0;  ///< of one processor, since the estimator was ready
   /// Empty where it is not known.
   std::optional<double> peak_memory_mb;
   enum class Measured {

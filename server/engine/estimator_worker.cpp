@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <iterator>
 
 #include "core/processor_time.hpp"
 #include "core/time.hpp"
 #include "server/engine/cpu_affinity.hpp"
+#include "server/engine/guarded.hpp"
 
 namespace overfly::engine {
 namespace {
@@ -41,15 +41,6 @@ void tidy(const VoFrame& frame, VoEstimate& estimate) {
   std::erase_if(estimate.timing_ms, is_odd);
 }
 
-/// Calls the estimator; whatever a library throws through it is its end, not ours.
-Result<VoEstimate> track_guarded(VoPort& port, const VoFrame& frame) {
-  try {
-    return port.track(frame);
-  } catch (const std::exception& error) {
-    return Error{ErrorCode::kInternal, error.what()};
-  }
-}
-
 }  // namespace
 
 EstimatorWorker::EstimatorWorker(std::unique_ptr<VoPort> port,
@@ -58,7 +49,7 @@ EstimatorWorker::EstimatorWorker(std::unique_ptr<VoPort> port,
     : port_(std::move(port)),
       options_(std::move(options)),
       clock_(clock),
-      begin_ns_(clock.now_ns()),
+      ready_ns_(clock.now_ns()),
       debug_period_ns_(period_ns(options_.debug_hz)) {
   thread_ = std::thread([this] { work(); });
 }
@@ -67,11 +58,21 @@ EstimatorWorker::~EstimatorWorker() {
   {
     const std::lock_guard lock(mutex_);
     stopping_ = true;
-    if (waiting_ && !busy_) clock_.leave();
+    if ((waiting_ || to_prepare_) && !busy_) clock_.leave();
     waiting_.reset();
+    to_prepare_.reset();
   }
   changed_.notify_all();
   thread_.join();
+}
+
+void EstimatorWorker::prepare(VoFrame first) {
+  {
+    const std::lock_guard lock(mutex_);
+    clock_.enter();
+    to_prepare_ = std::move(first);
+  }
+  changed_.notify_all();
 }
 
 void EstimatorWorker::submit(VoFrame frame) {
@@ -89,7 +90,7 @@ void EstimatorWorker::submit(VoFrame frame) {
 
 void EstimatorWorker::wait_until_idle() {
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [this] { return !waiting_ && !busy_; });
+  changed_.wait(lock, [this] { return !waiting_ && !to_prepare_ && !busy_; });
 }
 
 std::vector<EstimatorEvent> EstimatorWorker::take_events() {
@@ -97,16 +98,17 @@ std::vector<EstimatorEvent> EstimatorWorker::take_events() {
   return std::exchange(events_, {});
 }
 
-EstimatorUse EstimatorWorker::use() const {
+EstimatorUse EstimatorWorker::use() {
   EstimatorUse use;
   use.cpu_s = cpu_s_;
-  if (const std::optional<ResourceUse> own = port_->resource_use()) {
-    use.cpu_s = own->cpu_s;
-    use.peak_memory_mb = own->peak_memory_mb;
-    use.measured =
-        own->own_process ? EstimatorUse::Measured::kProcess : EstimatorUse::Measured::kOwnAccount;
+  if (const auto own = port_->resource_use()) last_known_ = own;
+  if (last_known_) {
+    use.cpu_s = std::max(0.0, last_known_->cpu_s - cpu_to_get_ready_s_);
+    use.peak_memory_mb = last_known_->peak_memory_mb;
+    use.measured = last_known_->own_process ? EstimatorUse::Measured::kProcess
+                                            : EstimatorUse::Measured::kOwnAccount;
   }
-  const double elapsed_s = s_from_ns(clock_.now_ns() - begin_ns_);
+  const double elapsed_s = s_from_ns(clock_.now_ns() - ready_ns_);
   if (elapsed_s > 0.0) use.cpu_percent = 100.0 * use.cpu_s / elapsed_s;
   return use;
 }
@@ -116,8 +118,19 @@ void EstimatorWorker::work() {
   (void)bind_thread(options_.cpus);
   std::unique_lock lock(mutex_);
   while (true) {
-    changed_.wait(lock, [this] { return stopping_ || waiting_; });
+    changed_.wait(lock, [this] { return stopping_ || to_prepare_ || waiting_; });
     if (stopping_) return;
+    if (to_prepare_) {
+      const VoFrame first = *std::exchange(to_prepare_, std::nullopt);
+      busy_ = true;
+      lock.unlock();
+      make_ready(first);
+      lock.lock();
+      busy_ = false;
+      if (!waiting_) clock_.leave();
+      changed_.notify_all();
+      continue;
+    }
     const Waiting taken = std::move(*waiting_);
     waiting_.reset();
     // Frames dropped before this one was taken come before its answer.
@@ -132,6 +145,13 @@ void EstimatorWorker::work() {
     if (!waiting_) clock_.leave();
     changed_.notify_all();
   }
+}
+
+void EstimatorWorker::make_ready(const VoFrame& first) {
+  const Status prepared = guarded([&] { return port_->prepare(first); });
+  if (!prepared) failure_ = prepared.error();
+  if (const auto use = port_->resource_use()) cpu_to_get_ready_s_ = use->cpu_s;
+  ready_ns_ = clock_.now_ns();
 }
 
 EstimatorEvent EstimatorWorker::answer(const Waiting& waiting) {
@@ -166,7 +186,8 @@ EstimatorEvent EstimatorWorker::answer(const Waiting& waiting) {
 
 Result<VoEstimate> EstimatorWorker::track(const VoFrame& frame) {
   const double before_s = thread_cpu_s();
-  Result<VoEstimate> estimate = track_guarded(*port_, frame);
+  Result<VoEstimate> estimate =
+      failure_ ? Result<VoEstimate>(*failure_) : guarded([&] { return port_->track(frame); });
   cpu_s_ += thread_cpu_s() - before_s;
   return estimate;
 }

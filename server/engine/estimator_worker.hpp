@@ -50,6 +50,10 @@ class EstimatorWorker {
   EstimatorWorker(const EstimatorWorker&) = delete;
   EstimatorWorker& operator=(const EstimatorWorker&) = delete;
 
+  /// Makes the estimator ready for a camera, on its thread: once, and `wait_until_idle` before the
+  /// first frame. A failure is told with that frame.
+  /// @param first  as VoPort::prepare's
+  void prepare(VoFrame first);
   void submit(VoFrame frame);
   /// Waits until no frame is at work or waiting.
   void wait_until_idle();
@@ -61,8 +65,8 @@ class EstimatorWorker {
   [[nodiscard]] std::map<std::string, std::string> effective_parameters() const {
     return port_->effective_parameters();
   }
-  /// What it has used so far. @pre idle
-  [[nodiscard]] EstimatorUse use() const;
+  /// What it has used since it was ready. @pre idle
+  [[nodiscard]] EstimatorUse use();
 
  private:
   struct Waiting {
@@ -70,6 +74,7 @@ class EstimatorWorker {
     std::int64_t handed_over_ns = 0;
   };
   void work();
+  void make_ready(const VoFrame& first);
   [[nodiscard]] EstimatorEvent answer(const Waiting& waiting);
   [[nodiscard]] Result<VoEstimate> track(const VoFrame& frame);
   void hold_back(const Waiting& waiting);
@@ -78,7 +83,10 @@ class EstimatorWorker {
   std::unique_ptr<VoPort> port_;
   const EstimatorWorkerOptions options_;
   RunClock& clock_;
-  const std::int64_t begin_ns_;
+  std::int64_t ready_ns_ = 0;
+  double cpu_to_get_ready_s_ = 0.0;        ///< of the estimator's process, until then
+  std::optional<ResourceUse> last_known_;  ///< an estimator that has ended tells no more
+  std::optional<Error> failure_;           ///< to get ready
   std::int64_t debug_period_ns_ = 0;
   std::int64_t next_debug_ns_ = 0;
   std::int64_t free_at_ns_ = 0;  ///< of a throttled estimator
@@ -88,6 +96,7 @@ class EstimatorWorker {
 
   std::mutex mutex_;
   std::condition_variable changed_;
+  std::optional<VoFrame> to_prepare_;
   std::optional<Waiting> waiting_;
   bool busy_ = false;
   bool stopping_ = false;

@@ -31,6 +31,7 @@ class FlightRun {
   Status open_maker();
   Status describe_world();
   Status open_estimators();
+  void prepare_estimators();
   [[nodiscard]] Result<std::unique_ptr<VoPort>> open_estimator(const EstimatorSpec& spec);
   Status describe();
   /// Reads back what the estimators have used and where their parameters stand, and ends them.

@@ -65,8 +65,11 @@ Port FlightRun::open_estimator(const EstimatorSpec& spec) {
   };
   const Result<fs::path> folder = output_folder(options_.folder, spec);
   if (!folder) return folder.error();
-  const EstimatorSetting setting{
-      scenario_.seed, scenario_.pacing == Pacing::kLockstep, *folder, scenario_.rate.hz()};
+  const EstimatorSetting setting{scenario_.seed,
+                                 scenario_.pacing == Pacing::kLockstep,
+                                 *folder,
+                                 scenario_.rate.hz(),
+                                 options_.cancel};
   if (is_outside_estimator(spec.type)) return create_estimator(spec, setting, truth);
   // Threads that a native estimator makes at once are bound as well.
   const AffinityGuard guard;
@@ -89,7 +92,6 @@ Status FlightRun::open_estimators() {
         port = std::unique_ptr<VoPort>(
             std::make_unique<AbsentEstimator>(spec.type, port.error().in("did not start")));
       }
-      entry["parameters"] = (*port)->effective_parameters();
       EstimatorWorkerOptions worker;
       worker.debug_hz = scenario_.record_debug_hz;
       worker.throttle_hz = spec.throttle_hz;
@@ -98,8 +100,24 @@ Status FlightRun::open_estimators() {
       workers_.push_back(
           std::make_unique<EstimatorWorker>(std::move(*port), std::move(worker), clock_));
     }
+    prepare_estimators();
     return {};
   });
+}
+
+void FlightRun::prepare_estimators() {
+  for (std::size_t i = 0; i < workers_.size(); ++i) {
+    const CameraSpec& camera = scenario_.cameras[scenario_.estimators[i].camera];
+    VoFrame first;
+    first.camera_id = camera.name;
+    first.intrinsics = camera.model.pinhole();
+    first.distortion = camera.model.distortion();
+    workers_[i]->prepare(std::move(first));
+  }
+  for (std::size_t i = 0; i < workers_.size(); ++i) {
+    workers_[i]->wait_until_idle();
+    recorder_.manifest()["estimators"][i]["parameters"] = workers_[i]->effective_parameters();
+  }
 }
 
 Status FlightRun::close_estimators() {

@@ -53,6 +53,22 @@ TEST(TrajectoryIo, ReadsTumWithQuaternionOrderXyzw) {
   EXPECT_EQ(file.trajectory.poses()[1].t_ns, 2'250'000'000);
 }
 
+TEST(TrajectoryIo, TakesTumRowsOfNanForGaps) {
+  // As groundtruthSync.txt of TUM monoVO.
+  const TrajectoryFile file = read_ok(
+      "10 0 0 0 0 0 0 1\n"
+      "10.1 1 0 0 0 0 0 1\n"
+      "10.2 nan nan nan nan nan nan nan\n"
+      "10.3 NaN NaN NaN NaN NaN NaN NaN\n"
+      "10.4 5 0 0 0 0 0 1\n");
+  EXPECT_EQ(file.trajectory.size(), 3U);
+  EXPECT_EQ(file.unknown_poses, 2U);
+  EXPECT_TRUE(file.trajectory.at(10'050'000'000));
+  EXPECT_FALSE(file.trajectory.at(10'250'000'000));
+  EXPECT_THAT(error_of("10 0 nan 0 0 0 0 1\n").message, HasSubstr(":1: column 3"));
+  EXPECT_THAT(error_of("10 nan nan nan nan nan nan nan\n").message, HasSubstr("holds no pose"));
+}
+
 TEST(TrajectoryIo, KeepsEveryNanosecondOfUnixTimes) {
   const TrajectoryFile file = read_ok(
       "1403636579.763555584 0 0 0 0 0 0 1\n"

@@ -24,6 +24,24 @@ TEST(Trajectory, InterpolatesPositionLinearlyAndRotationByArc) {
   EXPECT_NEAR(rotation_angle_rad(Eigen::Quaterniond::Identity(), pose.rotation), 0.25, 1e-12);
 }
 
+TEST(Trajectory, KnowsNoPoseInAGap) {
+  Trajectory trajectory;
+  trajectory.append_gap();  // before the first pose there is none anyway
+  for (const auto& pose : {stamped(0, 0, 0), stamped(100, 10, 0)}) {
+    ASSERT_TRUE(trajectory.append(pose).ok());
+  }
+  trajectory.append_gap();
+  ASSERT_TRUE(trajectory.append(stamped(200, 50, 0)).ok());
+  ASSERT_TRUE(trajectory.append(stamped(300, 60, 0)).ok());
+  EXPECT_TRUE(trajectory.at(50));
+  EXPECT_TRUE(trajectory.at(100));
+  EXPECT_FALSE(trajectory.at(101));
+  EXPECT_FALSE(trajectory.at(199));
+  EXPECT_TRUE(trajectory.at(200));
+  EXPECT_TRUE(trajectory.at(250));
+  EXPECT_EQ(trajectory.path_length_m(), 20.0);
+}
+
 TEST(Trajectory, GivesTheStoredPoseAtItsStamp) {
   const Trajectory trajectory =
       Trajectory::from_poses({stamped(0, 1, 0), stamped(7, 2, 0.1), stamped(9, 5, 0.2)}).value();

@@ -48,6 +48,7 @@ class Witness final : public VoPort {
     std::int64_t silent = -1;           ///< frame that it does not answer
     std::int64_t absurd = -1;           ///< frame that it answers with what is no number
     std::vector<std::string> log = {};  ///< said at its first frame
+    std::string unready = {};           ///< why it does not get ready
   };
   using Seen = std::map<std::int64_t, std::uint32_t>;
   Witness(Habits habits, Seen& seen) : habits_(std::move(habits)), seen_(seen) {}
@@ -56,6 +57,10 @@ class Witness final : public VoPort {
   std::map<std::string, std::string> effective_parameters() const override {
     // Changes its mind after the first frame, as systems whose modes override their settings do.
     return {{"threshold", seen_.empty() ? "7" : "3"}, {"levels", "8"}};
+  }
+  Status prepare(const VoFrame& /*first*/) override {
+    if (habits_.unready.empty()) return {};
+    return Error{ErrorCode::kInternal, habits_.unready};
   }
   Result<VoEstimate> track(const VoFrame& frame) override {
     if (seen_.empty()) {
@@ -93,7 +98,9 @@ class Witness final : public VoPort {
     return std::exchange(said_, {});
   }
   std::optional<ResourceUse> resource_use() const override {
-    return habits_.far_end ? std::optional(ResourceUse{0.5, 42.0}) : std::nullopt;
+    if (!habits_.far_end) return std::nullopt;
+    // It has used much before its first frame.
+    return ResourceUse{30.0 + 0.5 * static_cast<double>(seen_.size()), 42.0};
   }
 
  private:
@@ -249,7 +256,7 @@ TEST(EstimatorRun, UseStandsInTheTimingsAndReadsBack) {
   const Json timings = flight.timings();
   const Json& outside = timings.at("estimators").at("a").at("resources");
   EXPECT_EQ(outside.at("measured"), "process");
-  EXPECT_EQ(outside.at("cpu_s"), 0.5);
+  EXPECT_EQ(outside.at("cpu_s"), 10.5);
   EXPECT_EQ(outside.at("peak_memory_mb"), 42.0);
   const Json& native = timings.at("estimators").at("b").at("resources");
   EXPECT_EQ(native.at("measured"), "calling_thread");
@@ -341,6 +348,17 @@ TEST(EstimatorRun, OneThatDoesNotStartIsCrashedAndTheOthersFly) {
   EXPECT_FALSE(status.latency.has_value());
   EXPECT_THAT(overfly::testing::read_text(log_file(options.folder)),
               ::testing::Not(HasSubstr("gone lost track")));
+}
+
+TEST(EstimatorRun, OneThatDoesNotGetReadyIsCrashedAndTheOthersFly) {
+  Flight flight;
+  flight.overrides = {kThree};
+  flight.habits["b"].unready = "no vocabulary";
+  const RunResult run = flight.fly();
+  EXPECT_EQ(run.metrics.at("estimators").at("b").at("outcome"), "CRASHED");
+  EXPECT_EQ(run.metrics.at("estimators").at("a").at("outcome"), "COMPLETED");
+  EXPECT_TRUE(flight.seen["b"].empty());
+  EXPECT_EQ(flight.records().estimators[1].records[0].crash, "no vocabulary");
 }
 
 TEST(EstimatorRun, ProcessorThatIsNotThereIsTold) {

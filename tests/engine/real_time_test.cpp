@@ -5,6 +5,7 @@
 #include <map>
 
 #include "server/engine/run_clock.hpp"
+#include "server/engine/run_folder.hpp"
 #include "server/engine/run_records.hpp"
 #include "server/engine/whole_file.hpp"
 #include "tests/engine/engine_fixture.hpp"
@@ -20,12 +21,22 @@ using Json = nlohmann::json;
 
 constexpr std::int64_t kMs = 1'000'000;
 
-/// Answers after a fixed time by the clock.
+/// Answers after a fixed time by the clock, once it is ready.
 class SlowEstimator final : public VoPort {
  public:
-  SlowEstimator(RunClock& clock, std::int64_t work_ns) : clock_(clock), work_ns_(work_ns) {}
+  SlowEstimator(RunClock& clock, std::int64_t work_ns, std::int64_t start_ns = 0)
+      : clock_(clock), work_ns_(work_ns), start_ns_(start_ns) {}
   std::string type() const override { return "slow"; }
-  std::map<std::string, std::string> effective_parameters() const override { return {}; }
+  std::map<std::string, std::string> effective_parameters() const override {
+    return {{"vocabulary", ready_ ? "loaded" : "absent"}};
+  }
+  Status prepare(const VoFrame& first) override {
+    EXPECT_EQ(first.image, nullptr);
+    EXPECT_TRUE(first.intrinsics.validate());
+    if (start_ns_ > 0) clock_.sleep_until_ns(clock_.now_ns() + start_ns_);
+    ready_ = true;
+    return {};
+  }
   Result<VoEstimate> track(const VoFrame& frame) override {
     clock_.sleep_until_ns(clock_.now_ns() + work_ns_);
     VoEstimate estimate;
@@ -41,6 +52,8 @@ class SlowEstimator final : public VoPort {
  private:
   RunClock& clock_;
   std::int64_t work_ns_;
+  std::int64_t start_ns_;
+  bool ready_ = false;
 };
 
 /// A renderer whose every second image takes long.
@@ -123,6 +136,35 @@ TEST(RealTime, QuickEstimatorDropsNothing) {
   ASSERT_TRUE(run.ok()) << run.error().message;
   EXPECT_EQ(run->metrics.at("estimators").at("slow").at("dropped_frames"), 0);
   EXPECT_EQ(run->metrics.at("estimators").at("slow").at("frames"), 21);
+}
+
+TEST(RealTime, TheFlightBeginsWhenItsEstimatorsAreReady) {
+  const TemporaryFolder folder;
+  SimulatedClock clock;
+  RunOptions options;
+  options.folder = folder.path() / "r";
+  options.renderer_factory = testing::noop_factory();
+  options.clock = &clock;
+  std::int64_t start_ns = 0;
+  options.estimator_factory = [&](const EstimatorSpec&) {
+    start_ns += 3000 * kMs;
+    return Result<std::unique_ptr<VoPort>>(
+        std::make_unique<SlowEstimator>(clock, 10 * kMs, start_ns));
+  };
+  const std::int64_t begin_ns = clock.now_ns();
+  const auto run = run_scenario(
+      testing::small_scenario(
+          {"pacing=real_time",
+           R"(estimators=[{"name":"a","type":"feature"},{"name":"b","type":"feature"}])"}),
+      options);
+  ASSERT_TRUE(run.ok()) << run.error().message;
+  for (const char* name : {"a", "b"}) {
+    EXPECT_EQ(run->metrics.at("estimators").at(name).at("dropped_frames"), 0) << name;
+  }
+  const Json manifest = read_json(manifest_file(options.folder)).value();
+  EXPECT_EQ(manifest.at("estimators").at(1).at("parameters").at("vocabulary"), "loaded");
+  // Both at a time: 6 s, and the flight of 2 s.
+  EXPECT_NEAR(static_cast<double>(clock.now_ns() - begin_ns) * 1e-9, 8.0, 0.2);
 }
 
 TEST(RealTime, RendererThatFallsBehindSkipsFramesWhoseTimeHasPassed) {

@@ -43,9 +43,11 @@ struct Dataset {
   std::string camera_name;           ///< "cam0", "image_0", ...; empty where there is but one
   std::vector<DatasetImage> images;  ///< at least one
   CameraModel camera;
-  std::optional<Pose> T_body_camera;  ///< EuRoC's T_BS
-  std::vector<std::string> notes;     ///< what a reader of results should know
-  int sample_bits = 16;               ///< of images with more than 8 bit a sample
+  std::optional<Pose> T_body_camera;  ///< the mount: EuRoC's T_BS
+  /// KITTI: this camera in that of image_0, whose poses its truth files hold.
+  std::optional<Pose> T_first_camera;
+  std::vector<std::string> notes;  ///< what a reader of results should know
+  int sample_bits = 16;            ///< of images with more than 8 bit a sample
 };
 
 struct DatasetOptions {

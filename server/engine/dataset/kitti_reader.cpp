@@ -8,8 +8,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// K of the line "P0: ..." for image_0, and so on; KITTI's cameras are rectified.
-Result<CameraModel> camera_of(const fs::path& path, char number) {
+struct KittiCamera {
+  CameraModel model;
+  Pose T_first_camera;
+};
+
+/// From the line "P0: ..." for image_0, and so on: K [I | t] maps points of image_0's camera, as
+/// KITTI's cameras are rectified.
+Result<KittiCamera> camera_of(const fs::path& path, char number) {
   const Result<FieldFile> file = FieldFile::read(path);
   if (!file) return file.error();
   const std::string name = std::string("P") + number + ":";
@@ -25,7 +31,11 @@ Result<CameraModel> camera_of(const fs::path& path, char number) {
     if (P[1] != 0.0 || P[4] != 0.0 || P[8] != 0.0 || P[9] != 0.0 || P[10] != 1.0) {
       return file->bad_line(line, "must be [fx 0 cx a; 0 fy cy b; 0 0 1 c]");
     }
-    return CameraModel(PinholeCamera{0, 0, P[0], P[5], P[2], P[6]});
+    if (P[0] <= 0.0 || P[5] <= 0.0) return file->bad_line(line, "fx and fy must be above 0");
+    const Eigen::Vector3d t_camera_first(
+        (P[3] - P[2] * P[11]) / P[0], (P[7] - P[6] * P[11]) / P[5], P[11]);
+    return KittiCamera{CameraModel(PinholeCamera{0, 0, P[0], P[5], P[2], P[6]}),
+                       {Eigen::Quaterniond::Identity(), -t_camera_first}};
   }
   return Error{ErrorCode::kUnreadable, path.string() + ": holds no line " + name};
 }
@@ -67,10 +77,12 @@ Result<ListedDataset> read_kitti(const DatasetOptions& options) {
     status = append_image(*file, path, line, 1, std::move(image), images);
     if (!status) return status.error();
   }
-  if (options.camera) return listed;
-  const Result<CameraModel> camera = camera_of(options.folder / "calib.txt", name.back());
+  const fs::path calibration = options.folder / "calib.txt";
+  const Result<KittiCamera> camera = camera_of(calibration, name.back());
+  if (!camera && options.camera) return listed;
   if (!camera) return camera.error();
-  listed.camera = *camera;
+  listed.camera = camera->model;
+  listed.dataset.T_first_camera = camera->T_first_camera;
   return listed;
 }
 

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <ctime>
-#include <exception>
 #include <utility>
 
 #include "core/trajectory_io.hpp"
 #include "server/engine/export/export_text.hpp"
+#include "server/engine/guarded.hpp"
 #include "server/engine/jpeg.hpp"
 #include "server/engine/run_clock.hpp"
 #include "server/engine/whole_file.hpp"
@@ -34,15 +34,6 @@ double ms_since(std::int64_t begin_ns) {
   return static_cast<double>(machine_clock().now_ns() - begin_ns) * 1e-6;
 }
 
-/// Calls the estimator; whatever a library throws through it is its end, not ours.
-Result<VoEstimate> track_guarded(VoPort& port, const VoFrame& frame) {
-  try {
-    return port.track(frame);
-  } catch (const std::exception& error) {
-    return Error{ErrorCode::kInternal, error.what()};
-  }
-}
-
 /// One pass over the data set.
 class Pass {
  public:
@@ -51,6 +42,8 @@ class Pass {
 
   Result<TrackedDataset> run() {
     port_.set_debug(!options_.debug_folder.empty() || options_.map_points);
+    if (Status status = prepare(); !status) return status.error();
+    const double cpu_to_get_ready_s = port_.resource_use().value_or(ResourceUse{}).cpu_s;
     for (std::size_t i = 0; i < dataset_.images.size() && !crashed_; ++i) {
       if (options_.cancel != nullptr && options_.cancel->load()) {
         result_.cancelled = true;
@@ -69,6 +62,7 @@ class Pass {
     const std::optional<ResourceUse> use = port_.resource_use();
     if (use && use->own_process) {
       result_.resources = *use;
+      result_.resources.cpu_s -= cpu_to_get_ready_s;
       result_.own_process = true;
     } else {
       result_.resources.peak_memory_mb = process_peak_memory_mb();
@@ -77,6 +71,17 @@ class Pass {
   }
 
  private:
+  /// Errors: the first image's.
+  Status prepare() {
+    Result<VoFrame> first = read_frame(dataset_, 0);
+    if (!first) return first.error();
+    first->image.reset();
+    const Status prepared = guarded([&] { return port_.prepare(*first); });
+    if (!prepared) failure_ = prepared.error();
+    pass_on_log();
+    return {};
+  }
+
   Status step(std::size_t i) {
     const std::int64_t read_ns = machine_clock().now_ns();
     const Result<VoFrame> frame = read_frame(dataset_, i);
@@ -84,7 +89,8 @@ class Pass {
     result_.reading.ms.push_back(ms_since(read_ns));
     const double cpu_before_s = process_cpu_s();
     const std::int64_t track_ns = machine_clock().now_ns();
-    Result<VoEstimate> estimate = track_guarded(port_, *frame);
+    Result<VoEstimate> estimate =
+        failure_ ? Result<VoEstimate>(*failure_) : guarded([&] { return port_.track(*frame); });
     result_.tracking.ms.push_back(ms_since(track_ns));
     result_.resources.cpu_s += process_cpu_s() - cpu_before_s;
     EstimateRecord record;
@@ -119,7 +125,6 @@ class Pass {
     constexpr int kQuality = 85;
     const auto bytes = encode_jpeg(*estimate.debug_image, kQuality);
     if (!bytes) return bytes.error().in("debug image of frame " + std::to_string(frame.index));
-    ++result_.debug_images;
     return write_whole(options_.debug_folder / (padded(frame.index, 6) + ".jpg"),
                        std::span<const std::uint8_t>(*bytes));
   }
@@ -135,6 +140,7 @@ class Pass {
   const TrackOptions& options_;
   TrackedDataset result_;
   bool crashed_ = false;
+  std::optional<Error> failure_;  ///< to get ready
 };
 
 }  // namespace

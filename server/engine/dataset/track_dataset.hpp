@@ -39,7 +39,6 @@ struct TrackedDataset {
   std::string type;
   ResourceUse resources;  ///< of the estimator's process; of one in ours: CPU while it tracked
   bool own_process = false;
-  std::int64_t debug_images = 0;
   std::int64_t unanswered = 0;       ///< frames that a door got no answer to in time
   std::int64_t hash_mismatches = 0;  ///< images that arrived changed
   bool cancelled = false;

@@ -62,24 +62,48 @@ Json resources_json(const TrackedDataset& tracked) {
           {"peak_memory_mb", tracked.resources.peak_memory_mb}};
 }
 
+/// Poses of a frame that is held in the one whose poses are given.
+Result<Trajectory> moved(const Trajectory& trajectory, const Pose& T_given_wanted) {
+  std::vector<StampedPose> poses = trajectory.poses();
+  for (StampedPose& stamped : poses) stamped.pose = stamped.pose * T_given_wanted;
+  return Trajectory::from_poses(poses);
+}
+
 }  // namespace
 
 Result<Trajectory> camera_truth(const Dataset& dataset,
                                 const TrajectoryFile& truth,
                                 std::vector<std::string>& notes) {
-  if (truth.format != TrajectoryFormat::kEuroc || !dataset.T_body_camera) return truth.trajectory;
-  std::vector<StampedPose> poses = truth.trajectory.poses();
-  for (StampedPose& stamped : poses) stamped.pose = stamped.pose * *dataset.T_body_camera;
-  notes.emplace_back("the truth is the body's; the camera's is made with T_BS");
-  return Trajectory::from_poses(poses);
+  if (!dataset.T_body_camera) {
+    notes.emplace_back(
+        "the camera's mount is not known: Euler angles are those of a body that it looks straight "
+        "down from");
+  }
+  if (truth.unknown_poses > 0) {
+    notes.push_back("the truth does not know " + std::to_string(truth.unknown_poses) +
+                    " of its poses: frames between those that it knows are not scored");
+  }
+  if (truth.format == TrajectoryFormat::kEuroc && dataset.T_body_camera) {
+    notes.emplace_back("the truth is the body's; the camera's is made with T_BS");
+    return moved(truth.trajectory, *dataset.T_body_camera);
+  }
+  const bool of_another = dataset.T_first_camera && !dataset.T_first_camera->translation.isZero();
+  if (truth.format == TrajectoryFormat::kKitti && of_another) {
+    notes.push_back("the truth is image_0's; that of " + dataset.camera_name +
+                    " is made with calib.txt");
+    return moved(truth.trajectory, *dataset.T_first_camera);
+  }
+  return truth.trajectory;
 }
 
-evaluation::Score score_of(const TrackedDataset& tracked,
+evaluation::Score score_of(const Dataset& dataset,
+                           const TrackedDataset& tracked,
                            const Trajectory& T_world_camera,
                            bool truth_has_times,
                            std::optional<double> init_true_depth_m) {
   evaluation::Options options;
   options.init_true_depth_m = init_true_depth_m;
+  if (dataset.T_body_camera) options.T_body_camera = *dataset.T_body_camera;
   EstimateTrack track = track_of(tracked);
   if (!truth_has_times) {
     // Line i of a file without times is the i-th image.

@@ -12,14 +12,16 @@
 namespace overfly::engine {
 
 /// The truth as poses of the camera: of an EuRoC file, whose poses are the body's, by the data
-/// set's mount, which `notes` then says.
+/// set's mount; of KITTI's, whose poses are image_0's, by calib.txt. `notes` then says so, and what
+/// the truth does not know.
 [[nodiscard]] Result<Trajectory> camera_truth(const Dataset& dataset,
                                               const TrajectoryFile& truth,
                                               std::vector<std::string>& notes);
 
 /// Scores the answers with every alignment; CRASHED where the estimator went.
 /// @param init_true_depth_m  along the optical axis at the first tracked pose
-[[nodiscard]] evaluation::Score score_of(const TrackedDataset& tracked,
+[[nodiscard]] evaluation::Score score_of(const Dataset& dataset,
+                                         const TrackedDataset& tracked,
                                          const Trajectory& T_world_camera,
                                          bool truth_has_times,
                                          std::optional<double> init_true_depth_m);

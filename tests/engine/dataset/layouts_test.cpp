@@ -207,6 +207,11 @@ TEST(KittiLayout, IsReadWithTheCalibrationOfItsCamera) {
   options.camera_name = "image_2";
   const Dataset colour = opened(options);
   EXPECT_EQ(colour.camera.pinhole().cx_px, 601.8873);
+  EXPECT_TRUE(grey.T_first_camera->translation.isZero());
+  // 6 cm left of image_0's camera.
+  EXPECT_LT(
+      (colour.T_first_camera->translation - Eigen::Vector3d(-0.06103, 0.00144, -0.00620)).norm(),
+      1e-5);
   EXPECT_NE(read_frame(colour, 0)->image_crc32, read_frame(grey, 0)->image_crc32);
 }
 

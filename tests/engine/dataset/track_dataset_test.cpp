@@ -88,7 +88,7 @@ TEST_F(TrackDataset, BooksEveryFrameAndTellsHowFarItIs) {
   options.log = [&](const std::string& line) { lines += line == "a line" ? 1 : 0; };
   const TrackedDataset result = tracked(well, options);
   EXPECT_THAT(told, ElementsAre(1, 2, 3, 4, 5, 6));
-  EXPECT_EQ(lines, 6U);
+  EXPECT_EQ(lines, 7U);  // one before the first
   EXPECT_EQ(result.reading.ms.size(), 6U);
   EXPECT_EQ(result.tracking.ms.size(), 6U);
   EXPECT_EQ(result.stages.at("detect").ms.size(), 6U);
@@ -123,7 +123,7 @@ TEST_F(TrackDataset, TakesACrashForAResultAndARefusalForAnError) {
   const TrackedDataset result = tracked(crash);
   ASSERT_EQ(result.records.size(), 4U);
   EXPECT_EQ(result.records.back().crash, "signal 11");
-  const evaluation::Score score = score_of(result, {}, true, std::nullopt);
+  const evaluation::Score score = score_of(dataset_, result, {}, true, std::nullopt);
   EXPECT_EQ(score.outcome, evaluation::Outcome::kCrashed);
   EXPECT_EQ(score.outcome_time_s, 11.5);
   EXPECT_EQ(report_json(dataset_, result, score).at("crash"), "signal 11");
@@ -190,7 +190,8 @@ TEST_F(TrackDataset, WritesAnEmptyTrajectoryWhereNothingWasTracked) {
   });
   EXPECT_EQ(scored_map(result), std::nullopt);
   EXPECT_TRUE(write_track(path() / "t.tum", result).ok());
-  EXPECT_EQ(score_of(result, {}, true, std::nullopt).outcome, evaluation::Outcome::kNotInitialised);
+  EXPECT_EQ(score_of(dataset_, result, {}, true, std::nullopt).outcome,
+            evaluation::Outcome::kNotInitialised);
 }
 
 TEST_F(TrackDataset, WritesDebugImagesAndThePointsOfTheLongestMap) {
@@ -206,7 +207,6 @@ TEST_F(TrackDataset, WritesDebugImagesAndThePointsOfTheLongestMap) {
         return estimate;
       },
       options);
-  EXPECT_EQ(result.debug_images, 6);
   const cv::Mat debug = cv::imread((path() / "debug" / "000005.jpg").string());
   EXPECT_EQ(debug.cols, 4);
   const std::vector<Eigen::Vector3f> points = result.map.points(0);
@@ -233,9 +233,69 @@ TEST_F(TrackDataset, ScoresATruthOfTheBodyThroughTheMount) {
   EXPECT_EQ(camera->poses()[2].pose.translation.x(), 2.5);
   EXPECT_LT(rotation_angle_rad(camera->poses()[2].pose.rotation, R_body_camera_nadir()), 1e-9);
   EXPECT_EQ(notes.size(), 1U);
-  const evaluation::Score score = score_of(tracked(well), *camera, true, std::nullopt);
+  const evaluation::Score score = score_of(dataset_, tracked(well), *camera, true, std::nullopt);
   EXPECT_EQ(score.outcome, evaluation::Outcome::kCompleted);
   EXPECT_LT(score.alignments.at(evaluation::AlignmentMode::kSe3).position_m.rmse, 1e-9);
+}
+
+TEST_F(TrackDataset, TakesEulerAnglesOfTheBodyThatTheMountTells) {
+  // The body pitches by 5 deg, in truth alone; its camera looks ahead.
+  Pose& mount = dataset_.T_body_camera.emplace();
+  mount.rotation = R_body_camera_nadir() * Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitX());
+  TrajectoryFile truth;
+  for (int i = 0; i < 6; ++i) {
+    const double pitch_rad = i < 3 ? 0.0 : rad_from_deg(5.0);
+    const Eigen::Quaterniond R_world_body(Eigen::AngleAxisd(pitch_rad, Eigen::Vector3d::UnitY()));
+    ASSERT_TRUE(
+        truth.trajectory
+            .append({dataset_.images[i].t_ns, Pose{R_world_body * mount.rotation, {1.0 * i, 0, 0}}})
+            .ok());
+  }
+  std::vector<std::string> notes;
+  const auto euler_of = [&] {
+    const Result<Trajectory> camera = camera_truth(dataset_, truth, notes);
+    const evaluation::Score score = score_of(dataset_, tracked(well), *camera, true, std::nullopt);
+    return score.alignments.at(evaluation::AlignmentMode::kOrigin).rotation_euler_norm_deg.max;
+  };
+  EXPECT_NEAR(euler_of(), 5.0, 1e-6);
+  EXPECT_TRUE(notes.empty());
+  dataset_.T_body_camera.reset();
+  EXPECT_GT(std::abs(euler_of() - 5.0), 1e-3);
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_THAT(notes[0], HasSubstr("mount is not known"));
+}
+
+TEST_F(TrackDataset, PutsKittisTruthIntoTheCameraThatIsTracked) {
+  TrajectoryFile truth;
+  truth.format = TrajectoryFormat::kKitti;
+  dataset_.camera_name = "image_2";
+  dataset_.T_first_camera = Pose{Eigen::Quaterniond::Identity(), {-0.06, 0, 0}};
+  const Pose turned{Eigen::Quaterniond(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ())),
+                    {7, 0, 0}};
+  ASSERT_TRUE(truth.trajectory.append({0, turned}).ok());
+  std::vector<std::string> notes;
+  const Result<Trajectory> camera = camera_truth(dataset_, truth, notes);
+  ASSERT_TRUE(camera.ok());
+  EXPECT_NEAR(camera->poses()[0].pose.translation.y(), -0.06, 1e-12);
+  EXPECT_THAT(notes.back(), HasSubstr("that of image_2 is made with calib.txt"));
+}
+
+TEST_F(TrackDataset, ScoresNoFrameWhereTheTruthDoesNotKnow) {
+  TrajectoryFile truth;
+  truth.unknown_poses = 3;
+  for (int i = 0; i < 6; ++i) {
+    if (i == 2) truth.trajectory.append_gap();
+    if (i >= 2 && i < 5) continue;
+    ASSERT_TRUE(truth.trajectory
+                    .append({dataset_.images[i].t_ns,
+                             Pose{Eigen::Quaterniond::Identity(), {1.0 * i, 0, 0}}})
+                    .ok());
+  }
+  std::vector<std::string> notes;
+  const Result<Trajectory> camera = camera_truth(dataset_, truth, notes);
+  EXPECT_THAT(notes.back(), HasSubstr("does not know 3 of its poses"));
+  const evaluation::Score score = score_of(dataset_, tracked(well), *camera, true, std::nullopt);
+  EXPECT_EQ(score.alignments.at(evaluation::AlignmentMode::kSe3).matched, 3);
 }
 
 TEST_F(TrackDataset, MatchesATruthWithoutTimesByItsLines) {
@@ -245,7 +305,7 @@ TEST_F(TrackDataset, MatchesATruthWithoutTimesByItsLines) {
         truth.append({i * 1'000'000'000LL, Pose{Eigen::Quaterniond::Identity(), {2.0 * i, 0, 0}}})
             .ok());
   }
-  const evaluation::Score score = score_of(tracked(well), truth, false, std::nullopt);
+  const evaluation::Score score = score_of(dataset_, tracked(well), truth, false, std::nullopt);
   const auto& aligned = score.alignments.at(evaluation::AlignmentMode::kSim3);
   EXPECT_EQ(aligned.matched, 6);
   EXPECT_NEAR(aligned.S_world_vo.scale, 2.0, 1e-9);
