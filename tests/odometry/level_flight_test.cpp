@@ -1,6 +1,9 @@
 // Short level flights over flat ground: the start, and what the estimator tells besides its pose.
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <opencv2/imgproc.hpp>
+
 #include "core/time.hpp"
 #include "odometry/feature/feature_odometry.hpp"
 #include "odometry/feature/lie.hpp"
@@ -48,6 +51,35 @@ std::vector<VoEstimate> fly_level(const FeatureParameters& parameters, double du
   return fly_level(*create_feature_odometry(parameters).value(), duration_s).estimates;
 }
 
+/// The frames of a level flight, each changed, and what the estimator made of them.
+std::vector<VoEstimate> fly_changed(const FeatureParameters& parameters,
+                                    const std::function<void(Image&)>& change) {
+  class Changing final : public VoPort {
+   public:
+    Changing(std::unique_ptr<VoPort> inner, const std::function<void(Image&)>& change)
+        : inner_(std::move(inner)), change_(change) {}
+    [[nodiscard]] std::string type() const override { return inner_->type(); }
+    [[nodiscard]] std::map<std::string, std::string> effective_parameters() const override {
+      return inner_->effective_parameters();
+    }
+    [[nodiscard]] Result<VoEstimate> track(const VoFrame& frame) override {
+      Image image = *frame.image;
+      change_(image);
+      VoFrame changed = frame;
+      changed.image = std::make_shared<const Image>(std::move(image));
+      return inner_->track(changed);
+    }
+    void reset() override { inner_->reset(); }
+    void set_debug(bool wanted) override { inner_->set_debug(wanted); }
+
+   private:
+    std::unique_ptr<VoPort> inner_;
+    const std::function<void(Image&)>& change_;
+  };
+  Changing port(create_feature_odometry(parameters).value(), change);
+  return fly_level(port, 1.6).estimates;
+}
+
 /// First frame with a pose; the number of frames when there is none.
 std::size_t first_tracked(const std::vector<VoEstimate>& estimates) {
   std::size_t i = 0;
@@ -87,6 +119,47 @@ TEST(FeatureOdometry, StartsOverAPlaneSeenObliquely) {
       EXPECT_GT(truth.translation.normalized().dot(told.translation.normalized()), 0.999) << i;
     }
   }
+}
+
+TEST(FeatureOdometry, StartsSoonerOverAPlaneWhenItConsidersOne) {
+  const auto first = [](bool planar_start) {
+    FeatureParameters parameters;
+    parameters.planar_start = planar_start;
+    const auto odometry = create_feature_odometry(parameters).value();
+    return first_tracked(fly_level(*odometry, 2.0, rad_from_deg(20.0)).estimates);
+  };
+  EXPECT_LT(first(true) + 12, first(false));  // 15 and 39
+}
+
+TEST(FeatureOdometry, HoldsMorePointsOfBlurredGroundWhenItMindsLowTexture) {
+  const auto blur = [](Image& image) {
+    cv::Mat view(image.height_px, image.width_px, CV_8U, image.data.data());
+    cv::GaussianBlur(view, view, {}, 4.0);
+  };
+  const auto held = [&](bool low_texture) {
+    FeatureParameters parameters;
+    parameters.low_texture = low_texture;
+    return fly_changed(parameters, blur).back().counters.at("inliers");
+  };
+  EXPECT_GT(held(true), 2.0 * held(false));  // 403 and 115
+}
+
+TEST(FeatureOdometry, TintsBurntAreasWhenItRejectsThem) {
+  const auto burn = [](Image& image) {
+    for (int y = 0; y < image.height_px; ++y) {
+      for (int x = 0; x < image.width_px / 3; ++x) image.at(x, y) = 255;
+    }
+  };
+  FeatureParameters parameters;
+  const auto tinted = [&] {
+    const Image view = *fly_changed(parameters, burn).back().debug_image;
+    const std::uint8_t* pixel =
+        &view.data[3U * (20U * static_cast<std::size_t>(view.width_px) + 20U)];
+    return pixel[1] < pixel[0];  // magenta
+  };
+  EXPECT_TRUE(tinted());
+  parameters.reject_saturated = false;
+  EXPECT_FALSE(tinted());
 }
 
 TEST(FeatureOdometry, TracksWhileAThreadBesideItMaps) {
