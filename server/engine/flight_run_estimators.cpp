@@ -106,6 +106,7 @@ Status FlightRun::open_estimators() {
 }
 
 void FlightRun::prepare_estimators() {
+  clock_.enter();  // until all are at it: a simulated clock must not move on for the first alone
   for (std::size_t i = 0; i < workers_.size(); ++i) {
     const CameraSpec& camera = scenario_.cameras[scenario_.estimators[i].camera];
     VoFrame first;
@@ -114,6 +115,7 @@ void FlightRun::prepare_estimators() {
     first.distortion = camera.model.distortion();
     workers_[i]->prepare(std::move(first));
   }
+  clock_.leave();
   for (std::size_t i = 0; i < workers_.size(); ++i) {
     workers_[i]->wait_until_idle();
     recorder_.manifest()["estimators"][i]["parameters"] = workers_[i]->effective_parameters();

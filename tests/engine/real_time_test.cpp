@@ -90,15 +90,25 @@ std::vector<std::int64_t> frames_where(const EstimatorRecords& estimator, bool d
   return frames;
 }
 
-TEST(RealTime, BusyEstimatorGetsTheLatestFrameAndTheOthersAreListed) {
-  const TemporaryFolder folder;
-  SimulatedClock clock;
-  RunOptions options;
-  options.folder = folder.path() / "r";
-  options.renderer_factory = testing::noop_factory();
-  options.clock = &clock;
-  options.estimator_factory = [&](const EstimatorSpec&) {
-    return Result<std::unique_ptr<VoPort>>(std::make_unique<SlowEstimator>(clock, 250 * kMs));
+/// A run in its own folder, of the empty renderer, under a simulated clock.
+class RealTime : public ::testing::Test {
+ protected:
+  RealTime() {
+    options_.folder = folder_.path() / "r";
+    options_.renderer_factory = testing::noop_factory();
+    options_.clock = &clock_;
+  }
+
+  SimulatedClock clock_;
+  RunOptions options_;
+
+ private:
+  TemporaryFolder folder_;
+};
+
+TEST_F(RealTime, BusyEstimatorGetsTheLatestFrameAndTheOthersAreListed) {
+  options_.estimator_factory = [&](const EstimatorSpec&) {
+    return Result<std::unique_ptr<VoPort>>(std::make_unique<SlowEstimator>(clock_, 250 * kMs));
   };
   // 10 Hz against 250 ms: 0 is done at 250 and takes 2, that is done at 500. Frame 5 comes at
   // that instant: either of 4 and 5 may be taken, so the flight ends with frame 4, at 400 ms.
@@ -106,9 +116,9 @@ TEST(RealTime, BusyEstimatorGetsTheLatestFrameAndTheOthersAreListed) {
       run_scenario(testing::small_scenario({"pacing=real_time",
                                             "duration_s=0.4",
                                             R"(estimators=[{"name":"slow","type":"feature"}])"}),
-                   options);
+                   options_);
   ASSERT_TRUE(run.ok()) << run.error().message;
-  const auto records = read_run_records(options.folder);
+  const auto records = read_run_records(options_.folder);
   ASSERT_TRUE(records.ok()) << records.error().message;
   EXPECT_THAT(frames_where(records->estimators[0], false), ElementsAre(0, 2, 4));
   EXPECT_THAT(frames_where(records->estimators[0], true), ElementsAre(1, 3));
@@ -119,70 +129,53 @@ TEST(RealTime, BusyEstimatorGetsTheLatestFrameAndTheOthersAreListed) {
   EXPECT_EQ(run->info.frames, 5);
 }
 
-TEST(RealTime, QuickEstimatorDropsNothing) {
-  const TemporaryFolder folder;
-  SimulatedClock clock;
-  RunOptions options;
-  options.folder = folder.path() / "r";
-  options.renderer_factory = testing::noop_factory();
-  options.clock = &clock;
-  options.estimator_factory = [&](const EstimatorSpec&) {
-    return Result<std::unique_ptr<VoPort>>(std::make_unique<SlowEstimator>(clock, 99 * kMs));
+TEST_F(RealTime, QuickEstimatorDropsNothing) {
+  options_.estimator_factory = [&](const EstimatorSpec&) {
+    return Result<std::unique_ptr<VoPort>>(std::make_unique<SlowEstimator>(clock_, 99 * kMs));
   };
   const auto run =
       run_scenario(testing::small_scenario(
                        {"pacing=real_time", R"(estimators=[{"name":"slow","type":"feature"}])"}),
-                   options);
+                   options_);
   ASSERT_TRUE(run.ok()) << run.error().message;
   EXPECT_EQ(run->metrics.at("estimators").at("slow").at("dropped_frames"), 0);
   EXPECT_EQ(run->metrics.at("estimators").at("slow").at("frames"), 21);
 }
 
-TEST(RealTime, TheFlightBeginsWhenItsEstimatorsAreReady) {
-  const TemporaryFolder folder;
-  SimulatedClock clock;
-  RunOptions options;
-  options.folder = folder.path() / "r";
-  options.renderer_factory = testing::noop_factory();
-  options.clock = &clock;
+TEST_F(RealTime, TheFlightBeginsWhenItsEstimatorsAreReady) {
   std::int64_t start_ns = 0;
-  options.estimator_factory = [&](const EstimatorSpec&) {
+  options_.estimator_factory = [&](const EstimatorSpec&) {
     start_ns += 3000 * kMs;
     return Result<std::unique_ptr<VoPort>>(
-        std::make_unique<SlowEstimator>(clock, 10 * kMs, start_ns));
+        std::make_unique<SlowEstimator>(clock_, 10 * kMs, start_ns));
   };
-  const std::int64_t begin_ns = clock.now_ns();
+  const std::int64_t begin_ns = clock_.now_ns();
   const auto run = run_scenario(
       testing::small_scenario(
           {"pacing=real_time",
            R"(estimators=[{"name":"a","type":"feature"},{"name":"b","type":"feature"}])"}),
-      options);
+      options_);
   ASSERT_TRUE(run.ok()) << run.error().message;
   for (const char* name : {"a", "b"}) {
     EXPECT_EQ(run->metrics.at("estimators").at(name).at("dropped_frames"), 0) << name;
   }
-  const Json manifest = read_json(manifest_file(options.folder)).value();
+  const Json manifest = read_json(manifest_file(options_.folder)).value();
   EXPECT_EQ(manifest.at("estimators").at(1).at("parameters").at("vocabulary"), "loaded");
   // Both at a time: 6 s, and the flight of 2 s.
-  EXPECT_NEAR(static_cast<double>(clock.now_ns() - begin_ns) * 1e-9, 8.0, 0.2);
+  EXPECT_NEAR(static_cast<double>(clock_.now_ns() - begin_ns) * 1e-9, 8.0, 0.2);
 }
 
-TEST(RealTime, RendererThatFallsBehindSkipsFramesWhoseTimeHasPassed) {
-  const TemporaryFolder folder;
-  SimulatedClock clock;
-  RunOptions options;
-  options.folder = folder.path() / "r";
-  options.clock = &clock;
-  options.renderer_factory = [&](std::shared_ptr<const terrain::TileSource> tiles) {
+TEST_F(RealTime, RendererThatFallsBehindSkipsFramesWhoseTimeHasPassed) {
+  options_.renderer_factory = [&](std::shared_ptr<const terrain::TileSource> tiles) {
     return Result<std::unique_ptr<renderer::Renderer>>(std::make_unique<SlowRenderer>(
-        renderer::create_noop_renderer(std::move(tiles)), clock, 250 * kMs));
+        renderer::create_noop_renderer(std::move(tiles)), clock_, 250 * kMs));
   };
   // 10 Hz against 250 ms a frame: 0 until 250, so 1 (due by 200) is late; 2 until 500, so 3 and 4
   // (due by 400 and 500) are; 5 until 750, so 6 is; 7 until 1000, so 8 and 9 are; 10.
   const auto run =
-      run_scenario(testing::small_scenario({"pacing=real_time", "duration_s=1"}), options);
+      run_scenario(testing::small_scenario({"pacing=real_time", "duration_s=1"}), options_);
   ASSERT_TRUE(run.ok()) << run.error().message;
-  const auto records = read_run_records(options.folder);
+  const auto records = read_run_records(options_.folder);
   ASSERT_TRUE(records.ok());
   std::vector<std::int64_t> drawn;
   for (const FrameRecord& frame : records->frames) drawn.push_back(frame.row.frame);
