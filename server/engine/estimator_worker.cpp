@@ -166,6 +166,10 @@ EstimatorEvent EstimatorWorker::answer(const Waiting& waiting) {
   event.latency_ms = static_cast<double>(clock_.now_ns() - waiting.handed_over_ns) * 1e-6;
   constexpr std::int64_t kAnswersPerUse = 16;
   if (!estimate || answers_++ % kAnswersPerUse == 0) event.use = use();
+  if (!estimate && estimate.error().code == ErrorCode::kCancelled) {
+    // The run is stopped; that the estimator was, too, in a frame, says nothing of it.
+    return drop_of(waiting.frame);
+  }
   if (!estimate) {
     crashed_ = true;
     event.record.crash = estimate.error().message;

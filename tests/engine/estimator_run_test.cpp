@@ -49,6 +49,7 @@ class Witness final : public VoPort {
     std::int64_t absurd = -1;           ///< frame that it answers with what is no number
     std::vector<std::string> log = {};  ///< said at its first frame
     std::string unready = {};           ///< why it does not get ready
+    std::int64_t cancelled = -1;        ///< frame in which the run's end reaches it
   };
   using Seen = std::map<std::int64_t, std::uint32_t>;
   Witness(Habits habits, Seen& seen) : habits_(std::move(habits)), seen_(seen) {}
@@ -67,6 +68,7 @@ class Witness final : public VoPort {
       const std::lock_guard lock(mutex_);
       said_ = habits_.log;
     }
+    if (frame.index == habits_.cancelled) return Error{ErrorCode::kCancelled, "stopped"};
     seen_[frame.index] = plain_crc32(frame.image->data);
     if (habits_.work_ns > 0) {
       habits_.clock->sleep_until_ns(habits_.clock->now_ns() + habits_.work_ns);
@@ -359,6 +361,15 @@ TEST(EstimatorRun, OneThatDoesNotGetReadyIsCrashedAndTheOthersFly) {
   EXPECT_EQ(run.metrics.at("estimators").at("a").at("outcome"), "COMPLETED");
   EXPECT_TRUE(flight.seen["b"].empty());
   EXPECT_EQ(flight.records().estimators[1].records[0].crash, "no vocabulary");
+}
+
+TEST(EstimatorRun, OneThatIsStoppedInAFrameHasNotCrashed) {
+  Flight flight;
+  flight.overrides = {R"(estimators=[{"name":"a","type":"feature"}])"};
+  flight.habits["a"].cancelled = 20;  // the last
+  const RunResult run = flight.fly();
+  EXPECT_EQ(run.metrics.at("estimators").at("a").at("outcome"), "COMPLETED");
+  EXPECT_EQ(run.metrics.at("estimators").at("a").at("dropped_frames"), 1);
 }
 
 TEST(EstimatorRun, ProcessorThatIsNotThereIsTold) {

@@ -179,17 +179,20 @@ Result<LcmEstimator::Answer> LcmEstimator::wait_for_answer(const VoFrame& frame,
                                                            Clock::time_point deadline) {
   if (Status status = link_->send(frame); !status) return status.error();
   int sends = 1;
+  bool stopping = false;
   while (Clock::now() < deadline) {
     Answer answer = wait_unless_cancelled(
-        options_.cancel, std::min(Clock::now() + kAskPeriod, deadline), [&](nanoseconds timeout) {
-          return link_->answers().wait(frame.t_ns, timeout);
-        });
+        options_.cancel,
+        std::min(Clock::now() + (stopping ? kCancelPatience : kAskPeriod), deadline),
+        [&](nanoseconds timeout) { return link_->answers().wait(frame.t_ns, timeout); },
+        kCancelPatience);
     Status sent;
-    if (!answer) {
-      if (is_cancelled(options_.cancel)) {
+    if (!answer && is_cancelled(options_.cancel)) {
+      if (std::exchange(stopping, true)) {
         link_->answers().give_up(frame.t_ns);
         return cancelled("the answer to frame " + std::to_string(frame.index));
       }
+    } else if (!answer) {
       sent = link_->ask_again();
     } else if (!answer->counters.contains(kImageLost)) {
       silent_frames_ = 0;

@@ -25,7 +25,8 @@ struct LcmEstimatorOptions {
   /// For a frame's answer, in real time as in lockstep; then it counts as unanswered.
   double answer_timeout_s = 5.0;
   VoParameters parameters;  ///< told to the estimator with the calibration
-  /// When it turns true, every wait ends within 50 ms with kCancelled. Null = nobody cancels.
+  /// When it turns true, every wait ends with kCancelled: within 50 ms, that for an answer after a
+  /// second. Null = nobody cancels.
   const std::atomic<bool>* cancel = nullptr;
 };
 

@@ -31,8 +31,8 @@ struct ProcessEstimatorOptions {
   double memory_limit_mb = 0.0;    ///< of the child's address space [1e6 bytes]; 0 = none
   /// Where the child's stdout and stderr go, in full (up to 64 MB); empty = only to take_log().
   std::filesystem::path output_file;
-  /// When it turns true, every wait ends within 50 ms with kCancelled, but for what a child has to
-  /// end by itself after STOP. Null = nobody cancels.
+  /// When it turns true, every wait ends with kCancelled: within 50 ms, that for an answer after a
+  /// second. A child has its time to end by itself after STOP all the same. Null = nobody cancels.
   const std::atomic<bool>* cancel = nullptr;
 };
 

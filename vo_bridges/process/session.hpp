@@ -52,8 +52,9 @@ class Session {
   explicit Session(const ProcessEstimatorOptions& options) : options_(options) {}
   [[nodiscard]] Status connect(Listener listener, Clock::time_point deadline);
   [[nodiscard]] Status greet(Clock::time_point deadline);
-  /// As Channel::next; kCancelled soon after the cancel.
-  [[nodiscard]] Result<std::optional<Message>> next(Clock::time_point deadline);
+  /// As Channel::next; kCancelled `patience` after the cancel.
+  [[nodiscard]] Result<std::optional<Message>> next(Clock::time_point deadline,
+                                                    std::chrono::milliseconds patience = {});
   /// Waits until READY says that it is done with `done`; what it still says of frames is passed
   /// over.
   [[nodiscard]] Status wait_ready(MessageType done, Clock::time_point deadline);
@@ -81,6 +82,7 @@ class Session {
   VoEstimate extra_;  // debug image and map points of it
   FigureIntake figures_;
   Clock::time_point sent_at_;
+  std::optional<Clock::time_point> cancelled_at_;
   std::optional<Error> ended_;
   mutable std::mutex mutex_;
   std::map<std::string, std::string> parameters_;

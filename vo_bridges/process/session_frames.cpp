@@ -1,6 +1,7 @@
 // How a session goes on, frame by frame.
 #include <utility>
 
+#include "vo_bridges/cancel.hpp"
 #include "vo_bridges/process/session.hpp"
 
 namespace overfly::process {
@@ -111,7 +112,7 @@ Status Session::take_debug(const Message& message, VoEstimate* extra) const {
 
 Result<std::optional<VoEstimate>> Session::wait_answer(Clock::time_point deadline) {
   for (;;) {
-    Result<std::optional<Message>> message = next(deadline);
+    Result<std::optional<Message>> message = next(deadline, kCancelPatience);
     if (!message) return message.error();
     if (!*message) return std::optional<VoEstimate>{};
     const Result<bool> noticed = take_notice(**message);

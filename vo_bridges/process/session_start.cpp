@@ -72,9 +72,12 @@ Status Session::connect(Listener listener, Clock::time_point deadline) {
                    seconds_text(options_.start_timeout_s)};
 }
 
-Result<std::optional<Message>> Session::next(Clock::time_point deadline) {
+Result<std::optional<Message>> Session::next(Clock::time_point deadline, milliseconds patience) {
   for (;;) {
-    if (is_cancelled(options_.cancel)) return cancelled("the estimator");
+    if (is_cancelled(options_.cancel)) {
+      if (!cancelled_at_) cancelled_at_ = Clock::now();
+      if (Clock::now() >= *cancelled_at_ + patience) return cancelled("the estimator");
+    }
     const auto step = options_.cancel == nullptr ? deadline : Clock::now() + kCancelPeriod;
     Result<std::optional<Message>> message = channel_->next(std::min(deadline, step));
     if (!message || *message || Clock::now() >= deadline) return message;

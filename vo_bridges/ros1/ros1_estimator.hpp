@@ -46,7 +46,8 @@ struct Ros1EstimatorOptions {
   VoParameters parameters;
   std::string
       parameter_namespace;  ///< whose parameters are read back into the result; empty = none
-  /// When it turns true, every wait ends within 50 ms with kCancelled. Null = nobody cancels.
+  /// When it turns true, every wait ends with kCancelled: within 50 ms, that for an answer after a
+  /// second. Null = nobody cancels.
   const std::atomic<bool>* cancel = nullptr;
 };
 

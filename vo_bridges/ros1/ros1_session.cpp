@@ -211,10 +211,11 @@ Result<VoEstimate> Session::exchange(const VoFrame& frame, std::int64_t stamp_ns
   auto wait = patience_.begin(stamp_ns, Clock::now());
   if (alone_since_) wait = 0ns;
   topics_->publish(frame, stamp_ns);
-  std::optional<VoEstimate> answer =
-      wait_unless_cancelled(options_.cancel, Clock::now() + wait, [&](std::chrono::nanoseconds t) {
-        return answers_.wait(stamp_ns, t);
-      });
+  std::optional<VoEstimate> answer = wait_unless_cancelled(
+      options_.cancel,
+      Clock::now() + wait,
+      [&](std::chrono::nanoseconds timeout) { return answers_.wait(stamp_ns, timeout); },
+      kCancelPatience);
   if (!answer) answer = answers_.take(stamp_ns, 0ns);
   if (!answer && is_cancelled(options_.cancel)) {
     return cancelled("the pose of frame " + std::to_string(frame.index));

@@ -52,6 +52,7 @@ class Pass {
       Status status = step(i);
       pass_on_log();
       if (!status) return status.error();
+      if (result_.cancelled) break;
       if (options_.progress) {
         options_.progress(i + 1, dataset_.images.size(), result_.records.back().sample.state);
       }
@@ -98,6 +99,10 @@ class Pass {
     record.sample.t_ns = frame->t_ns;
     record.sample.state = TrackingState::kLost;
     if (!estimate) {
+      if (estimate.error().code == ErrorCode::kCancelled) {
+        result_.cancelled = true;
+        return {};
+      }
       if (estimate.error().code != ErrorCode::kInternal) {
         return estimate.error().in(dataset_.images[i].listed_at);
       }

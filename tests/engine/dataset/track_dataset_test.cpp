@@ -115,6 +115,17 @@ TEST_F(TrackDataset, StopsAfterTheFrameAtHandWhenCancelled) {
   EXPECT_EQ(report_json(dataset_, result, std::nullopt).at("complete"), false);
 }
 
+TEST_F(TrackDataset, KeepsWhatItHasWhenTheEstimatorIsStoppedInAFrame) {
+  const TrackedDataset result =
+      tracked([](const VoFrame& frame, VoEstimate estimate) -> Result<VoEstimate> {
+        if (frame.index == 3) return Error{ErrorCode::kCancelled, "stopped"};
+        return estimate;
+      });
+  EXPECT_TRUE(result.cancelled);
+  EXPECT_EQ(result.records.size(), 3U);
+  EXPECT_EQ(report_json(dataset_, result, std::nullopt).at("crash"), nullptr);
+}
+
 TEST_F(TrackDataset, TakesACrashForAResultAndARefusalForAnError) {
   const auto crash = [](const VoFrame& frame, VoEstimate estimate) -> Result<VoEstimate> {
     if (frame.index == 3) return Error{ErrorCode::kInternal, "signal 11"};
