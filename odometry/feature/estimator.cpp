@@ -238,15 +238,12 @@ void FeatureOdometry::search(const FrameImage& frame, VoEstimate& estimate, Outc
   const Stopwatch stopwatch(estimate.timing_ms, "relocalisation");
   const double lost_s = static_cast<double>(frame.t_ns - lost_at_ns_) * 1e-9;
   if (lost_s < kExtrapolateS) outcome.tracked = track_map(frame);
-  if (!outcome.tracked.tracked) {
+  if (!outcome.tracked.tracked && shows_something(frame.pyramid)) {
+    blind_search_s_ += static_cast<double>(frame.t_ns - previous_->t_ns) * 1e-9;
     RelocaliserOptions options;
     options.seed = parameters_.seed + static_cast<std::uint64_t>(frame.index);
-    options.min_corners = std::min(options.min_corners, parameters_.features / 2);
     const Relocalisation found = relocalise(camera_, options, frame.pyramid.level(0), orb_, map());
     estimate.counters["relocalisation_matches"] = found.matches;
-    if (found.corners >= options.min_corners) {
-      blind_search_s_ += static_cast<double>(frame.t_ns - previous_->t_ns) * 1e-9;
-    }
     if (found.T_camera_vo) {
       outcome.tracked = parts_->tracker.track(frame.pyramid, *found.T_camera_vo, 2, map());
     }

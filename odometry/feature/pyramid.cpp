@@ -1,6 +1,7 @@
 #include "odometry/feature/pyramid.hpp"
 
 #include <algorithm>
+#include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
@@ -11,6 +12,10 @@ namespace {
 constexpr int kFullLevel = 250;     ///< grey level from which a pixel says nothing
 constexpr int kFullShare = 192;     ///< of 255: share of such pixels that makes a cell burnt
 constexpr int kLeastAreaCells = 3;  ///< side of the smallest area
+/// Averages noise to a fifteenth; ground in coarse, blurred pictures still has its corners there.
+constexpr int kQuietLevel = 3;
+constexpr int kQuietThreshold = 4;        ///< of FAST [grey levels]
+constexpr double kQuietCorners = 1.5e-3;  ///< least number, per pixel of the level
 
 }  // namespace
 
@@ -45,6 +50,13 @@ Pyramid build_pyramid(std::shared_ptr<const Image> image) {
     pyramid.levels.push_back(half);
   }
   return pyramid;
+}
+
+bool shows_something(const Pyramid& pyramid) {
+  const cv::Mat& quiet = pyramid.level(std::min(kQuietLevel, pyramid.level_count() - 1));
+  std::vector<cv::KeyPoint> corners;
+  cv::FAST(quiet, corners, kQuietThreshold);
+  return static_cast<double>(corners.size()) > kQuietCorners * static_cast<double>(quiet.total());
 }
 
 }  // namespace overfly::odometry

@@ -43,4 +43,8 @@ inline constexpr int kPyramidLevels = 5;
 /// Builds up to kPyramidLevels levels; stops before a side falls below 32 px.
 [[nodiscard]] Pyramid build_pyramid(std::shared_ptr<const Image> image);
 
+/// Whether there is anything to see: corners that outlast averaging over pixels. In the dark the
+/// finest level alone is full of corners, of noise.
+[[nodiscard]] bool shows_something(const Pyramid& pyramid);
+
 }  // namespace overfly::odometry

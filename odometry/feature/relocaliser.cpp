@@ -100,8 +100,6 @@ Relocalisation relocalise(const PinholeCamera& camera,
                           const Map& map) {
   Relocalisation result;
   const std::vector<Corner> corners = orb.detect(image);
-  result.corners = static_cast<int>(corners.size());
-  if (result.corners < options.min_corners) return result;
   const std::vector<PoseObservation> matches = match_points(options, corners, orb, map);
   result.matches = static_cast<int>(matches.size());
   if (result.matches < options.min_inliers) return result;

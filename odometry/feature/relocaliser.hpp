@@ -12,7 +12,6 @@ namespace overfly::odometry {
 
 struct RelocaliserOptions {
   int keyframes = 40;     ///< whose points are compared
-  int min_corners = 100;  ///< an image that offers fewer shows nothing
   int max_distance = 64;  ///< bits
   double ratio = 0.85;    ///< best to second-best distance
   int rounds = 300;       ///< of RANSAC
@@ -22,7 +21,6 @@ struct RelocaliserOptions {
 };
 
 struct Relocalisation {
-  int corners = 0;  ///< what the image offered; few mean that it shows nothing
   int matches = 0;
   std::optional<Pose> T_camera_vo;
 };

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <optional>
+#include <random>
 
 #include "core/time.hpp"
 #include "synthetic_flight.hpp"
@@ -16,7 +17,7 @@ using testing::SyntheticFlightOptions;
 using testing::SyntheticGround;
 
 /// What the camera shows in a frame instead of the ground.
-enum class Fault { kNone, kDropped, kBlack, kFrozen, kBurst };
+enum class Fault { kNone, kDropped, kBlack, kDark, kFrozen, kBurst };
 
 struct Flight {
   std::vector<Pose> truth;              ///< T_world_camera
@@ -26,8 +27,7 @@ struct Flight {
 struct FlightPlan {
   SyntheticFlightOptions flight;
   double relief_m = 0.0;
-  int features = 800;
-  std::uint64_t seed = 1;
+  FeatureParameters parameters = {.features = 800};
   std::function<Fault(int)> fault = [](int) { return Fault::kNone; };
 };
 
@@ -38,14 +38,22 @@ void burn(Image& image) {
   }
 }
 
+/// No light, but the noise of the sensor.
+Image dark(std::uint64_t seed) {
+  Image image(640, 480, 1);
+  std::mt19937_64 rng(seed);
+  std::normal_distribution<double> noise(0.0, 15.0);
+  for (std::uint8_t& value : image.data) {
+    value = static_cast<std::uint8_t>(std::max(0.0, noise(rng)));
+  }
+  return image;
+}
+
 Flight fly(const FlightPlan& plan) {
   const SyntheticGround ground = SyntheticGround::procedural(1, 1024, 0.8, plan.relief_m);
   const auto camera =
       PinholeCamera::from_fov(640, 480, rad_from_deg(84.872), FovAxis::kHorizontal).value();
-  FeatureParameters parameters;
-  parameters.features = plan.features;
-  parameters.seed = plan.seed;
-  const auto odometry = create_feature_odometry(parameters).value();
+  const auto odometry = create_feature_odometry(plan.parameters).value();
   Flight flight;
   flight.truth = testing::fly_s_turns(plan.flight);
   std::shared_ptr<const Image> last;
@@ -58,6 +66,8 @@ Flight fly(const FlightPlan& plan) {
     frame.intrinsics = camera;
     if (fault == Fault::kBlack) {
       frame.image = std::make_shared<const Image>(640, 480, 1);
+    } else if (fault == Fault::kDark) {
+      frame.image = std::make_shared<const Image>(dark(i));
     } else if (fault == Fault::kFrozen) {
       frame.image = last;
     } else {
@@ -171,6 +181,19 @@ TEST(FeatureOdometry, TakesFourDroppedFramesOfFive) {
   EXPECT_LT(errors_of(flight, 300.0).position_m, 0.5);
 }
 
+TEST(FeatureOdometry, FollowsAFastRollAtFewFramesWhenItCompensatesTheRotation) {
+  FlightPlan plan{turning(6.0)};
+  plan.flight.roll_rate_max_rad_s = 1.134;
+  plan.flight.bank_max_rad = 1.0;
+  // 65 deg/s at 6.2 frames a second: 10 deg from one to the next.
+  plan.fault = [](int frame) { return frame % 5 == 0 ? Fault::kNone : Fault::kDropped; };
+  const Flight compensated = fly(plan);
+  plan.parameters.rotation_compensation = false;
+  const Flight plain = fly(plan);
+  EXPECT_EQ(count(compensated, TrackingState::kLost), 0);
+  EXPECT_GT(count(plain, TrackingState::kLost), 0);
+}
+
 /// Faults in frames 80 to 99, in the middle of a turn.
 Fault middle(int frame, Fault fault) { return frame >= 80 && frame < 100 ? fault : Fault::kNone; }
 
@@ -184,6 +207,18 @@ TEST(FeatureOdometry, IsLostOverBlackImagesAndFindsItsMapAgain) {
   EXPECT_EQ(flight.samples.back().state, TrackingState::kTracking);
   EXPECT_EQ(flight.samples.back().map_id, 0);
   EXPECT_LE(count(flight, TrackingState::kLost), 22);
+  EXPECT_LT(errors_of(flight, 300.0).position_m, 0.7);
+}
+
+TEST(FeatureOdometry, KeepsItsMapInTheDark) {
+  FlightPlan plan{turning(6.0)};
+  plan.flight.straight_s = 10.0;
+  // Longer than it looks for its map over images that show something.
+  plan.fault = [](int frame) { return frame >= 60 && frame < 170 ? Fault::kDark : Fault::kNone; };
+  const Flight flight = fly(plan);
+  EXPECT_EQ(count(flight, TrackingState::kLost), 110);
+  EXPECT_EQ(flight.samples.back().state, TrackingState::kTracking);
+  EXPECT_EQ(flight.samples.back().map_id, 0);
   EXPECT_LT(errors_of(flight, 300.0).position_m, 0.7);
 }
 

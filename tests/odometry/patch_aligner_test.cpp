@@ -114,27 +114,6 @@ TEST(PatchAligner, RefusesPatchesThatLeaveTheImage) {
   EXPECT_FALSE(align_patch(image, *patch, {std::nan(""), 128.0}));
 }
 
-TEST(Burnt, AreasAreFoundAndWhiteRoofsAreNot) {
-  auto image = std::make_shared<Image>(640, 480, 1, std::uint8_t{90});
-  const auto paint = [&](int x0, int y0, int side) {
-    for (int y = y0; y < y0 + side; ++y) {
-      for (int x = x0; x < x0 + side; ++x) image->at(x, y) = 255;
-    }
-  };
-  for (int roof = 0; roof < 30; ++roof) paint(10 + 20 * roof, 20, 14);
-  EXPECT_TRUE(build_pyramid(image).burnt.empty());
-  Pyramid pyramid = build_pyramid(image);
-  EXPECT_TRUE(find_burnt(pyramid.level(0)).empty());
-  paint(300, 200, 100);
-  pyramid.burnt = find_burnt(pyramid.level(0));
-  EXPECT_TRUE(pyramid.burnt_at({350.0, 250.0}));
-  EXPECT_TRUE(pyramid.burnt_at({300.0, 200.0}));
-  EXPECT_TRUE(pyramid.burnt_at({399.0, 299.0}));
-  EXPECT_FALSE(pyramid.burnt_at({270.0, 250.0}));
-  EXPECT_FALSE(pyramid.burnt_at({15.0, 25.0}));
-  EXPECT_FALSE(pyramid.burnt_at({639.0, 479.0}));
-}
-
 TEST(Pyramid, LevelsShareTheirFirstPixel) {
   const Pyramid image = image_of(kIdentity, {0.0, 0.0}, 1.0, 0.0);
   ASSERT_EQ(image.level_count(), 4);  // 256, 128, 64, 32
