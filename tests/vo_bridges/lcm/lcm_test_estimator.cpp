@@ -5,6 +5,7 @@
 #include <cmath>
 #include <overfly_lcm/debug_t.hpp>
 #include <overfly_lcm/status_t.hpp>
+#include <stdexcept>
 #include <utility>
 
 #include "core/time.hpp"
@@ -193,6 +194,24 @@ LcmPair make_memq_pair(LcmBehaviour behaviour, LcmEstimatorOptions options) {
       std::make_shared<LcmTestEstimator>(node, options.channel_prefix, std::move(behaviour));
   pair.door = create_lcm_estimator_on(node, options).value();
   return pair;
+}
+
+LcmEstimatorOptions impatient(bool lockstep) {
+  LcmEstimatorOptions options;
+  options.lockstep = lockstep;
+  options.start_timeout_s = 1.0;
+  options.answer_timeout_s = 0.5;
+  return options;
+}
+
+std::vector<VoEstimate> fly(VoPort& door, int count) {
+  std::vector<VoEstimate> estimates;
+  for (const VoFrame& frame : varied_frames(count)) {
+    Result<VoEstimate> estimate = door.track(frame);
+    if (!estimate) throw std::runtime_error(estimate.error().message);
+    estimates.push_back(std::move(*estimate));
+  }
+  return estimates;
 }
 
 std::string multicast_missing() {

@@ -74,6 +74,11 @@ struct LcmPair {
 /// Both on one memq node.
 [[nodiscard]] LcmPair make_memq_pair(LcmBehaviour behaviour = {}, LcmEstimatorOptions options = {});
 
+/// Long enough for an answer on a busy machine, short enough to wait for none.
+[[nodiscard]] LcmEstimatorOptions impatient(bool lockstep = true);
+/// Tracks so many varied frames. @throws std::runtime_error when one does not go well
+std::vector<VoEstimate> fly(VoPort& door, int count);
+
 /// Why UDP multicast cannot be tested here; empty where it can.
 [[nodiscard]] std::string multicast_missing();
 /// A multicast URL of this process alone.

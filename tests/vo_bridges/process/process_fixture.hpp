@@ -2,7 +2,11 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 
+#include <cerrno>
+#include <chrono>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -40,5 +44,26 @@ std::vector<VoFrame> ground_frames(
 [[nodiscard]] bool alive(int pid);
 /// Waits until it is not, 5 s at most.
 [[nodiscard]] bool gone_soon(int pid);
+
+/// No child is left: neither running nor waiting to be reaped.
+class ChildrenTest : public ::testing::Test {
+ protected:
+  void TearDown() override {
+    EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1) << "a child is left";
+    EXPECT_EQ(errno, ECHILD);
+  }
+
+  static Error start_error(const ProcessEstimatorOptions& options) {
+    const auto estimator = create_process_estimator(options);
+    EXPECT_FALSE(estimator.ok());
+    return estimator.ok() ? Error{} : estimator.error();
+  }
+
+  static double seconds_of(const std::function<void()>& work) {
+    const auto begin = std::chrono::steady_clock::now();
+    work();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  }
+};
 
 }  // namespace overfly::testing

@@ -19,57 +19,15 @@ namespace {
 
 using testing::alive;
 using ::testing::AllOf;
+using testing::ChildrenTest;
 using testing::gone_soon;
 using testing::ground_frames;
 using ::testing::HasSubstr;
 using testing::scripted;
 using testing::started;
 
-/// Cancels by another thread, a moment after it was made.
-class Cancelling {
- public:
-  explicit Cancelling(ProcessEstimatorOptions* options) : Cancelling(&own_) {
-    options->cancel = &own_;
-  }
-  explicit Cancelling(std::atomic<bool>* cancel)
-      : thread_([this, cancel] {
-          std::this_thread::sleep_for(std::chrono::milliseconds(300));
-          at_ = std::chrono::steady_clock::now();
-          *cancel = true;
-        }) {}
-
-  ~Cancelling() {
-    if (thread_.joinable()) thread_.join();
-  }
-  Cancelling(const Cancelling&) = delete;
-  Cancelling& operator=(const Cancelling&) = delete;
-
-  /// Seconds since the cancel; once.
-  double ago_s() {
-    thread_.join();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - at_).count();
-  }
-
- private:
-  std::atomic<bool> own_ = false;
-  std::chrono::steady_clock::time_point at_;
-  std::thread thread_;
-};
-
-/// No child is left: neither running nor waiting to be reaped.
-class ProcessTrouble : public ::testing::Test {
+class ProcessTrouble : public ChildrenTest {
  protected:
-  void TearDown() override {
-    EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1) << "a child is left";
-    EXPECT_EQ(errno, ECHILD);
-  }
-
-  static Error start_error(const ProcessEstimatorOptions& options) {
-    const auto estimator = create_process_estimator(options);
-    EXPECT_FALSE(estimator.ok());
-    return estimator.ok() ? Error{} : estimator.error();
-  }
-
   /// The error of the frame after three that went well or not.
   static Error flight_error(const ProcessEstimatorOptions& options, bool debug = false) {
     const auto estimator = started(options);
@@ -97,91 +55,7 @@ class ProcessTrouble : public ::testing::Test {
     }
     return lines;
   }
-
-  static double seconds_of(const std::function<void()>& work) {
-    const auto begin = std::chrono::steady_clock::now();
-    work();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  }
 };
-
-TEST_F(ProcessTrouble, AMissingProgramIsNamed) {
-  ProcessEstimatorOptions options;
-  options.command = {"./no/such/estimator"};
-  EXPECT_EQ(start_error(options).code, ErrorCode::kNotFound);
-  EXPECT_THAT(start_error(options).message,
-              HasSubstr("'./no/such/estimator': there is no such file"));
-  options.command = {"no-such-estimator-anywhere"};
-  EXPECT_EQ(start_error(options).code, ErrorCode::kNotFound);
-  EXPECT_THAT(start_error(options).message, HasSubstr("no such program in $PATH"));
-}
-
-TEST_F(ProcessTrouble, AFileThatCannotBeExecutedIsNamed) {
-  const testing::TemporaryFolder folder;
-  const std::filesystem::path file = folder.path() / "estimator";
-  testing::write_text(file, "#!/no/such/interpreter\n");
-  ProcessEstimatorOptions options;
-  options.command = {file.string()};
-  EXPECT_EQ(start_error(options).code, ErrorCode::kInvalidArgument);
-  EXPECT_THAT(start_error(options).message, HasSubstr("chmod +x"));
-  std::filesystem::permissions(file, std::filesystem::perms::owner_all);
-  EXPECT_EQ(start_error(options).code, ErrorCode::kNotFound);
-  EXPECT_THAT(start_error(options).message, HasSubstr("interpreter"));
-  testing::write_text(file, "print('hello')\n");
-  EXPECT_THAT(start_error(options).message, HasSubstr("a script begins with #!"));
-  options = scripted("good");
-  options.working_folder = folder.path() / "absent";
-  EXPECT_THAT(start_error(options).message,
-              HasSubstr("working_folder = '" + options.working_folder.string()));
-}
-
-TEST_F(ProcessTrouble, AChildThatEndsAtOnceIsQuoted) {
-  const Error error = start_error(scripted("no_start"));
-  EXPECT_EQ(error.code, ErrorCode::kInternal);
-  EXPECT_THAT(error.message,
-              AllOf(HasSubstr("ended before it said hello"),
-                    HasSubstr("exited with code 3"),
-                    HasSubstr("ORBvoc.txt: no such file")));
-}
-
-TEST_F(ProcessTrouble, ASlowStartIsCutShort) {
-  for (const char* const behaviour : {"slow_start", "silent"}) {
-    ProcessEstimatorOptions options = scripted(behaviour);
-    options.start_timeout_s = 0.3;
-    Error error;
-    EXPECT_LT(seconds_of([&] { error = start_error(options); }), 5.0);
-    EXPECT_EQ(error.code, ErrorCode::kInternal);
-    EXPECT_THAT(error.message, HasSubstr("within 0.3 s")) << behaviour;
-  }
-}
-
-TEST_F(ProcessTrouble, ASlowCalibrationIsCutShort) {
-  ProcessEstimatorOptions options = scripted("slow_calibration");
-  options.start_timeout_s = 2.0;
-  EXPECT_THAT(flight_error(options).message, HasSubstr("was not ready after CALIBRATION"));
-}
-
-TEST_F(ProcessTrouble, AnUnknownParameterEndsTheStart) {
-  ProcessEstimatorOptions options = scripted("good");
-  options.parameters["nonsense"] = 3.0;
-  EXPECT_THAT(start_error(options).message, HasSubstr("error: unknown parameter nonsense"));
-}
-
-TEST_F(ProcessTrouble, GarbageInsteadOfAHelloIsQuoted) {
-  EXPECT_THAT(start_error(scripted("web")).message,
-              AllOf(HasSubstr("47 45 54 20"), HasSubstr("GET / HTTP"), HasSubstr("OVVO")));
-  EXPECT_THAT(start_error(scripted("huge")).message,
-              HasSubstr("HELLO of 4294967295 bytes: must be at most 65536"));
-  EXPECT_THAT(start_error(scripted("server_message")).message,
-              HasSubstr("sent STOP, which it must not"));
-}
-
-TEST_F(ProcessTrouble, AnotherVersionIsRefused) {
-  EXPECT_THAT(start_error(scripted("version_2")).message,
-              HasSubstr("speaks version 2 of the protocol: this is version 1"));
-  EXPECT_THAT(start_error(scripted("text_version_9")).message,
-              HasSubstr("speaks version '9' of the protocol: this is version 1"));
-}
 
 TEST_F(ProcessTrouble, ACrashIsToldWithTheLastWords) {
   const testing::TemporaryFolder folder;
@@ -372,63 +246,6 @@ TEST_F(ProcessTrouble, NamesWithoutEndAreCutWithOneWarningForEachKind) {
                   AllOf(HasSubstr("warning: parameter p"), HasSubstr("at most 4096"))));
 }
 
-TEST_F(ProcessTrouble, ACancelEndsTheWaitForAConnection) {
-  const testing::TemporaryFolder folder;
-  ProcessEstimatorOptions options;
-  options.listen = "unix:" + (folder.path() / "socket").string();
-  Cancelling cancelling(&options);
-  EXPECT_EQ(start_error(options).code, ErrorCode::kCancelled);
-  EXPECT_LT(cancelling.ago_s(), 2.0);
-}
-
-TEST_F(ProcessTrouble, ACancelEndsTheWaitForAStart) {
-  ProcessEstimatorOptions options = scripted("slow_start");
-  Cancelling cancelling(&options);
-  const Error error = start_error(options);
-  EXPECT_EQ(error.code, ErrorCode::kCancelled);
-  EXPECT_EQ(error.message, "estimator scripted: stopped while waiting for the estimator");
-  EXPECT_LT(cancelling.ago_s(), 2.0);
-}
-
-TEST_F(ProcessTrouble, ACancelEndsTheWaitForACalibration) {
-  ProcessEstimatorOptions options = scripted("slow_calibration");
-  std::atomic<bool> cancel = false;
-  options.cancel = &cancel;
-  const auto estimator = started(options);
-  Cancelling cancelling(&cancel);
-  EXPECT_EQ(estimator->prepare(ground_frames(1, 1.0, 1.0, 64, 48)[0]).error().code,
-            ErrorCode::kCancelled);
-  EXPECT_LT(cancelling.ago_s(), 2.0);
-}
-
-TEST_F(ProcessTrouble, ACancelEndsTheWaitForAnAnswer) {
-  ProcessEstimatorOptions options = scripted("hang");
-  std::atomic<bool> cancel = false;
-  options.cancel = &cancel;
-  const auto estimator = started(options);
-  const auto frames = ground_frames(4, 1.0, 1.0, 64, 48);
-  ASSERT_TRUE(estimator->track(frames[0]).ok());
-  const int pid = static_cast<int>(estimator->track(frames[1])->counters.at("pid"));
-  Cancelling cancelling(&cancel);
-  EXPECT_EQ(estimator->track(frames[2]).error().code, ErrorCode::kCancelled);
-  EXPECT_LT(cancelling.ago_s(), 3.0);  // a second for the answer
-  EXPECT_FALSE(alive(pid));
-  EXPECT_EQ(estimator->track(frames[3]).error().code, ErrorCode::kCancelled) << "for good";
-}
-
-TEST_F(ProcessTrouble, ACancelLeavesAnEstimatorThatWorksItsAnswer) {
-  ProcessEstimatorOptions options = scripted("late", "0.6");
-  std::atomic<bool> cancel = false;
-  options.cancel = &cancel;
-  const auto estimator = started(options);
-  const auto frames = ground_frames(3, 1.0, 1.0, 64, 48);
-  ASSERT_TRUE(estimator->track(frames[0]).ok());
-  ASSERT_TRUE(estimator->track(frames[1]).ok());
-  Cancelling cancelling(&cancel);
-  const auto answer = estimator->track(frames[2]);
-  ASSERT_TRUE(answer.ok()) << answer.error().message;
-}
-
 TEST_F(ProcessTrouble, AChildThatDoesNotStopIsKilled) {
   int pid = 0;
   const double took_s = seconds_of([&] {
@@ -473,39 +290,6 @@ TEST_F(ProcessTrouble, AKilledServerLeavesNoOrphan) {
   ::kill(server, SIGKILL);
   ::waitpid(server, nullptr, 0);
   EXPECT_TRUE(gone_soon(pid));
-}
-
-TEST_F(ProcessTrouble, BadOptionsAreNamed) {
-  const auto error_with = [](const std::function<void(ProcessEstimatorOptions*)>& change) {
-    ProcessEstimatorOptions options = scripted("good");
-    change(&options);
-    const Error error = start_error(options);
-    EXPECT_EQ(error.code, ErrorCode::kInvalidArgument);
-    return error.message;
-  };
-  EXPECT_THAT(error_with([](auto* o) { o->command.clear(); }), HasSubstr("command"));
-  EXPECT_THAT(error_with([](auto* o) { o->command = {""}; }), HasSubstr("command[0]"));
-  EXPECT_THAT(error_with([](auto* o) { o->start_timeout_s = 0.0; }),
-              HasSubstr("start_timeout_s = 0"));
-  EXPECT_THAT(error_with([](auto* o) { o->answer_timeout_s = 3601.0; }),
-              HasSubstr("answer_timeout_s = 3601"));
-  EXPECT_THAT(error_with([](auto* o) { o->memory_limit_mb = -1.0; }),
-              HasSubstr("memory_limit_mb = -1"));
-  EXPECT_THAT(error_with([](auto* o) { o->cpus = {0, 1000}; }), HasSubstr("cpus[1] = 1000"));
-  EXPECT_THAT(error_with([](auto* o) { o->parameters["a b"] = 1.0; }), HasSubstr("'a b'"));
-  EXPECT_THAT(error_with([](auto* o) { o->parameters["a"] = std::string("x\ny"); }),
-              HasSubstr("parameters.a"));
-  EXPECT_THAT(error_with([](auto* o) { o->listen = "udp:there"; }),
-              HasSubstr("listen = 'udp:there'"));
-  EXPECT_THAT(error_with([](auto* o) { o->listen = "tcp:127.0.0.1:99999"; }),
-              HasSubstr("[0, 65535]"));
-  EXPECT_THAT(error_with([](auto* o) { o->listen = "unix:" + std::string(120, 'x'); }),
-              HasSubstr("1 to 107 bytes"));
-  EXPECT_THAT(error_with([](auto* o) {
-                o->command.clear();
-                o->listen = "tcp:127.0.0.1:0";
-              }),
-              HasSubstr("port 0"));
 }
 
 }  // namespace

@@ -15,12 +15,6 @@ namespace {
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
-std::unique_ptr<VoPort> created(const Ros1EstimatorOptions& options) {
-  auto port = create_ros1_estimator(options);
-  if (!port) throw std::runtime_error(port.error().message);
-  return std::move(port).value();
-}
-
 VoEstimate tracked(VoPort& port, const VoFrame& frame) {
   auto estimate = port.track(frame);
   if (!estimate) throw std::runtime_error(estimate.error().message);

@@ -2,7 +2,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <chrono>
 #include <csignal>
 #include <future>
@@ -26,12 +25,6 @@ void expect_error(const Result<std::unique_ptr<VoPort>>& port,
   ASSERT_FALSE(port.ok());
   EXPECT_EQ(port.error().code, code) << port.error().message;
   EXPECT_THAT(port.error().message, HasSubstr(text));
-}
-
-std::unique_ptr<VoPort> created(const Ros1EstimatorOptions& options) {
-  auto port = create_ros1_estimator(options);
-  if (!port) throw std::runtime_error(port.error().message);
-  return std::move(port).value();
 }
 
 bool is_tracked(const Result<VoEstimate>& estimate) {
@@ -172,67 +165,6 @@ TEST(Ros1Faults, RefusesATransformThatAnotherEstimatorHas) {
   second.vo_frame = "map";
   const TestNode other(second);
   EXPECT_TRUE(is_tracked(created(second)->track(grey_frames(1).front())));
-}
-
-/// How long a call takes to end with kCancelled once it is asked to.
-template <typename Call>
-double cancelled_after_s(std::atomic<bool>& cancel, Call call) {
-  auto code = std::async(std::launch::async, call);
-  EXPECT_EQ(code.wait_for(500ms), std::future_status::timeout);
-  const auto asked = std::chrono::steady_clock::now();
-  cancel = true;
-  EXPECT_EQ(code.get(), ErrorCode::kCancelled);
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - asked).count();
-}
-
-constexpr double kBusyS = 1.5;  ///< 50 ms on a machine that has time, and the end of the topics
-
-TEST(Ros1Faults, EndsItsWaitForTheMasterWhenCancelled) {
-  RosMaster::instance().stop();
-  std::atomic<bool> cancel = false;
-  Ros1EstimatorOptions options = fresh_options();
-  options.start_timeout_s = 600.0;
-  options.cancel = &cancel;
-  EXPECT_LT(cancelled_after_s(cancel, [&] { return create_ros1_estimator(options).error().code; }),
-            kBusyS);
-}
-
-TEST(Ros1Faults, EndsItsWaitForASubscriberWhenCancelled) {
-  ROS_MASTER_OR_SKIP();
-  std::atomic<bool> cancel = false;
-  Ros1EstimatorOptions options = fresh_options();
-  options.start_timeout_s = 600.0;
-  options.cancel = &cancel;
-  EXPECT_LT(cancelled_after_s(cancel, [&] { return create_ros1_estimator(options).error().code; }),
-            kBusyS);
-}
-
-TEST(Ros1Faults, EndsItsWaitForAReadyNodeWhenCancelled) {
-  ROS_MASTER_OR_SKIP();
-  std::atomic<bool> cancel = false;
-  Ros1EstimatorOptions options = fresh_options();
-  Ros1EstimatorOptions elsewhere = options;
-  elsewhere.pose_topic += "/elsewhere";
-  options.start_timeout_s = 600.0;
-  options.cancel = &cancel;
-  const TestNode node(elsewhere);
-  const auto port = created(options);
-  const VoFrame frame = grey_frames(1).front();
-  EXPECT_LT(cancelled_after_s(cancel, [&] { return port->prepare(frame).error().code; }), kBusyS);
-}
-
-TEST(Ros1Faults, EndsItsWaitForAPoseWhenCancelled) {
-  ROS_MASTER_OR_SKIP();
-  std::atomic<bool> cancel = false;
-  Ros1EstimatorOptions options = fresh_options();
-  options.answer_timeout_s = 600.0;
-  options.cancel = &cancel;
-  const TestNode node(options, {"silent_until=1000"});
-  const auto port = created(options);
-  const VoFrame frame = grey_frames(1).front();
-  ASSERT_TRUE(port->prepare(frame).ok());
-  EXPECT_LT(cancelled_after_s(cancel, [&] { return port->track(frame).error().code; }),
-            1.0 + kBusyS);  // it could still come
 }
 
 TEST(Ros1Faults, EndsInLockstepWhenTheNodeDies) {

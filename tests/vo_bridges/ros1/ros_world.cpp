@@ -126,6 +126,12 @@ Ros1EstimatorOptions fresh_options() {
   return options;
 }
 
+std::unique_ptr<VoPort> created(const Ros1EstimatorOptions& options) {
+  auto port = create_ros1_estimator(options);
+  if (!port) throw std::runtime_error(port.error().message);
+  return std::move(port).value();
+}
+
 std::vector<VoFrame> grey_frames(int count) {
   std::vector<VoFrame> frames(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {

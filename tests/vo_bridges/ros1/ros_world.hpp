@@ -72,6 +72,9 @@ class TestNode {
 /// Small grey frames at 31 Hz, no two alike.
 [[nodiscard]] std::vector<VoFrame> grey_frames(int count);
 
+/// An estimator of these options. @throws std::runtime_error when it is refused
+[[nodiscard]] std::unique_ptr<VoPort> created(const Ros1EstimatorOptions& options);
+
 /// Waits until `done`, at most that long. @return whether it is
 [[nodiscard]] bool wait_for(const std::function<bool()>& done, double most_s = 20.0);
 
