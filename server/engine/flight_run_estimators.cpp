@@ -131,11 +131,10 @@ Status FlightRun::close_estimators() {
       const std::string was = entry["parameters"].value(name, "");
       // An estimator may tell some only once it knows its camera: that is no change.
       if (was.empty() || was == value) continue;
-      const Status logged =
-          recorder_.log(end_ns(),
-                        "warning",
-                        scenario_.estimators[i].name + ": parameter " + name + " is " +
-                            value.get<std::string>() + " at the end, and was " + was);
+      Status logged = recorder_.log(end_ns(),
+                                    "warning",
+                                    scenario_.estimators[i].name + ": parameter " + name + " is " +
+                                        value.get<std::string>() + " at the end, and was " + was);
       if (!logged) return logged;
     }
     entry["parameters_at_end"] = at_end;

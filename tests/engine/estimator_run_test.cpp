@@ -20,7 +20,6 @@ namespace {
 
 using overfly::testing::TemporaryFolder;
 using ::testing::AllOf;
-using ::testing::Contains;
 using ::testing::HasSubstr;
 using testing::SimulatedClock;
 using Json = nlohmann::json;

@@ -14,7 +14,7 @@ inline constexpr int kLcmPort = 7667;
 /// @param url  as parse_lcm_url takes it
 [[nodiscard]] inline std::string lcm_network_of(const std::string& url) {
   const std::string scheme = "udpm://";
-  const std::string network = url.substr(0, url.find('?'));
+  std::string network = url.substr(0, url.find('?'));
   if (!network.starts_with(scheme)) return network;
   const std::size_t colon = network.find(':', scheme.size());
   std::string address = network.substr(scheme.size(), colon - scheme.size());

@@ -73,20 +73,20 @@ class Session {
   std::shared_ptr<ChildOutput> output_ = std::make_shared<ChildOutput>();
   std::unique_ptr<ChildProcess> child_;
   std::optional<Channel> channel_;
-  bool local_ = false;
   int peer_pid_ = 0;
+  bool local_ = false;
+  bool debug_under_way_ = false;
+  bool parameters_overflow_noted_ = false;
   EstimatorHello hello_;
   std::optional<FrameMemory> memory_;
   std::optional<VoFrame> under_way_;  // sent and not answered; without its image
-  bool debug_under_way_ = false;
-  VoEstimate extra_;  // debug image and map points of it
+  VoEstimate extra_;                  // debug image and map points of it
   FigureIntake figures_;
   Clock::time_point sent_at_;
   std::optional<Clock::time_point> cancelled_at_;
   std::optional<Error> ended_;
   mutable std::mutex mutex_;
   std::map<std::string, std::string> parameters_;
-  bool parameters_overflow_noted_ = false;
 };
 
 }  // namespace overfly::process

@@ -183,7 +183,7 @@ Status Session::prepare(const VoFrame& first) {
   if (ready_) return {};
   const Result<std::int64_t> stamp_ns = stamp_of(first);
   if (!stamp_ns) return stamp_ns.error();
-  const Status status = await_readiness(first, *stamp_ns);
+  Status status = await_readiness(first, *stamp_ns);
   ready_ = status.ok();
   return status;
 }

@@ -138,12 +138,13 @@ TEST_F(TrackDataset, TakesACrashForAResultAndARefusalForAnError) {
   EXPECT_EQ(score.outcome, evaluation::Outcome::kCrashed);
   EXPECT_EQ(score.outcome_time_s, 11.5);
   EXPECT_EQ(report_json(dataset_, result, score).at("crash"), "signal 11");
-  const TrackedDataset thrown = tracked([](const VoFrame&, VoEstimate) -> Result<VoEstimate> {
-    throw std::runtime_error("out of corners");
-  });
+  const TrackedDataset thrown =
+      tracked([](const VoFrame&, const VoEstimate&) -> Result<VoEstimate> {
+        throw std::runtime_error("out of corners");
+      });
   EXPECT_EQ(thrown.records.back().crash, "out of corners");
 
-  ScriptedPort refusing([](const VoFrame&, VoEstimate) -> Result<VoEstimate> {
+  ScriptedPort refusing([](const VoFrame&, const VoEstimate&) -> Result<VoEstimate> {
     return Error{ErrorCode::kInvalidArgument, "no colour"};
   });
   const auto refused = track_dataset(dataset_, refusing, {});

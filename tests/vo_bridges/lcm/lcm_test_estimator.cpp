@@ -224,7 +224,7 @@ std::string private_udp_url() {
 }
 
 LcmPair make_udp_pair(LcmBehaviour behaviour,
-                      LcmEstimatorOptions options,
+                      const LcmEstimatorOptions& options,
                       const std::string& far_url) {
   LcmPair pair;
   const auto node = LcmNode::open(with_receive_buffer(parse_lcm_url(far_url).value())).value();

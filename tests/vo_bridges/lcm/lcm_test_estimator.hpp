@@ -86,7 +86,7 @@ std::vector<VoEstimate> fly(VoPort& door, int count);
 /// Each on a node of its own, under the channel prefix of the options.
 /// @param far_url  of the estimator; with its own receive buffer, say
 [[nodiscard]] LcmPair make_udp_pair(LcmBehaviour behaviour,
-                                    LcmEstimatorOptions options,
+                                    const LcmEstimatorOptions& options,
                                     const std::string& far_url);
 
 }  // namespace overfly::testing

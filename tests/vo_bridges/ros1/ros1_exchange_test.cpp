@@ -262,6 +262,7 @@ TEST(Ros1Exchange, IsInitialisingUntilTheFirstPoseAndLostWithoutOne) {
   const auto port = created(options);
   const std::vector<VoFrame> frames = grey_frames(9);
   std::vector<TrackingState> states;
+  states.reserve(frames.size());
   for (const VoFrame& frame : frames) states.push_back(tracked(*port, frame).sample.state);
   for (int i = 0; i < 4; ++i) EXPECT_EQ(states[i], TrackingState::kInitialising) << i;
   EXPECT_EQ(states.back(), TrackingState::kLost) << "the ninth image has no pose";

@@ -16,7 +16,6 @@ namespace {
 
 using namespace std::chrono_literals;
 using ::testing::AllOf;
-using ::testing::Contains;
 using ::testing::HasSubstr;
 
 void expect_error(const Result<std::unique_ptr<VoPort>>& port,

@@ -42,6 +42,7 @@ int free_port() {
 
 Child::Child(const std::vector<std::string>& command, const std::filesystem::path& output) {
   std::vector<char*> arguments;
+  arguments.reserve(command.size() + 1);
   for (const std::string& argument : command) {
     arguments.push_back(const_cast<char*>(argument.c_str()));
   }
@@ -66,7 +67,8 @@ void Child::kill() {
 }
 
 bool has_rosmaster() {
-  std::stringstream folders(std::getenv("PATH"));
+  const char* const path = std::getenv("PATH");
+  std::stringstream folders(path == nullptr ? "" : path);
   for (std::string folder; std::getline(folders, folder, ':');) {
     if (access((folder + "/rosmaster").c_str(), X_OK) == 0) return true;
   }
