@@ -70,6 +70,7 @@ describe('a flight with two cameras and faults', { skip, timeout: 600_000 }, () 
       () => document.querySelector('[data-panel=camera]').dataset.faults === 'blackout',
     );
     assert.ok((await dashboard.picture('camera')).mean < 2, 'a blackout is black');
+    assert.deepEqual(await dashboard.cutValues(), []);
     await dashboard.screenshot('blackout');
     await dashboard.seekAt('.track .bar', 3.5 / kFlight_s);
     await dashboard.until(

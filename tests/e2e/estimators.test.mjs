@@ -90,6 +90,15 @@ describe('a flight with estimators behind doors', { skip, timeout: 600_000 }, ()
     await dashboard.screenshot('estimators_1280x800');
   });
 
+  step('shows every value beside the plots whole', async () => {
+    await dashboard.page.locator('[data-panel=plots] .tab[data-group=pose]').click();
+    await dashboard.seekAt('.track .bar', 0.9);
+    await dashboard.page.locator('[data-axis=x_m] .readout').first().waitFor();
+    assert.equal(await dashboard.page.locator('[data-axis=x_m] .readout').count(), 4);
+    assert.deepEqual(await dashboard.cutValues(), []);
+    await dashboard.screenshot('pose_of_three_1280x800');
+  });
+
   step('refuses a command that no scenario file has', async () => {
     const answer = await fetch(`${stage.server.url}/api/v1/runs`, {
       method: 'POST',

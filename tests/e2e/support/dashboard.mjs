@@ -70,6 +70,21 @@ export class Dashboard {
     );
   }
 
+  /** Values beside the plots' titles that are not wholly to be seen. */
+  cutValues() {
+    return this.page.evaluate(() =>
+      [...document.querySelectorAll('.plot-title .readout')]
+        .filter((readout) => {
+          const title = readout.parentElement.getBoundingClientRect();
+          const text = document.createRange();
+          text.selectNodeContents(readout);
+          const { left, right, bottom } = text.getBoundingClientRect();
+          return left < title.left || right > title.right || bottom > title.bottom;
+        })
+        .map((readout) => readout.textContent),
+    );
+  }
+
   /** Frame number that a panel shows; null when it shows none. */
   frame(panel) {
     return this.page.evaluate((name) => {

@@ -43,16 +43,22 @@ export abstract class PicturePanel implements View {
   protected abstract emptyText(state: State): string;
 }
 
-/** One tab for each estimator where there are several. */
+/** What one of the estimators draws. */
 export class DebugPanel extends PicturePanel {
+  private readonly chooser = h('select', { id: 'debug-of', 'aria-label': 'Estimator' });
   private selected: string | null = null;
 
   constructor(context: Context) {
     super(context, 'debug', 'Estimator');
+    this.panel.tools.append(this.chooser);
+    this.chooser.addEventListener('change', () => {
+      this.selected = this.chooser.value;
+      context.store.change('pictures');
+    });
   }
 
   override update(changed: ReadonlySet<Topic>): void {
-    if (changed.has('run')) this.updateTabs();
+    if (changed.has('run')) this.updateChooser();
     super.update(changed);
   }
 
@@ -76,26 +82,14 @@ export class DebugPanel extends PicturePanel {
       : (names[0] ?? null);
   }
 
-  private updateTabs(): void {
+  private updateChooser(): void {
     const { state } = this.context.store;
     const names = state.run?.estimators ?? [];
-    const current = this.current(state);
-    rebuild(this.panel.tools, `${names.join('\n')}\n\n${String(current)}`, () =>
-      names.map((name) =>
-        h(
-          'button',
-          {
-            class: 'tab',
-            'aria-pressed': name === current ? 'true' : 'false',
-            onclick: () => {
-              this.selected = name;
-              this.context.store.change('run', 'pictures');
-            },
-          },
-          name,
-        ),
-      ),
+    rebuild(this.chooser, JSON.stringify(names), () =>
+      names.map((name) => h('option', { value: name }, name)),
     );
+    this.chooser.hidden = names.length === 0;
+    this.chooser.value = this.current(state) ?? '';
   }
 }
 

@@ -40,6 +40,12 @@ const kLimitColour = '#eab766';
 
 export type Curve = ArrayLike<number | null>;
 
+/** Three values begin at the edge, more take a row of their own: none is cut. */
+function crowding(curves: number): string {
+  if (curves <= 2) return '';
+  return curves === 3 ? ' crowded' : ' two-rows';
+}
+
 export class Plot {
   readonly root: HTMLElement;
   private readonly plot: uPlot;
@@ -56,10 +62,10 @@ export class Plot {
     );
     const title = h(
       'div',
-      { class: 'plot-title' },
+      { class: `plot-title${crowding(colours.length)}` },
       h('b', {}, options.label),
       h('span', { class: 'unit' }, options.unit),
-      ...this.readouts,
+      h('span', { class: 'readouts' }, ...this.readouts),
     );
     this.root = h('div', { class: 'plot', 'data-axis': options.key }, title, this.area);
     this.plot = new uPlot(this.uplotOptions(colours), [[], ...colours.map(() => [])], this.area);
