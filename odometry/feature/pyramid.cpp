@@ -14,8 +14,10 @@ constexpr int kFullShare = 192;     ///< of 255: share of such pixels that makes
 constexpr int kLeastAreaCells = 3;  ///< side of the smallest area
 /// Averages noise to a fifteenth; ground in coarse, blurred pictures still has its corners there.
 constexpr int kQuietLevel = 3;
-constexpr int kQuietThreshold = 4;        ///< of FAST [grey levels]
-constexpr double kQuietCorners = 1.5e-3;  ///< least number, per pixel of the level
+constexpr int kQuietThreshold = 4;  ///< of FAST [grey levels]
+/// Least number per pixel of the level. Measured: 0.9e-3 and fewer where 2 % of the light is left,
+/// 9e-3 and more over ground that a photograph of 0.8 m per pixel shows blurred from 50 m.
+constexpr double kQuietCorners = 1.5e-3;
 
 }  // namespace
 

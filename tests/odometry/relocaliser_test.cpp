@@ -25,9 +25,8 @@ class Relocaliser : public ::testing::Test {
     seen_ = i;
   }
 
-  [[nodiscard]] Relocalisation found(const FrameImage& frame,
-                                     const RelocaliserOptions& options = {}) {
-    return relocalise(scene_.camera(), options, frame.pyramid.level(0), orb_, map_);
+  [[nodiscard]] Relocalisation found(const FrameImage& frame) {
+    return relocalise(scene_.camera(), {}, frame.pyramid.level(0), orb_, map_);
   }
 
   LevelScene scene_;
@@ -55,7 +54,9 @@ TEST_F(Relocaliser, FindsNothingOverOtherGround) {
   const SyntheticGround other = SyntheticGround::procedural(9, 512, 1.0, 5.0);
   const auto image = std::make_shared<const Image>(
       other.render(scene_.camera(), scene_.T_world_camera()[seen_], 1.0, 1));
-  const Relocalisation result = found({0, 0, build_pyramid(image)});
+  const FrameImage frame{0, 0, build_pyramid(image)};
+  EXPECT_TRUE(shows_something(frame.pyramid));
+  const Relocalisation result = found(frame);
   EXPECT_FALSE(result.T_camera_vo);
 }
 
