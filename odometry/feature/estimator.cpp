@@ -42,6 +42,8 @@ InitialiserOptions initialiser_options(const FeatureParameters& parameters) {
   options.planar_start = parameters.planar_start;
   options.coarsest_patch_level = coarsest_patch_level(parameters);
   options.min_tracks = std::min(options.min_tracks, parameters.features / 2);
+  options.cells = tracked_points(parameters);
+  options.min_cells = std::max(TrackerOptions{}.min_inliers, options.min_tracks / 2);
   return options;
 }
 

@@ -131,10 +131,7 @@ bool Initialiser::follow(const FrameImage& frame) {
     alive.push_back(track);
     origin.push_back(origin_[i]);
   }
-  if (static_cast<int>(alive.size()) < options_.min_tracks ||
-      2 * alive.size() < corner_count_ / 2) {
-    return false;
-  }
+  if (!enough(alive)) return false;
   const auto fit = fit_homography(from, to, kPlaneThresholdPx, options_.seed);
   if (!fit) return false;
   H_step_ = fit->H_second_first * H_now_first_.inverse();
@@ -144,6 +141,17 @@ bool Initialiser::follow(const FrameImage& frame) {
   tracks_ = std::move(alive);
   origin_ = std::move(origin);
   return true;
+}
+
+/// Whether so many are left, so widely spread, that they make a map worth following.
+bool Initialiser::enough(const std::vector<Track>& tracks) const {
+  if (static_cast<int>(tracks.size()) < options_.min_tracks ||
+      2 * tracks.size() < corner_count_ / 2) {
+    return false;
+  }
+  CellGrid grid = CellGrid::over(camera_.width_px, camera_.height_px, options_.cells);
+  for (const Track& track : tracks) grid.marked[grid.index(track.pixel)] = 1;
+  return std::count(grid.marked.begin(), grid.marked.end(), 1) >= options_.min_cells;
 }
 
 void Initialiser::remember(const FrameImage& frame) {

@@ -35,6 +35,8 @@ struct InitialiserOptions {
   int snapshot_every = 6;        ///< frames between the keyframes of the first map, at first
   int max_snapshots = 32;  ///< when they are full, every second goes, and they come half as often
   int min_tracks = 120;
+  int cells = 1000;    ///< of the image; tracking follows one point in each
+  int min_cells = 60;  ///< with tracks: a map of fewer is lost as soon as it is made
   std::uint64_t seed = 1;
 };
 
@@ -66,6 +68,7 @@ class Initialiser {
   void start(const FrameImage& frame, OrbExtractor& orb);
   bool follow(const FrameImage& frame);
   bool follow_coarsely(const FrameImage& frame, Eigen::Matrix3d& H) const;
+  [[nodiscard]] bool enough(const std::vector<Track>& tracks) const;
   void remember(const FrameImage& frame);
   [[nodiscard]] double median_motion_px() const;
   bool reconstruct(const FrameImage& frame, OrbExtractor& orb, Map& map);

@@ -52,5 +52,26 @@ TEST(Initialiser, FollowsNothingInBurntAreas) {
   EXPECT_EQ(burnt_tracks(), 0);
 }
 
+TEST(Initialiser, WaitsForTracksInEnoughCells) {
+  const LevelScene scene(1.6);
+  const auto starts = [&](int min_cells) {
+    OrbExtractor orb(FeatureParameters{});
+    InitialiserOptions options;
+    options.min_cells = min_cells;
+    Initialiser initialiser(scene.camera(), options);
+    Map map;
+    for (std::size_t i = 0; i < scene.T_world_camera().size(); ++i) {
+      FrameImage frame = scene.frame(i);
+      frame.pyramid.burnt = cv::Mat::zeros(240 / kBurntCellPx, 320 / kBurntCellPx, CV_8U);
+      frame.pyramid.burnt.colRange(0, 240 / kBurntCellPx).setTo(255);
+      if (initialiser.process(frame, orb, map)) return true;
+    }
+    return false;
+  };
+  // The quarter that is not burnt has about 250 of the 1000 cells.
+  EXPECT_TRUE(starts(60));
+  EXPECT_FALSE(starts(270));
+}
+
 }  // namespace
 }  // namespace overfly::odometry
