@@ -57,8 +57,9 @@ export class CameraPanel extends PicturePanel {
     if (shown !== undefined) this.chooser.value = shown.name;
     const model = shown?.distortion?.model ?? 'none';
     const size = shown === undefined ? '' : `${shown.width_px}×${shown.height_px} px`;
-    setText(this.lens, shown === undefined || model === 'none' ? size : `${size} · ${model}`);
-    this.lens.title = model === 'none' ? 'No lens distortion' : `Lens distortion: ${model}`;
+    setText(this.lens, shown === undefined || model === 'none' ? size : `${model} · ${size}`);
+    // A narrow panel shows the beginning: the lens, where there is one.
+    this.lens.title = model === 'none' ? `${size}, no lens` : `${size}, lens: ${model}`;
   }
 
   private updateInfo(): void {
