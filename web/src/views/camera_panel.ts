@@ -59,7 +59,7 @@ export class CameraPanel extends PicturePanel {
     const size = shown === undefined ? '' : `${shown.width_px}×${shown.height_px} px`;
     setText(this.lens, shown === undefined || model === 'none' ? size : `${model} · ${size}`);
     // A narrow panel shows the beginning: the lens, where there is one.
-    this.lens.title = model === 'none' ? `${size}, no lens` : `${size}, lens: ${model}`;
+    this.lens.title = model === 'none' ? `${size}, no distortion` : `${size}, distortion: ${model}`;
   }
 
   private updateInfo(): void {
