@@ -35,8 +35,10 @@ struct InitialiserOptions {
   int snapshot_every = 6;        ///< frames between the keyframes of the first map, at first
   int max_snapshots = 32;  ///< when they are full, every second goes, and they come half as often
   int min_tracks = 120;
-  int cells = 1000;    ///< of the image; tracking follows one point in each
-  int min_cells = 60;  ///< with tracks: a map of fewer is lost as soon as it is made
+  int cells = 1000;  ///< of the image; tracking follows one point in each
+  /// With tracks. Half as many again as the points that tracking asks for: a map that has just
+  /// these is lost with the next frame.
+  int min_cells = 60;
   std::uint64_t seed = 1;
 };
 

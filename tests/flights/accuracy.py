@@ -97,17 +97,21 @@ def command_of(args, cell, folder):
     return command
 
 
-def fly(args, cell, mode, target):
-    folder = args.results / f"run_{target.stem}"
+def fly_once(target, command_into, known):
+    """Flies `command_into(run folder)` and leaves what matters of its run in the file `target`.
+
+    @param known  goes into the file too
+    """
+    folder = target.parent / f"run_{target.stem}"
     shutil.rmtree(folder, ignore_errors=True)
     begin = time.monotonic()
-    done = subprocess.run(command_of(args, cell, folder), stdout=subprocess.PIPE,
-                          stderr=subprocess.STDOUT, text=True)
+    done = subprocess.run(command_into(folder), stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                          text=True)
     if done.returncode != 0:
         sys.exit(f"{target.stem}: the program ended with {done.returncode}\n{done.stdout[-2000:]}")
     metrics = json.loads((folder / "metrics.json").read_text())
     manifest = json.loads((folder / "manifest.json").read_text())
-    result = {**cell, "mode": mode, "wall_s": round(time.monotonic() - begin, 1),
+    result = {**known, "wall_s": round(time.monotonic() - begin, 1),
               "commit": manifest["commit"], "late_frames": metrics["camera"]["late_frames"],
               "estimator": next(iter(metrics["estimators"].values()))}
     written = target.with_suffix(".part")
@@ -115,6 +119,10 @@ def fly(args, cell, mode, target):
     written.rename(target)
     shutil.rmtree(folder)
     return result
+
+
+def fly(args, cell, mode, target):
+    return fly_once(target, lambda folder: command_of(args, cell, folder), {**cell, "mode": mode})
 
 
 def summary(result):
@@ -168,18 +176,24 @@ def table_lines(results):
             yield f"Flown by commit {', '.join(commits)}.\n"
             paced = not key[0].startswith("lockstep")
             yield ("| deg/s | height m | seeds | completed | coverage % | start s | Sim3 m "
-                   "| `init_scale` m | rotation deg | bar |" + paced * " dropped | late |")
-            yield "|---|---|---|---|---|---|---|---|---|---|" + paced * "---|---|"
+                   "| `init_scale` m | rotation deg | bar |" + paced * (" lockstep Sim3 m | lockstep `init_scale` m "
+                                                                "| dropped | late |"))
+            yield "|---|---|---|---|---|---|---|---|---|---|" + paced * "---|---|---|---|"
         completed = sum(row["outcome"] == "COMPLETED" for row in rows)
         others = sorted({row["outcome"] for row in rows} - {"COMPLETED"})
         verdicts = [within(result, row) for result, row in zip(group, rows)]
         met = "" if verdicts[0] is None else f"{sum(verdicts)}/{len(verdicts)}"
-        column = lambda field, digits: text_of([row[field] for row in rows], digits)
+        in_lockstep = [summary(result) for result in groups.get(("lockstep", *key[1:]), [])]
+
+        def column(field, digits, of=rows):
+            return text_of([row[field] for row in of], digits)
+
         lowest = min(row["coverage"] for row in rows)
         yield (f"| {key[3]} | {key[4]} | {len(rows)} | {completed} {' '.join(others)} "
                f"| {lowest:.1f} | {column('start', 2)} | {column('sim3', 3)} "
                f"| {column('init', 3)} | {column('rotation', 3)} | {met} |"
-               + paced * f" {column('dropped', 0)} | {column('late', 0)} |")
+               + paced * (f" {column('sim3', 3, in_lockstep)} | {column('init', 3, in_lockstep)} "
+                          f"| {column('dropped', 0)} | {column('late', 0)} |"))
 
 
 HEADER = """# Accuracy of the native estimator, cell by cell

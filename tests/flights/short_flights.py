@@ -13,14 +13,13 @@ RESULTS_FOLDER/NAME.json; what is there is not flown again.
 """
 
 import argparse
+import itertools
 import json
 import pathlib
-import shutil
-import subprocess
 import sys
 from dataclasses import dataclass, field, replace
 
-from accuracy import NOISE, ROOT, SCENARIOS
+from accuracy import NOISE, ROOT, SCENARIOS, fly_once
 
 
 @dataclass(frozen=True)
@@ -59,20 +58,12 @@ class Flight:
 def fly(binary, results, flight):
     """The estimator's part of the metrics, and the commit that flew it."""
     target = results / f"{flight.name}.json"
-    if not target.exists():
+    if target.exists():
+        result = json.loads(target.read_text())
+    else:
         print(f"{flight.name} ...", file=sys.stderr, flush=True)
-        folder = results / f"run_{flight.name}"
-        shutil.rmtree(folder, ignore_errors=True)
-        done = subprocess.run(flight.command(binary, folder), stdout=subprocess.PIPE,
-                              stderr=subprocess.STDOUT, text=True)
-        if done.returncode != 0:
-            sys.exit(f"{flight.name}: the program ended with {done.returncode}\n{done.stdout[-2000:]}")
-        metrics = json.loads((folder / "metrics.json").read_text())
-        manifest = json.loads((folder / "manifest.json").read_text())
-        target.write_text(json.dumps({**metrics["estimators"]["feature"],
-                                      "commit": manifest["commit"]}))
-        shutil.rmtree(folder)
-    return json.loads(target.read_text())
+        result = fly_once(target, lambda folder: flight.command(binary, folder), {})
+    return result["estimator"], result["commit"]
 
 
 def metres(estimator, alignment):
@@ -110,11 +101,11 @@ SWITCHES = [
     *(("rotation_compensation", Flight(f"turn_6hz_{seed}", "mcmillan", seed=seed, **SLOW),
        f"65 deg/s, 6 Hz, seed {seed}") for seed in (201, 202, 203)),
     *(("rotation_compensation", Flight(f"turn_6hz_world{seed}", "builtin", world_seed=seed,
-                                              **SLOW),
+                                       **SLOW),
        f"65 deg/s, 6 Hz, world {seed}") for seed in (1, 2)),
     ("low_texture", Flight("low", "mcmillan", height_m=50), "45 deg/s, 50 m"),
     ("reject_saturated", Flight("burst", "builtin", world_seed=2, straight=True,
-                                       faults=burst(5, 2, 4, 300)),
+                                faults=burst(5, 2, 4, 300)),
      "straight, world 2, burst of 300 px from 5 to 7 s"),
     *(("reject_saturated",
        Flight(f"burst_{radius_px}px", "builtin", world_seed=2, duration_s=10,
@@ -151,14 +142,12 @@ def height(fly_one):
 
 def darkness(fly_one):
     yield ["world", "flight", "dark from 4 s on for", *RESULT_COLUMNS]
-    for world in ("mcmillan", "builtin"):
-        for straight in (True, False):
-            for lasts_s in (1, 2, 4):
-                fault = {"kind": "blackout", "at_s": 4, "duration_s": lasts_s}
-                flight = Flight(f"dark_{world}_{'straight' if straight else 'turn'}_{lasts_s}s", world,
-                                straight=straight, faults=(fault,))
-                yield [name_of(world), "straight on" if straight else "first turn and reversals",
-                       f"{lasts_s} s", *cells_of(fly_one(flight))]
+    for world, straight, lasts_s in itertools.product(("mcmillan", "builtin"), (True, False), (1, 2, 4)):
+        fault = {"kind": "blackout", "at_s": 4, "duration_s": lasts_s}
+        flight = Flight(f"dark_{world}_{'straight' if straight else 'turn'}_{lasts_s}s", world,
+                        straight=straight, faults=(fault,))
+        yield [name_of(world), "straight on" if straight else "first turn and reversals",
+               f"{lasts_s} s", *cells_of(fly_one(flight))]
 
 
 MOUNTS = [("pitched up by 20 deg", {"mount.pitch_deg": 20}),
@@ -189,8 +178,8 @@ def main():
     commits = set()
 
     def fly_one(flight):
-        estimator = fly(args.binary, args.results, flight)
-        commits.add(estimator["commit"])
+        estimator, commit = fly(args.binary, args.results, flight)
+        commits.add(commit)
         return estimator
 
     for name in args.tables:

@@ -3,6 +3,7 @@ import 'uplot/dist/uPlot.min.css';
 import './styles/base.css';
 import './styles/layout.css';
 import './styles/panels.css';
+import './styles/plots.css';
 import './styles/side.css';
 import './styles/timeline.css';
 import './styles/estimators.css';

@@ -182,6 +182,14 @@ export class Dashboard {
     }, panel);
   }
 
+  async untilPictureDiffers(panel, digest) {
+    const end_ms = Date.now() + kPatience_ms;
+    while ((await this.picture(panel)).digest === digest) {
+      if (Date.now() > end_ms) throw new Error(`the picture of ${panel} stays the same`);
+      await this.page.waitForTimeout(50);
+    }
+  }
+
   /** Texts of the error table: row key -> one text an estimator. */
   errors() {
     return this.page.evaluate(() =>

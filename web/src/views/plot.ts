@@ -40,10 +40,10 @@ const kLimitColour = '#eab766';
 
 export type Curve = ArrayLike<number | null>;
 
-/** Three values begin at the edge, more take a row of their own: none is cut. */
+/** Three values begin at the edge, more take rows of their own, as many as they need: none is cut. */
 function crowding(curves: number): string {
   if (curves <= 2) return '';
-  return curves === 3 ? ' crowded' : ' two-rows';
+  return curves === 3 ? ' crowded' : ' own-rows';
 }
 
 export class Plot {
