@@ -3,6 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "core/file_text.hpp"
+#include "core/outside_json.hpp"
 #include "core/pose.hpp"
 #include "terrain/geoid.hpp"
 #include "terrain/world.hpp"
@@ -13,6 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 constexpr int kFormatVersion = 1;
+constexpr std::uint64_t kManifestMaxBytes = std::uint64_t{16} << 20U;
 
 std::string shown(const Json& value) {
   std::string text = value.dump();
@@ -240,20 +243,12 @@ Result<WorldSpec> read_world_manifest(const fs::path& manifest) {
   if (!fs::is_regular_file(manifest, ignored)) {
     return Error{ErrorCode::kNotFound, manifest.string() + ": no such world manifest"};
   }
-  std::ifstream in(manifest, std::ios::binary);
-  const Json json = Json::parse(in, nullptr, false);
-  if (json.is_discarded()) {
-    std::ifstream again(manifest, std::ios::binary);
-    std::string reason = "is not JSON";
-    try {
-      const Json never = Json::parse(again);
-    } catch (const Json::exception& problem) {
-      reason = std::string("is not JSON: ") + problem.what();
-    }
-    return Error{ErrorCode::kUnreadable, manifest.string() + ": " + reason};
-  }
+  const Result<std::string> text = read_file_text(manifest, kManifestMaxBytes);
+  if (!text) return text.error();
+  const Result<Json> json = json_from_outside<Json>(*text, manifest.string());
+  if (!json) return json.error();
   Reader reader{manifest.string(), manifest.parent_path(), std::nullopt};
-  WorldSpec spec = reader.world(json);
+  WorldSpec spec = reader.world(*json);
   if (reader.error) return *reader.error;
   spec.cache_folder = cache_folder_of(manifest);
   return spec;

@@ -1,7 +1,9 @@
 #include "server/engine/scenario.hpp"
 
+#include <algorithm>
 #include <utility>
 
+#include "core/outside_json.hpp"
 #include "server/engine/json_schema.hpp"
 #include "server/engine/scenario_document.hpp"
 #include "server/engine/scenario_override.hpp"
@@ -39,6 +41,14 @@ void put_name(Json& document, const std::string& name) {
   if (!document.contains("name")) document["name"] = name;
 }
 
+/// Goes no deeper than the limit itself.
+bool is_deeper_than(const Json& value, std::size_t limit) {
+  if (!value.is_structured()) return false;
+  return limit == 0 || std::any_of(value.begin(), value.end(), [&](const Json& child) {
+           return is_deeper_than(child, limit - 1);
+         });
+}
+
 }  // namespace
 
 const char* to_string(Pacing pacing) {
@@ -58,6 +68,11 @@ Result<Scenario> resolve_scenario(Json document,
                                   const fs::path& base) {
   for (const Override& change : overrides) {
     if (Status status = apply_override(change, document); !status) return status.error();
+  }
+  // A value within its limit at a path within its limit may lie deeper than both.
+  if (is_deeper_than(document, kMaxJsonDepth)) {
+    return Error{ErrorCode::kInvalidArgument,
+                 "the scenario is nested more than " + std::to_string(kMaxJsonDepth) + " deep"};
   }
   std::string faults;
   for (const auto& [path, text] : schema_faults(document)) {

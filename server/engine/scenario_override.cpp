@@ -4,7 +4,10 @@
 #include <charconv>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "core/outside_json.hpp"
 
 namespace overfly::engine {
 namespace {
@@ -59,12 +62,21 @@ Result<Override> parse_override(const std::string& text) {
   Override change;
   change.path = text.substr(0, equals);
   const std::string value = text.substr(equals + 1);
-  change.value = Json::parse(value, nullptr, false);
-  if (change.value.is_discarded()) change.value = value;
+  if (Status status = check_json_depth(value, "--set " + change.path); !status) {
+    return Error{ErrorCode::kInvalidArgument, status.error().message};
+  }
+  Result<Json> json = json_from_outside<Json>(value, "");
+  change.value = json ? std::move(*json) : Json(value);
   return change;
 }
 
 Status apply_override(const Override& change, Json& document) {
+  const auto dots = std::count(change.path.begin(), change.path.end(), '.');
+  if (static_cast<std::size_t>(dots) >= kMaxJsonDepth) {
+    return bad_path(change.path.substr(0, 60) + "...",
+                    "has " + std::to_string(dots + 1) + " parts: must have at most " +
+                        std::to_string(kMaxJsonDepth));
+  }
   const std::vector<std::string> parts = split(change.path);
   if (!document.is_object()) return bad_path(change.path, "the document is not an object");
   make_room_for_kind(document, parts);

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/outside_json.hpp"
+
 namespace overfly::engine {
 namespace {
 
@@ -47,20 +49,6 @@ Status write_bytes(const fs::path& file, const char* bytes, std::size_t size) {
   return {};
 }
 
-/// Line and column, both from 1, of a byte offset.
-std::string position_of(const std::string& text, std::size_t byte) {
-  std::size_t line = 1;
-  std::size_t column = 1;
-  for (std::size_t i = 0; i + 1 < byte && i < text.size(); ++i) {
-    ++column;
-    if (text[i] == '\n') {
-      ++line;
-      column = 1;
-    }
-  }
-  return "line " + std::to_string(line) + ", column " + std::to_string(column);
-}
-
 }  // namespace
 
 Status write_whole(const fs::path& file, std::span<const std::uint8_t> bytes) {
@@ -88,19 +76,8 @@ Result<std::string> read_text(const fs::path& file) {
   return text;
 }
 
-Result<nlohmann::json> parse_json(const std::string& text, const std::string& origin) {
-  try {
-    return nlohmann::json::parse(text);
-  } catch (const nlohmann::json::parse_error& error) {
-    std::string reason = error.what();
-    const std::size_t cut = reason.find("syntax error");
-    if (cut != std::string::npos) reason = reason.substr(cut);
-    return Error{ErrorCode::kUnreadable,
-                 origin + ", " + position_of(text, error.byte) + ": " + reason};
-  } catch (const nlohmann::json::exception& error) {
-    // A number beyond any double, for one.
-    return Error{ErrorCode::kUnreadable, origin + ": " + error.what()};
-  }
+Result<nlohmann::json> parse_json(std::string_view text, const std::string& origin) {
+  return json_from_outside<nlohmann::json>(text, origin);
 }
 
 Result<nlohmann::json> read_json(const fs::path& file) {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/result.hpp"
@@ -22,10 +23,10 @@ namespace overfly::engine {
 
 /// Errors: kNotFound, kIo.
 [[nodiscard]] Result<std::string> read_text(const std::filesystem::path& file);
-/// Errors: kNotFound; kUnreadable naming file, line and column.
+/// Errors: kNotFound; kUnreadable naming file, line and column, or the limit of its depth.
 [[nodiscard]] Result<nlohmann::json> read_json(const std::filesystem::path& file);
-/// The same for text that was read from `origin`.
-[[nodiscard]] Result<nlohmann::json> parse_json(const std::string& text, const std::string& origin);
+/// The same for text that was read from `origin`, as json_from_outside.
+[[nodiscard]] Result<nlohmann::json> parse_json(std::string_view text, const std::string& origin);
 
 /// A file of one JSON document a line. Each line reaches the system as one write, so a process
 /// that is killed leaves at most the last line cut short.

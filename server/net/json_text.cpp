@@ -3,6 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/outside_json.hpp"
+
 namespace overfly::net {
 namespace {
 
@@ -23,9 +25,11 @@ std::string to_text(const nlohmann::json& json) {
 }
 
 Result<nlohmann::json> parse_object(const std::string& text, const std::string& what) {
-  nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
-  if (json.is_discarded()) return Error{ErrorCode::kInvalidArgument, what + " is not valid JSON"};
-  if (!json.is_object()) return Error{ErrorCode::kInvalidArgument, what + " must be a JSON object"};
+  Result<nlohmann::json> json = json_from_outside<nlohmann::json>(text, what);
+  if (!json) return Error{ErrorCode::kInvalidArgument, json.error().message};
+  if (!json->is_object()) {
+    return Error{ErrorCode::kInvalidArgument, what + " must be a JSON object"};
+  }
   return json;
 }
 

@@ -4,6 +4,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "core/file_text.hpp"
+#include "core/outside_json.hpp"
 #include "terrain/cache/chunk_file.hpp"
 #include "terrain/file_digest.hpp"
 
@@ -53,14 +55,17 @@ std::string check_of(const Json& json) {
 
 /// Empty if the file is not whole or of another version.
 std::optional<CacheHeader> read_header(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  Json json = Json::parse(in, nullptr, false);
-  if (json.is_discarded()) return std::nullopt;
+  // Large worlds have one entry for each of tens of thousands of chunks.
+  constexpr std::uint64_t kMaxBytes = std::uint64_t{64} << 20U;
+  const Result<std::string> text = read_file_text(file, kMaxBytes);
+  if (!text) return std::nullopt;
+  Result<Json> json = json_from_outside<Json>(*text, file.string());
+  if (!json) return std::nullopt;
   try {
-    const auto check = json.at("check").get<std::string>();
-    json.erase("check");
-    if (check != check_of(json)) return std::nullopt;
-    return header_from(json);
+    const auto check = json->at("check").get<std::string>();
+    json->erase("check");
+    if (check != check_of(*json)) return std::nullopt;
+    return header_from(*json);
   } catch (const Json::exception&) {
     return std::nullopt;
   }

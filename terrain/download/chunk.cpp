@@ -7,6 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "core/outside_json.hpp"
 #include "terrain/map_plane.hpp"
 
 namespace overfly::terrain::download {
@@ -161,9 +162,9 @@ Verdict judge_raster(const ChunkLayer& layer, const Chunk& chunk, const char* na
 
 std::string words_of(const HttpReply& reply) {
   const std::string text(reply.body.begin(), reply.body.end());
-  const auto json = nlohmann::json::parse(text, nullptr, false);
-  if (json.is_object() && json.contains("error")) {
-    const auto& error = json["error"];
+  const auto json = json_from_outside<nlohmann::json>(text, "the answer");
+  if (json && json->is_object() && json->contains("error")) {
+    const auto& error = json->at("error");
     if (!error.is_object()) return error.dump();
     std::string words = error.contains("code") ? "code " + error["code"].dump() : "error";
     for (const char* field : {"message", "details"}) {

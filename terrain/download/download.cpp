@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "core/file_text.hpp"
+#include "core/outside_json.hpp"
 #include "core/pose.hpp"
 #include "terrain/download/layers.hpp"
 #include "terrain/download/merge.hpp"
@@ -148,9 +150,11 @@ Status claim_folder(const fs::path& folder, const nlohmann::json& wanted) {
   if (failed) return Error{ErrorCode::kIo, folder.string() + ": " + failed.message()};
   const fs::path record = folder / "download.json";
   if (fs::exists(record, failed)) {
-    std::ifstream in(record);
-    const auto found = nlohmann::json::parse(in, nullptr, false);
-    if (found == wanted) return {};
+    constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 20U;
+    const auto text = read_file_text(record, kMaxBytes);
+    const auto found = text ? json_from_outside<nlohmann::json>(*text, record.string())
+                            : Result<nlohmann::json>(text.error());
+    if (found && *found == wanted) return {};
     return Error{ErrorCode::kConflict,
                  record.string() +
                      ": holds a download with other options; give another folder, or remove it"};

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "core/outside_json.hpp"
 #include "core/pose.hpp"
 #include "terrain/download/layers.hpp"
 #include "terrain/map_plane.hpp"
@@ -95,10 +96,12 @@ Result<ImageServiceLimits> ask_image_service(const std::string& service, PoliteF
     if (reply.status != 200) {
       return {Verdict::Kind::kFailed, "HTTP status " + std::to_string(reply.status)};
     }
-    answer = nlohmann::json::parse(reply.body.begin(), reply.body.end(), nullptr, false);
-    if (!answer.is_object() || answer.contains("error")) {
+    const std::string text(reply.body.begin(), reply.body.end());
+    auto json = json_from_outside<nlohmann::json>(text, url);
+    if (!json || !json->is_object() || json->contains("error")) {
       return {Verdict::Kind::kTryAgain, "the service answers: " + words_of(reply)};
     }
+    answer = std::move(*json);
     return {};
   });
   if (!asked) return asked.error();

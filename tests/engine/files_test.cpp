@@ -86,6 +86,16 @@ TEST(LineFile, IsReadBackWithoutTheLineThatAKillCutShort) {
   EXPECT_THAT(read_lines(file).error().message, HasSubstr("row 2"));
 }
 
+TEST(WholeFile, RefusesDeepJson) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "a.json";
+  const std::string deep = std::string(100'000, '[') + std::string(100'000, ']');
+  overfly::testing::write_text(file, deep);
+  EXPECT_THAT(read_json(file).error().message, HasSubstr("a.json: is nested more than 64 deep"));
+  overfly::testing::write_text(file, "{}\n" + deep + "\n");
+  EXPECT_THAT(read_lines(file).error().message, HasSubstr("row 2: is nested more than 64 deep"));
+}
+
 TEST(RunRows, ReadBackExactly) {
   FrameRecord record;
   record.row.frame = 7;

@@ -61,6 +61,22 @@ class RunManagerTest : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
+TEST_F(RunManagerTest, AnswersAboutAFolderOfDeepJson) {
+  const auto runs = manager();
+  const std::string deep = std::string(100'000, '[') + std::string(100'000, ']');
+  const RunInfo done = wait_for_end(*runs, runs->start("small", perfect()).value().id);
+  const fs::path folder = runs->folder(done.id).value();
+  overfly::testing::write_text(metrics_file(folder), deep);
+  const auto timeline = RunTimeline::open(folder);
+  ASSERT_FALSE(timeline.ok());
+  EXPECT_THAT(timeline.error().message, HasSubstr("metrics.json: is nested more than 64 deep"));
+  overfly::testing::write_text(scenario_file(folder), deep);
+  EXPECT_THAT(load_scenario(scenario_file(folder)).error().message,
+              HasSubstr("scenario.json: is nested more than 64 deep"));
+  overfly::testing::write_text(manifest_file(folder), deep);
+  EXPECT_TRUE(manager()->runs().empty());
+}
+
 TEST_F(RunManagerTest, FliesAScenarioAndFindsItAgainInANewProcess) {
   std::string id;
   {

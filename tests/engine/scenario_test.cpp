@@ -88,6 +88,42 @@ TEST(ScenarioOverride, IsJsonElseText) {
   EXPECT_EQ(parse_override("a=[1]")->value, Json::array({1}));
   EXPECT_FALSE(parse_override("a").ok());
   EXPECT_FALSE(parse_override("=1").ok());
+  const auto deep = parse_override("a=" + std::string(100'000, '['));
+  ASSERT_FALSE(deep.ok());
+  EXPECT_EQ(deep.error().code, ErrorCode::kInvalidArgument);
+  EXPECT_EQ(deep.error().message, "--set a: is nested more than 64 deep");
+}
+
+/// A path of `parts` parts.
+std::string path_of(std::size_t parts) {
+  std::string path = "seed";
+  for (std::size_t i = 1; i < parts; ++i) path += ".a";
+  return path;
+}
+
+/// 1 inside of `depth` arrays.
+Json nested(std::size_t depth) {
+  Json value = 1;
+  for (std::size_t i = 0; i < depth; ++i) value = Json::array({std::move(value)});
+  return value;
+}
+
+TEST(ScenarioOverride, LimitsThePathsPartsAndTheDepthThatTheyMake) {
+  const auto fault = [](const std::string& path, const Json& value) {
+    Json document = course_document();
+    document.erase("seed");
+    const auto scenario = resolve_scenario(document, {{path, value}}, "/tmp");
+    EXPECT_FALSE(scenario.ok());
+    EXPECT_EQ(scenario.error().code, ErrorCode::kInvalidArgument);
+    return scenario.error().message;
+  };
+  EXPECT_THAT(fault(path_of(64), 1), HasSubstr("seed = "));  // the schema's word
+  const std::string long_path = fault(path_of(100'000), 1);
+  EXPECT_THAT(long_path, HasSubstr("has 100000 parts: must have at most 64"));
+  EXPECT_LT(long_path.size(), 200U);
+  EXPECT_THAT(fault("seed", nested(63)), HasSubstr("seed = "));
+  EXPECT_THAT(fault("seed", nested(64)), HasSubstr("nested more than 64 deep"));
+  EXPECT_THAT(fault(path_of(40), nested(40)), HasSubstr("nested more than 64 deep"));
 }
 
 TEST(ScenarioOverride, ReachesArraysAndReplacesTheKindOfWorld) {
@@ -119,6 +155,14 @@ TEST(ScenarioOverride, WholeCamerasTakeTheCamerasPlaceAndBack) {
   EXPECT_EQ(one->cameras[0].name, "c");
   EXPECT_THAT(fault_of(document, {two, "camera.width_px=64"}),
               HasSubstr("must not be given with cameras"));
+}
+
+TEST(Scenario, RefusesAFileOfDeepJson) {
+  const TemporaryFolder folder;
+  overfly::testing::write_text(folder.path() / "a.json",
+                               R"({"title": )" + std::string(100'000, '['));
+  EXPECT_THAT(load_scenario(folder.path() / "a.json").error().message,
+              HasSubstr("a.json: is nested more than 64 deep"));
 }
 
 TEST(Scenario, FindsFilesInDataOrBesideItselfAndItsCopyMeansTheSame) {

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Fails on an include that docs/ARCHITECTURE.md forbids.
+"""Fails on an include or a call that docs/ARCHITECTURE.md forbids.
 
-Two tables: which rooms a room may include, and which rooms are the home of a third-party library
+Three tables: calls that only some files may make, which rooms a room may include, and which rooms are the home of a third-party library
 (and whether its headers may be reached from another room through the headers that it includes).
 Usage: check_layers.py SOURCE_ROOT
 """
@@ -56,6 +56,14 @@ THIRD_PARTY = [
 # nlohmann's documents are the engine's vocabulary and may stand in its headers, not in terrain's.
 JSON_IN_HEADERS = ["server/engine", "server/net", "server/app"]
 
+# pattern of a call -> (files that may make it, what all others use).
+CALLS = [
+    # Text in the program itself needs no guard; everything else may come from outside.
+    (r"\b[Jj]son::(parse|sax_parse|from_\w+)\(",
+     ["core/outside_json.hpp", "server/engine/scenario.cpp", "server/engine/camera_check.cpp"],
+     "json_from_outside"),
+]
+
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
 
@@ -106,11 +114,19 @@ def fault_of_library_include(room, target, public):
     return None
 
 
+def faults_of_calls(path, line):
+    for pattern, files, instead in CALLS:
+        if re.search(pattern, line) and path not in files:
+            yield f"{instead} is the one way to do this"
+
+
 def faults_of_file(path, text, public):
     room = room_of(path)
     if room is None:
         return
     for number, line in enumerate(text.splitlines(), 1):
+        for fault in faults_of_calls(path, line):
+            yield f"{path}:{number}: {fault}"
         match = INCLUDE.match(line)
         if not match:
             continue
@@ -139,6 +155,7 @@ def self_test():
         {"odometry/feature/a.cpp": '#include "core/x.hpp"\n#include "flight/flight.hpp"'},
         {"odometry/feature/a.cpp": '#include "vo_bridges/toy/toy_estimators.hpp"'},
         {"core/a.hpp": '#include "server/engine/run.hpp"'},
+        {"terrain/a.cpp": "  const Json json = Json::parse(text);"},
         {"server/net/a.cpp": '#include "renderer/renderer.hpp"'},
         {"server/engine/a.cpp": '#include "renderer/egl/context.hpp"'},
         {"flight/a.cpp": "#include <opencv2/core.hpp>"},

@@ -60,8 +60,10 @@ TEST(ClientMessage, ReadsEachPlaybackCommand) {
 }
 
 TEST(ClientMessage, NamesTheFaultyField) {
-  const std::pair<const char*, const char*> faults[] = {
-      {"", "not valid JSON"},
+  const std::pair<std::string, const char*> faults[] = {
+      {"", "the message, line 1, column 1: syntax error"},
+      {std::string(100'000, '['), "the message: is nested more than 64 deep"},
+      {R"({"type":"attach","run":)" + std::string(65, '['), "is nested more than 64 deep"},
       {"[]", "must be a JSON object"},
       {"{}", "type"},
       {R"({"type":7})", "type"},

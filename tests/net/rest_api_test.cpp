@@ -238,6 +238,14 @@ TEST_F(RestApiTest, RefusesOtherMethodsBodiesAndOrigins) {
   check("POST", runs, runs, 415, TestServer::body_of("tiny"), {{"Content-Type", "text/plain"}});
   check("POST", runs, runs, 413, std::string((1 << 20) + 1, ' '), kJson);
   check("POST", runs, runs, 400, "{", kJson);
+  const std::string start = R"({"scenario":"tiny","overrides":{)";
+  const std::string deep =
+      R"("seed":)" + std::string(80'000, '[') + std::string(80'000, ']') + "}}";
+  EXPECT_THAT(check("POST", runs, runs, 400, start + deep, kJson).body, HasSubstr("64 deep"));
+  std::string path = "seed";
+  for (int i = 1; i < 100'000; ++i) path += ".a";
+  const std::string parts = "\"" + path + "\":1}}";
+  EXPECT_THAT(check("POST", runs, runs, 400, start + parts, kJson).body, HasSubstr("100000 parts"));
   Headers foreign = kJson;
   foreign["Origin"] = "http://evil.example";
   check("POST", runs, runs, 403, TestServer::body_of("tiny"), foreign);

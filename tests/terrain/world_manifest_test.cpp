@@ -46,6 +46,12 @@ TEST(WorldManifest, ReadsBackWhatWasWritten) {
   EXPECT_NEAR(read->runway->heading_rad, spec.runway->heading_rad, 1e-14);
 }
 
+TEST(WorldManifest, RefusesDeepJson) {
+  EXPECT_NE(error_of(R"({"format_version": )" + std::string(100'000, '['))
+                .find("is nested more than 64 deep"),
+            std::string::npos);
+}
+
 TEST(WorldManifest, NamesFilesInItsFolderRelatively) {
   TemporaryFolder folder;
   WorldSpec spec;
@@ -79,7 +85,7 @@ TEST(WorldManifest, ErrorsNameFieldValueAndLimit) {
       {head + R"("ground_height_m": 1e9})", {"ground_height_m = ", "[-12000, 12000]"}},
       {head + R"("weather": {}})", {"weather", "unknown field"}},
       {R"([1, 2])", {"must be an object"}},
-      {R"({"format_version": 1,)", {"JSON"}},
+      {R"({"format_version": 1,)", {"line 1, column 22", "syntax error"}},
   };
   for (const auto& [text, parts] : cases) {
     const std::string error = error_of(text);

@@ -1,0 +1,86 @@
+#include "core/file_text.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+namespace overfly {
+namespace {
+
+/// A descriptor that closes itself.
+class OpenFile {
+ public:
+  explicit OpenFile(const std::filesystem::path& file)
+      : descriptor_(::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY)) {}
+  ~OpenFile() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+
+  [[nodiscard]] int descriptor() const { return descriptor_; }
+
+ private:
+  int descriptor_;
+};
+
+Error system_error(const std::filesystem::path& file, const char* action) {
+  const int reason = errno;
+  if (reason == ENOENT || reason == ENOTDIR) {
+    return {ErrorCode::kNotFound, file.string() + ": no such file"};
+  }
+  return {ErrorCode::kIo, file.string() + ": " + action + ": " + std::strerror(reason)};
+}
+
+Status check_kind(const struct stat& facts, const std::filesystem::path& file) {
+  if (S_ISREG(facts.st_mode)) return {};
+  const char* const what =
+      S_ISDIR(facts.st_mode) ? ": is a folder, not a file" : ": is not a regular file";
+  return Error{ErrorCode::kUnreadable, file.string() + what};
+}
+
+Error too_long(const std::filesystem::path& file, const std::string& bytes, std::uint64_t limit) {
+  return {ErrorCode::kUnreadable,
+          file.string() + ": has " + bytes + " bytes: must have at most " + std::to_string(limit)};
+}
+
+}  // namespace
+
+Result<std::string> read_file_text(const std::filesystem::path& file,
+                                   std::uint64_t max_bytes,
+                                   const std::atomic<bool>* cancel) {
+  struct stat facts {};
+  // Looked at before it is opened: opening some devices does something.
+  if (::stat(file.c_str(), &facts) != 0) return system_error(file, "cannot be opened for reading");
+  if (Status status = check_kind(facts, file); !status) return status.error();
+  const OpenFile open(file);
+  if (open.descriptor() < 0 || ::fstat(open.descriptor(), &facts) != 0) {
+    return system_error(file, "cannot be opened for reading");
+  }
+  if (Status status = check_kind(facts, file); !status) return status.error();
+  const auto size = static_cast<std::uint64_t>(facts.st_size);
+  if (size > max_bytes) return too_long(file, std::to_string(size), max_bytes);
+
+  constexpr std::size_t kPieceBytes = std::size_t{1} << 20U;
+  std::string text;
+  text.reserve(size);
+  std::string piece(std::min<std::uint64_t>(kPieceBytes, size + 1), '\0');
+  while (true) {
+    if (cancel != nullptr && *cancel) {
+      return Error{ErrorCode::kCancelled, file.string() + ": reading was cancelled"};
+    }
+    const ssize_t got = ::read(open.descriptor(), piece.data(), piece.size());
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return system_error(file, "reading failed");
+    if (got == 0) return text;
+    text.append(piece, 0, static_cast<std::size_t>(got));
+    if (text.size() > max_bytes)
+      return too_long(file, "over " + std::to_string(max_bytes), max_bytes);
+  }
+}
+
+}  // namespace overfly
