@@ -26,12 +26,22 @@ enum class AlignmentMode { kNone, kOrigin, kInitScale, kSe3, kSim3, kYawOnly, kO
 [[nodiscard]] std::optional<AlignmentMode> alignment_mode_from(const std::string& text);
 [[nodiscard]] const std::vector<AlignmentMode>& all_alignment_modes();
 
-/// How the run of an estimator went. DIVERGED comes before RESET, and RESET before LOST, where
-/// several hold. CRASHED and TIMEOUT are not seen in a track: who runs the estimator puts them
+/// How the run of an estimator went. Where several hold, the first of DIVERGED, RESET, LOST,
+/// INIT_LATE is told. CRASHED and TIMEOUT are not seen in a track: who runs the estimator puts them
 /// into Score::outcome.
+///
+/// COMPLETED: it started in time, tracks at the end of the flight, in one map, and at least 95 % of
+/// the flight's frames after its start count as tracked. LOST: it does not track at the end, or
+/// fewer count. Frames in which it says that it is lost do not count, nor do frames that it never
+/// got (dropped, late, lost on their way) in a stretch of a second or more without a tracked one:
+/// darkness and missing images are judged alike. A shorter stretch of frames that it never got,
+/// between tracked ones or after the last, counts as tracked: it was not lost there.
+/// INIT_LATE: its first tracked frame is later after the first frame of the flight than 10 s or a
+/// tenth of the flight, whichever is less, but never less than 2 s.
 enum class Outcome {
   kCompleted,
   kNotInitialised,
+  kInitLate,
   kLost,
   kReset,
   kDiverged,
@@ -40,7 +50,16 @@ enum class Outcome {
 };
 [[nodiscard]] const char* to_string(Outcome outcome);  ///< "COMPLETED", "NOT_INITIALISED", ...
 
+/// A frame that the camera of a flight, or a data set, has; whether an estimator got it or not.
+struct FlightFrame {
+  std::int64_t frame = 0;
+  std::int64_t t_ns = 0;
+};
+
 struct Options {
+  /// Every frame of the flight, in order: those that were dropped, late, lost on their way or never
+  /// given are among them. Empty = those of the track.
+  std::vector<FlightFrame> flight;
   Association association = Association::kInterpolate;
   std::int64_t max_time_difference_ns = 10'000'000;  ///< kNearest only
   /// True depth of the ground along the optical axis at the first tracked pose [m].
@@ -93,11 +112,11 @@ struct AlignmentScore {
 
 struct Score {
   Outcome outcome = Outcome::kNotInitialised;
-  std::optional<double> outcome_time_s;  ///< of the loss, reset or divergence
+  std::optional<double> outcome_time_s;  ///< of the late start, loss, reset or divergence
   int reset_count = 0;                   ///< since the first tracked frame
   double coverage = 0.0;                 ///< tracked frames / frames of the flight, [0, 1]
   std::optional<double> initialised_at_s;
-  int frames = 0;
+  int frames = 0;  ///< of the flight
   int tracked_frames = 0;
   /// Per mode; a mode that the data cannot determine has its reason in `unavailable` instead.
   std::map<AlignmentMode, AlignmentScore> alignments;
@@ -124,7 +143,7 @@ struct Score {
                                        std::vector<std::string>* notes = nullptr);
 
 /// Scores an estimate against the truth: outcome, coverage and every alignment mode.
-/// Frames of the flight = samples of the track (one for each frame offered).
+/// Frames of the flight: Options::flight.
 [[nodiscard]] Score score(const Trajectory& T_world_camera_truth,
                           const EstimateTrack& estimate,
                           const Options& options);

@@ -14,8 +14,16 @@ constexpr std::int64_t kStepNs = kNsPerS;
 constexpr std::size_t kWindowSteps = 10;
 constexpr double kScaleChange = 2.0;
 constexpr double kWindowMinM = 1.0;  // a window with less true way has no scale
+/// So long may frames be missing without the estimator counting as lost.
+constexpr std::int64_t kGapNs = kNsPerS;
+constexpr std::int64_t kLateStartNs = 10 * kNsPerS;
+constexpr std::int64_t kLateStartShare = 10;  // of the flight: one part in so many
+/// In flights shorter than ten times this a tenth is less than any estimator needs.
+constexpr std::int64_t kShortestLateStartNs = 2 * kNsPerS;
 
-bool tracked(const EstimateSample& sample) { return sample.state == TrackingState::kTracking; }
+bool tracked(const FlownFrame& flown) {
+  return flown.given && flown.sample.state == TrackingState::kTracking;
+}
 
 /// Way of truth and estimate over one second; `broken` where poses are missing in between.
 struct Step {
@@ -42,25 +50,55 @@ std::vector<Step> steps_of(const std::vector<MatchedPose>& matches) {
   return steps;
 }
 
-/// Begin of the last loss if the track ends without tracking, else of the first loss.
-std::optional<double> loss_time_s(const std::vector<EstimateSample>& samples, std::size_t first) {
+/// Which frames count as tracked: also those of a short stretch that the estimator never got.
+std::vector<bool> held_frames(const std::vector<FlownFrame>& flown) {
+  std::vector<bool> held(flown.size());
+  std::size_t begin = 0;  // of the stretch of frames that were not given
+  for (std::size_t i = 0; i < flown.size(); ++i) {
+    held[i] = tracked(flown[i]);
+    if (flown[i].given) begin = i + 1;
+    const bool last = i + 1 == flown.size();
+    if (begin > i || begin == 0 || (!last && !flown[i + 1].given)) continue;
+    const FlownFrame& before = flown[begin - 1];
+    const FlownFrame& after = last ? flown[i] : flown[i + 1];
+    const bool in_one_map = tracked(before) && before.sample.map_id == after.sample.map_id;
+    if (!in_one_map || !(last || tracked(after))) continue;
+    if (after.sample.t_ns - before.sample.t_ns >= kGapNs) continue;
+    std::fill(held.begin() + static_cast<std::ptrdiff_t>(begin),
+              held.begin() + static_cast<std::ptrdiff_t>(i) + 1,
+              true);
+  }
+  return held;
+}
+
+/// Begin of the last loss if the flight ends without tracking, else of the first loss.
+std::optional<double> loss_time_s(const std::vector<FlownFrame>& flown,
+                                  const std::vector<bool>& held,
+                                  std::size_t first) {
   std::optional<double> begin_s;
   bool lost = false;
-  for (std::size_t i = first; i < samples.size(); ++i) {
-    if (!tracked(samples[i]) && !lost && (!begin_s || !tracked(samples.back()))) {
-      begin_s = s_from_ns(samples[i].t_ns);
-    }
-    lost = !tracked(samples[i]);
+  for (std::size_t i = first; i < flown.size(); ++i) {
+    if (!held[i] && !lost && (!begin_s || !held.back())) begin_s = s_from_ns(flown[i].sample.t_ns);
+    lost = !held[i];
   }
   return begin_s;
 }
 
 /// Time of the first sample of a later map than the first tracked one's.
-std::optional<double> reset_time_s(const std::vector<EstimateSample>& samples, std::size_t first) {
-  for (std::size_t i = first; i < samples.size(); ++i) {
-    if (samples[i].map_id != samples[first].map_id) return s_from_ns(samples[i].t_ns);
+std::optional<double> reset_time_s(const std::vector<FlownFrame>& flown, std::size_t first) {
+  for (std::size_t i = first; i < flown.size(); ++i) {
+    if (flown[i].sample.map_id != flown[first].sample.map_id) {
+      return s_from_ns(flown[i].sample.t_ns);
+    }
   }
   return std::nullopt;
+}
+
+bool starts_late(const std::vector<FlownFrame>& flown, std::size_t first) {
+  const std::int64_t begin_ns = flown.front().sample.t_ns;
+  const std::int64_t share_ns = (flown.back().sample.t_ns - begin_ns) / kLateStartShare;
+  return flown[first].sample.t_ns - begin_ns >
+         std::clamp(share_ns, kShortestLateStartNs, kLateStartNs);
 }
 
 }  // namespace
@@ -87,39 +125,64 @@ std::optional<double> divergence_time_s(const std::vector<MatchedPose>& matches)
   return std::nullopt;
 }
 
-void add_outcome(const EstimateTrack& estimate,
+std::vector<FlownFrame> flown_frames(const EstimateTrack& estimate, const Options& options) {
+  std::vector<FlownFrame> flown;
+  flown.reserve(std::max(options.flight.size(), estimate.samples.size()));
+  int map_id = 0;
+  const auto add_missing = [&](const FlightFrame& frame) {
+    FlownFrame missing;
+    missing.given = false;
+    missing.sample.frame = frame.frame;
+    missing.sample.t_ns = frame.t_ns;
+    missing.sample.map_id = map_id;
+    flown.push_back(missing);
+  };
+  auto next = options.flight.begin();
+  for (const EstimateSample& sample : estimate.samples) {
+    for (; next != options.flight.end() && next->frame < sample.frame; ++next) add_missing(*next);
+    if (next != options.flight.end() && next->frame == sample.frame) ++next;
+    map_id = sample.map_id;
+    flown.push_back({sample, true});
+  }
+  for (; next != options.flight.end(); ++next) add_missing(*next);
+  return flown;
+}
+
+void add_outcome(const std::vector<FlownFrame>& flown,
                  const std::vector<MatchedPose>& matches,
                  Score* score) {
-  const std::vector<EstimateSample>& samples = estimate.samples;
-  score->frames = static_cast<int>(samples.size());
-  score->tracked_frames = static_cast<int>(std::count_if(samples.begin(), samples.end(), tracked));
+  score->frames = static_cast<int>(flown.size());
+  score->tracked_frames = static_cast<int>(std::count_if(flown.begin(), flown.end(), tracked));
   score->outcome = Outcome::kNotInitialised;
   if (score->tracked_frames == 0) return;
 
   score->coverage = static_cast<double>(score->tracked_frames) / score->frames;
-  const auto first = static_cast<std::size_t>(
-      std::find_if(samples.begin(), samples.end(), tracked) - samples.begin());
-  score->initialised_at_s = s_from_ns(samples[first].t_ns);
+  const auto first =
+      static_cast<std::size_t>(std::find_if(flown.begin(), flown.end(), tracked) - flown.begin());
+  score->initialised_at_s = s_from_ns(flown[first].sample.t_ns);
   std::set<int> tracked_maps;
-  int last_map = samples[first].map_id;
-  for (std::size_t i = first; i < samples.size(); ++i) {
-    if (tracked(samples[i])) tracked_maps.insert(samples[i].map_id);
-    last_map = std::max(last_map, samples[i].map_id);
+  int last_map = flown[first].sample.map_id;
+  for (std::size_t i = first; i < flown.size(); ++i) {
+    if (tracked(flown[i])) tracked_maps.insert(flown[i].sample.map_id);
+    last_map = std::max(last_map, flown[i].sample.map_id);
   }
-  score->reset_count = last_map - samples[first].map_id;
+  score->reset_count = last_map - flown[first].sample.map_id;
 
-  const double after_init = static_cast<double>(samples.size() - first);
-  const bool completed =
-      tracked(samples.back()) && score->tracked_frames >= kCompletedShare * after_init;
+  const std::vector<bool> held = held_frames(flown);
+  const auto after_init = static_cast<double>(flown.size() - first);
+  const auto kept = static_cast<double>(std::count(held.begin(), held.end(), true));
   if (const auto diverged_s = divergence_time_s(matches)) {
     score->outcome = Outcome::kDiverged;
     score->outcome_time_s = diverged_s;
   } else if (tracked_maps.size() > 1) {
     score->outcome = Outcome::kReset;
-    score->outcome_time_s = reset_time_s(samples, first);
-  } else if (!completed) {
+    score->outcome_time_s = reset_time_s(flown, first);
+  } else if (!held.back() || kept < kCompletedShare * after_init) {
     score->outcome = Outcome::kLost;
-    score->outcome_time_s = loss_time_s(samples, first);
+    score->outcome_time_s = loss_time_s(flown, held, first);
+  } else if (starts_late(flown, first)) {
+    score->outcome = Outcome::kInitLate;
+    score->outcome_time_s = score->initialised_at_s;
   } else {
     score->outcome = Outcome::kCompleted;
   }
@@ -131,6 +194,8 @@ const char* to_string(Outcome outcome) {
       return "COMPLETED";
     case Outcome::kNotInitialised:
       return "NOT_INITIALISED";
+    case Outcome::kInitLate:
+      return "INIT_LATE";
     case Outcome::kLost:
       return "LOST";
     case Outcome::kReset:

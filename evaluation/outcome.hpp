@@ -7,9 +7,19 @@
 
 namespace overfly::evaluation {
 
+/// A frame of the flight, and what the estimator said of it.
+struct FlownFrame {
+  EstimateSample sample;  ///< of a frame that it never got: frame, time, and the map before
+  bool given = true;      ///< false: dropped, late, lost on its way, or never given
+};
+
+/// Every frame of the flight, in order: Options::flight, and the samples of the track.
+[[nodiscard]] std::vector<FlownFrame> flown_frames(const EstimateTrack& estimate,
+                                                   const Options& options);
+
 /// Fills outcome, its time, resets, coverage and counts.
 /// @param matches  of the longest map; may be empty
-void add_outcome(const EstimateTrack& estimate,
+void add_outcome(const std::vector<FlownFrame>& flown,
                  const std::vector<MatchedPose>& matches,
                  Score* score);
 

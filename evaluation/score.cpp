@@ -14,13 +14,13 @@ struct HeldPose {
 };
 
 std::vector<HeldPose> held_poses(const Trajectory& truth,
-                                 const EstimateTrack& estimate,
+                                 const std::vector<FlownFrame>& flown,
+                                 std::optional<int> map_id,
                                  const Options& options) {
-  const std::optional<int> map_id = longest_map(estimate);
   std::vector<HeldPose> held;
   std::optional<Eigen::Vector3d> last;
-  for (const EstimateSample& sample : estimate.samples) {
-    if (sample.state == TrackingState::kTracking && sample.map_id == map_id) {
+  for (const auto& [sample, given] : flown) {
+    if (given && sample.state == TrackingState::kTracking && sample.map_id == map_id) {
       last = sample.T_vo_camera.translation;
     }
     if (!last) continue;
@@ -70,14 +70,16 @@ Score score(const Trajectory& T_world_camera_truth,
   Score result;
   const Result<std::vector<MatchedPose>> matches =
       associate(T_world_camera_truth, estimate, options);
-  add_outcome(estimate, matches ? *matches : std::vector<MatchedPose>{}, &result);
+  const std::vector<FlownFrame> flown = flown_frames(estimate, options);
+  add_outcome(flown, matches ? *matches : std::vector<MatchedPose>{}, &result);
   if (!matches) {
     for (const AlignmentMode mode : all_alignment_modes()) {
       result.unavailable[mode] = matches.error().message;
     }
     return result;
   }
-  const std::vector<HeldPose> held = held_poses(T_world_camera_truth, estimate, options);
+  const std::vector<HeldPose> held =
+      held_poses(T_world_camera_truth, flown, longest_map(estimate), options);
   for (const AlignmentMode mode : all_alignment_modes()) {
     AlignmentScore alignment;
     alignment.mode = mode;

@@ -162,7 +162,7 @@ int evaluate_run(const EvaluateArguments& arguments) {
   for (auto& [name, entry] : metrics.at("estimators").items()) {
     choose_modes(arguments.alignments, entry);
     if (arguments.json) continue;
-    std::cout << name << ": " << entry.at("outcome").get<std::string>() << "\n"
+    std::cout << name << ": " << outcome_line(entry) << "\n"
               << alignment_table(entry.at("alignments"), entry.at("unavailable"));
   }
   if (arguments.json) std::cout << metrics.dump(2) << "\n";

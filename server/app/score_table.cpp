@@ -94,6 +94,11 @@ std::string score_table(const Json& metrics, const std::string& mode) {
   return table + "RMSE, alignment " + mode + "\n";
 }
 
+std::string outcome_line(const Json& score) {
+  return outcome_text(score) +
+         formatted(", coverage %.1f %%", 100.0 * score.at("coverage").get<double>());
+}
+
 std::string alignment_table(const Json& alignments, const Json& unavailable) {
   std::string table = formatted("  %-12s %12s %8s  %12s %12s %12s %14s\n",
                                 "alignment",

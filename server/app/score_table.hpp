@@ -9,6 +9,9 @@ namespace overfly::app {
 /// One line for each estimator of a metrics document: outcome, coverage, errors by `mode`.
 [[nodiscard]] std::string score_table(const nlohmann::json& metrics, const std::string& mode);
 
+/// "LOST at 12.3 s, coverage 45.6 %" of an estimator's score.
+[[nodiscard]] std::string outcome_line(const nlohmann::json& score);
+
 /// The lines of one estimate's alignments: mode, scale, position and rotation error.
 [[nodiscard]] std::string alignment_table(const nlohmann::json& alignments,
                                           const nlohmann::json& unavailable);

@@ -40,6 +40,9 @@ std::string states_text(const Json& report) {
                      "; TRACKING " + number(states.at("TRACKING")) + ", INITIALISING " +
                      number(states.at("INITIALISING")) + ", LOST " + number(states.at("LOST")) +
                      " of " + number(report.at("frames")) + " frames";
+  const auto never_given = report.at("dataset").at("images").get<std::int64_t>() -
+                           report.at("frames").get<std::int64_t>();
+  if (never_given > 0) text += ", " + std::to_string(never_given) + " never given";
   const Json& after_s = report.at("initialised_after_s");
   if (after_s.is_number()) text += ", first pose after " + rounded(after_s, 2) + " s";
   text += "\n";
@@ -69,8 +72,7 @@ std::string cost_text(const Json& report) {
 }
 
 std::string score_text(const Json& score) {
-  return "outcome: " + score.at("outcome").get<std::string>() + ", coverage " +
-         rounded(100.0 * score.at("coverage").get<double>(), 1) + " %\n" +
+  return "outcome: " + outcome_line(score) + "\n" +
          alignment_table(score.at("alignments"), score.at("unavailable"));
 }
 

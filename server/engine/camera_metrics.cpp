@@ -104,7 +104,9 @@ Json texture_json(const std::vector<FrameRecord>& frames) {
 Json camera_metrics(const RunRecords& records) {
   Json metrics = frames_metrics(records.frames);
   metrics["late_frames"] = records.late_frames.size();
-  metrics["late_frame_ranges"] = ranges_of(records.late_frames);
+  std::vector<std::int64_t> late;
+  for (const evaluation::FlightFrame& frame : records.late_frames) late.push_back(frame.frame);
+  metrics["late_frame_ranges"] = ranges_of(late);
   return metrics;
 }
 

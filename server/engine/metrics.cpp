@@ -43,6 +43,7 @@ evaluation::Score score_of(const RunRecords& records,
                            const Trajectory& truth,
                            const EstimatorRecords& estimator) {
   evaluation::Options options;
+  options.flight = flight_frames(records, estimator.camera);
   options.T_body_camera = records.mount_of(estimator.camera);
   if (const auto initial = initial_frame(records, estimator)) {
     options.init_true_depth_m = initial->true_depth_m;

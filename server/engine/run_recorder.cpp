@@ -229,7 +229,7 @@ Status RunRecorder::keep_image(std::int64_t frame,
 }
 
 Status RunRecorder::add_late_frame(std::int64_t frame, std::int64_t t_ns) {
-  records_.late_frames.push_back(frame);
+  records_.late_frames.push_back({frame, t_ns});
   return frame_lines_.front().append({{"frame", frame}, {"t_ns", t_ns}, {"late", true}});
 }
 

@@ -1,6 +1,7 @@
 #include "server/engine/run_records.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -58,7 +59,8 @@ Status read_cameras(const Json& manifest, RunRecords& records) {
 Status read_frames(const fs::path& folder, RunRecords& records) {
   return for_each_row(frames_file(folder), [&](const Json& line) -> Status {
     if (line.is_object() && line.value("late", false)) {
-      records.late_frames.push_back(line.value("frame", std::int64_t{0}));
+      records.late_frames.push_back(
+          {line.value("frame", std::int64_t{0}), line.value("t_ns", std::int64_t{0})});
       return {};
     }
     Result<FrameRecord> record = frame_record_from(line, records.T_body_camera);
@@ -132,6 +134,22 @@ const FrameRecord* frame_record(const RunRecords& records, std::size_t camera, s
         return record.row.frame < number;
       });
   return found != frames.end() && found->row.frame == frame ? &*found : nullptr;
+}
+
+std::vector<evaluation::FlightFrame> flight_frames(const RunRecords& records, std::size_t camera) {
+  std::vector<evaluation::FlightFrame> drawn;
+  for (const FrameRecord& frame : records.frames_of(camera)) {
+    drawn.push_back({frame.row.frame, frame.row.t_ns});
+  }
+  const std::vector<evaluation::FlightFrame>& late = records.late_frames;
+  std::vector<evaluation::FlightFrame> all;
+  std::merge(drawn.begin(),
+             drawn.end(),
+             late.begin(),
+             late.end(),
+             std::back_inserter(all),
+             [](const auto& a, const auto& b) { return a.frame < b.frame; });
+  return all;
 }
 
 EstimateTrack track_of(const EstimatorRecords& estimator) {

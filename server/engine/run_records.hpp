@@ -8,6 +8,7 @@
 
 #include "core/result.hpp"
 #include "core/trajectory.hpp"
+#include "evaluation/evaluation.hpp"
 #include "server/engine/run_rows.hpp"
 
 namespace overfly::engine {
@@ -30,7 +31,8 @@ struct RunRecords {
   Pose T_body_camera{R_body_camera_nadir(), Eigen::Vector3d::Zero()};
   std::vector<FrameRecord> frames;
   std::vector<CameraRecords> other_cameras;  ///< all but the main one, which is above
-  std::vector<std::int64_t> late_frames;     ///< never drawn, since their time had passed
+  /// Never drawn, of no camera, since their time had passed.
+  std::vector<evaluation::FlightFrame> late_frames;
   std::vector<EstimatorRecords> estimators;
 
   /// By index; 0 = the main camera.
@@ -52,6 +54,9 @@ struct RunRecords {
 [[nodiscard]] const FrameRecord* frame_record(const RunRecords& records,
                                               std::size_t camera,
                                               std::int64_t frame);
+/// Every frame that a camera has in the flight, also those that were late or got lost on their way.
+[[nodiscard]] std::vector<evaluation::FlightFrame> flight_frames(const RunRecords& records,
+                                                                 std::size_t camera);
 /// The answers of one estimator without the drops.
 [[nodiscard]] EstimateTrack track_of(const EstimatorRecords& estimator);
 

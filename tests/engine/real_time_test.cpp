@@ -124,6 +124,9 @@ TEST_F(RealTime, BusyEstimatorGetsTheLatestFrameAndTheOthersAreListed) {
   EXPECT_THAT(frames_where(records->estimators[0], true), ElementsAre(1, 3));
   const Json& score = run->metrics.at("estimators").at("slow");
   EXPECT_EQ(score.at("dropped_frames"), 2);
+  EXPECT_EQ(score.at("frames"), 5);
+  EXPECT_EQ(score.at("coverage"), 0.6);
+  EXPECT_EQ(score.at("outcome"), "COMPLETED") << "busy, not lost";
   EXPECT_EQ(score.at("dropped_frame_ranges"), Json::parse("[[1, 1], [3, 3]]"));
   EXPECT_EQ(run->metrics.at("camera").at("late_frames"), 0);
   EXPECT_EQ(run->info.frames, 5);
@@ -172,15 +175,22 @@ TEST_F(RealTime, RendererThatFallsBehindSkipsFramesWhoseTimeHasPassed) {
   };
   // 10 Hz against 250 ms a frame: 0 until 250, so 1 (due by 200) is late; 2 until 500, so 3 and 4
   // (due by 400 and 500) are; 5 until 750, so 6 is; 7 until 1000, so 8 and 9 are; 10.
-  const auto run =
-      run_scenario(testing::small_scenario({"pacing=real_time", "duration_s=1"}), options_);
+  const auto run = run_scenario(
+      testing::small_scenario(
+          {"pacing=real_time", "duration_s=1", R"(estimators=[{"name":"p","type":"perfect"}])"}),
+      options_);
   ASSERT_TRUE(run.ok()) << run.error().message;
   const auto records = read_run_records(options_.folder);
   ASSERT_TRUE(records.ok());
   std::vector<std::int64_t> drawn;
   for (const FrameRecord& frame : records->frames) drawn.push_back(frame.row.frame);
   EXPECT_THAT(drawn, ElementsAre(0, 2, 5, 7, 10));
-  EXPECT_THAT(records->late_frames, ElementsAre(1, 3, 4, 6, 8, 9));
+  std::vector<std::int64_t> late;
+  for (const evaluation::FlightFrame& frame : records->late_frames) late.push_back(frame.frame);
+  EXPECT_THAT(late, ElementsAre(1, 3, 4, 6, 8, 9));
+  const Json& score = run->metrics.at("estimators").at("p");
+  EXPECT_EQ(score.at("frames"), 11);
+  EXPECT_DOUBLE_EQ(score.at("coverage").get<double>(), 5.0 / 11.0);
   EXPECT_EQ(run->metrics.at("camera").at("late_frame_ranges"),
             Json::parse("[[1, 1], [3, 4], [6, 6], [8, 9]]"));
 }

@@ -21,22 +21,32 @@ class OutcomeTest : public ::testing::Test {
     for (int i = from; i < kFrames; ++i)
       track_.samples[static_cast<std::size_t>(i)].map_id = map_id;
   }
-  [[nodiscard]] Score scored() const { return score(truth_, track_, {}); }
+  /// The estimator never gets these frames; the flight has them all the same.
+  void take_away(int from, int to) {
+    std::erase_if(track_.samples, [&](const EstimateSample& sample) {
+      return sample.frame >= from && sample.frame < to;
+    });
+  }
+  [[nodiscard]] Score scored() const {
+    Options options;
+    for (int i = 0; i < kFrames; ++i) options.flight.push_back({i, i * kFrameNs});
+    return score(truth_, track_, options);
+  }
 
   Trajectory truth_;
   EstimateTrack track_;
 };
 
 TEST_F(OutcomeTest, CompletedWhenItTracksAlmostAllAfterInitialisation) {
-  set(0, 100, TrackingState::kInitialising);
-  set(300, 325, TrackingState::kLost);  // 25 of 500: 95 % are tracked
+  set(0, 40, TrackingState::kInitialising);
+  set(300, 328, TrackingState::kLost);  // 28 of 560: 95 % are tracked
   const Score result = scored();
   EXPECT_EQ(result.outcome, Outcome::kCompleted);
   EXPECT_FALSE(result.outcome_time_s.has_value());
   EXPECT_EQ(result.frames, 600);
-  EXPECT_EQ(result.tracked_frames, 475);
-  EXPECT_DOUBLE_EQ(result.coverage, 475.0 / 600.0);
-  EXPECT_DOUBLE_EQ(*result.initialised_at_s, 10.0);
+  EXPECT_EQ(result.tracked_frames, 532);
+  EXPECT_DOUBLE_EQ(result.coverage, 532.0 / 600.0);
+  EXPECT_DOUBLE_EQ(*result.initialised_at_s, 4.0);
   EXPECT_EQ(result.alignments.size(), 7U);
   EXPECT_TRUE(result.unavailable.empty());
 }
@@ -55,7 +65,95 @@ TEST_F(OutcomeTest, NotInitialisedWhenItNeverTracks) {
 TEST_F(OutcomeTest, NothingAtAllIsNotInitialised) {
   track_.samples.clear();
   EXPECT_EQ(scored().outcome, Outcome::kNotInitialised);
-  EXPECT_EQ(scored().frames, 0);
+  EXPECT_EQ(scored().frames, kFrames);
+  EXPECT_EQ(score(truth_, track_, {}).frames, 0);
+}
+
+TEST_F(OutcomeTest, AStartAfterATenthOfTheFlightIsLate) {
+  set(0, 59, TrackingState::kInitialising);  // a tenth of 59.9 s: 5.99 s
+  EXPECT_EQ(scored().outcome, Outcome::kCompleted);
+  set(59, 60, TrackingState::kInitialising);
+  const Score result = scored();
+  EXPECT_EQ(result.outcome, Outcome::kInitLate);
+  EXPECT_DOUBLE_EQ(*result.outcome_time_s, 6.0);
+  EXPECT_DOUBLE_EQ(result.coverage, 0.9);
+}
+
+TEST_F(OutcomeTest, AStartIsLateWhetherFramesBeforeItWereGivenOrNot) {
+  take_away(0, 60);
+  EXPECT_EQ(scored().outcome, Outcome::kInitLate);
+  EXPECT_DOUBLE_EQ(*scored().outcome_time_s, 6.0);
+}
+
+/// Outcome of a perfect track of a flight at 10 Hz that begins with its frame `first`.
+Outcome outcome_from(int first, int frames) {
+  const Trajectory truth = wavy_truth(frames);
+  EstimateTrack track = seen_from(truth, some_similarity());
+  for (int i = 0; i < first; ++i) {
+    track.samples[static_cast<std::size_t>(i)].state = TrackingState::kInitialising;
+  }
+  return score(truth, track, {}).outcome;
+}
+
+TEST(Outcome, AStartAfterTenSecondsIsLateHoweverLongTheFlight) {
+  EXPECT_EQ(outcome_from(100, 3000), Outcome::kCompleted);
+  EXPECT_EQ(outcome_from(101, 3000), Outcome::kInitLate);
+}
+
+TEST(Outcome, AStartWithinTwoSecondsIsNeverLate) {
+  EXPECT_EQ(outcome_from(20, 30), Outcome::kCompleted);
+  EXPECT_EQ(outcome_from(21, 30), Outcome::kInitLate);
+}
+
+TEST_F(OutcomeTest, ALossIsToldBeforeALateStart) {
+  set(0, 100, TrackingState::kInitialising);
+  set(500, kFrames, TrackingState::kLost);
+  EXPECT_EQ(scored().outcome, Outcome::kLost);
+}
+
+TEST_F(OutcomeTest, DarknessAndMissingFramesAreJudgedAlike) {
+  // 5 % of the 600 frames are 30: 3 s.
+  for (const int frames : {30, 31}) {
+    const EstimateTrack kept = track_;
+    set(200, 200 + frames, TrackingState::kLost);
+    const Score dark = scored();
+    track_ = kept;
+    take_away(200, 200 + frames);
+    const Score missing = scored();
+    track_ = kept;
+    EXPECT_EQ(dark.outcome, frames == 30 ? Outcome::kCompleted : Outcome::kLost) << frames;
+    EXPECT_EQ(missing.outcome, dark.outcome) << frames;
+    EXPECT_EQ(missing.outcome_time_s, dark.outcome_time_s) << frames;
+    EXPECT_EQ(missing.coverage, dark.coverage) << frames;
+    EXPECT_EQ(missing.frames, kFrames) << frames;
+    EXPECT_EQ(missing.alignments.at(AlignmentMode::kSim3).position_rmse_hold_m,
+              dark.alignments.at(AlignmentMode::kSim3).position_rmse_hold_m)
+        << frames;
+  }
+}
+
+TEST_F(OutcomeTest, ABusyEstimatorIsNotLostButCoversLess) {
+  for (int i = 1; i < kFrames; i += 2) take_away(i, i + 1);
+  const Score result = scored();
+  EXPECT_EQ(result.outcome, Outcome::kCompleted);
+  EXPECT_EQ(result.tracked_frames, 300);
+  EXPECT_DOUBLE_EQ(result.coverage, 0.5);
+}
+
+TEST_F(OutcomeTest, AnEstimatorThatHangsIsLostWhereItHung) {
+  take_away(190, kFrames);
+  const Score result = scored();
+  EXPECT_EQ(result.outcome, Outcome::kLost);
+  EXPECT_DOUBLE_EQ(*result.outcome_time_s, 19.0);
+  EXPECT_DOUBLE_EQ(result.coverage, 190.0 / 600.0);
+}
+
+TEST_F(OutcomeTest, FramesMissedByOneThatWasLostAreNoTrackedOnes) {
+  set(290, 300, TrackingState::kLost);
+  set(305, 325, TrackingState::kLost);  // with these alone 95 % are tracked
+  EXPECT_EQ(scored().outcome, Outcome::kCompleted);
+  take_away(300, 305);
+  EXPECT_EQ(scored().outcome, Outcome::kLost);
 }
 
 TEST_F(OutcomeTest, LostAtTheBeginOfTheLossThatLasts) {
@@ -171,6 +269,7 @@ TEST_F(OutcomeTest, TracksWithoutOverlapHaveAnOutcomeAndReasons) {
 TEST(Outcome, HasTheNamesOfTheConventions) {
   EXPECT_STREQ(to_string(Outcome::kCompleted), "COMPLETED");
   EXPECT_STREQ(to_string(Outcome::kNotInitialised), "NOT_INITIALISED");
+  EXPECT_STREQ(to_string(Outcome::kInitLate), "INIT_LATE");
   EXPECT_STREQ(to_string(Outcome::kLost), "LOST");
   EXPECT_STREQ(to_string(Outcome::kReset), "RESET");
   EXPECT_STREQ(to_string(Outcome::kDiverged), "DIVERGED");

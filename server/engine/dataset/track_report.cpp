@@ -62,6 +62,17 @@ Json resources_json(const TrackedDataset& tracked) {
           {"peak_memory_mb", tracked.resources.peak_memory_mb}};
 }
 
+/// All images, whatever became of the estimator; of a pass that was cancelled those before that.
+std::vector<evaluation::FlightFrame> flight_of(const Dataset& dataset,
+                                               const TrackedDataset& tracked) {
+  std::vector<evaluation::FlightFrame> flight;
+  for (const DatasetImage& image : dataset.images) {
+    if (tracked.cancelled && flight.size() == tracked.records.size()) break;
+    flight.push_back({image.index, image.t_ns});
+  }
+  return flight;
+}
+
 /// Poses of a frame that is held in the one whose poses are given.
 Result<Trajectory> moved(const Trajectory& trajectory, const Pose& T_given_wanted) {
   std::vector<StampedPose> poses = trajectory.poses();
@@ -105,11 +116,15 @@ evaluation::Score score_of(const Dataset& dataset,
   options.init_true_depth_m = init_true_depth_m;
   if (dataset.T_body_camera) options.T_body_camera = *dataset.T_body_camera;
   EstimateTrack track = track_of(tracked);
+  options.flight = flight_of(dataset, tracked);
   if (!truth_has_times) {
     // Line i of a file without times is the i-th image.
     options.association = evaluation::Association::kIndex;
     for (std::size_t i = 0; i < track.samples.size(); ++i) {
       track.samples[i].frame = static_cast<std::int64_t>(i);
+    }
+    for (std::size_t i = 0; i < options.flight.size(); ++i) {
+      options.flight[i].frame = static_cast<std::int64_t>(i);
     }
   }
   evaluation::Score score = evaluation::score(T_world_camera, track, options);

@@ -137,6 +137,8 @@ TEST_F(TrackDataset, TakesACrashForAResultAndARefusalForAnError) {
   const evaluation::Score score = score_of(dataset_, result, {}, true, std::nullopt);
   EXPECT_EQ(score.outcome, evaluation::Outcome::kCrashed);
   EXPECT_EQ(score.outcome_time_s, 11.5);
+  EXPECT_EQ(score.frames, 6) << "of the data set, not those until the crash";
+  EXPECT_EQ(score.coverage, 0.5);
   EXPECT_EQ(report_json(dataset_, result, score).at("crash"), "signal 11");
   const TrackedDataset thrown =
       tracked([](const VoFrame&, const VoEstimate&) -> Result<VoEstimate> {

@@ -91,7 +91,7 @@ export function errorTable(
         key: 'coverage',
         label: 'Coverage',
         unit: '',
-        hint: 'Share of the frames that were tracked',
+        hint: 'Tracked frames / all frames of the flight, dropped and late ones too',
         cells: estimators.map(({ coverage }) => formatPercent(coverage)),
       },
       ...kFigures.map(({ digits, ...row }) => ({

@@ -121,7 +121,12 @@ function stateRow(table: ErrorTable): HTMLElement {
 }
 
 function outcomeRow(table: ErrorTable, scored: boolean): HTMLElement {
-  const row = { key: 'outcome', label: 'Outcome', unit: '', hint: 'Of the whole flight' };
+  const row = {
+    key: 'outcome',
+    label: 'Outcome',
+    unit: '',
+    hint: 'Of the whole flight. INIT_LATE: it started later than 10 s or a tenth of the flight',
+  };
   return tableRow(
     row,
     table.estimators.map(({ outcome, good }) =>
