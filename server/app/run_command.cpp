@@ -1,6 +1,7 @@
 // overfly run: flies one scenario into one folder.
 #include <CLI/CLI.hpp>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "server/app/progress.hpp"
 #include "server/app/score_table.hpp"
 #include "server/app/stop_signal.hpp"
+#include "server/engine/metrics.hpp"
 #include "server/engine/run.hpp"
 #include "server/engine/scenario_list.hpp"
 
@@ -49,6 +51,16 @@ void show_progress(ProgressDisplay& display, const engine::RunInfo& info) {
                done + " of " + std::to_string(info.frames_total));
 }
 
+/// Tells of the estimators that never ran. @return a failure where that is all of them
+int exit_code_of_estimators(const nlohmann::json& metrics) {
+  const std::map<std::string, std::string> reasons = engine::never_ran(metrics);
+  for (const auto& [name, reason] : reasons) {
+    std::cerr << "error: estimator " << name << " never ran: " << reason << "\n";
+  }
+  const bool none_ran = !reasons.empty() && reasons.size() == metrics.at("estimators").size();
+  return none_ran ? kExitFailure : kExitOk;
+}
+
 int run(const RunArguments& arguments) {
   const Result<engine::Scenario> scenario = load(arguments);
   if (!scenario) return report(scenario.error());
@@ -73,7 +85,7 @@ int run(const RunArguments& arguments) {
     std::cerr << "cancelled after frame " << result->info.frames << "\n";
     return kExitCancelled;
   }
-  return kExitOk;
+  return exit_code_of_estimators(result->metrics);
 }
 
 }  // namespace

@@ -154,9 +154,14 @@ int track(const TrackArguments& arguments) {
   } else {
     std::cout << track_summary(summary);
   }
-  if (!tracked->cancelled) return kExitOk;
-  std::cerr << "cancelled after frame " << tracked->records.size() << "\n";
-  return kExitCancelled;
+  if (tracked->cancelled) {
+    std::cerr << "cancelled after frame " << tracked->records.size() << "\n";
+    return kExitCancelled;
+  }
+  if (const std::string reason = engine::never_ran(*tracked); !reason.empty()) {
+    return report({ErrorCode::kInternal, "the estimator never ran: " + reason});
+  }
+  return kExitOk;
 }
 
 void add_dataset_options(CLI::App& command, TrackArguments& arguments) {

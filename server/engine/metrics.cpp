@@ -167,6 +167,8 @@ Json metrics_from(const RunRecords& records) {
     entry["type"] = estimator.type;
     entry["test_estimator"] = is_test_estimator(estimator.type);
     const EstimatorStatus counts = tally_of(records, estimator);
+    entry["answered"] = counts.answered;
+    entry["crash"] = counts.crash.empty() ? Json(nullptr) : Json(counts.crash);
     entry["unanswered"] = counts.unanswered;
     entry["hashes_compared"] = counts.hashes_compared;
     entry["hash_mismatches"] = counts.hash_mismatches;
@@ -181,6 +183,15 @@ Json metrics_from(const RunRecords& records) {
                   {"estimators", std::move(estimators)}};
   if (!records.other_cameras.empty()) metrics["cameras"] = other_cameras_metrics(records);
   return metrics;
+}
+
+std::map<std::string, std::string> never_ran(const Json& metrics) {
+  std::map<std::string, std::string> reasons;
+  for (const auto& [name, entry] : metrics.at("estimators").items()) {
+    if (entry.at("answered") > 0 || !entry.at("crash").is_string()) continue;
+    reasons[name] = entry.at("crash").get<std::string>();
+  }
+  return reasons;
 }
 
 Result<Json> write_derived(const fs::path& folder, const RunRecords& records) {

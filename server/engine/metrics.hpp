@@ -2,7 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "core/result.hpp"
 #include "evaluation/evaluation.hpp"
@@ -21,6 +23,9 @@ namespace overfly::engine {
 /// Scores every estimator of a run. With fewer than two frames there is nothing to score: then the
 /// estimators have an outcome only.
 [[nodiscard]] nlohmann::json metrics_from(const RunRecords& records);
+
+/// Why an estimator was gone before it answered a single frame, by its name: those that never ran.
+[[nodiscard]] std::map<std::string, std::string> never_ran(const nlohmann::json& metrics);
 
 /// True when the imagery under any camera is too coarse: metrics' `texture`, or that of one of
 /// `cameras`.

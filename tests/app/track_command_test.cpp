@@ -177,6 +177,71 @@ TEST_F(TrackCommand, NamesWhatIsWrong) {
   }
 }
 
+/// A process that fails over its calibration, or exits at frame 7.
+std::vector<std::string> failing_estimator(const fs::path& folder, const std::string& how) {
+  const fs::path file = folder / "failing.py";
+  write_text(file,
+             "import os, sys\n"
+             "sys.path.insert(0, sys.argv[1])\n"
+             "import overfly_vo\n"
+             "class Failing(overfly_vo.Estimator):\n"
+             "    def calibrate(self, camera):\n"
+             "        if sys.argv[2] == 'calibration':\n"
+             "            raise RuntimeError('no vocabulary at /nowhere')\n"
+             "    def track(self, frame):\n"
+             "        if frame.index == 7:\n"
+             "            os._exit(3)\n"
+             "        return overfly_vo.Answer(state=overfly_vo.TRACKING,\n"
+             "                                 position=(1.0 * frame.index, 0.0, 0.0))\n"
+             "overfly_vo.run(Failing())\n");
+  return {"python3", "-B", file.string(), source_file("vo_bridges/client").string(), how};
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
+  return text;
+}
+
+TEST_F(TrackCommand, FailsWhenTheEstimatorNeverRan) {
+  const Outcome never =
+      track({"--command", joined(failing_estimator(folder_.path(), "calibration"))});
+  EXPECT_EQ(never.exit_code, 1);
+  EXPECT_THAT(never.err, HasSubstr("error: the estimator never ran: "));
+  EXPECT_THAT(never.err, HasSubstr("no vocabulary at /nowhere"));
+}
+
+TEST_F(TrackCommand, CountsTheFramesOfTheDataSetAfterACrash) {
+  const Outcome crashed =
+      track({"--command", joined(failing_estimator(folder_.path(), "flight")), "--truth", truth()});
+  EXPECT_EQ(crashed.exit_code, 0) << crashed.err;
+  EXPECT_THAT(crashed.out, HasSubstr("LOST 1 of 8 frames, 13 never given"));
+  EXPECT_THAT(crashed.out, HasSubstr("outcome: CRASHED at 0.7 s, coverage 33.3 %\n"));
+}
+
+TEST_F(TrackCommand, RunFailsWhenNoneOfItsEstimatorsRan) {
+  const Json gone = {{"name", "gone"},
+                     {"type", "process"},
+                     {"command", failing_estimator(folder_.path(), "calibration")}};
+  const Json perfect = {{"name", "perfect"}, {"type", "perfect"}};
+  const auto flown = [&](const Json& estimators, const std::string& name) {
+    return overfly_program({"run",
+                            data("small.json"),
+                            "--out",
+                            path(name),
+                            "--quiet",
+                            "--set",
+                            "estimators=" + estimators.dump()});
+  };
+  const Outcome alone = flown({gone}, "alone");
+  EXPECT_EQ(alone.exit_code, 1);
+  EXPECT_THAT(alone.err, HasSubstr("error: estimator gone never ran: "));
+  EXPECT_THAT(alone.err, HasSubstr("no vocabulary at /nowhere"));
+  const Outcome beside = flown({gone, perfect}, "beside");
+  EXPECT_EQ(beside.exit_code, 0);
+  EXPECT_THAT(beside.err, HasSubstr("estimator gone never ran"));
+}
+
 TEST_F(TrackCommand, InterruptKeepsWhatWasTracked) {
   // Long enough not to be over before the signal comes: one image, many times.
   std::string times;

@@ -156,6 +156,16 @@ Result<TrackedDataset> track_dataset(const Dataset& dataset,
   return Pass(dataset, port, options).run();
 }
 
+std::string never_ran(const TrackedDataset& tracked) {
+  for (const EstimateRecord& record : tracked.records) {
+    const auto unanswered = record.counters.find("unanswered");
+    const bool answered = unanswered == record.counters.end() || unanswered->second <= 0.0;
+    if (!record.crash.empty()) return record.crash;
+    if (answered) return {};
+  }
+  return {};
+}
+
 EstimateTrack track_of(const TrackedDataset& tracked) {
   EstimateTrack track;
   track.name = tracked.type;

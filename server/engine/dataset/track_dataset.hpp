@@ -50,6 +50,9 @@ struct TrackedDataset {
                                                    VoPort& port,
                                                    const TrackOptions& options);
 
+/// Why the estimator was gone before it answered a single frame; empty where it ran.
+[[nodiscard]] std::string never_ran(const TrackedDataset& tracked);
+
 /// The answers as they are scored.
 [[nodiscard]] EstimateTrack track_of(const TrackedDataset& tracked);
 
