@@ -41,7 +41,9 @@ struct VoFrame {
 
 /// The estimator's answer to one frame.
 struct VoEstimate {
-  EstimateSample sample;                       ///< frame and t_ns are those of the frame it answers
+  EstimateSample sample;  ///< frame and t_ns are those of the frame it answers
+  /// Why the pose that came with it is none; empty where it is one (or none came).
+  std::string pose_fault;
   std::optional<Image> debug_image;            ///< RGB, same size as the frame or smaller
   std::vector<Eigen::Vector3f> map_points_vo;  ///< sparse map seen now, in vo units; may be empty
   std::map<std::string, double> timing_ms;     ///< wall time by stage

@@ -27,15 +27,8 @@ std::int64_t period_ns(double rate_hz) {
 
 /// Keeps what a run folder can hold: no number that JSON cannot say, nothing of another frame.
 void tidy(const VoFrame& frame, VoEstimate& estimate) {
-  EstimateSample& sample = estimate.sample;
-  sample.frame = frame.index;
-  sample.t_ns = frame.t_ns;
-  const Pose& T = sample.T_vo_camera;
-  if (!T.translation.allFinite() || !T.rotation.coeffs().allFinite()) {
-    sample.T_vo_camera = Pose();
-    if (sample.state == TrackingState::kTracking) sample.state = TrackingState::kLost;
-  }
-  if (sample.scene_depth && !std::isfinite(*sample.scene_depth)) sample.scene_depth.reset();
+  estimate.sample.frame = frame.index;
+  estimate.sample.t_ns = frame.t_ns;
   const auto is_odd = [](const auto& entry) { return !std::isfinite(entry.second); };
   std::erase_if(estimate.counters, is_odd);
   std::erase_if(estimate.timing_ms, is_odd);
@@ -170,12 +163,15 @@ EstimatorEvent EstimatorWorker::answer(const Waiting& waiting) {
     // The run is stopped; that the estimator was, too, in a frame, says nothing of it.
     return drop_of(waiting.frame);
   }
+  if (estimate) {
+    tidy(waiting.frame, *estimate);
+    if (Status usable = judge(*estimate); !usable) estimate = usable.error();
+  }
   if (!estimate) {
     crashed_ = true;
     event.record.crash = estimate.error().message;
     return event;
   }
-  tidy(waiting.frame, *estimate);
   event.record.image_crc32 = estimate->image_crc32;
   if (options_.in_process && !event.record.image_crc32) {
     event.record.image_crc32 = crc32_of(*waiting.frame.image);
@@ -194,6 +190,22 @@ Result<VoEstimate> EstimatorWorker::track(const VoFrame& frame) {
       failure_ ? Result<VoEstimate>(*failure_) : guarded([&] { return port_->track(frame); });
   cpu_s_ += thread_cpu_s() - before_s;
   return estimate;
+}
+
+Status EstimatorWorker::judge(VoEstimate& estimate) {
+  Status usable = poses_.take(estimate);
+  std::vector<std::string> notes = poses_.take_notes();
+  const std::lock_guard lock(mutex_);
+  std::move(notes.begin(), notes.end(), std::back_inserter(notes_));
+  return usable;
+}
+
+std::vector<std::string> EstimatorWorker::take_log() {
+  std::vector<std::string> lines = port_->take_log();
+  const std::lock_guard lock(mutex_);
+  std::move(notes_.begin(), notes_.end(), std::back_inserter(lines));
+  notes_.clear();
+  return lines;
 }
 
 void EstimatorWorker::hold_back(const Waiting& waiting) {

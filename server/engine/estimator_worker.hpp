@@ -16,6 +16,7 @@
 #include "server/engine/estimator_status.hpp"
 #include "server/engine/run_clock.hpp"
 #include "server/engine/run_rows.hpp"
+#include "vo_bridges/pose_intake.hpp"
 #include "vo_bridges/vo_port.hpp"
 
 namespace overfly::engine {
@@ -59,8 +60,8 @@ class EstimatorWorker {
   void wait_until_idle();
   /// Takes what happened since the last call, ordered by frame.
   [[nodiscard]] std::vector<EstimatorEvent> take_events();
-  /// Takes the lines that the estimator said since the last call.
-  [[nodiscard]] std::vector<std::string> take_log() { return port_->take_log(); }
+  /// Takes the lines that the estimator said, or that were noted of it, since the last call.
+  [[nodiscard]] std::vector<std::string> take_log();
   /// Read back from the running estimator. @pre idle
   [[nodiscard]] std::map<std::string, std::string> effective_parameters() const {
     return port_->effective_parameters();
@@ -77,6 +78,8 @@ class EstimatorWorker {
   void make_ready(const VoFrame& first);
   [[nodiscard]] EstimatorEvent answer(const Waiting& waiting);
   [[nodiscard]] Result<VoEstimate> track(const VoFrame& frame);
+  /// Errors: kInternal after too many answers in a row without a usable pose.
+  [[nodiscard]] Status judge(VoEstimate& estimate);
   void hold_back(const Waiting& waiting);
   void choose_debug(std::int64_t t_ns);
 
@@ -93,6 +96,7 @@ class EstimatorWorker {
   double cpu_s_ = 0.0;           ///< of our thread, in the estimator
   std::int64_t answers_ = 0;
   bool crashed_ = false;
+  PoseIntake poses_;
 
   std::mutex mutex_;
   std::condition_variable changed_;
@@ -100,6 +104,7 @@ class EstimatorWorker {
   std::optional<Waiting> waiting_;
   bool busy_ = false;
   bool stopping_ = false;
+  std::vector<std::string> notes_;  ///< of ours about its answers
   std::vector<EstimatorEvent> events_;
   std::vector<EstimatorEvent> drops_;  ///< after the frame at work, before the one that waits
   std::thread thread_;

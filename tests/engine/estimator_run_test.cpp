@@ -46,6 +46,7 @@ class Witness final : public VoPort {
     std::int64_t garbled = -1;          ///< frame that reaches it damaged
     std::int64_t silent = -1;           ///< frame that it does not answer
     std::int64_t absurd = -1;           ///< frame that it answers with what is no number
+    bool absurd_from_there = false;     ///< and all after it
     std::vector<std::string> log = {};  ///< said at its first frame
     std::string unready = {};           ///< why it does not get ready
     std::int64_t cancelled = -1;        ///< frame in which the run's end reaches it
@@ -80,7 +81,8 @@ class Witness final : public VoPort {
     if (habits_.far_end) {
       estimate.image_crc32 = seen_[frame.index] + (frame.index == habits_.garbled ? 1U : 0U);
     }
-    if (frame.index == habits_.absurd) {
+    const bool later = habits_.absurd_from_there && frame.index > habits_.absurd;
+    if (frame.index == habits_.absurd || later) {
       estimate.sample.frame = 77;
       estimate.sample.T_vo_camera.translation.x() = std::nan("");
       estimate.sample.scene_depth = std::numeric_limits<double>::infinity();
@@ -247,6 +249,22 @@ TEST(EstimatorRun, AnswersThatAreNoNumbersLeaveTheFolderReadable) {
   EXPECT_EQ(record.sample.state, TrackingState::kLost);
   EXPECT_FALSE(record.sample.scene_depth.has_value());
   EXPECT_EQ(record.counters, (std::map<std::string, double>{{"inliers", 3.0}}));
+  EXPECT_EQ(records.estimators[0].records.at(7).sample.state, TrackingState::kTracking);
+  EXPECT_THAT(overfly::testing::read_text(log_file(flight.folder.path() / "r")),
+              HasSubstr("warning: frame 6: the position is not finite"));
+}
+
+TEST(EstimatorRun, OneWithoutAUsablePoseForLongIsGivenUp) {
+  Flight flight;
+  flight.overrides = {"duration_s=5", R"(estimators=[{"name":"a","type":"feature"}])"};
+  flight.habits["a"].absurd = 6;
+  flight.habits["a"].absurd_from_there = true;
+  const RunResult run = flight.fly();
+  const Json& score = run.metrics.at("estimators").at("a");
+  EXPECT_EQ(score.at("outcome"), "CRASHED");
+  EXPECT_EQ(score.at("outcome_time_s"), 0.1 * (6 + PoseIntake::kMostInARow - 1));
+  EXPECT_THAT(score.at("crash").get<std::string>(),
+              HasSubstr("30 answers in a row had no usable pose"));
 }
 
 TEST(EstimatorRun, UseStandsInTheTimingsAndReadsBack) {

@@ -11,6 +11,7 @@
 #include "vo_bridges/lcm/lcm_door.hpp"
 #include "vo_bridges/lcm/lcm_link.hpp"
 #include "vo_bridges/lcm/lcm_network.hpp"
+#include "vo_bridges/pose_intake.hpp"
 
 namespace overfly {
 namespace {
@@ -83,6 +84,7 @@ class LcmEstimator final : public VoPort {
   std::unique_ptr<LcmLink> link_;
   const LcmEstimatorOptions options_;
   const bool hears_;  ///< false: nothing can be heard from this network
+  PoseIntake poses_;
   std::optional<VoFrame> previous_;
   std::optional<Error> gone_;
   Clock::time_point start_deadline_;
@@ -105,7 +107,11 @@ Result<VoEstimate> LcmEstimator::track(const VoFrame& frame) {
   previous_->image.reset();  // its size stays in the intrinsics
   Result<Answer> answer = ask(frame);
   if (!answer) return ended_by(answer.error());
-  return complete(std::move(*answer), frame);
+  VoEstimate estimate = complete(std::move(*answer), frame);
+  const Status usable = poses_.take(estimate);
+  for (const std::string& line : poses_.take_notes()) link_->far_end().say(line);
+  if (!usable) return ended_by(usable.error());
+  return estimate;
 }
 
 Error LcmEstimator::ended_by(const Error& error) {
@@ -253,6 +259,7 @@ void LcmEstimator::reset() {
   silent_frames_ = 0;
   had_pose_ = false;
   map_id_ = 0;
+  poses_ = {};
 }
 
 Error bad(const std::string& field, const std::string& value, const std::string& limit) {

@@ -123,6 +123,7 @@ void LcmLink::hear_pose(std::span<const std::uint8_t> bytes) {
   } else {
     far_end_.refuse(prefix_ + "POSE", understood.error().message);
     estimate.sample.state = TrackingState::kLost;
+    estimate.pose_fault = understood.error().message;
   }
   if (message->image_received != 0) answered_ = answers_to;
   answers_.deliver(message->t_ns, std::move(estimate));

@@ -48,7 +48,7 @@ struct FrameSending {
 
 /// Errors of all that parse: kInternal saying what is wrong with which field, and its value.
 [[nodiscard]] Result<EstimatorHello> hello_from(std::string_view payload);
-/// The answer to `frame`; its pose normalised, and of its figures those that `figures` takes.
+/// The answer to `frame`: its pose as it came, and of its figures those that `figures` takes.
 [[nodiscard]] Result<VoEstimate> answer_from(std::string_view payload,
                                              const VoFrame& frame,
                                              FigureIntake* figures);

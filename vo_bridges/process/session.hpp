@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/result.hpp"
+#include "vo_bridges/pose_intake.hpp"
 #include "vo_bridges/process/channel.hpp"
 #include "vo_bridges/process/child_process.hpp"
 #include "vo_bridges/process/frame_memory.hpp"
@@ -82,6 +83,7 @@ class Session {
   std::optional<VoFrame> under_way_;  // sent and not answered; without its image
   VoEstimate extra_;                  // debug image and map points of it
   FigureIntake figures_;
+  PoseIntake poses_;
   Clock::time_point sent_at_;
   std::optional<Clock::time_point> cancelled_at_;
   std::optional<Error> ended_;

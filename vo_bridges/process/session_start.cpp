@@ -146,16 +146,17 @@ std::string Session::described() const {
 Error Session::end(const Error& why) {
   if (ended_) return *ended_;
   std::string text = described() + ": " + why.message;
-  const bool ends_by_itself = channel_ && channel_->closed();
-  channel_.reset();
   if (child_) {
+    const bool ends_by_itself = channel_ && channel_->closed();
     const bool by_itself = child_->wait(ends_by_itself ? kDeathPatience : milliseconds(0));
     if (by_itself) output_->wait_closed(kDeathPatience);
     const std::string how = child_->how_it_ended();
+    // Killed while it is still connected: its last words are its own, not its complaint about us.
     child_->stop();
     if (by_itself) text += "; it " + how;
     if (why.code != ErrorCode::kCancelled) text += output_->last_words();
   }
+  channel_.reset();
   ended_ = Error{why.code, text};
   return *ended_;
 }

@@ -123,11 +123,7 @@ void Session::take_pose(std::int64_t stamp_ns, const std::optional<Pose>& publis
     answer.sample.state = TrackingState::kTracking;
     answer.sample.T_vo_camera = T_vo_camera_from(*published, options_);
   } else {
-    answer.sample.state = TrackingState::kLost;
-    if (worth_a_line(++unusable_)) {
-      log_->add(std::to_string(unusable_) +
-                " poses were none: not finite, or a quaternion that is not of length 1");
-    }
+    answer.pose_fault = "the pose is not finite, or its quaternion is not of length 1";
   }
   patience_.answered(stamp_ns, Clock::now());
   if (!answers_.deliver(stamp_ns, std::move(answer))) report_strays();
@@ -226,15 +222,19 @@ Result<VoEstimate> Session::exchange(const VoFrame& frame, std::int64_t stamp_ns
   } else {
     patience_.gave_up();
     estimate.counters["unanswered"] = 1.0;
-    estimate.sample.state = TrackingState::kLost;
+    estimate.sample.state = tracked_ ? TrackingState::kLost : TrackingState::kInitialising;
   }
   estimate.sample.frame = frame.index;
   estimate.sample.t_ns = frame.t_ns;
+  const Status usable = poses_.take(estimate);
+  for (const std::string& line : poses_.take_notes()) log_->add(line);
+  if (!usable) {
+    ended_ = usable.error();
+    return *ended_;
+  }
   if (estimate.sample.state == TrackingState::kTracking) {
     tracked_ = true;
     topics_->publish_estimate(estimate.sample.T_vo_camera, stamp_ns);
-  } else if (!tracked_) {
-    estimate.sample.state = TrackingState::kInitialising;
   }
   if (debug_) add_debug_image(frame, stamp_ns, estimate);
   return estimate;
@@ -260,6 +260,7 @@ void Session::reset() {
   if (previous_) earliest_ns_ = previous_->t_ns + offset_ns_ + kSecondNs;
   previous_.reset();
   tracked_ = false;
+  poses_ = {};
   answers_.forget();
   patience_.forget();
   debug_images_.forget();

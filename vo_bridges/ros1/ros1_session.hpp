@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "vo_bridges/pose_intake.hpp"
 #include "vo_bridges/ros1/answer_patience.hpp"
 #include "vo_bridges/ros1/ros1_debug_images.hpp"
 #include "vo_bridges/ros1/ros1_log.hpp"
@@ -69,8 +70,8 @@ class Session final : public VoPort {
   AnswerPatience patience_;
   DebugImages debug_images_;
   std::atomic<bool> debug_ = false;
-  std::atomic<std::int64_t> unusable_ = 0;  ///< poses that were none
-  AnswerCounts reported_;                   ///< strays that the log has; of the topics' thread
+  PoseIntake poses_;
+  AnswerCounts reported_;  ///< strays that the log has; of the topics' thread
   std::optional<VoFrame> previous_;
   bool ready_ = false;
   bool tracked_ = false;

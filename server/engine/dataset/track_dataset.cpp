@@ -12,6 +12,7 @@
 #include "server/engine/jpeg.hpp"
 #include "server/engine/run_clock.hpp"
 #include "server/engine/whole_file.hpp"
+#include "vo_bridges/pose_intake.hpp"
 
 namespace overfly::engine {
 namespace {
@@ -94,6 +95,13 @@ class Pass {
         failure_ ? Result<VoEstimate>(*failure_) : guarded([&] { return port_.track(*frame); });
     result_.tracking.ms.push_back(ms_since(track_ns));
     result_.resources.cpu_s += process_cpu_s() - cpu_before_s;
+    if (estimate) {
+      estimate->sample.frame = frame->index;
+      estimate->sample.t_ns = frame->t_ns;
+      const Status usable = poses_.take(*estimate);
+      tell(poses_.take_notes());
+      if (!usable) estimate = usable.error();
+    }
     EstimateRecord record;
     record.sample.frame = frame->index;
     record.sample.t_ns = frame->t_ns;
@@ -134,8 +142,10 @@ class Pass {
                        std::span<const std::uint8_t>(*bytes));
   }
 
-  void pass_on_log() {
-    for (const std::string& line : port_.take_log()) {
+  void pass_on_log() { tell(port_.take_log()); }
+
+  void tell(const std::vector<std::string>& lines) {
+    for (const std::string& line : lines) {
       if (options_.log) options_.log(line);
     }
   }
@@ -145,6 +155,7 @@ class Pass {
   const TrackOptions& options_;
   TrackedDataset result_;
   bool crashed_ = false;
+  PoseIntake poses_;
   std::optional<Error> failure_;  ///< to get ready
 };
 

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
@@ -152,6 +153,27 @@ TEST_F(TrackDataset, TakesACrashForAResultAndARefusalForAnError) {
   const auto refused = track_dataset(dataset_, refusing, {});
   ASSERT_FALSE(refused.ok());
   EXPECT_THAT(refused.error().message, HasSubstr("times.txt:1: no colour"));
+}
+
+TEST_F(TrackDataset, TakesAPoseThatIsNoneForALostFrame) {
+  std::vector<std::string> warnings;
+  TrackOptions options;
+  options.log = [&](const std::string& line) {
+    if (line.starts_with("warning")) warnings.push_back(line);
+  };
+  const TrackedDataset result = tracked(
+      [](const VoFrame& frame, VoEstimate estimate) {
+        if (frame.index == 3) estimate.sample.T_vo_camera.translation.y() = std::nan("");
+        return estimate;
+      },
+      options);
+  ASSERT_EQ(result.records.size(), 6U);
+  EXPECT_EQ(result.records[3].sample.state, TrackingState::kLost);
+  EXPECT_EQ(result.records[4].sample.state, TrackingState::kTracking);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_THAT(warnings[0], HasSubstr("warning: frame 3: the position is not finite"));
+  ASSERT_TRUE(write_track(path() / "t.tum", result).ok());
+  EXPECT_EQ(read_trajectory(path() / "t.tum")->trajectory.size(), 5U);
 }
 
 TEST_F(TrackDataset, NamesTheBrokenImageInTheMiddle) {

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "tests/vo_bridges/lcm/lcm_test_estimator.hpp"
+#include "vo_bridges/pose_intake.hpp"
 
 namespace overfly {
 namespace {
@@ -141,6 +142,25 @@ INSTANTIATE_TEST_SUITE_P(
                 [](auto& pose) { pose.orientation[2] = pose.orientation[3] = std::nan(""); },
                 "norm of orientation = nan"}),
     [](const auto& instance) { return instance.param.name; });
+
+TEST(LcmTrouble, GivesUpAnEstimatorWithoutAUsablePose) {
+  LcmBehaviour behaviour;
+  behaviour.changes_pose = [](overfly_lcm::pose_t& pose) { pose.position[0] = std::nan(""); };
+  const LcmPair pair = make_memq_pair(behaviour);
+  const auto frames = varied_frames(PoseIntake::kMostInARow + 1);
+  int lost = 0;
+  Result<VoEstimate> last = VoEstimate{};
+  for (const VoFrame& frame : frames) {
+    last = pair.door->track(frame);
+    if (!last) break;
+    lost += last->sample.state == TrackingState::kLost ? 1 : 0;
+  }
+  ASSERT_FALSE(last.ok());
+  EXPECT_EQ(last.error().code, ErrorCode::kInternal);
+  EXPECT_EQ(lost, PoseIntake::kMostInARow - 1);
+  EXPECT_THAT(last.error().message, HasSubstr("30 answers in a row had no usable pose"));
+  EXPECT_EQ(pair.door->track(frames.back()).error().message, last.error().message);
+}
 
 /// A valid pose with lengths that its bytes do not hold.
 std::vector<std::uint8_t> pose_with_absurd_length() {

@@ -8,11 +8,13 @@
 #include <chrono>
 #include <csignal>
 #include <functional>
+#include <map>
 #include <set>
 #include <thread>
 
 #include "tests/support/support.hpp"
 #include "tests/vo_bridges/process/process_fixture.hpp"
+#include "vo_bridges/pose_intake.hpp"
 
 namespace overfly {
 namespace {
@@ -78,13 +80,65 @@ TEST_F(ProcessTrouble, AnEndIsToldWithItsCode) {
 }
 
 TEST_F(ProcessTrouble, BadAnswersEndTheFlightAndAreQuoted) {
-  EXPECT_THAT(flight_error(scripted("nan_pose")).message,
-              HasSubstr("ANSWER to frame 1: the position is not finite"));
-  EXPECT_THAT(flight_error(scripted("long_quaternion")).message,
-              HasSubstr("quaternion has length"));
   EXPECT_THAT(flight_error(scripted("bad_state")).message, HasSubstr("state = 7"));
   EXPECT_THAT(flight_error(scripted("large_debug_image"), true).message,
               HasSubstr("DEBUG_IMAGE is 64 x 9999 px"));
+}
+
+TEST_F(ProcessTrouble, APoseThatIsNoneIsOneLostFrameWithAWarning) {
+  for (const auto& [behaviour, complaint] :
+       std::map<std::string, std::string>{{"nan_pose", "frame 2: the position is not finite"},
+                                          {"long_quaternion", "frame 2: the quaternion has"}}) {
+    const auto estimator = started(scripted(behaviour, "2"));
+    for (const VoFrame& frame : ground_frames(4, 1.0, 1.0, 64, 48)) {
+      const Result<VoEstimate> estimate = estimator->track(frame);
+      ASSERT_TRUE(estimate.ok()) << estimate.error().message;
+      if (frame.index == 0) continue;
+      EXPECT_EQ(estimate->sample.state,
+                frame.index == 2 ? TrackingState::kLost : TrackingState::kTracking);
+    }
+    EXPECT_THAT(lines_with(*estimator, "warning: " + complaint), ::testing::SizeIs(1));
+  }
+}
+
+TEST_F(ProcessTrouble, ManyPosesThatAreNoneEndTheFlight) {
+  const auto estimator = started(scripted("nan_pose", "all"));
+  const auto frames = ground_frames(PoseIntake::kMostInARow + 2, 1.0, 1.0, 64, 48);
+  // The first frame of a scripted estimator claims no pose.
+  for (int i = 0; i < PoseIntake::kMostInARow; ++i) {
+    EXPECT_TRUE(estimator->track(frames[static_cast<std::size_t>(i)]).ok()) << i;
+  }
+  const Result<VoEstimate> gone = estimator->track(frames[PoseIntake::kMostInARow]);
+  ASSERT_FALSE(gone.ok());
+  EXPECT_EQ(gone.error().code, ErrorCode::kInternal);
+  EXPECT_THAT(gone.error().message,
+              AllOf(HasSubstr("30 answers in a row had no usable pose"),
+                    HasSubstr("to frame 30: the position is not finite"),
+                    HasSubstr("it last said: camera0 64x48")));
+}
+
+TEST_F(ProcessTrouble, TheLastWordsAreItsOwnAndNotThoseAboutItsEnd) {
+  const testing::TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "estimator.py";
+  // A lost connection would end it with a traceback of many lines.
+  testing::write_text(file,
+                      "import sys\n"
+                      "sys.path.insert(0, sys.argv[1])\n"
+                      "import overfly_vo\n"
+                      "class Odd(overfly_vo.Estimator):\n"
+                      "    def track(self, frame):\n"
+                      "        print('the map is empty', file=sys.stderr, flush=True)\n"
+                      "        return overfly_vo.Answer(state=7)\n"
+                      "overfly_vo.run(Odd())\n");
+  ProcessEstimatorOptions options = scripted("good");
+  options.command = {
+      "python3", "-B", file.string(), testing::source_file("vo_bridges/client").string()};
+  options.output_file = folder.path() / "output.log";
+  const auto estimator = started(options);
+  const Result<VoEstimate> answer = estimator->track(ground_frames(1, 1.0, 1.0, 64, 48)[0]);
+  ASSERT_FALSE(answer.ok());
+  EXPECT_THAT(answer.error().message, ::testing::EndsWith("; it last said: the map is empty"));
+  EXPECT_EQ(testing::read_text(options.output_file), "the map is empty\n");
 }
 
 TEST_F(ProcessTrouble, AFloodOfMessagesEndsTheFlight) {

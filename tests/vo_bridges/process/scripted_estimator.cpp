@@ -78,8 +78,11 @@ class Scripted final : public overfly_vo::Estimator {
                        {"calibrations", calibrations_}};
     if (!frame.imu.empty()) answer.counters["turn_z"] = frame.imu.back().angular_rate_rad_s[2];
     answer.timings_ms = {{"match", 1.5}};
-    if (behaviour_ == "nan_pose") answer.position[1] = std::numeric_limits<double>::quiet_NaN();
-    if (behaviour_ == "long_quaternion") answer.quaternion_xyzw[3] = 2.0;
+    const bool now = argument_ == "all" || argument_ == std::to_string(frame.index);
+    if (behaviour_ == "nan_pose" && now) {
+      answer.position[1] = std::numeric_limits<double>::quiet_NaN();
+    }
+    if (behaviour_ == "long_quaternion" && now) answer.quaternion_xyzw[3] = 2.0;
     if (behaviour_ == "bad_state") answer.state = static_cast<overfly_vo::State>(7);
     if (behaviour_ == "large_debug_image") answer.debug_image = {frame.width_px, 9999, 1, {1}};
     if (behaviour_ == "nan_figures") {

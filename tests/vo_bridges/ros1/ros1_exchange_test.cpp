@@ -284,9 +284,26 @@ TEST(Ros1Exchange, TakesAPoseThatIsNoneForALostTrack) {
   const TestNode node(options, {"bad_pose=1"});
   const auto port = created(options);
   const VoEstimate estimate = tracked(*port, grey_frames(1).front());
-  EXPECT_EQ(estimate.sample.state, TrackingState::kInitialising);
+  EXPECT_EQ(estimate.sample.state, TrackingState::kLost);
   EXPECT_EQ(estimate.counters.count("unanswered"), 0U) << "it did answer";
-  EXPECT_THAT(port->take_log(), Contains(HasSubstr("not finite")));
+  EXPECT_THAT(port->take_log(), Contains(HasSubstr("warning: frame 0: the pose is not finite")));
+}
+
+TEST(Ros1Exchange, GivesUpAnEstimatorWithoutAUsablePose) {
+  ROS_MASTER_OR_SKIP();
+  const Ros1EstimatorOptions options = fresh_options();
+  const TestNode node(options, {"bad_pose=1"});
+  const auto port = created(options);
+  const auto frames = grey_frames(PoseIntake::kMostInARow + 1);
+  for (int i = 0; i + 1 < PoseIntake::kMostInARow; ++i) {
+    EXPECT_EQ(tracked(*port, frames[i]).sample.state, TrackingState::kLost) << i;
+  }
+  for (int i = PoseIntake::kMostInARow - 1; i <= PoseIntake::kMostInARow; ++i) {
+    const Result<VoEstimate> gone = port->track(frames[i]);
+    ASSERT_FALSE(gone.ok());
+    EXPECT_EQ(gone.error().code, ErrorCode::kInternal);
+    EXPECT_THAT(gone.error().message, HasSubstr("30 answers in a row had no usable pose"));
+  }
 }
 
 TEST(Ros1Exchange, SetsAndReadsParametersOfTheNode) {

@@ -1,0 +1,72 @@
+#include "vo_bridges/pose_intake.hpp"
+
+#include <cmath>
+#include <utility>
+
+namespace overfly {
+namespace {
+
+/// Four decimals of each part, as in many text files.
+constexpr double kUnitTolerance = 1e-3;
+/// What is off by less stays as it came.
+constexpr double kExactlyUnit = 1e-12;
+/// Millimetres to the moon and back.
+constexpr double kFarthest = 1e12;
+
+}  // namespace
+
+std::string fault_of(const Pose& T_vo_camera) {
+  const Eigen::Vector3d& position = T_vo_camera.translation;
+  if (!position.allFinite()) return "the position is not finite";
+  if (position.cwiseAbs().maxCoeff() > kFarthest) {
+    return "the position is beyond 1e12 units";
+  }
+  const double norm = T_vo_camera.rotation.norm();
+  if (!(std::abs(norm - 1.0) <= kUnitTolerance)) {
+    return "the quaternion has length " + std::to_string(norm) + ": must be 1";
+  }
+  return {};
+}
+
+Status PoseIntake::take(VoEstimate& estimate) {
+  EstimateSample& sample = estimate.sample;
+  std::string fault = std::exchange(estimate.pose_fault, {});
+  if (fault.empty() && sample.state == TrackingState::kTracking) {
+    fault = fault_of(sample.T_vo_camera);
+  }
+  if (sample.scene_depth && !(std::isfinite(*sample.scene_depth) && *sample.scene_depth > 0.0)) {
+    if (!std::exchange(depth_noted_, true)) {
+      notes_.push_back("warning: frame " + std::to_string(sample.frame) +
+                       ": scene depth = " + std::to_string(*sample.scene_depth) +
+                       ": must be positive and finite; it is left out, this one and those to come");
+    }
+    sample.scene_depth.reset();
+  }
+  if (fault.empty()) {
+    in_a_row_ = 0;
+    if (sample.state != TrackingState::kTracking) sample.T_vo_camera = {};
+    Eigen::Quaterniond& rotation = sample.T_vo_camera.rotation;
+    if (std::abs(rotation.norm() - 1.0) > kExactlyUnit) rotation.normalize();
+    return {};
+  }
+  note(sample, fault);
+  sample.state = TrackingState::kLost;
+  sample.T_vo_camera = {};
+  sample.scene_depth.reset();
+  if (++in_a_row_ < kMostInARow) return {};
+  return Error{ErrorCode::kInternal,
+               std::to_string(kMostInARow) + " answers in a row had no usable pose, the last one " +
+                   "that to frame " + std::to_string(sample.frame) + ": " + fault};
+}
+
+void PoseIntake::note(const EstimateSample& sample, const std::string& fault) {
+  if (notes_made_ >= kMostNotes) return;
+  std::string line = "warning: frame " + std::to_string(sample.frame) + ": " + fault +
+                     "; such a frame counts as LOST";
+  if (++notes_made_ == kMostNotes) line += " (further ones are not told)";
+  notes_.push_back(std::move(line));
+}
+
+std::vector<std::string> PoseIntake::take_notes() { return std::exchange(notes_, {}); }
+
+}  // namespace overfly
