@@ -25,6 +25,8 @@ namespace overfly::process {
 namespace {
 
 constexpr int kSampleMs = 250;
+/// What the kernel has to end descendants that were killed.
+constexpr std::chrono::milliseconds kEndPatience(5000);
 
 double seconds_of(const timeval& time) {
   return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_usec) * 1e-6;
@@ -53,7 +55,12 @@ Result<std::unique_ptr<ChildProcess>> ChildProcess::start(const ChildCommand& co
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) {
     return Error{ErrorCode::kIo, "pipe: " + std::generic_category().message(errno)};
   }
-  std::unique_ptr<ChildProcess> child(new ChildProcess());
+  Result<PrivateFolder> temporary = PrivateFolder::create();
+  if (!temporary) return temporary.error();
+  std::unique_ptr<ChildProcess> child(new ChildProcess(std::move(*temporary)));
+  ChildCommand own = command;
+  own.environment.push_back(child->family_.mark());
+  own.environment.push_back("TMPDIR=" + child->temporary_->path().string());
   child->output_ = std::move(output);
   child->output_pipe_ = FileDescriptor(ends[0]);
   ::fcntl(ends[0], F_SETFL, O_NONBLOCK);
@@ -62,8 +69,8 @@ Result<std::unique_ptr<ChildProcess>> ChildProcess::start(const ChildCommand& co
   std::promise<Result<int>> started;
   std::future<Result<int>> start_result = started.get_future();
   child->thread_ = std::thread(
-      [&command, &program, &writing, started = std::move(started), self = child.get()]() mutable {
-        Result<int> pid = start_child(*program, command, writing.get());
+      [&own, &program, &writing, started = std::move(started), self = child.get()]() mutable {
+        Result<int> pid = start_child(*program, own, writing.get());
         writing.close();
         const bool runs = pid.ok();
         if (runs) self->pid_ = *pid;
@@ -97,12 +104,14 @@ bool ChildProcess::wait(std::chrono::milliseconds patience) const {
 void ChildProcess::stop() {
   if (stopped_) return;
   sample_use();
+  family_.kill_members(pid_);
   // The group before its leader is reaped: until then no other group can get its number.
   ::kill(-pid_, SIGKILL);
   siginfo_t info{};
   while (::waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOWAIT) != 0 &&
          errno == EINTR) {
   }
+  family_.end(pid_, kEndPatience);
   {
     const std::lock_guard lock(mutex_);
     end_ = end_text(info.si_code, info.si_status);
@@ -116,6 +125,7 @@ void ChildProcess::stop() {
   const std::uint64_t one = 1;
   [[maybe_unused]] const ssize_t written = ::write(wake_.get(), &one, sizeof(one));
   thread_.join();
+  temporary_.reset();
 }
 
 std::string ChildProcess::how_it_ended() const {

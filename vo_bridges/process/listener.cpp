@@ -67,8 +67,8 @@ int port_of(int socket) {
 Listener::Listener(Listener&& other) noexcept
     : socket_(std::move(other.socket_)),
       address_(std::exchange(other.address_, {})),
-      path_(std::exchange(other.path_, {})),
-      folder_(std::exchange(other.folder_, {})) {}
+      folder_(std::exchange(other.folder_, std::nullopt)),
+      path_(std::exchange(other.path_, {})) {}
 
 Listener::~Listener() {
   std::error_code ignored;  // nothing can be done about a file that stays
@@ -76,7 +76,6 @@ Listener::~Listener() {
       std::filesystem::file_type::socket) {
     std::filesystem::remove(path_, ignored);
   }
-  if (!folder_.empty()) std::filesystem::remove(folder_, ignored);
 }
 
 Result<Listener> Listener::open(const std::string& address) {
@@ -95,18 +94,10 @@ Result<Listener> Listener::open(const std::string& address) {
 }
 
 Result<Listener> Listener::open_private() {
-  std::error_code failure;
-  const std::filesystem::path temporary = std::filesystem::temp_directory_path(failure);
-  std::string folder = ((failure ? "/tmp" : temporary) / "overfly-vo-XXXXXX").string();
-  if (::mkdtemp(folder.data()) == nullptr) {
-    return Error{ErrorCode::kIo, "cannot make folder " + folder + ": " + system_message(errno)};
-  }
-  Result<Listener> listener = open_unix(folder + "/socket");
-  if (!listener) {
-    std::filesystem::remove(folder, failure);
-    return listener.error();
-  }
-  listener->folder_ = folder;
+  Result<PrivateFolder> folder = PrivateFolder::create();
+  if (!folder) return folder.error();
+  Result<Listener> listener = open_unix((folder->path() / "socket").string());
+  if (listener) listener->folder_ = std::move(*folder);
   return listener;
 }
 

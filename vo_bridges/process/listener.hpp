@@ -8,6 +8,7 @@
 
 #include "core/result.hpp"
 #include "vo_bridges/process/file_descriptor.hpp"
+#include "vo_bridges/process/private_folder.hpp"
 
 namespace overfly::process {
 
@@ -45,8 +46,8 @@ class Listener {
 
   FileDescriptor socket_;
   std::string address_;
-  std::filesystem::path path_;    // of a Unix socket
-  std::filesystem::path folder_;  // made for it
+  std::optional<PrivateFolder> folder_;  // made for the socket, removed after it
+  std::filesystem::path path_;           // of a Unix socket
 };
 
 }  // namespace overfly::process

@@ -7,8 +7,9 @@
 #include <fstream>
 #include <sstream>
 #include <string>
-#include <system_error>
 #include <vector>
+
+#include "vo_bridges/process/process_family.hpp"
 
 namespace overfly::process {
 
@@ -53,15 +54,6 @@ std::optional<double> peak_memory_mb_of(int pid) {
   return std::nullopt;
 }
 
-void append_children(int pid, std::vector<int>* pids) {
-  std::error_code failure;
-  std::filesystem::directory_iterator tasks(folder_of(pid) / "task", failure);
-  for (; !failure && tasks != std::filesystem::directory_iterator(); tasks.increment(failure)) {
-    std::ifstream file(tasks->path() / "children");
-    for (int child = 0; file >> child && pids->size() < kProcessLimit;) pids->push_back(child);
-  }
-}
-
 }  // namespace
 
 std::optional<ResourceUse> usage_of(int pid) {
@@ -74,7 +66,9 @@ std::optional<ResourceUse> usage_of(int pid) {
     if (!all) all.emplace();
     all->cpu_s += cpu_s.value_or(0.0);
     all->peak_memory_mb += memory_mb.value_or(0.0);
-    append_children(pids[i], &pids);
+    for (const int child : children_of(pids[i])) {
+      if (pids.size() < kProcessLimit) pids.push_back(child);
+    }
   }
   return all;
 }

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,15 +25,23 @@ inline constexpr int kPlain = 100;  ///< first pixel of a frame without orders
 /// An environment variable while it lives.
 class Environment {
  public:
-  explicit Environment(std::string name) : name_(std::move(name)) {
-    ::setenv(name_.c_str(), "1", 1);
+  explicit Environment(std::string name, const std::string& value = "1") : name_(std::move(name)) {
+    if (const char* const before = std::getenv(name_.c_str())) before_ = before;
+    ::setenv(name_.c_str(), value.c_str(), 1);
   }
-  ~Environment() { ::unsetenv(name_.c_str()); }
+  ~Environment() {
+    if (before_) {
+      ::setenv(name_.c_str(), before_->c_str(), 1);
+    } else {
+      ::unsetenv(name_.c_str());
+    }
+  }
   Environment(const Environment&) = delete;
   Environment& operator=(const Environment&) = delete;
 
  private:
   std::string name_;
+  std::optional<std::string> before_;
 };
 
 inline Result<std::unique_ptr<VoPort>> start_adapter(const std::string& name,

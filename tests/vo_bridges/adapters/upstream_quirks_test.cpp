@@ -2,6 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
+#include "tests/support/support.hpp"
 #include "tests/vo_bridges/adapters/adapter_run.hpp"
 
 namespace overfly::testing {
@@ -147,6 +150,48 @@ TEST(SvoAdapter, StartsAgainWhereUpstreamWouldStayPaused) {
   paused.track();
   paused.track(standins::kDark);
   EXPECT_EQ(paused.track_plain(4).sample.state, TrackingState::kInitialising);
+}
+
+/// What the adapter says to a camera of this size.
+std::string svo_with_size(int width_px, int height_px, const VoParameters& parameters = {}) {
+  auto started = start_adapter("svo", parameters);
+  if (!started.ok()) return started.error().message;
+  VoFrame frame = ordered_frame(0);
+  frame.image = std::make_shared<const Image>(width_px, height_px, 1);
+  frame.intrinsics =
+      PinholeCamera::from_fov(width_px, height_px, 1.48, FovAxis::kHorizontal).value();
+  const Result<VoEstimate> answer = started.value()->track(frame);
+  return answer.ok() ? "taken" : answer.error().message;
+}
+
+TEST(SvoAdapter, RefusesAWidthThatDoesNotHalve) {
+  EXPECT_THAT(svo_with_size(1242, 375),
+              HasSubstr("frames of 1242 x 375 px: SVO halves them 4 times (nPyrLevels, "
+                        "kltMaxLevel) and would write beyond an image of an odd width; take a "
+                        "width that 16 divides"));
+  EXPECT_EQ(svo_with_size(1232, 375), "taken") << "a row that is left over does no harm";
+  EXPECT_EQ(svo_with_size(328, 240, {{"kltMaxLevel", 3.0}}), "taken");
+  EXPECT_THAT(svo_with_size(328, 240), HasSubstr("take a width that 16 divides"));
+}
+
+TEST(SvoAdapter, WritesItsFileIntoTheTemporaryFolderOfItsRun) {
+  const TemporaryFolder folder;
+  const Environment temporary("TMPDIR", folder.path().string());
+  const auto traces = [&] {
+    std::size_t count = 0;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.path())) {
+      count += entry.path().filename() == "svo.csv" ? 1U : 0U;
+    }
+    return count;
+  };
+  {
+    AdapterRun one("svo");
+    AdapterRun other("svo");
+    one.track();
+    other.track();
+    EXPECT_EQ(traces(), 2U);
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
 TEST(SvoAdapter, RelocalisesInTheSameMap) {

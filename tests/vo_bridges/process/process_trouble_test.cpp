@@ -325,6 +325,60 @@ TEST_F(ProcessTrouble, GrandchildrenDieWithTheChild) {
   EXPECT_TRUE(gone_soon(grandchild));
 }
 
+TEST_F(ProcessTrouble, GrandchildrenThatCutThemselvesLooseDieWithTheChild) {
+  const auto daemon_of = [](VoPort& estimator) {
+    int daemon = 0;
+    for (const VoFrame& frame : ground_frames(4, 1.0, 1.0, 64, 48)) {
+      daemon = static_cast<int>(estimator.track(frame)->counters.at("child"));
+    }
+    EXPECT_GT(daemon, 0);
+    EXPECT_TRUE(alive(daemon));
+    return daemon;
+  };
+  auto one = started(scripted("loose_grandchild"));
+  auto other = started(scripted("loose_grandchild"));
+  const int of_one = daemon_of(*one);
+  const int of_other = daemon_of(*other);
+  one.reset();
+  EXPECT_FALSE(alive(of_one));
+  EXPECT_TRUE(alive(of_other)) << "another estimator's";
+  other.reset();
+  EXPECT_FALSE(alive(of_other));
+}
+
+TEST_F(ProcessTrouble, TemporaryFilesGoIntoAFolderOfItsOwnAndAreRemoved) {
+  const testing::TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "estimator.py";
+  testing::write_text(file,
+                      "import os, sys, tempfile\n"
+                      "sys.path.insert(0, sys.argv[1])\n"
+                      "import overfly_vo\n"
+                      "class Writer(overfly_vo.Estimator):\n"
+                      "    def track(self, frame):\n"
+                      "        os.makedirs(os.path.join(tempfile.gettempdir(), 'a', 'b'))\n"
+                      "        self.log(1, tempfile.gettempdir())\n"
+                      "        return overfly_vo.Answer()\n"
+                      "overfly_vo.run(Writer())\n");
+  ProcessEstimatorOptions options = scripted("good");
+  options.command = {
+      "python3", "-B", file.string(), testing::source_file("vo_bridges/client").string()};
+  const VoFrame frame = ground_frames(1, 1.0, 1.0, 64, 48)[0];
+  std::set<std::filesystem::path> folders;
+  {
+    const auto one = started(options);
+    const auto other = started(options);
+    for (VoPort* estimator : {one.get(), other.get()}) {
+      ASSERT_TRUE(estimator->track(frame).ok()) << "the name is not taken";
+      for (const std::string& line : lines_with(*estimator, "overfly-vo-")) folders.insert(line);
+    }
+    ASSERT_EQ(folders.size(), 2U);
+    for (const std::filesystem::path& its : folders) {
+      EXPECT_TRUE(std::filesystem::is_directory(its / "a" / "b")) << its;
+    }
+  }
+  for (const std::filesystem::path& its : folders) EXPECT_FALSE(std::filesystem::exists(its));
+}
+
 TEST_F(ProcessTrouble, AKilledServerLeavesNoOrphan) {
   std::array<int, 2> told{};
   ASSERT_EQ(::pipe(told.data()), 0);

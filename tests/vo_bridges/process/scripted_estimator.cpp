@@ -3,6 +3,7 @@
 #include <sys/prctl.h>
 #include <sys/wait.h>
 
+#include <array>
 #include <chrono>
 #include <csignal>
 #include <functional>
@@ -134,6 +135,7 @@ class Scripted final : public overfly_vo::Estimator {
       const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(300);
       while (std::chrono::steady_clock::now() < end) hoard_[0] = static_cast<char>(hoard_[0] + 1);
     }
+    if (behaviour_ == "loose_grandchild") child_ = loose_grandchild();
     if (behaviour_ == "grandchild") {
       child_ = ::fork();
       if (child_ == 0) {
@@ -141,6 +143,26 @@ class Scripted final : public overfly_vo::Estimator {
         std::_Exit(0);
       }
     }
+  }
+
+  /// A daemon: a session of its own, and no parent any more.
+  static pid_t loose_grandchild() {
+    std::array<int, 2> told{};
+    if (::pipe(told.data()) != 0) return 0;
+    const pid_t between = ::fork();
+    if (between == 0) {
+      ::setsid();
+      const pid_t daemon = ::fork();
+      if (daemon == 0) {
+        sleep_s(60.0);
+        std::_Exit(0);
+      }
+      const ssize_t written = ::write(told[1], &daemon, sizeof(daemon));
+      std::_Exit(written == sizeof(daemon) ? 0 : 1);
+    }
+    ::waitpid(between, nullptr, 0);
+    pid_t daemon = 0;
+    return ::read(told[0], &daemon, sizeof(daemon)) == sizeof(daemon) ? daemon : 0;
   }
 
   std::string behaviour_;

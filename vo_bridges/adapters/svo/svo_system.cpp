@@ -8,6 +8,8 @@
 #include <svo/point.h>
 #include <vikit/pinhole_camera.h>
 
+#include <algorithm>
+#include <cstdlib>
 #include <stdexcept>
 
 #include "vo_bridges/adapters/scene_points.hpp"
@@ -70,6 +72,26 @@ ParameterValues read_settings() {
   return values;
 }
 
+/// Its halving of images (vikit's halfSample) reads and writes beyond them where a width is odd.
+void check_size(const AdapterCamera& camera) {
+  const std::size_t levels = std::max(svo::Config::nPyrLevels(), svo::Config::kltMaxLevel() + 1);
+  const std::size_t divisor = std::size_t{1} << (levels - 1);
+  if (static_cast<std::size_t>(camera.width_px) % divisor == 0) return;
+  throw std::runtime_error(
+      "frames of " + std::to_string(camera.width_px) + " x " + std::to_string(camera.height_px) +
+      " px: SVO halves them " + std::to_string(levels - 1) +
+      " times (nPyrLevels, kltMaxLevel) and would write beyond an image of an odd width; take a "
+      "width that " +
+      std::to_string(divisor) + " divides");
+}
+
+/// It writes its times into one file of a fixed name, in /tmp where it is told nothing: those of
+/// runs at the same time would go into one file.
+void set_trace_folder() {
+  const char* const folder = std::getenv("TMPDIR");
+  if (folder != nullptr && *folder != '\0') svo::Config::traceDir() = folder;
+}
+
 std::unique_ptr<vk::PinholeCamera> camera_from(const AdapterCamera& camera) {
   std::vector<double> d = camera.distortion_coefficients;
   if (camera.distortion != "none" && camera.distortion != "radtan") {
@@ -98,6 +120,8 @@ class SvoSystem : public UpstreamSystem {
         restart_when_paused_(flag_of(session.parameters, "restart_when_paused")),
         camera_(camera_from(session.camera)) {
     write_settings(session.parameters);
+    check_size(session.camera);
+    set_trace_folder();
     handler_.reset(new svo::FrameHandlerMono(camera_.get()));
     // Without its thread the depth filter takes each frame at once: the same result each time.
     if (!depth_filter_thread_) handler_->depthFilter()->stopThread();

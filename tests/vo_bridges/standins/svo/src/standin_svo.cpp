@@ -2,6 +2,7 @@
 #include <svo/frame_handler_mono.h>
 
 #include <cstdlib>
+#include <fstream>
 #include <stdexcept>
 
 #include "tests/vo_bridges/standins/flown_path.hpp"
@@ -23,6 +24,8 @@ double& stubborn(double& value) {
 
 }  // namespace
 
+std::string& Config::traceName() { return setting<std::string, 18>("svo"); }
+std::string& Config::traceDir() { return setting<std::string, 19>("/tmp"); }
 std::size_t& Config::nPyrLevels() { return setting<std::size_t, 0>(3); }
 std::size_t& Config::gridSize() { return setting<std::size_t, 1>(25); }
 double& Config::initMinDisparity() { return setting<double, 2>(50.0); }
@@ -43,7 +46,9 @@ std::size_t& Config::qualityMinFts() { return setting<std::size_t, 16>(50); }
 int& Config::qualityMaxFtsDrop() { return setting<int, 17>(40); }
 
 FrameHandlerMono::FrameHandlerMono(vk::AbstractCamera* camera)
-    : camera_(*static_cast<vk::PinholeCamera*>(camera)) {}
+    : camera_(*static_cast<vk::PinholeCamera*>(camera)) {
+  std::ofstream(Config::traceDir() + "/" + Config::traceName() + ".csv") << "tot_time\n";
+}
 
 /// Frame from world, and points in front of it.
 void FrameHandlerMono::see(double t_s) {

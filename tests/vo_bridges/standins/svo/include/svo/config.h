@@ -1,11 +1,14 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 
 namespace svo {
 
 class Config {
  public:
+  static std::string& traceName();
+  static std::string& traceDir();
   static std::size_t& nPyrLevels();
   static std::size_t& gridSize();
   static double& initMinDisparity();

@@ -1,0 +1,132 @@
+#include "vo_bridges/process/process_family.hpp"
+
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <random>
+#include <sstream>
+#include <system_error>
+#include <thread>
+
+namespace overfly::process {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kMemberLimit = 65536;
+constexpr std::size_t kEnvironmentLimitBytes = 4'000'000;
+
+std::filesystem::path folder_of(int pid) {
+  return std::filesystem::path("/proc") / std::to_string(pid);
+}
+
+struct ProcessStat {
+  char state = 'X';
+  int group = 0;
+  int session = 0;
+
+  [[nodiscard]] bool zombie() const { return state == 'Z' || state == 'X'; }
+};
+
+/// Fields 3, 5 and 6 of stat (proc(5)); empty when there is no such process.
+std::optional<ProcessStat> stat_of(int pid) {
+  std::ifstream file(folder_of(pid) / "stat");
+  std::string text;
+  if (!std::getline(file, text)) return std::nullopt;
+  // The second field is the program's name in parentheses, and may hold anything.
+  const std::size_t name_end = text.rfind(')');
+  if (name_end == std::string::npos) return std::nullopt;
+  std::istringstream fields(text.substr(name_end + 1));
+  ProcessStat stat;
+  int parent = 0;
+  fields >> stat.state >> parent >> stat.group >> stat.session;
+  if (!fields) return std::nullopt;
+  return stat;
+}
+
+bool has_in_environment(int pid, const std::string& entry) {
+  std::ifstream file(folder_of(pid) / "environ", std::ios::binary);
+  std::size_t read = 0;
+  for (std::string text; std::getline(file, text, '\0') && read < kEnvironmentLimitBytes;) {
+    if (text == entry) return true;
+    read += text.size() + 1;
+  }
+  return false;
+}
+
+std::string fresh_mark() {
+  std::random_device random;
+  std::ostringstream text;
+  text << "OVERFLY_FAMILY=" << ::getpid() << "-" << std::hex << random() << random() << random();
+  return text.str();
+}
+
+}  // namespace
+
+std::vector<int> children_of(int pid) {
+  std::vector<int> pids;
+  std::error_code failure;
+  std::filesystem::directory_iterator tasks(folder_of(pid) / "task", failure);
+  for (; !failure && tasks != std::filesystem::directory_iterator(); tasks.increment(failure)) {
+    std::ifstream file(tasks->path() / "children");
+    for (int child = 0; file >> child && pids.size() < kMemberLimit;) pids.push_back(child);
+  }
+  return pids;
+}
+
+ProcessFamily::ProcessFamily() : mark_(fresh_mark()) { ::prctl(PR_SET_CHILD_SUBREAPER, 1); }
+
+std::vector<int> ProcessFamily::living_members(int child) const {
+  std::vector<int> found = children_of(child);
+  for (const int ours : children_of(::getpid())) {
+    if (ours != child && has_in_environment(ours, mark_)) found.push_back(ours);
+  }
+  for (std::size_t i = 0; i < found.size() && found.size() < kMemberLimit; ++i) {
+    const std::vector<int> next = children_of(found[i]);
+    found.insert(found.end(), next.begin(), next.end());
+  }
+  std::erase_if(found, [](int pid) {
+    const std::optional<ProcessStat> stat = stat_of(pid);
+    return !stat || stat->zombie();
+  });
+  return found;
+}
+
+void ProcessFamily::kill_members(int child) {
+  for (const int pid : living_members(child)) {
+    ::kill(pid, SIGKILL);
+    killed_.insert(pid);
+  }
+}
+
+void ProcessFamily::end(int child, std::chrono::milliseconds patience) {
+  constexpr std::chrono::milliseconds kStep(2);
+  const auto deadline = Clock::now() + patience;
+  while (!living_members(child).empty() && Clock::now() < deadline) {
+    kill_members(child);
+    std::this_thread::sleep_for(kStep);
+  }
+  reap(child);
+}
+
+/// Those that were killed, and those that ended by themselves after they had become ours: of the
+/// child's group, or of a session of their own.
+void ProcessFamily::reap(int child) const {
+  const int own_session = ::getsid(0);
+  for (const int ours : children_of(::getpid())) {
+    if (ours == child) continue;
+    const std::optional<ProcessStat> stat = stat_of(ours);
+    if (!stat || !stat->zombie()) continue;
+    if (!killed_.contains(ours) && stat->group != child && stat->session == own_session) continue;
+    ::waitpid(ours, nullptr, WNOHANG);
+  }
+}
+
+}  // namespace overfly::process
