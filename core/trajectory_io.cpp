@@ -3,12 +3,15 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/text_fields.hpp"
 #include "core/time.hpp"
+#include "core/time_order.hpp"
 
 namespace overfly {
 namespace {
@@ -41,16 +44,34 @@ Result<Eigen::Quaterniond> rotation_from(const FieldFile& file,
   return q;
 }
 
-Status append(const FieldFile& file,
-              const FieldLine& line,
-              Trajectory* trajectory,
-              const StampedPose& stamped) {
-  if (!trajectory->empty() && stamped.t_ns <= trajectory->end_ns()) {
-    return file.bad_field(line, 1, "must be after the time of the pose before");
+/// A line of a file: a pose, or the word that it is not known.
+struct Row {
+  const FieldLine* line = nullptr;
+  StampedPose stamped;
+  bool known = true;
+};
+
+/// Fills the trajectory with the rows in order of time.
+Status take_rows(const FieldFile& file,
+                 const std::string& name,
+                 const std::vector<Row>& rows,
+                 TrajectoryFile* result) {
+  std::vector<TimedLine> times;
+  times.reserve(rows.size());
+  for (const Row& row : rows) times.push_back({row.stamped.t_ns, row.line->number});
+  TimeOrder order = order_by_time(name, "poses", times);
+  for (const std::size_t i : order.kept) {
+    const Row& row = rows[i];
+    if (!row.known) {
+      result->trajectory.append_gap();
+      ++result->unknown_poses;
+      continue;
+    }
+    if (Status status = result->trajectory.append(row.stamped); !status) {
+      return file.bad_line(*row.line, status.error().message);
+    }
   }
-  if (Status status = trajectory->append(stamped); !status) {
-    return file.bad_line(line, status.error().message);
-  }
+  result->warnings = std::move(order.warnings);
   return {};
 }
 
@@ -104,42 +125,62 @@ Result<Pose> kitti_pose(const FieldFile& file, const FieldLine& line) {
   return Pose{Eigen::Quaterniond(R).normalized(), {n[3], n[7], n[11]}};
 }
 
-/// The stamps of `times.txt` beside a KITTI file; empty where there are none of as many lines.
-Result<std::vector<std::int64_t>> kitti_times(const fs::path& poses_file, std::size_t count) {
+/// The times file of a KITTI file: its lines are as many as the poses.
+struct KittiTimes {
+  std::string name;
+  FieldFile file;
+  std::vector<std::int64_t> t_ns;
+};
+
+/// `times.txt` beside a KITTI file; empty where there is none of as many lines.
+Result<std::optional<KittiTimes>> kitti_times(const fs::path& poses_file, std::size_t count) {
   const fs::path times_file = poses_file.parent_path() / "times.txt";
-  std::vector<std::int64_t> times;
-  if (times_file == poses_file || !fs::exists(times_file)) return times;
+  if (times_file == poses_file || !fs::exists(times_file)) return std::optional<KittiTimes>();
   const Result<FieldFile> file = FieldFile::read(times_file);
   if (!file) return file.error();
-  if (file->lines().size() != count) return times;
+  if (file->lines().size() != count) return std::optional<KittiTimes>();
+  KittiTimes times{times_file.string(), *file, {}};
   for (const FieldLine& line : file->lines()) {
     if (Status status = file->expect_fields(line, 1); !status) return status.error();
     const Result<std::int64_t> t_ns = file->time_s(line, 1);
     if (!t_ns) return t_ns.error();
-    if (!times.empty() && *t_ns <= times.back()) {
-      return file->bad_field(line, 1, "must be after the time before");
-    }
-    times.push_back(*t_ns);
+    times.t_ns.push_back(*t_ns);
   }
-  return times;
+  return std::optional<KittiTimes>(std::move(times));
 }
 
 Status read_kitti(const fs::path& path, const FieldFile& file, TrajectoryFile* result) {
-  const Result<std::vector<std::int64_t>> times = kitti_times(path, file.lines().size());
+  const Result<std::optional<KittiTimes>> times = kitti_times(path, file.lines().size());
   if (!times) return times.error();
-  result->has_times = !times->empty();
-  std::size_t i = 0;
-  for (const FieldLine& line : file.lines()) {
-    const Result<Pose> pose = kitti_pose(file, line);
+  result->has_times = times->has_value();
+  std::vector<Row> rows;
+  for (std::size_t i = 0; i < file.lines().size(); ++i) {
+    const Result<Pose> pose = kitti_pose(file, file.lines()[i]);
     if (!pose) return pose.error();
     const std::int64_t t_ns =
-        result->has_times ? (*times)[i] : static_cast<std::int64_t>(i) * kNsPerS;
-    ++i;
-    if (Status status = append(file, line, &result->trajectory, {t_ns, *pose}); !status) {
-      return status;
-    }
+        result->has_times ? (*times)->t_ns[i] : static_cast<std::int64_t>(i) * kNsPerS;
+    const FieldFile& stamped_in = result->has_times ? (*times)->file : file;
+    rows.push_back({&stamped_in.lines()[i], {t_ns, *pose}});
   }
-  return {};
+  const std::string name = result->has_times ? (*times)->name : path.string();
+  return take_rows(file, name, rows, result);
+}
+
+Status read_rows(const fs::path& path, const FieldFile& file, TrajectoryFile* result) {
+  std::vector<Row> rows;
+  for (const FieldLine& line : file.lines()) {
+    if (result->format == TrajectoryFormat::kTum && is_unknown(line)) {
+      const Result<std::int64_t> t_ns = file.time_s(line, 1);
+      if (!t_ns) return t_ns.error();
+      rows.push_back({&line, {*t_ns, {}}, false});
+      continue;
+    }
+    const Result<StampedPose> stamped =
+        result->format == TrajectoryFormat::kTum ? tum_pose(file, line) : euroc_pose(file, line);
+    if (!stamped) return stamped.error();
+    rows.push_back({&line, *stamped});
+  }
+  return take_rows(file, path.string(), rows, result);
 }
 
 /// Told by the first line: commas are EuRoC's, 12 columns KITTI's, all else is taken for TUM.
@@ -160,23 +201,9 @@ Result<TrajectoryFile> read_trajectory(const fs::path& path) {
   TrajectoryFile result;
   result.comments = file->comments();
   result.format = format_of(*file, file->lines().front().comma_separated);
-  if (result.format == TrajectoryFormat::kKitti) {
-    if (Status status = read_kitti(path, *file, &result); !status) return status.error();
-    return result;
-  }
-  for (const FieldLine& line : file->lines()) {
-    if (result.format == TrajectoryFormat::kTum && is_unknown(line)) {
-      result.trajectory.append_gap();
-      ++result.unknown_poses;
-      continue;
-    }
-    const Result<StampedPose> stamped =
-        result.format == TrajectoryFormat::kTum ? tum_pose(*file, line) : euroc_pose(*file, line);
-    if (!stamped) return stamped.error();
-    if (Status status = append(*file, line, &result.trajectory, *stamped); !status) {
-      return status.error();
-    }
-  }
+  const Status rows = result.format == TrajectoryFormat::kKitti ? read_kitti(path, *file, &result)
+                                                                : read_rows(path, *file, &result);
+  if (!rows) return rows.error();
   if (result.trajectory.empty()) {
     return Error{ErrorCode::kUnreadable, path.string() + ": holds no pose but `nan`"};
   }

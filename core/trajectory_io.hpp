@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "core/result.hpp"
 #include "core/trajectory.hpp"
@@ -21,12 +22,19 @@ struct TrajectoryFile {
   std::size_t unknown_poses = 0;  ///< rows of a TUM file whose pose is `nan`: gaps
   /// `# key value` comments of a TUM file, e.g. init_scene_depth.
   std::map<std::string, std::string> comments;
+  /// Poses that were left out or moved, see order_by_time; empty where none was.
+  std::vector<std::string> warnings;
+
+  /// Whether pose i is the file's i-th, as matching by number needs.
+  [[nodiscard]] bool as_listed() const { return warnings.empty() && unknown_poses == 0; }
 };
 
 /// Reads a trajectory, its format told by its content. TUM: `t tx ty tz qx qy qz qw` [s, m],
 /// seven `nan` where the pose is not known;
 /// KITTI: 12 numbers, row-major 3 x 4, with the times of `times.txt` beside it where there is one
 /// of as many lines; EuRoC: csv `t[ns], p_xyz, q_wxyz, ...`.
+/// Poses that are not in order of time are sorted, and of those with the same time the first is
+/// kept; `warnings` counts them.
 /// Errors: kNotFound; kUnreadable naming file, line, column and value.
 [[nodiscard]] Result<TrajectoryFile> read_trajectory(const std::filesystem::path& file);
 

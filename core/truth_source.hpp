@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/pose.hpp"
 #include "core/result.hpp"
@@ -34,6 +35,8 @@ class TruthSource {
   [[nodiscard]] virtual std::optional<std::int64_t> duration_ns() const = 0;
   /// One line for the manifest: what flew ("course: 25 m/s, 45 deg/s, 300 m").
   [[nodiscard]] virtual std::string description() const = 0;
+  /// What was left out or changed of the flight's file; empty where nothing was.
+  [[nodiscard]] virtual std::vector<std::string> warnings() const { return {}; }
 };
 
 }  // namespace overfly

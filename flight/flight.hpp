@@ -51,7 +51,8 @@ inline constexpr double kHeightKnotS = 1.6;
 /// A pose file flown as it is: TUM (T_world_body in the world frame; with `camera_poses` set,
 /// T_world_camera of a nadir camera) or CSV with the header
 /// `t_s,lat_deg,lon_deg,alt_ellipsoid_m,roll_deg,pitch_deg,yaw_deg`.
-/// Positions by cubic Hermite, rotations by SLERP; the clock starts at the first pose.
+/// Positions by cubic Hermite, rotations by SLERP; the clock starts at the first pose. Rows that
+/// repeat a time or stand out of order are in the flight's `warnings`.
 /// Errors: kNotFound; kUnreadable naming file, line, column and value.
 [[nodiscard]] Result<std::unique_ptr<TruthSource>> fly_log(const std::filesystem::path& file,
                                                            const LocalFrame& frame,

@@ -26,8 +26,10 @@ Eigen::Vector3d parabola_velocity(double t_s,
 
 class LogFlight final : public TruthSource {
  public:
-  LogFlight(Trajectory trajectory, std::string description)
-      : trajectory_(std::move(trajectory)), description_(std::move(description)) {
+  LogFlight(FlightLog log, std::string description)
+      : trajectory_(std::move(log.T_world_body)),
+        warnings_(std::move(log.warnings)),
+        description_(std::move(description)) {
     const std::size_t count = trajectory_.size();
     for (std::size_t i = 0; i < count; ++i) velocities_m_s_.push_back(velocity_of(i));
   }
@@ -52,6 +54,7 @@ class LogFlight final : public TruthSource {
     return trajectory_.end_ns() - trajectory_.begin_ns();
   }
   [[nodiscard]] std::string description() const override { return description_; }
+  [[nodiscard]] std::vector<std::string> warnings() const override { return warnings_; }
 
  private:
   [[nodiscard]] std::pair<double, Eigen::Vector3d> point(std::size_t i) const {
@@ -99,6 +102,7 @@ class LogFlight final : public TruthSource {
   }
 
   Trajectory trajectory_;
+  std::vector<std::string> warnings_;
   std::vector<Eigen::Vector3d> velocities_m_s_;
   std::string description_;
 };
@@ -108,15 +112,15 @@ class LogFlight final : public TruthSource {
 Result<std::unique_ptr<TruthSource>> fly_log(const std::filesystem::path& file,
                                              const LocalFrame& frame,
                                              bool camera_poses) {
-  Result<Trajectory> trajectory = read_log(file, frame, camera_poses);
-  if (!trajectory) return trajectory.error();
-  if (trajectory->size() < 2) {
+  Result<FlightLog> log = read_log(file, frame, camera_poses);
+  if (!log) return log.error();
+  if (log->T_world_body.size() < 2) {
     return Error{ErrorCode::kUnreadable,
-                 file.string() + ": " + std::to_string(trajectory->size()) +
+                 file.string() + ": " + std::to_string(log->T_world_body.size()) +
                      " poses: a flight needs at least 2"};
   }
-  return std::unique_ptr<TruthSource>(std::make_unique<LogFlight>(
-      std::move(trajectory).value(), "log: " + file.filename().string()));
+  return std::unique_ptr<TruthSource>(
+      std::make_unique<LogFlight>(std::move(log).value(), "log: " + file.filename().string()));
 }
 
 }  // namespace overfly::flight

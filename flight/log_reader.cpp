@@ -2,8 +2,10 @@
 
 #include <array>
 #include <string>
+#include <utility>
 
 #include "core/text_fields.hpp"
+#include "core/time_order.hpp"
 #include "core/trajectory_io.hpp"
 
 namespace overfly::flight {
@@ -59,32 +61,39 @@ Result<StampedPose> pose_from(const FieldFile& file,
                      {frame.R_world_enu_at(point) * R_enu_body, frame.world_from_geodetic(point)}};
 }
 
-Result<Trajectory> read_csv(const FieldFile& file, const LocalFrame& frame) {
+Result<FlightLog> read_csv(const FieldFile& file,
+                           const std::string& name,
+                           const LocalFrame& frame) {
   if (Status status = check_header(file, file.lines().front()); !status) return status.error();
-  Trajectory trajectory;
+  std::vector<StampedPose> poses;
+  std::vector<TimedLine> times;
   for (std::size_t i = 1; i < file.lines().size(); ++i) {
     const FieldLine& line = file.lines()[i];
     const Result<StampedPose> stamped = pose_from(file, line, frame);
     if (!stamped) return stamped.error();
-    if (!trajectory.empty() && stamped->t_ns <= trajectory.end_ns()) {
-      return file.bad_field(line, 1, "must be after the time of the row before");
-    }
-    if (Status status = trajectory.append(*stamped); !status) {
-      return file.bad_line(line, status.error().message);
+    poses.push_back(*stamped);
+    times.push_back({stamped->t_ns, line.number});
+  }
+  TimeOrder order = order_by_time(name, "rows", times);
+  FlightLog log;
+  for (const std::size_t i : order.kept) {
+    if (Status status = log.T_world_body.append(poses[i]); !status) {
+      return file.bad_line(file.lines()[i + 1], status.error().message);
     }
   }
-  return trajectory;
+  log.warnings = std::move(order.warnings);
+  return log;
 }
 
 }  // namespace
 
-Result<Trajectory> read_log(const std::filesystem::path& path,
-                            const LocalFrame& frame,
-                            bool camera_poses) {
+Result<FlightLog> read_log(const std::filesystem::path& path,
+                           const LocalFrame& frame,
+                           bool camera_poses) {
   const Result<FieldFile> file = FieldFile::read(path);
   if (!file) return file.error();
   if (!file->lines().empty() && file->lines().front().fields.front() == kColumns[0].name) {
-    return read_csv(*file, frame);
+    return read_csv(*file, path.string(), frame);
   }
   const Result<TrajectoryFile> poses = read_trajectory(path);
   if (!poses) return poses.error();
@@ -92,14 +101,15 @@ Result<Trajectory> read_log(const std::filesystem::path& path,
     return Error{ErrorCode::kUnreadable,
                  path.string() + ": KITTI poses without a times.txt beside them cannot be flown"};
   }
-  if (!camera_poses) return poses->trajectory;
+  FlightLog log{poses->trajectory, poses->warnings};
+  if (!camera_poses) return log;
   const Pose T_camera_body = Pose{R_body_camera_nadir(), Eigen::Vector3d::Zero()}.inverse();
-  Trajectory trajectory;
+  log.T_world_body = {};
   for (const StampedPose& stamped : poses->trajectory.poses()) {
     // Cannot fail: stamps increase and poses are sound already.
-    static_cast<void>(trajectory.append({stamped.t_ns, stamped.pose * T_camera_body}));
+    static_cast<void>(log.T_world_body.append({stamped.t_ns, stamped.pose * T_camera_body}));
   }
-  return trajectory;
+  return log;
 }
 
 }  // namespace overfly::flight

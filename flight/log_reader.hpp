@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "core/geodesy.hpp"
 #include "core/result.hpp"
@@ -9,10 +11,16 @@
 
 namespace overfly::flight {
 
-/// T_world_body over time, stamps as they stand in the file.
+struct FlightLog {
+  Trajectory T_world_body;  ///< stamps as they stand in the file
+  std::vector<std::string> warnings;
+};
+
+/// Rows that are not in order of time are sorted, and of those with the same time the first is
+/// kept; `warnings` counts them.
 /// Errors: as fly_log.
-[[nodiscard]] Result<Trajectory> read_log(const std::filesystem::path& file,
-                                          const LocalFrame& frame,
-                                          bool camera_poses);
+[[nodiscard]] Result<FlightLog> read_log(const std::filesystem::path& file,
+                                         const LocalFrame& frame,
+                                         bool camera_poses);
 
 }  // namespace overfly::flight

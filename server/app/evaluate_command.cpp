@@ -103,13 +103,32 @@ void choose_modes(const std::vector<std::string>& wanted, Json& entry) {
   }
 }
 
+void print_warnings(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) std::cerr << "warning: " << warning << "\n";
+}
+
+/// Errors: kInvalidArgument for a file whose i-th pose is not that of its i-th line.
+Status check_listed(const std::string& name, const TrajectoryFile& file) {
+  if (file.as_listed()) return {};
+  return Error{ErrorCode::kInvalidArgument,
+               name +
+                   ": holds poses that are not known, repeat a time or stand out of order, so that "
+                   "its poses cannot be matched by number; give both files times"};
+}
+
 Result<Json> evaluate_file(const EvaluateArguments& arguments,
                            const TrajectoryFile& truth,
                            const std::string& name) {
   const Result<TrajectoryFile> file = read_trajectory(name);
   if (!file) return file.error();
+  print_warnings(file->warnings);
   const Result<evaluation::Options> options = options_for(arguments, name, truth, *file);
   if (!options) return options.error();
+  if (options->association == evaluation::Association::kIndex) {
+    Status listed = check_listed(arguments.truth, truth);
+    if (listed) listed = check_listed(name, *file);
+    if (!listed) return listed.error();
+  }
   const Result<EstimateTrack> track = track_from(name, *file);
   if (!track) return track.error();
   // Asked first for its error: it says why nothing could be matched.
@@ -119,6 +138,7 @@ Result<Json> evaluate_file(const EvaluateArguments& arguments,
   Json entry = {{"file", name},
                 {"poses", track->samples.size()},
                 {"matched", matches->size()},
+                {"warnings", file->warnings},
                 {"alignments", engine::alignments_json(score)},
                 {"unavailable", engine::unavailable_json(score)}};
   choose_modes(arguments.alignments, entry);
@@ -128,6 +148,7 @@ Result<Json> evaluate_file(const EvaluateArguments& arguments,
 int evaluate_files(const EvaluateArguments& arguments) {
   const Result<TrajectoryFile> truth = read_trajectory(arguments.truth);
   if (!truth) return report(truth.error());
+  print_warnings(truth->warnings);
   Json estimates = Json::array();
   bool scored = true;
   for (const std::string& name : arguments.estimates) {
@@ -143,6 +164,7 @@ int evaluate_files(const EvaluateArguments& arguments) {
   if (arguments.json) {
     const Json result = {{"truth", arguments.truth},
                          {"association", arguments.association},
+                         {"warnings", truth->warnings},
                          {"estimates", std::move(estimates)}};
     std::cout << result.dump(2) << "\n";
   }

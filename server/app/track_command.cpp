@@ -51,6 +51,12 @@ Result<std::optional<Truth>> read_truth(const TrackArguments& arguments, engine:
   if (arguments.truth.empty()) return std::optional<Truth>();
   const Result<TrajectoryFile> file = read_trajectory(arguments.truth);
   if (!file) return file.error();
+  if (!file->has_times && !dataset.warnings.empty()) {
+    return Error{ErrorCode::kInvalidArgument,
+                 arguments.truth + ": has no times, and cannot be matched by number: " +
+                     dataset.warnings.front()};
+  }
+  dataset.warnings.insert(dataset.warnings.end(), file->warnings.begin(), file->warnings.end());
   const Result<Trajectory> camera = engine::camera_truth(dataset, *file, dataset.notes);
   if (!camera) return camera.error().in(arguments.truth);
   return std::optional<Truth>(Truth{*camera, file->has_times});
@@ -134,6 +140,7 @@ int track(const TrackArguments& arguments) {
   if (!dataset) return report(dataset.error());
   const Result<std::optional<Truth>> truth = read_truth(arguments, *dataset);
   if (!truth) return report(truth.error());
+  for (const std::string& warning : dataset->warnings) std::cerr << "warning: " << warning << "\n";
   const Result<std::unique_ptr<VoPort>> port = create_port(arguments, *dataset, *truth, stop);
   if (!port) return report(port.error());
   const auto tracked = track_shown(arguments, *dataset, stop, **port);

@@ -1,5 +1,7 @@
 // FlightRun: everything before the first frame.
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "server/engine/flight_run.hpp"
 #include "server/engine/scenario_light.hpp"
@@ -29,7 +31,12 @@ Status FlightRun::open_maker() {
   const std::optional<std::int64_t> duration_ns = maker_->duration_ns();
   recorder_.set_length(duration_ns.value_or(0), duration_ns ? maker_->frames_total() : 0);
   if (Status status = recorder_.set_cameras(); !status) return status;
-  recorder_.manifest()["flight"] = {{"description", maker_->flight_description()}};
+  const std::vector<std::string> doubts = maker_->flight_warnings();
+  recorder_.manifest()["flight"] = {{"description", maker_->flight_description()},
+                                    {"warnings", doubts}};
+  for (const std::string& warning : doubts) {
+    if (Status status = recorder_.log(0, "warning", warning); !status) return status;
+  }
   if (Status status = describe_world(); !status) return status;
   const renderer::RendererInfo info = maker_->renderer().info();
   recorder_.manifest()["renderer"] = {{"backend", info.backend},

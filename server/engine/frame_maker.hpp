@@ -53,6 +53,9 @@ class FrameMaker {
   [[nodiscard]] const terrain::World& world() const { return *world_; }
   [[nodiscard]] renderer::Renderer& renderer() { return *renderer_; }
   [[nodiscard]] std::string flight_description() const { return truth_->source().description(); }
+  [[nodiscard]] std::vector<std::string> flight_warnings() const {
+    return truth_->source().warnings();
+  }
 
   /// Frame k as every camera sees it. k must grow from call to call.
   /// Errors: kNotFound after the end of a flight whose length was not known; as the renderer's.

@@ -232,6 +232,52 @@ TEST_F(CommandLine, EvaluateScoresFilesOfOthersAndRefusesNonsense) {
   EXPECT_THAT(broken.err, HasSubstr("broken.tum"));
 }
 
+/// Truth and estimates of others repeat stamps and are not always in order.
+TEST_F(CommandLine, EvaluateOrdersPosesByTimeAndSaysSo) {
+  const auto pose = [](int i, int x) {
+    return std::to_string(i) + " " + std::to_string(x) + " " + std::to_string(i % 5) +
+           " 0 0 0 0 1\n";
+  };
+  std::string truth;
+  std::string estimate;
+  for (int i = 0; i < 20; ++i) {
+    truth += pose(i, i);
+    if (i == 7) truth += pose(i, 900);  // the second of a time is left out
+    estimate += pose(19 - i, 19 - i);
+  }
+  write_text(path("repeated.tum"), truth);
+  write_text(path("backwards.tum"), estimate);
+  const auto evaluate = [&](const std::string& association) {
+    return overfly_program({"evaluate",
+                            "--truth",
+                            path("repeated.tum"),
+                            "--estimate",
+                            path("backwards.tum"),
+                            "--alignment",
+                            "none",
+                            "--association",
+                            association,
+                            "--json"});
+  };
+  const Outcome scored = evaluate("interpolate");
+  ASSERT_EQ(scored.exit_code, 0) << scored.err;
+  const Json result = Json::parse(scored.out);
+  const Json& entry = result.at("estimates").at(0);
+  EXPECT_EQ(entry.at("matched"), 20);
+  EXPECT_EQ(entry.at("alignments").at("none").at("position_max_m"), 0.0);
+  const std::string repeated =
+      path("repeated.tum") + ": 1 poses (first in line 9) repeat the time of an earlier line";
+  const std::string moved = path("backwards.tum") + ": 19 poses (first in line 2) stand after";
+  EXPECT_THAT(result.at("warnings").at(0).get<std::string>(), HasSubstr(repeated));
+  EXPECT_THAT(entry.at("warnings").at(0).get<std::string>(), HasSubstr(moved));
+  EXPECT_THAT(scored.err, HasSubstr("warning: " + repeated));
+  EXPECT_THAT(scored.err, HasSubstr("warning: " + moved));
+
+  const Outcome by_number = evaluate("index");
+  EXPECT_EQ(by_number.exit_code, 2);
+  EXPECT_THAT(by_number.err, HasSubstr("repeated.tum: holds poses that"));
+}
+
 TEST_F(CommandLine, WorldInfoDescribesAndNamesWhatIsMissing) {
   const Outcome info = overfly_program({"world", "info", world()});
   ASSERT_EQ(info.exit_code, 0) << info.err;

@@ -144,6 +144,7 @@ Result<Dataset> open_dataset(const DatasetOptions& options) {
   if (dataset.images.empty()) {
     return Error{ErrorCode::kUnreadable, options.folder.string() + ": lists no image"};
   }
+  if (Status status = order_images(dataset); !status) return status.error();
   const Result<CameraModel> camera = choose_camera(options, *listed);
   if (!camera) return camera.error();
   dataset.camera = *camera;

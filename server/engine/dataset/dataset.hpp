@@ -32,7 +32,8 @@ enum class TimeUnit { kAuto, kSeconds, kNanoseconds };
 struct DatasetImage {
   std::filesystem::path file;
   std::string listed_at;         ///< "FILE:LINE" that names it
-  std::int64_t index = 0;        ///< the data set's own number, else its place; increasing
+  int line = 0;                  ///< that LINE
+  std::int64_t index = 0;        ///< the data set's own number, else its line's place; increasing
   std::int64_t t_ns = 0;         ///< as the data set counts; increasing
   std::int64_t exposure_ns = 0;  ///< 0 = not known
 };
@@ -47,7 +48,9 @@ struct Dataset {
   /// KITTI: this camera in that of image_0, whose poses its truth files hold.
   std::optional<Pose> T_first_camera;
   std::vector<std::string> notes;  ///< what a reader of results should know
-  int sample_bits = 16;            ///< of images with more than 8 bit a sample
+  /// Images and poses of the truth that were left out or moved, with file, count and line.
+  std::vector<std::string> warnings;
+  int sample_bits = 16;  ///< of images with more than 8 bit a sample
 };
 
 struct DatasetOptions {
@@ -63,7 +66,9 @@ struct DatasetOptions {
   int sample_bits = 16;  ///< of 16-bit files: values fill so many bits, in [8, 16]
 };
 
-/// Opens a data set and checks all but the images' content: every file is there, times increase.
+/// Opens a data set and checks all but the images' content: every file is there. Images that are
+/// not in order of time are sorted, and of those with the same time the first is kept; `warnings`
+/// counts them.
 /// Errors: kInvalidArgument for options, a missing calibration or a folder of no known layout;
 /// kNotFound; kUnreadable naming file, line and value.
 [[nodiscard]] Result<Dataset> open_dataset(const DatasetOptions& options);

@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <cmath>
 #include <system_error>
+#include <utility>
 
+#include "core/time_order.hpp"
 #include "server/engine/dataset/dataset_reader.hpp"
 #include "server/engine/dataset/grey_image.hpp"
 
@@ -45,27 +47,42 @@ bool before(const fs::path& a_path, const fs::path& b_path) {
 
 }  // namespace
 
-Status append_image(const FieldFile& list,
-                    const fs::path& list_file,
+Status append_image(const fs::path& list_file,
                     const FieldLine& line,
-                    std::size_t time_column,
                     DatasetImage image,
                     std::vector<DatasetImage>& images) {
-  if (!images.empty() && image.t_ns <= images.back().t_ns) {
-    return list.bad_field(line, time_column, "must be after the time of the image before");
-  }
-  if (!images.empty() && image.index <= images.back().index) {
-    return list.bad_line(line,
-                         "image number " + std::to_string(image.index) + ": must be above " +
-                             std::to_string(images.back().index) + ", the one before");
-  }
   std::error_code ignored;
+  image.line = line.number;
   image.listed_at = list_file.string() + ":" + std::to_string(line.number);
   if (!fs::exists(image.file, ignored)) {
     return Error{ErrorCode::kNotFound,
                  image.listed_at + ": " + image.file.string() + ": no such file"};
   }
   images.push_back(std::move(image));
+  return {};
+}
+
+Status order_images(Dataset& dataset) {
+  std::vector<DatasetImage>& images = dataset.images;
+  if (images.empty()) return {};
+  std::vector<TimedLine> times;
+  for (const DatasetImage& image : images) times.push_back({image.t_ns, image.line});
+  const std::string& first = images.front().listed_at;
+  const TimeOrder order = order_by_time(first.substr(0, first.rfind(':')), "images", times);
+  std::vector<DatasetImage> ordered;
+  for (const std::size_t i : order.kept) ordered.push_back(std::move(images[i]));
+  images = std::move(ordered);
+  dataset.warnings.insert(dataset.warnings.end(), order.warnings.begin(), order.warnings.end());
+  const bool moved = !std::is_sorted(order.kept.begin(), order.kept.end());
+  for (std::size_t i = 0; moved && i < images.size(); ++i) {
+    images[i].index = static_cast<std::int64_t>(i);
+  }
+  for (std::size_t i = 1; i < images.size(); ++i) {
+    if (images[i].index > images[i - 1].index) continue;
+    return Error{ErrorCode::kUnreadable,
+                 images[i].listed_at + ": image number " + std::to_string(images[i].index) +
+                     ": must be above " + std::to_string(images[i - 1].index) + ", the one before"};
+  }
   return {};
 }
 

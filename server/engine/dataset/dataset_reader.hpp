@@ -40,14 +40,15 @@ struct EurocSensor {
 /// As DSO reads it: relative where cx and cy are below 1, and then half a pixel is taken off them.
 [[nodiscard]] Result<CameraModel> read_tum_mono_camera(const std::filesystem::path& file);
 
-/// Appends an image; its time and index must be after those of the one before, its file be there.
-/// Errors: kUnreadable, kNotFound, each naming the line of `list`.
-[[nodiscard]] Status append_image(const FieldFile& list,
-                                  const std::filesystem::path& list_file,
+/// Appends an image, which must be there. Errors: kNotFound naming the line of `list_file`.
+[[nodiscard]] Status append_image(const std::filesystem::path& list_file,
                                   const FieldLine& line,
-                                  std::size_t time_column,
                                   DatasetImage image,
                                   std::vector<DatasetImage>& images);
+/// Puts the listed images in order of time; of the same time the first is kept. Images that had to
+/// be moved are numbered anew.
+/// Errors: kUnreadable, naming the line, for images whose own numbers do not increase.
+[[nodiscard]] Status order_images(Dataset& dataset);
 
 /// Exposure in milliseconds, 0 = not known. Errors: kUnreadable, also when negative.
 [[nodiscard]] Result<std::int64_t> exposure_ms(const FieldFile& list,

@@ -45,7 +45,7 @@ Result<ListedDataset> read_euroc(const DatasetOptions& options) {
     image.file = camera_folder / "data" / fs::path(line.fields[1]);
     image.index = static_cast<std::int64_t>(images.size());
     image.t_ns = *t_ns;
-    Status status = append_image(*file, path, line, 1, std::move(image), images);
+    Status status = append_image(path, line, std::move(image), images);
     if (!status) return status.error();
   }
   const fs::path sensor_file = camera_folder / "sensor.yaml";

@@ -74,7 +74,7 @@ Result<ListedDataset> read_kitti(const DatasetOptions& options) {
     image.file = (*files)[images.size()];
     image.index = static_cast<std::int64_t>(images.size());
     image.t_ns = *t_ns;
-    status = append_image(*file, path, line, 1, std::move(image), images);
+    status = append_image(path, line, std::move(image), images);
     if (!status) return status.error();
   }
   const fs::path calibration = options.folder / "calib.txt";

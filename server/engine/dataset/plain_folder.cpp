@@ -131,7 +131,7 @@ Result<ListedDataset> read_plain_folder(const DatasetOptions& options) {
   for (const FieldLine& line : file->lines()) {
     Result<DatasetImage> image = list.image_of(line, images.size());
     if (!image) return image.error();
-    Status status = append_image(*file, path, line, columns->time, std::move(*image), images);
+    Status status = append_image(path, line, std::move(*image), images);
     if (!status) return status.error();
   }
   return listed;

@@ -67,7 +67,7 @@ Status list_images(const FieldFile& file,
       if (!number) return number.error();
       *value = *number;
     }
-    Status status = append_image(file, path, *line, columns["stamp_ns"], std::move(image), images);
+    Status status = append_image(path, *line, std::move(image), images);
     if (!status) return status;
   }
   return {};

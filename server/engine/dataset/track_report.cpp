@@ -142,6 +142,7 @@ Json report_json(const Dataset& dataset,
   for (const auto& [stage, durations] : tracked.stages) stages[stage] = durations.summary();
   const std::optional<std::string> crash = crash_of(tracked);
   Json report = {{"dataset", dataset_json(dataset)},
+                 {"warnings", dataset.warnings},
                  {"estimator", {{"type", tracked.type}, {"parameters", tracked.parameters}}},
                  {"frames", tracked.records.size()},
                  {"complete", tracked.records.size() == dataset.images.size() && !crash},

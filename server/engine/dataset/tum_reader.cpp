@@ -58,7 +58,7 @@ Status list_images(const FieldFile& file,
       if (!exposure_ns) return exposure_ns.error();
       image.exposure_ns = *exposure_ns;
     }
-    Status status = append_image(file, path, line, 2, std::move(image), images);
+    Status status = append_image(path, line, std::move(image), images);
     if (!status) return status;
   }
   return {};
@@ -108,7 +108,7 @@ Result<ListedDataset> read_tum_rgbd(const DatasetOptions& options) {
     image.file = options.folder / fs::path(line.fields[1]);
     image.index = static_cast<std::int64_t>(images.size());
     image.t_ns = *t_ns;
-    Status status = append_image(*file, path, line, 1, std::move(image), images);
+    Status status = append_image(path, line, std::move(image), images);
     if (!status) return status.error();
   }
   return listed;

@@ -103,11 +103,30 @@ TEST_F(PlainFolder, GivesFramesWithTheCameraAndTheChecksum) {
   EXPECT_TRUE(validate_vo_frame(*frame, nullptr).ok());
 }
 
+TEST_F(PlainFolder, KeepsTheFirstOfImagesWithTheSameTime) {
+  write_images(path() / "images", 4);
+  write_times("0.1\n0.3\n0.3\n0.4\n");
+  const Dataset dataset = opened();
+  ASSERT_EQ(dataset.images.size(), 3U);
+  EXPECT_EQ(dataset.images[1].listed_at, (path() / "times.txt").string() + ":2");
+  EXPECT_EQ(dataset.images[2].index, 3);  // its place among the lines
+  EXPECT_THAT(dataset.warnings,
+              ElementsAre(HasSubstr("times.txt: 1 images (first in line 3) repeat the time")));
+}
+
+TEST_F(PlainFolder, SortsImagesByTime) {
+  write_images(path() / "images", 3);
+  write_times("0.1\n0.3\n0.2\n");
+  const Dataset dataset = opened();
+  ASSERT_EQ(dataset.images.size(), 3U);
+  EXPECT_EQ(dataset.images[1].t_ns, 200'000'000);
+  EXPECT_EQ(dataset.images[1].index, 1);
+  EXPECT_THAT(dataset.warnings, ElementsAre(HasSubstr("1 images (first in line 3) stand after")));
+}
+
 TEST_F(PlainFolder, SaysWhereTheTimesAreBroken) {
   write_images(path() / "images", 3);
   const std::vector<std::pair<std::string, std::string>> cases{
-      {"0.1\n0.3\n0.3\n", "times.txt:3: column 1 = '0.3': must be after the time"},
-      {"0.1\n0.3\n0.2\n", "times.txt:3: column 1 = '0.2': must be after the time"},
       {"0.1\n0.2\n", "times.txt: 2 times, but"},
       {"0.1\n0.2\n0.3\n0.4\n", "holds 3 images: must be as many"},
       {"0.1\nnan\n0.3\n", "times.txt:2: column 1 = 'nan': must be a time in seconds"},
