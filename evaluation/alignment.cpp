@@ -31,15 +31,15 @@ Result<double> scale_from_path(const std::vector<MatchedPose>& matches) {
 
 Result<double> init_scale(const std::vector<MatchedPose>& matches,
                           const Options& options,
-                          std::vector<std::string>* notes) {
+                          AlignmentRemarks* remarks) {
   const std::optional<double> depth = matches.front().scene_depth;
   const bool has_depth = depth && std::isfinite(*depth) && *depth > 0.0;
   if (has_depth && options.init_true_depth_m) return *options.init_true_depth_m / *depth;
   Result<double> scale = scale_from_path(matches);
-  if (scale && notes != nullptr) {
-    notes->push_back(std::string("scale from the path of the first 5 s: ") +
-                     (has_depth ? "the true depth" : "the estimate's scene depth") +
-                     " at the first pose is not known");
+  if (scale && remarks != nullptr) {
+    remarks->notes.push_back(std::string("scale from the path of the first 5 s: ") +
+                             (has_depth ? "the true depth" : "the estimate's scene depth") +
+                             " at the first pose is not known");
   }
   return scale;
 }
@@ -98,7 +98,7 @@ const std::vector<AlignmentMode>& all_alignment_modes() {
 Result<Similarity> align(const std::vector<MatchedPose>& matches,
                          AlignmentMode mode,
                          const Options& options,
-                         std::vector<std::string>* notes) {
+                         AlignmentRemarks* remarks) {
   if (matches.empty())
     return Error{ErrorCode::kInvalidArgument, "0 matched poses: nothing to align"};
   switch (mode) {
@@ -107,18 +107,18 @@ Result<Similarity> align(const std::vector<MatchedPose>& matches,
     case AlignmentMode::kOrigin:
       return first_pose(matches.front(), 1.0);
     case AlignmentMode::kInitScale: {
-      const Result<double> scale = init_scale(matches, options, notes);
+      const Result<double> scale = init_scale(matches, options, remarks);
       if (!scale) return scale.error();
       return first_pose(matches.front(), *scale);
     }
     case AlignmentMode::kSe3:
-      return fit_similarity(matches, {.with_scale = false, .hold_first = false}, notes);
+      return fit_similarity(matches, {.with_scale = false, .hold_first = false}, remarks);
     case AlignmentMode::kSim3:
-      return fit_similarity(matches, {.with_scale = true, .hold_first = false}, notes);
+      return fit_similarity(matches, {.with_scale = true, .hold_first = false}, remarks);
     case AlignmentMode::kYawOnly:
       return fit_yaw(matches);
     case AlignmentMode::kOriginSim3:
-      return fit_similarity(matches, {.with_scale = true, .hold_first = true}, notes);
+      return fit_similarity(matches, {.with_scale = true, .hold_first = true}, remarks);
   }
   return Error{ErrorCode::kInvalidArgument, "unknown alignment mode"};
 }

@@ -54,8 +54,10 @@ void add_errors(const std::vector<MatchedPose>& matches,
   }
   score->matched = static_cast<int>(matches.size());
   score->position_m = statistics_of(position_m);
-  score->rotation_deg = statistics_of(rotation_deg);
-  score->rotation_euler_norm_deg = statistics_of(euler_deg);
+  if (!score->degenerate) {
+    score->rotation_deg = statistics_of(rotation_deg);
+    score->rotation_euler_norm_deg = statistics_of(euler_deg);
+  }
   score->relative = relative_errors(matches, aligned, options.rpe_lengths_m);
 }
 

@@ -18,7 +18,8 @@ namespace overfly::evaluation {
 [[nodiscard]] double euler_norm_rad(const Eigen::Quaterniond& R_world_body_a,
                                     const Eigen::Quaterniond& R_world_body_b);
 
-/// Fills position, rotation and relative errors of a score whose S_world_vo is set.
+/// Fills position, rotation and relative errors of a score whose S_world_vo is set; rotation errors
+/// only where the alignment is not degenerate (relative ones do not depend on it).
 /// @pre !matches.empty()
 void add_errors(const std::vector<MatchedPose>& matches,
                 const Options& options,

@@ -101,13 +101,16 @@ struct AlignmentScore {
   Similarity S_world_vo;
   int matched = 0;
   ErrorStatistics position_m;
-  ErrorStatistics rotation_deg;  ///< geodesic angle
-  ErrorStatistics rotation_euler_norm_deg;
+  /// Geodesic angle; empty, as the next, where the alignment is degenerate.
+  std::optional<ErrorStatistics> rotation_deg;
+  std::optional<ErrorStatistics> rotation_euler_norm_deg;
   /// Over all frames from the first tracked to the end of the flight, those without a pose taken at
   /// the last one before.
   double position_rmse_hold_m = 0.0;
   std::vector<RelativeError> relative;
   std::vector<std::string> notes;  ///< e.g. "scale from the path of the first 5 s"
+  /// Why the positions do not determine the rotation; position errors hold all the same.
+  std::optional<std::string> degenerate;
 };
 
 struct Score {
@@ -129,18 +132,26 @@ struct Score {
                                                          const EstimateTrack& estimate,
                                                          const Options& options);
 
+/// What a reader of an alignment must know.
+struct AlignmentRemarks {
+  std::vector<std::string> notes;
+  std::optional<std::string> degenerate;  ///< as AlignmentScore::degenerate
+};
+
 /// S_world_vo of one mode from matched poses:
 /// none: as it is. origin: the first poses made equal, scale 1. init_scale: the same with the scale
 /// init_true_depth_m / scene depth of the first pose, or, where one of them is absent, the ratio of
 /// path lengths over the first 5 s (noted). se3, sim3: least squares over positions (Umeyama 1991).
 /// yaw_only: the same with rotation about up only, scale 1 (Zhang, Scaramuzza 2018). origin_sim3:
 /// sim3 with the first position held.
-/// Where positions lie on a line, the rotation about it is taken from the orientations (noted).
+/// Near a straight line se3, sim3 and origin_sim3 are degenerate: positions do not determine the
+/// rotation about it (see kStraightRatio in umeyama.hpp). On an exact line that rotation is taken
+/// from the orientations (noted).
 /// Errors: kInvalidArgument when the mode needs more than the data has (the message says what).
 [[nodiscard]] Result<Similarity> align(const std::vector<MatchedPose>& matches,
                                        AlignmentMode mode,
                                        const Options& options,
-                                       std::vector<std::string>* notes = nullptr);
+                                       AlignmentRemarks* remarks = nullptr);
 
 /// Scores an estimate against the truth: outcome, coverage and every alignment mode.
 /// Frames of the flight: Options::flight.

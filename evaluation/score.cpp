@@ -1,3 +1,5 @@
+#include <utility>
+
 #include "core/time.hpp"
 #include "evaluation/association.hpp"
 #include "evaluation/errors.hpp"
@@ -83,13 +85,15 @@ Score score(const Trajectory& T_world_camera_truth,
   for (const AlignmentMode mode : all_alignment_modes()) {
     AlignmentScore alignment;
     alignment.mode = mode;
-    alignment.notes = common_notes(result, *matches, estimate);
-    const Result<Similarity> S_world_vo = align(*matches, mode, options, &alignment.notes);
+    AlignmentRemarks remarks{common_notes(result, *matches, estimate), std::nullopt};
+    const Result<Similarity> S_world_vo = align(*matches, mode, options, &remarks);
     if (!S_world_vo) {
       result.unavailable[mode] = S_world_vo.error().message;
       continue;
     }
     alignment.S_world_vo = *S_world_vo;
+    alignment.notes = std::move(remarks.notes);
+    alignment.degenerate = std::move(remarks.degenerate);
     add_errors(*matches, options, &alignment);
     alignment.position_rmse_hold_m = hold_rmse_m(held, *S_world_vo);
     result.alignments[mode] = alignment;

@@ -3,13 +3,16 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <Eigen/SVD>
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <string>
 
 namespace overfly::evaluation {
 namespace {
 
-/// Second singular value over the first below which positions count as a line: lateral spread of
-/// 1e-5 of the length, far below what any odometry resolves.
+/// Second singular value over the first below which the least squares have no rotation about the
+/// line at all, but for rounding.
 constexpr double kLineRatio = 1e-10;
 /// Motion below this fraction of the distance from the origin is rounding.
 constexpr double kRounding = 1e-12;
@@ -21,6 +24,7 @@ struct Moments {
   double variance_x = 0.0;
   double variance_y = 0.0;
   Eigen::Matrix3d sigma_xy = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d sigma_yy = Eigen::Matrix3d::Zero();
   bool x_moves = false;
   bool y_moves = false;
 };
@@ -45,6 +49,7 @@ Moments moments_of(const std::vector<MatchedPose>& matches, bool about_first) {
     m.variance_x += x.squaredNorm() / n;  // (36)
     m.variance_y += y.squaredNorm() / n;  // (37)
     m.sigma_xy += y * x.transpose() / n;  // (38), 3x3
+    m.sigma_yy += y * y.transpose() / n;
     size_x = std::max(size_x, match.T_vo_camera.translation.norm());
     size_y = std::max(size_y, match.T_world_camera.translation.norm());
   }
@@ -78,11 +83,28 @@ Eigen::Matrix3d turned_to_orientations(const std::vector<MatchedPose>& matches,
   return Eigen::AngleAxisd(angle_rad, axis).toRotationMatrix() * R;
 }
 
+/// Second singular value over the first: of truth and estimate, or of the truth alone where that is
+/// less (an estimate that strays sideways must not lend a straight truth its own shape).
+double straightness(const Moments& m, const Eigen::Vector3d& D) {
+  const Eigen::Vector3d own = m.sigma_yy.jacobiSvd().singularValues();
+  return std::min(D(1) / D(0), own(1) / own(0));
+}
+
+std::string straight_text(double ratio) {
+  char text[200];
+  std::snprintf(text,
+                sizeof(text),
+                "the path is nearly straight (its lateral spread is %.2g %% of its spread along): "
+                "positions do not determine the rotation about it",
+                100.0 * std::sqrt(std::max(0.0, ratio)));
+  return text;
+}
+
 }  // namespace
 
 Result<Similarity> fit_similarity(const std::vector<MatchedPose>& matches,
                                   const FitOptions& options,
-                                  std::vector<std::string>* notes) {
+                                  AlignmentRemarks* remarks) {
   if (matches.size() < 2) {
     return Error{ErrorCode::kInvalidArgument,
                  std::to_string(matches.size()) + " matched poses: must be at least 2"};
@@ -101,10 +123,12 @@ Result<Similarity> fit_similarity(const std::vector<MatchedPose>& matches,
   Eigen::Vector3d S = Eigen::Vector3d::Ones();
   if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0.0) S(2) = -1.0;  // (43)
   Eigen::Matrix3d R = svd.matrixU() * S.asDiagonal() * svd.matrixV().transpose();    // (40)
+  const double ratio = straightness(m, D);
+  if (remarks != nullptr && ratio < kStraightRatio) remarks->degenerate = straight_text(ratio);
   if (D(1) <= kLineRatio * D(0)) {
     R = turned_to_orientations(matches, R, svd.matrixU().col(0));
-    if (notes != nullptr) {
-      notes->push_back(
+    if (remarks != nullptr) {
+      remarks->notes.emplace_back(
           "the positions lie on a line: the rotation about it is that of the orientations");
     }
   }

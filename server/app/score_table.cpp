@@ -20,6 +20,19 @@ using Json = nlohmann::json;
   return line.data();
 }
 
+/// A figure in a column; a dash where there is none.
+std::string figure(const Json& value, int width, int digits) {
+  return value.is_number() ? formatted("%*.*f", width, digits, value.get<double>())
+                           : formatted("%*s", width, "-");
+}
+
+/// Why an alignment has no rotation errors; empty where it has them.
+std::string degenerate_text(const Json& alignment) {
+  const Json& reason = alignment.at("degenerate");
+  if (!reason.is_string()) return "";
+  return "    degenerate: " + reason.get<std::string>() + "; no rotation error\n";
+}
+
 std::string outcome_text(const Json& score) {
   std::string text = score.at("outcome").get<std::string>();
   const Json& at = score.at("outcome_time_s");
@@ -82,14 +95,13 @@ std::string score_table(const Json& metrics, const std::string& mode) {
     const Json& alignments = score.at("alignments");
     if (alignments.contains(mode)) {
       const Json& alignment = alignments.at(mode);
-      table += formatted("  %12.3f %12.3f %12.4f",
+      table += formatted("  %12.3f %12.3f ",
                          alignment.at("position_rmse_m").get<double>(),
-                         alignment.at("position_rmse_hold_m").get<double>(),
-                         alignment.at("rotation_rmse_deg").get<double>());
+                         alignment.at("position_rmse_hold_m").get<double>()) +
+               figure(alignment.at("rotation_rmse_deg"), 12, 4) + "\n" + degenerate_text(alignment);
     } else {
-      table += "  X (" + score.at("unavailable").value(mode, "not scored") + ")";
+      table += "  X (" + score.at("unavailable").value(mode, "not scored") + ")\n";
     }
-    table += "\n";
   }
   return table + "RMSE, alignment " + mode + "\n";
 }
@@ -109,14 +121,15 @@ std::string alignment_table(const Json& alignments, const Json& unavailable) {
                                 "rot. [deg]",
                                 "euler n. [deg]");
   for (const auto& [mode, alignment] : alignments.items()) {
-    table += formatted("  %-12s %12.6g %8d  %12.3f %12.3f %12.4f %14.4f\n",
+    table += formatted("  %-12s %12.6g %8d  %12.3f %12.3f ",
                        mode.c_str(),
                        alignment.at("scale").get<double>(),
                        alignment.at("matched").get<int>(),
                        alignment.at("position_rmse_m").get<double>(),
-                       alignment.at("position_rmse_hold_m").get<double>(),
-                       alignment.at("rotation_rmse_deg").get<double>(),
-                       alignment.at("rotation_euler_norm_rmse_deg").get<double>());
+                       alignment.at("position_rmse_hold_m").get<double>()) +
+             figure(alignment.at("rotation_rmse_deg"), 12, 4) + " " +
+             figure(alignment.at("rotation_euler_norm_rmse_deg"), 14, 4) + "\n" +
+             degenerate_text(alignment);
     for (const Json& note : alignment.at("notes")) {
       table += "    " + note.get<std::string>() + "\n";
     }

@@ -109,21 +109,28 @@ Json json_from(const evaluation::AlignmentScore& score) {
   }
   Json S_world_vo = json_from(Pose{score.S_world_vo.rotation, score.S_world_vo.translation});
   S_world_vo["scale"] = score.S_world_vo.scale;
-  return {{"scale", score.S_world_vo.scale},
-          {"S_world_vo", std::move(S_world_vo)},
-          {"matched", score.matched},
-          {"position_rmse_m", score.position_m.rmse},
-          {"position_mean_m", score.position_m.mean},
-          {"position_median_m", score.position_m.median},
-          {"position_max_m", score.position_m.max},
-          {"position_rmse_hold_m", score.position_rmse_hold_m},
-          {"rotation_rmse_deg", score.rotation_deg.rmse},
-          {"rotation_mean_deg", score.rotation_deg.mean},
-          {"rotation_median_deg", score.rotation_deg.median},
-          {"rotation_max_deg", score.rotation_deg.max},
-          {"rotation_euler_norm_rmse_deg", score.rotation_euler_norm_deg.rmse},
-          {"relative", relative},
-          {"notes", score.notes}};
+  using Errors = evaluation::ErrorStatistics;
+  const auto rotation = [&](double Errors::*statistic) {
+    return score.rotation_deg ? Json((*score.rotation_deg).*statistic) : Json(nullptr);
+  };
+  return {
+      {"scale", score.S_world_vo.scale},
+      {"S_world_vo", std::move(S_world_vo)},
+      {"matched", score.matched},
+      {"position_rmse_m", score.position_m.rmse},
+      {"position_mean_m", score.position_m.mean},
+      {"position_median_m", score.position_m.median},
+      {"position_max_m", score.position_m.max},
+      {"position_rmse_hold_m", score.position_rmse_hold_m},
+      {"rotation_rmse_deg", rotation(&Errors::rmse)},
+      {"rotation_mean_deg", rotation(&Errors::mean)},
+      {"rotation_median_deg", rotation(&Errors::median)},
+      {"rotation_max_deg", rotation(&Errors::max)},
+      {"rotation_euler_norm_rmse_deg",
+       score.rotation_euler_norm_deg ? Json(score.rotation_euler_norm_deg->rmse) : Json(nullptr)},
+      {"degenerate", or_null(score.degenerate)},
+      {"relative", relative},
+      {"notes", score.notes}};
 }
 
 Json alignments_json(const evaluation::Score& score) {

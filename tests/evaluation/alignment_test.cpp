@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <random>
 
+#include "evaluation/umeyama.hpp"
 #include "tests/evaluation/flights.hpp"
 
 namespace overfly::evaluation {
@@ -45,11 +46,12 @@ TEST(Alignment, RecoversAPlantedSimilarity) {
   const Similarity planted = some_similarity();
   const auto matches = matches_of(truth, seen_from(truth, planted));
   for (const AlignmentMode mode : {AlignmentMode::kSim3, AlignmentMode::kOriginSim3}) {
-    std::vector<std::string> notes;
-    const auto found = align(matches, mode, {}, &notes);
+    AlignmentRemarks remarks;
+    const auto found = align(matches, mode, {}, &remarks);
     ASSERT_TRUE(found.ok()) << found.error().message;
     expect_equal(*found, planted, 1e-9);
-    EXPECT_TRUE(notes.empty());
+    EXPECT_TRUE(remarks.notes.empty());
+    EXPECT_FALSE(remarks.degenerate);
   }
 }
 
@@ -180,24 +182,106 @@ TEST(Alignment, TakesTheRotationAboutAStraightLineFromTheOrientations) {
   const Similarity planted = some_similarity();
   const auto matches = matches_of(truth, seen_from(truth, planted));
   for (const AlignmentMode mode : {AlignmentMode::kSim3, AlignmentMode::kOriginSim3}) {
-    std::vector<std::string> notes;
-    const auto found = align(matches, mode, {}, &notes);
+    AlignmentRemarks remarks;
+    const auto found = align(matches, mode, {}, &remarks);
     ASSERT_TRUE(found.ok()) << found.error().message;
     expect_equal(*found, planted, 1e-8);
-    ASSERT_EQ(notes.size(), 1U);
-    EXPECT_THAT(notes[0], HasSubstr("on a line"));
+    ASSERT_EQ(remarks.notes.size(), 1U);
+    EXPECT_THAT(remarks.notes[0], HasSubstr("on a line"));
+    EXPECT_THAT(remarks.degenerate.value_or(""), HasSubstr("nearly straight"));
   }
+}
+
+/// 1 km along y with whole sways of `sway_m` to both sides: the covariance of the positions has the
+/// eigenvalues (1000 m)^2 / 12 along and sway_m^2 / 2 across.
+Trajectory swaying_truth(double sway_m) {
+  constexpr int kPoses = 2000;
+  Trajectory truth;
+  for (int i = 0; i < kPoses; ++i) {
+    const double share = (i + 0.5) / kPoses;
+    const Eigen::Vector3d p(sway_m * std::cos(8.0 * kPi * share), 1000.0 * share, 300.0);
+    const Pose T_world_body{R_world_body_from({0.0, 0.0, 0.0}), p};
+    EXPECT_TRUE(truth
+                    .append({i * kFrameNs,
+                             T_world_body * Pose{R_body_camera_nadir(), Eigen::Vector3d::Zero()}})
+                    .ok());
+  }
+  return truth;
+}
+
+constexpr AlignmentMode kLeastSquares[] = {
+    AlignmentMode::kSe3, AlignmentMode::kSim3, AlignmentMode::kOriginSim3};
+
+/// Where sway_m^2 / 2 is kStraightRatio of the variance along: 12.9 m.
+double limit_sway_m() { return 1000.0 * std::sqrt(kStraightRatio / 6.0); }
+
+TEST(Alignment, SaysThatANearlyStraightPathHasNoRotationAboutItself) {
+  Similarity planted = some_similarity();
+  for (const double sway_m : {0.01, 0.98 * limit_sway_m()}) {
+    const Trajectory truth = swaying_truth(sway_m);
+    for (const AlignmentMode mode : kLeastSquares) {
+      planted.scale = mode == AlignmentMode::kSe3 ? 1.0 : 273.0;
+      const Score scored = score(truth, seen_from(truth, planted), {});
+      const AlignmentScore& aligned = scored.alignments.at(mode);
+      EXPECT_LT(aligned.position_m.max, 1e-6);
+      EXPECT_THAT(aligned.degenerate.value_or(""), HasSubstr("nearly straight")) << sway_m;
+      EXPECT_FALSE(aligned.rotation_deg) << to_string(mode);
+      EXPECT_FALSE(aligned.rotation_euler_norm_deg) << to_string(mode);
+    }
+    EXPECT_TRUE(score(truth, seen_from(truth, planted), {})
+                    .alignments.at(AlignmentMode::kOrigin)
+                    .rotation_deg);
+  }
+  const Trajectory truth = swaying_truth(1.02 * limit_sway_m());
+  const Score scored = score(truth, seen_from(truth, planted), {});
+  for (const AlignmentMode mode : {AlignmentMode::kSe3, AlignmentMode::kSim3}) {
+    const AlignmentScore& aligned = scored.alignments.at(mode);
+    EXPECT_FALSE(aligned.degenerate) << aligned.degenerate.value_or("");
+    if (mode == AlignmentMode::kSim3) {
+      EXPECT_LT(aligned.rotation_deg.value().max, 1e-5);
+    }
+  }
+}
+
+/// What the limit is for: an error of 1 % of the length across a straight path, as odometry makes
+/// it, turns the least squares about the path by tens of degrees, while positions are right to it.
+TEST(Alignment, DoesNotPrintTheRotationThatDriftGivesAStraightPath) {
+  const Trajectory truth = swaying_truth(0.5);
+  EstimateTrack track = seen_from(truth, Similarity{});
+  for (std::size_t i = 0; i < track.samples.size(); ++i) {
+    const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(truth.size());
+    track.samples[i].T_vo_camera.translation.z() += 10.0 * std::cos(8.0 * kPi * share);
+  }
+  const auto matches = matches_of(truth, track);
+  for (const AlignmentMode mode : kLeastSquares) {
+    const Similarity S_world_vo = align(matches, mode, {}).value();
+    EXPECT_GT(deg_from_rad(rotation_angle_rad(S_world_vo.rotation, Eigen::Quaterniond::Identity())),
+              60.0);
+    const AlignmentScore aligned = score(truth, track, {}).alignments.at(mode);
+    EXPECT_LT(aligned.position_m.rmse, 15.0);
+    EXPECT_TRUE(aligned.degenerate);
+    EXPECT_FALSE(aligned.rotation_deg);
+  }
+}
+
+/// An estimate's own sideways errors must not make a straight truth look like one that turns.
+TEST(Alignment, JudgesByTheTruthWhetherAPathIsStraight) {
+  const Trajectory truth = swaying_truth(2.0);
+  EstimateTrack track = seen_from(truth, Similarity{});
+  for (EstimateSample& sample : track.samples) sample.T_vo_camera.translation.x() *= 100.0;
+  EXPECT_TRUE(score(truth, track, {}).alignments.at(AlignmentMode::kSim3).degenerate);
 }
 
 TEST(Alignment, TwoPosesAreALine) {
   const Trajectory truth = wavy_truth(2);
   const Similarity planted = some_similarity();
-  std::vector<std::string> notes;
+  AlignmentRemarks remarks;
   const auto found =
-      align(matches_of(truth, seen_from(truth, planted)), AlignmentMode::kSim3, {}, &notes);
+      align(matches_of(truth, seen_from(truth, planted)), AlignmentMode::kSim3, {}, &remarks);
   ASSERT_TRUE(found.ok());
   expect_equal(*found, planted, 1e-7);
-  EXPECT_EQ(notes.size(), 1U);
+  EXPECT_EQ(remarks.notes.size(), 1U);
+  EXPECT_TRUE(remarks.degenerate);
 }
 
 TEST(Alignment, SaysWhatOnePoseCannotDetermine) {
@@ -252,11 +336,11 @@ TEST(Alignment, InitScaleIsTrueDepthOverSceneDepth) {
   track.samples.front().scene_depth = 1.25;
   Options options;
   options.init_true_depth_m = 300.0;
-  std::vector<std::string> notes;
-  const auto found = align(matches_of(truth, track), AlignmentMode::kInitScale, options, &notes);
+  AlignmentRemarks remarks;
+  const auto found = align(matches_of(truth, track), AlignmentMode::kInitScale, options, &remarks);
   ASSERT_TRUE(found.ok());
   EXPECT_EQ(found->scale, 240.0);
-  EXPECT_TRUE(notes.empty());
+  EXPECT_TRUE(remarks.notes.empty());
   const Pose first = *found * track.samples.front().T_vo_camera;
   EXPECT_LT((first.translation - truth.poses().front().pose.translation).norm(), 1e-9);
   EXPECT_LT(rotation_angle_rad(first.rotation, truth.poses().front().pose.rotation), 1e-12);
@@ -271,13 +355,13 @@ TEST(Alignment, InitScaleWithoutADepthIsThePathRatioAndSaysSo) {
   }
   for (const bool with_scene_depth : {false, true}) {
     if (with_scene_depth) track.samples.front().scene_depth = 1.0;
-    std::vector<std::string> notes;
-    const auto found = align(matches_of(truth, track), AlignmentMode::kInitScale, {}, &notes);
+    AlignmentRemarks remarks;
+    const auto found = align(matches_of(truth, track), AlignmentMode::kInitScale, {}, &remarks);
     ASSERT_TRUE(found.ok());
     EXPECT_NEAR(found->scale, some_similarity().scale, 1e-9);
-    ASSERT_EQ(notes.size(), 1U);
-    EXPECT_THAT(notes[0], HasSubstr("path of the first 5 s"));
-    EXPECT_THAT(notes[0], HasSubstr(with_scene_depth ? "true depth" : "scene depth"));
+    ASSERT_EQ(remarks.notes.size(), 1U);
+    EXPECT_THAT(remarks.notes[0], HasSubstr("path of the first 5 s"));
+    EXPECT_THAT(remarks.notes[0], HasSubstr(with_scene_depth ? "true depth" : "scene depth"));
   }
 }
 

@@ -40,8 +40,8 @@ TEST(Errors, EulerNormExceeds180DegreesWhereTheGeodesicAngleCannot) {
   }
   const Score scored = score(truth, seen_from(estimate, {}), {});
   const AlignmentScore& none = scored.alignments.at(AlignmentMode::kNone);
-  EXPECT_NEAR(none.rotation_euler_norm_deg.rmse, 253.3772, 1e-3);
-  EXPECT_NEAR(none.rotation_deg.rmse, deg_from_rad(rotation_angle_rad(a, b)), 1e-9);
+  EXPECT_NEAR(none.rotation_euler_norm_deg->rmse, 253.3772, 1e-3);
+  EXPECT_NEAR(none.rotation_deg->rmse, deg_from_rad(rotation_angle_rad(a, b)), 1e-9);
 }
 
 TEST(Errors, EulerDifferencesWrap) {

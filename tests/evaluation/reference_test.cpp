@@ -102,8 +102,8 @@ std::vector<double> numbers_of(const AlignmentScore& score) {
                               score.position_m.median,
                               score.position_m.max,
                               score.position_rmse_hold_m,
-                              score.rotation_deg.rmse,
-                              score.rotation_euler_norm_deg.rmse};
+                              score.rotation_deg.value().rmse,
+                              score.rotation_euler_norm_deg.value().rmse};
   for (const double length_m : {10.0, 40.0}) {
     RelativeError relative;
     for (const RelativeError& candidate : score.relative) {

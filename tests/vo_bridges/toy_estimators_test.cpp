@@ -73,8 +73,8 @@ TEST(ToyEstimators, PerfectScoresZeroInEveryAlignmentThatFindsTheScale) {
     EXPECT_NEAR(aligned.S_world_vo.scale, 1.0 / 0.37, 1e-9) << to_string(mode);
     EXPECT_LT(aligned.position_m.max, 1e-9) << to_string(mode);
     EXPECT_LT(aligned.position_rmse_hold_m, 1e-9);
-    EXPECT_LT(aligned.rotation_deg.max, 1e-9);
-    EXPECT_LT(aligned.rotation_euler_norm_deg.max, 1e-9);
+    EXPECT_LT(aligned.rotation_deg->max, 1e-9);
+    EXPECT_LT(aligned.rotation_euler_norm_deg->max, 1e-9);
     for (const evaluation::RelativeError& relative : aligned.relative) {
       EXPECT_LT(relative.translation_percent, 1e-9);
     }
@@ -115,7 +115,7 @@ TEST(ToyEstimators, DriftingScoresItsClosedForm) {
   EXPECT_TRUE(init.notes.empty());
   EXPECT_NEAR(init.position_m.rmse, 0.01 * std::sqrt(sum_m2 / kFrames), 1e-9);
   EXPECT_NEAR(init.position_m.max, 0.01 * largest_m, 1e-9);
-  EXPECT_LT(init.rotation_deg.max, 1e-9);
+  EXPECT_LT(init.rotation_deg->max, 1e-9);
 
   // Each 100 m piece spans the first whole number of frames beyond 100 m of way along the truth;
   // way and chord per frame are those of the helix sampled at 31 Hz.

@@ -291,7 +291,7 @@ TEST_F(TrackDataset, TakesEulerAnglesOfTheBodyThatTheMountTells) {
   const auto euler_of = [&] {
     const Result<Trajectory> camera = camera_truth(dataset_, truth, notes);
     const evaluation::Score score = score_of(dataset_, tracked(well), *camera, true, std::nullopt);
-    return score.alignments.at(evaluation::AlignmentMode::kOrigin).rotation_euler_norm_deg.max;
+    return score.alignments.at(evaluation::AlignmentMode::kOrigin).rotation_euler_norm_deg->max;
   };
   EXPECT_NEAR(euler_of(), 5.0, 1e-6);
   EXPECT_TRUE(notes.empty());

@@ -52,6 +52,8 @@ export interface AlignmentErrors {
   rotation_rmse_deg?: number | null;
   position_rmse_hold_m?: number | null;
   rotation_euler_norm_rmse_deg?: number | null;
+  /** Why the positions do not determine the rotation, which then has no errors. */
+  degenerate?: string | null;
   /** Why this alignment has no numbers. */
   error?: string | null;
   /** Takes the estimate into the world; runs recorded earlier lack it. */

@@ -13,6 +13,8 @@ export interface ErrorRow {
   unit: string;
   hint: string;
   cells: string[];
+  /** What a cell without a figure means; empty where there is no more to say. */
+  cellHints: string[];
 }
 
 export interface ErrorTable {
@@ -93,10 +95,12 @@ export function errorTable(
         unit: '',
         hint: 'Tracked frames / all frames of the flight, dropped and late ones too',
         cells: estimators.map(({ coverage }) => formatPercent(coverage)),
+        cellHints: [],
       },
       ...kFigures.map(({ digits, ...row }) => ({
         ...row,
         cells: errors.map((error) => formatNumber(numberOf(error[row.key]), digits)),
+        cellHints: errors.map((error) => missingHint(error, row.key)),
       })),
       {
         key: 'dropped_frames',
@@ -104,9 +108,15 @@ export function errorTable(
         unit: '',
         hint: 'Frames that the estimator never saw',
         cells: estimators.map(({ dropped_frames }) => formatNumber(dropped_frames, 0)),
+        cellHints: [],
       },
     ],
   };
+}
+
+/** Why a figure is missing, where the metrics say so. */
+function missingHint(error: AlignmentErrors, key: keyof AlignmentErrors): string {
+  return numberOf(error[key]) === null ? (error.degenerate ?? '') : '';
 }
 
 function numberOf(value: unknown): number | null {

@@ -82,10 +82,10 @@ export class ErrorPanel implements View {
         {},
         stateRow(table),
         outcomeRow(table, scored),
-        ...table.rows.map(({ cells, ...row }) =>
+        ...table.rows.map(({ cells, cellHints, ...row }) =>
           tableRow(
             row,
-            cells.map((cell) => h('td', {}, cell)),
+            cells.map((cell, i) => figureCell(cell, cellHints[i] ?? '')),
           ),
         ),
         textureRow(texture, names.length),
@@ -157,7 +157,11 @@ function textureRow({ median, limited }: Texture, columns: number): HTMLElement 
   ]);
 }
 
-function tableRow(row: Omit<ErrorRow, 'cells'>, cells: HTMLElement[]): HTMLElement {
+function figureCell(text: string, hint: string): HTMLElement {
+  return hint === '' ? h('td', {}, text) : h('td', { class: 'bad', title: hint }, text);
+}
+
+function tableRow(row: Omit<ErrorRow, 'cells' | 'cellHints'>, cells: HTMLElement[]): HTMLElement {
   const head = h('th', { scope: 'row', title: row.hint }, row.label);
   if (row.unit !== '') head.append(h('span', { class: 'unit' }, row.unit));
   return h('tr', { 'data-row': row.key }, head, ...cells);

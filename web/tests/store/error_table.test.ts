@@ -58,6 +58,19 @@ describe('errorTable', () => {
     });
   });
 
+  it('says why a degenerate alignment has no rotation error', () => {
+    const degenerate = 'the path is nearly straight';
+    const straight = { scale: 2, position_rmse_m: 1, rotation_rmse_deg: null, degenerate };
+    const { rows } = errorTable(
+      { estimators: { feature: { outcome: 'COMPLETED', alignments: { sim3: straight } } } },
+      'sim3',
+    );
+    const row = (key: string) => rows.find((candidate) => candidate.key === key);
+    expect(row('rotation_rmse_deg')?.cells).toEqual(['–']);
+    expect(row('rotation_rmse_deg')?.cellHints).toEqual([degenerate]);
+    expect(row('position_rmse_m')?.cellHints).toEqual(['']);
+  });
+
   it("offers the alignments in the metrics, the paper's first", () => {
     expect(alignmentModes(metrics)).toEqual(['init_scale', 'sim3']);
     expect(alignmentModes(null)).toEqual([]);
