@@ -28,9 +28,9 @@ class TruthSource {
  public:
   virtual ~TruthSource() = default;
 
-  /// The state at t >= 0 from the run's start.
-  /// Errors: kNotFound after the end; whatever keeps a live source from answering.
-  [[nodiscard]] virtual Result<AircraftState> state_at(std::int64_t t_ns) = 0;
+  /// The state at t >= 0 from the run's start; empty after the flight's end.
+  /// Errors: whatever keeps a source from answering.
+  [[nodiscard]] virtual Result<std::optional<AircraftState>> state_at(std::int64_t t_ns) = 0;
   /// Empty for a flight whose end is not known beforehand.
   [[nodiscard]] virtual std::optional<std::int64_t> duration_ns() const = 0;
   /// One line for the manifest: what flew ("course: 25 m/s, 45 deg/s, 300 m").

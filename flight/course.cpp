@@ -77,13 +77,14 @@ class Course final : public TruthSource {
     duration_ns_ = ns_from_s(std::min(t_s, track_.duration_s()));
   }
 
-  [[nodiscard]] Result<AircraftState> state_at(std::int64_t t_ns) override {
-    if (t_ns < 0 || t_ns > duration_ns_) {
-      return Error{t_ns < 0 ? ErrorCode::kInvalidArgument : ErrorCode::kNotFound,
+  [[nodiscard]] Result<std::optional<AircraftState>> state_at(std::int64_t t_ns) override {
+    if (t_ns < 0) {
+      return Error{ErrorCode::kInvalidArgument,
                    "t_ns = " + std::to_string(t_ns) + ": the flight spans [0, " +
                        std::to_string(duration_ns_) + "] ns"};
     }
-    return state(t_ns);
+    if (t_ns > duration_ns_) return std::optional<AircraftState>();
+    return std::optional(state(t_ns));
   }
 
   [[nodiscard]] std::optional<std::int64_t> duration_ns() const override { return duration_ns_; }

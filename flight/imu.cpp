@@ -120,9 +120,10 @@ Result<std::vector<ImuReading>> synthesize_imu(TruthSource& flight,
 
   std::vector<ImuReading> readings;
   ErrorModel errors(model, seed);
-  Result<AircraftState> from = flight.state_at(0);
+  const auto from = flight.state_at(0);
   if (!from) return from.error();
-  AircraftState before = *from;
+  if (!*from) return readings;
+  AircraftState before = **from;
   for (std::int64_t k = 0;; ++k) {
     if (k % 1024 == 0 && keep_going && !keep_going()) {
       return Error{ErrorCode::kCancelled, "cancelled"};
@@ -130,15 +131,16 @@ Result<std::vector<ImuReading>> synthesize_imu(TruthSource& flight,
     const std::int64_t t_ns = frame_time_ns(2 * k, half_steps);
     const std::int64_t after_ns = std::min(frame_time_ns(2 * k + 1, half_steps), end_ns);
     if (t_ns > end_ns || after_ns <= before.t_ns) return readings;
-    const Result<AircraftState> middle = flight.state_at(t_ns);
-    const Result<AircraftState> after = middle ? flight.state_at(after_ns) : middle;
-    // A flight of unknown length ends where it says so.
-    if (!after && after.error().code == ErrorCode::kNotFound) return readings;
+    const auto middle = flight.state_at(t_ns);
+    if (!middle) return middle.error();
+    const auto after = *middle ? flight.state_at(after_ns) : middle;
     if (!after) return after.error();
-    ImuReading reading = mean_between(before, *middle, *after, gravity_m_s2);
-    errors.apply(s_from_ns(after->t_ns - before.t_ns), reading);
+    // A flight of unknown length ends where it says so.
+    if (!*after) return readings;
+    ImuReading reading = mean_between(before, **middle, **after, gravity_m_s2);
+    errors.apply(s_from_ns((*after)->t_ns - before.t_ns), reading);
     readings.push_back(reading);
-    before = *after;
+    before = **after;
   }
 }
 

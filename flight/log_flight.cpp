@@ -34,20 +34,22 @@ class LogFlight final : public TruthSource {
     for (std::size_t i = 0; i < count; ++i) velocities_m_s_.push_back(velocity_of(i));
   }
 
-  [[nodiscard]] Result<AircraftState> state_at(std::int64_t t_ns) override {
+  [[nodiscard]] Result<std::optional<AircraftState>> state_at(std::int64_t t_ns) override {
     const std::int64_t last_ns = *duration_ns();
-    if (t_ns < 0 || t_ns > last_ns) {
-      return Error{t_ns < 0 ? ErrorCode::kInvalidArgument : ErrorCode::kNotFound,
+    if (t_ns < 0) {
+      return Error{ErrorCode::kInvalidArgument,
                    "t_ns = " + std::to_string(t_ns) + ": the flight spans [0, " +
                        std::to_string(last_ns) + "] ns"};
     }
+    if (t_ns > last_ns) return std::optional<AircraftState>();
     const std::vector<StampedPose>& poses = trajectory_.poses();
     const std::int64_t file_ns = t_ns + trajectory_.begin_ns();
     const auto after = std::upper_bound(
         poses.begin(), poses.end() - 1, file_ns, [](std::int64_t t, const StampedPose& stamped) {
           return t < stamped.t_ns;
         });
-    return between(static_cast<std::size_t>(after - poses.begin()) - 1, file_ns, t_ns);
+    const auto pose = static_cast<std::size_t>(after - poses.begin()) - 1;
+    return std::optional(between(pose, file_ns, t_ns));
   }
 
   [[nodiscard]] std::optional<std::int64_t> duration_ns() const override {

@@ -102,8 +102,7 @@ Result<std::shared_ptr<const ElevationRaster>> ElevationRaster::open(
   if (good) good = raster->find_window(plane, area, *place);
   if (good) good = raster->find_conversion(dataset, layer, *place, warnings);
   if (!good) return good.error();
-  raster->pool_ = std::make_unique<DatasetPool>(layer.file, 0);
-  raster->pool_->put(std::move(*opened));
+  raster->pool_ = std::make_unique<DatasetPool>(layer.file, 0, std::move(*opened));
   raster->posts_ = std::make_unique<PagedHeights>(
       raster->window_.columns,
       raster->window_.rows,

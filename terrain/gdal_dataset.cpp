@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 
 #include "terrain/file_soundness.hpp"
@@ -75,26 +76,58 @@ std::atomic<int>& idle_handles() {
 
 }  // namespace
 
+DatasetPool::DatasetPool(fs::path file, int level, DatasetPtr first)
+    : file_(std::move(file)), level_(level), identity_(file_identity(file_)) {
+  if (!first) return;
+  idle_.push_back(std::move(first));
+  ++idle_handles();
+}
+
 Result<DatasetPtr> DatasetPool::take() {
-  {
-    const std::lock_guard lock(mutex_);
-    if (!idle_.empty()) {
-      DatasetPtr dataset = std::move(idle_.back());
-      idle_.pop_back();
-      --idle_handles();
-      return dataset;
-    }
+  const auto now = file_identity(file_);
+  const bool there = now && identity_ && now->same_file(*identity_);
+  if (there && !now->same_content(*identity_)) {
+    return Error{ErrorCode::kIo, file_.string() + ": was written to while it was in use"};
   }
-  return open_raster(file_, level_);
+  std::unique_lock lock(mutex_);
+  if (!there && in_use_ > 0) {
+    constexpr std::chrono::seconds kPatience{2};
+    returned_.wait_for(lock, kPatience, [this] { return !idle_.empty(); });
+  }
+  if (idle_.empty() && !there) {
+    return Error{ErrorCode::kIo,
+                 file_.string() + (now ? ": was replaced while it was in use"
+                                       : ": is gone; it was there when the world was opened")};
+  }
+  ++in_use_;
+  if (idle_.empty()) {
+    lock.unlock();
+    return open_another();
+  }
+  DatasetPtr dataset = std::move(idle_.back());
+  idle_.pop_back();
+  --idle_handles();
+  return dataset;
+}
+
+Result<DatasetPtr> DatasetPool::open_another() {
+  Result<DatasetPtr> opened = open_raster(file_, level_);
+  if (opened) return opened;
+  const std::lock_guard lock(mutex_);
+  --in_use_;
+  // What was readable before and is not now is a fault of reading, whatever GDAL finds.
+  return Error{ErrorCode::kIo, opened.error().message};
 }
 
 void DatasetPool::put(DatasetPtr dataset) {
   // A world of a thousand files must not use up the process's file descriptors.
   constexpr int kMostIdle = 400;
-  if (idle_handles() >= kMostIdle) return;
   const std::lock_guard lock(mutex_);
+  --in_use_;
+  if (idle_handles() >= kMostIdle) return;
   ++idle_handles();
   idle_.push_back(std::move(dataset));
+  returned_.notify_one();
 }
 
 DatasetPool::~DatasetPool() { idle_handles() -= static_cast<int>(idle_.size()); }

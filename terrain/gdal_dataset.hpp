@@ -4,6 +4,7 @@
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
 
+#include <condition_variable>
 #include <filesystem>
 #include <memory>
 #include <mutex>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "core/result.hpp"
+#include "terrain/file_identity.hpp"
 
 namespace overfly::terrain {
 
@@ -44,22 +46,31 @@ class GdalMessages {
 /// Errors: kNotFound; kUnreadable with GDAL's reason.
 [[nodiscard]] Result<DatasetPtr> open_raster(const std::filesystem::path& file, int level = 0);
 
-/// Several handles on one file, since a GDAL handle serves one thread at a time.
+/// Several handles on one file, since a GDAL handle serves one thread at a time. All of them are of
+/// the file that the name stood for when the pool was made: where it was taken away or replaced
+/// since, those that are open go on.
 class DatasetPool {
  public:
-  DatasetPool(std::filesystem::path file, int level) : file_(std::move(file)), level_(level) {}
+  /// @param first  a handle that is open already, or null
+  DatasetPool(std::filesystem::path file, int level, DatasetPtr first = nullptr);
   ~DatasetPool();
   DatasetPool(const DatasetPool&) = delete;
   DatasetPool& operator=(const DatasetPool&) = delete;
 
   /// A handle that nobody else uses; give it back with `put`.
+  /// Errors: kIo naming the file: it was written to, or it is gone and no handle comes back in 2 s.
   [[nodiscard]] Result<DatasetPtr> take();
   void put(DatasetPtr dataset);
 
  private:
+  [[nodiscard]] Result<DatasetPtr> open_another();
+
   std::filesystem::path file_;
   int level_;
+  std::optional<FileIdentity> identity_;
   std::mutex mutex_;
+  std::condition_variable returned_;
+  int in_use_ = 0;
   std::vector<DatasetPtr> idle_;
 };
 

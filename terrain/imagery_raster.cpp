@@ -86,8 +86,7 @@ Result<std::shared_ptr<const ImageryRaster>> ImageryRaster::open(
   Stored base;
   base.width_px = raster->width_px_;
   base.height_px = raster->height_px_;
-  base.pool = std::make_unique<DatasetPool>(file, 0);
-  base.pool->put(std::move(*opened));
+  base.pool = std::make_unique<DatasetPool>(file, 0, std::move(*opened));
   raster->pyramid_->stored.push_back(std::move(base));
   return std::shared_ptr<const ImageryRaster>(std::move(raster));
 }

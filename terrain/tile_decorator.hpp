@@ -1,4 +1,4 @@
-// Inside terrain only: tiles that change some of what other tiles say.
+// Tiles that change some of what other tiles say.
 #pragma once
 
 #include <memory>

@@ -60,9 +60,10 @@ Result<std::vector<Pose>> course_poses(const engine::Scenario& scenario,
   const std::int64_t end_ns = (*truth)->duration_ns().value_or(0);
   std::vector<Pose> poses;
   for (int i = 0; i < count; ++i) {
-    const Result<AircraftState> state = (*truth)->state_at(end_ns * i / count);
+    const auto state = (*truth)->state_at(end_ns * i / count);
     if (!state) return state.error();
-    poses.push_back(state->T_world_body * Pose{R_body_camera_nadir(), Eigen::Vector3d::Zero()});
+    if (!*state) break;
+    poses.push_back((*state)->T_world_body * Pose{R_body_camera_nadir(), Eigen::Vector3d::Zero()});
   }
   return poses;
 }

@@ -67,9 +67,13 @@ Result<engine::CameraShot> take_shot(const RenderArguments& arguments,
                  "--frame " + std::to_string(arguments.frame) + ": the flight has " +
                      std::to_string(maker.frames_total()) + " frames"};
   }
-  Result<engine::MadeFrame> made = maker.make(arguments.frame);
+  auto made = maker.make(arguments.frame);
   if (!made) return made.error();
-  return std::move(made->shots[camera]);
+  if (!*made) {
+    return Error{ErrorCode::kInvalidArgument,
+                 "--frame " + std::to_string(arguments.frame) + ": the flight ends before it"};
+  }
+  return std::move((*made)->shots[camera]);
 }
 
 }  // namespace

@@ -112,12 +112,14 @@ bool is_set(const std::atomic<bool>* flag) { return flag != nullptr && flag->loa
 
 /// Adds the pair that begins with frame k to every camera's row.
 Status check_pair(FrameMaker& maker, std::int64_t k, std::vector<CameraCheckRow>& rows) {
-  const Result<MadeFrame> now = maker.make(k);
+  const auto now = maker.make(k);
   if (!now) return now.error();
-  const Result<MadeFrame> next = maker.make(k + 1);
+  const auto next = maker.make(k + 1);
   if (!next) return next.error();
+  if (!*now || !*next) return {};
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const auto residual = compare(maker.renderer(), now->shots[i].request, next->shots[i].request);
+    const auto residual =
+        compare(maker.renderer(), (*now)->shots[i].request, (*next)->shots[i].request);
     if (!residual) {
       return residual.error().in("camera " + rows[i].camera + ", frame " + std::to_string(k));
     }

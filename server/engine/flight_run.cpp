@@ -100,9 +100,9 @@ Status FlightRun::fly() {
 Status FlightRun::fly_lockstep() {
   for (std::int64_t k = 0; k < maker_->frames_total(); ++k) {
     if (cancelled()) return stopped();
-    Status status = fly_frame(k, true);
-    if (!status && status.error().code == ErrorCode::kNotFound) return {};
-    if (!status) return status;
+    const Result<Flight> flight = fly_frame(k, true);
+    if (!flight) return flight.error();
+    if (*flight == Flight::kEnded) break;
   }
   return {};
 }
@@ -127,16 +127,18 @@ Status FlightRun::fly_real_time() {
       continue;
     }
     if (now_ns < t_ns) clock_.sleep_until_ns(start_ns + t_ns);
-    status = fly_frame(k, false);
+    const Result<Flight> flight = fly_frame(k, false);
+    if (!flight) status = flight.error();
+    if (flight && *flight == Flight::kEnded) break;
   }
   clock_.leave();
-  if (!status && status.error().code == ErrorCode::kNotFound) return {};
   return status;
 }
 
-Status FlightRun::fly_frame(std::int64_t k, bool wait_for_estimators) {
-  Result<MadeFrame> made = maker_->make(k);
+Result<FlightRun::Flight> FlightRun::fly_frame(std::int64_t k, bool wait_for_estimators) {
+  auto made = maker_->make(k);
   if (!made) return made.error();
+  if (!*made) return Flight::kEnded;
 
   // While this frame was drawn, the estimators worked on the one before.
   if (wait_for_estimators) {
@@ -145,12 +147,13 @@ Status FlightRun::fly_frame(std::int64_t k, bool wait_for_estimators) {
       return 0;
     });
   }
-  if (Status status = record_events(); !status) return status;
+  if (Status status = record_events(); !status) return status.error();
 
-  if (Status status = tell_faults(made->t_ns); !status) return status;
-  Status delivered = deliver(*made);
+  if (Status status = tell_faults((*made)->t_ns); !status) return status.error();
+  const Status delivered = deliver(**made);
   if (options_.progress) options_.progress(recorder_.info());
-  return delivered;
+  if (!delivered) return delivered.error();
+  return Flight::kGoesOn;
 }
 
 Status FlightRun::deliver(MadeFrame& made) {

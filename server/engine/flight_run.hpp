@@ -39,9 +39,11 @@ class FlightRun {
 
   Status fly_lockstep();
   Status fly_real_time();
-  /// Image and record of frame k, and its way to the estimators.
-  /// Errors: kNotFound at the end of a flight whose length was not known.
-  Status fly_frame(std::int64_t k, bool wait_for_estimators);
+  /// Whether the flight goes on after a frame.
+  enum class Flight { kGoesOn, kEnded };
+  /// Image and record of frame k, and its way to the estimators; kEnded, and no frame, after the
+  /// end of a flight whose length was not known.
+  Result<Flight> fly_frame(std::int64_t k, bool wait_for_estimators);
   /// Hands each estimator its camera's image, and records all cameras.
   Status deliver(MadeFrame& made);
   Status record_events();

@@ -53,12 +53,14 @@ Status FrameMaker::open_world() {
   auto world = worlds.get(scenario_, progress);
   if (!world) return world.error();
   world_ = *world;
+  tiles_ = std::make_shared<const WatchedTiles>(world_->tiles);
   return {};
 }
 
 Status FrameMaker::plan_flight() {
   Result<std::unique_ptr<TruthSource>> truth = create_truth(scenario_, *world_);
   if (!truth) return truth.error();
+  if (Status read = check_reading(0); !read) return failed(read.error());
   duration_ns_ = (*truth)->duration_ns();
   truth_ = std::make_unique<TruthWindow>(std::move(*truth));
   if (scenario_.duration_s) {
@@ -72,7 +74,7 @@ Status FrameMaker::plan_flight() {
 
 Status FrameMaker::open_renderer() {
   Result<std::unique_ptr<renderer::Renderer>> made =
-      make_renderer(scenario_, world_->tiles, options_.renderer_factory);
+      make_renderer(scenario_, tiles_, options_.renderer_factory);
   if (!made) return made.error();
   renderer_ = std::move(*made);
   return {};
@@ -91,20 +93,32 @@ Status FrameMaker::open_cameras() {
   return {};
 }
 
-Result<MadeFrame> FrameMaker::make(std::int64_t k) {
+Status FrameMaker::check_reading(int late_tiles) const {
+  if (Status heights = tiles_->status(); !heights) return heights;
+  return late_tiles > 0 ? tiles_->unread() : Status();
+}
+
+Error FrameMaker::failed(const Error& error) {
+  if (options_.worlds != nullptr) options_.worlds->drop(world_);
+  return error;
+}
+
+Result<std::optional<MadeFrame>> FrameMaker::make(std::int64_t k) {
   MadeFrame made;
   made.frame = k;
   made.t_ns = frame_time_ns(k, scenario_.rate);
-  const Result<std::vector<AircraftState>> states = stages_.measure(
+  const auto around = stages_.measure(
       "truth", [&] { return truth_->around(made.t_ns, half_window_ns_, raster_ns_); });
-  if (!states) return states.error();
-  made.state = (*states)[states->size() / 2];
+  if (!around) return failed(around.error());
+  if (!*around) return std::optional<MadeFrame>();
+  const std::vector<AircraftState>& states = **around;
+  made.state = states[states.size() / 2];
   for (std::size_t i = 0; i < cameras_.size(); ++i) {
-    Result<CameraShot> shot = take(i, k, *states);
-    if (!shot) return shot.error().in("frame " + std::to_string(k));
+    Result<CameraShot> shot = take(i, k, states);
+    if (!shot) return failed(shot.error().in("frame " + std::to_string(k)));
     made.shots.push_back(std::move(*shot));
   }
-  return made;
+  return std::optional(std::move(made));
 }
 
 Result<CameraShot> FrameMaker::take(std::size_t camera,
@@ -126,6 +140,7 @@ Result<CameraShot> FrameMaker::take(std::size_t camera,
   Result<renderer::CameraFrame> drawn =
       stages_.measure("render", [&] { return renderer_->render_camera(shot.request); });
   if (!drawn) return drawn.error();
+  if (Status read = check_reading(drawn->late_tiles); !read) return read.error();
   const Status developed =
       stages_.measure("sensor", [&] { return unit.develop(std::move(*drawn), faults, k, shot); });
   if (!developed) return developed.error();
@@ -140,11 +155,11 @@ Result<Trajectory> FrameMaker::rehearse(std::size_t camera) const {
   std::vector<StampedPose> poses;
   for (std::int64_t k = 0; k < frames_total_; ++k) {
     const std::int64_t t_ns = frame_time_ns(k, scenario_.rate);
-    const Result<AircraftState> state = (*truth)->state_at(t_ns);
-    if (!state && state.error().code == ErrorCode::kNotFound) break;
+    const auto state = (*truth)->state_at(t_ns);
     if (!state) return state.error();
+    if (!*state) break;
     poses.push_back({faults.at(camera, k, t_ns).stamp_ns,
-                     cameras_[camera]->T_world_camera(state->T_world_body, t_ns)});
+                     cameras_[camera]->T_world_camera((*state)->T_world_body, t_ns)});
   }
   return Trajectory::from_poses(poses);
 }
@@ -153,10 +168,11 @@ Result<renderer::CameraFrame> FrameMaker::draw_at_start(std::size_t camera) {
   // A flight of its own here as well.
   const Result<std::unique_ptr<TruthSource>> truth = create_truth(scenario_, *world_);
   if (!truth) return truth.error();
-  const Result<AircraftState> first = (*truth)->state_at(0);
+  const auto first = (*truth)->state_at(0);
   if (!first) return first.error();
+  if (!*first) return Error{ErrorCode::kInvalidArgument, "flight: has ended before it began"};
   return renderer_->render_camera(scenario_.cameras[camera].model,
-                                  cameras_[camera]->T_world_camera(first->T_world_body, 0),
+                                  cameras_[camera]->T_world_camera((*first)->T_world_body, 0),
                                   0,
                                   renderer::PixelFormat::kGrey8);
 }
@@ -171,7 +187,7 @@ Status FrameMaker::fetch_first_view() {
   if (!duration_ns_) return {};
   for (std::size_t camera = 0; camera < cameras_.size(); ++camera) {
     const Result<renderer::CameraFrame> frame = draw_at_start(camera);
-    if (!frame) return frame.error().in("camera " + scenario_.cameras[camera].name);
+    if (!frame) return failed(frame.error().in("camera " + scenario_.cameras[camera].name));
   }
   return {};
 }

@@ -20,6 +20,7 @@
 #include "server/engine/scenario.hpp"
 #include "server/engine/stage_timer.hpp"
 #include "server/engine/truth_window.hpp"
+#include "server/engine/watched_tiles.hpp"
 #include "terrain/world.hpp"
 
 namespace overfly::engine {
@@ -57,9 +58,10 @@ class FrameMaker {
     return truth_->source().warnings();
   }
 
-  /// Frame k as every camera sees it. k must grow from call to call.
-  /// Errors: kNotFound after the end of a flight whose length was not known; as the renderer's.
-  [[nodiscard]] Result<MadeFrame> make(std::int64_t k);
+  /// Frame k as every camera sees it; empty after the end of a flight whose length was not known.
+  /// k must grow from call to call. Errors: as the truth's and the renderer's; kIo when a file of
+  /// the world could not be read, naming it.
+  [[nodiscard]] Result<std::optional<MadeFrame>> make(std::int64_t k);
 
   /// T_world_camera of every frame of one camera, by the stamps that estimators are told.
   [[nodiscard]] Result<Trajectory> rehearse(std::size_t camera) const;
@@ -80,12 +82,18 @@ class FrameMaker {
   [[nodiscard]] Result<CameraShot> take(std::size_t camera,
                                         std::int64_t k,
                                         const std::vector<AircraftState>& states);
+  /// Heights have no way to say that they could not be read, and no picture waits for a tile that
+  /// never comes. @param late_tiles  that a picture was drawn without
+  [[nodiscard]] Status check_reading(int late_tiles) const;
+  /// A world that could not be read is not for the runs to come.
+  [[nodiscard]] Error failed(const Error& error);
 
   const Scenario& scenario_;
   FrameMakerOptions options_;
   std::unique_ptr<StageTimer> own_stages_;
   StageTimer& stages_;
   std::shared_ptr<const terrain::World> world_;
+  std::shared_ptr<const WatchedTiles> tiles_;  ///< those of the world
   std::unique_ptr<TruthWindow> truth_;
   std::optional<std::int64_t> duration_ns_;
   std::int64_t frames_total_ = 0;

@@ -20,8 +20,8 @@ Result<std::unique_ptr<FrameRemaker>> FrameRemaker::create(
   return maker;
 }
 
-Result<std::vector<AircraftState>> FrameRemaker::states_around(const CameraUnit& unit,
-                                                               std::int64_t t_ns) {
+Result<std::optional<std::vector<AircraftState>>> FrameRemaker::states_around(
+    const CameraUnit& unit, std::int64_t t_ns) {
   // A truth source never goes back: an earlier frame needs a flight of its own.
   if (!truth_ || t_ns < asked_ns_) {
     Result<std::unique_ptr<TruthSource>> source = create_truth(scenario_, *world_);
@@ -43,7 +43,11 @@ Result<Image> FrameRemaker::make(std::size_t camera,
   if (row.exposure_ns > 0) setting = renderer::ExposureSetting{row.exposure_ns, row.gain};
   const auto states = states_around(unit, row.t_ns);
   if (!states) return states.error();
-  Result<renderer::CameraRequest> request = unit.request(*states, row.t_ns, setting);
+  if (!*states) {
+    return Error{ErrorCode::kConflict,
+                 "frame " + std::to_string(row.frame) + ": the flight ends before it now"};
+  }
+  Result<renderer::CameraRequest> request = unit.request(**states, row.t_ns, setting);
   if (!request) return request.error();
   Result<renderer::CameraFrame> drawn = renderer.render_camera(*request);
   if (!drawn) return drawn.error();

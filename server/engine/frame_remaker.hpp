@@ -30,8 +30,8 @@ class FrameRemaker {
 
  private:
   FrameRemaker(Scenario scenario, std::shared_ptr<const terrain::World> world);
-  [[nodiscard]] Result<std::vector<AircraftState>> states_around(const CameraUnit& unit,
-                                                                 std::int64_t t_ns);
+  [[nodiscard]] Result<std::optional<std::vector<AircraftState>>> states_around(
+      const CameraUnit& unit, std::int64_t t_ns);
 
   Scenario scenario_;
   std::shared_ptr<const terrain::World> world_;

@@ -26,9 +26,10 @@ Result<Eigen::Vector2d> course_centre(flight::CourseParameters course) {
   Eigen::AlignedBox2d box;
   const std::int64_t end_ns = (*flown)->duration_ns().value_or(0);
   for (std::int64_t t_ns = 0; t_ns <= end_ns; t_ns += kNsPerS) {
-    const Result<AircraftState> state = (*flown)->state_at(t_ns);
+    const auto state = (*flown)->state_at(t_ns);
     if (!state) return state.error();
-    box.extend(state->T_world_body.translation.head<2>().eval());
+    if (!*state) break;
+    box.extend((*state)->T_world_body.translation.head<2>().eval());
   }
   return Eigen::Vector2d(box.center());
 }

@@ -38,39 +38,35 @@ AircraftState extrapolated(const AircraftState& state, std::int64_t dt_ns) {
   return moved;
 }
 
-Result<std::vector<AircraftState>> TruthWindow::around(std::int64_t t_ns,
-                                                       std::int64_t half_ns,
-                                                       std::int64_t step_ns) {
+Result<std::optional<std::vector<AircraftState>>> TruthWindow::around(std::int64_t t_ns,
+                                                                      std::int64_t half_ns,
+                                                                      std::int64_t step_ns) {
   const std::int64_t n = (half_ns + step_ns - 1) / step_ns;
   std::vector<AircraftState> states;
   states.reserve(static_cast<std::size_t>(2 * n + 1));
   for (std::int64_t j = -n; j <= n; ++j) {
     const std::int64_t at_ns = t_ns + j * step_ns;
-    Result<AircraftState> state = Error{};
-    if (at_ns < 0) {
-      state = at(0);
-      if (state) state = extrapolated(*state, at_ns);
-    } else {
-      state = at(at_ns);
-    }
-    const bool ended = !state && state.error().code == ErrorCode::kNotFound;
-    if (ended && j > 0) state = extrapolated(states.back(), step_ns);
+    auto state = at(std::max<std::int64_t>(at_ns, 0));
     if (!state) return state.error();
-    states.push_back(std::move(*state));
+    if (*state && at_ns < 0) *state = extrapolated(**state, at_ns);
+    if (!*state && j > 0) *state = extrapolated(states.back(), step_ns);
+    if (!*state) return std::optional<std::vector<AircraftState>>();
+    states.push_back(std::move(**state));
   }
   forget_before(t_ns - n * step_ns);
-  return states;
+  return std::optional(std::move(states));
 }
 
-Result<AircraftState> TruthWindow::at(std::int64_t t_ns) {
-  if (!known_.empty() && t_ns <= known_.back().t_ns) return remembered(t_ns);
-  if (ended_ && t_ns >= ended_->t_ns) return ended_->error;
-  Result<AircraftState> state = source_->state_at(t_ns);
-  if (state) {
-    state->t_ns = t_ns;
-    known_.push_back(*state);
-  } else if (state.error().code == ErrorCode::kNotFound) {
-    ended_ = End{t_ns, state.error()};
+Result<std::optional<AircraftState>> TruthWindow::at(std::int64_t t_ns) {
+  if (!known_.empty() && t_ns <= known_.back().t_ns) return std::optional(remembered(t_ns));
+  if (ended_ns_ && t_ns >= *ended_ns_) return std::optional<AircraftState>();
+  auto state = source_->state_at(t_ns);
+  if (!state) return state;
+  if (*state) {
+    (*state)->t_ns = t_ns;
+    known_.push_back(**state);
+  } else {
+    ended_ns_ = t_ns;
   }
   return state;
 }

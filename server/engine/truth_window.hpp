@@ -25,26 +25,21 @@ class TruthWindow {
   /// States at t_ns + j step_ns, j in [-n, n], n = ceil(half_ns / step_ns): the middle one is that
   /// at t_ns. Before t = 0 and after the flight's end the aircraft goes on as it began and ended.
   /// t_ns must not fall from call to call.
+  /// Empty when the flight has ended at t_ns.
   /// @param step_ns  > 0
-  /// Errors: kNotFound when the flight has ended at t_ns; as TruthSource::state_at.
-  [[nodiscard]] Result<std::vector<AircraftState>> around(std::int64_t t_ns,
-                                                          std::int64_t half_ns,
-                                                          std::int64_t step_ns);
+  /// Errors: as TruthSource::state_at.
+  [[nodiscard]] Result<std::optional<std::vector<AircraftState>>> around(std::int64_t t_ns,
+                                                                         std::int64_t half_ns,
+                                                                         std::int64_t step_ns);
   [[nodiscard]] const TruthSource& source() const { return *source_; }
 
  private:
-  [[nodiscard]] Result<AircraftState> at(std::int64_t t_ns);
+  [[nodiscard]] Result<std::optional<AircraftState>> at(std::int64_t t_ns);
   [[nodiscard]] AircraftState remembered(std::int64_t t_ns) const;
   void forget_before(std::int64_t t_ns);
 
-  /// When the source was first asked beyond the flight's end, and what it said.
-  struct End {
-    std::int64_t t_ns = 0;
-    Error error;
-  };
-
   std::unique_ptr<TruthSource> source_;
-  std::optional<End> ended_;
+  std::optional<std::int64_t> ended_ns_;  ///< when it was first asked beyond the flight's end
   std::deque<AircraftState> known_;  ///< by time; the one before the present window is the first
 };
 

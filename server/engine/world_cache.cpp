@@ -12,8 +12,20 @@ std::shared_ptr<const terrain::World> WorldCache::find(const std::string& key) {
   const auto known = worlds_.find(key);
   if (known == worlds_.end()) return nullptr;
   std::shared_ptr<const terrain::World> world = known->second.lock();
-  if (world) last_ = world;
+  if (!world) return nullptr;
+  if (!world->tiles->status()) {
+    // Heights that could not be read stay unknown in this world.
+    worlds_.erase(known);
+    return nullptr;
+  }
+  last_ = world;
   return world;
+}
+
+void WorldCache::drop(const std::shared_ptr<const terrain::World>& world) {
+  const std::lock_guard lock(mutex_);
+  std::erase_if(worlds_, [&](const auto& entry) { return entry.second.lock() == world; });
+  if (last_ == world) last_.reset();
 }
 
 Result<std::shared_ptr<const terrain::World>> WorldCache::get(

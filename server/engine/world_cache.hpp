@@ -20,6 +20,8 @@ class WorldCache {
   /// Errors: as open_scenario_world.
   [[nodiscard]] Result<std::shared_ptr<const terrain::World>> get(
       const Scenario& scenario, const std::function<bool(double)>& progress);
+  /// Has the world opened anew by whoever asks for it next: it could not be read.
+  void drop(const std::shared_ptr<const terrain::World>& world);
 
  private:
   [[nodiscard]] std::shared_ptr<const terrain::World> find(const std::string& key);

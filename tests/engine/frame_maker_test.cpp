@@ -42,7 +42,7 @@ std::unique_ptr<FrameMaker> open(const Scenario& scenario, const FrameMakerOptio
 MadeFrame made(FrameMaker& maker, std::int64_t k) {
   auto frame = maker.make(k);
   if (!frame) throw std::runtime_error(frame.error().message);
-  return std::move(*frame);
+  return std::move(frame->value());
 }
 
 double largest_difference(const Image& a, const Image& b) {

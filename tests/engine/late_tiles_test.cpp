@@ -4,25 +4,13 @@
 #include <algorithm>
 #include <vector>
 
-#include "server/engine/run_clock.hpp"
 #include "tests/engine/engine_fixture.hpp"
+#include "tests/engine/jumping_clock.hpp"
 
 namespace overfly::engine {
 namespace {
 
 using Json = nlohmann::json;
-
-/// Time passes only while somebody sleeps.
-class JumpingClock final : public RunClock {
- public:
-  std::int64_t now_ns() override { return now_ns_; }
-  void sleep_until_ns(std::int64_t t_ns) override { now_ns_ = std::max(now_ns_, t_ns); }
-  void enter() override {}
-  void leave() override {}
-
- private:
-  std::int64_t now_ns_ = 0;
-};
 
 /// Two tiles are late at every image that does not wait for them, but for those within a metre of
 /// one that did.
@@ -57,7 +45,7 @@ class Paging final : public renderer::Renderer {
 };
 
 RunResult flown(const std::string& pacing, const std::filesystem::path& folder) {
-  JumpingClock clock;
+  testing::JumpingClock clock;
   RunOptions options;
   options.folder = folder;
   options.clock = &clock;

@@ -216,7 +216,7 @@ TEST(AutzenTour, FliesSmoothlyAtItsHeightInsideThePhotograph) {
   ASSERT_TRUE(flight.ok()) << flight.error().message;
   EXPECT_EQ((*flight)->duration_ns(), 60 * kNsPerS);
   for (std::int64_t t_ns = 0; t_ns <= 60 * kNsPerS; t_ns += 7'000'000) {
-    const AircraftState state = (*flight)->state_at(t_ns).value();
+    const AircraftState state = (*flight)->state_at(t_ns).value().value();
     const Eigen::Vector3d p = state.T_world_body.translation;
     // 183 m of half a footprint are left to each side of the 1030 m x 1366 m photograph.
     ASSERT_LT(std::abs(p.x()), 515.0 - 183.0);

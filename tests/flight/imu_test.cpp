@@ -37,7 +37,7 @@ TEST(NormalGravity, IsThatOfWgs84) {
 class SteadyFlight final : public TruthSource {
  public:
   explicit SteadyFlight(double turn_rate_rad_s = 0.0) : turn_(turn_rate_rad_s) {}
-  [[nodiscard]] Result<AircraftState> state_at(std::int64_t t_ns) override {
+  [[nodiscard]] Result<std::optional<AircraftState>> state_at(std::int64_t t_ns) override {
     constexpr double kSpeed = 25.0;
     const double yaw = turn_ * s_from_ns(t_ns);
     AircraftState state;
@@ -45,7 +45,7 @@ class SteadyFlight final : public TruthSource {
     const double bank = std::atan(turn_ * kSpeed / kGravity);
     state.T_world_body.rotation = R_world_body_from({bank, 0.0, yaw});
     state.v_body_world_m_s = kSpeed * Eigen::Vector3d(std::sin(yaw), std::cos(yaw), 0.0);
-    return state;
+    return std::optional(state);
   }
   [[nodiscard]] std::optional<std::int64_t> duration_ns() const override { return std::nullopt; }
   [[nodiscard]] std::string description() const override { return "steady"; }
@@ -90,7 +90,7 @@ TEST(Imu, IntegratesBackToTheFlightThatMadeIt) {
   const auto readings = synthesize_imu(*measured, kEndNs, ImuModel::ideal(), kGravity, 1).value();
   ASSERT_EQ(readings.size(), 12001U);
 
-  AircraftState state = truth->state_at(0).value();
+  AircraftState state = truth->state_at(0).value().value();
   Eigen::Quaterniond R = state.T_world_body.rotation;
   Eigen::Vector3d v = state.v_body_world_m_s;
   Eigen::Vector3d p = state.T_world_body.translation;
@@ -112,7 +112,7 @@ TEST(Imu, IntegratesBackToTheFlightThatMadeIt) {
     v += a * dt_s;
     R = rotated(1.0).normalized();
     const std::int64_t end_ns = half && k > 0 ? kEndNs : readings[k].t_ns + ns_from_s(0.0025);
-    const AircraftState wanted = truth->state_at(end_ns).value();
+    const AircraftState wanted = truth->state_at(end_ns).value().value();
     worst_m = std::max(worst_m, (p - wanted.T_world_body.translation).norm());
     worst_rad = std::max(worst_rad, rotation_angle_rad(R, wanted.T_world_body.rotation));
   }

@@ -36,9 +36,11 @@ Status measure_inertially(const ExportSource& source,
   auto flight = create_truth(scenario, world);
   auto again = create_truth(scenario, world);
   if (!flight || !again) return flight ? again.error() : flight.error();
-  const Result<AircraftState> start = (*again)->state_at(0);
+  const auto start = (*again)->state_at(0);
   if (!start) return start.error();
-  const Geodetic place = world.tiles->frame().geodetic_from_world(start->T_world_body.translation);
+  if (!*start) return {};
+  const Geodetic place =
+      world.tiles->frame().geodetic_from_world((*start)->T_world_body.translation);
   const std::int64_t margin_ns = frame_period_ns(scenario.rate);
   const std::int64_t begin_ns = frame_time_ns(frames.first_frame(), scenario.rate) - margin_ns;
   const std::int64_t end_ns = frame_time_ns(frames.last_frame(), scenario.rate) + margin_ns;
@@ -51,10 +53,11 @@ Status measure_inertially(const ExportSource& source,
   if (!readings) return readings.error();
   for (const flight::ImuReading& reading : *readings) {
     if (reading.t_ns < begin_ns) continue;
-    const Result<AircraftState> state = (*again)->state_at(reading.t_ns);
+    const auto state = (*again)->state_at(reading.t_ns);
     if (!state) return state.error();
+    if (!*state) break;
     plan.imu.push_back(reading);
-    plan.states.push_back(*state);
+    plan.states.push_back(**state);
   }
   return {};
 }

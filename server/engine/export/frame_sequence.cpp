@@ -93,7 +93,7 @@ Status FrameSequence::catch_up(std::int64_t frame) {
   for (std::int64_t k = made_up_to_; k < frame; ++k) {
     // What a real-time run was too late to draw, its cameras never exposed.
     if (source_.run && record_of(k) == nullptr) continue;
-    const Result<MadeFrame> passed = maker_->make(k);
+    const auto passed = maker_->make(k);
     if (!passed) return passed.error();
   }
   return {};
@@ -103,18 +103,17 @@ Result<std::optional<MadeFrame>> FrameSequence::next() {
   if (next_ == frames_.size()) return std::optional<MadeFrame>();
   const std::int64_t frame = frames_[next_++];
   if (Status status = catch_up(frame); !status) return status.error();
-  Result<MadeFrame> made = maker_->make(frame);
-  // A flight of unknown length ends where it says so.
-  if (!made && made.error().code == ErrorCode::kNotFound) return std::optional<MadeFrame>();
-  if (!made) return made.error();
+  auto next = maker_->make(frame);
+  if (!next || !*next) return next;
+  MadeFrame& made = **next;
   made_up_to_ = frame + 1;
   if (const FrameRecord* record = record_of(frame); record != nullptr) {
-    if (Status status = check_frame(*record, *made); !status) return status.error();
+    if (Status status = check_frame(*record, made); !status) return status.error();
   }
   std::vector<CameraShot> shots;
-  for (const std::size_t camera : chosen_) shots.push_back(std::move(made->shots[camera]));
-  made->shots = std::move(shots);
-  return std::optional<MadeFrame>(std::move(*made));
+  for (const std::size_t camera : chosen_) shots.push_back(std::move(made.shots[camera]));
+  made.shots = std::move(shots);
+  return next;
 }
 
 }  // namespace overfly::engine

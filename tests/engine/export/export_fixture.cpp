@@ -69,9 +69,9 @@ std::vector<MadeFrame> frames_of(const Scenario& scenario) {
   if (!maker) throw std::runtime_error(maker.error().message);
   std::vector<MadeFrame> frames;
   for (std::int64_t k = 0; k < (*maker)->frames_total(); ++k) {
-    Result<MadeFrame> frame = (*maker)->make(k);
+    auto frame = (*maker)->make(k);
     if (!frame) throw std::runtime_error(frame.error().message);
-    frames.push_back(std::move(*frame));
+    frames.push_back(std::move(frame->value()));
   }
   return frames;
 }
