@@ -78,6 +78,20 @@ nlohmann::json FlightRun::timings() const {
 }
 
 Status FlightRun::fly() {
+  // Whatever ends the flight: what an estimator does on leaving belongs into a folder still open.
+  struct Leaving {
+    FlightRun& run;
+    ~Leaving() {
+      run.workers_.clear();
+      run.maker_.reset();
+    }
+  } const leaving{*this};
+  const Status flown = prepare_and_fly();
+  const Status closed = close_estimators();
+  return flown ? closed : flown;
+}
+
+Status FlightRun::prepare_and_fly() {
   using Step = Status (FlightRun::*)();
   const Step steps[] = {&FlightRun::open_maker, &FlightRun::open_estimators, &FlightRun::describe};
   for (const Step& step : steps) {
@@ -85,16 +99,7 @@ Status FlightRun::fly() {
     if (Status status = (this->*step)(); !status) return status;
   }
   loop_begin_ns_ = clock_.now_ns();
-  Status flown = scenario_.pacing == Pacing::kRealTime ? fly_real_time() : fly_lockstep();
-  // Also after an error: what the estimators have said so far belongs into the folder.
-  stages_.measure("wait_for_estimators", [&] {
-    for (auto& worker : workers_) worker->wait_until_idle();
-    return 0;
-  });
-  Status recorded = record_events();
-  if (recorded) recorded = close_estimators();
-  maker_.reset();
-  return flown ? recorded : flown;
+  return scenario_.pacing == Pacing::kRealTime ? fly_real_time() : fly_lockstep();
 }
 
 Status FlightRun::fly_lockstep() {

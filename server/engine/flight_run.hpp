@@ -20,7 +20,7 @@ class FlightRun {
  public:
   FlightRun(const Scenario& scenario, const RunOptions& options, RunRecorder& recorder);
 
-  /// Flies to the end. Errors: kCancelled when it was stopped; whatever a part says.
+  /// Flies to the end; no estimator is left when it returns. Errors: kCancelled when it was stopped; whatever a part says.
   Status fly();
   /// Stamp of the last frame; 0 before the first.
   [[nodiscard]] std::int64_t end_ns() const;
@@ -28,14 +28,17 @@ class FlightRun {
   [[nodiscard]] nlohmann::json timings() const;
 
  private:
+  Status prepare_and_fly();
   Status open_maker();
   Status describe_world();
   Status open_estimators();
   void prepare_estimators();
   [[nodiscard]] Result<std::unique_ptr<VoPort>> open_estimator(const EstimatorSpec& spec);
   Status describe();
-  /// Reads back what the estimators have used and where their parameters stand, and ends them.
+  /// Records what the estimators have said so far, what they have used and where their parameters
+  /// stand; also after an error.
   Status close_estimators();
+  Status describe_use();
 
   Status fly_lockstep();
   Status fly_real_time();

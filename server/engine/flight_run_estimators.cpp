@@ -123,12 +123,23 @@ void FlightRun::prepare_estimators() {
 }
 
 Status FlightRun::close_estimators() {
+  stages_.measure("wait_for_estimators", [&] {
+    for (auto& worker : workers_) worker->wait_until_idle();
+    return 0;
+  });
+  const Status recorded = record_events();
+  const Status described = describe_use();
+  return recorded ? described : recorded;
+}
+
+Status FlightRun::describe_use() {
   for (std::size_t i = 0; i < workers_.size(); ++i) {
     recorder_.set_use(i, workers_[i]->use());
     Json& entry = recorder_.manifest()["estimators"][i];
     const Json at_end = workers_[i]->effective_parameters();
+    const Json at_begin = entry.value("parameters", Json::object());
     for (const auto& [name, value] : at_end.items()) {
-      const std::string was = entry["parameters"].value(name, "");
+      const std::string was = at_begin.value(name, "");
       // An estimator may tell some only once it knows its camera: that is no change.
       if (was.empty() || was == value) continue;
       Status logged = recorder_.log(end_ns(),
@@ -139,8 +150,6 @@ Status FlightRun::close_estimators() {
     }
     entry["parameters_at_end"] = at_end;
   }
-  // Here, not with this object: what they write on leaving belongs into a folder still open.
-  workers_.clear();
   return {};
 }
 
