@@ -208,20 +208,21 @@ Result<Json> measure(const BenchArguments& arguments, ProgressDisplay& display) 
   const Result<engine::Scenario> scenario = bench_scenario(arguments.flight_s);
   if (!scenario) return scenario.error();
   engine::WorldCache worlds;
-  const auto world = worlds.get(*scenario, [&](double share) {
+  const auto opened = worlds.get(*scenario, [&](double share) {
     display.show(share, "making the built-in world");
     return !catch_stop_signals().load();
   });
-  if (!world) return world.error();
-  const auto poses = course_poses(*scenario, **world, 12);
+  if (!opened) return opened.error();
+  const terrain::World& world = (*opened)->world;
+  const auto poses = course_poses(*scenario, world, 12);
   if (!poses) return poses.error();
   display.note("drawing ...");
-  Result<Json> drawing = bench_drawing(**world, *poses, arguments);
+  Result<Json> drawing = bench_drawing(world, *poses, arguments);
   if (!drawing) return drawing.error();
-  Result<Json> rates = bench_rates(**world, *poses, arguments);
+  Result<Json> rates = bench_rates(world, *poses, arguments);
   if (!rates) return rates.error();
   display.note("encoding ...");
-  Result<Json> encoding = bench_encoding(**world, poses->front(), arguments.repetitions);
+  Result<Json> encoding = bench_encoding(world, poses->front(), arguments.repetitions);
   if (!encoding) return encoding.error();
   display.note("flying ...");
   Result<Json> flight = bench_flight(*scenario, worlds);

@@ -5,6 +5,7 @@
 
 #include "server/engine/flight_run.hpp"
 #include "server/engine/scenario_light.hpp"
+#include "server/engine/scenario_world.hpp"
 
 namespace overfly::engine {
 namespace {
@@ -27,6 +28,7 @@ Status FlightRun::open_maker() {
   Result<std::unique_ptr<FrameMaker>> maker = FrameMaker::open(scenario_, options);
   if (!maker) return maker.error();
   maker_ = std::move(*maker);
+  if (options_.world_opened) options_.world_opened(maker_->opened_world());
 
   const std::optional<std::int64_t> duration_ns = maker_->duration_ns();
   recorder_.set_length(duration_ns.value_or(0), duration_ns ? maker_->frames_total() : 0);
@@ -67,6 +69,10 @@ Status FlightRun::describe_world() {
                                     {{"lat_deg", deg_from_rad(origin.lat_rad)},
                                      {"lon_deg", deg_from_rad(origin.lon_rad)},
                                      {"alt_ellipsoid_m", origin.alt_ellipsoid_m}}}};
+  if (const auto& manifest = maker_->opened_world()->manifest) {
+    recorder_.manifest()["world"]["manifest"] = {{"file", manifest->file},
+                                                 {"digest", manifest->digest}};
+  }
   const Result<WorldDress> dress = world_dress(scenario_, origin);
   if (!dress) return dress.error();
   for (const auto& [field, text] : *dress) {

@@ -52,7 +52,8 @@ Status FrameMaker::open_world() {
   WorldCache& worlds = options_.worlds != nullptr ? *options_.worlds : own;
   auto world = worlds.get(scenario_, progress);
   if (!world) return world.error();
-  world_ = *world;
+  opened_ = *world;
+  world_ = bare_world(opened_);
   tiles_ = std::make_shared<const WatchedTiles>(world_->tiles);
   return {};
 }
@@ -99,7 +100,7 @@ Status FrameMaker::check_reading(int late_tiles) const {
 }
 
 Error FrameMaker::failed(const Error& error) {
-  if (options_.worlds != nullptr) options_.worlds->drop(world_);
+  if (options_.worlds != nullptr) options_.worlds->drop(opened_);
   return error;
 }
 

@@ -26,6 +26,7 @@
 namespace overfly::engine {
 
 class WorldCache;
+struct OpenedWorld;
 
 struct FrameMakerOptions {
   RendererFactory renderer_factory;           ///< EGL where it is empty
@@ -52,6 +53,7 @@ class FrameMaker {
   /// Empty for a flight whose end is not known beforehand.
   [[nodiscard]] std::optional<std::int64_t> duration_ns() const { return duration_ns_; }
   [[nodiscard]] const terrain::World& world() const { return *world_; }
+  [[nodiscard]] const std::shared_ptr<const OpenedWorld>& opened_world() const { return opened_; }
   [[nodiscard]] renderer::Renderer& renderer() { return *renderer_; }
   [[nodiscard]] std::string flight_description() const { return truth_->source().description(); }
   [[nodiscard]] std::vector<std::string> flight_warnings() const {
@@ -92,7 +94,8 @@ class FrameMaker {
   FrameMakerOptions options_;
   std::unique_ptr<StageTimer> own_stages_;
   StageTimer& stages_;
-  std::shared_ptr<const terrain::World> world_;
+  std::shared_ptr<const OpenedWorld> opened_;
+  std::shared_ptr<const terrain::World> world_;  ///< that of opened_
   std::shared_ptr<const WatchedTiles> tiles_;  ///< those of the world
   std::unique_ptr<TruthWindow> truth_;
   std::optional<std::int64_t> duration_ns_;

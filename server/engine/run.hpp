@@ -17,6 +17,7 @@ namespace overfly::engine {
 
 class RunClock;
 class WorldCache;
+struct OpenedWorld;
 
 /// Makes an estimator instead of the one that its type names.
 using EstimatorFactory = std::function<Result<std::unique_ptr<VoPort>>(const EstimatorSpec&)>;
@@ -37,6 +38,8 @@ struct RunOptions {
   RunClock* clock = nullptr;
   /// What takes long before the first frame, one line at a time; on the run's thread.
   std::function<void(const std::string&)> notice;
+  /// Called with the world that is flown over; on the run's thread.
+  std::function<void(std::shared_ptr<const OpenedWorld>)> world_opened;
   /// Called after each frame on the run's thread.
   std::function<void(const RunInfo&)> progress;
 };

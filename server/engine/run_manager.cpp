@@ -148,8 +148,13 @@ Result<Scenario> RunManager::scenario_of(const std::string& id) const {
   return load_scenario(scenario_file(*place));
 }
 
-Result<std::shared_ptr<const terrain::World>> RunManager::world(const Scenario& scenario) {
-  return impl_->worlds.get(scenario, {});
+Result<std::shared_ptr<const terrain::World>> RunManager::world_of(const std::string& id) {
+  if (const auto flown = impl_->flown_world(id)) return bare_world(flown);
+  const Result<Scenario> scenario = scenario_of(id);
+  if (!scenario) return scenario.error();
+  const auto opened = impl_->worlds.get(*scenario, {});
+  if (!opened) return opened.error();
+  return bare_world(*opened);
 }
 
 const RendererFactory& RunManager::renderer_factory() const {

@@ -60,8 +60,9 @@ class RunManager {
   [[nodiscard]] Result<std::filesystem::path> folder(const std::string& id) const;
   /// The scenario that a run flies or flew. Errors: kNotFound; as load_scenario.
   [[nodiscard]] Result<Scenario> scenario_of(const std::string& id) const;
-  /// The world of a scenario, shared with runs and views over it. Errors: as open_scenario_world.
-  [[nodiscard]] Result<std::shared_ptr<const terrain::World>> world(const Scenario& scenario);
+  /// The world that a run flies over, or that of the run's scenario as its files are now. Shared
+  /// with runs and views. Errors: kNotFound; as open_scenario_world.
+  [[nodiscard]] Result<std::shared_ptr<const terrain::World>> world_of(const std::string& id);
   [[nodiscard]] const RendererFactory& renderer_factory() const;
 
  private:

@@ -130,6 +130,12 @@ std::optional<Scenario> RunManager::Impl::active_scenario(const std::string& id)
   return run->second->scenario;
 }
 
+WorldCache::Shared RunManager::Impl::flown_world(const std::string& id) const {
+  const std::lock_guard lock(mutex_);
+  const auto run = runs_.find(id);
+  return run == runs_.end() ? nullptr : run->second->world;
+}
+
 void RunManager::Impl::remember(const std::string& id, std::shared_ptr<RunTimeline> timeline) {
   const std::lock_guard lock(mutex_);
   read_.emplace_front(id, std::move(timeline));
@@ -187,6 +193,11 @@ void RunManager::Impl::fly(ManagedRun& run) {
   run_options.timeline = run.timeline;
   run_options.publish_images = true;
   run_options.worlds = &worlds;
+  const auto set_world = [this, &run](WorldCache::Shared world) {
+    const std::lock_guard lock(mutex_);
+    run.world = std::move(world);
+  };
+  run_options.world_opened = set_world;
   run_options.notice = [&run](const std::string& text) {
     // The run's own next change of its info takes it away again.
     RunInfo info = run.timeline->info();
@@ -194,6 +205,7 @@ void RunManager::Impl::fly(ManagedRun& run) {
     run.timeline->set_info(info);
   };
   const Result<RunResult> result = run_scenario(run.scenario, run_options);
+  set_world(nullptr);
   // The run itself tells its timeline how it ended; only one that could not even make its folder
   // has had no chance to.
   if (!result && live(*run.timeline)) {

@@ -25,6 +25,7 @@ struct ManagedRun {
   Scenario scenario;
   std::shared_ptr<RunTimeline> timeline;
   std::atomic<bool> cancel{false};
+  WorldCache::Shared world;  ///< while it flies over it; guarded by the manager
 };
 
 struct RunManager::Impl {
@@ -39,6 +40,8 @@ struct RunManager::Impl {
   [[nodiscard]] std::optional<RunInfo> started_by(const std::string& idempotency_key) const;
   [[nodiscard]] std::vector<RunInfo> active_infos() const;
   [[nodiscard]] std::shared_ptr<RunTimeline> known_timeline(const std::string& id);
+  /// Null when it does not fly here.
+  [[nodiscard]] WorldCache::Shared flown_world(const std::string& id) const;
   [[nodiscard]] std::optional<Scenario> active_scenario(const std::string& id) const;
   void remember(const std::string& id, std::shared_ptr<RunTimeline> timeline);
   /// False when the run is not queued or running here.

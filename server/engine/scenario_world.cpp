@@ -1,19 +1,41 @@
 #include "server/engine/scenario_world.hpp"
 
+#include <utility>
+
 #include "server/engine/scenario_light.hpp"
+#include "terrain/file_digest.hpp"
 #include "terrain/synthesize.hpp"
 
 namespace overfly::engine {
 namespace {
 
-Result<terrain::World> open_manifest(const std::filesystem::path& manifest) {
-  const Result<terrain::WorldSpec> spec = terrain::read_world_manifest(manifest);
-  if (!spec) return spec.error();
-  return terrain::open_world(*spec);
+/// The digests are of the bytes that fly only if nobody wrote to a file meanwhile.
+Result<OpenedWorld> open_layers(const terrain::WorldSpec& spec,
+                                std::vector<terrain::WorldFile> files) {
+  Result<terrain::World> world = terrain::open_world(spec);
+  if (!world) return world.error();
+  if (const auto changed = terrain::lost_file(files)) {
+    return Error{ErrorCode::kIo, changed->string() + ": changed while it was being opened"};
+  }
+  return OpenedWorld{std::move(*world), {}, std::move(files)};
 }
 
-Result<terrain::World> open_bare(const Scenario& scenario,
-                                 const std::function<bool(double)>& progress) {
+Result<OpenedWorld> open_manifest(const std::filesystem::path& manifest) {
+  const terrain::WorldFile file{std::filesystem::absolute(manifest),
+                                terrain::file_identity(manifest)};
+  const Result<terrain::WorldSpec> spec = terrain::read_world_manifest(manifest);
+  if (!spec) return spec.error();
+  Result<std::string> digest = terrain::file_digest(manifest);
+  if (!digest) return digest.error();
+  std::vector<terrain::WorldFile> files = terrain::world_files(*spec);
+  files.push_back(file);
+  Result<OpenedWorld> opened = open_layers(*spec, std::move(files));
+  if (opened) opened->manifest = OpenedWorld::Manifest{manifest.string(), std::move(*digest)};
+  return opened;
+}
+
+Result<OpenedWorld> open_bare(const Scenario& scenario,
+                              const std::function<bool(double)>& progress) {
   if (const auto* builtin = std::get_if<Scenario::BuiltinWorld>(&scenario.world)) {
     const Result<std::filesystem::path> folder = terrain::builtin_world(builtin->seed, progress);
     if (!folder) return folder.error();
@@ -22,17 +44,18 @@ Result<terrain::World> open_bare(const Scenario& scenario,
   if (const auto* manifest = std::get_if<std::filesystem::path>(&scenario.world)) {
     return open_manifest(*manifest);
   }
-  return terrain::open_world(std::get<terrain::WorldSpec>(scenario.world));
+  const auto& spec = std::get<terrain::WorldSpec>(scenario.world);
+  return open_layers(spec, terrain::world_files(spec));
 }
 
 }  // namespace
 
-Result<terrain::World> open_scenario_world(const Scenario& scenario,
-                                           const std::function<bool(double)>& progress) {
-  Result<terrain::World> world = open_bare(scenario, progress);
-  if (!world) return world;
-  if (Status status = dress_world(scenario, *world); !status) return status.error();
-  return world;
+Result<OpenedWorld> open_scenario_world(const Scenario& scenario,
+                                        const std::function<bool(double)>& progress) {
+  Result<OpenedWorld> opened = open_bare(scenario, progress);
+  if (!opened) return opened;
+  if (Status status = dress_world(scenario, opened->world); !status) return status.error();
+  return opened;
 }
 
 std::string world_key(const Scenario& scenario) {

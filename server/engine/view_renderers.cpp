@@ -22,9 +22,17 @@ Result<const Scenario*> ViewRenderers::scenario_of(const std::string& run_id) {
 }
 
 Result<ViewRenderers::WorldView*> ViewRenderers::of_run(const std::string& run_id) {
+  // Who goes on watching a run goes on seeing its world, whatever becomes of the files.
+  const auto watched = std::find_if(views_.begin(), views_.end(), [&](const WorldView& view) {
+    return view.watched_run_id == run_id && view.world->tiles->status();
+  });
+  if (watched != views_.end()) {
+    views_.splice(views_.begin(), views_, watched);
+    return &views_.front();
+  }
   const Result<const Scenario*> scenario = scenario_of(run_id);
   if (!scenario) return scenario.error();
-  auto world = runs_.world(**scenario);
+  auto world = runs_.world_of(run_id);
   if (!world) return world.error();
   const RendererChoice& choice = (*scenario)->renderer;
   const auto known = std::find_if(views_.begin(), views_.end(), [&](const WorldView& view) {
@@ -32,12 +40,13 @@ Result<ViewRenderers::WorldView*> ViewRenderers::of_run(const std::string& run_i
   });
   if (known != views_.end()) {
     views_.splice(views_.begin(), views_, known);
+    views_.front().watched_run_id = run_id;
     return &views_.front();
   }
   while (views_.size() >= kMaxRenderers) views_.pop_back();
   auto renderer = make_renderer(**scenario, (*world)->tiles, runs_.renderer_factory());
   if (!renderer) return renderer.error();
-  views_.push_front({*world, choice, std::move(*renderer), "", nullptr});
+  views_.push_front({*world, choice, std::move(*renderer), run_id, "", nullptr});
   return &views_.front();
 }
 
@@ -48,7 +57,9 @@ Result<Image> ViewRenderers::remake(const std::string& run_id,
   if (!view) return view.error();
   WorldView& found = **view;
   if (!found.frames || found.run_id != run_id) {
-    auto frames = FrameRemaker::create(*scenario_, found.world);
+    const Result<const Scenario*> scenario = scenario_of(run_id);
+    if (!scenario) return scenario.error();
+    auto frames = FrameRemaker::create(**scenario, found.world);
     if (!frames) return frames.error();
     found.frames = std::move(*frames);
     found.run_id = run_id;

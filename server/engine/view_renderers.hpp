@@ -22,11 +22,12 @@ class ViewRenderers {
     std::shared_ptr<const terrain::World> world;
     RendererChoice choice;
     std::unique_ptr<renderer::Renderer> renderer;
+    std::string watched_run_id;            ///< the run it was asked for last
     std::string run_id;                    ///< that `frames` makes again
     std::unique_ptr<FrameRemaker> frames;  ///< null until asked for
   };
   /// The view of a run's world, drawn as its scenario asks. Valid until the next call. Errors: as
-  /// RunManager::world and the renderer factory.
+  /// RunManager::world_of and the renderer factory.
   [[nodiscard]] Result<WorldView*> of_run(const std::string& run_id);
   /// One image of one of the run's cameras, made again. Errors: as of_run and FrameRemaker.
   [[nodiscard]] Result<Image> remake(const std::string& run_id,

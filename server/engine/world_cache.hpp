@@ -8,27 +8,36 @@
 #include <string>
 
 #include "core/result.hpp"
-#include "server/engine/scenario.hpp"
-#include "terrain/world.hpp"
+#include "server/engine/scenario_world.hpp"
 
 namespace overfly::engine {
 
-/// Thread-safe. A world is closed when its last user lets it go, except the one asked for last.
+/// Thread-safe. A world is closed when its last user lets it go, except the one asked for last. One
+/// whose files have changed since it was opened stays with its users; who asks for it next gets
+/// the new one.
 class WorldCache {
  public:
+  using Shared = std::shared_ptr<const OpenedWorld>;
+
   /// @param progress  of making the built-in world; false cancels
   /// Errors: as open_scenario_world.
-  [[nodiscard]] Result<std::shared_ptr<const terrain::World>> get(
-      const Scenario& scenario, const std::function<bool(double)>& progress);
+  [[nodiscard]] Result<Shared> get(const Scenario& scenario,
+                                   const std::function<bool(double)>& progress);
   /// Has the world opened anew by whoever asks for it next: it could not be read.
-  void drop(const std::shared_ptr<const terrain::World>& world);
+  void drop(const Shared& world);
 
  private:
-  [[nodiscard]] std::shared_ptr<const terrain::World> find(const std::string& key);
+  [[nodiscard]] Shared find(const std::string& key);
 
   std::mutex mutex_;
-  std::map<std::string, std::weak_ptr<const terrain::World>> worlds_;
-  std::shared_ptr<const terrain::World> last_;
+  std::map<std::string, std::weak_ptr<const OpenedWorld>> worlds_;
+  Shared last_;
 };
+
+/// The world alone, kept alive as the whole.
+[[nodiscard]] inline std::shared_ptr<const terrain::World> bare_world(
+    const WorldCache::Shared& opened) {
+  return {opened, &opened->world};
+}
 
 }  // namespace overfly::engine

@@ -224,7 +224,7 @@ TEST(FrameRemaker, MakesAnyFrameAgainBitByBit) {
   WorldCache worlds;
   const auto world = worlds.get(scenario, {});
   ASSERT_TRUE(world.ok());
-  const auto remaker = FrameRemaker::create(scenario, *world);
+  const auto remaker = FrameRemaker::create(scenario, bare_world(*world));
   ASSERT_TRUE(remaker.ok()) << remaker.error().message;
   for (const std::size_t k : {6U, 2U, 8U, 0U}) {
     FrameRow row;

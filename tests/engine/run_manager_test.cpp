@@ -88,8 +88,7 @@ TEST_F(RunManagerTest, FliesAScenarioAndFindsItAgainInANewProcess) {
     const RunInfo done = wait_for_end(*runs, id);
     EXPECT_EQ(done.status, RunStatus::kCompleted) << done.error;
     EXPECT_EQ(done.id, id);
-    EXPECT_EQ(runs->world(runs->scenario_of(id).value()).value()->tiles->attribution(),
-              done.attribution);
+    EXPECT_EQ(runs->world_of(id).value()->tiles->attribution(), done.attribution);
   }
   const auto runs = manager();
   ASSERT_EQ(runs->runs().size(), 1U);
@@ -99,7 +98,7 @@ TEST_F(RunManagerTest, FliesAScenarioAndFindsItAgainInANewProcess) {
   ASSERT_TRUE(timeline.ok()) << timeline.error().message;
   EXPECT_EQ((*timeline)->frame_count(), 21U);
   EXPECT_EQ(runs->timeline(id).value(), *timeline) << "read only once";
-  EXPECT_TRUE(runs->world(runs->scenario_of(id).value()).ok());
+  EXPECT_TRUE(runs->world_of(id).ok());
   EXPECT_TRUE(runs->remove(id).ok());
   EXPECT_THAT(runs->runs(), IsEmpty());
   EXPECT_EQ(runs->remove(id).error().code, ErrorCode::kNotFound);

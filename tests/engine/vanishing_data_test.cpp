@@ -144,7 +144,7 @@ TEST_P(VanishingData, HeightsThatCannotBeReadEndTheRunAndNotTheNextOne) {
   const auto tiles = [&] {
     auto world = options_.worlds->get(
         testing::small_scenario({"world.manifest=" + (world() / "world.json").string()}), {});
-    return world.value()->tiles;
+    return world.value()->world.tiles;
   };
   const auto run = flown("cut", [&] {
     fs::resize_file(elevation(), 4000);
