@@ -13,6 +13,7 @@
 #include "server/app/exit_code.hpp"
 #include "server/app/install_paths.hpp"
 #include "server/app/stop_signal.hpp"
+#include "server/engine/thread_priority.hpp"
 #include "server/net/server.hpp"
 
 namespace overfly::app {
@@ -44,6 +45,7 @@ void log_line(const std::string& level, const std::string& text) {
 
 int serve(const ServeArguments& arguments) {
   (void)catch_stop_signals();
+  engine::draw_on_the_asking_thread();
   spdlog::set_default_logger(spdlog::stderr_color_mt("overfly"));
   engine::RunManagerOptions manager_options;
   manager_options.runs_folder = arguments.runs;

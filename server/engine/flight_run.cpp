@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "server/engine/picture_rate.hpp"
+
 namespace overfly::engine {
 namespace {
 
@@ -115,29 +117,37 @@ Status FlightRun::fly_lockstep() {
 Status FlightRun::fly_real_time() {
   Status fetched = stages_.measure("fetch_first_view", [&] { return maker_->fetch_first_view(); });
   if (!fetched) return fetched;
+  PictureRate nobody_asks;
+  PictureRate& pictures = options_.picture_rate != nullptr ? *options_.picture_rate : nobody_asks;
   loop_begin_ns_ = clock_.now_ns();
   clock_.enter();
-  const std::int64_t start_ns = clock_.now_ns();
-  Status status;
-  for (std::int64_t k = 0; k < maker_->frames_total() && status; ++k) {
-    if (cancelled()) {
-      status = stopped();
-      break;
-    }
+  pictures.flight_began(clock_.now_ns());
+  const Status flown = keep_pace(clock_.now_ns(), pictures);
+  pictures.flight_ended();
+  clock_.leave();
+  return flown;
+}
+
+Status FlightRun::keep_pace(std::int64_t start_ns, PictureRate& pictures) {
+  for (std::int64_t k = 0; k < maker_->frames_total(); ++k) {
+    if (cancelled()) return stopped();
     const std::int64_t t_ns = frame_time_ns(k, scenario_.rate);
+    const std::int64_t next_ns = frame_time_ns(k + 1, scenario_.rate);
     const std::int64_t now_ns = clock_.now_ns() - start_ns;
-    if (now_ns >= frame_time_ns(k + 1, scenario_.rate)) {
+    if (now_ns >= next_ns) {
       // The next frame is due already: drawing this one would only put off that one.
-      status = recorder_.add_late_frame(k, t_ns);
+      if (Status recorded = recorder_.add_late_frame(k, t_ns); !recorded) return recorded;
+      pictures.frame_missed(clock_.now_ns());
       continue;
     }
     if (now_ns < t_ns) clock_.sleep_until_ns(start_ns + t_ns);
     const Result<Flight> flight = fly_frame(k, false);
-    if (!flight) status = flight.error();
-    if (flight && *flight == Flight::kEnded) break;
+    if (!flight) return flight.error();
+    if (*flight == Flight::kEnded) break;
+    const std::int64_t done_ns = clock_.now_ns();
+    pictures.frame_made(done_ns, next_ns - t_ns, start_ns + next_ns - done_ns);
   }
-  clock_.leave();
-  return status;
+  return {};
 }
 
 Result<FlightRun::Flight> FlightRun::fly_frame(std::int64_t k, bool wait_for_estimators) {

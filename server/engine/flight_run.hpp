@@ -20,7 +20,8 @@ class FlightRun {
  public:
   FlightRun(const Scenario& scenario, const RunOptions& options, RunRecorder& recorder);
 
-  /// Flies to the end; no estimator is left when it returns. Errors: kCancelled when it was stopped; whatever a part says.
+  /// Flies to the end; no estimator is left when it returns. Errors: kCancelled when it was
+  /// stopped; whatever a part says.
   Status fly();
   /// Stamp of the last frame; 0 before the first.
   [[nodiscard]] std::int64_t end_ns() const;
@@ -42,6 +43,8 @@ class FlightRun {
 
   Status fly_lockstep();
   Status fly_real_time();
+  /// @param start_ns  of the flight, by the run's clock
+  Status keep_pace(std::int64_t start_ns, PictureRate& pictures);
   /// Whether the flight goes on after a frame.
   enum class Flight { kGoesOn, kEnded };
   /// Image and record of frame k, and its way to the estimators; kEnded, and no frame, after the

@@ -96,7 +96,7 @@ class FrameMaker {
   StageTimer& stages_;
   std::shared_ptr<const OpenedWorld> opened_;
   std::shared_ptr<const terrain::World> world_;  ///< that of opened_
-  std::shared_ptr<const WatchedTiles> tiles_;  ///< those of the world
+  std::shared_ptr<const WatchedTiles> tiles_;    ///< those of the world
   std::unique_ptr<TruthWindow> truth_;
   std::optional<std::int64_t> duration_ns_;
   std::int64_t frames_total_ = 0;

@@ -15,6 +15,7 @@
 
 namespace overfly::engine {
 
+class PictureRate;
 class RunClock;
 class WorldCache;
 struct OpenedWorld;
@@ -34,6 +35,8 @@ struct RunOptions {
   bool publish_images = false;
   /// Opened worlds to share; the run opens its own when null.
   WorldCache* worlds = nullptr;
+  /// Hears how much time a flight in real time has left; may be null.
+  PictureRate* picture_rate = nullptr;
   /// Paces a real-time run; the machine's clock when null.
   RunClock* clock = nullptr;
   /// What takes long before the first frame, one line at a time; on the run's thread.

@@ -157,6 +157,8 @@ Result<std::shared_ptr<const terrain::World>> RunManager::world_of(const std::st
   return bare_world(*opened);
 }
 
+PictureRate& RunManager::picture_rate() { return impl_->picture_rate; }
+
 const RendererFactory& RunManager::renderer_factory() const {
   return impl_->options.renderer_factory;
 }

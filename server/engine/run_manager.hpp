@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "server/engine/picture_rate.hpp"
 #include "server/engine/run.hpp"
 
 namespace overfly::engine {
@@ -64,6 +65,8 @@ class RunManager {
   /// with runs and views. Errors: kNotFound; as open_scenario_world.
   [[nodiscard]] Result<std::shared_ptr<const terrain::World>> world_of(const std::string& id);
   [[nodiscard]] const RendererFactory& renderer_factory() const;
+  /// Of pictures for viewers, beside the flights.
+  [[nodiscard]] PictureRate& picture_rate();
 
  private:
   RunManager();

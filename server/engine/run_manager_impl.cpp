@@ -193,6 +193,7 @@ void RunManager::Impl::fly(ManagedRun& run) {
   run_options.timeline = run.timeline;
   run_options.publish_images = true;
   run_options.worlds = &worlds;
+  run_options.picture_rate = &picture_rate;
   const auto set_world = [this, &run](WorldCache::Shared world) {
     const std::lock_guard lock(mutex_);
     run.world = std::move(world);

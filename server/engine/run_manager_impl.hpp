@@ -12,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "server/engine/picture_rate.hpp"
 #include "server/engine/run_folder.hpp"
 #include "server/engine/run_manager.hpp"
 #include "server/engine/scenario_list.hpp"
@@ -52,6 +53,7 @@ struct RunManager::Impl {
 
   const RunManagerOptions options;
   WorldCache worlds;
+  PictureRate picture_rate;
 
  private:
   void work();

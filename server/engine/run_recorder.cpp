@@ -258,6 +258,7 @@ Result<Json> RunRecorder::finish(RunStatus status, const std::string& error, Jso
   } else {
     timeline_->set_metrics(*metrics);
   }
+  timings["viewers"] = timeline_->audience()->summary();
   const Status timed = write_timings(std::move(timings));
   put_run_info(info_, manifest_);
   const Status written = write_json(manifest_file(folder_), manifest_);

@@ -16,6 +16,7 @@
 #include "core/image.hpp"
 #include "core/pose.hpp"
 #include "core/result.hpp"
+#include "server/engine/audience.hpp"
 #include "server/engine/estimator_status.hpp"
 
 namespace overfly::engine {
@@ -136,6 +137,9 @@ class RunTimeline {
   /// Sparse map points seen last, world frame.
   [[nodiscard]] std::vector<Eigen::Vector3f> live_points(std::size_t estimator) const;
 
+  /// Who watches it.
+  [[nodiscard]] const std::shared_ptr<Audience>& audience() const { return audience_; }
+
   /// How each estimator fares.
   [[nodiscard]] std::vector<EstimatorStatus> statuses() const;
 
@@ -172,6 +176,7 @@ class RunTimeline {
   };
   void changed();
 
+  const std::shared_ptr<Audience> audience_ = std::make_shared<Audience>();
   mutable std::mutex mutex_;
   mutable std::condition_variable changed_;
   std::uint64_t revision_ = 0;

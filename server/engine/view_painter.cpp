@@ -8,6 +8,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/processor_time.hpp"
 #include "server/engine/run_folder.hpp"
 #include "server/engine/view_scene.hpp"
 
@@ -17,6 +18,18 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMaxRibbons = 4;
+
+Audience::Kind kind_of(const PictureRequest& request) {
+  switch (request.kind) {
+    case PictureRequest::Kind::kDebug:
+      return Audience::Kind::kDebug;
+    case PictureRequest::Kind::kScene:
+      return Audience::Kind::kScene;
+    case PictureRequest::Kind::kCamera:
+      break;
+  }
+  return Audience::Kind::kCamera;
+}
 
 std::optional<FrameRow> row_of(const RunTimeline& timeline,
                                const PictureRequest& request,
@@ -56,19 +69,28 @@ std::int64_t stamp_before(const RunTimeline& timeline, const FrameRow& row, std:
 }  // namespace
 
 Result<Picture> ViewPainter::paint(const PictureRequest& request) {
+  const double before_s = thread_cpu_s();
   auto timeline = runs_.timeline(request.run_id);
   if (!timeline) return timeline.error();
-  const Result<std::size_t> camera = (*timeline)->camera_index(request.camera);
+  Result<Picture> picture = paint_of(request, *timeline);
+  if (picture) (*timeline)->audience()->picture_made(kind_of(request), thread_cpu_s() - before_s);
+  runs_.picture_rate().picture_made();
+  return picture;
+}
+
+Result<Picture> ViewPainter::paint_of(const PictureRequest& request,
+                                      const std::shared_ptr<RunTimeline>& timeline) {
+  const Result<std::size_t> camera = timeline->camera_index(request.camera);
   if (!camera) return camera.error();
-  const auto row = row_of(**timeline, request, *camera);
+  const auto row = row_of(*timeline, request, *camera);
   if (!row) return Error{ErrorCode::kNotFound, "run " + request.run_id + " has no frame yet"};
   switch (request.kind) {
     case PictureRequest::Kind::kCamera:
-      return paint_camera(request, **timeline, *camera, *row);
+      return paint_camera(request, *timeline, *camera, *row);
     case PictureRequest::Kind::kDebug:
-      return paint_debug(request, **timeline, *row);
+      return paint_debug(request, *timeline, *row);
     case PictureRequest::Kind::kScene:
-      return paint_scene(request, *timeline, *row);
+      return paint_scene(request, timeline, *row);
   }
   return Error{ErrorCode::kInvalidArgument, "no such kind of picture"};
 }

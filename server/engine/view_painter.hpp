@@ -21,6 +21,8 @@ class ViewPainter {
   [[nodiscard]] Result<Picture> paint(const PictureRequest& request);
 
  private:
+  [[nodiscard]] Result<Picture> paint_of(const PictureRequest& request,
+                                         const std::shared_ptr<RunTimeline>& timeline);
   [[nodiscard]] Result<Picture> paint_camera(const PictureRequest& request,
                                              const RunTimeline& timeline,
                                              std::size_t camera,

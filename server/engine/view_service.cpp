@@ -2,9 +2,13 @@
 
 #include <condition_variable>
 #include <mutex>
+#include <string>
+#include <system_error>
 #include <thread>
 #include <utility>
 
+#include "server/engine/picture_rate.hpp"
+#include "server/engine/thread_priority.hpp"
 #include "server/engine/view_painter.hpp"
 #include "server/engine/view_queue.hpp"
 
@@ -14,7 +18,10 @@ struct ViewService::Impl {
   explicit Impl(RunManager& run_manager) : runs(run_manager), thread([this] { work(); }) {}
   ~Impl();
   void work();
-  std::optional<ViewQueue::Entry> next();
+  void paint(bool beside_flight);
+  /// Tells all who wait why they get no picture.
+  void refuse(const Error& reason);
+  std::optional<ViewQueue::Entry> next(bool beside_flight);
 
   RunManager& runs;
   std::mutex mutex;
@@ -34,12 +41,13 @@ ViewService::Impl::~Impl() {
   thread.join();
 }
 
-/// The next picture to draw, once there is one; tells replaced ones meanwhile. Empty at the end.
-std::optional<ViewQueue::Entry> ViewService::Impl::next() {
+/// The next picture to draw, once there is one; tells replaced ones meanwhile. Empty at the end,
+/// and when a flight in real time has begun or ended.
+std::optional<ViewQueue::Entry> ViewService::Impl::next(bool beside_flight) {
   std::unique_lock lock(mutex);
   for (;;) {
     wake.wait(lock, [this] { return stopping || !queue.empty() || !replaced.empty(); });
-    if (stopping) return std::nullopt;
+    if (stopping || runs.picture_rate().flying() != beside_flight) return std::nullopt;
     if (replaced.empty()) return queue.pop();
     const std::vector<Done> told = std::exchange(replaced, {});
     lock.unlock();
@@ -51,9 +59,36 @@ std::optional<ViewQueue::Entry> ViewService::Impl::next() {
 }
 
 void ViewService::Impl::work() {
+  for (;;) {
+    {
+      std::unique_lock lock(mutex);
+      wake.wait(lock, [this] { return stopping || !queue.empty() || !replaced.empty(); });
+      if (stopping) return;
+    }
+    // A thread's priority can be lowered only: beside a flight another one draws.
+    const bool beside_flight = runs.picture_rate().flying();
+    try {
+      std::thread([this, beside_flight] { paint(beside_flight); }).join();
+    } catch (const std::system_error& failure) {
+      refuse({ErrorCode::kInternal, std::string("no thread to draw on: ") + failure.what()});
+    }
+  }
+}
+
+void ViewService::Impl::refuse(const Error& reason) {
+  std::unique_lock lock(mutex);
+  while (auto entry = queue.pop()) {
+    lock.unlock();
+    entry->done(reason);
+    lock.lock();
+  }
+}
+
+void ViewService::Impl::paint(bool beside_flight) {
+  lower_thread(beside_flight ? ThreadPriority::kLeftOver : ThreadPriority::kBelowFlights);
   // The painter's renderers live and die on this thread.
   ViewPainter painter(runs);
-  while (auto entry = next()) entry->done(painter.paint(entry->request));
+  while (auto entry = next(beside_flight)) entry->done(painter.paint(entry->request));
 }
 
 ViewService::ViewService(RunManager& runs) : impl_(std::make_unique<Impl>(runs)) {}

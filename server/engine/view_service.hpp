@@ -1,5 +1,5 @@
 // Pictures for viewers: the camera, debug and scene views of a run at any instant, drawn on one
-// thread of its own so that no viewer ever slows a run.
+// thread of its own, which beside a flight in real time gets only what that leaves of the machine.
 #pragma once
 
 #include <cstdint>

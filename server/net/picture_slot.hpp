@@ -18,6 +18,10 @@ class PictureSlot {
  public:
   explicit PictureSlot(double max_hz) : period_ns_(period_of(max_hz)) {}
   void set_max_hz(double max_hz) { period_ns_ = period_of(max_hz); }
+  /// Nothing is drawn more often than this, not even a change; empty = no limit.
+  void set_limit_hz(std::optional<double> limit_hz) {
+    least_period_ns_ = limit_hz ? period_of(*limit_hz) : 0;
+  }
 
   /// Says what the client should see now; only the newest wish counts.
   void want(const PictureKey& key) { wanted_ = key; }
@@ -39,6 +43,7 @@ class PictureSlot {
   static std::int64_t period_of(double max_hz) { return static_cast<std::int64_t>(1e9 / max_hz); }
 
   std::int64_t period_ns_;
+  std::int64_t least_period_ns_ = 0;
   std::optional<PictureKey> wanted_;
   std::optional<PictureKey> taken_;
   std::int64_t due_ns_ = 0;

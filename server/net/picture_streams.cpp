@@ -37,6 +37,7 @@ void PictureStreams::subscribe(const std::vector<StreamWish>& wishes) {
     stream.sequence = is_new ? 0 : sequences_[key_of(wish)];
     stream.wish = wish;
     stream.slot.set_max_hz(wish.max_hz);
+    stream.slot.set_limit_hz(limit_hz_);
     streams_.push_back(std::move(stream));
   }
   show_again();
@@ -59,9 +60,17 @@ void PictureStreams::set_alignment(const std::string& mode) {
   ++view_change_;
 }
 
+bool PictureStreams::set_limit_hz(std::optional<double> limit_hz) {
+  if (limit_hz_ == limit_hz) return false;
+  limit_hz_ = limit_hz;
+  for (Stream& stream : streams_) stream.slot.set_limit_hz(limit_hz);
+  return true;
+}
+
 void PictureStreams::restart() {
   for (Stream& stream : streams_) {
     stream.slot = PictureSlot(stream.wish.max_hz);
+    stream.slot.set_limit_hz(limit_hz_);
     stream.ticket = 0;
     stream.sent_frame.reset();
     stream.error_told.clear();
@@ -167,7 +176,11 @@ bool PictureStreams::waiting() const {
 nlohmann::json PictureStreams::streams_json() const {
   nlohmann::json list = nlohmann::json::array();
   for (const Stream& stream : streams_) {
-    nlohmann::json entry = {{"id", stream.id}, {"name", stream.wish.name}};
+    const double max_hz = stream.wish.max_hz;
+    nlohmann::json entry = {{"id", stream.id},
+                            {"name", stream.wish.name},
+                            {"max_hz", max_hz},
+                            {"limit_hz", std::min(max_hz, limit_hz_.value_or(max_hz))}};
     if (!stream.wish.camera.empty()) entry["camera"] = stream.wish.camera;
     list.push_back(std::move(entry));
   }

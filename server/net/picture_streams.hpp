@@ -36,6 +36,8 @@ class PictureStreams {
   void set_alignment(const std::string& mode);
   /// What was on its way is no longer wanted: another run is watched, or none.
   void restart();
+  /// The rate that no stream may exceed; empty = none. @return true when that is another one
+  bool set_limit_hz(std::optional<double> limit_hz);
   /// Every stream sends the picture of the present instant again.
   void show_again() { ++change_; }
 
@@ -73,6 +75,7 @@ class PictureStreams {
   std::map<StreamKey, std::uint32_t> ids_;                ///< of all ever subscribed
   std::map<StreamKey, std::uint32_t> sequences_;          ///< of streams not subscribed now
   engine::SceneSettings scene_;
+  std::optional<double> limit_hz_;
   std::uint64_t change_ = 0;
   std::uint64_t view_change_ = 0;
   std::uint64_t tickets_ = 0;

@@ -31,6 +31,7 @@ bool is_due(const std::optional<std::int64_t>& last_ns, std::int64_t now_ns, std
 RunWatch::RunWatch(std::shared_ptr<const engine::RunTimeline> timeline,
                    const std::map<std::string, std::size_t>& resume)
     : timeline_(std::move(timeline)),
+      seat_(timeline_->audience()),
       feed_(timeline_, resume),
       cursor_(is_running(timeline_->info().status)),
       places_(EstimatePlaces::of(*timeline_, engine::kRecordedAlignment)) {}

@@ -52,6 +52,7 @@ class RunWatch {
   void tell_playback(ViewerPort* port, std::int64_t now_ns);
 
   std::shared_ptr<const engine::RunTimeline> timeline_;
+  engine::Audience::Seat seat_;
   RowFeed feed_;
   PlaybackCursor cursor_;
   EstimatePlaces places_;

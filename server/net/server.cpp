@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "server/engine/thread_priority.hpp"
 #include "server/net/listener.hpp"
 #include "server/net/rest_api.hpp"
 #include "server/net/server_context.hpp"
@@ -70,7 +71,10 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options,
   if (!port) return port.error();
   server->impl_->port = *port;
   for (int i = 0; i < std::max(options.threads, 1); ++i) {
-    server->impl_->threads.emplace_back([impl = server->impl_.get()] { impl->loop.run(); });
+    server->impl_->threads.emplace_back([impl = server->impl_.get()] {
+      engine::lower_thread(engine::ThreadPriority::kBelowFlights);
+      impl->loop.run();
+    });
   }
   return server;
 }

@@ -166,6 +166,7 @@ Status Viewer::step(const StepCommand& command) {
 
 void Viewer::tick(std::int64_t now_ns) {
   if (watch_) watch_->refresh(now_ns);
+  if (pictures_.set_limit_hz(port_.picture_limit_hz())) streams_due_ = true;
   if (streams_due_) {
     streams_due_ = false;
     port_.send_text(to_text(pictures_.streams_json()));

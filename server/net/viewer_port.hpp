@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,8 @@ class ViewerPort {
   /// Opens a run, which may mean to read it from disk; once that is done, not before it returns,
   /// the connection calls Viewer::run_opened.
   virtual void open_run(const std::string& run_id) = 0;
+  /// Of each stream, beside flights in real time [Hz]; empty = none.
+  [[nodiscard]] virtual std::optional<double> picture_limit_hz() const = 0;
   /// Bytes accepted by send_* that are not on the wire yet.
   [[nodiscard]] virtual std::size_t unsent_bytes() const = 0;
 };

@@ -72,6 +72,9 @@ class WebSocketSession final : public ViewerPort,
                     std::shared_ptr<const std::vector<std::uint8_t>> jpeg) override;
   void draw(const PictureTicket& ticket, const engine::PictureRequest& request) override;
   void open_run(const std::string& run_id) override;
+  [[nodiscard]] std::optional<double> picture_limit_hz() const override {
+    return context_->runs.picture_rate().limit_hz();
+  }
   [[nodiscard]] std::size_t unsent_bytes() const override { return unsent_bytes_; }
 
  private:

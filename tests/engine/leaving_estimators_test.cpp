@@ -121,7 +121,8 @@ TEST_F(LeavingEstimators, AProcessStillAtWorkIsEndedFirst) {
   // It leaves when the door closes, and tells what it then finds two folders up.
   overfly::testing::write_text(script,
                                "import fcntl, sys\n"
-                               "sys.path.insert(0, '" + client + "')\n" +
+                               "sys.path.insert(0, '" +
+                                   client + "')\n" +
                                    R"(import overfly_vo
 class Leaver(overfly_vo.Estimator):
     name = 'leaver'

@@ -4,6 +4,7 @@
 
 #include <map>
 
+#include "server/engine/picture_rate.hpp"
 #include "server/engine/run_clock.hpp"
 #include "server/engine/run_folder.hpp"
 #include "server/engine/run_records.hpp"
@@ -193,6 +194,23 @@ TEST_F(RealTime, RendererThatFallsBehindSkipsFramesWhoseTimeHasPassed) {
   EXPECT_DOUBLE_EQ(score.at("coverage").get<double>(), 5.0 / 11.0);
   EXPECT_EQ(run->metrics.at("camera").at("late_frame_ranges"),
             Json::parse("[[1, 1], [3, 4], [6, 6], [8, 9]]"));
+}
+
+TEST_F(RealTime, PicturesForViewersGiveWayToFramesThatComeLate) {
+  options_.renderer_factory = [&](std::shared_ptr<const terrain::TileSource> tiles) {
+    return Result<std::unique_ptr<renderer::Renderer>>(std::make_unique<SlowRenderer>(
+        renderer::create_noop_renderer(std::move(tiles)), clock_, 250 * kMs));
+  };
+  PictureRate rate;
+  options_.picture_rate = &rate;
+  std::vector<double> limits_hz;
+  options_.progress = [&](const RunInfo&) { limits_hz.push_back(rate.limit_hz().value_or(0.0)); };
+  const auto run =
+      run_scenario(testing::small_scenario({"pacing=real_time", "duration_s=1"}), options_);
+  ASSERT_TRUE(run.ok()) << run.error().message;
+  // One missed between frames 0 and 2, two between 2 and 5: as in the test above.
+  EXPECT_THAT(limits_hz, ElementsAre(5.0, 2.0, 1.0, 1.0, 1.0));
+  EXPECT_FALSE(rate.flying());
 }
 
 }  // namespace

@@ -93,10 +93,10 @@ class VanishingData : public ::testing::TestWithParam<const char*> {
       done = true;
       meanwhile();
     };
-    return run_scenario(testing::small_scenario({std::string("pacing=") + GetParam(),
-                                                 "world.manifest=" +
-                                                     (world() / "world.json").string()}),
-                        options_);
+    return run_scenario(
+        testing::small_scenario({std::string("pacing=") + GetParam(),
+                                 "world.manifest=" + (world() / "world.json").string()}),
+        options_);
   }
 
   /// The run of that name ended as failed, and kept the frames that it had.

@@ -245,7 +245,8 @@ TEST(Course, IsTheSameFlightEachTime) {
   const auto a = fly({}, std::make_shared<Hills>());
   const auto b = fly({}, std::make_shared<Hills>());
   for (std::int64_t t_ns = 0; t_ns < *a->duration_ns(); t_ns += 333'333'333) {
-    EXPECT_EQ(a->state_at(t_ns)->value().T_world_body.matrix(), b->state_at(t_ns)->value().T_world_body.matrix());
+    EXPECT_EQ(a->state_at(t_ns)->value().T_world_body.matrix(),
+              b->state_at(t_ns)->value().T_world_body.matrix());
   }
 }
 

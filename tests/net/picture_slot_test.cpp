@@ -63,6 +63,25 @@ TEST(PictureSlot, ShowsASeekSoonThoughTheStreamIsSlow) {
   EXPECT_TRUE(slot.take(100 * kMs));
 }
 
+TEST(PictureSlot, NeverExceedsALimitNotEvenForASeek) {
+  PictureSlot slot(31.0);
+  slot.set_limit_hz(2.0);
+  int taken = 0;
+  for (std::int64_t now_ms = 0; now_ms < 10'000; now_ms += 16) {
+    slot.want({now_ms, static_cast<std::uint64_t>(now_ms)});
+    if (slot.take(now_ms * kMs)) ++taken;
+    slot.done();
+  }
+  EXPECT_NEAR(taken, 20, 1);
+  slot.set_limit_hz({});
+  for (std::int64_t now_ms = 10'000; now_ms < 20'000; now_ms += 16) {
+    slot.want({now_ms, 0});
+    if (slot.take(now_ms * kMs)) ++taken;
+    slot.done();
+  }
+  EXPECT_NEAR(taken, 330, 4);
+}
+
 TEST(PictureSlot, DoesNotAskAgainForAFrameThatALivePictureShowed) {
   PictureSlot slot(1000.0);
   slot.want({1, 0});

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "server/engine/jpeg.hpp"
+#include "server/engine/picture_rate.hpp"
 #include "tests/net/test_client.hpp"
 #include "tests/net/test_server.hpp"
 
@@ -265,6 +266,46 @@ TEST(WebSocket, NumbersAStreamByItsCamera) {
   const json scene = {{"name", "scene"}, {"camera", "tail"}};
   EXPECT_EQ(client.command({{"type", "subscribe"}, {"streams", json::array({scene})}}).at("code"),
             "invalid_argument");
+}
+
+TEST(WebSocket, TellsHowOftenPicturesComeBesideAFlightInRealTime) {
+  TestServer server;
+  const std::string id = server.fly("tiny");
+  WebSocketClient client(server.port());
+  const json streams = {{{"name", "camera"}, {"max_hz", 31}}, {{"name", "scene"}, {"max_hz", 2}}};
+  client.command({{"type", "subscribe"}, {"streams", streams}});
+  const auto limit_is = [](double camera_hz) {
+    return [camera_hz](const json& message) {
+      return message.at("type") == "streams" && message["streams"][0]["limit_hz"] == camera_hz &&
+             message["streams"][0]["max_hz"] == 31.0 && message["streams"][1]["limit_hz"] == 2.0;
+    };
+  };
+  client.wait_until(limit_is(31.0));
+  client.command({{"type", "attach"}, {"run", id}});
+  server.runs().picture_rate().flight_began(0);
+  client.command({{"type", "play"}});
+  client.wait_until(limit_is(engine::PictureRate::kFirstHz));
+  server.runs().picture_rate().flight_ended();
+  client.wait_until(limit_is(31.0));
+}
+
+TEST(WebSocket, IsCountedAsAViewerOfTheRunItIsAttachedTo) {
+  TestServer server;
+  const std::string id = server.start("slow");
+  WebSocketClient client(server.port());
+  client.command({{"type", "subscribe"}, {"streams", {{{"name", "camera"}}}}});
+  client.command({{"type", "attach"}, {"run", id}});
+  client.wait_for_picture([](const PictureMessage&) { return true; });
+  client.command({{"type", "detach"}});
+  ASSERT_TRUE(server.runs().cancel(id).ok());
+  server.wait_for_end(id);
+  const json viewers =
+      json::parse(read_text(server.folder() / "runs" / id / "timings.json")).at("viewers");
+  EXPECT_EQ(viewers.at("viewers"), 1);
+  EXPECT_EQ(viewers.at("most_at_once"), 1);
+  EXPECT_GT(viewers.at("viewer_s").get<double>(), 0.0);
+  EXPECT_GE(viewers.at("pictures").at("camera").get<int>(), 1);
+  EXPECT_GT(viewers.at("cpu_s").get<double>(), 0.0);
 }
 
 TEST(WebSocket, CarriesOutCommandsInOrderWhileARunIsOpened) {

@@ -143,6 +143,7 @@ export class StreamClient {
       this.names = new Map(
         message.streams.map(({ id, name, camera }) => [id, picturesOf(name, camera)]),
       );
+      this.options.listener.onMessage(message);
     } else if (message.type === 'ok' || message.type === 'error') {
       this.onAnswer(message);
     } else {

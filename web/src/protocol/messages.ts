@@ -80,12 +80,22 @@ export interface Rows {
   columns: Record<string, Cell[]>;
 }
 
+export interface StreamInfo {
+  id: number;
+  name: string;
+  camera?: string;
+  /** As asked for. */
+  max_hz?: number;
+  /** As often as pictures come at the most, beside a flight in real time. */
+  limit_hz?: number;
+}
+
 export type ServerMessage =
   | { type: 'hello'; protocol: number; server: string; connection: string }
   | { type: 'ok'; request?: number }
   | { type: 'error'; request?: number; code: string; message: string }
   | { type: 'run'; run: Run }
-  | { type: 'streams'; streams: { id: number; name: string; camera?: string }[] }
+  | { type: 'streams'; streams: StreamInfo[] }
   | ({ type: 'rows' } & Rows)
   | { type: 'estimators'; estimators: Record<string, EstimatorStatus> }
   | { type: 'metrics'; metrics: Metrics }

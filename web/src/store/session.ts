@@ -11,6 +11,7 @@ import type { PictureMessage } from '../protocol/parse';
 import type { Run } from '../protocol/rest_types';
 import type { Decode } from './picture_decoder';
 import { PictureDecoder } from './picture_decoder';
+import { pictureRates } from './picture_rates';
 import { RunData } from './run_data';
 import type { Notices } from './notices';
 import type { Store } from './state';
@@ -109,6 +110,9 @@ export class Session implements StreamListener {
     } else if (message.type === 'estimators') {
       state.statuses = message.estimators;
       this.store.change('estimators');
+    } else if (message.type === 'streams') {
+      state.rates = pictureRates(message.streams);
+      this.store.change('pictures');
     } else if (message.type === 'playback') {
       this.onPlayback(message);
     } else if (message.type === 'error') {

@@ -12,6 +12,7 @@ import type {
   ScenarioEntry,
 } from '../protocol/rest_types';
 import { kDefaultAlignment } from './error_table';
+import type { PictureRate } from './picture_rates';
 import type { EstimateRows } from './run_data';
 import { RunData } from './run_data';
 
@@ -65,6 +66,8 @@ export interface State {
   /** Asked for and not confirmed yet. */
   wantedSpeed: number | null;
   pictures: Map<string, Picture>;
+  /** Of the streams that come more slowly than they were asked for, by name. */
+  rates: Map<string, PictureRate>;
   /** Chosen by the viewer; shown once the run is scored. */
   alignment: string;
   aligned: AlignedEstimates | null;
@@ -99,6 +102,7 @@ export function initialState(): State {
     playback: null,
     wantedSpeed: null,
     pictures: new Map(),
+    rates: new Map(),
     alignment: kDefaultAlignment,
     aligned: null,
     cameras: [],

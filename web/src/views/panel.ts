@@ -9,9 +9,14 @@ export interface Panel {
   body: HTMLElement;
   /** @param expected  frame of the playback cursor; another one shows by how much it is off */
   showFrame(frame: number | null, expected?: number | null): void;
+  /** The rate of its pictures, where it is less than was asked for; else empty. */
+  showRate(text: string): void;
   /** Text in place of what is not there; null = it is. */
   showEmpty(text: string | null): void;
 }
+
+const kRateHint =
+  'Pictures a second, and as many as were asked for: the flight in real time comes first';
 
 /** Frame at the cursor; null before the first one. */
 export function frameOf(playback: Playback | null): number | null {
@@ -20,13 +25,14 @@ export function frameOf(playback: Playback | null): number | null {
 
 export function makePanel(name: string, title: string, expandable = false): Panel {
   const badge = h('span', { class: 'frame-badge', title: 'Frame shown' });
+  const rate = h('span', { class: 'rate-badge', 'data-role': 'rate', title: kRateHint });
   const tools = h('div', { class: 'panel-tools' });
   const empty = h('div', { class: 'panel-empty', hidden: true });
   const body = h('div', { class: 'panel-body' }, empty);
   const root = h('section', { class: 'panel', 'data-panel': name, 'aria-label': title });
   const expand = expandable ? expandButton(root) : null;
   root.append(
-    h('header', { class: 'panel-header' }, h('h2', {}, title), tools, badge, expand ?? ''),
+    h('header', { class: 'panel-header' }, h('h2', {}, title), tools, rate, badge, expand ?? ''),
     body,
   );
   return {
@@ -38,6 +44,9 @@ export function makePanel(name: string, title: string, expandable = false): Pane
       const offText = off === 0 ? '' : ` (${off > 0 ? '+' : '−'}${Math.abs(off)})`;
       setText(badge, frame === null ? '' : `#${frame}${offText}`);
       setAttribute(root, 'data-frame', frame === null ? null : String(frame));
+    },
+    showRate(text) {
+      setText(rate, text);
     },
     showEmpty(text) {
       empty.hidden = text === null;

@@ -1,5 +1,6 @@
 // Panels that show the pictures of a stream; here that of what the estimators draw.
 import type { Playback } from '../protocol/messages';
+import { rateText } from '../store/picture_rates';
 import type { State, Topic } from '../store/state';
 import { h, rebuild } from './dom';
 import type { Panel } from './panel';
@@ -37,6 +38,7 @@ export abstract class PicturePanel implements View {
     this.picture.markStale(still?.t_ns ?? null);
     this.panel.showFrame(picture?.frame ?? null, still?.frame ?? null);
     this.panel.showEmpty(picture === null ? this.emptyText(state) : null);
+    this.panel.showRate(rateText(stream === null ? undefined : state.rates.get(stream)));
   }
 
   protected abstract streamOf(state: State): string | null;

@@ -1,5 +1,6 @@
 // The 3D view: drawn by the server, steered here. Drag turns, the wheel zooms.
 import type { SceneMode } from '../protocol/messages';
+import { rateText } from '../store/picture_rates';
 import { shownAlignment } from '../store/state';
 import type { Topic } from '../store/state';
 import { h, perFrame } from './dom';
@@ -74,6 +75,7 @@ export class ScenePanel implements View {
     this.picture.markStale(still?.t_ns ?? null);
     this.panel.showFrame(picture?.frame ?? null, still?.frame ?? null);
     this.panel.showEmpty(picture === null ? waitingText(state) : null);
+    this.panel.showRate(rateText(state.rates.get('scene')));
   }
 
   private updateControls(): void {

@@ -1,4 +1,5 @@
 import { beforeEach, describe, expect, it } from 'vitest';
+import { rateText } from '../../src/store/picture_rates';
 import { cameraPictures } from '../../src/store/state';
 import { samplePlayback, sampleRun, sampleStatus } from '../support/samples';
 import { Viewing } from '../support/viewing';
@@ -75,6 +76,22 @@ describe('Session', () => {
     expect(viewing.store.take().has('estimators')).toBe(true);
     viewing.session.selectRun('r2');
     expect(viewing.store.state.statuses).toEqual({});
+  });
+
+  it('knows which pictures come more slowly than they were asked for', () => {
+    viewing.watch();
+    const streams = [
+      { id: 1, name: 'scene', max_hz: 20, limit_hz: 5 },
+      { id: 2, name: 'camera', camera: 'left', max_hz: 31, limit_hz: 5 },
+      { id: 3, name: 'debug/feature', max_hz: 4, limit_hz: 4 },
+    ];
+    viewing.socket.receive({ type: 'streams', streams });
+    const { rates } = viewing.store.state;
+    expect([...rates.keys()]).toEqual(['scene', 'camera/left']);
+    expect(rateText(rates.get('camera/left'))).toBe('5/31 Hz');
+    expect(rateText(rates.get('debug/feature'))).toBe('');
+    viewing.socket.receive({ type: 'streams', streams: [{ id: 1, name: 'scene' }] });
+    expect(viewing.store.state.rates.size).toBe(0);
   });
 
   it('asks for the pictures of the camera chosen', () => {
