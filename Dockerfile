@@ -1,5 +1,6 @@
 # One image for any machine: it renders with a GPU where the host lends one, else in software.
 #   docker build -t overfly . && docker run --rm -p 127.0.0.1:8480:8480 overfly
+# The log names the URL to open, with the token.
 FROM debian:bookworm-slim AS build
 WORKDIR /opt/overfly
 COPY scripts scripts
@@ -15,7 +16,7 @@ RUN scripts/install-packages run \
  && apt-get install -y -qq --no-install-recommends curl tini $(cat runtime-packages.txt) \
  && rm -rf /var/lib/apt/lists/* \
  && useradd --create-home --uid 1000 overfly \
- && install -d -o overfly -g overfly /data/runs /data/cache
+ && install -d -o overfly -g overfly /data /data/runs /data/cache
 COPY --from=build /opt/overfly/build/release/overfly build/release/overfly
 COPY --from=build /opt/overfly/web/dist web/dist
 COPY scenarios scenarios
@@ -24,7 +25,8 @@ ENV OVERFLY_CACHE=/data/cache
 VOLUME ["/data/runs", "/data/cache"]
 EXPOSE 8480
 HEALTHCHECK --interval=30s --timeout=5s --start-period=10s \
-  CMD curl -fsS http://127.0.0.1:8480/api/v1/health || exit 1
+  CMD printf 'header = "Authorization: Bearer %s"' "$(cat /data/token)" \
+    | curl -fsS -K - http://127.0.0.1:8480/api/v1/health || exit 1
 # The first process of a container must reap what estimators leave behind.
 ENTRYPOINT ["tini", "-s", "--", "/opt/overfly/build/release/overfly"]
-CMD ["serve", "--address", "0.0.0.0", "--runs", "/data/runs", "--scenarios", "/opt/overfly/scenarios", "--web", "/opt/overfly/web/dist"]
+CMD ["serve", "--address", "0.0.0.0", "--token-file", "/data/token", "--runs", "/data/runs", "--scenarios", "/opt/overfly/scenarios", "--web", "/opt/overfly/web/dist"]

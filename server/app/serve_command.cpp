@@ -8,12 +8,15 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "server/app/commands.hpp"
 #include "server/app/exit_code.hpp"
 #include "server/app/install_paths.hpp"
 #include "server/app/stop_signal.hpp"
 #include "server/engine/thread_priority.hpp"
+#include "server/app/token_file.hpp"
+#include "server/net/access_token.hpp"
 #include "server/net/server.hpp"
 
 namespace overfly::app {
@@ -27,6 +30,8 @@ struct ServeArguments {
   std::string runs = "runs";
   std::string scenarios;
   std::string web;
+  std::string token_file;
+  bool no_token = false;
   int parallel_runs = 1;
   bool allow_commands = false;
 };
@@ -43,10 +48,22 @@ void log_line(const std::string& level, const std::string& text) {
   }
 }
 
+/// The token that clients must show; empty with --no-token.
+Result<std::string> token_of(const ServeArguments& arguments) {
+  if (arguments.no_token) return std::string();
+  if (arguments.token_file.empty()) return net::make_token();
+  auto read = open_token_file(arguments.token_file);
+  if (!read) return read.error();
+  if (!read->warning.empty()) spdlog::warn(read->warning);
+  return std::move(read->token);
+}
+
 int serve(const ServeArguments& arguments) {
   (void)catch_stop_signals();
   engine::draw_on_the_asking_thread();
   spdlog::set_default_logger(spdlog::stderr_color_mt("overfly"));
+  auto token = token_of(arguments);
+  if (!token) return report(token.error());
   engine::RunManagerOptions manager_options;
   manager_options.runs_folder = arguments.runs;
   manager_options.scenarios_folder =
@@ -60,6 +77,7 @@ int serve(const ServeArguments& arguments) {
   net::ServerOptions options;
   options.address = arguments.address;
   options.port = arguments.port;
+  options.token = std::move(*token);
   options.web_folder = arguments.web.empty() ? web_folder() : fs::path(arguments.web);
   options.log = log_line;
   const auto server = net::Server::start(options, **runs, views);
@@ -84,6 +102,13 @@ void add_serve_command(CLI::App& app, int& exit_code) {
   command->add_option("--runs", arguments->runs, "Folder of the runs")->capture_default_str();
   command->add_option("--scenarios", arguments->scenarios, "Folder of the scenario files");
   command->add_option("--web", arguments->web, "Folder of the built dashboard");
+  CLI::Option* token_file = command->add_option(
+      "--token-file",
+      arguments->token_file,
+      "File with the token that clients must show, one line; made where there is none");
+  command
+      ->add_flag("--no-token", arguments->no_token, "Ask for no token; on a loopback address only")
+      ->excludes(token_file);
   command->add_option("--parallel-runs", arguments->parallel_runs, "Flights at the same time")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();

@@ -7,8 +7,10 @@
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
 #include <chrono>
+#include <limits>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "server/net/error_response.hpp"
 #include "server/net/origin.hpp"
@@ -27,12 +29,18 @@ constexpr const char* kStreamPath = "/api/v1/stream";
 constexpr const char* kApiPrefix = "/api/";
 /// Requests that are sent ahead wait here, no more than this of them.
 constexpr std::size_t kReadBufferBytes = std::size_t{128} << 10U;
+constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::max();
 /// A picture may wait for a world to open and for tiles to load, but not for ever.
 constexpr std::chrono::seconds kAnswerLimit{120};
+/// Of a request that was refused at its header, this much of the rest is taken, and so long.
+constexpr std::size_t kDrainBytes = std::size_t{2} << 20U;
+constexpr std::size_t kDrainStepBytes = std::size_t{16} << 10U;
+constexpr std::chrono::seconds kDrainLimit{2};
 
 std::string path_of(const std::string& target) { return target.substr(0, target.find('?')); }
 
-HttpRequest plain_request(http::request<http::string_body>&& message) {
+/// All of a request but its body.
+HttpRequest plain_request(const http::request<http::string_body>& message) {
   HttpRequest request;
   request.method = std::string(message.method_string());
   request.target = std::string(message.target());
@@ -43,7 +51,6 @@ HttpRequest plain_request(http::request<http::string_body>&& message) {
     });
     request.headers[name] = std::string(field.value());
   }
-  request.body = std::move(message.body());
   return request;
 }
 
@@ -61,13 +68,17 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession> {
   void read();
 
  private:
-  void on_read(const error_code& error);
+  void on_header(const error_code& error);
+  void read_body();
+  void on_body(const error_code& error);
   void refuse(const error_code& error);
-  void dispatch(HttpRequest request);
-  [[nodiscard]] std::optional<HttpResponse> forbidden(const HttpRequest& request) const;
+  [[nodiscard]] std::optional<HttpResponse> not_admitted();
+  void dispatch();
+  void ask_router();
   void answer(std::uint64_t number, HttpResponse response);
   void write(HttpResponse response);
   void on_written(const error_code& error, bool keep_alive);
+  void drain();
   void close();
 
   std::shared_ptr<ServerContext> context_;
@@ -77,47 +88,81 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession> {
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::string_body>> parser_;
   std::optional<http::response<http::string_body>> response_;
+  HttpRequest request_;
+  std::vector<char> drained_;
+  std::size_t drained_bytes_ = 0;
   std::uint64_t request_number_ = 0;  ///< an answer to another one comes too late
+  bool admitted_ = false;             ///< a request of this connection had the token
   bool head_ = false;
   bool keep_alive_ = false;
   unsigned version_ = 11;
 };
 
+/// The header comes first and alone: nobody's body is taken before the token was seen.
 void HttpSession::read() {
   const ServerLimits& limits = context_->options.limits;
   parser_.emplace();
-  parser_->body_limit(limits.max_body_bytes);
+  parser_->body_limit(kNoLimit);
   parser_->header_limit(static_cast<std::uint32_t>(limits.max_header_bytes));
+  stream_.expires_after(std::chrono::milliseconds(admitted_ ? limits.idle_ms : limits.header_ms));
+  http::async_read_header(stream_,
+                          buffer_,
+                          *parser_,
+                          [self = shared_from_this()](const error_code& error, std::size_t) {
+                            self->on_header(error);
+                          });
+}
+
+void HttpSession::on_header(const error_code& error) {
+  if (error) {
+    refuse(error);
+    return;
+  }
+  const http::request<http::string_body>& message = parser_->get();
+  head_ = message.method() == http::verb::head;
+  keep_alive_ = message.keep_alive();
+  version_ = message.version();
+  ++request_number_;
+  request_ = plain_request(message);
+  if (auto response = not_admitted()) {
+    const bool redirected = response->status == 303;
+    keep_alive_ = keep_alive_ && redirected && parser_->is_done();
+    admitted_ = admitted_ || redirected;
+    write(std::move(*response));
+    return;
+  }
+  admitted_ = true;
+  if (beast::websocket::is_upgrade(message) && path_of(request_.target) == kStreamPath) {
+    const http::request<http::string_body> upgrade = message;
+    serve_websocket(stream_.release_socket(), upgrade, context_);
+    return;
+  }
+  read_body();
+}
+
+void HttpSession::read_body() {
+  const ServerLimits& limits = context_->options.limits;
+  if (parser_->content_length().value_or(0) > limits.max_body_bytes) {
+    refuse(http::error::body_limit);
+    return;
+  }
+  parser_->body_limit(limits.max_body_bytes);
   stream_.expires_after(std::chrono::milliseconds(limits.idle_ms));
   http::async_read(
       stream_,
       buffer_,
       *parser_,
-      [self = shared_from_this()](const error_code& error, std::size_t) { self->on_read(error); });
+      [self = shared_from_this()](const error_code& error, std::size_t) { self->on_body(error); });
 }
 
-void HttpSession::on_read(const error_code& error) {
+void HttpSession::on_body(const error_code& error) {
   if (error) {
     refuse(error);
     return;
   }
   stream_.expires_never();
-  http::request<http::string_body> message = parser_->release();
-  head_ = message.method() == http::verb::head;
-  keep_alive_ = message.keep_alive();
-  version_ = message.version();
-  ++request_number_;
-  if (beast::websocket::is_upgrade(message) &&
-      path_of(std::string(message.target())) == kStreamPath) {
-    http::request<http::string_body> upgrade = message;
-    if (auto response = forbidden(plain_request(std::move(message)))) {
-      write(std::move(*response));
-      return;
-    }
-    serve_websocket(stream_.release_socket(), upgrade, context_);
-    return;
-  }
-  dispatch(plain_request(std::move(message)));
+  request_.body = std::move(parser_->get().body());
+  dispatch();
 }
 
 void HttpSession::refuse(const error_code& error) {
@@ -137,37 +182,36 @@ void HttpSession::refuse(const error_code& error) {
   }
 }
 
-std::optional<HttpResponse> HttpSession::forbidden(const HttpRequest& request) const {
-  const std::string host = request.header("host");
+/// What is answered in place of the request; its target loses the token.
+std::optional<HttpResponse> HttpSession::not_admitted() {
+  const std::string host = request_.header("host");
   if (!host_allowed(host, context_->options.address)) {
     return error_response(403,
                           "forbidden",
                           "host " + host + ": this server listens on " + context_->options.address +
                               " and is asked for by that name only");
   }
-  const std::string origin = request.header("origin");
-  const bool reads = request.method == "GET" || request.method == "HEAD";
-  const bool upgrade = !request.header("upgrade").empty();
+  const std::string origin = request_.header("origin");
+  const bool reads = request_.method == "GET" || request_.method == "HEAD";
+  const bool upgrade = !request_.header("upgrade").empty();
   if ((!reads || upgrade) && !origin_allowed(origin, host)) {
     return error_response(403, "forbidden", "origin " + origin + ": is another site's page");
   }
-  return std::nullopt;
+  return context_->token_gate.check(&request_);
 }
 
-void HttpSession::dispatch(HttpRequest request) {
-  if (auto response = forbidden(request)) {
-    write(std::move(*response));
-    return;
-  }
-  const std::string path = path_of(request.target);
+void HttpSession::dispatch() {
+  const std::string path = path_of(request_.target);
   if (path == kStreamPath) {
     write(error_response(426, "upgrade_required", "the stream is a WebSocket: ask for an upgrade"));
-    return;
+  } else if (path.starts_with(kApiPrefix)) {
+    ask_router();
+  } else {
+    write(context_->files.serve(request_));
   }
-  if (!path.starts_with(kApiPrefix)) {
-    write(context_->files.serve(request));
-    return;
-  }
+}
+
+void HttpSession::ask_router() {
   const std::uint64_t number = request_number_;
   answer_limit_.expires_after(kAnswerLimit);
   answer_limit_.async_wait([self = shared_from_this(), number](const error_code& error) {
@@ -186,7 +230,7 @@ void HttpSession::dispatch(HttpRequest request) {
                  });
     });
   };
-  context_->offload([context = context_, respond, asked = std::move(request)] {
+  context_->offload([context = context_, respond, asked = std::move(request_)] {
     context->router.handle(asked, respond);
   });
 }
@@ -200,11 +244,14 @@ void HttpSession::answer(std::uint64_t number, HttpResponse response) {
 
 void HttpSession::write(HttpResponse response) {
   response_.emplace(static_cast<http::status>(response.status), version_);
-  response_->set(http::field::server, std::string("overfly/") + OVERFLY_VERSION);
+  response_->set(http::field::server, "overfly");
   response_->set("X-Content-Type-Options", "nosniff");
+  // The address with the token is nobody else's business.
+  response_->set("Referrer-Policy", "no-referrer");
   response_->set("Content-Security-Policy",
                  "default-src 'self'; img-src 'self' blob: data:; style-src 'self' "
-                 "'unsafe-inline'; connect-src 'self' ws: wss:; frame-ancestors 'self'");
+                 "'unsafe-inline'; connect-src 'self' ws: wss:; frame-ancestors 'self'; "
+                 "form-action 'self'; base-uri 'none'");
   if (!response.content_type.empty()) {
     response_->set(http::field::content_type, response.content_type);
   }
@@ -223,11 +270,26 @@ void HttpSession::write(HttpResponse response) {
 
 void HttpSession::on_written(const error_code& error, bool keep_alive) {
   response_.reset();
-  if (error || !keep_alive) {
-    close();
+  if (error) return;
+  if (keep_alive) {
+    read();
     return;
   }
-  read();
+  close();
+  if (parser_ && parser_->is_done()) return;
+  drained_.resize(kDrainStepBytes);
+  stream_.expires_after(kDrainLimit);
+  drain();
+}
+
+/// Takes what is left of a request that was answered early: a connection closed over unread bytes
+/// is reset, and the client may lose the answer.
+void HttpSession::drain() {
+  stream_.async_read_some(asio::buffer(drained_),
+                          [self = shared_from_this()](const error_code& error, std::size_t n) {
+                            self->drained_bytes_ += n;
+                            if (!error && self->drained_bytes_ < kDrainBytes) self->drain();
+                          });
 }
 
 void HttpSession::close() {

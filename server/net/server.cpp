@@ -11,7 +11,9 @@
 #include <vector>
 
 #include "server/engine/thread_priority.hpp"
+#include "server/net/access_token.hpp"
 #include "server/net/listener.hpp"
+#include "server/net/origin.hpp"
 #include "server/net/rest_api.hpp"
 #include "server/net/server_context.hpp"
 
@@ -23,6 +25,20 @@ namespace {
 constexpr std::size_t kWorkers = 4;
 /// How long viewers have to answer the close frame when the server shuts down.
 constexpr std::chrono::seconds kFarewell{2};
+
+Status check_options(const ServerOptions& options) {
+  std::error_code error;
+  if (!options.web_folder.empty() &&
+      !std::filesystem::is_regular_file(options.web_folder / "index.html", error)) {
+    return Error{ErrorCode::kNotFound,
+                 "the dashboard's folder " + options.web_folder.string() + " has no index.html"};
+  }
+  if (!options.token.empty()) return check_token(options.token);
+  if (is_loopback_host(options.address)) return {};
+  return Error{ErrorCode::kInvalidArgument,
+               "address = " + options.address +
+                   ": can be reached from other machines, so a token is needed"};
+}
 
 }  // namespace
 
@@ -50,12 +66,7 @@ Server::~Server() {
 Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options,
                                               engine::RunManager& runs,
                                               engine::ViewService& views) {
-  std::error_code error;
-  if (!options.web_folder.empty() &&
-      !std::filesystem::is_regular_file(options.web_folder / "index.html", error)) {
-    return Error{ErrorCode::kNotFound,
-                 "the dashboard's folder " + options.web_folder.string() + " has no index.html"};
-  }
+  if (const Status status = check_options(options); !status) return status.error();
   std::unique_ptr<Server> server(new Server());
   auto context = std::make_shared<ServerContext>(options, runs, views);
   add_service_routes(&context->router);
@@ -82,10 +93,13 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options,
 std::uint16_t Server::port() const { return impl_->port; }
 
 std::string Server::url() const {
-  const std::string& address = impl_->context->options.address;
+  const ServerOptions& options = impl_->context->options;
+  std::string address = options.address;
+  if (address == "0.0.0.0") address = "127.0.0.1";
+  if (address == "::") address = "::1";
   const bool is_ipv6 = address.find(':') != std::string::npos;
   return "http://" + (is_ipv6 ? "[" + address + "]" : address) + ":" + std::to_string(impl_->port) +
-         "/";
+         "/" + (options.token.empty() ? "" : "?token=" + options.token);
 }
 
 }  // namespace overfly::net

@@ -21,6 +21,7 @@ struct ServerLimits {
   std::size_t max_message_bytes = std::size_t{64} << 10U;  ///< WebSocket; beyond: close code 1009
   std::size_t max_unsent_bytes = std::size_t{16} << 20U;   ///< WebSocket; beyond: close code 4000
   std::int64_t max_stall_ms = 15'000;  ///< WebSocket: one message on its way; beyond: 4000
+  std::int64_t header_ms = 10'000;     ///< a new connection's first request, up to its header
   std::int64_t idle_ms = 30'000;       ///< connections that say nothing (WebSockets are pinged)
   std::size_t max_connections = 256;   ///< further ones are closed at once
   /// Kernel buffer of a WebSocket: pictures in it are old ones, so it stays small.
@@ -30,7 +31,9 @@ struct ServerLimits {
 struct ServerOptions {
   std::string address = "127.0.0.1";  ///< loopback unless told otherwise
   std::uint16_t port = 8480;          ///< 0 = any free port
-  std::filesystem::path web_folder;   ///< built dashboard; empty = REST and WebSocket only
+  /// What every request must show (access_token.hpp); empty = nothing, on a loopback address only.
+  std::string token;
+  std::filesystem::path web_folder;  ///< built dashboard; empty = REST and WebSocket only
   int threads = 1;
   ServerLimits limits;
   /// One line for each thing worth telling: (level, text).
@@ -40,13 +43,15 @@ struct ServerOptions {
 class Server {
  public:
   /// Binds and starts to serve on threads of its own.
-  /// Errors: kIo with address, port and the system's reason; kNotFound without the web folder.
+  /// Errors: kIo with address, port and the system's reason; kNotFound without the web folder;
+  /// kInvalidArgument for a bad address or token, and for none where others can reach the server.
   static Result<std::unique_ptr<Server>> start(const ServerOptions& options,
                                                engine::RunManager& runs,
                                                engine::ViewService& views);
   ~Server();  ///< tells every viewer that it goes (close code 1001) and joins
 
   [[nodiscard]] std::uint16_t port() const;
+  /// Address of the dashboard, with the token: for the one who started the server alone.
   [[nodiscard]] std::string url() const;
 
  private:

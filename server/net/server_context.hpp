@@ -13,6 +13,7 @@
 #include "server/net/server.hpp"
 #include "server/net/session_registry.hpp"
 #include "server/net/static_files.hpp"
+#include "server/net/token_gate.hpp"
 
 namespace overfly::net {
 
@@ -42,7 +43,8 @@ struct ServerContext {
       : options(server_options),
         runs(run_manager),
         views(view_service),
-        files(server_options.web_folder) {}
+        files(server_options.web_folder),
+        token_gate(server_options.token) {}
 
   void log(const std::string& level, const std::string& text) const {
     if (options.log) options.log(level, text);
@@ -53,6 +55,7 @@ struct ServerContext {
   engine::ViewService& views;
   RestRouter router;
   StaticFiles files;
+  const TokenGate token_gate;
   CallbackGate gate;
   SessionRegistry sessions;
   /// Runs what may take long (reading a run from disk) on a thread that serves no connection.

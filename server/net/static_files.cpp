@@ -62,7 +62,7 @@ HttpResponse file_response(const fs::path& root, const fs::path& file, const Htt
   const bool hashed = is_below(root / "assets", file);
   response.headers.emplace_back("ETag", etag);
   response.headers.emplace_back("Cache-Control",
-                                hashed ? "public, max-age=31536000, immutable" : "no-cache");
+                                hashed ? "private, max-age=31536000, immutable" : "no-cache");
   if (request.header("if-none-match") == etag) {
     response.status = 304;
     return response;

@@ -1,5 +1,6 @@
 #include "server/net/url.hpp"
 
+#include <algorithm>
 #include <cstddef>
 
 namespace overfly::net {
@@ -56,6 +57,24 @@ std::optional<std::string> percent_decode(std::string_view text, bool plus_is_sp
     decoded.push_back(c);
   }
   return decoded;
+}
+
+std::optional<std::string> take_query_parameter(std::string* target, std::string_view name) {
+  const std::size_t question = target->find('?');
+  if (question == std::string::npos) return std::nullopt;
+  std::optional<std::string> value;
+  std::string rest;
+  for (const std::string_view part : split(std::string_view(*target).substr(question + 1), '&')) {
+    const std::size_t equals = std::min(part.find('='), part.size());
+    if (percent_decode(part.substr(0, equals), true) == name) {
+      const auto text = part.substr(std::min(equals + 1, part.size()));
+      value = percent_decode(text, true).value_or("");
+    } else if (!part.empty()) {
+      rest.append(rest.empty() ? "?" : "&").append(part);
+    }
+  }
+  if (value) target->replace(question, std::string::npos, rest);
+  return value;
 }
 
 std::optional<Url> parse_target(std::string_view target) {

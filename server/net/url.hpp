@@ -18,6 +18,11 @@ struct Url {
 /// Segments are split before they are decoded: "%2F" stays inside its segment.
 [[nodiscard]] std::optional<Url> parse_target(std::string_view target);
 
+/// Takes a parameter out of a target's query. @return its decoded value, the last one of several;
+/// "" for a broken escape. Empty when it is not there.
+[[nodiscard]] std::optional<std::string> take_query_parameter(std::string* target,
+                                                              std::string_view name);
+
 /// Decodes %XX, and '+' as a space where wanted. Empty for a broken escape or a NUL.
 [[nodiscard]] std::optional<std::string> percent_decode(std::string_view text, bool plus_is_space);
 

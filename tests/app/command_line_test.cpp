@@ -353,20 +353,5 @@ TEST_F(CommandLine, DoctorFindsAFolderThatCannotBeWritten) {
   EXPECT_THAT(ill.out, HasSubstr("cannot be written to"));
 }
 
-TEST_F(CommandLine, ServePrintsItsAddressAndStopsOnASignal) {
-  const TemporaryFolder output;
-  RunningProgram program({"serve", "--port", "0", "--runs", path("runs")}, output.path());
-  while (program.running() && program.out().find('\n') == std::string::npos) {
-    ::poll(nullptr, 0, 5);  // a child process tells nobody when it writes
-  }
-  EXPECT_THAT(program.out(), HasSubstr("Overfly is at http://127.0.0.1:"));
-  program.signal(SIGTERM);
-  EXPECT_EQ(program.wait(), 0);
-  EXPECT_EQ(overfly_program(
-                {"serve", "--port", "0", "--runs", path("runs"), "--web", path("no-such-folder")})
-                .exit_code,
-            2);
-}
-
 }  // namespace
 }  // namespace overfly::testing

@@ -26,12 +26,13 @@ HEADER = struct.Struct("<IHHIIqqHHHHII")
 class WebSocket:
     """The little of RFC 6455 that a client of one trusted server needs."""
 
-    def __init__(self, port):
+    def __init__(self, port, token):
         self.socket = socket.create_connection(("127.0.0.1", port), timeout=60)
         key = base64.b64encode(os.urandom(16)).decode()
         self.socket.sendall(
             (f"GET /api/v1/stream HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nUpgrade: websocket\r\n"
              f"Connection: Upgrade\r\nSec-WebSocket-Key: {key}\r\n"
+             f"Authorization: Bearer {token}\r\n"
              "Sec-WebSocket-Version: 13\r\n\r\n").encode())
         self.stream = self.socket.makefile("rb")
         while self.stream.readline() not in (b"\r\n", b""):
@@ -63,18 +64,18 @@ def cpu_seconds(pid):
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
-def start_run(port, scenario):
+def start_run(port, token, scenario):
     overrides = {"pacing": "real_time", "estimators": [], "camera.width_px": 1280,
                  "camera.height_px": 960, "camera.rate_hz": 31}
     request = urllib.request.Request(
         f"http://127.0.0.1:{port}/api/v1/runs", method="POST",
         data=json.dumps({"scenario": scenario, "overrides": overrides}).encode(),
-        headers={"Content-Type": "application/json"})
+        headers={"Content-Type": "application/json", "Authorization": f"Bearer {token}"})
     return json.load(urllib.request.urlopen(request))["id"]
 
 
-def measure(port, pid, run, warm_s, span_s):
-    client = WebSocket(port)
+def measure(port, token, pid, run, warm_s, span_s):
+    client = WebSocket(port, token)
     client.send({"type": "view", "mode": "chase", "width_px": 960, "height_px": 720})
     client.send({"type": "subscribe", "streams": [
         {"name": "camera", "max_hz": 31}, {"name": "scene", "max_hz": 15}]})
@@ -126,9 +127,9 @@ def main():
         server = subprocess.Popen([arguments.program, "serve", "--port", "0", "--runs", folder,
                                    "--scenarios", arguments.scenarios], stdout=subprocess.PIPE, text=True)
         try:
-            port = int(re.search(r":(\d+)/", server.stdout.readline()).group(1))
-            run = start_run(port, arguments.scenario)
-            measure(port, server.pid, run, arguments.warm, arguments.seconds)
+            port, token = re.search(r":(\d+)/\?token=(\S+)", server.stdout.readline()).groups()
+            run = start_run(port, token, arguments.scenario)
+            measure(port, token, server.pid, run, arguments.warm, arguments.seconds)
         finally:
             server.terminate()
             server.wait()

@@ -47,7 +47,7 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
     const fault = dashboard.page.locator('[data-fault="flight.course.airspeed_m_s"]');
     await fault.waitFor({ state: 'visible' });
     assert.match(await fault.innerText(), /must be/);
-    assert.equal((await getJson(stage.server.url, '/runs')).runs.length, 0);
+    assert.equal((await getJson(stage.server, '/runs')).runs.length, 0);
     await dashboard.field('flight.course.airspeed_m_s').fill('25');
   });
 
@@ -67,7 +67,7 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
   step('finishes the flight and tells its outcome', async () => {
     await dashboard.untilStatus(run, 'completed', kFlightPatience_ms);
     await dashboard.until(() => document.querySelector('.errors .good, .errors .bad') !== null);
-    const { frames } = await getJson(stage.server.url, `/runs/${run}`);
+    const { frames } = await getJson(stage.server, `/runs/${run}`);
     assert.ok(Math.abs(frames - kFlight_s * kRate_hz) <= 1, `${frames} frames`);
   });
 
@@ -96,7 +96,7 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
     const { frame } = await dashboard.playback();
     const shown = await dashboard.page.locator('.plot[data-axis=y_m] .readout').allInnerTexts();
     for (const [i, name] of ['truth', 'feature'].entries()) {
-      const columns = await getJson(stage.server.url, `/runs/${run}/trajectories/${name}?format=json`);
+      const columns = await getJson(stage.server, `/runs/${run}/trajectories/${name}?format=json`);
       const y_m = columns.y_m[columns.frame.indexOf(frame)];
       assert.equal(shown[i].replace('−', '-'), y_m.toFixed(1), name);
     }
@@ -169,7 +169,7 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
   });
 
   step('shows the figures of metrics.json for every alignment', async () => {
-    const metrics = await getJson(stage.server.url, `/runs/${run}/metrics`);
+    const metrics = await getJson(stage.server, `/runs/${run}/metrics`);
     const { alignments, coverage, dropped_frames, outcome } = metrics.estimators.feature;
     const modes = Object.keys(alignments);
     assert.ok(modes.includes('init_scale'));
@@ -260,7 +260,8 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
     await dashboard.until(
       () => document.querySelector('[data-role=connection]').dataset.status === 'waiting',
     );
-    stage.server = await startServer({ runs: stage.runs.folder, port: stage.server.port });
+    const { folder: runs, tokenFile } = stage.runs;
+    stage.server = await startServer({ runs, tokenFile, port: stage.server.port });
     await dashboard.until(
       () => document.querySelector('[data-role=connection]').dataset.status === 'open',
     );
@@ -289,7 +290,7 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
       (id) => document.querySelector(`.run[data-run="${id}"]`) === null,
       second,
     );
-    const left = (await getJson(stage.server.url, '/runs')).runs.map(({ id }) => id);
+    const left = (await getJson(stage.server, '/runs')).runs.map(({ id }) => id);
     assert.deepEqual(left, [run]);
   });
 

@@ -5,7 +5,7 @@ import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { after, before, describe } from 'node:test';
 import { browserMissing } from './support/browser.mjs';
-import { getJson, serverMissing, sourceFile } from './support/server.mjs';
+import { callServer, getJson, serverMissing, sourceFile } from './support/server.mjs';
 import { openStage } from './support/stage.mjs';
 import { makeStep } from './support/steps.mjs';
 
@@ -83,7 +83,7 @@ describe('a flight with estimators behind doors', { skip, timeout: 600_000 }, ()
     assert.match(await cell('shift', 'latency'), /^[\d.]+ \/ [\d.]+$/);
     assert.ok(Number(await cell('shift', 'memory')) > 1);
     assert.ok(Number(await cell('feature', 'memory')) > 0);
-    const { estimators } = await getJson(stage.server.url, `/runs/${run}/estimators`);
+    const { estimators } = await getJson(stage.server, `/runs/${run}/estimators`);
     assert.equal(estimators.absent.state, 'CRASHED');
     assert.equal(estimators.shift.resources.measured, 'process');
     assert.equal(estimators.feature.resources.measured, 'own_account');
@@ -104,7 +104,7 @@ describe('a flight with estimators behind doors', { skip, timeout: 600_000 }, ()
   });
 
   step('refuses a command that no scenario file has', async () => {
-    const answer = await fetch(`${stage.server.url}/api/v1/runs`, {
+    const answer = await callServer(stage.server, '/runs', {
       method: 'POST',
       headers: { 'content-type': 'application/json' },
       body: JSON.stringify({

@@ -34,7 +34,7 @@ void require(bool condition, const std::string& message) {
 
 }  // namespace
 
-TestServer::TestServer(const net::ServerLimits& limits) {
+TestServer::TestServer(const net::ServerLimits& limits, const std::string& token) {
   const fs::path scenarios = folder() / "scenarios";
   const fs::path web = folder() / "web";
   const fs::path world_folder = folder() / "world";
@@ -67,6 +67,7 @@ TestServer::TestServer(const net::ServerLimits& limits) {
   server_options.port = 0;
   server_options.web_folder = web;
   server_options.limits = limits;
+  server_options.token = token;
   server_options.log = [this](const std::string& /*level*/, const std::string& text) {
     const std::lock_guard lock(log_mutex_);
     log_.push_back(text);
@@ -97,6 +98,13 @@ void TestServer::wait_for_log(const std::string& part) {
     });
   });
   require(seen, "nothing logged about: " + part);
+}
+
+std::string TestServer::log() {
+  const std::lock_guard lock(log_mutex_);
+  std::string lines;
+  for (const std::string& line : log_) lines += line + "\n";
+  return lines;
 }
 
 void TestServer::wait_for_end(const std::string& id) {

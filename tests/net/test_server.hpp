@@ -19,7 +19,8 @@ namespace overfly::testing {
 /// real time, the same estimator) and "broken" (a field at fault).
 class TestServer {
  public:
-  explicit TestServer(const net::ServerLimits& limits = {});
+  /// @param token  that clients must show; empty = none
+  explicit TestServer(const net::ServerLimits& limits = {}, const std::string& token = "");
 
   [[nodiscard]] std::uint16_t port() const { return server_->port(); }
   [[nodiscard]] engine::RunManager& runs() { return *runs_; }
@@ -35,6 +36,9 @@ class TestServer {
   void wait_for_end(const std::string& id);
   /// Waits until the server has logged a line with `part` in it. Throws after 30 s.
   void wait_for_log(const std::string& part);
+  /// Every line logged so far.
+  [[nodiscard]] std::string log();
+  [[nodiscard]] std::string url() const { return server_->url(); }
 
  private:
   TemporaryFolder folder_;

@@ -30,16 +30,21 @@ const newKey = () =>
 const store = new Store();
 const notices = new Notices(store, later);
 const session = new Session(store, notices, (jpeg) => createImageBitmap(jpeg));
+const rest: RestClient = new RestClient(
+  'api/v1',
+  (url, init) => fetch(url, init),
+  () => client.lock(),
+);
 const client = new StreamClient({
   open: () => new WebSocket(streamUrl),
   timers: { set: later, clear: (id) => window.clearTimeout(id) },
   random: Math.random,
+  ask: () => void rest.streamRefusal(),
   listener: session,
 });
 session.use(client);
 const player = new Player(store, session);
 const scene = new SceneControl(store, client);
-const rest = new RestClient('api/v1', (url, init) => fetch(url, init));
 const catalogue = new Catalogue(store, rest, session, notices, later, newKey);
 
 const alignment = new Alignment(store, rest, session, notices);

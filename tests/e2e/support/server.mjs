@@ -1,6 +1,6 @@
 // The real server, started for a test on a free port with a run folder of its own.
 import { spawn } from 'node:child_process';
-import { existsSync, mkdtempSync, rmSync } from 'node:fs';
+import { existsSync, mkdirSync, mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -23,26 +23,41 @@ export function sourceFile(file) {
   return path.join(kRoot, file);
 }
 
+/** A place for a server's runs and, kept over its restarts, its token. */
 export function makeRunsFolder() {
-  const folder = mkdtempSync(path.join(tmpdir(), 'overfly-e2e-'));
-  return { folder, remove: () => rmSync(folder, { recursive: true, force: true }) };
+  const base = mkdtempSync(path.join(tmpdir(), 'overfly-e2e-'));
+  mkdirSync(path.join(base, 'runs'));
+  return {
+    folder: path.join(base, 'runs'),
+    tokenFile: path.join(base, 'token'),
+    remove: () => rmSync(base, { recursive: true, force: true }),
+  };
 }
 
-/** Resolves when the server has told its address. */
-export async function startServer({ runs, port = 0, scenarios = path.join(kRoot, 'scenarios') }) {
+/**
+ * Resolves when the server has told its address: `address` as it was printed, for a browser; `url`
+ * and `token` for programs.
+ */
+export async function startServer({
+  runs,
+  port = 0,
+  tokenFile = null,
+  scenarios = path.join(kRoot, 'scenarios'),
+}) {
   const args = ['serve', '--port', String(port), '--runs', runs];
+  if (tokenFile !== null) args.push('--token-file', tokenFile);
   args.push('--scenarios', scenarios, '--web', kWeb);
   const child = spawn(kProgram, args, { cwd: kRoot, stdio: ['ignore', 'pipe', 'pipe'] });
   let output = '';
   const exited = new Promise((resolve) => child.on('exit', resolve));
-  const url = await new Promise((resolve, reject) => {
+  const address = await new Promise((resolve, reject) => {
     const late = setTimeout(
       () => reject(new Error(`no address after ${kStart_ms} ms\n${output}`)),
       kStart_ms,
     );
     const read = (chunk) => {
       output += chunk;
-      const match = /http:\/\/127\.0\.0\.1:\d+/.exec(output);
+      const match = /http:\/\/127\.0\.0\.1:\d+\/\?token=\S+/.exec(output);
       if (match === null) return;
       clearTimeout(late);
       resolve(match[0]);
@@ -52,9 +67,12 @@ export async function startServer({ runs, port = 0, scenarios = path.join(kRoot,
     child.on('error', reject);
     void exited.then((code) => reject(new Error(`the server ended with ${code}\n${output}`)));
   });
+  const { origin, port: bound, searchParams } = new URL(address);
   return {
-    url,
-    port: Number(new URL(url).port),
+    address,
+    url: origin,
+    token: searchParams.get('token'),
+    port: Number(bound),
     output: () => output,
     async stop() {
       const late = setTimeout(() => child.kill('SIGKILL'), kStop_ms);
@@ -65,9 +83,15 @@ export async function startServer({ runs, port = 0, scenarios = path.join(kRoot,
   };
 }
 
+/** Asks the server as a program does, with its token. */
+export function callServer({ url, token }, route, options = {}) {
+  const headers = { ...options.headers, authorization: `Bearer ${token}` };
+  return fetch(`${url}/api/v1${route}`, { ...options, headers });
+}
+
 /** Reads JSON from the server. */
-export async function getJson(url, route) {
-  const answer = await fetch(`${url}/api/v1${route}`);
+export async function getJson(server, route) {
+  const answer = await callServer(server, route);
   if (!answer.ok) throw new Error(`GET ${route}: ${answer.status}`);
   return answer.json();
 }

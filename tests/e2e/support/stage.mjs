@@ -16,10 +16,11 @@ export async function openStage(size, prepare = () => ({})) {
     stage.runs.remove();
   };
   try {
-    stage.server = await startServer({ runs: stage.runs.folder, ...prepare(stage.runs.folder) });
+    const { folder: runs, tokenFile } = stage.runs;
+    stage.server = await startServer({ runs, tokenFile, ...prepare(runs) });
     stage.browser = await openBrowser(size);
     stage.dashboard = new Dashboard(stage.browser.page);
-    await stage.dashboard.open(stage.server.url);
+    await stage.dashboard.open(stage.server.address);
   } catch (error) {
     await stage.close();
     throw error;

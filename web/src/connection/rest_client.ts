@@ -4,6 +4,8 @@ import { readFaults } from '../protocol/faults';
 import type { Cell } from '../protocol/messages';
 import type { Json, JsonObject, Manifest, Run, ScenarioEntry } from '../protocol/rest_types';
 
+const kUnauthorized = 401;
+
 /** An answer that was no success; `status` 0 = the server did not answer. */
 export class RestError extends Error {
   constructor(
@@ -22,6 +24,8 @@ export class RestClient {
   constructor(
     private readonly base: string,
     private readonly fetch: Fetch,
+    /** Called when the server does not take this browser's token. */
+    private readonly onLocked: () => void = () => {},
   ) {}
 
   async scenarios(): Promise<ScenarioEntry[]> {
@@ -66,6 +70,17 @@ export class RestClient {
     await this.call('DELETE', `/runs/${encodeURIComponent(id)}`);
   }
 
+  /** Why the server refuses the stream: a browser does not say why a WebSocket failed to open. */
+  async streamRefusal(): Promise<RestError | null> {
+    try {
+      await this.call('GET', '/stream');
+    } catch (error) {
+      // Asked for without an upgrade, a stream that is open to this browser answers so.
+      if (error instanceof RestError && error.code !== 'upgrade_required') return error;
+    }
+    return null;
+  }
+
   private async call(
     method: string,
     path: string,
@@ -83,6 +98,7 @@ export class RestClient {
     } catch {
       throw new RestError(0, 'unreachable', 'the server does not answer');
     }
+    if (response.status === kUnauthorized) this.onLocked();
     if (!response.ok) throw await errorOf(response);
     return response.status === 204 ? null : response.json();
   }

@@ -31,6 +31,8 @@ export type ConnectionState =
   | { status: 'connecting'; attempt: number }
   | { status: 'open'; server: string }
   | { status: 'waiting'; attempt: number; delay_ms: number }
+  /** The server does not take this browser's token: the page is of no use until it is loaded again. */
+  | { status: 'locked' }
   | { status: 'incompatible'; reason: string };
 
 export interface StreamListener {
@@ -50,6 +52,8 @@ export interface StreamClientOptions {
   open: () => Socket;
   timers: Timers;
   random: () => number;
+  /** Called when a connection failed to open, to find out why; calls lock() where it must. */
+  ask: () => void;
   listener: StreamListener;
 }
 
@@ -63,6 +67,7 @@ export function picturesOf(stream: string, camera?: string): string {
 export class StreamClient {
   private socket: Socket | null = null;
   private greeted = false;
+  private locked = false;
   private attempt = 0;
   private timer: number | null = null;
   private request = 0;
@@ -79,7 +84,7 @@ export class StreamClient {
   connect(): void {
     if (this.timer !== null) this.options.timers.clear(this.timer);
     this.timer = null;
-    if (this.socket !== null) return;
+    if (this.socket !== null || this.locked) return;
     this.attempt += 1;
     this.options.listener.onState({ status: 'connecting', attempt: this.attempt });
     const socket = this.options.open();
@@ -87,6 +92,16 @@ export class StreamClient {
     socket.binaryType = 'arraybuffer';
     socket.onmessage = (event) => this.onData(event.data as string | ArrayBuffer);
     socket.onclose = (event) => this.onClosed(socket, event.code);
+  }
+
+  /** Gives up: the server refuses this browser, and would refuse every further attempt. */
+  lock(): void {
+    if (this.locked) return;
+    this.locked = true;
+    if (this.timer !== null) this.options.timers.clear(this.timer);
+    this.timer = null;
+    this.drop();
+    this.options.listener.onState({ status: 'locked' });
   }
 
   attach(run: string | null): void {
@@ -193,11 +208,13 @@ export class StreamClient {
 
   private onClosed(socket: Socket, code: number): void {
     if (socket !== this.socket) return;
+    const refused = !this.greeted;
     this.drop();
     const tooSlow = code === kCloseTooSlow;
     const delay_ms = tooSlow ? 0 : backoffDelay_ms(Math.max(1, this.attempt), this.options.random);
     this.options.listener.onState({ status: 'waiting', attempt: this.attempt, delay_ms });
     this.timer = this.options.timers.set(() => this.connect(), delay_ms);
+    if (refused) this.options.ask();
   }
 
   private drop(): void {

@@ -150,6 +150,7 @@ export class Catalogue {
     this.polling = true;
     await this.readRuns();
     this.polling = false;
+    if (this.store.state.connection.status === 'locked') return;
     const active = this.store.state.runs?.some(isActive) === true;
     const failing = this.store.state.listError !== null;
     this.later(() => void this.poll(), active || failing ? kPollActive_ms : kPollIdle_ms);

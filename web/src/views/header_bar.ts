@@ -23,7 +23,10 @@ export class HeaderBar implements View {
   private countdown = 0;
 
   constructor(private readonly context: Context) {
-    this.connection.addEventListener('click', () => context.client.connect());
+    this.connection.addEventListener('click', () => {
+      if (context.store.state.connection.status === 'locked') location.reload();
+      else context.client.connect();
+    });
     const help = h(
       'button',
       {
@@ -83,7 +86,8 @@ export class HeaderBar implements View {
     clearInterval(this.countdown);
     setAttribute(this.connection, 'data-status', connection.status);
     this.connection.title = connection.status === 'open' ? connection.server : '';
-    this.connection.toggleAttribute('disabled', connection.status !== 'waiting');
+    const useful = connection.status === 'waiting' || connection.status === 'locked';
+    this.connection.toggleAttribute('disabled', !useful);
     switch (connection.status) {
       case 'open': {
         setText(this.connection, 'Connected');
@@ -99,6 +103,13 @@ export class HeaderBar implements View {
           setText(this.connection, 'Reload the page');
           return;
         }
+      case 'locked': {
+        this.connection.title =
+          'The server takes no longer what this browser has: it was started anew, or the cookie ' +
+          'is gone. Click to load the page again and give the token that the server printed.';
+        setText(this.connection, 'Session over · click to give the token');
+        return;
+      }
       case 'waiting':
         this.connection.title = 'Connection lost. Click to try again now.';
         {

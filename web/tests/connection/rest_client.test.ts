@@ -46,6 +46,27 @@ describe('RestClient', () => {
     await expect(client.runs()).rejects.toMatchObject({ status: 502, code: 'http' });
   });
 
+  it('tells when the server does not take the token', async () => {
+    let locked = 0;
+    const refused = { error: { code: 'unauthorized', message: 'token' } };
+    const client = new RestClient(
+      'api/v1',
+      () => Promise.resolve(new Response(JSON.stringify(refused), { status: 401 })),
+      () => (locked += 1),
+    );
+    await expect(client.runs()).rejects.toMatchObject({ status: 401, code: 'unauthorized' });
+    expect(await client.streamRefusal()).toMatchObject({ status: 401 });
+    expect(locked).toBe(2);
+  });
+
+  it('takes an answer that asks for an upgrade as no refusal of the stream', async () => {
+    const { client, calls } = answering(426, {
+      error: { code: 'upgrade_required', message: 'ask for an upgrade' },
+    });
+    expect(await client.streamRefusal()).toBeNull();
+    expect(calls[0]?.url).toBe('api/v1/stream');
+  });
+
   it('tells when nobody answers', async () => {
     const client = new RestClient('api/v1', () => Promise.reject(new TypeError('refused')));
     await expect(client.runs()).rejects.toMatchObject({ status: 0, code: 'unreachable' });

@@ -27,6 +27,7 @@ let sockets: FakeSocket[];
 let timers: FakeTimers;
 let listener: Listener;
 let client: StreamClient;
+let asked: number;
 
 function socket(): FakeSocket {
   const newest = sockets.at(-1);
@@ -41,6 +42,7 @@ function picture(streamId: number): ArrayBuffer {
 
 beforeEach(() => {
   sockets = [];
+  asked = 0;
   timers = new FakeTimers();
   listener = new Listener();
   client = new StreamClient({
@@ -51,6 +53,7 @@ beforeEach(() => {
     },
     timers,
     random: () => 0,
+    ask: () => (asked += 1),
     listener,
   });
 });
@@ -95,6 +98,35 @@ describe('StreamClient', () => {
     socket().hello();
     socket().lose();
     expect(timers.delays()).toEqual([500]);
+  });
+
+  it('asks why it was not let in, once for each attempt that failed to open', () => {
+    client.connect();
+    socket().lose();
+    expect(asked).toBe(1);
+    timers.fire();
+    socket().hello();
+    socket().lose();
+    expect(asked).toBe(1);
+  });
+
+  it('gives up when the server does not take the token any more', () => {
+    client.connect();
+    socket().lose();
+    client.lock();
+    expect(listener.states.at(-1)).toEqual({ status: 'locked' });
+    expect(timers.delays()).toEqual([]);
+    client.connect();
+    expect(sockets.length).toBe(1);
+    expect(listener.states.at(-1)).toEqual({ status: 'locked' });
+  });
+
+  it('closes an open connection when it gives up', () => {
+    attached();
+    client.lock();
+    expect(socket().closed).toBe(true);
+    socket().lose();
+    expect(listener.states.at(-1)).toEqual({ status: 'locked' });
   });
 
   it('tries at once when asked to', () => {

@@ -23,6 +23,7 @@ function catalogue(answers: Record<string, () => [number, unknown]>) {
     open: () => socket,
     timers,
     random: () => 0,
+    ask: () => undefined,
     listener: session,
   });
   session.use(client);
@@ -35,7 +36,7 @@ function catalogue(answers: Record<string, () => [number, unknown]>) {
     return Promise.resolve(new Response(status === 204 ? null : JSON.stringify(body), { status }));
   });
   const subject = new Catalogue(store, rest, session, notices, later, () => 'key');
-  return { store, socket, subject };
+  return { store, socket, subject, timers };
 }
 
 const reading = {
@@ -131,6 +132,21 @@ describe('Catalogue', () => {
     await subject.remove('r1');
     expect(store.state.runId).toBeNull();
     expect(store.state.runs).toEqual([]);
+  });
+
+  it('asks no more once the server does not take the token', async () => {
+    const locked = { error: { code: 'unauthorized', message: 'the token is missing' } };
+    const { store, subject, timers } = catalogue({
+      'GET /scenarios': () => [401, locked],
+      'GET /runs': () => [401, locked],
+    });
+    store.state.connection = { status: 'locked' };
+    subject.start();
+    await expect.poll(() => store.state.listError).toBe('the token is missing');
+    await expect.poll(() => timers.waiting.size).toBe(0);
+    store.state.connection = { status: 'waiting', attempt: 1, delay_ms: 500 };
+    subject.start();
+    await expect.poll(() => timers.waiting.size).toBe(1);
   });
 
   it('keeps the list and tells when the server is gone', async () => {

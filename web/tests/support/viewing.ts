@@ -29,6 +29,7 @@ export class Viewing {
       },
       timers: this.timers,
       random: () => 0,
+      ask: () => undefined,
       listener: this.session,
     });
     this.session.use(client);
