@@ -9,6 +9,7 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "server/app/commands.hpp"
 #include "server/app/exit_code.hpp"
@@ -31,6 +32,7 @@ struct ServeArguments {
   std::string scenarios;
   std::string web;
   std::string token_file;
+  std::vector<std::string> allowed_hosts;
   bool no_token = false;
   int parallel_runs = 1;
   bool allow_commands = false;
@@ -78,6 +80,7 @@ int serve(const ServeArguments& arguments) {
   options.address = arguments.address;
   options.port = arguments.port;
   options.token = std::move(*token);
+  options.allowed_hosts = arguments.allowed_hosts;
   options.web_folder = arguments.web.empty() ? web_folder() : fs::path(arguments.web);
   options.log = log_line;
   const auto server = net::Server::start(options, **runs, views);
@@ -109,6 +112,11 @@ void add_serve_command(CLI::App& app, int& exit_code) {
   command
       ->add_flag("--no-token", arguments->no_token, "Ask for no token; on a loopback address only")
       ->excludes(token_file);
+  command
+      ->add_option("--allow-host",
+                   arguments->allowed_hosts,
+                   "Another host name or address by which clients may ask; repeatable")
+      ->allow_extra_args(false);
   command->add_option("--parallel-runs", arguments->parallel_runs, "Flights at the same time")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();

@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "server/net/error_response.hpp"
-#include "server/net/origin.hpp"
 #include "server/net/websocket_session.hpp"
 
 namespace overfly::net {
@@ -73,6 +72,7 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession> {
   void on_body(const error_code& error);
   void refuse(const error_code& error);
   [[nodiscard]] std::optional<HttpResponse> not_admitted();
+  [[nodiscard]] std::optional<HttpResponse> forbidden() const;
   void dispatch();
   void ask_router();
   void answer(std::uint64_t number, HttpResponse response);
@@ -184,20 +184,30 @@ void HttpSession::refuse(const error_code& error) {
 
 /// What is answered in place of the request; its target loses the token.
 std::optional<HttpResponse> HttpSession::not_admitted() {
+  if (auto response = forbidden()) return response;
+  return context_->token_gate.check(&request_);
+}
+
+std::optional<HttpResponse> HttpSession::forbidden() const {
   const std::string host = request_.header("host");
-  if (!host_allowed(host, context_->options.address)) {
-    return error_response(403,
-                          "forbidden",
-                          "host " + host + ": this server listens on " + context_->options.address +
-                              " and is asked for by that name only");
+  const auto authority = parse_authority(host, 0);
+  if (parser_->get().count(http::field::host) != 1 || !authority) {
+    return error_response(400, "invalid_argument", "Host: must be given once, as name:port");
+  }
+  error_code ignored;
+  const std::string local = stream_.socket().local_endpoint(ignored).address().to_string();
+  if (!context_->allowed_hosts.allows(authority->host, local)) {
+    return error_response(
+        403,
+        "forbidden",
+        "host " + authority->host +
+            ": is none of this server's names (overfly serve --allow-host NAME adds one)");
   }
   const std::string origin = request_.header("origin");
-  const bool reads = request_.method == "GET" || request_.method == "HEAD";
-  const bool upgrade = !request_.header("upgrade").empty();
-  if ((!reads || upgrade) && !origin_allowed(origin, host)) {
+  if (!context_->allowed_hosts.allows_origin(origin, host, local)) {
     return error_response(403, "forbidden", "origin " + origin + ": is another site's page");
   }
-  return context_->token_gate.check(&request_);
+  return std::nullopt;
 }
 
 void HttpSession::dispatch() {

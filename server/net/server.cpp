@@ -12,8 +12,8 @@
 
 #include "server/engine/thread_priority.hpp"
 #include "server/net/access_token.hpp"
+#include "server/net/allowed_hosts.hpp"
 #include "server/net/listener.hpp"
-#include "server/net/origin.hpp"
 #include "server/net/rest_api.hpp"
 #include "server/net/server_context.hpp"
 
@@ -32,6 +32,9 @@ Status check_options(const ServerOptions& options) {
       !std::filesystem::is_regular_file(options.web_folder / "index.html", error)) {
     return Error{ErrorCode::kNotFound,
                  "the dashboard's folder " + options.web_folder.string() + " has no index.html"};
+  }
+  for (const std::string& name : options.allowed_hosts) {
+    if (Status status = AllowedHosts::check_name(name); !status) return status;
   }
   if (!options.token.empty()) return check_token(options.token);
   if (is_loopback_host(options.address)) return {};

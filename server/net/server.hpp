@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "core/result.hpp"
 #include "server/engine/run_manager.hpp"
@@ -33,6 +34,8 @@ struct ServerOptions {
   std::uint16_t port = 8480;          ///< 0 = any free port
   /// What every request must show (access_token.hpp); empty = nothing, on a loopback address only.
   std::string token;
+  /// Host names and addresses by which clients may ask, besides those of AllowedHosts.
+  std::vector<std::string> allowed_hosts;
   std::filesystem::path web_folder;  ///< built dashboard; empty = REST and WebSocket only
   int threads = 1;
   ServerLimits limits;
@@ -44,7 +47,8 @@ class Server {
  public:
   /// Binds and starts to serve on threads of its own.
   /// Errors: kIo with address, port and the system's reason; kNotFound without the web folder;
-  /// kInvalidArgument for a bad address or token, and for none where others can reach the server.
+  /// kInvalidArgument for a bad address, token or allowed host, and for none where others can reach
+  /// the server.
   static Result<std::unique_ptr<Server>> start(const ServerOptions& options,
                                                engine::RunManager& runs,
                                                engine::ViewService& views);

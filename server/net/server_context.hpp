@@ -9,6 +9,7 @@
 
 #include "server/engine/run_manager.hpp"
 #include "server/engine/view_service.hpp"
+#include "server/net/allowed_hosts.hpp"
 #include "server/net/rest_router.hpp"
 #include "server/net/server.hpp"
 #include "server/net/session_registry.hpp"
@@ -44,7 +45,8 @@ struct ServerContext {
         runs(run_manager),
         views(view_service),
         files(server_options.web_folder),
-        token_gate(server_options.token) {}
+        token_gate(server_options.token),
+        allowed_hosts(server_options.allowed_hosts) {}
 
   void log(const std::string& level, const std::string& text) const {
     if (options.log) options.log(level, text);
@@ -56,6 +58,7 @@ struct ServerContext {
   RestRouter router;
   StaticFiles files;
   const TokenGate token_gate;
+  const AllowedHosts allowed_hosts;
   CallbackGate gate;
   SessionRegistry sessions;
   /// Runs what may take long (reading a run from disk) on a thread that serves no connection.

@@ -34,7 +34,15 @@ void require(bool condition, const std::string& message) {
 
 }  // namespace
 
-TestServer::TestServer(const net::ServerLimits& limits, const std::string& token) {
+TestServer::TestServer(const net::ServerLimits& limits, const std::string& token)
+    : TestServer([&] {
+        net::ServerOptions options;
+        options.limits = limits;
+        options.token = token;
+        return options;
+      }()) {}
+
+TestServer::TestServer(net::ServerOptions server_options) {
   const fs::path scenarios = folder() / "scenarios";
   const fs::path web = folder() / "web";
   const fs::path world_folder = folder() / "world";
@@ -63,11 +71,10 @@ TestServer::TestServer(const net::ServerLimits& limits, const std::string& token
   require(runs.ok(), runs.ok() ? "" : runs.error().message);
   runs_ = std::move(*runs);
   views_ = std::make_unique<engine::ViewService>(*runs_);
-  net::ServerOptions server_options;
+  if (server_options.address != "127.0.0.1") server_options.token = std::string(32, 't');
+  token_ = server_options.token;
   server_options.port = 0;
   server_options.web_folder = web;
-  server_options.limits = limits;
-  server_options.token = token;
   server_options.log = [this](const std::string& /*level*/, const std::string& text) {
     const std::lock_guard lock(log_mutex_);
     log_.push_back(text);
@@ -76,6 +83,11 @@ TestServer::TestServer(const net::ServerLimits& limits, const std::string& token
   auto server = net::Server::start(server_options, *runs_, *views_);
   require(server.ok(), server.ok() ? "" : server.error().message);
   server_ = std::move(*server);
+}
+
+Headers TestServer::with_token(Headers headers) const {
+  if (!token_.empty()) headers["Authorization"] = "Bearer " + token_;
+  return headers;
 }
 
 std::string TestServer::start(const std::string& scenario_name) {

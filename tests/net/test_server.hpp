@@ -11,6 +11,7 @@
 #include "server/engine/run_manager.hpp"
 #include "server/engine/view_service.hpp"
 #include "server/net/server.hpp"
+#include "tests/net/test_client.hpp"
 #include "tests/support/support.hpp"
 
 namespace overfly::testing {
@@ -21,6 +22,8 @@ class TestServer {
  public:
   /// @param token  that clients must show; empty = none
   explicit TestServer(const net::ServerLimits& limits = {}, const std::string& token = "");
+  /// Takes all of the options but port, dashboard and log. Off loopback it has a token.
+  explicit TestServer(net::ServerOptions options);
 
   [[nodiscard]] std::uint16_t port() const { return server_->port(); }
   [[nodiscard]] engine::RunManager& runs() { return *runs_; }
@@ -39,6 +42,8 @@ class TestServer {
   /// Every line logged so far.
   [[nodiscard]] std::string log();
   [[nodiscard]] std::string url() const { return server_->url(); }
+  /// The headers, and the one that shows the server's token.
+  [[nodiscard]] Headers with_token(Headers headers = {}) const;
 
  private:
   TemporaryFolder folder_;
@@ -47,6 +52,7 @@ class TestServer {
   std::vector<std::string> log_;
   std::unique_ptr<engine::RunManager> runs_;
   std::unique_ptr<engine::ViewService> views_;
+  std::string token_;
   std::unique_ptr<net::Server> server_;
 };
 

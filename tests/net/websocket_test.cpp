@@ -387,7 +387,8 @@ TEST(WebSocket, IsClosedToPagesOfOtherSites) {
   EXPECT_FALSE(accepts("http://evil.example"));
   EXPECT_FALSE(accepts("null"));
   EXPECT_TRUE(accepts("http://127.0.0.1:" + std::to_string(server.port())));
-  EXPECT_TRUE(accepts("http://localhost:5173"));
+  EXPECT_TRUE(accepts("http://localhost:" + std::to_string(server.port())));
+  EXPECT_FALSE(accepts("http://localhost:5173"));
   EXPECT_THAT(exchange_raw(server.port(), upgrade_with("Origin: http://evil.example\r\n")),
               HasSubstr("HTTP/1.1 403"));
 }
