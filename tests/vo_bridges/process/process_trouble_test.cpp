@@ -398,6 +398,7 @@ TEST_F(ProcessTrouble, AKilledServerLeavesNoOrphan) {
   ::kill(server, SIGKILL);
   ::waitpid(server, nullptr, 0);
   EXPECT_TRUE(gone_soon(pid));
+  ::waitpid(pid, nullptr, 0);  // ours now: earlier children made this process their subreaper
 }
 
 }  // namespace
