@@ -51,8 +51,16 @@ macro(find_orb_slam2 root)
   upstream_file(ORB_SLAM2_INCLUDE_DIR "${what}" ${root} NAMES System.h SUFFIXES include)
   upstream_file(ORB_SLAM2_DBOW2_DIR "${what}" ${root} NAMES Thirdparty/DBoW2/DBoW2/FORB.h
     SUFFIXES . include)
-  # Its headers include Pangolin's, with or without the viewer.
-  upstream_file(PANGOLIN_INCLUDE_DIR "${what}" ${root} NAMES pangolin/pangolin.h SUFFIXES include)
+  # Its headers include g2o's, and those a file that is not in the sources.
+  if(NOT EXISTS ${ORB_SLAM2_DBOW2_DIR}/Thirdparty/g2o/config.h)
+    message(FATAL_ERROR "${what}: no config.h in ${ORB_SLAM2_DBOW2_DIR}/Thirdparty/g2o. "
+                        "g2o's own CMakeLists.txt there writes it when it is configured.")
+  endif()
+  # Its headers include Pangolin's too; the adapter, which opens no viewer, needs a name of it alone.
+  find_path(PANGOLIN_INCLUDE_DIR NAMES pangolin/pangolin.h HINTS ${root} PATH_SUFFIXES include)
+  if(NOT PANGOLIN_INCLUDE_DIR)
+    set(PANGOLIN_INCLUDE_DIR ${OVERFLY_ADAPTERS_FOLDER}/without_pangolin)
+  endif()
   upstream_file(ORB_SLAM2_LIBRARY "${what}" ${root} LIBRARY NAMES ORB_SLAM2 SUFFIXES lib)
   upstream_file(ORB_SLAM2_DBOW2_LIBRARY "${what}" ${root} LIBRARY NAMES DBoW2
     SUFFIXES lib Thirdparty/DBoW2/lib)
@@ -63,6 +71,8 @@ macro(find_orb_slam2 root)
   upstream_target(ORB_SLAM2
     INCLUDES ${ORB_SLAM2_DBOW2_DIR} ${ORB_SLAM2_INCLUDE_DIR} ${PANGOLIN_INCLUDE_DIR}
              ${UPSTREAM_EIGEN_INCLUDE_DIR} ${UPSTREAM_OPENCV_INCLUDE_DIR}
+             ${OVERFLY_ADAPTERS_FOLDER}/opencv2_names
+    OPTIONS "SHELL:-include opencv2_names.hpp"
     LIBS ${ORB_SLAM2_LIBRARY} ${ORB_SLAM2_DBOW2_LIBRARY} ${ORB_SLAM2_G2O_LIBRARY}
          ${UPSTREAM_OPENCV_CORE} Threads::Threads)
 endmacro()
@@ -92,19 +102,24 @@ macro(find_svo root)
   upstream_opencv("${what}")
   upstream_boost("${what}")
   upstream_file(SVO_INCLUDE_DIR "${what}" ${root} NAMES svo/frame_handler_mono.h
-    SUFFIXES include svo/include)
+    SUFFIXES include svo/include rpg_svo/svo/include)
   upstream_file(VIKIT_INCLUDE_DIR "${what}" ${root} NAMES vikit/pinhole_camera.h
-    SUFFIXES include vikit_common/include)
-  upstream_file(SVO_SOPHUS_INCLUDE_DIR "${what}" ${root} NAMES sophus/se3.h SUFFIXES include)
-  upstream_file(SVO_LIBRARY "${what}" ${root} LIBRARY NAMES svo SUFFIXES lib svo/lib)
+    SUFFIXES include vikit_common/include rpg_vikit/vikit_common/include)
+  upstream_file(SVO_SOPHUS_INCLUDE_DIR "${what}" ${root} NAMES sophus/se3.h
+    SUFFIXES include Sophus)
+  upstream_file(SVO_LIBRARY "${what}" ${root} LIBRARY NAMES svo
+    SUFFIXES lib svo/lib rpg_svo/svo/lib)
   upstream_file(VIKIT_LIBRARY "${what}" ${root} LIBRARY NAMES vikit_common
-    SUFFIXES lib vikit_common/lib)
-  upstream_file(SVO_SOPHUS_LIBRARY "${what}" ${root} LIBRARY NAMES Sophus SUFFIXES lib)
-  upstream_file(FAST_LIBRARY "${what}" ${root} LIBRARY NAMES fast SUFFIXES lib)
+    SUFFIXES lib vikit_common/lib rpg_vikit/vikit_common/lib)
+  upstream_file(SVO_SOPHUS_LIBRARY "${what}" ${root} LIBRARY NAMES Sophus
+    SUFFIXES lib Sophus/build)
+  upstream_file(FAST_LIBRARY "${what}" ${root} LIBRARY NAMES fast SUFFIXES lib fast/build)
   upstream_target(SVO
     INCLUDES ${SVO_INCLUDE_DIR} ${VIKIT_INCLUDE_DIR} ${SVO_SOPHUS_INCLUDE_DIR}
              ${UPSTREAM_EIGEN_INCLUDE_DIR} ${UPSTREAM_OPENCV_INCLUDE_DIR}
-             ${UPSTREAM_BOOST_INCLUDE_DIR}
+             ${UPSTREAM_BOOST_INCLUDE_DIR} ${OVERFLY_ADAPTERS_FOLDER}/opencv2_names
+    OPTIONS -DBOOST_BIND_GLOBAL_PLACEHOLDERS "SHELL:-include opencv2_names.hpp"
+            "SHELL:-include boost/bind.hpp"
     LIBS ${SVO_LIBRARY} ${VIKIT_LIBRARY} ${SVO_SOPHUS_LIBRARY} ${FAST_LIBRARY}
          ${UPSTREAM_OPENCV_CORE} ${UPSTREAM_BOOST_THREAD} ${UPSTREAM_BOOST_SYSTEM}
          Threads::Threads)
