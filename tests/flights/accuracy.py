@@ -210,7 +210,7 @@ world with its hills, and can be stopped and called again. **What is not listed 
 The course of 3.3 km, 1280x960 at 31 Hz, noise of 1.5 grey levels, ray-caster, default parameters. A seed
 draws the noise, the estimator's random numbers and the built-in world; seeds below 100 served for tuning,
 those from 101 on for these tables. Each figure is the median over the seeds and, after the slash, the worst;
-coverage is the lowest. `init_scale` and rotation are aligned by the first tracked pose alone. The bar:
+coverage is the lowest, of all frames of the flight. `init_scale` and rotation are aligned by the first tracked pose alone. The bar:
 from 150 m up COMPLETED, start within 1.5 s, Sim3 at most 0.25 m (McMillan) or 0.5 m (hills), `init_scale`
 at most 2 m, rotation at most 0.05 deg; at 100 m COMPLETED and start within 3 s; at 50 m none.
 
