@@ -2,6 +2,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 #include <cmath>
+#include <opencv2/calib3d.hpp>
 
 #include "odometry/feature/two_view.hpp"
 
@@ -21,6 +22,34 @@ Pose unit_motion(const Eigen::Matrix3d& R, const Eigen::Vector3d& t) {
 }
 
 }  // namespace
+
+Eigen::Matrix3d essential_of_five(const std::vector<Eigen::Vector2d>& first,
+                                  const std::vector<Eigen::Vector2d>& second,
+                                  double threshold) {
+  const auto points_of = [](const std::vector<Eigen::Vector2d>& from) {
+    std::vector<cv::Point2d> points;
+    points.reserve(from.size());
+    for (const Eigen::Vector2d& p : from) points.emplace_back(p.x(), p.y());
+    return points;
+  };
+  constexpr double kConfidence = 0.999;
+  constexpr int kMaxRounds = 1000;
+  if (first.size() < 8) return Eigen::Matrix3d::Zero();
+  const cv::Mat E = cv::findEssentialMat(points_of(first),
+                                         points_of(second),
+                                         cv::Mat::eye(3, 3, CV_64F),
+                                         cv::RANSAC,
+                                         kConfidence,
+                                         threshold,
+                                         kMaxRounds);
+  // No model gives an empty matrix; five pairs alone could give several, one below the other.
+  if (E.rows != 3 || E.cols != 3) return Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d result;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) result(row, column) = E.at<double>(row, column);
+  }
+  return result.allFinite() ? result : Eigen::Matrix3d::Zero();
+}
 
 std::vector<Pose> motions_of_homography(const Eigen::Matrix3d& H_calibrated) {
   const Eigen::JacobiSVD<Eigen::Matrix3d> scale(H_calibrated);

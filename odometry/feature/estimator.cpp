@@ -47,6 +47,19 @@ InitialiserOptions initialiser_options(const FeatureParameters& parameters) {
   return options;
 }
 
+DescriptorInitialiserOptions descriptor_initialiser_options(const FeatureParameters& parameters) {
+  const InitialiserOptions like = initialiser_options(parameters);
+  DescriptorInitialiserOptions options;
+  options.seed = like.seed;
+  options.planar_start = like.planar_start;
+  options.coarsest_patch_level = like.coarsest_patch_level;
+  options.scale_factor = parameters.scale_factor;
+  options.cells = like.cells;
+  // The mapper finds new points with every image where what is seen is no plane.
+  options.min_cells = 3 * like.min_cells / 4;
+  return options;
+}
+
 MapperOptions mapper_options(const FeatureParameters& parameters, const Rectifier& rectifier) {
   MapperOptions options;
   options.cells = tracked_points(parameters);
@@ -61,6 +74,7 @@ MapperOptions mapper_options(const FeatureParameters& parameters, const Rectifie
 FeatureOdometry::Parts::Parts(const CameraModel& camera, const FeatureParameters& parameters)
     : rectifier(camera),
       initialiser(camera.pinhole(), initialiser_options(parameters)),
+      descriptor_initialiser(camera.pinhole(), descriptor_initialiser_options(parameters)),
       tracker(camera.pinhole(), tracker_options(parameters, rectifier)),
       keeper(camera.pinhole(), mapper_options(parameters, rectifier), parameters) {}
 
@@ -86,6 +100,7 @@ void FeatureOdometry::start_over() {
   parts_->keeper.clear();
   motion_.reset();
   parts_->initialiser.reset();
+  parts_->descriptor_initialiser.reset();
   state_ = TrackingState::kInitialising;
   m_per_unit_ = 1.0;
   ++map_id_;
@@ -155,11 +170,24 @@ Result<VoEstimate> FeatureOdometry::answer(const VoFrame& frame) {
   return estimate;
 }
 
+/// Corners that can be followed make the better map: descriptors serve where they cannot.
+bool FeatureOdometry::make_first_map(const FrameImage& frame) {
+  Map& first = parts_->keeper.empty_map();
+  if (!parts_->initialiser.process(frame, orb_, first)) {
+    const auto& given_up = parts_->initialiser.given_up();
+    if (!given_up) return false;
+    parts_->descriptor_initialiser.remember(*given_up, orb_);
+    if (!parts_->descriptor_initialiser.process(frame, orb_, first)) return false;
+  }
+  parts_->initialiser.reset();
+  parts_->descriptor_initialiser.reset();
+  return true;
+}
+
 void FeatureOdometry::initialise(const FrameImage& frame, VoEstimate& estimate, Outcome& outcome) {
   const Stopwatch stopwatch(estimate.timing_ms, "initialisation");
-  Map& first = parts_->keeper.empty_map();
-  if (!parts_->initialiser.process(frame, orb_, first)) return;
-  for (const auto& [id, keyframe] : first.keyframes()) {
+  if (!make_first_map(frame)) return;
+  for (const auto& [id, keyframe] : parts_->keeper.empty_map().keyframes()) {
     motion_.observe(keyframe.t_ns, keyframe.T_camera_vo);
   }
   parts_->keeper.begin();

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "odometry/feature/descriptor_initialiser.hpp"
 #include "odometry/feature/feature_odometry.hpp"
 #include "odometry/feature/initialiser.hpp"
 #include "odometry/feature/map_keeper.hpp"
@@ -39,6 +40,7 @@ class FeatureOdometry final : public VoPort {
     Parts(const CameraModel& camera, const FeatureParameters& parameters);
     Rectifier rectifier;
     Initialiser initialiser;
+    DescriptorInitialiser descriptor_initialiser;
     Tracker tracker;
     MapKeeper keeper;
   };
@@ -55,6 +57,7 @@ class FeatureOdometry final : public VoPort {
 
   [[nodiscard]] Result<VoEstimate> answer(const VoFrame& frame);
   void initialise(const FrameImage& frame, VoEstimate& estimate, Outcome& outcome);
+  bool make_first_map(const FrameImage& frame);
   void follow(const FrameImage& frame, VoEstimate& estimate, Outcome& outcome);
   void search(const FrameImage& frame, VoEstimate& estimate, Outcome& outcome);
   [[nodiscard]] FrameImage image_of(const VoFrame& frame) const;

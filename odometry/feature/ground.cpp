@@ -12,6 +12,12 @@ constexpr int kMinPlanePoints = 20;
 constexpr int kMinAxisPoints = 15;
 /// Points less than this far off the axis, as a share of their depth, count as near it.
 constexpr double kAxisTangent = 0.2;
+/// Points whose inverse depth is off the plane's by a smaller share lie near it.
+constexpr double kNearPlane = 0.3;
+/// Where fewer do, there is no ground to speak of: a street, a wood, a room.
+constexpr double kLeastShareNear = 0.5;
+/// And there is again only where so many do.
+constexpr double kShareNearAgain = 0.85;
 
 double median_of(std::vector<double>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -43,6 +49,15 @@ Eigen::Vector3d plane_of(const std::vector<DepthSample>& samples, const Eigen::V
   return plane;
 }
 
+/// Of the samples, those near the plane.
+double share_near(const std::vector<DepthSample>& samples, const Eigen::Vector3d& plane) {
+  const auto near = std::count_if(samples.begin(), samples.end(), [&](const DepthSample& sample) {
+    return std::abs(plane.dot(sample.ray) - sample.inverse_depth) <
+           kNearPlane * sample.inverse_depth;
+  });
+  return static_cast<double>(near) / static_cast<double>(samples.size());
+}
+
 }  // namespace
 
 void set_normal(const PinholeCamera& camera, const Keyframe& source, MapPoint& point) {
@@ -65,6 +80,12 @@ void fit_plane(const PinholeCamera& camera, const Map& map, Keyframe& keyframe) 
   if (samples.size() < kMinPlanePoints) return;
   const Eigen::Vector3d plane = plane_of(samples, keyframe.plane.coefficients);
   if (plane.allFinite() && plane.z() > 0.0) keyframe.plane.coefficients = plane;
+  const double asked = keyframe.plane.holds ? kLeastShareNear : kShareNearAgain;
+  keyframe.plane.holds = share_near(samples, keyframe.plane.coefficients) > asked;
+  std::vector<double> depths;
+  depths.reserve(samples.size());
+  for (const DepthSample& sample : samples) depths.push_back(1.0 / sample.inverse_depth);
+  keyframe.plane.median_depth = median_of(depths);
 }
 
 std::optional<double> axis_depth(const Pose& T_camera_vo,

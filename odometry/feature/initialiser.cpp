@@ -3,6 +3,8 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 namespace overfly::odometry {
 namespace {
@@ -11,48 +13,31 @@ constexpr double kPlaneThresholdPx = 3.0;
 constexpr double kMaxOffsetStepPx = 4.0;
 constexpr float kMinCorrelation = 0.85F;
 constexpr int kCoarseTracks = 200;
-/// Of two motions over all views the better one's residual must be less than so much of the
-/// other's. Thousands of sights tell residuals apart to a few hundredths; 0.33 to 0.68 was seen in
-/// flight.
-constexpr double kMostAlikeResidual = 0.7;
-
-/// A motion that two views allow, and what all views make of it.
-struct Hypothesis {
-  FirstMapInput input;
-  FirstMap solved;
-};
-
-/// A wrong plane fits two views, but not all between them as well. Null while none stands out.
-const Hypothesis* best_of(std::vector<Hypothesis>& hypotheses) {
-  if (hypotheses.empty()) return nullptr;
-  std::sort(hypotheses.begin(), hypotheses.end(), [](const Hypothesis& a, const Hypothesis& b) {
-    return a.solved.rms_sigma < b.solved.rms_sigma;
-  });
-  const bool told_apart =
-      hypotheses.size() == 1 ||
-      hypotheses[0].solved.rms_sigma < kMostAlikeResidual * hypotheses[1].solved.rms_sigma;
-  return told_apart ? &hypotheses[0] : nullptr;
-}
+/// What moved less, while the image moved by a hundredth of its focal length, stands still in it.
+constexpr double kStillPx = 1.0;
+constexpr double kLeastStillShare = 0.05;
 
 }  // namespace
-
-int patch_level_of(int scale_level, double scale_factor) {
-  const double octaves = scale_level * std::log2(scale_factor);
-  return std::clamp(static_cast<int>(std::lround(octaves)), 0, 2);
-}
 
 Initialiser::Initialiser(const PinholeCamera& camera, const InitialiserOptions& options)
     : camera_(camera), options_(options) {}
 
 void Initialiser::reset() {
+  forget();
+  given_up_.reset();
+}
+
+void Initialiser::forget() {
   first_.reset();
+  lapsed_.clear();
+  patient_ = false;
   tracks_.clear();
   origin_.clear();
   snapshots_.clear();
 }
 
 void Initialiser::start(const FrameImage& frame, OrbExtractor& orb) {
-  reset();
+  forget();
   first_ = frame;
   frames_ = 0;
   snapshot_every_ = options_.snapshot_every;
@@ -72,7 +57,7 @@ void Initialiser::start(const FrameImage& frame, OrbExtractor& orb) {
     origin_.push_back(tracks_.size() - 1);
   }
   corner_count_ = tracks_.size();
-  if (static_cast<int>(corner_count_) < options_.min_tracks) reset();
+  if (static_cast<int>(corner_count_) < options_.min_tracks) forget();
 }
 
 /// Brings H near the frame with few patches at coarse levels.
@@ -108,30 +93,32 @@ bool Initialiser::follow_coarsely(const FrameImage& frame, Eigen::Matrix3d& H) c
 bool Initialiser::follow(const FrameImage& frame) {
   Eigen::Matrix3d H = H_step_ * H_now_first_;
   if (!follow_coarsely(frame, H)) return false;
-  const Eigen::Matrix3d H_first_now = H.inverse();
   std::vector<Track> alive;
   std::vector<std::size_t> origin;
+  std::vector<Lapsed> lapsed;
+  const auto look_for = [&](const Track& track, std::size_t of) {
+    if (const auto seen = found(track, frame, H)) {
+      alive.push_back(*seen);
+      origin.push_back(of);
+    } else {
+      lapsed.push_back({track, of});
+    }
+  };
+  for (std::size_t i = 0; i < tracks_.size(); ++i) look_for(tracks_[i], origin_[i]);
+  patient_ = patient_ || !enough(alive);
+  if (patient_) {
+    for (const auto& [track, of] : lapsed_) look_for(track, of);
+    if (!enough(alive)) return false;
+    lapsed_ = std::move(lapsed);
+  } else {
+    lapsed_.insert(lapsed_.end(), lapsed.begin(), lapsed.end());
+  }
   std::vector<Eigen::Vector2d> from;
   std::vector<Eigen::Vector2d> to;
-  for (std::size_t i = 0; i < tracks_.size(); ++i) {
-    Track track = tracks_[i];
-    const Eigen::Vector2d on_plane = transfer(H, track.corner.pixel);
-    const auto patch = make_template(
-        first_->pyramid, track.corner.pixel, warp_around(H_first_now, on_plane), track.patch_level);
-    if (!patch) continue;
-    const Eigen::Vector2d start = on_plane + track.offset;
-    const auto match = align_patch(frame.pyramid, *patch, start);
-    if (!match || match->correlation < kMinCorrelation ||
-        (match->pixel - start).norm() > std::ldexp(kMaxOffsetStepPx, track.patch_level)) {
-      continue;
-    }
-    track.pixel = match->pixel;
+  for (const Track& track : alive) {
     from.push_back(track.corner.pixel);
-    to.push_back(match->pixel);
-    alive.push_back(track);
-    origin.push_back(origin_[i]);
+    to.push_back(track.pixel);
   }
-  if (!enough(alive)) return false;
   const auto fit = fit_homography(from, to, kPlaneThresholdPx, options_.seed);
   if (!fit) return false;
   H_step_ = fit->H_second_first * H_now_first_.inverse();
@@ -141,6 +128,25 @@ bool Initialiser::follow(const FrameImage& frame) {
   tracks_ = std::move(alive);
   origin_ = std::move(origin);
   return true;
+}
+
+/// A track where its patch is now, near its place off the plane's; empty when it is missed.
+std::optional<Initialiser::Track> Initialiser::found(const Track& track,
+                                                     const FrameImage& frame,
+                                                     const Eigen::Matrix3d& H) const {
+  const Eigen::Vector2d on_plane = transfer(H, track.corner.pixel);
+  const auto patch = make_template(
+      first_->pyramid, track.corner.pixel, warp_around(H.inverse(), on_plane), track.patch_level);
+  if (!patch) return std::nullopt;
+  const Eigen::Vector2d start = on_plane + track.offset;
+  const auto match = align_patch(frame.pyramid, *patch, start);
+  if (!match || match->correlation < kMinCorrelation ||
+      (match->pixel - start).norm() > std::ldexp(kMaxOffsetStepPx, track.patch_level)) {
+    return std::nullopt;
+  }
+  Track seen = track;
+  seen.pixel = match->pixel;
+  return seen;
 }
 
 /// Whether so many are left, so widely spread, that they make a map worth following.
@@ -185,6 +191,7 @@ bool Initialiser::process(const FrameImage& frame, OrbExtractor& orb, Map& map) 
     return false;
   }
   if (!follow(frame)) {
+    given_up_ = std::move(first_);
     start(frame, orb);
     return false;
   }
@@ -199,41 +206,59 @@ bool Initialiser::process(const FrameImage& frame, OrbExtractor& orb, Map& map) 
   return false;
 }
 
+/// From all tracks; then without those that stand still in the moving image: what sits on the lens
+/// or belongs to the aircraft.
 bool Initialiser::reconstruct(const FrameImage& frame, OrbExtractor& orb, Map& map) {
+  std::vector<std::size_t> all(tracks_.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  if (reconstruct_from(all, frame, orb, map)) return true;
+  std::vector<std::size_t> moving;
+  for (const std::size_t i : all) {
+    if ((tracks_[i].pixel - tracks_[i].corner.pixel).norm() > kStillPx) moving.push_back(i);
+  }
+  const double still_share =
+      1.0 - static_cast<double>(moving.size()) / static_cast<double>(all.size());
+  return still_share > kLeastStillShare && reconstruct_from(moving, frame, orb, map);
+}
+
+bool Initialiser::reconstruct_from(const std::vector<std::size_t>& chosen,
+                                   const FrameImage& frame,
+                                   OrbExtractor& orb,
+                                   Map& map) {
   std::vector<Eigen::Vector2d> from;
   std::vector<Eigen::Vector2d> to;
-  for (const Track& track : tracks_) {
-    from.push_back(track.corner.pixel);
-    to.push_back(track.pixel);
+  for (const std::size_t i : chosen) {
+    from.push_back(tracks_[i].corner.pixel);
+    to.push_back(tracks_[i].pixel);
   }
   TwoViewOptions options;
   const bool waited = static_cast<double>(frame.t_ns - first_->t_ns) * 1e-9 > options_.patience_s;
   options.min_parallax_rad = waited ? options_.least_parallax_rad : options_.min_parallax_rad;
   options.consider_plane = options_.planar_start;
   options.seed = options_.seed;
-  std::vector<Hypothesis> hypotheses;
+  std::vector<FirstMapInput> inputs;
   for (const TwoViewReconstruction& motion : reconstruct_two_view(camera_, from, to, options)) {
-    FirstMapInput input = input_of(motion, frame);
-    auto solved = solve_first_map(camera_, input);
-    if (solved) hypotheses.push_back({std::move(input), std::move(*solved)});
+    inputs.push_back(input_of(motion, chosen, frame));
   }
-  const Hypothesis* best = best_of(hypotheses);
-  if (best == nullptr) return false;
+  const auto best = choose_first_map(camera_, std::move(inputs));
+  if (!best) return false;
   fill_first_map(camera_, best->input, best->solved, orb, map);
   return true;
 }
 
 FirstMapInput Initialiser::input_of(const TwoViewReconstruction& motion,
+                                    const std::vector<std::size_t>& chosen,
                                     const FrameImage& frame) const {
   FirstMapInput input;
   input.first = &*first_;
   input.last = &frame;
-  for (std::size_t i = 0; i < tracks_.size(); ++i) {
-    if (motion.good[i] == 0) continue;
+  for (std::size_t pair = 0; pair < chosen.size(); ++pair) {
+    if (motion.good[pair] == 0) continue;
+    const std::size_t i = chosen[pair];
     FirstMapPoint& point = input.points.emplace_back();
     point.corner = tracks_[i].corner;
     point.patch_level = tracks_[i].patch_level;
-    point.p_first = motion.points_first[i];
+    point.p_first = motion.points_first[pair];
     point.last_pixel = tracks_[i].pixel;
     for (const Snapshot& snapshot : snapshots_) {
       point.between_pixels.push_back(snapshot.pixels[origin_[i]]);

@@ -8,6 +8,7 @@
 
 #include "core/camera.hpp"
 #include "odometry/feature/first_map.hpp"
+#include "odometry/feature/frame_image.hpp"
 #include "odometry/feature/map.hpp"
 #include "odometry/feature/orb.hpp"
 #include "odometry/feature/patch_aligner.hpp"
@@ -15,13 +16,6 @@
 #include "odometry/feature/two_view.hpp"
 
 namespace overfly::odometry {
-
-/// An image with its stamp, as the estimator works on it.
-struct FrameImage {
-  std::int64_t index = 0;
-  std::int64_t t_ns = 0;
-  Pyramid pyramid;
-};
 
 struct InitialiserOptions {
   double min_parallax_rad = 0.07;  ///< 4 deg: depths to 0.1 % with points to 0.1 px
@@ -52,6 +46,8 @@ class Initialiser {
   /// frame: the first one's camera is the origin, the ground on its axis 1 away.
   bool process(const FrameImage& frame, OrbExtractor& orb, Map& map);
   void reset();
+  /// The first image that was given up last, since the last map: its corners could not be followed.
+  [[nodiscard]] const std::optional<FrameImage>& given_up() const { return given_up_; }
 
   struct Track {
     Corner corner;
@@ -62,19 +58,33 @@ class Initialiser {
   [[nodiscard]] const std::vector<Track>& tracks() const { return tracks_; }
 
  private:
+  /// A track that was missed, and may come back.
+  struct Lapsed {
+    Track track;
+    std::size_t origin = 0;
+  };
   struct Snapshot {
     FrameImage frame;
     std::vector<std::optional<Eigen::Vector2d>> pixels;  ///< one for each corner of the first
   };
 
+  void forget();
   void start(const FrameImage& frame, OrbExtractor& orb);
   bool follow(const FrameImage& frame);
   bool follow_coarsely(const FrameImage& frame, Eigen::Matrix3d& H) const;
+  [[nodiscard]] std::optional<Track> found(const Track& track,
+                                           const FrameImage& frame,
+                                           const Eigen::Matrix3d& H) const;
   [[nodiscard]] bool enough(const std::vector<Track>& tracks) const;
   void remember(const FrameImage& frame);
   [[nodiscard]] double median_motion_px() const;
   bool reconstruct(const FrameImage& frame, OrbExtractor& orb, Map& map);
+  bool reconstruct_from(const std::vector<std::size_t>& chosen,
+                        const FrameImage& frame,
+                        OrbExtractor& orb,
+                        Map& map);
   [[nodiscard]] FirstMapInput input_of(const TwoViewReconstruction& motion,
+                                       const std::vector<std::size_t>& chosen,
                                        const FrameImage& frame) const;
 
   PinholeCamera camera_;
@@ -82,6 +92,9 @@ class Initialiser {
   std::optional<FrameImage> first_;
   std::vector<Track> tracks_;
   std::vector<std::size_t> origin_;  ///< of each track: index of its corner in the first image
+  std::vector<Lapsed> lapsed_;
+  bool patient_ = false;  ///< tracks that were missed are looked for: the others are too few
+  std::optional<FrameImage> given_up_;
   std::size_t corner_count_ = 0;
   std::vector<Snapshot> snapshots_;
   int snapshot_every_ = 1;  ///< frames
@@ -89,8 +102,5 @@ class Initialiser {
   Eigen::Matrix3d H_step_ = Eigen::Matrix3d::Identity();
   int frames_ = 0;
 };
-
-/// Pyramid level at which a corner of a scale level is followed.
-[[nodiscard]] int patch_level_of(int scale_level, double scale_factor);
 
 }  // namespace overfly::odometry

@@ -1,9 +1,16 @@
 #include "odometry/feature/map.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace overfly::odometry {
+namespace {
+
+/// Patches of which one starts so near another, at the finer's level, are of the same corner.
+constexpr double kSameCornerPx = 1.5;
+
+}  // namespace
 
 Keyframe& Map::add_keyframe(Keyframe keyframe) {
   keyframe.id = next_keyframe_++;
@@ -106,6 +113,19 @@ MapPoint* Map::point(int id) {
 const MapPoint* Map::point(int id) const {
   const auto found = points_.find(id);
   return found == points_.end() ? nullptr : &found->second;
+}
+
+const MapPoint* point_at(const Map& map,
+                         const Keyframe& keyframe,
+                         const Eigen::Vector2d& pixel,
+                         int patch_level) {
+  for (const Observation& seen : keyframe.observations) {
+    const MapPoint* point = map.point(seen.point);
+    if (point == nullptr) continue;
+    const double radius_px = std::ldexp(kSameCornerPx, std::min(patch_level, point->patch_level));
+    if ((seen.pixel - pixel).squaredNorm() < radius_px * radius_px) return point;
+  }
+  return nullptr;
 }
 
 std::vector<int> Map::covisible(int keyframe, int min_shared) const {

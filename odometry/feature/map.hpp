@@ -38,6 +38,8 @@ struct Candidate {
 /// The ground as a plane in a camera: inverse depth = a x + b y + c at the ray (x, y, 1).
 struct GroundPlane {
   Eigen::Vector3d coefficients{0.0, 0.0, 1.0};  ///< (a, b, c), also the plane's unscaled normal
+  bool holds = true;                            ///< what is seen lies near the plane
+  double median_depth = 1.0;                    ///< of the points seen
 
   [[nodiscard]] double inverse_depth(const Eigen::Vector3d& ray) const {
     return coefficients.dot(ray);
@@ -111,10 +113,18 @@ class Map {
   int first_with_image_ = 0;
 };
 
+/// The point that a keyframe sees at a pixel already, give or take 1.5 px at the finer of the two
+/// patches' levels; null when none.
+[[nodiscard]] const MapPoint* point_at(const Map& map,
+                                       const Keyframe& keyframe,
+                                       const Eigen::Vector2d& pixel,
+                                       int patch_level);
+
 /// Sets the ground's normal at a point from the plane of its source keyframe.
 void set_normal(const PinholeCamera& camera, const Keyframe& source, MapPoint& point);
 
-/// Fits the ground's plane to the keyframe's points, robustly; keeps the old one with too few.
+/// Fits the ground's plane to the keyframe's points, robustly, and tells whether they lie near it;
+/// keeps the old one with too few.
 void fit_plane(const PinholeCamera& camera, const Map& map, Keyframe& keyframe);
 
 /// Depth of the ground on the camera's optical axis, which the alignment `init_scale` compares with

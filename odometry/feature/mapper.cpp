@@ -12,28 +12,14 @@ namespace {
 
 constexpr float kMinCorrelation = 0.8F;
 constexpr int kMaxMisses = 3;
-/// Patches of which one starts so near another, at the finer's level, are of the same corner.
-constexpr double kSameCornerPx = 1.5;
 /// A new point's depth relative to the ground's plane: beyond, it is a wrong match.
 constexpr double kMaxDepthRatio = 2.5;
 /// Ground farther than so many median depths gives no parallax in a view's lifetime.
 constexpr double kMaxRelativeDepth = 6.0;
 constexpr int kExpectedBeforeCulling = 12;
+/// Where things hide one another, and images are far apart.
+constexpr int kExpectedBeforeCullingInScene = 5;
 constexpr double kMinFoundShare = 0.25;
-
-/// The point that a keyframe sees at a pixel already; null when none.
-const MapPoint* point_at(const Map& map,
-                         const Keyframe& keyframe,
-                         const Eigen::Vector2d& pixel,
-                         int patch_level) {
-  for (const Observation& seen : keyframe.observations) {
-    const MapPoint* point = map.point(seen.point);
-    if (point == nullptr) continue;
-    const double radius_px = std::ldexp(kSameCornerPx, std::min(patch_level, point->patch_level));
-    if ((seen.pixel - pixel).squaredNorm() < radius_px * radius_px) return point;
-  }
-  return nullptr;
-}
 
 Eigen::Vector3d centre_of(const Pose& T_camera_vo) { return T_camera_vo.inverse().translation; }
 
@@ -46,11 +32,12 @@ bool Mapper::wants_keyframe(const FrameImage& frame,
                             const TrackResult& tracked,
                             const Map& map) const {
   const Keyframe& last = map.newest();
-  if (frame.index - last.frame < options_.min_frames_between) return false;
+  if (frame.index - last.frame < (last.plane.holds ? options_.min_frames_between : 1)) return false;
   const double turned = rotation_angle_rad(tracked.T_camera_vo.rotation, last.T_camera_vo.rotation);
   if (turned > options_.max_rotation_rad) return true;
   const double moved = (centre_of(tracked.T_camera_vo) - centre_of(last.T_camera_vo)).norm();
-  const double depth = 1.0 / std::max(last.plane.coefficients.z(), 1e-6);
+  const double depth = last.plane.holds ? 1.0 / std::max(last.plane.coefficients.z(), 1e-6)
+                                        : last.plane.median_depth;
   if (moved > options_.max_translation * depth) return true;
   return static_cast<double>(tracked.points.size()) <
          options_.min_tracked_share * static_cast<double>(last.observations.size());
@@ -102,7 +89,8 @@ void Mapper::add_candidates(OrbExtractor& orb, Map& map) const {
   for (const Corner& corner : corners) {
     const std::size_t cell = empty.index(corner.pixel);
     const double inverse_depth = keyframe.plane.inverse_depth(camera_.ray(corner.pixel));
-    if (empty.marked[cell] == 0 || inverse_depth * kMaxRelativeDepth < usual) continue;
+    const bool too_far = keyframe.plane.holds && inverse_depth * kMaxRelativeDepth < usual;
+    if (empty.marked[cell] == 0 || too_far) continue;
     if (keyframe.pyramid.burnt_at(corner.pixel)) continue;
     if (best[cell] == nullptr || corner.response > best[cell]->response) best[cell] = &corner;
   }
@@ -133,6 +121,7 @@ void Mapper::triangulate_candidates(Map& map) const {
 Mapper::Search Mapper::triangulate_candidate(const Keyframe& source,
                                              const Candidate& candidate,
                                              Map& map) const {
+  if (!source.plane.holds) return triangulate_in_scene(source, candidate, map);
   const int patch_level = candidate.patch_level;
   Keyframe& newest = map.newest();
   const Eigen::Vector3d ray = camera_.ray(candidate.corner.pixel);
@@ -174,13 +163,21 @@ Mapper::Search Mapper::triangulate_candidate(const Keyframe& source,
   }
   point.position_vo = T_vo_source * triangulated->p_first;
   set_normal(camera_, source, point);
-  const int source_id = source.id;
-  const MapPoint& added = map.add_point(point);
-  map.add_observation(map.keyframe(source_id),
-                      {added.id, point.source_pixel, sigma_px_of(patch_level)});
-  map.add_observation(newest, {added.id, pixel, sigma_px_of(patch_level)});
-  for (int id = source_id + 1; id < newest.id; ++id) observe(added, map.keyframe(id), map);
+  add(point, pixel, map);
   return Search::kFound;
+}
+
+/// Adds a point that its source and the newest keyframe see, and looks for it between the two.
+void Mapper::add(const MapPoint& point, const Eigen::Vector2d& newest_pixel, Map& map) const {
+  Keyframe& newest = map.newest();
+  const double sigma_px = sigma_px_of(point.patch_level);
+  const MapPoint& added = map.add_point(point);
+  map.add_observation(map.keyframe(point.source_keyframe),
+                      {added.id, point.source_pixel, sigma_px});
+  map.add_observation(newest, {added.id, newest_pixel, sigma_px});
+  for (int id = point.source_keyframe + 1; id < newest.id; ++id) {
+    observe(added, map.keyframe(id), map);
+  }
 }
 
 void Mapper::fuse(const MapPoint& known, const Keyframe& source, Map& map) const {
@@ -205,9 +202,11 @@ void Mapper::observe(const MapPoint& point, Keyframe& keyframe, Map& map) const 
 
 /// Points that are too seldom found where they should be go.
 void Mapper::cull(Map& map) const {
+  const int enough =
+      map.newest().plane.holds ? kExpectedBeforeCulling : kExpectedBeforeCullingInScene;
   std::vector<int> gone;
   for (const auto& [id, point] : map.points()) {
-    if (point.expected >= kExpectedBeforeCulling && point.found < kMinFoundShare * point.expected) {
+    if (point.expected >= enough && point.found < kMinFoundShare * point.expected) {
       gone.push_back(id);
     }
   }

@@ -53,6 +53,9 @@ class Mapper {
   enum class Search { kFound, kFused, kMissed, kTooNear };
   void triangulate_candidates(Map& map) const;
   Search triangulate_candidate(const Keyframe& source, const Candidate& candidate, Map& map) const;
+  /// As above where no plane tells the depth to start from.
+  Search triangulate_in_scene(const Keyframe& source, const Candidate& candidate, Map& map) const;
+  void add(const MapPoint& point, const Eigen::Vector2d& newest_pixel, Map& map) const;
   /// A candidate that is a point already: the point is looked for in the candidate's keyframe.
   void fuse(const MapPoint& known, const Keyframe& source, Map& map) const;
   /// Looks for a point in a keyframe that lacks it.

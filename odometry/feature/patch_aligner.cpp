@@ -175,6 +175,11 @@ std::optional<PatchTemplate> make_template(const Pyramid& source,
   return result;
 }
 
+int patch_level_of(int scale_level, double scale_factor) {
+  const double octaves = scale_level * std::log2(scale_factor);
+  return std::clamp(static_cast<int>(std::lround(octaves)), 0, 2);
+}
+
 std::optional<int> textured_level(const Pyramid& image,
                                   const Eigen::Vector2d& pixel,
                                   int finest,

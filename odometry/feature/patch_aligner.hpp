@@ -38,6 +38,9 @@ struct PatchTemplate {
   float least_eigenvalue = 0.0F;   ///< of the Hessian
 };
 
+/// Pyramid level at which a corner of a scale level is followed.
+[[nodiscard]] int patch_level_of(int scale_level, double scale_factor);
+
 /// The level, at least `finest` and at most `coarsest`, at which the patch around a pixel tells its
 /// position best; empty if none has texture to hold on. Blurred ground is held at coarse levels.
 ///

@@ -10,6 +10,10 @@ namespace {
 
 constexpr double kBorderPx = 8.0;
 constexpr int kCoarseMinMatches = 12;
+/// Searched points of which one must agree, at least. Where what is seen is no plane, things hide
+/// one another, and more are looked for in vain.
+constexpr int kSearchedPerInlier = 3;
+constexpr int kSearchedPerInlierInScene = 6;
 
 }  // namespace
 
@@ -22,14 +26,11 @@ Tracker::Tracker(const PinholeCamera& camera, const TrackerOptions& options)
     : camera_(camera), options_(options) {}
 
 PatchWarp warp_of(const PinholeCamera& camera,
-                  const Pose& T_camera_vo,
-                  const Keyframe& source,
-                  const MapPoint& point) {
+                  const Pose& T_source_camera,
+                  const Eigen::Vector3d& p,
+                  const Eigen::Vector3d& n) {
   // The plane n.X = n.p in the view: H_source_other = K (R + t n^T / n.p) K^-1 (Hartley and
   // Zisserman 2003, result 13.1), here for steps of one pixel around the point.
-  const Pose T_source_camera = source.T_camera_vo * T_camera_vo.inverse();
-  const Eigen::Vector3d p = T_camera_vo * point.position_vo;
-  const Eigen::Vector3d n = T_camera_vo.rotation * point.normal_vo;
   const Eigen::Matrix3d G = T_source_camera.rotation.toRotationMatrix() +
                             T_source_camera.translation * n.transpose() / n.dot(p);
   const Eigen::Vector3d q = G * (p / p.z());
@@ -40,6 +41,16 @@ PatchWarp warp_of(const PinholeCamera& camera,
       Eigen::Vector2d(camera.fx_px, camera.fy_px).asDiagonal() *
       (G.topLeftCorner<2, 2>() * step.asDiagonal() - q.hnormalized() * warp.g_per_px.transpose());
   return warp;
+}
+
+PatchWarp warp_of(const PinholeCamera& camera,
+                  const Pose& T_camera_vo,
+                  const Keyframe& source,
+                  const MapPoint& point) {
+  return warp_of(camera,
+                 source.T_camera_vo * T_camera_vo.inverse(),
+                 T_camera_vo * point.position_vo,
+                 T_camera_vo.rotation * point.normal_vo);
 }
 
 /// One point of the local map for each cell of the image, best known first.
@@ -140,7 +151,8 @@ TrackResult Tracker::track(const Pyramid& image,
     auto& list = fit.inlier[i] != 0 ? result.points : result.outliers;
     list.push_back({ids[i], observations[i].pixel, observations[i].sigma_px});
   }
-  result.tracked = fit.inliers >= options_.min_inliers && 3 * fit.inliers > result.searched;
+  const int share = map.newest().plane.holds ? kSearchedPerInlier : kSearchedPerInlierInScene;
+  result.tracked = fit.inliers >= options_.min_inliers && share * fit.inliers > result.searched;
   return result;
 }
 

@@ -69,6 +69,13 @@ class Tracker {
   TrackerOptions options_;
 };
 
+/// From a view to a source, over a plane through a point. All in the view's camera.
+/// @param p, n  the point, and the plane's normal
+[[nodiscard]] PatchWarp warp_of(const PinholeCamera& camera,
+                                const Pose& T_source_camera,
+                                const Eigen::Vector3d& p,
+                                const Eigen::Vector3d& n);
+
 /// From a view to the point's source keyframe, over the ground's plane through the point.
 [[nodiscard]] PatchWarp warp_of(const PinholeCamera& camera,
                                 const Pose& T_camera_vo,

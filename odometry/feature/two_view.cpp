@@ -155,15 +155,23 @@ Model ransac_essential(const Pixels& a, const Pixels& b, double sigma, std::mt19
   return best;
 }
 
+Model five_point_essential(const Pixels& a, const Pixels& b, double sigma) {
+  const Eigen::Matrix3d E = essential_of_five(a, b, std::sqrt(kChi2Line) * sigma);
+  if (E.isZero()) return {};
+  return {E, score_essential(E, a, b, sigma)};
+}
+
 /// Points in front of both cameras that both views agree on.
 TwoViewReconstruction triangulate_all(const Pose& T_second_first,
                                       const Pixels& a,
                                       const Pixels& b,
-                                      double max_error) {
+                                      double max_error,
+                                      double parallax_share) {
   TwoViewReconstruction result;
   result.T_second_first = T_second_first;
   result.points_first.assign(a.size(), Eigen::Vector3d::Zero());
   result.good.assign(a.size(), 0);
+  result.parallaxes_rad.assign(a.size(), 0.0);
   std::vector<double> parallaxes;
   for (std::size_t i = 0; i < a.size(); ++i) {
     const auto point = triangulate(a[i].homogeneous(), b[i].homogeneous(), T_second_first);
@@ -173,12 +181,15 @@ TwoViewReconstruction triangulate_all(const Pose& T_second_first,
     result.points_first[i] = point->p_first;
     result.good[i] = 1;
     ++result.good_count;
+    result.parallaxes_rad[i] = point->parallax_rad;
     parallaxes.push_back(point->parallax_rad);
   }
   if (!parallaxes.empty()) {
-    const auto middle = parallaxes.begin() + static_cast<std::ptrdiff_t>(parallaxes.size() / 2);
-    std::nth_element(parallaxes.begin(), middle, parallaxes.end());
-    result.median_parallax_rad = *middle;
+    const auto rank = static_cast<std::ptrdiff_t>((1.0 - parallax_share) *
+                                                  static_cast<double>(parallaxes.size()));
+    const auto ranked = parallaxes.begin() + rank;
+    std::nth_element(parallaxes.begin(), ranked, parallaxes.end());
+    result.parallax_rad = *ranked;
   }
   return result;
 }
@@ -231,7 +242,8 @@ std::vector<TwoViewReconstruction> reconstruct_two_view(const PinholeCamera& cam
   const double sigma = options.sigma_px / camera.fx_px;
   std::mt19937_64 rng(options.seed);
   const Model plane = refined_homography(ransac_homography(a, b, sigma, rng), a, b, sigma);
-  const Model general = ransac_essential(a, b, sigma, rng);
+  const Model general =
+      options.five_point ? five_point_essential(a, b, sigma) : ransac_essential(a, b, sigma, rng);
   if (plane.score <= 0.0 && general.score <= 0.0) return {};
   const bool planar =
       options.consider_plane && plane.score > kPlanarRatio * (plane.score + general.score);
@@ -240,15 +252,15 @@ std::vector<TwoViewReconstruction> reconstruct_two_view(const PinholeCamera& cam
   std::vector<TwoViewReconstruction> tried;
   tried.reserve(motions.size());
   for (const Pose& T_second_first : motions) {
-    tried.push_back(triangulate_all(T_second_first, a, b, 2.0 * sigma));
+    tried.push_back(triangulate_all(T_second_first, a, b, 2.0 * sigma, options.parallax_share));
     tried.back().planar = planar;
   }
   std::stable_sort(tried.begin(), tried.end(), [](const auto& x, const auto& y) {
     return x.good_count > y.good_count;
   });
   if (tried.empty() || tried[0].good_count < options.min_points ||
-      tried[0].good_count < 0.7 * static_cast<double>(first.size()) ||
-      tried[0].median_parallax_rad < options.min_parallax_rad) {
+      tried[0].good_count < options.min_good_share * static_cast<double>(first.size()) ||
+      tried[0].parallax_rad < options.min_parallax_rad) {
     return {};
   }
   const double alike = kMostAlike * tried[0].good_count;

@@ -31,7 +31,13 @@ struct TwoViewOptions {
   double sigma_px = 1.0;           ///< noise assumed in scores and checks
   double min_parallax_rad = 0.02;  ///< of the median point
   int min_points = 60;
+  /// Of the pairs, so many must be good points of the motion. Pairs of descriptors ask for less.
+  double min_good_share = 0.7;
+  /// The parallax is that which so many of the good points exceed. Points ahead of a camera that
+  /// moves forward have none, however far it goes.
+  double parallax_share = 0.5;
   bool consider_plane = true;  ///< else the essential matrix is taken, whatever it is worth
+  bool five_point = false;     ///< the essential matrix from five pairs, which stands more outliers
   std::uint64_t seed = 1;
 };
 
@@ -40,8 +46,9 @@ struct TwoViewReconstruction {
   std::vector<Eigen::Vector3d> points_first;  ///< one for each pair; zero where not good
   std::vector<std::uint8_t> good;
   int good_count = 0;
-  double median_parallax_rad = 0.0;
-  bool planar = false;  ///< the homography was chosen
+  std::vector<double> parallaxes_rad;  ///< one for each pair; zero where not good
+  double parallax_rad = 0.0;           ///< which `parallax_share` of the good points exceed
+  bool planar = false;                 ///< the homography was chosen
 };
 
 /// Chooses between a plane's homography and an essential matrix and takes the motion from it.
@@ -61,6 +68,13 @@ struct TwoViewReconstruction {
 ///
 /// Method: Ma, Soatto, Kosecka and Sastry 2004, An Invitation to 3-D Vision, section 5.3.3.
 [[nodiscard]] std::vector<Pose> motions_of_homography(const Eigen::Matrix3d& H_calibrated);
+
+/// Essential matrix of pairs on the plane z = 1, by RANSAC; zero where there is none.
+///
+/// Method: the five-point algorithm (Nister 2004, DOI 10.1109/TPAMI.2004.17) as OpenCV has it.
+[[nodiscard]] Eigen::Matrix3d essential_of_five(const std::vector<Eigen::Vector2d>& first,
+                                                const std::vector<Eigen::Vector2d>& second,
+                                                double threshold);
 
 /// The four motions of an essential matrix (Hartley and Zisserman 2003, result 9.19).
 [[nodiscard]] std::vector<Pose> motions_of_essential(const Eigen::Matrix3d& E);

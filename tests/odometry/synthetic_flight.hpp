@@ -34,9 +34,10 @@ class SyntheticGround {
                              double noise,
                              std::uint64_t noise_seed) const;
 
- private:
+  /// Grey level at a place, of the texture averaged over so wide an area.
   [[nodiscard]] float sample(double east_m, double north_m, double footprint_m) const;
 
+ private:
   [[nodiscard]] const std::vector<Eigen::Vector3d>& rays_of(const CameraModel& camera) const;
 
   std::vector<Image> mips_;
