@@ -53,20 +53,25 @@ HttpRequest plain_request(const http::request<http::string_body>& message) {
   return request;
 }
 
+HttpResponse too_many_viewers(std::size_t most) {
+  return error_response(
+      503,
+      "too_many_viewers",
+      std::to_string(most) + " viewers are connected, the most that this server serves at once");
+}
+
 class HttpSession final : public std::enable_shared_from_this<HttpSession> {
  public:
   HttpSession(tcp::socket socket, std::shared_ptr<ServerContext> context)
       : context_(std::move(context)),
         stream_(std::move(socket)),
         answer_limit_(stream_.get_executor()),
-        buffer_(kReadBufferBytes) {
-    ++context_->connections;
-  }
-  ~HttpSession() { --context_->connections; }
+        buffer_(kReadBufferBytes) {}
 
-  void read();
+  void start();
 
  private:
+  void read();
   void on_header(const error_code& error);
   void read_body();
   void on_body(const error_code& error);
@@ -74,14 +79,18 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession> {
   [[nodiscard]] std::optional<HttpResponse> not_admitted();
   [[nodiscard]] std::optional<HttpResponse> forbidden() const;
   void dispatch();
+  [[nodiscard]] HttpResponse stream_without_upgrade() const;
+  void upgrade();
   void ask_router();
   void answer(std::uint64_t number, HttpResponse response);
   void write(HttpResponse response);
   void on_written(const error_code& error, bool keep_alive);
   void drain();
   void close();
+  void end();
 
   std::shared_ptr<ServerContext> context_;
+  std::unique_ptr<ConnectionTable::Place> place_;
   beast::tcp_stream stream_;
   /// Runs while an answer is awaited, and keeps the session alive meanwhile.
   asio::steady_timer answer_limit_;
@@ -98,9 +107,22 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession> {
   unsigned version_ = 11;
 };
 
+void HttpSession::start() {
+  place_ = context_->connections.add([weak = weak_from_this(), executor = stream_.get_executor()] {
+    asio::post(executor, [weak] {
+      if (const auto self = weak.lock()) self->end();
+    });
+  });
+  read();
+}
+
 /// The header comes first and alone: nobody's body is taken before the token was seen.
 void HttpSession::read() {
   const ServerLimits& limits = context_->options.limits;
+  if (admitted_ && !place_->enter(ConnectionPhase::kIdle)) {
+    end();
+    return;
+  }
   parser_.emplace();
   parser_->body_limit(kNoLimit);
   parser_->header_limit(static_cast<std::uint32_t>(limits.max_header_bytes));
@@ -131,13 +153,27 @@ void HttpSession::on_header(const error_code& error) {
     write(std::move(*response));
     return;
   }
-  admitted_ = true;
   if (beast::websocket::is_upgrade(message) && path_of(request_.target) == kStreamPath) {
-    const http::request<http::string_body> upgrade = message;
-    serve_websocket(stream_.release_socket(), upgrade, context_);
+    upgrade();
     return;
   }
+  if (!place_->enter(ConnectionPhase::kReceiving)) {
+    keep_alive_ = false;
+    write(error_response(503, "too_many_connections", "every connection is busy: try again soon"));
+    return;
+  }
+  admitted_ = true;
   read_body();
+}
+
+void HttpSession::upgrade() {
+  if (!place_->enter(ConnectionPhase::kViewer)) {
+    keep_alive_ = false;
+    write(too_many_viewers(context_->options.limits.connections.max_viewers));
+    return;
+  }
+  const http::request<http::string_body> message = parser_->get();
+  serve_websocket(stream_.release_socket(), message, context_, std::move(place_));
 }
 
 void HttpSession::read_body() {
@@ -213,7 +249,7 @@ std::optional<HttpResponse> HttpSession::forbidden() const {
 void HttpSession::dispatch() {
   const std::string path = path_of(request_.target);
   if (path == kStreamPath) {
-    write(error_response(426, "upgrade_required", "the stream is a WebSocket: ask for an upgrade"));
+    write(stream_without_upgrade());
   } else if (path.starts_with(kApiPrefix)) {
     ask_router();
   } else {
@@ -221,7 +257,18 @@ void HttpSession::dispatch() {
   }
 }
 
+/// What an upgrade would have got: a browser does not show that to its page.
+HttpResponse HttpSession::stream_without_upgrade() const {
+  const std::size_t most = context_->options.limits.connections.max_viewers;
+  if (context_->connections.count(ConnectionPhase::kViewer) >= most) return too_many_viewers(most);
+  return error_response(426, "upgrade_required", "the stream is a WebSocket: ask for an upgrade");
+}
+
 void HttpSession::ask_router() {
+  if (!place_->enter(ConnectionPhase::kAnswering)) {
+    end();
+    return;
+  }
   const std::uint64_t number = request_number_;
   answer_limit_.expires_after(kAnswerLimit);
   answer_limit_.async_wait([self = shared_from_this(), number](const error_code& error) {
@@ -253,6 +300,7 @@ void HttpSession::answer(std::uint64_t number, HttpResponse response) {
 }
 
 void HttpSession::write(HttpResponse response) {
+  if (admitted_) (void)place_->enter(ConnectionPhase::kSending);
   response_.emplace(static_cast<http::status>(response.status), version_);
   response_->set(http::field::server, "overfly");
   response_->set("X-Content-Type-Options", "nosniff");
@@ -307,10 +355,17 @@ void HttpSession::close() {
   stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
 }
 
+/// At once, whatever it does.
+void HttpSession::end() {
+  ++request_number_;
+  answer_limit_.cancel();
+  stream_.close();
+}
+
 }  // namespace
 
 void serve_http(tcp::socket socket, std::shared_ptr<ServerContext> context) {
-  std::make_shared<HttpSession>(std::move(socket), std::move(context))->read();
+  std::make_shared<HttpSession>(std::move(socket), std::move(context))->start();
 }
 
 }  // namespace overfly::net

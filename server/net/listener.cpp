@@ -63,14 +63,10 @@ void Listener::on_accept(const error_code& error, tcp::socket socket) {
     });
     return;
   }
-  if (context_->connections < context_->options.limits.max_connections) {
-    const auto strand = socket.get_executor();
-    asio::dispatch(strand, [moved = std::move(socket), context = context_]() mutable {
-      serve_http(std::move(moved), context);
-    });
-  } else {
-    context_->log("warning", "too many connections: one more is refused");
-  }
+  const auto strand = socket.get_executor();
+  asio::dispatch(strand, [moved = std::move(socket), context = context_]() mutable {
+    serve_http(std::move(moved), context);
+  });
   accept();
 }
 

@@ -12,6 +12,7 @@
 #include "core/result.hpp"
 #include "server/engine/run_manager.hpp"
 #include "server/engine/view_service.hpp"
+#include "server/net/connection_table.hpp"
 
 namespace overfly::net {
 
@@ -24,7 +25,7 @@ struct ServerLimits {
   std::int64_t max_stall_ms = 15'000;  ///< WebSocket: one message on its way; beyond: 4000
   std::int64_t header_ms = 10'000;     ///< a new connection's first request, up to its header
   std::int64_t idle_ms = 30'000;       ///< connections that say nothing (WebSockets are pinged)
-  std::size_t max_connections = 256;   ///< further ones are closed at once
+  ConnectionLimits connections;
   /// Kernel buffer of a WebSocket: pictures in it are old ones, so it stays small.
   int send_buffer_bytes = 256 << 10;
 };

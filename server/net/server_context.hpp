@@ -46,7 +46,8 @@ struct ServerContext {
         views(view_service),
         files(server_options.web_folder),
         token_gate(server_options.token),
-        allowed_hosts(server_options.allowed_hosts) {}
+        allowed_hosts(server_options.allowed_hosts),
+        connections(server_options.limits.connections) {}
 
   void log(const std::string& level, const std::string& text) const {
     if (options.log) options.log(level, text);
@@ -64,7 +65,7 @@ struct ServerContext {
   /// Runs what may take long (reading a run from disk) on a thread that serves no connection.
   std::function<void(std::function<void()>)> offload;
   std::atomic<std::uint64_t> next_client{1};  ///< numbers clients of the view service
-  std::atomic<std::size_t> connections{0};
+  ConnectionTable connections;
 };
 
 }  // namespace overfly::net

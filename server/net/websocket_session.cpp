@@ -50,18 +50,18 @@ struct Outgoing {
 class WebSocketSession final : public ViewerPort,
                                public std::enable_shared_from_this<WebSocketSession> {
  public:
-  WebSocketSession(tcp::socket socket, std::shared_ptr<ServerContext> context)
+  WebSocketSession(tcp::socket socket,
+                   std::shared_ptr<ServerContext> context,
+                   std::unique_ptr<ConnectionTable::Place> place)
       : context_(std::move(context)),
+        place_(std::move(place)),
         ws_(std::move(socket)),
         timer_(ws_.get_executor()),
         viewer_(*this),
-        client_(context_->next_client++) {
-    ++context_->connections;
-  }
+        client_(context_->next_client++) {}
   ~WebSocketSession() override {
     if (registered_) context_->sessions.remove(*registered_);
     context_->views.forget(client_);
-    --context_->connections;
   }
 
   void run(const http::request<http::string_body>& upgrade);
@@ -93,6 +93,7 @@ class WebSocketSession final : public ViewerPort,
   void end();
 
   std::shared_ptr<ServerContext> context_;
+  std::unique_ptr<ConnectionTable::Place> place_;
   websocket::stream<beast::tcp_stream> ws_;
   beast::flat_buffer read_buffer_;
   std::deque<Outgoing> queue_;  ///< the front one is on its way while writing_
@@ -329,8 +330,10 @@ void WebSocketSession::end() {
 
 void serve_websocket(tcp::socket socket,
                      const http::request<http::string_body>& upgrade,
-                     std::shared_ptr<ServerContext> context) {
-  std::make_shared<WebSocketSession>(std::move(socket), std::move(context))->run(upgrade);
+                     std::shared_ptr<ServerContext> context,
+                     std::unique_ptr<ConnectionTable::Place> place) {
+  std::make_shared<WebSocketSession>(std::move(socket), std::move(context), std::move(place))
+      ->run(upgrade);
 }
 
 }  // namespace overfly::net

@@ -11,8 +11,10 @@
 namespace overfly::net {
 
 /// Accepts the upgrade and serves the connection until it ends. The socket's executor is a strand.
+/// @param place  of a viewer
 void serve_websocket(boost::asio::ip::tcp::socket socket,
                      const boost::beast::http::request<boost::beast::http::string_body>& upgrade,
-                     std::shared_ptr<ServerContext> context);
+                     std::shared_ptr<ServerContext> context,
+                     std::unique_ptr<ConnectionTable::Place> place);
 
 }  // namespace overfly::net

@@ -35,11 +35,15 @@ const rest: RestClient = new RestClient(
   (url, init) => fetch(url, init),
   () => client.lock(),
 );
-const client = new StreamClient({
+const client: StreamClient = new StreamClient({
   open: () => new WebSocket(streamUrl),
   timers: { set: later, clear: (id) => window.clearTimeout(id) },
   random: Math.random,
-  ask: () => void rest.streamRefusal(),
+  ask: () => {
+    void rest.streamRefusal().then((refusal) => {
+      if (refusal !== null && refusal.status !== 0) client.refused(refusal.message);
+    });
+  },
   listener: session,
 });
 session.use(client);

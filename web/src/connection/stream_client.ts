@@ -30,7 +30,8 @@ export interface Timers {
 export type ConnectionState =
   | { status: 'connecting'; attempt: number }
   | { status: 'open'; server: string }
-  | { status: 'waiting'; attempt: number; delay_ms: number }
+  /** `reason`: why the server did not let this viewer in, once that is known. */
+  | { status: 'waiting'; attempt: number; delay_ms: number; reason?: string }
   /** The server does not take this browser's token: the page is of no use until it is loaded again. */
   | { status: 'locked' }
   | { status: 'incompatible'; reason: string };
@@ -52,7 +53,7 @@ export interface StreamClientOptions {
   open: () => Socket;
   timers: Timers;
   random: () => number;
-  /** Called when a connection failed to open, to find out why; calls lock() where it must. */
+  /** Called when a connection failed to open, to find out why: refused() or lock() tells. */
   ask: () => void;
   listener: StreamListener;
 }
@@ -68,6 +69,7 @@ export class StreamClient {
   private socket: Socket | null = null;
   private greeted = false;
   private locked = false;
+  private waiting: (ConnectionState & { status: 'waiting' }) | null = null;
   private attempt = 0;
   private timer: number | null = null;
   private request = 0;
@@ -85,6 +87,7 @@ export class StreamClient {
     if (this.timer !== null) this.options.timers.clear(this.timer);
     this.timer = null;
     if (this.socket !== null || this.locked) return;
+    this.waiting = null;
     this.attempt += 1;
     this.options.listener.onState({ status: 'connecting', attempt: this.attempt });
     const socket = this.options.open();
@@ -98,10 +101,17 @@ export class StreamClient {
   lock(): void {
     if (this.locked) return;
     this.locked = true;
+    this.waiting = null;
     if (this.timer !== null) this.options.timers.clear(this.timer);
     this.timer = null;
     this.drop();
     this.options.listener.onState({ status: 'locked' });
+  }
+
+  /** The server answers and did not let this viewer in; tried again all the same. */
+  refused(reason: string): void {
+    if (this.waiting === null) return;
+    this.options.listener.onState({ ...this.waiting, reason });
   }
 
   attach(run: string | null): void {
@@ -212,7 +222,8 @@ export class StreamClient {
     this.drop();
     const tooSlow = code === kCloseTooSlow;
     const delay_ms = tooSlow ? 0 : backoffDelay_ms(Math.max(1, this.attempt), this.options.random);
-    this.options.listener.onState({ status: 'waiting', attempt: this.attempt, delay_ms });
+    this.waiting = { status: 'waiting', attempt: this.attempt, delay_ms };
+    this.options.listener.onState(this.waiting);
     this.timer = this.options.timers.set(() => this.connect(), delay_ms);
     if (refused) this.options.ask();
   }

@@ -111,19 +111,20 @@ export class HeaderBar implements View {
         return;
       }
       case 'waiting':
-        this.connection.title = 'Connection lost. Click to try again now.';
+        this.connection.title = `${connection.reason ?? 'Connection lost'}. Click to try again now.`;
         {
-          this.countDown(connection.delay_ms);
+          const what = connection.reason === undefined ? 'Connection lost' : 'Not let in';
+          this.countDown(what, connection.delay_ms);
           return;
         }
     }
   }
 
-  private countDown(delay_ms: number): void {
+  private countDown(what: string, delay_ms: number): void {
     const due_ms = performance.now() + delay_ms;
     const tell = () => {
       const left_s = Math.max(0, Math.ceil((due_ms - performance.now()) / 1000));
-      setText(this.connection, `Connection lost · retry in ${left_s} s`);
+      setText(this.connection, `${what} · retry in ${left_s} s`);
     };
     tell();
     this.countdown = window.setInterval(tell, 500);

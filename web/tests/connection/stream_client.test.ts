@@ -110,6 +110,23 @@ describe('StreamClient', () => {
     expect(asked).toBe(1);
   });
 
+  it('tells why it was not let in and tries again all the same', () => {
+    client.connect();
+    socket().lose();
+    client.refused('64 viewers are connected');
+    expect(listener.states.at(-1)).toEqual({
+      status: 'waiting',
+      attempt: 1,
+      delay_ms: 500,
+      reason: '64 viewers are connected',
+    });
+    timers.fire();
+    const states = listener.states.length;
+    client.refused('too late');
+    expect(listener.states.length).toBe(states);
+    expect(sockets.length).toBe(2);
+  });
+
   it('gives up when the server does not take the token any more', () => {
     client.connect();
     socket().lose();
