@@ -39,12 +39,31 @@ PinholeCamera standard_camera() {
   return PinholeCamera::from_fov(1280, 960, rad_from_deg(84.872), FovAxis::kHorizontal).value();
 }
 
+/// The nadir camera from the same place and with the same heading, the wings rolled by so much.
+Pose banked(const Pose& T_world_camera, double roll_rad) {
+  const Eigen::Quaterniond R_world_body =
+      T_world_camera.rotation * R_body_camera_nadir().conjugate();
+  const double yaw_rad = attitude_from(R_world_body).yaw_rad;
+  return {R_world_body_from({roll_rad, 0.0, yaw_rad}) * R_body_camera_nadir(),
+          T_world_camera.translation};
+}
+
+/// Median of the ratios of neighbouring calls' CPU times.
+double per_quad(const Series& calls, const Series& quads) {
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < quads.cpu_ms.size(); ++i) {
+    ratios.push_back(calls.cpu_ms[i] / quads.cpu_ms[i]);
+  }
+  return median(ratios);
+}
+
 class Measurement {
  public:
-  Measurement(Renderer& renderer, QuadProbe& quad) : renderer_(renderer), quad_(quad) {}
+  Measurement(Renderer& renderer, Renderer& raycaster, QuadProbe& quad)
+      : renderer_(renderer), raycaster_(raycaster), quad_(quad) {}
 
   Status warm_up(const Pose& pose) {
-    Measurement unused(renderer_, quad_);
+    Measurement unused(renderer_, raycaster_, quad_);
     return unused.round(pose);
   }
 
@@ -56,6 +75,8 @@ class Measurement {
         !s) {
       return s;
     }
+    if (Status s = cast(banked(pose, 0.0), level_casts_); !s) return s;
+    if (Status s = cast(banked(pose, rad_from_deg(45.0)), banked_casts_); !s) return s;
     return scene_.time([&] {
       SceneView view;
       view.T_world_camera = pose;
@@ -70,11 +91,14 @@ class Measurement {
   }
 
   [[nodiscard]] RenderCosts costs() const {
-    std::vector<double> ratios;
-    for (std::size_t i = 0; i < quads_.cpu_ms.size(); ++i) {
-      ratios.push_back(grey_.cpu_ms[i] / quads_.cpu_ms[i]);
-    }
-    return {quads_.cost(), grey_.cost(), rgb_.cost(), depth_.cost(), scene_.cost(), median(ratios)};
+    return {quads_.cost(),
+            grey_.cost(),
+            rgb_.cost(),
+            depth_.cost(),
+            scene_.cost(),
+            per_quad(grey_, quads_),
+            per_quad(level_casts_, quads_),
+            per_quad(banked_casts_, quads_)};
   }
 
  private:
@@ -82,10 +106,20 @@ class Measurement {
     return status_of(renderer_.render_camera(camera_, pose, 0, format));
   }
 
+  /// Measured when its ground is ready, as in flight, where each view is near the one before.
+  Status cast(const Pose& pose, Series& series) {
+    const auto draw = [&] {
+      return status_of(raycaster_.render_camera(camera_, pose, 0, PixelFormat::kGrey8));
+    };
+    if (Status status = draw(); !status) return status;
+    return series.time(draw);
+  }
+
   Renderer& renderer_;
+  Renderer& raycaster_;
   QuadProbe& quad_;
   PinholeCamera camera_ = standard_camera();
-  Series quads_, grey_, rgb_, depth_, scene_;
+  Series quads_, grey_, rgb_, depth_, scene_, level_casts_, banked_casts_;
 };
 
 }  // namespace
@@ -103,7 +137,9 @@ Result<RenderCosts> measure_render_costs(const std::shared_ptr<const terrain::Ti
   options.device = device;
   const Result<std::unique_ptr<Renderer>> renderer = create_egl_renderer(tiles, options);
   if (!renderer.ok()) return renderer.error();
-  Measurement measurement(**renderer, **quad);
+  options.threads = 1;
+  const std::unique_ptr<Renderer> raycaster = create_raycast_renderer(tiles, options);
+  Measurement measurement(**renderer, *raycaster, **quad);
   for (const Pose& pose : T_world_camera) {
     if (Status status = measurement.warm_up(pose); !status) return status.error();
   }

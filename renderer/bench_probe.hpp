@@ -38,6 +38,7 @@ class QuadProbe {
   [[nodiscard]] virtual RendererInfo info() const = 0;
 };
 
+/// All but the last two by OpenGL.
 struct RenderCosts {
   CallCost quad;
   CallCost camera_grey;  ///< 1280 x 960
@@ -47,6 +48,10 @@ struct RenderCosts {
   /// camera_grey / quad by CPU time: the median of the ratios of neighbouring calls, which a
   /// busy machine disturbs less than the ratio of the medians.
   double camera_per_quad = 0.0;
+  /// The same of the ray-caster with one thread, camera_grey from where the poses are: level, and
+  /// banked by 45 deg.
+  double raycast_per_quad = 0.0;
+  double raycast_banked_per_quad = 0.0;
 };
 
 /// Measures the views of a world along camera poses, each in turn with the quad.

@@ -83,7 +83,9 @@ Result<Json> bench_drawing(const terrain::World& world,
               {"camera_rgb_1280x960", json_of(costs->camera_rgb)},
               {"depth_1280x960", json_of(costs->depth)},
               {"scene_960x720", json_of(costs->scene)},
-              {"camera_per_quad", costs->camera_per_quad}};
+              {"camera_per_quad", costs->camera_per_quad},
+              {"raycast_per_quad", costs->raycast_per_quad},
+              {"raycast_banked_per_quad", costs->raycast_banked_per_quad}};
 }
 
 /// What bounds the camera's frame rate, and how near it comes.
@@ -183,8 +185,13 @@ void print_table(const Json& result) {
               << cost.at("wall_ms").get<double>() << " ms wall " << std::setw(8)
               << cost.at("cpu_ms").get<double>() << " ms CPU\n";
   }
-  std::cout << "camera frame / quad     " << std::setw(8)
-            << result.at("drawing").at("camera_per_quad").get<double>() << " Q (CPU time)\n";
+  const auto per_quad = [&](const char* label, const char* name) {
+    std::cout << std::left << std::setw(24) << label << std::right << std::setw(8)
+              << result.at("drawing").at(name).get<double>() << " Q (CPU time)\n";
+  };
+  per_quad("camera frame / quad", "camera_per_quad");
+  per_quad("ray-caster, level", "raycast_per_quad");
+  per_quad("ray-caster, banked", "raycast_banked_per_quad");
   print_rates(result.at("rates"));
   for (const auto& [name, cost] : result.at("encoding").items()) {
     std::cout << std::left << std::setw(24) << name << std::right << std::setw(8)

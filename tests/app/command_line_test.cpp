@@ -353,5 +353,17 @@ TEST_F(CommandLine, DoctorFindsAFolderThatCannotBeWritten) {
   EXPECT_THAT(ill.out, HasSubstr("cannot be written to"));
 }
 
+TEST_F(CommandLine, BenchTellsWhatBothRenderersCost) {
+  if (!draws()) GTEST_SKIP() << "OpenGL cannot draw here";
+  const Outcome done =
+      overfly_program({"bench", "--json", "--repetitions", "1", "--flight-s", "1"});
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  const Json drawing = Json::parse(done.out).at("drawing");
+  for (const char* ratio : {"camera_per_quad", "raycast_per_quad", "raycast_banked_per_quad"}) {
+    ASSERT_TRUE(drawing.contains(ratio)) << ratio;
+    EXPECT_GT(drawing.at(ratio).get<double>(), 0.0) << ratio;
+  }
+}
+
 }  // namespace
 }  // namespace overfly::testing

@@ -20,6 +20,8 @@ TEST(BenchProbe, MeasuresEveryKindOfView) {
     EXPECT_GT(cost.wall_ms, 0.0);
   }
   EXPECT_GT(costs->camera_per_quad, 0.0);
+  EXPECT_GT(costs->raycast_per_quad, 0.0);
+  EXPECT_GT(costs->raycast_banked_per_quad, 0.0);
 }
 
 TEST(BenchProbe, MeasuresRatesBesideTheirCeilings) {
