@@ -12,8 +12,9 @@
 namespace overfly::renderer {
 
 struct MeshLimits {
-  double max_edge_px = 64.0;   ///< longest side of a mesh square in the image
-  double max_error_px = 0.25;  ///< displacement by the mesh's deviation from the ground
+  double max_edge_px = 64.0;  ///< longest side of a mesh square in the image
+  /// Largest displacement by the mesh's deviation from the ground; the mean is a fifth of it.
+  double max_error_px = 0.08;
 };
 
 /// A sampled patch that the view shows, and how the image magnifies it at the points of its

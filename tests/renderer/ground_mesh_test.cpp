@@ -56,7 +56,7 @@ TEST_F(DrawnGround, HasNoGapsBetweenPatchesOfDifferentSize) {
   }
 }
 
-TEST_F(DrawnGround, LiesWithinAQuarterPixelOfTheGround) {
+TEST_F(DrawnGround, LiesWithinATenthOfAPixelOfTheGround) {
   const auto tiles = overfly::testing::natural_ground();
   const auto renderer = renderer_of(tiles);
   for (const RollPitchYaw attitude : {RollPitchYaw{0, 0, 0}, RollPitchYaw{0.7, 0.1, 1.0}}) {
@@ -75,7 +75,7 @@ TEST_F(DrawnGround, LiesWithinAQuarterPixelOfTheGround) {
         if (!std::isfinite(depth_m) || !tiles->has_imagery(map.x(), map.y())) continue;
         const double above_m = p.z() - tiles->ground_up_m(p.x(), p.y());
         const Eigen::Vector3d up_camera = view.R_camera_world.col(2);
-        EXPECT_LT(view.pixel_rate(p_camera, above_m * up_camera).norm(), 0.25)
+        EXPECT_LT(view.pixel_rate(p_camera, above_m * up_camera).norm(), 0.1)
             << "at " << x << ", " << y;
         ++measured;
       }
