@@ -14,6 +14,7 @@
 
 #include "core/camera_model.hpp"
 #include "core/result.hpp"
+#include "vo_bridges/lcm/lcm_lengths.hpp"
 #include "vo_bridges/parameter.hpp"
 #include "vo_bridges/vo_port.hpp"
 
@@ -51,11 +52,15 @@ struct DebugView {
                                                 int largest_width_px,
                                                 int largest_height_px);
 
-/// Empty for bytes that are not such a message.
+/// Empty for bytes that are not such a message. Those that come from an estimator take no more
+/// memory than their bytes tell of.
 template <typename Message>
 [[nodiscard]] std::optional<Message> decode_message(std::span<const std::uint8_t> bytes) {
   Message message;
-  // lcm-gen's code trusts the lengths in a message: the containers throw where they are absurd.
+  if constexpr (requires { lengths_fit(bytes, message); }) {
+    if (!lengths_fit(bytes, message)) return std::nullopt;
+  }
+  // lcm-gen's code throws where a text has no end.
   try {
     if (message.decode(bytes.data(), 0, static_cast<int>(bytes.size())) < 0) return std::nullopt;
   } catch (const std::exception&) {
