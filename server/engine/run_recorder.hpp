@@ -11,6 +11,7 @@
 
 #include "core/result.hpp"
 #include "server/engine/estimator_worker.hpp"
+#include "server/engine/latency_histogram.hpp"
 #include "server/engine/live_alignment.hpp"
 #include "server/engine/run_folder.hpp"
 #include "server/engine/run_records.hpp"
@@ -76,6 +77,7 @@ class RunRecorder {
     int last_map_id = 0;
     std::vector<std::int64_t> frames = {};
     DurationList latency = {};
+    LatencyHistogram latency_so_far = {};
     std::map<std::string, DurationList> stages = {};
     EstimatorStatus status = {};
     int log_rows = 0;

@@ -48,7 +48,7 @@ void RunRecorder::tell_status(std::size_t estimator, const EstimatorEvent& event
   tally(event.record, frame != nullptr ? frame->row.image_crc32 : std::nullopt, state.status);
   if (event.use) {
     state.status.use = event.use;
-    state.status.latency = state.latency.latencies();
+    state.status.latency = state.latency_so_far.summary();
   }
   timeline_->set_status(estimator, state.status);
 }
@@ -92,6 +92,7 @@ Status RunRecorder::add_answer(std::size_t estimator, EstimatorEvent& event) {
   if (!gone) {
     state.frames.push_back(row.sample.frame);
     state.latency.ms.push_back(event.latency_ms);
+    state.latency_so_far.add(event.latency_ms);
   }
   for (const auto& [stage, ms] : event.timing_ms) state.stages[stage].ms.push_back(ms);
   timeline_->append_estimate(estimator, row);
