@@ -50,37 +50,61 @@ Error too_long(const std::filesystem::path& file, const std::string& bytes, std:
 
 }  // namespace
 
-Result<std::string> read_file_text(const std::filesystem::path& file,
-                                   std::uint64_t max_bytes,
-                                   const std::atomic<bool>* cancel) {
+Status check_regular_file(const std::filesystem::path& file) {
   struct stat facts {};
-  // Looked at before it is opened: opening some devices does something.
   if (::stat(file.c_str(), &facts) != 0) return system_error(file, "cannot be opened for reading");
-  if (Status status = check_kind(facts, file); !status) return status.error();
+  return check_kind(facts, file);
+}
+
+Status read_file_pieces(const std::filesystem::path& file,
+                        std::uint64_t max_bytes,
+                        const std::atomic<bool>* cancel,
+                        const std::function<void(std::string_view)>& take) {
+  // Looked at before it is opened: opening some devices does something.
+  if (Status status = check_regular_file(file); !status) return status;
   const OpenFile open(file);
+  struct stat facts {};
   if (open.descriptor() < 0 || ::fstat(open.descriptor(), &facts) != 0) {
     return system_error(file, "cannot be opened for reading");
   }
-  if (Status status = check_kind(facts, file); !status) return status.error();
+  if (Status status = check_kind(facts, file); !status) return status;
   const auto size = static_cast<std::uint64_t>(facts.st_size);
   if (size > max_bytes) return too_long(file, std::to_string(size), max_bytes);
 
-  constexpr std::size_t kPieceBytes = std::size_t{1} << 20U;
-  std::string text;
-  text.reserve(size);
-  std::string piece(std::min<std::uint64_t>(kPieceBytes, size + 1), '\0');
-  while (true) {
+  constexpr std::uint64_t kPieceBytes = std::uint64_t{1} << 20U;
+  std::string piece(std::min(kPieceBytes, std::max<std::uint64_t>(size, 4095) + 1), '\0');
+  for (std::uint64_t total = 0; true;) {
     if (cancel != nullptr && *cancel) {
       return Error{ErrorCode::kCancelled, file.string() + ": reading was cancelled"};
     }
     const ssize_t got = ::read(open.descriptor(), piece.data(), piece.size());
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) return system_error(file, "reading failed");
-    if (got == 0) return text;
-    text.append(piece, 0, static_cast<std::size_t>(got));
-    if (text.size() > max_bytes)
-      return too_long(file, "over " + std::to_string(max_bytes), max_bytes);
+    if (got == 0) return {};
+    total += static_cast<std::uint64_t>(got);
+    if (total > max_bytes) return too_long(file, "over " + std::to_string(max_bytes), max_bytes);
+    take(std::string_view(piece).substr(0, static_cast<std::size_t>(got)));
   }
+}
+
+Result<std::string> read_file_text(const std::filesystem::path& file,
+                                   std::uint64_t max_bytes,
+                                   const std::atomic<bool>* cancel) {
+  std::string text;
+  const Status status =
+      read_file_pieces(file, max_bytes, cancel, [&](std::string_view piece) { text += piece; });
+  if (!status) return status.error();
+  return text;
+}
+
+Result<std::vector<std::uint8_t>> read_file_bytes(const std::filesystem::path& file,
+                                                  std::uint64_t max_bytes) {
+  std::vector<std::uint8_t> bytes;
+  const Status status = read_file_pieces(file, max_bytes, nullptr, [&](std::string_view piece) {
+    bytes.insert(bytes.end(), piece.begin(), piece.end());
+  });
+  if (!status) return status.error();
+  return bytes;
 }
 
 }  // namespace overfly

@@ -1,10 +1,13 @@
-// Text files read whole: of the expected kind, within a size, and without waiting for a writer.
+// Files read whole: of the expected kind, within a size, and without waiting for a writer.
 #pragma once
 
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "core/result.hpp"
 
@@ -21,5 +24,19 @@ namespace overfly {
 [[nodiscard]] Result<std::string> read_file_text(const std::filesystem::path& file,
                                                  std::uint64_t max_bytes,
                                                  const std::atomic<bool>* cancel = nullptr);
+
+/// The same as bytes.
+[[nodiscard]] Result<std::vector<std::uint8_t>> read_file_bytes(const std::filesystem::path& file,
+                                                                std::uint64_t max_bytes);
+
+/// The same piece by piece, for what need not be kept.
+[[nodiscard]] Status read_file_pieces(const std::filesystem::path& file,
+                                      std::uint64_t max_bytes,
+                                      const std::atomic<bool>* cancel,
+                                      const std::function<void(std::string_view)>& take);
+
+/// Whether a file is there and regular (links are followed), without opening it.
+/// Errors: as read_file_text.
+[[nodiscard]] Status check_regular_file(const std::filesystem::path& file);
 
 }  // namespace overfly

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <optional>
+
+#include "core/file_text.hpp"
 
 namespace overfly {
 namespace {
@@ -104,21 +104,13 @@ std::optional<std::int64_t> ns_from_decimal(Decimal decimal) {
 
 }  // namespace
 
-Result<FieldFile> FieldFile::read(const std::filesystem::path& file) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored)) {
-    return Error{ErrorCode::kNotFound, file.string() + ": no such file"};
-  }
-  if (std::filesystem::is_directory(file, ignored)) {
-    return Error{ErrorCode::kUnreadable, file.string() + ": is a folder, not a file"};
-  }
-  std::ifstream in(file, std::ios::binary);
-  if (!in) return Error{ErrorCode::kIo, file.string() + ": cannot be opened for reading"};
+Result<FieldFile> FieldFile::read(const std::filesystem::path& file,
+                                  const std::atomic<bool>* cancel) {
+  Result<std::string> text = read_file_text(file, kMaxBytes, cancel);
+  if (!text) return text.error();
   FieldFile result;
   result.file_ = file;
-  result.text_ = std::make_shared<const std::string>(std::istreambuf_iterator<char>(in),
-                                                     std::istreambuf_iterator<char>());
-  if (in.bad()) return Error{ErrorCode::kIo, file.string() + ": reading failed"};
+  result.text_ = std::make_shared<const std::string>(std::move(*text));
 
   std::string_view rest = *result.text_;
   if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);  // UTF-8 byte order mark
@@ -126,8 +118,15 @@ Result<FieldFile> FieldFile::read(const std::filesystem::path& file) {
     const std::size_t end = std::min(rest.find('\n'), rest.size());
     const std::string_view line = trimmed(rest.substr(0, end));
     rest.remove_prefix(std::min(end + 1, rest.size()));
+    if (cancel != nullptr && *cancel) {
+      return Error{ErrorCode::kCancelled, file.string() + ": reading was cancelled"};
+    }
     if (line.empty()) continue;
     if (!line.starts_with('#')) {
+      if (result.lines_.size() == kMaxLines) {
+        return Error{ErrorCode::kUnreadable,
+                     file.string() + ": must have at most " + std::to_string(kMaxLines) + " lines"};
+      }
       result.lines_.push_back({number, line.find(',') != std::string_view::npos, fields_of(line)});
       continue;
     }

@@ -1,6 +1,7 @@
 // Text files of numbers: lines cut into fields, and errors that say where a value stands.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -23,8 +24,13 @@ struct FieldLine {
 
 class FieldFile {
  public:
-  /// Errors: kNotFound; kIo.
-  static Result<FieldFile> read(const std::filesystem::path& file);
+  static constexpr std::uint64_t kMaxBytes = std::uint64_t{256} << 20U;
+  static constexpr std::size_t kMaxLines = 4'000'000;  ///< five hours at 200 Hz
+
+  /// @param cancel  may be null
+  /// Errors: as read_file_text; kUnreadable beyond kMaxLines.
+  static Result<FieldFile> read(const std::filesystem::path& file,
+                                const std::atomic<bool>* cancel = nullptr);
 
   [[nodiscard]] const std::vector<FieldLine>& lines() const { return lines_; }
   /// `# key value` lines, the last of each key.

@@ -192,8 +192,8 @@ TrajectoryFormat format_of(const FieldFile& file, bool comma_separated) {
 
 }  // namespace
 
-Result<TrajectoryFile> read_trajectory(const fs::path& path) {
-  const Result<FieldFile> file = FieldFile::read(path);
+Result<TrajectoryFile> read_trajectory(const fs::path& path, const std::atomic<bool>* cancel) {
+  const Result<FieldFile> file = FieldFile::read(path, cancel);
   if (!file) return file.error();
   if (file->lines().empty()) {
     return Error{ErrorCode::kUnreadable, path.string() + ": holds no pose"};

@@ -1,6 +1,7 @@
 // Trajectory files: TUM, KITTI and EuRoC ASL in, TUM out.
 #pragma once
 
+#include <atomic>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -35,8 +36,10 @@ struct TrajectoryFile {
 /// of as many lines; EuRoC: csv `t[ns], p_xyz, q_wxyz, ...`.
 /// Poses that are not in order of time are sorted, and of those with the same time the first is
 /// kept; `warnings` counts them.
-/// Errors: kNotFound; kUnreadable naming file, line, column and value.
-[[nodiscard]] Result<TrajectoryFile> read_trajectory(const std::filesystem::path& file);
+/// @param cancel  ends reading early; may be null
+/// Errors: as FieldFile::read; kUnreadable naming file, line, column and value.
+[[nodiscard]] Result<TrajectoryFile> read_trajectory(const std::filesystem::path& file,
+                                                     const std::atomic<bool>* cancel = nullptr);
 
 /// Writes TUM, stamps to the nanosecond and numbers that read back exactly.
 /// The file appears whole or not at all. Errors: kIo.

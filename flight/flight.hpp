@@ -1,6 +1,7 @@
 // Flights: the parametric course and logged trajectories.
 #pragma once
 
+#include <atomic>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -53,9 +54,12 @@ inline constexpr double kHeightKnotS = 1.6;
 /// `t_s,lat_deg,lon_deg,alt_ellipsoid_m,roll_deg,pitch_deg,yaw_deg`.
 /// Positions by cubic Hermite, rotations by SLERP; the clock starts at the first pose. Rows that
 /// repeat a time or stand out of order are in the flight's `warnings`.
-/// Errors: kNotFound; kUnreadable naming file, line, column and value.
-[[nodiscard]] Result<std::unique_ptr<TruthSource>> fly_log(const std::filesystem::path& file,
-                                                           const LocalFrame& frame,
-                                                           bool camera_poses = false);
+/// @param cancel  ends reading early; may be null
+/// Errors: as FieldFile::read; kUnreadable naming file, line, column and value.
+[[nodiscard]] Result<std::unique_ptr<TruthSource>> fly_log(
+    const std::filesystem::path& file,
+    const LocalFrame& frame,
+    bool camera_poses = false,
+    const std::atomic<bool>* cancel = nullptr);
 
 }  // namespace overfly::flight

@@ -113,8 +113,9 @@ class LogFlight final : public TruthSource {
 
 Result<std::unique_ptr<TruthSource>> fly_log(const std::filesystem::path& file,
                                              const LocalFrame& frame,
-                                             bool camera_poses) {
-  Result<FlightLog> log = read_log(file, frame, camera_poses);
+                                             bool camera_poses,
+                                             const std::atomic<bool>* cancel) {
+  Result<FlightLog> log = read_log(file, frame, camera_poses, cancel);
   if (!log) return log.error();
   if (log->T_world_body.size() < 2) {
     return Error{ErrorCode::kUnreadable,

@@ -89,13 +89,14 @@ Result<FlightLog> read_csv(const FieldFile& file,
 
 Result<FlightLog> read_log(const std::filesystem::path& path,
                            const LocalFrame& frame,
-                           bool camera_poses) {
-  const Result<FieldFile> file = FieldFile::read(path);
+                           bool camera_poses,
+                           const std::atomic<bool>* cancel) {
+  const Result<FieldFile> file = FieldFile::read(path, cancel);
   if (!file) return file.error();
   if (!file->lines().empty() && file->lines().front().fields.front() == kColumns[0].name) {
     return read_csv(*file, path.string(), frame);
   }
-  const Result<TrajectoryFile> poses = read_trajectory(path);
+  const Result<TrajectoryFile> poses = read_trajectory(path, cancel);
   if (!poses) return poses.error();
   if (!poses->has_times) {
     return Error{ErrorCode::kUnreadable,

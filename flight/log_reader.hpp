@@ -1,6 +1,7 @@
 // Pose files as flights: TUM, and CSV of geodetic positions and attitudes. Private to flight.
 #pragma once
 
+#include <atomic>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -21,6 +22,7 @@ struct FlightLog {
 /// Errors: as fly_log.
 [[nodiscard]] Result<FlightLog> read_log(const std::filesystem::path& file,
                                          const LocalFrame& frame,
-                                         bool camera_poses);
+                                         bool camera_poses,
+                                         const std::atomic<bool>* cancel = nullptr);
 
 }  // namespace overfly::flight

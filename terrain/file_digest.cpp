@@ -5,6 +5,8 @@
 #include <fstream>
 #include <vector>
 
+#include "core/file_text.hpp"
+
 namespace overfly::terrain {
 namespace {
 
@@ -109,6 +111,7 @@ std::string sha256_hex(std::span<const std::uint8_t> bytes) {
 }
 
 Result<std::string> file_digest(const std::filesystem::path& file) {
+  if (Status status = check_regular_file(file); !status) return status.error();
   std::ifstream in(file, std::ios::binary);
   std::error_code failed;
   const std::uint64_t size = std::filesystem::file_size(file, failed);
@@ -125,6 +128,7 @@ Result<std::string> file_digest(const std::filesystem::path& file) {
     const std::uint64_t at = whole ? piece * kMiB : (size - kMiB) * piece / (kSamples - 1);
     in.seekg(static_cast<std::streamoff>(at));
     in.read(reinterpret_cast<char*>(buffer.data()), static_cast<std::streamsize>(kMiB));
+    if (in.bad()) return Error{ErrorCode::kIo, file.string() + ": reading failed"};
     hash.add({buffer.data(), static_cast<std::size_t>(in.gcount())});
     in.clear();
   }

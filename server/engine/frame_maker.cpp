@@ -59,7 +59,7 @@ Status FrameMaker::open_world() {
 }
 
 Status FrameMaker::plan_flight() {
-  Result<std::unique_ptr<TruthSource>> truth = create_truth(scenario_, *world_);
+  Result<std::unique_ptr<TruthSource>> truth = create_truth(scenario_, *world_, options_.cancel);
   if (!truth) return truth.error();
   if (Status read = check_reading(0); !read) return failed(read.error());
   duration_ns_ = (*truth)->duration_ns();

@@ -5,10 +5,9 @@
 #include <chrono>
 #include <cstdio>
 #include <ctime>
-#include <fstream>
-#include <iterator>
 #include <optional>
 
+#include "core/file_text.hpp"
 #include "server/engine/whole_file.hpp"
 
 namespace overfly::engine {
@@ -37,10 +36,13 @@ std::optional<RunStatus> run_status_from(const std::string& text) {
   return std::nullopt;
 }
 
-/// Complete lines of a file.
+/// Complete lines of a file; none where it cannot be read.
 std::int64_t line_count(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return std::count(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>(), '\n');
+  std::int64_t lines = 0;
+  const Status read = read_file_pieces(file, kMaxRowsBytes, nullptr, [&](std::string_view piece) {
+    lines += std::count(piece.begin(), piece.end(), '\n');
+  });
+  return read ? lines : 0;
 }
 
 RunInfo info_or_throw(const Json& manifest) {

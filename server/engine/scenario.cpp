@@ -86,7 +86,8 @@ Result<Scenario> resolve_scenario(Json document,
 }
 
 Result<Scenario> load_scenario(const fs::path& file, const std::vector<Override>& overrides) {
-  Result<Json> document = read_json(file);
+  constexpr std::uint64_t kMaxBytes = std::uint64_t{4} << 20U;
+  Result<Json> document = read_json(file, kMaxBytes);
   if (!document) return document.error();
   put_name(*document, name_from(file.stem().string()));
   const fs::path folder = fs::absolute(file).parent_path().lexically_normal();

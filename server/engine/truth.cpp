@@ -63,9 +63,10 @@ Status place_start(const Scenario& scenario,
 }  // namespace
 
 Result<std::unique_ptr<TruthSource>> create_truth(const Scenario& scenario,
-                                                  const terrain::World& world) {
+                                                  const terrain::World& world,
+                                                  const std::atomic<bool>* cancel) {
   if (const auto* log = std::get_if<LoggedFlight>(&scenario.flight)) {
-    return flight::fly_log(log->file, world.tiles->frame(), log->camera_poses);
+    return flight::fly_log(log->file, world.tiles->frame(), log->camera_poses, cancel);
   }
   auto course = std::get<flight::CourseParameters>(scenario.flight);
   if (Status status = place_start(scenario, world, course); !status) {

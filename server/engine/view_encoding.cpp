@@ -1,9 +1,8 @@
 #include "server/engine/view_encoding.hpp"
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 
+#include "core/file_text.hpp"
 #include "server/engine/jpeg.hpp"
 
 namespace overfly::engine {
@@ -80,17 +79,16 @@ Result<Picture> PictureEncoder::encode_file(const std::filesystem::path& file,
                                             std::int64_t t_ns,
                                             int quality,
                                             int max_width_px) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) return Error{ErrorCode::kNotFound, file.string() + ": no such picture"};
-  std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(in),
-                                  std::istreambuf_iterator<char>()};
-  const auto size = jpeg_size(bytes);
+  constexpr std::uint64_t kMaxBytes = std::uint64_t{256} << 20U;
+  auto bytes = read_file_bytes(file, kMaxBytes);
+  if (!bytes) return bytes.error();
+  const auto size = jpeg_size(*bytes);
   if (size && size->width_px <= max_width_px) {
     Picture picture{frame, t_ns, size->width_px, size->height_px, size->grey, nullptr};
-    picture.jpeg = std::make_shared<const std::vector<std::uint8_t>>(std::move(bytes));
+    picture.jpeg = std::make_shared<const std::vector<std::uint8_t>>(std::move(*bytes));
     return picture;
   }
-  auto image = decode_jpeg(bytes);
+  auto image = decode_jpeg(*bytes);
   if (!image) return image.error().in(file.string());
   return encode(
       {frame, t_ns, std::make_shared<const Image>(std::move(*image))}, quality, max_width_px);

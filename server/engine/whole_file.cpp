@@ -5,11 +5,10 @@
 
 #include <cerrno>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <utility>
 #include <vector>
 
+#include "core/file_text.hpp"
 #include "core/outside_json.hpp"
 
 namespace overfly::engine {
@@ -65,23 +64,12 @@ Status write_json(const fs::path& file, const nlohmann::json& value) {
                      value.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
-Result<std::string> read_text(const fs::path& file) {
-  std::error_code ignored;
-  if (!fs::is_regular_file(file, ignored)) {
-    return Error{ErrorCode::kNotFound, file.string() + ": no such file"};
-  }
-  std::ifstream in(file, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  if (!in.is_open() || in.bad()) return io_error(file, "read");
-  return text;
-}
-
 Result<nlohmann::json> parse_json(std::string_view text, const std::string& origin) {
   return json_from_outside<nlohmann::json>(text, origin);
 }
 
-Result<nlohmann::json> read_json(const fs::path& file) {
-  Result<std::string> text = read_text(file);
+Result<nlohmann::json> read_json(const fs::path& file, std::uint64_t max_bytes) {
+  const Result<std::string> text = read_file_text(file, max_bytes);
   if (!text) return text.error();
   return parse_json(*text, file.string());
 }
@@ -118,9 +106,8 @@ Status LineFile::append(const nlohmann::json& line) {
 
 Result<std::vector<nlohmann::json>> read_lines(const fs::path& file) {
   std::vector<nlohmann::json> lines;
-  std::error_code ignored;
-  if (!fs::exists(file, ignored)) return lines;
-  Result<std::string> text = read_text(file);
+  const Result<std::string> text = read_file_text(file, kMaxRowsBytes);
+  if (!text && text.error().code == ErrorCode::kNotFound) return lines;
   if (!text) return text.error();
   std::size_t begin = 0;
   for (std::size_t end = text->find('\n'); end != std::string::npos;

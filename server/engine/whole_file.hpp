@@ -21,10 +21,14 @@ namespace overfly::engine {
 /// Indented by two blanks, with a line feed at the end.
 [[nodiscard]] Status write_json(const std::filesystem::path& file, const nlohmann::json& value);
 
-/// Errors: kNotFound, kIo.
-[[nodiscard]] Result<std::string> read_text(const std::filesystem::path& file);
-/// Errors: kNotFound; kUnreadable naming file, line and column, or the limit of its depth.
-[[nodiscard]] Result<nlohmann::json> read_json(const std::filesystem::path& file);
+/// Of a document, as the timings of a day's flight.
+inline constexpr std::uint64_t kMaxDocumentBytes = std::uint64_t{256} << 20U;
+/// Of a file of rows, as the frames of most of a day.
+inline constexpr std::uint64_t kMaxRowsBytes = std::uint64_t{1} << 30U;
+
+/// Errors: as read_file_text; kUnreadable naming file, line and column, or the limit of its depth.
+[[nodiscard]] Result<nlohmann::json> read_json(const std::filesystem::path& file,
+                                               std::uint64_t max_bytes = kMaxDocumentBytes);
 /// The same for text that was read from `origin`, as json_from_outside.
 [[nodiscard]] Result<nlohmann::json> parse_json(std::string_view text, const std::string& origin);
 
@@ -47,7 +51,7 @@ class LineFile {
 };
 
 /// Reads such a file; a last line without its line feed is what a kill left over, and is skipped.
-/// A file that is absent has no lines. Errors: kUnreadable naming file and line.
+/// A file that is absent has no lines. Errors: as read_file_text; kUnreadable naming file and line.
 [[nodiscard]] Result<std::vector<nlohmann::json>> read_lines(const std::filesystem::path& file);
 
 }  // namespace overfly::engine

@@ -1,8 +1,7 @@
 #include <algorithm>
-#include <fstream>
-#include <iterator>
-#include <system_error>
+#include <utility>
 
+#include "core/file_text.hpp"
 #include "server/engine/row_alignment.hpp"
 #include "server/net/error_response.hpp"
 #include "server/net/rest_api.hpp"
@@ -21,14 +20,19 @@ constexpr const char* kTruth = "truth";
 HttpResponse file_response(const fs::path& file,
                            const std::string& content_type,
                            const std::string& absent) {
-  std::error_code error;
-  if (!fs::is_regular_file(file, error)) return error_response({ErrorCode::kNotFound, absent});
-  std::ifstream in(file, std::ios::binary);
-  if (!in) return error_response({ErrorCode::kIo, "cannot read " + file.filename().string()});
+  constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 30U;
+  Result<std::string> text = read_file_text(file, kMaxBytes);
+  if (!text) {
+    const ErrorCode code = text.error().code;
+    if (code == ErrorCode::kIo) {
+      return error_response({code, "cannot read " + file.filename().string()});
+    }
+    return error_response({ErrorCode::kNotFound, absent});
+  }
   HttpResponse response;
   response.content_type = content_type;
   response.headers.emplace_back("Cache-Control", "no-cache");
-  response.body.assign(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
+  response.body = std::move(*text);
   return response;
 }
 

@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
-#include <iterator>
 #include <system_error>
 #include <utility>
 
+#include "core/file_text.hpp"
 #include "server/net/error_response.hpp"
 #include "server/net/url.hpp"
 
@@ -54,9 +53,7 @@ bool is_below(const fs::path& folder, const fs::path& file) {
 HttpResponse file_response(const fs::path& root, const fs::path& file, const HttpRequest& request) {
   std::error_code error;
   const std::uintmax_t size_bytes = fs::file_size(file, error);
-  std::ifstream in(file, std::ios::binary);
-  if (error || !in)
-    return error_response({ErrorCode::kIo, "cannot read " + file.filename().string()});
+  if (error) return error_response({ErrorCode::kIo, "cannot read " + file.filename().string()});
   HttpResponse response;
   const std::string etag = etag_of(file, size_bytes);
   const bool hashed = is_below(root / "assets", file);
@@ -68,7 +65,10 @@ HttpResponse file_response(const fs::path& root, const fs::path& file, const Htt
     return response;
   }
   response.content_type = mime_type(file);
-  response.body.assign(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
+  constexpr std::uint64_t kMaxBytes = std::uint64_t{256} << 20U;
+  Result<std::string> text = read_file_text(file, kMaxBytes);
+  if (!text) return error_response({ErrorCode::kIo, "cannot read " + file.filename().string()});
+  response.body = std::move(*text);
   return response;
 }
 

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cmath>
 #include <random>
@@ -33,6 +34,21 @@ TrajectoryFile read_ok(const std::string& text) {
   const Result<TrajectoryFile> file = read_trajectory(folder.path() / "poses.txt");
   EXPECT_TRUE(file.ok()) << (file.ok() ? "" : file.error().message);
   return file.ok() ? *file : TrajectoryFile{};
+}
+
+TEST(TrajectoryIo, GivesReadErrorsAsErrorsAndNeverWaits) {
+  EXPECT_EQ(read_trajectory("/proc/self/mem").error().code, ErrorCode::kIo);
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "poses.txt";
+  ASSERT_EQ(::mkfifo(file.c_str(), 0600), 0);
+  EXPECT_EQ(read_trajectory(file).error().code, ErrorCode::kUnreadable);
+  std::filesystem::remove(file);
+  write_text(file, "1 0 0 0 0 0 0 1\n");
+  const std::atomic<bool> cancel{true};
+  EXPECT_EQ(read_trajectory(file, &cancel).error().code, ErrorCode::kCancelled);
+  std::filesystem::resize_file(file, 20'000'000'000U);
+  EXPECT_THAT(read_trajectory(file).error().message,
+              HasSubstr("has 20000000000 bytes: must have at most 268435456"));
 }
 
 TEST(TrajectoryIo, ReadsTumWithQuaternionOrderXyzw) {

@@ -1,6 +1,7 @@
 // The engine's files and small parts: JPEG, whole files, lines, rows, live alignment.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cmath>
 
@@ -59,7 +60,7 @@ TEST(WholeFile, ReplacesAndLeavesNoPart) {
   const auto file = folder.path() / "a.txt";
   ASSERT_TRUE(write_whole(file, std::string("one")).ok());
   ASSERT_TRUE(write_whole(file, std::string("two")).ok());
-  EXPECT_EQ(read_text(file).value(), "two");
+  EXPECT_EQ(overfly::testing::read_text(file), "two");
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
   const auto nowhere = write_whole(folder.path() / "no" / "a.txt", std::string("x"));
   EXPECT_EQ(nowhere.error().code, ErrorCode::kIo);
@@ -84,6 +85,22 @@ TEST(LineFile, IsReadBackWithoutTheLineThatAKillCutShort) {
   EXPECT_TRUE(read_lines(folder.path() / "none").value().empty());
   overfly::testing::write_text(file, "{\"a\": 1}\n{a}\n");
   EXPECT_THAT(read_lines(file).error().message, HasSubstr("row 2"));
+}
+
+TEST(WholeFile, GivesReadErrorsAsErrors) {
+  for (const Error& error :
+       {read_json("/proc/self/mem").error(), read_lines("/proc/self/mem").error()}) {
+    EXPECT_EQ(error.code, ErrorCode::kIo);
+    EXPECT_THAT(error.message, HasSubstr("/proc/self/mem: reading failed"));
+  }
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "a.json";
+  ASSERT_EQ(::mkfifo(file.c_str(), 0600), 0);
+  EXPECT_EQ(read_json(file).error().code, ErrorCode::kUnreadable);
+  EXPECT_EQ(read_lines(file).error().code, ErrorCode::kUnreadable);
+  overfly::testing::write_text(folder.path() / "b.json", "{}");
+  std::filesystem::resize_file(folder.path() / "b.json", 20'000'000'000U);
+  EXPECT_THAT(read_json(folder.path() / "b.json").error().message, HasSubstr("must have at most"));
 }
 
 TEST(WholeFile, RefusesDeepJson) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "core/file_text.hpp"
 #include "server/engine/run_folder.hpp"
 #include "server/engine/whole_file.hpp"
 #include "terrain/image_file.hpp"
@@ -47,7 +48,7 @@ class RunCalibration : public ::testing::Test {
 };
 
 std::vector<std::string> lines_of(const fs::path& file) {
-  const auto text = read_text(file);
+  const auto text = read_file_text(file, 1 << 20);
   if (!text) throw std::runtime_error(text.error().message);
   std::istringstream in(*text);
   std::vector<std::string> lines;

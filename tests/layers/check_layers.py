@@ -62,6 +62,8 @@ CALLS = [
     (r"\b[Jj]son::(parse|sax_parse|from_\w+)\(",
      ["core/outside_json.hpp", "server/engine/scenario.cpp", "server/engine/camera_check.cpp"],
      "json_from_outside"),
+    # It lets read errors out as exceptions, waits for FIFOs and knows no limit.
+    (r"istreambuf_iterator", [], "read_file_text or read_file_bytes"),
 ]
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')

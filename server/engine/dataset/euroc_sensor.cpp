@@ -7,8 +7,8 @@
 #include <map>
 #include <string_view>
 
+#include "core/file_text.hpp"
 #include "server/engine/dataset/dataset_reader.hpp"
-#include "server/engine/whole_file.hpp"
 
 namespace overfly::engine {
 namespace {
@@ -145,7 +145,8 @@ Result<Pose> mount_of(const SensorFile& file) {
 }  // namespace
 
 Result<EurocSensor> read_euroc_sensor(const fs::path& path) {
-  const Result<std::string> text = read_text(path);
+  constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 20U;
+  const Result<std::string> text = read_file_text(path, kMaxBytes);
   if (!text) return text.error();
   const SensorFile file(path, *text);
   if (file.has("camera_model") && *file.text("camera_model") != "pinhole") {

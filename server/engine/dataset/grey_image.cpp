@@ -4,10 +4,10 @@
 #include <array>
 #include <cctype>
 #include <fstream>
-#include <iterator>
 #include <string>
 #include <vector>
 
+#include "core/file_text.hpp"
 #include "server/engine/camera_shot.hpp"
 #include "server/engine/jpeg.hpp"
 #include "terrain/image_file.hpp"
@@ -35,11 +35,7 @@ Kind kind_of(const std::array<unsigned char, 25>& head) {
 }
 
 Result<Kind> kind_of(const fs::path& file) {
-  std::error_code ignored;
-  if (!fs::exists(file, ignored)) {
-    return Error{ErrorCode::kNotFound, file.string() + ": no such file"};
-  }
-  if (fs::is_directory(file, ignored)) return unreadable(file, "is a folder, not an image");
+  if (Status status = check_regular_file(file); !status) return status.error();
   std::ifstream in(file, std::ios::binary);
   if (!in) return Error{ErrorCode::kIo, file.string() + ": cannot be opened for reading"};
   std::array<char, 25> bytes{};
@@ -51,11 +47,10 @@ Result<Kind> kind_of(const fs::path& file) {
 }
 
 Result<Image> read_jpeg(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(in),
-                                        std::istreambuf_iterator<char>()};
-  if (!in.good() && !in.eof()) return Error{ErrorCode::kIo, file.string() + ": reading failed"};
-  Result<Image> image = decode_jpeg(bytes);
+  constexpr std::uint64_t kMaxBytes = std::uint64_t{256} << 20U;
+  const auto bytes = read_file_bytes(file, kMaxBytes);
+  if (!bytes) return bytes.error();
+  Result<Image> image = decode_jpeg(*bytes);
   if (!image) return unreadable(file, image.error().message);
   return image;
 }
