@@ -193,12 +193,13 @@ Status ElevationModel::merge(const MapRect& area,
   return {};
 }
 
-Status ElevationModel::survey(std::vector<std::string>& warnings) {
+Status ElevationModel::survey(const std::function<bool()>& cancelled,
+                              std::vector<std::string>& warnings) {
   for (const RasterPtr& raster : parts_->rasters) {
     Status whole = raster->check(warnings);
     if (!whole) return whole;
   }
-  auto survey = parts_->pyramid->survey();
+  auto survey = parts_->pyramid->survey(cancelled);
   if (!survey) return survey.error();
   for (const RasterPtr& raster : parts_->rasters) {
     survey->implausible_layers.push_back(raster->implausible_seen());

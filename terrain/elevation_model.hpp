@@ -46,8 +46,9 @@ class ElevationModel {
                                      std::vector<std::string>& warnings);
 
   /// Reads every post once: range, voids. Doubts go to `warnings`.
-  /// Errors: kIo; kInvalidArgument if no post has data.
-  Status survey(std::vector<std::string>& warnings);
+  /// @param cancelled  asked before each block of posts; may be empty
+  /// Errors: kIo; kCancelled; kInvalidArgument if no post has data.
+  Status survey(const std::function<bool()>& cancelled, std::vector<std::string>& warnings);
   /// Takes heights from a store instead, made from a model with the same fingerprint.
   Status use(std::shared_ptr<const HeightStore> store, std::vector<std::string>& warnings);
 

@@ -75,10 +75,6 @@ Status check_sources(GDALDataset& dataset,
   std::vector<fs::path> sources;
   add_sources(xml.get(), file.parent_path(), sources);
   for (const fs::path& source : sources) {
-    // What is no plain file (another server, a part of an archive) is for GDAL to find.
-    if (source.string().starts_with("/vsi") || source.string().find(':') != std::string::npos) {
-      continue;
-    }
     auto opened = open_raster(source);
     if (!opened) return opened.error().in(file.string() + ": is made of");
     const Status whole = check_whole(**opened, source, warnings);

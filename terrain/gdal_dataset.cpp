@@ -7,7 +7,11 @@
 #include <chrono>
 #include <cmath>
 
+#include "core/file_text.hpp"
+#include "terrain/crs_text.hpp"
 #include "terrain/file_soundness.hpp"
+#include "terrain/outside_access.hpp"
+#include "terrain/virtual_raster.hpp"
 
 namespace overfly::terrain {
 namespace fs = std::filesystem;
@@ -15,6 +19,7 @@ namespace fs = std::filesystem;
 void initialise_gdal() {
   static const bool done = [] {
     GDALAllRegister();
+    close_outside_access();
     constexpr GIntBig kBlockCacheBytes = GIntBig{128} << 20;
     GDALSetCacheMax64(kBlockCacheBytes);
     // Side-car files of one directory listing per open cost more than they bring.
@@ -42,20 +47,38 @@ void CPL_STDCALL GdalMessages::collect(CPLErr severity, CPLErrorNum, const char*
 
 std::string GdalMessages::text() const { return text_.empty() ? "no reason given" : text_; }
 
+namespace {
+
+/// A file may say that its overviews lie in another one, wherever that is.
+Status check_overviews(GDALDataset& dataset, const fs::path& file) {
+  const char* named = dataset.GetMetadataItem("OVERVIEW_FILE", "OVERVIEWS");
+  if (named == nullptr) return {};
+  std::string name = named;
+  const std::string beside = ":::BASE:::";  // GDAL's mark of the file's own folder
+  if (name.starts_with(beside)) name = name.substr(beside.size());
+  if (name.find('/') == std::string::npos && name.find(':') == std::string::npos) return {};
+  return Error{ErrorCode::kUnreadable, file.string() + ": names overviews outside of its folder"};
+}
+
+}  // namespace
+
 Result<DatasetPtr> open_raster(const fs::path& file, int level) {
   initialise_gdal();
+  if (Status status = check_regular_file(file); !status) return status.error();
   std::error_code ignored;
-  if (!fs::exists(file, ignored)) {
-    return Error{ErrorCode::kNotFound, file.string() + ": no such file"};
-  }
-  if (fs::is_regular_file(file, ignored) && fs::file_size(file, ignored) == 0) {
+  if (fs::file_size(file, ignored) == 0) {
     return Error{ErrorCode::kUnreadable, file.string() + ": is empty (0 bytes)"};
   }
+  if (Status status = check_virtual_raster(file); !status) return status.error();
   GdalMessages messages;
   CPLStringList options;
   if (level > 0) options.SetNameValue("OVERVIEW_LEVEL", std::to_string(level - 1).c_str());
   DatasetPtr dataset(GDALDataset::Open(
-      file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, nullptr, options.List(), nullptr));
+      fs::absolute(file).c_str(),  // begins with a slash: no name that GDAL has a meaning for
+      GDAL_OF_RASTER | GDAL_OF_READONLY,
+      nullptr,
+      options.List(),
+      nullptr));
   if (!dataset) {
     return Error{ErrorCode::kUnreadable,
                  file.string() + ": not a raster that can be read: " + messages.text()};
@@ -63,6 +86,7 @@ Result<DatasetPtr> open_raster(const fs::path& file, int level) {
   if (dataset->GetRasterCount() < 1) {
     return Error{ErrorCode::kUnreadable, file.string() + ": has no raster band"};
   }
+  if (Status status = check_overviews(*dataset, file); !status) return status.error();
   return dataset;
 }
 
@@ -189,8 +213,13 @@ Result<Georeference> read_georeference(GDALDataset& dataset,
   if (crs != nullptr && !crs->IsEmpty()) {
     place.crs = *crs;
   } else if (crs_override) {
+    if (Status status = check_crs_text(*crs_override, file.string() + ": crs"); !status) {
+      return status.error();
+    }
     const GdalMessages messages;
-    if (place.crs.SetFromUserInput(crs_override->c_str()) != OGRERR_NONE) {
+    if (place.crs.SetFromUserInput(crs_override->c_str(),
+                                   OGRSpatialReference::SET_FROM_USER_INPUT_LIMITATIONS_get()) !=
+        OGRERR_NONE) {
       return Error{ErrorCode::kInvalidArgument,
                    file.string() + ": crs = \"" + *crs_override +
                        "\" is not a known coordinate reference system: " + messages.text()};

@@ -22,7 +22,8 @@ struct DatasetCloser {
 };
 using DatasetPtr = std::unique_ptr<GDALDataset, DatasetCloser>;
 
-/// Registers the drivers and bounds the block cache; any number of calls.
+/// Registers the drivers of local raster files, closes GDAL's other file systems and bounds the
+/// block cache; any number of calls.
 void initialise_gdal();
 
 /// Collects what GDAL and PROJ report on this thread instead of printing it.
@@ -43,7 +44,8 @@ class GdalMessages {
 };
 
 /// Opens a raster for reading. Level 0 is the file itself, n > 0 its n-th overview.
-/// Errors: kNotFound; kUnreadable with GDAL's reason.
+/// Errors: kNotFound; kUnreadable with GDAL's reason, for what is no regular file, and as
+/// check_virtual_raster.
 [[nodiscard]] Result<DatasetPtr> open_raster(const std::filesystem::path& file, int level = 0);
 
 /// Several handles on one file, since a GDAL handle serves one thread at a time. All of them are of
@@ -92,9 +94,9 @@ struct Georeference {
   OGRSpatialReference crs;  ///< traditional axis order: x = east or longitude
 };
 
-/// Reads the georeference; `crs_override` ("EPSG:2994") stands in where the file has none.
-/// Errors: kInvalidArgument naming the file: no CRS, no or degenerate transform, a place outside
-/// the CRS's range. `said` is what GDAL reported when it opened the file.
+/// Reads the georeference; `crs_override` ("EPSG:2994", see check_crs_text) stands in where the
+/// file has none. Errors: kInvalidArgument naming the file: no CRS, no or degenerate transform, a
+/// place outside the CRS's range. `said` is what GDAL reported when it opened the file.
 [[nodiscard]] Result<Georeference> read_georeference(GDALDataset& dataset,
                                                      const std::filesystem::path& file,
                                                      const std::optional<std::string>& crs_override,

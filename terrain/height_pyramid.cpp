@@ -89,13 +89,16 @@ void HeightPyramid::keep(int level, int column, int row, HeightGrid block) {
   kept_[{raw_owner_, level, column, row}] = std::make_shared<const HeightGrid>(std::move(block));
 }
 
-Result<HeightSurvey> HeightPyramid::survey() {
+Result<HeightSurvey> HeightPyramid::survey(const std::function<bool()>& cancelled) {
   HeightSurvey survey;
   survey.posts = static_cast<double>(columns_) * rows_;
   survey.lowest_m = std::numeric_limits<double>::max();
   survey.highest_m = std::numeric_limits<double>::lowest();
   for (int row = 0; row < blocks(rows_); ++row) {
     for (int column = 0; column < blocks(columns_); ++column) {
+      if (cancelled && cancelled()) {
+        return Error{ErrorCode::kCancelled, "reading the elevation was cancelled"};
+      }
       const HeightGrid shape = empty_block(0, column, row);
       auto read = reader_(column * kBlockPosts, row * kBlockPosts, shape.columns, shape.rows);
       if (!read) return read.error();

@@ -44,8 +44,9 @@ class HeightPyramid {
   HeightPyramid& operator=(const HeightPyramid&) = delete;
 
   /// Reads all posts once, row of blocks by row, and keeps the coarse levels.
-  /// Errors: those of the reader.
-  Result<HeightSurvey> survey();
+  /// @param cancelled  asked before each block; may be empty
+  /// Errors: those of the reader; kCancelled.
+  Result<HeightSurvey> survey(const std::function<bool()>& cancelled = {});
 
   /// Loader of PagedHeights: filled posts. Errors: those of the reader.
   [[nodiscard]] Result<HeightGrid> block(int level, int column, int row) const;

@@ -14,13 +14,22 @@ namespace overfly::terrain {
 namespace {
 
 using Rasters = std::vector<std::shared_ptr<const ImageryRaster>>;
+using Cancelled = std::function<bool()>;
 
-Result<Rasters> open_imagery(const WorldSpec& spec, std::vector<std::string>& warnings) {
+Status go_on(const Cancelled& cancelled) {
+  if (!cancelled || !cancelled()) return {};
+  return Error{ErrorCode::kCancelled, "opening the world was cancelled"};
+}
+
+Result<Rasters> open_imagery(const WorldSpec& spec,
+                             const Cancelled& cancelled,
+                             std::vector<std::string>& warnings) {
   if (spec.imagery.empty()) {
     return Error{ErrorCode::kInvalidArgument, "imagery: is empty; a world needs at least one file"};
   }
   Rasters rasters;
   for (const ImageryLayer& layer : spec.imagery) {
+    if (Status status = go_on(cancelled); !status) return status.error();
     auto raster = ImageryRaster::open(layer, warnings);
     if (!raster) return raster.error();
     rasters.push_back(std::move(*raster));
@@ -29,8 +38,11 @@ Result<Rasters> open_imagery(const WorldSpec& spec, std::vector<std::string>& wa
 }
 
 /// What reading the files themselves needs.
-Status prepare(const Rasters& rasters, std::vector<std::string>& warnings) {
+Status prepare(const Rasters& rasters,
+               const Cancelled& cancelled,
+               std::vector<std::string>& warnings) {
   for (const auto& raster : rasters) {
+    if (Status status = go_on(cancelled); !status) return status;
     Status prepared = raster->prepare();
     if (!prepared) return prepared;
     const std::vector<std::string> doubts = raster->doubts();
@@ -41,9 +53,11 @@ Status prepare(const Rasters& rasters, std::vector<std::string>& warnings) {
 
 Result<std::vector<MappedImagery>> map_imagery(const Rasters& rasters,
                                                const WorldLayout& layout,
+                                               const Cancelled& cancelled,
                                                const WorldCache* cache) {
   std::vector<MappedImagery> layers;
   for (std::size_t i = 0; i < rasters.size(); ++i) {
+    if (Status status = go_on(cancelled); !status) return status.error();
     std::optional<ValidityGrid> validity;
     if (cache != nullptr) {
       auto kept = cache->validity(static_cast<int>(i));
@@ -143,8 +157,9 @@ Status check_spec(const WorldSpec& spec, const WorldLayout& layout) {
   return {};
 }
 
-Status add_digests(World& world, const WorldCache* cache) {
+Status add_digests(World& world, const Cancelled& cancelled, const WorldCache* cache) {
   const auto add = [&](const std::filesystem::path& file) -> Status {
+    if (Status status = go_on(cancelled); !status) return status;
     if (cache != nullptr) {
       for (const CacheSource& source : cache->header().sources) {
         if (source_path(world.spec, source) != std::filesystem::absolute(file).lexically_normal()) {
@@ -197,10 +212,13 @@ std::shared_ptr<const WorldCache> find_cache(const WorldSpec& spec,
 
 }  // namespace
 
-Result<World> open_world(const WorldSpec& spec) {
+Result<World> open_world(const WorldSpec& spec, const Cancelled& cancelled) {
+  if (spec.sources.confined()) {
+    if (Status status = check_world_sources(spec, ""); !status) return status.error();
+  }
   World world;
   world.spec = spec;
-  auto rasters = open_imagery(spec, world.warnings);
+  auto rasters = open_imagery(spec, cancelled, world.warnings);
   if (!rasters) return rasters.error();
   auto layout = lay_out_world(*rasters, spec.origin);
   if (!layout) return layout.error();
@@ -210,16 +228,16 @@ Result<World> open_world(const WorldSpec& spec) {
   if (!elevation) return elevation.error();
   const auto cache = find_cache(spec, *layout, *elevation, world);
   if (!cache) {
-    const Status prepared = prepare(*rasters, world.warnings);
+    const Status prepared = prepare(*rasters, cancelled, world.warnings);
     if (!prepared) return prepared.error();
   }
-  auto imagery = map_imagery(*rasters, *layout, cache.get());
+  auto imagery = map_imagery(*rasters, *layout, cancelled, cache.get());
   if (!imagery) return imagery.error();
   const Status picture = check_picture(*imagery, world.warnings);
   if (!picture) return picture.error();
   if (elevation->heights() != nullptr) {
-    const Status ready =
-        cache ? elevation->use(cache, world.warnings) : elevation->survey(world.warnings);
+    const Status ready = cache ? elevation->use(cache, world.warnings)
+                               : elevation->survey(cancelled, world.warnings);
     if (!ready) return ready.error();
   }
 
@@ -244,7 +262,7 @@ Result<World> open_world(const WorldSpec& spec) {
                                               frame,
                                               credit_line(spec),
                                               cache);
-  const Status hashed = add_digests(world, cache.get());
+  const Status hashed = add_digests(world, cancelled, cache.get());
   if (!hashed) return hashed.error();
   return world;
 }

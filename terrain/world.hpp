@@ -2,11 +2,13 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "core/source_policy.hpp"
 #include "terrain/tile_source.hpp"
 
 namespace overfly::terrain {
@@ -56,11 +58,16 @@ struct WorldSpec {
   /// Where `overfly world build` keeps what it made of these files; empty = nowhere. Of a manifest
   /// that was read: the folder beside it, world.json's is world.cache.
   std::filesystem::path cache_folder{};
+  /// Which files may be named, here and by the files themselves.
+  SourcePolicy sources{};
 };
 
 /// Reads a world manifest (JSON, format in docs/WORLDS.md). Relative files are relative to it.
-/// Errors: kNotFound, kUnreadable, kInvalidArgument naming file, field, value and limit.
-[[nodiscard]] Result<WorldSpec> read_world_manifest(const std::filesystem::path& manifest);
+/// @param sources  what the manifest may be, and what it may name; kept in the spec
+/// Errors: kNotFound, kUnreadable, kInvalidArgument naming file, field, value and limit; as
+/// SourcePolicy::check.
+[[nodiscard]] Result<WorldSpec> read_world_manifest(const std::filesystem::path& manifest,
+                                                    const SourcePolicy& sources = {});
 [[nodiscard]] Status write_world_manifest(const std::filesystem::path& manifest,
                                           const WorldSpec& spec);
 
@@ -78,10 +85,20 @@ struct World {
   std::string cache;
 };
 
+/// Whether a world may be made of these files and coordinate reference systems: their places and
+/// kinds and the form of texts, before anything is opened.
+/// @param prefix  of the fields in messages, as "world."
+/// Errors: as SourcePolicy::check and check_crs_text, every fault on a line; kNotFound where files
+/// are absent and nothing else is wrong.
+[[nodiscard]] Status check_world_sources(const WorldSpec& spec, const std::string& prefix);
+
 /// Opens the files, or what `build_world` made of them where that is up to date.
-/// Errors: kUnreadable or kInvalidArgument naming the file: no or broken georeference, missing
-/// CRS, imagery and elevation that do not overlap, a file GDAL cannot read.
-[[nodiscard]] Result<World> open_world(const WorldSpec& spec);
+/// @param cancelled  asked between parts of the work; true ends it. May be empty
+/// Errors: as check_world_sources; kCancelled; kUnreadable or kInvalidArgument naming the file: no
+/// or broken georeference, missing CRS, imagery and elevation that do not overlap, a file GDAL
+/// cannot read.
+[[nodiscard]] Result<World> open_world(const WorldSpec& spec,
+                                       const std::function<bool()>& cancelled = {});
 
 /// Human-readable summary (extent, resolution, layers, warnings, attribution), one fact a line.
 [[nodiscard]] std::string describe(const World& world);

@@ -102,7 +102,7 @@ struct Reader {
     const auto text = fields.text("file");
     if (!text) fields.missing("file");
     const fs::path file = text.value_or("");
-    return file.is_absolute() ? file : (folder / file).lexically_normal();
+    return (folder / file).lexically_normal();
   }
 
   ImageryLayer imagery(const Json& object, const std::string& path) {
@@ -238,10 +238,9 @@ Json to_json(const WorldSpec& spec, const fs::path& folder) {
 
 }  // namespace
 
-Result<WorldSpec> read_world_manifest(const fs::path& manifest) {
-  std::error_code ignored;
-  if (!fs::is_regular_file(manifest, ignored)) {
-    return Error{ErrorCode::kNotFound, manifest.string() + ": no such world manifest"};
+Result<WorldSpec> read_world_manifest(const fs::path& manifest, const SourcePolicy& sources) {
+  if (sources.confined()) {
+    if (Status status = sources.check(manifest, "world.manifest"); !status) return status.error();
   }
   const Result<std::string> text = read_file_text(manifest, kManifestMaxBytes);
   if (!text) return text.error();
@@ -251,6 +250,7 @@ Result<WorldSpec> read_world_manifest(const fs::path& manifest) {
   WorldSpec spec = reader.world(*json);
   if (reader.error) return *reader.error;
   spec.cache_folder = cache_folder_of(manifest);
+  spec.sources = sources;
   return spec;
 }
 

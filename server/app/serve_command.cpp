@@ -15,10 +15,11 @@
 #include "server/app/exit_code.hpp"
 #include "server/app/install_paths.hpp"
 #include "server/app/stop_signal.hpp"
-#include "server/engine/thread_priority.hpp"
 #include "server/app/token_file.hpp"
+#include "server/engine/thread_priority.hpp"
 #include "server/net/access_token.hpp"
 #include "server/net/server.hpp"
+#include "terrain/network.hpp"
 
 namespace overfly::app {
 namespace {
@@ -34,6 +35,7 @@ struct ServeArguments {
   std::string token_file;
   std::vector<std::string> allowed_hosts;
   bool no_token = false;
+  std::vector<std::string> data = {"worlds"};
   int parallel_runs = 1;
   bool allow_commands = false;
 };
@@ -62,6 +64,7 @@ Result<std::string> token_of(const ServeArguments& arguments) {
 
 int serve(const ServeArguments& arguments) {
   (void)catch_stop_signals();
+  terrain::turn_network_off();
   engine::draw_on_the_asking_thread();
   spdlog::set_default_logger(spdlog::stderr_color_mt("overfly"));
   auto token = token_of(arguments);
@@ -72,6 +75,7 @@ int serve(const ServeArguments& arguments) {
       arguments.scenarios.empty() ? scenarios_folder() : fs::path(arguments.scenarios);
   manager_options.max_parallel_runs = arguments.parallel_runs;
   manager_options.allow_commands = arguments.allow_commands;
+  manager_options.data_folders.emplace(arguments.data.begin(), arguments.data.end());
   const auto runs = engine::RunManager::create(manager_options);
   if (!runs) return report(runs.error());
   engine::ViewService views(**runs);
@@ -104,6 +108,13 @@ void add_serve_command(CLI::App& app, int& exit_code) {
   command->add_option("--port", arguments->port, "Port; 0 = any free one")->capture_default_str();
   command->add_option("--runs", arguments->runs, "Folder of the runs")->capture_default_str();
   command->add_option("--scenarios", arguments->scenarios, "Folder of the scenario files");
+  command
+      ->add_option("--data",
+                   arguments->data,
+                   "Folder whose files scenarios may name (repeatable); besides it the folder of "
+                   "the scenario files and the folders `data` in them")
+      ->allow_extra_args(false)
+      ->capture_default_str();
   command->add_option("--web", arguments->web, "Folder of the built dashboard");
   CLI::Option* token_file = command->add_option(
       "--token-file",

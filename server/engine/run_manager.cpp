@@ -51,6 +51,7 @@ Result<RunInfo> RunManager::start(const std::string& scenario,
   if (!file) return file.error();
   Result<Scenario> loaded = load_scenario(*file, overrides);
   if (!loaded) return loaded.error();
+  loaded->sources = impl_->sources();
   if (Status status = check_scenario(*loaded); !status) return status.error();
   return impl_->enqueue(std::move(*loaded), idempotency_key);
 }
@@ -67,7 +68,7 @@ Status RunManager::check_overrides(const std::string& scenario,
 }
 
 std::vector<ScenarioEntry> RunManager::scenarios() const {
-  return list_scenarios(impl_->options.scenarios_folder);
+  return list_scenarios(impl_->options.scenarios_folder, impl_->sources());
 }
 
 Result<Json> RunManager::scenario(const std::string& name) const {
@@ -145,7 +146,11 @@ Result<Scenario> RunManager::scenario_of(const std::string& id) const {
   if (std::optional<Scenario> scenario = impl_->active_scenario(id)) return *scenario;
   const Result<fs::path> place = folder(id);
   if (!place) return place.error();
-  return load_scenario(scenario_file(*place));
+  Result<Scenario> flown = load_scenario(scenario_file(*place));
+  if (!flown) return flown.error();
+  flown->sources = impl_->sources();
+  if (Status status = check_scenario(*flown); !status) return status.error();
+  return flown;
 }
 
 Result<std::shared_ptr<const terrain::World>> RunManager::world_of(const std::string& id) {

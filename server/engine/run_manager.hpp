@@ -27,6 +27,9 @@ struct RunManagerOptions {
   int max_parallel_runs = 1;  ///< further ones wait in a queue
   /// Overrides may name programs to start and addresses to speak to.
   bool allow_commands = false;
+  /// Folders whose files scenarios may name, besides `declared_folders(scenarios_folder)`; never
+  /// the runs' own. Without a value any regular file may be named.
+  std::optional<std::vector<std::filesystem::path>> data_folders;
 };
 
 /// Thread-safe. Owns the threads of the runs; its destructor cancels and joins them.
@@ -59,7 +62,7 @@ class RunManager {
   Status remove(const std::string& id);
   /// Folder of a run. Errors: kNotFound, also for an id that is no plain folder name.
   [[nodiscard]] Result<std::filesystem::path> folder(const std::string& id) const;
-  /// The scenario that a run flies or flew. Errors: kNotFound; as load_scenario.
+  /// The scenario that a run flies or flew. Errors: kNotFound; as load_scenario, check_scenario.
   [[nodiscard]] Result<Scenario> scenario_of(const std::string& id) const;
   /// The world that a run flies over, or that of the run's scenario as its files are now. Shared
   /// with runs and views. Errors: kNotFound; as open_scenario_world.

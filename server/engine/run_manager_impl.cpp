@@ -50,6 +50,13 @@ RunManager::Impl::~Impl() {
   for (std::thread& worker : workers_) worker.join();
 }
 
+SourcePolicy RunManager::Impl::sources() const {
+  if (!options.data_folders) return {};
+  std::vector<std::filesystem::path> folders = declared_folders(options.scenarios_folder);
+  folders.insert(folders.end(), options.data_folders->begin(), options.data_folders->end());
+  return SourcePolicy::inside(std::move(folders), {options.runs_folder});
+}
+
 std::string RunManager::Impl::new_id(const std::string& scenario) {
   // 2026-11-21T09:12:04Z -> 20261121-091204
   std::string stamp = utc_text(utc_now_ns());

@@ -37,6 +37,8 @@ struct RunManager::Impl {
   explicit Impl(RunManagerOptions manager_options);
   ~Impl();
 
+  /// What scenarios may name now: the declared folders follow the scenario files.
+  [[nodiscard]] SourcePolicy sources() const;
   RunInfo enqueue(Scenario scenario, const std::string& idempotency_key);
   [[nodiscard]] std::optional<RunInfo> started_by(const std::string& idempotency_key) const;
   [[nodiscard]] std::vector<RunInfo> active_infos() const;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/result.hpp"
+#include "core/source_policy.hpp"
 #include "core/time.hpp"
 #include "flight/flight.hpp"
 #include "server/engine/camera_spec.hpp"
@@ -88,6 +89,9 @@ struct Scenario {
 
   bool record_frames = false;    ///< camera images as frames/NNNNNN.jpg
   double record_debug_hz = 5.0;  ///< debug images as debug/NAME/NNNNNN.jpg; 0 = none
+
+  /// Which files it may name, itself and by what it names.
+  SourcePolicy sources;
 
   nlohmann::json resolved;  ///< the document with defaults, overrides and `data` applied
 };

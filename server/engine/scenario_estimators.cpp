@@ -220,6 +220,28 @@ bool is_trusted(const EstimatorSpec& spec, const Scenario& trusted, const Field&
                      [&](const EstimatorSpec& known) { return field(spec) == field(known); });
 }
 
+/// Text with a slash may name a file that the estimator then reads: a vocabulary, a calibration.
+const std::string* untrusted_parameter(const EstimatorSpec& spec, const Scenario& trusted) {
+  for (const auto& [name, value] : spec.parameters) {
+    const auto* text = std::get_if<std::string>(&value);
+    if (text == nullptr || text->find('/') == std::string::npos) continue;
+    const bool known = std::any_of(
+        trusted.estimators.begin(), trusted.estimators.end(), [&, key = name](const auto& other) {
+          const auto same = other.parameters.find(key);
+          return same != other.parameters.end() && same->second == ParameterValue(*text);
+        });
+    if (!known) return &name;
+  }
+  return nullptr;
+}
+
+Error out_of_reach(std::size_t estimator, const std::string& field) {
+  return {ErrorCode::kInvalidArgument,
+          "estimators." + std::to_string(estimator) + "." + field +
+              ": must be as the scenario's file has it; a client may set it where the server was "
+              "started with --allow-commands"};
+}
+
 }  // namespace
 
 Status read_estimators(Json& document, const fs::path& base, Scenario& scenario) {
@@ -259,11 +281,10 @@ Status check_reach(const Scenario& scenario, const Scenario& trusted) {
     if (!is_trusted(spec, trusted, [](const auto& s) { return s.ros1.master_uri; })) {
       field = "ros1.master_uri";
     }
-    if (field == nullptr) continue;
-    return Error{ErrorCode::kInvalidArgument,
-                 "estimators." + std::to_string(i) + "." + field +
-                     ": must be as the scenario's file has it; a client may set it where the "
-                     "server was started with --allow-commands"};
+    if (field != nullptr) return out_of_reach(i, field);
+    if (const std::string* parameter = untrusted_parameter(spec, trusted)) {
+      return out_of_reach(i, "parameters." + *parameter);
+    }
   }
   return {};
 }

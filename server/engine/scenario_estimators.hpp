@@ -26,7 +26,8 @@ namespace overfly::engine {
                                                         const std::filesystem::path& base);
 
 /// Refuses what a scenario may say only where it comes from the machine itself: an estimator whose
-/// command, addresses or files differ from those of every estimator in `trusted`.
+/// command, addresses or parameters that may name files (text with a slash) differ from those of
+/// every estimator in `trusted`.
 /// Errors: kInvalidArgument naming the field.
 [[nodiscard]] Status check_reach(const Scenario& scenario, const Scenario& trusted);
 

@@ -11,27 +11,47 @@ namespace fs = std::filesystem;
 
 constexpr const char* kSchemaSuffix = ".schema.json";
 
-ScenarioEntry entry_of(const fs::path& file) {
+ScenarioEntry entry_of(const fs::path& file, const SourcePolicy& sources) {
   ScenarioEntry entry;
   entry.name = file.stem().string();
   entry.file = file;
   entry.title = entry.name;
-  const Result<Scenario> scenario = load_scenario(file);
+  Result<Scenario> scenario = load_scenario(file);
   if (!scenario) {
     entry.error = scenario.error().message;
     return entry;
   }
+  scenario->sources = sources;
   entry.title = scenario->title;
   entry.description = scenario->description;
   if (Status status = check_scenario(*scenario); !status) entry.error = status.error().message;
   return entry;
 }
 
-void require_file(const fs::path& file, const std::string& field, std::string& missing) {
+/// The world's files, and whether its texts may be used.
+Status check_world(const Scenario& scenario) {
+  if (const auto* manifest = std::get_if<fs::path>(&scenario.world)) {
+    return scenario.sources.check(*manifest, "world.manifest");
+  }
+  if (const auto* layers = std::get_if<terrain::WorldSpec>(&scenario.world)) {
+    terrain::WorldSpec spec = *layers;
+    spec.sources = scenario.sources;
+    return terrain::check_world_sources(spec, "world.");
+  }
+  return {};
+}
+
+/// Scenario files of a folder, by name.
+std::vector<fs::path> scenario_files(const fs::path& folder) {
+  std::vector<fs::path> files;
   std::error_code ignored;
-  if (fs::is_regular_file(file, ignored)) return;
-  if (!missing.empty()) missing += '\n';
-  missing += field + " = " + file.string() + ": no such file";
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (entry.path().extension() != ".json" || name.ends_with(kSchemaSuffix)) continue;
+    if (is_plain_name(name)) files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
 }
 
 }  // namespace
@@ -45,19 +65,21 @@ bool is_plain_name(const std::string& name) {
          std::all_of(name.begin(), name.end(), allowed);
 }
 
-std::vector<ScenarioEntry> list_scenarios(const fs::path& folder) {
-  std::vector<fs::path> files;
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-    const std::string name = entry.path().filename().string();
-    if (entry.path().extension() != ".json" || name.ends_with(kSchemaSuffix)) continue;
-    if (is_plain_name(name)) files.push_back(entry.path());
-  }
-  std::sort(files.begin(), files.end());
+std::vector<ScenarioEntry> list_scenarios(const fs::path& folder, const SourcePolicy& sources) {
   std::vector<ScenarioEntry> entries;
-  entries.reserve(files.size());
-  for (const fs::path& file : files) entries.push_back(entry_of(file));
+  for (const fs::path& file : scenario_files(folder)) entries.push_back(entry_of(file, sources));
   return entries;
+}
+
+std::vector<fs::path> declared_folders(const fs::path& folder) {
+  std::vector<fs::path> folders{folder};
+  for (const fs::path& file : scenario_files(folder)) {
+    const Result<Scenario> scenario = load_scenario(file);
+    if (scenario && scenario->resolved.contains("data")) {
+      folders.emplace_back(scenario->resolved.value("data", ""));
+    }
+  }
+  return folders;
 }
 
 Result<fs::path> scenario_path(const fs::path& folder, const std::string& name) {
@@ -70,27 +92,23 @@ Result<fs::path> scenario_path(const fs::path& folder, const std::string& name) 
 }
 
 Status check_scenario(const Scenario& scenario) {
-  std::string missing;
-  if (const auto* manifest = std::get_if<fs::path>(&scenario.world)) {
-    require_file(*manifest, "world.manifest", missing);
-  } else if (const auto* spec = std::get_if<terrain::WorldSpec>(&scenario.world)) {
-    for (std::size_t i = 0; i < spec->imagery.size(); ++i) {
-      require_file(spec->imagery[i].file, "world.imagery." + std::to_string(i) + ".file", missing);
-    }
-    for (std::size_t i = 0; i < spec->elevation.size(); ++i) {
-      require_file(
-          spec->elevation[i].file, "world.elevation." + std::to_string(i) + ".file", missing);
-    }
-  }
+  std::optional<Error> fault;
+  if (Status status = check_world(scenario); !status) fault = status.error();
   if (const auto* log = std::get_if<Scenario::LoggedFlight>(&scenario.flight)) {
-    require_file(log->file, "flight.log.file", missing);
+    const Status status = scenario.sources.check(log->file, "flight.log.file");
+    if (!status && fault) {
+      fault->message += "\n" + status.error().message;
+      if (status.error().code != ErrorCode::kNotFound) fault->code = status.error().code;
+    } else if (!status) {
+      fault = status.error();
+    }
   }
-  if (missing.empty()) return {};
-  if (scenario.resolved.contains("data")) {
-    missing += "\n(data folder: " + scenario.resolved.value("data", "") +
-               "; the environment variable OVERFLY_DATA names another one)";
+  if (!fault) return {};
+  if (fault->code == ErrorCode::kNotFound && scenario.resolved.contains("data")) {
+    fault->message += "\n(data folder: " + scenario.resolved.value("data", "") +
+                      "; the environment variable OVERFLY_DATA names another one)";
   }
-  return Error{ErrorCode::kNotFound, missing};
+  return *fault;
 }
 
 }  // namespace overfly::engine

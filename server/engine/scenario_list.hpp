@@ -15,14 +15,23 @@ namespace overfly::engine {
 [[nodiscard]] bool is_plain_name(const std::string& name);
 
 /// All `*.json` that are scenarios (not schemas), by name, with why one cannot be flown here.
-[[nodiscard]] std::vector<ScenarioEntry> list_scenarios(const std::filesystem::path& folder);
+/// @param sources  what they may name
+[[nodiscard]] std::vector<ScenarioEntry> list_scenarios(const std::filesystem::path& folder,
+                                                        const SourcePolicy& sources = {});
+
+/// The folder itself and the folder `data` of each scenario in it, as its file alone says it: the
+/// folders whose files whoever keeps these scenarios lets others fly over.
+[[nodiscard]] std::vector<std::filesystem::path> declared_folders(
+    const std::filesystem::path& folder);
 
 /// The file of a scenario name. Errors: kNotFound, also for what is no plain name.
 [[nodiscard]] Result<std::filesystem::path> scenario_path(const std::filesystem::path& folder,
                                                           const std::string& name);
 
-/// What the schema cannot see: whether the files that a scenario names are there.
-/// Errors: kNotFound with every missing file and the field that names it, one a line.
+/// What the schema cannot see: whether the files that a scenario names may be named, by its
+/// `sources`, and are there.
+/// Errors: as SourcePolicy::check and terrain::check_world_sources, every fault with its field on a
+/// line; kNotFound where files are absent and nothing else is wrong.
 [[nodiscard]] Status check_scenario(const Scenario& scenario);
 
 }  // namespace overfly::engine

@@ -25,7 +25,8 @@ struct OpenedWorld {
 };
 
 /// Opens the scenario's world; makes the built-in one if this machine does not have it yet.
-/// @param progress  called with the share done in [0, 1] while it is made; false cancels
+/// @param progress  called with the share done in [0, 1] while it is made, and with 0 while files
+///                  are opened; false cancels
 /// Errors: as terrain::open_world, read_world_manifest and builtin_world; kIo for a file that was
 /// changed meanwhile.
 [[nodiscard]] Result<OpenedWorld> open_scenario_world(

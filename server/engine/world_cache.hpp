@@ -19,7 +19,7 @@ class WorldCache {
  public:
   using Shared = std::shared_ptr<const OpenedWorld>;
 
-  /// @param progress  of making the built-in world; false cancels
+  /// @param progress  as of open_scenario_world
   /// Errors: as open_scenario_world.
   [[nodiscard]] Result<Shared> get(const Scenario& scenario,
                                    const std::function<bool(double)>& progress);

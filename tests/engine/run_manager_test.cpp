@@ -26,6 +26,16 @@ class RunManagerTest : public ::testing::Test {
                                  testing::small_document().dump());
   }
 
+  /// Of a server: whose clients may name files inside of its data folders only.
+  std::unique_ptr<RunManager> confined_manager(std::vector<fs::path> data_folders) {
+    RunManagerOptions options;
+    options.runs_folder = folder_.path() / "runs";
+    options.scenarios_folder = folder_.path() / "scenarios";
+    options.renderer_factory = testing::noop_factory();
+    options.data_folders = std::move(data_folders);
+    return std::move(RunManager::create(options).value());
+  }
+
   std::unique_ptr<RunManager> manager(bool allow_commands = false) {
     RunManagerOptions options;
     options.allow_commands = allow_commands;
@@ -75,6 +85,50 @@ TEST_F(RunManagerTest, AnswersAboutAFolderOfDeepJson) {
               HasSubstr("scenario.json: is nested more than 64 deep"));
   overfly::testing::write_text(manifest_file(folder), deep);
   EXPECT_TRUE(manager()->runs().empty());
+}
+
+TEST_F(RunManagerTest, FliesOverFilesInsideOfItsDataFoldersOnly) {
+  const std::string outside = ": must be a file inside of the server's data folders";
+  const auto bare = confined_manager({});
+  EXPECT_THAT(bare->start("small", {}).error().message,
+              HasSubstr("world.manifest = " + testing::small_world().string() + outside));
+  EXPECT_THAT(bare->scenarios().at(0).error, HasSubstr(outside));
+  const auto runs = confined_manager({testing::small_world().parent_path()});
+  EXPECT_EQ(runs->scenarios().at(0).error, "");
+  const auto started = runs->start("small", perfect());
+  ASSERT_TRUE(started.ok()) << started.error().message;
+  EXPECT_EQ(wait_for_end(*runs, started->id).status, RunStatus::kCompleted);
+  // A run's own files are no data, though whoever keeps the runs keeps them among the data.
+  const auto among = confined_manager({root(), testing::small_world().parent_path()});
+  const std::string planted = scenario_file(runs->folder(started->id).value()).string();
+  EXPECT_THAT(among->start("small", {{"world.manifest", planted}}).error().message,
+              HasSubstr(planted + outside));
+}
+
+TEST_F(RunManagerTest, TakesTheFolderDataOfScenarioFilesForDeclared) {
+  nlohmann::json document = testing::small_document();
+  document["world"] = {{"manifest", testing::small_world().filename().string()}};
+  document["data"] = testing::small_world().parent_path().string();
+  overfly::testing::write_text(root() / "scenarios" / "named.json", document.dump());
+  const auto runs = confined_manager({});
+  const auto started = runs->start("named", perfect());
+  ASSERT_TRUE(started.ok()) << started.error().message;
+  EXPECT_EQ(wait_for_end(*runs, started->id).status, RunStatus::kCompleted);
+  EXPECT_TRUE(runs->scenario_of(started->id).ok());
+  // An override declares nothing; and what a run's copy says counts no more than an override.
+  EXPECT_FALSE(runs->start("named", {{"data", "/etc"}, {"world.manifest", "passwd"}}).ok());
+  fs::remove(root() / "scenarios" / "named.json");
+  EXPECT_THAT(runs->start("small", {}).error().message, HasSubstr("data folders"));
+}
+
+TEST_F(RunManagerTest, ListsNoFolderWhoseManifestCannotBeRead) {
+  for (const char* target : {"/proc/self/mem", "/dev/zero"}) {
+    const fs::path folder = root() / "runs" / "bad";
+    fs::create_directories(folder);
+    fs::create_symlink(target, manifest_file(folder));
+    EXPECT_THAT(manager()->runs(), IsEmpty()) << target;
+    fs::remove_all(folder);
+  }
 }
 
 TEST_F(RunManagerTest, FliesAScenarioAndFindsItAgainInANewProcess) {

@@ -195,8 +195,13 @@ TEST_F(RestApiTest, RefusesCommandsThatNoScenarioFileHas) {
   const json writing = {{"name", "e"}, {"type", "lcm"}, {"lcm", {{"url", "file:///etc/x?mode=w"}}}};
   const json calling = {
       {"name", "e"}, {"type", "ros1"}, {"ros1", {{"master_uri", "http://example.org:80"}}}};
-  const std::map<std::string, json> wanted = {
-      {"command", evil}, {"listen", listening}, {"lcm.url", writing}, {"ros1.master_uri", calling}};
+  const json reading = {
+      {"name", "e"}, {"type", "perfect"}, {"parameters", {{"file", "/etc/passwd"}}}};
+  const std::map<std::string, json> wanted = {{"command", evil},
+                                              {"listen", listening},
+                                              {"lcm.url", writing},
+                                              {"ros1.master_uri", calling},
+                                              {"parameters.file", reading}};
   for (const auto& [field, estimator] : wanted) {
     for (const json& overrides :
          {json{{"estimators", {estimator}}}, json{{"estimators.0", estimator}}}) {
@@ -210,6 +215,37 @@ TEST_F(RestApiTest, RefusesCommandsThatNoScenarioFileHas) {
   const json scaled = {{"estimators.0.parameters.scale", 2}, {"duration_s", 0.5}};
   const Answer plain = post({{"scenario", "tiny"}, {"overrides", scaled}}, 201);
   server_.wait_for_end(plain.json().at("id"));
+}
+
+/// Files of this machine that a client names: inside of the data folders, and everywhere else.
+TEST_F(RestApiTest, SaysTheSameOfEveryFileOutsideOfTheDataFolders) {
+  const auto post = [&](const std::string& field, const json& value, int status) {
+    const json body = {{"scenario", "tiny"}, {"overrides", {{field, value}}}};
+    return check("POST", "/api/v1/runs", "/api/v1/runs", status, body.dump(), kJson).body;
+  };
+  const std::filesystem::path world = server_.folder() / "world";
+  EXPECT_THAT(post("world.manifest", (world / "none.json").string(), 404), HasSubstr("no such"));
+  EXPECT_THAT(post("world.manifest", world.string() + "/.", 400), HasSubstr("must be"));
+  for (const char* field : {"world.manifest", "world.imagery.0.file", "flight.log.file"}) {
+    for (const std::string& file : {std::string("/etc/passwd"),
+                                    std::string("/etc/no such file"),
+                                    std::string("/proc/self/mem"),
+                                    std::string("/proc/kmsg"),
+                                    std::string("/dev/zero"),
+                                    std::string("/vsicurl/http://127.0.0.1:9/a.tif"),
+                                    std::string("../../../../../../../../etc/passwd"),
+                                    (server_.folder() / "runs" / "a" / "scenario.json").string()}) {
+      EXPECT_THAT(post(field, file, 400),
+                  HasSubstr(": must be a file inside of the server's data folders"))
+          << field << " " << file;
+    }
+  }
+  EXPECT_THAT(post("data", "/etc", 201), HasSubstr("queued"));  // the files of "tiny" are absolute
+  for (const char* crs :
+       {"http://127.0.0.1:9/crs", "/vsicurl/http://127.0.0.1:9/", "/etc/passwd"}) {
+    EXPECT_THAT(post("world.imagery.0.crs", crs, 400), HasSubstr("world.imagery.0.crs"));
+  }
+  EXPECT_THAT(post("$schema", "<VRTDataset/>", 400), HasSubstr("$schema"));
 }
 
 TEST_F(RestApiTest, GivesTheSameRunForTheSameKey) {

@@ -63,6 +63,7 @@ TestServer::TestServer(net::ServerOptions server_options) {
   engine::RunManagerOptions options;
   options.runs_folder = folder() / "runs";
   options.scenarios_folder = scenarios;
+  options.data_folders = {world_folder};
   options.renderer_factory = [](std::shared_ptr<const terrain::TileSource> tiles)
       -> Result<std::unique_ptr<renderer::Renderer>> {
     return renderer::create_noop_renderer(std::move(tiles));
