@@ -6,11 +6,13 @@
 #include <condition_variable>
 #include <ctime>
 #include <deque>
+#include <exception>
 #include <list>
 #include <map>
 #include <mutex>
 #include <set>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -108,7 +110,11 @@ struct TileStore::State {
 
   State(std::shared_ptr<const terrain::TileSource> source, const TileStoreOptions& wanted)
       : tiles(std::move(source)), options(wanted) {
-    for (int i = 0; i < options.threads; ++i) threads.emplace_back([this] { fetch_ahead(); });
+    try {
+      for (int i = 0; i < options.threads; ++i) threads.emplace_back([this] { fetch_ahead(); });
+    } catch (const std::system_error&) {
+      // The system has no more threads: without any, tiles are read on demand.
+    }
   }
 
   ~State() {
@@ -153,29 +159,36 @@ struct TileStore::State {
     });
   }
 
+  /// A tile's pixels, read without the lock; too little memory is an error like others.
+  Result<Pixels> read(const Key& key, bool urgent, std::unique_lock<std::mutex>& lock) {
+    try {
+      const double before_s = thread_cpu_s();
+      const Result<terrain::Tile> tile = tiles->tile(key.first);
+      if (!urgent) {
+        touch_heights(*tiles, key.first);
+        lock.lock();
+        rest(thread_cpu_s() - before_s, lock);
+        lock.unlock();
+      }
+      if (!tile) return tile.error();
+      return Pixels(std::make_shared<const TilePixels>(tile_pixels_from(*tile, key.second)));
+    } catch (const std::exception& error) {
+      return Error{ErrorCode::kInternal, error.what()};
+    }
+  }
+
   /// Reads a tile that this thread has put into `loading`; the lock is open meanwhile.
   Result<Pixels> load(const Key& key, bool urgent, std::unique_lock<std::mutex>& lock) {
     lock.unlock();
-    const double before_s = thread_cpu_s();
-    Result<terrain::Tile> tile = tiles->tile(key.first);
-    if (!urgent) {
-      touch_heights(*tiles, key.first);
-      lock.lock();
-      rest(thread_cpu_s() - before_s, lock);
-      lock.unlock();
-    }
-    Pixels pixels;
-    if (tile.ok()) {
-      pixels = std::make_shared<const TilePixels>(tile_pixels_from(*tile, key.second));
-    }
+    const Result<Pixels> pixels = read(key, urgent, lock);
     lock.lock();
     loading.erase(key);
-    if (pixels != nullptr) keep(key, pixels);
+    if (pixels) keep(key, *pixels);
     loaded.notify_all();
-    if (pixels != nullptr) return pixels;
+    if (pixels) return pixels;
     const TileId& id = key.first;
-    return tile.error().in("tile " + std::to_string(id.level) + "/" + std::to_string(id.col) + "/" +
-                           std::to_string(id.row));
+    return pixels.error().in("tile " + std::to_string(id.level) + "/" + std::to_string(id.col) +
+                             "/" + std::to_string(id.row));
   }
 
   Result<Pixels> get(const Key& key) {

@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <cstdlib>
 #include <ctime>
+#include <exception>
 #include <mutex>
 #include <set>
 #include <thread>
@@ -65,7 +66,11 @@ struct ViewAhead::State {
       const std::vector<CameraRequest> requests = std::exchange(waiting, {});
       lock.unlock();
       const double before_s = thread_cpu_s();
-      look_ahead(requests);
+      try {
+        look_ahead(requests);
+      } catch (const std::exception&) {
+        // Too little memory to look ahead: what the views need is read when they are drawn.
+      }
       const double spent_s = thread_cpu_s() - before_s;
       lock.lock();
       cpu_s += spent_s;

@@ -3,8 +3,11 @@
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
+#include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace overfly::renderer::raycast {
@@ -27,8 +30,15 @@ bool comes_soon(const Condition& condition) {
 }  // namespace
 
 struct WorkerPool::State {
+  /// What a job throws (too little memory, say) is kept for the caller of run().
   void work() {
-    for (int i = next++; i < jobs; i = next++) (*job)(i);
+    try {
+      for (int i = next++; i < jobs; i = next++) (*job)(i);
+    } catch (...) {
+      const std::lock_guard lock(mutex);
+      if (!thrown) thrown = std::current_exception();
+      next = jobs;
+    }
   }
 
   [[nodiscard]] bool called(std::uint64_t seen) const { return stopping || round != seen; }
@@ -57,11 +67,16 @@ struct WorkerPool::State {
   const std::function<void(int)>* job = nullptr;
   int jobs = 0;
   std::atomic<int> next{0};
+  std::exception_ptr thrown;  // by a job of this round
   std::vector<std::thread> threads;
 };
 
 WorkerPool::WorkerPool(int threads) : state_(std::make_unique<State>()) {
-  for (int i = 1; i < threads; ++i) state_->threads.emplace_back([this] { state_->serve(); });
+  try {
+    for (int i = 1; i < threads; ++i) state_->threads.emplace_back([this] { state_->serve(); });
+  } catch (const std::system_error&) {
+    // The system has no more threads: those that are there do the same work.
+  }
 }
 
 WorkerPool::~WorkerPool() {
@@ -91,9 +106,12 @@ void WorkerPool::run(int jobs, const std::function<void(int)>& job) {
   state_->begin.notify_all();
   state_->work();
   const auto all_done = [&] { return state_->busy == 0; };
-  if (comes_soon(all_done)) return;
-  std::unique_lock lock(state_->mutex);
-  state_->done.wait(lock, all_done);
+  std::unique_lock lock(state_->mutex, std::defer_lock);
+  if (!comes_soon(all_done)) {
+    lock.lock();
+    state_->done.wait(lock, all_done);
+  }
+  if (state_->thrown) std::rethrow_exception(std::exchange(state_->thrown, nullptr));
 }
 
 }  // namespace overfly::renderer::raycast

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <thread>
 
+#include "core/helper_threads.hpp"
 #include "terrain/synthesis/geotiff_writer.hpp"
 #include "terrain/synthesis/noise.hpp"
 #include "terrain/synthesis/painter.hpp"
@@ -38,10 +39,7 @@ Image paint_swatch(const Landscape& land,
         }
       }
     };
-    std::vector<std::thread> helpers;
-    for (unsigned i = 1; i < processors; ++i) helpers.emplace_back(work);
-    work();
-    for (std::thread& helper : helpers) helper.join();
+    work_with_helpers(processors - 1, work);
     if (progress && !progress(static_cast<double>(y + kRows) / side_px)) return {};
   }
   return swatch;

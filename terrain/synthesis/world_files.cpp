@@ -4,6 +4,7 @@
 #include <future>
 #include <thread>
 
+#include "core/helper_threads.hpp"
 #include "terrain/gdal_dataset.hpp"
 #include "terrain/synthesis/geotiff_writer.hpp"
 #include "terrain/synthesis/painter.hpp"
@@ -31,11 +32,7 @@ Image paint_strip(const Landscape& land, float texel_m, int side_px, int y, int 
       }
     }
   };
-  std::vector<std::thread> helpers;
-  const unsigned processors = std::max(1U, std::thread::hardware_concurrency());
-  for (unsigned i = 1; i < processors; ++i) helpers.emplace_back(work);
-  work();
-  for (std::thread& helper : helpers) helper.join();
+  work_with_helpers(std::max(1U, std::thread::hardware_concurrency()) - 1, work);
   return strip;
 }
 
