@@ -14,6 +14,7 @@
 #include "server/engine/metrics.hpp"
 #include "server/engine/run_folder.hpp"
 #include "server/engine/run_records.hpp"
+#include "server/engine/whole_file.hpp"
 
 namespace overfly::app {
 namespace {
@@ -171,15 +172,10 @@ int evaluate_files(const EvaluateArguments& arguments) {
   return scored ? kExitOk : kExitFailure;
 }
 
-int evaluate_run(const EvaluateArguments& arguments) {
-  const Result<engine::RunRecords> records = engine::read_run_records(arguments.run);
-  if (!records) return report(records.error());
-  const Result<engine::RunInfo> info = engine::read_run_info(arguments.run);
-  if (!info) return report(info.error());
-  Json metrics = engine::metrics_from(*records);
-  metrics["status"] = engine::to_string(info->status);
-  if (!arguments.json && info->status != engine::RunStatus::kCompleted) {
-    std::cout << "the run is " << engine::to_string(info->status) << "\n";
+void print_run(const EvaluateArguments& arguments, const engine::RunInfo& info, Json metrics) {
+  metrics["status"] = engine::to_string(info.status);
+  if (!arguments.json && info.status != engine::RunStatus::kCompleted) {
+    std::cout << "the run is " << engine::to_string(info.status) << "\n";
   }
   for (auto& [name, entry] : metrics.at("estimators").items()) {
     choose_modes(arguments.alignments, entry);
@@ -188,7 +184,23 @@ int evaluate_run(const EvaluateArguments& arguments) {
               << alignment_table(entry.at("alignments"), entry.at("unavailable"));
   }
   if (arguments.json) std::cout << metrics.dump(2) << "\n";
-  return kExitOk;
+}
+
+int evaluate_run(const EvaluateArguments& arguments) {
+  // Before the lock, which would make an interrupted run look as if it ran.
+  const Result<engine::RunInfo> info = engine::read_run_info(arguments.run);
+  if (!info) return report(info.error());
+  if (!info->problem.empty()) std::cerr << "warning: " << info->problem << "\n";
+  // Where nothing can be written the scores are printed all the same.
+  const Result<engine::RunLock> lock = engine::RunLock::take(arguments.run);
+  if (!lock && lock.error().code == ErrorCode::kConflict) return report(lock.error());
+  const Result<engine::RunRecords> records = engine::read_run_records(arguments.run);
+  if (!records) return report(records.error());
+  const Json metrics = engine::metrics_from(*records);
+  print_run(arguments, *info, metrics);
+  if (!lock) return report(lock.error());
+  const Status written = engine::write_json(engine::metrics_file(arguments.run), metrics);
+  return written ? kExitOk : report(written.error());
 }
 
 int evaluate(EvaluateArguments arguments) {
@@ -211,7 +223,9 @@ void add_evaluate_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("evaluate", "Score trajectories against the truth");
   command->add_option("--truth", arguments->truth, "Trajectory file: TUM, KITTI or EuRoC");
   command->add_option("--estimate", arguments->estimates, "Trajectory files to score");
-  command->add_option("--run", arguments->run, "A run folder to score again")
+  command
+      ->add_option(
+          "--run", arguments->run, "A run folder to score again, and whose metrics.json to write")
       ->excludes("--truth")
       ->excludes("--estimate");
   std::vector<std::string> modes = mode_names();

@@ -1,7 +1,10 @@
 // Every command through the real program: results, faults and exit codes.
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <poll.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <csignal>
@@ -155,6 +158,32 @@ TEST_F(CommandLine, KilledRunLeavesAReadableFolderMarkedInterrupted) {
   const Json metrics = Json::parse(scored.out);
   EXPECT_EQ(metrics.at("status"), "interrupted");
   EXPECT_GE(metrics.at("camera").at("frames").get<int>(), 10);
+  const Json written = Json::parse(read_text(path("killed/metrics.json")));
+  EXPECT_EQ(written.at("camera"), metrics.at("camera"));
+  EXPECT_GT(written.at("estimators").at("perfect").at("alignments").size(), 1U)
+      << "all alignments, not only those that were printed";
+  EXPECT_FALSE(fs::exists(path("killed/.running")));
+}
+
+TEST_F(CommandLine, EvaluateWritesMetricsOfARunThatNobodyFlies) {
+  SKIP_WITHOUT_EGL();
+  ASSERT_EQ(overfly_program({"run", scenario_file(), "--out", path("scored")}).exit_code, 0);
+  const std::string file = path("scored/metrics.json");
+  const std::string flown = read_text(file);
+  fs::remove(file);
+  const Outcome scored = overfly_program({"evaluate", "--run", path("scored")});
+  ASSERT_EQ(scored.exit_code, 0) << scored.err;
+  EXPECT_THAT(scored.out, HasSubstr("perfect"));
+  EXPECT_EQ(read_text(file), flown) << "byte for byte what the run wrote";
+  // While a process is at work there, nothing is written.
+  write_text(file, "{}");
+  const int lock = ::open(path("scored/.running").c_str(), O_RDWR | O_CREAT, 0644);
+  ASSERT_EQ(::flock(lock, LOCK_EX | LOCK_NB), 0);
+  const Outcome refused = overfly_program({"evaluate", "--run", path("scored")});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("another process is at work there"));
+  EXPECT_EQ(read_text(file), "{}");
+  ::close(lock);
 }
 
 TEST_F(CommandLine, SignalCancelsARunCleanly) {
