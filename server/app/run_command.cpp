@@ -13,6 +13,7 @@
 #include "server/app/stop_signal.hpp"
 #include "server/engine/metrics.hpp"
 #include "server/engine/run.hpp"
+#include "server/engine/run_memory.hpp"
 #include "server/engine/scenario_list.hpp"
 
 namespace overfly::app {
@@ -38,6 +39,8 @@ Result<engine::Scenario> load(const RunArguments& arguments) {
   Result<engine::Scenario> scenario = engine::load_scenario(arguments.scenario, overrides);
   if (!scenario) return scenario.error();
   if (Status status = engine::check_scenario(*scenario); !status) return status.error();
+  const auto memory = engine::MemoryBudget::of_machine(false);
+  if (Status status = memory.check(*scenario); !status) return status.error();
   return scenario;
 }
 

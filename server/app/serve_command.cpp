@@ -37,6 +37,8 @@ struct ServeArguments {
   bool no_token = false;
   std::vector<std::string> data = {"worlds"};
   int parallel_runs = 1;
+  std::size_t max_waiting_runs = 100;
+  double memory_limit_mib = 0.0;
   bool allow_commands = false;
 };
 
@@ -74,6 +76,9 @@ int serve(const ServeArguments& arguments) {
   manager_options.scenarios_folder =
       arguments.scenarios.empty() ? scenarios_folder() : fs::path(arguments.scenarios);
   manager_options.max_parallel_runs = arguments.parallel_runs;
+  manager_options.max_waiting_runs = arguments.max_waiting_runs;
+  manager_options.memory_limit_bytes =
+      static_cast<std::uint64_t>(arguments.memory_limit_mib * 1024.0 * 1024.0);
   manager_options.allow_commands = arguments.allow_commands;
   manager_options.data_folders.emplace(arguments.data.begin(), arguments.data.end());
   const auto runs = engine::RunManager::create(manager_options);
@@ -131,6 +136,16 @@ void add_serve_command(CLI::App& app, int& exit_code) {
   command->add_option("--parallel-runs", arguments->parallel_runs, "Flights at the same time")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
+  command
+      ->add_option("--waiting-runs", arguments->max_waiting_runs, "Flights that may wait for one")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
+  command
+      ->add_option("--memory-limit",
+                   arguments->memory_limit_mib,
+                   "MiB that flights and pictures may use; four fifths of the machine's where it "
+                   "is not given")
+      ->check(CLI::Range(256.0, 1e9));
   command->add_flag(
       "--allow-commands",
       arguments->allow_commands,

@@ -16,6 +16,7 @@ inline constexpr int kRunFormatVersion = 1;
 
 [[nodiscard]] std::filesystem::path manifest_file(const std::filesystem::path& folder);
 [[nodiscard]] std::filesystem::path scenario_file(const std::filesystem::path& folder);
+[[nodiscard]] std::filesystem::path created_file(const std::filesystem::path& folder);
 [[nodiscard]] std::filesystem::path timings_file(const std::filesystem::path& folder);
 [[nodiscard]] std::filesystem::path metrics_file(const std::filesystem::path& folder);
 [[nodiscard]] std::filesystem::path frames_file(const std::filesystem::path& folder);
@@ -67,16 +68,19 @@ class RunLock {
   std::filesystem::path file_;
 };
 
-/// What the folder says of itself: its manifest, the time stamps of timings.json, and the frames
-/// counted where the run did not come to its end. A run marked running whose lock nobody holds is
-/// interrupted.
-/// Errors: kNotFound where there is no manifest; kUnreadable naming file and fault.
+/// A run's id.
+[[nodiscard]] std::string folder_name(const std::filesystem::path& folder);
+
+/// What the folder says of itself: its manifest, created.json, and the frames
+/// written where the run did not come to its end. A run marked running whose lock nobody holds is
+/// interrupted. A file or field at fault is told in `problem`, and the others are read.
+/// Errors: kNotFound where there is no manifest.
 [[nodiscard]] Result<RunInfo> read_run_info(const std::filesystem::path& folder);
 
 /// The fields of a RunInfo that stand in a manifest.
 void put_run_info(const RunInfo& info, nlohmann::json& manifest);
 
-/// `2026-11-21T09:12:04Z`
+/// `2026-11-21T09:12:04.123456Z`
 [[nodiscard]] std::string utc_text(std::int64_t unix_ns);
 [[nodiscard]] std::int64_t utc_now_ns();
 

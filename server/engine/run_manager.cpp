@@ -1,9 +1,9 @@
 #include "server/engine/run_manager.hpp"
 
-#include <algorithm>
 #include <utility>
 
 #include "server/engine/run_manager_impl.hpp"
+#include "server/engine/run_removal.hpp"
 #include "server/engine/scenario_estimators.hpp"
 
 namespace overfly::engine {
@@ -36,16 +36,22 @@ Result<std::unique_ptr<RunManager>> RunManager::create(RunManagerOptions options
     return Error{ErrorCode::kNotFound,
                  options.scenarios_folder.string() + ": no such folder of scenarios"};
   }
+  remove_leftovers(options.runs_folder);
   std::unique_ptr<RunManager> manager(new RunManager());
   manager->impl_ = std::make_unique<Impl>(std::move(options));
+  if (Status status = manager->impl_->start_threads(); !status) return status.error();
   return manager;
 }
 
 Result<RunInfo> RunManager::start(const std::string& scenario,
                                   const std::vector<Override>& overrides,
-                                  const std::string& idempotency_key) {
-  if (!idempotency_key.empty()) {
-    if (std::optional<RunInfo> earlier = impl_->started_by(idempotency_key)) return *earlier;
+                                  const std::string& idempotency_key,
+                                  StartReport* report) {
+  StartReport unasked;
+  StartReport& told = report != nullptr ? *report : unasked;
+  if (std::optional<RunInfo> earlier = impl_->started_by(idempotency_key)) {
+    told.repeated = true;
+    return *earlier;
   }
   const Result<fs::path> file = scenario_path(impl_->options.scenarios_folder, scenario);
   if (!file) return file.error();
@@ -53,7 +59,7 @@ Result<RunInfo> RunManager::start(const std::string& scenario,
   if (!loaded) return loaded.error();
   loaded->sources = impl_->sources();
   if (Status status = check_scenario(*loaded); !status) return status.error();
-  return impl_->enqueue(std::move(*loaded), idempotency_key);
+  return impl_->enqueue(std::move(*loaded), idempotency_key, told);
 }
 
 Status RunManager::check_overrides(const std::string& scenario,
@@ -79,32 +85,18 @@ Result<Json> RunManager::scenario(const std::string& name) const {
   return loaded->resolved;
 }
 
-std::vector<RunInfo> RunManager::runs() const {
-  std::vector<RunInfo> infos = impl_->active_infos();
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(impl_->options.runs_folder, ignored)) {
-    const std::string id = entry.path().filename().string();
-    const bool known =
-        std::any_of(infos.begin(), infos.end(), [&](const RunInfo& info) { return info.id == id; });
-    if (known || !is_plain_name(id) || !entry.is_directory(ignored)) continue;
-    if (Result<RunInfo> info = read_run_info(entry.path()); info) infos.push_back(*info);
-  }
-  std::sort(infos.begin(), infos.end(), [](const RunInfo& a, const RunInfo& b) {
-    return std::tie(a.created_utc, a.id) > std::tie(b.created_utc, b.id);
-  });
-  return infos;
+RunList RunManager::runs() const { return impl_->list(); }
+
+Result<RunInfo> RunManager::run(const std::string& id) const {
+  if (std::optional<RunInfo> known = impl_->known_info(id)) return *known;
+  return impl_->index.run(id);
 }
 
 Result<std::shared_ptr<RunTimeline>> RunManager::timeline(const std::string& id) {
   if (std::shared_ptr<RunTimeline> known = impl_->known_timeline(id)) return known;
   const Result<fs::path> place = folder(id);
   if (!place) return place.error();
-  Result<std::shared_ptr<RunTimeline>> opened = RunTimeline::open(*place);
-  // A run that another process still writes is read anew each time.
-  if (opened && opened.value()->info().status != RunStatus::kRunning) {
-    impl_->remember(id, *opened);
-  }
-  return opened;
+  return impl_->shelf.get(id);
 }
 
 Status RunManager::cancel(const std::string& id) {
@@ -119,17 +111,11 @@ Status RunManager::remove(const std::string& id) {
   if (impl_->is_live(id)) {
     return Error{ErrorCode::kConflict, "run \"" + id + "\" is not over: cancel it first"};
   }
+  // A run cancelled while it waited has no folder.
+  if (impl_->forget_unflown(id)) return {};
   const Result<fs::path> place = folder(id);
-  if (!place) {
-    // A run cancelled while it waited never had a folder.
-    return impl_->forget(id) ? Status{} : Status{place.error()};
-  }
-  if (RunLock::held(*place)) {
-    return Error{ErrorCode::kConflict, "run \"" + id + "\" is being written by another process"};
-  }
-  std::error_code failure;
-  fs::remove_all(*place, failure);
-  if (failure) return Error{ErrorCode::kIo, place->string() + ": " + failure.message()};
+  if (!place) return place.error();
+  if (Status status = remove_run_folder(*place); !status) return status;
   impl_->forget(id);
   return {};
 }

@@ -1,6 +1,8 @@
 // The runs of a server: those on disk and those in flight.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -9,6 +11,7 @@
 
 #include "server/engine/picture_rate.hpp"
 #include "server/engine/run.hpp"
+#include "server/engine/run_index.hpp"
 
 namespace overfly::engine {
 
@@ -24,7 +27,10 @@ struct RunManagerOptions {
   std::filesystem::path runs_folder;  ///< made if absent
   std::filesystem::path scenarios_folder;
   RendererFactory renderer_factory;
-  int max_parallel_runs = 1;  ///< further ones wait in a queue
+  int max_parallel_runs = 1;           ///< further ones wait in a queue
+  std::size_t max_waiting_runs = 100;  ///< further ones are refused
+  /// That flights and pictures for viewers may use; 0 = most of the machine's.
+  std::uint64_t memory_limit_bytes = 0;
   /// Overrides may name programs to start and addresses to speak to.
   bool allow_commands = false;
   /// Folders whose files scenarios may name, besides `declared_folders(scenarios_folder)`; never
@@ -32,9 +38,18 @@ struct RunManagerOptions {
   std::optional<std::vector<std::filesystem::path>> data_folders;
 };
 
+/// What became of a request for a run, besides its error.
+struct StartReport {
+  bool repeated = false;  ///< the idempotency key gave an earlier run
+  /// Why a scenario that can be flown is not flown here now.
+  enum class Refusal { kNone, kQueueFull, kMemory } refusal = Refusal::kNone;
+};
+
 /// Thread-safe. Owns the threads of the runs; its destructor cancels and joins them.
 class RunManager {
  public:
+  /// Errors: kInvalidArgument for an option; kNotFound, kIo for a folder; kInternal when no thread
+  /// can be started.
   static Result<std::unique_ptr<RunManager>> create(RunManagerOptions options);
   ~RunManager();
 
@@ -43,22 +58,27 @@ class RunManager {
   [[nodiscard]] Result<nlohmann::json> scenario(const std::string& name) const;
 
   /// Starts (or queues) a run of a scenario with overrides. The same idempotency key gives the
-  /// run that it gave before. Errors: kNotFound, kInvalidArgument with the faulty fields.
+  /// run that it gave before, within a day. Errors: kNotFound, kInvalidArgument with the faulty
+  /// fields; kConflict with a full queue; kUnsupported where it needs more memory than there is.
   [[nodiscard]] Result<RunInfo> start(const std::string& scenario,
                                       const std::vector<Override>& overrides,
-                                      const std::string& idempotency_key = "");
+                                      const std::string& idempotency_key = "",
+                                      StartReport* report = nullptr);
   /// Whether a client that is not trusted with this machine may ask for these overrides: they must
   /// leave commands, sockets and addresses of estimators as the scenario's file has them.
   /// Errors: kInvalidArgument naming the field. Other faults are left to start().
   [[nodiscard]] Status check_overrides(const std::string& scenario,
                                        const std::vector<Override>& overrides) const;
-  /// Newest first.
-  [[nodiscard]] std::vector<RunInfo> runs() const;
+  /// Newest first. From memory: only folders that have changed are read.
+  [[nodiscard]] RunList runs() const;
+  /// One run alone. Errors: kNotFound.
+  [[nodiscard]] Result<RunInfo> run(const std::string& id) const;
   /// The time line, live or read from disk (cached). Errors: kNotFound, kUnreadable.
   [[nodiscard]] Result<std::shared_ptr<RunTimeline>> timeline(const std::string& id);
   /// Errors: kNotFound; kConflict when it is not running or queued.
   Status cancel(const std::string& id);
-  /// Deletes the folder. Errors: kNotFound; kConflict while it runs.
+  /// Deletes the folder. Of several calls at a time one succeeds. Errors: kNotFound; kConflict
+  /// while it runs, and while another process is at work in it.
   Status remove(const std::string& id);
   /// Folder of a run. Errors: kNotFound, also for an id that is no plain folder name.
   [[nodiscard]] Result<std::filesystem::path> folder(const std::string& id) const;

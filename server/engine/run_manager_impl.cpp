@@ -1,15 +1,15 @@
 #include "server/engine/run_manager_impl.hpp"
 
 #include <algorithm>
+#include <chrono>
+#include <iterator>
+#include <set>
 #include <utility>
+
+#include "server/engine/run_id.hpp"
 
 namespace overfly::engine {
 namespace {
-
-bool live(const RunTimeline& timeline) {
-  const RunStatus status = timeline.info().status;
-  return status == RunStatus::kQueued || status == RunStatus::kRunning;
-}
 
 RunInfo queued_info(const std::string& id, const Scenario& scenario) {
   RunInfo info;
@@ -26,28 +26,30 @@ RunInfo queued_info(const std::string& id, const Scenario& scenario) {
   return info;
 }
 
-void set_status(RunTimeline& timeline, RunStatus status, const std::string& error) {
-  RunInfo info = timeline.info();
-  info.status = status;
-  info.error = error;
-  timeline.set_info(info);
+MemoryBudget budget_of(const RunManagerOptions& options) {
+  constexpr bool kViews = true;
+  return options.memory_limit_bytes == 0 ? MemoryBudget::of_machine(kViews)
+                                         : MemoryBudget(options.memory_limit_bytes, kViews);
 }
 
 }  // namespace
 
-RunManager::Impl::Impl(RunManagerOptions manager_options) : options(std::move(manager_options)) {
-  for (int i = 0; i < options.max_parallel_runs; ++i) workers_.emplace_back([this] { work(); });
-}
+RunManager::Impl::Impl(RunManagerOptions manager_options)
+    : options(std::move(manager_options)),
+      index(options.runs_folder),
+      shelf(options.runs_folder),
+      budget_(budget_of(options)) {}
 
 RunManager::Impl::~Impl() {
   {
     const std::lock_guard lock(mutex_);
     stopping_ = true;
+    for (const auto& run : queue_) release_run(options.runs_folder, run->id);
     queue_.clear();
     for (auto& [id, run] : runs_) run->cancel = true;
   }
   wake_.notify_all();
-  for (std::thread& worker : workers_) worker.join();
+  for (std::thread& thread : threads_) thread.join();
 }
 
 SourcePolicy RunManager::Impl::sources() const {
@@ -57,77 +59,90 @@ SourcePolicy RunManager::Impl::sources() const {
   return SourcePolicy::inside(std::move(folders), {options.runs_folder});
 }
 
-std::string RunManager::Impl::new_id(const std::string& scenario) {
-  // 2026-11-21T09:12:04Z -> 20261121-091204
-  std::string stamp = utc_text(utc_now_ns());
-  std::erase_if(stamp, [](char c) { return c == '-' || c == ':' || c == 'Z'; });
-  std::replace(stamp.begin(), stamp.end(), 'T', '-');
-  const std::string base = stamp + "-" + scenario;
-  std::string id = base;
-  std::error_code ignored;
-  for (int n = 2; runs_.count(id) > 0 || std::filesystem::exists(options.runs_folder / id, ignored);
-       ++n) {
-    id = base + "-" + std::to_string(n);
+Result<RunInfo> RunManager::Impl::enqueue(Scenario scenario,
+                                          const std::string& idempotency_key,
+                                          StartReport& report) {
+  if (Status fits = budget_.check(scenario); !fits) {
+    report.refusal = StartReport::Refusal::kMemory;
+    return fits.error();
   }
-  return id;
-}
-
-RunInfo RunManager::Impl::enqueue(Scenario scenario, const std::string& idempotency_key) {
   const std::lock_guard lock(mutex_);
-  if (std::optional<RunInfo> earlier = info_by_key(idempotency_key)) return *earlier;
+  if (std::optional<RunInfo> earlier = info_by_key(idempotency_key)) {
+    report.repeated = true;
+    return *earlier;
+  }
+  if (queue_.size() >= options.max_waiting_runs) {
+    report.refusal = StartReport::Refusal::kQueueFull;
+    return Error{ErrorCode::kConflict,
+                 "waiting runs = " + std::to_string(queue_.size()) + ": must be below " +
+                     std::to_string(options.max_waiting_runs) + " for another one to be queued"};
+  }
+  Result<std::string> id = reserve_run(options.runs_folder, scenario.name, utc_now_ns());
+  if (!id) return id.error();
   auto run = std::make_shared<ManagedRun>();
-  run->id = new_id(scenario.name);
+  run->id = std::move(*id);
+  run->memory = memory_of(scenario);
   RunInfo info = queued_info(run->id, scenario);
   run->timeline = std::make_shared<RunTimeline>(info, info.estimators);
   run->scenario = std::move(scenario);
   runs_[run->id] = run;
-  if (!idempotency_key.empty()) id_by_key_[idempotency_key] = run->id;
+  keys_.keep(idempotency_key, run->id, std::chrono::steady_clock::now());
   queue_.push_back(std::move(run));
-  wake_.notify_one();
+  wake_.notify_all();
   return info;
 }
 
-std::optional<RunInfo> RunManager::Impl::started_by(const std::string& idempotency_key) const {
+std::optional<RunInfo> RunManager::Impl::started_by(const std::string& idempotency_key) {
   const std::lock_guard lock(mutex_);
   return info_by_key(idempotency_key);
 }
 
-std::optional<RunInfo> RunManager::Impl::info_by_key(const std::string& idempotency_key) const {
-  const auto id = id_by_key_.find(idempotency_key);
-  if (id == id_by_key_.end()) return std::nullopt;
-  const auto run = runs_.find(id->second);
-  if (run != runs_.end()) return run->second->timeline->info();
-  const Result<RunInfo> info = read_run_info(options.runs_folder / id->second);
+std::optional<RunInfo> RunManager::Impl::info_by_key(const std::string& idempotency_key) {
+  const auto id = keys_.run_of(idempotency_key, std::chrono::steady_clock::now());
+  if (!id) return std::nullopt;
+  if (const auto timeline = timeline_of(*id)) return timeline->info();
+  const Result<RunInfo> info = index.run(*id);
   return info ? std::optional<RunInfo>(*info) : std::nullopt;
 }
 
-void RunManager::Impl::retire() {
-  std::vector<std::pair<std::string, std::string>> over;  // (created, id): the oldest first
-  for (const auto& [id, run] : runs_) {
-    std::error_code ignored;
-    if (live(*run->timeline)) continue;
-    if (!std::filesystem::exists(manifest_file(options.runs_folder / id), ignored)) continue;
-    over.emplace_back(run->timeline->info().created_utc, id);
+RunList RunManager::Impl::list() {
+  RunList own;
+  std::set<std::string> skip;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto add = [&](const ManagedRun& run) {
+      own.push_back(std::make_shared<const RunInfo>(run.timeline->info()));
+      skip.insert(run.id);
+    };
+    for (const auto& [id, run] : runs_) add(*run);
+    for (const auto& run : unflown_) add(*run);
   }
-  std::sort(over.begin(), over.end());
-  for (std::size_t i = 0; i + kKeptTimelines < over.size(); ++i) runs_.erase(over[i].second);
+  const auto first = [](const auto& a, const auto& b) { return newer(*a, *b); };
+  std::sort(own.begin(), own.end(), first);
+  const RunList stored = index.list(skip);
+  if (own.empty()) return stored;
+  RunList all;
+  all.reserve(own.size() + stored.size());
+  std::merge(own.begin(), own.end(), stored.begin(), stored.end(), std::back_inserter(all), first);
+  return all;
 }
 
-std::vector<RunInfo> RunManager::Impl::active_infos() const {
-  const std::lock_guard lock(mutex_);
-  std::vector<RunInfo> infos;
-  infos.reserve(runs_.size());
-  for (const auto& [id, run] : runs_) infos.push_back(run->timeline->info());
-  return infos;
-}
-
-std::shared_ptr<RunTimeline> RunManager::Impl::known_timeline(const std::string& id) {
-  const std::lock_guard lock(mutex_);
+std::shared_ptr<RunTimeline> RunManager::Impl::timeline_of(const std::string& id) const {
   if (const auto run = runs_.find(id); run != runs_.end()) return run->second->timeline;
-  for (const auto& [read_id, timeline] : read_) {
-    if (read_id == id) return timeline;
+  for (const auto& run : unflown_) {
+    if (run->id == id) return run->timeline;
   }
   return nullptr;
+}
+
+std::shared_ptr<RunTimeline> RunManager::Impl::known_timeline(const std::string& id) const {
+  const std::lock_guard lock(mutex_);
+  return timeline_of(id);
+}
+
+std::optional<RunInfo> RunManager::Impl::known_info(const std::string& id) const {
+  const auto timeline = known_timeline(id);
+  return timeline ? std::optional<RunInfo>(timeline->info()) : std::nullopt;
 }
 
 std::optional<Scenario> RunManager::Impl::active_scenario(const std::string& id) const {
@@ -143,82 +158,49 @@ WorldCache::Shared RunManager::Impl::flown_world(const std::string& id) const {
   return run == runs_.end() ? nullptr : run->second->world;
 }
 
-void RunManager::Impl::remember(const std::string& id, std::shared_ptr<RunTimeline> timeline) {
-  const std::lock_guard lock(mutex_);
-  read_.emplace_front(id, std::move(timeline));
-  if (read_.size() > kKeptTimelines) read_.pop_back();
-}
-
 bool RunManager::Impl::cancel(const std::string& id) {
   const std::lock_guard lock(mutex_);
   const auto found = runs_.find(id);
-  if (found == runs_.end() || !live(*found->second->timeline)) return false;
-  const std::shared_ptr<ManagedRun>& run = found->second;
+  if (found == runs_.end() || !engine::is_live(*found->second->timeline)) return false;
+  const std::shared_ptr<ManagedRun> run = found->second;
   run->cancel = true;
   const auto waiting = std::find(queue_.begin(), queue_.end(), run);
-  if (waiting != queue_.end()) {
-    queue_.erase(waiting);
-    set_status(*run->timeline, RunStatus::kCancelled, "");
-  }
+  if (waiting == queue_.end()) return true;
+  queue_.erase(waiting);
+  runs_.erase(found);
+  release_run(options.runs_folder, id);
+  set_status(*run->timeline, RunStatus::kCancelled, "");
+  keep_unflown(run);
+  // The one behind it may fit where this one did not.
+  wake_.notify_all();
   return true;
 }
 
 bool RunManager::Impl::is_live(const std::string& id) const {
   const std::lock_guard lock(mutex_);
   const auto run = runs_.find(id);
-  return run != runs_.end() && live(*run->second->timeline);
+  return run != runs_.end() && engine::is_live(*run->second->timeline);
 }
 
-bool RunManager::Impl::forget(const std::string& id) {
+void RunManager::Impl::keep_unflown(std::shared_ptr<ManagedRun> run) {
+  unflown_.push_front(std::move(run));
+  if (unflown_.size() > kKeptUnflown) unflown_.pop_back();
+}
+
+bool RunManager::Impl::forget_unflown(const std::string& id) {
   const std::lock_guard lock(mutex_);
-  std::erase_if(read_, [&](const auto& entry) { return entry.first == id; });
-  std::erase_if(id_by_key_, [&](const auto& entry) { return entry.second == id; });
-  return runs_.erase(id) > 0;
+  if (std::erase_if(unflown_, [&](const auto& run) { return run->id == id; }) == 0) return false;
+  keys_.forget_run(id);
+  return true;
 }
 
-void RunManager::Impl::work() {
-  while (true) {
-    std::shared_ptr<ManagedRun> run;
-    {
-      std::unique_lock lock(mutex_);
-      wake_.wait(lock, [this] { return stopping_ || !queue_.empty(); });
-      if (stopping_) return;
-      run = queue_.front();
-      queue_.pop_front();
-    }
-    fly(*run);
-    const std::lock_guard lock(mutex_);
-    retire();
-  }
-}
-
-void RunManager::Impl::fly(ManagedRun& run) {
-  RunOptions run_options;
-  run_options.folder = options.runs_folder / run.id;
-  run_options.renderer_factory = options.renderer_factory;
-  run_options.cancel = &run.cancel;
-  run_options.timeline = run.timeline;
-  run_options.publish_images = true;
-  run_options.worlds = &worlds;
-  run_options.picture_rate = &picture_rate;
-  const auto set_world = [this, &run](WorldCache::Shared world) {
-    const std::lock_guard lock(mutex_);
-    run.world = std::move(world);
-  };
-  run_options.world_opened = set_world;
-  run_options.notice = [&run](const std::string& text) {
-    // The run's own next change of its info takes it away again.
-    RunInfo info = run.timeline->info();
-    info.notice = text;
-    run.timeline->set_info(info);
-  };
-  const Result<RunResult> result = run_scenario(run.scenario, run_options);
-  set_world(nullptr);
-  // The run itself tells its timeline how it ended; only one that could not even make its folder
-  // has had no chance to.
-  if (!result && live(*run.timeline)) {
-    set_status(*run.timeline, RunStatus::kFailed, result.error().message);
-  }
+void RunManager::Impl::forget(const std::string& id) {
+  shelf.forget(id);
+  const std::lock_guard lock(mutex_);
+  keys_.forget_run(id);
+  // Its thread may not have let it go yet.
+  runs_.erase(id);
+  std::erase_if(unflown_, [&](const auto& run) { return run->id == id; });
 }
 
 }  // namespace overfly::engine

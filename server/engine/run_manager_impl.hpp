@@ -12,68 +12,96 @@
 #include <thread>
 #include <vector>
 
+#include "server/engine/idempotency_keys.hpp"
 #include "server/engine/picture_rate.hpp"
 #include "server/engine/run_folder.hpp"
+#include "server/engine/run_index.hpp"
 #include "server/engine/run_manager.hpp"
+#include "server/engine/run_memory.hpp"
 #include "server/engine/scenario_list.hpp"
+#include "server/engine/timeline_shelf.hpp"
 #include "server/engine/world_cache.hpp"
 
 namespace overfly::engine {
 
-/// A run that this process was asked for; it stays here for a while after its end.
+/// A run that this process was asked for, until it is over.
 struct ManagedRun {
   std::string id;
   Scenario scenario;
+  RunMemory memory;
   std::shared_ptr<RunTimeline> timeline;
   std::atomic<bool> cancel{false};
   WorldCache::Shared world;  ///< while it flies over it; guarded by the manager
+  bool flies = false;        ///< else it waits
 };
 
+/// Whether it waits or flies.
+[[nodiscard]] bool is_live(const RunTimeline& timeline);
+void set_status(RunTimeline& timeline, RunStatus status, const std::string& error);
+
 struct RunManager::Impl {
-  /// Timelines of runs that are over and are kept in memory: so many read from disk, and so many
-  /// of this process.
-  static constexpr std::size_t kKeptTimelines = 8;
+  /// Runs that ended before they had a folder are listed until so many newer ones did.
+  static constexpr std::size_t kKeptUnflown = 8;
 
   explicit Impl(RunManagerOptions manager_options);
+  /// Cancels and joins.
   ~Impl();
+  /// Errors: kInternal with the system's reason.
+  Status start_threads();
 
   /// What scenarios may name now: the declared folders follow the scenario files.
   [[nodiscard]] SourcePolicy sources() const;
-  RunInfo enqueue(Scenario scenario, const std::string& idempotency_key);
-  [[nodiscard]] std::optional<RunInfo> started_by(const std::string& idempotency_key) const;
-  [[nodiscard]] std::vector<RunInfo> active_infos() const;
-  [[nodiscard]] std::shared_ptr<RunTimeline> known_timeline(const std::string& id);
+  /// Errors: as RunManager::start, for a scenario that can be flown.
+  Result<RunInfo> enqueue(Scenario scenario,
+                          const std::string& idempotency_key,
+                          StartReport& report);
+  [[nodiscard]] std::optional<RunInfo> started_by(const std::string& idempotency_key);
+  /// All runs, those of this process among them.
+  [[nodiscard]] RunList list();
+  /// Of runs that wait, fly, or ended without a folder.
+  [[nodiscard]] std::optional<RunInfo> known_info(const std::string& id) const;
+  [[nodiscard]] std::shared_ptr<RunTimeline> known_timeline(const std::string& id) const;
   /// Null when it does not fly here.
   [[nodiscard]] WorldCache::Shared flown_world(const std::string& id) const;
   [[nodiscard]] std::optional<Scenario> active_scenario(const std::string& id) const;
-  void remember(const std::string& id, std::shared_ptr<RunTimeline> timeline);
   /// False when the run is not queued or running here.
   bool cancel(const std::string& id);
   [[nodiscard]] bool is_live(const std::string& id) const;
-  /// False when the run was not known.
-  bool forget(const std::string& id);
+  /// Forgets a run without a folder. False when there is no such run.
+  bool forget_unflown(const std::string& id);
+  /// Forgets a run whose folder is gone.
+  void forget(const std::string& id);
 
   const RunManagerOptions options;
   WorldCache worlds;
   PictureRate picture_rate;
+  RunIndex index;
+  TimelineShelf shelf;
 
  private:
   void work();
+  void watch();
   void fly(ManagedRun& run);
-  [[nodiscard]] std::string new_id(const std::string& scenario);
-  /// Lets the oldest runs go that are over and can be read from disk. @pre mutex_ is held
-  void retire();
-  /// @pre mutex_ is held
-  [[nodiscard]] std::optional<RunInfo> info_by_key(const std::string& idempotency_key) const;
+  void end(const std::shared_ptr<ManagedRun>& run);
+  /// Lets a run go without a word of its own.
+  void drop(const std::shared_ptr<ManagedRun>& run, const char* reason) noexcept;
 
+  // These need mutex_ to be held.
+  [[nodiscard]] std::optional<RunInfo> info_by_key(const std::string& idempotency_key);
+  [[nodiscard]] std::shared_ptr<RunTimeline> timeline_of(const std::string& id) const;
+  /// Whether the first in the queue may fly beside those that do.
+  [[nodiscard]] bool next_fits() const;
+  void keep_unflown(std::shared_ptr<ManagedRun> run);
+
+  const MemoryBudget budget_;
   mutable std::mutex mutex_;
   std::condition_variable wake_;
   bool stopping_ = false;
-  std::map<std::string, std::shared_ptr<ManagedRun>> runs_;
+  std::map<std::string, std::shared_ptr<ManagedRun>> runs_;  ///< that wait or fly
   std::deque<std::shared_ptr<ManagedRun>> queue_;
-  std::map<std::string, std::string> id_by_key_;
-  std::deque<std::pair<std::string, std::shared_ptr<RunTimeline>>> read_;  ///< newest first
-  std::vector<std::thread> workers_;
+  std::deque<std::shared_ptr<ManagedRun>> unflown_;  ///< newest first
+  IdempotencyKeys keys_;
+  std::vector<std::thread> threads_;
 };
 
 }  // namespace overfly::engine

@@ -1,6 +1,7 @@
 #include "server/engine/run_recorder.hpp"
 
 #include <algorithm>
+#include <exception>
 #include <utility>
 
 #include "server/engine/build_info.hpp"
@@ -28,11 +29,6 @@ Status make_empty_folder(const fs::path& folder) {
     return Error{ErrorCode::kConflict, folder.string() + ": is not empty"};
   }
   return {};
-}
-
-std::string folder_name(const fs::path& folder) {
-  const fs::path plain = fs::absolute(folder).lexically_normal();
-  return (plain.has_filename() ? plain : plain.parent_path()).filename().string();
 }
 
 Json estimators_json(const Scenario& scenario) {
@@ -79,6 +75,11 @@ Result<std::unique_ptr<RunRecorder>> RunRecorder::create(const fs::path& folder,
   if (Status status = make_empty_folder(folder); !status) return status.error();
   Result<RunLock> lock = RunLock::take(folder);
   if (!lock) return lock.error();
+  // Another process may have flown here between the look and the lock.
+  std::error_code ignored;
+  if (fs::exists(manifest_file(folder), ignored)) {
+    return Error{ErrorCode::kConflict, folder.string() + ": holds a run already"};
+  }
   std::unique_ptr<RunRecorder> recorder(new RunRecorder(folder, std::move(lock).value(), scenario));
   RunInfo& info = recorder->info_;
   if (timeline) info = timeline->info();
@@ -118,6 +119,11 @@ Status RunRecorder::open_files() {
                {"seed", scenario_.seed},
                {"world", Json::object()},
                {"estimators", estimators_json(scenario_)}};
+  // The manifest makes the folder a run: what a list of runs reads besides is there before it.
+  if (Status status = write_json(created_file(folder_), {{"created_utc", info_.created_utc}});
+      !status) {
+    return status;
+  }
   if (Status status = write_timings(Json::object()); !status) return status;
   if (Status status = write_manifest(); !status) return status;
   if (Status status = write_json(scenario_file(folder_), scenario_.resolved); !status) {
@@ -260,15 +266,32 @@ Result<Json> RunRecorder::finish(RunStatus status, const std::string& error, Jso
   }
   timings["viewers"] = timeline_->audience()->summary();
   const Status timed = write_timings(std::move(timings));
-  put_run_info(info_, manifest_);
-  const Status written = write_json(manifest_file(folder_), manifest_);
-  // The lock goes before the word spreads: who hears that the run is over may delete it at once.
-  lock_.reset();
-  timeline_->set_info(info_);
+  const Status written = let_go();
   if (!metrics) return metrics.error();
   if (!timed) return timed.error();
   if (!written) return written.error();
   return metrics;
+}
+
+Status RunRecorder::let_go() {
+  put_run_info(info_, manifest_);
+  Status written = write_json(manifest_file(folder_), manifest_);
+  // The lock goes before the word spreads: who hears that the run is over may delete it at once.
+  lock_.reset();
+  timeline_->set_info(info_);
+  return written;
+}
+
+void RunRecorder::give_up(const Error& error) {
+  if (!lock_) return;
+  info_.status = RunStatus::kFailed;
+  info_.error = error.message;
+  try {
+    (void)let_go();
+  } catch (const std::exception&) {
+    // No memory even for the manifest: without its lock the run shows as interrupted.
+    lock_.reset();
+  }
 }
 
 }  // namespace overfly::engine

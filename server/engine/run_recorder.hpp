@@ -66,6 +66,10 @@ class RunRecorder {
   /// @param timings  wall-clock facts to put beside the estimators'
   Result<nlohmann::json> finish(RunStatus status, const std::string& error, nlohmann::json timings);
 
+  /// After a finish() that did not come to its end: the manifest says "failed" all the same, and
+  /// the folder is let go. Nothing after one that did.
+  void give_up(const Error& error);
+
   [[nodiscard]] RunInfo info() const { return info_; }
   [[nodiscard]] const RunRecords& records() const { return records_; }
 
@@ -95,6 +99,8 @@ class RunRecorder {
   Status log_transition(std::size_t estimator, const EstimateRecord& record);
   Status keep_debug_image(std::size_t estimator, EstimatorEvent& event);
   Status write_timings(nlohmann::json timings) const;
+  /// The last manifest, and the end of the lock.
+  Status let_go();
 
   std::filesystem::path folder_;
   std::optional<RunLock> lock_;

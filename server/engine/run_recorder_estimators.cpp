@@ -138,7 +138,6 @@ Status RunRecorder::log_transition(std::size_t estimator, const EstimateRecord& 
 }
 
 Status RunRecorder::write_timings(Json timings) const {
-  timings["created_utc"] = info_.created_utc;
   timings["peak_memory_mb"] = own_peak_memory_mb();
   Json estimators = Json::object();
   for (std::size_t i = 0; i < estimators_.size(); ++i) {

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <utility>
 
+#include "server/engine/file_field.hpp"
 #include "server/engine/run_folder.hpp"
 #include "server/engine/whole_file.hpp"
 
@@ -27,40 +29,52 @@ Status for_each_row(const fs::path& file, const Read& read) {
   return {};
 }
 
-Status read_mount(const Json& manifest, RunRecords& records) {
-  // A run that failed before it had a camera keeps the default mount.
-  if (!manifest.contains("camera")) return {};
-  const Json& camera = manifest.at("camera");
-  const Result<Pose> mount = pose_from(camera.value("T_body_camera", Json::object()));
-  if (!mount) return mount.error().in("camera.T_body_camera");
-  records.T_body_camera = *mount;
-  return {};
+Pose read_pose(const FileField& field) {
+  const Result<Pose> pose = pose_from(field.value());
+  if (!pose) field.fault("be a pose (" + pose.error().message + ")");
+  return *pose;
 }
 
-/// Cameras besides the main one, and whose images each estimator got.
-Status read_cameras(const Json& manifest, RunRecords& records) {
+/// Cameras, and whose images each estimator got. A run that failed before it had a camera keeps
+/// the default mount.
+void read_cameras(const FileField& manifest, RunRecords& records) {
+  if (const auto camera = manifest.find("camera")) {
+    if (const auto mount = camera->find("T_body_camera")) {
+      records.T_body_camera = read_pose(*mount);
+    }
+  }
   std::vector<std::string> names;
-  for (const Json& camera : manifest.value("cameras", Json::array())) {
-    names.push_back(camera.at("name").get<std::string>());
-    if (names.size() == 1) continue;
-    const Result<Pose> mount = pose_from(camera.at("T_body_camera"));
-    if (!mount) return mount.error().in("cameras." + names.back() + ".T_body_camera");
-    records.other_cameras.push_back({names.back(), *mount, {}});
+  if (const auto cameras = manifest.find("cameras")) {
+    for (const FileField& camera : cameras->items()) {
+      names.push_back(camera.at("name").plain_name());
+      if (names.size() == 1) continue;
+      records.other_cameras.push_back({names.back(), read_pose(camera.at("T_body_camera")), {}});
+    }
   }
-  for (std::size_t i = 0; i < records.estimators.size(); ++i) {
-    const std::string camera = manifest.at("estimators").at(i).value("camera", "");
-    const auto named = std::find(names.begin(), names.end(), camera);
-    if (named == names.end()) continue;
-    records.estimators[i].camera = static_cast<std::size_t>(named - names.begin());
+  for (const FileField& entry : manifest.at("estimators").items()) {
+    EstimatorRecords estimator;
+    estimator.name = entry.at("name").plain_name();
+    estimator.type = entry.at("type").text();
+    const auto camera = entry.find("camera");
+    const auto named = std::find(names.begin(), names.end(), camera ? camera->text() : "");
+    if (named != names.end()) {
+      estimator.camera = static_cast<std::size_t>(named - names.begin());
+    }
+    records.estimators.push_back(std::move(estimator));
   }
-  return {};
 }
 
 Status read_frames(const fs::path& folder, RunRecords& records) {
   return for_each_row(frames_file(folder), [&](const Json& line) -> Status {
-    if (line.is_object() && line.value("late", false)) {
-      records.late_frames.push_back(
-          {line.value("frame", std::int64_t{0}), line.value("t_ns", std::int64_t{0})});
+    const auto late = guarded_fields([&]() -> std::optional<evaluation::FlightFrame> {
+      const FileField row(line);
+      const auto flag = row.find("late");
+      if (!flag || !flag->boolean()) return std::nullopt;
+      return evaluation::FlightFrame{row.at("frame").integer(), row.at("t_ns").integer()};
+    });
+    if (!late) return late.error();
+    if (*late) {
+      records.late_frames.push_back(**late);
       return {};
     }
     Result<FrameRecord> record = frame_record_from(line, records.T_body_camera);
@@ -95,19 +109,11 @@ Result<RunRecords> read_run_records(const fs::path& folder) {
   const Result<Json> manifest = read_json(manifest_file(folder));
   if (!manifest) return manifest.error();
   RunRecords records;
-  const std::string origin = manifest_file(folder).string();
-  try {
-    if (Status status = read_mount(*manifest, records); !status) return status.error().in(origin);
-    for (const Json& entry : manifest->at("estimators")) {
-      records.estimators.push_back(
-          {entry.at("name").get<std::string>(), entry.at("type").get<std::string>(), {}, 0});
-    }
-    if (Status status = read_cameras(*manifest, records); !status) {
-      return status.error().in(origin);
-    }
-  } catch (const Json::exception& error) {
-    return Error{ErrorCode::kUnreadable, origin + ": " + error.what()};
-  }
+  const auto read = guarded_fields([&] {
+    read_cameras(FileField(*manifest), records);
+    return true;
+  });
+  if (!read) return read.error().in(manifest_file(folder).string());
   if (Status status = read_frames(folder, records); !status) return status.error();
   for (CameraRecords& camera : records.other_cameras) {
     if (Status status = read_camera_frames(folder, camera); !status) return status.error();

@@ -42,6 +42,8 @@ const char* to_string(RunStatus status) {
       return "cancelled";
     case RunStatus::kInterrupted:
       return "interrupted";
+    case RunStatus::kUnreadable:
+      return "unreadable";
   }
   return "failed";
 }

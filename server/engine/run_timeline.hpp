@@ -21,7 +21,15 @@
 
 namespace overfly::engine {
 
-enum class RunStatus { kQueued, kRunning, kCompleted, kFailed, kCancelled, kInterrupted };
+enum class RunStatus {
+  kQueued,
+  kRunning,
+  kCompleted,
+  kFailed,
+  kCancelled,
+  kInterrupted,  ///< its program ended before it did
+  kUnreadable,   ///< its folder does not say; RunInfo::problem tells why
+};
 [[nodiscard]] const char* to_string(RunStatus status);  ///< "queued", "running", ...
 
 /// One camera frame's row.
@@ -73,6 +81,7 @@ struct RunInfo {
   RunStatus status = RunStatus::kQueued;
   std::string created_utc;       ///< ISO 8601
   std::string error;             ///< why it failed; empty otherwise
+  std::string problem;           ///< file and field of its folder that are wrong; else empty
   std::int64_t duration_ns = 0;  ///< of the flight, 0 = not known yet
   std::int64_t frames = 0;       ///< done
   std::int64_t frames_total = 0;

@@ -13,7 +13,7 @@ namespace overfly::net {
 /// {"error": {"code", "message"}}; faults of fields ("field = value: must be limit", one a line)
 /// are listed as {"field", "message"} under `faults` too.
 [[nodiscard]] HttpResponse error_response(const Error& error);
-/// The same for a status that no ErrorCode stands for: 403, 405, 413, 415, 426.
+/// The same for a status that no ErrorCode stands for: 403, 405, 413, 415, 422, 426, 429.
 [[nodiscard]] HttpResponse error_response(int status,
                                           const std::string& code,
                                           const std::string& message);

@@ -287,6 +287,10 @@ void HttpSession::ask_router() {
                  });
     });
   };
+  if (context_->router.is_quick(request_)) {
+    context_->router.handle(request_, respond);
+    return;
+  }
   context_->offload([context = context_, respond, asked = std::move(request_)] {
     context->router.handle(asked, respond);
   });

@@ -72,6 +72,18 @@ void RestRouter::add(const std::string& method,
                      std::move(known_query)});
 }
 
+void RestRouter::add_quick(const std::string& pattern, Handler handler) {
+  add("GET", pattern, std::move(handler));
+  routes_.back().quick = true;
+}
+
+bool RestRouter::is_quick(const HttpRequest& request) const {
+  const std::string path = request.target.substr(0, request.target.find('?'));
+  return std::any_of(routes_.begin(), routes_.end(), [&](const Route& route) {
+    return route.quick && route.pattern == path;
+  });
+}
+
 void RestRouter::handle(const HttpRequest& request, const Respond& respond) const {
   const auto url = parse_target(request.target);
   if (!url) {

@@ -32,12 +32,16 @@ class RestRouter {
     std::vector<std::string> segments;
     Handler handler;
     std::vector<std::string> query;  ///< parameters that it knows
+    bool quick = false;              ///< waits for nothing: no disk, no other thread
   };
 
   void add(const std::string& method,
            const std::string& pattern,
            Handler handler,
            std::vector<std::string> known_query = {});
+  /// The same for a GET that waits for nothing, and need not wait behind those that do.
+  void add_quick(const std::string& pattern, Handler handler);
+  [[nodiscard]] bool is_quick(const HttpRequest& request) const;
 
   /// Answers 404 for an unknown path, 405 with `Allow` for a known path's other methods, 400 naming
   /// a query parameter that the route does not know.

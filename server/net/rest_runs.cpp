@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <utility>
 
 #include "server/net/error_response.hpp"
@@ -13,13 +12,6 @@ using engine::RunManager;
 using nlohmann::json;
 
 constexpr std::size_t kMaxKeyBytes = 200;
-
-Result<engine::RunInfo> find_run(RunManager* runs, const std::string& id) {
-  for (engine::RunInfo& info : runs->runs()) {
-    if (info.id == id) return std::move(info);
-  }
-  return Error{ErrorCode::kNotFound, "no such run: " + id};
-}
 
 struct StartBody {
   std::string scenario;
@@ -45,6 +37,18 @@ bool is_json(const HttpRequest& request) {
   return type == "application/json" || type.starts_with("application/json;");
 }
 
+/// A run that is refused for want of room, or for a fault of the request.
+HttpResponse refusal(const engine::StartReport& report, const Error& error) {
+  using Refusal = engine::StartReport::Refusal;
+  if (report.refusal == Refusal::kQueueFull) {
+    return error_response(429, "queue_full", error.message);
+  }
+  if (report.refusal == Refusal::kMemory) {
+    return error_response(422, "not_enough_memory", error.message);
+  }
+  return error_response(error);
+}
+
 HttpResponse start_run(RunManager* runs, const HttpRequest& request) {
   if (!is_json(request)) {
     return error_response(415, "unsupported_media_type", "the body must be application/json");
@@ -59,24 +63,22 @@ HttpResponse start_run(RunManager* runs, const HttpRequest& request) {
   if (!start) return error_response(start.error());
   const Status reach = runs->check_overrides(start->scenario, start->overrides);
   if (!reach) return error_response(403, "forbidden", reach.error().message);
-  const auto before = key.empty() ? std::vector<engine::RunInfo>() : runs->runs();
-  const auto info = runs->start(start->scenario, start->overrides, key);
-  if (!info) return error_response(info.error());
-  const bool known = std::any_of(
-      before.begin(), before.end(), [&](const auto& other) { return other.id == info->id; });
-  HttpResponse response = json_response(known ? 200 : 201, run_json(*info));
+  engine::StartReport report;
+  const auto info = runs->start(start->scenario, start->overrides, key, &report);
+  if (!info) return refusal(report, info.error());
+  HttpResponse response = json_response(report.repeated ? 200 : 201, run_json(*info));
   response.headers.emplace_back("Location", "/api/v1/runs/" + info->id);
   return response;
 }
 
 HttpResponse list_runs(RunManager* runs) {
   json list = json::array();
-  for (const engine::RunInfo& info : runs->runs()) list.push_back(run_json(info));
+  for (const auto& info : runs->runs()) list.push_back(run_json(*info));
   return json_response(200, {{"runs", std::move(list)}});
 }
 
 HttpResponse one_run(RunManager* runs, const std::string& id, int status) {
-  const auto info = find_run(runs, id);
+  const auto info = runs->run(id);
   return info ? json_response(status, run_json(*info)) : error_response(info.error());
 }
 

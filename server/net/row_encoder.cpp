@@ -160,6 +160,7 @@ json run_json(const engine::RunInfo& info) {
           {"status", engine::to_string(info.status)},
           {"created_utc", info.created_utc},
           {"error", info.error.empty() ? json(nullptr) : json(info.error)},
+          {"problem", info.problem.empty() ? json(nullptr) : json(info.problem)},
           {"duration_ns", info.duration_ns},
           {"frames", info.frames},
           {"frames_total", info.frames_total},

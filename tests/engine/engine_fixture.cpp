@@ -50,7 +50,8 @@ RendererFactory noop_factory() {
 std::vector<std::pair<std::string, std::string>> contents_without_timings(const fs::path& folder) {
   std::vector<std::pair<std::string, std::string>> contents;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    if (!entry.is_regular_file() || entry.path().filename() == "timings.json") continue;
+    const fs::path name = entry.path().filename();
+    if (!entry.is_regular_file() || name == "timings.json" || name == "created.json") continue;
     contents.emplace_back(fs::relative(entry.path(), folder).string(),
                           overfly::testing::read_text(entry.path()));
   }

@@ -22,7 +22,7 @@ namespace overfly::engine::testing {
 
 [[nodiscard]] RendererFactory noop_factory();
 
-/// Path relative to the folder -> content, of all files but timings.json.
+/// Path relative to the folder -> content, of all files but timings.json and created.json.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> contents_without_timings(
     const std::filesystem::path& folder);
 

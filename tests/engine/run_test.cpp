@@ -134,6 +134,7 @@ TEST(Run, FolderHasEveryFileAndReadsBackAsTheLiveRunWas) {
                            "manifest.json",
                            "metrics.json",
                            "timings.json",
+                           "created.json",
                            "truth.tum",
                            "estimates/p.tum",
                            "log.jsonl"}) {

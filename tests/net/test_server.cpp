@@ -42,7 +42,7 @@ TestServer::TestServer(const net::ServerLimits& limits, const std::string& token
         return options;
       }()) {}
 
-TestServer::TestServer(net::ServerOptions server_options) {
+TestServer::TestServer(net::ServerOptions server_options, engine::RunManagerOptions options) {
   const fs::path scenarios = folder() / "scenarios";
   const fs::path web = folder() / "web";
   const fs::path world_folder = folder() / "world";
@@ -60,7 +60,6 @@ TestServer::TestServer(net::ServerOptions server_options) {
   write_text(scenarios / "broken.json", broken.dump());
   write_text(web / "index.html", "<title>Overfly</title>");
 
-  engine::RunManagerOptions options;
   options.runs_folder = folder() / "runs";
   options.scenarios_folder = scenarios;
   options.data_folders = {world_folder};

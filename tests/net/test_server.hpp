@@ -23,7 +23,8 @@ class TestServer {
   /// @param token  that clients must show; empty = none
   explicit TestServer(const net::ServerLimits& limits = {}, const std::string& token = "");
   /// Takes all of the options but port, dashboard and log. Off loopback it has a token.
-  explicit TestServer(net::ServerOptions options);
+  /// @param runs  its folders and its renderer are the test's own
+  explicit TestServer(net::ServerOptions options, engine::RunManagerOptions runs = {});
 
   [[nodiscard]] std::uint16_t port() const { return server_->port(); }
   [[nodiscard]] engine::RunManager& runs() { return *runs_; }

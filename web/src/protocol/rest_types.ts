@@ -1,6 +1,13 @@
 // What the REST interface under /api/v1 says; docs/PROTOCOL.md is the contract.
 
-export type RunStatus = 'queued' | 'running' | 'completed' | 'failed' | 'cancelled' | 'interrupted';
+export type RunStatus =
+  | 'queued'
+  | 'running'
+  | 'completed'
+  | 'failed'
+  | 'cancelled'
+  | 'interrupted'
+  | 'unreadable';
 
 export interface Run {
   id: string;
@@ -9,6 +16,8 @@ export interface Run {
   status: RunStatus;
   created_utc: string;
   error: string | null;
+  /** File and field of the run's folder that are wrong. */
+  problem: string | null;
   duration_ns: number;
   frames: number;
   frames_total: number;

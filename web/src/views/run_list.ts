@@ -57,7 +57,7 @@ export class RunList implements View {
         'button',
         {
           class: 'run-open',
-          title: run.error ?? run.id,
+          title: run.error ?? run.problem ?? run.id,
           onclick: () => this.context.session.selectRun(run.id),
         },
         h('span', { class: 'run-name' }, run.title || run.scenario),
@@ -74,6 +74,13 @@ export class RunList implements View {
         'span',
         { class: 'run-chips' },
         h('span', { class: 'chip small', 'data-status': run.status }, run.status),
+        run.problem !== null
+          ? h(
+              'span',
+              { class: 'chip small warn', 'data-role': 'problem', title: run.problem },
+              'damaged',
+            )
+          : null,
         run.texture_limited
           ? h(
               'span',

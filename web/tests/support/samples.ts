@@ -10,6 +10,7 @@ export function sampleRun(change: Partial<Run> = {}): Run {
     status: 'completed',
     created_utc: '2026-01-02T03:04:05Z',
     error: null,
+    problem: null,
     duration_ns: 2e9,
     frames: 63,
     frames_total: 63,

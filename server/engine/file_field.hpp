@@ -1,0 +1,67 @@
+// Values of a run folder's JSON files, read with type and limits checked.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "core/result.hpp"
+
+namespace overfly::engine {
+
+/// What is wrong with a field: `frames = "many": must be a whole number in [0, 1000]`.
+class FieldFault : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Beyond any stamp [ns], count or number of a frame that a run has (31 years in nanoseconds), and
+/// far enough from the end of 64 bits that sums of some of them do not overflow.
+inline constexpr std::int64_t kLargestFileInteger = 1'000'000'000'000'000'000;
+
+/// One value of a document and its dotted path there. Whatever is not as asked throws FieldFault;
+/// guarded_fields() makes that an Error. The document must outlive it.
+class FileField {
+ public:
+  explicit FileField(const nlohmann::json& value, std::string path = "");
+
+  /// A field of an object, which must be there.
+  [[nodiscard]] FileField at(const std::string& name) const;
+  /// The same; empty where it is absent.
+  [[nodiscard]] std::optional<FileField> find(const std::string& name) const;
+  /// The elements of an array.
+  [[nodiscard]] std::vector<FileField> items() const;
+  /// The elements of an array of `count` numbers.
+  [[nodiscard]] std::vector<double> numbers(std::size_t count) const;
+
+  [[nodiscard]] std::string text() const;
+  /// Text that may name a file in the folder: is_plain_name().
+  [[nodiscard]] std::string plain_name() const;
+  [[nodiscard]] bool boolean() const;
+  [[nodiscard]] double number() const;
+  [[nodiscard]] std::int64_t integer(std::int64_t min = 0,
+                                     std::int64_t max = kLargestFileInteger) const;
+  [[nodiscard]] bool is_null() const { return value_->is_null(); }
+  [[nodiscard]] const nlohmann::json& value() const { return *value_; }
+  /// The fault "path = value: must `must`".
+  [[noreturn]] void fault(const std::string& must) const;
+
+ private:
+  const nlohmann::json* value_;
+  std::string path_;
+};
+
+/// Runs a reader of fields. Errors: kUnreadable naming the field.
+template <typename Read>
+auto guarded_fields(const Read& read) -> Result<decltype(read())> {
+  try {
+    return read();
+  } catch (const FieldFault& fault) {
+    return Error{ErrorCode::kUnreadable, fault.what()};
+  }
+}
+
+}  // namespace overfly::engine
