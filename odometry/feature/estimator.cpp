@@ -10,11 +10,6 @@
 namespace overfly::odometry {
 namespace {
 
-constexpr double kGiveUpS = 3.0;
-/// A map of so few keyframes is not worth finding again.
-constexpr int kYoungMap = 6;
-/// For so long after a loss the prediction is still tried.
-constexpr double kExtrapolateS = 1.5;
 /// Images that repeat while the camera should have moved by more than this show nothing new.
 constexpr double kFrozenMotionPx = 0.3;
 /// Corners a frame is asked for, per point that is tracked in it.
@@ -79,7 +74,7 @@ FeatureOdometry::Parts::Parts(const CameraModel& camera, const FeatureParameters
       keeper(camera.pinhole(), mapper_options(parameters, rectifier), parameters) {}
 
 FeatureOdometry::FeatureOdometry(const FeatureParameters& parameters)
-    : parameters_(parameters), orb_(parameters) {}
+    : parameters_(parameters), orb_(parameters), known_height_m_(parameters.initial_height_m) {}
 
 std::map<std::string, std::string> FeatureOdometry::effective_parameters() const {
   return texts_of(parameters_);
@@ -93,17 +88,8 @@ void FeatureOdometry::reset() {
   FeatureOdometry fresh(parameters_);
   fresh.debug_ = debug_;
   fresh.account_ = std::move(account_);
+  fresh.log_ = std::move(log_);
   *this = std::move(fresh);
-}
-
-void FeatureOdometry::start_over() {
-  parts_->keeper.clear();
-  motion_.reset();
-  parts_->initialiser.reset();
-  parts_->descriptor_initialiser.reset();
-  state_ = TrackingState::kInitialising;
-  m_per_unit_ = 1.0;
-  ++map_id_;
 }
 
 FrameImage FeatureOdometry::image_of(const VoFrame& frame) const {
@@ -153,7 +139,10 @@ Result<VoEstimate> FeatureOdometry::answer(const VoFrame& frame) {
     }
     const bool repeated = previous_ && previous_->image->data == frame.image->data;
     parts_->keeper.refresh();
-    if (state_ == TrackingState::kInitialising) {
+    for (std::string& line : parts_->keeper.take_warnings()) log_->add(std::move(line));
+    if (rejoin_old_map(image, estimate, outcome)) {
+      // The old map goes on with this frame.
+    } else if (state_ == TrackingState::kInitialising) {
       if (!repeated) initialise(image, estimate, outcome);
     } else if (frozen(frame, repeated)) {
       if (state_ == TrackingState::kTracking) lose();
@@ -201,15 +190,6 @@ void FeatureOdometry::initialise(const FrameImage& frame, VoEstimate& estimate, 
   state_ = TrackingState::kTracking;
 }
 
-/// The height above the ground's plane under the first keyframe makes the units metres; a later
-/// map's height is not known.
-void FeatureOdometry::find_scale() {
-  if (parameters_.initial_height_m <= 0.0 || map_id_ > 0) return;
-  // A plane n.X = 1 is 1 / |n| away.
-  const double height = 1.0 / map().keyframes().begin()->second.plane.coefficients.norm();
-  m_per_unit_ = parameters_.initial_height_m / height;
-}
-
 Pose FeatureOdometry::predicted(std::int64_t t_ns) const {
   return parameters_.rotation_compensation ? motion_.predict(t_ns) : motion_.predict_unturned(t_ns);
 }
@@ -255,98 +235,6 @@ void FeatureOdometry::accept(const FrameImage& frame, VoEstimate& estimate, Outc
   keeper.take_timing(estimate.timing_ms);
   motion_.observe(frame.t_ns, T_camera_vo_);
   state_ = TrackingState::kTracking;
-}
-
-void FeatureOdometry::lose() {
-  state_ = TrackingState::kLost;
-  lost_at_ns_ = previous_->t_ns;
-  blind_search_s_ = 0.0;
-  if (static_cast<int>(map().keyframes().size()) < kYoungMap) start_over();
-}
-
-void FeatureOdometry::search(const FrameImage& frame, VoEstimate& estimate, Outcome& outcome) {
-  const Stopwatch stopwatch(estimate.timing_ms, "relocalisation");
-  const double lost_s = static_cast<double>(frame.t_ns - lost_at_ns_) * 1e-9;
-  if (lost_s < kExtrapolateS) outcome.tracked = track_map(frame);
-  if (!outcome.tracked.tracked && shows_something(frame.pyramid)) {
-    blind_search_s_ += static_cast<double>(frame.t_ns - previous_->t_ns) * 1e-9;
-    RelocaliserOptions options;
-    options.seed = parameters_.seed + static_cast<std::uint64_t>(frame.index);
-    const Relocalisation found = relocalise(camera_, options, frame.pyramid.level(0), orb_, map());
-    estimate.counters["relocalisation_matches"] = found.matches;
-    if (found.T_camera_vo) {
-      outcome.tracked = parts_->tracker.track(frame.pyramid, *found.T_camera_vo, 2, map());
-    }
-  }
-  if (outcome.tracked.tracked) {
-    motion_.reset();
-    accept(frame, estimate, outcome);
-  } else if (blind_search_s_ > kGiveUpS) {
-    start_over();
-  }
-}
-
-void FeatureOdometry::report(const FrameImage& frame,
-                             const Outcome& outcome,
-                             VoEstimate& estimate) {
-  estimate.sample.state = state_;
-  estimate.sample.map_id = map_id_;
-  if (state_ == TrackingState::kTracking) report_pose(outcome, estimate);
-  const Map& map = this->map();
-  if (outcome.keyframe) {
-    map_memory_mb_ = static_cast<double>(map.memory_bytes()) / (1024.0 * 1024.0);
-  }
-  estimate.counters["searched"] = outcome.tracked.searched;
-  estimate.counters["inliers"] = static_cast<double>(outcome.tracked.points.size());
-  estimate.counters["residual_px"] = outcome.tracked.rms_px;
-  estimate.counters["keyframes"] = map.keyframes().empty() ? 0.0 : map.newest().id + 1.0;
-  estimate.counters["map_points"] = static_cast<double>(map.points().size());
-  estimate.counters["map_memory_mb"] = map.keyframes().empty() ? 0.0 : map_memory_mb_;
-  estimate.counters["keyframe"] = outcome.keyframe ? 1.0 : 0.0;
-  if (debug_) draw(frame, outcome, estimate);
-}
-
-void FeatureOdometry::report_pose(const Outcome& outcome, VoEstimate& estimate) const {
-  std::vector<Eigen::Vector3d> points;
-  for (const TrackedPoint& seen : outcome.tracked.points) {
-    const MapPoint* point = map().point(seen.point);
-    if (point != nullptr) points.push_back(point->position_vo);
-  }
-  estimate.sample.T_vo_camera = T_camera_vo_.inverse();
-  estimate.sample.T_vo_camera.translation *= m_per_unit_;
-  estimate.sample.scene_depth = axis_depth(T_camera_vo_, points);
-  if (estimate.sample.scene_depth) *estimate.sample.scene_depth *= m_per_unit_;
-  if (!debug_) return;
-  for (const Eigen::Vector3d& p : points) {
-    estimate.map_points_vo.push_back((m_per_unit_ * p).cast<float>());
-  }
-}
-
-void FeatureOdometry::draw(const FrameImage& frame,
-                           const Outcome& outcome,
-                           VoEstimate& estimate) const {
-  const Stopwatch stopwatch(estimate.timing_ms, "debug_view");
-  DebugContent content;
-  content.state = state_;
-  content.keyframe = outcome.keyframe;
-  content.map_id = map_id_;
-  content.keyframes = static_cast<int>(estimate.counters["keyframes"]);
-  if (parameters_.threads > 1) content.timing_ms = &estimate.timing_ms;
-  if (state_ == TrackingState::kTracking) {
-    content.tracked = &outcome.tracked;
-    for (const int id : outcome.tracked.missed) {
-      const MapPoint* point = map().point(id);
-      const auto pixel = point ? camera_.project(T_camera_vo_ * point->position_vo) : std::nullopt;
-      if (pixel) content.missed_px.push_back(*pixel);
-    }
-    if (outcome.keyframe) {
-      for (const Candidate& candidate : map().newest().candidates) {
-        content.candidates_px.push_back(candidate.corner.pixel);
-      }
-    }
-  }
-  if (state_ == TrackingState::kInitialising) content.followed = &parts_->initialiser.tracks();
-  estimate.debug_image = draw_debug_view(frame.pyramid, content);
 }
 
 Result<std::unique_ptr<VoPort>> create_feature_odometry(const FeatureParameters& parameters) {

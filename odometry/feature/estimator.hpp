@@ -4,7 +4,10 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "odometry/feature/descriptor_initialiser.hpp"
 #include "odometry/feature/feature_odometry.hpp"
@@ -19,8 +22,9 @@
 namespace overfly::odometry {
 
 /// States: INITIALISING until the first map; TRACKING; LOST until the map is found again. When
-/// that does not come for `kGiveUpS` of images that show something, or the map was just begun,
-/// the map is dropped and a new one begun (map_id grows): INITIALISING.
+/// that does not come for `kGiveUpS` of images that show something, or the map was just begun, a
+/// new one is begun (map_id grows): INITIALISING. The old one is kept, unless it was just begun,
+/// and looked for beside the new one's work; where it is found, it goes on with its map_id.
 class FeatureOdometry final : public VoPort {
  public:
   explicit FeatureOdometry(const FeatureParameters& parameters);
@@ -29,6 +33,7 @@ class FeatureOdometry final : public VoPort {
   [[nodiscard]] std::map<std::string, std::string> effective_parameters() const override;
   [[nodiscard]] Result<VoEstimate> track(const VoFrame& frame) override;
   void reset() override;
+  [[nodiscard]] std::vector<std::string> take_log() override { return log_->take(); }
   void set_debug(bool wanted) override { debug_ = wanted; }
   /// CPU of both threads; memory of the map at its largest: images, points, observations (with two
   /// threads of the part that tracking has a copy of).
@@ -49,6 +54,22 @@ class FeatureOdometry final : public VoPort {
     std::atomic<double> cpu_s{0.0};
     std::atomic<double> peak_memory_mb{0.0};
   };
+  /// Lines for people; taken by another thread than that which tracks.
+  class Log {
+   public:
+    void add(std::string line);
+    [[nodiscard]] std::vector<std::string> take();
+
+   private:
+    std::mutex mutex_;
+    std::vector<std::string> lines_;
+  };
+  /// A map that was lost, in case its place is seen again.
+  struct OldMap {
+    Map map;
+    int map_id = 0;
+    double m_per_unit = 1.0;
+  };
   /// What happened in the frame at hand.
   struct Outcome {
     TrackResult tracked;
@@ -67,6 +88,9 @@ class FeatureOdometry final : public VoPort {
   void accept(const FrameImage& frame, VoEstimate& estimate, Outcome& outcome);
   void lose();
   void start_over();
+  void keep_old_map();
+  bool rejoin_old_map(const FrameImage& frame, VoEstimate& estimate, Outcome& outcome);
+  [[nodiscard]] double height_above_ground() const;
   [[nodiscard]] const Map& map() const { return parts_->keeper.view(); }
   void find_scale();
   void report(const FrameImage& frame, const Outcome& outcome, VoEstimate& estimate);
@@ -74,6 +98,7 @@ class FeatureOdometry final : public VoPort {
   void draw(const FrameImage& frame, const Outcome& outcome, VoEstimate& estimate) const;
 
   std::unique_ptr<Account> account_ = std::make_unique<Account>();
+  std::unique_ptr<Log> log_ = std::make_unique<Log>();
   FeatureParameters parameters_;
   PinholeCamera camera_;
   OrbExtractor orb_;
@@ -81,9 +106,13 @@ class FeatureOdometry final : public VoPort {
   MotionModel motion_;
   TrackingState state_ = TrackingState::kInitialising;
   int map_id_ = 0;
+  int last_map_id_ = 0;  ///< given to a map so far
+  std::optional<OldMap> old_map_;
+  std::int64_t looked_for_old_map_at_ns_ = 0;
   Pose T_camera_vo_;
-  double m_per_unit_ = 1.0;     ///< of what is reported; 1 where no height is known
-  double map_memory_mb_ = 0.0;  ///< at the last keyframe
+  double known_height_m_ = 0.0;  ///< above ground, for the next map's scale; 0 = not known
+  double m_per_unit_ = 1.0;      ///< of what is reported; 1 where no height is known
+  double map_memory_mb_ = 0.0;   ///< at the last keyframe
   std::optional<VoFrame> previous_;
   std::int64_t lost_at_ns_ = 0;
   double blind_search_s_ = 0.0;  ///< time lost over images that show something

@@ -13,7 +13,8 @@ MapKeeper::MapKeeper(const PinholeCamera& camera,
     : mapper_(camera, options),
       images_kept_(options.images_kept),
       orb_(parameters),
-      threaded_(parameters.threads > 1) {
+      threaded_(parameters.threads > 1),
+      focal_check_(camera) {
   orb_.look_only_at(options.seen);
   if (threaded_) thread_ = std::thread([this] { run(); });
 }
@@ -36,7 +37,9 @@ void MapKeeper::begin() {
   refresh();
 }
 
-void MapKeeper::clear() {
+void MapKeeper::clear() { (void)release(); }
+
+Map MapKeeper::release() {
   if (threaded_) {
     {
       const std::lock_guard lock(mutex_);
@@ -49,7 +52,16 @@ void MapKeeper::clear() {
   }
   view_.reset();
   sights_.clear();
-  map_.clear();
+  focal_check_.new_map();
+  return std::exchange(map_, {});
+}
+
+void MapKeeper::adopt(Map map) {
+  clear();
+  map_ = std::move(map);
+  if (!threaded_) return;
+  publish();
+  refresh();
 }
 
 const Map& MapKeeper::refresh() {
@@ -105,6 +117,11 @@ double MapKeeper::take_cpu_s() {
   return std::exchange(cpu_s_, 0.0);
 }
 
+std::vector<std::string> MapKeeper::take_warnings() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(warnings_, {});
+}
+
 void MapKeeper::wait_until_idle() {
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [this] { return !busy_ && !work_; });
@@ -143,6 +160,11 @@ void MapKeeper::map_keyframe(const Work& work, std::map<std::string, double>& ti
   mapper_.extend(work.frame, work.tracked, map_, timing_ms);
   if (threaded_) publish();
   mapper_.mend(orb_, map_, timing_ms);
+  const Stopwatch check_watch(timing_ms, "focal_check");
+  if (auto warning = focal_check_.after_keyframe(map_)) {
+    const std::lock_guard lock(mutex_);
+    warnings_.push_back(std::move(*warning));
+  }
 }
 
 void MapKeeper::count(const std::map<int, Sights>& sights) {

@@ -11,7 +11,8 @@
 #include <thread>
 #include <vector>
 
-#include "odometry/feature/initialiser.hpp"
+#include "odometry/feature/focal_check.hpp"
+#include "odometry/feature/frame_image.hpp"
 #include "odometry/feature/map.hpp"
 #include "odometry/feature/mapper.hpp"
 #include "odometry/feature/orb.hpp"
@@ -39,6 +40,10 @@ class MapKeeper {
   void begin();
   /// Forgets the map and all work on it.
   void clear();
+  /// As `clear`. @return the map as it was
+  [[nodiscard]] Map release();
+  /// Takes a map that was released, in the place of the present one, and works on it from now on.
+  void adopt(Map map);
 
   /// Takes what the thread published last. @return stays as it is until the next call of this
   /// What the thread has thrown since the last call is thrown here.
@@ -58,6 +63,8 @@ class MapKeeper {
   void take_timing(std::map<std::string, double>& timing_ms);
   /// Processor time of the thread since the last call [s]; 0 with one thread.
   [[nodiscard]] double take_cpu_s();
+  /// What was found out about the calibration since the last call, for people.
+  [[nodiscard]] std::vector<std::string> take_warnings();
   /// Until no keyframe waits or is being mapped.
   void wait_until_idle();
 
@@ -83,6 +90,7 @@ class MapKeeper {
   OrbExtractor orb_;
   bool threaded_;
   Map map_;
+  FocalCheck focal_check_;
   std::map<int, Sights> sights_;     ///< by the point's id
   std::shared_ptr<const Map> view_;  ///< null with one thread
 
@@ -95,6 +103,7 @@ class MapKeeper {
   std::shared_ptr<const Map> published_;
   std::map<std::string, double> timing_ms_;
   double cpu_s_ = 0.0;
+  std::vector<std::string> warnings_;
   std::thread thread_;  ///< last: it ends before what it uses
 };
 

@@ -125,6 +125,11 @@ Status RunRecorder::log_transition(std::size_t estimator, const EstimateRecord& 
   if (!state.status.crash.empty()) return {};
   const TrackingState last = std::exchange(state.last, sample.state);
   const int last_map_id = std::exchange(state.last_map_id, sample.map_id);
+  if (sample.map_id < last_map_id) {
+    return log(sample.t_ns,
+               "info",
+               name + " recovered map " + std::to_string(sample.map_id) + " and tracks");
+  }
   if (sample.map_id != last_map_id) {
     return log(sample.t_ns, "warning", name + " started a new map: origin and scale are new");
   }
