@@ -29,6 +29,8 @@ Result<std::int64_t> unix_ns_from(const std::string& text, const std::string& pa
   if (!date.ok() || hour > 23 || minute > 59 || second > 59) {
     return bad_field(path, text, "be a date and time that exist");
   }
+  // Nanoseconds of Unix time in 64 bits reach no further.
+  if (year < 1678 || year > 2261) return bad_field(path, text, "be in the years 1678 to 2261");
   const auto days = std::chrono::sys_days(date).time_since_epoch();
   const std::chrono::seconds total =
       days + std::chrono::hours(hour) + std::chrono::minutes(minute) + std::chrono::seconds(second);
