@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/percent.hpp"
 #include "core/pose.hpp"
 #include "terrain/drape.hpp"
 #include "terrain/geoid.hpp"
@@ -58,7 +59,7 @@ std::string imagery_lines(const RasterWorld& source) {
                  crs_name(raster.georeference().crs).c_str(),
                  layer.resampled() ? "resampled onto the map" : "used texel for texel");
     if (validity != nullptr) {
-      text += line("  masked: %.2f %% of it is void", 100.0 * validity->void_share());
+      text += line("  masked: %s of it is void", percent_text(validity->void_share()).c_str());
     }
   }
   return text;
@@ -71,12 +72,15 @@ std::string elevation_lines(const World& world, const RasterWorld& source) {
                 world.tiles->height_range_m().x());
   }
   const std::vector<std::string> relations = source.elevation().relations();
+  const std::vector<HeightDatum> datums = source.elevation().datums();
   for (std::size_t i = 0; i < world.spec.elevation.size(); ++i) {
     const ElevationLayer& layer = world.spec.elevation[i];
-    text += line("elevation: %s, vertical datum %s, to the ellipsoid by %s",
+    const bool of_file = layer.datum == VerticalDatum::kUnknown && !datums[i].named.empty();
+    text += line("elevation: %s, vertical datum %s%s, to the ellipsoid by %s",
                  layer.file.string().c_str(),
-                 to_string(layer.datum),
-                 i < relations.size() ? relations[i].c_str() : "nothing");
+                 to_string(datums[i].datum),
+                 of_file ? (" (the file's: " + datums[i].named + ")").c_str() : "",
+                 relations[i].c_str());
   }
   return text + line("elevation posts: every %.2f m", source.elevation().spacing_m());
 }
@@ -118,9 +122,9 @@ std::string describe(const World& world) {
   text += line("extent: %.0f x %.0f m", grid.width_m, grid.height_m);
   text += bounds_line(tiles);
   text += line("resolution: %.4g m per texel, %d levels", grid.texel_m, grid.levels);
-  text += line("imagery gaps: %.2f %% of the extent", 100.0 * gap_share(tiles));
-  text += line("smeared: %.2f %% of the imagery lies on slopes above 60 deg",
-               100.0 * stretched_share(tiles));
+  text += line("imagery gaps: %s of the extent", percent_text(gap_share(tiles)).c_str());
+  text += line("smeared: %s of the imagery lies on slopes above 60 deg",
+               percent_text(stretched_share(tiles)).c_str());
   text += line("ground: %.1f to %.1f m above the ellipsoid",
                tiles.height_range_m().x(),
                tiles.height_range_m().y());

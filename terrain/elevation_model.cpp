@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <limits>
 
+#include "core/percent.hpp"
+
 namespace overfly::terrain {
 namespace {
 
@@ -17,12 +19,6 @@ constexpr std::size_t kCacheBytes = std::size_t{128} << 20U;
 constexpr double kManyPosts = 40e6;
 /// Posts of a merged grid at most.
 constexpr double kMaxMergedPosts = 200e6;
-
-std::string percent(double share) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.3g %%", 100.0 * share);
-  return text;
-}
 
 /// Share of the imagery's area over which some raster has posts.
 double covered_share(const Rasters& rasters, const MapRect& imagery) {
@@ -127,7 +123,7 @@ Result<ElevationModel> ElevationModel::open(const std::vector<ElevationLayer>& l
                      first->whereabouts()};
   }
   if (share < 0.999) {
-    warnings.push_back(first->file() + ": elevation covers " + percent(share) +
+    warnings.push_back(first->file() + ": elevation covers " + percent_text(share) +
                        " of the imagery; the ground beyond goes on with the edge's height");
   }
   if (parts.rasters.size() > 1) {
@@ -251,7 +247,7 @@ Status ElevationModel::take(const HeightSurvey& survey, std::vector<std::string>
   if (survey.voids > 0) {
     warnings.push_back(what_ + ": " + std::to_string(static_cast<long long>(survey.voids)) +
                        " of " + std::to_string(static_cast<long long>(survey.posts)) + " posts (" +
-                       percent(survey.voids / survey.posts) +
+                       percent_text(survey.voids / survey.posts) +
                        ") have no data and are filled from those around them");
   }
   range_m_ = {survey.lowest_m, survey.highest_m};
@@ -295,6 +291,13 @@ std::vector<std::string> ElevationModel::relations() const {
   std::vector<std::string> all;
   if (!parts_) return all;
   for (const RasterPtr& raster : parts_->rasters) all.push_back(raster->relation());
+  return all;
+}
+
+std::vector<HeightDatum> ElevationModel::datums() const {
+  std::vector<HeightDatum> all;
+  if (!parts_) return all;
+  for (const RasterPtr& raster : parts_->rasters) all.push_back(raster->datum());
   return all;
 }
 

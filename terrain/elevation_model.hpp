@@ -66,6 +66,8 @@ class ElevationModel {
   [[nodiscard]] std::string fingerprint() const;
   /// How each layer became ellipsoidal: the grid's name, a constant, or nothing.
   [[nodiscard]] std::vector<std::string> relations() const;
+  /// What the heights of each layer count from.
+  [[nodiscard]] std::vector<HeightDatum> datums() const;
   /// Null for flat ground.
   [[nodiscard]] const PagedHeights* heights() const { return parts_ ? parts_->heights : nullptr; }
   [[nodiscard]] const HeightSurvey& survey_result() const { return survey_; }

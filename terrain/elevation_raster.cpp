@@ -102,6 +102,7 @@ Result<std::shared_ptr<const ElevationRaster>> ElevationRaster::open(
   if (good) good = raster->find_window(plane, area, *place);
   if (good) good = raster->find_conversion(dataset, layer, *place, warnings);
   if (!good) return good.error();
+  if (!messages.empty()) warnings.push_back(heard_while_opening(layer.file, messages));
   raster->pool_ = std::make_unique<DatasetPool>(layer.file, 0, std::move(*opened));
   raster->posts_ = std::make_unique<PagedHeights>(
       raster->window_.columns,
@@ -218,12 +219,14 @@ Status ElevationRaster::find_conversion(GDALDataset& dataset,
     return Error{ErrorCode::kInvalidArgument, file_ + ": its middle has no place in WGS84"};
   }
   middle *= rad_from_deg(1.0);
-  const auto geoid = choose_geoid(height_datum(layer, place.crs),
+  datum_ = height_datum(layer, place.crs);
+  const auto geoid = choose_geoid(datum_.datum,
                                   layer.geoid_separation_m,
                                   middle(1, 0),
                                   middle(0, 0),
                                   file_,
-                                  warnings);
+                                  warnings,
+                                  datum_.named);
   relation_ = relation_of(geoid);
   if (!geoid) return {};
   auto lattice = separation_lattice(

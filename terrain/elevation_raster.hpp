@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "terrain/elevation_units.hpp"
 #include "terrain/gdal_dataset.hpp"
 #include "terrain/height_pyramid.hpp"
 #include "terrain/map_plane.hpp"
@@ -54,6 +55,8 @@ class ElevationRaster {
   [[nodiscard]] double spacing_m() const { return spacing_m_; }
   /// How its heights were related to the ellipsoid: the grid's name, a constant, or nothing.
   [[nodiscard]] const std::string& relation() const { return relation_; }
+  /// What its heights count from: said by the manifest, else by the file.
+  [[nodiscard]] const HeightDatum& datum() const { return datum_; }
 
  private:
   /// The part of the file that is used, in its posts.
@@ -90,6 +93,7 @@ class ElevationRaster {
   bool masked_ = false;      ///< a mask band says where there is data
   HeightGrid separation_m_;  ///< of the datum's zero, on a lattice over the window; may be empty
   std::string relation_;
+  HeightDatum datum_;
   mutable std::atomic<bool> implausible_{false};
   std::unique_ptr<PagedHeights> posts_;
 };

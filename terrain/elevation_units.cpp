@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace overfly::terrain {
 namespace {
@@ -50,15 +51,28 @@ double height_unit_m(GDALDataset& dataset,
   return 1.0;
 }
 
-VerticalDatum height_datum(const ElevationLayer& layer, const OGRSpatialReference& crs) {
-  if (layer.datum != VerticalDatum::kUnknown) return layer.datum;
-  if (crs.IsVertical() == 0) return VerticalDatum::kUnknown;
-  const char* name = crs.GetAttrValue("VERT_CS");
-  const std::string text = name != nullptr ? name : "";
-  if (text.find("NAVD88") != std::string::npos) return VerticalDatum::kNavd88;
-  if (text.find("EGM2008") != std::string::npos) return VerticalDatum::kEgm2008;
-  if (text.find("EGM96") != std::string::npos) return VerticalDatum::kEgm96;
-  return VerticalDatum::kUnknown;
+HeightDatum height_datum(const ElevationLayer& layer, const OGRSpatialReference& crs) {
+  HeightDatum found{layer.datum, {}};
+  if (crs.IsVertical() != 0) {
+    const char* name = crs.GetAttrValue("VERT_CS");
+    found.named = name != nullptr ? name : "unnamed";
+  } else if (crs.GetAxesCount() == 3) {
+    found.named = "ellipsoidal height";
+  }
+  if (found.datum != VerticalDatum::kUnknown) return found;
+  std::string text = found.named;
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) {
+    return static_cast<char>(std::tolower(c));
+  });
+  for (const auto& [word, datum] : {std::pair("navd88", VerticalDatum::kNavd88),
+                                    std::pair("egm2008", VerticalDatum::kEgm2008),
+                                    std::pair("egm96", VerticalDatum::kEgm96),
+                                    std::pair("ellipsoid", VerticalDatum::kEllipsoid)}) {
+    if (text.find(word) == std::string::npos) continue;
+    found.datum = datum;
+    break;
+  }
+  return found;
 }
 
 Status check_height_band(GDALDataset& dataset,

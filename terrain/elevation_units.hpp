@@ -16,9 +16,15 @@ namespace overfly::terrain {
                                    const OGRSpatialReference& crs,
                                    std::vector<std::string>& warnings);
 
-/// The manifest's datum, else that of the file's vertical CRS.
-[[nodiscard]] VerticalDatum height_datum(const ElevationLayer& layer,
-                                         const OGRSpatialReference& crs);
+/// What heights count from.
+struct HeightDatum {
+  VerticalDatum datum = VerticalDatum::kUnknown;
+  std::string named;  ///< the file's vertical datum in its own words; empty where it names none
+};
+
+/// The manifest's datum, else that of the file's vertical CRS; a geographic or projected CRS with
+/// three axes (EPSG:4979) has ellipsoidal heights.
+[[nodiscard]] HeightDatum height_datum(const ElevationLayer& layer, const OGRSpatialReference& crs);
 
 /// Errors: kInvalidArgument if the file is a picture (colours, a palette) and no heights; a single
 /// band of 8 bits is a warning.

@@ -29,20 +29,43 @@ void initialise_gdal() {
   (void)done;
 }
 
-GdalMessages::GdalMessages() { CPLPushErrorHandlerEx(&GdalMessages::collect, this); }
+namespace {
 
-GdalMessages::~GdalMessages() { CPLPopErrorHandler(); }
+/// The one that hears what is said on this thread.
+GdalMessages*& innermost() {
+  thread_local GdalMessages* messages = nullptr;
+  return messages;
+}
+
+}  // namespace
+
+GdalMessages::GdalMessages() : outer_(innermost()) {
+  innermost() = this;
+  CPLPushErrorHandlerEx(&GdalMessages::collect, this);
+}
+
+GdalMessages::~GdalMessages() {
+  CPLPopErrorHandler();
+  innermost() = outer_;
+}
 
 void CPL_STDCALL GdalMessages::collect(CPLErr severity, CPLErrorNum, const char* message) {
-  auto* self = static_cast<GdalMessages*>(CPLGetErrorHandlerUserData());
+  if (severity < CE_Warning) return;
+  static_cast<GdalMessages*>(CPLGetErrorHandlerUserData())->add(message);
+}
+
+void GdalMessages::add(std::string line) {
   constexpr std::size_t kLongest = 600;
-  if (severity < CE_Warning || self->text_.size() > kLongest) return;
-  std::string line = message;
+  if (text_.size() > kLongest) return;
   std::replace(line.begin(), line.end(), '\n', ' ');
   while (!line.empty() && line.back() == ' ') line.pop_back();
-  if (self->text_.find(line) != std::string::npos) return;
-  if (!self->text_.empty()) self->text_ += "; ";
-  self->text_ += line;
+  if (text_.find(line) != std::string::npos) return;
+  if (!text_.empty()) text_ += "; ";
+  text_ += line;
+}
+
+void GdalMessages::pass_on() const {
+  if (outer_ != nullptr && !text_.empty()) outer_->add(text_);
 }
 
 std::string GdalMessages::text() const { return text_.empty() ? "no reason given" : text_; }
@@ -87,7 +110,12 @@ Result<DatasetPtr> open_raster(const fs::path& file, int level) {
     return Error{ErrorCode::kUnreadable, file.string() + ": has no raster band"};
   }
   if (Status status = check_overviews(*dataset, file); !status) return status.error();
+  messages.pass_on();
   return dataset;
+}
+
+std::string heard_while_opening(const fs::path& file, const GdalMessages& messages) {
+  return file.string() + ": opening it, GDAL said: " + messages.text();
 }
 
 namespace {

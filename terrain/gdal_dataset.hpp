@@ -26,7 +26,8 @@ using DatasetPtr = std::unique_ptr<GDALDataset, DatasetCloser>;
 /// block cache; any number of calls.
 void initialise_gdal();
 
-/// Collects what GDAL and PROJ report on this thread instead of printing it.
+/// Collects what GDAL and PROJ report on this thread instead of printing it. While several are
+/// alive, the one made last hears it.
 class GdalMessages {
  public:
   GdalMessages();
@@ -37,13 +38,23 @@ class GdalMessages {
   [[nodiscard]] bool empty() const { return text_.empty(); }
   /// The messages, "; " between them; "no reason given" when there are none.
   [[nodiscard]] std::string text() const;
+  /// Tells it to the one that was alive before this one was made, if there is one.
+  void pass_on() const;
 
  private:
   static void CPL_STDCALL collect(CPLErr severity, CPLErrorNum number, const char* message);
+  void add(std::string line);
+
+  GdalMessages* outer_;
   std::string text_;
 };
 
-/// Opens a raster for reading. Level 0 is the file itself, n > 0 its n-th overview.
+/// A warning of what GDAL said about a file that it opened all the same.
+[[nodiscard]] std::string heard_while_opening(const std::filesystem::path& file,
+                                              const GdalMessages& messages);
+
+/// Opens a raster for reading. Level 0 is the file itself, n > 0 its n-th overview. What GDAL says
+/// without failing is passed on to the caller's GdalMessages.
 /// Errors: kNotFound; kUnreadable with GDAL's reason, for what is no regular file, and as
 /// check_virtual_raster.
 [[nodiscard]] Result<DatasetPtr> open_raster(const std::filesystem::path& file, int level = 0);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 
 #include "core/pose.hpp"
@@ -61,9 +62,16 @@ std::vector<std::string> grids_of(VerticalDatum datum) {
   return {};
 }
 
+/// The file that PROJ opens for a grid: one of an older name may stand in for the one asked for.
+std::string file_of_grid(const std::string& grid) {
+  const PJ_GRID_INFO info = proj_grid_info(grid.c_str());
+  const std::string file = std::filesystem::path(info.filename).filename().string();
+  return file.empty() ? grid : file;
+}
+
 std::optional<std::string> installed_grid(VerticalDatum datum, double lat_rad, double lon_rad) {
   for (const std::string& grid : grids_of(datum)) {
-    if (std::isfinite(GridShift(grid).at(lon_rad, lat_rad))) return grid;
+    if (std::isfinite(GridShift(grid).at(lon_rad, lat_rad))) return file_of_grid(grid);
   }
   return std::nullopt;
 }
@@ -72,6 +80,14 @@ std::string rounded(double value) {
   char text[32];
   std::snprintf(text, sizeof(text), "%.1f", value);
   return text;
+}
+
+std::string unknown_datum_text(const std::string& named, double separation_m) {
+  return (named.empty() ? "vertical datum is not said"
+                        : "vertical datum \"" + named + "\" is not known here") +
+         "; heights are taken as ellipsoidal. If they are above sea level, the ground is wrong by "
+         "about " +
+         rounded(std::abs(separation_m)) + " m here: say \"vertical_datum\" in the manifest";
 }
 
 }  // namespace
@@ -97,16 +113,12 @@ std::optional<GeoidModel> choose_geoid(VerticalDatum datum,
                                        double lat_rad,
                                        double lon_rad,
                                        const std::string& file,
-                                       std::vector<std::string>& warnings) {
+                                       std::vector<std::string>& warnings,
+                                       const std::string& named) {
   if (datum == VerticalDatum::kEllipsoid) return std::nullopt;
   if (datum == VerticalDatum::kUnknown) {
     if (constant_m) return GeoidModel{"", constant_m, false};
-    const double separation = egm96_table_m(lat_rad, lon_rad);
-    warnings.push_back(file +
-                       ": vertical datum is not said; heights are taken as ellipsoidal. If they "
-                       "are above sea level, the ground is wrong by about " +
-                       rounded(std::abs(separation)) +
-                       " m here: say \"vertical_datum\" in the manifest");
+    warnings.push_back(file + ": " + unknown_datum_text(named, egm96_table_m(lat_rad, lon_rad)));
     return std::nullopt;
   }
   if (auto grid = installed_grid(datum, lat_rad, lon_rad)) return GeoidModel{*grid, {}, false};

@@ -13,7 +13,8 @@ namespace overfly::terrain {
 
 /// A source of separations, chosen once for a layer.
 struct GeoidModel {
-  /// PROJ grid ("egm96_15.gtx"); empty where a constant or the built-in table serves.
+  /// File of PROJ's grid that is installed ("egm96_15.gtx"), which is not always the one that PROJ
+  /// was asked for; empty where a constant or the built-in table serves.
   std::string grid;
   std::optional<double> constant_m;
   bool built_in = false;  ///< the coarse table of EGM96 inside the program
@@ -23,12 +24,14 @@ struct GeoidModel {
 /// else the built-in table. Whatever is not the datum's own is named in `warnings` with its
 /// possible error. Empty for ellipsoidal and unknown heights (the latter with a warning).
 /// @param lat_rad, lon_rad  the layer's middle, for the size of the error
+/// @param named  what the file calls an unknown datum; empty where it names none
 [[nodiscard]] std::optional<GeoidModel> choose_geoid(VerticalDatum datum,
                                                      std::optional<double> constant_m,
                                                      double lat_rad,
                                                      double lon_rad,
                                                      const std::string& file,
-                                                     std::vector<std::string>& warnings);
+                                                     std::vector<std::string>& warnings,
+                                                     const std::string& named = {});
 
 /// Height of the datum's zero above the ellipsoid [m] at points (longitude, latitude) [rad].
 [[nodiscard]] Eigen::VectorXd geoid_separation_m(const GeoidModel& model,

@@ -83,6 +83,7 @@ Result<std::shared_ptr<const ImageryRaster>> ImageryRaster::open(
   auto bands = find_bands(dataset, file.string(), layer.nodata, warnings);
   if (!bands) return bands.error();
   raster->bands_ = *bands;
+  if (!messages.empty()) warnings.push_back(heard_while_opening(file, messages));
   Stored base;
   base.width_px = raster->width_px_;
   base.height_px = raster->height_px_;
@@ -153,6 +154,8 @@ Status ImageryRaster::look_for_a_picture() const {
 }
 
 void ImageryRaster::add_overviews(GDALDataset& dataset) const {
+  // Overviews have mixed what was never written into what was.
+  if (bands_.unwritten) return;
   std::vector<Stored>& all = pyramid_->stored;
   GDALRasterBand* band = dataset.GetRasterBand(bands_.rgb[0]);
   for (int i = 0; i < band->GetOverviewCount(); ++i) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "terrain/unwritten_blocks.hpp"
+
 namespace overfly::terrain {
 namespace {
 
@@ -212,6 +214,19 @@ void mask_palette(GDALDataset& dataset, const RasterBands& bands, int x, int y, 
   }
 }
 
+/// A texel is void when it was written in none of the colour bands.
+void mask_unwritten(GDALDataset& dataset, const RasterBands& bands, int x, int y, Image& valid) {
+  Image written(valid.width_px, valid.height_px, 1);
+  Image one(valid.width_px, valid.height_px, 1);
+  for (int c = 0; c < 3; ++c) {
+    if (c > 0 && bands.rgb[c] == bands.rgb[0]) break;
+    std::fill(one.data.begin(), one.data.end(), std::uint8_t{255});
+    mask_unwritten_blocks(*dataset.GetRasterBand(bands.rgb[c]), x, y, one);
+    for (std::size_t i = 0; i < one.data.size(); ++i) written.data[i] |= one.data[i];
+  }
+  for (std::size_t i = 0; i < written.data.size(); ++i) valid.data[i] &= written.data[i];
+}
+
 void paint_voids(Patch& patch) {
   for (std::size_t i = 0; i < patch.valid.data.size(); ++i) {
     if (patch.valid.data[i] != 0) continue;
@@ -248,7 +263,10 @@ Result<RasterBands> find_bands(GDALDataset& dataset,
                        std::to_string(bands.low) + " to " + std::to_string(bands.high) +
                        " are shown as 0 to 255");
   }
-  bands.has_mask = bands.has_mask || bands.nodata || has_mask(dataset, bands);
+  bands.unwritten = std::any_of(bands.rgb.begin(), bands.rgb.end(), [&](int band) {
+    return has_unwritten_blocks(*dataset.GetRasterBand(band));
+  });
+  bands.has_mask = bands.has_mask || bands.nodata || bands.unwritten || has_mask(dataset, bands);
   return bands;
 }
 
@@ -266,6 +284,7 @@ Result<Patch> read_bands(GDALDataset& dataset,
   if (outcome == CE_None && bands.has_mask) {
     outcome = read_mask(dataset, bands, x, y, patch.valid);
     if (bands.palette) mask_palette(dataset, bands, x, y, patch.valid);
+    if (bands.unwritten) mask_unwritten(dataset, bands, x, y, patch.valid);
     paint_voids(patch);
   }
   if (outcome != CE_None) {

@@ -16,6 +16,8 @@ struct RasterBands {
   bool palette = false;
   std::vector<std::array<std::uint8_t, 4>> colours;  ///< of a palette; the fourth is alpha
   bool has_mask = false;
+  /// Some blocks of the file were never written: they are void.
+  bool unwritten = false;
   /// Value that marks void texels, said by the manifest in place of the file.
   std::optional<double> nodata;
   /// 8-bit value = (value - low) * 255 / (high - low), for bands that are not 8 bit.

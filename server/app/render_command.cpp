@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "core/percent.hpp"
 #include "renderer/renderer.hpp"
 #include "server/app/commands.hpp"
 #include "server/app/exit_code.hpp"
@@ -50,7 +51,7 @@ int render(const RenderArguments& arguments) {
   }
   std::cout << arguments.out << ": " << arguments.width_px << " x " << arguments.height_px
             << " px, texels per pixel " << frame->texels_per_pixel_median << " (median), "
-            << 100.0 * frame->void_fraction << " % without imagery\n";
+            << percent_text(frame->void_fraction) << " without imagery\n";
   return kExitOk;
 }
 

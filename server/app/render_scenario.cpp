@@ -2,6 +2,7 @@
 #include <iostream>
 #include <utility>
 
+#include "core/percent.hpp"
 #include "server/app/exit_code.hpp"
 #include "server/app/render_request.hpp"
 #include "server/engine/frame_maker.hpp"
@@ -99,7 +100,7 @@ int render_scenario(const RenderArguments& arguments) {
   }
   std::cout << arguments.out << ": " << shot->image.width_px << " x " << shot->image.height_px
             << " px, texels per pixel " << shot->drawn.texels_per_pixel_median << " (median), "
-            << 100.0 * shot->drawn.void_fraction << " % without imagery";
+            << percent_text(shot->drawn.void_fraction) << " without imagery";
   if (shot->setting.exposure_ns > 0) {
     std::cout << ", exposure " << 1e-6 * static_cast<double>(shot->setting.exposure_ns)
               << " ms, gain " << shot->setting.gain << ", " << 100.0 * shot->saturated_fraction

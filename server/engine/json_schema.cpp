@@ -27,6 +27,14 @@ std::string names_of(const Json& properties) {
   return names.empty() ? "none" : names;
 }
 
+/// The field whose last words are the one that was given: "datum" was "vertical_datum" meant.
+std::string suggestion(const std::string& given, const Json& properties) {
+  for (const auto& [name, value] : properties.items()) {
+    if (name.ends_with("_" + given)) return "; its name is " + name;
+  }
+  return "";
+}
+
 /// What a keyword holds, or an empty object (`.items()` must not walk over a temporary).
 const Json& keyword(const Json& node, const char* name) {
   static const Json none = Json::object();
@@ -145,9 +153,10 @@ void JsonSchema::check_object(const Json& node,
     if (additional.is_object()) {
       check(additional, child, where, faults);
     } else if (additional == false) {
-      faults.push_back(
-          {where,
-           where + " = " + shown(child) + ": no such field (known: " + names_of(properties) + ")"});
+      faults.push_back({where,
+                        where + " = " + shown(child) + ": no such field" +
+                            suggestion(key, properties) + " (known: " + names_of(properties) +
+                            ")"});
     }
   }
 }

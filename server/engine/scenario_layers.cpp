@@ -33,7 +33,7 @@ terrain::WorldSpec layers_from(Json& world, const FileResolver& files, const std
   for (Json& entry : world.at("elevation")) {
     terrain::ElevationLayer layer;
     layer.file = files.resolve(entry.at("file"));
-    layer.datum = datum_from(entry.value("datum", ""));
+    layer.datum = datum_from(entry.value("vertical_datum", ""));
     layer.geoid_separation_m = number_or_none(entry, "geoid_separation_m");
     layer.unit_m = number_or_none(entry, "unit_m");
     layer.attribution = entry.at("attribution").get<std::string>();

@@ -8,6 +8,7 @@
 
 #include "core/file_text.hpp"
 #include "core/outside_json.hpp"
+#include "core/percent.hpp"
 #include "core/pose.hpp"
 #include "terrain/download/layers.hpp"
 #include "terrain/download/merge.hpp"
@@ -204,9 +205,8 @@ Status merge_all(const DownloadOptions& options,
                    layer.source + ": has no " + layer.what + " in this square at all"};
     }
     if (merged->void_share > 0.0) {
-      report.warnings.push_back(layer.what + ": " +
-                                std::to_string(100.0 * merged->void_share).substr(0, 5) +
-                                " % of the square has no data");
+      report.warnings.push_back(layer.what + ": " + percent_text(merged->void_share) +
+                                " of the square has no data");
     }
     if (merged->uniform_chunks > 0) {
       report.warnings.push_back(layer.what + ": " + std::to_string(merged->uniform_chunks) +

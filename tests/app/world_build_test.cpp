@@ -47,7 +47,7 @@ TEST_F(WorldBuildCommand, MakesAWorldOfFilesAndThenHasNothingToDo) {
                            "extent: 640 x 640 m",
                            "bounds: ",
                            "resolution: 2 m per texel",
-                           "imagery gaps: 0.00 %",
+                           "imagery gaps: 0 %",
                            "used texel for texel",
                            "vertical datum ellipsoid, to the ellipsoid by heights as they are",
                            "cache: in use: ",

@@ -98,7 +98,7 @@ std::vector<Mutant> seeds() {
     "format_version": 1, "name": "a-1", "title": "t", "description": "d", "seed": 3,
     "epoch_utc_s": 1767225600, "data": "data",
     "world": {"imagery": [{"file": "a.tif", "crs": "EPSG:2994", "attribution": "x"}],
-              "elevation": [{"file": "b.tif", "datum": "navd88", "geoid_separation_m": -22.5,
+              "elevation": [{"file": "b.tif", "vertical_datum": "navd88", "geoid_separation_m": -22.5,
                              "unit_m": 0.3048, "crs": "EPSG:2994", "attribution": "y"}],
               "ground_height_m": 12.5,
               "origin": {"lat_deg": 44, "lon_deg": -123, "alt_ellipsoid_m": 100},

@@ -57,6 +57,21 @@ TEST(Scenario, SaysFieldValueAndLimitOfEveryFault) {
   EXPECT_THAT(faults, HasSubstr("sed = 1: no such field (known: $schema, camera,"));
 }
 
+TEST(Scenario, NamesTheVerticalDatumAsAManifestDoes) {
+  Json document = course_document();
+  document["world"] = {{"imagery", {{{"file", "a.tif"}}}},
+                       {"elevation", {{{"file", "b.tif"}, {"vertical_datum", "egm2008"}}}}};
+  const Result<Scenario> scenario = resolve_scenario(document, {}, "/tmp");
+  ASSERT_TRUE(scenario.ok()) << scenario.error().message;
+  EXPECT_EQ(std::get<terrain::WorldSpec>(scenario->world).elevation.front().datum,
+            terrain::VerticalDatum::kEgm2008);
+  // The name of before.
+  document["world"]["elevation"][0] = {{"file", "b.tif"}, {"datum", "egm2008"}};
+  EXPECT_THAT(fault_of(document, {}),
+              HasSubstr("world.elevation.0.datum = \"egm2008\": no such field; its name is "
+                        "vertical_datum (known: "));
+}
+
 TEST(Scenario, SaysWhatTheSchemaCannotSay) {
   EXPECT_THAT(fault_of(course_document(), {"flight.course.leg_length_m=3300"}),
               HasSubstr("flight.course.leg_length_m = 3300: must be less than"));

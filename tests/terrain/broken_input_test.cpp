@@ -260,7 +260,7 @@ TEST_F(BrokenInput, AsElevationIsNamedInTheseWords) {
          r.value = [](int x, int y, int) { return x == 50 && y < 10 ? 32767.0 : 200.0; };
        },
        "warning: bad: 10 heights outside -12000 to 9000 m are taken as missing\nwarning: bad: 10 "
-       "of 10000 posts (0.1 %) have no data and are filled from those around them"},
+       "of 10000 posts (0.10 %) have no data and are filled from those around them"},
       {"nothing but nodata",
        [](RasterFile& r) {
          r.value = [](int, int, int) { return -9999.0; };
@@ -272,7 +272,7 @@ TEST_F(BrokenInput, AsElevationIsNamedInTheseWords) {
          r.value = [](int x, int y, int) { return x == 50 && y < 10 ? -9999.0 : 200.0; };
          r.nodata = -9999.0;
        },
-       "warning: bad: 10 of 10000 posts (0.1 %) have no data and are filled from those around "
+       "warning: bad: 10 of 10000 posts (0.10 %) have no data and are filled from those around "
        "them"},
       {"complex numbers",
        [](RasterFile& r) { r.type = "CFloat32"; },

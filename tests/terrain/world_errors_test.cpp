@@ -185,7 +185,7 @@ TEST_F(WorldErrors, TheDescriptionNamesLayersDatumGapsAndWarnings) {
                            "EPSG:32616",
                            "texel for texel",
                            "posts.tif, vertical datum unknown",
-                           "imagery gaps: 0.00 %",
+                           "imagery gaps: 0 %",
                            "warning: ",
                            "attribution: Test picture"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;

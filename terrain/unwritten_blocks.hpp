@@ -1,0 +1,17 @@
+// Inside terrain only: blocks of a TIFF that were never written ("sparse"). They read as zeros,
+// which in a picture is a black that nobody photographed.
+#pragma once
+
+#include <gdal_priv.h>
+
+#include "core/image.hpp"
+
+namespace overfly::terrain {
+
+/// Whether the band has such blocks: looks at the file's table of blocks, reads none of them.
+[[nodiscard]] bool has_unwritten_blocks(GDALRasterBand& band);
+
+/// Sets `valid`, the window whose first texel is (x, y), to 0 where the band has such blocks.
+void mask_unwritten_blocks(GDALRasterBand& band, int x, int y, Image& valid);
+
+}  // namespace overfly::terrain
