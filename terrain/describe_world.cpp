@@ -47,8 +47,11 @@ double gap_share(const TileSource& tiles) {
 
 std::string imagery_lines(const RasterWorld& source) {
   std::string text;
+  const ImageryRaster* before = nullptr;
   for (const MappedImagery& layer : source.imagery()) {
     const ImageryRaster& raster = layer.raster();
+    if (&raster == before) continue;  // the same file on another turn of the earth
+    before = &raster;
     const ValidityGrid* validity = layer.validity();
     text += line("imagery: %s, %s, %d x %d px of %.4g m, %s, %s",
                  raster.file().string().c_str(),
@@ -85,13 +88,15 @@ std::string elevation_lines(const World& world, const RasterWorld& source) {
   return text + line("elevation posts: every %.2f m", source.elevation().spacing_m());
 }
 
-/// Latitudes and longitudes between which the imagery lies.
+/// Latitudes and longitudes between which the imagery lies; across the antimeridian the western
+/// longitude is the greater number, as in GeoJSON (RFC 7946, sec. 5.2).
 std::string bounds_line(const TileSource& tiles) {
   const TileGrid& grid = tiles.grid();
   double low_lat = 90.0;
   double high_lat = -90.0;
-  double low_lon = 540.0;
-  double high_lon = -540.0;
+  const double origin_lon = deg_from_rad(tiles.frame().origin().lon_rad);
+  double low_lon = origin_lon + 360.0;
+  double high_lon = origin_lon - 360.0;
   constexpr int kSteps = 8;
   for (int j = 0; j <= kSteps; ++j) {
     for (int i = 0; i <= kSteps; ++i) {
@@ -99,12 +104,16 @@ std::string bounds_line(const TileSource& tiles) {
           grid.left_x_m + grid.width_m * i / kSteps, grid.top_y_m - grid.height_m * j / kSteps));
       low_lat = std::min(low_lat, deg_from_rad(at.lat_rad));
       high_lat = std::max(high_lat, deg_from_rad(at.lat_rad));
-      low_lon = std::min(low_lon, deg_from_rad(at.lon_rad));
-      high_lon = std::max(high_lon, deg_from_rad(at.lon_rad));
+      const double lon = unwrapped(deg_from_rad(at.lon_rad), origin_lon, 360.0);
+      low_lon = std::min(low_lon, lon);
+      high_lon = std::max(high_lon, lon);
     }
   }
-  return line(
-      "bounds: %.6f to %.6f deg N, %.6f to %.6f deg E", low_lat, high_lat, low_lon, high_lon);
+  return line("bounds: %.6f to %.6f deg N, %.6f to %.6f deg E",
+              low_lat,
+              high_lat,
+              unwrapped(low_lon, 0.0, 360.0),
+              unwrapped(high_lon, 0.0, 360.0));
 }
 
 }  // namespace

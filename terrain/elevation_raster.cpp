@@ -20,18 +20,32 @@ constexpr int kLatticeNodes = 65;
 
 PlaneFunction posts_of(const MapPlane& plane,
                        const CrsTransform& crs_from_wgs84,
-                       const GeoTransform& transform) {
-  return [&plane, &crs_from_wgs84, transform](const Eigen::Matrix2Xd& points,
-                                              Eigen::MatrixXd& values) {
+                       const GeoTransform& transform,
+                       const std::optional<Turn>& turn) {
+  return [&plane, &crs_from_wgs84, transform, turn](const Eigen::Matrix2Xd& points,
+                                                    Eigen::MatrixXd& values) {
     Eigen::Matrix2Xd crs_points = points;
     if (!plane.to_crs(crs_from_wgs84, crs_points)) return false;
     values.resize(2, points.cols());
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
+      if (turn) turn->apply(crs_points(0, i));
       transform.pixel_from_crs(crs_points(0, i), crs_points(1, i), values(0, i), values(1, i));
     }
     values.array() -= 0.5;  // posts are pixel centres
     return true;
   };
+}
+
+/// How many columns of a file go around the earth; empty where it has fewer.
+std::optional<int> columns_around(const std::optional<Turn>& turn,
+                                  const GeoTransform& transform,
+                                  int file_columns) {
+  if (!turn || transform.g[2] != 0.0 || transform.g[4] != 0.0) return std::nullopt;
+  const double columns = turn->length / std::abs(transform.g[1]);
+  constexpr double kTolerance = 1e-3;
+  if (columns > file_columns + kTolerance) return std::nullopt;
+  if (std::abs(columns - std::round(columns)) > kTolerance) return std::nullopt;
+  return static_cast<int>(std::lround(columns));
 }
 
 /// Distance between posts on the map at the middle of the fitted area.
@@ -143,14 +157,37 @@ std::string ElevationRaster::places_of(const MapPlane& plane,
   return text;
 }
 
+/// The posts between two corners, with a margin.
+void ElevationRaster::set_window(const Eigen::Vector2d& low, const Eigen::Vector2d& high) {
+  constexpr double kMargin = 4.0;
+  const auto clamped = [](double value, int size) {
+    return static_cast<int>(std::clamp(value, 0.0, static_cast<double>(size)));
+  };
+  window_.row = clamped(std::floor(low.y() - kMargin), file_rows_);
+  window_.rows = clamped(std::ceil(high.y() + kMargin), file_rows_) - window_.row;
+  const double left = std::floor(low.x() - kMargin);
+  const double right = std::ceil(high.x() + kMargin);
+  if (columns_around_) {
+    window_.column = static_cast<int>(left);
+    window_.columns = clamped(right - left, *columns_around_);
+  } else {
+    window_.column = clamped(left, file_columns_);
+    window_.columns = clamped(right, file_columns_) - window_.column;
+  }
+}
+
 Status ElevationRaster::find_window(const MapPlane& plane,
                                     const MapRect& area,
                                     const Georeference& place) {
   auto crs_from_wgs84 = CrsTransform::create(wgs84_crs(), place.crs, file_);
   if (!crs_from_wgs84) return crs_from_wgs84.error();
+  const auto turns = turns_over(plane, area, place, file_columns_, file_rows_, file_);
+  if (!turns) return turns.error();
+  const std::optional<Turn>& turn = turns->front();
+  columns_around_ = columns_around(turn, place.transform, file_columns_);
   constexpr double kTolerancePosts = 1e-3;
-  post_from_map_ =
-      SmoothMap<2>::fit(area, posts_of(plane, **crs_from_wgs84, place.transform), kTolerancePosts);
+  post_from_map_ = SmoothMap<2>::fit(
+      area, posts_of(plane, **crs_from_wgs84, place.transform, turn), kTolerancePosts);
   if (!post_from_map_) {
     return Error{ErrorCode::kInvalidArgument,
                  file_ +
@@ -170,14 +207,7 @@ Status ElevationRaster::find_window(const MapPlane& plane,
     }
   }
   whereabouts_ = places_of(plane, area, place);
-  constexpr double kMargin = 4.0;
-  const auto clamped = [](double value, int size) {
-    return static_cast<int>(std::clamp(value, 0.0, static_cast<double>(size)));
-  };
-  window_.column = clamped(std::floor(low.x() - kMargin), file_columns_);
-  window_.row = clamped(std::floor(low.y() - kMargin), file_rows_);
-  window_.columns = clamped(std::ceil(high.x() + kMargin), file_columns_) - window_.column;
-  window_.rows = clamped(std::ceil(high.y() + kMargin), file_rows_) - window_.row;
+  set_window(low, high);
   if (window_.columns < 1 || window_.rows < 1) {
     return Error{ErrorCode::kInvalidArgument,
                  file_ + ": elevation lies nowhere near the imagery; check both georeferences" +
@@ -249,19 +279,30 @@ Result<RawPosts> ElevationRaster::read(int column, int row, int columns, int row
   if (!dataset) return dataset.error();
   const GdalMessages messages;
   GDALRasterBand* band = (*dataset)->GetRasterBand(1);
-  const auto read_into = [&](GDALRasterBand* from, void* data, GDALDataType type) {
-    return from->RasterIO(GF_Read,
-                          window_.column + column,
-                          window_.row + row,
-                          columns,
-                          rows,
-                          data,
-                          columns,
-                          rows,
-                          type,
-                          0,
-                          0,
-                          nullptr);
+  const auto read_into = [&](GDALRasterBand* from, auto* data, GDALDataType type) {
+    CPLErr outcome = CE_None;
+    // In one piece, but where the window goes on beyond the last of the columns around the earth.
+    for (int done = 0, count = 0; done < columns && outcome == CE_None; done += count) {
+      int first = window_.column + column + done;
+      count = columns - done;
+      if (columns_around_) {
+        first = (first % *columns_around_ + *columns_around_) % *columns_around_;
+        count = std::min(count, *columns_around_ - first);
+      }
+      outcome = from->RasterIO(GF_Read,
+                               first,
+                               window_.row + row,
+                               count,
+                               rows,
+                               data + done,
+                               count,
+                               rows,
+                               type,
+                               0,
+                               static_cast<GSpacing>(sizeof(*data)) * columns,
+                               nullptr);
+    }
+    return outcome;
   };
   CPLErr outcome = read_into(band, posts.grid.heights_m.data(), GDT_Float32);
   std::vector<std::uint8_t> mask;

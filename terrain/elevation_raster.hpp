@@ -59,7 +59,8 @@ class ElevationRaster {
   [[nodiscard]] const HeightDatum& datum() const { return datum_; }
 
  private:
-  /// The part of the file that is used, in its posts.
+  /// The part of the file that is used, in its posts. Of a file around the whole earth columns may
+  /// lie before its first and beyond its last.
   struct Window {
     int column = 0;
     int row = 0;
@@ -73,6 +74,7 @@ class ElevationRaster {
                          const Georeference& place,
                          std::vector<std::string>& warnings);
   void to_metres(RawPosts& posts, int column, int row) const;
+  void set_window(const Eigen::Vector2d& low, const Eigen::Vector2d& high);
   [[nodiscard]] Result<HeightGrid> posts_block(int column, int row) const;
 
   [[nodiscard]] std::string places_of(const MapPlane& plane,
@@ -84,6 +86,7 @@ class ElevationRaster {
   std::unique_ptr<DatasetPool> pool_;
   int file_columns_ = 0;
   int file_rows_ = 0;
+  std::optional<int> columns_around_;  ///< the earth, where the file goes around it
   Window window_;
   std::optional<SmoothMap<2>> post_from_map_;
   double spacing_m_ = 0.0;

@@ -146,16 +146,16 @@ std::optional<std::string> place_doubt(const Georeference& place,
   double east = 0.0;
   double north = 0.0;
   const char* area = nullptr;
-  if (!place.crs.GetAreaOfUse(&west, &south, &east, &north, &area) || west > east ||
-      west < -180.0) {
+  if (!place.crs.GetAreaOfUse(&west, &south, &east, &north, &area) || west < -180.0) {
     return std::nullopt;
   }
+  if (west > east) east += 360.0;  // across the antimeridian
   const auto transform = CrsTransform::create(place.crs, wgs84_crs(), file);
   if (!transform) return std::nullopt;
   Eigen::Matrix2Xd middle(2, 1);
   place.transform.crs_from_pixel(0.5 * width_px, 0.5 * height_px, middle(0, 0), middle(1, 0));
   if (!(*transform)->apply(middle)) return std::nullopt;  // laying out the world says so
-  const double lon = middle(0, 0);
+  const double lon = unwrapped(middle(0, 0), 0.5 * (west + east), 360.0);
   const double lat = middle(1, 0);
   const double outside = std::max({west - lon, lon - east, south - lat, lat - north, 0.0});
   constexpr double kFarDeg = 3.0;
@@ -167,12 +167,12 @@ std::optional<std::string> place_doubt(const Georeference& place,
                 "coordinate reference system (%.0f to %.0f deg N, %.0f to %.0f deg E); are its "
                 "coordinates in the right unit and zone?",
                 lat,
-                lon,
+                middle(0, 0),
                 outside,
                 south,
                 north,
                 west,
-                east);
+                east > 180.0 ? east - 360.0 : east);
   return file + text;
 }
 

@@ -53,11 +53,13 @@ OGRSpatialReference transverse_mercator_at(double lat_rad, double lon_rad) {
 Result<MapPlane> MapPlane::create(const OGRSpatialReference& crs,
                                   double scale_x,
                                   double scale_y,
+                                  double x_near,
                                   const std::string& what) {
   MapPlane plane;
   plane.crs_ = crs;
   plane.scale_x_ = scale_x;
   plane.scale_y_ = scale_y;
+  if (const auto turn = full_turn_of(crs)) plane.turn_ = Turn{*turn, x_near};
   auto forward = CrsTransform::create(crs, wgs84_crs(), what);
   if (!forward) return forward.error();
   auto backward = CrsTransform::create(wgs84_crs(), crs, what);
@@ -78,6 +80,7 @@ bool MapPlane::geodetic_from_map(Eigen::Matrix2Xd& points) const {
 bool MapPlane::map_from_geodetic(Eigen::Matrix2Xd& points) const {
   points *= deg_from_rad(1.0);
   if (!from_wgs84_->apply(points)) return false;
+  for (Eigen::Index i = 0; turn_ && i < points.cols(); ++i) turn_->apply(points(0, i));
   points.row(0) *= scale_x_;
   points.row(1) *= scale_y_;
   return true;

@@ -5,9 +5,11 @@
 #include <Eigen/Core>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "core/geodesy.hpp"
+#include "terrain/full_turn.hpp"
 #include "terrain/gdal_dataset.hpp"
 
 namespace overfly::terrain {
@@ -38,12 +40,16 @@ class CrsTransform {
 class MapPlane {
  public:
   /// x_map = scale_x X, y_map = scale_y Y.
+  /// @param x_near  of a CRS whose X begins anew after a full turn: map points lie within half a
+  ///                turn of it
   static Result<MapPlane> create(const OGRSpatialReference& crs,
                                  double scale_x,
                                  double scale_y,
+                                 double x_near,
                                  const std::string& what);
 
-  /// Longitude, latitude [rad] of map points; false if any has none.
+  /// Longitude, latitude [rad] of map points, longitudes as PROJ gives them: they may jump by a
+  /// turn at the antimeridian. False if any has none.
   bool geodetic_from_map(Eigen::Matrix2Xd& points) const;
   /// The inverse.
   bool map_from_geodetic(Eigen::Matrix2Xd& points) const;
@@ -58,6 +64,7 @@ class MapPlane {
   OGRSpatialReference crs_;
   double scale_x_ = 1.0;
   double scale_y_ = 1.0;
+  std::optional<Turn> turn_;
   std::shared_ptr<const CrsTransform> to_wgs84_;
   std::shared_ptr<const CrsTransform> from_wgs84_;
 };

@@ -49,6 +49,7 @@ Result<MappedImagery> MappedImagery::aligned(std::shared_ptr<const ImageryRaster
 Result<MappedImagery> MappedImagery::warped(std::shared_ptr<const ImageryRaster> raster,
                                             const MapPlane& plane,
                                             const TileGrid& grid,
+                                            const std::optional<Turn>& turn,
                                             std::optional<ValidityGrid> validity) {
   MappedImagery layer(std::move(raster), grid);
   const Georeference& place = layer.raster_->georeference();
@@ -60,6 +61,7 @@ Result<MappedImagery> MappedImagery::warped(std::shared_ptr<const ImageryRaster>
     if (!plane.to_crs(**transform, crs_points)) return false;
     values.resize(2, points.cols());
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
+      if (turn) turn->apply(crs_points(0, i));
       place.transform.pixel_from_crs(
           crs_points(0, i), crs_points(1, i), values(0, i), values(1, i));
     }
@@ -79,6 +81,17 @@ Result<MappedImagery> MappedImagery::warped(std::shared_ptr<const ImageryRaster>
   const Status read = layer.read_validity();
   if (!read) return read.error();
   return layer;
+}
+
+Result<std::vector<std::optional<Turn>>> MappedImagery::turns_over_grid(const ImageryRaster& raster,
+                                                                        const MapPlane& plane,
+                                                                        const TileGrid& grid) {
+  return turns_over(plane,
+                    extent_of(grid),
+                    raster.georeference(),
+                    raster.width_px(),
+                    raster.height_px(),
+                    raster.file().string());
 }
 
 Status MappedImagery::read_validity() {

@@ -23,10 +23,16 @@ class MappedImagery {
                                        int pad_y,
                                        std::optional<ValidityGrid> validity = {});
   /// A layer that is resampled. Errors: kInvalidArgument if its CRS has no place for the grid.
+  /// @param turn  the one of `turns_over_grid` that its columns are counted on
   static Result<MappedImagery> warped(std::shared_ptr<const ImageryRaster> raster,
                                       const MapPlane& plane,
                                       const TileGrid& grid,
+                                      const std::optional<Turn>& turn,
                                       std::optional<ValidityGrid> validity = {});
+  /// The turns of the earth on which a file meets the grid; each asks for a layer of its own.
+  static Result<std::vector<std::optional<Turn>>> turns_over_grid(const ImageryRaster& raster,
+                                                                  const MapPlane& plane,
+                                                                  const TileGrid& grid);
 
   /// The tile's texels as far as this layer has them. Errors: kIo.
   [[nodiscard]] Result<Patch> read(const TileId& id) const;

@@ -58,19 +58,25 @@ Result<std::vector<MappedImagery>> map_imagery(const Rasters& rasters,
   std::vector<MappedImagery> layers;
   for (std::size_t i = 0; i < rasters.size(); ++i) {
     if (Status status = go_on(cancelled); !status) return status.error();
-    std::optional<ValidityGrid> validity;
-    if (cache != nullptr) {
-      auto kept = cache->validity(static_cast<int>(i));
-      if (!kept) return kept.error();
-      validity = std::move(*kept);
+    const bool aligned = i == 0 && layout.first_aligned;
+    Result<std::vector<std::optional<Turn>>> turns(std::vector<std::optional<Turn>>{std::nullopt});
+    if (!aligned) turns = MappedImagery::turns_over_grid(*rasters[i], layout.plane, layout.grid);
+    if (!turns) return turns.error();
+    for (const std::optional<Turn>& turn : *turns) {
+      std::optional<ValidityGrid> validity;
+      if (cache != nullptr) {
+        auto kept = cache->validity(static_cast<int>(layers.size()));
+        if (!kept) return kept.error();
+        validity = std::move(*kept);
+      }
+      auto layer =
+          aligned ? MappedImagery::aligned(
+                        rasters[i], layout.grid, layout.pad_x, layout.pad_y, std::move(validity))
+                  : MappedImagery::warped(
+                        rasters[i], layout.plane, layout.grid, turn, std::move(validity));
+      if (!layer) return layer.error();
+      layers.push_back(std::move(*layer));
     }
-    auto layer =
-        i == 0 && layout.first_aligned
-            ? MappedImagery::aligned(
-                  rasters[i], layout.grid, layout.pad_x, layout.pad_y, std::move(validity))
-            : MappedImagery::warped(rasters[i], layout.plane, layout.grid, std::move(validity));
-    if (!layer) return layer.error();
-    layers.push_back(std::move(*layer));
   }
   return layers;
 }

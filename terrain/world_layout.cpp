@@ -8,7 +8,8 @@
 namespace overfly::terrain {
 namespace {
 
-/// Points along a file's border and in its inside, file pixels to longitude and latitude [rad].
+/// Points along a file's border and in its inside, file pixels to longitude and latitude [rad],
+/// without a jump at the antimeridian.
 Result<Eigen::Matrix2Xd> geodetic_outline(const ImageryRaster& raster) {
   const Georeference& place = raster.georeference();
   auto transform = CrsTransform::create(place.crs, wgs84_crs(), raster.file().string());
@@ -28,6 +29,9 @@ Result<Eigen::Matrix2Xd> geodetic_outline(const ImageryRaster& raster) {
     return Error{ErrorCode::kInvalidArgument,
                  raster.file().string() +
                      ": part of it has no latitude and longitude: its georeference is broken"};
+  }
+  for (Eigen::Index i = 1; i < points.cols(); ++i) {
+    points(0, i) = unwrapped(points(0, i), points(0, 0), 360.0);
   }
   return Eigen::Matrix2Xd(points * rad_from_deg(1.0));
 }
@@ -80,8 +84,11 @@ Status choose_plane(const ImageryRaster& first,
     const bool true_scale = std::abs(ground->x() / (width * unit_m) - 1.0) < kTolerance;
     layout.first_aligned = true;
     layout.grid.texel_m = true_scale ? width * unit_m : ground->x();
-    auto plane = MapPlane::create(
-        place.crs, layout.grid.texel_m / width, layout.grid.texel_m / height, file);
+    auto plane = MapPlane::create(place.crs,
+                                  layout.grid.texel_m / width,
+                                  layout.grid.texel_m / height,
+                                  place.transform.g[0] + 0.5 * width * first.width_px(),
+                                  file);
     if (!plane) return plane.error();
     layout.plane = std::move(*plane);
     return {};
@@ -91,7 +98,7 @@ Status choose_plane(const ImageryRaster& first,
   const MapRect bounds = bounds_of(*outline);
   const double lat_rad = origin ? origin->lat_rad : 0.5 * (bounds.y_min + bounds.y_max);
   const double lon_rad = origin ? origin->lon_rad : 0.5 * (bounds.x_min + bounds.x_max);
-  auto plane = MapPlane::create(transverse_mercator_at(lat_rad, lon_rad), 1.0, 1.0, file);
+  auto plane = MapPlane::create(transverse_mercator_at(lat_rad, lon_rad), 1.0, 1.0, 0.0, file);
   if (!plane) return plane.error();
   layout.plane = std::move(*plane);
   layout.grid.texel_m = ground->minCoeff();

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "core/pose.hpp"
 #include "terrain/download/layers.hpp"
@@ -104,21 +105,23 @@ void cut_tiles(const DownloadOptions& options, ChunkLayer& layer) {
                  options.finest_zoom);
   const double pixel = 2.0 * kHalfWorldM / options.tile_px / (1 << zoom);
   PixelRange range = range_of(options, pixel, options.tile_px);
-  const int last = (1 << zoom) - 1;
-  range = {pixel,
-           std::max(range.left, 0),
-           std::max(range.top, 0),
-           std::min(range.right, last),
-           std::min(range.bottom, last)};
+  const int around = 1 << zoom;  // tiles around the earth
+  range.top = std::max(range.top, 0);
+  range.bottom = std::min(range.bottom, around - 1);
+  if (range.right - range.left >= around) {
+    range.left = 0;
+    range.right = around - 1;
+  }
   set_extent(layer, range, options.tile_px);
   for (int y = range.top; y <= range.bottom; ++y) {
-    for (int x = range.left; x <= range.right; ++x) {
+    for (int column = range.left; column <= range.right; ++column) {
+      const int x = (column + around) % around;  // beyond the antimeridian columns begin anew
       Chunk chunk;
       chunk.url = tile_url(options.imagery_source, zoom, x, y);
       chunk.file = options.folder / "chunks" /
                    ("imagery_" + std::to_string(zoom) + "_" + std::to_string(y) + "_" +
                     std::to_string(x) + ".img");
-      chunk.column_px = (x - range.left) * options.tile_px;
+      chunk.column_px = (column - range.left) * options.tile_px;
       chunk.row_px = (y - range.top) * options.tile_px;
       chunk.width_px = options.tile_px;
       chunk.height_px = options.tile_px;
@@ -129,18 +132,37 @@ void cut_tiles(const DownloadOptions& options, ChunkLayer& layer) {
   }
 }
 
+/// Columns at which requests begin: every `chunk_px`, and at the antimeridian, beyond which a
+/// service counts anew. Ends with the layer's width.
+std::vector<int> column_cuts(const ChunkLayer& layer, int chunk_px) {
+  std::vector<int> cuts;
+  for (int column = 0; column < layer.width_px; column += chunk_px) cuts.push_back(column);
+  cuts.push_back(layer.width_px);
+  for (const double seam : {-kHalfWorldM, kHalfWorldM}) {
+    const double column = std::round((seam - layer.left) / layer.pixel);
+    if (column > 0.0 && column < layer.width_px) cuts.push_back(static_cast<int>(column));
+  }
+  std::sort(cuts.begin(), cuts.end());
+  cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
+  return cuts;
+}
+
 void cut_wms(const DownloadOptions& options, ChunkLayer& layer) {
   const double pixel = options.imagery_m / std::cos(options.center_lat_rad);
   set_extent(layer, range_of(options, pixel, 1), 1);
+  const std::vector<int> cuts = column_cuts(layer, options.chunk_px);
   for (int row = 0; row < layer.height_px; row += options.chunk_px) {
-    for (int column = 0; column < layer.width_px; column += options.chunk_px) {
+    for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+      const int column = cuts[i];
       Chunk chunk;
       chunk.column_px = column;
       chunk.row_px = row;
-      chunk.width_px = std::min(options.chunk_px, layer.width_px - column);
+      chunk.width_px = cuts[i + 1] - column;
       chunk.height_px = std::min(options.chunk_px, layer.height_px - row);
       chunk.payload = Payload::kPicture;
-      const double left = layer.left + column * pixel;
+      const double middle = layer.left + (column + 0.5 * chunk.width_px) * pixel;
+      const double turns = std::round(middle / (2.0 * kHalfWorldM));
+      const double left = layer.left + column * pixel - turns * 2.0 * kHalfWorldM;
       const double top = layer.top - row * pixel;
       chunk.url = options.imagery_source;
       replace_field(chunk.url,

@@ -209,6 +209,71 @@ TEST_F(Download, AsksAWebMapServiceByItsTemplate) {
   EXPECT_NEAR((box[2] - box[0]) * std::cos(rad_from_deg(39.35)), 200.0, 2.0);
 }
 
+/// A square of Fiji whose middle lies 10 m west of the antimeridian.
+DownloadOptions across_the_antimeridian(DownloadOptions options) {
+  options.center_lat_rad = rad_from_deg(-16.8);
+  options.center_lon_rad = rad_from_deg(179.9999);
+  options.imagery_attribution = "Test map";
+  options.elevation_source = kNoSource;
+  options.ground_height_m = 60.0;
+  options.size_m = 600.0;
+  return options;
+}
+
+TEST_F(Download, TakesTilesFromBothSidesOfTheAntimeridian) {
+  const LocalHttpServer server([](const HttpRequest& request) {
+    int z = 0, x = 0, y = 0;
+    if (std::sscanf(request.path.c_str(), "/tiles/%d/%d/%d.png", &z, &x, &y) != 3 || x < 0 ||
+        x >= 1 << z) {
+      return words(400, "text/plain", request.path);
+    }
+    return testing::picture_tile(z, x, y);
+  });
+  DownloadOptions options = across_the_antimeridian(options_for(server));
+  options.imagery_source = server.address() + "/tiles/{z}/{x}/{y}.png";
+  const auto report = download_world(options);
+  ASSERT_TRUE(report) << report.error().message;
+  const auto world = open_world(read_world_manifest(report->manifest).value());
+  ASSERT_TRUE(world) << world.error().message;
+  const TileGrid& grid = world->tiles->grid();
+  for (const double lon_deg : {179.998, -179.998}) {
+    const Eigen::Vector3d p =
+        world->tiles->frame().world_from_geodetic(geodetic_from_deg(-16.8, lon_deg, 60.0));
+    const Eigen::Vector2d map = world->tiles->map_from_world(p.x(), p.y());
+    const int column = static_cast<int>((map.x() - grid.left_x_m) / grid.texel_m);
+    const int row = static_cast<int>((grid.top_y_m - map.y()) / grid.texel_m);
+    const auto tile = world->tiles->tile({0, column / kTileTexels, row / kTileTexels});
+    ASSERT_TRUE(tile);
+    const int u = column % kTileTexels + kTileBorder;
+    const int v = row % kTileTexels + kTileBorder;
+    const int zoom = tile->rgb.at(u, v, 0);
+    const int x = static_cast<int>((lon_deg + 180.0) / 360.0 * (1 << zoom));
+    EXPECT_EQ(tile->rgb.at(u, v, 1), x & 255) << lon_deg << " at zoom " << zoom;
+  }
+}
+
+TEST_F(Download, AsksAWebMapServiceOnBothSidesOfTheAntimeridian) {
+  const LocalHttpServer server([](const HttpRequest&) { return words(500, "text/plain", ""); });
+  DownloadOptions options = across_the_antimeridian(options_for(server));
+  options.imagery_source = server.address() + "/wms?{bbox}&{width}&{height}";
+  const auto plan = plan_download(options);
+  ASSERT_TRUE(plan) << plan.error().message;
+  constexpr double kEnd = 20037508.342789244;
+  double width = 0.0;
+  for (const DownloadRequest& request : plan->layers.front().requests) {
+    double left = 0.0, bottom = 0.0, right = 0.0, top = 0.0;
+    const std::size_t at = request.url.find('?') + 1;
+    ASSERT_EQ(
+        std::sscanf(request.url.c_str() + at, "%lf,%lf,%lf,%lf", &left, &bottom, &right, &top), 4);
+    // A pixel may straddle the seam.
+    EXPECT_GE(left, -kEnd - 2.0) << request.url;
+    EXPECT_LE(right, kEnd + 2.0) << request.url;
+    width += right - left;
+  }
+  EXPECT_EQ(plan->layers.front().requests.size(), 2U);
+  EXPECT_NEAR(width * std::cos(rad_from_deg(-16.8)), 600.0, 4.0);
+}
+
 TEST_F(Download, RefusesWhatCannotBeMeant) {
   DownloadOptions options;
   options.folder = folder() / "world";
