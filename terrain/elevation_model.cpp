@@ -10,13 +10,11 @@
 namespace overfly::terrain {
 namespace {
 
-using RasterPtr = std::shared_ptr<const ElevationRaster>;
+using RasterPtr = std::shared_ptr<ElevationRaster>;
 using Rasters = std::vector<RasterPtr>;
 
 /// Blocks of heights in memory at most.
 constexpr std::size_t kCacheBytes = std::size_t{128} << 20U;
-/// Beyond this many posts, reading each once when a world is opened is worth a word.
-constexpr double kManyPosts = 40e6;
 /// Posts of a merged grid at most.
 constexpr double kMaxMergedPosts = 200e6;
 
@@ -189,25 +187,6 @@ Status ElevationModel::merge(const MapRect& area,
   return {};
 }
 
-Status ElevationModel::survey(const std::function<bool()>& cancelled,
-                              std::vector<std::string>& warnings) {
-  for (const RasterPtr& raster : parts_->rasters) {
-    Status whole = raster->check(warnings);
-    if (!whole) return whole;
-  }
-  auto survey = parts_->pyramid->survey(cancelled);
-  if (!survey) return survey.error();
-  for (const RasterPtr& raster : parts_->rasters) {
-    survey->implausible_layers.push_back(raster->implausible_seen());
-  }
-  if (survey->posts > kManyPosts) {
-    warnings.push_back(what_ + ": " + std::to_string(static_cast<long long>(survey->posts)) +
-                       " posts are read whenever this world is opened; `overfly world build` makes "
-                       "it quick");
-  }
-  return take(*survey, warnings);
-}
-
 Status ElevationModel::use(std::shared_ptr<const HeightStore> store,
                            std::vector<std::string>& warnings) {
   const PagedHeights& shape = parts_->pyramid->filled();
@@ -221,37 +200,6 @@ Status ElevationModel::use(std::shared_ptr<const HeightStore> store,
                                      });
   parts_->heights = parts_->stored.get();
   return take(parts_->store->survey(), warnings);
-}
-
-Status ElevationModel::take(const HeightSurvey& survey, std::vector<std::string>& warnings) {
-  survey_ = survey;
-  if (survey.implausible > 0) {
-    warnings.push_back(what_ + ": " + std::to_string(static_cast<long long>(survey.implausible)) +
-                       " heights outside -12000 to 9000 m are taken as missing");
-  }
-  const std::size_t layers = std::min(parts_->rasters.size(), survey.implausible_layers.size());
-  for (std::size_t i = 0; survey.implausible == 0 && i < layers; ++i) {
-    if (!survey.implausible_layers[i]) continue;
-    warnings.push_back(parts_->rasters[i]->file() +
-                       ": heights outside -12000 to 9000 m are taken as missing");
-  }
-  if (survey.voids >= survey.posts) {
-    std::string why = ": has no heights near the imagery";
-    if (survey.implausible > 0) {
-      why +=
-          ", only values outside -12000 to 9000 m; if their unit is not the metre, say "
-          "\"unit_m\" in the manifest";
-    }
-    return Error{ErrorCode::kInvalidArgument, what_ + why};
-  }
-  if (survey.voids > 0) {
-    warnings.push_back(what_ + ": " + std::to_string(static_cast<long long>(survey.voids)) +
-                       " of " + std::to_string(static_cast<long long>(survey.posts)) + " posts (" +
-                       percent_text(survey.voids / survey.posts) +
-                       ") have no data and are filled from those around them");
-  }
-  range_m_ = {survey.lowest_m, survey.highest_m};
-  return {};
 }
 
 double ElevationModel::at_level(int level, double x_map_m, double y_map_m) const {

@@ -75,7 +75,7 @@ class ElevationModel {
  private:
   /// What blocks are made from; stays where it is when the model moves.
   struct Parts {
-    std::vector<std::shared_ptr<const ElevationRaster>> rasters;
+    std::vector<std::shared_ptr<ElevationRaster>> rasters;
     std::shared_ptr<BlockCache> cache;
     std::unique_ptr<HeightPyramid> pyramid;
     std::shared_ptr<const HeightStore> store;

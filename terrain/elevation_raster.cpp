@@ -94,12 +94,11 @@ std::string relation_of(const std::optional<GeoidModel>& geoid) {
 
 }  // namespace
 
-Result<std::shared_ptr<const ElevationRaster>> ElevationRaster::open(
-    const ElevationLayer& layer,
-    const MapPlane& plane,
-    const MapRect& area,
-    std::shared_ptr<BlockCache> cache,
-    std::vector<std::string>& warnings) {
+Result<std::shared_ptr<ElevationRaster>> ElevationRaster::open(const ElevationLayer& layer,
+                                                               const MapPlane& plane,
+                                                               const MapRect& area,
+                                                               std::shared_ptr<BlockCache> cache,
+                                                               std::vector<std::string>& warnings) {
   auto raster = std::make_shared<ElevationRaster>();
   raster->file_ = layer.file.string();
   initialise_gdal();
@@ -118,14 +117,17 @@ Result<std::shared_ptr<const ElevationRaster>> ElevationRaster::open(
   if (!good) return good.error();
   if (!messages.empty()) warnings.push_back(heard_while_opening(layer.file, messages));
   raster->pool_ = std::make_unique<DatasetPool>(layer.file, 0, std::move(*opened));
-  raster->posts_ = std::make_unique<PagedHeights>(
-      raster->window_.columns,
-      raster->window_.rows,
+  raster->page_posts(std::move(cache));
+  return raster;
+}
+
+void ElevationRaster::page_posts(std::shared_ptr<BlockCache> cache) {
+  cache_ = cache;
+  posts_ = std::make_unique<PagedHeights>(
+      window_.columns,
+      window_.rows,
       std::move(cache),
-      [owner = raster.get()](int, int column, int row) -> Result<HeightGrid> {
-        return owner->posts_block(column, row);
-      });
-  return std::shared_ptr<const ElevationRaster>(std::move(raster));
+      [this](int, int column, int row) -> Result<HeightGrid> { return posts_block(column, row); });
 }
 
 Status ElevationRaster::check(std::vector<std::string>& warnings) const {
@@ -230,6 +232,7 @@ Status ElevationRaster::find_conversion(GDALDataset& dataset,
   const double nodata = band.GetNoDataValue(&has_nodata);
   if (has_nodata != 0) nodata_ = nodata;
   if (layer.nodata) nodata_ = layer.nodata;
+  trusted_ = layer.nodata.has_value();
   masked_ = (band.GetMaskFlags() & (GMF_ALL_VALID | GMF_NODATA)) == 0;
 
   auto wgs84_from_crs = CrsTransform::create(place.crs, wgs84_crs(), file_);
@@ -268,107 +271,6 @@ Status ElevationRaster::find_conversion(GDALDataset& dataset,
   if (!lattice) return lattice.error();
   separation_m_ = std::move(*lattice);
   return {};
-}
-
-Result<RawPosts> ElevationRaster::read(int column, int row, int columns, int rows) const {
-  RawPosts posts;
-  posts.grid.columns = columns;
-  posts.grid.rows = rows;
-  posts.grid.heights_m.resize(static_cast<std::size_t>(columns) * rows);
-  auto dataset = pool_->take();
-  if (!dataset) return dataset.error();
-  const GdalMessages messages;
-  GDALRasterBand* band = (*dataset)->GetRasterBand(1);
-  const auto read_into = [&](GDALRasterBand* from, auto* data, GDALDataType type) {
-    CPLErr outcome = CE_None;
-    // In one piece, but where the window goes on beyond the last of the columns around the earth.
-    for (int done = 0, count = 0; done < columns && outcome == CE_None; done += count) {
-      int first = window_.column + column + done;
-      count = columns - done;
-      if (columns_around_) {
-        first = (first % *columns_around_ + *columns_around_) % *columns_around_;
-        count = std::min(count, *columns_around_ - first);
-      }
-      outcome = from->RasterIO(GF_Read,
-                               first,
-                               window_.row + row,
-                               count,
-                               rows,
-                               data + done,
-                               count,
-                               rows,
-                               type,
-                               0,
-                               static_cast<GSpacing>(sizeof(*data)) * columns,
-                               nullptr);
-    }
-    return outcome;
-  };
-  CPLErr outcome = read_into(band, posts.grid.heights_m.data(), GDT_Float32);
-  std::vector<std::uint8_t> mask;
-  if (outcome == CE_None && masked_) {
-    mask.resize(posts.grid.heights_m.size());
-    outcome = read_into(band->GetMaskBand(), mask.data(), GDT_Byte);
-  }
-  pool_->put(std::move(*dataset));
-  if (outcome != CE_None) {
-    return Error{ErrorCode::kIo, file_ + ": heights cannot be read: " + messages.text()};
-  }
-  for (std::size_t i = 0; i < mask.size(); ++i) {
-    if (mask[i] == 0) posts.grid.heights_m[i] = std::numeric_limits<float>::quiet_NaN();
-  }
-  to_metres(posts, column, row);
-  return posts;
-}
-
-/// Marks posts without data as NaN and turns the others into metres above the ellipsoid.
-void ElevationRaster::to_metres(RawPosts& posts, int column, int row) const {
-  constexpr double kLowestM = -12000.0;
-  constexpr double kHighestM = 9000.0;
-  for (float& height : posts.grid.heights_m) {
-    const bool declared = nodata_ && height == static_cast<float>(*nodata_);
-    const double metres = height * scale_m_ + offset_m_;
-    if (!declared && metres >= kLowestM && metres <= kHighestM) {
-      height = static_cast<float>(metres);
-      continue;
-    }
-    if (!declared && !std::isnan(height)) ++posts.implausible;
-    height = std::numeric_limits<float>::quiet_NaN();
-  }
-  if (separation_m_.columns == 0) return;
-  const double step_u = (kLatticeNodes - 1.0) / std::max(1, window_.columns - 1);
-  const double step_v = (kLatticeNodes - 1.0) / std::max(1, window_.rows - 1);
-  for (int j = 0; j < posts.grid.rows; ++j) {
-    for (int i = 0; i < posts.grid.columns; ++i) {
-      posts.grid.at(i, j) +=
-          static_cast<float>(separation_m_.bilinear((column + i) * step_u, (row + j) * step_v));
-    }
-  }
-}
-
-Result<HeightGrid> ElevationRaster::posts_block(int column, int row) const {
-  const int left = column * kBlockPosts;
-  const int top = row * kBlockPosts;
-  auto read = this->read(left,
-                         top,
-                         std::min(kBlockPosts + 1, window_.columns - left),
-                         std::min(kBlockPosts + 1, window_.rows - top));
-  if (!read) return read.error();
-  if (read->implausible > 0) implausible_ = true;
-  if (read->grid.columns > kBlockPosts && read->grid.rows > kBlockPosts) {
-    return std::move(read->grid);
-  }
-  HeightGrid block;
-  block.columns = kBlockPosts + 1;
-  block.rows = kBlockPosts + 1;
-  block.heights_m.resize(static_cast<std::size_t>(block.columns) * block.rows);
-  for (int j = 0; j < block.rows; ++j) {
-    for (int i = 0; i < block.columns; ++i) {
-      block.at(i, j) =
-          read->grid.at(std::min(i, read->grid.columns - 1), std::min(j, read->grid.rows - 1));
-    }
-  }
-  return block;
 }
 
 bool ElevationRaster::covers(double x_map_m, double y_map_m) const {

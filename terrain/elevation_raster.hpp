@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,6 +14,7 @@
 #include "terrain/height_pyramid.hpp"
 #include "terrain/map_plane.hpp"
 #include "terrain/smooth_map.hpp"
+#include "terrain/void_plateaus.hpp"
 #include "terrain/world.hpp"
 
 namespace overfly::terrain {
@@ -24,14 +26,21 @@ class ElevationRaster {
   /// become metres above the ellipsoid. Doubts about unit and datum go to `warnings`.
   /// @param cache  holds the posts that `height_m` read
   /// Errors: kNotFound, kUnreadable, kInvalidArgument naming the file.
-  static Result<std::shared_ptr<const ElevationRaster>> open(const ElevationLayer& layer,
-                                                             const MapPlane& plane,
-                                                             const MapRect& area,
-                                                             std::shared_ptr<BlockCache> cache,
-                                                             std::vector<std::string>& warnings);
+  static Result<std::shared_ptr<ElevationRaster>> open(const ElevationLayer& layer,
+                                                       const MapPlane& plane,
+                                                       const MapRect& area,
+                                                       std::shared_ptr<BlockCache> cache,
+                                                       std::vector<std::string>& warnings);
 
   /// Looks for signs of a damaged file. Errors: kUnreadable, kNotFound naming it.
   [[nodiscard]] Status check(std::vector<std::string>& warnings) const;
+  /// Looks through all posts for undeclared values of missing data, once reading has met numbers
+  /// that may be such; they are NaN from then on. Not while other threads read.
+  /// @param cancelled  asked before each strip; may be empty
+  /// @return whether there are any. Errors: kIo; kCancelled
+  Result<bool> find_undeclared_voids(const std::function<bool()>& cancelled);
+  [[nodiscard]] const VoidRuns& undeclared_voids() const { return voids_; }
+
   /// Posts of the window over the area, NaN where the file has no data.
   /// Errors: kIo with GDAL's reason.
   [[nodiscard]] Result<RawPosts> read(int column, int row, int columns, int rows) const;
@@ -73,8 +82,11 @@ class ElevationRaster {
                          const ElevationLayer& layer,
                          const Georeference& place,
                          std::vector<std::string>& warnings);
+  [[nodiscard]] Result<HeightGrid> read_numbers(int column, int row, int columns, int rows) const;
+  [[nodiscard]] double metres_of(float number) const;
   void to_metres(RawPosts& posts, int column, int row) const;
   void set_window(const Eigen::Vector2d& low, const Eigen::Vector2d& high);
+  void page_posts(std::shared_ptr<BlockCache> cache);
   [[nodiscard]] Result<HeightGrid> posts_block(int column, int row) const;
 
   [[nodiscard]] std::string places_of(const MapPlane& plane,
@@ -93,6 +105,10 @@ class ElevationRaster {
   double scale_m_ = 1.0;  ///< metres per unit of the raster
   double offset_m_ = 0.0;
   std::optional<double> nodata_;
+  bool trusted_ = false;  ///< the manifest says what is void: nothing else is
+  VoidRuns voids_;
+  mutable std::atomic<bool> usual_void_seen_{false};
+  std::shared_ptr<BlockCache> cache_;
   bool masked_ = false;      ///< a mask band says where there is data
   HeightGrid separation_m_;  ///< of the datum's zero, on a lattice over the window; may be empty
   std::string relation_;

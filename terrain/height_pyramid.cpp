@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "terrain/steep_steps.hpp"
+
 namespace overfly::terrain {
 namespace {
 
@@ -89,8 +91,9 @@ void HeightPyramid::keep(int level, int column, int row, HeightGrid block) {
   kept_[{raw_owner_, level, column, row}] = std::make_shared<const HeightGrid>(std::move(block));
 }
 
-Result<HeightSurvey> HeightPyramid::survey(const std::function<bool()>& cancelled) {
+Result<HeightSurvey> HeightPyramid::survey(const std::function<bool()>& cancelled, double steep_m) {
   HeightSurvey survey;
+  SteepSteps steps(columns_, steep_m);
   survey.posts = static_cast<double>(columns_) * rows_;
   survey.lowest_m = std::numeric_limits<double>::max();
   survey.highest_m = std::numeric_limits<double>::lowest();
@@ -111,9 +114,12 @@ Result<HeightSurvey> HeightPyramid::survey(const std::function<bool()>& cancelle
         survey.lowest_m = std::min<double>(survey.lowest_m, height);
         survey.highest_m = std::max<double>(survey.highest_m, height);
       }
+      steps.add(column * kBlockPosts, read->grid);
       keep(0, column, row, std::move(read->grid));
     }
   }
+  survey.steep = steps.count();
+  survey.steepest_m = steps.largest_m();
   return survey;
 }
 

@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <unordered_map>
 #include <vector>
@@ -23,6 +24,13 @@ struct RawPosts {
   std::size_t implausible = 0;  ///< values no ground on earth has, now NaN
 };
 
+/// Undeclared values of missing data that were found in one layer.
+struct UndeclaredVoids {
+  double posts = 0.0;
+  double of_posts = 0.0;
+  std::vector<float> values;  ///< in the layer's own numbers
+};
+
 /// Reads the posts [column, column + columns) x [row, row + rows), all within the raster.
 using PostReader = std::function<Result<RawPosts>(int column, int row, int columns, int rows)>;
 
@@ -33,7 +41,10 @@ struct HeightSurvey {
   double posts = 0;
   double voids = 0;
   double implausible = 0;
-  std::vector<bool> implausible_layers;  ///< of several: each that had such values
+  std::vector<bool> implausible_layers;     ///< of several: each that had such values
+  double steep = 0.0;                       ///< steps between neighbours that no ground makes
+  double steepest_m = 0.0;                  ///< the largest of them
+  std::vector<UndeclaredVoids> undeclared;  ///< of each layer
 };
 
 /// Thread-safe after `survey`.
@@ -43,10 +54,13 @@ class HeightPyramid {
   HeightPyramid(const HeightPyramid&) = delete;
   HeightPyramid& operator=(const HeightPyramid&) = delete;
 
-  /// Reads all posts once, row of blocks by row, and keeps the coarse levels.
+  /// Reads all posts once, row of blocks by row, and keeps the coarse levels. May be called again
+  /// when the reader has learnt more.
   /// @param cancelled  asked before each block; may be empty
+  /// @param steep_m    steps between neighbours above which are counted
   /// Errors: those of the reader; kCancelled.
-  Result<HeightSurvey> survey(const std::function<bool()>& cancelled = {});
+  Result<HeightSurvey> survey(const std::function<bool()>& cancelled = {},
+                              double steep_m = std::numeric_limits<double>::infinity());
 
   /// Loader of PagedHeights: filled posts. Errors: those of the reader.
   [[nodiscard]] Result<HeightGrid> block(int level, int column, int row) const;

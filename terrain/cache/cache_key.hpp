@@ -12,7 +12,7 @@
 namespace overfly::terrain {
 
 /// Raised whenever tiles or heights of the same files would come out differently.
-inline constexpr int kCacheVersion = 2;
+inline constexpr int kCacheVersion = 3;
 
 struct CacheSource {
   std::string file;  ///< relative to the folder that holds the cache

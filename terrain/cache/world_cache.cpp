@@ -42,7 +42,15 @@ CacheHeader header_from(const Json& json) {
                    survey.at("posts").get<double>(),
                    survey.at("voids").get<double>(),
                    survey.at("implausible").get<double>(),
-                   survey.at("implausible_layers").get<std::vector<bool>>()};
+                   survey.at("implausible_layers").get<std::vector<bool>>(),
+                   survey.at("steep").get<double>(),
+                   survey.at("steepest_m").get<double>(),
+                   {}};
+  for (const Json& voids : survey.at("undeclared")) {
+    header.survey.undeclared.push_back({voids.at("posts").get<double>(),
+                                        voids.at("of_posts").get<double>(),
+                                        voids.at("values").get<std::vector<float>>()});
+  }
   for (const Json& masked : json.at("masked")) header.masked.push_back(masked.get<bool>());
   header.bytes = json.at("bytes").get<std::uint64_t>();
   return header;
@@ -107,7 +115,14 @@ Status write_header(const fs::path& folder, const CacheHeader& header) {
                      {"posts", header.survey.posts},
                      {"voids", header.survey.voids},
                      {"implausible", header.survey.implausible},
-                     {"implausible_layers", header.survey.implausible_layers}};
+                     {"implausible_layers", header.survey.implausible_layers},
+                     {"steep", header.survey.steep},
+                     {"steepest_m", header.survey.steepest_m},
+                     {"undeclared", Json::array()}};
+  for (const UndeclaredVoids& voids : header.survey.undeclared) {
+    json["heights"]["undeclared"].push_back(
+        {{"posts", voids.posts}, {"of_posts", voids.of_posts}, {"values", voids.values}});
+  }
   json["masked"] = header.masked;
   json["bytes"] = header.bytes;
   json["check"] = check_of(json);
