@@ -106,9 +106,12 @@ std::string score_table(const Json& metrics, const std::string& mode) {
   return table + "RMSE, alignment " + mode + "\n";
 }
 
+std::string coverage_text(const Json& score) {
+  return formatted("coverage %.1f %%", 100.0 * score.at("coverage").get<double>());
+}
+
 std::string outcome_line(const Json& score) {
-  return outcome_text(score) +
-         formatted(", coverage %.1f %%", 100.0 * score.at("coverage").get<double>());
+  return outcome_text(score) + ", " + coverage_text(score);
 }
 
 std::string alignment_table(const Json& alignments, const Json& unavailable) {

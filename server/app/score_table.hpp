@@ -9,6 +9,8 @@ namespace overfly::app {
 /// One line for each estimator of a metrics document: outcome, coverage, errors by `mode`.
 [[nodiscard]] std::string score_table(const nlohmann::json& metrics, const std::string& mode);
 
+/// "coverage 45.6 %" of an estimator's score.
+[[nodiscard]] std::string coverage_text(const nlohmann::json& score);
 /// "LOST at 12.3 s, coverage 45.6 %" of an estimator's score.
 [[nodiscard]] std::string outcome_line(const nlohmann::json& score);
 

@@ -72,7 +72,8 @@ std::string cost_text(const Json& report) {
 }
 
 std::string score_text(const Json& score) {
-  return "outcome: " + outcome_line(score) + "\n" +
+  // Without its time: that is a data set's, often seconds since 1970.
+  return "outcome: " + score.at("outcome").get<std::string>() + ", " + coverage_text(score) + "\n" +
          alignment_table(score.at("alignments"), score.at("unavailable"));
 }
 
