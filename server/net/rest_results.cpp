@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <system_error>
 #include <utility>
 
 #include "core/file_text.hpp"
@@ -17,10 +18,26 @@ using nlohmann::json;
 
 constexpr const char* kTruth = "truth";
 
-HttpResponse file_response(const fs::path& file,
+/// Whether a file of a run is none of its own, but a link to somewhere else.
+bool leads_out_of(const fs::path& folder, const fs::path& file) {
+  std::error_code error;
+  const fs::path place = fs::canonical(file, error);
+  if (error) return false;  // Reading it says why.
+  const fs::path home = fs::canonical(folder, error);
+  const auto parts = std::mismatch(home.begin(), home.end(), place.begin(), place.end());
+  return error || parts.first != home.end();
+}
+
+/// A file of a run as it is. @param name  relative to the run's folder
+HttpResponse file_response(const fs::path& folder,
+                           const fs::path& name,
                            const std::string& content_type,
                            const std::string& absent) {
   constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 30U;
+  const fs::path file = folder / name;
+  if (leads_out_of(folder, file)) {
+    return error_response({ErrorCode::kIo, name.string() + ": is a link out of the run's folder"});
+  }
   Result<std::string> text = read_file_text(file, kMaxBytes);
   if (!text) {
     const ErrorCode code = text.error().code;
@@ -56,7 +73,7 @@ HttpResponse manifest(RunManager* runs, const std::string& id) {
   const auto folder = runs->folder(id);
   if (!folder) return error_response(folder.error());
   return file_response(
-      *folder / "manifest.json", "application/json", "run " + id + " has no manifest yet");
+      *folder, "manifest.json", "application/json", "run " + id + " has no manifest yet");
 }
 
 Result<json> columns_of(const RunTimeline& timeline,
@@ -106,7 +123,8 @@ HttpResponse trajectory(RunManager* runs, const RouteCall& call) {
   if (!folder) return error_response(folder.error());
   const std::string file_name = name + ".tum";
   return file_response(
-      name == kTruth ? *folder / file_name : *folder / "estimates" / file_name,
+      *folder,
+      name == kTruth ? fs::path(file_name) : fs::path("estimates") / file_name,
       "text/plain; charset=utf-8",
       file_name + " is written when the run ends; format=json has the rows so far");
 }

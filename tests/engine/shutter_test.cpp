@@ -66,7 +66,8 @@ class Shutter : public ::testing::TestWithParam<const char*> {
     if (!maker) throw std::runtime_error(maker.error().message);
     auto made = (*maker)->make(std::llround(kStampS * scenario.rate.hz()));
     if (!made) throw std::runtime_error(made.error().message);
-    return std::move(made->shots.front().image16);
+    if (!*made) throw std::runtime_error("the flight has ended");
+    return std::move((*made)->shots.front().image16);
   }
 
   void SetUp() override {

@@ -142,9 +142,9 @@ TEST_P(VanishingData, ImageryCutShortEndsTheRunAndNotTheNextOne) {
 TEST_P(VanishingData, HeightsThatCannotBeReadEndTheRunAndNotTheNextOne) {
   const std::string whole = overfly::testing::read_text(elevation());
   const auto tiles = [&] {
-    auto world = options_.worlds->get(
-        testing::small_scenario({"world.manifest=" + (world() / "world.json").string()}), {});
-    return world.value()->world.tiles;
+    const std::string manifest = (world() / "world.json").string();
+    auto opened = options_.worlds->get(testing::small_scenario({"world.manifest=" + manifest}), {});
+    return opened.value()->world.tiles;
   };
   const auto run = flown("cut", [&] {
     fs::resize_file(elevation(), 4000);

@@ -1,6 +1,7 @@
 // Worlds that stay open between runs, and files that change meanwhile.
 #include "server/engine/world_cache.hpp"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>

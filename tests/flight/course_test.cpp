@@ -26,7 +26,7 @@ std::unique_ptr<TruthSource> fly(
 std::vector<AircraftState> sampled(TruthSource& flight) {
   std::vector<AircraftState> states;
   for (std::int64_t t_ns = 0; t_ns <= *flight.duration_ns(); t_ns += 10'000'000) {
-    states.push_back(flight.state_at(t_ns).value());
+    states.push_back(flight.state_at(t_ns).value().value());
   }
   return states;
 }

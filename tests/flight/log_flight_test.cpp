@@ -147,7 +147,7 @@ TEST(LogFlight, OrdersRowsByTimeAndSaysSo) {
   ASSERT_TRUE(flight.ok()) << flight.error().message;
   EXPECT_EQ((*flight)->duration_ns(), 2 * kNsPerS);
   const LocalFrame local = frame();
-  const AircraftState middle = (*flight)->state_at(kNsPerS).value();
+  const AircraftState middle = (*flight)->state_at(kNsPerS).value().value();
   EXPECT_NEAR(
       local.geodetic_from_world(middle.T_world_body.translation).alt_ellipsoid_m, 401.0, 1e-6);
   EXPECT_THAT((*flight)->warnings(),

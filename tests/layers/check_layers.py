@@ -40,7 +40,9 @@ THIRD_PARTY = [
     (r"GeographicLib/", ["core"], False),
     (r"(gdal|ogr|cpl_|proj|vrt)[\w./]*\.h$", ["terrain"], False),
     (r"(epoxy|EGL|GL|GLES\d?)/", ["renderer"], False),
-    (r"opencv2/", ["odometry"], False),
+    # OpenCV's C headers have the names that upstream systems of its second version use.
+    (r"opencv2/\w+/\w+_c\.h$", ["vo_bridges"], False),
+    (r"opencv2/(?!\w+/\w+_c\.h$)", ["odometry"], False),
     (r"ceres/", ["odometry"], False),
     (r"boost/", ["server/net"], False),
     (r"openssl/", ["server/net"], False),

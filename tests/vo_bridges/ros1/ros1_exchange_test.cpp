@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "tests/vo_bridges/ros1/ros_world.hpp"
+#include "vo_bridges/pose_intake.hpp"
 #include "vo_bridges/process/process_usage.hpp"
 #include "vo_bridges/ros1/ros1_options.hpp"
 
