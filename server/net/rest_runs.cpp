@@ -1,3 +1,7 @@
+#include <memory>
+#include <mutex>
+#include <string>
+#include <unordered_map>
 #include <utility>
 
 #include "server/net/error_response.hpp"
@@ -71,10 +75,35 @@ HttpResponse start_run(RunManager* runs, const HttpRequest& request) {
   return response;
 }
 
-HttpResponse list_runs(RunManager* runs) {
-  json list = json::array();
-  for (const auto& info : runs->runs()) list.push_back(run_json(*info));
-  return json_response(200, {{"runs", std::move(list)}});
+/// The list of runs as JSON text. A run that has not changed since the last list is the same
+/// object, and its text is kept. Thread-safe.
+class RunListText {
+ public:
+  std::string of(const engine::RunList& runs) {
+    const std::lock_guard lock(mutex_);
+    std::unordered_map<std::shared_ptr<const engine::RunInfo>, std::string> kept;
+    kept.reserve(runs.size());
+    std::string text = R"({"runs":[)";
+    for (const auto& info : runs) {
+      const auto known = texts_.find(info);
+      std::string own = known == texts_.end() ? to_text(run_json(*info)) : std::move(known->second);
+      if (!kept.empty()) text += ',';
+      text += own;
+      kept.emplace(info, std::move(own));
+    }
+    texts_ = std::move(kept);
+    return text + "]}";
+  }
+
+ private:
+  std::mutex mutex_;
+  std::unordered_map<std::shared_ptr<const engine::RunInfo>, std::string> texts_;
+};
+
+HttpResponse list_runs(RunManager* runs, RunListText& texts) {
+  HttpResponse response = json_response(200, json());
+  response.body = texts.of(runs->runs());
+  return response;
 }
 
 HttpResponse one_run(RunManager* runs, const std::string& id, int status) {
@@ -85,8 +114,9 @@ HttpResponse one_run(RunManager* runs, const std::string& id, int status) {
 }  // namespace
 
 void add_run_routes(RestRouter* router, RunManager* runs) {
-  router->add("GET", "/api/v1/runs", [runs](const RouteCall&, const Respond& respond) {
-    respond(list_runs(runs));
+  const auto texts = std::make_shared<RunListText>();
+  router->add("GET", "/api/v1/runs", [runs, texts](const RouteCall&, const Respond& respond) {
+    respond(list_runs(runs, *texts));
   });
   router->add("POST", "/api/v1/runs", [runs](const RouteCall& call, const Respond& respond) {
     respond(start_run(runs, call.request));

@@ -141,11 +141,13 @@ TEST_F(RunDamage, EveryFieldOfEveryDocumentMayBeWrong) {
   for (const fs::path& file : {manifest_file(run()), timings_file(run()), metrics_file(run())}) {
     const Json document = read_json(file).value();
     int count = 0;
-    for (const Json& changed : mutations_of(document, other_values())) {
+    const bool is_listed = file == manifest_file(run());
+    // Of the many figures few are read back.
+    const std::vector<Json> values =
+        is_listed ? other_values() : std::vector<Json>{nullptr, "../../../etc/passwd"};
+    for (const Json& changed : mutations_of(document, values)) {
       with_text(file, changed.dump(), [&] {
-        if (file == manifest_file(run())) {
-          EXPECT_EQ(listed().id, "r") << changed.dump();
-        }
+        if (is_listed) EXPECT_EQ(listed().id, "r") << changed.dump();
         open_and_read();
       });
       ++count;
