@@ -1,6 +1,5 @@
 #include "server/net/http_session.hpp"
 
-#include <algorithm>
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core.hpp>
@@ -12,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "server/net/admission.hpp"
+#include "server/net/barrier.hpp"
 #include "server/net/error_response.hpp"
 #include "server/net/websocket_session.hpp"
 
@@ -38,21 +39,6 @@ constexpr std::chrono::seconds kDrainLimit{2};
 
 std::string path_of(const std::string& target) { return target.substr(0, target.find('?')); }
 
-/// All of a request but its body.
-HttpRequest plain_request(const http::request<http::string_body>& message) {
-  HttpRequest request;
-  request.method = std::string(message.method_string());
-  request.target = std::string(message.target());
-  for (const auto& field : message) {
-    std::string name(field.name_string());
-    std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) {
-      return static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-    });
-    request.headers[name] = std::string(field.value());
-  }
-  return request;
-}
-
 HttpResponse too_many_viewers(std::size_t most) {
   return error_response(
       503,
@@ -76,8 +62,6 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession> {
   void read_body();
   void on_body(const error_code& error);
   void refuse(const error_code& error);
-  [[nodiscard]] std::optional<HttpResponse> not_admitted();
-  [[nodiscard]] std::optional<HttpResponse> forbidden() const;
   void dispatch();
   [[nodiscard]] HttpResponse stream_without_upgrade() const;
   void upgrade();
@@ -88,6 +72,11 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession> {
   void drain();
   void close();
   void end();
+  template <typename Step>
+  void attempt(const Step& step) noexcept {
+    (void)contained(step, [this](const char* what) { fail(what); });
+  }
+  void fail(const char* what);
 
   std::shared_ptr<ServerContext> context_;
   std::unique_ptr<ConnectionTable::Place> place_;
@@ -102,6 +91,7 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession> {
   std::size_t drained_bytes_ = 0;
   std::uint64_t request_number_ = 0;  ///< an answer to another one comes too late
   bool admitted_ = false;             ///< a request of this connection had the token
+  bool failed_ = false;
   bool head_ = false;
   bool keep_alive_ = false;
   unsigned version_ = 11;
@@ -131,7 +121,7 @@ void HttpSession::read() {
                           buffer_,
                           *parser_,
                           [self = shared_from_this()](const error_code& error, std::size_t) {
-                            self->on_header(error);
+                            self->attempt([&] { self->on_header(error); });
                           });
 }
 
@@ -146,7 +136,9 @@ void HttpSession::on_header(const error_code& error) {
   version_ = message.version();
   ++request_number_;
   request_ = plain_request(message);
-  if (auto response = not_admitted()) {
+  error_code ignored;
+  const auto local = stream_.socket().local_endpoint(ignored).address();
+  if (auto response = not_admitted(*context_, local, &request_)) {
     const bool redirected = response->status == 303;
     keep_alive_ = keep_alive_ && redirected && parser_->is_done();
     admitted_ = admitted_ || redirected;
@@ -184,11 +176,12 @@ void HttpSession::read_body() {
   }
   parser_->body_limit(limits.max_body_bytes);
   stream_.expires_after(std::chrono::milliseconds(limits.idle_ms));
-  http::async_read(
-      stream_,
-      buffer_,
-      *parser_,
-      [self = shared_from_this()](const error_code& error, std::size_t) { self->on_body(error); });
+  http::async_read(stream_,
+                   buffer_,
+                   *parser_,
+                   [self = shared_from_this()](const error_code& error, std::size_t) {
+                     self->attempt([&] { self->on_body(error); });
+                   });
 }
 
 void HttpSession::on_body(const error_code& error) {
@@ -218,34 +211,6 @@ void HttpSession::refuse(const error_code& error) {
   }
 }
 
-/// What is answered in place of the request; its target loses the token.
-std::optional<HttpResponse> HttpSession::not_admitted() {
-  if (auto response = forbidden()) return response;
-  return context_->token_gate.check(&request_);
-}
-
-std::optional<HttpResponse> HttpSession::forbidden() const {
-  const std::string host = request_.header("host");
-  const auto authority = parse_authority(host, 0);
-  if (parser_->get().count(http::field::host) != 1 || !authority) {
-    return error_response(400, "invalid_argument", "Host: must be given once, as name:port");
-  }
-  error_code ignored;
-  const std::string local = stream_.socket().local_endpoint(ignored).address().to_string();
-  if (!context_->allowed_hosts.allows(authority->host, local)) {
-    return error_response(
-        403,
-        "forbidden",
-        "host " + authority->host +
-            ": is none of this server's names (overfly serve --allow-host NAME adds one)");
-  }
-  const std::string origin = request_.header("origin");
-  if (!context_->allowed_hosts.allows_origin(origin, host, local)) {
-    return error_response(403, "forbidden", "origin " + origin + ": is another site's page");
-  }
-  return std::nullopt;
-}
-
 void HttpSession::dispatch() {
   const std::string path = path_of(request_.target);
   if (path == kStreamPath) {
@@ -273,18 +238,19 @@ void HttpSession::ask_router() {
   answer_limit_.expires_after(kAnswerLimit);
   answer_limit_.async_wait([self = shared_from_this(), number](const error_code& error) {
     if (error) return;
-    self->answer(number, error_response(503, "timeout", "the answer took too long"));
+    self->attempt(
+        [&] { self->answer(number, error_response(503, "timeout", "the answer took too long")); });
   });
   const Respond respond = [weak = weak_from_this(), context = context_, number](HttpResponse made) {
-    context->gate.run([&] {
+    std::shared_ptr<HttpResponse> response;
+    context->deliver([&] {
+      if (!response) response = std::make_shared<HttpResponse>(std::move(made));
       const auto self = weak.lock();
       if (!self) return;
-      asio::post(self->stream_.get_executor(),
-                 [weak, number, response = std::move(made)]() mutable {
-                   if (const auto session = weak.lock()) {
-                     session->answer(number, std::move(response));
-                   }
-                 });
+      asio::post(self->stream_.get_executor(), [weak, number, response] {
+        const auto session = weak.lock();
+        if (session) session->attempt([&] { session->answer(number, std::move(*response)); });
+      });
     });
   };
   if (context_->router.is_quick(request_)) {
@@ -304,7 +270,7 @@ void HttpSession::answer(std::uint64_t number, HttpResponse response) {
 }
 
 void HttpSession::write(HttpResponse response) {
-  if (admitted_) (void)place_->enter(ConnectionPhase::kSending);
+  if (admitted_ && place_) (void)place_->enter(ConnectionPhase::kSending);
   response_.emplace(static_cast<http::status>(response.status), version_);
   response_->set(http::field::server, "overfly");
   response_->set("X-Content-Type-Options", "nosniff");
@@ -326,7 +292,7 @@ void HttpSession::write(HttpResponse response) {
   stream_.expires_after(std::chrono::milliseconds(context_->options.limits.idle_ms));
   http::async_write(
       stream_, *response_, [self = shared_from_this()](const error_code& error, std::size_t) {
-        self->on_written(error, self->keep_alive_);
+        self->attempt([&] { self->on_written(error, self->keep_alive_); });
       });
 }
 
@@ -350,13 +316,31 @@ void HttpSession::drain() {
   stream_.async_read_some(asio::buffer(drained_),
                           [self = shared_from_this()](const error_code& error, std::size_t n) {
                             self->drained_bytes_ += n;
-                            if (!error && self->drained_bytes_ < kDrainBytes) self->drain();
+                            if (error || self->drained_bytes_ >= kDrainBytes) return;
+                            self->attempt([&] { self->drain(); });
                           });
 }
 
 void HttpSession::close() {
   error_code ignored;
   stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
+}
+
+/// What a step of the connection threw becomes a 500, or its end where an answer is under way.
+void HttpSession::fail(const char* what) {
+  const bool again = std::exchange(failed_, true);
+  keep_alive_ = false;
+  ++request_number_;
+  answer_limit_.cancel();
+  context_->log("error", std::string("a connection failed: ") + what);
+  if (again || response_) {
+    end();
+    return;
+  }
+  attempt([this] {
+    write(error_response(
+        {ErrorCode::kInternal, "the server failed at this request: its log says why"}));
+  });
 }
 
 /// At once, whatever it does.

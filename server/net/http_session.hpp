@@ -8,7 +8,8 @@
 
 namespace overfly::net {
 
-/// Serves a connection until it ends or becomes a WebSocket. The socket's executor is a strand.
+/// Serves a connection until it ends or becomes a WebSocket. The socket's event loop has one
+/// thread.
 void serve_http(boost::asio::ip::tcp::socket socket, std::shared_ptr<ServerContext> context);
 
 }  // namespace overfly::net

@@ -2,10 +2,12 @@
 
 #include <boost/asio/ip/address.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <boost/asio/strand.hpp>
 #include <chrono>
+#include <string>
+#include <thread>
 #include <utility>
 
+#include "server/net/barrier.hpp"
 #include "server/net/http_session.hpp"
 
 namespace overfly::net {
@@ -28,15 +30,18 @@ class Listener final : public std::enable_shared_from_this<Listener> {
     error_code ignored;
     return acceptor_.local_endpoint(ignored).port();
   }
-  void accept();
+  void accept() noexcept;
 
  private:
+  class OnAccept;
   void on_accept(const error_code& error, tcp::socket socket);
+  void report(const char* what) const;
 
   asio::io_context& loop_;
   tcp::acceptor acceptor_;
   asio::steady_timer pause_;
   std::shared_ptr<ServerContext> context_;
+  bool starting_ = false;  ///< accept() is at work: a handler that it drops need not call it again
 };
 
 error_code Listener::open(const tcp::endpoint& endpoint) {
@@ -48,26 +53,51 @@ error_code Listener::open(const tcp::endpoint& endpoint) {
   return error;
 }
 
-void Listener::accept() {
-  acceptor_.async_accept(asio::make_strand(loop_),
-                         [self = shared_from_this()](const error_code& error, tcp::socket socket) {
-                           self->on_accept(error, std::move(socket));
-                         });
+/// Takes the connection. Where it is dropped uncalled, as by an exception inside of Asio, it
+/// accepts again: a server that accepts no more is as good as gone.
+class Listener::OnAccept {
+ public:
+  explicit OnAccept(std::shared_ptr<Listener> listener) : listener_(std::move(listener)) {}
+  OnAccept(OnAccept&&) = default;
+  OnAccept(const OnAccept&) = delete;
+  OnAccept& operator=(const OnAccept&) = delete;
+  OnAccept& operator=(OnAccept&&) = delete;
+  ~OnAccept() {
+    if (listener_) listener_->accept();
+  }
+  void operator()(const error_code& error, tcp::socket socket) {
+    std::exchange(listener_, nullptr)->on_accept(error, std::move(socket));
+  }
+
+ private:
+  std::shared_ptr<Listener> listener_;
+};
+
+void Listener::accept() noexcept {
+  if (starting_) return;
+  starting_ = true;
+  const auto begin = [this] { acceptor_.async_accept(OnAccept(shared_from_this())); };
+  const auto told = [this](const char* what) { report(what); };
+  while (!loop_.stopped() && !contained(begin, told)) std::this_thread::sleep_for(kAcceptPause);
+  starting_ = false;
 }
 
 void Listener::on_accept(const error_code& error, tcp::socket socket) {
-  if (error) {
+  const auto wait = [this] {
     pause_.expires_after(kAcceptPause);
     pause_.async_wait([self = shared_from_this()](const error_code& stopped) {
       if (!stopped) self->accept();
     });
-    return;
-  }
-  const auto strand = socket.get_executor();
-  asio::dispatch(strand, [moved = std::move(socket), context = context_]() mutable {
-    serve_http(std::move(moved), context);
-  });
+  };
+  const auto serve = [&] { serve_http(std::move(socket), context_); };
+  const auto told = [this](const char* what) { report(what); };
+  if (error && contained(wait, told)) return;
+  if (!error) (void)contained(serve, told);
   accept();
+}
+
+void Listener::report(const char* what) const {
+  context_->log("error", std::string("a connection could not be accepted: ") + what);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "server/net/barrier.hpp"
 #include "server/net/error_response.hpp"
 
 namespace overfly::net {
@@ -84,7 +85,25 @@ bool RestRouter::is_quick(const HttpRequest& request) const {
   });
 }
 
-void RestRouter::handle(const HttpRequest& request, const Respond& respond) const {
+void RestRouter::handle(const HttpRequest& request, const Respond& respond) const noexcept {
+  const auto refuse = [&] {
+    respond(error_response(
+        {ErrorCode::kInternal, "the server failed at this request: its log says why"}));
+  };
+  const auto refuse_briefly = [&](const char*) {
+    HttpResponse response;
+    response.status = 500;
+    respond(std::move(response));
+  };
+  (void)contained([&] { find_and_handle(request, respond); },
+                  [&](const char* what) {
+                    (void)contained(refuse, refuse_briefly);
+                    if (report_)
+                      report_(request.method + " " + request.target + " failed: " + what);
+                  });
+}
+
+void RestRouter::find_and_handle(const HttpRequest& request, const Respond& respond) const {
   const auto url = parse_target(request.target);
   if (!url) {
     respond(error_response({ErrorCode::kInvalidArgument, "the request's path is malformed"}));

@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/result.hpp"
@@ -35,6 +36,10 @@ class RestRouter {
     bool quick = false;              ///< waits for nothing: no disk, no other thread
   };
 
+  /// @param report  is told what handlers throw, with the request that it was thrown at
+  explicit RestRouter(std::function<void(const std::string&)> report = {})
+      : report_(std::move(report)) {}
+
   void add(const std::string& method,
            const std::string& pattern,
            Handler handler,
@@ -45,11 +50,15 @@ class RestRouter {
 
   /// Answers 404 for an unknown path, 405 with `Allow` for a known path's other methods, 400 naming
   /// a query parameter that the route does not know.
-  /// HEAD is served by GET's handler: the caller leaves the body out.
-  void handle(const HttpRequest& request, const Respond& respond) const;
+  /// HEAD is served by GET's handler: the caller leaves the body out. Never throws: what a handler
+  /// throws is reported and answered with 500, after which `respond` may be called again by what
+  /// the handler began.
+  void handle(const HttpRequest& request, const Respond& respond) const noexcept;
   [[nodiscard]] const std::vector<Route>& routes() const { return routes_; }
 
  private:
+  void find_and_handle(const HttpRequest& request, const Respond& respond) const;
+  std::function<void(const std::string&)> report_;
   std::vector<Route> routes_;
 };
 

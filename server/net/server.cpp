@@ -1,19 +1,15 @@
 #include "server/net/server.hpp"
 
-#include <algorithm>
-#include <boost/asio/io_context.hpp>
 #include <boost/asio/post.hpp>
-#include <boost/asio/thread_pool.hpp>
 #include <chrono>
 #include <system_error>
-#include <thread>
 #include <utility>
-#include <vector>
 
 #include "server/engine/thread_priority.hpp"
 #include "server/net/access_token.hpp"
 #include "server/net/allowed_hosts.hpp"
 #include "server/net/listener.hpp"
+#include "server/net/loop_threads.hpp"
 #include "server/net/rest_api.hpp"
 #include "server/net/server_context.hpp"
 
@@ -22,7 +18,7 @@ namespace overfly::net {
 namespace {
 
 /// Each reads at most one run from disk at a time; the others answer meanwhile.
-constexpr std::size_t kWorkers = 4;
+constexpr int kWorkers = 4;
 /// How long viewers have to answer the close frame when the server shuts down.
 constexpr std::chrono::seconds kFarewell{2};
 
@@ -46,10 +42,12 @@ Status check_options(const ServerOptions& options) {
 }  // namespace
 
 struct Server::Impl {
+  void report(const std::string& what) const {
+    if (context) context->log("error", what);
+  }
   std::shared_ptr<ServerContext> context;
-  boost::asio::io_context loop;
-  boost::asio::thread_pool workers{kWorkers};
-  std::vector<std::thread> threads;
+  LoopThreads connections{[this](const std::string& what) { report(what); }};
+  LoopThreads workers{[this](const std::string& what) { report(what); }};
   std::uint16_t port = 0;
 };
 
@@ -61,9 +59,7 @@ Server::~Server() {
     impl_->context->gate.close();
   }
   impl_->workers.stop();
-  impl_->workers.join();
-  impl_->loop.stop();
-  for (std::thread& thread : impl_->threads) thread.join();
+  impl_->connections.stop();
 }
 
 Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options,
@@ -78,18 +74,18 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options,
   add_result_routes(&context->router, &runs);
   add_frame_routes(&context->router, &runs, &views);
   context->offload = [workers = &server->impl_->workers](std::function<void()> work) {
-    boost::asio::post(*workers, std::move(work));
+    boost::asio::post(workers->loop(), std::move(work));
   };
   server->impl_->context = context;
-  const auto port = listen(&server->impl_->loop, context);
+  const auto port = listen(&server->impl_->connections.loop(), context);
   if (!port) return port.error();
   server->impl_->port = *port;
-  for (int i = 0; i < std::max(options.threads, 1); ++i) {
-    server->impl_->threads.emplace_back([impl = server->impl_.get()] {
-      engine::lower_thread(engine::ThreadPriority::kBelowFlights);
-      impl->loop.run();
-    });
+  if (const Status started = server->impl_->workers.start(kWorkers); !started) {
+    return started.error();
   }
+  const auto below_flights = [] { engine::lower_thread(engine::ThreadPriority::kBelowFlights); };
+  const Status started = server->impl_->connections.start(1, below_flights);
+  if (!started) return started.error();
   return server;
 }
 

@@ -38,7 +38,6 @@ struct ServerOptions {
   /// Host names and addresses by which clients may ask, besides those of AllowedHosts.
   std::vector<std::string> allowed_hosts;
   std::filesystem::path web_folder;  ///< built dashboard; empty = REST and WebSocket only
-  int threads = 1;
   ServerLimits limits;
   /// One line for each thing worth telling: (level, text).
   std::function<void(const std::string&, const std::string&)> log;
@@ -46,10 +45,10 @@ struct ServerOptions {
 
 class Server {
  public:
-  /// Binds and starts to serve on threads of its own.
+  /// Binds and starts to serve: connections on one thread, what may take long on others.
   /// Errors: kIo with address, port and the system's reason; kNotFound without the web folder;
-  /// kInvalidArgument for a bad address, token or allowed host, and for none where others can reach
-  /// the server.
+  /// kInternal when the system starts no thread; kInvalidArgument for a bad address, token or
+  /// allowed host, and for none where others can reach the server.
   static Result<std::unique_ptr<Server>> start(const ServerOptions& options,
                                                engine::RunManager& runs,
                                                engine::ViewService& views);

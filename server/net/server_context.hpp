@@ -2,14 +2,17 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <mutex>
 #include <string>
+#include <thread>
 
 #include "server/engine/run_manager.hpp"
 #include "server/engine/view_service.hpp"
 #include "server/net/allowed_hosts.hpp"
+#include "server/net/barrier.hpp"
 #include "server/net/rest_router.hpp"
 #include "server/net/server.hpp"
 #include "server/net/session_registry.hpp"
@@ -44,13 +47,33 @@ struct ServerContext {
       : options(server_options),
         runs(run_manager),
         views(view_service),
+        router([this](const std::string& what) { log("error", what); }),
         files(server_options.web_folder),
         token_gate(server_options.token),
         allowed_hosts(server_options.allowed_hosts),
         connections(server_options.limits.connections) {}
 
-  void log(const std::string& level, const std::string& text) const {
-    if (options.log) options.log(level, text);
+  /// Never throws: it is called where something was thrown.
+  void log(const char* level, const std::string& text) const noexcept {
+    (void)contained(
+        [&] {
+          if (options.log) options.log(level, text);
+        },
+        [](const char*) {});
+  }
+
+  /// Runs what another thread has for a connection, while there is an event loop; where it throws,
+  /// runs it again for a while: a client waits for it. Never throws: the thread is the engine's.
+  template <typename Action>
+  void deliver(const Action& action) noexcept {
+    constexpr int kTries = 100;
+    constexpr std::chrono::milliseconds kPause{10};
+    const auto ignore = [](const char*) {};
+    for (int i = 0; i < kTries; ++i) {
+      if (contained([&] { gate.run(action); }, ignore)) return;
+      std::this_thread::sleep_for(kPause);
+    }
+    log("error", "an answer was lost: there is no memory for it");
   }
 
   const ServerOptions options;

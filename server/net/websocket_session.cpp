@@ -11,6 +11,7 @@
 #include <optional>
 #include <utility>
 
+#include "server/net/barrier.hpp"
 #include "server/net/json_text.hpp"
 #include "server/net/viewer.hpp"
 
@@ -47,6 +48,8 @@ struct Outgoing {
   }
 };
 
+using Timeline = Result<std::shared_ptr<engine::RunTimeline>>;
+
 class WebSocketSession final : public ViewerPort,
                                public std::enable_shared_from_this<WebSocketSession> {
  public:
@@ -60,8 +63,12 @@ class WebSocketSession final : public ViewerPort,
         viewer_(*this),
         client_(context_->next_client++) {}
   ~WebSocketSession() override {
-    if (registered_) context_->sessions.remove(*registered_);
-    context_->views.forget(client_);
+    (void)contained(
+        [this] {
+          if (registered_) context_->sessions.remove(*registered_);
+          context_->views.forget(client_);
+        },
+        [this](const char* what) { report(what); });
   }
 
   void run(const http::request<http::string_body>& upgrade);
@@ -78,8 +85,11 @@ class WebSocketSession final : public ViewerPort,
   [[nodiscard]] std::size_t unsent_bytes() const override { return unsent_bytes_; }
 
  private:
+  void greet();
   void read();
   void on_read(const error_code& error);
+  void run_opened(Timeline timeline);
+  void picture_ready(const PictureTicket& ticket, const Result<engine::Picture>& picture);
   void enqueue(Outgoing message);
   void write();
   void on_written(const error_code& error);
@@ -91,6 +101,18 @@ class WebSocketSession final : public ViewerPort,
   void close_with(const websocket::close_reason& reason, std::chrono::seconds grace);
   void send_close_frame();
   void end();
+  void report(const char* what) const {
+    context_->log("error", std::string("a viewer's connection failed: ") + what);
+  }
+  /// Runs a step of the session; one that throws is its last.
+  template <typename Step>
+  void attempt(const Step& step) noexcept {
+    const auto fail = [this](const char* what) {
+      report(what);
+      end();
+    };
+    if (!contained(step, fail)) (void)contained([this] { end(); }, [](const char*) {});
+  }
 
   std::shared_ptr<ServerContext> context_;
   std::unique_ptr<ConnectionTable::Place> place_;
@@ -126,21 +148,23 @@ void WebSocketSession::run(const http::request<http::string_body>& upgrade) {
   ws_.read_message_max(limits.max_message_bytes);
   ws_.auto_fragment(false);
   ws_.async_accept(upgrade, [self = shared_from_this()](const error_code& error) {
-    if (error) return;
-    const std::weak_ptr<WebSocketSession> weak = self;
-    self->registered_ = self->context_->sessions.add([weak, executor = self->ws_.get_executor()] {
-      asio::post(executor, [weak] {
-        if (const auto session = weak.lock()) session->go_away();
-      });
-    });
-    self->viewer_.greet("c" + std::to_string(self->client_));
-    self->read();
+    if (!error) self->attempt([&] { self->greet(); });
   });
+}
+
+void WebSocketSession::greet() {
+  registered_ = context_->sessions.add([weak = weak_from_this(), executor = ws_.get_executor()] {
+    asio::post(executor, [weak] {
+      if (const auto session = weak.lock()) session->attempt([&] { session->go_away(); });
+    });
+  });
+  viewer_.greet("c" + std::to_string(client_));
+  read();
 }
 
 void WebSocketSession::read() {
   ws_.async_read(read_buffer_, [self = shared_from_this()](const error_code& error, std::size_t) {
-    self->on_read(error);
+    self->attempt([&] { self->on_read(error); });
   });
 }
 
@@ -165,22 +189,31 @@ void WebSocketSession::on_read(const error_code& error) {
 
 void WebSocketSession::open_run(const std::string& run_id) {
   context_->offload([weak = weak_from_this(), context = context_, run_id] {
-    auto timeline = context->runs.timeline(run_id);
-    context->gate.run([&] {
+    Timeline timeline = Error{ErrorCode::kInternal, {}};
+    (void)contained([&] { timeline = context->runs.timeline(run_id); },
+                    [&](const char* what) {
+                      timeline = Error{ErrorCode::kInternal, "run " + run_id + ": " + what};
+                      context->log("error", timeline.error().message);
+                    });
+    context->deliver([&] {
       const auto self = weak.lock();
       if (!self) return;
-      asio::post(self->ws_.get_executor(), [weak, opened = std::move(timeline)]() mutable {
+      asio::post(self->ws_.get_executor(), [weak, opened = timeline]() mutable {
         const auto session = weak.lock();
-        if (!session || session->closing_ || session->ended_) return;
-        session->viewer_.run_opened(std::move(opened), monotonic_ns());
-        session->schedule();
-        if (session->unread_ && !session->viewer_.full()) {
-          session->unread_.reset();
-          session->read();
-        }
+        if (session) session->attempt([&] { session->run_opened(std::move(opened)); });
       });
     });
   });
+}
+
+void WebSocketSession::run_opened(Timeline timeline) {
+  if (closing_ || ended_) return;
+  viewer_.run_opened(std::move(timeline), monotonic_ns());
+  schedule();
+  if (unread_ && !viewer_.full()) {
+    unread_.reset();
+    read();
+  }
 }
 
 void WebSocketSession::send_text(std::string text) {
@@ -202,18 +235,23 @@ void WebSocketSession::send_picture(const PictureTicket& ticket,
 void WebSocketSession::draw(const PictureTicket& ticket, const engine::PictureRequest& request) {
   const auto done = [weak = weak_from_this(), context = context_, ticket](
                         const Result<engine::Picture>& picture) {
-    context->gate.run([&] {
+    context->deliver([&] {
       const auto self = weak.lock();
       if (!self) return;
       asio::post(self->ws_.get_executor(), [weak, ticket, picture] {
         const auto session = weak.lock();
-        if (!session || session->closing_) return;
-        session->viewer_.picture_ready(ticket, picture, monotonic_ns());
-        session->schedule();
+        if (session) session->attempt([&] { session->picture_ready(ticket, picture); });
       });
     });
   };
   context_->views.request(client_, static_cast<int>(ticket.stream_id), request, done);
+}
+
+void WebSocketSession::picture_ready(const PictureTicket& ticket,
+                                     const Result<engine::Picture>& picture) {
+  if (closing_) return;
+  viewer_.picture_ready(ticket, picture, monotonic_ns());
+  schedule();
 }
 
 void WebSocketSession::enqueue(Outgoing message) {
@@ -229,7 +267,7 @@ void WebSocketSession::write() {
   write_began_ns_ = monotonic_ns();
   const Outgoing& message = queue_.front();
   const auto written = [self = shared_from_this()](const error_code& error, std::size_t) {
-    self->on_written(error);
+    self->attempt([&] { self->on_written(error); });
   };
   if (message.jpeg) {
     ws_.binary(true);
@@ -267,7 +305,7 @@ void WebSocketSession::schedule() {
   if (!after_ns || closing_ || ended_) return;
   timer_.expires_after(std::chrono::nanoseconds(*after_ns));
   timer_.async_wait([weak = weak_from_this()](const error_code& error) {
-    if (const auto self = weak.lock()) self->on_timer(error);
+    if (const auto self = weak.lock()) self->attempt([&] { self->on_timer(error); });
   });
 }
 
@@ -308,13 +346,15 @@ void WebSocketSession::close_with(const websocket::close_reason& reason,
   timer_.expires_after(grace);
   timer_.async_wait([weak = weak_from_this()](const error_code& error) {
     const auto self = weak.lock();
-    if (self && !error) self->end();
+    if (self && !error) self->attempt([&] { self->end(); });
   });
   if (!writing_) send_close_frame();
 }
 
 void WebSocketSession::send_close_frame() {
-  ws_.async_close(reason_, [self = shared_from_this()](const error_code&) { self->end(); });
+  ws_.async_close(reason_, [self = shared_from_this()](const error_code&) {
+    self->attempt([&] { self->end(); });
+  });
 }
 
 void WebSocketSession::end() {

@@ -10,7 +10,8 @@
 
 namespace overfly::net {
 
-/// Accepts the upgrade and serves the connection until it ends. The socket's executor is a strand.
+/// Accepts the upgrade and serves the connection until it ends. The socket's event loop has one
+/// thread.
 /// @param place  of a viewer
 void serve_websocket(boost::asio::ip::tcp::socket socket,
                      const boost::beast::http::request<boost::beast::http::string_body>& upgrade,

@@ -1,0 +1,62 @@
+#include "server/net/admission.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "server/net/error_response.hpp"
+
+namespace overfly::net {
+namespace {
+
+namespace http = boost::beast::http;
+
+std::optional<HttpResponse> forbidden(const AllowedHosts& allowed,
+                                      const std::string& local,
+                                      const HttpRequest& request) {
+  const std::string host = request.header("host");
+  const auto authority = parse_authority(host, 0);
+  if (!authority) {
+    return error_response(400, "invalid_argument", "Host: must be given once, as name:port");
+  }
+  if (!allowed.allows(authority->host, local)) {
+    return error_response(
+        403,
+        "forbidden",
+        "host " + authority->host +
+            ": is none of this server's names (overfly serve --allow-host NAME adds one)");
+  }
+  const std::string origin = request.header("origin");
+  if (!allowed.allows_origin(origin, host, local)) {
+    return error_response(403, "forbidden", "origin " + origin + ": is another site's page");
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+HttpRequest plain_request(const http::request<http::string_body>& message) {
+  HttpRequest request;
+  request.method = std::string(message.method_string());
+  request.target = std::string(message.target());
+  for (const auto& field : message) {
+    std::string name(field.name_string());
+    std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) {
+      return static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+    });
+    request.headers[name] = std::string(field.value());
+  }
+  // Of two names it would depend on the reader which one counts.
+  if (message.count(http::field::host) != 1) request.headers.erase("host");
+  return request;
+}
+
+std::optional<HttpResponse> not_admitted(const ServerContext& context,
+                                         const boost::asio::ip::address& local,
+                                         HttpRequest* request) {
+  if (auto response = forbidden(context.allowed_hosts, local.to_string(), *request)) {
+    return response;
+  }
+  return context.token_gate.check(request);
+}
+
+}  // namespace overfly::net
