@@ -120,12 +120,22 @@ Status FlightRun::fly_real_time() {
   PictureRate nobody_asks;
   PictureRate& pictures = options_.picture_rate != nullptr ? *options_.picture_rate : nobody_asks;
   loop_begin_ns_ = clock_.now_ns();
-  clock_.enter();
-  pictures.flight_began(clock_.now_ns());
-  const Status flown = keep_pace(clock_.now_ns(), pictures);
-  pictures.flight_ended();
-  clock_.leave();
-  return flown;
+  // Also when something throws: viewers must not be held back for a flight that is over.
+  struct InTheAir {
+    RunClock& clock;
+    PictureRate& pictures;
+    InTheAir(RunClock& by, PictureRate& beside) : clock(by), pictures(beside) {
+      clock.enter();
+      pictures.flight_began(clock.now_ns());
+    }
+    ~InTheAir() {
+      pictures.flight_ended();
+      clock.leave();
+    }
+    InTheAir(const InTheAir&) = delete;
+    InTheAir& operator=(const InTheAir&) = delete;
+  } const in_the_air(clock_, pictures);
+  return keep_pace(clock_.now_ns(), pictures);
 }
 
 Status FlightRun::keep_pace(std::int64_t start_ns, PictureRate& pictures) {

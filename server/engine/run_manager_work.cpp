@@ -124,7 +124,7 @@ void RunManager::Impl::fly(ManagedRun& run) {
   run_options.picture_rate = &picture_rate;
   const auto set_world = [this, &run](WorldCache::Shared world) {
     const std::lock_guard lock(mutex_);
-    run.world = std::move(world);
+    std::swap(run.world, world);  // one let go is closed without the lock
   };
   run_options.world_opened = set_world;
   run_options.notice = [&run](const std::string& text) {

@@ -115,12 +115,12 @@ TEST_F(LeavingEstimators, WhenTheRunIsCancelled) {
   EXPECT_THAT(held_, Each(true));
 }
 
-TEST_F(LeavingEstimators, AProcessStillAtWorkIsEndedFirst) {
+TEST_F(LeavingEstimators, ProcessesStillAtWorkAreEndedFirst) {
   const fs::path script = folder_.path() / "leaver.py";
   const std::string client = overfly::testing::source_file("vo_bridges/client").string();
   // It leaves when the door closes, and tells what it then finds two folders up.
   overfly::testing::write_text(script,
-                               "import fcntl, sys\n"
+                               "import fcntl, os, sys\n"
                                "sys.path.insert(0, '" +
                                    client + "')\n" +
                                    R"(import overfly_vo
@@ -141,14 +141,16 @@ finally:
         found = 'held'
     except OSError as error:
         found = str(error)
-    open('../../../found', 'w').write(found)
+    open('../../../found_' + os.path.basename(os.getcwd()), 'w').write(found)
 )");
   break_the_recorder();
-  const auto run = flown(R"([{"name":"p","type":"process","command":["python3",")" +
-                         script.string() + R"("]}])");
+  const std::string command =
+      R"("type":"process","command":["python3",")" + script.string() + "\"]}";
+  const auto run = flown(R"([{"name":"p",)" + command + R"(,{"name":"q",)" + command + "]");
   ASSERT_FALSE(run.ok());
   EXPECT_THAT(run.error().message, HasSubstr("debug"));
-  EXPECT_EQ(overfly::testing::read_text(folder_.path() / "found"), "held");
+  EXPECT_EQ(overfly::testing::read_text(folder_.path() / "found_p"), "held");
+  EXPECT_EQ(overfly::testing::read_text(folder_.path() / "found_q"), "held");
 }
 
 }  // namespace

@@ -93,10 +93,11 @@ class VanishingData : public ::testing::TestWithParam<const char*> {
       done = true;
       meanwhile();
     };
-    return run_scenario(
-        testing::small_scenario({std::string("pacing=") + GetParam(),
-                                 "world.manifest=" + (world() / "world.json").string()}),
-        options_);
+    return run_scenario(scenario(), options_);
+  }
+  [[nodiscard]] Scenario scenario() const {
+    return testing::small_scenario({std::string("pacing=") + GetParam(),
+                                    "world.manifest=" + (world() / "world.json").string()});
   }
 
   /// The run of that name ended as failed, and kept the frames that it had.
@@ -139,31 +140,6 @@ TEST_P(VanishingData, ImageryCutShortEndsTheRunAndNotTheNextOne) {
   EXPECT_EQ(next->info.frames, 21);
 }
 
-TEST_P(VanishingData, HeightsThatCannotBeReadEndTheRunAndNotTheNextOne) {
-  const std::string whole = overfly::testing::read_text(elevation());
-  const auto tiles = [&] {
-    const std::string manifest = (world() / "world.json").string();
-    auto opened = options_.worlds->get(testing::small_scenario({"world.manifest=" + manifest}), {});
-    return opened.value()->world.tiles;
-  };
-  const auto run = flown("cut", [&] {
-    fs::resize_file(elevation(), 4000);
-    const terrain::TileGrid& grid = tiles()->grid();
-    // Whoever looks: places over the whole world are asked for.
-    for (int i = 0; i <= 40; ++i) {
-      for (int j = 0; j <= 40; ++j) {
-        (void)tiles()->world_from_map(grid.left_x_m + 20.0 * i, grid.top_y_m - 20.0 * j);
-      }
-    }
-  });
-  ASSERT_FALSE(run.ok());
-  expect_failed("cut", 5, elevation().string());
-  overfly::testing::write_text(elevation(), whole);
-  const auto next = flown("next");
-  ASSERT_TRUE(next.ok()) << next.error().message;
-  EXPECT_EQ(next->info.frames, 21);
-}
-
 TEST_P(VanishingData, FilesTakenAwayOrReplacedAreReadOnAsTheyWereOpened) {
   const auto whole = flown("whole");
   ASSERT_TRUE(whole.ok()) << whole.error().message;
@@ -184,7 +160,7 @@ TEST_P(VanishingData, FilesTakenAwayOrReplacedAreReadOnAsTheyWereOpened) {
 INSTANTIATE_TEST_SUITE_P(BothPacings,
                          VanishingData,
                          ::testing::Values("lockstep", "real_time"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& pacing) { return std::string(pacing.param); });
 
 }  // namespace
 }  // namespace overfly::engine
