@@ -22,25 +22,10 @@ namespace {
 /// Raster formats of one local file (and side-cars of its name). Left out are those that name other
 /// files or addresses inside of them (WMS, MRF, ERS, HDF5 with external storage, ...), databases,
 /// and texts that are read whole to be opened.
-constexpr std::array<std::string_view, 19> kDrivers = {"GTiff",
-                                                       "COG",
-                                                       "VRT",
-                                                       "MEM",
-                                                       "PNG",
-                                                       "JPEG",
-                                                       "BMP",
-                                                       "GIF",
-                                                       "WEBP",
-                                                       "JPEGXL",
-                                                       "JP2OpenJPEG",
-                                                       "HFA",
-                                                       "EHdr",
-                                                       "ENVI",
-                                                       "AAIGrid",
-                                                       "SRTMHGT",
-                                                       "DTED",
-                                                       "USGSDEM",
-                                                       "SAGA"};
+constexpr std::array<std::string_view, 20> kDrivers = {
+    "GTiff", "COG",     "VRT",     "MEM",    "PNG",         "JPEG", "BMP",
+    "PNM",   "GIF",     "WEBP",    "JPEGXL", "JP2OpenJPEG", "HFA",  "EHdr",
+    "ENVI",  "AAIGrid", "SRTMHGT", "DTED",   "USGSDEM",     "SAGA"};
 
 /// GDAL's own drivers need these for what they keep in memory.
 constexpr std::array<std::string_view, 3> kFileSystems = {

@@ -233,11 +233,11 @@ TEST_F(TrackCommand, RunFailsWhenNoneOfItsEstimatorsRan) {
                             "--set",
                             "estimators=" + estimators.dump()});
   };
-  const Outcome alone = flown({gone}, "alone");
+  const Outcome alone = flown(Json::array({gone}), "alone");
   EXPECT_EQ(alone.exit_code, 1);
   EXPECT_THAT(alone.err, HasSubstr("error: estimator gone never ran: "));
   EXPECT_THAT(alone.err, HasSubstr("no vocabulary at /nowhere"));
-  const Outcome beside = flown({gone, perfect}, "beside");
+  const Outcome beside = flown(Json::array({gone, perfect}), "beside");
   EXPECT_EQ(beside.exit_code, 0);
   EXPECT_THAT(beside.err, HasSubstr("estimator gone never ran"));
 }

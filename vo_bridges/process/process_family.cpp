@@ -113,18 +113,25 @@ void ProcessFamily::end(int child, std::chrono::milliseconds patience) {
     kill_members(child);
     std::this_thread::sleep_for(kStep);
   }
+  // The list of children may leave one out while another ends (proc(5)), so each that was killed is
+  // asked for by its number; those of others that have not become ours are no children (ECHILD).
+  for (const int pid : killed_) {
+    while (::waitpid(pid, nullptr, WNOHANG) == 0 && Clock::now() < deadline) {
+      std::this_thread::sleep_for(kStep);
+    }
+  }
   reap(child);
 }
 
-/// Those that were killed, and those that ended by themselves after they had become ours: of the
-/// child's group, or of a session of their own.
+/// Those that ended by themselves after they had become ours: of the child's group, or of a session
+/// of their own.
 void ProcessFamily::reap(int child) const {
   const int own_session = ::getsid(0);
   for (const int ours : children_of(::getpid())) {
     if (ours == child) continue;
     const std::optional<ProcessStat> stat = stat_of(ours);
     if (!stat || !stat->zombie()) continue;
-    if (!killed_.contains(ours) && stat->group != child && stat->session == own_session) continue;
+    if (stat->group != child && stat->session == own_session) continue;
     ::waitpid(ours, nullptr, WNOHANG);
   }
 }

@@ -95,8 +95,7 @@ TEST(EurocLayout, SaysWhatIsBroken) {
   const std::string sensor = "mav0/cam0/sensor.yaml";
   expect_told(
       testing::write_euroc,
-      {{list, "1403636579813555584,", "1403636579763555584,", "data.csv:3: column 1"},
-       {list, "1403636579813555584,", "nan,", "'nan': must be a whole number of nanoseconds"},
+      {{list, "1403636579813555584,", "nan,", "'nan': must be a whole number of nanoseconds"},
        {list, "1403636579813555584.png", "7.png", "7.png: no such file"},
        {list, "1403636579813555584,", "", "data.csv:3: 1 columns: must be 2"},
        {sensor, "intrinsics", "intrinsic", "sensor.yaml: intrinsics: is missing"},
@@ -166,7 +165,6 @@ TEST(TumMonoLayout, RefusesALensWhoseCornersSeeBackwards) {
 TEST(TumMonoLayout, SaysWhatIsBroken) {
   expect_told(testing::write_tum_mono,
               {{"times.txt", "00001 ", "00007 ", "times.txt:2: column 1 = '00007': no image"},
-               {"times.txt", "34.0400", "34.0000", "times.txt:2: column 2"},
                {"times.txt", "00001 1464871434.0400 5.25\n", "", "2 times, but"},
                {"times.txt", " 5.25", " 5.25 7", "times.txt:2: 4 columns"},
                {"camera.txt", "0.349153000000000", "nan", "camera.txt:1: column 1"},
@@ -217,8 +215,7 @@ TEST(KittiLayout, IsReadWithTheCalibrationOfItsCamera) {
 
 TEST(KittiLayout, SaysWhatIsBroken) {
   expect_told(testing::write_kitti,
-              {{"times.txt", "2.073579e-01", "1.037875e-01", "times.txt:3: column 1"},
-               {"times.txt", "2.073579e-01\n", "", "2 times, but"},
+              {{"times.txt", "2.073579e-01\n", "", "2 times, but"},
                {"times.txt", "2.073579e-01", "x", "times.txt:3: column 1 = 'x'"},
                {"calib.txt", "P0:", "Q0:", "calib.txt: holds no line P0:"},
                {"calib.txt", "7.188560000000e+02", "nan", "calib.txt:1: column 2"},
