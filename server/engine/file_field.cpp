@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "server/engine/scenario_list.hpp"
+#include "server/engine/plain_name.hpp"
 
 namespace overfly::engine {
 namespace {

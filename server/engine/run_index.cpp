@@ -9,8 +9,8 @@
 #include <tuple>
 #include <utility>
 
+#include "server/engine/plain_name.hpp"
 #include "server/engine/run_folder.hpp"
-#include "server/engine/scenario_list.hpp"
 
 namespace overfly::engine {
 namespace {

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "server/engine/plain_name.hpp"
 #include "server/engine/run_manager_impl.hpp"
 #include "server/engine/run_removal.hpp"
 #include "server/engine/scenario_estimators.hpp"

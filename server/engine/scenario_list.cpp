@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "server/engine/plain_name.hpp"
 #include "server/engine/whole_file.hpp"
 
 namespace overfly::engine {
@@ -55,15 +56,6 @@ std::vector<fs::path> scenario_files(const fs::path& folder) {
 }
 
 }  // namespace
-
-bool is_plain_name(const std::string& name) {
-  const auto allowed = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-           c == '-' || c == '.';
-  };
-  return !name.empty() && name.size() <= 200 && name.front() != '.' &&
-         std::all_of(name.begin(), name.end(), allowed);
-}
 
 std::vector<ScenarioEntry> list_scenarios(const fs::path& folder, const SourcePolicy& sources) {
   std::vector<ScenarioEntry> entries;

@@ -11,9 +11,6 @@
 
 namespace overfly::engine {
 
-/// True for a name that is one plain part of a path: letters, digits, `_`, `-`, `.`, not first `.`.
-[[nodiscard]] bool is_plain_name(const std::string& name);
-
 /// All `*.json` that are scenarios (not schemas), by name, with why one cannot be flown here.
 /// @param sources  what they may name
 [[nodiscard]] std::vector<ScenarioEntry> list_scenarios(const std::filesystem::path& folder,

@@ -13,19 +13,30 @@
 #include <std_msgs/Empty.h>
 #include <tf2_msgs/TFMessage.h>
 
+#include <cstddef>
 #include <memory>
+#include <new>
 #include <type_traits>
 
 namespace overfly::ros1 {
 
+/// Of one array of a message: an image of 8192 x 8192 pixels with four channels. ROS makes room for
+/// as many elements as a message announces before it looks whether they are there.
+inline constexpr std::size_t kMaxArrayBytes = std::size_t{8192} * 8192 * 4;
+
 // NOLINTBEGIN(readability-identifier-naming): these are the standard's names
 
-/// std::allocator with what ROS's serialisation asks of it.
+/// std::allocator with what ROS's serialisation asks of it, and the limit kMaxArrayBytes:
+/// std::bad_alloc above it, which roscpp takes for a message that cannot be read.
 template <typename T>
 struct VectorAllocator : std::allocator<T> {
   VectorAllocator() = default;
   template <typename Other>
   VectorAllocator(const VectorAllocator<Other>& /*other*/) {}
+  [[nodiscard]] T* allocate(std::size_t count) {
+    if (count > kMaxArrayBytes / sizeof(T)) throw std::bad_alloc();
+    return std::allocator<T>::allocate(count);
+  }
   template <typename Other>
   struct rebind {
     using other = VectorAllocator<Other>;

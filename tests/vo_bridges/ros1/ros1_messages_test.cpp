@@ -2,8 +2,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <ros/serialization.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <limits>
+#include <new>
+#include <vector>
 
 namespace overfly::ros1 {
 namespace {
@@ -94,6 +99,19 @@ TEST(Ros1Messages, MakeRgbOfEveryKnownEncoding) {
   EXPECT_THAT(first_pixel("8UC3", {1, 2, 3}), ElementsAre(3, 2, 1));
   EXPECT_THAT(first_pixel("rgba8", {1, 2, 3, 4}), ElementsAre(1, 2, 3));
   EXPECT_THAT(first_pixel("bgra8", {1, 2, 3, 4}), ElementsAre(3, 2, 1));
+}
+
+TEST(Ros1Messages, TakeNoMemoryForElementsThatAreAnnouncedAlone) {
+  ImageMessage image;
+  image.encoding = "mono8";
+  std::vector<std::uint8_t> bytes(ros::serialization::serializationLength(image));
+  ros::serialization::OStream out(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+  ros::serialization::serialize(out, image);
+  // The last four bytes count the pixels' bytes.
+  std::fill(bytes.end() - 4, bytes.end(), std::uint8_t{0xFF});
+  ros::serialization::IStream in(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+  ImageMessage read;
+  EXPECT_THROW(ros::serialization::deserialize(in, read), std::bad_alloc);
 }
 
 TEST(Ros1Messages, RefuseDebugImagesThatDoNotFit) {
