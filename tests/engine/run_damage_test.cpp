@@ -147,7 +147,9 @@ TEST_F(RunDamage, EveryFieldOfEveryDocumentMayBeWrong) {
         is_listed ? other_values() : std::vector<Json>{nullptr, "../../../etc/passwd"};
     for (const Json& changed : mutations_of(document, values)) {
       with_text(file, changed.dump(), [&] {
-        if (is_listed) EXPECT_EQ(listed().id, "r") << changed.dump();
+        if (is_listed) {
+          EXPECT_EQ(listed().id, "r") << changed.dump();
+        }
         open_and_read();
       });
       ++count;

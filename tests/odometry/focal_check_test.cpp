@@ -74,7 +74,8 @@ TEST(FocalCheck, WarnsOfAFocalLengthThatIsTenPercentOff) {
 }
 
 TEST(FocalCheck, SaysNothingOfAGoodCalibration) {
-  for (const double relief_m : {0.0, 15.0}) EXPECT_EQ(warnings(log_of({relief_m})), 0) << relief_m;
+  for (const double relief_m : {0.0, 15.0})
+    EXPECT_EQ(warnings(log_of({relief_m, 1.0, {}})), 0) << relief_m;
 }
 
 TEST(FocalCheck, SaysNothingOfAGoodLens) {
