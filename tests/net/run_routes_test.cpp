@@ -47,8 +47,8 @@ TEST(RunRoutes, RunBeyondTheMemoryIsRefusedWithFieldValueAndLimit) {
   options.memory_limit_bytes = std::uint64_t{512} << 20U;
   TestServer server(net::ServerOptions(), options);
   json cameras = json::array();
-  for (int i = 0; i < 8; ++i) {
-    cameras.push_back({{"name", "c" + std::to_string(i)},
+  for (const char* name : {"c0", "c1", "c2", "c3", "c4", "c5", "c6", "c7"}) {
+    cameras.push_back({{"name", name},
                        {"width_px", 8192},
                        {"height_px", 8192},
                        {"color", "rgb"}});
