@@ -16,6 +16,7 @@
 #include <thread>
 #include <utility>
 
+#include "core/barrier.hpp"
 #include "core/processor_time.hpp"
 #include "renderer/tile_pixels.hpp"
 
@@ -139,9 +140,10 @@ struct TileStore::State {
 
   /// Keeps a tile and drops those used longest ago. Under the lock.
   void keep(const Key& key, const Pixels& pixels) {
-    order.push_front(key);
     const std::size_t bytes = pixels->bytes();
-    entries.emplace(key, Entry{pixels, bytes, round, order.begin()});
+    Order place(1, key);
+    entries.emplace(key, Entry{pixels, bytes, round, place.begin()});
+    order.splice(order.begin(), place);
     held_bytes += bytes;
     while (held_bytes > options.budget_bytes && !order.empty()) {
       const auto oldest = entries.find(order.back());
@@ -183,7 +185,8 @@ struct TileStore::State {
     const Result<Pixels> pixels = read(key, urgent, lock);
     lock.lock();
     loading.erase(key);
-    if (pixels) keep(key, *pixels);
+    // One that there is no memory to keep is read again when it is wanted again.
+    if (pixels) (void)contained([&] { keep(key, *pixels); }, [](const char*) {});
     loaded.notify_all();
     if (pixels) return pixels;
     const TileId& id = key.first;
@@ -260,24 +263,26 @@ struct TileStore::State {
 
   void fetch_ahead() {
     std::unique_lock lock(mutex);
-    while (!stopping) {
-      Key key;
-      bool urgent = false;
-      if (!take_next(key, urgent)) {
-        loaded.notify_all();
-        work.wait(lock);
-        continue;
-      }
-      ++counts.read_ahead;
-      const double before_s = thread_cpu_s();
-      // A tile that cannot be read is reported to whoever gets it.
-      (void)load(key, urgent, lock);
-      const double spent_s = thread_cpu_s() - before_s;
-      counts.ahead_cpu_s += spent_s;
-      if (urgent) continue;
-      // Tiles ahead have seconds to come.
-      rest(spent_s, lock);
+    // A tile that there is no memory to fetch ahead is read when it is drawn.
+    while (!stopping) (void)contained([&] { fetch_next(lock); }, [](const char*) {});
+  }
+
+  void fetch_next(std::unique_lock<std::mutex>& lock) {
+    Key key;
+    bool urgent = false;
+    if (!take_next(key, urgent)) {
+      loaded.notify_all();
+      work.wait(lock);
+      return;
     }
+    ++counts.read_ahead;
+    const double before_s = thread_cpu_s();
+    // A tile that cannot be read is reported to whoever gets it.
+    (void)load(key, urgent, lock);
+    const double spent_s = thread_cpu_s() - before_s;
+    counts.ahead_cpu_s += spent_s;
+    // Tiles ahead have seconds to come.
+    if (!urgent) rest(spent_s, lock);
   }
 
   std::shared_ptr<const terrain::TileSource> tiles;

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <iterator>
 
+#include "core/barrier.hpp"
 #include "core/processor_time.hpp"
 #include "core/time.hpp"
 #include "server/engine/cpu_affinity.hpp"
-#include "server/engine/guarded.hpp"
 
 namespace overfly::engine {
 namespace {
@@ -84,17 +84,27 @@ void EstimatorWorker::submit(VoFrame frame) {
 void EstimatorWorker::wait_until_idle() {
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [this] { return !waiting_ && !to_prepare_ && !busy_; });
+  rethrow_failure();
 }
 
 std::vector<EstimatorEvent> EstimatorWorker::take_events() {
   const std::lock_guard lock(mutex_);
+  rethrow_failure();
   return std::exchange(events_, {});
+}
+
+void EstimatorWorker::rethrow_failure() {
+  if (thrown_) std::rethrow_exception(std::exchange(thrown_, nullptr));
 }
 
 EstimatorUse EstimatorWorker::use() {
   EstimatorUse use;
   use.cpu_s = cpu_s_;
-  if (const auto own = port_->resource_use()) last_known_ = own;
+  (void)contained(
+      [&] {
+        if (const auto own = port_->resource_use()) last_known_ = own;
+      },
+      [](const char*) {});
   if (last_known_) {
     use.cpu_s = std::max(0.0, last_known_->cpu_s - cpu_to_get_ready_s_);
     use.peak_memory_mb = last_known_->peak_memory_mb;
@@ -113,38 +123,47 @@ void EstimatorWorker::work() {
   while (true) {
     changed_.wait(lock, [this] { return stopping_ || to_prepare_ || waiting_; });
     if (stopping_) return;
-    if (to_prepare_) {
-      const VoFrame first = *std::exchange(to_prepare_, std::nullopt);
-      busy_ = true;
-      lock.unlock();
-      make_ready(first);
-      lock.lock();
-      busy_ = false;
-      if (!waiting_) clock_.leave();
-      changed_.notify_all();
-      continue;
-    }
-    const Waiting taken = std::move(*waiting_);
-    waiting_.reset();
-    // Frames dropped before this one was taken come before its answer.
-    std::move(drops_.begin(), drops_.end(), std::back_inserter(events_));
-    drops_.clear();
     busy_ = true;
-    lock.unlock();
-    EstimatorEvent event = answer(taken);
-    lock.lock();
-    events_.push_back(std::move(event));
+    try {
+      if (to_prepare_) {
+        make_ready(lock);
+      } else {
+        answer_waiting(lock);
+      }
+    } catch (...) {
+      // Too little memory even for the answer: the run is told with its next call.
+      if (!lock.owns_lock()) lock.lock();
+      thrown_ = std::current_exception();
+    }
     busy_ = false;
     if (!waiting_) clock_.leave();
     changed_.notify_all();
   }
 }
 
-void EstimatorWorker::make_ready(const VoFrame& first) {
-  const Status prepared = guarded([&] { return port_->prepare(first); });
+void EstimatorWorker::make_ready(std::unique_lock<std::mutex>& lock) {
+  const VoFrame first = *std::exchange(to_prepare_, std::nullopt);
+  lock.unlock();
+  Status prepared = guarded([&] { return port_->prepare(first); });
+  const Status measured = guarded([&]() -> Status {
+    if (const auto use = port_->resource_use()) cpu_to_get_ready_s_ = use->cpu_s;
+    return {};
+  });
+  if (prepared && !measured) prepared = measured;
   if (!prepared) failure_ = prepared.error();
-  if (const auto use = port_->resource_use()) cpu_to_get_ready_s_ = use->cpu_s;
   ready_ns_ = clock_.now_ns();
+  lock.lock();
+}
+
+void EstimatorWorker::answer_waiting(std::unique_lock<std::mutex>& lock) {
+  const Waiting taken = *std::exchange(waiting_, std::nullopt);
+  // Frames dropped before this one was taken come before its answer.
+  std::move(drops_.begin(), drops_.end(), std::back_inserter(events_));
+  drops_.clear();
+  lock.unlock();
+  EstimatorEvent event = answer(taken);
+  lock.lock();
+  events_.push_back(std::move(event));
 }
 
 EstimatorEvent EstimatorWorker::answer(const Waiting& waiting) {
@@ -153,7 +172,6 @@ EstimatorEvent EstimatorWorker::answer(const Waiting& waiting) {
   event.record.sample.t_ns = waiting.frame.t_ns;
   event.record.sample.state = TrackingState::kLost;
   if (crashed_) return event;
-  choose_debug(waiting.frame.t_ns);
   Result<VoEstimate> estimate = track(waiting.frame);
   if (estimate) hold_back(waiting);
   event.latency_ms = static_cast<double>(clock_.now_ns() - waiting.handed_over_ns) * 1e-6;
@@ -186,8 +204,11 @@ EstimatorEvent EstimatorWorker::answer(const Waiting& waiting) {
 
 Result<VoEstimate> EstimatorWorker::track(const VoFrame& frame) {
   const double before_s = thread_cpu_s();
-  Result<VoEstimate> estimate =
-      failure_ ? Result<VoEstimate>(*failure_) : guarded([&] { return port_->track(frame); });
+  Result<VoEstimate> estimate = guarded([&]() -> Result<VoEstimate> {
+    if (failure_) return *failure_;
+    choose_debug(frame.t_ns);
+    return port_->track(frame);
+  });
   cpu_s_ += thread_cpu_s() - before_s;
   return estimate;
 }

@@ -3,6 +3,7 @@
 
 #include <condition_variable>
 #include <cstdint>
+#include <exception>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -56,7 +57,8 @@ class EstimatorWorker {
   /// @param first  as VoPort::prepare's
   void prepare(VoFrame first);
   void submit(VoFrame frame);
-  /// Waits until no frame is at work or waiting.
+  /// Waits until no frame is at work or waiting. This and take_events() throw what stopped the
+  /// worker's own thread (too little memory); what the estimator throws is its crash.
   void wait_until_idle();
   /// Takes what happened since the last call, ordered by frame.
   [[nodiscard]] std::vector<EstimatorEvent> take_events();
@@ -75,7 +77,10 @@ class EstimatorWorker {
     std::int64_t handed_over_ns = 0;
   };
   void work();
-  void make_ready(const VoFrame& first);
+  void make_ready(std::unique_lock<std::mutex>& lock);
+  void answer_waiting(std::unique_lock<std::mutex>& lock);
+  /// Throws what stopped this worker's thread from answering, once. Under the lock.
+  void rethrow_failure();
   [[nodiscard]] EstimatorEvent answer(const Waiting& waiting);
   [[nodiscard]] Result<VoEstimate> track(const VoFrame& frame);
   /// Errors: kInternal after too many answers in a row without a usable pose.
@@ -104,6 +109,7 @@ class EstimatorWorker {
   std::optional<Waiting> waiting_;
   bool busy_ = false;
   bool stopping_ = false;
+  std::exception_ptr thrown_;       ///< by our own lines on the worker's thread
   std::vector<std::string> notes_;  ///< of ours about its answers
   std::vector<EstimatorEvent> events_;
   std::vector<EstimatorEvent> drops_;  ///< after the frame at work, before the one that waits

@@ -276,7 +276,9 @@ Result<Json> RunRecorder::finish(RunStatus status, const std::string& error, Jso
 Status RunRecorder::let_go() {
   put_run_info(info_, manifest_);
   Status written = write_json(manifest_file(folder_), manifest_);
-  // The lock goes before the word spreads: who hears that the run is over may delete it at once.
+  // Before anyone hears that the run is over, since others may change the file from then on.
+  timeline_->set_manifest_stamp(FileStamp::of(manifest_file(folder_)));
+  // A client that hears that the run is over may delete it at once, so the lock goes first.
   lock_.reset();
   timeline_->set_info(info_);
   return written;

@@ -85,6 +85,11 @@ Pose RunTimeline::T_body_camera() const {
   return cameras_.front().camera.T_body_camera;
 }
 
+FileStamp RunTimeline::manifest_stamp() const {
+  const std::lock_guard lock(mutex_);
+  return manifest_stamp_;
+}
+
 nlohmann::json RunTimeline::metrics() const {
   const std::lock_guard lock(mutex_);
   return metrics_;
@@ -179,6 +184,11 @@ void RunTimeline::set_cameras(std::vector<RunCamera> cameras) {
 
 void RunTimeline::set_camera(const PinholeCamera& camera, const Pose& T_body_camera) {
   set_cameras({{"", camera, T_body_camera}});
+}
+
+void RunTimeline::set_manifest_stamp(const FileStamp& stamp) {
+  const std::lock_guard lock(mutex_);
+  manifest_stamp_ = stamp;
 }
 
 void RunTimeline::set_info(const RunInfo& info) {

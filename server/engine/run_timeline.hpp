@@ -18,6 +18,7 @@
 #include "core/result.hpp"
 #include "server/engine/audience.hpp"
 #include "server/engine/estimator_status.hpp"
+#include "server/engine/file_stamp.hpp"
 
 namespace overfly::engine {
 
@@ -122,6 +123,8 @@ class RunTimeline {
   /// Main camera of the run and its mount.
   [[nodiscard]] PinholeCamera camera() const;
   [[nodiscard]] Pose T_body_camera() const;
+  /// Of the manifest that this was read from or written to; none while the run goes on.
+  [[nodiscard]] FileStamp manifest_stamp() const;
   /// Empty object until the run is scored.
   [[nodiscard]] nlohmann::json metrics() const;
 
@@ -161,6 +164,7 @@ class RunTimeline {
   /// @pre !cameras.empty(), and no frame is there yet
   void set_cameras(std::vector<RunCamera> cameras);
   void set_camera(const PinholeCamera& camera, const Pose& T_body_camera);  ///< the only one
+  void set_manifest_stamp(const FileStamp& stamp);
   void set_info(const RunInfo& info);
   void append_frame(const FrameRow& row, std::size_t camera = 0);
   void append_estimate(std::size_t estimator, const EstimateRow& row);
@@ -190,6 +194,7 @@ class RunTimeline {
   mutable std::condition_variable changed_;
   std::uint64_t revision_ = 0;
   RunInfo info_;
+  FileStamp manifest_stamp_;
   std::vector<std::string> estimators_;
   std::vector<CameraRows> cameras_;
   nlohmann::json metrics_ = nlohmann::json::object();

@@ -155,6 +155,7 @@ Json read_metrics(const fs::path& folder, RunInfo& info) {
 }  // namespace
 
 Result<std::shared_ptr<RunTimeline>> RunTimeline::open(const fs::path& folder) {
+  const FileStamp stamp = FileStamp::of(manifest_file(folder));
   Result<RunInfo> info = read_run_info(folder);
   if (!info) return info.error();
   if (info->status == RunStatus::kUnreadable) return Error{ErrorCode::kUnreadable, info->problem};
@@ -175,6 +176,7 @@ Result<std::shared_ptr<RunTimeline>> RunTimeline::open(const fs::path& folder) {
   append_answers(folder, *records, *timeline, *info);
   if (Status status = append_logs(folder, *timeline); !status) return status.error();
   timeline->set_metrics(read_metrics(folder, *info));
+  timeline->set_manifest_stamp(stamp);
   timeline->set_info(*info);
   return timeline;
 }

@@ -12,15 +12,15 @@ namespace fs = std::filesystem;
 TimelineShelf::Entry TimelineShelf::entry_of(const std::string& id) const {
   Entry entry;
   entry.id = id;
-  entry.manifest = FileStamp::of(manifest_file(runs_folder_ / id));
   entry.metrics = FileStamp::of(metrics_file(runs_folder_ / id));
   entry.metrics_settled = entry.metrics.settled(utc_now_ns());
   return entry;
 }
 
 bool TimelineShelf::is_fresh(Entry& entry) const {
+  const FileStamp manifest = FileStamp::of(manifest_file(runs_folder_ / entry.id));
+  if (!manifest.exists || manifest != entry.timeline->manifest_stamp()) return false;
   const Entry now = entry_of(entry.id);
-  if (!now.manifest.exists || now.manifest != entry.manifest) return false;
   if (now.metrics == entry.metrics && entry.metrics_settled) return true;
   entry.metrics = now.metrics;
   entry.metrics_settled = now.metrics_settled;
@@ -44,8 +44,8 @@ Result<std::shared_ptr<RunTimeline>> TimelineShelf::get(const std::string& id) {
       entries_.erase(found);
     }
   }
-  // Read without the lock, since a long run takes long. The stamps first: what changes meanwhile
-  // is seen at the next call.
+  // Read without the lock, since a long run takes long. The stamp first: what changes meanwhile is
+  // seen at the next call.
   Entry entry = entry_of(id);
   Result<std::shared_ptr<RunTimeline>> opened = RunTimeline::open(runs_folder_ / id);
   if (!opened) return opened.error();
@@ -56,7 +56,8 @@ Result<std::shared_ptr<RunTimeline>> TimelineShelf::get(const std::string& id) {
 }
 
 void TimelineShelf::put(const std::string& id, std::shared_ptr<RunTimeline> timeline) {
-  Entry entry = entry_of(id);
+  Entry entry;
+  entry.id = id;
   entry.timeline = std::move(timeline);
   keep(std::move(entry));
 }

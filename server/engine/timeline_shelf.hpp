@@ -36,7 +36,6 @@ class TimelineShelf {
   struct Entry {
     std::string id;
     std::shared_ptr<RunTimeline> timeline;
-    FileStamp manifest;
     FileStamp metrics;
     bool metrics_settled = false;
   };

@@ -7,12 +7,21 @@
 #include <thread>
 #include <utility>
 
+#include "core/barrier.hpp"
 #include "server/engine/picture_rate.hpp"
 #include "server/engine/thread_priority.hpp"
 #include "server/engine/view_painter.hpp"
 #include "server/engine/view_queue.hpp"
 
 namespace overfly::engine {
+namespace {
+
+/// A client that there is no memory to answer asks again.
+void answer(const ViewService::Done& done, Result<Picture> picture) {
+  (void)contained([&] { done(std::move(picture)); }, [](const char*) {});
+}
+
+}  // namespace
 
 struct ViewService::Impl {
   explicit Impl(RunManager& run_manager) : runs(run_manager), thread([this] { work(); }) {}
@@ -52,7 +61,7 @@ std::optional<ViewQueue::Entry> ViewService::Impl::next(bool beside_flight) {
     const std::vector<Done> told = std::exchange(replaced, {});
     lock.unlock();
     for (const Done& done : told) {
-      done(Error{ErrorCode::kCancelled, "a newer picture was asked for"});
+      answer(done, Error{ErrorCode::kCancelled, "a newer picture was asked for"});
     }
     lock.lock();
   }
@@ -67,11 +76,10 @@ void ViewService::Impl::work() {
     }
     // A thread's priority can be lowered only: beside a flight another one draws.
     const bool beside_flight = runs.picture_rate().flying();
-    try {
-      std::thread([this, beside_flight] { paint(beside_flight); }).join();
-    } catch (const std::system_error& failure) {
-      refuse({ErrorCode::kInternal, std::string("no thread to draw on: ") + failure.what()});
-    }
+    (void)contained([&] { std::thread([this, beside_flight] { paint(beside_flight); }).join(); },
+                    [this](const char* what) {
+                      refuse({ErrorCode::kInternal, std::string("no thread to draw on: ") + what});
+                    });
   }
 }
 
@@ -79,16 +87,21 @@ void ViewService::Impl::refuse(const Error& reason) {
   std::unique_lock lock(mutex);
   while (auto entry = queue.pop()) {
     lock.unlock();
-    entry->done(reason);
+    answer(entry->done, reason);
     lock.lock();
   }
 }
 
 void ViewService::Impl::paint(bool beside_flight) {
   lower_thread(beside_flight ? ThreadPriority::kLeftOver : ThreadPriority::kBelowFlights);
-  // The painter's renderers live and die on this thread.
-  ViewPainter painter(runs);
-  while (auto entry = next(beside_flight)) entry->done(painter.paint(entry->request));
+  const auto paint_all = [&] {
+    // The painter's renderers live and die on this thread.
+    ViewPainter painter(runs);
+    while (auto entry = next(beside_flight)) {
+      answer(entry->done, guarded([&] { return painter.paint(entry->request); }));
+    }
+  };
+  (void)contained(paint_all, [this](const char* what) { refuse({ErrorCode::kInternal, what}); });
 }
 
 ViewService::ViewService(RunManager& runs) : impl_(std::make_unique<Impl>(runs)) {}

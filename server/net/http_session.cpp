@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/barrier.hpp"
 #include "server/net/admission.hpp"
-#include "server/net/barrier.hpp"
 #include "server/net/error_response.hpp"
 #include "server/net/websocket_session.hpp"
 

@@ -7,7 +7,7 @@
 #include <thread>
 #include <utility>
 
-#include "server/net/barrier.hpp"
+#include "core/barrier.hpp"
 #include "server/net/http_session.hpp"
 
 namespace overfly::net {

@@ -2,7 +2,7 @@
 
 #include <exception>
 
-#include "server/net/barrier.hpp"
+#include "core/barrier.hpp"
 
 namespace overfly::net {
 

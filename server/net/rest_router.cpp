@@ -5,7 +5,7 @@
 #include <set>
 #include <utility>
 
-#include "server/net/barrier.hpp"
+#include "core/barrier.hpp"
 #include "server/net/error_response.hpp"
 
 namespace overfly::net {

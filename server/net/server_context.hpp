@@ -9,10 +9,10 @@
 #include <string>
 #include <thread>
 
+#include "core/barrier.hpp"
 #include "server/engine/run_manager.hpp"
 #include "server/engine/view_service.hpp"
 #include "server/net/allowed_hosts.hpp"
-#include "server/net/barrier.hpp"
 #include "server/net/rest_router.hpp"
 #include "server/net/server.hpp"
 #include "server/net/session_registry.hpp"

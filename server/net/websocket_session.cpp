@@ -11,7 +11,7 @@
 #include <optional>
 #include <utility>
 
-#include "server/net/barrier.hpp"
+#include "core/barrier.hpp"
 #include "server/net/json_text.hpp"
 #include "server/net/viewer.hpp"
 

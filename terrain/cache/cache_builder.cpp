@@ -4,6 +4,7 @@
 #include <chrono>
 #include <thread>
 
+#include "core/barrier.hpp"
 #include "terrain/cache/chunk_file.hpp"
 
 namespace overfly::terrain {
@@ -143,7 +144,7 @@ Result<int> CacheBuilder::count_damaged(const std::vector<CacheHeader::Chunks>& 
 
 void CacheBuilder::take_jobs(const Work& work) {
   for (std::size_t i = next_++; i < jobs_.size() && !stop_; i = next_++) {
-    const Status done = work(jobs_[i]);
+    const Status done = guarded([&] { return work(jobs_[i]); });
     ++done_;
     if (done) continue;
     const std::lock_guard lock(mutex_);

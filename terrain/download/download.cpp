@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "core/barrier.hpp"
 #include "core/file_text.hpp"
 #include "core/outside_json.hpp"
 #include "core/percent.hpp"
@@ -59,7 +60,7 @@ class Fetching {
     for (;;) {
       const std::size_t i = next_.fetch_add(1);
       if (i >= jobs_.size() || stop_.load()) break;
-      const Status done = fetch(jobs_[i]);
+      const Status done = guarded([&] { return fetch(jobs_[i]); });
       const std::lock_guard lock(mutex_);
       ++finished_;
       if (!done) {

@@ -1,6 +1,6 @@
 // What handlers throw, memory that runs out and threads that do not start end a request or a
 // connection, never the server.
-#include "server/net/barrier.hpp"
+#include "core/barrier.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,9 +13,9 @@
 
 #include "server/net/listener.hpp"
 #include "server/net/loop_threads.hpp"
-#include "tests/net/allocation_failure.hpp"
 #include "tests/net/test_client.hpp"
 #include "tests/net/test_server.hpp"
+#include "tests/support/allocation_failure.hpp"
 
 namespace overfly::net {
 namespace {

@@ -48,10 +48,7 @@ TEST(RunRoutes, RunBeyondTheMemoryIsRefusedWithFieldValueAndLimit) {
   TestServer server(net::ServerOptions(), options);
   json cameras = json::array();
   for (const char* name : {"c0", "c1", "c2", "c3", "c4", "c5", "c6", "c7"}) {
-    cameras.push_back({{"name", name},
-                       {"width_px", 8192},
-                       {"height_px", 8192},
-                       {"color", "rgb"}});
+    cameras.push_back({{"name", name}, {"width_px", 8192}, {"height_px", 8192}, {"color", "rgb"}});
   }
   const Answer refused =
       launch(server, {{"scenario", "tiny"}, {"overrides", {{"cameras", cameras}}}});

@@ -274,19 +274,22 @@ TEST(WebSocket, TellsHowOftenPicturesComeBesideAFlightInRealTime) {
   WebSocketClient client(server.port());
   const json streams = {{{"name", "camera"}, {"max_hz", 31}}, {{"name", "scene"}, {"max_hz", 2}}};
   client.command({{"type", "subscribe"}, {"streams", streams}});
-  const auto limit_is = [](double camera_hz) {
+  const auto limit_is = [](auto camera_hz) {
     return [camera_hz](const json& message) {
-      return message.at("type") == "streams" && message["streams"][0]["limit_hz"] == camera_hz &&
+      return message.at("type") == "streams" && camera_hz(message["streams"][0]["limit_hz"]) &&
              message["streams"][0]["max_hz"] == 31.0 && message["streams"][1]["limit_hz"] == 2.0;
     };
   };
-  client.wait_until(limit_is(31.0));
+  const auto wanted = limit_is([](const json& hz) { return hz == 31.0; });
+  // From the first rate on it follows how busy the machine is.
+  const auto lowered = limit_is([](const json& hz) { return hz < 31.0; });
+  client.wait_until(wanted);
   client.command({{"type", "attach"}, {"run", id}});
   server.runs().picture_rate().flight_began(0);
   client.command({{"type", "play"}});
-  client.wait_until(limit_is(engine::PictureRate::kFirstHz));
+  client.wait_until(lowered);
   server.runs().picture_rate().flight_ended();
-  client.wait_until(limit_is(31.0));
+  client.wait_until(wanted);
 }
 
 TEST(WebSocket, IsCountedAsAViewerOfTheRunItIsAttachedTo) {

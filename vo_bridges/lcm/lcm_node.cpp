@@ -9,6 +9,8 @@
 #include <cerrno>
 #include <utility>
 
+#include "core/barrier.hpp"
+
 namespace overfly {
 
 Result<std::shared_ptr<LcmNode>> LcmNode::open(const LcmUrl& url, const std::atomic<bool>* cancel) {
@@ -33,8 +35,10 @@ LcmNode::~LcmNode() {
 Status LcmNode::subscribe(const std::string& channel, Handler handler) {
   subscriptions_.push_back(std::make_unique<Subscription>(Subscription{std::move(handler)}));
   const auto call = [](const lcm_recv_buf_t* received, const char* /*channel*/, void* context) {
-    static_cast<const Subscription*>(context)->handler(
-        {static_cast<const std::uint8_t*>(received->data), received->data_size});
+    const std::span message(static_cast<const std::uint8_t*>(received->data), received->data_size);
+    // No exception may pass through LCM's own functions; without memory the message is left out.
+    (void)contained([&] { static_cast<const Subscription*>(context)->handler(message); },
+                    [](const char*) {});
   };
   if (lcm_subscribe(lcm_, channel.c_str(), call, subscriptions_.back().get()) == nullptr) {
     return Error{ErrorCode::kIo, "LCM cannot subscribe to " + channel};

@@ -16,6 +16,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/barrier.hpp"
 #include "vo_bridges/process/child_start.hpp"
 #include "vo_bridges/process/process_usage.hpp"
 #include "vo_bridges/process/program.hpp"
@@ -70,7 +71,7 @@ Result<std::unique_ptr<ChildProcess>> ChildProcess::start(const ChildCommand& co
   std::future<Result<int>> start_result = started.get_future();
   child->thread_ = std::thread(
       [&own, &program, &writing, started = std::move(started), self = child.get()]() mutable {
-        Result<int> pid = start_child(*program, own, writing.get());
+        Result<int> pid = guarded([&] { return start_child(*program, own, writing.get()); });
         writing.close();
         const bool runs = pid.ok();
         if (runs) self->pid_ = *pid;
@@ -152,9 +153,16 @@ ResourceUse ChildProcess::resource_use() const {
 
 bool ChildProcess::read_output() {
   constexpr std::size_t kBytes = 65536;
-  std::vector<char> bytes(kBytes);
+  std::array<char, kBytes> bytes;
   const ssize_t got = ::read(output_pipe_.get(), bytes.data(), bytes.size());
-  if (got > 0) output_->add({bytes.data(), static_cast<std::size_t>(got)});
+  if (got > 0) {
+    // Without memory this piece is left out.
+    (void)contained(
+        [&] {
+          output_->add({bytes.data(), static_cast<std::size_t>(got)});
+        },
+        [](const char*) {});
+  }
   return got > 0 || (got < 0 && (errno == EAGAIN || errno == EINTR));
 }
 
@@ -171,7 +179,7 @@ void ChildProcess::pump() {
     }
     const auto now = std::chrono::steady_clock::now();
     if (now - sampled >= std::chrono::milliseconds(kSampleMs)) {
-      sample_use();
+      (void)contained([this] { sample_use(); }, [](const char*) {});
       sampled = now;
     }
   }

@@ -6,9 +6,9 @@
 #include <ctime>
 #include <utility>
 
+#include "core/barrier.hpp"
 #include "core/trajectory_io.hpp"
 #include "server/engine/export/export_text.hpp"
-#include "server/engine/guarded.hpp"
 #include "server/engine/jpeg.hpp"
 #include "server/engine/run_clock.hpp"
 #include "server/engine/whole_file.hpp"

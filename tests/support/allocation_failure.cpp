@@ -1,4 +1,4 @@
-#include "tests/net/allocation_failure.hpp"
+#include "tests/support/allocation_failure.hpp"
 
 #include <atomic>
 #include <cstdlib>
