@@ -130,10 +130,11 @@ void ElevationRaster::page_posts(std::shared_ptr<BlockCache> cache) {
       [this](int, int column, int row) -> Result<HeightGrid> { return posts_block(column, row); });
 }
 
-Status ElevationRaster::check(std::vector<std::string>& warnings) const {
+Status ElevationRaster::check(const Cancelled& cancelled,
+                              std::vector<std::string>& warnings) const {
   auto dataset = pool_->take();
   if (!dataset) return dataset.error();
-  Status whole = check_whole(**dataset, file_, warnings);
+  Status whole = check_whole(**dataset, file_, cancelled, warnings);
   pool_->put(std::move(*dataset));
   return whole;
 }

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "terrain/cancelled.hpp"
 #include "terrain/elevation_units.hpp"
 #include "terrain/gdal_dataset.hpp"
 #include "terrain/height_pyramid.hpp"
@@ -33,12 +34,12 @@ class ElevationRaster {
                                                        std::vector<std::string>& warnings);
 
   /// Looks for signs of a damaged file. Errors: kUnreadable, kNotFound naming it.
-  [[nodiscard]] Status check(std::vector<std::string>& warnings) const;
+  [[nodiscard]] Status check(const Cancelled& cancelled, std::vector<std::string>& warnings) const;
   /// Looks through all posts for undeclared values of missing data, once reading has met numbers
   /// that may be such; they are NaN from then on. Not while other threads read.
   /// @param cancelled  asked before each strip; may be empty
   /// @return whether there are any. Errors: kIo; kCancelled
-  Result<bool> find_undeclared_voids(const std::function<bool()>& cancelled);
+  Result<bool> find_undeclared_voids(const Cancelled& cancelled);
   [[nodiscard]] const VoidRuns& undeclared_voids() const { return voids_; }
 
   /// Posts of the window over the area, NaN where the file has no data.

@@ -103,14 +103,14 @@ void ElevationRaster::to_metres(RawPosts& posts, int column, int row) const {
   }
 }
 
-Result<bool> ElevationRaster::find_undeclared_voids(const std::function<bool()>& cancelled) {
+Result<bool> ElevationRaster::find_undeclared_voids(const Cancelled& cancelled) {
   if (trusted_ || !usual_void_seen_) return false;
   constexpr int kStripPosts = 1 << 20;
   const int strip_rows = std::clamp(kStripPosts / window_.columns, 1, window_.rows);
   VoidPlateaus plateaus(window_.columns, spacing_m_);
   std::vector<float> heights(static_cast<std::size_t>(window_.columns));
   for (int top = 0; top < window_.rows; top += strip_rows) {
-    if (cancelled && cancelled()) return Error{ErrorCode::kCancelled, file_ + ": cancelled"};
+    if (Status status = go_on(cancelled, file_); !status) return status.error();
     const auto strip =
         read_numbers(0, top, window_.columns, std::min(strip_rows, window_.rows - top));
     if (!strip) return strip.error();

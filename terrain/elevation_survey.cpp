@@ -47,7 +47,7 @@ std::string steep_text(const HeightSurvey& survey, double step_m) {
 Status ElevationModel::survey(const std::function<bool()>& cancelled,
                               std::vector<std::string>& warnings) {
   for (const auto& raster : parts_->rasters) {
-    Status whole = raster->check(warnings);
+    Status whole = raster->check(cancelled, warnings);
     if (!whole) return whole;
   }
   const double steep_m = impossible_step_m(spacing_m_);

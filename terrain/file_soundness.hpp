@@ -7,16 +7,23 @@
 #include <string>
 #include <vector>
 
+#include "terrain/cancelled.hpp"
 #include "terrain/gdal_dataset.hpp"
 
 namespace overfly::terrain {
 
 /// Looks at a GeoTIFF's table of blocks, at every file behind a virtual raster, and at the last row
 /// of anything else; what GDAL says without failing goes to `warnings`.
-/// Errors: kUnreadable for a file that is cut short, kNotFound for a missing source; both name it.
+/// Errors: kUnreadable for a file that is cut short, kNotFound for a missing source, kCancelled;
+/// each names it.
 [[nodiscard]] Status check_whole(GDALDataset& dataset,
                                  const std::filesystem::path& file,
+                                 const Cancelled& cancelled,
                                  std::vector<std::string>& warnings);
+
+/// Rows to be visited in this order before the last one, where a format finds a row by decoding all
+/// those above it: none takes long then. Empty for other formats.
+[[nodiscard]] std::vector<int> rows_on_the_way(GDALRasterBand& band);
 
 /// Errors: kInvalidArgument for pixels that no survey has: below 1 mm or above 100 km.
 [[nodiscard]] Status check_pixel_size(const Georeference& place, const std::string& file);

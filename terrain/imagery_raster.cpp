@@ -55,7 +55,7 @@ int ceil_div(int a, int b) { return (a + b - 1) / b; }
 }  // namespace
 
 Result<std::shared_ptr<const ImageryRaster>> ImageryRaster::open(
-    const ImageryLayer& layer, std::vector<std::string>& warnings) {
+    const ImageryLayer& layer, const Cancelled& cancelled, std::vector<std::string>& warnings) {
   const std::filesystem::path& file = layer.file;
   auto raster = std::make_shared<ImageryRaster>();
   raster->file_ = file;
@@ -80,7 +80,7 @@ Result<std::shared_ptr<const ImageryRaster>> ImageryRaster::open(
   if (auto doubt = place_doubt(*place, raster->width_px_, raster->height_px_, file.string())) {
     warnings.push_back(std::move(*doubt));
   }
-  auto bands = find_bands(dataset, file.string(), layer.nodata, warnings);
+  auto bands = find_bands(dataset, file.string(), layer.nodata, cancelled, warnings);
   if (!bands) return bands.error();
   raster->bands_ = *bands;
   if (!messages.empty()) warnings.push_back(heard_while_opening(file, messages));
@@ -92,20 +92,21 @@ Result<std::shared_ptr<const ImageryRaster>> ImageryRaster::open(
   return std::shared_ptr<const ImageryRaster>(std::move(raster));
 }
 
-Status ImageryRaster::prepare() const {
-  std::call_once(pyramid_->prepared, [this] { pyramid_->state = look_at_blocks(); });
+Status ImageryRaster::prepare(const Cancelled& cancelled) const {
+  std::call_once(pyramid_->prepared, [&] { pyramid_->state = look_at_blocks(cancelled); });
   return pyramid_->state;
 }
 
-Status ImageryRaster::look_at_blocks() const {
+Status ImageryRaster::look_at_blocks(const Cancelled& cancelled) const {
   const GdalMessages quiet;
   auto dataset = pyramid_->stored.front().pool->take();
   if (!dataset) return dataset.error();
-  Status whole = check_whole(**dataset, file_, pyramid_->doubts);
+  Status whole = check_whole(**dataset, file_, cancelled, pyramid_->doubts);
+  if (whole) whole = add_overviews(**dataset, cancelled);
   if (!whole) return whole;
-  add_overviews(**dataset);
+  const auto on_the_way = rows_on_the_way(*(*dataset)->GetRasterBand(bands_.rgb[0]));
   pyramid_->stored.front().pool->put(std::move(*dataset));
-  Status sampled = look_for_a_picture();
+  Status sampled = look_for_a_picture(on_the_way, cancelled);
   if (!sampled) return sampled;
   // The in-memory levels start where the stored ones are left behind, later if they were too big.
   int& level = pyramid_->first_level;
@@ -130,16 +131,25 @@ std::vector<std::string> ImageryRaster::doubts() const {
 }
 
 /// Tiles that a service had nothing for are often of one colour, without a mask.
-Status ImageryRaster::look_for_a_picture() const {
+Status ImageryRaster::look_for_a_picture(const std::vector<int>& rows_on_the_way,
+                                         const Cancelled& cancelled) const {
+  const auto texel_at = [&](int x, int y) -> Result<Patch> {
+    if (Status status = go_on(cancelled, file_); !status) return status.error();
+    return read_stored(pyramid_->stored.front(), x, y, 1, 1);
+  };
   std::optional<std::array<std::uint8_t, 3>> first;
   // A few samples clear nearly every file; more are taken before one is suspected.
   for (const int steps : {5, 32}) {
+    auto on_the_way = rows_on_the_way.begin();
     for (int i = 0; i < steps * steps; ++i) {
       const int column = i % steps;
       const int row = i / steps;
       const auto x = static_cast<int>((column + 0.5) / steps * width_px_);
       const auto y = static_cast<int>((row + 0.5) / steps * height_px_);
-      const auto texel = read_stored(pyramid_->stored.front(), x, y, 1, 1);
+      for (; on_the_way != rows_on_the_way.end() && *on_the_way < y; ++on_the_way) {
+        if (const auto passed = texel_at(0, *on_the_way); !passed) return passed.error();
+      }
+      const auto texel = texel_at(x, y);
       if (!texel) return texel.error();
       if (texel->valid.data[0] == 0) return {};  // a mask says what is missing
       const auto& rgb = texel->rgb.data;
@@ -153,9 +163,9 @@ Status ImageryRaster::look_for_a_picture() const {
   return {};
 }
 
-void ImageryRaster::add_overviews(GDALDataset& dataset) const {
+Status ImageryRaster::add_overviews(GDALDataset& dataset, const Cancelled& cancelled) const {
   // Overviews have mixed what was never written into what was.
-  if (bands_.unwritten) return;
+  if (bands_.unwritten) return {};
   std::vector<Stored>& all = pyramid_->stored;
   GDALRasterBand* band = dataset.GetRasterBand(bands_.rgb[0]);
   for (int i = 0; i < band->GetOverviewCount(); ++i) {
@@ -173,12 +183,18 @@ void ImageryRaster::add_overviews(GDALDataset& dataset) const {
     if (!power_of_two || stored.level <= all.back().level) continue;
     stored.pool = std::make_unique<DatasetPool>(file_, i + 1);
     // Coarse tiles are then made afresh, which costs time and nothing else.
-    if (!overview_is_average(all.back(), stored)) return;
+    const auto average = overview_is_average(all.back(), stored, cancelled);
+    if (!average) return average.error();
+    if (!*average) return {};
     all.push_back(std::move(stored));
   }
+  return {};
 }
 
-bool ImageryRaster::overview_is_average(const Stored& finer, const Stored& coarser) const {
+/// Errors: kCancelled.
+Result<bool> ImageryRaster::overview_is_average(const Stored& finer,
+                                                const Stored& coarser,
+                                                const Cancelled& cancelled) const {
   const double step_x = static_cast<double>(finer.width_px) / coarser.width_px;
   const double step_y = static_cast<double>(finer.height_px) / coarser.height_px;
   constexpr int kWindow = 48;
@@ -187,6 +203,7 @@ bool ImageryRaster::overview_is_average(const Stored& finer, const Stored& coars
   double to_average = 0.0;
   double to_nearest = 0.0;
   for (int place = 0; place < 5; ++place) {
+    if (Status status = go_on(cancelled, file_); !status) return status.error();
     const int x = static_cast<int>((coarser.width_px - width) * (0.1 + 0.2 * place));
     const int y = static_cast<int>((coarser.height_px - height) * (0.9 - 0.17 * place));
     const int fine_x = static_cast<int>(x * step_x);

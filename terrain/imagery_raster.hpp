@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "terrain/area_average.hpp"
+#include "terrain/cancelled.hpp"
 #include "terrain/gdal_dataset.hpp"
 #include "terrain/raster_bands.hpp"
 #include "terrain/world.hpp"
@@ -19,14 +20,16 @@ namespace overfly::terrain {
 class ImageryRaster {
  public:
   /// Opens the file and checks its bands and georeference.
-  /// Errors: kNotFound, kUnreadable, kInvalidArgument naming the file.
+  /// Errors: kNotFound, kUnreadable, kInvalidArgument, kCancelled naming the file.
   static Result<std::shared_ptr<const ImageryRaster>> open(const ImageryLayer& layer,
+                                                           const Cancelled& cancelled,
                                                            std::vector<std::string>& warnings);
 
   /// What reading needs, once: that the file's blocks lie inside it, and which of its overviews are
-  /// area averages (others are not used). `read` does it if it was not done before.
-  /// Errors: kUnreadable.
-  [[nodiscard]] Status prepare() const;
+  /// area averages (others are not used). `read` does it if it was not done before. One that was
+  /// cancelled stays so: the raster is of no use then.
+  /// Errors: kUnreadable; kCancelled.
+  [[nodiscard]] Status prepare(const Cancelled& cancelled = {}) const;
   /// Warnings of a file that may be damaged, is of one colour, or must be read to a large part for
   /// far views; call after `prepare`.
   [[nodiscard]] std::vector<std::string> doubts() const;
@@ -68,10 +71,13 @@ class ImageryRaster {
     std::weak_ptr<const Levels> levels;
   };
 
-  [[nodiscard]] Status look_at_blocks() const;
-  [[nodiscard]] Status look_for_a_picture() const;
-  void add_overviews(GDALDataset& dataset) const;
-  [[nodiscard]] bool overview_is_average(const Stored& finer, const Stored& coarser) const;
+  [[nodiscard]] Status look_at_blocks(const Cancelled& cancelled) const;
+  [[nodiscard]] Status look_for_a_picture(const std::vector<int>& rows_on_the_way,
+                                          const Cancelled& cancelled) const;
+  [[nodiscard]] Status add_overviews(GDALDataset& dataset, const Cancelled& cancelled) const;
+  [[nodiscard]] Result<bool> overview_is_average(const Stored& finer,
+                                                 const Stored& coarser,
+                                                 const Cancelled& cancelled) const;
   [[nodiscard]] Result<Patch> read_stored(
       const Stored& stored, int x, int y, int width, int height) const;
   [[nodiscard]] Result<Patch> read_averaged(

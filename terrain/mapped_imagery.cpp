@@ -36,12 +36,13 @@ Result<MappedImagery> MappedImagery::aligned(std::shared_ptr<const ImageryRaster
                                              const TileGrid& grid,
                                              int pad_x,
                                              int pad_y,
-                                             std::optional<ValidityGrid> validity) {
+                                             std::optional<ValidityGrid> validity,
+                                             const Cancelled& cancelled) {
   MappedImagery layer(std::move(raster), grid);
   layer.pad_x_ = pad_x;
   layer.pad_y_ = pad_y;
   layer.validity_ = std::move(validity);
-  const Status read = layer.read_validity();
+  const Status read = layer.read_validity(cancelled);
   if (!read) return read.error();
   return layer;
 }
@@ -50,7 +51,8 @@ Result<MappedImagery> MappedImagery::warped(std::shared_ptr<const ImageryRaster>
                                             const MapPlane& plane,
                                             const TileGrid& grid,
                                             const std::optional<Turn>& turn,
-                                            std::optional<ValidityGrid> validity) {
+                                            std::optional<ValidityGrid> validity,
+                                            const Cancelled& cancelled) {
   MappedImagery layer(std::move(raster), grid);
   const Georeference& place = layer.raster_->georeference();
   const std::string file = layer.raster_->file().string();
@@ -78,7 +80,7 @@ Result<MappedImagery> MappedImagery::warped(std::shared_ptr<const ImageryRaster>
   }
   layer.texel_px_ = texel_size_px(*layer.pixel_from_map_, grid.texel_m);
   layer.validity_ = std::move(validity);
-  const Status read = layer.read_validity();
+  const Status read = layer.read_validity(cancelled);
   if (!read) return read.error();
   return layer;
 }
@@ -94,9 +96,9 @@ Result<std::vector<std::optional<Turn>>> MappedImagery::turns_over_grid(const Im
                     raster.file().string());
 }
 
-Status MappedImagery::read_validity() {
+Status MappedImagery::read_validity(const Cancelled& cancelled) {
   if (!raster_->has_mask() || validity_) return {};
-  auto validity = ValidityGrid::read(*raster_);
+  auto validity = ValidityGrid::read(*raster_, cancelled);
   if (!validity) return validity.error();
   validity_ = std::move(*validity);
   return {};

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "terrain/cancelled.hpp"
 #include "terrain/imagery_raster.hpp"
 #include "terrain/map_plane.hpp"
 #include "terrain/smooth_map.hpp"
@@ -17,18 +18,21 @@ class MappedImagery {
   /// The layer whose own grid the tiles use: grid texel (0, 0) is file texel (-pad_x, -pad_y),
   /// with pads that are multiples of 2^(levels - 1).
   /// @param validity  that of the raster, where it was read before
+  /// Errors: kIo, kCancelled.
   static Result<MappedImagery> aligned(std::shared_ptr<const ImageryRaster> raster,
                                        const TileGrid& grid,
                                        int pad_x,
                                        int pad_y,
-                                       std::optional<ValidityGrid> validity = {});
-  /// A layer that is resampled. Errors: kInvalidArgument if its CRS has no place for the grid.
+                                       std::optional<ValidityGrid> validity,
+                                       const Cancelled& cancelled);
+  /// A layer that is resampled. Errors: also kInvalidArgument if its CRS has no place for the grid.
   /// @param turn  the one of `turns_over_grid` that its columns are counted on
   static Result<MappedImagery> warped(std::shared_ptr<const ImageryRaster> raster,
                                       const MapPlane& plane,
                                       const TileGrid& grid,
                                       const std::optional<Turn>& turn,
-                                      std::optional<ValidityGrid> validity = {});
+                                      std::optional<ValidityGrid> validity,
+                                      const Cancelled& cancelled);
   /// The turns of the earth on which a file meets the grid; each asks for a layer of its own.
   static Result<std::vector<std::optional<Turn>>> turns_over_grid(const ImageryRaster& raster,
                                                                   const MapPlane& plane,
@@ -51,7 +55,7 @@ class MappedImagery {
       : raster_(std::move(raster)), grid_(grid) {}
   [[nodiscard]] Eigen::Vector2d pixel_from_map(double x_map_m, double y_map_m) const;
   [[nodiscard]] Result<Patch> read_warped(const TileId& id) const;
-  Status read_validity();
+  Status read_validity(const Cancelled& cancelled);
 
   std::shared_ptr<const ImageryRaster> raster_;
   TileGrid grid_;

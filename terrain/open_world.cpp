@@ -5,6 +5,7 @@
 
 #include "core/pose.hpp"
 #include "terrain/cache/world_cache.hpp"
+#include "terrain/cancelled.hpp"
 #include "terrain/file_digest.hpp"
 #include "terrain/raster_world.hpp"
 #include "terrain/world.hpp"
@@ -14,13 +15,6 @@ namespace overfly::terrain {
 namespace {
 
 using Rasters = std::vector<std::shared_ptr<const ImageryRaster>>;
-using Cancelled = std::function<bool()>;
-
-Status go_on(const Cancelled& cancelled) {
-  if (!cancelled || !cancelled()) return {};
-  return Error{ErrorCode::kCancelled, "opening the world was cancelled"};
-}
-
 Result<Rasters> open_imagery(const WorldSpec& spec,
                              const Cancelled& cancelled,
                              std::vector<std::string>& warnings) {
@@ -29,8 +23,8 @@ Result<Rasters> open_imagery(const WorldSpec& spec,
   }
   Rasters rasters;
   for (const ImageryLayer& layer : spec.imagery) {
-    if (Status status = go_on(cancelled); !status) return status.error();
-    auto raster = ImageryRaster::open(layer, warnings);
+    if (Status status = go_on(cancelled, layer.file); !status) return status.error();
+    auto raster = ImageryRaster::open(layer, cancelled, warnings);
     if (!raster) return raster.error();
     rasters.push_back(std::move(*raster));
   }
@@ -42,8 +36,8 @@ Status prepare(const Rasters& rasters,
                const Cancelled& cancelled,
                std::vector<std::string>& warnings) {
   for (const auto& raster : rasters) {
-    if (Status status = go_on(cancelled); !status) return status;
-    Status prepared = raster->prepare();
+    if (Status status = go_on(cancelled, raster->file()); !status) return status;
+    Status prepared = raster->prepare(cancelled);
     if (!prepared) return prepared;
     const std::vector<std::string> doubts = raster->doubts();
     warnings.insert(warnings.end(), doubts.begin(), doubts.end());
@@ -57,7 +51,7 @@ Result<std::vector<MappedImagery>> map_imagery(const Rasters& rasters,
                                                const WorldCache* cache) {
   std::vector<MappedImagery> layers;
   for (std::size_t i = 0; i < rasters.size(); ++i) {
-    if (Status status = go_on(cancelled); !status) return status.error();
+    if (Status status = go_on(cancelled, rasters[i]->file()); !status) return status.error();
     const bool aligned = i == 0 && layout.first_aligned;
     Result<std::vector<std::optional<Turn>>> turns(std::vector<std::optional<Turn>>{std::nullopt});
     if (!aligned) turns = MappedImagery::turns_over_grid(*rasters[i], layout.plane, layout.grid);
@@ -70,10 +64,15 @@ Result<std::vector<MappedImagery>> map_imagery(const Rasters& rasters,
         validity = std::move(*kept);
       }
       auto layer =
-          aligned ? MappedImagery::aligned(
-                        rasters[i], layout.grid, layout.pad_x, layout.pad_y, std::move(validity))
-                  : MappedImagery::warped(
-                        rasters[i], layout.plane, layout.grid, turn, std::move(validity));
+          aligned
+              ? MappedImagery::aligned(rasters[i],
+                                       layout.grid,
+                                       layout.pad_x,
+                                       layout.pad_y,
+                                       std::move(validity),
+                                       cancelled)
+              : MappedImagery::warped(
+                    rasters[i], layout.plane, layout.grid, turn, std::move(validity), cancelled);
       if (!layer) return layer.error();
       layers.push_back(std::move(*layer));
     }
@@ -165,7 +164,7 @@ Status check_spec(const WorldSpec& spec, const WorldLayout& layout) {
 
 Status add_digests(World& world, const Cancelled& cancelled, const WorldCache* cache) {
   const auto add = [&](const std::filesystem::path& file) -> Status {
-    if (Status status = go_on(cancelled); !status) return status;
+    if (Status status = go_on(cancelled, file); !status) return status;
     if (cache != nullptr) {
       for (const CacheSource& source : cache->header().sources) {
         if (source_path(world.spec, source) != std::filesystem::absolute(file).lexically_normal()) {

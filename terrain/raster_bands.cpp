@@ -21,13 +21,26 @@ bool has_mask(GDALDataset& dataset, const RasterBands& bands) {
   });
 }
 
+/// GDAL's question, between the rows of a reading, whether it goes on.
+int CPL_STDCALL ask(double, const char*, void* cancelled) {
+  const auto& asked = *static_cast<const Cancelled*>(cancelled);
+  return asked && asked() ? FALSE : TRUE;
+}
+
 /// Chooses the range of bands that are not 8 bit: 0.5 % to 99.5 % of a sample.
-Status find_range(GDALDataset& dataset, const std::string& file, RasterBands& bands) {
+Status find_range(GDALDataset& dataset,
+                  const std::string& file,
+                  const Cancelled& cancelled,
+                  RasterBands& bands) {
   constexpr int kSample = 256;
   const int width = std::min(kSample, dataset.GetRasterXSize());
   const int height = std::min(kSample, dataset.GetRasterYSize());
   std::vector<float> sample(static_cast<std::size_t>(width) * height);
   const GdalMessages messages;
+  GDALRasterIOExtraArg questions;
+  INIT_RASTERIO_EXTRA_ARG(questions);
+  questions.pfnProgress = &ask;
+  questions.pProgressData = const_cast<Cancelled*>(&cancelled);
   GDALRasterBand* band = dataset.GetRasterBand(bands.rgb[1]);
   if (band->RasterIO(GF_Read,
                      0,
@@ -40,7 +53,8 @@ Status find_range(GDALDataset& dataset, const std::string& file, RasterBands& ba
                      GDT_Float32,
                      0,
                      0,
-                     nullptr) != CE_None) {
+                     &questions) != CE_None) {
+    if (Status status = go_on(cancelled, file); !status) return status;
     return Error{ErrorCode::kUnreadable, file + ": cannot be read: " + messages.text()};
   }
   int has_nodata = 0;
@@ -239,6 +253,7 @@ void paint_voids(Patch& patch) {
 Result<RasterBands> find_bands(GDALDataset& dataset,
                                const std::string& file,
                                const std::optional<double>& nodata,
+                               const Cancelled& cancelled,
                                std::vector<std::string>& warnings) {
   RasterBands bands;
   bands.nodata = nodata;
@@ -257,15 +272,18 @@ Result<RasterBands> find_bands(GDALDataset& dataset,
   }
   if (type != GDT_Byte) {
     bands.rescaled = true;
-    const Status range = find_range(dataset, file, bands);
+    const Status range = find_range(dataset, file, cancelled, bands);
     if (!range) return range.error();
     warnings.push_back(file + ": samples are " + GDALGetDataTypeName(type) + "; values " +
                        std::to_string(bands.low) + " to " + std::to_string(bands.high) +
                        " are shown as 0 to 255");
   }
-  bands.unwritten = std::any_of(bands.rgb.begin(), bands.rgb.end(), [&](int band) {
-    return has_unwritten_blocks(*dataset.GetRasterBand(band));
-  });
+  for (int c = 0; c < 3 && !bands.unwritten; ++c) {
+    if (c > 0 && bands.rgb[c] == bands.rgb[0]) break;
+    const auto found = has_unwritten_blocks(*dataset.GetRasterBand(bands.rgb[c]), file, cancelled);
+    if (!found) return found.error();
+    bands.unwritten = *found;
+  }
   bands.has_mask = bands.has_mask || bands.nodata || bands.unwritten || has_mask(dataset, bands);
   return bands;
 }

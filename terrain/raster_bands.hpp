@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "terrain/area_average.hpp"
+#include "terrain/cancelled.hpp"
 #include "terrain/gdal_dataset.hpp"
 
 namespace overfly::terrain {
@@ -28,10 +29,11 @@ struct RasterBands {
 
 /// Finds them; what was assumed goes to `warnings`. `nodata` takes the place of the file's own
 /// mask.
-/// Errors: kUnreadable naming the file for complex samples.
+/// Errors: kUnreadable naming the file for complex samples; kCancelled.
 [[nodiscard]] Result<RasterBands> find_bands(GDALDataset& dataset,
                                              const std::string& file,
                                              const std::optional<double>& nodata,
+                                             const Cancelled& cancelled,
                                              std::vector<std::string>& warnings);
 
 /// Reads a window that lies inside the dataset. Errors: kIo with GDAL's reason.

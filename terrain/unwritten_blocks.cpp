@@ -15,7 +15,9 @@ bool was_written(GDALRasterBand& band, int column, int row) {
 
 }  // namespace
 
-bool has_unwritten_blocks(GDALRasterBand& band) {
+Result<bool> has_unwritten_blocks(GDALRasterBand& band,
+                                  const std::filesystem::path& file,
+                                  const Cancelled& cancelled) {
   GDALDataset* dataset = band.GetDataset();
   GDALDriver* driver = dataset != nullptr ? dataset->GetDriver() : nullptr;
   if (driver == nullptr || std::string(driver->GetDescription()) != "GTiff") return false;
@@ -24,8 +26,12 @@ bool has_unwritten_blocks(GDALRasterBand& band) {
   band.GetBlockSize(&block_width, &block_height);
   const int columns = (band.GetXSize() + block_width - 1) / block_width;
   const int rows = (band.GetYSize() + block_height - 1) / block_height;
+  int seen = 0;
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column) {
+      if (++seen % kBlocksAtOnce == 0) {
+        if (Status status = go_on(cancelled, file); !status) return status.error();
+      }
       if (!was_written(band, column, row)) return true;
     }
   }

@@ -5,11 +5,15 @@
 #include <gdal_priv.h>
 
 #include "core/image.hpp"
+#include "terrain/cancelled.hpp"
 
 namespace overfly::terrain {
 
 /// Whether the band has such blocks: looks at the file's table of blocks, reads none of them.
-[[nodiscard]] bool has_unwritten_blocks(GDALRasterBand& band);
+/// Errors: kCancelled naming `file`.
+[[nodiscard]] Result<bool> has_unwritten_blocks(GDALRasterBand& band,
+                                                const std::filesystem::path& file,
+                                                const Cancelled& cancelled);
 
 /// Sets `valid`, the window whose first texel is (x, y), to 0 where the band has such blocks.
 void mask_unwritten_blocks(GDALRasterBand& band, int x, int y, Image& valid);

@@ -4,7 +4,7 @@
 
 namespace overfly::terrain {
 
-Result<ValidityGrid> ValidityGrid::read(const ImageryRaster& raster) {
+Result<ValidityGrid> ValidityGrid::read(const ImageryRaster& raster, const Cancelled& cancelled) {
   ValidityGrid grid;
   grid.width_px_ = raster.width_px();
   grid.height_px_ = raster.height_px();
@@ -21,6 +21,7 @@ Result<ValidityGrid> ValidityGrid::read(const ImageryRaster& raster) {
   const int piece_columns = std::max(1, (1 << 22) / (size * size));
   for (int row = 0; row < grid.rows_; ++row) {
     for (int column = 0; column < grid.columns_; column += piece_columns) {
+      if (Status status = go_on(cancelled, raster.file()); !status) return status.error();
       const int columns = std::min(piece_columns, grid.columns_ - column);
       const Status read = grid.read_cells(raster, column, row, columns);
       if (!read) return read.error();

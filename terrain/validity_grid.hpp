@@ -7,14 +7,15 @@
 #include <optional>
 #include <vector>
 
+#include "terrain/cancelled.hpp"
 #include "terrain/imagery_raster.hpp"
 
 namespace overfly::terrain {
 
 class ValidityGrid {
  public:
-  /// Reads the mask once. Errors: kIo.
-  static Result<ValidityGrid> read(const ImageryRaster& raster);
+  /// Reads the mask once. Errors: kIo; kCancelled.
+  static Result<ValidityGrid> read(const ImageryRaster& raster, const Cancelled& cancelled);
 
   /// As bytes and back; empty if they are not those of a grid.
   [[nodiscard]] std::vector<std::uint8_t> to_bytes() const;

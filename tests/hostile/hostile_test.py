@@ -365,6 +365,16 @@ class Files(Attack):
                         told.append((answer.status, masked(text, place)))
                     self.assertEqual(told[0], told[1])
 
+    def test_opening_a_large_file_is_cancelled(self):
+        answer = self.victim.launch("listed", {"world.imagery.0.file": "endless.tif"})
+        self.assertEqual(answer.status, 201, answer.text[:300])
+        run_id = answer.json()["id"]
+        time.sleep(1)
+        self.assertEqual(self.victim.get(f"/runs/{run_id}").json()["status"], "running")
+        self.victim.ask("POST", f"/api/v1/runs/{run_id}/cancel")
+        self.assertEqual(self.victim.ended(run_id, HEALTH_S)["status"], "cancelled")
+        self.assert_flies("listed")
+
     def test_blocked_files_do_not_block_the_queue(self):
         for scenario, field, place in (("logged", "flight.log.file", "/proc/kmsg"),
                                        ("logged", "flight.log.file", "fifo"),
@@ -701,7 +711,8 @@ class Ends(unittest.TestCase):
         for field, scenario, place in (("flight.log.file", "logged", "/proc/kmsg"),
                                        ("flight.log.file", "logged", "fifo"),
                                        ("world.imagery.0.crs", "listed", "fifo"),
-                                       ("world.imagery.0.file", "listed", "fifo")):
+                                       ("world.imagery.0.file", "listed", "fifo"),
+                                       ("world.imagery.0.file", "listed", "endless.tif")):
             with self.subTest(field=field, place=place):
                 victim = Victim(PROGRAM)
                 victim.launch(scenario, {field: place})

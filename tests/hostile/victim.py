@@ -49,6 +49,32 @@ def write_geotiff(path, width_px, height_px, metres_per_pixel, east_m, north_m):
                      struct.pack("<I", 0) + scale + tie + keys + pixels)
 
 
+def write_endless_geotiff(path, side_px):
+    """A picture of small tiles of which none was ever written: a file of many blocks to look at, and
+    of holes on the disk. The same keys and place as those of write_geotiff, as BigTIFF."""
+    tile_px = 16
+    tiles = (-(-side_px // tile_px)) ** 2
+    keys = struct.pack("<16H", 1, 1, 0, 3, 1024, 0, 1, 1, 1025, 0, 1, 1, 3072, 0, 1, 32610)
+    scale = struct.pack("<3d", 4.0, 4.0, 0.0)
+    tie = struct.pack("<6d", 0, 0, 0, 600000.0, 4200000.0, 0)
+    entries = 13
+    scale_at = 16 + 8 + entries * 20 + 8
+    tie_at = scale_at + len(scale)
+    keys_at = tie_at + len(tie)
+    offsets_at = 4096
+    sizes_at = offsets_at + 8 * tiles
+    short, long, double, long8 = 3, 4, 12, 16
+    directory = b"".join(struct.pack("<HHQQ", *entry) for entry in [
+        (256, long, 1, side_px), (257, long, 1, side_px), (258, short, 1, 8), (259, short, 1, 1),
+        (262, short, 1, 1), (277, short, 1, 1), (322, short, 1, tile_px), (323, short, 1, tile_px),
+        (324, long8, tiles, offsets_at), (325, long8, tiles, sizes_at),
+        (33550, double, 3, scale_at), (33922, double, 6, tie_at), (34735, short, 16, keys_at)])
+    with open(path, "wb") as file:
+        file.write(b"II+\0" + struct.pack("<HHQQ", 8, 0, 16, entries) + directory +
+                   struct.pack("<Q", 0) + scale + tie + keys)
+        file.truncate(sizes_at + 8 * tiles)
+
+
 class Listener:
     """Accepts connections on loopback, answers HTTP, and remembers who called."""
 
@@ -131,7 +157,8 @@ class Victim:
             "".join(f"{0.1 * k:.1f} {2.5 * k:.1f} 0 400 0 0 0 1\n" for k in range(60)))
         self.write_scenario("logged", {**common, "world": listed,
                                        "flight": {"log": {"file": "flight.tum"}}})
-        # 20 GB without a byte on the disk.
+        # Minutes of work to open, and 20 GB without a byte on the disk.
+        write_endless_geotiff(self.data / "endless.tif", 100_000)
         with open(self.data / "sparse.txt", "wb") as sparse:
             sparse.truncate(20 << 30)
         os.mkfifo(self.data / "fifo")
