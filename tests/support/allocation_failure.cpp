@@ -32,18 +32,31 @@ bool AllocationFailure::disarm() {
   return failed;
 }
 
+void* allocate_or_null(std::size_t bytes) noexcept {
+  return fails_now() ? nullptr : std::malloc(bytes == 0 ? 1 : bytes);
+}
+
 void* allocate(std::size_t bytes) {
-  void* memory = fails_now() ? nullptr : std::malloc(bytes == 0 ? 1 : bytes);
+  void* memory = allocate_or_null(bytes);
   if (memory == nullptr) throw std::bad_alloc();
   return memory;
 }
 
 }  // namespace overfly::testing
 
-// Those of this test program, the libraries that it links included.
+// Those of this test program, the libraries that it links included. All that may meet one another:
+// AddressSanitizer has its own for each that is not here, and would see its memory freed by ours.
 void* operator new(std::size_t bytes) { return overfly::testing::allocate(bytes); }
 void* operator new[](std::size_t bytes) { return overfly::testing::allocate(bytes); }
+void* operator new(std::size_t bytes, const std::nothrow_t& /*kind*/) noexcept {
+  return overfly::testing::allocate_or_null(bytes);
+}
+void* operator new[](std::size_t bytes, const std::nothrow_t& /*kind*/) noexcept {
+  return overfly::testing::allocate_or_null(bytes);
+}
 void operator delete(void* memory) noexcept { std::free(memory); }
 void operator delete[](void* memory) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t /*bytes*/) noexcept { std::free(memory); }
 void operator delete[](void* memory, std::size_t /*bytes*/) noexcept { std::free(memory); }
+void operator delete(void* memory, const std::nothrow_t& /*kind*/) noexcept { std::free(memory); }
+void operator delete[](void* memory, const std::nothrow_t& /*kind*/) noexcept { std::free(memory); }
