@@ -112,10 +112,14 @@ bool SourcePolicy::holds(const fs::path& plain) const {
 }
 
 Status SourcePolicy::check(const fs::path& file, const std::string& field) const {
-  const std::string name = named(field, file);
-  if (!confined_) return check_kind(file, name);
+  if (Status status = check_place(file, field); !status) return status;
+  return check_kind(file, named(field, file));
+}
+
+Status SourcePolicy::check_place(const fs::path& file, const std::string& field) const {
+  if (!confined_) return {};
   const Error outside{ErrorCode::kInvalidArgument,
-                      name + ": must be a file inside of the server's data folders"};
+                      named(field, file) + ": must be a file inside of the server's data folders"};
   // As named first: a place outside is never looked at, so nothing tells whether it exists.
   if (is_ambiguous(file)) return outside;
   const fs::path path = plain(file);
@@ -123,7 +127,7 @@ Status SourcePolicy::check(const fs::path& file, const std::string& field) const
   std::error_code failed;
   const fs::path resolved = fs::weakly_canonical(path, failed);
   if (failed || !holds(resolved) || is_or_lies_behind_a_dead_link(path)) return outside;
-  return check_kind(resolved, name);
+  return {};
 }
 
 }  // namespace overfly

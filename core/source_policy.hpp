@@ -36,6 +36,9 @@ class SourcePolicy {
   /// Errors: kInvalidArgument "FIELD = FILE: must ...", word for word the same for every file
   /// outside of the data folders, there or not; kNotFound inside of them.
   [[nodiscard]] Status check(const std::filesystem::path& file, const std::string& field) const;
+  /// The same for a file of any kind, also for none: whether it lies in a data folder.
+  [[nodiscard]] Status check_place(const std::filesystem::path& file,
+                                   const std::string& field) const;
 
  private:
   [[nodiscard]] bool holds(const std::filesystem::path& plain) const;

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "terrain/map_plane.hpp"
+#include "terrain/side_cars.hpp"
 
 namespace overfly::terrain {
 namespace fs = std::filesystem;
@@ -84,12 +85,15 @@ Status check_sources(GDALDataset& dataset,
       CPLParseXMLString(description[0]), &CPLDestroyXMLNode);
   std::vector<fs::path> sources;
   add_sources(xml.get(), file.parent_path(), sources);
+  SideCars side_cars;
   for (const fs::path& source : sources) {
     if (Status status = go_on(cancelled, file); !status) return status;
     auto opened = open_raster(source);
     if (!opened) return opened.error().in(file.string() + ": is made of");
     const Status whole = check_whole(**opened, source, cancelled, warnings);
     if (!whole) return whole.error().in(file.string() + ": is made of");
+    const std::vector<std::string> doubts = side_cars.doubts(source);
+    warnings.insert(warnings.end(), doubts.begin(), doubts.end());
   }
   return {};
 }

@@ -11,6 +11,8 @@
 #include "terrain/crs_text.hpp"
 #include "terrain/file_soundness.hpp"
 #include "terrain/outside_access.hpp"
+#include "terrain/regular_files.hpp"
+#include "terrain/side_cars.hpp"
 #include "terrain/virtual_raster.hpp"
 
 namespace overfly::terrain {
@@ -20,6 +22,7 @@ void initialise_gdal() {
   static const bool done = [] {
     GDALAllRegister();
     close_outside_access();
+    show_regular_files_alone();
     constexpr GIntBig kBlockCacheBytes = GIntBig{128} << 20;
     GDALSetCacheMax64(kBlockCacheBytes);
     // Side-car files of one directory listing per open cost more than they bring.
@@ -103,8 +106,10 @@ Result<DatasetPtr> open_raster(const fs::path& file, int level) {
       options.List(),
       nullptr));
   if (!dataset) {
+    std::string reason = messages.text();
+    for (const std::string& doubt : SideCars().doubts(file)) reason += "; " + doubt;
     return Error{ErrorCode::kUnreadable,
-                 file.string() + ": not a raster that can be read: " + messages.text()};
+                 file.string() + ": not a raster that can be read: " + reason};
   }
   if (dataset->GetRasterCount() < 1) {
     return Error{ErrorCode::kUnreadable, file.string() + ": has no raster band"};

@@ -8,6 +8,7 @@
 #include "terrain/cancelled.hpp"
 #include "terrain/file_digest.hpp"
 #include "terrain/raster_world.hpp"
+#include "terrain/side_cars.hpp"
 #include "terrain/world.hpp"
 #include "terrain/world_layout.hpp"
 
@@ -29,6 +30,17 @@ Result<Rasters> open_imagery(const WorldSpec& spec,
     rasters.push_back(std::move(*raster));
   }
   return rasters;
+}
+
+/// Files beside those of the layers that are left out.
+void add_side_car_doubts(const WorldSpec& spec, std::vector<std::string>& warnings) {
+  SideCars side_cars;
+  const auto add = [&](const std::filesystem::path& file) {
+    const std::vector<std::string> doubts = side_cars.doubts(file);
+    warnings.insert(warnings.end(), doubts.begin(), doubts.end());
+  };
+  for (const ImageryLayer& layer : spec.imagery) add(layer.file);
+  for (const ElevationLayer& layer : spec.elevation) add(layer.file);
 }
 
 /// What reading the files themselves needs.
@@ -223,6 +235,7 @@ Result<World> open_world(const WorldSpec& spec, const Cancelled& cancelled) {
   }
   World world;
   world.spec = spec;
+  add_side_car_doubts(spec, world.warnings);
   auto rasters = open_imagery(spec, cancelled, world.warnings);
   if (!rasters) return rasters.error();
   auto layout = lay_out_world(*rasters, spec.origin);

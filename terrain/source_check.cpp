@@ -1,5 +1,6 @@
 // check_world_sources: what a world's description names, judged before anything is opened.
 #include "terrain/crs_text.hpp"
+#include "terrain/side_cars.hpp"
 #include "terrain/world.hpp"
 
 namespace overfly::terrain {
@@ -28,10 +29,13 @@ template <typename Layer>
 void check_layers(const std::vector<Layer>& layers,
                   const SourcePolicy& sources,
                   const std::string& field,
+                  SideCars& side_cars,
                   Faults& faults) {
   for (std::size_t i = 0; i < layers.size(); ++i) {
     const std::string layer = field + "." + std::to_string(i);
-    faults.add(sources.check(layers[i].file, layer + ".file"));
+    Status file = sources.check(layers[i].file, layer + ".file");
+    if (file) file = side_cars.check(layers[i].file, layer + ".file", sources);
+    faults.add(file);
     if (layers[i].crs) faults.add(check_crs_text(*layers[i].crs, layer + ".crs"));
   }
 }
@@ -40,8 +44,9 @@ void check_layers(const std::vector<Layer>& layers,
 
 Status check_world_sources(const WorldSpec& spec, const std::string& prefix) {
   Faults faults;
-  check_layers(spec.imagery, spec.sources, prefix + "imagery", faults);
-  check_layers(spec.elevation, spec.sources, prefix + "elevation", faults);
+  SideCars side_cars;
+  check_layers(spec.imagery, spec.sources, prefix + "imagery", side_cars, faults);
+  check_layers(spec.elevation, spec.sources, prefix + "elevation", side_cars, faults);
   return faults.status();
 }
 

@@ -15,6 +15,7 @@
 #include "core/source_policy.hpp"
 #include "terrain/crs_text.hpp"
 #include "terrain/gdal_dataset.hpp"
+#include "terrain/side_cars.hpp"
 
 namespace overfly::terrain {
 namespace fs = std::filesystem;
@@ -58,8 +59,11 @@ bool is_virtual(const fs::path& file) {
 class Description {
  public:
   /// @param file  its links resolved, since GDAL counts from a link's target too
-  explicit Description(const fs::path& file)
-      : file_(file), folder_(file.parent_path()), inside_(SourcePolicy::inside({folder_})) {}
+  Description(const fs::path& file, SideCars& side_cars)
+      : file_(file),
+        folder_(file.parent_path()),
+        inside_(SourcePolicy::inside({folder_})),
+        side_cars_(side_cars) {}
 
   /// Errors: as check_virtual_raster.
   Status read() {
@@ -131,31 +135,40 @@ class Description {
       return Error{ErrorCode::kNotFound, place.string() + ": no such file"}.in(file_.string() +
                                                                                ": is made of");
     }
+    if (Status beside = side_cars_.check(place, "SourceFilename", inside_); !beside) {
+      return refuse("a file beside one of its sources leads out of its folder: " +
+                    text.substr(0, 200));
+    }
     names_.insert(text);
-    sources_.insert(fs::weakly_canonical(place));
+    std::error_code failed;
+    sources_.insert(fs::weakly_canonical(place, failed));  // found good a moment ago
     return {};
   }
 
   fs::path file_;
   fs::path folder_;
   SourcePolicy inside_;
+  SideCars& side_cars_;
   std::set<std::string> names_;  ///< found good
   std::set<fs::path> sources_;
 };
 
 /// @param whole_of  the rasters that this one is a part of
 /// @param sound     those that were found good
-Status check(const fs::path& file, std::set<fs::path>& whole_of, std::set<fs::path>& sound) {
+Status check(const fs::path& file,
+             std::set<fs::path>& whole_of,
+             std::set<fs::path>& sound,
+             SideCars& side_cars) {
   if (sound.count(file) > 0 || !is_virtual(file)) return {};
   if (!whole_of.insert(file).second || whole_of.size() > kMaxFileDepth) {
     return Error{ErrorCode::kUnreadable,
                  file.string() + ": a virtual raster is made of itself, or of others more than " +
                      std::to_string(kMaxFileDepth) + " deep"};
   }
-  Description description(file);
+  Description description(file, side_cars);
   if (Status status = description.read(); !status) return status;
   for (const fs::path& source : description.sources()) {
-    if (Status status = check(source, whole_of, sound); !status) {
+    if (Status status = check(source, whole_of, sound, side_cars); !status) {
       return status.error().in(file.string() + ": is made of");
     }
   }
@@ -169,7 +182,11 @@ Status check(const fs::path& file, std::set<fs::path>& whole_of, std::set<fs::pa
 Status check_virtual_raster(const fs::path& file) {
   std::set<fs::path> whole_of;
   std::set<fs::path> sound;
-  return check(fs::weakly_canonical(file), whole_of, sound);
+  SideCars side_cars;
+  std::error_code failed;
+  const fs::path place = fs::weakly_canonical(file, failed);
+  if (failed) return Error{ErrorCode::kIo, file.string() + ": " + failed.message()};
+  return check(place, whole_of, sound, side_cars);
 }
 
 }  // namespace overfly::terrain

@@ -87,7 +87,10 @@ Status check_scenario(const Scenario& scenario) {
   std::optional<Error> fault;
   if (Status status = check_world(scenario); !status) fault = status.error();
   if (const auto* log = std::get_if<Scenario::LoggedFlight>(&scenario.flight)) {
-    const Status status = scenario.sources.check(log->file, "flight.log.file");
+    Status status = scenario.sources.check(log->file, "flight.log.file");
+    // Poses in KITTI's form take their times from there.
+    const fs::path times = log->file.parent_path() / "times.txt";
+    if (status) status = scenario.sources.check_place(times, "flight.log.file (a file beside it)");
     if (!status && fault) {
       fault->message += "\n" + status.error().message;
       if (status.error().code != ErrorCode::kNotFound) fault->code = status.error().code;

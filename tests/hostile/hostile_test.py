@@ -365,6 +365,38 @@ class Files(Attack):
                         told.append((answer.status, masked(text, place)))
                     self.assertEqual(told[0], told[1])
 
+    def test_files_beside_a_raster_are_neither_waited_for_nor_followed_out(self):
+        data = self.victim.data
+        names = ("aux.xml", "ovr", "msk")
+        mosaic = vrt_of("ground.tif", relative=1)
+        for name in (*(f"beside.tif.{name}" for name in names), "beside.tfw", "beside.wld",
+                     "beside.prj", "beside.tab", "beside.hdr", "beside.IMD"):
+            for kind in ("fifo", "link to a file", "link to nothing"):
+                with self.subTest(name=name, kind=kind):
+                    shutil.copy(data / "ground.tif", data / "beside.tif")
+                    (data / "beside.vrt").write_text(mosaic.replace("ground.tif", "beside.tif"))
+                    side_car = data / name
+                    if kind == "fifo":
+                        os.mkfifo(side_car)
+                        for file in ("beside.tif", "beside.vrt"):
+                            run = self.assert_flies("listed", {"world.imagery.0.file": file})
+                            log = self.victim.get(f"/runs/{run['id']}/manifest").text
+                            self.assertIn(f"{name}: is not a regular file and is left out", log)
+                    else:
+                        side_car.symlink_to(self.victim.outside / (
+                            "secret.tif" if kind == "link to a file" else "absent.tif"))
+                        for file in ("beside.tif", "beside.vrt"):
+                            self.assert_refused("listed", {"world.imagery.0.file": file})
+                        self.assert_refused("listed", {"world.elevation": [{"file": "beside.tif"}]})
+                    side_car.unlink()
+
+    def test_times_beside_a_flight_are_not_followed_out(self):
+        times = self.victim.data / "times.txt"
+        times.symlink_to(self.victim.outside / "secret.txt")
+        self.assert_refused("logged", {})
+        times.unlink()
+        self.assert_flies("logged")
+
     def test_opening_a_large_file_is_cancelled(self):
         answer = self.victim.launch("listed", {"world.imagery.0.file": "endless.tif"})
         self.assertEqual(answer.status, 201, answer.text[:300])
