@@ -140,11 +140,13 @@ Result<Scenario> RunManager::scenario_of(const std::string& id) const {
   return flown;
 }
 
-Result<std::shared_ptr<const terrain::World>> RunManager::world_of(const std::string& id) {
+Result<std::shared_ptr<const terrain::World>> RunManager::world_of(
+    const std::string& id, const std::function<bool()>& cancelled) {
   if (const auto flown = impl_->flown_world(id)) return bare_world(flown);
   const Result<Scenario> scenario = scenario_of(id);
   if (!scenario) return scenario.error();
-  const auto opened = impl_->worlds.get(*scenario, {});
+  const auto go_on = [&](double) { return !cancelled || !cancelled(); };
+  const auto opened = impl_->worlds.get(*scenario, go_on);
   if (!opened) return opened.error();
   return bare_world(*opened);
 }

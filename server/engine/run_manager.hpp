@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -85,8 +86,11 @@ class RunManager {
   /// The scenario that a run flies or flew. Errors: kNotFound; as load_scenario, check_scenario.
   [[nodiscard]] Result<Scenario> scenario_of(const std::string& id) const;
   /// The world that a run flies over, or that of the run's scenario as its files are now. Shared
-  /// with runs and views. Errors: kNotFound; as open_scenario_world.
-  [[nodiscard]] Result<std::shared_ptr<const terrain::World>> world_of(const std::string& id);
+  /// with runs and views.
+  /// @param cancelled  asked now and then while it is opened; true ends that
+  /// Errors: kNotFound; as open_scenario_world.
+  [[nodiscard]] Result<std::shared_ptr<const terrain::World>> world_of(
+      const std::string& id, const std::function<bool()>& cancelled = {});
   [[nodiscard]] const RendererFactory& renderer_factory() const;
   /// Of pictures for viewers, beside the flights.
   [[nodiscard]] PictureRate& picture_rate();

@@ -1,6 +1,7 @@
 // Makes the picture that a viewer asked for: taken live, read from the run folder, or drawn again.
 #pragma once
 
+#include <atomic>
 #include <list>
 #include <memory>
 #include <string>
@@ -15,7 +16,9 @@ namespace overfly::engine {
 /// Used and destroyed on one thread.
 class ViewPainter {
  public:
-  explicit ViewPainter(RunManager& runs) : runs_(runs), renderers_(runs) {}
+  /// @param stopping  true ends the opening of a world: nobody wants its picture any more
+  ViewPainter(RunManager& runs, const std::atomic<bool>& stopping)
+      : runs_(runs), renderers_(runs, stopping) {}
 
   /// Errors: kNotFound when there is nothing to see at that instant; as world and renderer say.
   [[nodiscard]] Result<Picture> paint(const PictureRequest& request);

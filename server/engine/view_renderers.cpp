@@ -32,7 +32,7 @@ Result<ViewRenderers::WorldView*> ViewRenderers::of_run(const std::string& run_i
   }
   const Result<const Scenario*> scenario = scenario_of(run_id);
   if (!scenario) return scenario.error();
-  auto world = runs_.world_of(run_id);
+  auto world = runs_.world_of(run_id, [this] { return stopping_.load(); });
   if (!world) return world.error();
   const RendererChoice& choice = (*scenario)->renderer;
   const auto known = std::find_if(views_.begin(), views_.end(), [&](const WorldView& view) {

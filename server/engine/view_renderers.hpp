@@ -1,6 +1,7 @@
 // The renderers of the worlds in view.
 #pragma once
 
+#include <atomic>
 #include <list>
 #include <memory>
 #include <optional>
@@ -16,7 +17,9 @@ namespace overfly::engine {
 /// One renderer per world, the least recently used leaves. Used and destroyed on one thread.
 class ViewRenderers {
  public:
-  explicit ViewRenderers(RunManager& runs) : runs_(runs) {}
+  /// @param stopping  true ends the opening of a world
+  ViewRenderers(RunManager& runs, const std::atomic<bool>& stopping)
+      : runs_(runs), stopping_(stopping) {}
 
   struct WorldView {
     std::shared_ptr<const terrain::World> world;
@@ -38,6 +41,7 @@ class ViewRenderers {
   [[nodiscard]] Result<const Scenario*> scenario_of(const std::string& run_id);
 
   RunManager& runs_;
+  const std::atomic<bool>& stopping_;
   std::string scenario_run_id_;  ///< whose scenario was read last
   std::optional<Scenario> scenario_;
   std::list<WorldView> views_;  ///< the one used last is in front

@@ -1,5 +1,6 @@
 #include "server/engine/view_service.hpp"
 
+#include <atomic>
 #include <condition_variable>
 #include <mutex>
 #include <string>
@@ -36,9 +37,9 @@ struct ViewService::Impl {
   std::mutex mutex;
   std::condition_variable wake;
   ViewQueue queue;
-  std::vector<Done> replaced;  ///< to be told so on the thread
-  bool stopping = false;
-  std::thread thread;  ///< last: it uses all of the above
+  std::vector<Done> replaced;          ///< to be told so on the thread
+  std::atomic<bool> stopping = false;  ///< written under the mutex
+  std::thread thread;                  ///< last: it uses all of the above
 };
 
 ViewService::Impl::~Impl() {
@@ -96,7 +97,7 @@ void ViewService::Impl::paint(bool beside_flight) {
   lower_thread(beside_flight ? ThreadPriority::kLeftOver : ThreadPriority::kBelowFlights);
   const auto paint_all = [&] {
     // The painter's renderers live and die on this thread.
-    ViewPainter painter(runs);
+    ViewPainter painter(runs, stopping);
     while (auto entry = next(beside_flight)) {
       answer(entry->done, guarded([&] { return painter.paint(entry->request); }));
     }

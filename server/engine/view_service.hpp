@@ -54,6 +54,7 @@ class ViewService {
   using Done = std::function<void(Result<Picture>)>;
 
   explicit ViewService(RunManager& runs);
+  /// Waits for the picture that is being drawn; a world that is being opened for one is given up.
   ~ViewService();
 
   /// Queues a picture for a client's stream; a request not yet begun of the same (client, stream)

@@ -739,6 +739,20 @@ class Amounts(Attack):
 
 
 class Ends(unittest.TestCase):
+    def test_sigterm_ends_a_server_that_opens_a_world_for_a_viewer(self):
+        victim = Victim(PROGRAM)
+        run = victim.ended(victim.launch("listed").json()["id"])
+        self.assertEqual(run["status"], "completed")
+        (victim.data / "endless.tif").replace(victim.data / "ground.tif")
+        with concurrent.futures.ThreadPoolExecutor(1) as viewer:
+            # The recorded pictures are drawn anew, over the file as it is now.
+            asked = viewer.submit(victim.get, f"/runs/{run['id']}/frames/0.jpg")
+            time.sleep(1)
+            self.assertFalse(asked.done())
+            self.assertTrue(victim.stop(), "SIGTERM did not end it")
+            self.assertEqual(victim.process.returncode, 0)
+            self.assertIsNotNone(asked.exception())
+
     def test_sigterm_ends_a_server_whose_runs_hang(self):
         for field, scenario, place in (("flight.log.file", "logged", "/proc/kmsg"),
                                        ("flight.log.file", "logged", "fifo"),
