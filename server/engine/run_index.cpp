@@ -71,6 +71,7 @@ bool RunIndex::look_at(int descriptor, const std::string& id, Entry& entry) {
   entry.info = nullptr;
   if (manifest.exists) {
     if (Result<RunInfo> info = read_run_info(folder_ / id); info) {
+      info->world_change = entry.world_change;
       entry.info = std::make_shared<const RunInfo>(std::move(*info));
     }
   }
@@ -108,23 +109,38 @@ RunList RunIndex::list(const std::set<std::string>& skip) {
   return list;
 }
 
-Result<RunInfo> RunIndex::run(const std::string& id) {
-  const Error none{ErrorCode::kNotFound, "run \"" + id + "\": no such run"};
-  if (!is_plain_name(id)) return none;
-  const std::lock_guard lock(mutex_);
+RunIndex::Entry* RunIndex::find(const std::string& id) {
+  if (!is_plain_name(id)) return nullptr;
   const OpenFolder folder(folder_);
   auto found = entries_.find(id);
   if (found == entries_.end()) {
     Entry entry;
     look_at(folder.descriptor(), id, entry);
-    if (!entry.info) return none;
+    if (!entry.info) return nullptr;
     found = entries_.emplace(id, std::move(entry)).first;
     unsorted_ = true;
   } else {
     unsorted_ = look_at(folder.descriptor(), id, found->second) || unsorted_;
   }
-  if (!found->second.info) return none;
-  return *found->second.info;
+  return found->second.info ? &found->second : nullptr;
+}
+
+Result<RunInfo> RunIndex::run(const std::string& id) {
+  const std::lock_guard lock(mutex_);
+  const Entry* entry = find(id);
+  if (entry == nullptr) return Error{ErrorCode::kNotFound, "run \"" + id + "\": no such run"};
+  return *entry->info;
+}
+
+void RunIndex::set_world_change(const std::string& id, const std::string& change) {
+  const std::lock_guard lock(mutex_);
+  Entry* entry = find(id);
+  if (entry == nullptr || entry->world_change == change) return;
+  entry->world_change = change;
+  RunInfo info = *entry->info;
+  info.world_change = change;
+  entry->info = std::make_shared<const RunInfo>(std::move(info));
+  unsorted_ = true;
 }
 
 }  // namespace overfly::engine

@@ -32,6 +32,8 @@ class RunIndex {
   [[nodiscard]] RunList list(const std::set<std::string>& skip);
   /// One run alone. Errors: kNotFound.
   [[nodiscard]] Result<RunInfo> run(const std::string& id);
+  /// Keeps RunInfo::world_change of a run, from now on.
+  void set_world_change(const std::string& id, const std::string& change);
 
  private:
   struct Entry {
@@ -39,10 +41,13 @@ class RunIndex {
     /// Read after the manifest's last change, and nothing but a change of it can change the run.
     bool settled = false;
     std::shared_ptr<const RunInfo> info;  ///< null where there is no manifest
+    std::string world_change;
   };
   /// Both say whether anything has changed. @pre mutex_ is held
   bool look_for_folders(int descriptor);
   bool look_at(int descriptor, const std::string& id, Entry& entry);
+  /// The entry of a run as it is now; null where there is none. @pre mutex_ is held
+  Entry* find(const std::string& id);
   void sort();
 
   const std::filesystem::path folder_;

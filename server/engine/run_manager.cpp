@@ -97,7 +97,7 @@ Result<std::shared_ptr<RunTimeline>> RunManager::timeline(const std::string& id)
   if (std::shared_ptr<RunTimeline> known = impl_->known_timeline(id)) return known;
   const Result<fs::path> place = folder(id);
   if (!place) return place.error();
-  return impl_->shelf.get(id);
+  return impl_->shelved_timeline(id);
 }
 
 Status RunManager::cancel(const std::string& id) {
@@ -148,6 +148,7 @@ Result<std::shared_ptr<const terrain::World>> RunManager::world_of(
   const auto go_on = [&](double) { return !cancelled || !cancelled(); };
   const auto opened = impl_->worlds.get(*scenario, go_on);
   if (!opened) return opened.error();
+  impl_->tell_world_change(id, **opened);
   return bare_world(*opened);
 }
 

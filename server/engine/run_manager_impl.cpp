@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "server/engine/run_id.hpp"
+#include "server/engine/world_change.hpp"
 
 namespace overfly::engine {
 namespace {
@@ -192,6 +193,25 @@ bool RunManager::Impl::forget_unflown(const std::string& id) {
   if (std::erase_if(unflown_, [&](const auto& run) { return run->id == id; }) == 0) return false;
   keys_.forget_run(id);
   return true;
+}
+
+Result<std::shared_ptr<RunTimeline>> RunManager::Impl::shelved_timeline(const std::string& id) {
+  auto timeline = shelf.get(id);
+  if (!timeline) return timeline;
+  const Result<RunInfo> listed = index.run(id);
+  if (!listed) return timeline;
+  RunInfo info = (*timeline)->info();
+  if (info.world_change != listed->world_change) {
+    info.world_change = listed->world_change;
+    (*timeline)->set_info(info);
+  }
+  return timeline;
+}
+
+void RunManager::Impl::tell_world_change(const std::string& id, const OpenedWorld& opened) {
+  index.set_world_change(id, world_change(options.runs_folder / id, opened));
+  // Whoever watches it is told by its time line.
+  if (!known_timeline(id)) (void)shelved_timeline(id);
 }
 
 void RunManager::Impl::forget(const std::string& id) {

@@ -61,6 +61,10 @@ struct RunManager::Impl {
   /// Of runs that wait, fly, or ended without a folder.
   [[nodiscard]] std::optional<RunInfo> known_info(const std::string& id) const;
   [[nodiscard]] std::shared_ptr<RunTimeline> known_timeline(const std::string& id) const;
+  /// Of a run that is over. Errors: as TimelineShelf::get.
+  [[nodiscard]] Result<std::shared_ptr<RunTimeline>> shelved_timeline(const std::string& id);
+  /// Says in the run's info how this world, opened for a view of it, differs from the one it flew.
+  void tell_world_change(const std::string& id, const OpenedWorld& opened);
   /// Null when it does not fly here.
   [[nodiscard]] WorldCache::Shared flown_world(const std::string& id) const;
   [[nodiscard]] std::optional<Scenario> active_scenario(const std::string& id) const;

@@ -96,6 +96,9 @@ struct RunInfo {
   /// What it is busy with before its first frame ("making the built-in world: 30 %"); empty
   /// otherwise. Of this process only: no file keeps it.
   std::string notice;
+  /// Which files of its world have changed since it was flown; empty where none has, and until its
+  /// world was opened for a view. Of this process only: no file keeps it.
+  std::string world_change;
 };
 
 /// One camera of a run.

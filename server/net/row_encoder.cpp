@@ -168,7 +168,8 @@ json run_json(const engine::RunInfo& info) {
           {"estimators", info.estimators},
           {"attribution", info.attribution},
           {"texture_limited", info.texture_limited},
-          {"notice", info.notice.empty() ? json(nullptr) : json(info.notice)}};
+          {"notice", info.notice.empty() ? json(nullptr) : json(info.notice)},
+          {"world_change", info.world_change.empty() ? json(nullptr) : json(info.world_change)}};
 }
 
 }  // namespace overfly::net

@@ -73,6 +73,9 @@ TEST(RowEncoder, SaysNullForARunWithoutError) {
   EXPECT_TRUE(run_json(info).at("notice").is_null());
   info.notice = "making the built-in world: 30 %";
   EXPECT_EQ(run_json(info).at("notice"), info.notice);
+  EXPECT_TRUE(run_json(info).at("world_change").is_null());
+  info.world_change = "ortho.tif has changed since this run was flown";
+  EXPECT_EQ(run_json(info).at("world_change"), info.world_change);
 }
 
 }  // namespace

@@ -28,6 +28,8 @@ export interface Run {
   texture_limited: boolean;
   /** What the run is busy with before its first frame. */
   notice: string | null;
+  /** Which files of the run's world have changed since it was flown. */
+  world_change: string | null;
 }
 
 /** One camera of a run, as its manifest lists it. */

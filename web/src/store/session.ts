@@ -25,6 +25,8 @@ export class Session implements StreamListener {
   private livePlace_ns: number | null = null;
   private pictureWidth_px = 640;
   private subscribed = '';
+  /** Of the run that is watched: what was said of its ground. */
+  private saidOfWorld: string | null = null;
 
   constructor(
     private readonly store: Store,
@@ -71,6 +73,7 @@ export class Session implements StreamListener {
     this.pendingSeek_ns = t_ns;
     this.livePlace_ns = null;
     this.subscribed = '';
+    this.saidOfWorld = null;
     this.client?.attach(id);
     this.store.change('run', 'rows', 'log', 'metrics', 'estimators', 'playback');
     this.store.change('pictures', 'scene', 'cameras');
@@ -156,6 +159,10 @@ export class Session implements StreamListener {
   private onRun(run: Run): void {
     const { state } = this.store;
     state.run = run;
+    if (run.world_change !== null && run.world_change !== this.saidOfWorld) {
+      this.notices.error(run.world_change);
+    }
+    this.saidOfWorld = run.world_change;
     const index = state.runs?.findIndex(({ id }) => id === run.id) ?? -1;
     if (state.runs !== null && index >= 0) state.runs[index] = run;
     this.subscribe();

@@ -14,6 +14,11 @@ export class HeaderBar implements View {
     'data-role': 'texture-limited',
     hidden: true,
   });
+  private readonly changed = h('span', {
+    class: 'chip warn',
+    'data-role': 'world-change',
+    hidden: true,
+  });
   private readonly error = h('span', { class: 'run-error' });
   private readonly attribution = h('span', { class: 'attribution' });
   private readonly connection = h('button', {
@@ -47,6 +52,7 @@ export class HeaderBar implements View {
       this.title,
       this.status,
       this.flag,
+      this.changed,
       this.error,
       h('span', { class: 'spacer' }),
       this.attribution,
@@ -73,6 +79,10 @@ export class HeaderBar implements View {
     this.error.title = run?.error ?? '';
     setText(this.attribution, run?.attribution ?? '');
     this.attribution.title = run?.attribution ?? '';
+    const worldChange = run?.world_change ?? null;
+    this.changed.hidden = worldChange === null;
+    setText(this.changed, 'Ground has changed');
+    this.changed.title = worldChange ?? '';
     const median = texelsPerPixel(state.metrics);
     this.flag.hidden = !textureLimited(run, state.metrics);
     const figure = median === null ? '' : `: ${formatNumber(median, 2)} texels/px`;

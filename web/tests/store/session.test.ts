@@ -124,6 +124,22 @@ describe('Session', () => {
     expect([data.truth.length, metrics, playback, run]).toEqual([0, null, null, null]);
   });
 
+  it('tells once that the ground has changed since the run was flown', () => {
+    viewing.watch();
+    const texts = () => viewing.store.state.notices.map(({ text }) => text);
+    expect(texts()).toEqual([]);
+    const world_change = 'ortho.tif has changed since this run was flown';
+    viewing.socket.receive({ type: 'run', run: sampleRun({ world_change }) });
+    viewing.socket.receive({ type: 'run', run: sampleRun({ world_change }) });
+    expect(texts()).toEqual([world_change]);
+    viewing.timers.fire();
+    viewing.socket.receive({ type: 'run', run: sampleRun({ world_change }) });
+    expect(texts()).toEqual([]);
+    viewing.session.selectRun('r2');
+    viewing.socket.receive({ type: 'run', run: sampleRun({ id: 'r2', world_change }) });
+    expect(texts()).toEqual([world_change]);
+  });
+
   it('tells when a run cannot be shown', () => {
     viewing.session.selectRun('gone');
     const { request } = viewing.socket.last();

@@ -19,6 +19,7 @@ export function sampleRun(change: Partial<Run> = {}): Run {
     attribution: '',
     texture_limited: false,
     notice: null,
+    world_change: null,
     ...change,
   };
 }
