@@ -135,7 +135,10 @@ struct KittiTimes {
 /// `times.txt` beside a KITTI file; empty where there is none of as many lines.
 Result<std::optional<KittiTimes>> kitti_times(const fs::path& poses_file, std::size_t count) {
   const fs::path times_file = poses_file.parent_path() / "times.txt";
-  if (times_file == poses_file || !fs::exists(times_file)) return std::optional<KittiTimes>();
+  std::error_code unknown;  // what cannot be looked at is taken for absent
+  if (times_file == poses_file || !fs::exists(times_file, unknown)) {
+    return std::optional<KittiTimes>();
+  }
   const Result<FieldFile> file = FieldFile::read(times_file);
   if (!file) return file.error();
   if (file->lines().size() != count) return std::optional<KittiTimes>();

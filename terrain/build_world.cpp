@@ -51,27 +51,41 @@ std::string key_of(const CacheHeader& header) {
   return sha256_hex({bytes, text.size()}).substr(0, kKeyDigits);
 }
 
+/// Calls for each entry at any depth that can be looked at.
+template <typename Take>
+void for_each_below(const fs::path& folder, const Take& take) {
+  std::error_code failed;
+  constexpr auto kOptions = fs::directory_options::skip_permission_denied;
+  for (fs::recursive_directory_iterator entry(folder, kOptions, failed), end;
+       !failed && entry != end;
+       entry.increment(failed)) {
+    take(*entry);
+  }
+}
+
 std::uint64_t size_of(const fs::path& folder) {
   std::uint64_t bytes = 0;
-  std::error_code failed;
-  for (const auto& entry : fs::recursive_directory_iterator(folder, failed)) {
-    if (entry.is_regular_file(failed)) bytes += entry.file_size(failed);
-  }
+  for_each_below(folder, [&](const fs::directory_entry& entry) {
+    std::error_code failed;
+    if (!entry.is_regular_file(failed)) return;
+    const std::uintmax_t size = entry.file_size(failed);
+    if (!failed) bytes += size;
+  });
   return bytes;
 }
 
 /// Files that a killed build left half written; those of the last minutes may be another's that
 /// is at work.
 void remove_leftovers(const fs::path& folder) {
-  std::error_code failed;
   const auto now = fs::file_time_type::clock::now();
   std::vector<fs::path> leftovers;
-  for (const auto& entry : fs::recursive_directory_iterator(folder, failed)) {
-    const bool part = entry.path().extension().string().starts_with(".part");
-    if (part && now - entry.last_write_time(failed) > std::chrono::minutes(10)) {
-      leftovers.push_back(entry.path());
-    }
-  }
+  for_each_below(folder, [&](const fs::directory_entry& entry) {
+    if (!entry.path().extension().string().starts_with(".part")) return;
+    std::error_code failed;
+    const auto written = entry.last_write_time(failed);
+    if (!failed && now - written > std::chrono::minutes(10)) leftovers.push_back(entry.path());
+  });
+  std::error_code failed;
   for (const fs::path& leftover : leftovers) fs::remove(leftover, failed);
 }
 
@@ -79,12 +93,14 @@ void remove_leftovers(const fs::path& folder) {
 void remove_others(const fs::path& cache, const fs::path& kept) {
   std::error_code failed;
   std::vector<fs::path> others;
-  for (const auto& entry : fs::directory_iterator(cache, failed)) {
-    const std::string name = entry.path().filename().string();
+  for (fs::directory_iterator entry(cache, failed), end; !failed && entry != end;
+       entry.increment(failed)) {
+    const std::string name = entry->path().filename().string();
+    std::error_code none;
     const bool ours = name.size() == kKeyDigits &&
                       name.find_first_not_of("0123456789abcdef") == std::string::npos &&
-                      fs::is_directory(entry.path() / "tiles", failed);
-    if (ours && name != kept.filename()) others.push_back(entry.path());
+                      fs::is_directory(entry->path() / "tiles", none);
+    if (ours && name != kept.filename()) others.push_back(entry->path());
   }
   for (const fs::path& other : others) fs::remove_all(other, failed);
 }

@@ -116,7 +116,9 @@ fs::path cache_folder() {
   if (fs::path own = variable("OVERFLY_CACHE"); !own.empty()) return own;
   if (const fs::path xdg = variable("XDG_CACHE_HOME"); !xdg.empty()) return xdg / "overfly";
   if (const fs::path home = variable("HOME"); !home.empty()) return home / ".cache" / "overfly";
-  return fs::temp_directory_path() / "overfly-cache";
+  std::error_code none;
+  const fs::path temporary = fs::temp_directory_path(none);
+  return (none ? fs::path("/tmp") : temporary) / "overfly-cache";
 }
 
 /// A lock between processes, held while the object lives.

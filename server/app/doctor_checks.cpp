@@ -85,11 +85,11 @@ Check check_folder(const std::string& name,
                    const fs::path& folder,
                    std::uintmax_t wanted_bytes,
                    const std::string& remedy) {
-  const fs::path place = existing_parent(fs::absolute(folder));
-  if (access(place.c_str(), W_OK | X_OK) != 0 || !fs::is_directory(place)) {
+  std::error_code failure;
+  const fs::path place = existing_parent(fs::absolute(folder, failure));
+  if (access(place.c_str(), W_OK | X_OK) != 0 || !fs::is_directory(place, failure)) {
     return {name, CheckLevel::kFault, folder.string() + ": cannot be written to", remedy};
   }
-  std::error_code failure;
   const fs::space_info space = fs::space(place, failure);
   const std::string free_text =
       failure ? "unknown space" : std::to_string(space.available >> 20U) + " MiB free";

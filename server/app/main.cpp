@@ -1,5 +1,6 @@
 // overfly: the command line.
 #include <CLI/CLI.hpp>
+#include <exception>
 
 #include "server/app/commands.hpp"
 #include "server/app/exit_code.hpp"
@@ -25,6 +26,9 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kExitOk : kExitUsage;
+  } catch (const std::exception& failure) {
+    // Nothing that the command's own errors foresee: a folder that is gone, memory that runs out.
+    return report({overfly::ErrorCode::kInternal, failure.what()});
   }
   return exit_code;
 }

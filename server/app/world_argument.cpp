@@ -37,8 +37,9 @@ Result<terrain::World> open_builtin(const std::string& text) {
 Result<terrain::World> open_world_argument(const std::string& text) {
   if (text == "builtin" || text.starts_with("builtin:")) return open_builtin(text);
   const fs::path path = text;
-  if (fs::is_directory(path)) return open_manifest(path / "world.json");
-  if (path.extension() == ".json" || !fs::exists(path)) return open_manifest(path);
+  std::error_code failed;
+  if (fs::is_directory(path, failed)) return open_manifest(path / "world.json");
+  if (path.extension() == ".json" || !fs::exists(path, failed)) return open_manifest(path);
   terrain::WorldSpec spec;
   spec.name = path.stem().string();
   terrain::ImageryLayer layer;

@@ -33,7 +33,7 @@ Result<std::unique_ptr<RunManager>> RunManager::create(RunManagerOptions options
   if (failure) {
     return Error{ErrorCode::kIo, options.runs_folder.string() + ": " + failure.message()};
   }
-  if (!fs::is_directory(options.scenarios_folder)) {
+  if (!fs::is_directory(options.scenarios_folder, failure)) {
     return Error{ErrorCode::kNotFound,
                  options.scenarios_folder.string() + ": no such folder of scenarios"};
   }

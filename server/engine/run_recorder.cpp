@@ -22,7 +22,7 @@ Status make_empty_folder(const fs::path& folder) {
   std::error_code failure;
   fs::create_directories(folder, failure);
   if (failure) return Error{ErrorCode::kIo, folder.string() + ": " + failure.message()};
-  if (fs::exists(manifest_file(folder))) {
+  if (fs::exists(fs::symlink_status(manifest_file(folder), failure))) {
     return Error{ErrorCode::kConflict, folder.string() + ": holds a run already"};
   }
   if (!fs::is_empty(folder, failure) || failure) {

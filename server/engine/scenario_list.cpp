@@ -45,11 +45,13 @@ Status check_world(const Scenario& scenario) {
 /// Scenario files of a folder, by name.
 std::vector<fs::path> scenario_files(const fs::path& folder) {
   std::vector<fs::path> files;
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-    const std::string name = entry.path().filename().string();
-    if (entry.path().extension() != ".json" || name.ends_with(kSchemaSuffix)) continue;
-    if (is_plain_name(name)) files.push_back(entry.path());
+  std::error_code failed;
+  for (fs::directory_iterator entry(folder, failed), end; !failed && entry != end;
+       entry.increment(failed)) {
+    const fs::path& file = entry->path();
+    const std::string name = file.filename().string();
+    if (file.extension() != ".json" || name.ends_with(kSchemaSuffix)) continue;
+    if (is_plain_name(name)) files.push_back(file);
   }
   std::sort(files.begin(), files.end());
   return files;

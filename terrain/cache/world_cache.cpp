@@ -136,8 +136,10 @@ WorldCache::Found WorldCache::find(const WorldSpec& spec) {
   std::error_code failed;
   if (spec.cache_folder.empty() || !fs::is_directory(spec.cache_folder, failed)) return found;
   std::vector<fs::path> folders;
-  for (const auto& entry : fs::directory_iterator(spec.cache_folder, failed)) {
-    if (fs::is_regular_file(entry.path() / "cache.json", failed)) folders.push_back(entry.path());
+  for (fs::directory_iterator entry(spec.cache_folder, failed), end; !failed && entry != end;
+       entry.increment(failed)) {
+    std::error_code none;
+    if (fs::is_regular_file(entry->path() / "cache.json", none)) folders.push_back(entry->path());
   }
   std::sort(folders.begin(), folders.end());
   if (folders.empty()) return found;

@@ -320,6 +320,20 @@ TEST_F(CommandLine, WorldInfoDescribesAndNamesWhatIsMissing) {
   EXPECT_THAT(small.err, HasSubstr("size_m"));
 }
 
+TEST_F(CommandLine, NamesThatTheSystemRefusesAreUsageFaults) {
+  fs::create_symlink("loop", path("loop"));
+  for (const std::string& name : {path("loop"), path(std::string(300, 'x'))}) {
+    for (const std::vector<std::string>& command :
+         {std::vector<std::string>{"world", "info", name},
+          {"export", name, "--format", "euroc", "--out", path("exported")},
+          {"serve", "--port", "0", "--scenarios", name, "--runs", path("served")}}) {
+      const Outcome outcome = overfly_program(command);
+      EXPECT_EQ(outcome.exit_code, 2) << command.front() << ": " << outcome.err;
+      EXPECT_THAT(outcome.err, HasSubstr("error: " + name));
+    }
+  }
+}
+
 TEST_F(CommandLine, RenderWritesOneImageWithDepth) {
   SKIP_WITHOUT_EGL();
   const Outcome drawn = overfly_program({"render",

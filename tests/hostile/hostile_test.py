@@ -215,7 +215,7 @@ class Files(Attack):
               "/dev/stdin", "/dev/full", "/etc/passwd", "/etc/shadow", "/", "/proc", "fifo",
               "link_out.txt", "link_out.tif", "../../outside/secret.txt", "../../outside/secret.tif",
               "sparse.txt", "./../outside/secret.txt", ".", "", "ground.tif/x", "x" * 5000,
-              "ground.tif\u0000.txt"]
+              "ground.tif\u0000.txt", "x" * 300, "loop", "loop/x.tif"]
 
     def places(self):
         return [*self.PLACES, str(self.victim.outside / "secret.txt"),

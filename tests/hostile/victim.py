@@ -162,6 +162,7 @@ class Victim:
         with open(self.data / "sparse.txt", "wb") as sparse:
             sparse.truncate(20 << 30)
         os.mkfifo(self.data / "fifo")
+        (self.data / "loop").symlink_to("loop")
         (self.data / "link_out.txt").symlink_to(self.outside / "secret.txt")
         (self.data / "link_out.tif").symlink_to(self.outside / "secret.tif")
 

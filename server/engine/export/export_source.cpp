@@ -53,7 +53,8 @@ Result<ExportSource> open_run(const fs::path& folder) {
 
 Result<ExportSource> open_export_source(const fs::path& path,
                                         const std::vector<Override>& overrides) {
-  if (fs::is_directory(path)) {
+  std::error_code failed;
+  if (fs::is_directory(path, failed)) {
     if (!overrides.empty()) {
       return Error{ErrorCode::kInvalidArgument,
                    path.string() + ": a run is exported as it was flown; --set is for scenarios"};

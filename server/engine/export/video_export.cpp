@@ -6,7 +6,8 @@ namespace overfly::engine {
 namespace {
 
 Status check(const VideoOptions& options) {
-  if (std::filesystem::exists(options.file)) {
+  std::error_code failed;
+  if (std::filesystem::exists(std::filesystem::symlink_status(options.file, failed))) {
     return Error{ErrorCode::kConflict, options.file.string() + ": exists already"};
   }
   return options.look.validate();
