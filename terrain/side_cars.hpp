@@ -10,8 +10,8 @@
 
 namespace overfly::terrain {
 
-/// World files, headers, masks, overviews, statistics: whatever is named as the raster, with another
-/// ending or one more. Lists each folder once in its life. Not thread-safe.
+/// World files, headers, masks, overviews, statistics: whatever is named as the raster, with
+/// another ending or one more. Lists each folder once in its life. Not thread-safe.
 class SideCars {
  public:
   /// Whether all of them lie where the policy allows, with links resolved.
