@@ -92,8 +92,8 @@ bool has_open(const fs::path& file) {
 class ViewServiceTest : public testing::ManagerTest {
  protected:
   [[nodiscard]] fs::path imagery() const { return fs::canonical(root()) / "imagery.tif"; }
-  /// A run over one picture, over.
-  std::string flown(RunManager& runs) {
+  /// A run over one picture, flown by a manager that is gone, with its thread and its world.
+  std::string flown() {
     overfly::testing::GeoTiff picture;
     picture.image = overfly::testing::textured_image(300, 300, 1);
     picture.left = 583000.0;
@@ -104,15 +104,16 @@ class ViewServiceTest : public testing::ManagerTest {
     document["name"] = "pictured";
     document["world"] = {{"imagery", {{{"file", imagery().string()}}}}, {"ground_height_m", 200}};
     overfly::testing::write_text(root() / "scenarios" / "pictured.json", document.dump());
-    const std::string id = runs.start("pictured", perfect()).value().id;
-    EXPECT_EQ(wait_for_end(runs, id).status, RunStatus::kCompleted);
+    const auto runs = manager();
+    const std::string id = runs->start("pictured", perfect()).value().id;
+    EXPECT_EQ(wait_for_end(*runs, id).status, RunStatus::kCompleted);
     return id;
   }
 };
 
 TEST_F(ViewServiceTest, AWorldThatIsBeingOpenedIsGivenUpWhenAsked) {
+  const std::string id = flown();
   const auto runs = manager();
-  const std::string id = flown(*runs);
   fs::remove(imagery());
   write_endless_geotiff(imagery());
   int asked = 0;
@@ -122,13 +123,12 @@ TEST_F(ViewServiceTest, AWorldThatIsBeingOpenedIsGivenUpWhenAsked) {
 }
 
 TEST_F(ViewServiceTest, EndsWhileAWorldIsBeingOpened) {
+  const std::string id = flown();
   const auto runs = manager();
-  auto views = std::make_unique<ViewService>(*runs);
-  const std::string id = flown(*runs);
   fs::remove(imagery());
   write_endless_geotiff(imagery());
   for (const auto kind : {PictureRequest::Kind::kScene, PictureRequest::Kind::kCamera}) {
-    views = std::make_unique<ViewService>(*runs);
+    auto views = std::make_unique<ViewService>(*runs);
     std::promise<Result<Picture>> told;
     PictureRequest request;
     request.run_id = id;

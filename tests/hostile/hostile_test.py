@@ -740,10 +740,13 @@ class Amounts(Attack):
 
 class Ends(unittest.TestCase):
     def test_sigterm_ends_a_server_that_opens_a_world_for_a_viewer(self):
-        victim = Victim(PROGRAM)
-        run = victim.ended(victim.launch("listed").json()["id"])
+        flown = Victim(PROGRAM)
+        self.addCleanup(flown.stop)
+        run = flown.ended(flown.launch("listed").json()["id"])
         self.assertEqual(run["status"], "completed")
-        (victim.data / "endless.tif").replace(victim.data / "ground.tif")
+        (flown.data / "endless.tif").replace(flown.data / "ground.tif")
+        # Another server on the same folders: the one that flew it may have the world open still.
+        victim = Victim(PROGRAM, folder=flown.folder)
         with concurrent.futures.ThreadPoolExecutor(1) as viewer:
             # The recorded pictures are drawn anew, over the file as it is now.
             asked = viewer.submit(victim.get, f"/runs/{run['id']}/frames/0.jpg")
