@@ -7,36 +7,28 @@
 #include <geometry_msgs/PoseWithCovarianceStamped.h>
 #include <geometry_msgs/Transform.h>
 #include <nav_msgs/Odometry.h>
+#include <ros/serialization.h>
 #include <rosgraph_msgs/Clock.h>
 #include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/Image.h>
 #include <std_msgs/Empty.h>
 #include <tf2_msgs/TFMessage.h>
 
-#include <cstddef>
+#include <cstdint>
 #include <memory>
-#include <new>
 #include <type_traits>
+#include <vector>
 
 namespace overfly::ros1 {
 
-/// Of one array of a message: an image of 8192 x 8192 pixels with four channels. ROS makes room for
-/// as many elements as a message announces before it looks whether they are there.
-inline constexpr std::size_t kMaxArrayBytes = std::size_t{8192} * 8192 * 4;
-
 // NOLINTBEGIN(readability-identifier-naming): these are the standard's names
 
-/// std::allocator with what ROS's serialisation asks of it, and the limit kMaxArrayBytes:
-/// std::bad_alloc above it, which roscpp takes for a message that cannot be read.
+/// std::allocator with what ROS's serialisation asks of it.
 template <typename T>
 struct VectorAllocator : std::allocator<T> {
   VectorAllocator() = default;
   template <typename Other>
   VectorAllocator(const VectorAllocator<Other>& /*other*/) {}
-  [[nodiscard]] T* allocate(std::size_t count) {
-    if (count > kMaxArrayBytes / sizeof(T)) throw std::bad_alloc();
-    return std::allocator<T>::allocate(count);
-  }
   template <typename Other>
   struct rebind {
     using other = VectorAllocator<Other>;
@@ -54,6 +46,19 @@ struct MessageAllocator {
 };
 
 // NOLINTEND(readability-identifier-naming)
+
+/// Reads an array of a message, as ROS's serialisation does, which finds this one by the allocator.
+/// ROS makes room for as many elements as are announced before it looks whether they are there.
+/// @throws ros::serialization::StreamOverrunException when they cannot be, before any room is made
+template <typename T>
+void deserialize(ros::serialization::IStream& stream, std::vector<T, VectorAllocator<T>>& array) {
+  ros::serialization::IStream ahead = stream;
+  std::uint32_t count = 0;
+  ahead.next(count);
+  const std::uint64_t least_bytes = ros::serialization::serializationLength(T{});
+  if (count * least_bytes > ahead.getLength()) ros::serialization::throwStreamOverrun();
+  ros::serialization::VectorSerializer<T, VectorAllocator<T>>::read(stream, array);
+}
 
 using CameraInfoMessage = sensor_msgs::CameraInfo_<MessageAllocator>;
 using ClockMessage = rosgraph_msgs::Clock_<MessageAllocator>;

@@ -6,8 +6,8 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstring>
 #include <limits>
-#include <new>
 #include <vector>
 
 namespace overfly::ros1 {
@@ -101,17 +101,31 @@ TEST(Ros1Messages, MakeRgbOfEveryKnownEncoding) {
   EXPECT_THAT(first_pixel("bgra8", {1, 2, 3, 4}), ElementsAre(3, 2, 1));
 }
 
-TEST(Ros1Messages, TakeNoMemoryForElementsThatAreAnnouncedAlone) {
-  ImageMessage image;
-  image.encoding = "mono8";
-  std::vector<std::uint8_t> bytes(ros::serialization::serializationLength(image));
+/// A message that ends with an array without elements, which announces `count` of them.
+template <typename Message>
+std::vector<std::uint8_t> announcing(const Message& message, std::uint32_t count) {
+  std::vector<std::uint8_t> bytes(ros::serialization::serializationLength(message));
   ros::serialization::OStream out(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
-  ros::serialization::serialize(out, image);
-  // The last four bytes count the pixels' bytes.
-  std::fill(bytes.end() - 4, bytes.end(), std::uint8_t{0xFF});
-  ros::serialization::IStream in(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
-  ImageMessage read;
-  EXPECT_THROW(ros::serialization::deserialize(in, read), std::bad_alloc);
+  ros::serialization::serialize(out, message);
+  std::memcpy(bytes.data() + bytes.size() - sizeof(count), &count, sizeof(count));
+  return bytes;
+}
+
+TEST(Ros1Messages, TakeNoMemoryForElementsThatAreAnnouncedAlone) {
+  for (const std::uint32_t count : {1U, 1000U, 0x7FFFFFFFU, 0xFFFFFFFFU}) {
+    std::vector<std::uint8_t> pixels = announcing(ImageMessage(), count);
+    ros::serialization::IStream in(pixels.data(), static_cast<std::uint32_t>(pixels.size()));
+    ImageMessage image;
+    EXPECT_THROW(ros::serialization::deserialize(in, image),
+                 ros::serialization::StreamOverrunException);
+    EXPECT_EQ(image.data.capacity(), 0U) << count;
+    std::vector<std::uint8_t> links = announcing(TransformsMessage(), count);
+    ros::serialization::IStream of_links(links.data(), static_cast<std::uint32_t>(links.size()));
+    TransformsMessage transforms;
+    EXPECT_THROW(ros::serialization::deserialize(of_links, transforms),
+                 ros::serialization::StreamOverrunException);
+    EXPECT_EQ(transforms.transforms.capacity(), 0U) << count;
+  }
 }
 
 TEST(Ros1Messages, RefuseDebugImagesThatDoNotFit) {
