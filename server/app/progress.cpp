@@ -38,7 +38,10 @@ void ProgressDisplay::show(double share, const std::string& text) {
 }
 
 void ProgressDisplay::note(const std::string& text) {
-  if (quiet_) return;
+  if (!quiet_) warn(text);
+}
+
+void ProgressDisplay::warn(const std::string& text) {
   if (open_line_) std::cerr << "\n";
   open_line_ = false;
   std::cerr << text << "\n";

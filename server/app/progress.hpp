@@ -19,6 +19,8 @@ class ProgressDisplay {
   void show(double share, const std::string& text);
   /// One line that stays.
   void note(const std::string& text);
+  /// One line that stays, also when quiet.
+  void warn(const std::string& text);
 
  private:
   bool quiet_;

@@ -122,7 +122,10 @@ Result<engine::TrackedDataset> track_shown(const TrackArguments& arguments,
   options.debug_folder = arguments.debug;
   options.map_points = !arguments.points.empty();
   options.cancel = &stop;
-  options.log = [&](const std::string& line) { display.note("estimator: " + line); };
+  options.log = [&](const std::string& line) {
+    const std::string text = "estimator: " + line;
+    line.find("warning:") == std::string::npos ? display.note(text) : display.warn(text);
+  };
   options.progress = [&](std::size_t done, std::size_t total, TrackingState state) {
     display.show(
         static_cast<double>(done) / static_cast<double>(total),
@@ -244,7 +247,7 @@ void add_output_options(CLI::App& command, TrackArguments& arguments) {
                   "True depth along the optical axis at the first pose, for init_scale")
       ->check(CLI::PositiveNumber);
   command.add_flag("--json", arguments.json, "Print JSON");
-  command.add_flag("--quiet", arguments.quiet, "No progress");
+  command.add_flag("--quiet", arguments.quiet, "No progress; warnings stay");
 }
 
 }  // namespace

@@ -16,6 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using Json = nlohmann::json;
 
 /// A flight of 2 s as a PNG data set, made once.
@@ -189,6 +190,9 @@ std::vector<std::string> failing_estimator(const fs::path& folder, const std::st
              "        if sys.argv[2] == 'calibration':\n"
              "            raise RuntimeError('no vocabulary at /nowhere')\n"
              "    def track(self, frame):\n"
+             "        if frame.index == 2:\n"
+             "            print('nothing to worry about', flush=True)\n"
+             "            print('warning: few corners', flush=True)\n"
              "        if frame.index == 7:\n"
              "            os._exit(3)\n"
              "        return overfly_vo.Answer(state=overfly_vo.TRACKING,\n"
@@ -217,6 +221,9 @@ TEST_F(TrackCommand, CountsTheFramesOfTheDataSetAfterACrash) {
   EXPECT_EQ(crashed.exit_code, 0) << crashed.err;
   EXPECT_THAT(crashed.out, HasSubstr("LOST 1 of 8 frames, 13 never given"));
   EXPECT_THAT(crashed.out, HasSubstr("outcome: CRASHED, coverage 33.3 %\n"));
+  // The estimator's warnings are shown even with --quiet, what else it says is not.
+  EXPECT_THAT(crashed.err, HasSubstr("estimator: warning: few corners\n"));
+  EXPECT_THAT(crashed.err, Not(HasSubstr("nothing to worry about")));
 }
 
 TEST_F(TrackCommand, RunFailsWhenNoneOfItsEstimatorsRan) {
