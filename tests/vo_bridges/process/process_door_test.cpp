@@ -273,7 +273,7 @@ TEST(ProcessDoor, TellsWhatTheChildUses) {
   EXPECT_GT(after.cpu_s, before.cpu_s + 0.05);
   EXPECT_LT(after.cpu_s, 5.0);
   EXPECT_GT(after.peak_memory_mb, 120.0);
-#if !defined(__SANITIZE_ADDRESS__)  // which needs memory of its own
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // which need their own memory
   EXPECT_LT(after.peak_memory_mb, 160.0);
   EXPECT_LT(before.peak_memory_mb, 40.0) << "the fork's own memory does not count";
 #endif
@@ -287,8 +287,8 @@ TEST(ProcessDoor, BindsTheChildToItsCpus) {
 }
 
 TEST(ProcessDoor, LimitsTheMemoryOfTheChild) {
-#if defined(__SANITIZE_ADDRESS__)
-  GTEST_SKIP() << "the address sanitizer reserves more than any limit";
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "the sanitizer reserves more than any limit";
 #endif
   ProcessEstimatorOptions options = scripted("eat", "300");
   options.memory_limit_mb = 200.0;
