@@ -47,6 +47,8 @@ LcmTestEstimator::LcmTestEstimator(std::shared_ptr<LcmNode> node,
   static_cast<void>(subscribe("TIME", &LcmTestEstimator::hear_time));
 }
 
+LcmTestEstimator::~LcmTestEstimator() { node_->stop(); }
+
 std::vector<overfly_lcm::image_t> LcmTestEstimator::images() const {
   const std::lock_guard lock(mutex_);
   return images_;

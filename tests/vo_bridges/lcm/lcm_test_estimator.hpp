@@ -35,6 +35,10 @@ class LcmTestEstimator {
  public:
   /// Subscribes to a node that is not started yet.
   LcmTestEstimator(std::shared_ptr<LcmNode> node, std::string prefix, LcmBehaviour behaviour);
+  /// Stops its node, whose handlers are its own.
+  ~LcmTestEstimator();
+  LcmTestEstimator(const LcmTestEstimator&) = delete;
+  LcmTestEstimator& operator=(const LcmTestEstimator&) = delete;
 
   [[nodiscard]] std::vector<overfly_lcm::image_t> images() const;  ///< received
   [[nodiscard]] std::optional<overfly_lcm::calibration_t> calibration() const;
