@@ -249,6 +249,10 @@ class Victim:
         status = pathlib.Path(f"/proc/{self.process.pid}/status").read_text()
         return int(re.search(r"VmRSS:\s+(\d+)", status).group(1)) / 1024
 
+    def sanitized(self):
+        """Whether a sanitizer watches it, which needs memory of its own."""
+        return "/libasan." in pathlib.Path(f"/proc/{self.process.pid}/maps").read_text()
+
     def stop(self):
         """Asks it to end. Returns whether it did in time."""
         in_time = True
