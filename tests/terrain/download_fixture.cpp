@@ -23,6 +23,10 @@ HttpAnswer words(int status, const std::string& type, const std::string& body) {
 }
 
 DownloadOptions DownloadFixture::options_for(const LocalHttpServer& server) const {
+  return options_at(server.address());
+}
+
+DownloadOptions DownloadFixture::options_at(const std::string& address) const {
   DownloadOptions options;
   options.center_lat_rad = rad_from_deg(39.35);
   options.center_lon_rad = rad_from_deg(-86.03);
@@ -31,8 +35,8 @@ DownloadOptions DownloadFixture::options_for(const LocalHttpServer& server) cons
   options.elevation_m = 10.0;
   options.elevation_margin_m = 200.0;
   options.folder = folder_.path() / "world";
-  options.imagery_service = server.address() + "/naip/ImageServer";
-  options.elevation_service = server.address() + "/3dep/ImageServer";
+  options.imagery_service = address + "/naip/ImageServer";
+  options.elevation_service = address + "/3dep/ImageServer";
   options.first_wait_s = 0.01;
   options.stall_s = 5.0;
   return options;

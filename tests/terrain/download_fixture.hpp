@@ -37,6 +37,8 @@ class DownloadFixture : public ::testing::Test {
  protected:
   /// 600 m at 1 m: four requests of imagery, one of elevation.
   [[nodiscard]] terrain::DownloadOptions options_for(const LocalHttpServer& server) const;
+  /// @param address  of the server: http://127.0.0.1:PORT
+  [[nodiscard]] terrain::DownloadOptions options_at(const std::string& address) const;
   /// The message of a download that must fail.
   [[nodiscard]] std::string failure(const LocalHttpServer::Handler& handler) const;
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_.path(); }

@@ -3,6 +3,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <csignal>
 #include <fstream>
 
@@ -170,6 +171,22 @@ TEST_F(DownloadTrouble, GoesOnWhereItStopped) {
 }
 
 TEST_F(DownloadTrouble, GoesOnAfterItWasKilled) {
+  // Forked before the server starts its threads, one of which might hold a lock just then; the
+  // server's address follows through a pipe.
+  std::array<int, 2> pipe{};
+  ASSERT_EQ(::pipe(pipe.data()), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    ::close(pipe[1]);
+    std::array<char, 100> address{};
+    if (::read(pipe[0], address.data(), address.size() - 1) > 0) {
+      DownloadOptions options = options_at(address.data());
+      options.parallel = 1;
+      (void)download_world(options);
+    }
+    _exit(0);
+  }
+  ASSERT_GT(child, 0);
   std::atomic<int> images{0};
   std::atomic<bool> held{true};
   const LocalHttpServer server([&](const HttpRequest& request) {
@@ -184,12 +201,10 @@ TEST_F(DownloadTrouble, GoesOnAfterItWasKilled) {
   });
   DownloadOptions options = options_for(server);
   options.parallel = 1;
-  const pid_t child = fork();
-  if (child == 0) {
-    (void)download_world(options);
-    _exit(0);
-  }
-  ASSERT_GT(child, 0);
+  const std::string address = server.address();
+  ASSERT_EQ(::write(pipe[1], address.data(), address.size()), static_cast<ssize_t>(address.size()));
+  ::close(pipe[0]);
+  ::close(pipe[1]);
   for (int i = 0; i < 2000 && images.load() < 4; ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
