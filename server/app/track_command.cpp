@@ -124,7 +124,11 @@ Result<engine::TrackedDataset> track_shown(const TrackArguments& arguments,
   options.cancel = &stop;
   options.log = [&](const std::string& line) {
     const std::string text = "estimator: " + line;
-    line.find("warning:") == std::string::npos ? display.note(text) : display.warn(text);
+    if (line.find("warning:") == std::string::npos) {
+      display.note(text);
+    } else {
+      display.warn(text);
+    }
   };
   options.progress = [&](std::size_t done, std::size_t total, TrackingState state) {
     display.show(
