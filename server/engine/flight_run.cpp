@@ -1,8 +1,10 @@
 #include "server/engine/flight_run.hpp"
 
+#include <optional>
 #include <utility>
 
 #include "server/engine/picture_rate.hpp"
+#include "server/engine/thread_priority.hpp"
 
 namespace overfly::engine {
 namespace {
@@ -80,6 +82,9 @@ nlohmann::json FlightRun::timings() const {
 }
 
 Status FlightRun::fly() {
+  // Before the cameras and the estimators start their threads, which inherit the priority.
+  std::optional<RaisedThread> before_other_programs;
+  if (scenario_.pacing == Pacing::kRealTime) before_other_programs.emplace();
   // Whatever ends the flight: what an estimator does on leaving belongs into a folder still open.
   struct Leaving {
     FlightRun& run;
