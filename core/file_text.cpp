@@ -8,6 +8,8 @@
 #include <cerrno>
 #include <cstring>
 
+#include "core/cancel.hpp"
+
 namespace overfly {
 namespace {
 
@@ -74,7 +76,7 @@ Status read_file_pieces(const std::filesystem::path& file,
   constexpr std::uint64_t kPieceBytes = std::uint64_t{1} << 20U;
   std::string piece(std::min(kPieceBytes, std::max<std::uint64_t>(size, 4095) + 1), '\0');
   for (std::uint64_t total = 0; true;) {
-    if (cancel != nullptr && *cancel) {
+    if (is_cancelled(cancel)) {
       return Error{ErrorCode::kCancelled, file.string() + ": reading was cancelled"};
     }
     const ssize_t got = ::read(open.descriptor(), piece.data(), piece.size());

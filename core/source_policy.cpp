@@ -77,7 +77,7 @@ std::string named(const std::string& field, const fs::path& file) {
   return field + " = " + text;
 }
 
-Status check_kind(const fs::path& file, const std::string& name) {
+Status check_regular(const fs::path& file, const std::string& name) {
   struct stat facts {};
   if (::stat(file.c_str(), &facts) != 0) {
     return Error{ErrorCode::kNotFound, name + ": no such file"};
@@ -113,7 +113,7 @@ bool SourcePolicy::holds(const fs::path& plain) const {
 
 Status SourcePolicy::check(const fs::path& file, const std::string& field) const {
   if (Status status = check_place(file, field); !status) return status;
-  return check_kind(file, named(field, file));
+  return check_regular(file, named(field, file));
 }
 
 Status SourcePolicy::check_place(const fs::path& file, const std::string& field) const {

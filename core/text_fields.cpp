@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/cancel.hpp"
 #include "core/file_text.hpp"
 
 namespace overfly {
@@ -118,7 +119,7 @@ Result<FieldFile> FieldFile::read(const std::filesystem::path& file,
     const std::size_t end = std::min(rest.find('\n'), rest.size());
     const std::string_view line = trimmed(rest.substr(0, end));
     rest.remove_prefix(std::min(end + 1, rest.size()));
-    if (cancel != nullptr && *cancel) {
+    if (is_cancelled(cancel)) {
       return Error{ErrorCode::kCancelled, file.string() + ": reading was cancelled"};
     }
     if (line.empty()) continue;

@@ -21,7 +21,7 @@ constexpr std::int64_t kLateStartShare = 10;  // of the flight: one part in so m
 /// In flights shorter than ten times this a tenth is less than any estimator needs.
 constexpr std::int64_t kShortestLateStartNs = 2 * kNsPerS;
 
-bool tracked(const FlownFrame& flown) {
+bool has_pose(const FlownFrame& flown) {
   return flown.given && flown.sample.state == TrackingState::kTracking;
 }
 
@@ -55,14 +55,14 @@ std::vector<bool> held_frames(const std::vector<FlownFrame>& flown) {
   std::vector<bool> held(flown.size());
   std::size_t begin = 0;  // of the stretch of frames that were not given
   for (std::size_t i = 0; i < flown.size(); ++i) {
-    held[i] = tracked(flown[i]);
+    held[i] = has_pose(flown[i]);
     if (flown[i].given) begin = i + 1;
     const bool last = i + 1 == flown.size();
     if (begin > i || begin == 0 || (!last && !flown[i + 1].given)) continue;
     const FlownFrame& before = flown[begin - 1];
     const FlownFrame& after = last ? flown[i] : flown[i + 1];
-    const bool in_one_map = tracked(before) && before.sample.map_id == after.sample.map_id;
-    if (!in_one_map || !(last || tracked(after))) continue;
+    const bool in_one_map = has_pose(before) && before.sample.map_id == after.sample.map_id;
+    if (!in_one_map || !(last || has_pose(after))) continue;
     if (after.sample.t_ns - before.sample.t_ns >= kGapNs) continue;
     std::fill(held.begin() + static_cast<std::ptrdiff_t>(begin),
               held.begin() + static_cast<std::ptrdiff_t>(i) + 1,
@@ -152,18 +152,18 @@ void add_outcome(const std::vector<FlownFrame>& flown,
                  const std::vector<MatchedPose>& matches,
                  Score* score) {
   score->frames = static_cast<int>(flown.size());
-  score->tracked_frames = static_cast<int>(std::count_if(flown.begin(), flown.end(), tracked));
+  score->tracked_frames = static_cast<int>(std::count_if(flown.begin(), flown.end(), has_pose));
   score->outcome = Outcome::kNotInitialised;
   if (score->tracked_frames == 0) return;
 
   score->coverage = static_cast<double>(score->tracked_frames) / score->frames;
   const auto first =
-      static_cast<std::size_t>(std::find_if(flown.begin(), flown.end(), tracked) - flown.begin());
+      static_cast<std::size_t>(std::find_if(flown.begin(), flown.end(), has_pose) - flown.begin());
   score->initialised_at_s = s_from_ns(flown[first].sample.t_ns);
   std::set<int> tracked_maps;
   int last_map = flown[first].sample.map_id;
   for (std::size_t i = first; i < flown.size(); ++i) {
-    if (tracked(flown[i])) tracked_maps.insert(flown[i].sample.map_id);
+    if (has_pose(flown[i])) tracked_maps.insert(flown[i].sample.map_id);
     last_map = std::max(last_map, flown[i].sample.map_id);
   }
   score->reset_count = last_map - flown[first].sample.map_id;

@@ -16,7 +16,6 @@ namespace {
 
 constexpr int kColumns = 40;
 constexpr int kRows = 30;
-constexpr double kTextureTexels = terrain::kTileTexels + 2 * terrain::kTileBorder;
 
 /// The nearest ground on one ray.
 struct Hit {
@@ -44,7 +43,7 @@ class SeenTriangle {
   [[nodiscard]] double doubled_area_texels() const {
     const auto [a, b, c] = vertices_;
     return std::abs((b->u - a->u) * (c->v - a->v) - (c->u - a->u) * (b->v - a->v)) *
-           kTextureTexels * kTextureTexels;
+           terrain::kTileSide * terrain::kTileSide;
   }
 
   /// @param ray  direction with z = 1
@@ -196,7 +195,7 @@ ImageryQuery imagery_query(const terrain::TileSource& tiles) {
     const terrain::TileGrid& grid = tiles.grid();
     const double side_m = grid.tile_m(tile.level);
     const auto place_m = [&](int index, double texture) {
-      const double texels = texture * kTextureTexels - terrain::kTileBorder;
+      const double texels = texture * terrain::kTileSide - terrain::kTileBorder;
       return (index + texels / terrain::kTileTexels) * side_m;
     };
     return tiles.has_imagery(grid.left_x_m + place_m(tile.col, u),

@@ -14,8 +14,6 @@ using terrain::TileId;
 
 namespace {
 
-constexpr double kTextureTexels = terrain::kTileTexels + 2 * terrain::kTileBorder;
-
 /// Texture coordinates of a patch's corner and of its extent in the tile that covers it.
 struct TextureWindow {
   double u = 0.0, v = 0.0, size = 0.0;
@@ -27,9 +25,9 @@ TextureWindow texture_window(const GroundLeaf& leaf) {
   const double share = std::ldexp(1.0, -levels_down);
   const double column = id.col * share - leaf.texture.col;
   const double row = id.row * share - leaf.texture.row;
-  return {(terrain::kTileBorder + column * terrain::kTileTexels) / kTextureTexels,
-          (terrain::kTileBorder + row * terrain::kTileTexels) / kTextureTexels,
-          share * terrain::kTileTexels / kTextureTexels};
+  return {(terrain::kTileBorder + column * terrain::kTileTexels) / terrain::kTileSide,
+          (terrain::kTileBorder + row * terrain::kTileTexels) / terrain::kTileSide,
+          share * terrain::kTileTexels / terrain::kTileSide};
 }
 
 class Builder {

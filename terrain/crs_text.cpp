@@ -7,16 +7,12 @@
 #include <sstream>
 #include <string_view>
 
+#include "core/lower_case.hpp"
+
 namespace overfly::terrain {
 namespace {
 
 constexpr std::size_t kLongest = 32'768;  ///< the longest WKT of EPSG has about 20 000 characters
-
-std::string lower(std::string text) {
-  std::transform(
-      text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
 
 bool is_code(const std::string& text) {
   static const std::regex code("(EPSG|ESRI|IGNF|OGC|IAU_2015):[A-Za-z0-9_]{1,40}(\\+[0-9]{1,10})?",
@@ -38,7 +34,7 @@ bool is_wkt(const std::string& text) {
                                                                  "boundcrs"};
   const std::size_t open = text.find('[');
   if (open == std::string::npos) return false;
-  std::string keyword = lower(text.substr(0, std::min<std::size_t>(open, 40)));
+  std::string keyword = lower_case(text.substr(0, std::min<std::size_t>(open, 40)));
   keyword.erase(keyword.find_last_not_of(" \t\r\n") + 1);
   return std::find(kKeywords.begin(), kKeywords.end(), keyword) != kKeywords.end();
 }
@@ -62,7 +58,7 @@ bool is_safe_proj_text(const std::string& text) {
   std::istringstream parts(text);
   for (std::string part; parts >> part;) {
     const std::size_t equals = part.find('=');
-    const std::string key = lower(part.substr(0, equals));
+    const std::string key = lower_case(part.substr(0, equals));
     const std::string value = equals == std::string::npos ? "" : part.substr(equals + 1);
     if (key == "+init" || key == "init") return false;
     const bool grid = key.find("grid") != std::string::npos;
@@ -77,7 +73,7 @@ bool is_safe_proj_text(const std::string& text) {
 /// The parts of WKT that may name a file: extensions with PROJ texts or grids, and the grids of a
 /// bound system.
 bool is_safe_wkt(const std::string& text) {
-  const std::string all = lower(text);
+  const std::string all = lower_case(text);
   for (const std::string_view keyword : {"extension", "parameterfile"}) {
     for (std::size_t at = all.find(keyword); at != std::string::npos;
          at = all.find(keyword, at + 1)) {
@@ -98,7 +94,7 @@ bool is_safe_wkt(const std::string& text) {
 }
 
 bool is_proj_text(const std::string& text) {
-  return text.starts_with("+") && lower(text).find("+proj=") != std::string::npos;
+  return text.starts_with("+") && lower_case(text).find("+proj=") != std::string::npos;
 }
 
 }  // namespace

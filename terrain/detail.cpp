@@ -8,7 +8,7 @@
 namespace overfly::terrain {
 namespace {
 
-Error out_of_limits(const char* field, double value, const char* limits) {
+Error bad_detail(const char* field, double value, const char* limits) {
   char text[160];
   std::snprintf(text, sizeof(text), "detail.%s = %g: must be in %s", field, value, limits);
   return {ErrorCode::kInvalidArgument, text};
@@ -65,8 +65,8 @@ class DetailedTiles final : public TileDecorator {
 }  // namespace
 
 Status DetailOptions::validate() const {
-  if (octaves < 1 || octaves > 4) return out_of_limits("octaves", octaves, "[1, 4]");
-  if (!(strength >= 0.0 && strength <= 2.0)) return out_of_limits("strength", strength, "[0, 2]");
+  if (octaves < 1 || octaves > 4) return bad_detail("octaves", octaves, "[1, 4]");
+  if (!(strength >= 0.0 && strength <= 2.0)) return bad_detail("strength", strength, "[0, 2]");
   return {};
 }
 

@@ -9,8 +9,6 @@
 namespace overfly::terrain {
 namespace {
 
-constexpr int kSide = kTileTexels + 2 * kTileBorder;
-
 /// Largest integer <= value / 2^shift, also of negative values.
 int floor_shift(int value, int shift) { return value >> shift; }
 int ceil_shift(int value, int shift) { return -((-value) >> shift); }
@@ -160,10 +158,10 @@ Tile DetailSynthesis::tile(const Tile& parent, int finer, int col, int row) cons
     region = refined(region,
                      octave,
                      origin,
-                     last ? std::array<int, 4>{-kTileBorder, -kTileBorder, kSide, kSide}
+                     last ? std::array<int, 4>{-kTileBorder, -kTileBorder, kTileSide, kTileSide}
                           : std::array<int, 4>{low, low, side, side});
   }
-  Tile tile = void_patch(kSide, kSide);
+  Tile tile = void_patch(kTileSide, kTileSide);
   tile.valid = std::move(region.valid);
   for (std::size_t i = 0; i < tile.valid.data.size(); ++i) {
     if (tile.valid.data[i] == 0) continue;

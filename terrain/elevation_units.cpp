@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/lower_case.hpp"
+
 namespace overfly::terrain {
 namespace {
 
@@ -21,10 +23,7 @@ double height_unit_m(GDALDataset& dataset,
                      const OGRSpatialReference& crs,
                      std::vector<std::string>& warnings) {
   if (layer.unit_m) return *layer.unit_m;
-  std::string unit = dataset.GetRasterBand(1)->GetUnitType();
-  std::transform(unit.begin(), unit.end(), unit.begin(), [](unsigned char c) {
-    return static_cast<char>(std::tolower(c));
-  });
+  const std::string unit = lower_case(dataset.GetRasterBand(1)->GetUnitType());
   const bool vertical_feet =
       crs.IsVertical() != 0 && std::abs(crs.GetTargetLinearUnits("VERT_CS") - 1.0) > 1e-3;
   if (is_metre(unit) && vertical_feet) {
@@ -60,10 +59,7 @@ HeightDatum height_datum(const ElevationLayer& layer, const OGRSpatialReference&
     found.named = "ellipsoidal height";
   }
   if (found.datum != VerticalDatum::kUnknown) return found;
-  std::string text = found.named;
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) {
-    return static_cast<char>(std::tolower(c));
-  });
+  const std::string text = lower_case(found.named);
   for (const auto& [word, datum] : {std::pair("navd88", VerticalDatum::kNavd88),
                                     std::pair("egm2008", VerticalDatum::kEgm2008),
                                     std::pair("egm96", VerticalDatum::kEgm96),

@@ -9,7 +9,7 @@
 namespace overfly::terrain {
 namespace {
 
-Error out_of_limits(const char* field, double value, const char* limits) {
+Error bad_light(const char* field, double value, const char* limits) {
   char text[160];
   std::snprintf(text, sizeof(text), "light.%s = %g: must be in %s", field, value, limits);
   return {ErrorCode::kInvalidArgument, text};
@@ -24,21 +24,21 @@ Status LightOptions::validate() const {
   const double elevation_deg = deg_from_rad(sun_elevation_rad);
   constexpr double kHair = 1e-9;
   if (!in(azimuth_deg, -360.0, 720.0)) {
-    return out_of_limits("sun_azimuth_deg", azimuth_deg, "[-360, 720]");
+    return bad_light("sun_azimuth_deg", azimuth_deg, "[-360, 720]");
   }
   if (!in(elevation_deg, 1.0 - kHair, 90.0 + kHair)) {
-    return out_of_limits(
+    return bad_light(
         "sun_elevation_deg", elevation_deg, "[1, 90]: the sun must be above the horizon");
   }
-  if (!in(ambient, 0.0, 1.0)) return out_of_limits("ambient", ambient, "[0, 1]");
-  if (!in(hill_shading, 0.0, 1.0)) return out_of_limits("hill_shading", hill_shading, "[0, 1]");
-  if (!in(cast_shadows, 0.0, 1.0)) return out_of_limits("cast_shadows", cast_shadows, "[0, 1]");
-  if (!in(clouds.cover, 0.0, 1.0)) return out_of_limits("clouds.cover", clouds.cover, "[0, 1]");
+  if (!in(ambient, 0.0, 1.0)) return bad_light("ambient", ambient, "[0, 1]");
+  if (!in(hill_shading, 0.0, 1.0)) return bad_light("hill_shading", hill_shading, "[0, 1]");
+  if (!in(cast_shadows, 0.0, 1.0)) return bad_light("cast_shadows", cast_shadows, "[0, 1]");
+  if (!in(clouds.cover, 0.0, 1.0)) return bad_light("clouds.cover", clouds.cover, "[0, 1]");
   if (!in(clouds.size_m, 20.0, 20000.0)) {
-    return out_of_limits("clouds.size_m", clouds.size_m, "[20, 20000]");
+    return bad_light("clouds.size_m", clouds.size_m, "[20, 20000]");
   }
   if (!in(clouds.strength, 0.0, 1.0)) {
-    return out_of_limits("clouds.strength", clouds.strength, "[0, 1]");
+    return bad_light("clouds.strength", clouds.strength, "[0, 1]");
   }
   return {};
 }

@@ -9,8 +9,6 @@
 namespace overfly::terrain {
 namespace {
 
-constexpr int kSide = kTileTexels + 2 * kTileBorder;
-
 int floor_div(int a, int b) { return a / b - (a % b < 0 ? 1 : 0); }
 
 /// Scales sRGB values in linear light (IEC 61966-2-1).
@@ -69,9 +67,9 @@ class LitTiles final : public TileDecorator {
     float share = 0.0F;
   };
   /// @param first  the tile's first texel, from the grid's corner
-  static std::array<Between, kSide> between_nodes(int first, int texels, int first_node) {
-    std::array<Between, kSide> places;
-    for (int k = 0; k < kSide; ++k) {
+  static std::array<Between, kTileSide> between_nodes(int first, int texels, int first_node) {
+    std::array<Between, kTileSide> places;
+    for (int k = 0; k < kTileSide; ++k) {
       const int node = floor_div(first + k, texels);
       // Node n lies at the west edge of texel n * texels; texel centres half a texel further.
       const auto inside = static_cast<float>(first + k - node * texels);
@@ -93,10 +91,10 @@ class LitTiles final : public TileDecorator {
     const auto rows = between_nodes(first_y, texels, j);
     const ImageBuffer<float> light =
         field_.nodes(lattice, i, j, columns.back().node + 2, rows.back().node + 2);
-    for (int y = 0; y < kSide; ++y) {
+    for (int y = 0; y < kTileSide; ++y) {
       const auto [row, down] = rows[y];
-      for (int x = 0; x < kSide; ++x) {
-        const std::size_t at = static_cast<std::size_t>(y) * kSide + x;
+      for (int x = 0; x < kTileSide; ++x) {
+        const std::size_t at = static_cast<std::size_t>(y) * kTileSide + x;
         if (tile.valid.data[at] == 0) continue;
         const auto [column, across] = columns[x];
         const float* north = &light.at(column, row);

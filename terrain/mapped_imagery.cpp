@@ -8,7 +8,6 @@
 namespace overfly::terrain {
 namespace {
 
-constexpr int kSide = kTileTexels + 2 * kTileBorder;
 /// Texels beyond the grid for which a warped layer's place must be known.
 constexpr double kMarginTexels = 64.0;
 
@@ -115,31 +114,32 @@ Result<Patch> MappedImagery::read(const TileId& id) const {
   return raster_->read(id.level,
                        id.col * kTileTexels - kTileBorder - (pad_x_ >> id.level),
                        id.row * kTileTexels - kTileBorder - (pad_y_ >> id.level),
-                       kSide,
-                       kSide);
+                       kTileSide,
+                       kTileSide);
 }
 
 Result<Patch> MappedImagery::read_warped(const TileId& id) const {
   const double texel_m = grid_.texel_m * (1 << id.level);
   const double left_x_m = grid_.left_x_m + (id.col * kTileTexels - kTileBorder) * texel_m;
   const double top_y_m = grid_.top_y_m - (id.row * kTileTexels - kTileBorder) * texel_m;
-  const MapRect covered{left_x_m, top_y_m - kSide * texel_m, left_x_m + kSide * texel_m, top_y_m};
+  const MapRect covered{
+      left_x_m, top_y_m - kTileSide * texel_m, left_x_m + kTileSide * texel_m, top_y_m};
   const MapRect& known = pixel_from_map_->domain();
   if (covered.x_max < known.x_min || covered.x_min > known.x_max || covered.y_max < known.y_min ||
       covered.y_min > known.y_max) {
-    return void_patch(kSide, kSide);
+    return void_patch(kTileSide, kTileSide);
   }
-  Eigen::Matrix2Xd pixels(2, kSide * kSide);
-  for (int v = 0; v < kSide; ++v) {
+  Eigen::Matrix2Xd pixels(2, kTileSide * kTileSide);
+  for (int v = 0; v < kTileSide; ++v) {
     const double y_map_m = top_y_m - (v + 0.5) * texel_m;
-    for (int u = 0; u < kSide; ++u) {
+    for (int u = 0; u < kTileSide; ++u) {
       const double x_map_m = left_x_m + (u + 0.5) * texel_m;
       Eigen::Vector2d pixel(-1e9, -1e9);
       if (known.contains(x_map_m, y_map_m)) pixel = (*pixel_from_map_)(x_map_m, y_map_m);
-      pixels.col(static_cast<Eigen::Index>(v) * kSide + u) = pixel;
+      pixels.col(static_cast<Eigen::Index>(v) * kTileSide + u) = pixel;
     }
   }
-  return resample(*raster_, pixels, texel_px_, id.level, kSide, kSide);
+  return resample(*raster_, pixels, texel_px_, id.level, kTileSide, kTileSide);
 }
 
 TileCoverage MappedImagery::coverage(const TileId& id) const {

@@ -98,7 +98,6 @@ TileCoverage RasterWorld::coverage(const TileId& id) const {
 }
 
 Result<Tile> RasterWorld::tile(const TileId& id) const {
-  constexpr int kSide = kTileTexels + 2 * kTileBorder;
   if (id.level < 0 || id.level >= 24) {
     return Error{ErrorCode::kInvalidArgument,
                  "tile level = " + std::to_string(id.level) + ": must be in [0, 24)"};
@@ -122,7 +121,7 @@ Result<Tile> RasterWorld::tile(const TileId& id) const {
     const auto& valid = result->valid.data;
     if (std::find(valid.begin(), valid.end(), std::uint8_t{0}) == valid.end()) break;
   }
-  return result ? std::move(*result) : void_patch(kSide, kSide);
+  return result ? std::move(*result) : void_patch(kTileSide, kTileSide);
 }
 
 Eigen::Vector3d RasterWorld::world_from_map(double x_map_m, double y_map_m) const {

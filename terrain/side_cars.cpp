@@ -3,17 +3,13 @@
 #include <algorithm>
 #include <cctype>
 
+#include "core/lower_case.hpp"
+
 namespace overfly::terrain {
 namespace fs = std::filesystem;
 namespace {
 
 /// GDAL looks for endings in upper and in lower case.
-std::string lower(std::string text) {
-  std::transform(
-      text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
-
 std::multimap<std::string, std::string> names_in(const fs::path& folder) {
   std::multimap<std::string, std::string> names;
   std::error_code failed;
@@ -21,7 +17,7 @@ std::multimap<std::string, std::string> names_in(const fs::path& folder) {
   for (fs::directory_iterator entry(folder, failed), end; !failed && entry != end;
        entry.increment(failed)) {
     std::string name = entry->path().filename().string();
-    names.emplace(lower(name), std::move(name));
+    names.emplace(lower_case(name), std::move(name));
   }
   return names;
 }
@@ -35,7 +31,7 @@ std::vector<fs::path> SideCars::of(const fs::path& file) {
   const auto [known, added] = folders_.try_emplace(folder);
   if (added) known->second = names_in(folder);
   const std::string own = place.filename().string();
-  const std::string begin = lower(place.stem().string()) + ".";
+  const std::string begin = lower_case(place.stem().string()) + ".";
   std::vector<fs::path> side_cars;
   for (auto name = known->second.lower_bound(begin);
        name != known->second.end() && name->first.starts_with(begin);

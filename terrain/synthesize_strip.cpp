@@ -22,7 +22,7 @@ int swatch_px(const synthesis::Strip& strip) {
   return side;
 }
 
-Status check(const StripOptions& options) {
+Status check_strip(const StripOptions& options) {
   const struct {
     const char* name;
     double value, low, high;
@@ -99,7 +99,7 @@ Status write_strip(const fs::path& folder, const StripOptions& options, const Pr
 Status synthesize_strip(const fs::path& folder,
                         const StripOptions& options,
                         const Progress& progress) {
-  Status sane = check(options);
+  Status sane = check_strip(options);
   if (!sane) return sane;
   return synthesis::make_folder_whole(
       folder, [&](const fs::path& part) { return write_strip(part, options, progress); }, progress);

@@ -24,6 +24,8 @@ namespace overfly::terrain {
 inline constexpr int kTileTexels = 512;  ///< side of a tile without its border
 /// Texels of the neighbours around each tile, so that filtering shows no seam down to mip 3.
 inline constexpr int kTileBorder = 8;
+/// Texels of a tile\'s side with its border.
+inline constexpr int kTileSide = kTileTexels + 2 * kTileBorder;
 
 /// Colour of the ground where there is no imagery.
 inline constexpr std::uint8_t kVoidRgb[3] = {128, 128, 120};

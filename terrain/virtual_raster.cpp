@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/file_text.hpp"
+#include "core/lower_case.hpp"
 #include "core/source_policy.hpp"
 #include "terrain/crs_text.hpp"
 #include "terrain/gdal_dataset.hpp"
@@ -41,19 +42,13 @@ constexpr std::string_view kElements =
 using Xml = std::unique_ptr<CPLXMLNode, decltype(&CPLDestroyXMLNode)>;
 
 /// GDAL compares names in a description without case.
-std::string lower(std::string text) {
-  std::transform(
-      text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
-
 /// What GDAL would take for a virtual raster by its first 1024 bytes.
 bool is_virtual(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::string head(1024, '\0');
   in.read(head.data(), static_cast<std::streamsize>(head.size()));
   head.resize(static_cast<std::size_t>(in.gcount()));
-  return lower(std::move(head)).find("<vrtdataset") != std::string::npos;
+  return lower_case(std::move(head)).find("<vrtdataset") != std::string::npos;
 }
 
 class Description {
@@ -92,17 +87,17 @@ class Description {
   }
 
   Status check_element(const CPLXMLNode& node) {
-    const std::string name = lower(node.pszValue);
+    const std::string name = lower_case(node.pszValue);
     if (name.starts_with("?") || name.starts_with("!")) return {};  // the declaration of XML
     if (kElements.find(" " + name + " ") == std::string_view::npos) {
       return refuse("a virtual raster may not have the element " + name.substr(0, 40));
     }
     const std::string kind = CPLGetXMLValue(&node, "subClass", "VRTSourcedRasterBand");
-    if (lower(kind) != "vrtsourcedrasterband") {
+    if (lower_case(kind) != "vrtsourcedrasterband") {
       return refuse("a virtual raster may not be a " + kind.substr(0, 40));
     }
     const std::string option = CPLGetXMLValue(&node, "key", "");
-    if (name == "ooi" && lower(option) != "overview_level") {
+    if (name == "ooi" && lower_case(option) != "overview_level") {
       return refuse("a virtual raster may not open its sources with " + option.substr(0, 40));
     }
     if (name == "srs") return check_crs(CPLGetXMLValue(&node, nullptr, ""));
@@ -155,10 +150,10 @@ class Description {
 
 /// @param whole_of  the rasters that this one is a part of
 /// @param sound     those that were found good
-Status check(const fs::path& file,
-             std::set<fs::path>& whole_of,
-             std::set<fs::path>& sound,
-             SideCars& side_cars) {
+Status check_tree(const fs::path& file,
+                  std::set<fs::path>& whole_of,
+                  std::set<fs::path>& sound,
+                  SideCars& side_cars) {
   if (sound.count(file) > 0 || !is_virtual(file)) return {};
   if (!whole_of.insert(file).second || whole_of.size() > kMaxFileDepth) {
     return Error{ErrorCode::kUnreadable,
@@ -168,7 +163,7 @@ Status check(const fs::path& file,
   Description description(file, side_cars);
   if (Status status = description.read(); !status) return status;
   for (const fs::path& source : description.sources()) {
-    if (Status status = check(source, whole_of, sound, side_cars); !status) {
+    if (Status status = check_tree(source, whole_of, sound, side_cars); !status) {
       return status.error().in(file.string() + ": is made of");
     }
   }
@@ -186,7 +181,7 @@ Status check_virtual_raster(const fs::path& file) {
   std::error_code failed;
   const fs::path place = fs::weakly_canonical(file, failed);
   if (failed) return Error{ErrorCode::kIo, file.string() + ": " + failed.message()};
-  return check(place, whole_of, sound, side_cars);
+  return check_tree(place, whole_of, sound, side_cars);
 }
 
 }  // namespace overfly::terrain

@@ -1,4 +1,4 @@
-// The wish to stop, looked at while a door waits for another program.
+// Waiting for another program, unless the caller cancels.
 #pragma once
 
 #include <algorithm>
@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "core/cancel.hpp"
 #include "core/result.hpp"
 
 namespace overfly {
@@ -16,11 +17,6 @@ inline constexpr std::chrono::milliseconds kCancelPeriod{20};
 /// What an answer under way has from the wish on: an estimator that works is not cut off in a
 /// frame.
 inline constexpr std::chrono::milliseconds kCancelPatience{1000};
-
-/// @param cancel  may be null: nobody will ask
-[[nodiscard]] inline bool is_cancelled(const std::atomic<bool>* cancel) {
-  return cancel != nullptr && cancel->load();
-}
 
 [[nodiscard]] inline Error cancelled(const std::string& wait) {
   return {ErrorCode::kCancelled, "stopped while waiting for " + wait};

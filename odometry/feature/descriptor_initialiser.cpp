@@ -26,7 +26,7 @@ constexpr double kParallaxSigmas = 8.0;
 constexpr int kMostMisses = 5;
 
 /// By each coordinate; zero of none.
-Eigen::Vector2d median_of(const std::vector<Eigen::Vector2d>& values) {
+Eigen::Vector2d median_offset(const std::vector<Eigen::Vector2d>& values) {
   Eigen::Vector2d median = Eigen::Vector2d::Zero();
   if (values.empty()) return median;
   const auto middle = static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -89,7 +89,7 @@ bool DescriptorInitialiser::compare(Reference& reference,
     steps.emplace_back(*view.pixels[i] - reference.last[i]);
   }
   // Those that were not seen went with the others.
-  const Eigen::Vector2d usual = median_of(steps);
+  const Eigen::Vector2d usual = median_offset(steps);
   for (std::size_t i = 0; i < view.pixels.size(); ++i) {
     reference.last[i] = view.pixels[i] ? *view.pixels[i] : reference.last[i] + usual;
   }
@@ -224,7 +224,7 @@ void DescriptorInitialiser::keep(const FrameImage& frame, const DescribedCorners
     for (std::size_t i = 0; i < newest.last.size(); ++i) {
       motion_px.emplace_back((newest.last[i] - newest.described.corners[i].pixel).cwiseAbs());
     }
-    if (median_of(motion_px).norm() < kStillShare * camera_.fx_px) return;
+    if (median_offset(motion_px).norm() < kStillShare * camera_.fx_px) return;
   }
   add_reference(frame, now);
 }

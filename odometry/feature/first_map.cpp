@@ -9,7 +9,7 @@
 namespace overfly::odometry {
 namespace {
 
-constexpr int kMinPoints = 60;
+constexpr int kMinFirstPoints = 60;
 constexpr double kOutlierSigmas = 6.0;
 /// Of two motions over all views the better one's residual must be less than so much of the
 /// other's. Thousands of sights tell residuals apart to a few hundredths; 0.33 to 0.68 was seen in
@@ -167,9 +167,9 @@ std::optional<FirstMap> solve_first_map(const PinholeCamera& camera, const First
   BundleOptions options;
   options.max_iterations = 10;
   solved.rms_sigma = adjust(camera, bundle, options);
-  if (remove_outliers(camera, bundle) < kMinPoints) return std::nullopt;
+  if (remove_outliers(camera, bundle) < kMinFirstPoints) return std::nullopt;
   adjust(camera, bundle, options);
-  if (remove_outliers(camera, bundle) < kMinPoints) return std::nullopt;
+  if (remove_outliers(camera, bundle) < kMinFirstPoints) return std::nullopt;
   // Only points that kept their sights may speak for the scale.
   std::vector<std::uint8_t> kept(bundle.points_vo.size(), 0);
   for (const Bundle::Sight& sight : bundle.sights) kept[static_cast<std::size_t>(sight.point)] = 1;

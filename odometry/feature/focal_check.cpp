@@ -28,7 +28,7 @@ constexpr double kLeastContradiction = 0.03;
 constexpr int kLooks = 2;
 
 /// The newest keyframes and the points that many of them see, as a bundle of its own.
-Bundle bundle_of(const FocalCheckOptions& options, const Map& map) {
+Bundle bundle_of_newest(const FocalCheckOptions& options, const Map& map) {
   Bundle bundle;
   std::map<int, int> camera_of;
   std::map<int, int> sights_of;
@@ -85,7 +85,7 @@ double error_at(const PinholeCamera& camera, Bundle bundle, double scale) {
 std::optional<FocalEvidence> focal_evidence(const PinholeCamera& camera,
                                             const FocalCheckOptions& options,
                                             const Map& map) {
-  const Bundle bundle = bundle_of(options, map);
+  const Bundle bundle = bundle_of_newest(options, map);
   if (static_cast<int>(bundle.cameras.size()) < kMinKeyframes ||
       static_cast<int>(bundle.points_vo.size()) < kMinPoints ||
       largest_rotation_rad(bundle) < options.min_rotation_rad) {

@@ -10,7 +10,7 @@
 namespace overfly::odometry {
 namespace {
 
-constexpr float kMinCorrelation = 0.8F;
+constexpr float kMinMapCorrelation = 0.8F;
 constexpr int kMaxMisses = 3;
 /// A new point's depth relative to the ground's plane: beyond, it is a wrong match.
 constexpr double kMaxDepthRatio = 2.5;
@@ -143,7 +143,7 @@ Mapper::Search Mapper::triangulate_candidate(const Keyframe& source,
   for (int level = patch_level + 2; level >= patch_level; --level) {
     const auto patch = make_template(source.pyramid, point.source_pixel, warp, level);
     const auto match = patch ? align_patch(newest.pyramid, *patch, pixel) : std::nullopt;
-    const bool good = match && match->correlation > kMinCorrelation;
+    const bool good = match && match->correlation > kMinMapCorrelation;
     if (!good && level == patch_level) return Search::kMissed;
     if (good) pixel = match->pixel;
   }
@@ -195,7 +195,7 @@ void Mapper::observe(const MapPoint& point, Keyframe& keyframe, Map& map) const 
                                    warp_of(camera_, keyframe.T_camera_vo, source, point),
                                    point.patch_level);
   const auto match = patch ? align_patch(keyframe.pyramid, *patch, *expected) : std::nullopt;
-  if (!match || match->correlation < kMinCorrelation) return;
+  if (!match || match->correlation < kMinMapCorrelation) return;
   if ((match->pixel - *expected).norm() > std::ldexp(1.5, point.patch_level)) return;
   map.add_observation(keyframe, {point.id, match->pixel, sigma_px_of(point.patch_level)});
 }

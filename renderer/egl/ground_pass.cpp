@@ -8,7 +8,7 @@ namespace overfly::renderer::egl {
 
 namespace {
 
-constexpr const char* kVertexSource = R"(#version 330 core
+constexpr const char* kGroundVertexSource = R"(#version 330 core
 uniform vec4 projection;
 uniform float near;
 uniform vec3 window;
@@ -88,13 +88,13 @@ void set_projection(const GlProgram& program, const PinholeCamera& camera) {
 }
 
 Result<GroundPass> GroundPass::create() {
-  Result<GlProgram> colour = GlProgram::link(kVertexSource, kColourSource);
+  Result<GlProgram> colour = GlProgram::link(kGroundVertexSource, kColourSource);
   if (!colour.ok()) return colour.error();
-  Result<GlProgram> airy = GlProgram::link(kVertexSource, kAirySource);
+  Result<GlProgram> airy = GlProgram::link(kGroundVertexSource, kAirySource);
   if (!airy.ok()) return airy.error();
-  Result<GlProgram> hazy = GlProgram::link(kVertexSource, kHazySource);
+  Result<GlProgram> hazy = GlProgram::link(kGroundVertexSource, kHazySource);
   if (!hazy.ok()) return hazy.error();
-  Result<GlProgram> depth = GlProgram::link(kVertexSource, kDepthSource);
+  Result<GlProgram> depth = GlProgram::link(kGroundVertexSource, kDepthSource);
   if (!depth.ok()) return depth.error();
   return GroundPass(std::move(*colour), std::move(*airy), std::move(*hazy), std::move(*depth));
 }

@@ -21,7 +21,7 @@ constexpr int kWidthPx = 1280;
 constexpr int kHeightPx = 960;
 constexpr int kTextureTexels = 4096;
 
-constexpr const char* kVertexSource = R"(#version 330 core
+constexpr const char* kQuadVertexSource = R"(#version 330 core
 uniform mat2 uv_from_pixel;
 uniform vec2 size_px;
 out vec2 uv;
@@ -32,7 +32,7 @@ void main() {
 }
 )";
 
-constexpr const char* kFragmentSource = R"(#version 330 core
+constexpr const char* kQuadFragmentSource = R"(#version 330 core
 uniform sampler2D image;
 in vec2 uv;
 out vec4 colour;
@@ -133,7 +133,8 @@ Result<std::unique_ptr<QuadProbe>> QuadProbe::create(const std::string& device) 
   Result<egl::RenderTarget> target =
       egl::RenderTarget::create(egl::kWidthPx, egl::kHeightPx, egl::TargetFormat::kGrey8, 0);
   if (!target.ok()) return target.error();
-  Result<egl::GlProgram> program = egl::GlProgram::link(egl::kVertexSource, egl::kFragmentSource);
+  Result<egl::GlProgram> program =
+      egl::GlProgram::link(egl::kQuadVertexSource, egl::kQuadFragmentSource);
   if (!program.ok()) return program.error();
   return std::unique_ptr<QuadProbe>(std::make_unique<egl::EglQuadProbe>(
       std::move(*context), std::move(*target), std::move(*program)));

@@ -40,7 +40,7 @@ void main() {
 }
 )";
 
-constexpr const char* kVertexSource = R"(#version 330 core
+constexpr const char* kSceneVertexSource = R"(#version 330 core
 uniform vec4 projection;
 uniform float near;
 layout(location = 0) in vec3 position;
@@ -52,7 +52,7 @@ void main() {
 }
 )";
 
-constexpr const char* kFragmentSource = R"(#version 330 core
+constexpr const char* kSceneFragmentSource = R"(#version 330 core
 in vec4 tint;
 out vec4 colour;
 void main() { colour = tint; }
@@ -77,7 +77,7 @@ Rgba point_colour() { return {0.25F, 1.0F, 0.45F, 1.0F}; }
 Result<ScenePass> ScenePass::create() {
   Result<GlProgram> sky = GlProgram::link(kSkyVertexSource, kSkyFragmentSource);
   if (!sky.ok()) return sky.error();
-  Result<GlProgram> overlay = GlProgram::link(kVertexSource, kFragmentSource);
+  Result<GlProgram> overlay = GlProgram::link(kSceneVertexSource, kSceneFragmentSource);
   if (!overlay.ok()) return overlay.error();
   return ScenePass(std::move(*sky), std::move(*overlay));
 }

@@ -6,7 +6,7 @@ namespace overfly::renderer::raycast {
 
 namespace {
 
-Colour scaled(PixelFormat format, Colour light) {
+Colour in_grey_levels(PixelFormat format, Colour light) {
   if (is_linear(format)) return light;
   for (float& value : light) value *= 255.0F;
   return light;
@@ -21,9 +21,9 @@ SceneColours SceneColours::of(const CameraRequest& request) {
     nothing_rgb[c] = static_cast<float>(terrain::kVoidRgb[c]) / 255.0F;
   }
   SceneColours colours;
-  colours.sky = scaled(format, sky_light(request));
-  colours.nothing = scaled(format, light_in(format, nothing_rgb));
-  colours.air = scaled(format, light_in(format, request.atmosphere.airlight_rgb));
+  colours.sky = in_grey_levels(format, sky_light(request));
+  colours.nothing = in_grey_levels(format, light_in(format, nothing_rgb));
+  colours.air = in_grey_levels(format, light_in(format, request.atmosphere.airlight_rgb));
   return colours;
 }
 

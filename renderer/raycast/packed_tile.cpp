@@ -6,7 +6,7 @@ namespace overfly::renderer::raycast {
 
 namespace {
 
-constexpr double kSide = terrain::kTileTexels + 2 * terrain::kTileBorder;
+constexpr double kSide = terrain::kTileSide;
 
 template <typename Texel, typename Pair>
 void pack(PackedTile& tile, const std::vector<ImageBuffer<Texel>>& levels, std::vector<Pair>& to) {

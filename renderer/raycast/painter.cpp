@@ -10,7 +10,7 @@ namespace {
 constexpr int kMaxValues = 3 * kBlockPixels;
 
 /// A bilinear function with its pixels' origin moved.
-Bilinear4 moved(const Bilinear4& f, float x, float y, float scale) {
+Bilinear4 moved_and_scaled(const Bilinear4& f, float x, float y, float scale) {
   return {(f[0] + f[1] * x + (f[2] + f[3] * x) * y) * scale,
           (f[1] + f[3] * y) * scale,
           (f[2] + f[3] * x) * scale,
@@ -117,10 +117,10 @@ void Painter::sample(const Block& block, const FoundTile& tile, float* values) c
   texels.v0 = static_cast<float>((block.v - tile.id.row * side) * per_texel) +
               static_cast<float>(terrain::kTileBorder);
   const auto draw = [&](float x, float y, float* out) {
-    texels.numerator_u = moved(block.numerator_u, x, y, per_texel);
-    texels.numerator_v = moved(block.numerator_v, x, y, per_texel);
-    texels.inverse_depth = moved(block.inverse_depth, x, y, 1.0F);
-    texels.lod = moved(block.lod, x, y, 1.0F);
+    texels.numerator_u = moved_and_scaled(block.numerator_u, x, y, per_texel);
+    texels.numerator_v = moved_and_scaled(block.numerator_v, x, y, per_texel);
+    texels.inverse_depth = moved_and_scaled(block.inverse_depth, x, y, 1.0F);
+    texels.lod = moved_and_scaled(block.lod, x, y, 1.0F);
     texels.lod[0] -= static_cast<float>(tile.id.level);
     kernel_(texels, *tile.texels, out);
   };

@@ -49,7 +49,7 @@ struct Tables {
   }
 };
 
-struct Footprint {
+struct Footprints {
   __m256i element;
   __m256 across, down;
 };
@@ -59,15 +59,15 @@ OVERFLY_AVX2 __m256 row_values(const Bilinear4& f, float y, __m256 x) {
                        _mm256_mul_ps(_mm256_set1_ps(f[1] + f[3] * y), x));
 }
 
-OVERFLY_AVX2 __m256 clamped(__m256 value, __m256 last) {
+OVERFLY_AVX2 __m256 clamped_lanes(__m256 value, __m256 last) {
   return _mm256_min_ps(_mm256_max_ps(value, _mm256_setzero_ps()), last);
 }
 
 /// @param at  the level of each pixel
-OVERFLY_AVX2 Footprint footprint(const Tables& at, __m256 u, __m256 v) {
+OVERFLY_AVX2 Footprints footprints(const Tables& at, __m256 u, __m256 v) {
   const __m256 half = _mm256_set1_ps(0.5F);
-  const __m256 s = clamped(_mm256_sub_ps(_mm256_mul_ps(u, at.scale_x), half), at.last_x);
-  const __m256 t = clamped(_mm256_sub_ps(_mm256_mul_ps(v, at.scale_y), half), at.last_y);
+  const __m256 s = clamped_lanes(_mm256_sub_ps(_mm256_mul_ps(u, at.scale_x), half), at.last_x);
+  const __m256 t = clamped_lanes(_mm256_sub_ps(_mm256_mul_ps(v, at.scale_y), half), at.last_y);
   const __m256i column = _mm256_cvttps_epi32(s);
   const __m256i row = _mm256_cvttps_epi32(t);
   return {_mm256_add_epi32(_mm256_add_epi32(at.offset, _mm256_mullo_epi32(row, at.stride)), column),
@@ -80,14 +80,14 @@ struct Weights {
   __m256i rows, columns;
 };
 
-OVERFLY_AVX2 __m256i scaled(__m256 share, int one) {
+OVERFLY_AVX2 __m256i rounded_share(__m256 share, int one) {
   return _mm256_cvttps_epi32(_mm256_add_ps(
       _mm256_mul_ps(share, _mm256_set1_ps(static_cast<float>(one))), _mm256_set1_ps(0.5F)));
 }
 
-OVERFLY_AVX2 Weights weights(const Footprint& at) {
-  const __m256i down = scaled(at.down, kRowOne);
-  const __m256i across = scaled(at.across, kColumnOne);
+OVERFLY_AVX2 Weights weights(const Footprints& at) {
+  const __m256i down = rounded_share(at.down, kRowOne);
+  const __m256i across = rounded_share(at.across, kColumnOne);
   const __m256i pair = _mm256_or_si256(_mm256_sub_epi32(_mm256_set1_epi32(kRowOne), down),
                                        _mm256_slli_epi32(down, 8));
   return {_mm256_or_si256(pair, _mm256_slli_epi32(pair, 16)),
@@ -95,7 +95,7 @@ OVERFLY_AVX2 Weights weights(const Footprint& at) {
                           _mm256_slli_epi32(across, 16))};
 }
 
-OVERFLY_AVX2 __m256 narrow_sample(const std::uint16_t* pairs, __m256i element, const Weights& w) {
+OVERFLY_AVX2 __m256 narrow_samples(const std::uint16_t* pairs, __m256i element, const Weights& w) {
   const __m256i texels = _mm256_i32gather_epi32(reinterpret_cast<const int*>(pairs), element, 2);
   const __m256i sums = _mm256_madd_epi16(_mm256_maddubs_epi16(texels, w.rows), w.columns);
   return _mm256_mul_ps(_mm256_cvtepi32_ps(sums), _mm256_set1_ps(kPerProduct));
@@ -107,7 +107,7 @@ OVERFLY_AVX2 __m256 column_of(__m256i pairs, __m256 down) {
   return _mm256_add_ps(low, _mm256_mul_ps(down, _mm256_sub_ps(high, low)));
 }
 
-OVERFLY_AVX2 __m256 wide_sample(const std::uint32_t* pairs, const Footprint& at) {
+OVERFLY_AVX2 __m256 wide_samples(const std::uint32_t* pairs, const Footprints& at) {
   const auto* ints = reinterpret_cast<const int*>(pairs);
   const __m256 left = column_of(_mm256_i32gather_epi32(ints, at.element, 4), at.down);
   const __m256 right = column_of(_mm256_i32gather_epi32(ints + 1, at.element, 4), at.down);
@@ -120,10 +120,10 @@ OVERFLY_AVX2 __m256 blend(__m256 a, __m256 b, __m256 share) {
 
 OVERFLY_AVX2 __m256 bilinear(const PackedTile& tile,
                              std::size_t first,
-                             const Footprint& at,
+                             const Footprints& at,
                              const Weights& w) {
-  return tile.wide ? wide_sample(&tile.wide_pairs[first], at)
-                   : narrow_sample(&tile.pairs[first], at.element, w);
+  return tile.wide ? wide_samples(&tile.wide_pairs[first], at)
+                   : narrow_samples(&tile.pairs[first], at.element, w);
 }
 
 /// Which mip levels a block's pixels take.
@@ -177,22 +177,22 @@ __attribute__((target("avx2"))) void sample_as(const TexelBlock& block,
                                      _mm256_mul_ps(row_values(block.numerator_u, y, x), depth));
       const __m256 v = _mm256_add_ps(_mm256_set1_ps(block.v0),
                                      _mm256_mul_ps(row_values(block.numerator_v, y, x), depth));
-      Footprint fine, coarse;
+      Footprints fine, coarse;
       __m256 between = _mm256_setzero_ps();
       if constexpr (kMips == Mips::kAny) {
-        const __m256 lod = clamped(row_values(block.lod, y, x), last_mip);
+        const __m256 lod = clamped_lanes(row_values(block.lod, y, x), last_mip);
         const __m256i mip = _mm256_cvttps_epi32(lod);
         between = _mm256_sub_ps(lod, _mm256_cvtepi32_ps(mip));
         const __m256i next = _mm256_min_epi32(_mm256_add_epi32(mip, _mm256_set1_epi32(1)),
                                               _mm256_set1_epi32(kPackedMips - 1));
-        fine = footprint(tables.permuted(mip), u, v);
-        coarse = footprint(tables.permuted(next), u, v);
+        fine = footprints(tables.permuted(mip), u, v);
+        coarse = footprints(tables.permuted(next), u, v);
       } else {
-        fine = footprint(tables_a, u, v);
+        fine = footprints(tables_a, u, v);
         if constexpr (kMips == Mips::kTwo) {
           between = _mm256_sub_ps(row_values(block.lod, y, x),
                                   _mm256_set1_ps(static_cast<float>(first_mip)));
-          coarse = footprint(tables_b, u, v);
+          coarse = footprints(tables_b, u, v);
         }
       }
       const Weights fine_weights = weights(fine);

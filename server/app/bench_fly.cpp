@@ -24,7 +24,8 @@ std::string hex(std::uint64_t number) {
   return text.str();
 }
 
-Json json_of(const renderer::EnduranceOptions& options, const renderer::EnduranceReport& report) {
+Json endurance_json(const renderer::EnduranceOptions& options,
+                    const renderer::EnduranceReport& report) {
   const std::int64_t loaded = report.tiles.read_ahead + report.tiles.read_on_demand;
   return {{"renderer", report.renderer.backend},
           {"device", report.renderer.device},
@@ -86,7 +87,7 @@ Result<Json> bench_long_flight(const renderer::EnduranceOptions& options,
   if (!world) return world.error();
   const auto report = renderer::fly_endurance(world->tiles, options, keep_going("flying"));
   if (!report) return report.error();
-  return json_of(options, *report);
+  return endurance_json(options, *report);
 }
 
 void print_long_flight(const Json& result) {

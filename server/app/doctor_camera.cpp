@@ -103,7 +103,7 @@ nlohmann::json json_from(const Findings& findings, double limit_px) {
           {"cameras", std::move(rows)}};
 }
 
-void print_table(const Findings& findings, double limit_px) {
+void print_camera_table(const Findings& findings, double limit_px) {
   std::printf("%-16s %-8s %7s %8s %10s %8s %10s %8s\n",
               "camera",
               "backend",
@@ -154,7 +154,7 @@ int check_cameras(const DoctorCameraArguments& arguments) {
   if (arguments.json) {
     std::cout << json_from(*findings, arguments.limit_px).dump(2) << "\n";
   } else {
-    print_table(*findings, arguments.limit_px);
+    print_camera_table(*findings, arguments.limit_px);
   }
   return findings->passed() ? kExitOk : kExitUnsupported;
 }

@@ -36,13 +36,9 @@ struct ExportArguments {
 };
 
 Result<engine::ExportSource> open_source(const ExportArguments& arguments) {
-  std::vector<engine::Override> overrides;
-  for (const std::string& text : arguments.sets) {
-    Result<engine::Override> change = engine::parse_override(text);
-    if (!change) return change.error();
-    overrides.push_back(std::move(*change));
-  }
-  auto source = engine::open_export_source(arguments.source, overrides);
+  const auto overrides = engine::parse_overrides(arguments.sets);
+  if (!overrides) return overrides.error();
+  auto source = engine::open_export_source(arguments.source, *overrides);
   if (!source) return source.error();
   if (Status status = engine::check_scenario(source->scenario); !status) return status.error();
   if (arguments.threads >= 0) source->scenario.renderer.threads = arguments.threads;

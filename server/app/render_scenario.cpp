@@ -13,14 +13,10 @@ namespace overfly::app {
 namespace {
 
 /// The scenario with the one camera that is asked for, and without estimators.
-Result<engine::Scenario> load(const RenderArguments& arguments) {
-  std::vector<engine::Override> overrides;
-  for (const std::string& text : arguments.sets) {
-    Result<engine::Override> change = engine::parse_override(text);
-    if (!change) return change.error();
-    overrides.push_back(std::move(*change));
-  }
-  Result<engine::Scenario> scenario = engine::load_scenario(arguments.scenario, overrides);
+Result<engine::Scenario> load_to_render(const RenderArguments& arguments) {
+  const auto overrides = engine::parse_overrides(arguments.sets);
+  if (!overrides) return overrides.error();
+  Result<engine::Scenario> scenario = engine::load_scenario(arguments.scenario, *overrides);
   if (!scenario) return scenario.error();
   if (arguments.renderer != "auto") scenario->renderer.camera = arguments.renderer;
   return scenario;
@@ -80,7 +76,7 @@ Result<engine::CameraShot> take_shot(const RenderArguments& arguments,
 }  // namespace
 
 int render_scenario(const RenderArguments& arguments) {
-  const Result<engine::Scenario> scenario = load(arguments);
+  const Result<engine::Scenario> scenario = load_to_render(arguments);
   if (!scenario) return report(scenario.error());
   std::size_t camera = 0;
   if (!arguments.camera.empty()) {

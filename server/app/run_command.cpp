@@ -28,15 +28,11 @@ struct RunArguments {
   bool quiet = false;
 };
 
-Result<engine::Scenario> load(const RunArguments& arguments) {
-  std::vector<engine::Override> overrides;
-  for (const std::string& text : arguments.sets) {
-    Result<engine::Override> change = engine::parse_override(text);
-    if (!change) return change.error();
-    overrides.push_back(std::move(*change));
-  }
-  if (!arguments.renderer.empty()) overrides.push_back({"renderer.camera", arguments.renderer});
-  Result<engine::Scenario> scenario = engine::load_scenario(arguments.scenario, overrides);
+Result<engine::Scenario> load_to_fly(const RunArguments& arguments) {
+  auto overrides = engine::parse_overrides(arguments.sets);
+  if (!overrides) return overrides.error();
+  if (!arguments.renderer.empty()) overrides->push_back({"renderer.camera", arguments.renderer});
+  Result<engine::Scenario> scenario = engine::load_scenario(arguments.scenario, *overrides);
   if (!scenario) return scenario.error();
   if (Status status = engine::check_scenario(*scenario); !status) return status.error();
   const auto memory = engine::MemoryBudget::of_machine(false);
@@ -65,7 +61,7 @@ int exit_code_of_estimators(const nlohmann::json& metrics) {
 }
 
 int run(const RunArguments& arguments) {
-  const Result<engine::Scenario> scenario = load(arguments);
+  const Result<engine::Scenario> scenario = load_to_fly(arguments);
   if (!scenario) return report(scenario.error());
   Result<engine::RunResult> result = Error{};
   {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 
+#include "core/cancel.hpp"
 #include "renderer/truth_images.hpp"
 #include "server/engine/frame_maker.hpp"
 #include "terrain/synthesize.hpp"
@@ -108,8 +109,6 @@ void judge(CameraCheckRow& row, double limit_px) {
   }
 }
 
-bool is_set(const std::atomic<bool>* flag) { return flag != nullptr && flag->load(); }
-
 /// Adds the pair that begins with frame k to every camera's row.
 Status check_pair(FrameMaker& maker, std::int64_t k, std::vector<CameraCheckRow>& rows) {
   const auto now = maker.make(k);
@@ -179,7 +178,7 @@ Result<std::vector<CameraCheckRow>> check_camera(const Scenario& scenario,
     rows.back().backend = backend;
   }
   for (std::int64_t i = 0; i < pairs; ++i) {
-    if (is_set(options.cancel)) return Error{ErrorCode::kCancelled, "cancelled"};
+    if (is_cancelled(options.cancel)) return Error{ErrorCode::kCancelled, "cancelled"};
     // Spread over the flight without its very ends, two frames apart at least.
     const std::int64_t k = pairs == 1 ? last_first / 2 : i * last_first / (pairs - 1);
     if (Status status = check_pair(**maker, k, rows); !status) return status.error();

@@ -3,6 +3,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/cancel.hpp"
 #include "server/engine/picture_rate.hpp"
 #include "server/engine/thread_priority.hpp"
 
@@ -59,7 +60,7 @@ FlightRun::FlightRun(const Scenario& scenario, const RunOptions& options, RunRec
       begin_ns_(clock_.now_ns()),
       fault_news_(scenario) {}
 
-bool FlightRun::cancelled() const { return options_.cancel != nullptr && options_.cancel->load(); }
+bool FlightRun::cancelled() const { return is_cancelled(options_.cancel); }
 
 std::int64_t FlightRun::end_ns() const {
   const std::vector<FrameRecord>& frames = recorder_.records().frames;

@@ -4,15 +4,12 @@
 #include <limits>
 #include <utility>
 
+#include "core/cancel.hpp"
 #include "server/engine/truth.hpp"
 #include "server/engine/world_cache.hpp"
 
 namespace overfly::engine {
-namespace {
-
-bool is_set(const std::atomic<bool>* flag) { return flag != nullptr && flag->load(); }
-
-}  // namespace
+namespace {}  // namespace
 
 FrameMaker::FrameMaker(const Scenario& scenario, const FrameMakerOptions& options)
     : scenario_(scenario),
@@ -31,7 +28,7 @@ Result<std::unique_ptr<FrameMaker>> FrameMaker::open(const Scenario& scenario,
                                                 {"open_renderer", &FrameMaker::open_renderer},
                                                 {"open_cameras", &FrameMaker::open_cameras}};
   for (const auto& step : steps) {
-    if (is_set(options.cancel)) return Error{ErrorCode::kCancelled, "cancelled"};
+    if (is_cancelled(options.cancel)) return Error{ErrorCode::kCancelled, "cancelled"};
     Status status = maker->stages_.measure(step.first, [&] { return ((*maker).*step.second)(); });
     if (!status) return status.error();
   }
@@ -46,7 +43,7 @@ Status FrameMaker::open_world() {
       options_.notice("making the built-in world: " + std::to_string(tenth * 10) + " %");
     }
     last_tenth = std::max(last_tenth, tenth);
-    return !is_set(options_.cancel);
+    return !is_cancelled(options_.cancel);
   };
   WorldCache own;
   WorldCache& worlds = options_.worlds != nullptr ? *options_.worlds : own;

@@ -29,7 +29,7 @@ Status for_each_row(const fs::path& file, const Read& read) {
   return {};
 }
 
-Pose read_pose(const FileField& field) {
+Pose read_manifest_pose(const FileField& field) {
   const Result<Pose> pose = pose_from(field.value());
   if (!pose) field.fault("be a pose (" + pose.error().message + ")");
   return *pose;
@@ -37,10 +37,10 @@ Pose read_pose(const FileField& field) {
 
 /// Cameras, and whose images each estimator got. A run that failed before it had a camera keeps
 /// the default mount.
-void read_cameras(const FileField& manifest, RunRecords& records) {
+void read_recorded_cameras(const FileField& manifest, RunRecords& records) {
   if (const auto camera = manifest.find("camera")) {
     if (const auto mount = camera->find("T_body_camera")) {
-      records.T_body_camera = read_pose(*mount);
+      records.T_body_camera = read_manifest_pose(*mount);
     }
   }
   std::vector<std::string> names;
@@ -48,7 +48,8 @@ void read_cameras(const FileField& manifest, RunRecords& records) {
     for (const FileField& camera : cameras->items()) {
       names.push_back(camera.at("name").plain_name());
       if (names.size() == 1) continue;
-      records.other_cameras.push_back({names.back(), read_pose(camera.at("T_body_camera")), {}});
+      records.other_cameras.push_back(
+          {names.back(), read_manifest_pose(camera.at("T_body_camera")), {}});
     }
   }
   for (const FileField& entry : manifest.at("estimators").items()) {
@@ -94,7 +95,7 @@ Status read_camera_frames(const fs::path& folder, CameraRecords& camera) {
   });
 }
 
-Status read_estimator(const fs::path& folder, EstimatorRecords& estimator) {
+Status read_estimator_rows(const fs::path& folder, EstimatorRecords& estimator) {
   return for_each_row(estimate_file(folder, estimator.name), [&](const Json& line) -> Status {
     Result<EstimateRecord> record = estimate_record_from(line);
     if (!record) return record.error();
@@ -110,7 +111,7 @@ Result<RunRecords> read_run_records(const fs::path& folder) {
   if (!manifest) return manifest.error();
   RunRecords records;
   const auto read = guarded_fields([&] {
-    read_cameras(FileField(*manifest), records);
+    read_recorded_cameras(FileField(*manifest), records);
     return true;
   });
   if (!read) return read.error().in(manifest_file(folder).string());
@@ -119,7 +120,7 @@ Result<RunRecords> read_run_records(const fs::path& folder) {
     if (Status status = read_camera_frames(folder, camera); !status) return status.error();
   }
   for (EstimatorRecords& estimator : records.estimators) {
-    if (Status status = read_estimator(folder, estimator); !status) return status.error();
+    if (Status status = read_estimator_rows(folder, estimator); !status) return status.error();
   }
   return records;
 }

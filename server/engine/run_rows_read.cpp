@@ -52,7 +52,7 @@ std::string text_or_empty(const FileField& row, const char* name) {
   return field ? field->text() : "";
 }
 
-std::optional<double> number_or_none(const FileField& row, const char* name) {
+std::optional<double> number_of_row(const FileField& row, const char* name) {
   const auto field = row.find(name);
   return field ? std::optional<double>(field->number()) : std::nullopt;
 }
@@ -113,7 +113,7 @@ FrameRecord read_frame(const FileField& value, const Pose& T_body_camera) {
   row.texels_per_pixel_median = texels.at("median").number();
   row.void_fraction = value.at("void_fraction").number();
   row.image_crc32 = crc32_or_none(value);
-  record.axis_depth_m = number_or_none(value, "axis_depth_m");
+  record.axis_depth_m = number_of_row(value, "axis_depth_m");
   return record;
 }
 
@@ -131,7 +131,7 @@ EstimateRecord read_estimate(const FileField& value) {
   record.sample.map_id = small_integer(
       value.at("map_id"), std::numeric_limits<int>::min(), std::numeric_limits<int>::max());
   if (const auto pose = value.find("T_vo_camera")) record.sample.T_vo_camera = read_pose(*pose);
-  record.sample.scene_depth = number_or_none(value, "scene_depth");
+  record.sample.scene_depth = number_of_row(value, "scene_depth");
   if (const auto counters = value.find("counters")) {
     if (!counters->value().is_object()) counters->fault("be an object");
     for (const auto& [name, count] : counters->value().items()) {

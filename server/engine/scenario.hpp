@@ -104,6 +104,7 @@ struct Override {
 
 /// "path=VALUE": VALUE parsed as JSON, else taken as a string. Errors: kInvalidArgument.
 [[nodiscard]] Result<Override> parse_override(const std::string& text);
+[[nodiscard]] Result<std::vector<Override>> parse_overrides(const std::vector<std::string>& texts);
 
 /// Reads, overrides, validates and resolves a scenario file. Relative paths in it are relative to
 /// its folder, or to its field `data`.

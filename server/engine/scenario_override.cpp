@@ -70,6 +70,16 @@ Result<Override> parse_override(const std::string& text) {
   return change;
 }
 
+Result<std::vector<Override>> parse_overrides(const std::vector<std::string>& texts) {
+  std::vector<Override> changes;
+  for (const std::string& text : texts) {
+    Result<Override> change = parse_override(text);
+    if (!change) return change.error();
+    changes.push_back(std::move(*change));
+  }
+  return changes;
+}
+
 Status apply_override(const Override& change, Json& document) {
   const auto dots = std::count(change.path.begin(), change.path.end(), '.');
   if (static_cast<std::size_t>(dots) >= kMaxJsonDepth) {

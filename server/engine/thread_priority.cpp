@@ -74,8 +74,7 @@ void lower_thread(ThreadPriority priority) {
 RaisedThread::RaisedThread() {
   const auto thread = static_cast<id_t>(gettid());
   nice_before_ = getpriority(PRIO_PROCESS, thread);
-  raised_ = nice_before_ > kNiceOfFlights &&
-            setpriority(PRIO_PROCESS, thread, kNiceOfFlights) == 0;
+  raised_ = nice_before_ > kNiceOfFlights && setpriority(PRIO_PROCESS, thread, kNiceOfFlights) == 0;
   session_priority().raise();
 }
 

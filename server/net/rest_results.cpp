@@ -29,10 +29,10 @@ bool leads_out_of(const fs::path& folder, const fs::path& file) {
 }
 
 /// A file of a run as it is. @param name  relative to the run's folder
-HttpResponse file_response(const fs::path& folder,
-                           const fs::path& name,
-                           const std::string& content_type,
-                           const std::string& absent) {
+HttpResponse result_response(const fs::path& folder,
+                             const fs::path& name,
+                             const std::string& content_type,
+                             const std::string& absent) {
   constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 30U;
   const fs::path file = folder / name;
   if (leads_out_of(folder, file)) {
@@ -72,7 +72,7 @@ HttpResponse estimators(RunManager* runs, const std::string& id) {
 HttpResponse manifest(RunManager* runs, const std::string& id) {
   const auto folder = runs->folder(id);
   if (!folder) return error_response(folder.error());
-  return file_response(
+  return result_response(
       *folder, "manifest.json", "application/json", "run " + id + " has no manifest yet");
 }
 
@@ -122,7 +122,7 @@ HttpResponse trajectory(RunManager* runs, const RouteCall& call) {
   const auto folder = runs->folder(id);
   if (!folder) return error_response(folder.error());
   const std::string file_name = name + ".tum";
-  return file_response(
+  return result_response(
       *folder,
       name == kTruth ? fs::path(file_name) : fs::path("estimates") / file_name,
       "text/plain; charset=utf-8",

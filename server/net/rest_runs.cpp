@@ -42,7 +42,7 @@ bool is_json(const HttpRequest& request) {
 }
 
 /// A run that is refused for want of room, or for a fault of the request.
-HttpResponse refusal(const engine::StartReport& report, const Error& error) {
+HttpResponse start_refusal(const engine::StartReport& report, const Error& error) {
   using Refusal = engine::StartReport::Refusal;
   if (report.refusal == Refusal::kQueueFull) {
     return error_response(429, "queue_full", error.message);
@@ -69,7 +69,7 @@ HttpResponse start_run(RunManager* runs, const HttpRequest& request) {
   if (!reach) return error_response(403, "forbidden", reach.error().message);
   engine::StartReport report;
   const auto info = runs->start(start->scenario, start->overrides, key, &report);
-  if (!info) return refusal(report, info.error());
+  if (!info) return start_refusal(report, info.error());
   HttpResponse response = json_response(report.repeated ? 200 : 201, run_json(*info));
   response.headers.emplace_back("Location", "/api/v1/runs/" + info->id);
   return response;

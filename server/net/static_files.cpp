@@ -50,7 +50,9 @@ bool is_below(const fs::path& folder, const fs::path& file) {
   return end == folder.end();
 }
 
-HttpResponse file_response(const fs::path& root, const fs::path& file, const HttpRequest& request) {
+HttpResponse static_response(const fs::path& root,
+                             const fs::path& file,
+                             const HttpRequest& request) {
   std::error_code error;
   const std::uintmax_t size_bytes = fs::file_size(file, error);
   if (error) return error_response({ErrorCode::kIo, "cannot read " + file.filename().string()});
@@ -125,11 +127,11 @@ HttpResponse StaticFiles::serve(const HttpRequest& request) const {
     return error_response({ErrorCode::kNotFound, "this server has no dashboard: see /api/v1"});
   }
   if (const auto file = resolve_below(root_, request.target)) {
-    return file_response(root_, *file, request);
+    return static_response(root_, *file, request);
   }
   if (is_page(request.target)) {
     if (const auto index = resolve_below(root_, "/index.html")) {
-      return file_response(root_, *index, request);
+      return static_response(root_, *index, request);
     }
   }
   return error_response({ErrorCode::kNotFound, "no such file: " + request.target});

@@ -45,7 +45,7 @@ std::string_view token_in(std::string_view text) {
   return at == std::string_view::npos ? text : text.substr(at + 6);
 }
 
-HttpResponse refusal(const HttpRequest& request, bool wrong) {
+HttpResponse token_refusal(const HttpRequest& request, bool wrong) {
   HttpResponse response;
   if (is_api(request)) {
     response = error_response(401,
@@ -93,7 +93,7 @@ std::optional<HttpResponse> TokenGate::check(HttpRequest* request) const {
   const auto shown = take_query_parameter(&request->target, kParameter);
   if (token_.empty()) return std::nullopt;
   const bool by_query = shown && same_token(token_in(*shown), token_);
-  if (!by_query && !has_token(*request)) return refusal(*request, shown.has_value());
+  if (!by_query && !has_token(*request)) return token_refusal(*request, shown.has_value());
   const bool reads = request->method == "GET" || request->method == "HEAD";
   if (!shown || !reads || is_api(*request)) return std::nullopt;
   HttpResponse response;

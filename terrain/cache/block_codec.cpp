@@ -59,14 +59,13 @@ bool is_grey(const Tile& tile) {
   return true;
 }
 
-constexpr int kSide = kTileTexels + 2 * kTileBorder;
-constexpr std::size_t kTexels = std::size_t{kSide} * kSide;
+constexpr std::size_t kTexels = std::size_t{kTileSide} * kTileSide;
 
 /// Differences to the west along each row, of one plane.
 void write_plane(const std::uint8_t* values, Bytes& out) {
-  for (int y = 0; y < kSide; ++y) {
+  for (int y = 0; y < kTileSide; ++y) {
     std::uint8_t before = 0;
-    for (int x = 0; x < kSide; ++x) {
+    for (int x = 0; x < kTileSide; ++x) {
       const std::uint8_t value = *values++;
       out.push_back(static_cast<std::uint8_t>(value - before));
       before = value;
@@ -75,9 +74,10 @@ void write_plane(const std::uint8_t* values, Bytes& out) {
 }
 
 const std::uint8_t* read_plane(const std::uint8_t* in, std::uint8_t* values) {
-  for (int y = 0; y < kSide; ++y) {
+  for (int y = 0; y < kTileSide; ++y) {
     std::uint8_t value = 0;
-    for (int x = 0; x < kSide; ++x) *values++ = value = static_cast<std::uint8_t>(value + *in++);
+    for (int x = 0; x < kTileSide; ++x)
+      *values++ = value = static_cast<std::uint8_t>(value + *in++);
   }
   return in;
 }
@@ -134,7 +134,7 @@ std::optional<Tile> unpack_tile(std::span<const std::uint8_t> bytes) {
   const std::size_t planes = (grey ? 1 : 3) + (masked ? 1 : 0);
   const auto plain = decompress(bytes.subspan(1), kTexels * planes + 1);
   if (!plain) return std::nullopt;
-  Tile tile{Image(kSide, kSide, 3), Image(kSide, kSide, 1, 255)};
+  Tile tile{Image(kTileSide, kTileSide, 3), Image(kTileSide, kTileSide, 1, 255)};
   std::uint8_t* rgb = tile.rgb.data.data();
   const std::uint8_t* in = plain->data() + 1;
   Bytes green(kTexels);

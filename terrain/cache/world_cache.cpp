@@ -162,12 +162,11 @@ WorldCache::Found WorldCache::find(const WorldSpec& spec) {
 }
 
 Result<Tile> WorldCache::tile(const TileId& id) const {
-  constexpr int kSide = kTileTexels + 2 * kTileBorder;
   const int column = floor_div(id.col, kChunkTiles);
   const int row = floor_div(id.row, kChunkTiles);
   const auto& chunks = header_.chunks[static_cast<std::size_t>(id.level)];
   const auto nothing = [] {
-    Tile tile{Image(kSide, kSide, 3), Image(kSide, kSide, 1)};
+    Tile tile{Image(kTileSide, kTileSide, 3), Image(kTileSide, kTileSide, 1)};
     for (std::size_t i = 0; i < tile.rgb.data.size(); ++i) tile.rgb.data[i] = kVoidRgb[i % 3];
     return tile;
   };

@@ -9,6 +9,7 @@
 #include <ctime>
 #include <memory>
 
+#include "core/lower_case.hpp"
 #include "terrain/gdal_dataset.hpp"
 
 namespace overfly::terrain::download {
@@ -72,11 +73,7 @@ HttpReply http_get(const std::string& url, double stall_s, const std::atomic<boo
   if (reply.status == 0) {
     reply.error = result->pszErrBuf != nullptr ? result->pszErrBuf : messages.text();
   }
-  if (result->pszContentType != nullptr) reply.content_type = result->pszContentType;
-  std::transform(reply.content_type.begin(),
-                 reply.content_type.end(),
-                 reply.content_type.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
+  if (result->pszContentType != nullptr) reply.content_type = lower_case(result->pszContentType);
   if (result->nDataLen > 0)
     reply.body.assign(result->pabyData, result->pabyData + result->nDataLen);
   if (const char* after = CSLFetchNameValue(result->papszHeaders, "Retry-After")) {

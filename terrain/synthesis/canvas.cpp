@@ -5,10 +5,6 @@
 namespace overfly::terrain::synthesis {
 namespace {
 
-float soft(float distance_m, float width_m) {
-  return std::clamp(0.5F - 0.5F * distance_m / width_m, 0.0F, 1.0F);
-}
-
 /// The crown's radius in a direction: a ragged disc.
 float crown_radius(const Tree& tree, float dx, float dy, float distance) {
   const float inverse = 1.0F / std::max(distance, 0.05F);

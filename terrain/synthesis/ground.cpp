@@ -16,10 +16,6 @@ struct Texture {
         tufts(noise(x * 0.31F, y * 0.31F, seed + 3)) {}
 };
 
-float soft(float distance_m, float width_m = 0.2F) {
-  return std::clamp(0.5F - 0.5F * distance_m / width_m, 0.0F, 1.0F);
-}
-
 float wrap(float value, float period) { return value - period * std::floor(value / period); }
 
 Rgb field_colour(const Parcel& parcel,

@@ -32,6 +32,12 @@ inline float smoothstep(float low, float high, float value) {
   return t * t * (3.0F - 2.0F * t);
 }
 
+/// How much an edge covers: 1 well inside (negative distance), 0 well outside, linear over the
+/// width.
+inline float soft(float distance_m, float width_m = 0.2F) {
+  return std::clamp(0.5F - 0.5F * distance_m / width_m, 0.0F, 1.0F);
+}
+
 inline int floor_int(float value) {
   const int truncated = static_cast<int>(value);
   return truncated - (static_cast<float>(truncated) > value ? 1 : 0);

@@ -14,8 +14,8 @@ namespace overfly::terrain::synthesis {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr int kOverviews = 9;  ///< down to 2 texels for kStripStepPx
-constexpr int kRows = 1 << kOverviews;
+constexpr int kStripOverviews = 9;  ///< down to 2 texels for kStripStepPx
+constexpr int kRows = 1 << kStripOverviews;
 
 Error cancelled(const fs::path& file) {
   return {ErrorCode::kCancelled, "synthesis of " + file.string() + " was cancelled"};
@@ -81,7 +81,7 @@ std::string mosaic_text(
   for (int band = 1; band <= 3; ++band) {
     text += "  <VRTRasterBand dataType=\"Byte\" band=\"" + std::to_string(band) +
             "\">\n    <ColorInterp>" + colours[band - 1] + "</ColorInterp>\n";
-    for (int finer = 1; level == 0 && finer <= kOverviews; ++finer) {
+    for (int finer = 1; level == 0 && finer <= kStripOverviews; ++finer) {
       text += "    <Overview><SourceFilename relativeToVRT=\"1\">" + level_name(finer) +
               "</SourceFilename><SourceBand>" + std::to_string(band) + "</SourceBand></Overview>\n";
     }
@@ -131,11 +131,11 @@ Status write_ground(const fs::path& file,
   const GdalMessages messages;
   const TiffSettings settings;
   const int side = 2 * swatch_px;
-  auto dataset = create_jpeg_tiff(file, side, side, kOverviews);
+  auto dataset = create_jpeg_tiff(file, side, side, kStripOverviews);
   if (!dataset) return dataset.error();
   Status placed = place(**dataset, file, strip.site, strip.left_x_m, strip.top_y_m, strip.texel_m);
   if (!placed) return placed;
-  LevelWriter writer(**dataset, kOverviews + 1);
+  LevelWriter writer(**dataset, kStripOverviews + 1);
   for (int y = 0; y < side; y += kRows) {
     Image rows(side, kRows, 3);
     for (int row = 0; row < kRows; ++row) {
@@ -153,7 +153,7 @@ Status write_mosaic(const fs::path& folder,
                     const Strip& strip,
                     int swatch_px) {
   const std::string wkt = "EPSG:" + std::to_string(strip.site.epsg);
-  for (int level = 0; level <= kOverviews; ++level) {
+  for (int level = 0; level <= kStripOverviews; ++level) {
     const fs::path file = folder / level_name(level);
     std::ofstream out(file, std::ios::binary);
     out << mosaic_text(ground, strip, wkt, 2 * swatch_px, level);

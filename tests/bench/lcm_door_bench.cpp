@@ -10,7 +10,7 @@
 namespace overfly {
 namespace {
 
-void fly(benchmark::State& state, const testing::LcmPair& pair) {
+void fly_lcm(benchmark::State& state, const testing::LcmPair& pair) {
   VoFrame frame = testing::varied_frames(1, 1280, 960).front();
   double images = 0.0;
   double lost = 0.0;
@@ -25,7 +25,7 @@ void fly(benchmark::State& state, const testing::LcmPair& pair) {
   state.counters["lost_percent"] = 100.0 * lost / images;
 }
 
-void memory(benchmark::State& state) { fly(state, testing::make_memq_pair()); }
+void memory(benchmark::State& state) { fly_lcm(state, testing::make_memq_pair()); }
 
 /// Argument: the estimator's receive buffer [bytes]; real time, so that nothing is sent again.
 void multicast(benchmark::State& state) {
@@ -35,9 +35,9 @@ void multicast(benchmark::State& state) {
   LcmEstimatorOptions options;
   options.url = testing::private_udp_url();
   options.lockstep = false;
-  fly(state,
-      testing::make_udp_pair(
-          {}, options, options.url + "&recv_buf_size=" + std::to_string(state.range(0))));
+  fly_lcm(state,
+          testing::make_udp_pair(
+              {}, options, options.url + "&recv_buf_size=" + std::to_string(state.range(0))));
 }
 
 BENCHMARK(memory)->UseRealTime()->Unit(benchmark::kMillisecond);

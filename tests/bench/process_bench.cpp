@@ -25,7 +25,7 @@ std::vector<std::shared_ptr<const Image>> images() {
   return made;
 }
 
-void fly(benchmark::State& state, const std::string& behaviour, const std::string& listen) {
+void fly_process(benchmark::State& state, const std::string& behaviour, const std::string& listen) {
   ProcessEstimatorOptions options;
   options.command = {OVERFLY_SCRIPTED_ESTIMATOR, behaviour};
   options.listen = listen;
@@ -66,9 +66,13 @@ void crc_of_image(benchmark::State& state) {
 
 BENCHMARK(copy_image)->Unit(benchmark::kMicrosecond)->UseRealTime();
 BENCHMARK(crc_of_image)->Unit(benchmark::kMicrosecond)->UseRealTime();
-BENCHMARK_CAPTURE(fly, shared_memory, "good", "")->Unit(benchmark::kMicrosecond)->UseRealTime();
-BENCHMARK_CAPTURE(fly, unix_socket, "by_socket", "")->Unit(benchmark::kMicrosecond)->UseRealTime();
-BENCHMARK_CAPTURE(fly, tcp, "good", "tcp:127.0.0.1:0")
+BENCHMARK_CAPTURE(fly_process, shared_memory, "good", "")
+    ->Unit(benchmark::kMicrosecond)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(fly_process, unix_socket, "by_socket", "")
+    ->Unit(benchmark::kMicrosecond)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(fly_process, tcp, "good", "tcp:127.0.0.1:0")
     ->Unit(benchmark::kMicrosecond)
     ->UseRealTime();
 

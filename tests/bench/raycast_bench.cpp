@@ -14,6 +14,7 @@
 
 #include "renderer/bench_probe.hpp"
 #include "tests/bench/bench_ground.hpp"
+#include "tests/bench/median.hpp"
 
 namespace overfly::renderer {
 namespace {
@@ -96,12 +97,6 @@ double seconds(clockid_t clock, const std::function<void()>& call) {
   return seconds_of(clock) - before_s;
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 std::unique_ptr<Renderer> raycaster(int threads) {
   RendererOptions options;
   options.threads = threads;
@@ -125,8 +120,8 @@ void per_quad(benchmark::State& state, const MakeRequest& make) {
       ratios.push_back(frame_s / quad_s);
       frame_ms.push_back(1e3 * frame_s);
     }
-    state.counters["per_quad"] = median(ratios);
-    state.counters["cpu_ms"] = median(frame_ms);
+    state.counters["per_quad"] = testing::median(ratios);
+    state.counters["cpu_ms"] = testing::median(frame_ms);
   }
 }
 
@@ -147,7 +142,7 @@ void speedup(benchmark::State& state) {
       const double one_s = wall(*one);
       ratios.push_back(one_s / wall(*several));
     }
-    state.counters["times_one"] = median(ratios);
+    state.counters["times_one"] = testing::median(ratios);
   }
 }
 
@@ -163,7 +158,7 @@ void depth_per_quad(benchmark::State& state) {
           seconds(CLOCK_PROCESS_CPUTIME_ID, [&] { (void)renderer->render_depth(plain(i)); }) /
           quad_s);
     }
-    state.counters["per_quad"] = median(ratios);
+    state.counters["per_quad"] = testing::median(ratios);
   }
 }
 

@@ -21,7 +21,7 @@ PinholeCamera camera() {
 }
 
 /// A gentle turn at 300 m: 25 m/s at 31 Hz, so that tiles come and go as in flight.
-Pose pose_at(int frame) {
+Pose orbit_pose(int frame) {
   const double t_s = frame / 31.0;
   const double east_m = 150.0 * std::sin(25.0 * t_s / 300.0);
   const double north_m = 150.0 * std::cos(25.0 * t_s / 300.0);
@@ -48,7 +48,8 @@ void camera_frame(benchmark::State& state, PixelFormat format) {
   if (renderer == nullptr) return;
   int frame = 0;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(renderer->render_camera(camera(), pose_at(frame++), 0, format).ok());
+    benchmark::DoNotOptimize(
+        renderer->render_camera(camera(), orbit_pose(frame++), 0, format).ok());
   }
 }
 
@@ -57,7 +58,7 @@ void depth(benchmark::State& state) {
   if (renderer == nullptr) return;
   int frame = 0;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(renderer->render_depth(camera(), pose_at(frame++)).ok());
+    benchmark::DoNotOptimize(renderer->render_depth(camera(), orbit_pose(frame++)).ok());
   }
 }
 
@@ -67,14 +68,14 @@ void scene(benchmark::State& state) {
   SceneContent content;
   content.ribbons.push_back({});
   for (int i = 0; i < state.range(0); ++i) {
-    Pose body = pose_at(i);
+    Pose body = orbit_pose(i);
     body.rotation = body.rotation * R_body_camera_nadir().conjugate();
     content.ribbons.back().T_world_body.push_back(body);
   }
   int frame = 0;
   for (auto _ : state) {
     SceneView view;
-    view.T_world_camera = pose_at(frame++);
+    view.T_world_camera = orbit_pose(frame++);
     view.T_world_camera.translation.z() += 200.0;
     benchmark::DoNotOptimize(renderer->render_scene(view, content).ok());
   }
@@ -82,7 +83,7 @@ void scene(benchmark::State& state) {
 
 void camera_per_quad(benchmark::State& state) {
   std::vector<Pose> poses;
-  for (int i = 0; i < 60; ++i) poses.push_back(pose_at(4 * i));
+  for (int i = 0; i < 60; ++i) poses.push_back(orbit_pose(4 * i));
   for (auto _ : state) {
     const auto costs = measure_render_costs(tiles, poses, 60);
     if (!costs.ok()) return state.SkipWithError(costs.error().message.c_str());

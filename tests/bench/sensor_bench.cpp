@@ -14,6 +14,7 @@
 #include "renderer/sensor/image_faults.hpp"
 #include "renderer/sensor/mount_vibration.hpp"
 #include "renderer/sensor/sensor.hpp"
+#include "tests/bench/median.hpp"
 #include "tests/renderer/procedural_ground.hpp"
 
 namespace overfly::renderer {
@@ -50,14 +51,8 @@ double cpu_s(const std::function<void()>& call) {
   return process_cpu_s() - before_s;
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Measures calls in turn with the quad.
-void per_quad(benchmark::State& state, const std::function<void(int round)>& call) {
+void call_per_quad(benchmark::State& state, const std::function<void(int round)>& call) {
   const auto quad = QuadProbe::create();
   if (!quad.ok()) return state.SkipWithError(quad.error().message.c_str());
   for (int i = 0; i < 5; ++i) {
@@ -72,8 +67,8 @@ void per_quad(benchmark::State& state, const std::function<void(int round)>& cal
       ratios.push_back(call_s / quad_s);
       call_ms.push_back(1e3 * call_s);
     }
-    state.counters["per_quad"] = median(ratios);
-    state.counters["cpu_ms"] = median(call_ms);
+    state.counters["per_quad"] = testing::median(ratios);
+    state.counters["cpu_ms"] = testing::median(call_ms);
   }
 }
 
@@ -105,14 +100,14 @@ void chain(benchmark::State& state,
   for (float& value : light.data) value *= brightness;
   const auto sensor = Sensor::create(model, pinhole(), 1, units);
   if (!sensor.ok()) return state.SkipWithError(sensor.error().message.c_str());
-  per_quad(state, [&](int round) {
+  call_per_quad(state, [&](int round) {
     benchmark::DoNotOptimize((*sensor)->expose(light, round).mean_level);
   });
 }
 
 void fault(benchmark::State& state, const ImageFault& fault) {
   RadianceImage light = ground_light(PixelFormat::kGreyLinear);
-  per_quad(state, [&](int) { apply_fault(fault, light); });
+  call_per_quad(state, [&](int) { apply_fault(fault, light); });
 }
 
 /// The poses that a blurred rolling-shutter frame asks for.
@@ -122,7 +117,7 @@ void vibration(benchmark::State& state) {
   model.engine_rotation_rms_rad = {1e-4, 5e-5};
   model.noise_rotation_rms_rad = {1e-4, 1e-4, 1e-4};
   const auto shaken = MountVibration::create(model, 1).value();
-  per_quad(state, [&](int round) {
+  call_per_quad(state, [&](int round) {
     for (int i = 0; i < 32; ++i) {
       benchmark::DoNotOptimize(shaken.T_mount_camera(round * 32'000'000LL + i * 1'000'000LL));
     }

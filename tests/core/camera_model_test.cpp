@@ -8,7 +8,7 @@
 namespace overfly {
 namespace {
 
-PinholeCamera default_camera() {
+PinholeCamera rounded_default_camera() {
   return *PinholeCamera::from_fov(
       1280, 960, 84.872 * 3.14159265358979 / 180.0, FovAxis::kHorizontal);
 }
@@ -42,7 +42,7 @@ std::vector<cv::Point3d> points_in_front() {
 }
 
 TEST(CameraModel, ProjectsRadtanAsOpenCvDoes) {
-  const CameraModel camera(default_camera(), kRadtan);
+  const CameraModel camera(rounded_default_camera(), kRadtan);
   const std::vector<cv::Point3d> points = points_in_front();
   std::vector<cv::Point2d> expected;
   cv::projectPoints(points,
@@ -60,7 +60,7 @@ TEST(CameraModel, ProjectsRadtanAsOpenCvDoes) {
 }
 
 TEST(CameraModel, ProjectsEquidistantAsOpenCvsFisheyeDoes) {
-  const CameraModel camera(default_camera(), kEquidistant);
+  const CameraModel camera(rounded_default_camera(), kEquidistant);
   const std::vector<cv::Point3d> points = points_in_front();
   std::vector<cv::Point2d> expected;
   cv::fisheye::projectPoints(
@@ -79,7 +79,7 @@ TEST(CameraModel, ProjectsEquidistantAsOpenCvsFisheyeDoes) {
 }
 
 TEST(CameraModel, FovModelIsItsClosedForm) {
-  const CameraModel camera(default_camera(), kFov);
+  const CameraModel camera(rounded_default_camera(), kFov);
   for (const double angle_deg : {0.0, 5.0, 20.0, 40.0, 50.0}) {
     const double r_u = std::tan(angle_deg * 3.14159265358979 / 180.0);
     const double r_d = std::atan(2.0 * r_u * std::tan(0.5 * 0.92)) / 0.92;
@@ -91,7 +91,7 @@ TEST(CameraModel, FovModelIsItsClosedForm) {
 
 TEST(CameraModel, RayIsTheInverseOfProjectOverTheWholeImage) {
   for (const Distortion& lens : {Distortion{}, kRadtan, kEquidistant, kFov}) {
-    const CameraModel camera(default_camera(), lens);
+    const CameraModel camera(rounded_default_camera(), lens);
     ASSERT_TRUE(camera.validate().ok()) << to_string(lens.model);
     for (double y = -0.5; y <= 959.5; y += 48.0) {
       for (double x = -0.5; x <= 1279.5; x += 40.0) {
@@ -107,7 +107,7 @@ TEST(CameraModel, RayIsTheInverseOfProjectOverTheWholeImage) {
 
 TEST(CameraModel, JacobianAgreesWithNumericDifferences) {
   for (const Distortion& lens : {kRadtan, kEquidistant, kFov}) {
-    const CameraModel camera(default_camera(), lens);
+    const CameraModel camera(rounded_default_camera(), lens);
     for (const Eigen::Vector2d& at : {Eigen::Vector2d(0.3, -0.5), Eigen::Vector2d(-0.7, 0.2)}) {
       Eigen::Matrix2d J;
       (void)camera.distort(at, &J);
@@ -122,14 +122,16 @@ TEST(CameraModel, JacobianAgreesWithNumericDifferences) {
 }
 
 TEST(CameraModel, RefusesADistortionThatFoldsTheImage) {
-  const CameraModel camera(default_camera(), {DistortionModel::kRadtan, {-0.6, 0, 0, 0, 0}});
+  const CameraModel camera(rounded_default_camera(),
+                           {DistortionModel::kRadtan, {-0.6, 0, 0, 0, 0}});
   const Status status = camera.validate();
   ASSERT_FALSE(status.ok());
   EXPECT_NE(status.error().message.find("folds"), std::string::npos) << status.error().message;
 }
 
 TEST(CameraModel, DoesNotProjectPointsBeyondTheTurn) {
-  const CameraModel camera(default_camera(), {DistortionModel::kRadtan, {-0.3, 0, 0, 0, 0}});
+  const CameraModel camera(rounded_default_camera(),
+                           {DistortionModel::kRadtan, {-0.3, 0, 0, 0, 0}});
   // d(r - 0.3 r^3) = 0 at r = 1.054: beyond it points would land inside the image again.
   EXPECT_TRUE(camera.project({1.0, 0.0, 1.0}).has_value());
   EXPECT_FALSE(camera.project({1.2, 0.0, 1.0}).has_value());

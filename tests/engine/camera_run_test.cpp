@@ -22,6 +22,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using testing::noop_factory;
 using ::testing::Not;
+using testing::options_for;
 using testing::small_scenario;
 
 constexpr const char* kTwoCameras =
@@ -44,10 +45,10 @@ struct Given {
 };
 
 /// Notes what it is given, and tracks nothing.
-class Witness final : public VoPort {
+class FrameNotes final : public VoPort {
  public:
-  explicit Witness(std::vector<Given>& given) : given_(given) {}
-  std::string type() const override { return "witness"; }
+  explicit FrameNotes(std::vector<Given>& given) : given_(given) {}
+  std::string type() const override { return "notes"; }
   std::map<std::string, std::string> effective_parameters() const override { return {}; }
   Result<VoEstimate> track(const VoFrame& frame) override {
     given_.push_back({frame.index,
@@ -68,20 +69,13 @@ class Witness final : public VoPort {
   std::vector<Given>& given_;
 };
 
-RunOptions options_for(const fs::path& folder) {
-  RunOptions options;
-  options.folder = folder;
-  options.renderer_factory = noop_factory();
-  return options;
-}
-
 /// Flies with a witness in each estimator's place.
 std::map<std::string, std::vector<Given>> witnessed(const Scenario& scenario,
                                                     const fs::path& folder) {
   std::map<std::string, std::vector<Given>> given;
   RunOptions options = options_for(folder);
   options.estimator_factory = [&](const EstimatorSpec& spec) {
-    return Result<std::unique_ptr<VoPort>>(std::make_unique<Witness>(given[spec.name]));
+    return Result<std::unique_ptr<VoPort>>(std::make_unique<FrameNotes>(given[spec.name]));
   };
   const auto run = run_scenario(scenario, options);
   EXPECT_TRUE(run.ok()) << run.error().message;

@@ -47,6 +47,13 @@ RendererFactory noop_factory() {
   };
 }
 
+RunOptions options_for(const fs::path& folder) {
+  RunOptions options;
+  options.folder = folder;
+  options.renderer_factory = noop_factory();
+  return options;
+}
+
 std::vector<std::pair<std::string, std::string>> contents_without_timings(const fs::path& folder) {
   std::vector<std::pair<std::string, std::string>> contents;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {

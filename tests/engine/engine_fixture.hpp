@@ -21,6 +21,8 @@ namespace overfly::engine::testing {
 [[nodiscard]] nlohmann::json small_document();
 
 [[nodiscard]] RendererFactory noop_factory();
+/// A run without pictures into a folder.
+[[nodiscard]] RunOptions options_for(const std::filesystem::path& folder);
 
 /// Path relative to the folder -> content, of all files but timings.json and created.json.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> contents_without_timings(

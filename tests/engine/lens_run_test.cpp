@@ -39,7 +39,7 @@ struct Flown {
 };
 
 /// Five seconds over natural ground with hills, 125 m of way.
-Flown flown(const std::string& lens, bool blind = false) {
+Flown flown_with_lens(const std::string& lens, bool blind = false) {
   const overfly::testing::TemporaryFolder folder;
   std::vector<std::string> overrides = {
       R"(camera={"width_px":480,"height_px":360,"rate_hz":8})",
@@ -74,7 +74,7 @@ TEST(LensRun, NativeEstimatorTracksThroughEveryLensModel) {
   for (const char* lens : {R"({"model":"radtan","coefficients":[-0.2,0.03,0.001,-0.0005]})",
                            R"({"model":"equidistant","coefficients":[-0.03,0.004,0,0]})",
                            R"({"model":"fov","coefficients":[0.8]})"}) {
-    const Flown result = flown(lens);
+    const Flown result = flown_with_lens(lens);
     EXPECT_EQ(result.outcome, "COMPLETED") << lens;
     EXPECT_LT(result.rmse_m, kLimitM) << lens;
   }
@@ -82,7 +82,7 @@ TEST(LensRun, NativeEstimatorTracksThroughEveryLensModel) {
 
 TEST(LensRun, ALensThatIsNotToldSpoilsTheTrack) {
   const char* lens = R"({"model":"fov","coefficients":[0.8]})";
-  const Flown blind = flown(lens, true);
+  const Flown blind = flown_with_lens(lens, true);
   EXPECT_GT(blind.rmse_m, 2.0 * kLimitM);
 }
 

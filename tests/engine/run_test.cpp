@@ -20,19 +20,13 @@ using overfly::testing::TemporaryFolder;
 using testing::contents_without_timings;
 using ::testing::HasSubstr;
 using testing::noop_factory;
+using testing::options_for;
 using testing::small_scenario;
 
 constexpr const char* kThree =
     R"(estimators=[{"name":"p","type":"perfect"},
                    {"name":"d","type":"drifting","parameters":{"drift":0.01}},
                    {"name":"f","type":"feature","parameters":{"features":300}}])";
-
-RunOptions options_for(const fs::path& folder) {
-  RunOptions options;
-  options.folder = folder;
-  options.renderer_factory = noop_factory();
-  return options;
-}
 
 void expect_equal_folders(const fs::path& a, const fs::path& b) {
   const auto first = contents_without_timings(a);

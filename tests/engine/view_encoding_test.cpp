@@ -58,11 +58,11 @@ TEST(PictureEncoder, EncodesASharedImageOnce) {
 }
 
 TEST(PictureEncoder, PassesARecordedPictureOnWhereItFits) {
-  const testing::TemporaryFolder folder;
+  const overfly::testing::TemporaryFolder folder;
   const auto jpeg = encode_jpeg(*ramp(64, 48, 1), 80);
   ASSERT_TRUE(jpeg);
   const auto file = folder.path() / "000003.jpg";
-  testing::write_text(file, {jpeg->begin(), jpeg->end()});
+  overfly::testing::write_text(file, {jpeg->begin(), jpeg->end()});
   PictureEncoder encoder;
   const auto whole = encoder.encode_file(file, 3, 300, 75, 64);
   ASSERT_TRUE(whole);
@@ -73,7 +73,7 @@ TEST(PictureEncoder, PassesARecordedPictureOnWhereItFits) {
   EXPECT_EQ(half->width_px, 32);
   EXPECT_EQ(encoder.encode_file(folder.path() / "none.jpg", 3, 300, 75, 64).error().code,
             ErrorCode::kNotFound);
-  testing::write_text(folder.path() / "bad.jpg", "no picture");
+  overfly::testing::write_text(folder.path() / "bad.jpg", "no picture");
   EXPECT_FALSE(encoder.encode_file(folder.path() / "bad.jpg", 3, 300, 75, 64));
 }
 

@@ -24,8 +24,8 @@ namespace {
 using testing::read_text;
 using testing::source_file;
 
-constexpr double kSpeedMS = 22.0;
-constexpr double kDurationS = 60.0;
+constexpr double kTourSpeedMS = 22.0;
+constexpr double kTourDurationS = 60.0;
 constexpr double kHeightAglM = 200.0;
 constexpr double kRatePerS = 50.0;
 /// Knots of the height: long, since the stadium's walls are in the ground model, and no aircraft
@@ -138,7 +138,7 @@ BankProfile tour() {
 std::string make_csv(GroundModel& model) {
   const LocalFrame frame(model.middle());
   // The start that puts the middle of the tour over the middle of the photograph.
-  const GroundTrack track(tour(), kSpeedMS, {135.0, 112.0, kPi, 0.0}, kDurationS);
+  const GroundTrack track(tour(), kTourSpeedMS, {135.0, 112.0, kPi, 0.0}, kTourDurationS);
   const auto ground_up_m = [&](double t_s) {
     const GroundSample at = track.at(t_s);
     Geodetic point = frame.geodetic_from_world({at.east_m, at.north_m, 0.0});
@@ -149,17 +149,17 @@ std::string make_csv(GroundModel& model) {
       HeightProfile::above(
           ground_up_m,
           kHeightAglM,
-          kDurationS,
-          {.knot_s = kKnotM / kSpeedMS, .climb_max_m_s = kSpeedMS * std::tan(kClimbMaxRad)})
+          kTourDurationS,
+          {.knot_s = kKnotM / kTourSpeedMS, .climb_max_m_s = kTourSpeedMS * std::tan(kClimbMaxRad)})
           .value();
   std::string csv = "t_s,lat_deg,lon_deg,alt_ellipsoid_m,roll_deg,pitch_deg,yaw_deg\n";
-  for (int i = 0; i <= static_cast<int>(kDurationS * kRatePerS); ++i) {
+  for (int i = 0; i <= static_cast<int>(kTourDurationS * kRatePerS); ++i) {
     const double t_s = i / kRatePerS;
     const GroundSample at = track.at(t_s);
     const HeightSample up = height.at(t_s);
     const Geodetic point = frame.geodetic_from_world({at.east_m, at.north_m, up.up_m});
     const Eigen::Quaterniond R_world_body = R_world_body_from(
-        {track.bank_at(t_s).bank_rad, std::atan2(up.climb_m_s, kSpeedMS), at.heading_rad});
+        {track.bank_at(t_s).bank_rad, std::atan2(up.climb_m_s, kTourSpeedMS), at.heading_rad});
     const RollPitchYaw attitude =
         attitude_from(frame.R_world_enu_at(point).conjugate() * R_world_body);
     char row[160];
@@ -223,14 +223,14 @@ TEST(AutzenTour, FliesSmoothlyAtItsHeightInsideThePhotograph) {
     ASSERT_LT(std::abs(p.y()), 683.0 - 183.0);
     const Geodetic point = frame.geodetic_from_world(p);
     ASSERT_NEAR(point.alt_ellipsoid_m - model.alt_ellipsoid_m(point), kHeightAglM, 12.0);
-    ASSERT_NEAR(state.airspeed_m_s, kSpeedMS, 0.1);
+    ASSERT_NEAR(state.airspeed_m_s, kTourSpeedMS, 0.1);
     // Coordinated: the heading turns at g tan(roll) / V. SLERP holds its rate over 20 ms.
     const RollPitchYaw a = attitude_from(state.T_world_body.rotation);
     const Eigen::Vector3d& omega = state.omega_body_rad_s;
     const double heading_rate =
         (omega.y() * std::sin(a.roll_rad) + omega.z() * std::cos(a.roll_rad)) /
         std::cos(a.pitch_rad);
-    ASSERT_NEAR(heading_rate, turn_rate_rad_s(a.roll_rad, kSpeedMS), 0.004);
+    ASSERT_NEAR(heading_rate, turn_rate_rad_s(a.roll_rad, kTourSpeedMS), 0.004);
   }
 }
 

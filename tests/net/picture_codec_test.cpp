@@ -8,7 +8,7 @@
 namespace overfly::net {
 namespace {
 
-PictureHeader example() {
+PictureHeader example_header() {
   PictureHeader header;
   header.stream_id = 0x01020304;
   header.sequence = 7;
@@ -38,11 +38,11 @@ TEST(PictureCodec, LaysOutTheHeaderByteByByte) {
       0x11, 0x38, 0xEC, 0x01, 0,    0, 0,  0,   // t_ns = 32258065 = 0x01EC3811
       0x00, 0x05, 0xC0, 0x03, 1,    0, 48, 0,   // 1280, 960, grey, header length
       3,    0,    0,    0,    1,    0, 0,  0};  // payload, flags
-  EXPECT_EQ(encode_picture_header(example()), expected);
+  EXPECT_EQ(encode_picture_header(example_header()), expected);
 }
 
 TEST(PictureCodec, ReadsWhatItWrote) {
-  const auto decoded = decode_picture_header(message_of(example()));
+  const auto decoded = decode_picture_header(message_of(example_header()));
   ASSERT_TRUE(decoded);
   EXPECT_EQ(decoded->stream_id, 0x01020304U);
   EXPECT_EQ(decoded->frame, 0x1122334455);
@@ -52,13 +52,13 @@ TEST(PictureCodec, ReadsWhatItWrote) {
 }
 
 TEST(PictureCodec, KeepsNegativeFrames) {
-  PictureHeader header = example();
+  PictureHeader header = example_header();
   header.frame = -1;
   EXPECT_EQ(decode_picture_header(message_of(header))->frame, -1);
 }
 
 TEST(PictureCodec, RefusesMessagesThatAreNoWholePicture) {
-  const auto good = message_of(example());
+  const auto good = message_of(example_header());
   for (std::size_t size = 0; size < good.size(); ++size) {
     EXPECT_FALSE(decode_picture_header(std::span(good).first(size))) << size;
   }

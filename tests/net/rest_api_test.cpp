@@ -19,8 +19,6 @@ namespace {
 using nlohmann::json;
 using ::testing::HasSubstr;
 
-const Headers kJson = {{"Content-Type", "application/json"}};
-
 /// OpenAPI keeps its schemas elsewhere than JSON Schema does.
 json with_defs(json schema, const json& document) {
   std::string text = document.at("components").at("schemas").dump();

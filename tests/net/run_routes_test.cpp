@@ -17,7 +17,6 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using ::testing::HasSubstr;
 
-const Headers kJson = {{"Content-Type", "application/json"}};
 constexpr const char* kRuns = "/api/v1/runs";
 
 Answer launch(const TestServer& server, const json& body) {

@@ -23,6 +23,8 @@ struct Answer {
 
 using Headers = std::map<std::string, std::string>;
 
+inline const Headers kJson = {{"Content-Type", "application/json"}};
+
 /// One request on a connection of its own.
 [[nodiscard]] Answer ask(std::uint16_t port,
                          const std::string& method,

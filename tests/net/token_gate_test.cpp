@@ -14,7 +14,8 @@ using ::testing::Not;
 
 constexpr const char* kToken = "0123456789abcdefABCDEF-_";
 
-HttpRequest get(const std::string& target, const std::map<std::string, std::string>& headers = {}) {
+HttpRequest get_from_host(const std::string& target,
+                          const std::map<std::string, std::string>& headers = {}) {
   HttpRequest request{"GET", target, headers, ""};
   request.headers.emplace("host", "127.0.0.1:8480");
   return request;
@@ -65,32 +66,34 @@ TEST(AccessToken, IsComparedWhole) {
 
 TEST(TokenGate, TakesTheTokenFromQueryHeaderOrCookie) {
   const std::string token = kToken;
-  EXPECT_EQ(status_of(get("/api/v1/runs?token=" + token)), 0);
-  EXPECT_EQ(status_of(get("/api/v1/runs", {{"authorization", "Bearer " + token}})), 0);
-  EXPECT_EQ(status_of(get("/api/v1/runs", {{"authorization", "bearer " + token}})), 0);
-  EXPECT_EQ(status_of(get("/", {{"cookie", "a=b; overfly_8480=" + token + "; c=d"}})), 0);
+  EXPECT_EQ(status_of(get_from_host("/api/v1/runs?token=" + token)), 0);
+  EXPECT_EQ(status_of(get_from_host("/api/v1/runs", {{"authorization", "Bearer " + token}})), 0);
+  EXPECT_EQ(status_of(get_from_host("/api/v1/runs", {{"authorization", "bearer " + token}})), 0);
+  EXPECT_EQ(status_of(get_from_host("/", {{"cookie", "a=b; overfly_8480=" + token + "; c=d"}})), 0);
   // One of several is enough: a path's cookie of an older server may come first.
-  EXPECT_EQ(status_of(get("/", {{"cookie", "overfly_8480=old; overfly_8480=" + token}})), 0);
+  EXPECT_EQ(status_of(get_from_host("/", {{"cookie", "overfly_8480=old; overfly_8480=" + token}})),
+            0);
 }
 
 TEST(TokenGate, RefusesEverythingElse) {
   const std::string token = kToken;
-  for (const HttpRequest& request : {get("/api/v1/runs"),
-                                     get("/api/v1/health"),
-                                     get("/"),
-                                     get("/assets/main.js"),
-                                     get("/api/v1/runs?token="),
-                                     get("/api/v1/runs?token=" + token + "x"),
-                                     get("/api/v1/runs?token=" + token.substr(1)),
-                                     get("/api/v1/runs?Token=" + token),
-                                     get("/api/v1/runs?token=%zz"),
-                                     get("/api/v1/runs", {{"authorization", "Basic " + token}}),
-                                     get("/api/v1/runs", {{"authorization", token}}),
-                                     get("/api/v1/runs", {{"authorization", "Bearer"}}),
-                                     get("/", {{"cookie", "overfly_8481=" + token}}),
-                                     get("/", {{"cookie", "xoverfly_8480=" + token}}),
-                                     get("/", {{"cookie", "overfly_8480"}}),
-                                     get("/", {{"cookie", token}})}) {
+  for (const HttpRequest& request :
+       {get_from_host("/api/v1/runs"),
+        get_from_host("/api/v1/health"),
+        get_from_host("/"),
+        get_from_host("/assets/main.js"),
+        get_from_host("/api/v1/runs?token="),
+        get_from_host("/api/v1/runs?token=" + token + "x"),
+        get_from_host("/api/v1/runs?token=" + token.substr(1)),
+        get_from_host("/api/v1/runs?Token=" + token),
+        get_from_host("/api/v1/runs?token=%zz"),
+        get_from_host("/api/v1/runs", {{"authorization", "Basic " + token}}),
+        get_from_host("/api/v1/runs", {{"authorization", token}}),
+        get_from_host("/api/v1/runs", {{"authorization", "Bearer"}}),
+        get_from_host("/", {{"cookie", "overfly_8481=" + token}}),
+        get_from_host("/", {{"cookie", "xoverfly_8480=" + token}}),
+        get_from_host("/", {{"cookie", "overfly_8480"}}),
+        get_from_host("/", {{"cookie", token}})}) {
     EXPECT_EQ(status_of(request), 401) << request.target;
   }
 }
@@ -98,7 +101,7 @@ TEST(TokenGate, RefusesEverythingElse) {
 TEST(TokenGate, TakesTheTokenOutOfTheTarget) {
   const std::string token = kToken;
   const auto left = [](const std::string& target) {
-    HttpRequest request = get(target);
+    HttpRequest request = get_from_host(target);
     (void)TokenGate(kToken).check(&request);
     return request.target;
   };
@@ -106,13 +109,13 @@ TEST(TokenGate, TakesTheTokenOutOfTheTarget) {
   EXPECT_EQ(left("/api/v1/runs?a=1&token=" + token + "&b=2"), "/api/v1/runs?a=1&b=2");
   EXPECT_EQ(left("/api/v1/runs?%74oken=" + token), "/api/v1/runs");
   EXPECT_EQ(left("/api/v1/runs?a=1"), "/api/v1/runs?a=1");
-  HttpRequest open = get("/api/v1/runs?token=anything");
+  HttpRequest open = get_from_host("/api/v1/runs?token=anything");
   EXPECT_FALSE(TokenGate("").check(&open));
   EXPECT_EQ(open.target, "/api/v1/runs");
 }
 
 TEST(TokenGate, SendsABrowserOnToTheAddressWithoutTheToken) {
-  HttpRequest request = get(std::string("/map?a=1&token=") + kToken);
+  HttpRequest request = get_from_host(std::string("/map?a=1&token=") + kToken);
   const auto response = TokenGate(kToken).check(&request);
   ASSERT_TRUE(response);
   EXPECT_EQ(response->status, 303);
@@ -124,9 +127,10 @@ TEST(TokenGate, SendsABrowserOnToTheAddressWithoutTheToken) {
 
 TEST(TokenGate, KnowsAPastedAddressAndForgetsAnOldToken) {
   const std::string pasted = std::string("/?token=http%3A%2F%2Flocalhost%3A8480%2F%3Ftoken%3D");
-  EXPECT_EQ(status_of(get(pasted + kToken)), 303);
+  EXPECT_EQ(status_of(get_from_host(pasted + kToken)), 303);
   // Let in by its cookie: the stale token of a bookmark leaves the address bar, nothing else.
-  HttpRequest request = get("/?token=old", {{"cookie", std::string("overfly_8480=") + kToken}});
+  HttpRequest request =
+      get_from_host("/?token=old", {{"cookie", std::string("overfly_8480=") + kToken}});
   const auto response = TokenGate(kToken).check(&request);
   ASSERT_TRUE(response);
   EXPECT_EQ(response->status, 303);
@@ -135,7 +139,7 @@ TEST(TokenGate, KnowsAPastedAddressAndForgetsAnOldToken) {
 
 TEST(TokenGate, NeverRedirectsToAnotherHost) {
   for (const char* path : {"//evil.example/", "/\\evil.example/", "http://evil.example/"}) {
-    HttpRequest request = get(std::string(path) + "?token=" + kToken);
+    HttpRequest request = get_from_host(std::string(path) + "?token=" + kToken);
     const auto response = TokenGate(kToken).check(&request);
     ASSERT_TRUE(response) << path;
     EXPECT_EQ(header(*response, "Location"), "/") << path;
@@ -143,15 +147,15 @@ TEST(TokenGate, NeverRedirectsToAnotherHost) {
 }
 
 TEST(TokenGate, AnswersBrowsersWithAPageAndProgramsWithJson) {
-  HttpRequest page = get("/runs/abc");
+  HttpRequest page = get_from_host("/runs/abc");
   const auto html = TokenGate(kToken).check(&page);
   ASSERT_TRUE(html);
   EXPECT_EQ(html->content_type, "text/html; charset=utf-8");
   EXPECT_THAT(html->body, HasSubstr("<form"));
   EXPECT_THAT(html->body, Not(HasSubstr("not this server's")));
-  HttpRequest wrong = get("/?token=<script>");
+  HttpRequest wrong = get_from_host("/?token=<script>");
   EXPECT_THAT(TokenGate(kToken).check(&wrong)->body, HasSubstr("not this server's"));
-  HttpRequest api = get("/api/v1/runs?token=0123456789abcdefABCDEF__");
+  HttpRequest api = get_from_host("/api/v1/runs?token=0123456789abcdefABCDEF__");
   const auto json = TokenGate(kToken).check(&api);
   ASSERT_TRUE(json);
   EXPECT_EQ(json->content_type, "application/json");

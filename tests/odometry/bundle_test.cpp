@@ -6,11 +6,10 @@
 #include <random>
 
 #include "odometry/feature/bundle_terms.hpp"
+#include "tests/odometry/test_camera.hpp"
 
 namespace overfly::odometry {
 namespace {
-
-PinholeCamera camera() { return {1280, 960, 700.0, 700.0, 639.5, 479.5}; }
 
 /// A line of cameras over rough ground, exact; the first two are held.
 Bundle exact_bundle() {
@@ -32,7 +31,7 @@ Bundle exact_bundle() {
   return bundle;
 }
 
-Bundle disturbed(Bundle bundle) {
+Bundle disturbed_bundle(Bundle bundle) {
   std::mt19937 rng(13);
   std::normal_distribution<double> normal(0.0, 1.0);
   const auto noise = [&](double sigma) -> Eigen::Vector3d {
@@ -50,7 +49,7 @@ Bundle disturbed(Bundle bundle) {
 
 TEST(Bundle, RemovesPlantedNoise) {
   const Bundle truth = exact_bundle();
-  Bundle bundle = disturbed(truth);
+  Bundle bundle = disturbed_bundle(truth);
   BundleOptions options;
   options.max_iterations = 20;
   EXPECT_LT(adjust(camera(), bundle, options), 1e-2);
@@ -66,7 +65,7 @@ TEST(Bundle, RemovesPlantedNoise) {
 }
 
 TEST(Bundle, LeavesHeldCamerasUntouched) {
-  Bundle bundle = disturbed(exact_bundle());
+  Bundle bundle = disturbed_bundle(exact_bundle());
   const Pose held = bundle.cameras[1].T_camera_vo;
   adjust(camera(), bundle, {});
   EXPECT_EQ(bundle.cameras[1].T_camera_vo.translation, held.translation);
@@ -75,7 +74,7 @@ TEST(Bundle, LeavesHeldCamerasUntouched) {
 
 TEST(Bundle, GivesWrongSightsLittleWeight) {
   const Bundle truth = exact_bundle();
-  Bundle bundle = disturbed(truth);
+  Bundle bundle = disturbed_bundle(truth);
   for (std::size_t i = 0; i < bundle.sights.size(); i += 29) bundle.sights[i].pixel.x() += 15.0;
   BundleOptions options;
   options.max_iterations = 20;
@@ -97,8 +96,8 @@ TEST(Bundle, SaysWhenAPointIsBehindACamera) {
 }
 
 TEST(Bundle, RepeatsToTheLastBit) {
-  Bundle a = disturbed(exact_bundle());
-  Bundle b = disturbed(exact_bundle());
+  Bundle a = disturbed_bundle(exact_bundle());
+  Bundle b = disturbed_bundle(exact_bundle());
   adjust(camera(), a, {});
   adjust(camera(), b, {});
   for (std::size_t i = 0; i < a.points_vo.size(); ++i) EXPECT_EQ(a.points_vo[i], b.points_vo[i]);

@@ -4,11 +4,10 @@
 
 #include "odometry/feature/tracker.hpp"
 #include "odometry/feature/two_view.hpp"
+#include "tests/odometry/test_camera.hpp"
 
 namespace overfly::odometry {
 namespace {
-
-PinholeCamera camera() { return {1280, 960, 700.0, 700.0, 639.5, 479.5}; }
 
 /// Three keyframes; point i is seen by keyframe 0 and 1, every third one by keyframe 2 as well.
 Map small_map(int points) {

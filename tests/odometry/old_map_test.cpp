@@ -33,7 +33,7 @@ struct Return {
 };
 
 /// 40 m/s, 200 m above ground; other ground is seen for 5.5 s.
-Return fly(const FeatureParameters& parameters) {
+Return fly_away_and_back(const FeatureParameters& parameters) {
   const SyntheticGround here = SyntheticGround::procedural(1, 512, 1.0, 0.0);
   const SyntheticGround there = SyntheticGround::procedural(2, 512, 1.0, 0.0);
   const auto camera =
@@ -68,7 +68,7 @@ INSTANTIATE_TEST_SUITE_P(Threads, OldMapOf, ::testing::Values(1, 2));
 TEST_P(OldMapOf, GoesOnWhereItsPlaceIsSeenAgain) {
   FeatureParameters parameters;
   parameters.threads = GetParam();
-  const Return flight = fly(parameters);
+  const Return flight = fly_away_and_back(parameters);
   ASSERT_EQ(flight.samples[kLostAt - 1].state, TrackingState::kTracking);
   EXPECT_EQ(flight.samples[kBackAt - 1].map_id, 1);
   const EstimateSample& last = flight.samples.back();
@@ -89,7 +89,7 @@ TEST_P(OldMapOf, GoesOnWhereItsPlaceIsSeenAgain) {
 TEST(OldMap, GivesTheNewMapItsHeight) {
   FeatureParameters parameters;
   parameters.initial_height_m = 200.0;
-  const Return flight = fly(parameters);
+  const Return flight = fly_away_and_back(parameters);
   const EstimateSample& second = flight.samples[kBackAt - 1];
   ASSERT_EQ(second.state, TrackingState::kTracking);
   ASSERT_EQ(second.map_id, 1);

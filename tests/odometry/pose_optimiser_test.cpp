@@ -5,11 +5,10 @@
 #include <random>
 
 #include "odometry/feature/lie.hpp"
+#include "tests/odometry/test_camera.hpp"
 
 namespace overfly::odometry {
 namespace {
-
-PinholeCamera camera() { return {1280, 960, 700.0, 700.0, 639.5, 479.5}; }
 
 struct Scene {
   Pose T_camera_vo{exp_so3({0.3, -0.2, 1.1}), {0.1, -0.05, 0.2}};

@@ -117,7 +117,7 @@ TEST(Rectifier, MasksNoLevelTooSmallToBeLookedAt) {
   EXPECT_TRUE(orb.detect(cv::Mat(480, 640, CV_8U, cv::Scalar(90))).empty());
 }
 
-std::vector<VoEstimate> fly(const SyntheticGround& ground, const CameraModel& camera) {
+std::vector<VoEstimate> fly_lens(const SyntheticGround& ground, const CameraModel& camera) {
   SyntheticFlightOptions options;
   options.speed_m_s = 40.0;
   options.height_m = 200.0;
@@ -140,10 +140,10 @@ std::vector<VoEstimate> fly(const SyntheticGround& ground, const CameraModel& ca
 
 TEST(FeatureOdometry, FliesThroughALensAsThroughAPinhole) {
   const SyntheticGround ground = SyntheticGround::procedural(1, 512, 1.0, 0.0);
-  const auto straight = fly(ground, small_camera());
+  const auto straight = fly_lens(ground, small_camera());
   ASSERT_EQ(straight.back().sample.state, TrackingState::kTracking);
   for (const Distortion& distortion : {barrel(), pincushion()}) {
-    const auto bent = fly(ground, CameraModel(small_camera(), distortion));
+    const auto bent = fly_lens(ground, CameraModel(small_camera(), distortion));
     const EstimateSample& a = straight.back().sample;
     const EstimateSample& b = bent.back().sample;
     ASSERT_EQ(b.state, TrackingState::kTracking) << distortion.k[0];

@@ -8,11 +8,10 @@
 
 #include "odometry/feature/lie.hpp"
 #include "odometry/feature/triangulation.hpp"
+#include "tests/odometry/test_camera.hpp"
 
 namespace overfly::odometry {
 namespace {
-
-PinholeCamera camera() { return {1280, 960, 700.0, 700.0, 639.5, 479.5}; }
 
 struct Pair {
   std::vector<Eigen::Vector2d> first;

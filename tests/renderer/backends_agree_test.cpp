@@ -36,7 +36,7 @@ PinholeCamera camera_640() {
   return PinholeCamera::from_fov(640, 480, rad_from_deg(84.872), FovAxis::kHorizontal).value();
 }
 
-Pose pose_at(double roll_rad, double pitch_rad, double height_m, double east_m = 0.0) {
+Pose tilted_pose(double roll_rad, double pitch_rad, double height_m, double east_m = 0.0) {
   return {R_world_body_from({roll_rad, pitch_rad, 0.7}) * R_body_camera_nadir(),
           {east_m, 20.0, height_m}};
 }
@@ -101,7 +101,7 @@ TEST_F(BackendsAgree, OnNadirAndObliqueViewsHighAndLow) {
                                std::to_string(pitch_rad).substr(0, 3);
       expect(what.c_str(),
              CameraRequest::still(
-                 camera_640(), pose_at(0.2, pitch_rad, height_m), 0, PixelFormat::kGrey8),
+                 camera_640(), tilted_pose(0.2, pitch_rad, height_m), 0, PixelFormat::kGrey8),
              bound_db,
              bound_db);
     }
@@ -110,7 +110,7 @@ TEST_F(BackendsAgree, OnNadirAndObliqueViewsHighAndLow) {
 
 TEST_F(BackendsAgree, WithTheHorizonInTheImage) {
   expect("horizon",
-         CameraRequest::still(camera_640(), pose_at(0.9, 0.1, 300.0), 0, PixelFormat::kGrey8),
+         CameraRequest::still(camera_640(), tilted_pose(0.9, 0.1, 300.0), 0, PixelFormat::kGrey8),
          47.0,
          44.5);
 }
@@ -120,7 +120,7 @@ TEST_F(BackendsAgree, InEveryPixelFormat) {
        {PixelFormat::kRgb8, PixelFormat::kGreyLinear, PixelFormat::kRgbLinear}) {
     const std::string what = "format " + std::to_string(static_cast<int>(format));
     expect(what.c_str(),
-           CameraRequest::still(camera_640(), pose_at(0.1, 0.3, 150.0), 0, format),
+           CameraRequest::still(camera_640(), tilted_pose(0.1, 0.3, 150.0), 0, format),
            50.0,
            50.0);
   }
@@ -128,7 +128,7 @@ TEST_F(BackendsAgree, InEveryPixelFormat) {
 
 TEST_F(BackendsAgree, AtReferenceQualityAndInHaze) {
   CameraRequest request =
-      CameraRequest::still(camera_640(), pose_at(0.1, 0.3, 300.0), 0, PixelFormat::kGrey8);
+      CameraRequest::still(camera_640(), tilted_pose(0.1, 0.3, 300.0), 0, PixelFormat::kGrey8);
   request.quality = RenderQuality::kReference;
   expect("reference", request, 53.0, 52.0);
   request.quality = RenderQuality::kTrilinear;
@@ -142,7 +142,7 @@ TEST_F(BackendsAgree, ThroughEveryLens) {
                                  Distortion{DistortionModel::kEquidistant, {-0.01, 0.002, 0, 0}},
                                  Distortion{DistortionModel::kFov, {0.9}}}) {
     CameraRequest request =
-        CameraRequest::still(camera_640(), pose_at(0.1, 0.1, 300.0), 0, PixelFormat::kGrey8);
+        CameraRequest::still(camera_640(), tilted_pose(0.1, 0.1, 300.0), 0, PixelFormat::kGrey8);
     request.camera = CameraModel(camera_640(), lens);
     expect(to_string(lens.model), request, 47.5, 47.5);
   }
@@ -151,10 +151,11 @@ TEST_F(BackendsAgree, ThroughEveryLens) {
 // OpenGL draws rows in groups that share a pose, the ray-caster gives every row its own.
 TEST_F(BackendsAgree, WithARollingShutterAndMotionBlur) {
   CameraRequest request =
-      CameraRequest::still(camera_640(), pose_at(0.0, 0.1, 300.0), 0, PixelFormat::kGrey8);
-  request.T_world_camera = CameraMotion::from_poses({{0, pose_at(-0.02, 0.1, 300.0)},
-                                                     {40'000'000, pose_at(0.02, 0.1, 300.0, 1.0)}})
-                               .value();
+      CameraRequest::still(camera_640(), tilted_pose(0.0, 0.1, 300.0), 0, PixelFormat::kGrey8);
+  request.T_world_camera =
+      CameraMotion::from_poses(
+          {{0, tilted_pose(-0.02, 0.1, 300.0)}, {40'000'000, tilted_pose(0.02, 0.1, 300.0, 1.0)}})
+          .value();
   request.t_ns = 20'000'000;
   request.readout_ns = 20'000'000;
   expect("rolling shutter", request, 52.0, 52.0);
@@ -166,7 +167,7 @@ TEST_F(BackendsAgree, TheMeasureSeesAQuarterOfAPixel) {
   const double pixel_m = 300.0 / camera_640().fx_px;
   const auto draw = [&](double shift_px) {
     return flat_.raycast->render_camera(
-        camera_640(), pose_at(0.0, 0.0, 300.0, shift_px * pixel_m), 0, PixelFormat::kGrey8);
+        camera_640(), tilted_pose(0.0, 0.0, 300.0, shift_px * pixel_m), 0, PixelFormat::kGrey8);
   };
   const auto a = draw(0.0);
   const auto b = draw(0.25);

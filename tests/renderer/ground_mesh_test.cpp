@@ -17,7 +17,7 @@ namespace {
 
 using overfly::testing::ProceduralGround;
 
-PinholeCamera camera() {
+PinholeCamera vga_camera() {
   return PinholeCamera::from_fov(640, 480, rad_from_deg(84.872), FovAxis::kHorizontal).value();
 }
 
@@ -46,7 +46,7 @@ TEST_F(DrawnGround, HasNoGapsBetweenPatchesOfDifferentSize) {
   for (const double up_m : {30.0, 60.0, 150.0, 500.0}) {
     for (const double yaw_rad : {0.1, 1.3, 2.9, 4.4}) {
       const auto frame = renderer->render_camera(
-          camera(), pose_at(7, -11, up_m, {0.45, 0.05, yaw_rad}), 0, PixelFormat::kGrey8);
+          vga_camera(), pose_at(7, -11, up_m, {0.45, 0.05, yaw_rad}), 0, PixelFormat::kGrey8);
       ASSERT_TRUE(frame.ok()) << frame.error().message;
       EXPECT_EQ(frame->void_fraction, 0.0);
       EXPECT_EQ(std::count(frame->image.data.begin(), frame->image.data.end(), 255),
@@ -61,14 +61,14 @@ TEST_F(DrawnGround, LiesWithinATenthOfAPixelOfTheGround) {
   const auto renderer = renderer_of(tiles);
   for (const RollPitchYaw attitude : {RollPitchYaw{0, 0, 0}, RollPitchYaw{0.7, 0.1, 1.0}}) {
     const Pose pose = pose_at(40, 90, 250, attitude);
-    const View view = View::from(camera(), pose);
-    const auto depth = renderer->render_depth(camera(), pose);
+    const View view = View::from(vga_camera(), pose);
+    const auto depth = renderer->render_depth(vga_camera(), pose);
     ASSERT_TRUE(depth.ok());
     int measured = 0;
     for (int y = 3; y < 480; y += 13) {
       for (int x = 5; x < 640; x += 17) {
         const double depth_m = depth->at(x, y);
-        const Eigen::Vector3d p_camera = depth_m * camera().ray({x, y});
+        const Eigen::Vector3d p_camera = depth_m * vga_camera().ray({x, y});
         const Eigen::Vector3d p = pose * p_camera;
         // Beyond the imagery the mesh is coarser.
         const Eigen::Vector2d map = tiles->map_from_world(p.x(), p.y());
@@ -90,13 +90,13 @@ TEST_F(DrawnGround, EndsAtTheHorizonOfTheRoundEarth) {
   // Level, forward looking: pitch the nadir camera up by 90 deg.
   const double up_m = 400.0;
   const auto frame = renderer->render_camera(
-      camera(), pose_at(0, 0, up_m, {0, 0.5 * kPi, 0}), 0, PixelFormat::kGrey8);
+      vga_camera(), pose_at(0, 0, up_m, {0, 0.5 * kPi, 0}), 0, PixelFormat::kGrey8);
   ASSERT_TRUE(frame.ok());
   int first_ground_row = 0;
   while (frame->image.at(320, first_ground_row) == frame->image.at(320, 0)) ++first_ground_row;
   const double dip_rad = std::sqrt(2.0 * up_m / 6371000.0);
   // Hills of 20 m may lift the horizon by 0.2 px.
-  EXPECT_NEAR(first_ground_row, camera().cy_px + camera().fy_px * std::tan(dip_rad), 1.2);
+  EXPECT_NEAR(first_ground_row, vga_camera().cy_px + vga_camera().fy_px * std::tan(dip_rad), 1.2);
 }
 
 TEST_F(DrawnGround, LooksTheSameFarFromTheOrigin) {
@@ -115,9 +115,11 @@ TEST_F(DrawnGround, LooksTheSameFarFromTheOrigin) {
   const auto far = renderer_of(std::make_shared<ProceduralGround>(options));
   const RollPitchYaw attitude{0.3, 0.1, 0.7};
   const auto a =
-      near->render_camera(camera(), pose_at(12.3, 45.6, 120, attitude), 0, PixelFormat::kGrey8);
-  const auto b = far->render_camera(
-      camera(), pose_at(options.centre_east_m + 12.3, 45.6, 120, attitude), 0, PixelFormat::kGrey8);
+      near->render_camera(vga_camera(), pose_at(12.3, 45.6, 120, attitude), 0, PixelFormat::kGrey8);
+  const auto b = far->render_camera(vga_camera(),
+                                    pose_at(options.centre_east_m + 12.3, 45.6, 120, attitude),
+                                    0,
+                                    PixelFormat::kGrey8);
   ASSERT_TRUE(a.ok() && b.ok());
   int worst = 0;
   for (std::size_t i = 0; i < a->image.data.size(); ++i) {
@@ -132,17 +134,17 @@ TEST_F(DrawnGround, TilesAreReadOnceAndAgainOnlyWhenTheBudgetIsShort) {
   small.tile_cache_bytes = std::size_t{1} << 20U;  // less than one view
   const auto roomy = renderer_of(tiles);
   const Pose here = pose_at(-200, 0, 200, {}), there = pose_at(500, 500, 200, {});
-  const auto first = roomy->render_camera(camera(), here, 0, PixelFormat::kGrey8);
+  const auto first = roomy->render_camera(vga_camera(), here, 0, PixelFormat::kGrey8);
   ASSERT_TRUE(first.ok());
-  ASSERT_TRUE(roomy->render_camera(camera(), there, 0, PixelFormat::kGrey8).ok());
+  ASSERT_TRUE(roomy->render_camera(vga_camera(), there, 0, PixelFormat::kGrey8).ok());
   const int read_once = tiles->tiles_read();
-  ASSERT_TRUE(roomy->render_camera(camera(), here, 0, PixelFormat::kGrey8).ok());
+  ASSERT_TRUE(roomy->render_camera(vga_camera(), here, 0, PixelFormat::kGrey8).ok());
   EXPECT_EQ(tiles->tiles_read(), read_once);
 
   const auto cramped = create_egl_renderer(tiles, small);
   ASSERT_TRUE(cramped.ok());
   for (const Pose& pose : {here, there, here}) {
-    const auto frame = (*cramped)->render_camera(camera(), pose, 0, PixelFormat::kGrey8);
+    const auto frame = (*cramped)->render_camera(vga_camera(), pose, 0, PixelFormat::kGrey8);
     ASSERT_TRUE(frame.ok());
     if (pose.translation == here.translation) {
       EXPECT_EQ(frame->image.data, first->image.data);
@@ -157,7 +159,7 @@ TEST_F(DrawnGround, UnreadableTilesAreAnErrorThatNamesThem) {
   options.failing_level = 0;
   const auto renderer = renderer_of(std::make_shared<ProceduralGround>(options));
   const auto frame =
-      renderer->render_camera(camera(), pose_at(0, 0, 100, {}), 0, PixelFormat::kGrey8);
+      renderer->render_camera(vga_camera(), pose_at(0, 0, 100, {}), 0, PixelFormat::kGrey8);
   ASSERT_FALSE(frame.ok());
   EXPECT_EQ(frame.error().code, ErrorCode::kIo);
   EXPECT_NE(frame.error().message.find("the disk is gone"), std::string::npos);
@@ -173,7 +175,7 @@ TEST_F(DrawnGround, RenderersOnSeveralThreadsDrawTheSame) {
     threads.emplace_back([&image, &pose, tiles] {
       // Contexts come and go while others draw.
       (void)renderer_of(tiles);
-      auto frame = renderer_of(tiles)->render_camera(camera(), pose, 0, PixelFormat::kGrey8);
+      auto frame = renderer_of(tiles)->render_camera(vga_camera(), pose, 0, PixelFormat::kGrey8);
       if (frame.ok()) image = std::move(frame->image);
     });
   }

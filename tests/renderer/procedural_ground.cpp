@@ -100,11 +100,11 @@ Result<terrain::Tile> ProceduralGround::tile(const TileId& id) const {
     return Error{ErrorCode::kIo, "painted.tif: the disk is gone"};
   }
   ++tiles_read_;
-  constexpr int kSide = terrain::kTileTexels + 2 * terrain::kTileBorder;
-  terrain::Tile tile{Image(kSide, kSide, 3), Image(kSide, kSide, 1)};
+  terrain::Tile tile{Image(terrain::kTileSide, terrain::kTileSide, 3),
+                     Image(terrain::kTileSide, terrain::kTileSide, 1)};
   const double texel_m = std::ldexp(grid_.texel_m, id.level);
-  for (int row = 0; row < kSide; ++row) {
-    for (int column = 0; column < kSide; ++column) {
+  for (int row = 0; row < terrain::kTileSide; ++row) {
+    for (int column = 0; column < terrain::kTileSide; ++column) {
       const double x_m = grid_.left_x_m + id.col * grid_.tile_m(id.level) +
                          (column - terrain::kTileBorder + 0.5) * texel_m;
       const double y_m = grid_.top_y_m - id.row * grid_.tile_m(id.level) -

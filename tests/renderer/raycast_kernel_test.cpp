@@ -10,11 +10,10 @@
 namespace overfly::renderer::raycast {
 namespace {
 
-constexpr int kSide = terrain::kTileTexels + 2 * terrain::kTileBorder;
-
 PackedTile noise_tile(PixelFormat format) {
   std::mt19937 random(7);
-  terrain::Tile tile{Image(kSide, kSide, 3), Image(kSide, kSide, 1)};
+  terrain::Tile tile{Image(terrain::kTileSide, terrain::kTileSide, 3),
+                     Image(terrain::kTileSide, terrain::kTileSide, 1)};
   for (std::uint8_t& value : tile.rgb.data) value = static_cast<std::uint8_t>(random());
   for (std::uint8_t& value : tile.valid.data) value = 255;
   return PackedTile::from(tile_pixels_from(tile, format));
@@ -28,8 +27,8 @@ TexelBlock random_block(std::mt19937& random) {
   TexelBlock block;
   block.columns = std::uniform_int_distribution<int>(1, kBlockSide)(random);
   block.rows = std::uniform_int_distribution<int>(1, kBlockSide)(random);
-  block.u0 = in(-20.0, kSide + 20.0);
-  block.v0 = in(-20.0, kSide + 20.0);
+  block.u0 = in(-20.0, terrain::kTileSide + 20.0);
+  block.v0 = in(-20.0, terrain::kTileSide + 20.0);
   block.inverse_depth = {in(0.002, 0.01), in(-1e-5, 1e-5), in(-1e-5, 1e-5), in(-1e-7, 1e-7)};
   for (Bilinear4* numerator : {&block.numerator_u, &block.numerator_v}) {
     *numerator = {in(-0.1, 0.1), in(-0.02, 0.02), in(-0.02, 0.02), in(-1e-5, 1e-5)};

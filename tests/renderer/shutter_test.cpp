@@ -33,7 +33,7 @@ std::shared_ptr<ProceduralGround> striped_ground() {
   return std::make_shared<ProceduralGround>(options);
 }
 
-Pose pose_at(double roll_rad, double east_m) {
+Pose rolled_pose(double roll_rad, double east_m) {
   return {R_world_body_from({roll_rad, 0.0, 0.0}) * R_body_camera_nadir(), {east_m, 0.0, kHeightM}};
 }
 
@@ -92,7 +92,7 @@ class Shutter : public ::testing::TestWithParam<const char*> {
 
 TEST_P(Shutter, StreaksAreSpeedTimesExposureTimesFocalLengthOverHeight) {
   for (const double speed_m_s : {25.0, 60.0}) {
-    const auto flight = [&](double s) { return pose_at(0.0, speed_m_s * s); };
+    const auto flight = [&](double s) { return rolled_pose(0.0, speed_m_s * s); };
     const std::vector<StampedPose> poses{{0, flight(-0.05)}, {100'000'000, flight(0.05)}};
     for (const std::int64_t exposure_ns : {40'000'000LL, 100'000'000LL}) {
       const RadianceImage sharp = draw(poses, 0, 0);
@@ -112,8 +112,8 @@ TEST_P(Shutter, StreaksAreSpeedTimesExposureTimesFocalLengthOverHeight) {
 TEST_P(Shutter, SkewIsRateTimesReadoutTimesFocalLengthAndGrowsOffTheAxis) {
   constexpr double kRateRadS = 0.6;
   constexpr std::int64_t kReadoutNs = 30'000'000;
-  const std::vector<StampedPose> poses{{0, pose_at(-0.05 * kRateRadS, 0.0)},
-                                       {100'000'000, pose_at(0.05 * kRateRadS, 0.0)}};
+  const std::vector<StampedPose> poses{{0, rolled_pose(-0.05 * kRateRadS, 0.0)},
+                                       {100'000'000, rolled_pose(0.05 * kRateRadS, 0.0)}};
   const RadianceImage image = draw(poses, 0, kReadoutNs);
   for (const int edge : {0, 1, 2, 3, -3}) {
     const double x_px = kFocalPx * kEdgesM * edge / kHeightM;

@@ -53,9 +53,9 @@ class Ramp final : public HeightQuery {
   double slope_;
 };
 
-CameraRequest moving_request(const CameraModel& camera,
-                             std::int64_t t_ns,
-                             std::int64_t readout_ns) {
+CameraRequest rolling_request(const CameraModel& camera,
+                              std::int64_t t_ns,
+                              std::int64_t readout_ns) {
   // 65 deg/s of roll, 30 deg/s of yaw, 25 m/s; linear between poses 1 ms apart.
   std::vector<StampedPose> poses;
   for (std::int64_t at_ns = t_ns - 40'000'000; at_ns <= t_ns + 40'000'000; at_ns += 1'000'000) {
@@ -91,7 +91,7 @@ TEST(WorldPoints, LieOnTheRampThroughLensAndRollingShutter) {
   const Ramp ramp(0.2);
   for (const CameraModel& camera : {CameraModel(small_pinhole()), bent_camera()}) {
     for (const std::int64_t readout_ns : {std::int64_t{0}, std::int64_t{30'000'000}}) {
-      const CameraRequest request = moving_request(camera, 1'000'000'000, readout_ns);
+      const CameraRequest request = rolling_request(camera, 1'000'000'000, readout_ns);
       const PixelRays rays(camera);
       DepthImage depth = ramp.depth(rays, request);
       depth.at(7, 8) = kSky;
@@ -153,8 +153,8 @@ TEST(OpticalFlow, IsSpeedTimesFocalLengthOverHeightAboveFlatGround) {
 TEST(OpticalFlow, SolvesForTheRowThatSeesThePoint) {
   const Ramp ramp(0.1);
   const CameraModel camera = bent_camera();
-  const CameraRequest first = moving_request(camera, 1'000'000'000, 30'000'000);
-  const CameraRequest next = moving_request(camera, 1'020'000'000, 30'000'000);
+  const CameraRequest first = rolling_request(camera, 1'000'000'000, 30'000'000);
+  const CameraRequest next = rolling_request(camera, 1'020'000'000, 30'000'000);
   const PixelRays rays(camera);
   const PointImage points = world_points(rays, first, ramp.depth(rays, first));
   const VectorImage flow = optical_flow(points, next, ramp.depth(rays, next));

@@ -35,11 +35,11 @@ class AnalyticTiles final : public terrain::TileSource {
   }
   /// Of coarser levels the texel in the middle stands for all: enough where texels are constant.
   [[nodiscard]] Result<terrain::Tile> tile(const terrain::TileId& id) const override {
-    constexpr int kSide = terrain::kTileTexels + 2 * terrain::kTileBorder;
-    terrain::Tile tile{Image(kSide, kSide, 3), Image(kSide, kSide, 1)};
+    terrain::Tile tile{Image(terrain::kTileSide, terrain::kTileSide, 3),
+                       Image(terrain::kTileSide, terrain::kTileSide, 1)};
     const int last = grid_.cols * terrain::kTileTexels;
-    for (int y = 0; y < kSide; ++y) {
-      for (int x = 0; x < kSide; ++x) {
+    for (int y = 0; y < terrain::kTileSide; ++y) {
+      for (int x = 0; x < terrain::kTileSide; ++x) {
         const int column =
             (id.col * terrain::kTileTexels + x - terrain::kTileBorder) * (1 << id.level);
         const int row =

@@ -181,7 +181,8 @@ std::vector<fs::path> write_layer(const fs::path& folder,
   return {file, other};
 }
 
-WorldSpec spec_of(const std::vector<fs::path>& pictures, const std::vector<fs::path>& heights) {
+WorldSpec spec_of_layers(const std::vector<fs::path>& pictures,
+                         const std::vector<fs::path>& heights) {
   WorldSpec spec;
   for (const fs::path& file : pictures) spec.imagery.emplace_back().file = file;
   for (const fs::path& file : heights) {
@@ -246,7 +247,7 @@ TEST_P(AcrossTheAntimeridian, PicturesLieAtTheirPlaceHoweverTheyCount) {
   const auto heights = layer(Kind::kHeights, "east_of_180");
   for (const char* way : kWays) {
     SCOPED_TRACE(way);
-    const auto world = open_world(spec_of(layer(Kind::kPicture, way), heights));
+    const auto world = open_world(spec_of_layers(layer(Kind::kPicture, way), heights));
     ASSERT_TRUE(world) << world.error().message;
     EXPECT_THAT(world->warnings, IsEmpty());
     expect_right_places(*world, GetParam());
@@ -259,14 +260,14 @@ TEST_P(AcrossTheAntimeridian, HeightsLieAtTheirPlaceHoweverTheyCount) {
     for (const char* way :
          {"west_of_-180", "utm_60", "utm_1", "mercator", "globe_from_-180", "globe_from_0"}) {
       SCOPED_TRACE(std::string(way) + " under " + of_picture);
-      const auto world = open_world(spec_of(picture, layer(Kind::kHeights, way)));
+      const auto world = open_world(spec_of_layers(picture, layer(Kind::kHeights, way)));
       ASSERT_TRUE(world) << world.error().message;
       EXPECT_THAT(world->warnings, IsEmpty());
       expect_right_places(*world, GetParam());
     }
     // Two files are laid onto one grid, whose corners no file has; from the last post of one to the
     // first of the other each goes on with its edge's height: half a post of slope.
-    const auto world = open_world(spec_of(picture, layer(Kind::kHeights, "split")));
+    const auto world = open_world(spec_of_layers(picture, layer(Kind::kHeights, "split")));
     ASSERT_TRUE(world) << world.error().message;
     EXPECT_THAT(world->warnings, ElementsAre(HasSubstr("merged elevation: ")));
     expect_right_places(*world, GetParam(), 0.5 * 5e-4 * 2000.0 + 0.02);
@@ -284,7 +285,7 @@ TEST(Antimeridian, BoundsGoFromWestToEastAcrossIt) {
   const auto heights = write_layer(folder.path(), kFiji, Kind::kHeights, "utm_60");
   for (const char* way : {"east_of_180", "west_of_-180", "split"}) {
     const auto pictures = write_layer(folder.path(), kFiji, Kind::kPicture, way);
-    const auto world = open_world(spec_of(pictures, heights));
+    const auto world = open_world(spec_of_layers(pictures, heights));
     ASSERT_TRUE(world) << world.error().message;
     const std::string text = describe(*world);
     const std::size_t at = text.find("bounds: ");
@@ -315,7 +316,7 @@ TEST(Antimeridian, AWorldBesideItOpens) {
     write_degrees(picture, kFiji, Kind::kPicture, lon_deg - 0.01, 0.02);
     const fs::path heights = folder.path() / "heights.tif";
     write_degrees(heights, kFiji, Kind::kHeights, lon_deg - 0.04, 0.08);
-    const auto world = open_world(spec_of({picture}, {heights}));
+    const auto world = open_world(spec_of_layers({picture}, {heights}));
     ASSERT_TRUE(world) << world.error().message;
     EXPECT_THAT(world->warnings, IsEmpty());
     EXPECT_NEAR(world->spec.origin->alt_ellipsoid_m,
@@ -331,7 +332,7 @@ TEST(Antimeridian, AFileBeyondItsZoneIsNotFarOutside) {
   const TemporaryFolder folder;
   for (const char* way : {"utm_60", "utm_1"}) {
     const auto pictures = write_layer(folder.path(), kChukotka, Kind::kPicture, way);
-    WorldSpec spec = spec_of(pictures, {});
+    WorldSpec spec = spec_of_layers(pictures, {});
     spec.ground_height_m = 10.0;
     const auto world = open_world(spec);
     ASSERT_TRUE(world) << world.error().message;
@@ -341,8 +342,9 @@ TEST(Antimeridian, AFileBeyondItsZoneIsNotFarOutside) {
 
 TEST(Antimeridian, AWorldAcrossItIsBuiltAndFlownFromItsCache) {
   const TemporaryFolder folder;
-  WorldSpec spec = spec_of(write_layer(folder.path(), kFiji, Kind::kPicture, "split"),
-                           write_layer(folder.path(), kFiji, Kind::kHeights, "globe_from_-180"));
+  WorldSpec spec =
+      spec_of_layers(write_layer(folder.path(), kFiji, Kind::kPicture, "split"),
+                     write_layer(folder.path(), kFiji, Kind::kHeights, "globe_from_-180"));
   spec.cache_folder = folder.path() / "world.cache";
   const auto built = build_world(spec);
   ASSERT_TRUE(built) << built.error().message;

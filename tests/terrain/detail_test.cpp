@@ -20,8 +20,6 @@ namespace {
 
 using testing::TemporaryFolder;
 
-constexpr int kSide = kTileTexels + 2 * kTileBorder;
-
 std::shared_ptr<const TileSource> detailed(const std::shared_ptr<const TileSource>& tiles,
                                            const DetailOptions& options) {
   auto result = with_detail(tiles, options);
@@ -92,7 +90,7 @@ TEST_F(DetailedWorld, NeighboursAgreeInTheirBordersExactly) {
     const Tile east = read(*fine_, {id.level, id.col + 1, id.row});
     const Tile south = read(*fine_, {id.level, id.col, id.row + 1});
     int different = 0;
-    for (int along = 0; along < kSide; ++along) {
+    for (int along = 0; along < kTileSide; ++along) {
       for (int across = 0; across < 2 * kTileBorder; ++across) {
         for (int c = 0; c < 3; ++c) {
           different += tile.rgb.at(kTileTexels + across, along, c) != east.rgb.at(across, along, c);

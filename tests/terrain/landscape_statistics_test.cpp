@@ -28,7 +28,7 @@ struct Statistics {
   double poorest_7 = 0.0;  ///< 5th percentile
 };
 
-cv::Mat grey_of(const Image& rgb) {
+cv::Mat grey_levels_of(const Image& rgb) {
   cv::Mat grey(rgb.height_px, rgb.width_px, CV_8U);
   for (int y = 0; y < rgb.height_px; ++y) {
     for (int x = 0; x < rgb.width_px; ++x) {
@@ -41,7 +41,9 @@ cv::Mat grey_of(const Image& rgb) {
 }
 
 /// Power by radial frequency (cycles per crop), Hann-windowed, added to `power`.
-void add_spectrum(const cv::Mat& grey, std::vector<double>& power, std::vector<double>& count) {
+void add_radial_spectrum(const cv::Mat& grey,
+                         std::vector<double>& power,
+                         std::vector<double>& count) {
   cv::Mat windowed(kCropPx, kCropPx, CV_64F);
   const double mean = cv::mean(grey)[0];
   for (int y = 0; y < kCropPx; ++y) {
@@ -77,8 +79,8 @@ Statistics measure(const std::vector<Image>& crops) {
   std::vector<double> corners_20;
   std::vector<double> corners_7;
   for (const Image& crop : crops) {
-    const cv::Mat grey = grey_of(crop);
-    add_spectrum(grey, power, count);
+    const cv::Mat grey = grey_levels_of(crop);
+    add_radial_spectrum(grey, power, count);
     std::vector<cv::KeyPoint> corners;
     cv::FAST(grey, corners, 20, true);
     corners_20.push_back(static_cast<double>(corners.size()));

@@ -19,7 +19,6 @@ namespace {
 using testing::AnalyticTiles;
 
 constexpr int kGrey = 100;
-constexpr int kSide = kTileTexels + 2 * kTileBorder;
 
 double linear_from_srgb(int value) {
   const double v = value / 255.0;
@@ -212,7 +211,7 @@ TEST_F(LitWorld, NeighboursAgreeInTheirBordersExactly) {
     const Tile east = *lit_->tile({level, 1, 0});
     const Tile south = *lit_->tile({level, 0, 1});
     int different = 0;
-    for (int along = 0; along < kSide; ++along) {
+    for (int along = 0; along < kTileSide; ++along) {
       for (int across = 0; across < 2 * kTileBorder; ++across) {
         for (int c = 0; c < 3; ++c) {
           different += tile.rgb.at(kTileTexels + across, along, c) != east.rgb.at(across, along, c);

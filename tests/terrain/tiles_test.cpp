@@ -13,8 +13,6 @@ namespace {
 using testing::GeoTiff;
 using testing::TemporaryFolder;
 
-constexpr int kSide = kTileTexels + 2 * kTileBorder;
-
 World open_images(const std::vector<std::filesystem::path>& files) {
   WorldSpec spec;
   for (const auto& file : files) spec.imagery.push_back({file, "", {}});
@@ -45,7 +43,7 @@ void expect_borders_agree(const World& world, int level) {
   const Tile east = read(world, level, 1, 0);
   const Tile south = read(world, level, 0, 1);
   int different = 0;
-  for (int along = 0; along < kSide; ++along) {
+  for (int along = 0; along < kTileSide; ++along) {
     for (int across = 0; across < 2 * kTileBorder; ++across) {
       for (int c = 0; c < 3; ++c) {
         different += tile.rgb.at(kTileTexels + across, along, c) != east.rgb.at(across, along, c);
@@ -121,8 +119,8 @@ TEST(Tiles, OfANativeGridAreTheFilesTexels) {
   EXPECT_EQ(grid.rows, 2);
   EXPECT_EQ(grid.levels, 2);
   const Tile tile = read(world, 0, 1, 1);
-  for (int y = 0; y < kSide; ++y) {
-    for (int x = 0; x < kSide; ++x) {
+  for (int y = 0; y < kTileSide; ++y) {
+    for (int x = 0; x < kTileSide; ++x) {
       const int px = kTileTexels - kTileBorder + x;
       const int py = kTileTexels - kTileBorder + y;
       const bool inside = px < 700 && py < 600;

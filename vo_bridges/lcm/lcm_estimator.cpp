@@ -262,14 +262,16 @@ void LcmEstimator::reset() {
   poses_ = {};
 }
 
-Error bad(const std::string& field, const std::string& value, const std::string& limit) {
+Error invalid_argument(const std::string& field,
+                       const std::string& value,
+                       const std::string& limit) {
   return {ErrorCode::kInvalidArgument, field + " = " + value + ": must be " + limit};
 }
 
 Status check_timeout(const std::string& name, double time_s) {
   constexpr double kLongestS = 86400.0;
   if (time_s > 0.0 && time_s <= kLongestS) return {};
-  return bad(name, std::to_string(time_s), "in (0, 86400]");
+  return invalid_argument(name, std::to_string(time_s), "in (0, 86400]");
 }
 
 Status check(const LcmEstimatorOptions& options, const LcmUrl& url) {
@@ -278,7 +280,7 @@ Status check(const LcmEstimatorOptions& options, const LcmUrl& url) {
         return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '/';
       });
   if (!plain || options.channel_prefix.size() > kLongestPrefix) {
-    return bad(
+    return invalid_argument(
         "channel_prefix",
         "\"" + options.channel_prefix + "\"",
         "at most " + std::to_string(kLongestPrefix) + " letters, digits, \"_\", \"-\" and \"/\"");
@@ -292,10 +294,11 @@ Status check(const LcmEstimatorOptions& options, const LcmUrl& url) {
   if (url.provider != "file") return {};
   const auto mode = url.options.find("mode");
   if (mode == url.options.end() || mode->second != "w") {
-    return bad("url", options.url, "file:///PATH?mode=w: a log that is played takes no images");
+    return invalid_argument(
+        "url", options.url, "file:///PATH?mode=w: a log that is played takes no images");
   }
   if (options.lockstep) {
-    return bad("url", options.url, "another one in lockstep: a log answers nothing");
+    return invalid_argument("url", options.url, "another one in lockstep: a log answers nothing");
   }
   return {};
 }

@@ -10,7 +10,7 @@ namespace {
 /// How far a quaternion's norm may be from 1: four decimals of each part, as in many text files.
 constexpr double kUnitTolerance = 1e-3;
 
-Error bad(const std::string& field, const std::string& value, const std::string& limit) {
+Error unreadable(const std::string& field, const std::string& value, const std::string& limit) {
   return {ErrorCode::kUnreadable, field + " = " + value + ": must be " + limit};
 }
 
@@ -29,12 +29,12 @@ std::optional<TrackingState> state_from(std::int8_t state) {
 
 Result<Pose> pose_from(const overfly_lcm::pose_t& message) {
   const Eigen::Map<const Eigen::Vector3d> position(message.position);
-  if (!position.allFinite()) return bad("position", "not finite", "finite");
+  if (!position.allFinite()) return unreadable("position", "not finite", "finite");
   const double* const q = message.orientation;
   const Eigen::Quaterniond rotation(q[3], q[0], q[1], q[2]);
   const double norm = rotation.norm();
   if (!(std::abs(norm - 1.0) <= kUnitTolerance)) {
-    return bad("norm of orientation", std::to_string(norm), "1 (x y z w)");
+    return unreadable("norm of orientation", std::to_string(norm), "1 (x y z w)");
   }
   return Pose{rotation.normalized(), position};
 }
@@ -104,9 +104,9 @@ Result<VoEstimate> estimate_from(const overfly_lcm::pose_t& message) {
   estimate.sample.frame = message.frame;
   estimate.sample.t_ns = message.t_ns;
   const std::optional<TrackingState> state = state_from(message.state);
-  if (!state) return bad("state", std::to_string(message.state), "0, 1 or 2");
+  if (!state) return unreadable("state", std::to_string(message.state), "0, 1 or 2");
   estimate.sample.state = *state;
-  if (message.map_id < 0) return bad("map_id", std::to_string(message.map_id), "0 or more");
+  if (message.map_id < 0) return unreadable("map_id", std::to_string(message.map_id), "0 or more");
   estimate.sample.map_id = message.map_id;
   if (*state == TrackingState::kTracking) {
     const Result<Pose> pose = pose_from(message);
@@ -134,17 +134,18 @@ Result<DebugView> debug_view_from(const overfly_lcm::debug_t& message,
   }
   if (message.size == 0) return view;
   if (message.width < 1 || message.width > largest_width_px) {
-    return bad(
+    return unreadable(
         "width", std::to_string(message.width), "in [1, " + std::to_string(largest_width_px) + "]");
   }
   if (message.height < 1 || message.height > largest_height_px) {
-    return bad("height",
-               std::to_string(message.height),
-               "in [1, " + std::to_string(largest_height_px) + "]");
+    return unreadable("height",
+                      std::to_string(message.height),
+                      "in [1, " + std::to_string(largest_height_px) + "]");
   }
   Image image(message.width, message.height, 3);
   if (message.data.size() != image.data.size()) {
-    return bad("size", std::to_string(message.size), std::to_string(image.data.size()) + " (RGB)");
+    return unreadable(
+        "size", std::to_string(message.size), std::to_string(image.data.size()) + " (RGB)");
   }
   image.data = message.data;
   view.image = std::move(image);

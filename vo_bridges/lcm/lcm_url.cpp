@@ -67,7 +67,7 @@ Status check_multicast(const std::string& text, const LcmUrl& url) {
   return check_integer(text, url, "recv_buf_size", 1, INT32_MAX);
 }
 
-Status check(const std::string& text, const LcmUrl& url) {
+Status check_url(const std::string& text, const LcmUrl& url) {
   const auto provider = kOptionsOfProvider.find(url.provider);
   if (provider == kOptionsOfProvider.end()) {
     return bad(text, "provider " + url.provider + ": must be udpm, memq or file");
@@ -128,7 +128,7 @@ Result<LcmUrl> parse_lcm_url(const std::string& text) {
     }
     rest.resize(last);
   }
-  if (Status status = check(text, url); !status) return status.error();
+  if (Status status = check_url(text, url); !status) return status.error();
   return url;
 }
 

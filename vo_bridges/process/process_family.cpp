@@ -14,6 +14,8 @@
 #include <system_error>
 #include <thread>
 
+#include "vo_bridges/process/proc_files.hpp"
+
 namespace overfly::process {
 
 namespace {
@@ -22,10 +24,6 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kMemberLimit = 65536;
 constexpr std::size_t kEnvironmentLimitBytes = 4'000'000;
-
-std::filesystem::path folder_of(int pid) {
-  return std::filesystem::path("/proc") / std::to_string(pid);
-}
 
 struct ProcessStat {
   char state = 'X';
@@ -37,22 +35,16 @@ struct ProcessStat {
 
 /// Fields 3, 5 and 6 of stat (proc(5)); empty when there is no such process.
 std::optional<ProcessStat> stat_of(int pid) {
-  std::ifstream file(folder_of(pid) / "stat");
-  std::string text;
-  if (!std::getline(file, text)) return std::nullopt;
-  // The second field is the program's name in parentheses, and may hold anything.
-  const std::size_t name_end = text.rfind(')');
-  if (name_end == std::string::npos) return std::nullopt;
-  std::istringstream fields(text.substr(name_end + 1));
+  std::optional<std::istringstream> fields = stat_after_name(pid);
+  if (!fields) return std::nullopt;
   ProcessStat stat;
   int parent = 0;
-  fields >> stat.state >> parent >> stat.group >> stat.session;
-  if (!fields) return std::nullopt;
+  if (!(*fields >> stat.state >> parent >> stat.group >> stat.session)) return std::nullopt;
   return stat;
 }
 
 bool has_in_environment(int pid, const std::string& entry) {
-  std::ifstream file(folder_of(pid) / "environ", std::ios::binary);
+  std::ifstream file(proc_folder(pid) / "environ", std::ios::binary);
   std::size_t read = 0;
   for (std::string text; std::getline(file, text, '\0') && read < kEnvironmentLimitBytes;) {
     if (text == entry) return true;
@@ -73,7 +65,7 @@ std::string fresh_mark() {
 std::vector<int> children_of(int pid) {
   std::vector<int> pids;
   std::error_code failure;
-  std::filesystem::directory_iterator tasks(folder_of(pid) / "task", failure);
+  std::filesystem::directory_iterator tasks(proc_folder(pid) / "task", failure);
   for (; !failure && tasks != std::filesystem::directory_iterator(); tasks.increment(failure)) {
     std::ifstream file(tasks->path() / "children");
     for (int child = 0; file >> child && pids.size() < kMemberLimit;) pids.push_back(child);

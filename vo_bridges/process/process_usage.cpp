@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "vo_bridges/process/proc_files.hpp"
 #include "vo_bridges/process/process_family.hpp"
 
 namespace overfly::process {
@@ -17,34 +18,25 @@ namespace {
 
 constexpr std::size_t kProcessLimit = 256;
 
-std::filesystem::path folder_of(int pid) {
-  return std::filesystem::path("/proc") / std::to_string(pid);
-}
-
 /// Seconds of utime, stime, cutime and cstime: fields 14 to 17 of stat (proc(5)).
 std::optional<double> cpu_s_of(int pid) {
-  std::ifstream file(folder_of(pid) / "stat");
-  std::string text;
-  if (!std::getline(file, text)) return std::nullopt;
-  // The second field is the program's name in parentheses, and may hold anything.
-  const std::size_t name_end = text.rfind(')');
-  if (name_end == std::string::npos) return std::nullopt;
-  std::istringstream fields(text.substr(name_end + 1));
+  std::optional<std::istringstream> fields = stat_after_name(pid);
+  if (!fields) return std::nullopt;
   std::string ignored;
-  for (int field = 3; field < 14; ++field) fields >> ignored;
+  for (int field = 3; field < 14; ++field) *fields >> ignored;
   double ticks = 0.0;
   for (int field = 14; field <= 17; ++field) {
     double value = 0.0;
-    fields >> value;
+    *fields >> value;
     ticks += value;
   }
-  if (!fields) return std::nullopt;
+  if (!*fields) return std::nullopt;
   return ticks / static_cast<double>(::sysconf(_SC_CLK_TCK));
 }
 
 /// VmHWM; empty for a process that has ended but was not waited for.
 std::optional<double> peak_memory_mb_of(int pid) {
-  std::ifstream file(folder_of(pid) / "status");
+  std::ifstream file(proc_folder(pid) / "status");
   for (std::string line; std::getline(file, line);) {
     double kib = 0.0;
     if (line.starts_with("VmHWM:") && std::istringstream(line.substr(6)) >> kib) {

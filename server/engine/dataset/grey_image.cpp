@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/file_text.hpp"
+#include "core/lower_case.hpp"
 #include "server/engine/camera_shot.hpp"
 #include "server/engine/jpeg.hpp"
 #include "terrain/image_file.hpp"
@@ -99,10 +100,7 @@ Result<Image> read_grey_image(const fs::path& file, int sample_bits) {
 }
 
 bool is_image_name(const fs::path& file) {
-  std::string ending = file.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) {
-    return static_cast<char>(std::tolower(c));
-  });
+  const std::string ending = lower_case(file.extension().string());
   constexpr std::array<const char*, 5> kEndings{".png", ".jpg", ".jpeg", ".pgm", ".ppm"};
   return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
 }

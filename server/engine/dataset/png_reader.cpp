@@ -33,7 +33,8 @@ Result<Json> camera_entry(const fs::path& path, const std::string& name) {
 }
 
 /// The columns that are needed, by their names in the first line; from 1.
-Result<std::map<std::string, std::size_t>> columns_of(const FieldFile& file, const fs::path& path) {
+Result<std::map<std::string, std::size_t>> named_columns(const FieldFile& file,
+                                                         const fs::path& path) {
   std::map<std::string, std::size_t> columns;
   if (file.lines().empty()) return Error{ErrorCode::kUnreadable, path.string() + ": is empty"};
   const FieldLine& header = file.lines().front();
@@ -48,11 +49,11 @@ Result<std::map<std::string, std::size_t>> columns_of(const FieldFile& file, con
   return columns;
 }
 
-Status list_images(const FieldFile& file,
-                   const fs::path& path,
-                   const fs::path& folder,
-                   std::map<std::string, std::size_t>& columns,
-                   std::vector<DatasetImage>& images) {
+Status list_rows(const FieldFile& file,
+                 const fs::path& path,
+                 const fs::path& folder,
+                 std::map<std::string, std::size_t>& columns,
+                 std::vector<DatasetImage>& images) {
   const std::size_t count = file.lines().front().fields.size();
   for (auto line = file.lines().begin() + 1; line != file.lines().end(); ++line) {
     if (Status status = file.expect_fields(*line, count); !status) return status;
@@ -93,9 +94,9 @@ Result<ListedDataset> read_png_export(const DatasetOptions& options) {
   const fs::path path = options.folder / (listed.dataset.camera_name + ".csv");
   const Result<FieldFile> file = FieldFile::read(path);
   if (!file) return file.error();
-  auto columns = columns_of(*file, path);
+  auto columns = named_columns(*file, path);
   if (!columns) return columns.error();
-  Status status = list_images(*file, path, options.folder, *columns, listed.dataset.images);
+  Status status = list_rows(*file, path, options.folder, *columns, listed.dataset.images);
   if (!status) return status.error();
   return listed;
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/barrier.hpp"
+#include "core/cancel.hpp"
 #include "core/trajectory_io.hpp"
 #include "server/engine/export/export_text.hpp"
 #include "server/engine/jpeg.hpp"
@@ -46,7 +47,7 @@ class Pass {
     if (Status status = prepare(); !status) return status.error();
     const double cpu_to_get_ready_s = port_.resource_use().value_or(ResourceUse{}).cpu_s;
     for (std::size_t i = 0; i < dataset_.images.size() && !crashed_; ++i) {
-      if (options_.cancel != nullptr && options_.cancel->load()) {
+      if (is_cancelled(options_.cancel)) {
         result_.cancelled = true;
         break;
       }

@@ -48,10 +48,10 @@ Result<std::vector<double>> numbers_from(const FieldFile& file,
   return values;
 }
 
-Result<Distortion> distortion_of(const FieldFile& file,
-                                 const FieldLine& line,
-                                 const Lens& lens,
-                                 const std::vector<double>& values) {
+Result<Distortion> lens_distortion(const FieldFile& file,
+                                   const FieldLine& line,
+                                   const Lens& lens,
+                                   const std::vector<double>& values) {
   Distortion distortion;
   const bool zero = lens.coefficients == 1 && values[4] == 0.0;
   if (lens.model == DistortionModel::kNone && !zero) {
@@ -92,7 +92,7 @@ Result<CameraModel> read_tum_mono_camera(const std::filesystem::path& path) {
     pinhole.cx_px = pinhole.cx_px * *width - 0.5;
     pinhole.cy_px = pinhole.cy_px * *height - 0.5;
   }
-  const Result<Distortion> distortion = distortion_of(*file, first, *lens, *values);
+  const Result<Distortion> distortion = lens_distortion(*file, first, *lens, *values);
   if (!distortion) return distortion.error();
   const CameraModel camera(pinhole, *distortion);
   if (Status valid = camera.validate(); !valid) {

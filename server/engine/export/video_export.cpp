@@ -1,11 +1,12 @@
 #include "server/engine/export/video_export.hpp"
 
+#include "core/cancel.hpp"
 #include "server/engine/export/frame_sequence.hpp"
 
 namespace overfly::engine {
 namespace {
 
-Status check(const VideoOptions& options) {
+Status check_video_options(const VideoOptions& options) {
   std::error_code failed;
   if (std::filesystem::exists(std::filesystem::symlink_status(options.file, failed))) {
     return Error{ErrorCode::kConflict, options.file.string() + ": exists already"};
@@ -16,7 +17,7 @@ Status check(const VideoOptions& options) {
 }  // namespace
 
 Result<VideoSummary> export_video(const ExportSource& source, const VideoOptions& options) {
-  if (Status status = check(options); !status) return status.error();
+  if (Status status = check_video_options(options); !status) return status.error();
   FrameMakerOptions making;
   making.renderer_factory = options.renderer_factory;
   making.cancel = options.cancel;
@@ -30,7 +31,7 @@ Result<VideoSummary> export_video(const ExportSource& source, const VideoOptions
   VideoSummary summary;
   summary.attribution = (*frames)->maker().world().tiles->attribution();
   while (true) {
-    if (options.cancel != nullptr && options.cancel->load()) {
+    if (is_cancelled(options.cancel)) {
       summary.cancelled = true;
       break;
     }

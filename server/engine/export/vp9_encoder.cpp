@@ -17,7 +17,7 @@ Error refused(const char* field, int value, const std::string& limit) {
           std::string("video.") + field + " = " + std::to_string(value) + ": must be " + limit};
 }
 
-Status check(const VideoSettings& settings) {
+Status check_settings(const VideoSettings& settings) {
   for (const auto& [field, value] :
        {std::pair{"width_px", settings.width_px}, {"height_px", settings.height_px}}) {
     if (value < 16 || value > 16384 || value % 2 != 0) {
@@ -96,7 +96,7 @@ Vp9Encoder::Vp9Encoder(Vp9Encoder&&) noexcept = default;
 Vp9Encoder& Vp9Encoder::operator=(Vp9Encoder&&) noexcept = default;
 
 Result<Vp9Encoder> Vp9Encoder::open(const VideoSettings& settings) {
-  if (Status status = check(settings); !status) return status.error();
+  if (Status status = check_settings(settings); !status) return status.error();
   auto state = std::make_unique<State>();
   state->settings = settings;
   vpx_codec_enc_cfg_t config;

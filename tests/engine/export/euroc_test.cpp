@@ -69,7 +69,7 @@ std::vector<Sample> samples_of(const fs::path& mav0) {
   return samples;
 }
 
-Eigen::Quaterniond turned_by(const Eigen::Vector3d& rotation) {
+Eigen::Quaterniond rotation_by(const Eigen::Vector3d& rotation) {
   const double angle = rotation.norm();
   if (angle < 1e-15) return Eigen::Quaterniond::Identity();
   return Eigen::Quaterniond(Eigen::AngleAxisd(angle, rotation / angle));
@@ -90,7 +90,7 @@ void integrate(const std::vector<Sample>& samples,
     const Sample& then = samples[i + 1];
     const double dt_s = double(then.t_ns - now.t_ns) * 1e-9;
     const Eigen::Vector3d rate = 0.5 * (now.rate - now.gyro_bias + then.rate - then.gyro_bias);
-    const Eigen::Quaterniond q_then = (q * turned_by(rate * dt_s)).normalized();
+    const Eigen::Quaterniond q_then = (q * rotation_by(rate * dt_s)).normalized();
     const Eigen::Vector3d a =
         0.5 * (q * (now.force - now.accel_bias) + q_then * (then.force - then.accel_bias)) + down;
     p += v * dt_s + 0.5 * a * dt_s * dt_s;

@@ -21,13 +21,13 @@ using testing::read_picture;
 using testing::rows_of;
 using testing::small_source;
 
-constexpr const char* kTwoLost =
+constexpr const char* kDroppedAndDark =
     R"(faults=[{"kind":"dropped_frames","at_s":0.35,"duration_s":0.2},
                {"kind":"blackout","at_s":1.25,"duration_s":0.1}])";
 
 TEST(Kitti, CountsTheImagesThatArrivedAndPutsTheFirstPoseAtTheOrigin) {
   const TemporaryFolder folder;
-  const ExportSource source = small_source({kTwoLost});
+  const ExportSource source = small_source({kDroppedAndDark});
   const ExportSummary summary =
       exported(source, export_options(folder.path() / "00", DatasetFormat::kKitti));
   EXPECT_EQ(summary.frames, 21);
@@ -72,7 +72,7 @@ TEST(Kitti, KeepsColoursInImage2) {
 TEST(PlainPng, KeepsSixteenBitsAndTellsAllThatIsKnown) {
   const TemporaryFolder folder;
   const ExportSource source = small_source(
-      {kTwoLost, "camera.bits=12", R"(camera.sensor={"exposure_ms":3,"shot_noise":true})"});
+      {kDroppedAndDark, "camera.bits=12", R"(camera.sensor={"exposure_ms":3,"shot_noise":true})"});
   exported(source, export_options(folder.path() / "d", DatasetFormat::kPng));
   auto rows = rows_of(folder.path() / "d" / "camera0.csv", ',');
   ASSERT_EQ(rows.size(), 22U);

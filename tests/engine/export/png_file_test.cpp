@@ -15,7 +15,7 @@ using ::testing::HasSubstr;
 
 /// Gradients, a hard edge and something like noise.
 template <typename T>
-ImageBuffer<T> picture(int width, int height, int channels) {
+ImageBuffer<T> patterned(int width, int height, int channels) {
   ImageBuffer<T> image(width, height, channels);
   std::uint32_t state = 7;
   for (std::size_t i = 0; i < image.data.size(); ++i) {
@@ -51,10 +51,10 @@ TEST(PngFile, OpenCvReadsEveryKind) {
   for (const auto& [width, height] : {std::pair{1, 1}, {3, 5}, {160, 121}, {641, 480}}) {
     for (const int channels : {1, 3}) {
       SCOPED_TRACE(std::to_string(width) + " px, " + std::to_string(channels));
-      const auto image8 = picture<std::uint8_t>(width, height, channels);
+      const auto image8 = patterned<std::uint8_t>(width, height, channels);
       ASSERT_TRUE(write_png_file(file, image8).ok());
       expect_equal(cv::imread(file.string(), cv::IMREAD_UNCHANGED), image8);
-      const auto image16 = picture<std::uint16_t>(width, height, channels);
+      const auto image16 = patterned<std::uint16_t>(width, height, channels);
       ASSERT_TRUE(write_png_file(file, image16).ok());
       expect_equal(cv::imread(file.string(), cv::IMREAD_UNCHANGED), image16);
     }
@@ -62,7 +62,7 @@ TEST(PngFile, OpenCvReadsEveryKind) {
 }
 
 TEST(PngFile, BytesDependOnTheImageAlone) {
-  const auto image = picture<std::uint8_t>(200, 100, 3);
+  const auto image = patterned<std::uint8_t>(200, 100, 3);
   EXPECT_EQ(encode_png(image), encode_png(image));
 }
 

@@ -37,7 +37,7 @@ TEST(RosbagExport, IsRefusedWhereRosIsNotBuiltIn) {
 
 #ifdef OVERFLY_TESTS_ROS1
 
-constexpr const char* kTwoCameras =
+constexpr const char* kTwoTopicCameras =
     R"(cameras=[{"name":"down","width_px":160,"height_px":120,"rate_hz":10},
                 {"name":"tilted-2","width_px":96,"height_px":64,"rate_hz":10,"color":"rgb",
                  "distortion":{"model":"radtan","coefficients":[-0.1,0.01,0.002,0.001]},
@@ -59,7 +59,7 @@ std::vector<typename M::ConstPtr> messages_of(const std::filesystem::path& file,
 
 TEST(RosbagExport, HoldsImagesCalibrationAndTruthOfEveryCamera) {
   const TemporaryFolder folder;
-  const ExportSource source = small_source({kTwoCameras});
+  const ExportSource source = small_source({kTwoTopicCameras});
   const auto options = export_options(folder.path() / "d", DatasetFormat::kRosbag);
   const ExportSummary summary = exported(source, options);
   const std::vector<MadeFrame> frames = frames_of(source.scenario);

@@ -13,8 +13,8 @@ namespace {
 using testing::sensor_of;
 using testing::small_camera;
 
-constexpr int kWidth = 160;
-constexpr int kHeight = 120;
+constexpr int kMeteredWidth = 160;
+constexpr int kMeteredHeight = 120;
 
 SensorModel automatic_sensor(const AutoExposure& automatic) {
   SensorModel model;
@@ -30,7 +30,7 @@ SensorModel automatic_sensor(const AutoExposure& automatic) {
 /// Fields and roofs: radiances spread as those of aerial photographs, by a factor of 1.8 about a
 /// mean of 0.15, times the light.
 RadianceImage ground(double light) {
-  RadianceImage image(kWidth, kHeight, 1);
+  RadianceImage image(kMeteredWidth, kMeteredHeight, 1);
   for (std::size_t i = 0; i < image.data.size(); ++i) {
     const double phase = static_cast<double>(i * 2654435761U % 1000U) / 1000.0;
     const double stops = 1.2 * std::sin(2.0 * kPi * phase);
@@ -62,7 +62,7 @@ TEST_P(AutoExposureStep, SettlesInTheStatedFramesWithoutOscillation) {
   if (linear) automatic.target_mean = 0.3;
   SensorModel model = automatic_sensor(automatic);
   if (linear) model.response = ResponseCurve::linear();
-  const auto sensor = sensor_of(model, small_camera(kWidth, kHeight));
+  const auto sensor = sensor_of(model, small_camera(kMeteredWidth, kMeteredHeight));
   std::int64_t frame = 0;
   const double target = target_level(model);
   run(*sensor, 1.0, 3 * settle_frames, frame);
@@ -91,7 +91,8 @@ TEST(AutoExposure, PrefersExposureToGain) {
   AutoExposure automatic;
   automatic.max_exposure_s = 4e-3;
   automatic.max_gain = 4.0;
-  const auto sensor = sensor_of(automatic_sensor(automatic), small_camera(kWidth, kHeight));
+  const auto sensor =
+      sensor_of(automatic_sensor(automatic), small_camera(kMeteredWidth, kMeteredHeight));
   std::int64_t frame = 0;
   for (const double light : {4.0, 1.0, 0.4, 0.2, 0.1, 0.02}) {
     run(*sensor, light, 40, frame);
@@ -104,7 +105,7 @@ TEST(AutoExposure, PrefersExposureToGain) {
 }
 
 TEST(AutoExposure, TheRecordedSettingIsTheOneThatWasUsed) {
-  const auto sensor = sensor_of(automatic_sensor({}), small_camera(kWidth, kHeight));
+  const auto sensor = sensor_of(automatic_sensor({}), small_camera(kMeteredWidth, kMeteredHeight));
   for (std::int64_t frame = 0; frame < 10; ++frame) {
     const ExposureSetting next = sensor->next_setting();
     const SensorImage made = sensor->expose(ground(3.0), frame);
@@ -115,7 +116,7 @@ TEST(AutoExposure, TheRecordedSettingIsTheOneThatWasUsed) {
 
 TEST(AutoExposure, ComesBackFromDarknessAndFromGlare) {
   const SensorModel model = automatic_sensor({});
-  const auto sensor = sensor_of(model, small_camera(kWidth, kHeight));
+  const auto sensor = sensor_of(model, small_camera(kMeteredWidth, kMeteredHeight));
   std::int64_t frame = 0;
   run(*sensor, 0.0, 30, frame);
   EXPECT_GT(sensor->next_setting().gain, 1.0);
@@ -129,7 +130,7 @@ TEST(AutoExposure, ComesBackFromDarknessAndFromGlare) {
 TEST(AutoExposure, IsBlindToTheBlackLevel) {
   SensorModel model = automatic_sensor({});
   model.black_level_dn = 10.0;
-  const auto sensor = sensor_of(model, small_camera(kWidth, kHeight));
+  const auto sensor = sensor_of(model, small_camera(kMeteredWidth, kMeteredHeight));
   std::int64_t frame = 0;
   run(*sensor, 1.0, 40, frame);
   const double black = 10.0 / 255.0;
@@ -140,7 +141,7 @@ TEST(AutoExposure, IsBlindToTheBlackLevel) {
 TEST(AutoExposure, FixedExposureStaysFixed) {
   SensorModel model = automatic_sensor({});
   model.auto_exposure.reset();
-  const auto sensor = sensor_of(model, small_camera(kWidth, kHeight));
+  const auto sensor = sensor_of(model, small_camera(kMeteredWidth, kMeteredHeight));
   std::int64_t frame = 0;
   run(*sensor, 8.0, 5, frame);
   EXPECT_EQ(sensor->next_setting().exposure_ns, 1'000'000);

@@ -13,8 +13,8 @@ namespace {
 
 using testing::flat_field;
 
-constexpr int kWidth = 320;
-constexpr int kHeight = 240;
+constexpr int kFaultyWidth = 320;
+constexpr int kFaultyHeight = 240;
 
 RadianceImage spoiled(const ImageFault& fault, RadianceImage image) {
   apply_fault(fault, image);
@@ -23,9 +23,9 @@ RadianceImage spoiled(const ImageFault& fault, RadianceImage image) {
 
 /// Rises by 0.001 a column.
 RadianceImage slope() {
-  RadianceImage image(kWidth, kHeight, 1);
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) image.at(x, y) = 0.1F + 0.001F * static_cast<float>(x);
+  RadianceImage image(kFaultyWidth, kFaultyHeight, 1);
+  for (int y = 0; y < kFaultyHeight; ++y) {
+    for (int x = 0; x < kFaultyWidth; ++x) image.at(x, y) = 0.1F + 0.001F * static_cast<float>(x);
   }
   return image;
 }
@@ -59,15 +59,15 @@ TEST(ImageFaults, SaturationWithoutRadiusAddsTheSameEverywhere) {
 
 TEST(ImageFaults, GlareFallsOffAsAGaussianAroundItsPlace) {
   const ImageFault fault{ImageFaultKind::kSaturation, 8.0, 25.0, 0, 11};
-  const RadianceImage glare = spoiled(fault, flat_field(kWidth, kHeight, 0.0F));
+  const RadianceImage glare = spoiled(fault, flat_field(kFaultyWidth, kFaultyHeight, 0.0F));
   const auto peak = std::max_element(glare.data.begin(), glare.data.end());
   const auto at = static_cast<int>(peak - glare.data.begin());
-  const int x0 = at % kWidth;
-  const int y0 = at / kWidth;
+  const int x0 = at % kFaultyWidth;
+  const int y0 = at / kFaultyWidth;
   EXPECT_NEAR(*peak, 8.0, 0.01) << "the place is at most half a pixel from this one";
   // ln(peak / value) = r^2 / (2 sigma^2): the middle by a parabola, then the width.
   const auto log_at = [&](int x, int y) { return std::log(static_cast<double>(glare.at(x, y))); };
-  const int step = x0 + 20 < kWidth && x0 >= 20 ? 1 : 0;
+  const int step = x0 + 20 < kFaultyWidth && x0 >= 20 ? 1 : 0;
   ASSERT_EQ(step, 1) << "this seed's place is too near to the edge for the test";
   const double curvature = log_at(x0 + 20, y0) + log_at(x0 - 20, y0) - 2.0 * log_at(x0, y0);
   EXPECT_NEAR(std::sqrt(-400.0 / curvature), 25.0, 0.01);
@@ -76,7 +76,7 @@ TEST(ImageFaults, GlareFallsOffAsAGaussianAroundItsPlace) {
 TEST(ImageFaults, FlashSaturatesTheSensor) {
   SensorModel model;
   model.enabled = true;
-  const auto sensor = testing::sensor_of(model, testing::small_camera(kWidth, kHeight));
+  const auto sensor = testing::sensor_of(model, testing::small_camera(kFaultyWidth, kFaultyHeight));
   const RadianceImage light = slope();
   EXPECT_EQ(sensor->expose(light, 0).saturated_fraction, 0.0);
   const ImageFault fault{ImageFaultKind::kSaturation, 5.0, 0.0, 0, 1};
@@ -87,8 +87,8 @@ TEST(ImageFaults, FlashSaturatesTheSensor) {
 
 TEST(ImageFaults, DirtOnlyDarkensAndStaysInItsPlace) {
   const ImageFault fault{ImageFaultKind::kDirt, 0.6, 12.0, 8, 3};
-  const RadianceImage first = spoiled(fault, flat_field(kWidth, kHeight, 0.5F));
-  const RadianceImage brighter = spoiled(fault, flat_field(kWidth, kHeight, 0.8F));
+  const RadianceImage first = spoiled(fault, flat_field(kFaultyWidth, kFaultyHeight, 0.5F));
+  const RadianceImage brighter = spoiled(fault, flat_field(kFaultyWidth, kFaultyHeight, 0.8F));
   std::size_t touched = 0;
   float darkest = 1.0F;
   for (std::size_t i = 0; i < first.data.size(); ++i) {
@@ -102,7 +102,7 @@ TEST(ImageFaults, DirtOnlyDarkensAndStaysInItsPlace) {
   EXPECT_LT(touched, 8.0 * kPi * 324.0);
   EXPECT_LT(darkest, 0.7F);
   const ImageFault other{ImageFaultKind::kDirt, 0.6, 12.0, 8, 4};
-  EXPECT_NE(spoiled(other, flat_field(kWidth, kHeight, 0.5F)).data, first.data);
+  EXPECT_NE(spoiled(other, flat_field(kFaultyWidth, kFaultyHeight, 0.5F)).data, first.data);
 }
 
 TEST(ImageFaults, ADropShowsATurnedImageInsideItsRimAndNothingOutside) {
@@ -112,8 +112,8 @@ TEST(ImageFaults, ADropShowsATurnedImageInsideItsRimAndNothingOutside) {
   double sum_x = 0.0;
   double sum_y = 0.0;
   std::size_t touched = 0;
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) {
+  for (int y = 0; y < kFaultyHeight; ++y) {
+    for (int x = 0; x < kFaultyWidth; ++x) {
       if (after.at(x, y) == before.at(x, y)) continue;
       sum_x += x;
       sum_y += y;
@@ -124,7 +124,7 @@ TEST(ImageFaults, ADropShowsATurnedImageInsideItsRimAndNothingOutside) {
   const int y0 = static_cast<int>(std::lround(sum_y / static_cast<double>(touched)));
   EXPECT_NEAR(static_cast<double>(touched), kPi * 900.0, 0.1 * kPi * 900.0);
   ASSERT_GT(x0, 100) << "this seed's place is too near to the edge for the test";
-  ASSERT_LT(x0, kWidth - 100);
+  ASSERT_LT(x0, kFaultyWidth - 100);
   // The ground rises by 0.001 a pixel; a drop three times as wide turned by 180 deg falls by 0.003.
   const double fall = (after.at(x0 + 10, y0) - after.at(x0 - 10, y0)) / 20.0;
   EXPECT_NEAR(fall, -0.003, 2e-4);

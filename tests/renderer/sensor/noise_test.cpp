@@ -20,8 +20,8 @@ using testing::sensor_of;
 using testing::small_camera;
 using testing::values_of;
 
-constexpr int kWidth = 640;
-constexpr int kHeight = 480;
+constexpr int kNoisyWidth = 640;
+constexpr int kNoisyHeight = 480;
 
 SensorModel read_noise_sensor() {
   SensorModel model = counting_sensor();
@@ -30,18 +30,18 @@ SensorModel read_noise_sensor() {
 }
 
 std::vector<double> noise_image(std::uint64_t seed, std::int64_t frame) {
-  const auto sensor = sensor_of(read_noise_sensor(), small_camera(kWidth, kHeight), seed);
-  return values_of(sensor->expose(flat_field(kWidth, kHeight, 0.5F), frame).image16);
+  const auto sensor = sensor_of(read_noise_sensor(), small_camera(kNoisyWidth, kNoisyHeight), seed);
+  return values_of(sensor->expose(flat_field(kNoisyWidth, kNoisyHeight, 0.5F), frame).image16);
 }
 
 /// The image moved by (dx, dy), both parts of equal length.
 double correlation_at(const std::vector<double>& image, int dx, int dy) {
   std::vector<double> here;
   std::vector<double> there;
-  for (int y = 0; y + dy < kHeight; ++y) {
-    for (int x = 0; x + dx < kWidth; ++x) {
-      here.push_back(image[static_cast<std::size_t>(y) * kWidth + x]);
-      there.push_back(image[static_cast<std::size_t>(y + dy) * kWidth + x + dx]);
+  for (int y = 0; y + dy < kNoisyHeight; ++y) {
+    for (int x = 0; x + dx < kNoisyWidth; ++x) {
+      here.push_back(image[static_cast<std::size_t>(y) * kNoisyWidth + x]);
+      there.push_back(image[static_cast<std::size_t>(y + dy) * kNoisyWidth + x + dx]);
     }
   }
   return correlation(here, there);
@@ -195,10 +195,10 @@ TEST(Noise, ReadNoiseHasItsStandardDeviation) {
 std::vector<int> histogram_of_counts(double mean_e) {
   SensorModel model = counting_sensor();
   model.shot_noise = true;
-  const auto sensor = sensor_of(model, small_camera(kWidth, kHeight), 3);
+  const auto sensor = sensor_of(model, small_camera(kNoisyWidth, kNoisyHeight), 3);
   std::vector<int> histogram(400, 0);
   for (std::int64_t frame = 0; frame < 4; ++frame) {
-    const auto light = flat_field(kWidth, kHeight, static_cast<float>(mean_e / 65535.0));
+    const auto light = flat_field(kNoisyWidth, kNoisyHeight, static_cast<float>(mean_e / 65535.0));
     for (const std::uint16_t count : sensor->expose(light, frame).image16.data) {
       ++histogram[std::min<std::size_t>(count, histogram.size() - 1)];
     }
@@ -253,9 +253,9 @@ TEST(ShotNoise, ManyElectronsComeNearPoissonsDistribution) {
 TEST(ShotNoise, KeepsMeanVarianceAndSkewnessOfPoissonAtEveryMean) {
   SensorModel model = counting_sensor();
   model.shot_noise = true;
-  const auto sensor = sensor_of(model, small_camera(kWidth, kHeight), 5);
+  const auto sensor = sensor_of(model, small_camera(kNoisyWidth, kNoisyHeight), 5);
   for (const double mean : {0.5, 5.0, 20.0, 25.0, 100.0, 3000.0, 40000.0}) {
-    const auto light = flat_field(kWidth, kHeight, static_cast<float>(mean / 65535.0));
+    const auto light = flat_field(kNoisyWidth, kNoisyHeight, static_cast<float>(mean / 65535.0));
     const Moments m = moments_of(values_of(sensor->expose(light, 0).image16));
     const auto n = static_cast<double>(m.count);
     EXPECT_NEAR(m.mean, mean, 5.0 * std::sqrt(mean / n)) << mean;

@@ -17,8 +17,8 @@ using testing::sensor_of;
 using testing::small_camera;
 using testing::values_of;
 
-constexpr int kWidth = 512;
-constexpr int kHeight = 384;
+constexpr int kTransferWidth = 512;
+constexpr int kTransferHeight = 384;
 
 SensorModel noisy_sensor(int bits, double gain_dn_per_e, double read_noise_e) {
   SensorModel model;
@@ -65,7 +65,7 @@ Line fitted(const std::vector<TransferPoint>& points) {
   double wxx = 0.0;
   double wxy = 0.0;
   for (const auto& [x, y] : points) {
-    const double sigma = y * std::sqrt(2.0 / (kWidth * kHeight));
+    const double sigma = y * std::sqrt(2.0 / (kTransferWidth * kTransferHeight));
     const double weight = 1.0 / (sigma * sigma);
     w += weight;
     wx += weight * x;
@@ -94,16 +94,18 @@ TEST_P(PhotonTransfer, SlopeIsTheGainAndInterceptTheDarkNoise) {
   std::int64_t frame = 0;
   for (const double exposure_s : {0.25e-3, 0.5e-3, 1e-3, 2e-3}) {
     model.exposure_s = exposure_s;
-    const auto sensor = sensor_of(model, small_camera(kWidth, kHeight));
+    const auto sensor = sensor_of(model, small_camera(kTransferWidth, kTransferHeight));
     for (const double share : {0.0, 0.002, 0.01, 0.05, 0.2, 0.6}) {
       const auto radiance =
           static_cast<float>(share * full_scale_e / (model.electrons_per_s * exposure_s));
-      points.push_back(transfer_point(*sensor, flat_field(kWidth, kHeight, radiance), frame));
+      points.push_back(
+          transfer_point(*sensor, flat_field(kTransferWidth, kTransferHeight, radiance), frame));
       points.back().mean -= model.black_level_dn;
       // Quantisation and gain are unbiased: the mean is known to sigma / sqrt(n).
       EXPECT_NEAR(points.back().mean,
                   share * full_scale_e * gain,
-                  5.0 * std::sqrt(points.back().variance / (kWidth * kHeight)) + 1e-6 * (1 << bits))
+                  5.0 * std::sqrt(points.back().variance / (kTransferWidth * kTransferHeight)) +
+                      1e-6 * (1 << bits))
           << share;
       frame += 2;
     }
@@ -128,11 +130,12 @@ INSTANTIATE_TEST_SUITE_P(DepthsGainsAndReadNoises,
 
 TEST(PhotonTransferOfChain, DoublingTheExposureDoublesTheNumbers) {
   SensorModel model = noisy_sensor(12, 0.2, 4.0);
-  const RadianceImage light = flat_field(kWidth, kHeight, 0.2F);
+  const RadianceImage light = flat_field(kTransferWidth, kTransferHeight, 0.2F);
   double before = 0.0;
   for (const double exposure_s : {0.25e-3, 0.5e-3, 1e-3, 2e-3}) {
     model.exposure_s = exposure_s;
-    const SensorImage made = sensor_of(model, small_camera(kWidth, kHeight))->expose(light, 4);
+    const SensorImage made =
+        sensor_of(model, small_camera(kTransferWidth, kTransferHeight))->expose(light, 4);
     const double mean = moments_of(values_of(made.image16)).mean;
     EXPECT_EQ(made.setting.exposure_ns, std::llround(exposure_s * 1e9));
     // 200 e with a standard deviation of 15 over 2e5 pixels: the mean is known to 2e-4.
@@ -146,17 +149,18 @@ TEST(PhotonTransferOfChain, DoublingTheExposureDoublesTheNumbers) {
 TEST(PhotonTransferOfChain, ShotNoiseIsClippedAtTheFullWell) {
   SensorModel model = noisy_sensor(16, 4.0, 0.0);
   model.full_well_e = 8000.0;
-  const auto sensor = sensor_of(model, small_camera(kWidth, kHeight));
-  const SensorImage below = sensor->expose(flat_field(kWidth, kHeight, 0.2F), 0);
+  const auto sensor = sensor_of(model, small_camera(kTransferWidth, kTransferHeight));
+  const SensorImage below = sensor->expose(flat_field(kTransferWidth, kTransferHeight, 0.2F), 0);
   EXPECT_EQ(below.saturated_fraction, 0.0);
-  const SensorImage at_the_edge = sensor->expose(flat_field(kWidth, kHeight, 0.4F), 0);
+  const SensorImage at_the_edge =
+      sensor->expose(flat_field(kTransferWidth, kTransferHeight, 0.4F), 0);
   EXPECT_NEAR(at_the_edge.saturated_fraction, 0.5, 0.01);
-  const SensorImage above = sensor->expose(flat_field(kWidth, kHeight, 0.8F), 0);
+  const SensorImage above = sensor->expose(flat_field(kTransferWidth, kTransferHeight, 0.8F), 0);
   EXPECT_EQ(above.saturated_fraction, 1.0);
   for (const std::uint16_t number : above.image16.data) ASSERT_EQ(number, 32000);
   model.read_noise_e = 5.0;
-  const SensorImage read =
-      sensor_of(model, small_camera(kWidth, kHeight))->expose(flat_field(kWidth, kHeight, 0.8F), 0);
+  const SensorImage read = sensor_of(model, small_camera(kTransferWidth, kTransferHeight))
+                               ->expose(flat_field(kTransferWidth, kTransferHeight, 0.8F), 0);
   EXPECT_EQ(read.saturated_fraction, 1.0);
   const Moments m = moments_of(values_of(read.image16));
   EXPECT_NEAR(std::sqrt(m.variance), 20.0, 0.3) << "the read noise comes after the well";
@@ -167,16 +171,21 @@ TEST(PhotonTransferOfChain, PatternsStayWithTheSensorAndFollowTheirModel) {
   model.shot_noise = false;
   model.prnu = 0.02;
   model.dsnu_e = 30.0;
-  const CameraModel camera = small_camera(kWidth, kHeight);
+  const CameraModel camera = small_camera(kTransferWidth, kTransferHeight);
   const auto sensor = sensor_of(model, camera, 4);
-  const auto bright = values_of(sensor->expose(flat_field(kWidth, kHeight, 0.5F), 0).image16);
-  const auto again = values_of(sensor->expose(flat_field(kWidth, kHeight, 0.5F), 1).image16);
+  const auto bright =
+      values_of(sensor->expose(flat_field(kTransferWidth, kTransferHeight, 0.5F), 0).image16);
+  const auto again =
+      values_of(sensor->expose(flat_field(kTransferWidth, kTransferHeight, 0.5F), 1).image16);
   EXPECT_EQ(bright, again);
   // 10000 e: EMVA 1288's sigma^2 = DSNU^2 + (PRNU mu)^2.
   EXPECT_NEAR(std::sqrt(moments_of(bright).variance), std::hypot(30.0, 0.02 * 10000.0), 1.5);
   const auto other = sensor_of(model, camera, 5);
-  const auto elsewhere = values_of(other->expose(flat_field(kWidth, kHeight, 0.5F), 0).image16);
-  EXPECT_NEAR(testing::correlation(bright, elsewhere), 0.0, 5.0 / std::sqrt(kWidth * kHeight));
+  const auto elsewhere =
+      values_of(other->expose(flat_field(kTransferWidth, kTransferHeight, 0.5F), 0).image16);
+  EXPECT_NEAR(testing::correlation(bright, elsewhere),
+              0.0,
+              5.0 / std::sqrt(kTransferWidth * kTransferHeight));
 }
 
 }  // namespace

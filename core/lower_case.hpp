@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+
+namespace overfly {
+
+/// With the letters A to Z in lower case, whatever the locale.
+[[nodiscard]] inline std::string lower_case(std::string text) {
+  for (char& c : text) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return text;
+}
+
+}  // namespace overfly
