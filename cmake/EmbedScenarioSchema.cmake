@@ -1,6 +1,6 @@
 # The scenario schema as a source file, ${overfly_schema_source}, of the target that includes it.
 set(schema ${CMAKE_SOURCE_DIR}/scenarios/scenario.schema.json)
-set(embed_schema ${CMAKE_SOURCE_DIR}/server/engine/embed_schema.cmake)
+set(embed_schema ${CMAKE_SOURCE_DIR}/server/scenario/document/embed_schema.cmake)
 set(overfly_schema_source ${CMAKE_CURRENT_BINARY_DIR}/generated/scenario_schema_text.cpp)
 add_custom_command(
   OUTPUT ${overfly_schema_source}

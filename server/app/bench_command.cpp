@@ -18,12 +18,13 @@
 #include "server/app/exit_code.hpp"
 #include "server/app/progress.hpp"
 #include "server/app/stop_signal.hpp"
-#include "server/engine/jpeg.hpp"
-#include "server/engine/run.hpp"
-#include "server/engine/run_folder.hpp"
-#include "server/engine/truth.hpp"
-#include "server/engine/whole_file.hpp"
-#include "server/engine/world_cache.hpp"
+#include "server/camera/truth.hpp"
+#include "server/files/jpeg.hpp"
+#include "server/files/whole_file.hpp"
+#include "server/record/run_folder.hpp"
+#include "server/run/run.hpp"
+#include "server/scenario/document/scenario_file.hpp"
+#include "server/worlds/world_cache.hpp"
 
 namespace overfly::app {
 namespace {

@@ -12,7 +12,8 @@
 
 #include "server/app/exit_code.hpp"
 #include "server/app/stop_signal.hpp"
-#include "server/engine/camera_check.hpp"
+#include "server/camera/camera_check.hpp"
+#include "server/scenario/document/scenario_file.hpp"
 
 namespace overfly::app {
 namespace {

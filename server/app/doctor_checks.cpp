@@ -7,7 +7,7 @@
 
 #include "renderer/renderer.hpp"
 #include "server/app/install_paths.hpp"
-#include "server/engine/scenario_list.hpp"
+#include "server/scenario/document/scenario_list.hpp"
 #include "terrain/installation.hpp"
 #include "vo_bridges/lcm/lcm_findings.hpp"
 #include "vo_bridges/ros1/ros1_findings.hpp"

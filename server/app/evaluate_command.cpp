@@ -11,10 +11,12 @@
 #include "server/app/commands.hpp"
 #include "server/app/exit_code.hpp"
 #include "server/app/score_table.hpp"
-#include "server/engine/metrics.hpp"
-#include "server/engine/run_folder.hpp"
-#include "server/engine/run_records.hpp"
-#include "server/engine/whole_file.hpp"
+#include "server/files/whole_file.hpp"
+#include "server/record/run_folder.hpp"
+#include "server/record/run_info_file.hpp"
+#include "server/record/run_lock.hpp"
+#include "server/record/run_records.hpp"
+#include "server/scoring/metrics.hpp"
 
 namespace overfly::app {
 namespace {

@@ -11,9 +11,10 @@
 #include "server/app/exit_code.hpp"
 #include "server/app/progress.hpp"
 #include "server/app/stop_signal.hpp"
-#include "server/engine/export/dataset_export.hpp"
-#include "server/engine/export/video_export.hpp"
-#include "server/engine/scenario_list.hpp"
+#include "server/export/dataset_export.hpp"
+#include "server/export/video_export.hpp"
+#include "server/scenario/document/scenario_list.hpp"
+#include "server/scenario/document/scenario_override.hpp"
 
 namespace overfly::app {
 namespace {

@@ -5,8 +5,10 @@
 #include "core/percent.hpp"
 #include "server/app/exit_code.hpp"
 #include "server/app/render_request.hpp"
-#include "server/engine/frame_maker.hpp"
-#include "server/engine/scenario_faults.hpp"
+#include "server/camera/frame_maker.hpp"
+#include "server/scenario/document/scenario_faults.hpp"
+#include "server/scenario/document/scenario_file.hpp"
+#include "server/scenario/document/scenario_override.hpp"
 #include "terrain/image_file.hpp"
 
 namespace overfly::app {

@@ -11,10 +11,12 @@
 #include "server/app/progress.hpp"
 #include "server/app/score_table.hpp"
 #include "server/app/stop_signal.hpp"
-#include "server/engine/metrics.hpp"
-#include "server/engine/run.hpp"
-#include "server/engine/run_memory.hpp"
-#include "server/engine/scenario_list.hpp"
+#include "server/run/run.hpp"
+#include "server/runs/run_memory.hpp"
+#include "server/scenario/document/scenario_file.hpp"
+#include "server/scenario/document/scenario_list.hpp"
+#include "server/scenario/document/scenario_override.hpp"
+#include "server/scoring/metrics.hpp"
 
 namespace overfly::app {
 namespace {

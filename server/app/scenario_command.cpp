@@ -8,7 +8,9 @@
 #include "server/app/commands.hpp"
 #include "server/app/exit_code.hpp"
 #include "server/app/install_paths.hpp"
-#include "server/engine/scenario_list.hpp"
+#include "server/scenario/document/scenario_file.hpp"
+#include "server/scenario/document/scenario_list.hpp"
+#include "server/scenario/document/scenario_schema.hpp"
 
 namespace overfly::app {
 namespace {

@@ -16,9 +16,9 @@
 #include "server/app/install_paths.hpp"
 #include "server/app/stop_signal.hpp"
 #include "server/app/token_file.hpp"
-#include "server/engine/thread_priority.hpp"
-#include "server/net/access_token.hpp"
+#include "server/net/http/access_token.hpp"
 #include "server/net/server.hpp"
+#include "server/timing/thread_priority.hpp"
 #include "terrain/network.hpp"
 
 namespace overfly::app {

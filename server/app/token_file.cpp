@@ -9,7 +9,7 @@
 #include <cstring>
 #include <optional>
 
-#include "server/net/access_token.hpp"
+#include "server/net/http/access_token.hpp"
 
 namespace overfly::app {
 namespace {

@@ -8,9 +8,10 @@
 #include <optional>
 #include <string_view>
 
-#include "server/engine/scenario.hpp"
-#include "server/engine/scenario_estimators.hpp"
-#include "server/engine/scenario_override.hpp"
+#include "server/scenario/document/estimator_entry.hpp"
+#include "server/scenario/document/scenario_file.hpp"
+#include "server/scenario/document/scenario_override.hpp"
+#include "server/scenario/scenario.hpp"
 
 namespace overfly::app {
 namespace {

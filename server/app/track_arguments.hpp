@@ -7,8 +7,8 @@
 
 #include "core/camera_model.hpp"
 #include "core/result.hpp"
-#include "server/engine/dataset/dataset.hpp"
-#include "server/engine/estimator_spec.hpp"
+#include "server/dataset/dataset.hpp"
+#include "server/scenario/estimator_spec.hpp"
 
 namespace overfly::app {
 

@@ -14,8 +14,9 @@
 #include "server/app/stop_signal.hpp"
 #include "server/app/track_arguments.hpp"
 #include "server/app/track_summary.hpp"
-#include "server/engine/dataset/track_report.hpp"
-#include "server/engine/estimator_factory.hpp"
+#include "server/dataset/open_dataset.hpp"
+#include "server/dataset/track_report.hpp"
+#include "server/estimators/estimator_factory.hpp"
 
 namespace overfly::app {
 namespace {

@@ -1,6 +1,6 @@
 #include "server/app/version.hpp"
 
-#include "server/engine/build_info.hpp"
+#include "server/files/build_info.hpp"
 
 namespace overfly::app {
 

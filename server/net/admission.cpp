@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "server/net/error_response.hpp"
+#include "server/net/http/error_response.hpp"
 
 namespace overfly::net {
 namespace {

@@ -6,7 +6,7 @@
 #include <boost/beast/http/string_body.hpp>
 #include <optional>
 
-#include "server/net/http_message.hpp"
+#include "server/net/http/http_message.hpp"
 #include "server/net/server_context.hpp"
 
 namespace overfly::net {

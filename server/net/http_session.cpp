@@ -13,7 +13,7 @@
 
 #include "core/barrier.hpp"
 #include "server/net/admission.hpp"
-#include "server/net/error_response.hpp"
+#include "server/net/http/error_response.hpp"
 #include "server/net/websocket_session.hpp"
 
 namespace overfly::net {

@@ -5,13 +5,13 @@
 #include <system_error>
 #include <utility>
 
-#include "server/engine/thread_priority.hpp"
-#include "server/net/access_token.hpp"
-#include "server/net/allowed_hosts.hpp"
+#include "server/net/http/access_token.hpp"
+#include "server/net/http/allowed_hosts.hpp"
 #include "server/net/listener.hpp"
 #include "server/net/loop_threads.hpp"
-#include "server/net/rest_api.hpp"
+#include "server/net/rest/rest_api.hpp"
 #include "server/net/server_context.hpp"
+#include "server/timing/thread_priority.hpp"
 
 namespace overfly::net {
 

@@ -10,14 +10,14 @@
 #include <thread>
 
 #include "core/barrier.hpp"
-#include "server/engine/run_manager.hpp"
-#include "server/engine/view_service.hpp"
-#include "server/net/allowed_hosts.hpp"
-#include "server/net/rest_router.hpp"
-#include "server/net/server.hpp"
+#include "server/net/http/allowed_hosts.hpp"
+#include "server/net/http/rest_router.hpp"
+#include "server/net/http/static_files.hpp"
+#include "server/net/http/token_gate.hpp"
+#include "server/net/server_options.hpp"
 #include "server/net/session_registry.hpp"
-#include "server/net/static_files.hpp"
-#include "server/net/token_gate.hpp"
+#include "server/runs/run_manager.hpp"
+#include "server/views/view_service.hpp"
 
 namespace overfly::net {
 

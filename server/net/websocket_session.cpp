@@ -12,8 +12,10 @@
 #include <utility>
 
 #include "core/barrier.hpp"
-#include "server/net/json_text.hpp"
-#include "server/net/viewer.hpp"
+#include "server/net/http/json_text.hpp"
+#include "server/net/stream/viewer.hpp"
+#include "server/record/run_timeline.hpp"
+#include "server/views/picture_request.hpp"
 
 namespace overfly::net {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "renderer/renderer.hpp"
-#include "server/engine/export/png_file.hpp"
+#include "server/files/png_file.hpp"
 #include "tests/renderer/procedural_ground.hpp"
 
 namespace overfly {

@@ -9,9 +9,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "server/engine/run_folder.hpp"
-#include "server/engine/run_manager.hpp"
-#include "server/net/rest_api.hpp"
+#include "server/net/rest/rest_api.hpp"
+#include "server/record/run_folder.hpp"
+#include "server/runs/run_manager.hpp"
 #include "tests/support/support.hpp"
 
 namespace overfly {

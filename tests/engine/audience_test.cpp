@@ -1,5 +1,5 @@
 // Who watched a run, and what it cost.
-#include "server/engine/audience.hpp"
+#include "server/record/audience.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,12 @@
 #include <mutex>
 
 #include "core/trajectory_io.hpp"
-#include "server/engine/run_folder.hpp"
-#include "server/engine/whole_file.hpp"
+#include "server/files/whole_file.hpp"
+#include "server/record/rows.hpp"
+#include "server/record/run_folder.hpp"
+#include "server/record/run_info_file.hpp"
+#include "server/record/run_timeline.hpp"
+#include "server/run/run_options.hpp"
 #include "tests/engine/engine_fixture.hpp"
 
 namespace overfly::engine {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "server/scenario/document/scenario_file.hpp"
+#include "server/scenario/document/scenario_override.hpp"
 #include "terrain/synthesize.hpp"
 
 namespace overfly::engine::testing {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "renderer/renderer.hpp"
-#include "server/engine/run.hpp"
+#include "server/run/run.hpp"
 #include "tests/support/support.hpp"
 
 namespace overfly::engine::testing {

@@ -7,11 +7,14 @@
 #include <map>
 #include <mutex>
 
-#include "server/engine/estimator_tally.hpp"
-#include "server/engine/estimator_worker.hpp"
-#include "server/engine/run_folder.hpp"
-#include "server/engine/run_records.hpp"
-#include "server/engine/whole_file.hpp"
+#include "server/estimators/estimator_worker.hpp"
+#include "server/files/whole_file.hpp"
+#include "server/record/estimator_tally.hpp"
+#include "server/record/run_folder.hpp"
+#include "server/record/run_info.hpp"
+#include "server/record/run_records.hpp"
+#include "server/record/run_timeline.hpp"
+#include "server/run/run_options.hpp"
 #include "tests/engine/engine_fixture.hpp"
 #include "tests/engine/simulated_clock.hpp"
 

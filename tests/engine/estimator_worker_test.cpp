@@ -1,5 +1,5 @@
 // What is thrown on the worker's thread, by the estimator or for want of memory, reaches the run.
-#include "server/engine/estimator_worker.hpp"
+#include "server/estimators/estimator_worker.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

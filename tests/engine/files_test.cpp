@@ -7,10 +7,10 @@
 
 #include "core/time.hpp"
 #include "evaluation/evaluation.hpp"
-#include "server/engine/jpeg.hpp"
-#include "server/engine/live_alignment.hpp"
-#include "server/engine/run_rows.hpp"
-#include "server/engine/whole_file.hpp"
+#include "server/files/jpeg.hpp"
+#include "server/files/whole_file.hpp"
+#include "server/record/live_alignment.hpp"
+#include "server/record/run_rows.hpp"
 #include "tests/support/support.hpp"
 
 namespace overfly::engine {

@@ -1,13 +1,14 @@
 // Frames with shutter, sensor, vibration and several cameras.
-#include "server/engine/frame_maker.hpp"
+#include "server/camera/frame_maker.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstdio>
 
-#include "server/engine/frame_remaker.hpp"
-#include "server/engine/world_cache.hpp"
+#include "server/camera/frame_remaker.hpp"
+#include "server/record/rows.hpp"
+#include "server/worlds/world_cache.hpp"
 #include "tests/engine/engine_fixture.hpp"
 
 namespace overfly::engine {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "server/engine/run_clock.hpp"
+#include "server/timing/run_clock.hpp"
 
 namespace overfly::engine::testing {
 

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <vector>
 
+#include "server/record/rows.hpp"
+#include "server/record/run_timeline.hpp"
+#include "server/run/run_options.hpp"
 #include "tests/engine/engine_fixture.hpp"
 #include "tests/engine/jumping_clock.hpp"
 

@@ -1,4 +1,4 @@
-#include "server/engine/latency_histogram.hpp"
+#include "server/timing/latency_histogram.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "server/engine/stage_timer.hpp"
+#include "server/timing/stage_timer.hpp"
 
 namespace overfly::engine {
 namespace {

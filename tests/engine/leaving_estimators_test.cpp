@@ -5,8 +5,11 @@
 #include <fstream>
 #include <vector>
 
-#include "server/engine/run_folder.hpp"
-#include "server/engine/whole_file.hpp"
+#include "server/files/whole_file.hpp"
+#include "server/record/run_folder.hpp"
+#include "server/record/run_info_file.hpp"
+#include "server/record/run_lock.hpp"
+#include "server/run/run_options.hpp"
 #include "tests/engine/engine_fixture.hpp"
 
 namespace overfly::engine {

@@ -1,7 +1,8 @@
 // The native estimator behind every lens model, from the scenario's field to the score.
 #include <gtest/gtest.h>
 
-#include "server/engine/estimator_factory.hpp"
+#include "server/estimators/estimator_factory.hpp"
+#include "server/run/run_options.hpp"
 #include "tests/engine/engine_fixture.hpp"
 #include "tests/renderer/procedural_ground.hpp"
 

@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "server/engine/run_manager.hpp"
+#include "server/record/run_info.hpp"
+#include "server/record/run_timeline.hpp"
+#include "server/runs/run_manager.hpp"
 #include "tests/engine/engine_fixture.hpp"
 
 namespace overfly::engine::testing {

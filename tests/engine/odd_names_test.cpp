@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "core/trajectory_io.hpp"
-#include "server/engine/export/export_source.hpp"
-#include "server/engine/export/video_export.hpp"
-#include "server/engine/run.hpp"
-#include "server/engine/run_folder.hpp"
+#include "server/export/export_source.hpp"
+#include "server/export/video_export.hpp"
+#include "server/record/run_folder.hpp"
+#include "server/run/run.hpp"
 #include "tests/engine/manager_fixture.hpp"
 
 namespace overfly::engine {

@@ -1,5 +1,5 @@
 // Pictures for viewers beside flights in real time: how often, and on what threads.
-#include "server/engine/picture_rate.hpp"
+#include "server/timing/picture_rate.hpp"
 
 #include <gtest/gtest.h>
 #include <sched.h>
@@ -7,8 +7,8 @@
 #include <future>
 
 #include "core/time.hpp"
-#include "server/engine/run_manager.hpp"
-#include "server/engine/view_service.hpp"
+#include "server/runs/run_manager.hpp"
+#include "server/views/view_service.hpp"
 #include "tests/engine/engine_fixture.hpp"
 
 namespace overfly::engine {

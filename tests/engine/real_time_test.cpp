@@ -4,11 +4,13 @@
 
 #include <map>
 
-#include "server/engine/picture_rate.hpp"
-#include "server/engine/run_clock.hpp"
-#include "server/engine/run_folder.hpp"
-#include "server/engine/run_records.hpp"
-#include "server/engine/whole_file.hpp"
+#include "server/files/whole_file.hpp"
+#include "server/record/run_folder.hpp"
+#include "server/record/run_info.hpp"
+#include "server/record/run_records.hpp"
+#include "server/run/run_options.hpp"
+#include "server/timing/picture_rate.hpp"
+#include "server/timing/run_clock.hpp"
 #include "tests/engine/engine_fixture.hpp"
 #include "tests/engine/simulated_clock.hpp"
 

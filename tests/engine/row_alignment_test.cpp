@@ -1,12 +1,15 @@
-#include "server/engine/row_alignment.hpp"
+#include "server/scoring/row_alignment.hpp"
+#include "server/record/rows.hpp"
+#include "server/record/run_info.hpp"
+#include "server/record/run_timeline.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "evaluation/evaluation.hpp"
-#include "server/engine/metrics.hpp"
-#include "server/engine/view_ribbons.hpp"
+#include "server/scoring/metrics.hpp"
+#include "server/views/view_ribbons.hpp"
 
 namespace overfly::engine {
 namespace {

@@ -1,5 +1,5 @@
 // The photometric calibration and the deep images in a run's folder.
-#include "server/engine/run_calibration.hpp"
+#include "server/run/run_calibration.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,9 @@
 #include <sstream>
 
 #include "core/file_text.hpp"
-#include "server/engine/run_folder.hpp"
-#include "server/engine/whole_file.hpp"
+#include "server/files/whole_file.hpp"
+#include "server/record/run_folder.hpp"
+#include "server/run/run_options.hpp"
 #include "terrain/image_file.hpp"
 #include "tests/engine/engine_fixture.hpp"
 

@@ -8,10 +8,13 @@
 #include <utility>
 
 #include "evaluation/evaluation.hpp"
-#include "server/engine/row_alignment.hpp"
-#include "server/engine/run_folder.hpp"
-#include "server/engine/run_manager.hpp"
-#include "server/engine/whole_file.hpp"
+#include "server/files/whole_file.hpp"
+#include "server/record/run_folder.hpp"
+#include "server/record/run_info_file.hpp"
+#include "server/record/run_timeline.hpp"
+#include "server/run/run_options.hpp"
+#include "server/runs/run_manager.hpp"
+#include "server/scoring/row_alignment.hpp"
 #include "tests/engine/engine_fixture.hpp"
 
 namespace overfly::engine {

@@ -7,9 +7,12 @@
 #include <new>
 #include <system_error>
 
-#include "server/engine/run_folder.hpp"
-#include "server/engine/run_memory.hpp"
-#include "server/engine/whole_file.hpp"
+#include "server/files/whole_file.hpp"
+#include "server/record/run_folder.hpp"
+#include "server/record/run_info_file.hpp"
+#include "server/record/run_lock.hpp"
+#include "server/run/run_options.hpp"
+#include "server/runs/run_memory.hpp"
 #include "tests/engine/manager_fixture.hpp"
 #include "vo_bridges/vo_port.hpp"
 

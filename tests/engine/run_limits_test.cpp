@@ -6,9 +6,11 @@
 #include <set>
 #include <thread>
 
-#include "server/engine/idempotency_keys.hpp"
-#include "server/engine/run_folder.hpp"
-#include "server/engine/run_id.hpp"
+#include "server/record/run_folder.hpp"
+#include "server/record/run_id.hpp"
+#include "server/record/run_info.hpp"
+#include "server/record/run_lock.hpp"
+#include "server/runs/idempotency_keys.hpp"
 #include "tests/engine/manager_fixture.hpp"
 
 namespace overfly::engine {

@@ -5,8 +5,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "server/engine/run_folder.hpp"
-#include "server/engine/whole_file.hpp"
+#include "server/files/whole_file.hpp"
+#include "server/record/run_folder.hpp"
+#include "server/record/run_info.hpp"
+#include "server/record/run_lock.hpp"
 #include "tests/engine/manager_fixture.hpp"
 
 namespace overfly::engine {

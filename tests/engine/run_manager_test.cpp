@@ -1,11 +1,16 @@
 // The runs of a server: started, queued, listed, cancelled, removed, found again.
-#include "server/engine/run_manager.hpp"
+#include "server/runs/run_manager.hpp"
+#include "server/record/run_info_file.hpp"
+#include "server/record/run_lock.hpp"
+#include "server/record/run_timeline.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "server/engine/run_folder.hpp"
-#include "server/engine/whole_file.hpp"
+#include "server/files/whole_file.hpp"
+#include "server/record/run_folder.hpp"
+#include "server/scenario/document/scenario_file.hpp"
+#include "server/scenario/document/scenario_override.hpp"
 #include "tests/engine/manager_fixture.hpp"
 
 namespace overfly::engine {

@@ -1,5 +1,7 @@
 // Whole runs over a small world: folders, determinism, scores, ends.
-#include "server/engine/run.hpp"
+#include "server/run/run.hpp"
+#include "server/record/run_info_file.hpp"
+#include "server/record/run_timeline.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,8 +10,8 @@
 #include <cmath>
 
 #include "core/trajectory_io.hpp"
-#include "server/engine/run_folder.hpp"
-#include "server/engine/whole_file.hpp"
+#include "server/files/whole_file.hpp"
+#include "server/record/run_folder.hpp"
 #include "tests/engine/engine_fixture.hpp"
 
 namespace overfly::engine {

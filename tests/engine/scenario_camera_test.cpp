@@ -1,11 +1,12 @@
 // Cameras, faults and light of a scenario: what a document means, and what it may not say.
-#include "server/engine/scenario_camera.hpp"
+#include "server/scenario/document/scenario_camera.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "core/pose.hpp"
-#include "server/engine/scenario.hpp"
+#include "server/scenario/document/scenario_file.hpp"
+#include "server/scenario/scenario.hpp"
 
 namespace overfly::engine {
 namespace {

@@ -1,10 +1,12 @@
 // Estimators of a scenario: what each door takes, and what it refuses.
-#include "server/engine/scenario_estimators.hpp"
+#include "server/run/run_options.hpp"
+#include "server/scenario/document/estimator_entry.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "server/engine/estimator_factory.hpp"
+#include "server/estimators/estimator_factory.hpp"
+#include "server/scenario/document/scenario_file.hpp"
 #include "tests/support/support.hpp"
 #include "vo_bridges/lcm/lcm_estimator.hpp"
 

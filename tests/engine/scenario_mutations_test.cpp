@@ -8,8 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "server/engine/json_schema.hpp"
-#include "server/engine/scenario.hpp"
+#include "server/files/json_schema.hpp"
+#include "server/scenario/document/scenario_file.hpp"
+#include "server/scenario/document/scenario_schema.hpp"
+#include "server/scenario/scenario.hpp"
 #include "tests/support/support.hpp"
 
 namespace overfly::engine {

@@ -5,8 +5,10 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "server/engine/scenario.hpp"
-#include "server/engine/scenario_list.hpp"
+#include "server/scenario/document/scenario_file.hpp"
+#include "server/scenario/document/scenario_list.hpp"
+#include "server/scenario/document/scenario_override.hpp"
+#include "server/scenario/scenario.hpp"
 #include "tests/support/support.hpp"
 
 namespace overfly::engine {

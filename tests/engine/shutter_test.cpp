@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <functional>
 
-#include "server/engine/frame_maker.hpp"
+#include "server/camera/frame_maker.hpp"
 #include "tests/engine/engine_fixture.hpp"
 #include "tests/renderer/procedural_ground.hpp"
 

@@ -6,7 +6,7 @@
 #include <map>
 #include <mutex>
 
-#include "server/engine/run_clock.hpp"
+#include "server/timing/run_clock.hpp"
 
 namespace overfly::engine::testing {
 

@@ -8,7 +8,10 @@
 #include <atomic>
 #include <cerrno>
 
-#include "server/engine/run_folder.hpp"
+#include "server/record/run_folder.hpp"
+#include "server/record/run_info_file.hpp"
+#include "server/record/run_lock.hpp"
+#include "server/run/run_options.hpp"
 #include "tests/engine/manager_fixture.hpp"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)

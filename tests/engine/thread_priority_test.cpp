@@ -1,4 +1,4 @@
-#include "server/engine/thread_priority.hpp"
+#include "server/timing/thread_priority.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

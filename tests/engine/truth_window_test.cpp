@@ -1,5 +1,5 @@
 // The truth while the shutter is open.
-#include "server/engine/truth_window.hpp"
+#include "server/camera/truth_window.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,9 +4,11 @@
 
 #include <string>
 
-#include "server/engine/run_folder.hpp"
-#include "server/engine/run_records.hpp"
-#include "server/engine/world_cache.hpp"
+#include "server/record/run_folder.hpp"
+#include "server/record/run_info_file.hpp"
+#include "server/record/run_records.hpp"
+#include "server/run/run_options.hpp"
+#include "server/worlds/world_cache.hpp"
 #include "tests/engine/engine_fixture.hpp"
 #include "tests/engine/jumping_clock.hpp"
 

@@ -1,10 +1,11 @@
-#include "server/engine/view_encoding.hpp"
+#include "server/views/view_encoding.hpp"
+#include "server/record/rows.hpp"
 
 #include <gtest/gtest.h>
 
 #include <fstream>
 
-#include "server/engine/jpeg.hpp"
+#include "server/files/jpeg.hpp"
 #include "tests/support/support.hpp"
 
 namespace overfly::engine {

@@ -1,4 +1,5 @@
-#include "server/engine/view_queue.hpp"
+#include "server/views/view_queue.hpp"
+#include "server/views/picture_request.hpp"
 
 #include <gtest/gtest.h>
 

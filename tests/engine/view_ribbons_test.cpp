@@ -1,4 +1,7 @@
-#include "server/engine/view_ribbons.hpp"
+#include "server/views/view_ribbons.hpp"
+#include "server/record/rows.hpp"
+#include "server/record/run_info.hpp"
+#include "server/record/run_timeline.hpp"
 
 #include <gtest/gtest.h>
 

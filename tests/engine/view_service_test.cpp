@@ -8,7 +8,8 @@
 #include <future>
 #include <thread>
 
-#include "server/engine/view_service.hpp"
+#include "server/record/run_info.hpp"
+#include "server/views/view_service.hpp"
 #include "tests/engine/manager_fixture.hpp"
 #include "tests/support/synthetic_world.hpp"
 

@@ -1,5 +1,7 @@
 // Worlds that stay open between runs, and files that change meanwhile.
-#include "server/engine/world_cache.hpp"
+#include "server/worlds/world_cache.hpp"
+#include "server/record/run_info.hpp"
+#include "server/run/run_options.hpp"
 
 #include <fcntl.h>
 #include <gmock/gmock.h>
@@ -8,8 +10,8 @@
 
 #include <algorithm>
 
-#include "server/engine/run_folder.hpp"
-#include "server/engine/whole_file.hpp"
+#include "server/files/whole_file.hpp"
+#include "server/record/run_folder.hpp"
 #include "tests/engine/engine_fixture.hpp"
 #include "tests/support/synthetic_world.hpp"
 

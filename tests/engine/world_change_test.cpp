@@ -1,5 +1,6 @@
 // A run that is looked at after its data files have changed: its info says which.
-#include "server/engine/world_change.hpp"
+#include "server/worlds/world_change.hpp"
+#include "server/record/run_info.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Messages of a WebSocket client.
-#include "server/net/client_message.hpp"
+#include "server/net/stream/client_message.hpp"
 #include "tests/fuzz/input_folder.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

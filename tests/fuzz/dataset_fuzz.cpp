@@ -2,7 +2,8 @@
 //
 // The input is a folder. `options.txt` in it says how it is opened: layout, camera, unit of time,
 // each on a line of its own; an empty one is told by the files. `times.txt` of layout `images`.
-#include "server/engine/dataset/dataset.hpp"
+#include "server/dataset/dataset.hpp"
+#include "server/dataset/open_dataset.hpp"
 
 #include <fstream>
 

@@ -4,12 +4,12 @@
 // line, the body.
 #include <cstdlib>
 
-#include "server/net/allowed_hosts.hpp"
-#include "server/net/error_response.hpp"
-#include "server/net/json_text.hpp"
-#include "server/net/rest_router.hpp"
-#include "server/net/static_files.hpp"
-#include "server/net/token_gate.hpp"
+#include "server/net/http/allowed_hosts.hpp"
+#include "server/net/http/error_response.hpp"
+#include "server/net/http/json_text.hpp"
+#include "server/net/http/rest_router.hpp"
+#include "server/net/http/static_files.hpp"
+#include "server/net/http/token_gate.hpp"
 #include "tests/fuzz/input_folder.hpp"
 
 namespace overfly::net {

@@ -4,9 +4,12 @@
 // The input is a run folder.
 #include <cmath>
 
-#include "server/engine/metrics.hpp"
-#include "server/engine/row_alignment.hpp"
-#include "server/engine/run_folder.hpp"
+#include "server/record/rows.hpp"
+#include "server/record/run_folder.hpp"
+#include "server/record/run_info_file.hpp"
+#include "server/record/run_timeline.hpp"
+#include "server/scoring/metrics.hpp"
+#include "server/scoring/row_alignment.hpp"
 #include "tests/fuzz/input_folder.hpp"
 
 namespace {

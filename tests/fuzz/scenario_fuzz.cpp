@@ -1,11 +1,13 @@
 // Scenario documents with overrides, and what makes them a scenario.
 //
 // The input is the document's text; lines `--set PATH=VALUE` at its end are overrides.
-#include "server/engine/scenario.hpp"
+#include "server/scenario/scenario.hpp"
 
 #include <cstdlib>
 
-#include "server/engine/whole_file.hpp"
+#include "server/files/whole_file.hpp"
+#include "server/scenario/document/scenario_file.hpp"
+#include "server/scenario/document/scenario_override.hpp"
 #include "tests/fuzz/input_folder.hpp"
 
 namespace {

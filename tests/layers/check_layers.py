@@ -62,7 +62,7 @@ JSON_IN_HEADERS = ["server/engine", "server/net", "server/app"]
 CALLS = [
     # Text in the program itself needs no guard; everything else may come from outside.
     (r"\b[Jj]son::(parse|sax_parse|from_\w+)\(",
-     ["core/outside_json.hpp", "server/engine/scenario.cpp", "server/engine/camera_check.cpp"],
+     ["core/outside_json.hpp", "server/scenario/scenario.cpp", "server/camera/camera_check.cpp"],
      "json_from_outside"),
     # It lets read errors out as exceptions, waits for FIFOs and knows no limit.
     (r"istreambuf_iterator", [], "read_file_text or read_file_bytes"),
@@ -158,7 +158,7 @@ def self_test():
         {"renderer/a.cpp": '#include "terrain/world.hpp"'},
         {"odometry/feature/a.cpp": '#include "core/x.hpp"\n#include "flight/flight.hpp"'},
         {"odometry/feature/a.cpp": '#include "vo_bridges/toy/toy_estimators.hpp"'},
-        {"core/a.hpp": '#include "server/engine/run.hpp"'},
+        {"core/a.hpp": '#include "server/run/run.hpp"'},
         {"terrain/a.cpp": "  const Json json = Json::parse(text);"},
         {"server/net/a.cpp": '#include "renderer/renderer.hpp"'},
         {"server/engine/a.cpp": '#include "renderer/egl/context.hpp"'},
@@ -174,7 +174,7 @@ def self_test():
         {"terrain/world.cpp": '#include "terrain/files.hpp"\n#include "core/result.hpp"',
          "terrain/files.hpp": "#include <gdal_priv.h>"},
         {"renderer/egl/a.cpp": '#include <epoxy/gl.h>\n#include "renderer/egl/b.hpp"'},
-        {"server/engine/run.cpp": '#include "flight/flight.hpp"\n#include <vector>'},
+        {"server/run/run.cpp": '#include "flight/flight.hpp"\n#include <vector>'},
         {"odometry/feature/map.hpp": "#include <opencv2/core.hpp>"},
     ]
     for sources in forbidden:

@@ -18,7 +18,7 @@ using ::testing::StartsWith;
 constexpr const char* kToken = "0123456789abcdefABCDEF-_";
 const Headers kShown = {{"Authorization", std::string("Bearer ") + kToken}};
 
-json openapi() { return json::parse(read_text(source_file("server/net/openapi.json"))); }
+json openapi() { return json::parse(read_text(source_file("server/net/rest/openapi.json"))); }
 
 std::string upgrade(const std::string& target) {
   return "GET " + target +

@@ -1,4 +1,4 @@
-#include "server/net/allowed_hosts.hpp"
+#include "server/net/http/allowed_hosts.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

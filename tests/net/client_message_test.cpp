@@ -1,4 +1,4 @@
-#include "server/net/client_message.hpp"
+#include "server/net/stream/client_message.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,6 +6,7 @@
 #include <random>
 
 #include "core/pose.hpp"
+#include "server/views/picture_request.hpp"
 
 namespace overfly::net {
 namespace {

@@ -1,4 +1,4 @@
-#include "server/net/playback_cursor.hpp"
+#include "server/net/stream/playback_cursor.hpp"
 
 #include <gtest/gtest.h>
 

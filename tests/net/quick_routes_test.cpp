@@ -1,8 +1,8 @@
 // Health answers while every worker of the server is busy.
 #include <gtest/gtest.h>
 
-#include "server/net/error_response.hpp"
-#include "server/net/rest_api.hpp"
+#include "server/net/http/error_response.hpp"
+#include "server/net/rest/rest_api.hpp"
 
 namespace overfly::net {
 namespace {

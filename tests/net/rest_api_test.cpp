@@ -7,9 +7,11 @@
 #include <map>
 #include <set>
 
-#include "server/engine/jpeg.hpp"
-#include "server/engine/json_schema.hpp"
-#include "server/engine/scenario.hpp"
+#include "server/files/jpeg.hpp"
+#include "server/files/json_schema.hpp"
+#include "server/scenario/document/scenario_file.hpp"
+#include "server/scenario/document/scenario_schema.hpp"
+#include "server/scenario/scenario.hpp"
 #include "tests/net/test_client.hpp"
 #include "tests/net/test_server.hpp"
 

@@ -1,8 +1,8 @@
-#include "server/net/rest_router.hpp"
+#include "server/net/http/rest_router.hpp"
 
 #include <gtest/gtest.h>
 
-#include "server/net/error_response.hpp"
+#include "server/net/http/error_response.hpp"
 
 namespace overfly::net {
 namespace {

@@ -1,4 +1,6 @@
-#include "server/net/row_encoder.hpp"
+#include "server/net/stream/row_encoder.hpp"
+#include "server/record/rows.hpp"
+#include "server/record/run_info.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 #include <chrono>
 #include <thread>
 
-#include "server/engine/run_folder.hpp"
-#include "server/engine/whole_file.hpp"
+#include "server/files/whole_file.hpp"
+#include "server/record/run_folder.hpp"
 #include "tests/net/test_client.hpp"
 #include "tests/net/test_server.hpp"
 

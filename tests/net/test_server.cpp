@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "renderer/renderer.hpp"
+#include "server/record/run_info.hpp"
 #include "tests/support/synthetic_world.hpp"
 
 namespace overfly::testing {

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "server/engine/run_manager.hpp"
-#include "server/engine/view_service.hpp"
 #include "server/net/server.hpp"
+#include "server/runs/run_manager.hpp"
+#include "server/views/view_service.hpp"
 #include "tests/net/test_client.hpp"
 #include "tests/support/support.hpp"
 

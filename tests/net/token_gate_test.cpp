@@ -1,9 +1,9 @@
-#include "server/net/token_gate.hpp"
+#include "server/net/http/token_gate.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "server/net/access_token.hpp"
+#include "server/net/http/access_token.hpp"
 
 namespace overfly::net {
 namespace {

@@ -1,4 +1,4 @@
-#include "server/net/url.hpp"
+#include "server/net/http/url.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,8 +8,8 @@
 #include <random>
 #include <thread>
 
-#include "server/engine/jpeg.hpp"
-#include "server/engine/picture_rate.hpp"
+#include "server/files/jpeg.hpp"
+#include "server/timing/picture_rate.hpp"
 #include "tests/net/test_client.hpp"
 #include "tests/net/test_server.hpp"
 

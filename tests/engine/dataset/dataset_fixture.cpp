@@ -1,4 +1,5 @@
 #include "tests/engine/dataset/dataset_fixture.hpp"
+#include "server/dataset/open_dataset.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "server/engine/dataset/dataset.hpp"
+#include "server/dataset/dataset.hpp"
 #include "tests/support/support.hpp"
 
 namespace overfly::engine::testing {

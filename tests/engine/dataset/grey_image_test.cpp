@@ -1,5 +1,5 @@
 // Image files as others write them (OpenCV), and broken ones.
-#include "server/engine/dataset/grey_image.hpp"
+#include "server/dataset/grey_image.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

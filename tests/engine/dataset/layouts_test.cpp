@@ -5,6 +5,7 @@
 
 #include <functional>
 
+#include "server/dataset/open_dataset.hpp"
 #include "tests/engine/dataset/dataset_fixture.hpp"
 
 namespace overfly::engine {

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "server/dataset/open_dataset.hpp"
 #include "tests/engine/dataset/dataset_fixture.hpp"
 
 namespace overfly::engine {

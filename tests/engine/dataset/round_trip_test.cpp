@@ -3,11 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "server/engine/dataset/track_dataset.hpp"
-#include "server/engine/estimator_factory.hpp"
-#include "server/engine/export/dataset_export.hpp"
-#include "server/engine/run.hpp"
-#include "server/engine/run_records.hpp"
+#include "server/dataset/open_dataset.hpp"
+#include "server/dataset/track_dataset.hpp"
+#include "server/estimators/estimator_factory.hpp"
+#include "server/export/dataset_export.hpp"
+#include "server/record/run_records.hpp"
+#include "server/run/run.hpp"
+#include "server/scenario/document/scenario_file.hpp"
 #include "terrain/synthesize.hpp"
 #include "tests/engine/engine_fixture.hpp"
 

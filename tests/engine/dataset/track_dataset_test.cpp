@@ -1,5 +1,6 @@
 // Estimators over data sets: what is booked, how it ends, what is written.
-#include "server/engine/dataset/track_dataset.hpp"
+#include "server/dataset/track_dataset.hpp"
+#include "server/dataset/open_dataset.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,8 +11,8 @@
 #include <stdexcept>
 
 #include "core/trajectory_io.hpp"
-#include "server/engine/dataset/track_report.hpp"
-#include "server/engine/whole_file.hpp"
+#include "server/dataset/track_report.hpp"
+#include "server/files/whole_file.hpp"
 #include "tests/engine/dataset/dataset_fixture.hpp"
 
 namespace overfly::engine {

@@ -1,5 +1,5 @@
 // The camera's self-test passes a right camera and measures a wrong one.
-#include "server/engine/camera_check.hpp"
+#include "server/camera/camera_check.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/image.hpp"
-#include "server/engine/export/dataset_export.hpp"
-#include "server/engine/frame_maker.hpp"
+#include "server/camera/frame_maker.hpp"
+#include "server/export/dataset_export.hpp"
 #include "tests/engine/engine_fixture.hpp"
 
 namespace overfly::engine::testing {

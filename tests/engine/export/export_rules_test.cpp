@@ -4,9 +4,10 @@
 
 #include <fstream>
 
-#include "server/engine/jpeg.hpp"
-#include "server/engine/run.hpp"
-#include "server/engine/whole_file.hpp"
+#include "server/files/jpeg.hpp"
+#include "server/files/whole_file.hpp"
+#include "server/run/run.hpp"
+#include "server/scenario/document/scenario_override.hpp"
 #include "terrain/image_file.hpp"
 #include "tests/engine/export/export_fixture.hpp"
 

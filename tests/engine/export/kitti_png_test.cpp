@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/trajectory_io.hpp"
-#include "server/engine/whole_file.hpp"
+#include "server/files/whole_file.hpp"
 #include "tests/engine/export/export_fixture.hpp"
 
 namespace overfly::engine {

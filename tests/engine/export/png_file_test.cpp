@@ -1,5 +1,5 @@
 // PNG files as OpenCV reads them.
-#include "server/engine/export/png_file.hpp"
+#include "server/files/png_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

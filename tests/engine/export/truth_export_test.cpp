@@ -6,7 +6,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <set>
 
-#include "server/engine/export/truth_writer.hpp"
+#include "server/export/truth_writer.hpp"
 #include "tests/engine/export/export_fixture.hpp"
 
 namespace overfly::engine {

@@ -1,5 +1,5 @@
 // Flights as videos: of the camera, of the aircraft from behind, alone and beside a data set.
-#include "server/engine/export/video_export.hpp"
+#include "server/export/video_export.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

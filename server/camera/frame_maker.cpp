@@ -1,0 +1,193 @@
+#include "server/camera/frame_maker.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "core/cancel.hpp"
+#include "server/camera/truth.hpp"
+#include "server/worlds/world_cache.hpp"
+
+namespace overfly::engine {
+namespace {}  // namespace
+
+FrameMaker::FrameMaker(const Scenario& scenario, const FrameMakerOptions& options)
+    : scenario_(scenario),
+      options_(options),
+      own_stages_(options.stages == nullptr ? std::make_unique<StageTimer>(machine_clock())
+                                            : nullptr),
+      stages_(options.stages == nullptr ? *own_stages_ : *options.stages),
+      faults_(scenario) {}
+
+Result<std::unique_ptr<FrameMaker>> FrameMaker::open(const Scenario& scenario,
+                                                     const FrameMakerOptions& options) {
+  using Step = Status (FrameMaker::*)();
+  std::unique_ptr<FrameMaker> maker(new FrameMaker(scenario, options));
+  const std::pair<const char*, Step> steps[] = {{"open_world", &FrameMaker::open_world},
+                                                {"plan_flight", &FrameMaker::plan_flight},
+                                                {"open_renderer", &FrameMaker::open_renderer},
+                                                {"open_cameras", &FrameMaker::open_cameras}};
+  for (const auto& step : steps) {
+    if (is_cancelled(options.cancel)) return Error{ErrorCode::kCancelled, "cancelled"};
+    Status status = maker->stages_.measure(step.first, [&] { return ((*maker).*step.second)(); });
+    if (!status) return status.error();
+  }
+  return maker;
+}
+
+Status FrameMaker::open_world() {
+  int last_tenth = 0;
+  const auto progress = [&](double share) {
+    const int tenth = static_cast<int>(share * 10.0);
+    if (tenth > last_tenth && options_.notice) {
+      options_.notice("making the built-in world: " + std::to_string(tenth * 10) + " %");
+    }
+    last_tenth = std::max(last_tenth, tenth);
+    return !is_cancelled(options_.cancel);
+  };
+  WorldCache own;
+  WorldCache& worlds = options_.worlds != nullptr ? *options_.worlds : own;
+  auto world = worlds.get(scenario_, progress);
+  if (!world) return world.error();
+  opened_ = *world;
+  world_ = bare_world(opened_);
+  tiles_ = std::make_shared<const WatchedTiles>(world_->tiles);
+  return {};
+}
+
+Status FrameMaker::plan_flight() {
+  Result<std::unique_ptr<TruthSource>> truth = create_truth(scenario_, *world_, options_.cancel);
+  if (!truth) return truth.error();
+  if (Status read = check_reading(0); !read) return failed(read.error());
+  duration_ns_ = (*truth)->duration_ns();
+  truth_ = std::make_unique<TruthWindow>(std::move(*truth));
+  if (scenario_.duration_s) {
+    const std::int64_t wanted_ns = ns_from_s(*scenario_.duration_s);
+    duration_ns_ = duration_ns_ ? std::min(*duration_ns_, wanted_ns) : wanted_ns;
+  }
+  constexpr std::int64_t kDayNs = 86400 * kNsPerS;
+  frames_total_ = frame_count(duration_ns_.value_or(kDayNs), scenario_.rate);
+  return {};
+}
+
+Status FrameMaker::open_renderer() {
+  Result<std::unique_ptr<renderer::Renderer>> made =
+      make_renderer(scenario_, tiles_, options_.renderer_factory);
+  if (!made) return made.error();
+  renderer_ = std::move(*made);
+  return {};
+}
+
+Status FrameMaker::open_cameras() {
+  raster_ns_ = std::numeric_limits<std::int64_t>::max();
+  for (std::size_t i = 0; i < scenario_.cameras.size(); ++i) {
+    auto unit = CameraUnit::create(scenario_.cameras[i], i, scenario_.seed);
+    if (!unit) return unit.error();
+    half_window_ns_ = std::max(half_window_ns_, (*unit)->half_window_ns());
+    raster_ns_ = std::min(raster_ns_, (*unit)->raster_ns());
+    if (faults_.may_freeze(i)) (*unit)->keep_last_image();
+    cameras_.push_back(std::move(*unit));
+  }
+  return {};
+}
+
+Status FrameMaker::check_reading(int late_tiles) const {
+  if (Status heights = tiles_->status(); !heights) return heights;
+  return late_tiles > 0 ? tiles_->unread() : Status();
+}
+
+Error FrameMaker::failed(const Error& error) {
+  if (options_.worlds != nullptr) options_.worlds->drop(opened_);
+  return error;
+}
+
+Result<std::optional<MadeFrame>> FrameMaker::make(std::int64_t k) {
+  MadeFrame made;
+  made.frame = k;
+  made.t_ns = frame_time_ns(k, scenario_.rate);
+  const auto around = stages_.measure(
+      "truth", [&] { return truth_->around(made.t_ns, half_window_ns_, raster_ns_); });
+  if (!around) return failed(around.error());
+  if (!*around) return std::optional<MadeFrame>();
+  const std::vector<AircraftState>& states = **around;
+  made.state = states[states.size() / 2];
+  for (std::size_t i = 0; i < cameras_.size(); ++i) {
+    Result<CameraShot> shot = take(i, k, states);
+    if (!shot) return failed(shot.error().in("frame " + std::to_string(k)));
+    made.shots.push_back(std::move(*shot));
+  }
+  return std::optional(std::move(made));
+}
+
+Result<CameraShot> FrameMaker::take(std::size_t camera,
+                                    std::int64_t k,
+                                    const std::vector<AircraftState>& states) {
+  const std::int64_t t_ns = states[states.size() / 2].t_ns;
+  CameraShot shot;
+  shot.camera = camera;
+  shot.name = scenario_.cameras[camera].name;
+  const FrameFaults faults = faults_.at(camera, k, t_ns);
+  shot.stamp_ns = faults.stamp_ns;
+  shot.faults = faults.names;
+  shot.delivered = !faults.dropped;
+  CameraUnit& unit = *cameras_[camera];
+  Result<renderer::CameraRequest> request = unit.request(states, t_ns);
+  if (!request) return request.error();
+  request->wait_for_tiles = options_.wait_for_tiles;
+  shot.request = std::move(*request);
+  Result<renderer::CameraFrame> drawn =
+      stages_.measure("render", [&] { return renderer_->render_camera(shot.request); });
+  if (!drawn) return drawn.error();
+  if (Status read = check_reading(drawn->late_tiles); !read) return read.error();
+  const Status developed =
+      stages_.measure("sensor", [&] { return unit.develop(std::move(*drawn), faults, k, shot); });
+  if (!developed) return developed.error();
+  return shot;
+}
+
+Result<Trajectory> FrameMaker::rehearse(std::size_t camera) const {
+  // A flight of its own: a truth source never goes back in time.
+  const Result<std::unique_ptr<TruthSource>> truth = create_truth(scenario_, *world_);
+  if (!truth) return truth.error();
+  FaultSchedule faults(scenario_);
+  std::vector<StampedPose> poses;
+  for (std::int64_t k = 0; k < frames_total_; ++k) {
+    const std::int64_t t_ns = frame_time_ns(k, scenario_.rate);
+    const auto state = (*truth)->state_at(t_ns);
+    if (!state) return state.error();
+    if (!*state) break;
+    poses.push_back({faults.at(camera, k, t_ns).stamp_ns,
+                     cameras_[camera]->T_world_camera((*state)->T_world_body, t_ns)});
+  }
+  return Trajectory::from_poses(poses);
+}
+
+Result<renderer::CameraFrame> FrameMaker::draw_at_start(std::size_t camera) {
+  // A flight of its own here as well.
+  const Result<std::unique_ptr<TruthSource>> truth = create_truth(scenario_, *world_);
+  if (!truth) return truth.error();
+  const auto first = (*truth)->state_at(0);
+  if (!first) return first.error();
+  if (!*first) return Error{ErrorCode::kInvalidArgument, "flight: has ended before it began"};
+  return renderer_->render_camera(scenario_.cameras[camera].model,
+                                  cameras_[camera]->T_world_camera((*first)->T_world_body, 0),
+                                  0,
+                                  renderer::PixelFormat::kGrey8);
+}
+
+Result<std::optional<double>> FrameMaker::depth_at_start(std::size_t camera) {
+  const Result<renderer::CameraFrame> frame = draw_at_start(camera);
+  if (!frame) return frame.error();
+  return frame->axis_depth_m;
+}
+
+Status FrameMaker::fetch_first_view() {
+  if (!duration_ns_) return {};
+  for (std::size_t camera = 0; camera < cameras_.size(); ++camera) {
+    const Result<renderer::CameraFrame> frame = draw_at_start(camera);
+    if (!frame) return failed(frame.error().in("camera " + scenario_.cameras[camera].name));
+  }
+  return {};
+}
+
+}  // namespace overfly::engine

@@ -1,0 +1,61 @@
+#include "server/camera/frame_remaker.hpp"
+
+#include <utility>
+
+#include "server/camera/truth.hpp"
+
+namespace overfly::engine {
+
+FrameRemaker::FrameRemaker(Scenario scenario, std::shared_ptr<const terrain::World> world)
+    : scenario_(std::move(scenario)), world_(std::move(world)) {}
+
+Result<std::unique_ptr<FrameRemaker>> FrameRemaker::create(
+    Scenario scenario, std::shared_ptr<const terrain::World> world) {
+  std::unique_ptr<FrameRemaker> maker(new FrameRemaker(std::move(scenario), std::move(world)));
+  for (std::size_t i = 0; i < maker->scenario_.cameras.size(); ++i) {
+    auto unit = CameraUnit::create(maker->scenario_.cameras[i], i, maker->scenario_.seed);
+    if (!unit) return unit.error();
+    maker->cameras_.push_back(std::move(*unit));
+  }
+  return maker;
+}
+
+Result<std::optional<std::vector<AircraftState>>> FrameRemaker::states_around(
+    const CameraUnit& unit, std::int64_t t_ns) {
+  // A truth source never goes back: an earlier frame needs a flight of its own.
+  if (!truth_ || t_ns < asked_ns_) {
+    Result<std::unique_ptr<TruthSource>> source = create_truth(scenario_, *world_);
+    if (!source) return source.error();
+    truth_ = std::make_unique<TruthWindow>(std::move(*source));
+  }
+  asked_ns_ = t_ns;
+  return truth_->around(t_ns, unit.half_window_ns(), unit.raster_ns());
+}
+
+Result<Image> FrameRemaker::make(std::size_t camera,
+                                 const FrameRow& row,
+                                 renderer::Renderer& renderer) {
+  if (camera >= cameras_.size()) {
+    return Error{ErrorCode::kNotFound, "camera " + std::to_string(camera) + ": no such camera"};
+  }
+  CameraUnit& unit = *cameras_[camera];
+  std::optional<renderer::ExposureSetting> setting;
+  if (row.exposure_ns > 0) setting = renderer::ExposureSetting{row.exposure_ns, row.gain};
+  const auto states = states_around(unit, row.t_ns);
+  if (!states) return states.error();
+  if (!*states) {
+    return Error{ErrorCode::kConflict,
+                 "frame " + std::to_string(row.frame) + ": the flight ends before it now"};
+  }
+  Result<renderer::CameraRequest> request = unit.request(**states, row.t_ns, setting);
+  if (!request) return request.error();
+  Result<renderer::CameraFrame> drawn = renderer.render_camera(*request);
+  if (!drawn) return drawn.error();
+  const FrameFaults faults = FaultSchedule(scenario_).at(camera, row.frame, row.t_ns);
+  CameraShot shot;
+  const Status developed = unit.develop(std::move(*drawn), faults, row.frame, shot, setting);
+  if (!developed) return developed.error();
+  return std::move(shot.image);
+}
+
+}  // namespace overfly::engine

@@ -1,0 +1,43 @@
+// A run's camera image made again at any frame, for playback of what was not recorded.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/result.hpp"
+#include "server/camera/camera_unit.hpp"
+#include "server/camera/fault_schedule.hpp"
+#include "server/camera/truth_window.hpp"
+#include "server/record/run_timeline.hpp"
+#include "server/scenario/scenario.hpp"
+#include "terrain/world.hpp"
+
+namespace overfly::engine {
+
+/// With the same renderer the image is that of the run: shutter, vibration, lens faults, exposure
+/// and noise are those of the frame. Only a frozen camera shows what it would have seen.
+/// Used by one thread.
+class FrameRemaker {
+ public:
+  static Result<std::unique_ptr<FrameRemaker>> create(Scenario scenario,
+                                                      std::shared_ptr<const terrain::World> world);
+
+  /// @param row  of the frame, from the run's record: its exposure is used
+  /// Errors: as the truth's and the renderer's.
+  [[nodiscard]] Result<Image> make(std::size_t camera,
+                                   const FrameRow& row,
+                                   renderer::Renderer& renderer);
+
+ private:
+  FrameRemaker(Scenario scenario, std::shared_ptr<const terrain::World> world);
+  [[nodiscard]] Result<std::optional<std::vector<AircraftState>>> states_around(
+      const CameraUnit& unit, std::int64_t t_ns);
+
+  Scenario scenario_;
+  std::shared_ptr<const terrain::World> world_;
+  std::vector<std::unique_ptr<CameraUnit>> cameras_;
+  std::unique_ptr<TruthWindow> truth_;
+  std::int64_t asked_ns_ = 0;  ///< of the truth last
+};
+
+}  // namespace overfly::engine

@@ -1,0 +1,20 @@
+#include "server/camera/renderer_factory.hpp"
+
+namespace overfly::engine {
+
+Result<std::unique_ptr<renderer::Renderer>> make_renderer(
+    const Scenario& scenario,
+    const std::shared_ptr<const terrain::TileSource>& tiles,
+    const RendererFactory& factory) {
+  if (factory) return factory(tiles);
+  renderer::RendererOptions options;
+  options.device = scenario.renderer.device;
+  options.threads = scenario.renderer.threads;
+  const std::string& camera = scenario.renderer.camera;
+  options.camera_backend = camera == "egl"       ? renderer::CameraBackend::kEgl
+                           : camera == "raycast" ? renderer::CameraBackend::kRaycast
+                                                 : renderer::CameraBackend::kAuto;
+  return renderer::create_renderer(tiles, options);
+}
+
+}  // namespace overfly::engine

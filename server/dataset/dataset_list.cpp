@@ -1,0 +1,124 @@
+// What the readers of all layouts share.
+#include <algorithm>
+#include <cmath>
+#include <system_error>
+#include <utility>
+
+#include "core/time_order.hpp"
+#include "server/dataset/dataset_reader.hpp"
+#include "server/dataset/grey_image.hpp"
+
+namespace overfly::engine {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// The run of digits at `begin` without leading zeros; moves `begin` behind it.
+std::string number_at(const std::string& text, std::size_t& begin) {
+  while (begin < text.size() && text[begin] == '0') ++begin;
+  const std::size_t first = begin;
+  while (begin < text.size() && is_digit(text[begin])) ++begin;
+  return text.substr(first, begin - first);
+}
+
+/// 9.png before 10.png; of equal numbers ("01", "1") by all characters.
+bool before(const fs::path& a_path, const fs::path& b_path) {
+  const std::string a = a_path.filename().string();
+  const std::string b = b_path.filename().string();
+  std::size_t i = 0;
+  std::size_t j = 0;
+  while (i < a.size() && j < b.size()) {
+    if (is_digit(a[i]) && is_digit(b[j])) {
+      const std::string number_a = number_at(a, i);
+      const std::string number_b = number_at(b, j);
+      if (number_a.size() != number_b.size()) return number_a.size() < number_b.size();
+      if (number_a != number_b) return number_a < number_b;
+      continue;
+    }
+    if (a[i] != b[j]) return a[i] < b[j];
+    ++i;
+    ++j;
+  }
+  if (i < a.size() || j < b.size()) return i == a.size();
+  return a < b;
+}
+
+}  // namespace
+
+Status append_image(const fs::path& list_file,
+                    const FieldLine& line,
+                    DatasetImage image,
+                    std::vector<DatasetImage>& images) {
+  std::error_code ignored;
+  image.line = line.number;
+  image.listed_at = list_file.string() + ":" + std::to_string(line.number);
+  if (!fs::exists(image.file, ignored)) {
+    return Error{ErrorCode::kNotFound,
+                 image.listed_at + ": " + image.file.string() + ": no such file"};
+  }
+  images.push_back(std::move(image));
+  return {};
+}
+
+Status order_images(Dataset& dataset) {
+  std::vector<DatasetImage>& images = dataset.images;
+  if (images.empty()) return {};
+  std::vector<TimedLine> times;
+  for (const DatasetImage& image : images) times.push_back({image.t_ns, image.line});
+  const std::string& first = images.front().listed_at;
+  const TimeOrder order = order_by_time(first.substr(0, first.rfind(':')), "images", times);
+  std::vector<DatasetImage> ordered;
+  for (const std::size_t i : order.kept) ordered.push_back(std::move(images[i]));
+  images = std::move(ordered);
+  dataset.warnings.insert(dataset.warnings.end(), order.warnings.begin(), order.warnings.end());
+  const bool moved = !std::is_sorted(order.kept.begin(), order.kept.end());
+  for (std::size_t i = 0; moved && i < images.size(); ++i) {
+    images[i].index = static_cast<std::int64_t>(i);
+  }
+  for (std::size_t i = 1; i < images.size(); ++i) {
+    if (images[i].index > images[i - 1].index) continue;
+    return Error{ErrorCode::kUnreadable,
+                 images[i].listed_at + ": image number " + std::to_string(images[i].index) +
+                     ": must be above " + std::to_string(images[i - 1].index) + ", the one before"};
+  }
+  return {};
+}
+
+Result<std::int64_t> exposure_ms(const FieldFile& list, const FieldLine& line, std::size_t column) {
+  const Result<double> ms = list.number(line, column);
+  if (!ms) return ms.error();
+  constexpr double kLongestMs = 1e6;
+  if (*ms < 0.0 || *ms > kLongestMs) {
+    return list.bad_field(line, column, "an exposure must be in [0, 1e6] ms");
+  }
+  return std::llround(*ms * 1e6);
+}
+
+Result<std::vector<fs::path>> images_in(const fs::path& folder) {
+  std::error_code failure;
+  std::vector<fs::path> files;
+  for (fs::directory_iterator entry(folder, failure), end; !failure && entry != end;
+       entry.increment(failure)) {
+    if (is_image_name(entry->path())) files.push_back(entry->path());
+  }
+  if (failure) {
+    return Error{ErrorCode::kNotFound, folder.string() + ": cannot be read: " + failure.message()};
+  }
+  std::sort(files.begin(), files.end(), before);
+  return files;
+}
+
+Status expect_as_many(const fs::path& list_file,
+                      std::size_t lines,
+                      const fs::path& folder,
+                      std::size_t images) {
+  if (lines == images) return {};
+  return Error{ErrorCode::kUnreadable,
+               list_file.string() + ": " + std::to_string(lines) + " times, but " +
+                   folder.string() + " holds " + std::to_string(images) +
+                   " images: must be as many"};
+}
+
+}  // namespace overfly::engine

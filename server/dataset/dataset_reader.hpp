@@ -1,0 +1,68 @@
+// Inside dataset only: the readers of each layout, and what they share.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/text_fields.hpp"
+#include "server/dataset/dataset.hpp"
+
+namespace overfly::engine {
+
+/// A data set whose images are listed; a camera without size (0 x 0 px) is not known yet.
+struct ListedDataset {
+  Dataset dataset;
+  std::optional<CameraModel> camera;
+};
+
+[[nodiscard]] Result<ListedDataset> read_plain_folder(const DatasetOptions& options);
+[[nodiscard]] Result<ListedDataset> read_euroc(const DatasetOptions& options);
+[[nodiscard]] Result<ListedDataset> read_tum_mono(const DatasetOptions& options);
+[[nodiscard]] Result<ListedDataset> read_tum_rgbd(const DatasetOptions& options);
+[[nodiscard]] Result<ListedDataset> read_kitti(const DatasetOptions& options);
+[[nodiscard]] Result<ListedDataset> read_png_export(const DatasetOptions& options);
+
+/// The folder that holds `mav0/cam0` or what else EuRoC's reader takes; empty where none does.
+[[nodiscard]] std::optional<std::filesystem::path> euroc_cameras_folder(
+    const std::filesystem::path& folder);
+/// KITTI's image folder: "image_0", else the first of the others that is there.
+[[nodiscard]] std::optional<std::string> kitti_image_folder(const std::filesystem::path& folder);
+
+/// Calibration files. Errors: kUnreadable naming file, line and value.
+struct EurocSensor {
+  CameraModel camera;
+  Pose T_body_camera;
+};
+[[nodiscard]] Result<EurocSensor> read_euroc_sensor(const std::filesystem::path& file);
+/// As DSO reads it: relative where cx and cy are below 1, and then half a pixel is taken off them.
+[[nodiscard]] Result<CameraModel> read_tum_mono_camera(const std::filesystem::path& file);
+
+/// Appends an image, which must be there. Errors: kNotFound naming the line of `list_file`.
+[[nodiscard]] Status append_image(const std::filesystem::path& list_file,
+                                  const FieldLine& line,
+                                  DatasetImage image,
+                                  std::vector<DatasetImage>& images);
+/// Puts the listed images in order of time; of the same time the first is kept. Images that had to
+/// be moved are numbered anew.
+/// Errors: kUnreadable, naming the line, for images whose own numbers do not increase.
+[[nodiscard]] Status order_images(Dataset& dataset);
+
+/// Exposure in milliseconds, 0 = not known. Errors: kUnreadable, also when negative.
+[[nodiscard]] Result<std::int64_t> exposure_ms(const FieldFile& list,
+                                               const FieldLine& line,
+                                               std::size_t column);
+
+/// The images in a folder, numbers in their names taken as numbers. Errors: kNotFound.
+[[nodiscard]] Result<std::vector<std::filesystem::path>> images_in(
+    const std::filesystem::path& folder);
+
+/// Image i beside line i. Errors: kUnreadable with both counts.
+[[nodiscard]] Status expect_as_many(const std::filesystem::path& list_file,
+                                    std::size_t lines,
+                                    const std::filesystem::path& folder,
+                                    std::size_t images);
+
+}  // namespace overfly::engine

@@ -1,0 +1,223 @@
+#include "server/dataset/track_dataset.hpp"
+#include "server/dataset/open_dataset.hpp"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <ctime>
+#include <utility>
+
+#include "core/barrier.hpp"
+#include "core/cancel.hpp"
+#include "core/trajectory_io.hpp"
+#include "server/files/jpeg.hpp"
+#include "server/files/number_text.hpp"
+#include "server/files/whole_file.hpp"
+#include "server/timing/run_clock.hpp"
+#include "vo_bridges/pose_intake.hpp"
+
+namespace overfly::engine {
+namespace {
+
+namespace fs = std::filesystem;
+
+double process_cpu_s() {
+  std::timespec used{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &used);
+  return static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
+}
+
+double process_peak_memory_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+double ms_since(std::int64_t begin_ns) {
+  return static_cast<double>(machine_clock().now_ns() - begin_ns) * 1e-6;
+}
+
+/// One pass over the data set.
+class Pass {
+ public:
+  Pass(const Dataset& dataset, VoPort& port, const TrackOptions& options)
+      : dataset_(dataset), port_(port), options_(options) {}
+
+  Result<TrackedDataset> run() {
+    port_.set_debug(!options_.debug_folder.empty() || options_.map_points);
+    if (Status status = prepare(); !status) return status.error();
+    const double cpu_to_get_ready_s = port_.resource_use().value_or(ResourceUse{}).cpu_s;
+    for (std::size_t i = 0; i < dataset_.images.size() && !crashed_; ++i) {
+      if (is_cancelled(options_.cancel)) {
+        result_.cancelled = true;
+        break;
+      }
+      Status status = step(i);
+      pass_on_log();
+      if (!status) return status.error();
+      if (result_.cancelled) break;
+      if (options_.progress) {
+        options_.progress(i + 1, dataset_.images.size(), result_.records.back().sample.state);
+      }
+    }
+    result_.type = port_.type();
+    result_.parameters = port_.effective_parameters();
+    // One in this process, which does nothing else here, is measured as that.
+    const std::optional<ResourceUse> use = port_.resource_use();
+    if (use && use->own_process) {
+      result_.resources = *use;
+      result_.resources.cpu_s -= cpu_to_get_ready_s;
+      result_.own_process = true;
+    } else {
+      result_.resources.peak_memory_mb = process_peak_memory_mb();
+    }
+    return std::move(result_);
+  }
+
+ private:
+  /// Errors: the first image's.
+  Status prepare() {
+    Result<VoFrame> first = read_frame(dataset_, 0);
+    if (!first) return first.error();
+    first->image.reset();
+    const Status prepared = guarded([&] { return port_.prepare(*first); });
+    if (!prepared) failure_ = prepared.error();
+    pass_on_log();
+    return {};
+  }
+
+  Status step(std::size_t i) {
+    const std::int64_t read_ns = machine_clock().now_ns();
+    const Result<VoFrame> frame = read_frame(dataset_, i);
+    if (!frame) return frame.error();
+    result_.reading.ms.push_back(ms_since(read_ns));
+    const double cpu_before_s = process_cpu_s();
+    const std::int64_t track_ns = machine_clock().now_ns();
+    Result<VoEstimate> estimate =
+        failure_ ? Result<VoEstimate>(*failure_) : guarded([&] { return port_.track(*frame); });
+    result_.tracking.ms.push_back(ms_since(track_ns));
+    result_.resources.cpu_s += process_cpu_s() - cpu_before_s;
+    if (estimate) {
+      estimate->sample.frame = frame->index;
+      estimate->sample.t_ns = frame->t_ns;
+      const Status usable = poses_.take(*estimate);
+      tell(poses_.take_notes());
+      if (!usable) estimate = usable.error();
+    }
+    EstimateRecord record;
+    record.sample.frame = frame->index;
+    record.sample.t_ns = frame->t_ns;
+    record.sample.state = TrackingState::kLost;
+    if (!estimate) {
+      if (estimate.error().code == ErrorCode::kCancelled) {
+        result_.cancelled = true;
+        return {};
+      }
+      if (estimate.error().code != ErrorCode::kInternal) {
+        return estimate.error().in(dataset_.images[i].listed_at);
+      }
+      crashed_ = true;
+      record.crash = estimate.error().message;
+      result_.records.push_back(std::move(record));
+      return {};
+    }
+    record.sample = estimate->sample;
+    record.counters = estimate->counters;
+    result_.records.push_back(std::move(record));
+    return book(*frame, *estimate);
+  }
+
+  /// Everything of an answer but its pose.
+  Status book(const VoFrame& frame, const VoEstimate& estimate) {
+    const auto unanswered = estimate.counters.find("unanswered");
+    if (unanswered != estimate.counters.end() && unanswered->second > 0.0) ++result_.unanswered;
+    if (estimate.image_crc32 && estimate.image_crc32 != frame.image_crc32) {
+      ++result_.hash_mismatches;
+    }
+    for (const auto& [stage, ms] : estimate.timing_ms) result_.stages[stage].ms.push_back(ms);
+    if (options_.map_points) result_.map.add(estimate.sample, estimate.map_points_vo);
+    if (options_.debug_folder.empty() || !estimate.debug_image) return {};
+    constexpr int kQuality = 85;
+    const auto bytes = encode_jpeg(*estimate.debug_image, kQuality);
+    if (!bytes) return bytes.error().in("debug image of frame " + std::to_string(frame.index));
+    return write_whole(options_.debug_folder / (padded(frame.index, 6) + ".jpg"),
+                       std::span<const std::uint8_t>(*bytes));
+  }
+
+  void pass_on_log() { tell(port_.take_log()); }
+
+  void tell(const std::vector<std::string>& lines) {
+    for (const std::string& line : lines) {
+      if (options_.log) options_.log(line);
+    }
+  }
+
+  const Dataset& dataset_;
+  VoPort& port_;
+  const TrackOptions& options_;
+  TrackedDataset result_;
+  bool crashed_ = false;
+  PoseIntake poses_;
+  std::optional<Error> failure_;  ///< to get ready
+};
+
+}  // namespace
+
+Result<TrackedDataset> track_dataset(const Dataset& dataset,
+                                     VoPort& port,
+                                     const TrackOptions& options) {
+  return Pass(dataset, port, options).run();
+}
+
+std::string never_ran(const TrackedDataset& tracked) {
+  for (const EstimateRecord& record : tracked.records) {
+    const auto unanswered = record.counters.find("unanswered");
+    const bool answered = unanswered == record.counters.end() || unanswered->second <= 0.0;
+    if (!record.crash.empty()) return record.crash;
+    if (answered) return {};
+  }
+  return {};
+}
+
+EstimateTrack track_of(const TrackedDataset& tracked) {
+  EstimateTrack track;
+  track.name = tracked.type;
+  for (const EstimateRecord& record : tracked.records) track.samples.push_back(record.sample);
+  return track;
+}
+
+std::optional<int> scored_map(const TrackedDataset& tracked) {
+  std::map<int, int> frames;
+  for (const EstimateRecord& record : tracked.records) {
+    if (record.sample.state == TrackingState::kTracking) ++frames[record.sample.map_id];
+  }
+  if (frames.empty()) return std::nullopt;
+  return std::max_element(frames.begin(),
+                          frames.end(),
+                          [](const auto& a, const auto& b) { return a.second < b.second; })
+      ->first;
+}
+
+Status write_track(const fs::path& file, const TrackedDataset& tracked) {
+  const std::optional<int> map_id = scored_map(tracked);
+  Trajectory trajectory;
+  std::map<std::string, std::string> comments;
+  for (const EstimateRecord& record : tracked.records) {
+    const EstimateSample& sample = record.sample;
+    if (sample.state != TrackingState::kTracking || sample.map_id != map_id) continue;
+    if (trajectory.empty() && sample.scene_depth) {
+      comments["init_scene_depth"] = number_text(*sample.scene_depth);
+    }
+    const Status added = trajectory.append({sample.t_ns, sample.T_vo_camera});
+    if (!added) return added.error().in("frame " + std::to_string(sample.frame));
+  }
+  return write_tum(file, trajectory, comments);
+}
+
+Status write_statuses(const fs::path& file, const TrackedDataset& tracked) {
+  std::string text;
+  for (const EstimateRecord& record : tracked.records) text += json_from(record).dump() + "\n";
+  return write_whole(file, text);
+}
+
+}  // namespace overfly::engine

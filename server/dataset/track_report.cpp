@@ -1,0 +1,165 @@
+#include "server/dataset/track_report.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+
+#include "core/time.hpp"
+#include "server/record/rows.hpp"
+#include "server/scoring/metrics.hpp"
+
+namespace overfly::engine {
+namespace {
+
+using Json = nlohmann::json;
+
+std::optional<std::string> crash_of(const TrackedDataset& tracked) {
+  if (tracked.records.empty() || tracked.records.back().crash.empty()) return std::nullopt;
+  return tracked.records.back().crash;
+}
+
+Json dataset_json(const Dataset& dataset) {
+  return {{"folder", dataset.folder.string()},
+          {"layout", to_string(dataset.layout)},
+          {"camera_name", dataset.camera_name},
+          {"images", dataset.images.size()},
+          {"duration_s", s_from_ns(dataset.images.back().t_ns - dataset.images.front().t_ns)},
+          {"camera", json_from(dataset.camera)},
+          {"notes", dataset.notes}};
+}
+
+Json states_json(const TrackedDataset& tracked) {
+  Json states = {{"INITIALISING", 0}, {"TRACKING", 0}, {"LOST", 0}};
+  for (const EstimateRecord& record : tracked.records) {
+    Json& count = states.at(to_string(record.sample.state));
+    count = count.get<int>() + 1;
+  }
+  return states;
+}
+
+/// Seconds from the first image to the first tracked one; null where there is none.
+Json initialised_after_s(const TrackedDataset& tracked) {
+  for (const EstimateRecord& record : tracked.records) {
+    if (record.sample.state != TrackingState::kTracking) continue;
+    return s_from_ns(record.sample.t_ns - tracked.records.front().sample.t_ns);
+  }
+  return nullptr;
+}
+
+int maps_of(const TrackedDataset& tracked) {
+  std::set<int> maps;
+  for (const EstimateRecord& record : tracked.records) {
+    if (record.sample.state == TrackingState::kTracking) maps.insert(record.sample.map_id);
+  }
+  return static_cast<int>(maps.size());
+}
+
+Json resources_json(const TrackedDataset& tracked) {
+  const std::vector<double>& ms = tracked.tracking.ms;
+  const double wall_s = 1e-3 * std::accumulate(ms.begin(), ms.end(), 0.0);
+  return {{"of", tracked.own_process ? "the estimator's process" : "this process"},
+          {"cpu_s", tracked.resources.cpu_s},
+          {"cpu_percent", wall_s > 0.0 ? 100.0 * tracked.resources.cpu_s / wall_s : 0.0},
+          {"peak_memory_mb", tracked.resources.peak_memory_mb}};
+}
+
+/// All images, whatever became of the estimator; of a pass that was cancelled those before that.
+std::vector<evaluation::FlightFrame> flight_of(const Dataset& dataset,
+                                               const TrackedDataset& tracked) {
+  std::vector<evaluation::FlightFrame> flight;
+  for (const DatasetImage& image : dataset.images) {
+    if (tracked.cancelled && flight.size() == tracked.records.size()) break;
+    flight.push_back({image.index, image.t_ns});
+  }
+  return flight;
+}
+
+/// Poses of a frame that is held in the one whose poses are given.
+Result<Trajectory> moved(const Trajectory& trajectory, const Pose& T_given_wanted) {
+  std::vector<StampedPose> poses = trajectory.poses();
+  for (StampedPose& stamped : poses) stamped.pose = stamped.pose * T_given_wanted;
+  return Trajectory::from_poses(poses);
+}
+
+}  // namespace
+
+Result<Trajectory> camera_truth(const Dataset& dataset,
+                                const TrajectoryFile& truth,
+                                std::vector<std::string>& notes) {
+  if (!dataset.T_body_camera) {
+    notes.emplace_back(
+        "the camera's mount is not known: Euler angles are those of a body that it looks straight "
+        "down from");
+  }
+  if (truth.unknown_poses > 0) {
+    notes.push_back("the truth does not know " + std::to_string(truth.unknown_poses) +
+                    " of its poses: frames between those that it knows are not scored");
+  }
+  if (truth.format == TrajectoryFormat::kEuroc && dataset.T_body_camera) {
+    notes.emplace_back("the truth is the body's; the camera's is made with T_BS");
+    return moved(truth.trajectory, *dataset.T_body_camera);
+  }
+  const bool of_another = dataset.T_first_camera && !dataset.T_first_camera->translation.isZero();
+  if (truth.format == TrajectoryFormat::kKitti && of_another) {
+    notes.push_back("the truth is image_0's; that of " + dataset.camera_name +
+                    " is made with calib.txt");
+    return moved(truth.trajectory, *dataset.T_first_camera);
+  }
+  return truth.trajectory;
+}
+
+evaluation::Score score_of(const Dataset& dataset,
+                           const TrackedDataset& tracked,
+                           const Trajectory& T_world_camera,
+                           bool truth_has_times,
+                           std::optional<double> init_true_depth_m) {
+  evaluation::Options options;
+  options.init_true_depth_m = init_true_depth_m;
+  if (dataset.T_body_camera) options.T_body_camera = *dataset.T_body_camera;
+  EstimateTrack track = track_of(tracked);
+  options.flight = flight_of(dataset, tracked);
+  if (!truth_has_times) {
+    // Line i of a file without times is the i-th image.
+    options.association = evaluation::Association::kIndex;
+    for (std::size_t i = 0; i < track.samples.size(); ++i) {
+      track.samples[i].frame = static_cast<std::int64_t>(i);
+    }
+    for (std::size_t i = 0; i < options.flight.size(); ++i) {
+      options.flight[i].frame = static_cast<std::int64_t>(i);
+    }
+  }
+  evaluation::Score score = evaluation::score(T_world_camera, track, options);
+  if (crash_of(tracked)) {
+    score.outcome = evaluation::Outcome::kCrashed;
+    score.outcome_time_s = s_from_ns(track.samples.back().t_ns);
+  }
+  return score;
+}
+
+Json report_json(const Dataset& dataset,
+                 const TrackedDataset& tracked,
+                 const std::optional<evaluation::Score>& score) {
+  Json stages = Json::object();
+  for (const auto& [stage, durations] : tracked.stages) stages[stage] = durations.summary();
+  const std::optional<std::string> crash = crash_of(tracked);
+  Json report = {{"dataset", dataset_json(dataset)},
+                 {"warnings", dataset.warnings},
+                 {"estimator", {{"type", tracked.type}, {"parameters", tracked.parameters}}},
+                 {"frames", tracked.records.size()},
+                 {"complete", tracked.records.size() == dataset.images.size() && !crash},
+                 {"states", states_json(tracked)},
+                 {"initialised_after_s", initialised_after_s(tracked)},
+                 {"maps", maps_of(tracked)},
+                 {"unanswered", tracked.unanswered},
+                 {"hash_mismatches", tracked.hash_mismatches},
+                 {"crash", crash ? Json(*crash) : Json(nullptr)},
+                 {"timing",
+                  {{"read", tracked.reading.summary()},
+                   {"track", tracked.tracking.summary()},
+                   {"stages", std::move(stages)}}},
+                 {"resources", resources_json(tracked)}};
+  if (score) report["score"] = json_from(*score);
+  return report;
+}
+
+}  // namespace overfly::engine

@@ -1,0 +1,95 @@
+#include "server/estimators/estimator_factory.hpp"
+
+#include <map>
+#include <utility>
+
+#include "odometry/feature/feature_odometry.hpp"
+#include "server/estimators/estimator_doors.hpp"
+#include "vo_bridges/toy/toy_estimators.hpp"
+
+namespace overfly::engine {
+namespace {
+
+using Port = Result<std::unique_ptr<VoPort>>;
+
+/// Switches as 1 and 0. Errors: kInvalidArgument for a text.
+Result<std::map<std::string, double>> numbers_of(const VoParameters& parameters) {
+  std::map<std::string, double> numbers;
+  for (const auto& [name, value] : parameters) {
+    if (const double* number = std::get_if<double>(&value)) {
+      numbers[name] = *number;
+    } else if (const bool* flag = std::get_if<bool>(&value)) {
+      numbers[name] = *flag ? 1.0 : 0.0;
+    } else {
+      return Error{ErrorCode::kInvalidArgument,
+                   "parameters." + name + " = \"" + text_of(value) + "\": must be a number"};
+    }
+  }
+  return numbers;
+}
+
+Port create_feature(const EstimatorSpec& spec, const EstimatorSetting& setting) {
+  auto values = numbers_of(spec.parameters);
+  if (!values) return values.error();
+  values->try_emplace("seed", static_cast<double>(setting.seed));
+  values->try_emplace("threads", setting.lockstep ? 1.0 : 2.0);
+  const auto parameters = odometry::feature_parameters_from(*values);
+  if (!parameters) return parameters.error();
+  return odometry::create_feature_odometry(*parameters);
+}
+
+Result<ToyParameters> toy_parameters_from(const VoParameters& given, double scene_depth_m) {
+  const auto values = numbers_of(given);
+  if (!values) return values.error();
+  ToyParameters parameters;
+  parameters.scene_depth_m = scene_depth_m;
+  for (const auto& [key, value] : *values) {
+    if (key == "scale") {
+      parameters.scale = value;
+    } else if (key == "drift") {
+      parameters.drift = value;
+    } else if (key == "scene_depth_m") {
+      parameters.scene_depth_m = value;
+    } else {
+      return Error{ErrorCode::kInvalidArgument,
+                   key + ": no such parameter (known: drift, scale, scene_depth_m)"};
+    }
+  }
+  return parameters;
+}
+
+Port create_toy(const EstimatorSpec& spec, const std::function<Result<ToyTruth>()>& truth) {
+  if (!truth) {
+    return Error{ErrorCode::kInvalidArgument, spec.type + ": needs the truth, and there is none"};
+  }
+  const Result<ToyTruth> known = truth();
+  if (!known) return known.error();
+  const Result<ToyParameters> parameters =
+      toy_parameters_from(spec.parameters, known->scene_depth_m);
+  if (!parameters) return parameters.error();
+  return spec.type == "perfect" ? create_perfect_estimator(known->T_world_camera, *parameters)
+                                : create_drifting_estimator(known->T_world_camera, *parameters);
+}
+
+Port create(const EstimatorSpec& spec,
+            const EstimatorSetting& setting,
+            const std::function<Result<ToyTruth>()>& truth) {
+  if (spec.type == "feature") return create_feature(spec, setting);
+  if (is_test_estimator(spec.type)) return create_toy(spec, truth);
+  if (is_outside_estimator(spec.type)) return create_outside_estimator(spec, setting);
+  return Error{ErrorCode::kInvalidArgument,
+               "type = \"" + spec.type +
+                   "\": must be one of feature, perfect, drifting, process, lcm, ros1"};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<VoPort>> create_estimator(const EstimatorSpec& spec,
+                                                 const EstimatorSetting& setting,
+                                                 const std::function<Result<ToyTruth>()>& truth) {
+  Port port = create(spec, setting, truth);
+  if (!port) return port.error().in("estimator \"" + spec.name + "\"");
+  return port;
+}
+
+}  // namespace overfly::engine

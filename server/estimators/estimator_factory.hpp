@@ -1,0 +1,22 @@
+// Makes estimators, native ones and those behind the doors to other processes.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "core/result.hpp"
+#include "server/estimators/estimator_setting.hpp"
+#include "server/scenario/estimator_spec.hpp"
+#include "vo_bridges/vo_port.hpp"
+
+namespace overfly::engine {
+
+/// @param truth  asked only for test estimators; may be empty where there is none to give
+/// Errors: kInvalidArgument naming the estimator, its parameter, value and limit; kUnsupported for
+/// a door that is not built in; kNotFound, kIo, kInternal for an estimator that does not start.
+[[nodiscard]] Result<std::unique_ptr<VoPort>> create_estimator(
+    const EstimatorSpec& spec,
+    const EstimatorSetting& setting,
+    const std::function<Result<ToyTruth>()>& truth = {});
+
+}  // namespace overfly::engine

@@ -1,0 +1,246 @@
+#include "server/estimators/estimator_worker.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "core/barrier.hpp"
+#include "core/processor_time.hpp"
+#include "core/time.hpp"
+#include "server/timing/cpu_affinity.hpp"
+
+namespace overfly::engine {
+namespace {
+
+EstimatorEvent drop_of(const VoFrame& frame) {
+  EstimatorEvent event;
+  event.record.sample.frame = frame.index;
+  event.record.sample.t_ns = frame.t_ns;
+  event.record.dropped = true;
+  return event;
+}
+
+/// 0 for a rate of 0.
+std::int64_t period_ns(double rate_hz) {
+  return rate_hz > 0.0 ? std::llround(static_cast<double>(kNsPerS) / rate_hz) : 0;
+}
+
+/// Keeps what a run folder can hold: no number that JSON cannot say, nothing of another frame.
+void tidy(const VoFrame& frame, VoEstimate& estimate) {
+  estimate.sample.frame = frame.index;
+  estimate.sample.t_ns = frame.t_ns;
+  const auto is_odd = [](const auto& entry) { return !std::isfinite(entry.second); };
+  std::erase_if(estimate.counters, is_odd);
+  std::erase_if(estimate.timing_ms, is_odd);
+}
+
+}  // namespace
+
+EstimatorWorker::EstimatorWorker(std::unique_ptr<VoPort> port,
+                                 EstimatorWorkerOptions options,
+                                 RunClock& clock)
+    : port_(std::move(port)),
+      options_(std::move(options)),
+      clock_(clock),
+      ready_ns_(clock.now_ns()),
+      debug_period_ns_(period_ns(options_.debug_hz)) {
+  thread_ = std::thread([this] { work(); });
+}
+
+EstimatorWorker::~EstimatorWorker() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+    if ((waiting_ || to_prepare_) && !busy_) clock_.leave();
+    waiting_.reset();
+    to_prepare_.reset();
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+void EstimatorWorker::prepare(VoFrame first) {
+  {
+    const std::lock_guard lock(mutex_);
+    clock_.enter();
+    to_prepare_ = std::move(first);
+  }
+  changed_.notify_all();
+}
+
+void EstimatorWorker::submit(VoFrame frame) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (waiting_) {
+      drops_.push_back(drop_of(waiting_->frame));
+    } else if (!busy_) {
+      clock_.enter();
+    }
+    waiting_ = Waiting{std::move(frame), clock_.now_ns()};
+  }
+  changed_.notify_all();
+}
+
+void EstimatorWorker::wait_until_idle() {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return !waiting_ && !to_prepare_ && !busy_; });
+  rethrow_failure();
+}
+
+std::vector<EstimatorEvent> EstimatorWorker::take_events() {
+  const std::lock_guard lock(mutex_);
+  rethrow_failure();
+  return std::exchange(events_, {});
+}
+
+void EstimatorWorker::rethrow_failure() {
+  if (thrown_) std::rethrow_exception(std::exchange(thrown_, nullptr));
+}
+
+EstimatorUse EstimatorWorker::use() {
+  EstimatorUse use;
+  use.cpu_s = cpu_s_;
+  (void)contained(
+      [&] {
+        if (const auto own = port_->resource_use()) last_known_ = own;
+      },
+      [](const char*) {});
+  if (last_known_) {
+    use.cpu_s = std::max(0.0, last_known_->cpu_s - cpu_to_get_ready_s_);
+    use.peak_memory_mb = last_known_->peak_memory_mb;
+    use.measured = last_known_->own_process ? EstimatorUse::Measured::kProcess
+                                            : EstimatorUse::Measured::kOwnAccount;
+  }
+  const double elapsed_s = s_from_ns(clock_.now_ns() - ready_ns_);
+  if (elapsed_s > 0.0) use.cpu_percent = 100.0 * use.cpu_s / elapsed_s;
+  return use;
+}
+
+void EstimatorWorker::work() {
+  // Checked where the estimator was made: a processor that went away since is no reason to stop.
+  (void)bind_thread(options_.cpus);
+  std::unique_lock lock(mutex_);
+  while (true) {
+    changed_.wait(lock, [this] { return stopping_ || to_prepare_ || waiting_; });
+    if (stopping_) return;
+    busy_ = true;
+    try {
+      if (to_prepare_) {
+        make_ready(lock);
+      } else {
+        answer_waiting(lock);
+      }
+    } catch (...) {
+      // Too little memory even for the answer: the run is told with its next call.
+      if (!lock.owns_lock()) lock.lock();
+      thrown_ = std::current_exception();
+    }
+    busy_ = false;
+    if (!waiting_) clock_.leave();
+    changed_.notify_all();
+  }
+}
+
+void EstimatorWorker::make_ready(std::unique_lock<std::mutex>& lock) {
+  const VoFrame first = *std::exchange(to_prepare_, std::nullopt);
+  lock.unlock();
+  Status prepared = guarded([&] { return port_->prepare(first); });
+  const Status measured = guarded([&]() -> Status {
+    if (const auto use = port_->resource_use()) cpu_to_get_ready_s_ = use->cpu_s;
+    return {};
+  });
+  if (prepared && !measured) prepared = measured;
+  if (!prepared) failure_ = prepared.error();
+  ready_ns_ = clock_.now_ns();
+  lock.lock();
+}
+
+void EstimatorWorker::answer_waiting(std::unique_lock<std::mutex>& lock) {
+  const Waiting taken = *std::exchange(waiting_, std::nullopt);
+  // Frames dropped before this one was taken come before its answer.
+  std::move(drops_.begin(), drops_.end(), std::back_inserter(events_));
+  drops_.clear();
+  lock.unlock();
+  EstimatorEvent event = answer(taken);
+  lock.lock();
+  events_.push_back(std::move(event));
+}
+
+EstimatorEvent EstimatorWorker::answer(const Waiting& waiting) {
+  EstimatorEvent event;
+  event.record.sample.frame = waiting.frame.index;
+  event.record.sample.t_ns = waiting.frame.t_ns;
+  event.record.sample.state = TrackingState::kLost;
+  if (crashed_) return event;
+  Result<VoEstimate> estimate = track(waiting.frame);
+  if (estimate) hold_back(waiting);
+  event.latency_ms = static_cast<double>(clock_.now_ns() - waiting.handed_over_ns) * 1e-6;
+  constexpr std::int64_t kAnswersPerUse = 16;
+  if (!estimate || answers_++ % kAnswersPerUse == 0) event.use = use();
+  if (!estimate && estimate.error().code == ErrorCode::kCancelled) {
+    // The run is stopped; that the estimator was, too, in a frame, says nothing of it.
+    return drop_of(waiting.frame);
+  }
+  if (estimate) {
+    tidy(waiting.frame, *estimate);
+    if (Status usable = judge(*estimate); !usable) estimate = usable.error();
+  }
+  if (!estimate) {
+    crashed_ = true;
+    event.record.crash = estimate.error().message;
+    return event;
+  }
+  event.record.image_crc32 = estimate->image_crc32;
+  if (options_.in_process && !event.record.image_crc32) {
+    event.record.image_crc32 = crc32_of(*waiting.frame.image);
+  }
+  event.record.sample = estimate->sample;
+  event.record.counters = std::move(estimate->counters);
+  event.debug_image = std::move(estimate->debug_image);
+  event.map_points_vo = std::move(estimate->map_points_vo);
+  event.timing_ms = std::move(estimate->timing_ms);
+  return event;
+}
+
+Result<VoEstimate> EstimatorWorker::track(const VoFrame& frame) {
+  const double before_s = thread_cpu_s();
+  Result<VoEstimate> estimate = guarded([&]() -> Result<VoEstimate> {
+    if (failure_) return *failure_;
+    choose_debug(frame.t_ns);
+    return port_->track(frame);
+  });
+  cpu_s_ += thread_cpu_s() - before_s;
+  return estimate;
+}
+
+Status EstimatorWorker::judge(VoEstimate& estimate) {
+  Status usable = poses_.take(estimate);
+  std::vector<std::string> notes = poses_.take_notes();
+  const std::lock_guard lock(mutex_);
+  std::move(notes.begin(), notes.end(), std::back_inserter(notes_));
+  return usable;
+}
+
+std::vector<std::string> EstimatorWorker::take_log() {
+  std::vector<std::string> lines = port_->take_log();
+  const std::lock_guard lock(mutex_);
+  std::move(notes_.begin(), notes_.end(), std::back_inserter(lines));
+  notes_.clear();
+  return lines;
+}
+
+void EstimatorWorker::hold_back(const Waiting& waiting) {
+  if (options_.throttle_hz <= 0.0) return;
+  // From when it could take the frame, not from when this thread woke up: no drift.
+  const std::int64_t taken_ns = std::max(waiting.handed_over_ns, free_at_ns_);
+  free_at_ns_ = std::max(taken_ns + period_ns(options_.throttle_hz), clock_.now_ns());
+  clock_.sleep_until_ns(free_at_ns_);
+}
+
+void EstimatorWorker::choose_debug(std::int64_t t_ns) {
+  const bool wanted = debug_period_ns_ > 0 && t_ns >= next_debug_ns_;
+  port_->set_debug(wanted);
+  while (wanted && next_debug_ns_ <= t_ns) next_debug_ns_ += debug_period_ns_;
+}
+
+}  // namespace overfly::engine

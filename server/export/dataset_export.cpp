@@ -1,0 +1,255 @@
+#include "server/export/dataset_export.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <system_error>
+#include <utility>
+
+#include "flight/gravity.hpp"
+#include "server/camera/truth.hpp"
+#include "server/export/frame_sequence.hpp"
+#include "server/files/build_info.hpp"
+#include "server/files/whole_file.hpp"
+#include "server/timing/run_clock.hpp"
+#include "vo_bridges/lcm/lcm_estimator.hpp"
+#include "vo_bridges/ros1/ros1_estimator.hpp"
+
+namespace overfly::engine {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+bool takes_one_camera(DatasetFormat format) {
+  return format == DatasetFormat::kTumMono || format == DatasetFormat::kKitti;
+}
+
+std::int64_t frame_period_ns(const FrameRate& rate) { return frame_time_ns(1, rate); }
+
+/// The IMU's samples from a frame before the first to a frame after the last, and the states there.
+Status measure_inertially(const ExportSource& source,
+                          FrameSequence& frames,
+                          const std::function<bool()>& keep_going,
+                          DatasetPlan& plan) {
+  const Scenario& scenario = source.scenario;
+  const terrain::World& world = frames.maker().world();
+  auto flight = create_truth(scenario, world);
+  auto again = create_truth(scenario, world);
+  if (!flight || !again) return flight ? again.error() : flight.error();
+  const auto start = (*again)->state_at(0);
+  if (!start) return start.error();
+  if (!*start) return {};
+  const Geodetic place =
+      world.tiles->frame().geodetic_from_world((*start)->T_world_body.translation);
+  const std::int64_t margin_ns = frame_period_ns(scenario.rate);
+  const std::int64_t begin_ns = frame_time_ns(frames.first_frame(), scenario.rate) - margin_ns;
+  const std::int64_t end_ns = frame_time_ns(frames.last_frame(), scenario.rate) + margin_ns;
+  auto readings = flight::synthesize_imu(**flight,
+                                         end_ns,
+                                         plan.imu_model,
+                                         flight::normal_gravity_m_s2(place),
+                                         scenario.seed,
+                                         keep_going);
+  if (!readings) return readings.error();
+  for (const flight::ImuReading& reading : *readings) {
+    if (reading.t_ns < begin_ns) continue;
+    const auto state = (*again)->state_at(reading.t_ns);
+    if (!state) return state.error();
+    if (!*state) break;
+    plan.imu.push_back(reading);
+    plan.states.push_back(**state);
+  }
+  return {};
+}
+
+/// Where the data set comes from, and how to make it again.
+Status write_origin(const ExportSource& source,
+                    const ExportOptions& options,
+                    const ExportSummary& summary,
+                    FrameSequence& frames) {
+  const terrain::World& world = frames.maker().world();
+  const Geodetic& origin = world.tiles->frame().origin();
+  const renderer::RendererInfo drawn_by = frames.maker().renderer().info();
+  Json digests = Json::array();
+  for (const auto& [file, digest] : world.data_hashes) {
+    digests.push_back({{"file", file}, {"digest", digest}});
+  }
+  Json truth = Json::array();
+  for (const TruthKind kind : options.truth) truth.push_back(to_string(kind));
+  const Json about = {{"made_by", "overfly"},
+                      {"version", version()},
+                      {"commit", git_commit()},
+                      {"format", to_string(options.format)},
+                      {"truth", truth},
+                      {"scenario", source.scenario.name},
+                      {"first_frame", frames.first_frame()},
+                      {"frames", summary.frames},
+                      {"images", summary.images},
+                      {"complete", !summary.cancelled},
+                      {"renderer",
+                       {{"backend", drawn_by.backend},
+                        {"device", drawn_by.device},
+                        {"software", drawn_by.software}}},
+                      {"epoch_utc_ns", source.epoch_utc_ns},
+                      {"flight", frames.maker().flight_description()},
+                      {"world",
+                       {{"name", world.spec.name},
+                        {"attribution", world.tiles->attribution()},
+                        {"data_hashes", digests},
+                        {"origin",
+                         {{"lat_deg", deg_from_rad(origin.lat_rad)},
+                          {"lon_deg", deg_from_rad(origin.lon_rad)},
+                          {"alt_ellipsoid_m", origin.alt_ellipsoid_m}}}}}};
+  if (Status status = write_json(options.folder / "scenario.json", source.scenario.resolved);
+      !status) {
+    return status;
+  }
+  return write_json(options.folder / "overfly.json", about);
+}
+
+/// Errors: kConflict for a folder with something in it.
+Status prepare_folder(const fs::path& folder) {
+  std::error_code failure;
+  if (fs::exists(folder, failure) && !fs::is_empty(folder, failure)) {
+    return Error{ErrorCode::kConflict,
+                 folder.string() + ": not empty; a data set needs a folder of its own"};
+  }
+  return make_folder(folder);
+}
+
+Status check_options(const ExportOptions& options) {
+  if (options.format == DatasetFormat::kLcm && !lcm_is_built_in()) {
+    return Error{ErrorCode::kUnsupported,
+                 "format = lcm: this build does not speak LCM: install liblcm-dev and liblcm-bin, "
+                 "and build again"};
+  }
+  if (options.format == DatasetFormat::kRosbag && !ros1_is_built_in()) {
+    return Error{
+        ErrorCode::kUnsupported,
+        "format = rosbag: this build writes no ROS bags: install librosbag-storage-dev, "
+        "libroscpp-dev, libsensor-msgs-dev, libnav-msgs-dev and libtf2-msgs-dev, and build "
+        "again"};
+  }
+  if (!(options.from_s >= 0.0)) {
+    return Error{ErrorCode::kInvalidArgument,
+                 "from = " + std::to_string(options.from_s) + " s: must be at least 0"};
+  }
+  if (options.video) {
+    if (Status status = options.video->validate(); !status) return status;
+  }
+  return options.imu.validate();
+}
+
+std::int64_t images_in(const MadeFrame& frame) {
+  return std::count_if(frame.shots.begin(), frame.shots.end(), [](const CameraShot& shot) {
+    return shot.delivered;
+  });
+}
+
+bool keeps_going(const ExportOptions& options) {
+  return options.cancel == nullptr || !options.cancel->load();
+}
+
+Result<DatasetPlan> make_plan(const ExportSource& source,
+                              const ExportOptions& options,
+                              FrameSequence& frames) {
+  DatasetPlan plan;
+  plan.folder = options.folder;
+  plan.cameras = frames.cameras();
+  plan.rate = source.scenario.rate;
+  plan.last_frame = frames.last_frame();
+  plan.epoch_utc_ns = source.epoch_utc_ns;
+  plan.imu_model = options.imu;
+  if (options.format != DatasetFormat::kEuroc) return plan;
+  const auto keep_going = [&] { return keeps_going(options); };
+  if (Status status = measure_inertially(source, frames, keep_going, plan); !status) {
+    return status.error();
+  }
+  return plan;
+}
+
+/// Everything that is made of a frame.
+class FrameOutputs {
+ public:
+  FrameOutputs(const ExportOptions& options,
+               FrameMaker& maker,
+               DatasetWriter& writer,
+               StageTimer& stages)
+      : writer_(writer),
+        truth_(options.folder, options.truth, maker.renderer(), *maker.world().tiles),
+        stages_(stages) {
+    if (options.video) video_.emplace(options.folder / "video.webm", *options.video, maker);
+  }
+
+  Status add(const MadeFrame& frame) {
+    const auto names = stages_.measure("write_images", [&] { return writer_.add(frame); });
+    if (!names) return names.error();
+    Status status = stages_.measure("write_truth", [&] { return truth_.add(frame, *names); });
+    if (!status || !video_) return status;
+    return stages_.measure("write_video", [&] { return video_->add(frame); });
+  }
+
+  Status finish(const FrameRate& rate) {
+    Status status = writer_.finish();
+    if (!status || !video_) return status;
+    return video_->finish(rate);
+  }
+
+ private:
+  DatasetWriter& writer_;
+  TruthWriter truth_;
+  std::optional<FlightVideo> video_;
+  StageTimer& stages_;
+};
+
+Status write_frames(const ExportOptions& options,
+                    const FrameRate& rate,
+                    FrameSequence& frames,
+                    FrameOutputs& outputs,
+                    ExportSummary& summary) {
+  while (keeps_going(options)) {
+    const Result<std::optional<MadeFrame>> frame = frames.next();
+    if (!frame) return frame.error();
+    if (!frame->has_value()) return outputs.finish(rate);
+    if (Status status = outputs.add(**frame); !status) return status;
+    ++summary.frames;
+    summary.images += images_in(**frame);
+    if (options.progress) options.progress(summary.frames, frames.count());
+  }
+  summary.cancelled = true;
+  return outputs.finish(rate);
+}
+
+}  // namespace
+
+Result<ExportSummary> export_dataset(const ExportSource& source, const ExportOptions& options) {
+  if (Status status = check_options(options); !status) return status.error();
+  if (Status status = prepare_folder(options.folder); !status) return status.error();
+  StageTimer stages(machine_clock());
+  FrameMakerOptions making;
+  making.renderer_factory = options.renderer_factory;
+  making.cancel = options.cancel;
+  making.notice = options.notice;
+  making.stages = &stages;
+  FrameSpan span{options.from_s, options.to_s, options.cameras};
+  if (takes_one_camera(options.format) && span.cameras.empty()) {
+    span.cameras = {source.scenario.cameras.front().name};
+  }
+  const auto frames = FrameSequence::open(source, span, making);
+  if (!frames) return frames.error();
+  const Result<DatasetPlan> plan = make_plan(source, options, **frames);
+  if (!plan) return plan.error();
+  const auto writer = create_dataset_writer(options.format, *plan);
+  if (!writer) return writer.error();
+
+  ExportSummary summary;
+  summary.attribution = (*frames)->maker().world().tiles->attribution();
+  FrameOutputs outputs(options, (*frames)->maker(), **writer, stages);
+  Status status = write_frames(options, source.scenario.rate, **frames, outputs, summary);
+  if (status) status = write_origin(source, options, summary, **frames);
+  if (!status) return status.error();
+  summary.stages = stages.summary();
+  return summary;
+}
+
+}  // namespace overfly::engine

@@ -1,0 +1,66 @@
+// Data sets as others lay them out: one writer for each format.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/geodesy.hpp"
+#include "core/result.hpp"
+#include "flight/imu.hpp"
+#include "server/camera/frame_maker.hpp"
+#include "server/scenario/scenario.hpp"
+
+namespace overfly::engine {
+
+enum class DatasetFormat { kTumMono, kEuroc, kKitti, kPng, kLcm, kRosbag };
+
+/// "tum-mono", "euroc", "kitti", "png", "lcm", "rosbag".
+[[nodiscard]] const char* to_string(DatasetFormat format);
+[[nodiscard]] std::optional<DatasetFormat> dataset_format_from(const std::string& text);
+
+/// What a writer knows before the first frame.
+struct DatasetPlan {
+  std::filesystem::path folder;     ///< exists and is empty
+  std::vector<CameraSpec> cameras;  ///< those to write, in their order
+  FrameRate rate;
+  std::int64_t last_frame = 0;    ///< the highest index that may come
+  std::int64_t epoch_utc_ns = 0;  ///< Unix time of t = 0
+  flight::ImuModel imu_model;
+  std::vector<flight::ImuReading> imu;  ///< of the time span exported; EuRoC alone
+  std::vector<AircraftState> states;    ///< one for each IMU sample
+};
+
+/// Takes the frames in order and writes their images at once, the text files at the end. Images
+/// that were lost on their way (CameraShot::delivered) are not part of a data set.
+class DatasetWriter {
+ public:
+  virtual ~DatasetWriter() = default;
+
+  /// @param frame  its shots are of the plan's cameras, in their order
+  /// @return for each shot the name of its image without folder and ending; empty for a lost one
+  /// Errors: kIo naming the file.
+  [[nodiscard]] virtual Result<std::vector<std::string>> add(const MadeFrame& frame) = 0;
+  /// Writes what describes the images that were added; nothing may be added after that.
+  [[nodiscard]] virtual Status finish() = 0;
+};
+
+/// Errors: kUnsupported when the format cannot hold what the plan asks, naming camera and reason.
+[[nodiscard]] Result<std::unique_ptr<DatasetWriter>> create_dataset_writer(DatasetFormat format,
+                                                                           const DatasetPlan& plan);
+
+/// The writers of each format (create_dataset_writer chooses).
+[[nodiscard]] Result<std::unique_ptr<DatasetWriter>> create_tum_mono_writer(const DatasetPlan&);
+[[nodiscard]] Result<std::unique_ptr<DatasetWriter>> create_euroc_writer(const DatasetPlan&);
+[[nodiscard]] Result<std::unique_ptr<DatasetWriter>> create_kitti_writer(const DatasetPlan&);
+[[nodiscard]] Result<std::unique_ptr<DatasetWriter>> create_png_writer(const DatasetPlan&);
+[[nodiscard]] Result<std::unique_ptr<DatasetWriter>> create_lcm_writer(const DatasetPlan&);
+[[nodiscard]] Result<std::unique_ptr<DatasetWriter>> create_rosbag_writer(const DatasetPlan&);
+
+/// Creates a folder with its parents. Errors: kIo naming it.
+[[nodiscard]] Status make_folder(const std::filesystem::path& folder);
+
+}  // namespace overfly::engine

@@ -1,0 +1,108 @@
+#include "server/export/export_source.hpp"
+
+#include <utility>
+
+#include "server/files/whole_file.hpp"
+#include "server/record/run_folder.hpp"
+#include "server/record/run_records.hpp"
+#include "server/scenario/document/scenario_file.hpp"
+
+namespace overfly::engine {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+/// Where neither run nor scenario say when: 2026-01-01T00:00:00Z, as a lockstep run's manifest.
+constexpr std::int64_t kEpochUtcNs = 1'767'225'600 * kNsPerS;
+
+Error unreadable(const fs::path& file, const std::string& fault) {
+  return {ErrorCode::kUnreadable, file.string() + ": " + fault};
+}
+
+Result<std::vector<std::pair<std::string, std::string>>> digests_of(const Json& manifest,
+                                                                    const fs::path& file) {
+  std::vector<std::pair<std::string, std::string>> digests;
+  if (!manifest.contains("world")) return unreadable(file, "no world: the run never began");
+  for (const Json& row : manifest["world"].value("data_hashes", Json::array())) {
+    digests.emplace_back(row.value("file", ""), row.value("digest", ""));
+  }
+  return digests;
+}
+
+Result<ExportSource> open_run(const fs::path& folder) {
+  const Result<Json> manifest = read_json(manifest_file(folder));
+  if (!manifest) return manifest.error();
+  Result<Json> document = read_json(scenario_file(folder));
+  if (!document) return document.error();
+  Result<Scenario> scenario = resolve_scenario(std::move(*document), {}, folder);
+  if (!scenario) return scenario.error().in(scenario_file(folder).string());
+  Result<RunRecords> records = read_run_records(folder);
+  if (!records) return records.error();
+  auto digests = digests_of(*manifest, manifest_file(folder));
+  if (!digests) return digests.error();
+  ExportSource source{std::move(*scenario),
+                      RecordedRun{folder, std::move(records->frames), std::move(*digests)},
+                      manifest->value("epoch_utc_ns", kEpochUtcNs)};
+  if (source.run->frames.empty()) {
+    return Error{ErrorCode::kNotFound, folder.string() + ": the run has recorded no frame"};
+  }
+  return source;
+}
+
+}  // namespace
+
+Result<ExportSource> open_export_source(const fs::path& path,
+                                        const std::vector<Override>& overrides) {
+  std::error_code failed;
+  if (fs::is_directory(path, failed)) {
+    if (!overrides.empty()) {
+      return Error{ErrorCode::kInvalidArgument,
+                   path.string() + ": a run is exported as it was flown; --set is for scenarios"};
+    }
+    return open_run(path);
+  }
+  Result<Scenario> scenario = load_scenario(path, overrides);
+  if (!scenario) return scenario.error();
+  const std::int64_t epoch_ns = scenario->epoch_utc_ns.value_or(kEpochUtcNs);
+  return ExportSource{std::move(*scenario), std::nullopt, epoch_ns};
+}
+
+Status check_world(const ExportSource& source, const terrain::World& world) {
+  if (!source.run) return {};
+  const auto conflict = [&](const std::string& what) {
+    return Error{ErrorCode::kConflict,
+                 source.run->folder.string() + ": " + what +
+                     "; its frames cannot be made again over another world"};
+  };
+  const auto& then = source.run->world_digests;
+  const auto& now = world.data_hashes;
+  if (then.size() != now.size()) {
+    return conflict("the world had " + std::to_string(then.size()) + " data files, it has " +
+                    std::to_string(now.size()));
+  }
+  for (std::size_t i = 0; i < then.size(); ++i) {
+    if (then[i].second == now[i].second) continue;
+    return conflict("world file " + now[i].first + " has the digest " + now[i].second +
+                    ", the run flew over " + then[i].second);
+  }
+  return {};
+}
+
+Status check_frame(const FrameRecord& recorded, const MadeFrame& made) {
+  // Equal to the bit on the same machine; another C library may round sines otherwise.
+  constexpr double kCloseM = 1e-6;
+  constexpr double kCloseRad = 1e-8;
+  const Pose& then = recorded.row.T_world_camera;
+  const Pose& now = made.shots.front().drawn.T_world_camera;
+  const double away_m = (then.translation - now.translation).norm();
+  const double away_rad = rotation_angle_rad(then.rotation, now.rotation);
+  if (away_m <= kCloseM && away_rad <= kCloseRad && recorded.row.t_ns == made.t_ns) return {};
+  return Error{ErrorCode::kConflict,
+               "frame " + std::to_string(made.frame) + ": made " + std::to_string(away_m) +
+                   " m and " + std::to_string(deg_from_rad(away_rad)) +
+                   " deg from where the run recorded it; the flight's files or this version "
+                   "differ from the run's"};
+}
+
+}  // namespace overfly::engine

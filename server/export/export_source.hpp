@@ -1,0 +1,44 @@
+// What an export makes again: the scenario of a run, or one that was never flown.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/result.hpp"
+#include "server/camera/frame_maker.hpp"
+#include "server/record/run_rows.hpp"
+#include "server/scenario/scenario.hpp"
+
+namespace overfly::engine {
+
+/// What a recorded run says of itself, to check what is made again against.
+struct RecordedRun {
+  std::filesystem::path folder;
+  std::vector<FrameRecord> frames;
+  std::vector<std::pair<std::string, std::string>> world_digests;  ///< file, digest
+};
+
+struct ExportSource {
+  Scenario scenario;
+  std::optional<RecordedRun> run;
+  std::int64_t epoch_utc_ns = 0;  ///< Unix time of t = 0
+};
+
+/// Opens a run folder (one with a manifest.json) or a scenario file.
+/// @param overrides  of a scenario file; a run takes none
+/// Errors: kNotFound; as read_run_records and load_scenario; kInvalidArgument for overrides of a
+/// run.
+[[nodiscard]] Result<ExportSource> open_export_source(const std::filesystem::path& path,
+                                                      const std::vector<Override>& overrides = {});
+
+/// Checks that the world is the one that the run flew over.
+/// Errors: kConflict naming the file whose content differs.
+[[nodiscard]] Status check_world(const ExportSource& source, const terrain::World& world);
+/// Checks that a frame was made from where the run's camera was.
+/// Errors: kConflict naming frame and distance.
+[[nodiscard]] Status check_frame(const FrameRecord& recorded, const MadeFrame& made);
+
+}  // namespace overfly::engine

@@ -1,0 +1,75 @@
+// LCM event logs: flight.lcm with what an estimator on LCM hears (vo_bridges/lcm/README.md), and
+// the true poses.
+#include <optional>
+
+#include "server/export/dataset_writer.hpp"
+#include "server/files/number_text.hpp"
+#include "vo_bridges/lcm/lcm_log_writer.hpp"
+
+namespace overfly::engine {
+namespace {
+
+constexpr std::int64_t kCalibrationPeriodNs = 1'000'000'000;
+
+class LcmWriter final : public DatasetWriter {
+ public:
+  LcmWriter(const DatasetPlan& plan, std::unique_ptr<LcmLogWriter> log)
+      : cameras_(plan.cameras), log_(std::move(log)) {
+    for (const CameraSpec& camera : cameras_) {
+      // The first has the door's own channels, so that its log plays to an estimator as it is.
+      prefixes_.push_back(prefixes_.empty() ? "OVERFLY_" : "OVERFLY_" + camera.name + "_");
+    }
+  }
+
+  Result<std::vector<std::string>> add(const MadeFrame& frame) override {
+    if (!next_calibration_ns_ || frame.t_ns >= *next_calibration_ns_) {
+      if (Status status = calibrate(frame); !status) return status.error();
+      next_calibration_ns_ = frame.t_ns + kCalibrationPeriodNs;
+    }
+    std::vector<std::string> names(frame.shots.size());
+    for (std::size_t i = 0; i < frame.shots.size(); ++i) {
+      const CameraShot& shot = frame.shots[i];
+      if (!shot.delivered) continue;
+      names[i] = padded(frame.frame, 6);
+      if (Status status = write_shot(prefixes_[i], frame, shot); !status) return status.error();
+    }
+    return names;
+  }
+
+  Status finish() override { return log_->finish(); }
+
+ private:
+  Status calibrate(const MadeFrame& frame) {
+    for (std::size_t i = 0; i < cameras_.size(); ++i) {
+      Status status = log_->write_calibration(
+          prefixes_[i], cameras_[i].name, cameras_[i].model, frame.shots[i].stamp_ns);
+      if (!status) return status;
+    }
+    return {};
+  }
+
+  Status write_shot(const std::string& prefix, const MadeFrame& frame, const CameraShot& shot) {
+    const bool colour = shot.image.channels != 1;
+    const Image grey = colour ? grey_of(shot.image) : Image{};
+    Status status = log_->write_image(
+        prefix, {frame.frame, shot.stamp_ns, shot.setting.exposure_ns, colour ? grey : shot.image});
+    if (!status) return status;
+    return log_->write_truth(prefix,
+                             {frame.frame, frame.t_ns, shot.stamp_ns, shot.drawn.T_world_camera});
+  }
+
+  std::vector<CameraSpec> cameras_;
+  std::unique_ptr<LcmLogWriter> log_;
+  std::vector<std::string> prefixes_;  ///< of the channels, one a camera
+  std::optional<std::int64_t> next_calibration_ns_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<DatasetWriter>> create_lcm_writer(const DatasetPlan& plan) {
+  auto log = LcmLogWriter::create(plan.folder / "flight.lcm", plan.epoch_utc_ns);
+  if (!log) return log.error().in("lcm");
+  return std::unique_ptr<DatasetWriter>(std::make_unique<LcmWriter>(plan, std::move(*log)));
+}
+
+}  // namespace overfly::engine

@@ -1,0 +1,107 @@
+// A ROS 1 bag: of each camera the images that estimators are given, the calibration with each of
+// them, and the truth of every frame.
+#include <set>
+#include <system_error>
+
+#include "server/export/dataset_writer.hpp"
+#include "vo_bridges/ros1/ros1_bag_writer.hpp"
+
+namespace overfly::engine {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kWorldFrame = "world";
+
+/// What the messages of one camera are called.
+struct CameraNames {
+  std::string image, info, truth;
+  std::string frame;
+};
+
+/// The first camera is "/camera", as nodes expect it; further ones go by their names.
+std::vector<CameraNames> names_of(const std::vector<CameraSpec>& cameras) {
+  std::vector<CameraNames> names;
+  std::set<std::string> taken;
+  for (const CameraSpec& camera : cameras) {
+    std::string prefix = taken.empty() ? "camera" : camera.name;
+    for (char& c : prefix) {
+      const bool word = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+      if (!word) c = '_';
+    }
+    const std::string wanted = prefix;
+    for (int i = 2; !taken.insert(prefix).second; ++i) prefix = wanted + "_" + std::to_string(i);
+    names.push_back({"/" + prefix + "/image_raw",
+                     "/" + prefix + "/camera_info",
+                     "/" + prefix + "/truth",
+                     prefix + "_optical_frame"});
+  }
+  return names;
+}
+
+class RosbagWriter final : public DatasetWriter {
+ public:
+  RosbagWriter(const DatasetPlan& plan, std::unique_ptr<Ros1BagWriter> bag, fs::path unfinished)
+      : plan_(plan),
+        names_(names_of(plan.cameras)),
+        bag_(std::move(bag)),
+        unfinished_(std::move(unfinished)) {}
+
+  Result<std::vector<std::string>> add(const MadeFrame& frame) override {
+    std::vector<std::string> names(frame.shots.size());
+    for (std::size_t i = 0; i < frame.shots.size(); ++i) {
+      const CameraShot& shot = frame.shots[i];
+      if (shot.delivered) names[i] = std::to_string(plan_.epoch_utc_ns + shot.stamp_ns);
+      Status status = add_truth(frame, shot, names_[i]);
+      if (status && shot.delivered) status = add_image(shot, plan_.cameras[i], names_[i]);
+      if (!status) return status.error();
+    }
+    return names;
+  }
+
+  Status finish() override {
+    if (Status status = bag_->close(); !status) return status;
+    std::error_code failure;
+    fs::rename(unfinished_, plan_.folder / "flight.bag", failure);
+    if (!failure) return {};
+    return Error{ErrorCode::kIo,
+                 unfinished_.string() + ": cannot be renamed: " + failure.message()};
+  }
+
+ private:
+  Status add_image(const CameraShot& shot, const CameraSpec& camera, const CameraNames& names) {
+    const std::int64_t stamp_ns = plan_.epoch_utc_ns + shot.stamp_ns;
+    Status status = bag_->add_camera_info(names.info, names.frame, stamp_ns, camera.model);
+    return status ? bag_->add_image(names.image, names.frame, stamp_ns, grey_of(shot.image))
+                  : status;
+  }
+
+  Status add_truth(const MadeFrame& frame, const CameraShot& shot, const CameraNames& names) {
+    const std::int64_t stamp_ns = plan_.epoch_utc_ns + frame.t_ns;
+    const Pose& T_world_camera = shot.drawn.T_world_camera;
+    Status status = bag_->add_transform(kWorldFrame, names.frame, stamp_ns, T_world_camera);
+    return status ? bag_->add_pose(names.truth, kWorldFrame, stamp_ns, T_world_camera) : status;
+  }
+
+  DatasetPlan plan_;
+  std::vector<CameraNames> names_;
+  std::unique_ptr<Ros1BagWriter> bag_;
+  fs::path unfinished_;  ///< its name until it is whole, as rosbag names it
+};
+
+}  // namespace
+
+Result<std::unique_ptr<DatasetWriter>> create_rosbag_writer(const DatasetPlan& plan) {
+  if (plan.epoch_utc_ns <= 0) {
+    return Error{ErrorCode::kUnsupported,
+                 "epoch_utc_ns = " + std::to_string(plan.epoch_utc_ns) +
+                     ": a bag holds times after 1970 alone"};
+  }
+  const fs::path unfinished = plan.folder / "flight.bag.active";
+  auto bag = Ros1BagWriter::create(unfinished);
+  if (!bag) return bag.error();
+  return std::unique_ptr<DatasetWriter>(
+      std::make_unique<RosbagWriter>(plan, std::move(*bag), unfinished));
+}
+
+}  // namespace overfly::engine

@@ -1,0 +1,41 @@
+// A flight as a video file alone.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "core/result.hpp"
+#include "server/export/export_source.hpp"
+#include "server/export/flight_video.hpp"
+
+namespace overfly::engine {
+
+struct VideoOptions {
+  std::filesystem::path file;  ///< .webm; must not exist
+  VideoLook look;
+  std::string camera;  ///< name; empty = the first
+  double from_s = 0.0;
+  std::optional<double> to_s;
+
+  RendererFactory renderer_factory;
+  const std::atomic<bool>* cancel = nullptr;
+  std::function<void(const std::string&)> notice;
+  std::function<void(std::int64_t, std::int64_t)> progress;  ///< frames written, of how many
+};
+
+struct VideoSummary {
+  std::int64_t frames = 0;
+  bool cancelled = false;  ///< the video ends with the last frame made
+  std::string attribution;
+};
+
+/// Errors: kConflict for a file that exists; as VideoLook, FrameSequence and FlightVideo. The file
+/// appears whole or not at all.
+[[nodiscard]] Result<VideoSummary> export_video(const ExportSource& source,
+                                                const VideoOptions& options);
+
+}  // namespace overfly::engine

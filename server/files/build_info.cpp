@@ -1,0 +1,10 @@
+#include "server/files/build_info.hpp"
+
+#include "server/files/build_info_values.hpp"
+
+namespace overfly::engine {
+
+std::string version() { return kVersion; }
+std::string git_commit() { return kGitCommit; }
+
+}  // namespace overfly::engine

@@ -1,0 +1,124 @@
+#include "server/files/whole_file.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <utility>
+#include <vector>
+
+#include "core/file_text.hpp"
+#include "core/outside_json.hpp"
+
+namespace overfly::engine {
+namespace {
+
+namespace fs = std::filesystem;
+
+Error io_error(const fs::path& file, const char* action) {
+  return {ErrorCode::kIo, file.string() + ": cannot " + action + ": " + std::strerror(errno)};
+}
+
+/// Writes all bytes, however often the system takes only a part.
+bool write_all(int descriptor, const char* bytes, std::size_t size) {
+  while (size > 0) {
+    const ssize_t written = ::write(descriptor, bytes, size);
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return false;
+    bytes += written;
+    size -= static_cast<std::size_t>(written);
+  }
+  return true;
+}
+
+Status write_bytes(const fs::path& file, const char* bytes, std::size_t size) {
+  const fs::path part = file.string() + ".part";
+  const int descriptor = ::open(part.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (descriptor < 0) return io_error(part, "create");
+  const bool written = write_all(descriptor, bytes, size);
+  const int write_errno = errno;
+  if (::close(descriptor) != 0 || !written) {
+    if (!written) errno = write_errno;
+    Error error = io_error(part, "write");
+    ::unlink(part.c_str());
+    return error;
+  }
+  if (::rename(part.c_str(), file.c_str()) != 0) return io_error(file, "rename to");
+  return {};
+}
+
+}  // namespace
+
+Status write_whole(const fs::path& file, std::span<const std::uint8_t> bytes) {
+  return write_bytes(file, reinterpret_cast<const char*>(bytes.data()), bytes.size());
+}
+
+Status write_whole(const fs::path& file, const std::string& text) {
+  return write_bytes(file, text.data(), text.size());
+}
+
+Status write_json(const fs::path& file, const nlohmann::json& value) {
+  // Text from outside may hold bytes that are no UTF-8: those are replaced, not thrown about.
+  return write_whole(file,
+                     value.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+}
+
+Result<nlohmann::json> parse_json(std::string_view text, const std::string& origin) {
+  return json_from_outside<nlohmann::json>(text, origin);
+}
+
+Result<nlohmann::json> read_json(const fs::path& file, std::uint64_t max_bytes) {
+  const Result<std::string> text = read_file_text(file, max_bytes);
+  if (!text) return text.error();
+  return parse_json(*text, file.string());
+}
+
+LineFile::LineFile(int descriptor, fs::path file)
+    : descriptor_(descriptor), file_(std::move(file)) {}
+
+LineFile::LineFile(LineFile&& other) noexcept
+    : descriptor_(std::exchange(other.descriptor_, -1)), file_(std::move(other.file_)) {}
+
+LineFile& LineFile::operator=(LineFile&& other) noexcept {
+  std::swap(descriptor_, other.descriptor_);
+  std::swap(file_, other.file_);
+  return *this;
+}
+
+LineFile::~LineFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+Result<LineFile> LineFile::create(const fs::path& file) {
+  const int descriptor =
+      ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0644);
+  if (descriptor < 0) return io_error(file, "create");
+  return LineFile(descriptor, file);
+}
+
+Status LineFile::append(const nlohmann::json& line) {
+  const std::string text =
+      line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  if (!write_all(descriptor_, text.data(), text.size())) return io_error(file_, "append to");
+  return {};
+}
+
+Result<std::vector<nlohmann::json>> read_lines(const fs::path& file) {
+  std::vector<nlohmann::json> lines;
+  const Result<std::string> text = read_file_text(file, kMaxRowsBytes);
+  if (!text && text.error().code == ErrorCode::kNotFound) return lines;
+  if (!text) return text.error();
+  std::size_t begin = 0;
+  for (std::size_t end = text->find('\n'); end != std::string::npos;
+       end = text->find('\n', begin)) {
+    const std::string origin = file.string() + ", row " + std::to_string(lines.size() + 1);
+    Result<nlohmann::json> line = parse_json(text->substr(begin, end - begin), origin);
+    if (!line) return line.error();
+    lines.push_back(std::move(*line));
+    begin = end + 1;
+  }
+  return lines;
+}
+
+}  // namespace overfly::engine

@@ -1,0 +1,135 @@
+#include "server/net/http/rest_router.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "core/barrier.hpp"
+#include "server/net/http/error_response.hpp"
+
+namespace overfly::net {
+namespace {
+
+using Captures = std::map<std::string, std::string>;
+
+bool is_capture(const std::string& segment) {
+  return segment.size() > 2 && segment.front() == '{' && segment.back() == '}';
+}
+
+std::optional<Captures> match(const std::vector<std::string>& pattern,
+                              const std::vector<std::string>& segments) {
+  if (pattern.size() != segments.size()) return std::nullopt;
+  Captures captures;
+  for (std::size_t i = 0; i < pattern.size(); ++i) {
+    if (is_capture(pattern[i])) {
+      if (segments[i].empty()) return std::nullopt;
+      captures[pattern[i].substr(1, pattern[i].size() - 2)] = segments[i];
+    } else if (pattern[i] != segments[i]) {
+      return std::nullopt;
+    }
+  }
+  return captures;
+}
+
+HttpResponse method_not_allowed(const std::string& method, const std::set<std::string>& allowed) {
+  std::string list;
+  for (const std::string& name : allowed) list += (list.empty() ? "" : ", ") + name;
+  HttpResponse response = error_response(
+      405, "method_not_allowed", "method " + method + " is not served here: allowed are " + list);
+  response.headers.emplace_back("Allow", list);
+  return response;
+}
+
+Status check_query(const std::map<std::string, std::string>& query,
+                   const std::vector<std::string>& known) {
+  std::string names;
+  for (const std::string& name : known) names += (names.empty() ? "" : ", ") + name;
+  for (const auto& [name, value] : query) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    return Error{ErrorCode::kInvalidArgument,
+                 "query." + name + ": is not a known parameter, there " +
+                     (names.empty() ? "are none here" : "are: " + names)};
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string RouteCall::query_or(const std::string& name, const std::string& absent) const {
+  const auto found = query.find(name);
+  return found == query.end() ? absent : found->second;
+}
+
+void RestRouter::add(const std::string& method,
+                     const std::string& pattern,
+                     Handler handler,
+                     std::vector<std::string> known_query) {
+  const auto url = parse_target(pattern);
+  routes_.push_back({method,
+                     pattern,
+                     url ? url->segments : std::vector<std::string>{},
+                     std::move(handler),
+                     std::move(known_query)});
+}
+
+void RestRouter::add_quick(const std::string& pattern, Handler handler) {
+  add("GET", pattern, std::move(handler));
+  routes_.back().quick = true;
+}
+
+bool RestRouter::is_quick(const HttpRequest& request) const {
+  const std::string path = request.target.substr(0, request.target.find('?'));
+  return std::any_of(routes_.begin(), routes_.end(), [&](const Route& route) {
+    return route.quick && route.pattern == path;
+  });
+}
+
+void RestRouter::handle(const HttpRequest& request, const Respond& respond) const noexcept {
+  const auto refuse = [&] {
+    respond(error_response(
+        {ErrorCode::kInternal, "the server failed at this request: its log says why"}));
+  };
+  const auto refuse_briefly = [&](const char*) {
+    HttpResponse response;
+    response.status = 500;
+    respond(std::move(response));
+  };
+  (void)contained([&] { find_and_handle(request, respond); },
+                  [&](const char* what) {
+                    (void)contained(refuse, refuse_briefly);
+                    if (report_)
+                      report_(request.method + " " + request.target + " failed: " + what);
+                  });
+}
+
+void RestRouter::find_and_handle(const HttpRequest& request, const Respond& respond) const {
+  const auto url = parse_target(request.target);
+  if (!url) {
+    respond(error_response({ErrorCode::kInvalidArgument, "the request's path is malformed"}));
+    return;
+  }
+  const std::string& method = request.method == "HEAD" ? std::string("GET") : request.method;
+  std::set<std::string> allowed;
+  for (const Route& route : routes_) {
+    auto captures = match(route.segments, url->segments);
+    if (!captures) continue;
+    if (route.method == method) {
+      if (const Status status = check_query(url->query, route.query); !status) {
+        respond(error_response(status.error()));
+        return;
+      }
+      route.handler({request, std::move(*captures), url->query}, respond);
+      return;
+    }
+    allowed.insert(route.method);
+    if (route.method == "GET") allowed.insert("HEAD");
+  }
+  if (!allowed.empty()) {
+    respond(method_not_allowed(request.method, allowed));
+    return;
+  }
+  respond(error_response({ErrorCode::kNotFound, "no such resource: " + request.target}));
+}
+
+}  // namespace overfly::net

@@ -1,0 +1,65 @@
+// Finds the handler of a REST request by method and path.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/result.hpp"
+#include "server/net/http/http_message.hpp"
+#include "server/net/http/url.hpp"
+
+namespace overfly::net {
+
+/// A request that matched a route.
+struct RouteCall {
+  const HttpRequest& request;                ///< lives until the handler returns, no longer
+  std::map<std::string, std::string> path;   ///< values of the pattern's {names}, decoded
+  std::map<std::string, std::string> query;  ///< only names that the route knows
+
+  /// Value of a query parameter, or what stands for its absence.
+  [[nodiscard]] std::string query_or(const std::string& name, const std::string& absent) const;
+};
+
+class RestRouter {
+ public:
+  using Handler = std::function<void(const RouteCall&, Respond)>;
+
+  struct Route {
+    std::string method;
+    std::string pattern;  ///< "/api/v1/runs/{id}"
+    std::vector<std::string> segments;
+    Handler handler;
+    std::vector<std::string> query;  ///< parameters that it knows
+    bool quick = false;              ///< waits for nothing: no disk, no other thread
+  };
+
+  /// @param report  is told what handlers throw, with the request that it was thrown at
+  explicit RestRouter(std::function<void(const std::string&)> report = {})
+      : report_(std::move(report)) {}
+
+  void add(const std::string& method,
+           const std::string& pattern,
+           Handler handler,
+           std::vector<std::string> known_query = {});
+  /// The same for a GET that waits for nothing, and need not wait behind those that do.
+  void add_quick(const std::string& pattern, Handler handler);
+  [[nodiscard]] bool is_quick(const HttpRequest& request) const;
+
+  /// Answers 404 for an unknown path, 405 with `Allow` for a known path's other methods, 400 naming
+  /// a query parameter that the route does not know.
+  /// HEAD is served by GET's handler: the caller leaves the body out. Never throws: what a handler
+  /// throws is reported and answered with 500, after which `respond` may be called again by what
+  /// the handler began.
+  void handle(const HttpRequest& request, const Respond& respond) const noexcept;
+  [[nodiscard]] const std::vector<Route>& routes() const { return routes_; }
+
+ private:
+  void find_and_handle(const HttpRequest& request, const Respond& respond) const;
+  std::function<void(const std::string&)> report_;
+  std::vector<Route> routes_;
+};
+
+}  // namespace overfly::net

@@ -1,0 +1,111 @@
+#include "server/net/http/token_gate.hpp"
+
+#include <algorithm>
+#include <string_view>
+
+#include "server/net/http/access_token.hpp"
+#include "server/net/http/error_response.hpp"
+#include "server/net/http/locked_page.hpp"
+#include "server/net/http/url.hpp"
+
+namespace overfly::net {
+namespace {
+
+constexpr const char* kParameter = "token";
+constexpr std::string_view kBearer = "bearer ";
+
+bool is_api(const HttpRequest& request) { return request.target.starts_with("/api/"); }
+
+bool starts_with_any_case(std::string_view text, std::string_view lower_case_start) {
+  if (text.size() < lower_case_start.size()) return false;
+  return std::equal(
+      lower_case_start.begin(), lower_case_start.end(), text.begin(), [](char wanted, char c) {
+        return (c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c) == wanted;
+      });
+}
+
+/// Calls `each` with every value of a cookie.
+template <typename Each>
+void for_each_cookie(std::string_view header, std::string_view name, Each each) {
+  while (!header.empty()) {
+    const std::size_t end = std::min(header.find(';'), header.size());
+    std::string_view pair = header.substr(0, end);
+    header.remove_prefix(std::min(end + 1, header.size()));
+    pair.remove_prefix(std::min(pair.find_first_not_of(' '), pair.size()));
+    const std::size_t equals = pair.find('=');
+    if (equals != std::string_view::npos && pair.substr(0, equals) == name) {
+      each(pair.substr(equals + 1));
+    }
+  }
+}
+
+/// A person may paste the whole address that the server printed.
+std::string_view token_in(std::string_view text) {
+  const std::size_t at = text.rfind("token=");
+  return at == std::string_view::npos ? text : text.substr(at + 6);
+}
+
+HttpResponse token_refusal(const HttpRequest& request, bool wrong) {
+  HttpResponse response;
+  if (is_api(request)) {
+    response = error_response(401,
+                              "unauthorized",
+                              wrong ? "the token is not this server's"
+                                    : "this server asks for its token, which it printed when it "
+                                      "started: Authorization: Bearer TOKEN, or ?token=TOKEN");
+  } else {
+    response.status = 401;
+    response.content_type = "text/html; charset=utf-8";
+    response.headers.emplace_back("Cache-Control", "no-store");
+    response.body = locked_page(wrong);
+  }
+  response.headers.emplace_back("WWW-Authenticate", "Bearer realm=\"Overfly\"");
+  return response;
+}
+
+/// To the same page; never to another host, which "//host" and "/\host" would mean to a browser.
+std::string location_of(const std::string& target) {
+  const bool is_local =
+      target.starts_with('/') && !(target.size() > 1 && (target[1] == '/' || target[1] == '\\'));
+  return is_local ? target : "/";
+}
+
+}  // namespace
+
+std::string token_cookie_name(const std::string& host_header) {
+  const std::size_t colon = host_header.rfind(':');
+  const std::string port = colon == std::string::npos ? "" : host_header.substr(colon + 1);
+  const bool is_port = !port.empty() && port.find_first_not_of("0123456789") == std::string::npos;
+  return "overfly_" + (is_port ? port : "80");
+}
+
+bool TokenGate::has_token(const HttpRequest& request) const {
+  const std::string authorization = request.header("authorization");
+  bool found = starts_with_any_case(authorization, kBearer) &&
+               same_token(std::string_view(authorization).substr(kBearer.size()), token_);
+  for_each_cookie(request.header("cookie"),
+                  token_cookie_name(request.header("host")),
+                  [&](std::string_view value) { found = same_token(value, token_) || found; });
+  return found;
+}
+
+std::optional<HttpResponse> TokenGate::check(HttpRequest* request) const {
+  const auto shown = take_query_parameter(&request->target, kParameter);
+  if (token_.empty()) return std::nullopt;
+  const bool by_query = shown && same_token(token_in(*shown), token_);
+  if (!by_query && !has_token(*request)) return token_refusal(*request, shown.has_value());
+  const bool reads = request->method == "GET" || request->method == "HEAD";
+  if (!shown || !reads || is_api(*request)) return std::nullopt;
+  HttpResponse response;
+  response.status = 303;
+  response.headers.emplace_back("Location", location_of(request->target));
+  response.headers.emplace_back("Cache-Control", "no-store");
+  if (by_query) {
+    response.headers.emplace_back("Set-Cookie",
+                                  token_cookie_name(request->header("host")) + "=" + token_ +
+                                      "; Path=/; HttpOnly; SameSite=Strict");
+  }
+  return response;
+}
+
+}  // namespace overfly::net

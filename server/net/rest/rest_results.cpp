@@ -1,0 +1,155 @@
+#include <algorithm>
+#include <system_error>
+#include <utility>
+
+#include "core/file_text.hpp"
+#include "server/net/http/error_response.hpp"
+#include "server/net/rest/rest_api.hpp"
+#include "server/net/stream/row_encoder.hpp"
+#include "server/record/run_timeline.hpp"
+#include "server/scoring/row_alignment.hpp"
+
+namespace overfly::net {
+namespace {
+
+namespace fs = std::filesystem;
+using engine::RunManager;
+using engine::RunTimeline;
+using nlohmann::json;
+
+constexpr const char* kTruth = "truth";
+
+/// Whether a file of a run is none of its own, but a link to somewhere else.
+bool leads_out_of(const fs::path& folder, const fs::path& file) {
+  std::error_code error;
+  const fs::path place = fs::canonical(file, error);
+  if (error) return false;  // Reading it says why.
+  const fs::path home = fs::canonical(folder, error);
+  const auto parts = std::mismatch(home.begin(), home.end(), place.begin(), place.end());
+  return error || parts.first != home.end();
+}
+
+/// A file of a run as it is. @param name  relative to the run's folder
+HttpResponse result_response(const fs::path& folder,
+                             const fs::path& name,
+                             const std::string& content_type,
+                             const std::string& absent) {
+  constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 30U;
+  const fs::path file = folder / name;
+  if (leads_out_of(folder, file)) {
+    return error_response({ErrorCode::kIo, name.string() + ": is a link out of the run's folder"});
+  }
+  Result<std::string> text = read_file_text(file, kMaxBytes);
+  if (!text) {
+    const ErrorCode code = text.error().code;
+    if (code == ErrorCode::kIo) {
+      return error_response({code, "cannot read " + file.filename().string()});
+    }
+    return error_response({ErrorCode::kNotFound, absent});
+  }
+  HttpResponse response;
+  response.content_type = content_type;
+  response.headers.emplace_back("Cache-Control", "no-cache");
+  response.body = std::move(*text);
+  return response;
+}
+
+HttpResponse metrics(RunManager* runs, const std::string& id) {
+  const auto timeline = runs->timeline(id);
+  if (!timeline) return error_response(timeline.error());
+  json scores = (*timeline)->metrics();
+  if (scores.empty()) {
+    return error_response({ErrorCode::kNotFound, "run " + id + " is not scored"});
+  }
+  return json_response(200, scores);
+}
+
+HttpResponse estimators(RunManager* runs, const std::string& id) {
+  const auto timeline = runs->timeline(id);
+  if (!timeline) return error_response(timeline.error());
+  return json_response(200, {{"estimators", estimator_statuses_json(**timeline)}});
+}
+
+HttpResponse manifest(RunManager* runs, const std::string& id) {
+  const auto folder = runs->folder(id);
+  if (!folder) return error_response(folder.error());
+  return result_response(
+      *folder, "manifest.json", "application/json", "run " + id + " has no manifest yet");
+}
+
+Result<json> columns_of(const RunTimeline& timeline,
+                        const std::string& name,
+                        const std::string& alignment) {
+  if (name == kTruth) return truth_columns(timeline.frames(0, timeline.frame_count()));
+  const auto& names = timeline.estimators();
+  const auto index =
+      static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+  const auto placed = engine::RowAlignment::of(timeline, index, alignment);
+  if (!placed) return placed.error();
+  return estimate_columns(timeline.estimates(index, 0, timeline.estimate_count(index)), *placed);
+}
+
+/// The parameters `format` and `alignment` for the trajectory of `name`.
+Status check_trajectory_query(const RouteCall& call, const std::string& name) {
+  const std::string format = call.query_or("format", "tum");
+  if (format != "tum" && format != "json") {
+    return Error{ErrorCode::kInvalidArgument,
+                 "format = " + format + ": must be \"tum\" or \"json\""};
+  }
+  if (call.query.contains("alignment") && (format == "tum" || name == kTruth)) {
+    return Error{ErrorCode::kInvalidArgument,
+                 "alignment = " + call.query.at("alignment") +
+                     ": is for an estimate with format=json (a TUM file has no alignment)"};
+  }
+  return {};
+}
+
+HttpResponse trajectory(RunManager* runs, const RouteCall& call) {
+  const std::string& id = call.path.at("id");
+  const std::string& name = call.path.at("name");
+  if (const Status status = check_trajectory_query(call, name); !status) {
+    return error_response(status.error());
+  }
+  const auto timeline = runs->timeline(id);
+  if (!timeline) return error_response(timeline.error());
+  const auto& names = (*timeline)->estimators();
+  if (name != kTruth && std::find(names.begin(), names.end(), name) == names.end()) {
+    return error_response({ErrorCode::kNotFound, "run " + id + " has no trajectory " + name});
+  }
+  if (call.query_or("format", "tum") == "json") {
+    return json_or_error(
+        columns_of(**timeline, name, call.query_or("alignment", engine::kRecordedAlignment)));
+  }
+  const auto folder = runs->folder(id);
+  if (!folder) return error_response(folder.error());
+  const std::string file_name = name + ".tum";
+  return result_response(
+      *folder,
+      name == kTruth ? fs::path(file_name) : fs::path("estimates") / file_name,
+      "text/plain; charset=utf-8",
+      file_name + " is written when the run ends; format=json has the rows so far");
+}
+
+}  // namespace
+
+void add_result_routes(RestRouter* router, RunManager* runs) {
+  router->add(
+      "GET", "/api/v1/runs/{id}/metrics", [runs](const RouteCall& call, const Respond& respond) {
+        respond(metrics(runs, call.path.at("id")));
+      });
+  router->add(
+      "GET", "/api/v1/runs/{id}/estimators", [runs](const RouteCall& call, const Respond& respond) {
+        respond(estimators(runs, call.path.at("id")));
+      });
+  router->add(
+      "GET", "/api/v1/runs/{id}/manifest", [runs](const RouteCall& call, const Respond& respond) {
+        respond(manifest(runs, call.path.at("id")));
+      });
+  router->add(
+      "GET",
+      "/api/v1/runs/{id}/trajectories/{name}",
+      [runs](const RouteCall& call, const Respond& respond) { respond(trajectory(runs, call)); },
+      {"format", "alignment"});
+}
+
+}  // namespace overfly::net

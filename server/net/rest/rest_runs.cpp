@@ -1,0 +1,141 @@
+#include <memory>
+#include <mutex>
+#include <string>
+#include <unordered_map>
+#include <utility>
+
+#include "server/net/http/error_response.hpp"
+#include "server/net/http/json_text.hpp"
+#include "server/net/rest/rest_api.hpp"
+#include "server/net/stream/row_encoder.hpp"
+#include "server/record/run_info.hpp"
+
+namespace overfly::net {
+namespace {
+
+using engine::RunManager;
+using nlohmann::json;
+
+constexpr std::size_t kMaxKeyBytes = 200;
+
+struct StartBody {
+  std::string scenario;
+  std::vector<engine::Override> overrides;
+};
+
+Result<StartBody> parse_start(const std::string& text) {
+  const Result<json> body = parse_object(text, "the body");
+  if (!body) return body.error();
+  JsonFields fields(*body, "");
+  StartBody start;
+  fields.require("scenario");
+  start.scenario = fields.text("scenario").value_or("");
+  if (const json* overrides = fields.object("overrides")) {
+    for (const auto& [path, value] : overrides->items()) start.overrides.push_back({path, value});
+  }
+  if (const Status status = fields.finish(); !status) return status.error();
+  return start;
+}
+
+bool is_json(const HttpRequest& request) {
+  const std::string type = request.header("content-type");
+  return type == "application/json" || type.starts_with("application/json;");
+}
+
+/// A run that is refused for want of room, or for a fault of the request.
+HttpResponse start_refusal(const engine::StartReport& report, const Error& error) {
+  using Refusal = engine::StartReport::Refusal;
+  if (report.refusal == Refusal::kQueueFull) {
+    return error_response(429, "queue_full", error.message);
+  }
+  if (report.refusal == Refusal::kMemory) {
+    return error_response(422, "not_enough_memory", error.message);
+  }
+  return error_response(error);
+}
+
+HttpResponse start_run(RunManager* runs, const HttpRequest& request) {
+  if (!is_json(request)) {
+    return error_response(415, "unsupported_media_type", "the body must be application/json");
+  }
+  const std::string key = request.header("idempotency-key");
+  if (key.size() > kMaxKeyBytes) {
+    return error_response(
+        {ErrorCode::kInvalidArgument,
+         "Idempotency-Key: must have at most " + std::to_string(kMaxKeyBytes) + " characters"});
+  }
+  const Result<StartBody> start = parse_start(request.body);
+  if (!start) return error_response(start.error());
+  const Status reach = runs->check_overrides(start->scenario, start->overrides);
+  if (!reach) return error_response(403, "forbidden", reach.error().message);
+  engine::StartReport report;
+  const auto info = runs->start(start->scenario, start->overrides, key, &report);
+  if (!info) return start_refusal(report, info.error());
+  HttpResponse response = json_response(report.repeated ? 200 : 201, run_json(*info));
+  response.headers.emplace_back("Location", "/api/v1/runs/" + info->id);
+  return response;
+}
+
+/// The list of runs as JSON text. A run that has not changed since the last list is the same
+/// object, and its text is kept. Thread-safe.
+class RunListText {
+ public:
+  std::string of(const engine::RunList& runs) {
+    const std::lock_guard lock(mutex_);
+    std::unordered_map<std::shared_ptr<const engine::RunInfo>, std::string> kept;
+    kept.reserve(runs.size());
+    std::string text = R"({"runs":[)";
+    for (const auto& info : runs) {
+      const auto known = texts_.find(info);
+      std::string own = known == texts_.end() ? to_text(run_json(*info)) : std::move(known->second);
+      if (!kept.empty()) text += ',';
+      text += own;
+      kept.emplace(info, std::move(own));
+    }
+    texts_ = std::move(kept);
+    return text + "]}";
+  }
+
+ private:
+  std::mutex mutex_;
+  std::unordered_map<std::shared_ptr<const engine::RunInfo>, std::string> texts_;
+};
+
+HttpResponse list_runs(RunManager* runs, RunListText& texts) {
+  HttpResponse response = json_response(200, json());
+  response.body = texts.of(runs->runs());
+  return response;
+}
+
+HttpResponse one_run(RunManager* runs, const std::string& id, int status) {
+  const auto info = runs->run(id);
+  return info ? json_response(status, run_json(*info)) : error_response(info.error());
+}
+
+}  // namespace
+
+void add_run_routes(RestRouter* router, RunManager* runs) {
+  const auto texts = std::make_shared<RunListText>();
+  router->add("GET", "/api/v1/runs", [runs, texts](const RouteCall&, const Respond& respond) {
+    respond(list_runs(runs, *texts));
+  });
+  router->add("POST", "/api/v1/runs", [runs](const RouteCall& call, const Respond& respond) {
+    respond(start_run(runs, call.request));
+  });
+  router->add("GET", "/api/v1/runs/{id}", [runs](const RouteCall& call, const Respond& respond) {
+    respond(one_run(runs, call.path.at("id"), 200));
+  });
+  router->add(
+      "POST", "/api/v1/runs/{id}/cancel", [runs](const RouteCall& call, const Respond& respond) {
+        const Status status = runs->cancel(call.path.at("id"));
+        respond(status ? one_run(runs, call.path.at("id"), 202) : error_response(status.error()));
+      });
+  router->add("DELETE", "/api/v1/runs/{id}", [runs](const RouteCall& call, const Respond& respond) {
+    const Status status = runs->remove(call.path.at("id"));
+    HttpResponse gone;
+    gone.status = 204;
+    respond(status ? gone : error_response(status.error()));
+  });
+}
+
+}  // namespace overfly::net

@@ -1,0 +1,55 @@
+#include "server/net/http/error_response.hpp"
+#include "server/net/rest/openapi.hpp"
+#include "server/net/rest/rest_api.hpp"
+#include "server/scenario/document/scenario_file.hpp"
+#include "server/scenario/document/scenario_list.hpp"
+#include "server/scenario/document/scenario_schema.hpp"
+#include "server/scenario/scenario.hpp"
+
+namespace overfly::net {
+namespace {
+
+using nlohmann::json;
+
+HttpResponse json_text_response(const std::string& text) {
+  HttpResponse response;
+  response.content_type = "application/json";
+  response.headers.emplace_back("Cache-Control", "no-cache");
+  response.body = text;
+  return response;
+}
+
+json entry_json(const engine::ScenarioEntry& entry) {
+  return {{"name", entry.name},
+          {"title", entry.title},
+          {"description", entry.description},
+          {"error", entry.error.empty() ? json(nullptr) : json(entry.error)}};
+}
+
+}  // namespace
+
+void add_service_routes(RestRouter* router) {
+  router->add_quick("/api/v1/health", [](const RouteCall&, const Respond& respond) {
+    respond(json_response(200, {{"status", "ok"}, {"version", OVERFLY_VERSION}}));
+  });
+  router->add("GET", "/api/v1/openapi.json", [](const RouteCall&, const Respond& respond) {
+    respond(json_text_response(openapi_text()));
+  });
+}
+
+void add_scenario_routes(RestRouter* router, engine::RunManager* runs) {
+  router->add("GET", "/api/v1/scenarios", [runs](const RouteCall&, const Respond& respond) {
+    json list = json::array();
+    for (const engine::ScenarioEntry& entry : runs->scenarios()) list.push_back(entry_json(entry));
+    respond(json_response(200, {{"scenarios", std::move(list)}}));
+  });
+  router->add(
+      "GET", "/api/v1/scenarios/{name}", [runs](const RouteCall& call, const Respond& respond) {
+        respond(json_or_error(runs->scenario(call.path.at("name"))));
+      });
+  router->add("GET", "/api/v1/scenario-schema", [](const RouteCall&, const Respond& respond) {
+    respond(json_text_response(engine::scenario_schema_text()));
+  });
+}
+
+}  // namespace overfly::net

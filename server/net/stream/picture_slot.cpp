@@ -1,0 +1,29 @@
+#include "server/net/stream/picture_slot.hpp"
+
+#include <algorithm>
+
+namespace overfly::net {
+namespace {
+
+/// A seek or another view is shown this soon even by a slower stream [ns].
+constexpr std::int64_t kChangePeriodNs = 30'000'000;
+
+}  // namespace
+
+std::optional<PictureKey> PictureSlot::take(std::int64_t now_ns) {
+  if (!waiting()) return std::nullopt;
+  const bool changed = taken_ && taken_->change != wanted_->change;
+  const std::int64_t period_ns = std::max(period_ns_, least_period_ns_);
+  const std::int64_t change_ns = std::max(std::min(period_ns_, kChangePeriodNs), least_period_ns_);
+  const std::int64_t ready_ns = changed ? std::min(due_ns_, taken_at_ns_ + change_ns) : due_ns_;
+  if (now_ns < ready_ns) return std::nullopt;
+  // Counted from when it was due, so that late ticks do not lower the rate.
+  const bool on_time = !changed && now_ns - due_ns_ < period_ns;
+  due_ns_ = (on_time ? due_ns_ : now_ns) + period_ns;
+  taken_ = wanted_;
+  taken_at_ns_ = now_ns;
+  in_flight_ = true;
+  return taken_;
+}
+
+}  // namespace overfly::net

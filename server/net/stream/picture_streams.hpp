@@ -1,0 +1,84 @@
+// The picture streams of one viewer: which are wanted, what each shows, and which is drawn next.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/result.hpp"
+#include "server/net/stream/client_message.hpp"
+#include "server/net/stream/picture_slot.hpp"
+#include "server/net/stream/viewer_port.hpp"
+#include "server/record/run_timeline.hpp"
+#include "server/views/view_service.hpp"
+
+namespace overfly::net {
+
+class PictureStreams {
+ public:
+  /// Where the viewer is.
+  struct Instant {
+    const engine::RunTimeline& timeline;
+    std::string run_id;
+    std::int64_t frame = 0;
+    std::int64_t t_ns = 0;
+    bool live = false;
+  };
+
+  /// Replaces the set of streams; one that stays keeps its number, as does one that comes back.
+  void subscribe(const std::vector<StreamWish>& wishes);
+  void set_view(const ViewCommand& command);
+  /// The alignment of the estimates in the scene.
+  void set_alignment(const std::string& mode);
+  /// What was on its way is no longer wanted: another run is watched, or none.
+  void restart();
+  /// The rate that no stream may exceed; empty = none. @return true when that is another one
+  bool set_limit_hz(std::optional<double> limit_hz);
+  /// Every stream sends the picture of the present instant again.
+  void show_again() { ++change_; }
+
+  /// Has every picture drawn that is due.
+  void pump(const Instant& instant, ViewerPort* port, std::int64_t now_ns);
+  /// Sends a picture that was drawn, or tells the client why it could not be.
+  void ready(const PictureTicket& ticket, const Result<engine::Picture>& picture, ViewerPort* port);
+  void sent(const PictureTicket& ticket);
+
+  /// True when a picture waits for nothing but its time.
+  [[nodiscard]] bool waiting() const;
+  /// The `streams` message.
+  [[nodiscard]] nlohmann::json streams_json() const;
+
+ private:
+  struct Stream {
+    StreamWish wish;
+    std::uint32_t id = 0;
+    PictureSlot slot{1.0};
+    std::uint32_t sequence = 0;
+    std::uint64_t ticket = 0;  ///< of the picture on its way; 0 = none
+    bool live = false;         ///< it was asked for as a live one
+    std::uint64_t change = 0;  ///< that it was asked for in
+    std::optional<std::int64_t> sent_frame;
+    std::uint64_t sent_change = 0;
+    std::string error_told;
+  };
+  Stream* find(const PictureTicket& ticket);
+  std::optional<engine::PictureRequest> request_of(const Stream& stream,
+                                                   const Instant& instant) const;
+  static void tell_error(Stream* stream, const Error& error, ViewerPort* port);
+
+  std::vector<Stream> streams_;
+  using StreamKey = std::pair<std::string, std::string>;  ///< name and camera
+  std::map<StreamKey, std::uint32_t> ids_;                ///< of all ever subscribed
+  std::map<StreamKey, std::uint32_t> sequences_;          ///< of streams not subscribed now
+  engine::SceneSettings scene_;
+  std::optional<double> limit_hz_;
+  std::uint64_t change_ = 0;
+  std::uint64_t view_change_ = 0;
+  std::uint64_t tickets_ = 0;
+};
+
+}  // namespace overfly::net

@@ -1,0 +1,43 @@
+// A viewer's place in a run: what is there at an instant, and where the next frame is.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/net/stream/playback_cursor.hpp"
+#include "server/record/run_timeline.hpp"
+#include "server/scoring/row_alignment.hpp"
+
+namespace overfly::net {
+
+/// Where the estimates lie: one place for each estimator, empty where it has no such alignment.
+struct EstimatePlaces {
+  std::string mode = engine::kRecordedAlignment;
+  std::vector<std::optional<engine::RowAlignment>> of_estimator;
+
+  /// @pre check_alignment says that the run has this mode
+  static EstimatePlaces of(const engine::RunTimeline& timeline, const std::string& mode);
+};
+
+/// The `playback` message: cursor, truth and estimates at its instant, interpolated between
+/// frames. Before the first frame `frame` is -1 and `truth` null.
+[[nodiscard]] nlohmann::json playback_json(const engine::RunTimeline& timeline,
+                                           const PlaybackCursor& cursor,
+                                           const EstimatePlaces& places);
+
+/// Stamp of the last recorded frame; 0 before the first.
+[[nodiscard]] std::int64_t end_of(const engine::RunTimeline& timeline);
+/// Stamp of frame `frame`, or of the nearest recorded one before it (else the first).
+/// Empty while nothing is recorded.
+[[nodiscard]] std::optional<std::int64_t> time_of_frame(const engine::RunTimeline& timeline,
+                                                        std::int64_t frame);
+/// Stamp of the frame `steps` recorded frames after (before, when negative) the one at t, within
+/// what is recorded. Empty while nothing is recorded.
+[[nodiscard]] std::optional<std::int64_t> time_of_step(const engine::RunTimeline& timeline,
+                                                       std::int64_t t_ns,
+                                                       std::int64_t steps);
+
+}  // namespace overfly::net

@@ -1,0 +1,175 @@
+#include "server/net/stream/row_encoder.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace overfly::net {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::array<const char*, 6> kPoseColumns = {
+    "x_m", "y_m", "z_m", "roll_deg", "pitch_deg", "yaw_deg"};
+
+/// Null for a value that JSON cannot say.
+json rounded(double value, double per_unit) {
+  if (!std::isfinite(value)) return nullptr;
+  return std::round(value * per_unit) / per_unit;
+}
+
+std::array<json, 6> pose_values(const Pose& T_world_body) {
+  const RollPitchYaw attitude = attitude_from(T_world_body.rotation);
+  const Eigen::Vector3d& p = T_world_body.translation;
+  constexpr double kPerMetre = 1e3;
+  constexpr double kPerDegree = 1e4;
+  return {rounded(p.x(), kPerMetre),
+          rounded(p.y(), kPerMetre),
+          rounded(p.z(), kPerMetre),
+          rounded(deg_from_rad(attitude.roll_rad), kPerDegree),
+          rounded(deg_from_rad(attitude.pitch_rad), kPerDegree),
+          rounded(deg_from_rad(attitude.yaw_rad), kPerDegree)};
+}
+
+/// The six pose columns of rows whose pose may be missing.
+template <typename Rows, typename PoseOf>
+void add_pose_columns(const Rows& rows, PoseOf pose_of, json* columns) {
+  std::array<json::array_t, 6> pose_columns;
+  for (auto& column : pose_columns) column.reserve(rows.size());
+  for (const auto& row : rows) {
+    const std::optional<Pose> pose = pose_of(row);
+    std::array<json, 6> values;
+    if (pose) values = pose_values(*pose);
+    for (std::size_t i = 0; i < values.size(); ++i) pose_columns[i].push_back(std::move(values[i]));
+  }
+  for (std::size_t i = 0; i < kPoseColumns.size(); ++i) {
+    (*columns)[kPoseColumns[i]] = std::move(pose_columns[i]);
+  }
+}
+
+template <typename Rows, typename ValueOf>
+json column(const Rows& rows, ValueOf value_of) {
+  json::array_t values;
+  values.reserve(rows.size());
+  for (const auto& row : rows) values.push_back(value_of(row));
+  return values;
+}
+
+/// Adds a column unless every value of it is null: most runs have no sensor and no fault.
+template <typename ValueOf>
+void add_if_said(const std::vector<engine::FrameRow>& rows,
+                 const char* name,
+                 ValueOf value_of,
+                 json* columns) {
+  json values = column(rows, value_of);
+  const bool said =
+      std::any_of(values.begin(), values.end(), [](const json& value) { return !value.is_null(); });
+  if (said) (*columns)[name] = std::move(values);
+}
+
+/// What sensor, tiles and faults did to each frame.
+void add_image_columns(const std::vector<engine::FrameRow>& rows, json* columns) {
+  using Row = engine::FrameRow;
+  constexpr double kDigits = 1e6;
+  const auto add = [&](const char* name, auto value_of) {
+    add_if_said(rows, name, value_of, columns);
+  };
+  add("exposure_ns",
+      [](const Row& row) { return row.exposure_ns == 0 ? json(nullptr) : json(row.exposure_ns); });
+  add("gain", [](const Row& row) {
+    return row.exposure_ns == 0 ? json(nullptr) : rounded(row.gain, kDigits);
+  });
+  add("saturated_fraction", [](const Row& row) {
+    const bool known = row.exposure_ns != 0 || row.saturated_fraction > 0.0;
+    return known ? rounded(row.saturated_fraction, kDigits) : json(nullptr);
+  });
+  add("late_tiles",
+      [](const Row& row) { return row.late_tiles == 0 ? json(nullptr) : json(row.late_tiles); });
+  add("stamp_offset_ns", [](const Row& row) {
+    return row.stamp_offset_ns == 0 ? json(nullptr) : json(row.stamp_offset_ns);
+  });
+  add("faults",
+      [](const Row& row) { return row.faults.empty() ? json(nullptr) : json(row.faults); });
+}
+
+}  // namespace
+
+json pose_json(const Pose& T_world_body) {
+  json pose = json::object();
+  auto values = pose_values(T_world_body);
+  for (std::size_t i = 0; i < values.size(); ++i) pose[kPoseColumns[i]] = std::move(values[i]);
+  return pose;
+}
+
+json truth_columns(const std::vector<engine::FrameRow>& rows) {
+  using Row = engine::FrameRow;
+  constexpr double kDigits = 1e4;
+  json columns = json::object();
+  columns["frame"] = column(rows, [](const Row& row) { return row.frame; });
+  columns["t_ns"] = column(rows, [](const Row& row) { return row.t_ns; });
+  columns["texels_per_pixel"] =
+      column(rows, [](const Row& row) { return rounded(row.texels_per_pixel_median, kDigits); });
+  columns["void_fraction"] =
+      column(rows, [](const Row& row) { return rounded(row.void_fraction, kDigits); });
+  add_image_columns(rows, &columns);
+  add_pose_columns(
+      rows, [](const Row& row) { return std::optional<Pose>(row.T_world_body); }, &columns);
+  return columns;
+}
+
+json estimate_columns(const std::vector<engine::EstimateRow>& rows,
+                      const engine::RowAlignment& alignment) {
+  using Row = engine::EstimateRow;
+  json columns = json::object();
+  columns["frame"] = column(rows, [](const Row& row) { return row.sample.frame; });
+  columns["t_ns"] = column(rows, [](const Row& row) { return row.sample.t_ns; });
+  columns["state"] = column(rows, [](const Row& row) { return to_string(row.sample.state); });
+  columns["latency_ms"] = column(rows, [](const Row& row) { return rounded(row.latency_ms, 1e3); });
+  add_pose_columns(
+      rows, [&](const Row& row) { return alignment.T_world_body(row); }, &columns);
+  return columns;
+}
+
+json log_columns(const std::vector<engine::LogRow>& rows) {
+  using Row = engine::LogRow;
+  json columns = json::object();
+  columns["t_ns"] = column(rows, [](const Row& row) { return row.t_ns; });
+  columns["level"] = column(rows, [](const Row& row) { return row.level; });
+  columns["text"] = column(rows, [](const Row& row) { return row.text; });
+  columns["kind"] = column(
+      rows, [](const Row& row) { return row.kind.empty() ? json(nullptr) : json(row.kind); });
+  columns["source"] = column(
+      rows, [](const Row& row) { return row.source.empty() ? json(nullptr) : json(row.source); });
+  return columns;
+}
+
+json estimator_statuses_json(const engine::RunTimeline& timeline) {
+  json statuses = json::object();
+  const std::vector<engine::EstimatorStatus> all = timeline.statuses();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    statuses[timeline.estimators()[i]] = engine::json_from(all[i]);
+  }
+  return statuses;
+}
+
+json run_json(const engine::RunInfo& info) {
+  return {{"id", info.id},
+          {"scenario", info.scenario},
+          {"title", info.title},
+          {"status", engine::to_string(info.status)},
+          {"created_utc", info.created_utc},
+          {"error", info.error.empty() ? json(nullptr) : json(info.error)},
+          {"problem", info.problem.empty() ? json(nullptr) : json(info.problem)},
+          {"duration_ns", info.duration_ns},
+          {"frames", info.frames},
+          {"frames_total", info.frames_total},
+          {"pacing", info.pacing},
+          {"estimators", info.estimators},
+          {"attribution", info.attribution},
+          {"texture_limited", info.texture_limited},
+          {"notice", info.notice.empty() ? json(nullptr) : json(info.notice)},
+          {"world_change", info.world_change.empty() ? json(nullptr) : json(info.world_change)}};
+}
+
+}  // namespace overfly::net

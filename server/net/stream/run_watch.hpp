@@ -1,0 +1,78 @@
+// One viewer's watch over one run: its playback cursor, and the text messages that are due.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "server/net/stream/playback_cursor.hpp"
+#include "server/net/stream/playback_state.hpp"
+#include "server/net/stream/row_feed.hpp"
+#include "server/net/stream/viewer_port.hpp"
+#include "server/record/run_timeline.hpp"
+
+namespace overfly::net {
+
+class RunWatch {
+ public:
+  RunWatch(std::shared_ptr<const engine::RunTimeline> timeline,
+           const std::map<std::string, std::size_t>& resume);
+
+  [[nodiscard]] const engine::RunTimeline& timeline() const { return *timeline_; }
+  [[nodiscard]] PlaybackCursor& cursor() { return cursor_; }
+  [[nodiscard]] const PlaybackCursor& cursor() const { return cursor_; }
+
+  /// Moves the cursor to now and takes in what the run has recorded.
+  void refresh(std::int64_t now_ns);
+  /// Sends what is due of `run`, `rows`, `estimators`, `metrics` and `playback`. Rows wait while
+  /// the connection has much unsent: nothing is lost, the run keeps them.
+  void tell(ViewerPort* port, std::int64_t now_ns);
+  /// Estimates lie where this alignment says. Errors: as engine::check_alignment.
+  Status align(const std::string& mode);
+  /// The next tell() sends `playback` whatever its rate.
+  void cursor_commanded() { playback_due_ = true; }
+  /// True while rows wait for the connection.
+  [[nodiscard]] bool behind() const { return behind_; }
+
+ private:
+  struct Told {
+    std::int64_t t_ns = -1;
+    bool playing = false;
+    bool live = false;
+    bool loop = false;
+    double speed = 0.0;
+    bool operator==(const Told&) const = default;
+  };
+  void tell_run(ViewerPort* port, std::int64_t now_ns);
+  void tell_rows(ViewerPort* port, std::int64_t now_ns);
+  void tell_estimators(ViewerPort* port, std::int64_t now_ns);
+  void tell_metrics(ViewerPort* port);
+  void tell_playback(ViewerPort* port, std::int64_t now_ns);
+
+  std::shared_ptr<const engine::RunTimeline> timeline_;
+  engine::Audience::Seat seat_;
+  RowFeed feed_;
+  PlaybackCursor cursor_;
+  EstimatePlaces places_;
+  std::optional<std::uint64_t> revision_;       ///< that the cursor knows
+  std::optional<std::uint64_t> rows_revision_;  ///< that the rows told belong to
+  std::optional<std::uint64_t> run_revision_;
+  std::optional<std::uint64_t> estimators_revision_;
+  std::optional<std::uint64_t> metrics_revision_;
+  std::optional<std::int64_t> rows_at_ns_;  ///< when they were told last
+  std::optional<std::int64_t> run_at_ns_;
+  std::optional<std::int64_t> estimators_at_ns_;
+  std::optional<std::int64_t> playback_at_ns_;
+  engine::RunStatus status_told_ = engine::RunStatus::kQueued;
+  std::string run_told_;
+  std::string estimators_told_;
+  std::string metrics_told_;
+  Told cursor_told_;
+  std::int64_t end_told_ns_ = -1;
+  bool playback_due_ = true;
+  bool behind_ = false;
+};
+
+}  // namespace overfly::net

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/image.hpp"
+#include "server/record/estimator_status.hpp"
+#include "server/record/rows.hpp"
+
+namespace overfly::engine {
+
+/// What became of one frame: an answer, or a drop (record.dropped).
+struct EstimatorEvent {
+  EstimateRecord record;
+  double latency_ms = 0.0;  ///< from handing the frame over to the answer
+  std::optional<Image> debug_image;
+  std::vector<Eigen::Vector3f> map_points_vo;
+  std::map<std::string, double> timing_ms;
+  /// So far; not with every event.
+  std::optional<EstimatorUse> use;
+};
+
+}  // namespace overfly::engine

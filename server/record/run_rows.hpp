@@ -1,0 +1,32 @@
+// The rows of a run folder's line files, as JSON.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "core/camera_model.hpp"
+#include "core/result.hpp"
+#include "server/record/rows.hpp"
+
+namespace overfly::engine {
+
+/// {"p_m": [x, y, z], "q_xyzw": [x, y, z, w]}
+[[nodiscard]] nlohmann::json json_from(const Pose& T);
+[[nodiscard]] nlohmann::json json_from(const PinholeCamera& camera);
+/// With `distortion` {"model", "coefficients"}.
+[[nodiscard]] nlohmann::json json_from(const CameraModel& camera);
+[[nodiscard]] nlohmann::json json_from(const FrameRecord& record);
+[[nodiscard]] nlohmann::json json_from(const EstimateRecord& record);
+[[nodiscard]] nlohmann::json json_from(const LogRow& row);
+
+// The way back. Errors: kUnreadable naming the field.
+[[nodiscard]] Result<Pose> pose_from(const nlohmann::json& value);
+[[nodiscard]] Result<PinholeCamera> camera_from(const nlohmann::json& value);
+/// Without a distortion where none is named.
+[[nodiscard]] Result<CameraModel> camera_model_from(const nlohmann::json& value);
+/// `T_body_camera` gives the row its pose of the body.
+[[nodiscard]] Result<FrameRecord> frame_record_from(const nlohmann::json& value,
+                                                    const Pose& T_body_camera);
+[[nodiscard]] Result<EstimateRecord> estimate_record_from(const nlohmann::json& value);
+[[nodiscard]] Result<LogRow> log_row_from(const nlohmann::json& value);
+
+}  // namespace overfly::engine

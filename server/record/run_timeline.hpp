@@ -1,0 +1,123 @@
+// A run as a time line: what every view of it reads, while it is being written and after.
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/camera_model.hpp"
+#include "core/image.hpp"
+#include "core/pose.hpp"
+#include "core/result.hpp"
+#include "server/files/file_stamp.hpp"
+#include "server/record/audience.hpp"
+#include "server/record/estimator_status.hpp"
+#include "server/record/rows.hpp"
+#include "server/record/run_info.hpp"
+
+namespace overfly::engine {
+
+/// Thread-safe. Rows are only ever appended and are numbered from 0: a reader asks for the rows
+/// from its next number on, so nothing is lost or told twice, live or replayed.
+class RunTimeline {
+ public:
+  explicit RunTimeline(RunInfo info, std::vector<std::string> estimators);
+  /// Reads a run folder (complete, failed, or still marked running by a program that is gone:
+  /// then its status is kInterrupted). Errors: kNotFound, kUnreadable naming file and line.
+  static Result<std::shared_ptr<RunTimeline>> open(const std::filesystem::path& folder);
+
+  [[nodiscard]] RunInfo info() const;
+  [[nodiscard]] const std::vector<std::string>& estimators() const { return estimators_; }
+  /// The cameras, the main one first; there is always one.
+  [[nodiscard]] std::vector<RunCamera> cameras() const;
+  /// Index of a camera by its name; empty name = the main one. Errors: kNotFound naming it.
+  [[nodiscard]] Result<std::size_t> camera_index(const std::string& name) const;
+  /// Main camera of the run and its mount.
+  [[nodiscard]] PinholeCamera camera() const;
+  [[nodiscard]] Pose T_body_camera() const;
+  /// Of the manifest that this was read from or written to; none while the run goes on.
+  [[nodiscard]] FileStamp manifest_stamp() const;
+  /// Empty object until the run is scored.
+  [[nodiscard]] nlohmann::json metrics() const;
+
+  /// Copies rows [first, first + at most `limit`); of the main camera where none is named.
+  [[nodiscard]] std::vector<FrameRow> frames(std::size_t first,
+                                             std::size_t limit,
+                                             std::size_t camera = 0) const;
+  [[nodiscard]] std::vector<EstimateRow> estimates(std::size_t estimator,
+                                                   std::size_t first,
+                                                   std::size_t limit) const;
+  [[nodiscard]] std::vector<LogRow> logs(std::size_t first, std::size_t limit) const;
+  [[nodiscard]] std::size_t frame_count() const;
+  [[nodiscard]] std::size_t estimate_count(std::size_t estimator) const;
+  /// Row of the last frame stamped at or before t; empty before the first.
+  [[nodiscard]] std::optional<FrameRow> frame_at(std::int64_t t_ns, std::size_t camera = 0) const;
+  [[nodiscard]] std::optional<EstimateRow> estimate_at(std::size_t estimator,
+                                                       std::int64_t t_ns) const;
+
+  /// The newest pictures of a live run; empty after it.
+  [[nodiscard]] std::optional<StampedImage> live_camera(std::size_t camera = 0) const;
+  [[nodiscard]] std::optional<StampedImage> live_debug(std::size_t estimator) const;
+  /// Sparse map points seen last, world frame.
+  [[nodiscard]] std::vector<Eigen::Vector3f> live_points(std::size_t estimator) const;
+
+  /// Who watches it.
+  [[nodiscard]] const std::shared_ptr<Audience>& audience() const { return audience_; }
+
+  /// How each estimator fares.
+  [[nodiscard]] std::vector<EstimatorStatus> statuses() const;
+
+  /// Grows with every change.
+  [[nodiscard]] std::uint64_t revision() const;
+  /// Waits until revision() differs from `seen`, or the timeout. @return revision()
+  std::uint64_t wait_for_change(std::uint64_t seen, std::int64_t timeout_ms) const;
+
+  // The writer's side: the run that feeds it.
+  /// @pre !cameras.empty(), and no frame is there yet
+  void set_cameras(std::vector<RunCamera> cameras);
+  void set_camera(const PinholeCamera& camera, const Pose& T_body_camera);  ///< the only one
+  void set_manifest_stamp(const FileStamp& stamp);
+  void set_info(const RunInfo& info);
+  void append_frame(const FrameRow& row, std::size_t camera = 0);
+  void append_estimate(std::size_t estimator, const EstimateRow& row);
+  void append_log(const LogRow& row);
+  void set_status(std::size_t estimator, const EstimatorStatus& status);
+  void set_metrics(nlohmann::json metrics);
+  void set_live_camera(StampedImage image, std::size_t camera = 0);
+  void set_live_debug(std::size_t estimator, StampedImage image);
+  void set_live_points(std::size_t estimator, std::vector<Eigen::Vector3f> points_world);
+
+ private:
+  struct EstimatorRows {
+    std::vector<EstimateRow> rows;
+    EstimatorStatus status;
+    std::optional<StampedImage> debug;
+    std::vector<Eigen::Vector3f> points;
+  };
+  struct CameraRows {
+    RunCamera camera;
+    std::vector<FrameRow> rows;
+    std::optional<StampedImage> live;
+  };
+  void changed();
+
+  const std::shared_ptr<Audience> audience_ = std::make_shared<Audience>();
+  mutable std::mutex mutex_;
+  mutable std::condition_variable changed_;
+  std::uint64_t revision_ = 0;
+  RunInfo info_;
+  FileStamp manifest_stamp_;
+  std::vector<std::string> estimators_;
+  std::vector<CameraRows> cameras_;
+  nlohmann::json metrics_ = nlohmann::json::object();
+  std::vector<EstimatorRows> estimates_;
+  std::vector<LogRow> logs_;
+};
+
+}  // namespace overfly::engine

@@ -1,0 +1,185 @@
+// RunTimeline::open: a run folder read back into the rows that its run gave out.
+#include <optional>
+#include <unordered_map>
+#include <utility>
+
+#include "server/files/file_field.hpp"
+#include "server/files/whole_file.hpp"
+#include "server/record/estimator_tally.hpp"
+#include "server/record/live_alignment.hpp"
+#include "server/record/run_folder.hpp"
+#include "server/record/run_info_file.hpp"
+#include "server/record/run_records.hpp"
+#include "server/record/run_timeline.hpp"
+#include "server/timing/stage_timer.hpp"
+
+namespace overfly::engine {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+/// What timings.json says of one estimator, as far as it can be read.
+struct EstimatorTimings {
+  std::unordered_map<std::int64_t, double> latency_ms;  ///< by frame, once the run is over
+  std::optional<EstimatorUse> use;
+};
+
+EstimatorTimings read_timings(const FileField& timings, const std::string& estimator) {
+  EstimatorTimings read;
+  const auto estimators = timings.find("estimators");
+  const auto entry = estimators ? estimators->find(estimator) : std::nullopt;
+  if (!entry) return read;
+  if (const auto use = entry->find("resources")) read.use = estimator_use_from(use->value());
+  const auto frames = entry->find("frame");
+  const auto latencies = entry->find("latency_ms");
+  if (!frames || !latencies) return read;
+  const std::vector<FileField> frame = frames->items();
+  const std::vector<FileField> latency = latencies->items();
+  for (std::size_t i = 0; i < frame.size() && i < latency.size(); ++i) {
+    read.latency_ms[frame[i].integer()] = latency[i].number();
+  }
+  return read;
+}
+
+/// The problem that is told first stays.
+void tell_problem(RunInfo& info, const std::string& problem) {
+  if (info.problem.empty()) info.problem = problem;
+}
+
+void append_estimates(const RunRecords& records,
+                      std::size_t index,
+                      const EstimatorTimings& timings,
+                      RunTimeline& timeline) {
+  const EstimatorRecords& estimator = records.estimators[index];
+  LiveAlignment alignment(records.mount_of(estimator.camera));
+  for (const EstimateRecord& record : estimator.records) {
+    const FrameRecord* frame = frame_record(records, estimator.camera, record.sample.frame);
+    // A kill can cut the frames' file shorter than this one.
+    if (record.dropped || frame == nullptr) continue;
+    EstimateRow row;
+    row.sample = record.sample;
+    row.T_world_body = alignment.add(record.sample, frame->row.T_world_camera, frame->axis_depth_m);
+    const auto latency = timings.latency_ms.find(record.sample.frame);
+    if (latency != timings.latency_ms.end()) row.latency_ms = latency->second;
+    timeline.append_estimate(index, row);
+  }
+}
+
+void tell_status(const RunRecords& records,
+                 std::size_t index,
+                 const EstimatorTimings& timings,
+                 RunTimeline& timeline) {
+  EstimatorStatus status = tally_of(records, records.estimators[index]);
+  status.use = timings.use;
+  DurationList latencies;
+  for (const auto& [frame, ms] : timings.latency_ms) latencies.ms.push_back(ms);
+  status.latency = latencies.latencies();
+  timeline.set_status(index, status);
+}
+
+Status append_logs(const fs::path& folder, RunTimeline& timeline) {
+  const fs::path file = log_file(folder);
+  const Result<std::vector<Json>> lines = read_lines(file);
+  if (!lines) return lines.error();
+  for (std::size_t i = 0; i < lines->size(); ++i) {
+    const Result<LogRow> row = log_row_from((*lines)[i]);
+    if (!row) return row.error().in(file.string() + ", row " + std::to_string(i + 1));
+    timeline.append_log(*row);
+  }
+  return {};
+}
+
+void append_frames(const RunRecords& records, RunTimeline& timeline) {
+  for (const FrameRecord& record : records.frames) timeline.append_frame(record.row);
+  for (std::size_t i = 0; i < records.other_cameras.size(); ++i) {
+    for (const FrameRecord& record : records.other_cameras[i].frames) {
+      timeline.append_frame(record.row, i + 1);
+    }
+  }
+}
+
+/// The run plays without its timings; what is wrong with them is told.
+void append_answers(const fs::path& folder,
+                    const RunRecords& records,
+                    RunTimeline& timeline,
+                    RunInfo& info) {
+  const Result<Json> timings = read_json(timings_file(folder));
+  if (!timings) tell_problem(info, timings.error().message);
+  for (std::size_t i = 0; i < records.estimators.size(); ++i) {
+    Result<EstimatorTimings> own = EstimatorTimings();
+    if (timings) {
+      own = guarded_fields(
+          [&] { return read_timings(FileField(*timings), records.estimators[i].name); });
+    }
+    if (!own) tell_problem(info, timings_file(folder).string() + ": " + own.error().message);
+    append_estimates(records, i, own ? *own : EstimatorTimings(), timeline);
+    tell_status(records, i, own ? *own : EstimatorTimings(), timeline);
+  }
+}
+
+/// Runs of one camera may say so in `camera` alone.
+Status tell_cameras(const Json& manifest, const RunRecords& records, RunTimeline& timeline) {
+  std::vector<RunCamera> cameras;
+  const auto read = guarded_fields([&] {
+    const FileField document(manifest);
+    const auto only = document.find("camera");
+    const auto several = document.find("cameras");
+    std::vector<FileField> entries;
+    if (several) entries = several->items();
+    if (entries.empty() && only) entries.push_back(*only);
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      const Result<CameraModel> model = camera_model_from(entries[i].value());
+      if (!model) entries[i].fault("be a camera (" + model.error().message + ")");
+      const auto name = entries[i].find("name");
+      cameras.push_back({name ? name->text() : "", *model, records.mount_of(i)});
+    }
+    return true;
+  });
+  if (!read) return read.error().in("manifest.json");
+  if (!cameras.empty()) timeline.set_cameras(std::move(cameras));
+  return {};
+}
+
+/// An empty object where the run is not scored; a fault is told in `info`.
+Json read_metrics(const fs::path& folder, RunInfo& info) {
+  Result<Json> metrics = read_json(metrics_file(folder));
+  if (metrics && metrics->is_object()) return std::move(*metrics);
+  if (metrics) {
+    tell_problem(info, metrics_file(folder).string() + ": must be an object");
+  } else if (metrics.error().code != ErrorCode::kNotFound) {
+    tell_problem(info, metrics.error().message);
+  }
+  return Json::object();
+}
+
+}  // namespace
+
+Result<std::shared_ptr<RunTimeline>> RunTimeline::open(const fs::path& folder) {
+  const FileStamp stamp = FileStamp::of(manifest_file(folder));
+  Result<RunInfo> info = read_run_info(folder);
+  if (!info) return info.error();
+  if (info->status == RunStatus::kUnreadable) return Error{ErrorCode::kUnreadable, info->problem};
+  const Result<Json> manifest = read_json(manifest_file(folder));
+  if (!manifest) return manifest.error();
+  const Result<RunRecords> records = read_run_records(folder);
+  if (!records) return records.error();
+  info->estimators.clear();
+  for (const EstimatorRecords& estimator : records->estimators) {
+    info->estimators.push_back(estimator.name);
+  }
+
+  auto timeline = std::make_shared<RunTimeline>(*info, info->estimators);
+  if (Status status = tell_cameras(*manifest, *records, *timeline); !status) {
+    return status.error().in(folder.string());
+  }
+  append_frames(*records, *timeline);
+  append_answers(folder, *records, *timeline, *info);
+  if (Status status = append_logs(folder, *timeline); !status) return status.error();
+  timeline->set_metrics(read_metrics(folder, *info));
+  timeline->set_manifest_stamp(stamp);
+  timeline->set_info(*info);
+  return timeline;
+}
+
+}  // namespace overfly::engine

@@ -1,0 +1,235 @@
+#include "server/run/flight_run.hpp"
+
+#include <optional>
+#include <utility>
+
+#include "core/cancel.hpp"
+#include "server/record/rows.hpp"
+#include "server/timing/picture_rate.hpp"
+#include "server/timing/thread_priority.hpp"
+
+namespace overfly::engine {
+namespace {
+
+Error stopped() { return {ErrorCode::kCancelled, "cancelled"}; }
+
+FrameRecord record_from(const MadeFrame& made, const CameraShot& shot, const CameraSpec& camera) {
+  FrameRecord record;
+  record.row.frame = made.frame;
+  record.row.t_ns = made.t_ns;
+  record.row.T_world_camera = shot.drawn.T_world_camera;
+  record.shaken = camera.vibration.enabled;
+  record.row.T_world_body = record.shaken
+                                ? made.state.T_world_body
+                                : shot.drawn.T_world_camera * camera.T_body_camera.inverse();
+  record.row.texels_per_pixel_median = shot.drawn.texels_per_pixel_median;
+  record.row.texels_per_pixel_min = shot.drawn.texels_per_pixel_min;
+  record.row.void_fraction = shot.drawn.void_fraction;
+  record.row.exposure_ns = shot.setting.exposure_ns;
+  record.row.gain = shot.setting.gain;
+  record.row.saturated_fraction = shot.saturated_fraction;
+  record.row.late_tiles = shot.drawn.late_tiles;
+  record.row.stamp_offset_ns = shot.stamp_ns - made.t_ns;
+  record.row.faults = shot.faults;
+  record.axis_depth_m = shot.drawn.axis_depth_m;
+  return record;
+}
+
+VoFrame vo_frame_from(const MadeFrame& made,
+                      const CameraShot& shot,
+                      const CameraSpec& camera,
+                      std::shared_ptr<const Image> grey) {
+  VoFrame frame;
+  frame.camera_id = camera.name;
+  frame.index = made.frame;
+  frame.t_ns = shot.stamp_ns;
+  frame.exposure_ns = shot.setting.exposure_ns;
+  frame.image = std::move(grey);
+  frame.intrinsics = camera.model.pinhole();
+  frame.distortion = camera.model.distortion();
+  return frame;
+}
+
+}  // namespace
+
+FlightRun::FlightRun(const Scenario& scenario, const RunOptions& options, RunRecorder& recorder)
+    : scenario_(scenario),
+      options_(options),
+      recorder_(recorder),
+      clock_(options.clock != nullptr ? *options.clock : machine_clock()),
+      stages_(clock_),
+      begin_ns_(clock_.now_ns()),
+      fault_news_(scenario) {}
+
+bool FlightRun::cancelled() const { return is_cancelled(options_.cancel); }
+
+std::int64_t FlightRun::end_ns() const {
+  const std::vector<FrameRecord>& frames = recorder_.records().frames;
+  return frames.empty() ? 0 : frames.back().row.t_ns;
+}
+
+nlohmann::json FlightRun::timings() const {
+  const std::int64_t now_ns = clock_.now_ns();
+  // Without the set-up: making or opening the world is no part of a frame's cost.
+  const double loop_s = loop_begin_ns_ == 0 ? 0.0 : s_from_ns(now_ns - loop_begin_ns_);
+  const double flight_s = s_from_ns(end_ns());
+  return {{"finished_utc", utc_text(utc_now_ns())},
+          {"wall_s", s_from_ns(now_ns - begin_ns_)},
+          {"loop_wall_s", loop_s},
+          {"flight_s", flight_s},
+          {"flight_s_per_wall_s", loop_s > 0.0 ? flight_s / loop_s : 0.0},
+          {"late_tiles", late_tiles_},
+          {"frames_with_late_tiles", frames_with_late_tiles_},
+          {"stages", stages_.summary()}};
+}
+
+Status FlightRun::fly() {
+  // Before the cameras and the estimators start their threads, which inherit the priority.
+  std::optional<RaisedThread> before_other_programs;
+  if (scenario_.pacing == Pacing::kRealTime) before_other_programs.emplace();
+  // Whatever ends the flight: what an estimator does on leaving belongs into a folder still open.
+  struct Leaving {
+    FlightRun& run;
+    ~Leaving() {
+      run.workers_.clear();
+      run.maker_.reset();
+    }
+  } const leaving{*this};
+  const Status flown = prepare_and_fly();
+  const Status closed = close_estimators();
+  return flown ? closed : flown;
+}
+
+Status FlightRun::prepare_and_fly() {
+  using Step = Status (FlightRun::*)();
+  const Step steps[] = {&FlightRun::open_maker, &FlightRun::open_estimators, &FlightRun::describe};
+  for (const Step& step : steps) {
+    if (cancelled()) return stopped();
+    if (Status status = (this->*step)(); !status) return status;
+  }
+  loop_begin_ns_ = clock_.now_ns();
+  return scenario_.pacing == Pacing::kRealTime ? fly_real_time() : fly_lockstep();
+}
+
+Status FlightRun::fly_lockstep() {
+  for (std::int64_t k = 0; k < maker_->frames_total(); ++k) {
+    if (cancelled()) return stopped();
+    const Result<Flight> flight = fly_frame(k, true);
+    if (!flight) return flight.error();
+    if (*flight == Flight::kEnded) break;
+  }
+  return {};
+}
+
+Status FlightRun::fly_real_time() {
+  Status fetched = stages_.measure("fetch_first_view", [&] { return maker_->fetch_first_view(); });
+  if (!fetched) return fetched;
+  PictureRate nobody_asks;
+  PictureRate& pictures = options_.picture_rate != nullptr ? *options_.picture_rate : nobody_asks;
+  loop_begin_ns_ = clock_.now_ns();
+  // Also when something throws: viewers must not be held back for a flight that is over.
+  struct InTheAir {
+    RunClock& clock;
+    PictureRate& pictures;
+    InTheAir(RunClock& by, PictureRate& beside) : clock(by), pictures(beside) {
+      clock.enter();
+      pictures.flight_began(clock.now_ns());
+    }
+    ~InTheAir() {
+      pictures.flight_ended();
+      clock.leave();
+    }
+    InTheAir(const InTheAir&) = delete;
+    InTheAir& operator=(const InTheAir&) = delete;
+  } const in_the_air(clock_, pictures);
+  return keep_pace(clock_.now_ns(), pictures);
+}
+
+Status FlightRun::keep_pace(std::int64_t start_ns, PictureRate& pictures) {
+  for (std::int64_t k = 0; k < maker_->frames_total(); ++k) {
+    if (cancelled()) return stopped();
+    const std::int64_t t_ns = frame_time_ns(k, scenario_.rate);
+    const std::int64_t next_ns = frame_time_ns(k + 1, scenario_.rate);
+    const std::int64_t now_ns = clock_.now_ns() - start_ns;
+    if (now_ns >= next_ns) {
+      // The next frame is due already: drawing this one would only put off that one.
+      if (Status recorded = recorder_.add_late_frame(k, t_ns); !recorded) return recorded;
+      pictures.frame_missed(clock_.now_ns());
+      continue;
+    }
+    if (now_ns < t_ns) clock_.sleep_until_ns(start_ns + t_ns);
+    const Result<Flight> flight = fly_frame(k, false);
+    if (!flight) return flight.error();
+    if (*flight == Flight::kEnded) break;
+    const std::int64_t done_ns = clock_.now_ns();
+    pictures.frame_made(done_ns, next_ns - t_ns, start_ns + next_ns - done_ns);
+  }
+  return {};
+}
+
+Result<FlightRun::Flight> FlightRun::fly_frame(std::int64_t k, bool wait_for_estimators) {
+  auto made = maker_->make(k);
+  if (!made) return made.error();
+  if (!*made) return Flight::kEnded;
+
+  // While this frame was drawn, the estimators worked on the one before.
+  if (wait_for_estimators) {
+    stages_.measure("wait_for_estimators", [&] {
+      for (auto& worker : workers_) worker->wait_until_idle();
+      return 0;
+    });
+  }
+  if (Status status = record_events(); !status) return status.error();
+
+  if (Status status = tell_faults((*made)->t_ns); !status) return status.error();
+  const Status delivered = deliver(**made);
+  if (options_.progress) options_.progress(recorder_.info());
+  if (!delivered) return delivered.error();
+  return Flight::kGoesOn;
+}
+
+Status FlightRun::deliver(MadeFrame& made) {
+  for (CameraShot& shot : made.shots) {
+    const CameraSpec& camera = scenario_.cameras[shot.camera];
+    FrameRecord record = record_from(made, shot, camera);
+    late_tiles_ += record.row.late_tiles;
+    frames_with_late_tiles_ += record.row.late_tiles > 0 ? 1 : 0;
+    std::shared_ptr<const Image> image;
+    if (shot.delivered) image = std::make_shared<const Image>(std::move(shot.image));
+    const auto grey =
+        image && image->channels != 1 ? std::make_shared<const Image>(grey_of(*image)) : image;
+    // Once a frame, whoever gets it: so every estimator's image is known to be the same.
+    if (grey) record.row.image_crc32 = stages_.measure("hash", [&] { return crc32_of(*grey); });
+    for (std::size_t i = 0; i < workers_.size() && grey; ++i) {
+      if (scenario_.estimators[i].camera != shot.camera) continue;
+      VoFrame frame = vo_frame_from(made, shot, camera, grey);
+      frame.image_crc32 = record.row.image_crc32;
+      workers_[i]->submit(std::move(frame));
+    }
+    Status recorded = stages_.measure(
+        "record", [&] { return recorder_.add_frame(record, image, shot.image16, shot.camera); });
+    if (!recorded) return recorded;
+  }
+  return {};
+}
+
+Status FlightRun::tell_faults(std::int64_t t_ns) {
+  for (const FaultNews::Line& line : fault_news_.at(t_ns)) {
+    const char* level = line.begins ? "warning" : "info";
+    if (Status status = recorder_.log(t_ns, level, line.text, "fault"); !status) return status;
+  }
+  return {};
+}
+
+Status FlightRun::record_events() {
+  for (std::size_t i = 0; i < workers_.size(); ++i) {
+    for (EstimatorEvent& event : workers_[i]->take_events()) {
+      if (Status status = recorder_.add_event(i, std::move(event)); !status) return status;
+    }
+    Status logged = recorder_.add_estimator_log(i, end_ns(), workers_[i]->take_log());
+    if (!logged) return logged;
+  }
+  return {};
+}
+
+}  // namespace overfly::engine

@@ -1,0 +1,74 @@
+// One run's tick loop: time, truth, camera, estimators, recorder.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/result.hpp"
+#include "server/camera/frame_maker.hpp"
+#include "server/estimators/estimator_factory.hpp"
+#include "server/estimators/estimator_worker.hpp"
+#include "server/run/run_options.hpp"
+#include "server/run/run_recorder.hpp"
+#include "server/timing/stage_timer.hpp"
+
+namespace overfly::engine {
+
+class FlightRun {
+ public:
+  FlightRun(const Scenario& scenario, const RunOptions& options, RunRecorder& recorder);
+
+  /// Flies to the end; no estimator is left when it returns. Errors: kCancelled when it was
+  /// stopped; whatever a part says.
+  Status fly();
+  /// Stamp of the last frame; 0 before the first.
+  [[nodiscard]] std::int64_t end_ns() const;
+  /// Wall-clock facts of what was flown, for timings.json.
+  [[nodiscard]] nlohmann::json timings() const;
+
+ private:
+  Status prepare_and_fly();
+  Status open_maker();
+  Status describe_world();
+  Status open_estimators();
+  void prepare_estimators();
+  [[nodiscard]] Result<std::unique_ptr<VoPort>> open_estimator(const EstimatorSpec& spec);
+  Status describe();
+  /// Records what the estimators have said so far, what they have used and where their parameters
+  /// stand; also after an error.
+  Status close_estimators();
+  Status describe_use();
+
+  Status fly_lockstep();
+  Status fly_real_time();
+  /// @param start_ns  of the flight, by the run's clock
+  Status keep_pace(std::int64_t start_ns, PictureRate& pictures);
+  /// Whether the flight goes on after a frame.
+  enum class Flight { kGoesOn, kEnded };
+  /// Image and record of frame k, and its way to the estimators; kEnded, and no frame, after the
+  /// end of a flight whose length was not known.
+  Result<Flight> fly_frame(std::int64_t k, bool wait_for_estimators);
+  /// Hands each estimator its camera's image, and records all cameras.
+  Status deliver(MadeFrame& made);
+  Status record_events();
+  Status tell_faults(std::int64_t t_ns);
+  [[nodiscard]] bool cancelled() const;
+
+  const Scenario& scenario_;
+  const RunOptions& options_;
+  RunRecorder& recorder_;
+  RunClock& clock_;
+  StageTimer stages_;
+  std::int64_t begin_ns_ = 0;
+  std::int64_t loop_begin_ns_ = 0;  ///< 0 = no frame yet
+
+  std::unique_ptr<FrameMaker> maker_;
+  FaultNews fault_news_;
+  std::int64_t late_tiles_ = 0;
+  std::int64_t frames_with_late_tiles_ = 0;
+  std::vector<std::unique_ptr<EstimatorWorker>> workers_;
+};
+
+}  // namespace overfly::engine

@@ -1,0 +1,156 @@
+// FlightRun: estimators before the first frame and after the last.
+#include <utility>
+
+#include "server/record/run_folder.hpp"
+#include "server/run/flight_run.hpp"
+#include "server/timing/cpu_affinity.hpp"
+
+namespace overfly::engine {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+using Port = Result<std::unique_ptr<VoPort>>;
+
+/// Stands for an estimator that did not start: its first frame says why it is gone.
+class AbsentEstimator final : public VoPort {
+ public:
+  AbsentEstimator(std::string type, Error reason)
+      : type_(std::move(type)), reason_(std::move(reason)) {}
+
+  [[nodiscard]] std::string type() const override { return type_; }
+  [[nodiscard]] std::map<std::string, std::string> effective_parameters() const override {
+    return {};
+  }
+  [[nodiscard]] Result<VoEstimate> track(const VoFrame& /*frame*/) override {
+    return Error{ErrorCode::kInternal, reason_.message};
+  }
+  void reset() override {}
+  void set_debug(bool /*wanted*/) override {}
+
+ private:
+  std::string type_;
+  Error reason_;
+};
+
+/// A bad value in the scenario ends the run; what an estimator beyond our doors does, or what this
+/// machine lacks for it, ends that estimator alone.
+bool ends_the_run(const Error& error) {
+  return error.code == ErrorCode::kInvalidArgument || error.code == ErrorCode::kCancelled;
+}
+
+/// Made for an estimator that has something to put there.
+Result<fs::path> output_folder(const fs::path& run_folder, const EstimatorSpec& spec) {
+  if (spec.type != "process") return fs::path();
+  fs::path folder = fs::absolute(estimator_output_folder(run_folder, spec.name));
+  std::error_code failure;
+  fs::create_directories(folder, failure);
+  if (failure) return Error{ErrorCode::kIo, folder.string() + ": " + failure.message()};
+  return folder;
+}
+
+}  // namespace
+
+Port FlightRun::open_estimator(const EstimatorSpec& spec) {
+  if (options_.estimator_factory) return options_.estimator_factory(spec);
+  if (options_.notice && is_outside_estimator(spec.type)) {
+    options_.notice("starting estimator " + spec.name);
+  }
+  const auto truth = [&]() -> Result<ToyTruth> {
+    const Result<std::optional<double>> depth_m = maker_->depth_at_start(spec.camera);
+    if (!depth_m) return depth_m.error();
+    Result<Trajectory> trajectory = maker_->rehearse(spec.camera);
+    if (!trajectory) return trajectory.error();
+    return ToyTruth{std::move(*trajectory), depth_m->value_or(0.0)};
+  };
+  const Result<fs::path> folder = output_folder(options_.folder, spec);
+  if (!folder) return folder.error();
+  const EstimatorSetting setting{scenario_.seed,
+                                 scenario_.pacing == Pacing::kLockstep,
+                                 *folder,
+                                 scenario_.rate.hz(),
+                                 options_.cancel};
+  if (is_outside_estimator(spec.type)) return create_estimator(spec, setting, truth);
+  // Threads that a native estimator makes at once are bound as well.
+  const AffinityGuard guard;
+  if (Status status = bind_thread(spec.cpus); !status) {
+    return status.error().in("estimator \"" + spec.name + "\"");
+  }
+  return create_estimator(spec, setting, truth);
+}
+
+Status FlightRun::open_estimators() {
+  return stages_.measure("open_estimators", [&]() -> Status {
+    for (std::size_t i = 0; i < scenario_.estimators.size(); ++i) {
+      if (cancelled()) return Error{ErrorCode::kCancelled, "cancelled"};
+      const EstimatorSpec& spec = scenario_.estimators[i];
+      Port port = open_estimator(spec);
+      Json& entry = recorder_.manifest()["estimators"][i];
+      if (!port) {
+        if (ends_the_run(port.error())) return port.error();
+        entry["start_error"] = port.error().message;
+        port = std::unique_ptr<VoPort>(
+            std::make_unique<AbsentEstimator>(spec.type, port.error().in("did not start")));
+      }
+      EstimatorWorkerOptions worker;
+      worker.debug_hz = scenario_.record_debug_hz;
+      worker.throttle_hz = spec.throttle_hz;
+      worker.in_process = !is_outside_estimator(spec.type);
+      if (worker.in_process) worker.cpus = spec.cpus;
+      workers_.push_back(
+          std::make_unique<EstimatorWorker>(std::move(*port), std::move(worker), clock_));
+    }
+    prepare_estimators();
+    return {};
+  });
+}
+
+void FlightRun::prepare_estimators() {
+  clock_.enter();  // until all are at it: a simulated clock must not move on for the first alone
+  for (std::size_t i = 0; i < workers_.size(); ++i) {
+    const CameraSpec& camera = scenario_.cameras[scenario_.estimators[i].camera];
+    VoFrame first;
+    first.camera_id = camera.name;
+    first.intrinsics = camera.model.pinhole();
+    first.distortion = camera.model.distortion();
+    workers_[i]->prepare(std::move(first));
+  }
+  clock_.leave();
+  for (std::size_t i = 0; i < workers_.size(); ++i) {
+    workers_[i]->wait_until_idle();
+    recorder_.manifest()["estimators"][i]["parameters"] = workers_[i]->effective_parameters();
+  }
+}
+
+Status FlightRun::close_estimators() {
+  stages_.measure("wait_for_estimators", [&] {
+    for (auto& worker : workers_) worker->wait_until_idle();
+    return 0;
+  });
+  const Status recorded = record_events();
+  const Status described = describe_use();
+  return recorded ? described : recorded;
+}
+
+Status FlightRun::describe_use() {
+  for (std::size_t i = 0; i < workers_.size(); ++i) {
+    recorder_.set_use(i, workers_[i]->use());
+    Json& entry = recorder_.manifest()["estimators"][i];
+    const Json at_end = workers_[i]->effective_parameters();
+    const Json at_begin = entry.value("parameters", Json::object());
+    for (const auto& [name, value] : at_end.items()) {
+      const std::string was = at_begin.value(name, "");
+      // An estimator may tell some only once it knows its camera: that is no change.
+      if (was.empty() || was == value) continue;
+      Status logged = recorder_.log(end_ns(),
+                                    "warning",
+                                    scenario_.estimators[i].name + ": parameter " + name + " is " +
+                                        value.get<std::string>() + " at the end, and was " + was);
+      if (!logged) return logged;
+    }
+    entry["parameters_at_end"] = at_end;
+  }
+  return {};
+}
+
+}  // namespace overfly::engine

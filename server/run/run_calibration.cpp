@@ -1,0 +1,59 @@
+#include "server/run/run_calibration.hpp"
+
+#include <algorithm>
+#include <system_error>
+
+#include "renderer/sensor/photometric_calibration.hpp"
+#include "server/files/number_text.hpp"
+#include "server/files/png_file.hpp"
+#include "server/files/whole_file.hpp"
+#include "server/scenario/fault_spec.hpp"
+
+namespace overfly::engine {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kFrameDigits = 6;  ///< as of the images in frames/
+constexpr double kNsPerMs = 1e6;
+
+bool got_lost(const FrameRow& row) {
+  const std::string dropped = to_string(FaultKind::kDroppedFrames);
+  return std::find(row.faults.begin(), row.faults.end(), dropped) != row.faults.end();
+}
+
+}  // namespace
+
+fs::path calibration_folder(const fs::path& run_folder, const std::string& camera) {
+  return run_folder / "photometric" / camera;
+}
+
+Status write_calibration(const fs::path& run_folder, const CameraSpec& camera) {
+  if (!camera.sensor.enabled) return {};
+  const fs::path folder = calibration_folder(run_folder, camera.name);
+  std::error_code failure;
+  fs::create_directories(folder, failure);
+  if (failure) return Error{ErrorCode::kIo, folder.string() + ": " + failure.message()};
+  if (Status status = renderer::write_pcalib(folder / "pcalib.txt", camera.sensor); !status) {
+    return status;
+  }
+  return write_png_file(folder / "vignette.png",
+                        renderer::vignette_map(camera.sensor, camera.model));
+}
+
+Status write_times(const fs::path& run_folder,
+                   const CameraSpec& camera,
+                   const std::vector<FrameRecord>& frames) {
+  if (!camera.sensor.enabled) return {};
+  std::string text;
+  for (const FrameRecord& frame : frames) {
+    const FrameRow& row = frame.row;
+    if (got_lost(row)) continue;
+    // Gain brightens as exposure does, and the format knows no other factor.
+    text += padded(row.frame, kFrameDigits) + " " + seconds_text(row.t_ns + row.stamp_offset_ns) +
+            " " + number_text(1e-6 * static_cast<double>(row.exposure_ns) * row.gain) + "\n";
+  }
+  return write_whole(calibration_folder(run_folder, camera.name) / "times.txt", text);
+}
+
+}  // namespace overfly::engine

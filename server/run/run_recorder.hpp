@@ -1,0 +1,121 @@
+// Writes a run folder while its run goes on, and tells the timeline the same.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/result.hpp"
+#include "server/files/whole_file.hpp"
+#include "server/record/estimator_event.hpp"
+#include "server/record/live_alignment.hpp"
+#include "server/record/run_folder.hpp"
+#include "server/record/run_info.hpp"
+#include "server/record/run_lock.hpp"
+#include "server/record/run_records.hpp"
+#include "server/record/run_timeline.hpp"
+#include "server/scenario/scenario.hpp"
+#include "server/timing/latency_histogram.hpp"
+#include "server/timing/stage_timer.hpp"
+
+namespace overfly::engine {
+
+/// Used by one thread, that of the run.
+class RunRecorder {
+ public:
+  /// Makes the folder and takes its lock; the manifest says "running" from then on.
+  /// @param timeline  its info has the id and when the run was asked for; made when null
+  /// Errors: kConflict if the folder holds anything; kIo.
+  static Result<std::unique_ptr<RunRecorder>> create(const std::filesystem::path& folder,
+                                                     const Scenario& scenario,
+                                                     std::shared_ptr<RunTimeline> timeline,
+                                                     bool publish_images);
+
+  /// What the manifest says besides the run's info; written out by write_manifest().
+  [[nodiscard]] nlohmann::json& manifest() { return manifest_; }
+  Status write_manifest();
+
+  /// Tells manifest and timeline of the cameras, and keeps their photometric calibration.
+  Status set_cameras();
+  void set_length(std::int64_t duration_ns, std::int64_t frames_total);
+  void set_attribution(const std::string& attribution);
+
+  /// The main camera's (0) record first, then those of the others.
+  /// @param image  null when it got lost: then there is none to keep or to show
+  /// @param deep   the same of a sensor deeper than 8 bit, else empty
+  Status add_frame(const FrameRecord& record,
+                   const std::shared_ptr<const Image>& image,
+                   const Image16& deep,
+                   std::size_t camera);
+  Status add_late_frame(std::int64_t frame, std::int64_t t_ns);
+  Status add_event(std::size_t estimator, EstimatorEvent event);
+  /// Lines that an estimator said; of one that says too much only the first.
+  Status add_estimator_log(std::size_t estimator,
+                           std::int64_t t_ns,
+                           const std::vector<std::string>& lines);
+  /// At the end: what an estimator has used.
+  void set_use(std::size_t estimator, const EstimatorUse& use);
+  Status log(std::int64_t t_ns,
+             const std::string& level,
+             const std::string& text,
+             const std::string& kind = "",
+             const std::string& source = "");
+
+  /// Derives trajectories and metrics, writes timings and the final manifest, lets the folder go.
+  /// @param timings  wall-clock facts to put beside the estimators'
+  Result<nlohmann::json> finish(RunStatus status, const std::string& error, nlohmann::json timings);
+
+  /// After a finish() that did not come to its end: the manifest says "failed" all the same, and
+  /// the folder is let go. Nothing after one that did.
+  void give_up(const Error& error);
+
+  [[nodiscard]] RunInfo info() const { return info_; }
+  [[nodiscard]] const RunRecords& records() const { return records_; }
+
+ private:
+  struct EstimatorState {
+    LineFile lines;
+    LiveAlignment alignment;
+    TrackingState last = TrackingState::kInitialising;
+    int last_map_id = 0;
+    std::vector<std::int64_t> frames = {};
+    DurationList latency = {};
+    LatencyHistogram latency_so_far = {};
+    std::map<std::string, DurationList> stages = {};
+    EstimatorStatus status = {};
+    int log_rows = 0;
+  };
+
+  RunRecorder(std::filesystem::path folder, RunLock lock, const Scenario& scenario);
+  Status open_files();
+  Status open_camera_files();
+  Status keep_image(std::int64_t frame,
+                    const Image& image,
+                    const Image16& deep,
+                    std::size_t camera);
+  Status add_answer(std::size_t estimator, EstimatorEvent& event);
+  void tell_status(std::size_t estimator, const EstimatorEvent& event);
+  Status log_transition(std::size_t estimator, const EstimateRecord& record);
+  Status keep_debug_image(std::size_t estimator, EstimatorEvent& event);
+  Status write_timings(nlohmann::json timings) const;
+  /// The last manifest, and the end of the lock.
+  Status let_go();
+
+  std::filesystem::path folder_;
+  std::optional<RunLock> lock_;
+  const Scenario& scenario_;
+  bool publish_images_ = false;
+  std::shared_ptr<RunTimeline> timeline_;
+  RunInfo info_;
+  nlohmann::json manifest_ = nlohmann::json::object();
+  RunRecords records_;
+  std::vector<LineFile> frame_lines_;  ///< by camera
+  std::optional<LineFile> log_lines_;
+  std::vector<EstimatorState> estimators_;
+};
+
+}  // namespace overfly::engine

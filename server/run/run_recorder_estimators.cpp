@@ -1,0 +1,163 @@
+// RunRecorder: what the estimators answered, said and used.
+#include <string_view>
+#include <utility>
+
+#include "server/files/jpeg.hpp"
+#include "server/record/estimator_tally.hpp"
+#include "server/record/rows.hpp"
+#include "server/run/run_recorder.hpp"
+#include "server/timing/cpu_affinity.hpp"
+
+namespace overfly::engine {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+constexpr int kDebugQuality = 85;
+/// Of one estimator in the run's log; its own output.log has all.
+constexpr int kMaxLogRows = 1000;
+constexpr std::size_t kMaxLogBytes = 1000;
+
+/// A line's level, as it says itself.
+const char* level_of(std::string_view line) {
+  if (line.starts_with("error: ")) return "error";
+  return line.starts_with("warning: ") ? "warning" : "info";
+}
+
+Json use_json(const EstimatorStatus& status) {
+  return status.use ? json_from(*status.use) : Json(nullptr);
+}
+
+}  // namespace
+
+Status RunRecorder::add_event(std::size_t estimator, EstimatorEvent event) {
+  EstimatorState& state = estimators_[estimator];
+  if (Status status = state.lines.append(json_from(event.record)); !status) return status;
+  if (!event.record.dropped) {
+    if (Status status = add_answer(estimator, event); !status) return status;
+  }
+  tell_status(estimator, event);
+  records_.estimators[estimator].records.push_back(std::move(event.record));
+  return {};
+}
+
+void RunRecorder::tell_status(std::size_t estimator, const EstimatorEvent& event) {
+  EstimatorState& state = estimators_[estimator];
+  const std::size_t camera = records_.estimators[estimator].camera;
+  const FrameRecord* frame = frame_record(records_, camera, event.record.sample.frame);
+  tally(event.record, frame != nullptr ? frame->row.image_crc32 : std::nullopt, state.status);
+  if (event.use) {
+    state.status.use = event.use;
+    state.status.latency = state.latency_so_far.summary();
+  }
+  timeline_->set_status(estimator, state.status);
+}
+
+void RunRecorder::set_use(std::size_t estimator, const EstimatorUse& use) {
+  EstimatorState& state = estimators_[estimator];
+  state.status.use = use;
+  state.status.latency = state.latency.latencies();
+  timeline_->set_status(estimator, state.status);
+}
+
+Status RunRecorder::add_estimator_log(std::size_t estimator,
+                                      std::int64_t t_ns,
+                                      const std::vector<std::string>& lines) {
+  EstimatorState& state = estimators_[estimator];
+  const std::string& name = info_.estimators[estimator];
+  for (const std::string& line : lines) {
+    if (state.log_rows > kMaxLogRows) return {};
+    const bool last = state.log_rows++ == kMaxLogRows;
+    Status logged =
+        last
+            ? log(t_ns, "warning", name + " has said too much: the log has no more of it", "", name)
+            : log(t_ns, level_of(line), line.substr(0, kMaxLogBytes), "", name);
+    if (!logged) return logged;
+  }
+  return {};
+}
+
+Status RunRecorder::add_answer(std::size_t estimator, EstimatorEvent& event) {
+  EstimatorState& state = estimators_[estimator];
+  EstimateRow row;
+  row.sample = event.record.sample;
+  row.latency_ms = event.latency_ms;
+  const std::size_t camera = records_.estimators[estimator].camera;
+  if (const FrameRecord* frame = frame_record(records_, camera, row.sample.frame)) {
+    row.T_world_body =
+        state.alignment.add(row.sample, frame->row.T_world_camera, frame->axis_depth_m);
+  }
+  // One that is gone answers nothing, and that at once.
+  const bool gone = !event.record.crash.empty() || !state.status.crash.empty();
+  if (!gone) {
+    state.frames.push_back(row.sample.frame);
+    state.latency.ms.push_back(event.latency_ms);
+    state.latency_so_far.add(event.latency_ms);
+  }
+  for (const auto& [stage, ms] : event.timing_ms) state.stages[stage].ms.push_back(ms);
+  timeline_->append_estimate(estimator, row);
+  if (Status status = keep_debug_image(estimator, event); !status) return status;
+  if (publish_images_ && !event.map_points_vo.empty() && state.alignment.S_world_vo()) {
+    const Similarity S_world_vo = *state.alignment.S_world_vo();
+    for (Eigen::Vector3f& point : event.map_points_vo) {
+      point = (S_world_vo * Eigen::Vector3d(point.cast<double>())).cast<float>();
+    }
+    timeline_->set_live_points(estimator, std::move(event.map_points_vo));
+  }
+  return log_transition(estimator, event.record);
+}
+
+Status RunRecorder::keep_debug_image(std::size_t estimator, EstimatorEvent& event) {
+  if (!event.debug_image) return {};
+  const EstimateSample& sample = event.record.sample;
+  auto image = std::make_shared<const Image>(std::move(*event.debug_image));
+  if (publish_images_) timeline_->set_live_debug(estimator, {sample.frame, sample.t_ns, image});
+  const fs::path file = debug_image_file(folder_, info_.estimators[estimator], sample.frame);
+  const auto bytes = encode_jpeg(*image, kDebugQuality);
+  return bytes ? write_whole(file, *bytes) : Status(bytes.error());
+}
+
+Status RunRecorder::log_transition(std::size_t estimator, const EstimateRecord& record) {
+  EstimatorState& state = estimators_[estimator];
+  const EstimateSample& sample = record.sample;
+  const std::string& name = info_.estimators[estimator];
+  if (!record.crash.empty()) return log(sample.t_ns, "error", name + " crashed: " + record.crash);
+  if (!state.status.crash.empty()) return {};
+  const TrackingState last = std::exchange(state.last, sample.state);
+  const int last_map_id = std::exchange(state.last_map_id, sample.map_id);
+  if (sample.map_id < last_map_id) {
+    return log(sample.t_ns,
+               "info",
+               name + " recovered map " + std::to_string(sample.map_id) + " and tracks");
+  }
+  if (sample.map_id != last_map_id) {
+    return log(sample.t_ns, "warning", name + " started a new map: origin and scale are new");
+  }
+  if (sample.state == last) return {};
+  const bool lost = sample.state == TrackingState::kLost;
+  return log(sample.t_ns,
+             lost ? "warning" : "info",
+             name + (lost                                       ? " lost track"
+                     : sample.state == TrackingState::kTracking ? " tracks"
+                                                                : " initialises"));
+}
+
+Status RunRecorder::write_timings(Json timings) const {
+  timings["peak_memory_mb"] = own_peak_memory_mb();
+  Json estimators = Json::object();
+  for (std::size_t i = 0; i < estimators_.size(); ++i) {
+    const EstimatorState& state = estimators_[i];
+    Json stages = Json::object();
+    for (const auto& [stage, durations] : state.stages) stages[stage] = durations.summary();
+    estimators[info_.estimators[i]] = {{"latency", state.latency.summary()},
+                                       {"stages", std::move(stages)},
+                                       {"resources", use_json(state.status)},
+                                       {"frame", state.frames},
+                                       {"latency_ms", state.latency.ms}};
+  }
+  timings["estimators"] = std::move(estimators);
+  return write_json(timings_file(folder_), timings);
+}
+
+}  // namespace overfly::engine

@@ -1,0 +1,40 @@
+#include "server/runs/idempotency_keys.hpp"
+
+namespace overfly::engine {
+
+std::optional<std::string> IdempotencyKeys::run_of(const std::string& key, Time now) {
+  drop_old(now);
+  const auto found = by_key_.find(key);
+  if (found == by_key_.end()) return std::nullopt;
+  entries_.splice(entries_.begin(), entries_, found->second);
+  return found->second->run_id;
+}
+
+void IdempotencyKeys::keep(const std::string& key, const std::string& run_id, Time now) {
+  if (key.empty()) return;
+  drop_old(now);
+  if (const auto known = by_key_.find(key); known != by_key_.end()) entries_.erase(known->second);
+  entries_.push_front({key, run_id, now});
+  by_key_[key] = entries_.begin();
+  if (entries_.size() <= kMostKeys) return;
+  by_key_.erase(entries_.back().key);
+  entries_.pop_back();
+}
+
+void IdempotencyKeys::forget_run(const std::string& run_id) {
+  std::erase_if(entries_, [&](const Entry& entry) {
+    if (entry.run_id != run_id) return false;
+    by_key_.erase(entry.key);
+    return true;
+  });
+}
+
+void IdempotencyKeys::drop_old(Time now) {
+  std::erase_if(entries_, [&](const Entry& entry) {
+    if (now - entry.kept < kOldest) return false;
+    by_key_.erase(entry.key);
+    return true;
+  });
+}
+
+}  // namespace overfly::engine

@@ -1,0 +1,228 @@
+#include "server/runs/managed_runs.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <iterator>
+#include <set>
+#include <utility>
+
+#include "server/record/run_id.hpp"
+#include "server/record/run_info.hpp"
+#include "server/record/run_timeline.hpp"
+#include "server/worlds/world_change.hpp"
+
+namespace overfly::engine {
+namespace {
+
+RunInfo queued_info(const std::string& id, const Scenario& scenario) {
+  RunInfo info;
+  info.id = id;
+  info.scenario = scenario.name;
+  info.title = scenario.title;
+  info.created_utc = utc_text(utc_now_ns());
+  info.pacing = to_string(scenario.pacing);
+  for (const CameraSpec& camera : scenario.cameras) info.cameras.push_back(camera.name);
+  for (const EstimatorSpec& estimator : scenario.estimators) {
+    info.estimators.push_back(estimator.name);
+    info.estimator_cameras.push_back(scenario.cameras[estimator.camera].name);
+  }
+  return info;
+}
+
+MemoryBudget budget_of(const RunManagerOptions& options) {
+  constexpr bool kViews = true;
+  return options.memory_limit_bytes == 0 ? MemoryBudget::of_machine(kViews)
+                                         : MemoryBudget(options.memory_limit_bytes, kViews);
+}
+
+}  // namespace
+
+ManagedRuns::ManagedRuns(RunManagerOptions manager_options)
+    : options(std::move(manager_options)),
+      index(options.runs_folder),
+      shelf(options.runs_folder),
+      budget_(budget_of(options)) {}
+
+ManagedRuns::~ManagedRuns() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+    for (const auto& run : queue_) release_run(options.runs_folder, run->id);
+    queue_.clear();
+    for (auto& [id, run] : runs_) run->cancel = true;
+  }
+  wake_.notify_all();
+  for (std::thread& thread : threads_) thread.join();
+}
+
+SourcePolicy ManagedRuns::sources() const {
+  if (!options.data_folders) return {};
+  std::vector<std::filesystem::path> folders = declared_folders(options.scenarios_folder);
+  folders.insert(folders.end(), options.data_folders->begin(), options.data_folders->end());
+  return SourcePolicy::inside(std::move(folders), {options.runs_folder});
+}
+
+Result<RunInfo> ManagedRuns::enqueue(Scenario scenario,
+                                     const std::string& idempotency_key,
+                                     StartReport& report) {
+  if (Status fits = budget_.check(scenario); !fits) {
+    report.refusal = StartReport::Refusal::kMemory;
+    return fits.error();
+  }
+  const std::lock_guard lock(mutex_);
+  if (std::optional<RunInfo> earlier = info_by_key(idempotency_key)) {
+    report.repeated = true;
+    return *earlier;
+  }
+  if (queue_.size() >= options.max_waiting_runs) {
+    report.refusal = StartReport::Refusal::kQueueFull;
+    return Error{ErrorCode::kConflict,
+                 "waiting runs = " + std::to_string(queue_.size()) + ": must be below " +
+                     std::to_string(options.max_waiting_runs) + " for another one to be queued"};
+  }
+  Result<std::string> id = reserve_run(options.runs_folder, scenario.name, utc_now_ns());
+  if (!id) return id.error();
+  auto run = std::make_shared<ManagedRun>();
+  run->id = std::move(*id);
+  run->memory = memory_of(scenario);
+  RunInfo info = queued_info(run->id, scenario);
+  run->timeline = std::make_shared<RunTimeline>(info, info.estimators);
+  run->scenario = std::move(scenario);
+  runs_[run->id] = run;
+  keys_.keep(idempotency_key, run->id, std::chrono::steady_clock::now());
+  queue_.push_back(std::move(run));
+  wake_.notify_all();
+  return info;
+}
+
+std::optional<RunInfo> ManagedRuns::started_by(const std::string& idempotency_key) {
+  const std::lock_guard lock(mutex_);
+  return info_by_key(idempotency_key);
+}
+
+std::optional<RunInfo> ManagedRuns::info_by_key(const std::string& idempotency_key) {
+  const auto id = keys_.run_of(idempotency_key, std::chrono::steady_clock::now());
+  if (!id) return std::nullopt;
+  if (const auto timeline = timeline_of(*id)) return timeline->info();
+  const Result<RunInfo> info = index.run(*id);
+  return info ? std::optional<RunInfo>(*info) : std::nullopt;
+}
+
+RunList ManagedRuns::list() {
+  RunList own;
+  std::set<std::string> skip;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto add = [&](const ManagedRun& run) {
+      own.push_back(std::make_shared<const RunInfo>(run.timeline->info()));
+      skip.insert(run.id);
+    };
+    for (const auto& [id, run] : runs_) add(*run);
+    for (const auto& run : unflown_) add(*run);
+  }
+  const auto first = [](const auto& a, const auto& b) { return newer(*a, *b); };
+  std::sort(own.begin(), own.end(), first);
+  const RunList stored = index.list(skip);
+  if (own.empty()) return stored;
+  RunList all;
+  all.reserve(own.size() + stored.size());
+  std::merge(own.begin(), own.end(), stored.begin(), stored.end(), std::back_inserter(all), first);
+  return all;
+}
+
+std::shared_ptr<RunTimeline> ManagedRuns::timeline_of(const std::string& id) const {
+  if (const auto run = runs_.find(id); run != runs_.end()) return run->second->timeline;
+  for (const auto& run : unflown_) {
+    if (run->id == id) return run->timeline;
+  }
+  return nullptr;
+}
+
+std::shared_ptr<RunTimeline> ManagedRuns::known_timeline(const std::string& id) const {
+  const std::lock_guard lock(mutex_);
+  return timeline_of(id);
+}
+
+std::optional<RunInfo> ManagedRuns::known_info(const std::string& id) const {
+  const auto timeline = known_timeline(id);
+  return timeline ? std::optional<RunInfo>(timeline->info()) : std::nullopt;
+}
+
+std::optional<Scenario> ManagedRuns::active_scenario(const std::string& id) const {
+  const std::lock_guard lock(mutex_);
+  const auto run = runs_.find(id);
+  if (run == runs_.end()) return std::nullopt;
+  return run->second->scenario;
+}
+
+WorldCache::Shared ManagedRuns::flown_world(const std::string& id) const {
+  const std::lock_guard lock(mutex_);
+  const auto run = runs_.find(id);
+  return run == runs_.end() ? nullptr : run->second->world;
+}
+
+bool ManagedRuns::cancel(const std::string& id) {
+  const std::lock_guard lock(mutex_);
+  const auto found = runs_.find(id);
+  if (found == runs_.end() || !engine::is_live(*found->second->timeline)) return false;
+  const std::shared_ptr<ManagedRun> run = found->second;
+  run->cancel = true;
+  const auto waiting = std::find(queue_.begin(), queue_.end(), run);
+  if (waiting == queue_.end()) return true;
+  queue_.erase(waiting);
+  runs_.erase(found);
+  release_run(options.runs_folder, id);
+  set_status(*run->timeline, RunStatus::kCancelled, "");
+  keep_unflown(run);
+  // The one behind it may fit where this one did not.
+  wake_.notify_all();
+  return true;
+}
+
+bool ManagedRuns::is_live(const std::string& id) const {
+  const std::lock_guard lock(mutex_);
+  const auto run = runs_.find(id);
+  return run != runs_.end() && engine::is_live(*run->second->timeline);
+}
+
+void ManagedRuns::keep_unflown(std::shared_ptr<ManagedRun> run) {
+  unflown_.push_front(std::move(run));
+  if (unflown_.size() > kKeptUnflown) unflown_.pop_back();
+}
+
+bool ManagedRuns::forget_unflown(const std::string& id) {
+  const std::lock_guard lock(mutex_);
+  if (std::erase_if(unflown_, [&](const auto& run) { return run->id == id; }) == 0) return false;
+  keys_.forget_run(id);
+  return true;
+}
+
+Result<std::shared_ptr<RunTimeline>> ManagedRuns::shelved_timeline(const std::string& id) {
+  auto timeline = shelf.get(id);
+  if (!timeline) return timeline;
+  const Result<RunInfo> listed = index.run(id);
+  if (!listed) return timeline;
+  RunInfo info = (*timeline)->info();
+  if (info.world_change != listed->world_change) {
+    info.world_change = listed->world_change;
+    (*timeline)->set_info(info);
+  }
+  return timeline;
+}
+
+void ManagedRuns::tell_world_change(const std::string& id, const OpenedWorld& opened) {
+  index.set_world_change(id, world_change(options.runs_folder / id, opened));
+  // Whoever watches it is told by its time line.
+  if (!known_timeline(id)) (void)shelved_timeline(id);
+}
+
+void ManagedRuns::forget(const std::string& id) {
+  shelf.forget(id);
+  const std::lock_guard lock(mutex_);
+  keys_.forget_run(id);
+  // Its thread may not have let it go yet.
+  runs_.erase(id);
+  std::erase_if(unflown_, [&](const auto& run) { return run->id == id; });
+}
+
+}  // namespace overfly::engine

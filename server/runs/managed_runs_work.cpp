@@ -1,0 +1,149 @@
+// ManagedRuns: its threads, which fly what waits and look after what is over.
+#include <chrono>
+#include <exception>
+#include <system_error>
+#include <utility>
+
+#include "server/record/run_id.hpp"
+#include "server/record/run_info.hpp"
+#include "server/record/run_timeline.hpp"
+#include "server/run/run.hpp"
+#include "server/run/run_options.hpp"
+#include "server/runs/managed_runs.hpp"
+
+namespace overfly::engine {
+namespace {
+
+/// How often files of runs that are over are looked at for those who watch them.
+constexpr std::chrono::seconds kWatchPeriod{1};
+
+}  // namespace
+
+bool is_live(const RunTimeline& timeline) {
+  const RunStatus status = timeline.info().status;
+  return status == RunStatus::kQueued || status == RunStatus::kRunning;
+}
+
+void set_status(RunTimeline& timeline, RunStatus status, const std::string& error) {
+  RunInfo info = timeline.info();
+  info.status = status;
+  info.error = error;
+  timeline.set_info(info);
+}
+
+Status ManagedRuns::start_threads() {
+  try {
+    for (int i = 0; i < options.max_parallel_runs; ++i) threads_.emplace_back([this] { work(); });
+    threads_.emplace_back([this] { watch(); });
+    return {};
+  } catch (const std::system_error& error) {
+    return Error{ErrorCode::kInternal,
+                 "thread " + std::to_string(threads_.size() + 1) + " of " +
+                     std::to_string(options.max_parallel_runs + 1) +
+                     " for runs cannot be started: " + error.what()};
+  }
+}
+
+bool ManagedRuns::next_fits() const {
+  RunMemory together = queue_.front()->memory;
+  bool alone = true;
+  for (const auto& [id, run] : runs_) {
+    if (!run->flies) continue;
+    alone = false;
+    together += run->memory;
+  }
+  // That it fits alone was checked when it came.
+  return alone || budget_.holds(together);
+}
+
+void ManagedRuns::work() {
+  while (true) {
+    std::shared_ptr<ManagedRun> run;
+    {
+      std::unique_lock lock(mutex_);
+      wake_.wait(lock, [this] { return stopping_ || (!queue_.empty() && next_fits()); });
+      if (stopping_) return;
+      run = queue_.front();
+      queue_.pop_front();
+      run->flies = true;
+    }
+    try {
+      fly(*run);
+      end(run);
+    } catch (const std::exception& error) {
+      // No memory left even to record the failure: this run is over, the others go on.
+      drop(run, error.what());
+    }
+    // Others may have waited for its memory.
+    wake_.notify_all();
+  }
+}
+
+void ManagedRuns::drop(const std::shared_ptr<ManagedRun>& run, const char* reason) noexcept {
+  const std::lock_guard lock(mutex_);
+  runs_.erase(run->id);
+  try {
+    if (engine::is_live(*run->timeline)) set_status(*run->timeline, RunStatus::kFailed, reason);
+  } catch (const std::exception&) {
+    // Its folder tells: interrupted.
+  }
+}
+
+void ManagedRuns::end(const std::shared_ptr<ManagedRun>& run) {
+  std::error_code ignored;
+  const bool has_folder =
+      std::filesystem::exists(manifest_file(options.runs_folder / run->id), ignored);
+  if (has_folder) {
+    shelf.put(run->id, run->timeline);
+  } else {
+    release_run(options.runs_folder, run->id);
+  }
+  const std::lock_guard lock(mutex_);
+  // One that was deleted in the moment since its end is known no more.
+  const bool known = runs_.erase(run->id) > 0;
+  if (!has_folder && known) keep_unflown(run);
+}
+
+void ManagedRuns::watch() {
+  std::unique_lock lock(mutex_);
+  while (!wake_.wait_for(lock, kWatchPeriod, [this] { return stopping_; })) {
+    lock.unlock();
+    try {
+      shelf.refresh();
+    } catch (const std::exception&) {
+      // Too little memory now: the files are looked at again in a moment.
+    }
+    lock.lock();
+  }
+}
+
+void ManagedRuns::fly(ManagedRun& run) {
+  RunOptions run_options;
+  run_options.folder = options.runs_folder / run.id;
+  run_options.renderer_factory = options.renderer_factory;
+  run_options.cancel = &run.cancel;
+  run_options.timeline = run.timeline;
+  run_options.publish_images = true;
+  run_options.worlds = &worlds;
+  run_options.picture_rate = &picture_rate;
+  const auto set_world = [this, &run](WorldCache::Shared world) {
+    const std::lock_guard lock(mutex_);
+    std::swap(run.world, world);  // one let go is closed without the lock
+  };
+  run_options.world_opened = set_world;
+  run_options.notice = [&run](const std::string& text) {
+    // The run's own next change of its info takes it away again.
+    RunInfo info = run.timeline->info();
+    info.notice = text;
+    run.timeline->set_info(info);
+  };
+  const Result<RunResult> result = run_scenario(run.scenario, run_options);
+  set_world(nullptr);
+  // The run itself tells its timeline how it ended; only one that could not even make its folder
+  // has had no chance to.
+  if (!result && engine::is_live(*run.timeline)) {
+    set_status(*run.timeline, RunStatus::kFailed, result.error().message);
+  }
+}
+
+}  // namespace overfly::engine

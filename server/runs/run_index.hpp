@@ -1,0 +1,62 @@
+// The runs of a folder, kept in memory.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/result.hpp"
+#include "server/files/file_stamp.hpp"
+#include "server/record/run_timeline.hpp"
+
+namespace overfly::engine {
+
+/// Newest first. The entries are shared and never change.
+using RunList = std::vector<std::shared_ptr<const RunInfo>>;
+
+/// Newest first: by time of creation, then by id.
+[[nodiscard]] bool newer(const RunInfo& a, const RunInfo& b);
+
+/// Thread-safe. Every call looks whether the folder's entries and their manifests have changed,
+/// and reads only those that have: whoever else writes there is seen at the next call.
+class RunIndex {
+ public:
+  explicit RunIndex(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  /// All runs of the folder. @param skip  ids that are not looked at and not in the list
+  [[nodiscard]] RunList list(const std::set<std::string>& skip);
+  /// One run alone. Errors: kNotFound.
+  [[nodiscard]] Result<RunInfo> run(const std::string& id);
+  /// Keeps RunInfo::world_change of a run, from now on.
+  void set_world_change(const std::string& id, const std::string& change);
+
+ private:
+  struct Entry {
+    FileStamp manifest;
+    /// Read after the manifest's last change, and nothing but a change of it can change the run.
+    bool settled = false;
+    std::shared_ptr<const RunInfo> info;  ///< null where there is no manifest
+    std::string world_change;
+  };
+  /// Both say whether anything has changed. @pre mutex_ is held
+  bool look_for_folders(int descriptor);
+  bool look_at(int descriptor, const std::string& id, Entry& entry);
+  /// The entry of a run as it is now; null where there is none. @pre mutex_ is held
+  Entry* find(const std::string& id);
+  void sort();
+
+  const std::filesystem::path folder_;
+  std::mutex mutex_;
+  FileStamp folder_stamp_;
+  bool folder_settled_ = false;
+  std::map<std::string, Entry> entries_;
+  bool unsorted_ = false;
+  RunList sorted_;
+};
+
+}  // namespace overfly::engine

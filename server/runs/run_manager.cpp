@@ -1,0 +1,164 @@
+#include "server/runs/run_manager.hpp"
+
+#include <utility>
+
+#include "server/files/plain_name.hpp"
+#include "server/record/run_info.hpp"
+#include "server/record/run_timeline.hpp"
+#include "server/runs/managed_runs.hpp"
+#include "server/runs/run_removal.hpp"
+#include "server/scenario/document/estimator_reach.hpp"
+#include "server/scenario/document/scenario_file.hpp"
+
+namespace overfly::engine {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+Error no_such_run(const std::string& id) {
+  return {ErrorCode::kNotFound, "run \"" + id + "\": no such run"};
+}
+
+}  // namespace
+
+RunManager::RunManager() = default;
+RunManager::~RunManager() = default;
+
+Result<std::unique_ptr<RunManager>> RunManager::create(RunManagerOptions options) {
+  if (options.max_parallel_runs < 1) {
+    return Error{ErrorCode::kInvalidArgument,
+                 "max_parallel_runs = " + std::to_string(options.max_parallel_runs) +
+                     ": must be at least 1"};
+  }
+  std::error_code failure;
+  fs::create_directories(options.runs_folder, failure);
+  if (failure) {
+    return Error{ErrorCode::kIo, options.runs_folder.string() + ": " + failure.message()};
+  }
+  if (!fs::is_directory(options.scenarios_folder, failure)) {
+    return Error{ErrorCode::kNotFound,
+                 options.scenarios_folder.string() + ": no such folder of scenarios"};
+  }
+  remove_leftovers(options.runs_folder);
+  std::unique_ptr<RunManager> manager(new RunManager());
+  manager->impl_ = std::make_unique<ManagedRuns>(std::move(options));
+  if (Status status = manager->impl_->start_threads(); !status) return status.error();
+  return manager;
+}
+
+Result<RunInfo> RunManager::start(const std::string& scenario,
+                                  const std::vector<Override>& overrides,
+                                  const std::string& idempotency_key,
+                                  StartReport* report) {
+  StartReport unasked;
+  StartReport& told = report != nullptr ? *report : unasked;
+  if (std::optional<RunInfo> earlier = impl_->started_by(idempotency_key)) {
+    told.repeated = true;
+    return *earlier;
+  }
+  const Result<fs::path> file = scenario_path(impl_->options.scenarios_folder, scenario);
+  if (!file) return file.error();
+  Result<Scenario> loaded = load_scenario(*file, overrides);
+  if (!loaded) return loaded.error();
+  loaded->sources = impl_->sources();
+  if (Status status = check_scenario(*loaded); !status) return status.error();
+  return impl_->enqueue(std::move(*loaded), idempotency_key, told);
+}
+
+Status RunManager::check_overrides(const std::string& scenario,
+                                   const std::vector<Override>& overrides) const {
+  if (impl_->options.allow_commands || overrides.empty()) return {};
+  const Result<fs::path> file = scenario_path(impl_->options.scenarios_folder, scenario);
+  if (!file) return {};
+  const Result<Scenario> trusted = load_scenario(*file);
+  const Result<Scenario> wanted = load_scenario(*file, overrides);
+  // A file at fault that its overrides mend is trusted with nothing.
+  return wanted ? check_reach(*wanted, trusted ? *trusted : Scenario()) : Status();
+}
+
+std::vector<ScenarioEntry> RunManager::scenarios() const {
+  return list_scenarios(impl_->options.scenarios_folder, impl_->sources());
+}
+
+Result<Json> RunManager::scenario(const std::string& name) const {
+  const Result<fs::path> file = scenario_path(impl_->options.scenarios_folder, name);
+  if (!file) return file.error();
+  Result<Scenario> loaded = load_scenario(*file);
+  if (!loaded) return loaded.error();
+  return loaded->resolved;
+}
+
+RunList RunManager::runs() const { return impl_->list(); }
+
+Result<RunInfo> RunManager::run(const std::string& id) const {
+  if (std::optional<RunInfo> known = impl_->known_info(id)) return *known;
+  return impl_->index.run(id);
+}
+
+Result<std::shared_ptr<RunTimeline>> RunManager::timeline(const std::string& id) {
+  if (std::shared_ptr<RunTimeline> known = impl_->known_timeline(id)) return known;
+  const Result<fs::path> place = folder(id);
+  if (!place) return place.error();
+  return impl_->shelved_timeline(id);
+}
+
+Status RunManager::cancel(const std::string& id) {
+  if (impl_->cancel(id)) return {};
+  if (const Result<fs::path> place = folder(id); !place && !impl_->known_timeline(id)) {
+    return place.error();
+  }
+  return Error{ErrorCode::kConflict, "run \"" + id + "\" is neither queued nor running here"};
+}
+
+Status RunManager::remove(const std::string& id) {
+  if (impl_->is_live(id)) {
+    return Error{ErrorCode::kConflict, "run \"" + id + "\" is not over: cancel it first"};
+  }
+  // A run cancelled while it waited has no folder.
+  if (impl_->forget_unflown(id)) return {};
+  const Result<fs::path> place = folder(id);
+  if (!place) return place.error();
+  if (Status status = remove_run_folder(*place); !status) return status;
+  impl_->forget(id);
+  return {};
+}
+
+Result<fs::path> RunManager::folder(const std::string& id) const {
+  if (!is_plain_name(id)) return no_such_run(id);
+  fs::path place = impl_->options.runs_folder / id;
+  std::error_code ignored;
+  if (!fs::exists(manifest_file(place), ignored)) return no_such_run(id);
+  return place;
+}
+
+Result<Scenario> RunManager::scenario_of(const std::string& id) const {
+  if (std::optional<Scenario> scenario = impl_->active_scenario(id)) return *scenario;
+  const Result<fs::path> place = folder(id);
+  if (!place) return place.error();
+  Result<Scenario> flown = load_scenario(scenario_file(*place));
+  if (!flown) return flown.error();
+  flown->sources = impl_->sources();
+  if (Status status = check_scenario(*flown); !status) return status.error();
+  return flown;
+}
+
+Result<std::shared_ptr<const terrain::World>> RunManager::world_of(
+    const std::string& id, const std::function<bool()>& cancelled) {
+  if (const auto flown = impl_->flown_world(id)) return bare_world(flown);
+  const Result<Scenario> scenario = scenario_of(id);
+  if (!scenario) return scenario.error();
+  const auto go_on = [&](double) { return !cancelled || !cancelled(); };
+  const auto opened = impl_->worlds.get(*scenario, go_on);
+  if (!opened) return opened.error();
+  impl_->tell_world_change(id, **opened);
+  return bare_world(*opened);
+}
+
+PictureRate& RunManager::picture_rate() { return impl_->picture_rate; }
+
+const RendererFactory& RunManager::renderer_factory() const {
+  return impl_->options.renderer_factory;
+}
+
+}  // namespace overfly::engine

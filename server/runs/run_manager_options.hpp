@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "server/camera/renderer_factory.hpp"
+
+namespace overfly::engine {
+
+struct RunManagerOptions {
+  std::filesystem::path runs_folder;  ///< made if absent
+  std::filesystem::path scenarios_folder;
+  RendererFactory renderer_factory;
+  int max_parallel_runs = 1;           ///< further ones wait in a queue
+  std::size_t max_waiting_runs = 100;  ///< further ones are refused
+  /// That flights and pictures for viewers may use; 0 = most of the machine's.
+  std::uint64_t memory_limit_bytes = 0;
+  /// Overrides may name programs to start and addresses to speak to.
+  bool allow_commands = false;
+  /// Folders whose files scenarios may name, besides `declared_folders(scenarios_folder)`; never
+  /// the runs' own. Without a value any regular file may be named.
+  std::optional<std::vector<std::filesystem::path>> data_folders;
+};
+
+/// What became of a request for a run, besides its error.
+struct StartReport {
+  bool repeated = false;  ///< the idempotency key gave an earlier run
+  /// Why a scenario that can be flown is not flown here now.
+  enum class Refusal { kNone, kQueueFull, kMemory } refusal = Refusal::kNone;
+};
+
+}  // namespace overfly::engine

@@ -1,0 +1,198 @@
+#include "server/runs/run_memory.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <limits>
+#include <optional>
+#include <set>
+#include <string>
+#include <tuple>
+
+namespace overfly::engine {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t kMib = std::uint64_t{1} << 20U;
+
+/// What the caches beside one renderer grow to (docs/PERFORMANCE.md, "Paging"): tiles, heights,
+/// elevation blocks and patches of ground; with OpenGL as many tiles again as textures.
+constexpr std::uint64_t kRaycastCachesBytes = 900 * kMib;
+constexpr std::uint64_t kEglCachesBytes = 1250 * kMib;
+/// Of a second renderer over a world that is open already: tiles, textures, patches.
+constexpr std::uint64_t kViewCachesBytes = 600 * kMib;
+/// Share of the machine's memory that is the default limit.
+constexpr double kMachineShare = 0.8;
+
+/// Sizes of one camera's images [bytes].
+struct CameraSizes {
+  std::uint64_t pixels = 0;
+  std::uint64_t image = 0;     ///< 8 bit
+  std::uint64_t image16 = 0;   ///< of a sensor deeper than 8 bit
+  std::uint64_t radiance = 0;  ///< of a sensor
+};
+
+CameraSizes sizes_of(const CameraSpec& camera) {
+  const PinholeCamera& pinhole = camera.model.pinhole();
+  CameraSizes sizes;
+  sizes.pixels =
+      static_cast<std::uint64_t>(pinhole.width_px) * static_cast<std::uint64_t>(pinhole.height_px);
+  sizes.image = sizes.pixels * (camera.rgb ? 3 : 1);
+  if (camera.sensor.enabled) sizes.radiance = 4 * sizes.image;
+  if (camera.sensor.enabled && camera.sensor.bits > 8) sizes.image16 = 2 * sizes.image;
+  return sizes;
+}
+
+bool may_freeze(const Scenario& scenario) {
+  return std::any_of(scenario.faults.begin(), scenario.faults.end(), [](const FaultSpec& fault) {
+    return fault.kind == FaultKind::kFrozenFrame;
+  });
+}
+
+/// Held from frame to frame: the image of the frame in the making, the one before it that viewers
+/// are shown, and the fields of the sensor's fixed patterns.
+std::uint64_t held_bytes(const Scenario& scenario, const CameraSpec& camera) {
+  const CameraSizes sizes = sizes_of(camera);
+  std::uint64_t bytes = 2 * sizes.image + sizes.image16;
+  if (may_freeze(scenario)) bytes += sizes.image + sizes.image16;
+  if (camera.sensor.enabled) {
+    bytes += (camera.sensor.prnu > 0.0 ? 4 : 0) * sizes.image;
+    bytes += (camera.sensor.dsnu_e > 0.0 ? 4 : 0) * sizes.image;
+  }
+  return bytes;
+}
+
+/// Only while one camera's image is made: the image, the light before the sensor, the same
+/// defocused, the grey copy of a colour image, the file that it is recorded as.
+std::uint64_t passing_bytes(const Scenario& scenario, const CameraSpec& camera) {
+  const CameraSizes sizes = sizes_of(camera);
+  std::uint64_t bytes = sizes.image + sizes.radiance;
+  if (camera.sensor.enabled && camera.sensor.defocus_sigma_px > 0.0) bytes += sizes.radiance;
+  if (camera.rgb) bytes += sizes.pixels;
+  if (scenario.record_frames) bytes += sizes.image + sizes.image16;
+  return bytes;
+}
+
+/// OpenGL's target, which cameras of one size share: colour and depth, and four channels on their
+/// way back.
+std::uint64_t target_bytes(const CameraSpec& camera) {
+  const std::uint64_t sample = camera.sensor.enabled ? 4 : 1;
+  const std::uint64_t colour = camera.rgb ? 4 * sample : sample;
+  const std::uint64_t back = camera.rgb ? colour : 0;
+  return sizes_of(camera).pixels * (colour + back + 4);
+}
+
+/// Copies of the grey image: one that waits and one at work, and what the estimator makes of it
+/// (a pyramid and its debug image here; the process at the other end of a door has its own).
+std::uint64_t estimator_bytes(const Scenario& scenario, const EstimatorSpec& estimator) {
+  constexpr std::uint64_t kCopies = 8;
+  const CameraSpec& camera = scenario.cameras[estimator.camera];
+  return kCopies * sizes_of(camera).pixels;
+}
+
+std::string size_text(std::uint64_t bytes) {
+  return std::to_string((bytes + kMib - 1) / kMib) + " MiB";
+}
+
+std::string cameras_text(const Scenario& scenario) {
+  const auto largest = std::max_element(scenario.cameras.begin(),
+                                        scenario.cameras.end(),
+                                        [](const CameraSpec& a, const CameraSpec& b) {
+                                          return sizes_of(a).image < sizes_of(b).image;
+                                        });
+  const PinholeCamera& pinhole = largest->model.pinhole();
+  return "cameras = " + std::to_string(scenario.cameras.size()) + " of up to " +
+         std::to_string(pinhole.width_px) + " x " + std::to_string(pinhole.height_px) + " px" +
+         (largest->rgb ? " in colour" : "");
+}
+
+/// The number in a file of one number; empty for "max" and what cannot be read.
+std::optional<std::uint64_t> number_in(const fs::path& file) {
+  std::ifstream in(file);
+  std::uint64_t number = 0;
+  return in >> number ? std::optional<std::uint64_t>(number) : std::nullopt;
+}
+
+/// The lowest limit from this process's control group up to the root's.
+std::uint64_t control_group_bytes() {
+  std::uint64_t limit = std::numeric_limits<std::uint64_t>::max();
+  const fs::path root = "/sys/fs/cgroup";
+  if (const auto bytes = number_in(root / "memory/memory.limit_in_bytes")) limit = *bytes;
+  std::ifstream groups("/proc/self/cgroup");
+  for (std::string line; std::getline(groups, line);) {
+    if (!line.starts_with("0::/")) continue;
+    for (fs::path group = line.substr(4);; group = group.parent_path()) {
+      if (const auto bytes = number_in(root / group / "memory.max"))
+        limit = std::min(limit, *bytes);
+      if (group.empty()) break;
+    }
+  }
+  return limit;
+}
+
+}  // namespace
+
+RunMemory& RunMemory::operator+=(const RunMemory& other) {
+  images_bytes += other.images_bytes;
+  caches_bytes += other.caches_bytes;
+  return *this;
+}
+
+RunMemory memory_of(const Scenario& scenario) {
+  RunMemory memory;
+  const bool raycast = scenario.renderer.camera == "raycast";
+  std::uint64_t most_passing = 0;
+  std::set<std::tuple<int, int, bool, bool>> targets;
+  for (const CameraSpec& camera : scenario.cameras) {
+    memory.images_bytes += held_bytes(scenario, camera);
+    most_passing = std::max(most_passing, passing_bytes(scenario, camera));
+    const PinholeCamera& pinhole = camera.model.pinhole();
+    const bool new_target =
+        targets.emplace(pinhole.width_px, pinhole.height_px, camera.rgb, camera.sensor.enabled)
+            .second;
+    if (new_target && !raycast) memory.images_bytes += target_bytes(camera);
+  }
+  // Once in the run, and once where a viewer's picture is made again.
+  memory.images_bytes += 2 * most_passing;
+  for (const EstimatorSpec& estimator : scenario.estimators) {
+    memory.images_bytes += estimator_bytes(scenario, estimator);
+  }
+  memory.caches_bytes = raycast ? kRaycastCachesBytes : kEglCachesBytes;
+  return memory;
+}
+
+std::uint64_t machine_memory_bytes() {
+  std::uint64_t bytes = control_group_bytes();
+  std::ifstream in("/proc/meminfo");
+  std::string name;
+  std::uint64_t kib = 0;
+  if (in >> name >> kib && name == "MemTotal:") bytes = std::min(bytes, kib * 1024);
+  return bytes;
+}
+
+MemoryBudget MemoryBudget::of_machine(bool views) {
+  return {static_cast<std::uint64_t>(kMachineShare * static_cast<double>(machine_memory_bytes())),
+          views};
+}
+
+std::uint64_t MemoryBudget::for_images_bytes(std::uint64_t caches_bytes) const {
+  const std::uint64_t caches = caches_bytes + (views_ ? kViewCachesBytes : 0);
+  return limit_bytes_ - std::min(caches, limit_bytes_ / 2);
+}
+
+bool MemoryBudget::holds(const RunMemory& together) const {
+  return together.images_bytes <= for_images_bytes(together.caches_bytes);
+}
+
+Status MemoryBudget::check(const Scenario& scenario) const {
+  const RunMemory memory = memory_of(scenario);
+  if (holds(memory)) return {};
+  const std::uint64_t most_bytes = for_images_bytes(memory.caches_bytes);
+  return Error{ErrorCode::kUnsupported,
+               cameras_text(scenario) + " with " + std::to_string(scenario.estimators.size()) +
+                   " estimators need " + size_text(memory.images_bytes) +
+                   " for images: must be at most " + size_text(most_bytes) + " of the limit of " +
+                   size_text(limit_bytes_) + " (the rest is for maps and pictures)"};
+}
+
+}  // namespace overfly::engine

@@ -1,0 +1,82 @@
+#include "server/runs/timeline_shelf.hpp"
+
+#include <algorithm>
+
+#include "server/files/whole_file.hpp"
+#include "server/record/run_folder.hpp"
+
+namespace overfly::engine {
+
+namespace fs = std::filesystem;
+
+TimelineShelf::Entry TimelineShelf::entry_of(const std::string& id) const {
+  Entry entry;
+  entry.id = id;
+  entry.metrics = FileStamp::of(metrics_file(runs_folder_ / id));
+  entry.metrics_settled = entry.metrics.settled(utc_now_ns());
+  return entry;
+}
+
+bool TimelineShelf::is_fresh(Entry& entry) const {
+  const FileStamp manifest = FileStamp::of(manifest_file(runs_folder_ / entry.id));
+  if (!manifest.exists || manifest != entry.timeline->manifest_stamp()) return false;
+  const Entry now = entry_of(entry.id);
+  if (now.metrics == entry.metrics && entry.metrics_settled) return true;
+  entry.metrics = now.metrics;
+  entry.metrics_settled = now.metrics_settled;
+  const Result<nlohmann::json> metrics = read_json(metrics_file(runs_folder_ / entry.id));
+  // A file that cannot be read is told when the run is opened the next time.
+  if (!metrics || !metrics->is_object()) return false;
+  if (*metrics != entry.timeline->metrics()) entry.timeline->set_metrics(*metrics);
+  return true;
+}
+
+Result<std::shared_ptr<RunTimeline>> TimelineShelf::get(const std::string& id) {
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = std::find_if(
+        entries_.begin(), entries_.end(), [&](const Entry& entry) { return entry.id == id; });
+    if (found != entries_.end()) {
+      if (is_fresh(*found)) {
+        entries_.splice(entries_.begin(), entries_, found);
+        return found->timeline;
+      }
+      entries_.erase(found);
+    }
+  }
+  // Read without the lock, since a long run takes long. The stamp first: what changes meanwhile is
+  // seen at the next call.
+  Entry entry = entry_of(id);
+  Result<std::shared_ptr<RunTimeline>> opened = RunTimeline::open(runs_folder_ / id);
+  if (!opened) return opened.error();
+  entry.timeline = *opened;
+  // A run that another process still writes is read anew each time.
+  if ((*opened)->info().status != RunStatus::kRunning) keep(std::move(entry));
+  return opened;
+}
+
+void TimelineShelf::put(const std::string& id, std::shared_ptr<RunTimeline> timeline) {
+  Entry entry;
+  entry.id = id;
+  entry.timeline = std::move(timeline);
+  keep(std::move(entry));
+}
+
+void TimelineShelf::keep(Entry entry) {
+  const std::lock_guard lock(mutex_);
+  std::erase_if(entries_, [&](const Entry& other) { return other.id == entry.id; });
+  entries_.push_front(std::move(entry));
+  if (entries_.size() > kMostTimelines) entries_.pop_back();
+}
+
+void TimelineShelf::forget(const std::string& id) {
+  const std::lock_guard lock(mutex_);
+  std::erase_if(entries_, [&](const Entry& entry) { return entry.id == id; });
+}
+
+void TimelineShelf::refresh() {
+  const std::lock_guard lock(mutex_);
+  std::erase_if(entries_, [&](Entry& entry) { return !is_fresh(entry); });
+}
+
+}  // namespace overfly::engine

@@ -1,0 +1,60 @@
+#include "server/scenario/document/estimator_reach.hpp"
+
+#include <algorithm>
+#include <string>
+
+namespace overfly::engine {
+namespace {
+
+/// The default of a field, or what some trusted estimator has in it.
+template <typename Field>
+bool is_trusted(const EstimatorSpec& spec, const Scenario& trusted, const Field& field) {
+  if (field(spec) == field(EstimatorSpec())) return true;
+  return std::any_of(trusted.estimators.begin(),
+                     trusted.estimators.end(),
+                     [&](const EstimatorSpec& known) { return field(spec) == field(known); });
+}
+
+/// Text with a slash may name a file that the estimator then reads: a vocabulary, a calibration.
+const std::string* untrusted_parameter(const EstimatorSpec& spec, const Scenario& trusted) {
+  for (const auto& [name, value] : spec.parameters) {
+    const auto* text = std::get_if<std::string>(&value);
+    if (text == nullptr || text->find('/') == std::string::npos) continue;
+    const bool known = std::any_of(
+        trusted.estimators.begin(), trusted.estimators.end(), [&, key = name](const auto& other) {
+          const auto same = other.parameters.find(key);
+          return same != other.parameters.end() && same->second == ParameterValue(*text);
+        });
+    if (!known) return &name;
+  }
+  return nullptr;
+}
+
+Error out_of_reach(std::size_t estimator, const std::string& field) {
+  return {ErrorCode::kInvalidArgument,
+          "estimators." + std::to_string(estimator) + "." + field +
+              ": must be as the scenario's file has it; a client may set it where the server was "
+              "started with --allow-commands"};
+}
+
+}  // namespace
+
+Status check_reach(const Scenario& scenario, const Scenario& trusted) {
+  for (std::size_t i = 0; i < scenario.estimators.size(); ++i) {
+    const EstimatorSpec& spec = scenario.estimators[i];
+    const char* field = nullptr;
+    if (!is_trusted(spec, trusted, [](const auto& s) { return s.command; })) field = "command";
+    if (!is_trusted(spec, trusted, [](const auto& s) { return s.listen; })) field = "listen";
+    if (!is_trusted(spec, trusted, [](const auto& s) { return s.lcm_url; })) field = "lcm.url";
+    if (!is_trusted(spec, trusted, [](const auto& s) { return s.ros1.master_uri; })) {
+      field = "ros1.master_uri";
+    }
+    if (field != nullptr) return out_of_reach(i, field);
+    if (const std::string* parameter = untrusted_parameter(spec, trusted)) {
+      return out_of_reach(i, "parameters." + *parameter);
+    }
+  }
+  return {};
+}
+
+}  // namespace overfly::engine

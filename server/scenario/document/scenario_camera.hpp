@@ -1,0 +1,24 @@
+// The cameras of a scenario document.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/result.hpp"
+#include "server/scenario/scenario.hpp"
+
+namespace overfly::engine {
+
+/// Reads `camera` or `cameras`, and fills in the field of view that holds where none is given.
+/// @pre the document is valid and has its defaults
+/// Errors: kInvalidArgument with field, value and limit.
+[[nodiscard]] Status read_cameras(nlohmann::json& document, Scenario& scenario);
+
+/// The parts of a camera's entry. `path` is where it stands, as "cameras.1.sensor".
+[[nodiscard]] Result<renderer::SensorModel> sensor_from(const nlohmann::json& sensor,
+                                                        const std::string& path);
+[[nodiscard]] Result<renderer::VibrationModel> vibration_from(const nlohmann::json& vibration,
+                                                              const std::string& path);
+[[nodiscard]] Result<Pose> mount_from(const nlohmann::json& mount, const std::string& path);
+
+}  // namespace overfly::engine

@@ -1,0 +1,112 @@
+#include "server/scenario/document/scenario_document.hpp"
+
+#include <utility>
+
+#include "server/scenario/document/scenario_camera.hpp"
+#include "server/scenario/document/scenario_estimators.hpp"
+#include "server/scenario/document/scenario_faults.hpp"
+#include "server/scenario/document/scenario_layers.hpp"
+#include "server/scenario/document/scenario_light.hpp"
+
+namespace overfly::engine {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+flight::CourseParameters course_from(const Json& course) {
+  flight::CourseParameters parameters;
+  parameters.airspeed_m_s = course.at("airspeed_m_s").get<double>();
+  parameters.roll_rate_max_rad_s = rad_from_deg(course.at("roll_rate_max_deg_s").get<double>());
+  parameters.height_agl_m = course.at("height_agl_m").get<double>();
+  parameters.bank_max_rad = rad_from_deg(course.at("bank_max_deg").get<double>());
+  parameters.length_m = course.at("length_m").get<double>();
+  parameters.leg_length_m = course.at("leg_length_m").get<double>();
+  return parameters;
+}
+
+Status read_flight(Json& document, const FileResolver& files, Scenario& scenario) {
+  Json& flight = document.at("flight");
+  if (flight.contains("log")) {
+    Json& log = flight.at("log");
+    scenario.flight =
+        Scenario::LoggedFlight{files.resolve(log.at("file")), log.at("camera_poses").get<bool>()};
+    return {};
+  }
+  const Json& course = flight.at("course");
+  flight::CourseParameters parameters = course_from(course);
+  if (!(parameters.leg_length_m < parameters.length_m)) {
+    return Error{
+        ErrorCode::kInvalidArgument,
+        "flight.course.leg_length_m = " + course.at("leg_length_m").dump() +
+            ": must be less than flight.course.length_m = " + course.at("length_m").dump()};
+  }
+  const Json& start = course.at("start");
+  scenario.start_at_runway = !start.is_object();
+  if (start.is_object()) {
+    parameters.start_east_m = start.at("east_m").get<double>();
+    parameters.start_north_m = start.at("north_m").get<double>();
+  }
+  if (course.contains("heading_deg")) {
+    scenario.course_heading_rad = rad_from_deg(course.at("heading_deg").get<double>());
+  }
+  scenario.flight = parameters;
+  return {};
+}
+
+/// A log of camera poses gives the body by a nadir mount.
+Status check_camera_poses(const Scenario& scenario) {
+  const auto* log = std::get_if<LoggedFlight>(&scenario.flight);
+  if (log == nullptr || !log->camera_poses) return {};
+  const Pose nadir{R_body_camera_nadir(), Eigen::Vector3d::Zero()};
+  const Pose& mount = scenario.cameras.front().T_body_camera;
+  constexpr double kRounding = 1e-9;
+  if (mount.translation.norm() < kRounding &&
+      rotation_angle_rad(mount.rotation, nadir.rotation) < kRounding) {
+    return {};
+  }
+  return Error{ErrorCode::kInvalidArgument,
+               "flight.log.camera_poses = true: the first camera must be mounted nadir, at the "
+               "body's origin"};
+}
+
+Status read_all(Json& document, const fs::path& base, Scenario& scenario) {
+  const FileResolver files(document, base);
+  scenario.name = document.at("name").get<std::string>();
+  if (!document.contains("title")) document["title"] = scenario.name;
+  scenario.title = document.at("title").get<std::string>();
+  scenario.description = document.at("description").get<std::string>();
+  scenario.seed = document.at("seed").get<std::uint64_t>();
+  if (document.contains("epoch_utc_s")) {
+    scenario.epoch_utc_ns = document.at("epoch_utc_s").get<std::int64_t>() * kNsPerS;
+  }
+  scenario.duration_s = number_or_none(document, "duration_s");
+  scenario.pacing = document.at("pacing") == "real_time" ? Pacing::kRealTime : Pacing::kLockstep;
+  scenario.record_frames = document.at("recording").at("frames").get<bool>();
+  scenario.record_debug_hz = document.at("recording").at("debug_hz").get<double>();
+  read_world(document, files, scenario);
+  if (Status status = read_flight(document, files, scenario); !status) return status;
+  if (Status status = read_cameras(document, scenario); !status) return status;
+  if (Status status = check_camera_poses(scenario); !status) return status;
+  if (Status status = read_faults(document, scenario); !status) return status;
+  read_renderer(document, scenario);
+  if (Status status = read_light_and_detail(document, scenario); !status) return status;
+  return read_estimators(document, base, scenario);
+}
+
+}  // namespace
+
+Result<Scenario> scenario_from(Json document, const fs::path& base) {
+  Scenario scenario;
+  try {
+    if (Status status = read_all(document, base, scenario); !status) return status.error();
+  } catch (const Json::exception& error) {
+    // The schema let through what this reader does not know: a bug, but not one to die of.
+    return Error{ErrorCode::kInternal,
+                 std::string("scenario schema and reader differ: ") + error.what()};
+  }
+  scenario.resolved = std::move(document);
+  return scenario;
+}
+
+}  // namespace overfly::engine

@@ -1,0 +1,18 @@
+// A valid scenario document made into values.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "core/result.hpp"
+#include "server/scenario/scenario.hpp"
+
+namespace overfly::engine {
+
+/// @param document  valid by the schema, with its defaults filled in
+/// @param base      absolute folder of the scenario file
+/// Errors: kInvalidArgument for what the schema cannot say (two estimators of one name, ...).
+[[nodiscard]] Result<Scenario> scenario_from(nlohmann::json document,
+                                             const std::filesystem::path& base);
+
+}  // namespace overfly::engine

@@ -1,0 +1,29 @@
+// Light, detail and renderer of a scenario document, and the ground that they make.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/result.hpp"
+#include "server/scenario/scenario.hpp"
+#include "terrain/world.hpp"
+
+namespace overfly::engine {
+
+/// @pre the document is valid and has its defaults
+/// Errors: kInvalidArgument with field, value and limit.
+[[nodiscard]] Status read_light_and_detail(const nlohmann::json& document, Scenario& scenario);
+void read_renderer(const nlohmann::json& document, Scenario& scenario);
+
+/// What was put over the world's own tiles, for people: ("light" or "detail", one line).
+using WorldDress = std::vector<std::pair<std::string, std::string>>;
+[[nodiscard]] Result<WorldDress> world_dress(const Scenario& scenario, const Geodetic& origin);
+
+/// Puts the scenario's light, and around it the detail, over the world's tiles.
+/// Errors: kInvalidArgument when the sun is down at `light.time_utc`;
+/// as terrain::with_light and with_detail.
+[[nodiscard]] Status dress_world(const Scenario& scenario, terrain::World& world);
+
+}  // namespace overfly::engine

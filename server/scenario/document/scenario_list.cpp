@@ -1,0 +1,112 @@
+#include "server/scenario/document/scenario_list.hpp"
+
+#include <algorithm>
+
+#include "server/files/plain_name.hpp"
+#include "server/files/whole_file.hpp"
+#include "server/scenario/document/scenario_file.hpp"
+
+namespace overfly::engine {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kSchemaSuffix = ".schema.json";
+
+ScenarioEntry entry_of(const fs::path& file, const SourcePolicy& sources) {
+  ScenarioEntry entry;
+  entry.name = file.stem().string();
+  entry.file = file;
+  entry.title = entry.name;
+  Result<Scenario> scenario = load_scenario(file);
+  if (!scenario) {
+    entry.error = scenario.error().message;
+    return entry;
+  }
+  scenario->sources = sources;
+  entry.title = scenario->title;
+  entry.description = scenario->description;
+  if (Status status = check_scenario(*scenario); !status) entry.error = status.error().message;
+  return entry;
+}
+
+/// The world's files, and whether its texts may be used.
+Status check_world(const Scenario& scenario) {
+  if (const auto* manifest = std::get_if<fs::path>(&scenario.world)) {
+    return scenario.sources.check(*manifest, "world.manifest");
+  }
+  if (const auto* layers = std::get_if<terrain::WorldSpec>(&scenario.world)) {
+    terrain::WorldSpec spec = *layers;
+    spec.sources = scenario.sources;
+    return terrain::check_world_sources(spec, "world.");
+  }
+  return {};
+}
+
+/// Scenario files of a folder, by name.
+std::vector<fs::path> scenario_files(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code failed;
+  for (fs::directory_iterator entry(folder, failed), end; !failed && entry != end;
+       entry.increment(failed)) {
+    const fs::path& file = entry->path();
+    const std::string name = file.filename().string();
+    if (file.extension() != ".json" || name.ends_with(kSchemaSuffix)) continue;
+    if (is_plain_name(name)) files.push_back(file);
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+}  // namespace
+
+std::vector<ScenarioEntry> list_scenarios(const fs::path& folder, const SourcePolicy& sources) {
+  std::vector<ScenarioEntry> entries;
+  for (const fs::path& file : scenario_files(folder)) entries.push_back(entry_of(file, sources));
+  return entries;
+}
+
+std::vector<fs::path> declared_folders(const fs::path& folder) {
+  std::vector<fs::path> folders{folder};
+  for (const fs::path& file : scenario_files(folder)) {
+    const Result<Scenario> scenario = load_scenario(file);
+    if (scenario && scenario->resolved.contains("data")) {
+      folders.emplace_back(scenario->resolved.value("data", ""));
+    }
+  }
+  return folders;
+}
+
+Result<fs::path> scenario_path(const fs::path& folder, const std::string& name) {
+  fs::path file = folder / (name + ".json");
+  std::error_code ignored;
+  if (!is_plain_name(name) || name.ends_with(".schema") || !fs::is_regular_file(file, ignored)) {
+    return Error{ErrorCode::kNotFound, "scenario \"" + name + "\": no such scenario"};
+  }
+  return file;
+}
+
+Status check_scenario(const Scenario& scenario) {
+  std::optional<Error> fault;
+  if (Status status = check_world(scenario); !status) fault = status.error();
+  if (const auto* log = std::get_if<Scenario::LoggedFlight>(&scenario.flight)) {
+    Status status = scenario.sources.check(log->file, "flight.log.file");
+    // Poses in KITTI's form take their times from there.
+    const fs::path times = log->file.parent_path() / "times.txt";
+    if (status) status = scenario.sources.check_place(times, "flight.log.file (a file beside it)");
+    if (!status && fault) {
+      fault->message += "\n" + status.error().message;
+      if (status.error().code != ErrorCode::kNotFound) fault->code = status.error().code;
+    } else if (!status) {
+      fault = status.error();
+    }
+  }
+  if (!fault) return {};
+  if (fault->code == ErrorCode::kNotFound && scenario.resolved.contains("data")) {
+    fault->message += "\n(data folder: " + scenario.resolved.value("data", "") +
+                      "; the environment variable OVERFLY_DATA names another one)";
+  }
+  return *fault;
+}
+
+}  // namespace overfly::engine

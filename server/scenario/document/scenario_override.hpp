@@ -1,0 +1,24 @@
+// Overrides put into a scenario document.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "core/result.hpp"
+#include "server/scenario/scenario.hpp"
+
+namespace overfly::engine {
+
+/// "path=VALUE": VALUE parsed as JSON, else taken as a string. Errors: kInvalidArgument.
+[[nodiscard]] Result<Override> parse_override(const std::string& text);
+[[nodiscard]] Result<std::vector<Override>> parse_overrides(const std::vector<std::string>& texts);
+
+/// Sets the value at a dotted path, making the objects and arrays on the way. A number names an
+/// element of an array, its length the place after the last. Setting `world.builtin...` in a
+/// document whose world is of another kind replaces that world, and so with `flight`; setting the
+/// whole of `camera` or `cameras` takes the other away. Errors: kInvalidArgument naming the part of
+/// the path that does not fit the document.
+[[nodiscard]] Status apply_override(const Override& change, nlohmann::json& document);
+
+}  // namespace overfly::engine

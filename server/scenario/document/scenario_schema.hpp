@@ -1,0 +1,19 @@
+// The schema of scenario documents (scenarios/scenario.schema.json).
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace overfly::engine {
+
+/// Faults of a document against the schema alone: (JSON path, message). Empty = valid.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> schema_faults(
+    const nlohmann::json& document);
+/// The JSON schema (draft 2020-12) as text, embedded in the program.
+[[nodiscard]] const std::string& scenario_schema_text();
+/// Fills in what the schema has defaults for. @pre the document is valid
+void apply_schema_defaults(nlohmann::json& document);
+
+}  // namespace overfly::engine

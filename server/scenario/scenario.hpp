@@ -1,0 +1,105 @@
+// A scenario: what to fly, over what, seen by what, judged how. JSON on disk
+// (scenarios/scenario.schema.json), plain values here.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/result.hpp"
+#include "core/source_policy.hpp"
+#include "core/time.hpp"
+#include "flight/flight.hpp"
+#include "server/scenario/camera_spec.hpp"
+#include "server/scenario/estimator_spec.hpp"
+#include "server/scenario/fault_spec.hpp"
+#include "terrain/detail.hpp"
+#include "terrain/light.hpp"
+#include "terrain/world.hpp"
+
+namespace overfly::engine {
+
+enum class Pacing {
+  kLockstep,  ///< each frame waits for every estimator: nothing dropped, byte-identical results
+  kRealTime,  ///< frames come at their rate; a busy estimator gets the latest, drops are counted
+};
+
+/// Light on the ground; the sun by its direction, or where it stands at a time.
+struct LightSpec {
+  terrain::LightOptions options;
+  std::optional<std::int64_t> time_unix_ns;
+};
+
+struct RendererChoice {
+  std::string camera = "auto";  ///< "auto", "egl", "raycast"
+  std::string device;           ///< as renderer::RendererOptions::device
+  int threads = 0;              ///< of the ray-caster; 0 = chosen
+
+  [[nodiscard]] bool operator==(const RendererChoice&) const = default;
+};
+
+struct BuiltinWorld {
+  std::uint64_t seed = 1;
+};
+
+struct LoggedFlight {
+  std::filesystem::path file;
+  bool camera_poses = false;
+};
+
+[[nodiscard]] const char* to_string(Pacing pacing);  ///< "lockstep", "real_time"
+
+/// A scenario with defaults filled in and angles in radians.
+struct Scenario {
+  std::string name;
+  std::string title;
+  std::string description;
+  std::uint64_t seed = 1;
+  /// Unix time of t = 0; the run chooses where it is not given.
+  std::optional<std::int64_t> epoch_utc_ns;
+
+  /// The built-in world of a seed, a world manifest, or layers listed in the scenario itself.
+  using BuiltinWorld = engine::BuiltinWorld;
+  std::variant<BuiltinWorld, std::filesystem::path, terrain::WorldSpec> world;
+
+  /// The course, or a pose file.
+  using LoggedFlight = engine::LoggedFlight;
+  std::variant<flight::CourseParameters, LoggedFlight> flight;
+  /// A course whose start is the world's runway, known only when the world is open.
+  bool start_at_runway = true;
+  /// Of the course's first leg; the runway's, else south, where it is not given.
+  std::optional<double> course_heading_rad;
+  /// Stops the flight early [s].
+  std::optional<double> duration_s;
+
+  /// At least one; the first is the main one, whose rows are frames.jsonl.
+  std::vector<CameraSpec> cameras{CameraSpec{}};
+  FrameRate rate;  ///< of all cameras: they have common time stamps
+  std::vector<FaultSpec> faults;
+  std::vector<EstimatorSpec> estimators;
+  RendererChoice renderer;
+  std::optional<LightSpec> light;                ///< empty = the imagery's own
+  std::optional<terrain::DetailOptions> detail;  ///< synthetic texels; empty = none
+  Pacing pacing = Pacing::kLockstep;
+
+  bool record_frames = false;    ///< camera images as frames/NNNNNN.jpg
+  double record_debug_hz = 5.0;  ///< debug images as debug/NAME/NNNNNN.jpg; 0 = none
+
+  /// Which files it may name, itself and by what it names.
+  SourcePolicy sources;
+
+  nlohmann::json resolved;  ///< the document with defaults, overrides and `data` applied
+};
+
+/// One override of a scenario document: `--set a.b.0.c=VALUE`.
+struct Override {
+  std::string path;
+  nlohmann::json value;
+};
+
+}  // namespace overfly::engine

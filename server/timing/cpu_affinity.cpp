@@ -1,0 +1,38 @@
+#include "server/timing/cpu_affinity.hpp"
+
+#include <sys/resource.h>
+#include <cstddef>
+#include <ctime>
+#include <string>
+
+namespace overfly::engine {
+
+Status bind_thread(const std::vector<int>& cpus) {
+  if (cpus.empty()) return {};
+  cpu_set_t set{};
+  CPU_ZERO(&set);
+  std::string names;
+  for (const int cpu : cpus) {
+    if (cpu >= 0 && cpu < CPU_SETSIZE) CPU_SET(static_cast<std::size_t>(cpu), &set);
+    names += (names.empty() ? "" : ", ") + std::to_string(cpu);
+  }
+  // Of the calling thread alone: 0 is its own number here.
+  if (sched_setaffinity(0, sizeof(set), &set) == 0) return {};
+  return Error{ErrorCode::kInvalidArgument,
+               "cpus = [" + names + "]: must name a processor of this machine"};
+}
+
+AffinityGuard::AffinityGuard() : known_(sched_getaffinity(0, sizeof(before_), &before_) == 0) {}
+
+AffinityGuard::~AffinityGuard() {
+  if (known_) sched_setaffinity(0, sizeof(before_), &before_);
+}
+
+double own_peak_memory_mb() {
+  rusage use{};
+  if (getrusage(RUSAGE_SELF, &use) != 0) return 0.0;
+  constexpr double kMbPerKib = 1024e-6;
+  return kMbPerKib * static_cast<double>(use.ru_maxrss);
+}
+
+}  // namespace overfly::engine

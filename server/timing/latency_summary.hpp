@@ -1,0 +1,13 @@
+#pragma once
+
+namespace overfly::engine {
+
+/// Of the time from handing over a frame to its answer.
+struct LatencySummary {
+  double median_ms = 0.0;
+  double p95_ms = 0.0;
+  double p99_ms = 0.0;
+  double max_ms = 0.0;
+};
+
+}  // namespace overfly::engine

@@ -1,0 +1,97 @@
+#include "server/views/view_encoding.hpp"
+
+#include <algorithm>
+
+#include "core/file_text.hpp"
+#include "server/files/jpeg.hpp"
+
+namespace overfly::engine {
+namespace {
+
+constexpr std::size_t kMaxKept = 4;
+
+std::shared_ptr<const Image> halved(const Image& image) {
+  auto half = std::make_shared<Image>(image.width_px / 2, image.height_px / 2, image.channels);
+  for (int y = 0; y < half->height_px; ++y) {
+    for (int x = 0; x < half->width_px; ++x) {
+      for (int c = 0; c < image.channels; ++c) {
+        const int sum = image.at(2 * x, 2 * y, c) + image.at(2 * x + 1, 2 * y, c) +
+                        image.at(2 * x, 2 * y + 1, c) + image.at(2 * x + 1, 2 * y + 1, c);
+        half->at(x, y, c) = static_cast<std::uint8_t>((sum + 2) / 4);
+      }
+    }
+  }
+  return half;
+}
+
+/// True for the markers SOF0 to SOF15 that open a frame (not DHT, JPG, DAC).
+bool opens_frame(std::uint8_t marker) {
+  return marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
+}
+
+}  // namespace
+
+std::shared_ptr<const Image> halved_to_fit(std::shared_ptr<const Image> image, int max_width_px) {
+  while (image->width_px > max_width_px && image->width_px > 1 && image->height_px > 1) {
+    image = halved(*image);
+  }
+  return image;
+}
+
+std::optional<JpegSize> jpeg_size(const std::vector<std::uint8_t>& jpeg) {
+  const auto word = [&](std::size_t at) { return jpeg[at] * 256 + jpeg[at + 1]; };
+  std::size_t at = 2;  // after the start-of-image marker
+  // Segments (ISO/IEC 10918-1, B.1.1.4): FF, marker, length (its own two bytes included), data.
+  while (at + 10 <= jpeg.size() && jpeg[at] == 0xFF) {
+    const std::uint8_t marker = jpeg[at + 1];
+    if (opens_frame(marker)) return JpegSize{word(at + 7), word(at + 5), jpeg[at + 9] == 1};
+    at += 2 + static_cast<std::size_t>(word(at + 2));
+  }
+  return std::nullopt;
+}
+
+Result<Picture> PictureEncoder::encode(const StampedImage& image, int quality, int max_width_px) {
+  const auto known = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& kept) {
+    return kept.image == image.image && kept.quality == quality &&
+           kept.max_width_px == max_width_px;
+  });
+  if (known != kept_.end()) {
+    kept_.splice(kept_.begin(), kept_, known);
+    return kept_.front().picture;
+  }
+  const auto fitting = halved_to_fit(image.image, max_width_px);
+  auto jpeg = encode_jpeg(*fitting, quality);
+  if (!jpeg) return jpeg.error();
+  Picture picture;
+  picture.frame = image.frame;
+  picture.t_ns = image.t_ns;
+  picture.width_px = fitting->width_px;
+  picture.height_px = fitting->height_px;
+  picture.grey = fitting->channels == 1;
+  picture.jpeg = std::make_shared<const std::vector<std::uint8_t>>(std::move(*jpeg));
+  kept_.push_front({image.image, quality, max_width_px, picture});
+  if (kept_.size() > kMaxKept) kept_.pop_back();
+  return picture;
+}
+
+Result<Picture> PictureEncoder::encode_file(const std::filesystem::path& file,
+                                            std::int64_t frame,
+                                            std::int64_t t_ns,
+                                            int quality,
+                                            int max_width_px) {
+  constexpr std::uint64_t kMaxBytes = std::uint64_t{256} << 20U;
+  auto bytes = read_file_bytes(file, kMaxBytes);
+  if (!bytes) return bytes.error();
+  const auto size = jpeg_size(*bytes);
+  if (size && size->width_px <= max_width_px) {
+    Picture picture{frame, t_ns, size->width_px, size->height_px, size->grey, nullptr};
+    picture.jpeg = std::make_shared<const std::vector<std::uint8_t>>(std::move(*bytes));
+    return picture;
+  }
+  auto image = decode_jpeg(*bytes);
+  if (!image) return image.error().in(file.string());
+  return encode(
+      {frame, t_ns, std::make_shared<const Image>(std::move(*image))}, quality, max_width_px);
+}
+
+}  // namespace overfly::engine

@@ -1,0 +1,50 @@
+// Images made into pictures for viewers.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <list>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "server/record/run_timeline.hpp"
+#include "server/views/picture_request.hpp"
+
+namespace overfly::engine {
+
+/// The image halved (each pixel the mean of four) until it is at most `max_width_px` wide.
+[[nodiscard]] std::shared_ptr<const Image> halved_to_fit(std::shared_ptr<const Image> image,
+                                                         int max_width_px);
+
+/// Width and height from a JPEG's frame header, and whether it is grey; empty if there is none.
+struct JpegSize {
+  int width_px = 0;
+  int height_px = 0;
+  bool grey = false;
+};
+[[nodiscard]] std::optional<JpegSize> jpeg_size(const std::vector<std::uint8_t>& jpeg);
+
+/// Encodes, and keeps the last few results: two viewers of a live camera cost one encoding.
+/// Not thread-safe.
+class PictureEncoder {
+ public:
+  [[nodiscard]] Result<Picture> encode(const StampedImage& image, int quality, int max_width_px);
+  /// A recorded JPEG, as it is where it fits.
+  [[nodiscard]] Result<Picture> encode_file(const std::filesystem::path& file,
+                                            std::int64_t frame,
+                                            std::int64_t t_ns,
+                                            int quality,
+                                            int max_width_px);
+
+ private:
+  struct Kept {
+    std::shared_ptr<const Image> image;  ///< held, so that its address is not used again
+    int quality = 0;
+    int max_width_px = 0;
+    Picture picture;
+  };
+  std::list<Kept> kept_;
+};
+
+}  // namespace overfly::engine

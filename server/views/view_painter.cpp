@@ -1,0 +1,181 @@
+#include "server/views/view_painter.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "core/processor_time.hpp"
+#include "server/record/rows.hpp"
+#include "server/record/run_folder.hpp"
+#include "server/record/run_timeline.hpp"
+#include "server/views/view_scene.hpp"
+
+namespace overfly::engine {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMaxRibbons = 4;
+
+Audience::Kind kind_of(const PictureRequest& request) {
+  switch (request.kind) {
+    case PictureRequest::Kind::kDebug:
+      return Audience::Kind::kDebug;
+    case PictureRequest::Kind::kScene:
+      return Audience::Kind::kScene;
+    case PictureRequest::Kind::kCamera:
+      break;
+  }
+  return Audience::Kind::kCamera;
+}
+
+std::optional<FrameRow> row_of(const RunTimeline& timeline,
+                               const PictureRequest& request,
+                               std::size_t camera) {
+  if (!request.live) return timeline.frame_at(request.t_ns, camera);
+  return timeline.frame_at(std::numeric_limits<std::int64_t>::max(), camera);
+}
+
+/// Number of the last picture NNNNNN.jpg in a folder at or before `frame`.
+std::optional<std::int64_t> last_recorded(const fs::path& folder, std::int64_t frame) {
+  std::optional<std::int64_t> last;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    const std::string name = entry->path().stem().string();
+    std::int64_t number = 0;
+    const char* name_end = name.data() + name.size();
+    const auto [rest, failure] = std::from_chars(name.data(), name_end, number);
+    if (failure != std::errc() || rest != name_end || number > frame) continue;
+    if (!last || number > *last) last = number;
+  }
+  return last;
+}
+
+/// Stamp of a frame at or before `row`. Row i is of frame i, or of a later one where some were
+/// skipped.
+std::int64_t stamp_before(const RunTimeline& timeline, const FrameRow& row, std::int64_t frame) {
+  if (frame == row.frame) return row.t_ns;
+  const auto count = static_cast<std::int64_t>(timeline.frame_count());
+  for (std::int64_t i = std::min(frame, count - 1); i >= 0; --i) {
+    const FrameRow before = timeline.frames(static_cast<std::size_t>(i), 1).front();
+    if (before.frame <= frame) return before.t_ns;
+  }
+  return row.t_ns;
+}
+
+}  // namespace
+
+Result<Picture> ViewPainter::paint(const PictureRequest& request) {
+  const double before_s = thread_cpu_s();
+  auto timeline = runs_.timeline(request.run_id);
+  if (!timeline) return timeline.error();
+  Result<Picture> picture = paint_of(request, *timeline);
+  if (picture) (*timeline)->audience()->picture_made(kind_of(request), thread_cpu_s() - before_s);
+  runs_.picture_rate().picture_made();
+  return picture;
+}
+
+Result<Picture> ViewPainter::paint_of(const PictureRequest& request,
+                                      const std::shared_ptr<RunTimeline>& timeline) {
+  const Result<std::size_t> camera = timeline->camera_index(request.camera);
+  if (!camera) return camera.error();
+  const auto row = row_of(*timeline, request, *camera);
+  if (!row) return Error{ErrorCode::kNotFound, "run " + request.run_id + " has no frame yet"};
+  switch (request.kind) {
+    case PictureRequest::Kind::kCamera:
+      return paint_camera(request, *timeline, *camera, *row);
+    case PictureRequest::Kind::kDebug:
+      return paint_debug(request, *timeline, *row);
+    case PictureRequest::Kind::kScene:
+      return paint_scene(request, timeline, *row);
+  }
+  return Error{ErrorCode::kInvalidArgument, "no such kind of picture"};
+}
+
+Result<Picture> ViewPainter::paint_camera(const PictureRequest& request,
+                                          const RunTimeline& timeline,
+                                          std::size_t camera,
+                                          const FrameRow& row) {
+  const auto live = timeline.live_camera(camera);
+  if (live && live->image && (request.live || live->frame == row.frame)) {
+    return encoder_.encode(*live, request.quality, request.max_width_px);
+  }
+  const auto folder = runs_.folder(request.run_id);
+  if (!folder) return folder.error();
+  const fs::path recorded = camera == 0 ? frame_image_file(*folder, row.frame)
+                                        : frame_image_file(*folder, request.camera, row.frame);
+  std::error_code error;
+  if (fs::is_regular_file(recorded, error)) {
+    return encoder_.encode_file(
+        recorded, row.frame, row.t_ns, request.quality, request.max_width_px);
+  }
+  Result<Image> made = renderers_.remake(request.run_id, camera, row);
+  if (!made) return made.error();
+  const auto image = std::make_shared<const Image>(std::move(*made));
+  return encoder_.encode({row.frame, row.t_ns, image}, request.quality, request.max_width_px);
+}
+
+Result<Picture> ViewPainter::paint_debug(const PictureRequest& request,
+                                         const RunTimeline& timeline,
+                                         const FrameRow& row) {
+  if (request.estimator >= timeline.estimators().size()) {
+    return Error{ErrorCode::kInvalidArgument,
+                 "estimator = " + std::to_string(request.estimator) + ": must be below " +
+                     std::to_string(timeline.estimators().size())};
+  }
+  const auto live = timeline.live_debug(request.estimator);
+  if (live && live->image && (request.live || live->frame == row.frame)) {
+    return encoder_.encode(*live, request.quality, request.max_width_px);
+  }
+  const auto folder = runs_.folder(request.run_id);
+  if (!folder) return folder.error();
+  const std::string& name = timeline.estimators()[request.estimator];
+  const auto frame = last_recorded(debug_image_file(*folder, name, 0).parent_path(), row.frame);
+  if (!frame) {
+    return Error{ErrorCode::kNotFound,
+                 "estimator " + name + " has no picture up to frame " + std::to_string(row.frame)};
+  }
+  return encoder_.encode_file(debug_image_file(*folder, name, *frame),
+                              *frame,
+                              stamp_before(timeline, row, *frame),
+                              request.quality,
+                              request.max_width_px);
+}
+
+Result<Picture> ViewPainter::paint_scene(const PictureRequest& request,
+                                         const std::shared_ptr<RunTimeline>& timeline,
+                                         const FrameRow& row) {
+  auto view = renderers_.of_run(request.run_id);
+  if (!view) return view.error();
+  ViewRibbons& ribbons = ribbons_of(timeline, request.scene.alignment);
+  ribbons.refresh();
+  const auto scene =
+      scene_view(request.scene, row.T_world_body, ribbons.centre(), *(*view)->world->tiles);
+  const auto content = scene_content(*timeline, ribbons, row, request.live);
+  auto image = (*view)->renderer->render_scene(scene, content);
+  if (!image) return image.error();
+  const auto shared = std::make_shared<const Image>(std::move(*image));
+  return encoder_.encode({row.frame, row.t_ns, shared}, request.quality, shared->width_px);
+}
+
+ViewRibbons& ViewPainter::ribbons_of(const std::shared_ptr<RunTimeline>& timeline,
+                                     const std::string& alignment) {
+  const auto known =
+      std::find_if(ribbons_.begin(), ribbons_.end(), [&](const ViewRibbons& ribbons) {
+        return ribbons.timeline() == timeline && ribbons.alignment() == alignment;
+      });
+  if (known != ribbons_.end()) {
+    ribbons_.splice(ribbons_.begin(), ribbons_, known);
+  } else {
+    ribbons_.emplace_front(timeline, alignment);
+    if (ribbons_.size() > kMaxRibbons) ribbons_.pop_back();
+  }
+  return ribbons_.front();
+}
+
+}  // namespace overfly::engine

@@ -1,0 +1,50 @@
+// Makes the picture that a viewer asked for: taken live, read from the run folder, or drawn again.
+#pragma once
+
+#include <atomic>
+#include <list>
+#include <memory>
+#include <string>
+
+#include "server/record/rows.hpp"
+#include "server/record/run_timeline.hpp"
+#include "server/views/picture_request.hpp"
+#include "server/views/view_encoding.hpp"
+#include "server/views/view_renderers.hpp"
+#include "server/views/view_ribbons.hpp"
+
+namespace overfly::engine {
+
+/// Used and destroyed on one thread.
+class ViewPainter {
+ public:
+  /// @param stopping  true ends the opening of a world: nobody wants its picture any more
+  ViewPainter(RunManager& runs, const std::atomic<bool>& stopping)
+      : runs_(runs), renderers_(runs, stopping) {}
+
+  /// Errors: kNotFound when there is nothing to see at that instant; as world and renderer say.
+  [[nodiscard]] Result<Picture> paint(const PictureRequest& request);
+
+ private:
+  [[nodiscard]] Result<Picture> paint_of(const PictureRequest& request,
+                                         const std::shared_ptr<RunTimeline>& timeline);
+  [[nodiscard]] Result<Picture> paint_camera(const PictureRequest& request,
+                                             const RunTimeline& timeline,
+                                             std::size_t camera,
+                                             const FrameRow& row);
+  [[nodiscard]] Result<Picture> paint_debug(const PictureRequest& request,
+                                            const RunTimeline& timeline,
+                                            const FrameRow& row);
+  [[nodiscard]] Result<Picture> paint_scene(const PictureRequest& request,
+                                            const std::shared_ptr<RunTimeline>& timeline,
+                                            const FrameRow& row);
+  ViewRibbons& ribbons_of(const std::shared_ptr<RunTimeline>& timeline,
+                          const std::string& alignment);
+
+  RunManager& runs_;
+  ViewRenderers renderers_;
+  PictureEncoder encoder_;
+  std::list<ViewRibbons> ribbons_;  ///< of the runs and alignments watched last
+};
+
+}  // namespace overfly::engine

@@ -1,0 +1,72 @@
+#include "server/views/view_renderers.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "server/record/rows.hpp"
+
+namespace overfly::engine {
+namespace {
+
+/// Each keeps its tiles as textures: a viewer may go back and forth between two worlds.
+constexpr std::size_t kMaxRenderers = 2;
+
+}  // namespace
+
+Result<const Scenario*> ViewRenderers::scenario_of(const std::string& run_id) {
+  if (!scenario_ || scenario_run_id_ != run_id) {
+    Result<Scenario> read = runs_.scenario_of(run_id);
+    if (!read) return read.error();
+    scenario_ = std::move(*read);
+    scenario_run_id_ = run_id;
+  }
+  return &*scenario_;
+}
+
+Result<ViewRenderers::WorldView*> ViewRenderers::of_run(const std::string& run_id) {
+  // Who goes on watching a run goes on seeing its world, whatever becomes of the files.
+  const auto watched = std::find_if(views_.begin(), views_.end(), [&](const WorldView& view) {
+    return view.watched_run_id == run_id && view.world->tiles->status();
+  });
+  if (watched != views_.end()) {
+    views_.splice(views_.begin(), views_, watched);
+    return &views_.front();
+  }
+  const Result<const Scenario*> scenario = scenario_of(run_id);
+  if (!scenario) return scenario.error();
+  auto world = runs_.world_of(run_id, [this] { return stopping_.load(); });
+  if (!world) return world.error();
+  const RendererChoice& choice = (*scenario)->renderer;
+  const auto known = std::find_if(views_.begin(), views_.end(), [&](const WorldView& view) {
+    return view.world == *world && view.choice == choice;
+  });
+  if (known != views_.end()) {
+    views_.splice(views_.begin(), views_, known);
+    views_.front().watched_run_id = run_id;
+    return &views_.front();
+  }
+  while (views_.size() >= kMaxRenderers) views_.pop_back();
+  auto renderer = make_renderer(**scenario, (*world)->tiles, runs_.renderer_factory());
+  if (!renderer) return renderer.error();
+  views_.push_front({*world, choice, std::move(*renderer), run_id, "", nullptr});
+  return &views_.front();
+}
+
+Result<Image> ViewRenderers::remake(const std::string& run_id,
+                                    std::size_t camera,
+                                    const FrameRow& row) {
+  const Result<WorldView*> view = of_run(run_id);
+  if (!view) return view.error();
+  WorldView& found = **view;
+  if (!found.frames || found.run_id != run_id) {
+    const Result<const Scenario*> scenario = scenario_of(run_id);
+    if (!scenario) return scenario.error();
+    auto frames = FrameRemaker::create(**scenario, found.world);
+    if (!frames) return frames.error();
+    found.frames = std::move(*frames);
+    found.run_id = run_id;
+  }
+  return found.frames->make(camera, row, *found.renderer);
+}
+
+}  // namespace overfly::engine

@@ -1,0 +1,122 @@
+#include "server/views/view_ribbons.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace overfly::engine {
+namespace {
+
+constexpr std::size_t kEveryRow = 3;
+constexpr std::size_t kRowsAtOnce = 1024;
+constexpr double kFar = std::numeric_limits<double>::infinity();
+
+constexpr std::array<std::array<float, 3>, 6> kEstimatorRgb = {{{0.15F, 0.45F, 1.0F},
+                                                                {0.10F, 0.72F, 0.35F},
+                                                                {0.95F, 0.65F, 0.10F},
+                                                                {0.65F, 0.35F, 0.90F},
+                                                                {0.10F, 0.75F, 0.80F},
+                                                                {0.85F, 0.35F, 0.60F}}};
+
+constexpr double kEstimateRibbonWidth = 0.5;  ///< of the truth's
+
+renderer::Ribbon ribbon_of(const std::vector<std::int64_t>& stamps_ns,
+                           const std::vector<Pose>& poses,
+                           std::int64_t t_ns,
+                           const std::array<float, 3>& rgb) {
+  const auto count = std::upper_bound(stamps_ns.begin(), stamps_ns.end(), t_ns) - stamps_ns.begin();
+  renderer::Ribbon ribbon;
+  ribbon.rgb = rgb;
+  ribbon.T_world_body.assign(poses.begin(), poses.begin() + count);
+  return ribbon;
+}
+
+}  // namespace
+
+std::array<float, 3> estimator_rgb(std::size_t estimator) {
+  return kEstimatorRgb[estimator % kEstimatorRgb.size()];
+}
+
+ViewRibbons::ViewRibbons(std::shared_ptr<const RunTimeline> timeline, std::string alignment)
+    : timeline_(std::move(timeline)),
+      alignment_(std::move(alignment)),
+      box_min_(Eigen::Vector3d::Constant(kFar)),
+      box_max_(Eigen::Vector3d::Constant(-kFar)),
+      estimates_(timeline_->estimators().size()) {
+  for (std::size_t i = 0; i < estimates_.size(); ++i) {
+    if (auto found = RowAlignment::of(*timeline_, i, alignment_)) estimates_[i].alignment = *found;
+  }
+}
+
+std::optional<Pose> ViewRibbons::T_world_body(std::size_t estimator, const EstimateRow& row) const {
+  const std::optional<RowAlignment>& alignment = estimates_.at(estimator).alignment;
+  return alignment ? alignment->T_world_body(row) : std::nullopt;
+}
+
+void ViewRibbons::refresh() {
+  refresh_truth();
+  for (std::size_t i = 0; i < estimates_.size(); ++i) refresh_estimate(i);
+}
+
+void ViewRibbons::refresh_truth() {
+  for (;;) {
+    const auto rows = timeline_->frames(rows_seen_, kRowsAtOnce);
+    if (rows.empty()) return;
+    for (const FrameRow& row : rows) {
+      box_min_ = box_min_.cwiseMin(row.T_world_body.translation);
+      box_max_ = box_max_.cwiseMax(row.T_world_body.translation);
+      if (rows_seen_++ % kEveryRow != 0) continue;
+      truth_.t_ns.push_back(row.t_ns);
+      truth_.T_world_body.push_back(row.T_world_body);
+    }
+  }
+}
+
+void ViewRibbons::refresh_estimate(std::size_t estimator) {
+  Estimate& estimate = estimates_[estimator];
+  for (;;) {
+    const auto rows = timeline_->estimates(estimator, estimate.rows_seen, kRowsAtOnce);
+    if (rows.empty()) return;
+    for (const EstimateRow& row : rows) {
+      const std::size_t index = estimate.rows_seen++;
+      const std::optional<Pose> T_world_body = this->T_world_body(estimator, row);
+      if (!T_world_body) {
+        estimate.open = false;
+        continue;
+      }
+      const bool goes_on = estimate.open && estimate.pieces.back().map_id == row.sample.map_id;
+      if (!goes_on) {
+        estimate.pieces.emplace_back();
+        estimate.pieces.back().map_id = row.sample.map_id;
+        estimate.open = true;
+      } else if (index % kEveryRow != 0) {
+        continue;
+      }
+      estimate.pieces.back().t_ns.push_back(row.sample.t_ns);
+      estimate.pieces.back().T_world_body.push_back(*T_world_body);
+    }
+  }
+}
+
+std::vector<renderer::Ribbon> ViewRibbons::until(std::int64_t t_ns,
+                                                 const Pose& T_world_body_now) const {
+  std::vector<renderer::Ribbon> ribbons;
+  ribbons.push_back(ribbon_of(truth_.t_ns, truth_.T_world_body, t_ns, kTruthRgb));
+  ribbons.back().T_world_body.push_back(T_world_body_now);
+  for (std::size_t i = 0; i < estimates_.size(); ++i) {
+    for (const Piece& piece : estimates_[i].pieces) {
+      auto ribbon = ribbon_of(piece.t_ns, piece.T_world_body, t_ns, estimator_rgb(i));
+      // Narrower than the truth: where both coincide, the red edges stay visible on either side.
+      ribbon.wing_span_m *= kEstimateRibbonWidth;
+      if (ribbon.T_world_body.size() > 1) ribbons.push_back(std::move(ribbon));
+    }
+  }
+  return ribbons;
+}
+
+Eigen::Vector3d ViewRibbons::centre() const {
+  if (rows_seen_ == 0) return Eigen::Vector3d::Zero();
+  return 0.5 * (box_min_ + box_max_);
+}
+
+}  // namespace overfly::engine

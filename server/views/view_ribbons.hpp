@@ -1,0 +1,66 @@
+// The flown and the estimated trajectories as ribbons, grown with the run and cut at an instant.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "renderer/renderer.hpp"
+#include "server/record/run_timeline.hpp"
+#include "server/scoring/row_alignment.hpp"
+
+namespace overfly::engine {
+
+/// Colour of the truth, and of estimator i, in [0, 1].
+inline constexpr std::array<float, 3> kTruthRgb = {0.90F, 0.15F, 0.15F};
+[[nodiscard]] std::array<float, 3> estimator_rgb(std::size_t estimator);
+
+class ViewRibbons {
+ public:
+  /// @param alignment  of the estimates; one that cannot be had so has no ribbon
+  explicit ViewRibbons(std::shared_ptr<const RunTimeline> timeline,
+                       std::string alignment = kRecordedAlignment);
+
+  /// Takes in the rows since the last call: every third, which is less than a wing span apart.
+  void refresh();
+  /// The truth up to t (ending at `T_world_body_now`) and each estimate's tracked pieces up to t.
+  [[nodiscard]] std::vector<renderer::Ribbon> until(std::int64_t t_ns,
+                                                    const Pose& T_world_body_now) const;
+  /// Centre of the box around the flown trajectory; zero before the first frame [m].
+  [[nodiscard]] Eigen::Vector3d centre() const;
+  [[nodiscard]] const std::shared_ptr<const RunTimeline>& timeline() const { return timeline_; }
+  [[nodiscard]] const std::string& alignment() const { return alignment_; }
+  /// Where an estimate's row lies under the alignment; empty while not tracking.
+  [[nodiscard]] std::optional<Pose> T_world_body(std::size_t estimator,
+                                                 const EstimateRow& row) const;
+
+ private:
+  /// Poses without a gap.
+  struct Piece {
+    int map_id = 0;
+    std::vector<std::int64_t> t_ns;
+    std::vector<Pose> T_world_body;
+  };
+  struct Estimate {
+    std::size_t rows_seen = 0;
+    bool open = false;  ///< the last piece may go on
+    std::optional<RowAlignment> alignment;
+    std::vector<Piece> pieces;
+  };
+  void refresh_truth();
+  void refresh_estimate(std::size_t estimator);
+
+  std::shared_ptr<const RunTimeline> timeline_;
+  std::string alignment_;
+  std::size_t rows_seen_ = 0;
+  Piece truth_;
+  Eigen::Vector3d box_min_;
+  Eigen::Vector3d box_max_;
+  std::vector<Estimate> estimates_;
+};
+
+}  // namespace overfly::engine

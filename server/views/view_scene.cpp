@@ -1,0 +1,73 @@
+#include "server/views/view_scene.hpp"
+
+#include "renderer/viewpoint.hpp"
+
+namespace overfly::engine {
+namespace {
+
+constexpr double kFovY = 0.9;
+
+Pose viewpoint(const SceneSettings& settings,
+               const Pose& T_world_body,
+               const Eigen::Vector3d& centre_world,
+               const HeightQuery& ground) {
+  renderer::Viewpoint view;
+  view.azimuth_rad = settings.azimuth_rad;
+  view.elevation_rad = settings.elevation_rad;
+  view.distance_m = settings.distance_m;
+  const Eigen::Vector3d target = settings.follow ? T_world_body.translation : centre_world;
+  switch (settings.mode) {
+    case SceneMode::kChase:
+      return renderer::chase_viewpoint(T_world_body, view, ground);
+    case SceneMode::kOrbit:
+      return renderer::orbit_viewpoint(target, view, ground);
+    case SceneMode::kTop:
+      break;
+  }
+  return renderer::top_viewpoint(target, settings.azimuth_rad, settings.distance_m);
+}
+
+}  // namespace
+
+renderer::SceneView scene_view(const SceneSettings& settings,
+                               const Pose& T_world_body,
+                               const Eigen::Vector3d& centre_world,
+                               const HeightQuery& ground) {
+  renderer::SceneView view;
+  view.width_px = settings.width_px;
+  view.height_px = settings.height_px;
+  view.fov_y_rad = kFovY;
+  view.T_world_camera = viewpoint(settings, T_world_body, centre_world, ground);
+  return view;
+}
+
+renderer::SceneContent scene_content(const RunTimeline& timeline,
+                                     const ViewRibbons& ribbons,
+                                     const FrameRow& row,
+                                     bool live) {
+  renderer::SceneContent content;
+  renderer::SceneContent::Aircraft truth;
+  truth.T_world_body = row.T_world_body;
+  truth.rgb = kTruthRgb;
+  content.aircraft.push_back(truth);
+  for (std::size_t i = 0; i < timeline.estimators().size(); ++i) {
+    const auto estimate = timeline.estimate_at(i, row.t_ns);
+    const auto T_world_body = estimate ? ribbons.T_world_body(i, *estimate) : std::nullopt;
+    if (T_world_body) {
+      renderer::SceneContent::Aircraft ghost;
+      ghost.T_world_body = *T_world_body;
+      ghost.rgb = estimator_rgb(i);
+      ghost.ghost = true;
+      content.aircraft.push_back(ghost);
+    }
+    if (live) {
+      const auto points = timeline.live_points(i);
+      content.points.insert(content.points.end(), points.begin(), points.end());
+    }
+  }
+  content.frustum = renderer::SceneContent::Frustum{timeline.camera(), row.T_world_camera, true};
+  content.ribbons = ribbons.until(row.t_ns, row.T_world_body);
+  return content;
+}
+
+}  // namespace overfly::engine

@@ -1,0 +1,27 @@
+// The scene view of a run at an instant: from where it is seen, and what is in it.
+#pragma once
+
+#include "core/height_query.hpp"
+#include "renderer/renderer.hpp"
+#include "server/record/run_timeline.hpp"
+#include "server/views/picture_request.hpp"
+#include "server/views/view_ribbons.hpp"
+
+namespace overfly::engine {
+
+/// Where the viewer stands.
+/// @param T_world_body  of the aircraft
+/// @param centre_world  of the trajectory, for a view that does not follow the aircraft
+/// @param ground        keeps the viewer above it
+[[nodiscard]] renderer::SceneView scene_view(const SceneSettings& settings,
+                                             const Pose& T_world_body,
+                                             const Eigen::Vector3d& centre_world,
+                                             const HeightQuery& ground);
+
+/// Aircraft, frustum, ribbons and estimates at the frame `row`; map points of a live run.
+[[nodiscard]] renderer::SceneContent scene_content(const RunTimeline& timeline,
+                                                   const ViewRibbons& ribbons,
+                                                   const FrameRow& row,
+                                                   bool live);
+
+}  // namespace overfly::engine

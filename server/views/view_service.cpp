@@ -1,0 +1,128 @@
+#include "server/views/view_service.hpp"
+
+#include <atomic>
+#include <condition_variable>
+#include <mutex>
+#include <string>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+#include "core/barrier.hpp"
+#include "server/timing/picture_rate.hpp"
+#include "server/timing/thread_priority.hpp"
+#include "server/views/view_painter.hpp"
+#include "server/views/view_queue.hpp"
+
+namespace overfly::engine {
+namespace {
+
+/// A client that there is no memory to answer asks again.
+void answer(const PictureDone& done, Result<Picture> picture) {
+  (void)contained([&] { done(std::move(picture)); }, [](const char*) {});
+}
+
+}  // namespace
+
+struct ViewService::Impl {
+  explicit Impl(RunManager& run_manager) : runs(run_manager), thread([this] { work(); }) {}
+  ~Impl();
+  void work();
+  void paint(bool beside_flight);
+  /// Tells all who wait why they get no picture.
+  void refuse(const Error& reason);
+  std::optional<ViewQueue::Entry> next(bool beside_flight);
+
+  RunManager& runs;
+  std::mutex mutex;
+  std::condition_variable wake;
+  ViewQueue queue;
+  std::vector<PictureDone> replaced;   ///< to be told so on the thread
+  std::atomic<bool> stopping = false;  ///< written under the mutex
+  std::thread thread;                  ///< last: it uses all of the above
+};
+
+ViewService::Impl::~Impl() {
+  {
+    const std::lock_guard lock(mutex);
+    stopping = true;
+  }
+  wake.notify_one();
+  thread.join();
+}
+
+/// The next picture to draw, once there is one; tells replaced ones meanwhile. Empty at the end,
+/// and when a flight in real time has begun or ended.
+std::optional<ViewQueue::Entry> ViewService::Impl::next(bool beside_flight) {
+  std::unique_lock lock(mutex);
+  for (;;) {
+    wake.wait(lock, [this] { return stopping || !queue.empty() || !replaced.empty(); });
+    if (stopping || runs.picture_rate().flying() != beside_flight) return std::nullopt;
+    if (replaced.empty()) return queue.pop();
+    const std::vector<PictureDone> told = std::exchange(replaced, {});
+    lock.unlock();
+    for (const PictureDone& done : told) {
+      answer(done, Error{ErrorCode::kCancelled, "a newer picture was asked for"});
+    }
+    lock.lock();
+  }
+}
+
+void ViewService::Impl::work() {
+  for (;;) {
+    {
+      std::unique_lock lock(mutex);
+      wake.wait(lock, [this] { return stopping || !queue.empty() || !replaced.empty(); });
+      if (stopping) return;
+    }
+    // A thread's priority can be lowered only: beside a flight another one draws.
+    const bool beside_flight = runs.picture_rate().flying();
+    (void)contained([&] { std::thread([this, beside_flight] { paint(beside_flight); }).join(); },
+                    [this](const char* what) {
+                      refuse({ErrorCode::kInternal, std::string("no thread to draw on: ") + what});
+                    });
+  }
+}
+
+void ViewService::Impl::refuse(const Error& reason) {
+  std::unique_lock lock(mutex);
+  while (auto entry = queue.pop()) {
+    lock.unlock();
+    answer(entry->done, reason);
+    lock.lock();
+  }
+}
+
+void ViewService::Impl::paint(bool beside_flight) {
+  lower_thread(beside_flight ? ThreadPriority::kLeftOver : ThreadPriority::kBelowFlights);
+  const auto paint_all = [&] {
+    // The painter's renderers live and die on this thread.
+    ViewPainter painter(runs, stopping);
+    while (auto entry = next(beside_flight)) {
+      answer(entry->done, guarded([&] { return painter.paint(entry->request); }));
+    }
+  };
+  (void)contained(paint_all, [this](const char* what) { refuse({ErrorCode::kInternal, what}); });
+}
+
+ViewService::ViewService(RunManager& runs) : impl_(std::make_unique<Impl>(runs)) {}
+ViewService::~ViewService() = default;
+
+void ViewService::request(std::uint64_t client,
+                          int stream,
+                          const PictureRequest& request,
+                          PictureDone done) {
+  {
+    const std::lock_guard lock(impl_->mutex);
+    PictureDone replaced = impl_->queue.push({client, stream, request, std::move(done)});
+    if (replaced) impl_->replaced.push_back(std::move(replaced));
+  }
+  impl_->wake.notify_one();
+}
+
+void ViewService::forget(std::uint64_t client) {
+  const std::lock_guard lock(impl_->mutex);
+  impl_->queue.forget(client);
+}
+
+}  // namespace overfly::engine

@@ -1,0 +1,33 @@
+// Pictures for viewers: the camera, debug and scene views of a run at any instant, drawn on one
+// thread of its own, which beside a flight in real time gets only what that leaves of the machine.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "core/result.hpp"
+#include "server/runs/run_manager.hpp"
+#include "server/views/picture_request.hpp"
+
+namespace overfly::engine {
+
+/// Thread-safe. Keeps one renderer per world in use, the least recently used leaves.
+class ViewService {
+ public:
+  explicit ViewService(RunManager& runs);
+  /// Waits for the picture that is being drawn; a world that is being opened for one is given up.
+  ~ViewService();
+
+  /// Queues a picture for a client's stream; a request not yet begun of the same (client, stream)
+  /// is replaced and its `done` gets kCancelled: a slow machine shows newer pictures, not more.
+  /// `done` is called on the service's thread.
+  void request(std::uint64_t client, int stream, const PictureRequest& request, PictureDone done);
+  /// Drops what a client still waits for, without calling its `done`s.
+  void forget(std::uint64_t client);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace overfly::engine

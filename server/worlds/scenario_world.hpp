@@ -1,0 +1,38 @@
+// The world that a scenario names, opened.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/result.hpp"
+#include "server/scenario/scenario.hpp"
+#include "terrain/world.hpp"
+#include "terrain/world_files.hpp"
+
+namespace overfly::engine {
+
+struct OpenedWorld {
+  terrain::World world;
+  struct Manifest {
+    std::string file;
+    std::string digest;  ///< as those of terrain::World::data_hashes
+  };
+  std::optional<Manifest> manifest;  ///< empty where the scenario lists the layers itself
+  /// What it was read from, as that was before it was opened.
+  std::vector<terrain::WorldFile> files;
+};
+
+/// Opens the scenario's world; makes the built-in one if this machine does not have it yet.
+/// @param progress  called with the share done in [0, 1] while it is made, and with 0 while files
+///                  are opened; false cancels
+/// Errors: as terrain::open_world, read_world_manifest and builtin_world; kIo for a file that was
+/// changed meanwhile.
+[[nodiscard]] Result<OpenedWorld> open_scenario_world(
+    const Scenario& scenario, const std::function<bool(double)>& progress = {});
+
+/// Equal for scenarios over the same world.
+[[nodiscard]] std::string world_key(const Scenario& scenario);
+
+}  // namespace overfly::engine

@@ -1,0 +1,49 @@
+#include "server/worlds/world_cache.hpp"
+
+#include <utility>
+
+namespace overfly::engine {
+
+WorldCache::Shared WorldCache::find(const std::string& key) {
+  Shared opened;
+  {
+    const std::lock_guard lock(mutex_);
+    std::erase_if(worlds_, [](const auto& entry) { return entry.second.expired(); });
+    const auto known = worlds_.find(key);
+    if (known != worlds_.end()) opened = known->second.lock();
+  }
+  if (!opened) return nullptr;
+  // Without the lock: a slow disk holds up nobody who asks for another world. Heights that could
+  // not be read stay unknown in a world.
+  if (terrain::changed_file(opened->files) || !opened->world.tiles->status()) {
+    drop(opened);
+    return nullptr;
+  }
+  const std::lock_guard lock(mutex_);
+  last_ = opened;
+  return opened;
+}
+
+void WorldCache::drop(const Shared& world) {
+  const std::lock_guard lock(mutex_);
+  std::erase_if(worlds_, [&](const auto& entry) { return entry.second.lock() == world; });
+  if (last_ == world) last_.reset();
+}
+
+Result<WorldCache::Shared> WorldCache::get(const Scenario& scenario,
+                                           const std::function<bool(double)>& progress) {
+  const std::string key = world_key(scenario);
+  if (Shared known = find(key)) return known;
+  // Opened without the lock, since making the built-in world takes long. Two threads may open the
+  // same one; the second then uses the first's.
+  Result<OpenedWorld> opened = open_scenario_world(scenario, progress);
+  if (!opened) return opened.error();
+  if (Shared known = find(key)) return known;
+  auto world = std::make_shared<const OpenedWorld>(std::move(*opened));
+  const std::lock_guard lock(mutex_);
+  worlds_[key] = world;
+  last_ = world;
+  return Shared(world);
+}
+
+}  // namespace overfly::engine

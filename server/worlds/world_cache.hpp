@@ -1,0 +1,43 @@
+// Opened worlds, shared between the runs and views that use them at the same time.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "core/result.hpp"
+#include "server/worlds/scenario_world.hpp"
+
+namespace overfly::engine {
+
+/// Thread-safe. A world is closed when its last user lets it go, except the one asked for last. One
+/// whose files have changed since it was opened stays with its users; who asks for it next gets
+/// the new one.
+class WorldCache {
+ public:
+  using Shared = std::shared_ptr<const OpenedWorld>;
+
+  /// @param progress  as of open_scenario_world
+  /// Errors: as open_scenario_world.
+  [[nodiscard]] Result<Shared> get(const Scenario& scenario,
+                                   const std::function<bool(double)>& progress);
+  /// Has the world opened anew by whoever asks for it next: it could not be read.
+  void drop(const Shared& world);
+
+ private:
+  [[nodiscard]] Shared find(const std::string& key);
+
+  std::mutex mutex_;
+  std::map<std::string, std::weak_ptr<const OpenedWorld>> worlds_;
+  Shared last_;
+};
+
+/// The world alone, kept alive as the whole.
+[[nodiscard]] inline std::shared_ptr<const terrain::World> bare_world(
+    const WorldCache::Shared& opened) {
+  return {opened, &opened->world};
+}
+
+}  // namespace overfly::engine
