@@ -18,19 +18,21 @@ function(overfly_room name)
   target_link_libraries(overfly_${name} PUBLIC ${arg_DEPENDS} PRIVATE ${arg_PRIVATE_DEPENDS})
 endfunction()
 
-# overfly_test(NAME [LIBS targets...] [TIMEOUT seconds])
+# overfly_test(NAME [FOLDER folder] [LIBS targets...] [TIMEOUT seconds])
 #
-# One GoogleTest program, NAME_tests, of every *_test.cpp in the current folder; each TEST is a
+# One GoogleTest program, NAME_tests, of every *_test.cpp in the folder, or in the current one; each TEST is a
 # ctest case of its own, so that a skipped one is seen.
 function(overfly_test name)
-  cmake_parse_arguments(arg "" "TIMEOUT" "LIBS" ${ARGN})
+  cmake_parse_arguments(arg "" "TIMEOUT;FOLDER" "LIBS" ${ARGN})
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 300)
   endif()
   if(OVERFLY_SANITIZE)
     math(EXPR arg_TIMEOUT "4 * ${arg_TIMEOUT}")  # Sanitized programs are several times slower.
   endif()
-  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*_test.cpp)
+  cmake_path(APPEND CMAKE_CURRENT_SOURCE_DIR "${arg_FOLDER}" OUTPUT_VARIABLE folder)
+  cmake_path(NORMAL_PATH folder)
+  file(GLOB sources CONFIGURE_DEPENDS ${folder}/*_test.cpp)
   if(NOT sources)
     return()
   endif()

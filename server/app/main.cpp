@@ -2,7 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <exception>
 
-#include "server/app/commands.hpp"
+#include "server/app/commands/commands.hpp"
 #include "server/app/exit_code.hpp"
 #include "server/app/version.hpp"
 

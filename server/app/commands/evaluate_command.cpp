@@ -1,0 +1,257 @@
+// overfly evaluate: scores trajectory files, or a run folder again.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "core/trajectory_io.hpp"
+#include "server/app/commands/commands.hpp"
+#include "server/app/exit_code.hpp"
+#include "server/app/score_table.hpp"
+#include "server/files/whole_file.hpp"
+#include "server/record/run_folder.hpp"
+#include "server/record/run_info_file.hpp"
+#include "server/record/run_lock.hpp"
+#include "server/record/run_records.hpp"
+#include "server/scoring/metrics.hpp"
+
+namespace overfly::app {
+namespace {
+
+using Json = nlohmann::json;
+
+struct EvaluateArguments {
+  std::string truth;
+  std::vector<std::string> estimates;
+  std::string run;
+  std::vector<std::string> alignments;
+  std::string association = "interpolate";
+  double max_time_difference_ms = 10.0;
+  double init_true_depth_m = 0.0;
+  bool json = false;
+};
+
+std::vector<std::string> mode_names() {
+  std::vector<std::string> names;
+  for (const evaluation::AlignmentMode mode : evaluation::all_alignment_modes()) {
+    names.emplace_back(evaluation::to_string(mode));
+  }
+  return names;
+}
+
+/// A number that a TUM file carries as a comment. Errors: kUnreadable naming file and value.
+Result<std::optional<double>> comment_number(const TrajectoryFile& file,
+                                             const std::string& name,
+                                             const std::string& key) {
+  const auto comment = file.comments.find(key);
+  if (comment == file.comments.end()) return std::optional<double>();
+  try {
+    std::size_t used = 0;
+    const double value = std::stod(comment->second, &used);
+    if (used == comment->second.size() && value > 0.0) return std::optional<double>(value);
+  } catch (const std::exception&) {
+    // Told below, with the rest of what is no positive number.
+  }
+  return Error{ErrorCode::kUnreadable,
+               name + ": # " + key + " " + comment->second + ": must be a positive number"};
+}
+
+Result<evaluation::Options> options_for(const EvaluateArguments& arguments,
+                                        const std::string& name,
+                                        const TrajectoryFile& truth,
+                                        const TrajectoryFile& estimate) {
+  evaluation::Options options;
+  if (arguments.association == "nearest") options.association = evaluation::Association::kNearest;
+  // Poses without times can be matched by their number only.
+  if (arguments.association == "index" || !truth.has_times || !estimate.has_times) {
+    options.association = evaluation::Association::kIndex;
+  }
+  options.max_time_difference_ns =
+      static_cast<std::int64_t>(arguments.max_time_difference_ms * 1e6);
+  const auto depth = comment_number(estimate, name, "init_true_depth");
+  if (!depth) return depth.error();
+  options.init_true_depth_m = *depth;
+  if (arguments.init_true_depth_m > 0.0) options.init_true_depth_m = arguments.init_true_depth_m;
+  return options;
+}
+
+Result<EstimateTrack> track_from(const std::string& name, const TrajectoryFile& file) {
+  const auto depth = comment_number(file, name, "init_scene_depth");
+  if (!depth) return depth.error();
+  EstimateTrack track;
+  track.name = name;
+  for (const StampedPose& stamped : file.trajectory.poses()) {
+    EstimateSample sample;
+    sample.frame = static_cast<std::int64_t>(track.samples.size());
+    sample.t_ns = stamped.t_ns;
+    sample.state = TrackingState::kTracking;
+    sample.T_vo_camera = stamped.pose;
+    if (track.samples.empty()) sample.scene_depth = *depth;
+    track.samples.push_back(sample);
+  }
+  return track;
+}
+
+/// Keeps the modes that were asked for.
+void choose_modes(const std::vector<std::string>& wanted, Json& entry) {
+  for (const char* kind : {"alignments", "unavailable"}) {
+    Json chosen = Json::object();
+    for (const auto& [mode, value] : entry.at(kind).items()) {
+      if (std::find(wanted.begin(), wanted.end(), mode) != wanted.end()) chosen[mode] = value;
+    }
+    entry[kind] = std::move(chosen);
+  }
+}
+
+void print_warnings(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) std::cerr << "warning: " << warning << "\n";
+}
+
+/// Errors: kInvalidArgument for a file whose i-th pose is not that of its i-th line.
+Status check_listed(const std::string& name, const TrajectoryFile& file) {
+  if (file.as_listed()) return {};
+  return Error{ErrorCode::kInvalidArgument,
+               name +
+                   ": holds poses that are not known, repeat a time or stand out of order, so that "
+                   "its poses cannot be matched by number; give both files times"};
+}
+
+Result<Json> evaluate_file(const EvaluateArguments& arguments,
+                           const TrajectoryFile& truth,
+                           const std::string& name) {
+  const Result<TrajectoryFile> file = read_trajectory(name);
+  if (!file) return file.error();
+  print_warnings(file->warnings);
+  const Result<evaluation::Options> options = options_for(arguments, name, truth, *file);
+  if (!options) return options.error();
+  if (options->association == evaluation::Association::kIndex) {
+    Status listed = check_listed(arguments.truth, truth);
+    if (listed) listed = check_listed(name, *file);
+    if (!listed) return listed.error();
+  }
+  const Result<EstimateTrack> track = track_from(name, *file);
+  if (!track) return track.error();
+  // Asked first for its error: it says why nothing could be matched.
+  const auto matches = evaluation::associate(truth.trajectory, *track, *options);
+  if (!matches) return matches.error().in(name);
+  const evaluation::Score score = evaluation::score(truth.trajectory, *track, *options);
+  Json entry = {{"file", name},
+                {"poses", track->samples.size()},
+                {"matched", matches->size()},
+                {"warnings", file->warnings},
+                {"alignments", engine::alignments_json(score)},
+                {"unavailable", engine::unavailable_json(score)}};
+  choose_modes(arguments.alignments, entry);
+  return entry;
+}
+
+int evaluate_files(const EvaluateArguments& arguments) {
+  const Result<TrajectoryFile> truth = read_trajectory(arguments.truth);
+  if (!truth) return report(truth.error());
+  print_warnings(truth->warnings);
+  Json estimates = Json::array();
+  bool scored = true;
+  for (const std::string& name : arguments.estimates) {
+    Result<Json> entry = evaluate_file(arguments, *truth, name);
+    if (!entry) return report(entry.error());
+    if (!arguments.json) {
+      std::cout << name << "\n"
+                << alignment_table(entry->at("alignments"), entry->at("unavailable"));
+    }
+    scored = scored && !entry->at("alignments").empty();
+    estimates.push_back(std::move(*entry));
+  }
+  if (arguments.json) {
+    const Json result = {{"truth", arguments.truth},
+                         {"association", arguments.association},
+                         {"warnings", truth->warnings},
+                         {"estimates", std::move(estimates)}};
+    std::cout << result.dump(2) << "\n";
+  }
+  return scored ? kExitOk : kExitFailure;
+}
+
+void print_run(const EvaluateArguments& arguments, const engine::RunInfo& info, Json metrics) {
+  metrics["status"] = engine::to_string(info.status);
+  if (!arguments.json && info.status != engine::RunStatus::kCompleted) {
+    std::cout << "the run is " << engine::to_string(info.status) << "\n";
+  }
+  for (auto& [name, entry] : metrics.at("estimators").items()) {
+    choose_modes(arguments.alignments, entry);
+    if (arguments.json) continue;
+    std::cout << name << ": " << outcome_line(entry) << "\n"
+              << alignment_table(entry.at("alignments"), entry.at("unavailable"));
+  }
+  if (arguments.json) std::cout << metrics.dump(2) << "\n";
+}
+
+int evaluate_run(const EvaluateArguments& arguments) {
+  // Before the lock, which would make an interrupted run look as if it ran.
+  const Result<engine::RunInfo> info = engine::read_run_info(arguments.run);
+  if (!info) return report(info.error());
+  if (!info->problem.empty()) std::cerr << "warning: " << info->problem << "\n";
+  // Where nothing can be written the scores are printed all the same.
+  const Result<engine::RunLock> lock = engine::RunLock::take(arguments.run);
+  if (!lock && lock.error().code == ErrorCode::kConflict) return report(lock.error());
+  const Result<engine::RunRecords> records = engine::read_run_records(arguments.run);
+  if (!records) return report(records.error());
+  const Json metrics = engine::metrics_from(*records);
+  print_run(arguments, *info, metrics);
+  if (!lock) return report(lock.error());
+  const Status written = engine::write_json(engine::metrics_file(arguments.run), metrics);
+  return written ? kExitOk : report(written.error());
+}
+
+int evaluate(EvaluateArguments arguments) {
+  const std::vector<std::string>& modes = arguments.alignments;
+  if (std::find(modes.begin(), modes.end(), "all") != modes.end()) {
+    arguments.alignments = mode_names();
+  }
+  if (!arguments.run.empty()) return evaluate_run(arguments);
+  if (arguments.truth.empty() || arguments.estimates.empty()) {
+    return report(
+        {ErrorCode::kInvalidArgument, "--truth and --estimate must be given, or --run alone"});
+  }
+  return evaluate_files(arguments);
+}
+
+}  // namespace
+
+void add_evaluate_command(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<EvaluateArguments>();
+  CLI::App* command = app.add_subcommand("evaluate", "Score trajectories against the truth");
+  command->add_option("--truth", arguments->truth, "Trajectory file: TUM, KITTI or EuRoC");
+  command->add_option("--estimate", arguments->estimates, "Trajectory files to score");
+  command
+      ->add_option(
+          "--run", arguments->run, "A run folder to score again, and whose metrics.json to write")
+      ->excludes("--truth")
+      ->excludes("--estimate");
+  std::vector<std::string> modes = mode_names();
+  modes.emplace_back("all");
+  arguments->alignments = {"init_scale"};
+  command->add_option("--alignment", arguments->alignments, "How the estimate meets the truth")
+      ->check(CLI::IsMember(modes))
+      ->capture_default_str();
+  command->add_option("--association", arguments->association, "How poses are paired in time")
+      ->check(CLI::IsMember({"interpolate", "nearest", "index"}))
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--max-time-difference-ms", arguments->max_time_difference_ms, "Of --association nearest")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command
+      ->add_option("--init-true-depth-m",
+                   arguments->init_true_depth_m,
+                   "True depth along the optical axis at the first pose, for init_scale; where it "
+                   "is not given, the comment init_true_depth of the estimate's file")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--json", arguments->json, "Print JSON");
+  command->callback([arguments, &exit_code] { exit_code = evaluate(*arguments); });
+}
+
+}  // namespace overfly::app

@@ -1,0 +1,225 @@
+// overfly export: a run or scenario as a data set of others' layout, or as a video.
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/app/commands/commands.hpp"
+#include "server/app/exit_code.hpp"
+#include "server/app/progress.hpp"
+#include "server/app/stop_signal.hpp"
+#include "server/export/dataset_export.hpp"
+#include "server/export/video_export.hpp"
+#include "server/scenario/document/scenario_list.hpp"
+#include "server/scenario/document/scenario_override.hpp"
+
+namespace overfly::app {
+namespace {
+
+struct ExportArguments {
+  std::string source;
+  std::string format;
+  std::string out;
+  std::vector<std::string> sets;
+  std::vector<std::string> truth;
+  std::vector<std::string> cameras;
+  double from_s = 0.0;
+  std::optional<double> to_s;
+  int threads = -1;  // -1 = as the scenario says
+  flight::ImuModel imu;
+  std::string video;  ///< what is shown; empty = no video, of webm both views
+  int video_quality = 70;
+  bool json = false;
+  bool quiet = false;
+};
+
+Result<engine::ExportSource> open_source(const ExportArguments& arguments) {
+  const auto overrides = engine::parse_overrides(arguments.sets);
+  if (!overrides) return overrides.error();
+  auto source = engine::open_export_source(arguments.source, *overrides);
+  if (!source) return source.error();
+  if (Status status = engine::check_scenario(source->scenario); !status) return status.error();
+  if (arguments.threads >= 0) source->scenario.renderer.threads = arguments.threads;
+  return source;
+}
+
+/// What every export is told: span, camera, how to stop, whom to tell.
+template <typename Options>
+void set_common(const ExportArguments& arguments, ProgressDisplay& display, Options& options) {
+  options.from_s = arguments.from_s;
+  options.to_s = arguments.to_s;
+  options.cancel = &catch_stop_signals();
+  options.notice = [&display](const std::string& text) { display.note(text); };
+  options.progress = [&display](std::int64_t done, std::int64_t total) {
+    display.show(static_cast<double>(done) / static_cast<double>(total),
+                 "frame " + std::to_string(done) + " of " + std::to_string(total));
+  };
+}
+
+int tell(const ExportArguments& arguments,
+         const nlohmann::json& summary,
+         const std::string& text,
+         bool cancelled) {
+  if (arguments.json) {
+    std::cout << summary.dump(2) << "\n";
+  } else {
+    std::cout << text;
+    const std::string credit = summary.at("attribution");
+    if (!credit.empty()) std::cout << "imagery: " << credit << "\n";
+  }
+  if (!cancelled) return kExitOk;
+  std::cerr << "cancelled; what was made so far is there\n";
+  return kExitCancelled;
+}
+
+engine::VideoLook look_of(const ExportArguments& arguments) {
+  engine::VideoLook look;
+  look.view = engine::video_view_from(arguments.video).value_or(engine::VideoView::kBoth);
+  look.quality = arguments.video_quality;
+  return look;
+}
+
+int export_as_video(const ExportArguments& arguments, const engine::ExportSource& source) {
+  engine::VideoOptions options;
+  options.file = arguments.out;
+  options.look = look_of(arguments);
+  if (arguments.cameras.size() > 1 || !arguments.truth.empty()) {
+    return report({ErrorCode::kInvalidArgument, "webm: takes one --camera and no --truth"});
+  }
+  if (!arguments.cameras.empty()) options.camera = arguments.cameras.front();
+  Result<engine::VideoSummary> summary = Error{};
+  {
+    ProgressDisplay display(arguments.quiet);
+    set_common(arguments, display, options);
+    summary = engine::export_video(source, options);
+  }
+  if (!summary) return report(summary.error());
+  return tell(arguments,
+              {{"frames", summary->frames},
+               {"cancelled", summary->cancelled},
+               {"attribution", summary->attribution}},
+              arguments.out + ": " + std::to_string(summary->frames) + " frames\n",
+              summary->cancelled);
+}
+
+int export_as_dataset(const ExportArguments& arguments,
+                      engine::DatasetFormat format,
+                      const engine::ExportSource& source) {
+  engine::ExportOptions options;
+  options.folder = arguments.out;
+  options.format = format;
+  options.cameras = arguments.cameras;
+  options.imu = arguments.imu;
+  if (!arguments.video.empty()) options.video = look_of(arguments);
+  for (const std::string& name : arguments.truth) {
+    const auto kind = engine::truth_kind_from(name);
+    if (!kind) {
+      return report(
+          {ErrorCode::kInvalidArgument,
+           "truth = " + name + ": must be one of depth, range, normal, flow, world, mask"});
+    }
+    options.truth.insert(*kind);
+  }
+  Result<engine::ExportSummary> summary = Error{};
+  {
+    ProgressDisplay display(arguments.quiet);
+    set_common(arguments, display, options);
+    summary = engine::export_dataset(source, options);
+  }
+  if (!summary) return report(summary.error());
+  return tell(arguments,
+              {{"frames", summary->frames},
+               {"images", summary->images},
+               {"cancelled", summary->cancelled},
+               {"attribution", summary->attribution},
+               {"stages", summary->stages}},
+              arguments.out + ": " + std::to_string(summary->images) + " images of " +
+                  std::to_string(summary->frames) + " frames, " + arguments.format + "\n",
+              summary->cancelled);
+}
+
+int export_source(const ExportArguments& arguments) {
+  const auto format = engine::dataset_format_from(arguments.format);
+  if (!format && arguments.format != "webm") {
+    return report({ErrorCode::kInvalidArgument,
+                   "format = " + arguments.format +
+                       ": must be one of tum-mono, euroc, kitti, png, lcm, rosbag, webm"});
+  }
+  const auto source = open_source(arguments);
+  if (!source) return report(source.error());
+  if (format) return export_as_dataset(arguments, *format, *source);
+  return export_as_video(arguments, *source);
+}
+
+void add_imu_options(CLI::App& command, flight::ImuModel& imu) {
+  command.add_option("--imu-rate", imu.rate_hz, "euroc: rate of the IMU [Hz]")
+      ->capture_default_str();
+  command
+      .add_option("--gyroscope-noise",
+                  imu.gyroscope_noise_rad_s_sqrt_hz,
+                  "euroc: white noise density [rad/s/sqrt(Hz)]")
+      ->capture_default_str();
+  command
+      .add_option("--gyroscope-walk",
+                  imu.gyroscope_walk_rad_s2_sqrt_hz,
+                  "euroc: random walk of the bias [rad/s^2/sqrt(Hz)]")
+      ->capture_default_str();
+  command
+      .add_option("--accelerometer-noise",
+                  imu.accelerometer_noise_m_s2_sqrt_hz,
+                  "euroc: white noise density [m/s^2/sqrt(Hz)]")
+      ->capture_default_str();
+  command
+      .add_option("--accelerometer-walk",
+                  imu.accelerometer_walk_m_s3_sqrt_hz,
+                  "euroc: random walk of the bias [m/s^3/sqrt(Hz)]")
+      ->capture_default_str();
+}
+
+}  // namespace
+
+void add_export_command(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<ExportArguments>();
+  CLI::App* command =
+      app.add_subcommand("export", "Write a run or scenario as a data set or a video");
+  command->add_option("source", arguments->source, "Run folder, or scenario file (JSON)")
+      ->required();
+  command
+      ->add_option("--format",
+                   arguments->format,
+                   "tum-mono, euroc, kitti, png, lcm, rosbag, or webm for a video alone")
+      ->required();
+  command->add_option("--out", arguments->out, "Folder to make; of webm the file")->required();
+  command
+      ->add_option("--truth",
+                   arguments->truth,
+                   "Images beside each frame: depth,range,normal,flow,world,mask")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command->add_option("--camera", arguments->cameras, "Only this camera; may be repeated")
+      ->allow_extra_args(false);
+  command->add_option("--from", arguments->from_s, "First time in the flight [s]");
+  command->add_option("--to", arguments->to_s, "Last time in the flight [s]");
+  command->add_option("--set", arguments->sets, "Override a field of a scenario: path=value")
+      ->allow_extra_args(false);
+  command->add_option("--threads", arguments->threads, "Of the ray-caster; 0 = one a core")
+      ->check(CLI::Range(0, 64));
+  add_imu_options(*command, arguments->imu);
+  command
+      ->add_option(
+          "--video",
+          arguments->video,
+          "What a video shows: of webm (default both), else of video.webm beside the images")
+      ->check(CLI::IsMember({"camera", "chase", "both"}));
+  command->add_option("--video-quality", arguments->video_quality, "1 to 100")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  command->add_flag("--json", arguments->json, "Print a summary with wall times as JSON");
+  command->add_flag("--quiet", arguments->quiet, "No progress");
+  command->callback([arguments, &exit_code] { exit_code = export_source(*arguments); });
+}
+
+}  // namespace overfly::app

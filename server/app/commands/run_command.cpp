@@ -1,0 +1,108 @@
+// overfly run: flies one scenario into one folder.
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "server/app/commands/commands.hpp"
+#include "server/app/exit_code.hpp"
+#include "server/app/progress.hpp"
+#include "server/app/score_table.hpp"
+#include "server/app/stop_signal.hpp"
+#include "server/run/run.hpp"
+#include "server/runs/run_memory.hpp"
+#include "server/scenario/document/scenario_file.hpp"
+#include "server/scenario/document/scenario_list.hpp"
+#include "server/scenario/document/scenario_override.hpp"
+#include "server/scoring/metrics.hpp"
+
+namespace overfly::app {
+namespace {
+
+struct RunArguments {
+  std::string scenario;
+  std::string out;
+  std::vector<std::string> sets;
+  std::string renderer;
+  bool json = false;
+  bool quiet = false;
+};
+
+Result<engine::Scenario> load_to_fly(const RunArguments& arguments) {
+  auto overrides = engine::parse_overrides(arguments.sets);
+  if (!overrides) return overrides.error();
+  if (!arguments.renderer.empty()) overrides->push_back({"renderer.camera", arguments.renderer});
+  Result<engine::Scenario> scenario = engine::load_scenario(arguments.scenario, *overrides);
+  if (!scenario) return scenario.error();
+  if (Status status = engine::check_scenario(*scenario); !status) return status.error();
+  const auto memory = engine::MemoryBudget::of_machine(false);
+  if (Status status = memory.check(*scenario); !status) return status.error();
+  return scenario;
+}
+
+void show_progress(ProgressDisplay& display, const engine::RunInfo& info) {
+  const std::string done = "frame " + std::to_string(info.frames);
+  if (info.frames_total == 0) {
+    display.show(0.0, done);
+    return;
+  }
+  display.show(static_cast<double>(info.frames) / static_cast<double>(info.frames_total),
+               done + " of " + std::to_string(info.frames_total));
+}
+
+/// Tells of the estimators that never ran. @return a failure where that is all of them
+int exit_code_of_estimators(const nlohmann::json& metrics) {
+  const std::map<std::string, std::string> reasons = engine::never_ran(metrics);
+  for (const auto& [name, reason] : reasons) {
+    std::cerr << "error: estimator " << name << " never ran: " << reason << "\n";
+  }
+  const bool none_ran = !reasons.empty() && reasons.size() == metrics.at("estimators").size();
+  return none_ran ? kExitFailure : kExitOk;
+}
+
+int run(const RunArguments& arguments) {
+  const Result<engine::Scenario> scenario = load_to_fly(arguments);
+  if (!scenario) return report(scenario.error());
+  Result<engine::RunResult> result = Error{};
+  {
+    ProgressDisplay display(arguments.quiet);
+    engine::RunOptions options;
+    options.folder = arguments.out;
+    options.cancel = &catch_stop_signals();
+    options.notice = [&](const std::string& text) { display.note(text); };
+    options.progress = [&](const engine::RunInfo& info) { show_progress(display, info); };
+    result = engine::run_scenario(*scenario, options);
+  }
+  if (!result) return report(result.error());
+  if (arguments.json) {
+    std::cout << result->metrics.dump(2) << "\n";
+  } else {
+    std::cout << score_table(result->metrics, "init_scale") << camera_notes(result->metrics)
+              << "run folder: " << arguments.out << "\n";
+  }
+  if (result->info.status == engine::RunStatus::kCancelled) {
+    std::cerr << "cancelled after frame " << result->info.frames << "\n";
+    return kExitCancelled;
+  }
+  return exit_code_of_estimators(result->metrics);
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<RunArguments>();
+  CLI::App* command = app.add_subcommand("run", "Fly one scenario and score its estimators");
+  command->add_option("scenario", arguments->scenario, "Scenario file (JSON)")->required();
+  command->add_option("--out", arguments->out, "Run folder to make")->required();
+  command->add_option("--set", arguments->sets, "Override a field: path=value, e.g. seed=2")
+      ->allow_extra_args(false);
+  command->add_option("--renderer", arguments->renderer, "What draws the camera's image")
+      ->check(CLI::IsMember({"auto", "egl", "raycast"}));
+  command->add_flag("--json", arguments->json, "Print metrics.json instead of a table");
+  command->add_flag("--quiet", arguments->quiet, "No progress");
+  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+}
+
+}  // namespace overfly::app

@@ -1,0 +1,156 @@
+// overfly serve: the web server with its dashboard.
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "server/app/commands/commands.hpp"
+#include "server/app/exit_code.hpp"
+#include "server/app/install_paths.hpp"
+#include "server/app/stop_signal.hpp"
+#include "server/app/token_file.hpp"
+#include "server/net/http/access_token.hpp"
+#include "server/net/server.hpp"
+#include "server/timing/thread_priority.hpp"
+#include "terrain/network.hpp"
+
+namespace overfly::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ServeArguments {
+  std::string address = "127.0.0.1";
+  std::uint16_t port = 8480;
+  std::string runs = "runs";
+  std::string scenarios;
+  std::string web;
+  std::string token_file;
+  std::vector<std::string> allowed_hosts;
+  bool no_token = false;
+  std::vector<std::string> data = {"worlds"};
+  int parallel_runs = 1;
+  std::size_t max_waiting_runs = 100;
+  double memory_limit_mib = 0.0;
+  bool allow_commands = false;
+};
+
+void log_line(const std::string& level, const std::string& text) {
+  if (level == "error") {
+    spdlog::error(text);
+  } else if (level == "warning") {
+    spdlog::warn(text);
+  } else if (level == "debug") {
+    spdlog::debug(text);
+  } else {
+    spdlog::info(text);
+  }
+}
+
+/// The token that clients must show; empty with --no-token.
+Result<std::string> token_of(const ServeArguments& arguments) {
+  if (arguments.no_token) return std::string();
+  if (arguments.token_file.empty()) return net::make_token();
+  auto read = open_token_file(arguments.token_file);
+  if (!read) return read.error();
+  if (!read->warning.empty()) spdlog::warn(read->warning);
+  return std::move(read->token);
+}
+
+int serve(const ServeArguments& arguments) {
+  (void)catch_stop_signals();
+  terrain::turn_network_off();
+  engine::draw_on_the_asking_thread();
+  spdlog::set_default_logger(spdlog::stderr_color_mt("overfly"));
+  auto token = token_of(arguments);
+  if (!token) return report(token.error());
+  engine::RunManagerOptions manager_options;
+  manager_options.runs_folder = arguments.runs;
+  manager_options.scenarios_folder =
+      arguments.scenarios.empty() ? scenarios_folder() : fs::path(arguments.scenarios);
+  manager_options.max_parallel_runs = arguments.parallel_runs;
+  manager_options.max_waiting_runs = arguments.max_waiting_runs;
+  manager_options.memory_limit_bytes =
+      static_cast<std::uint64_t>(arguments.memory_limit_mib * 1024.0 * 1024.0);
+  manager_options.allow_commands = arguments.allow_commands;
+  manager_options.data_folders.emplace(arguments.data.begin(), arguments.data.end());
+  const auto runs = engine::RunManager::create(manager_options);
+  if (!runs) return report(runs.error());
+  engine::ViewService views(**runs);
+
+  net::ServerOptions options;
+  options.address = arguments.address;
+  options.port = arguments.port;
+  options.token = std::move(*token);
+  options.allowed_hosts = arguments.allowed_hosts;
+  options.web_folder = arguments.web.empty() ? web_folder() : fs::path(arguments.web);
+  options.log = log_line;
+  const auto server = net::Server::start(options, **runs, views);
+  if (!server) return report(server.error());
+  if (options.web_folder.empty()) {
+    spdlog::warn("the dashboard is not built (web/dist): only REST and WebSocket are served");
+  }
+  std::cout << "Overfly is at " << (*server)->url() << std::endl;
+  wait_for_stop_signal();
+  spdlog::info("stopping: running flights are cancelled, their folders stay readable");
+  return kExitOk;
+}
+
+}  // namespace
+
+void add_serve_command(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<ServeArguments>();
+  CLI::App* command = app.add_subcommand("serve", "Serve the dashboard and the REST interface");
+  command->add_option("--address", arguments->address, "Address to listen on")
+      ->capture_default_str();
+  command->add_option("--port", arguments->port, "Port; 0 = any free one")->capture_default_str();
+  command->add_option("--runs", arguments->runs, "Folder of the runs")->capture_default_str();
+  command->add_option("--scenarios", arguments->scenarios, "Folder of the scenario files");
+  command
+      ->add_option("--data",
+                   arguments->data,
+                   "Folder whose files scenarios may name (repeatable); besides it the folder of "
+                   "the scenario files and the folders `data` in them")
+      ->allow_extra_args(false)
+      ->capture_default_str();
+  command->add_option("--web", arguments->web, "Folder of the built dashboard");
+  CLI::Option* token_file = command->add_option(
+      "--token-file",
+      arguments->token_file,
+      "File with the token that clients must show, one line; made where there is none");
+  command
+      ->add_flag("--no-token", arguments->no_token, "Ask for no token; on a loopback address only")
+      ->excludes(token_file);
+  command
+      ->add_option("--allow-host",
+                   arguments->allowed_hosts,
+                   "Another host name or address by which clients may ask; repeatable")
+      ->allow_extra_args(false);
+  command->add_option("--parallel-runs", arguments->parallel_runs, "Flights at the same time")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+  command
+      ->add_option("--waiting-runs", arguments->max_waiting_runs, "Flights that may wait for one")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
+  command
+      ->add_option("--memory-limit",
+                   arguments->memory_limit_mib,
+                   "MiB that flights and pictures may use; four fifths of the machine's where it "
+                   "is not given")
+      ->check(CLI::Range(256.0, 1e9));
+  command->add_flag(
+      "--allow-commands",
+      arguments->allow_commands,
+      "Let clients name programs and addresses of estimators, not scenario files alone");
+  command->callback([arguments, &exit_code] { exit_code = serve(*arguments); });
+}
+
+}  // namespace overfly::app

@@ -1,0 +1,269 @@
+// overfly track: an estimator over recorded images.
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "core/trajectory_io.hpp"
+#include "server/app/commands/commands.hpp"
+#include "server/app/commands/track_arguments.hpp"
+#include "server/app/commands/track_summary.hpp"
+#include "server/app/exit_code.hpp"
+#include "server/app/progress.hpp"
+#include "server/app/stop_signal.hpp"
+#include "server/dataset/open_dataset.hpp"
+#include "server/dataset/track_report.hpp"
+#include "server/estimators/estimator_factory.hpp"
+
+namespace overfly::app {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+/// The truth, where one is given.
+struct Truth {
+  Trajectory T_world_camera;
+  bool has_times = true;
+};
+
+/// Nothing is computed for a file that cannot be written afterwards.
+Status check_outputs(const TrackArguments& arguments) {
+  std::error_code failure;
+  for (const std::string& file : {arguments.out, arguments.statuses, arguments.points}) {
+    const fs::path folder = fs::path(file).parent_path();
+    if (file.empty() || folder.empty() || fs::is_directory(folder, failure)) continue;
+    return Error{ErrorCode::kNotFound, file + ": folder " + folder.string() + " is not there"};
+  }
+  for (const std::string& folder : {arguments.debug, arguments.estimator_folder}) {
+    if (folder.empty()) continue;
+    fs::create_directories(folder, failure);
+    if (failure) {
+      return Error{ErrorCode::kIo, folder + ": cannot be made: " + failure.message()};
+    }
+  }
+  return {};
+}
+
+Result<std::optional<Truth>> read_truth(const TrackArguments& arguments, engine::Dataset& dataset) {
+  if (arguments.truth.empty()) return std::optional<Truth>();
+  const Result<TrajectoryFile> file = read_trajectory(arguments.truth);
+  if (!file) return file.error();
+  if (!file->has_times && !dataset.warnings.empty()) {
+    return Error{ErrorCode::kInvalidArgument,
+                 arguments.truth + ": has no times, and cannot be matched by number: " +
+                     dataset.warnings.front()};
+  }
+  dataset.warnings.insert(dataset.warnings.end(), file->warnings.begin(), file->warnings.end());
+  const Result<Trajectory> camera = engine::camera_truth(dataset, *file, dataset.notes);
+  if (!camera) return camera.error().in(arguments.truth);
+  return std::optional<Truth>(Truth{*camera, file->has_times});
+}
+
+/// What perfect and drifting estimators are given.
+Result<engine::ToyTruth> toy_truth(const engine::Dataset& dataset,
+                                   const std::optional<Truth>& truth,
+                                   double scene_depth_m) {
+  if (!truth || !truth->has_times) {
+    return Error{ErrorCode::kInvalidArgument, "needs --truth with times: it is given the truth"};
+  }
+  engine::ToyTruth known;
+  known.scene_depth_m = scene_depth_m;
+  for (const engine::DatasetImage& image : dataset.images) {
+    const std::optional<Pose> pose = truth->T_world_camera.at(image.t_ns);
+    if (!pose) {
+      return Error{ErrorCode::kInvalidArgument,
+                   image.listed_at + ": the truth has no pose at the image's time"};
+    }
+    if (Status status = known.T_world_camera.append({image.t_ns, *pose}); !status) {
+      return status.error();
+    }
+  }
+  return known;
+}
+
+Result<std::unique_ptr<VoPort>> create_port(const TrackArguments& arguments,
+                                            const engine::Dataset& dataset,
+                                            const std::optional<Truth>& truth,
+                                            const std::atomic<bool>& stop) {
+  const Result<engine::EstimatorSpec> spec = estimator_from(arguments);
+  if (!spec) return spec.error();
+  engine::EstimatorSetting setting;
+  setting.seed = arguments.seed;
+  setting.cancel = &stop;
+  if (!arguments.estimator_folder.empty()) {
+    setting.output_folder = fs::absolute(arguments.estimator_folder);
+  }
+  return engine::create_estimator(
+      *spec, setting, [&] { return toy_truth(dataset, truth, arguments.init_true_depth_m); });
+}
+
+Status write_outputs(const TrackArguments& arguments, const engine::TrackedDataset& tracked) {
+  if (Status status = engine::write_track(arguments.out, tracked); !status) return status;
+  if (!arguments.statuses.empty()) {
+    if (Status status = engine::write_statuses(arguments.statuses, tracked); !status) {
+      return status;
+    }
+  }
+  if (arguments.points.empty()) return {};
+  const int map_id = engine::scored_map(tracked).value_or(0);
+  return engine::write_ply(
+      arguments.points, tracked.map.points(map_id), "sparse map in the units of " + arguments.out);
+}
+
+Result<engine::TrackedDataset> track_shown(const TrackArguments& arguments,
+                                           const engine::Dataset& dataset,
+                                           const std::atomic<bool>& stop,
+                                           VoPort& port) {
+  ProgressDisplay display(arguments.quiet);
+  engine::TrackOptions options;
+  options.debug_folder = arguments.debug;
+  options.map_points = !arguments.points.empty();
+  options.cancel = &stop;
+  options.log = [&](const std::string& line) {
+    const std::string text = "estimator: " + line;
+    if (line.find("warning:") == std::string::npos) {
+      display.note(text);
+    } else {
+      display.warn(text);
+    }
+  };
+  options.progress = [&](std::size_t done, std::size_t total, TrackingState state) {
+    display.show(
+        static_cast<double>(done) / static_cast<double>(total),
+        "frame " + std::to_string(done) + " of " + std::to_string(total) + ", " + to_string(state));
+  };
+  return engine::track_dataset(dataset, port, options);
+}
+
+int track(const TrackArguments& arguments) {
+  const std::atomic<bool>& stop = catch_stop_signals();
+  const Result<engine::DatasetOptions> options = dataset_options_from(arguments);
+  if (!options) return report(options.error());
+  if (Status status = check_outputs(arguments); !status) return report(status.error());
+  Result<engine::Dataset> dataset = engine::open_dataset(*options);
+  if (!dataset) return report(dataset.error());
+  const Result<std::optional<Truth>> truth = read_truth(arguments, *dataset);
+  if (!truth) return report(truth.error());
+  for (const std::string& warning : dataset->warnings) std::cerr << "warning: " << warning << "\n";
+  const Result<std::unique_ptr<VoPort>> port = create_port(arguments, *dataset, *truth, stop);
+  if (!port) return report(port.error());
+  const auto tracked = track_shown(arguments, *dataset, stop, **port);
+  if (!tracked) return report(tracked.error());
+  if (Status status = write_outputs(arguments, *tracked); !status) return report(status.error());
+
+  std::optional<evaluation::Score> score;
+  if (*truth) {
+    std::optional<double> depth_m;
+    if (arguments.init_true_depth_m > 0.0) depth_m = arguments.init_true_depth_m;
+    score = engine::score_of(
+        *dataset, *tracked, (*truth)->T_world_camera, (*truth)->has_times, depth_m);
+  }
+  Json summary = engine::report_json(*dataset, *tracked, score);
+  summary["out"] = arguments.out;
+  if (arguments.json) {
+    std::cout << summary.dump(2) << "\n";
+  } else {
+    std::cout << track_summary(summary);
+  }
+  if (tracked->cancelled) {
+    std::cerr << "cancelled after frame " << tracked->records.size() << "\n";
+    return kExitCancelled;
+  }
+  if (const std::string reason = engine::never_ran(*tracked); !reason.empty()) {
+    return report({ErrorCode::kInternal, "the estimator never ran: " + reason});
+  }
+  return kExitOk;
+}
+
+void add_dataset_options(CLI::App& command, TrackArguments& arguments) {
+  command.add_option("--images", arguments.images, "Folder of the images, or of the data set")
+      ->required();
+  command.add_option("--times", arguments.times, "Times of a plain folder's images, one a line")
+      ->check(CLI::ExistingFile);
+  command.add_option("--time-unit", arguments.time_unit, "Of --times")
+      ->check(CLI::IsMember({"auto", "s", "ns"}))
+      ->capture_default_str();
+  command.add_option("--camera",
+                     arguments.camera,
+                     "FX,FY,CX,CY[,WIDTH,HEIGHT] in pixels, pixel centres at integers; in place "
+                     "of the data set's own calibration");
+  command.add_option("--distortion",
+                     arguments.distortion,
+                     "radtan:K1,K2,P1,P2[,K3], equidistant:K1,K2,K3,K4 or fov:W; with --camera");
+  command.add_option("--layout", arguments.layout, "Where it cannot be told by the files")
+      ->check(CLI::IsMember({"images", "euroc", "tum-mono", "tum-rgbd", "kitti", "png"}));
+  command.add_option(
+      "--camera-name", arguments.camera_name, "Of several: cam1 (EuRoC), image_2 (KITTI)");
+  command
+      .add_option("--bits",
+                  arguments.sample_bits,
+                  "How many bits the values of 16-bit images have; the upper 8 are used")
+      ->check(CLI::Range(8, 16))
+      ->capture_default_str();
+}
+
+void add_estimator_options(CLI::App& command, TrackArguments& arguments) {
+  command
+      .add_option("--estimator",
+                  arguments.estimator,
+                  "feature (default), process (default with --command or --listen), lcm, ros1; "
+                  "perfect and drifting need --truth")
+      ->check(CLI::IsMember({"feature", "perfect", "drifting", "process", "lcm", "ros1"}));
+  command
+      .add_option("--scenario-estimator",
+                  arguments.scenario_estimator,
+                  "FILE:NAME, an estimator as a scenario has it; without :NAME its only one")
+      ->excludes("--estimator");
+  command
+      .add_option(
+          "--parameter", arguments.parameters, "KEY=VALUE of the estimator; may be repeated")
+      ->allow_extra_args(false);
+  command
+      .add_option("--set",
+                  arguments.sets,
+                  "Another field of the estimator as in a scenario: start_timeout_s=60, "
+                  "lcm.channel_prefix=MINE_")
+      ->allow_extra_args(false);
+  command.add_option(
+      "--command", arguments.command, "Program and arguments of a process, in one text");
+  command.add_option(
+      "--listen", arguments.listen, "Where a process connects: unix:PATH or tcp:HOST:PORT");
+  command.add_option("--estimator-folder",
+                     arguments.estimator_folder,
+                     "Working folder of a process; its output.log goes there");
+  command.add_option("--seed", arguments.seed, "Of an estimator that draws lots")
+      ->capture_default_str();
+}
+
+void add_output_options(CLI::App& command, TrackArguments& arguments) {
+  command.add_option("--out", arguments.out, "Trajectory to write (TUM)")->required();
+  command.add_option("--statuses", arguments.statuses, "One line of JSON for each frame");
+  command.add_option("--points", arguments.points, "The sparse map (PLY)");
+  command.add_option("--debug", arguments.debug, "Folder for the debug image of each frame");
+  command.add_option("--truth", arguments.truth, "Trajectory to score against: TUM, KITTI, EuRoC")
+      ->check(CLI::ExistingFile);
+  command
+      .add_option("--init-true-depth-m",
+                  arguments.init_true_depth_m,
+                  "True depth along the optical axis at the first pose, for init_scale")
+      ->check(CLI::PositiveNumber);
+  command.add_flag("--json", arguments.json, "Print JSON");
+  command.add_flag("--quiet", arguments.quiet, "No progress; warnings stay");
+}
+
+}  // namespace
+
+void add_track_command(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<TrackArguments>();
+  CLI::App* command = app.add_subcommand("track", "Run an estimator over recorded images");
+  add_dataset_options(*command, *arguments);
+  add_estimator_options(*command, *arguments);
+  add_output_options(*command, *arguments);
+  command->callback([arguments, &exit_code] { exit_code = track(*arguments); });
+}
+
+}  // namespace overfly::app

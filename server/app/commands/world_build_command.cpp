@@ -1,0 +1,139 @@
+// overfly world build: tiles and heights made ready beside the manifest.
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/app/commands/commands.hpp"
+#include "server/app/exit_code.hpp"
+#include "server/app/progress.hpp"
+#include "server/app/stop_signal.hpp"
+#include "terrain/build_world.hpp"
+
+namespace overfly::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct BuildArguments {
+  std::vector<std::string> files;
+  std::string out;
+  std::string datum;
+  std::string attribution;
+  std::string name;
+  std::optional<double> ground_height_m;
+  bool quiet = false;
+};
+
+Result<terrain::VerticalDatum> datum_named(const std::string& name) {
+  using terrain::VerticalDatum;
+  if (name.empty() || name == "unknown") return VerticalDatum::kUnknown;
+  if (name == "ellipsoid") return VerticalDatum::kEllipsoid;
+  if (name == "egm96") return VerticalDatum::kEgm96;
+  if (name == "egm2008") return VerticalDatum::kEgm2008;
+  if (name == "navd88") return VerticalDatum::kNavd88;
+  return Error{
+      ErrorCode::kInvalidArgument,
+      "--vertical-datum " + name + ": must be one of ellipsoid, egm96, egm2008, navd88, unknown"};
+}
+
+/// The manifest among the arguments; empty if they are files of imagery and elevation.
+fs::path manifest_of(const std::vector<std::string>& files) {
+  if (files.size() != 1) return {};
+  const fs::path path = files.front();
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) return path / "world.json";
+  return path.extension() == ".json" ? path : fs::path();
+}
+
+Result<terrain::WorldSpec> spec_of(const BuildArguments& arguments) {
+  const fs::path manifest = manifest_of(arguments.files);
+  if (!manifest.empty()) return terrain::read_world_manifest(manifest);
+  if (arguments.out.empty()) {
+    return Error{ErrorCode::kInvalidArgument,
+                 "--out is missing: the folder for the new world's manifest and cache"};
+  }
+  const std::vector<fs::path> files(arguments.files.begin(), arguments.files.end());
+  auto spec = terrain::world_from_files(files);
+  if (!spec) return spec;
+  const auto datum = datum_named(arguments.datum);
+  if (!datum) return datum.error();
+  for (auto& layer : spec->elevation) layer.datum = *datum;
+  for (auto& layer : spec->elevation) layer.attribution = arguments.attribution;
+  for (auto& layer : spec->imagery) layer.attribution = arguments.attribution;
+  spec->name =
+      arguments.name.empty() ? fs::path(arguments.out).filename().string() : arguments.name;
+  spec->ground_height_m = arguments.ground_height_m;
+  return spec;
+}
+
+/// Writes the manifest into the folder of `--out`; one that is there already must say the same.
+Status write_manifest(const fs::path& folder, terrain::WorldSpec& spec) {
+  const fs::path manifest = folder / "world.json";
+  spec.cache_folder = terrain::cache_folder_of(manifest);
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  if (fs::exists(manifest, failed)) {
+    const auto there = terrain::read_world_manifest(manifest);
+    if (there && terrain::same_layers(*there, spec)) return {};
+    return Error{ErrorCode::kConflict,
+                 manifest.string() + ": exists and lists other layers; choose another folder"};
+  }
+  return terrain::write_world_manifest(manifest, spec);
+}
+
+int build(const BuildArguments& arguments) {
+  auto spec = spec_of(arguments);
+  if (!spec) return report(spec.error());
+  if (!arguments.out.empty()) {
+    const Status written = write_manifest(arguments.out, *spec);
+    if (!written) return report(written.error());
+  }
+  const std::atomic<bool>& stop = catch_stop_signals();
+  Result<terrain::BuildReport> built = Error{};
+  {
+    ProgressDisplay display(arguments.quiet);
+    built = terrain::build_world(*spec, [&](double share, const std::string& doing) {
+      display.show(share, doing);
+      return !stop.load();
+    });
+  }
+  if (!built) return report(built.error());
+  for (const std::string& warning : built->warnings) std::cerr << "warning: " << warning << "\n";
+  constexpr double kMega = 1e-6;
+  std::cout << built->folder.string() << ": "
+            << static_cast<long>(kMega * static_cast<double>(built->bytes)) << " MB";
+  if (built->was_fresh) {
+    std::cout << ", up to date\n";
+  } else {
+    std::cout << ", " << built->chunks_made << " chunks made, " << built->chunks_kept
+              << " of an earlier build kept\n";
+  }
+  return kExitOk;
+}
+
+}  // namespace
+
+void add_world_build_command(CLI::App& world, int& exit_code) {
+  const auto arguments = std::make_shared<BuildArguments>();
+  CLI::App* command = world.add_subcommand(
+      "build", "Make a world quick: tiles and heights in a cache beside its manifest");
+  command->add_option("files", arguments->files, "A manifest, or imagery and elevation files")
+      ->required();
+  command->add_option("--out", arguments->out, "Folder for manifest and cache of a new world");
+  command->add_option("--vertical-datum",
+                      arguments->datum,
+                      "Of elevation files: ellipsoid, egm96, egm2008, navd88, unknown");
+  command->add_option("--attribution", arguments->attribution, "Credit line of the files");
+  command->add_option("--name", arguments->name, "Of the new world; else its folder's");
+  command->add_option("--ground-height-m",
+                      arguments->ground_height_m,
+                      "Above the ellipsoid, of a new world without elevation files");
+  command->add_flag("--quiet", arguments->quiet, "No progress");
+  command->callback([arguments, &exit_code] { exit_code = build(*arguments); });
+}
+
+}  // namespace overfly::app

@@ -1,0 +1,118 @@
+// Launching, listing and deleting runs when there is too much of everything.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
+
+#include "server/files/whole_file.hpp"
+#include "server/record/run_folder.hpp"
+#include "tests/server/net/test_client.hpp"
+#include "tests/server/net/test_server.hpp"
+
+namespace overfly::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+constexpr const char* kRuns = "/api/v1/runs";
+
+Answer launch(const TestServer& server, const json& body) {
+  return ask(server.port(), "POST", kRuns, body.dump(), kJson);
+}
+
+TEST(RunRoutes, FullQueueIsToldApart) {
+  engine::RunManagerOptions options;
+  options.max_waiting_runs = 2;
+  TestServer server(net::ServerOptions(), options);
+  const std::string first = server.start("slow");
+  // Until it has left the queue.
+  const auto timeline = server.runs().timeline(first).value();
+  for (std::uint64_t seen = 0; timeline->frame_count() == 0;) {
+    seen = timeline->wait_for_change(seen, 1000);
+  }
+  EXPECT_EQ(launch(server, {{"scenario", "tiny"}}).status, 201);
+  EXPECT_EQ(launch(server, {{"scenario", "tiny"}}).status, 201);
+  const Answer refused = launch(server, {{"scenario", "tiny"}});
+  EXPECT_EQ(refused.status, 429);
+  EXPECT_EQ(refused.json().at("error").at("code"), "queue_full");
+  EXPECT_THAT(refused.body, HasSubstr("waiting runs = 2"));
+  EXPECT_EQ(ask(server.port(), "GET", kRuns).json().at("runs").size(), 3U);
+}
+
+TEST(RunRoutes, RunBeyondTheMemoryIsRefusedWithFieldValueAndLimit) {
+  engine::RunManagerOptions options;
+  options.memory_limit_bytes = std::uint64_t{512} << 20U;
+  TestServer server(net::ServerOptions(), options);
+  json cameras = json::array();
+  for (const char* name : {"c0", "c1", "c2", "c3", "c4", "c5", "c6", "c7"}) {
+    cameras.push_back({{"name", name}, {"width_px", 8192}, {"height_px", 8192}, {"color", "rgb"}});
+  }
+  const Answer refused =
+      launch(server, {{"scenario", "tiny"}, {"overrides", {{"cameras", cameras}}}});
+  EXPECT_EQ(refused.status, 422) << refused.body;
+  EXPECT_EQ(refused.json().at("error").at("code"), "not_enough_memory");
+  EXPECT_THAT(refused.body, HasSubstr("cameras = 8 of up to 8192 x 8192 px in colour"));
+  EXPECT_THAT(refused.body, HasSubstr("512 MiB"));
+  EXPECT_EQ(launch(server, {{"scenario", "tiny"}}).status, 201);
+}
+
+TEST(RunRoutes, OfSixDeletionsAtATimeOneSucceeds) {
+  TestServer server;
+  const std::string run = std::string(kRuns) + "/" + server.fly("tiny");
+  std::vector<int> statuses(6);
+  std::vector<std::thread> clients;
+  for (int& status : statuses) {
+    clients.emplace_back([&] { status = ask(server.port(), "DELETE", run).status; });
+  }
+  for (std::thread& client : clients) client.join();
+  int deleted = 0;
+  for (const int status : statuses) {
+    EXPECT_TRUE(status == 204 || status == 404 || status == 409) << status;
+    deleted += status == 204 ? 1 : 0;
+  }
+  EXPECT_EQ(deleted, 1);
+}
+
+TEST(RunRoutes, DamagedRunIsListedWithItsProblem) {
+  TestServer server;
+  const std::string id = server.fly("tiny");
+  const fs::path folder = server.folder() / "runs" / id;
+  json created = engine::read_json(engine::created_file(folder)).value();
+  created["created_utc"] = nullptr;
+  ASSERT_TRUE(engine::write_json(engine::created_file(folder), created).ok());
+  fs::last_write_time(engine::manifest_file(folder), fs::file_time_type::clock::now());
+  const auto listed = [&] { return ask(server.port(), "GET", kRuns).json().at("runs").at(0); };
+  json run = listed();
+  // The thread that flew the run may hold what it knows of it for a moment longer.
+  for (int i = 0; i < 3000 && run.at("problem").is_null(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    run = listed();
+  }
+  EXPECT_THAT(run.at("problem").get<std::string>(), HasSubstr("created.json: created_utc = null"));
+  EXPECT_EQ(run.at("status"), "completed");
+  write_text(engine::manifest_file(folder), "{\"format_version\": ");
+  const json damaged = ask(server.port(), "GET", std::string(kRuns) + "/" + id).json();
+  EXPECT_EQ(damaged.at("status"), "unreadable");
+  EXPECT_EQ(ask(server.port(), "GET", "/api/v1/health").status, 200);
+}
+
+/// Metrics that `overfly evaluate` has written are served, and viewers are told.
+TEST(RunRoutes, NewMetricsAreServedAndTold) {
+  TestServer server;
+  const std::string id = server.fly("tiny");
+  WebSocketClient viewer(server.port());
+  viewer.send({{"type", "attach"}, {"run", id}});
+  json metrics = viewer.wait_for("metrics").at("metrics");
+  metrics["note"] = "scored again";
+  const fs::path folder = server.folder() / "runs" / id;
+  ASSERT_TRUE(engine::write_json(engine::metrics_file(folder), metrics).ok());
+  EXPECT_EQ(viewer.wait_for("metrics").at("metrics").at("note"), "scored again");
+  EXPECT_EQ(ask(server.port(), "GET", std::string(kRuns) + "/" + id + "/metrics").json().at("note"),
+            "scored again");
+}
+
+}  // namespace
+}  // namespace overfly::testing

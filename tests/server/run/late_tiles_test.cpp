@@ -1,0 +1,83 @@
+// Tiles that come late: never in lockstep, counted and reported in real time.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "server/record/rows.hpp"
+#include "server/record/run_timeline.hpp"
+#include "server/run/run_options.hpp"
+#include "tests/server/support/engine_fixture.hpp"
+#include "tests/server/support/jumping_clock.hpp"
+
+namespace overfly::engine {
+namespace {
+
+using Json = nlohmann::json;
+
+/// Two tiles are late at every image that does not wait for them, but for those within a metre of
+/// one that did.
+class Paging final : public renderer::Renderer {
+ public:
+  explicit Paging(std::unique_ptr<renderer::Renderer> inner) : inner_(std::move(inner)) {}
+  using Renderer::render_camera;
+  using Renderer::render_depth;
+  Result<renderer::CameraFrame> render_camera(const renderer::CameraRequest& request) override {
+    auto frame = inner_->render_camera(request);
+    const Eigen::Vector3d place_m = request.T_world_camera.at(request.t_ns).translation;
+    if (request.wait_for_tiles) fetched_m_.push_back(place_m);
+    const bool there =
+        std::any_of(fetched_m_.begin(), fetched_m_.end(), [&](const Eigen::Vector3d& fetched_m) {
+          return (fetched_m - place_m).norm() < 1.0;
+        });
+    if (frame && !there) frame->late_tiles = 2;
+    return frame;
+  }
+  Result<DepthImage> render_depth(const renderer::CameraRequest& request) override {
+    return inner_->render_depth(request);
+  }
+  Result<Image> render_scene(const renderer::SceneView& view,
+                             const renderer::SceneContent& content) override {
+    return inner_->render_scene(view, content);
+  }
+  renderer::RendererInfo info() const override { return inner_->info(); }
+
+ private:
+  std::unique_ptr<renderer::Renderer> inner_;
+  std::vector<Eigen::Vector3d> fetched_m_;
+};
+
+RunResult flown(const std::string& pacing, const std::filesystem::path& folder) {
+  testing::JumpingClock clock;
+  RunOptions options;
+  options.folder = folder;
+  options.clock = &clock;
+  options.renderer_factory = [](std::shared_ptr<const terrain::TileSource> tiles) {
+    return Result<std::unique_ptr<renderer::Renderer>>(
+        std::make_unique<Paging>(renderer::create_noop_renderer(std::move(tiles))));
+  };
+  auto run = run_scenario(testing::small_scenario({"pacing=" + pacing, "duration_s=1"}), options);
+  if (!run) throw std::runtime_error(run.error().message);
+  return std::move(*run);
+}
+
+TEST(LateTiles, AreCountedInRealTimeAfterTheFirstView) {
+  const overfly::testing::TemporaryFolder folder;
+  const RunResult run = flown("real_time", folder.path() / "r");
+  EXPECT_EQ(run.metrics.at("camera").at("late_tiles"), (Json{{"tiles", 20}, {"frames", 10}}));
+  const auto opened = RunTimeline::open(folder.path() / "r");
+  ASSERT_TRUE(opened.ok()) << opened.error().message;
+  for (const FrameRow& row : (*opened)->frames(0, 100)) {
+    EXPECT_EQ(row.late_tiles, row.frame == 0 ? 0 : 2);
+  }
+}
+
+TEST(LateTiles, AreWaitedForInLockstep) {
+  const overfly::testing::TemporaryFolder folder;
+  const RunResult run = flown("lockstep", folder.path() / "r");
+  EXPECT_EQ(run.metrics.at("camera").at("frames"), 11);
+  EXPECT_FALSE(run.metrics.at("camera").contains("late_tiles"));
+}
+
+}  // namespace
+}  // namespace overfly::engine

@@ -1,0 +1,221 @@
+// Real-time pacing under a simulated clock: what is dropped, what is late.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "server/files/whole_file.hpp"
+#include "server/record/run_folder.hpp"
+#include "server/record/run_info.hpp"
+#include "server/record/run_records.hpp"
+#include "server/run/run_options.hpp"
+#include "server/timing/picture_rate.hpp"
+#include "server/timing/run_clock.hpp"
+#include "tests/server/support/engine_fixture.hpp"
+#include "tests/server/support/simulated_clock.hpp"
+
+namespace overfly::engine {
+namespace {
+
+using overfly::testing::TemporaryFolder;
+using ::testing::ElementsAre;
+using testing::SimulatedClock;
+using Json = nlohmann::json;
+
+constexpr std::int64_t kMillisecond = 1'000'000;
+
+/// Answers after a fixed time by the clock, once it is ready.
+class SlowEstimator final : public VoPort {
+ public:
+  SlowEstimator(RunClock& clock, std::int64_t work_ns, std::int64_t start_ns = 0)
+      : clock_(clock), work_ns_(work_ns), start_ns_(start_ns) {}
+  std::string type() const override { return "slow"; }
+  std::map<std::string, std::string> effective_parameters() const override {
+    return {{"vocabulary", ready_ ? "loaded" : "absent"}};
+  }
+  Status prepare(const VoFrame& first) override {
+    EXPECT_EQ(first.image, nullptr);
+    EXPECT_TRUE(first.intrinsics.validate());
+    if (start_ns_ > 0) clock_.sleep_until_ns(clock_.now_ns() + start_ns_);
+    ready_ = true;
+    return {};
+  }
+  Result<VoEstimate> track(const VoFrame& frame) override {
+    clock_.sleep_until_ns(clock_.now_ns() + work_ns_);
+    VoEstimate estimate;
+    estimate.sample.frame = frame.index;
+    estimate.sample.t_ns = frame.t_ns;
+    estimate.sample.state = TrackingState::kTracking;
+    estimate.sample.T_vo_camera.translation.x() = static_cast<double>(frame.index);
+    return estimate;
+  }
+  void reset() override {}
+  void set_debug(bool /*wanted*/) override {}
+
+ private:
+  RunClock& clock_;
+  std::int64_t work_ns_;
+  std::int64_t start_ns_;
+  bool ready_ = false;
+};
+
+/// A renderer whose every second image takes long.
+class SlowRenderer final : public renderer::Renderer {
+ public:
+  SlowRenderer(std::unique_ptr<renderer::Renderer> inner, RunClock& clock, std::int64_t work_ns)
+      : inner_(std::move(inner)), clock_(clock), work_ns_(work_ns) {}
+  using Renderer::render_camera;
+  using Renderer::render_depth;
+  Result<renderer::CameraFrame> render_camera(const renderer::CameraRequest& request) override {
+    clock_.sleep_until_ns(clock_.now_ns() + work_ns_);
+    return inner_->render_camera(request);
+  }
+  Result<DepthImage> render_depth(const renderer::CameraRequest& request) override {
+    return inner_->render_depth(request);
+  }
+  Result<Image> render_scene(const renderer::SceneView& view,
+                             const renderer::SceneContent& content) override {
+    return inner_->render_scene(view, content);
+  }
+  renderer::RendererInfo info() const override { return inner_->info(); }
+
+ private:
+  std::unique_ptr<renderer::Renderer> inner_;
+  RunClock& clock_;
+  std::int64_t work_ns_;
+};
+
+std::vector<std::int64_t> frames_where(const EstimatorRecords& estimator, bool dropped) {
+  std::vector<std::int64_t> frames;
+  for (const EstimateRecord& record : estimator.records) {
+    if (record.dropped == dropped) frames.push_back(record.sample.frame);
+  }
+  return frames;
+}
+
+/// A run in its own folder, of the empty renderer, under a simulated clock.
+class RealTime : public ::testing::Test {
+ protected:
+  RealTime() {
+    options_.folder = folder_.path() / "r";
+    options_.renderer_factory = testing::noop_factory();
+    options_.clock = &clock_;
+  }
+
+  SimulatedClock clock_;
+  RunOptions options_;
+
+ private:
+  TemporaryFolder folder_;
+};
+
+TEST_F(RealTime, BusyEstimatorGetsTheLatestFrameAndTheOthersAreListed) {
+  options_.estimator_factory = [&](const EstimatorSpec&) {
+    return Result<std::unique_ptr<VoPort>>(
+        std::make_unique<SlowEstimator>(clock_, 250 * kMillisecond));
+  };
+  // 10 Hz against 250 ms: 0 is done at 250 and takes 2, that is done at 500. Frame 5 comes at
+  // that instant: either of 4 and 5 may be taken, so the flight ends with frame 4, at 400 ms.
+  const auto run =
+      run_scenario(testing::small_scenario({"pacing=real_time",
+                                            "duration_s=0.4",
+                                            R"(estimators=[{"name":"slow","type":"feature"}])"}),
+                   options_);
+  ASSERT_TRUE(run.ok()) << run.error().message;
+  const auto records = read_run_records(options_.folder);
+  ASSERT_TRUE(records.ok()) << records.error().message;
+  EXPECT_THAT(frames_where(records->estimators[0], false), ElementsAre(0, 2, 4));
+  EXPECT_THAT(frames_where(records->estimators[0], true), ElementsAre(1, 3));
+  const Json& score = run->metrics.at("estimators").at("slow");
+  EXPECT_EQ(score.at("dropped_frames"), 2);
+  EXPECT_EQ(score.at("frames"), 5);
+  EXPECT_EQ(score.at("coverage"), 0.6);
+  EXPECT_EQ(score.at("outcome"), "COMPLETED") << "busy, not lost";
+  EXPECT_EQ(score.at("dropped_frame_ranges"), Json::parse("[[1, 1], [3, 3]]"));
+  EXPECT_EQ(run->metrics.at("camera").at("late_frames"), 0);
+  EXPECT_EQ(run->info.frames, 5);
+}
+
+TEST_F(RealTime, QuickEstimatorDropsNothing) {
+  options_.estimator_factory = [&](const EstimatorSpec&) {
+    return Result<std::unique_ptr<VoPort>>(
+        std::make_unique<SlowEstimator>(clock_, 99 * kMillisecond));
+  };
+  const auto run =
+      run_scenario(testing::small_scenario(
+                       {"pacing=real_time", R"(estimators=[{"name":"slow","type":"feature"}])"}),
+                   options_);
+  ASSERT_TRUE(run.ok()) << run.error().message;
+  EXPECT_EQ(run->metrics.at("estimators").at("slow").at("dropped_frames"), 0);
+  EXPECT_EQ(run->metrics.at("estimators").at("slow").at("frames"), 21);
+}
+
+TEST_F(RealTime, TheFlightBeginsWhenItsEstimatorsAreReady) {
+  std::int64_t start_ns = 0;
+  options_.estimator_factory = [&](const EstimatorSpec&) {
+    start_ns += 3000 * kMillisecond;
+    return Result<std::unique_ptr<VoPort>>(
+        std::make_unique<SlowEstimator>(clock_, 10 * kMillisecond, start_ns));
+  };
+  const std::int64_t begin_ns = clock_.now_ns();
+  const auto run = run_scenario(
+      testing::small_scenario(
+          {"pacing=real_time",
+           R"(estimators=[{"name":"a","type":"feature"},{"name":"b","type":"feature"}])"}),
+      options_);
+  ASSERT_TRUE(run.ok()) << run.error().message;
+  for (const char* name : {"a", "b"}) {
+    EXPECT_EQ(run->metrics.at("estimators").at(name).at("dropped_frames"), 0) << name;
+  }
+  const Json manifest = read_json(manifest_file(options_.folder)).value();
+  EXPECT_EQ(manifest.at("estimators").at(1).at("parameters").at("vocabulary"), "loaded");
+  // Both at a time: 6 s, and the flight of 2 s.
+  EXPECT_NEAR(static_cast<double>(clock_.now_ns() - begin_ns) * 1e-9, 8.0, 0.2);
+}
+
+TEST_F(RealTime, RendererThatFallsBehindSkipsFramesWhoseTimeHasPassed) {
+  options_.renderer_factory = [&](std::shared_ptr<const terrain::TileSource> tiles) {
+    return Result<std::unique_ptr<renderer::Renderer>>(std::make_unique<SlowRenderer>(
+        renderer::create_noop_renderer(std::move(tiles)), clock_, 250 * kMillisecond));
+  };
+  // 10 Hz against 250 ms a frame: 0 until 250, so 1 (due by 200) is late; 2 until 500, so 3 and 4
+  // (due by 400 and 500) are; 5 until 750, so 6 is; 7 until 1000, so 8 and 9 are; 10.
+  const auto run = run_scenario(
+      testing::small_scenario(
+          {"pacing=real_time", "duration_s=1", R"(estimators=[{"name":"p","type":"perfect"}])"}),
+      options_);
+  ASSERT_TRUE(run.ok()) << run.error().message;
+  const auto records = read_run_records(options_.folder);
+  ASSERT_TRUE(records.ok());
+  std::vector<std::int64_t> drawn;
+  for (const FrameRecord& frame : records->frames) drawn.push_back(frame.row.frame);
+  EXPECT_THAT(drawn, ElementsAre(0, 2, 5, 7, 10));
+  std::vector<std::int64_t> late;
+  for (const evaluation::FlightFrame& frame : records->late_frames) late.push_back(frame.frame);
+  EXPECT_THAT(late, ElementsAre(1, 3, 4, 6, 8, 9));
+  const Json& score = run->metrics.at("estimators").at("p");
+  EXPECT_EQ(score.at("frames"), 11);
+  EXPECT_DOUBLE_EQ(score.at("coverage").get<double>(), 5.0 / 11.0);
+  EXPECT_EQ(run->metrics.at("camera").at("late_frame_ranges"),
+            Json::parse("[[1, 1], [3, 4], [6, 6], [8, 9]]"));
+}
+
+TEST_F(RealTime, PicturesForViewersGiveWayToFramesThatComeLate) {
+  options_.renderer_factory = [&](std::shared_ptr<const terrain::TileSource> tiles) {
+    return Result<std::unique_ptr<renderer::Renderer>>(std::make_unique<SlowRenderer>(
+        renderer::create_noop_renderer(std::move(tiles)), clock_, 250 * kMillisecond));
+  };
+  PictureRate rate;
+  options_.picture_rate = &rate;
+  std::vector<double> limits_hz;
+  options_.progress = [&](const RunInfo&) { limits_hz.push_back(rate.limit_hz().value_or(0.0)); };
+  const auto run =
+      run_scenario(testing::small_scenario({"pacing=real_time", "duration_s=1"}), options_);
+  ASSERT_TRUE(run.ok()) << run.error().message;
+  // One missed between frames 0 and 2, two between 2 and 5: as in the test above.
+  EXPECT_THAT(limits_hz, ElementsAre(5.0, 2.0, 1.0, 1.0, 1.0));
+  EXPECT_FALSE(rate.flying());
+}
+
+}  // namespace
+}  // namespace overfly::engine

@@ -1,0 +1,179 @@
+// The list of runs: kept in memory, and always as the folder is.
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "server/files/whole_file.hpp"
+#include "server/record/run_folder.hpp"
+#include "server/record/run_info.hpp"
+#include "server/record/run_lock.hpp"
+#include "tests/server/support/manager_fixture.hpp"
+
+namespace overfly::engine {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+class RunListTest : public testing::ManagerTest {
+ protected:
+  /// A copy of a run that is over, as another program leaves it, asked for at a time of its own.
+  void copy_run(const std::string& id, const std::string& to, const std::string& created_utc) {
+    fs::copy(folder_of(id), folder_of(to), fs::copy_options::recursive);
+    overfly::testing::write_text(created_file(folder_of(to)),
+                                 nlohmann::json{{"created_utc", created_utc}}.dump());
+  }
+  void change_manifest(const std::string& id, const std::string& field, const std::string& value) {
+    nlohmann::json manifest = read_json(manifest_file(folder_of(id))).value();
+    manifest[field] = value;
+    ASSERT_TRUE(write_json(manifest_file(folder_of(id)), manifest).ok());
+  }
+};
+
+TEST_F(RunListTest, SeesWhatOtherProgramsAddChangeAndRemove) {
+  const auto runs = manager();
+  const std::string id = fly(*runs);
+  copy_run(id, "older", "2020-01-01T00:00:00Z");
+  copy_run(id, "newer", "2100-01-01T00:00:00.000Z");
+  EXPECT_THAT(ids_of(runs->runs()), ElementsAre("newer", id, "older"));
+  change_manifest("older", "title", "Another title");
+  EXPECT_EQ(runs->runs()[2]->title, "Another title");
+  EXPECT_EQ(runs->run("older").value().title, "Another title");
+  change_manifest("older", "title", "A third title");
+  EXPECT_EQ(runs->run("older").value().title, "A third title");
+  EXPECT_EQ(runs->runs()[2]->title, "A third title");
+  fs::remove_all(folder_of("newer"));
+  EXPECT_THAT(ids_of(runs->runs()), ElementsAre(id, "older"));
+  EXPECT_EQ(runs->run("newer").error().code, ErrorCode::kNotFound);
+  fs::create_directories(folder_of("later"));
+  EXPECT_EQ(runs->runs().size(), 2U) << "no run without a manifest";
+  EXPECT_EQ(runs->run("later").error().code, ErrorCode::kNotFound);
+  fs::copy(manifest_file(folder_of(id)), manifest_file(folder_of("later")));
+  EXPECT_THAT(ids_of(runs->runs()), Contains("later"));
+}
+
+TEST_F(RunListTest, SharesWhatHasNotChanged) {
+  const auto runs = manager();
+  const std::string id = fly(*runs);
+  copy_run(id, "older", "2020-01-01T00:00:00Z");
+  // Once the file system's clock has ticked, an unchanged stamp is proof enough.
+  const auto listed = [&] { return runs->runs().back(); };
+  auto before = listed();
+  auto after = listed();
+  for (; before != after; after = listed()) before = after;
+  EXPECT_EQ(listed(), after) << "not read again";
+  change_manifest("older", "title", "Another title");
+  EXPECT_NE(listed(), after);
+}
+
+/// Files that grow with the flight are not touched: a pipe would keep whoever opens it.
+TEST_F(RunListTest, ReadsNoFileThatGrowsWithTheFlight) {
+  const auto runs = manager();
+  const std::string id = fly(*runs);
+  for (const fs::path& file : {timings_file(folder_of(id)),
+                               frames_file(folder_of(id)),
+                               estimate_file(folder_of(id), "p"),
+                               log_file(folder_of(id))}) {
+    fs::remove(file);
+    ASSERT_EQ(::mkfifo(file.c_str(), 0600), 0);
+  }
+  const auto again = manager();
+  ASSERT_EQ(again->runs().size(), 1U);
+  EXPECT_EQ(again->runs()[0]->frames, 21);
+  EXPECT_EQ(again->runs()[0]->problem, "");
+  EXPECT_EQ(again->run(id).value().status, RunStatus::kCompleted);
+}
+
+/// Of a run that was interrupted the last row tells how far it came, however many there are.
+TEST_F(RunListTest, CountsFramesOfAnInterruptedRunFromItsLastRow) {
+  const auto runs = manager();
+  const std::string id = fly(*runs);
+  change_manifest(id, "status", "running");
+  const std::string rows = overfly::testing::read_text(frames_file(folder_of(id)));
+  fs::resize_file(frames_file(folder_of(id)), 0);
+  fs::resize_file(frames_file(folder_of(id)), std::uintmax_t{1} << 33U);  // holes alone
+  const int file = ::open(frames_file(folder_of(id)).c_str(), O_WRONLY | O_APPEND);
+  ASSERT_EQ(::write(file, ("\n" + rows).data(), rows.size() + 1),
+            static_cast<ssize_t>(rows.size() + 1));
+  ::close(file);
+  EXPECT_EQ(manager()->runs()[0]->status, RunStatus::kInterrupted);
+  EXPECT_EQ(manager()->runs()[0]->frames, 21);
+}
+
+TEST_F(RunListTest, RunOfAnotherProcessRunsUntilItsLockIsFree) {
+  const auto runs = manager();
+  const std::string id = fly(*runs);
+  copy_run(id, "other", "2100-01-01T00:00:00Z");
+  change_manifest("other", "status", "running");
+  {
+    const RunLock lock = std::move(RunLock::take(folder_of("other"))).value();
+    EXPECT_EQ(runs->runs()[0]->status, RunStatus::kRunning);
+    EXPECT_EQ(runs->run("other").value().status, RunStatus::kRunning);
+  }
+  EXPECT_EQ(runs->runs()[0]->status, RunStatus::kInterrupted);
+}
+
+TEST_F(RunListTest, TimeOfCreationStandsInAFileOfItsOwn) {
+  const auto runs = manager();
+  const RunInfo asked = runs->start("small", perfect()).value();
+  wait_for_end(*runs, asked.id);
+  EXPECT_FALSE(read_json(timings_file(folder_of(asked.id))).value().contains("created_utc"));
+  EXPECT_EQ(read_json(created_file(folder_of(asked.id))).value().at("created_utc"),
+            asked.created_utc);
+  EXPECT_EQ(manager()->runs()[0]->created_utc, asked.created_utc);
+  // A folder of an earlier version: its scenario was written when it was made.
+  fs::remove(created_file(folder_of(asked.id)));
+  const std::string written = manager()->runs()[0]->created_utc;
+  EXPECT_EQ(written.substr(0, 15), asked.created_utc.substr(0, 15));
+  EXPECT_EQ(manager()->runs()[0]->problem, "");
+}
+
+TEST_F(RunListTest, RunsThatWaitAreListedAndHaveNoFolderToRead) {
+  const auto runs = manager();
+  const std::string first = runs->start("small", endless()).value().id;
+  const std::string second = runs->start("small", {}).value().id;
+  EXPECT_THAT(ids_of(runs->runs()), ElementsAre(second, first));
+  EXPECT_EQ(runs->run(second).value().status, RunStatus::kQueued);
+  EXPECT_THAT(manager()->runs(), ::testing::SizeIs(::testing::Le(1U)));
+  EXPECT_TRUE(runs->cancel(first).ok());
+  wait_for_end(*runs, second);
+}
+
+TEST_F(RunListTest, NewMetricsReachThoseWhoWatch) {
+  const auto runs = manager();
+  const std::string id = fly(*runs);
+  const auto timeline = runs->timeline(id).value();
+  nlohmann::json metrics = timeline->metrics();
+  metrics["note"] = "scored again";
+  ASSERT_TRUE(write_json(metrics_file(folder_of(id)), metrics).ok());
+  // Nobody asks for the run: its watchers are told all the same.
+  std::uint64_t seen = timeline->revision();
+  while (!timeline->metrics().contains("note")) seen = timeline->wait_for_change(seen, 1000);
+  metrics["note"] = "and again";
+  ASSERT_TRUE(write_json(metrics_file(folder_of(id)), metrics).ok());
+  const auto asked = runs->timeline(id).value();
+  EXPECT_EQ(asked, timeline) << "a watched run stays the same";
+  EXPECT_EQ(asked->metrics().at("note"), "and again");
+}
+
+TEST_F(RunListTest, FolderPutInARunsPlaceIsReadAnew) {
+  const auto runs = manager();
+  const std::string id = fly(*runs);
+  const auto before = runs->timeline(id).value();
+  change_manifest(id, "title", "Another run");
+  auto after = runs->timeline(id).value();
+  // The thread that flew the run may hold its time line for a moment longer.
+  while (after == before) after = runs->timeline(id).value();
+  EXPECT_NE(before, after);
+  EXPECT_EQ(after->info().title, "Another run");
+  fs::remove_all(folder_of(id));
+  EXPECT_EQ(runs->timeline(id).error().code, ErrorCode::kNotFound);
+  EXPECT_THAT(runs->runs(), IsEmpty());
+}
+
+}  // namespace
+}  // namespace overfly::engine
