@@ -1,4 +1,4 @@
-// Where exceptions of libraries and of a lack of memory end.
+// Exception barriers: exceptions from libraries and failed allocations stop here.
 #pragma once
 
 #include <exception>
@@ -8,8 +8,9 @@
 
 namespace overfly {
 
-/// Calls `action`, and `fail` with the text of what escapes it. What escapes `fail` is dropped.
-/// @return true when nothing escaped
+/// Calls `action`. If it throws, calls `fail` with the exception's text; an exception from `fail`
+/// is dropped.
+/// @return true if `action` did not throw
 template <typename Action, typename Fail>
 bool contained(Action&& action, Fail&& fail) noexcept {
   try {
@@ -19,15 +20,16 @@ bool contained(Action&& action, Fail&& fail) noexcept {
     } catch (const std::exception& error) {
       fail(error.what());
     } catch (...) {
-      fail("an exception of an unknown kind");
+      fail("unknown exception");
     }
   } catch (...) {
-    // There is no memory even to say so.
+    // Out of memory: not even the report can be built.
   }
   return false;
 }
 
-/// Calls what answers with a Status or Result; an exception becomes the error kInternal.
+/// Calls a function that returns a Status or a Result and converts an exception into the error
+/// kInternal.
 template <typename Call>
 auto guarded(const Call& call) -> decltype(call()) {
   try {
@@ -35,7 +37,7 @@ auto guarded(const Call& call) -> decltype(call()) {
   } catch (const std::exception& error) {
     return Error{ErrorCode::kInternal, error.what()};
   } catch (...) {
-    return Error{ErrorCode::kInternal, "an exception of an unknown kind"};
+    return Error{ErrorCode::kInternal, "unknown exception"};
   }
 }
 

@@ -59,7 +59,7 @@ double radial_growth(const Distortion& distortion, double r) {
 }
 
 /// The largest ideal radius up to which the distorted radius grows; infinity if it always does
-/// (looked at up to 88.9 deg off the axis).
+/// (checked up to 88.9 deg from the axis).
 double growth_limit(const Distortion& distortion) {
   constexpr double kFarthest = 50.0;
   constexpr int kSteps = 2000;
@@ -168,7 +168,7 @@ std::optional<Eigen::Vector2d> CameraModel::project(const Eigen::Vector3d& p_cam
   if (distortion_.none()) return pinhole_.project(p_camera);
   if (!(p_camera.z() > 0.0)) return std::nullopt;
   const Eigen::Vector2d ideal = p_camera.head<2>() / p_camera.z();
-  // Beyond the turn a point would land inside the image again.
+  // Beyond this radius the distortion would map a point back into the image.
   if (ideal.norm() > max_radius_) return std::nullopt;
   const Eigen::Vector2d distorted = distort(ideal, nullptr);
   return Eigen::Vector2d(pinhole_.fx_px * distorted.x() + pinhole_.cx_px,
@@ -180,7 +180,7 @@ std::optional<Eigen::Vector3d> CameraModel::ray(const Eigen::Vector2d& pixel) co
   if (distortion_.none()) return straight;
   const Eigen::Vector2d wanted = straight.head<2>();
   constexpr double kFarthestIdeal = 50.0;
-  // From the axis outwards, so that Newton's method cannot cross the turn of the distortion.
+  // Start on the axis, so that Newton's method cannot cross the limit of growth.
   Eigen::Vector2d ideal = Eigen::Vector2d::Zero();
   constexpr int kIterations = 60;
   for (int i = 0; i < kIterations; ++i) {

@@ -1,4 +1,4 @@
-// A camera with lens distortion.
+// A pinhole camera with lens distortion.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,17 +21,17 @@ enum class DistortionModel {
 /// "none", "radtan", "equidistant", "fov".
 [[nodiscard]] const char* to_string(DistortionModel model);
 [[nodiscard]] std::optional<DistortionModel> distortion_model_from(const std::string& text);
-/// How many coefficients a model has: 0, 5, 4, 1.
+/// Number of coefficients of a model: 0, 5, 4, 1.
 [[nodiscard]] int coefficient_count(DistortionModel model);
 
 struct Distortion {
   DistortionModel model = DistortionModel::kNone;
-  std::array<double, 5> k{};  ///< in the model's order, the rest 0
+  std::array<double, 5> k{};  ///< in the model's order; unused ones are 0
 
   [[nodiscard]] bool none() const { return model == DistortionModel::kNone; }
 };
 
-/// Image plane, then lens: pixel = K * distort(x / z, y / z). Immutable.
+/// Projection: pixel = K * distort(x / z, y / z). Immutable.
 class CameraModel {
  public:
   CameraModel() = default;
@@ -40,25 +40,26 @@ class CameraModel {
   [[nodiscard]] const PinholeCamera& pinhole() const { return pinhole_; }  ///< size and K
   [[nodiscard]] const Distortion& distortion() const { return distortion_; }
 
-  /// Errors: kInvalidArgument naming the field: as PinholeCamera's, a coefficient that is not
-  /// finite, or a distortion that folds the image (its radius must grow with the angle off the
-  /// axis, up to the image's farthest corner).
+  /// Errors: kInvalidArgument naming the field: those of PinholeCamera::validate, a coefficient
+  /// that is not finite, or a distortion that folds the image (the distorted radius must grow with
+  /// the angle from the axis up to the image's farthest corner).
   [[nodiscard]] Status validate() const;
 
-  /// Pixel of a point in the camera frame; empty when the point is not in front (z <= 0) or beyond
-  /// the angle at which the distortion turns back.
+  /// Pixel of a point in the camera frame. Empty if the point is not in front of the camera
+  /// (z <= 0) or lies beyond the angle at which the distorted radius stops growing.
   [[nodiscard]] std::optional<Eigen::Vector2d> project(const Eigen::Vector3d& p_camera) const;
-  /// Direction with z = 1 through a pixel, by Newton's method (to 1e-10 of the image plane).
-  /// Empty where no direction in front of the camera reaches the pixel.
+  /// Direction with z = 1 through a pixel, by Newton's method (to 1e-10 of the image plane). Empty
+  /// if no direction in front of the camera maps to the pixel.
   [[nodiscard]] std::optional<Eigen::Vector3d> ray(const Eigen::Vector2d& pixel) const;
-  /// The distorted place of a point (x / z, y / z) of the ideal image plane, and its Jacobian.
+  /// Distorts a point (x / z, y / z) of the ideal image plane.
+  /// @param J  receives the Jacobian; may be null
   [[nodiscard]] Eigen::Vector2d distort(const Eigen::Vector2d& ideal, Eigen::Matrix2d* J) const;
 
  private:
   PinholeCamera pinhole_;
   Distortion distortion_;
   double max_radius_ =
-      std::numeric_limits<double>::infinity();  ///< of the ideal plane, to the turn
+      std::numeric_limits<double>::infinity();  ///< ideal radius where growth stops
 };
 
 }  // namespace overfly

@@ -1,4 +1,4 @@
-// Where a camera was while one image was exposed and read out.
+// The camera's motion during the exposure and readout of one image.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,13 @@
 
 namespace overfly {
 
-/// T_world_camera over a short time. Before the first and after the last pose it stands still.
+/// T_world_camera over a short time. Constant before the first and after the last pose.
 class CameraMotion {
  public:
-  /// A camera that stands still.
+  /// A camera that does not move.
   CameraMotion(const Pose& T_world_camera = {});
-  /// Errors: kInvalidArgument for no pose, and as Trajectory's.
+  /// Errors: kInvalidArgument if `T_world_camera` is empty, and the errors of
+  /// Trajectory::from_poses.
   static Result<CameraMotion> from_poses(const std::vector<StampedPose>& T_world_camera);
 
   /// Linear in position, SLERP in rotation.

@@ -13,7 +13,7 @@
 namespace overfly {
 namespace {
 
-/// A descriptor that closes itself.
+/// Closes its file descriptor on destruction.
 class OpenFile {
  public:
   explicit OpenFile(const std::filesystem::path& file)
@@ -62,7 +62,7 @@ Status read_file_pieces(const std::filesystem::path& file,
                         std::uint64_t max_bytes,
                         const std::atomic<bool>* cancel,
                         const std::function<void(std::string_view)>& take) {
-  // Looked at before it is opened: opening some devices does something.
+  // Check before opening: opening some devices has side effects.
   if (Status status = check_regular_file(file); !status) return status;
   const OpenFile open(file);
   struct stat facts {};

@@ -1,4 +1,4 @@
-// Files read whole: of the expected kind, within a size, and without waiting for a writer.
+// Reads whole regular files up to a size limit, without blocking.
 #pragma once
 
 #include <atomic>
@@ -13,29 +13,31 @@
 
 namespace overfly {
 
-/// The whole content of a regular file (links are followed).
+/// Reads a regular file completely. Symbolic links are followed.
 ///
-/// Opens without blocking, so a FIFO or a device never holds the caller up. The size is checked
-/// before and while reading, because files of the kernel say 0 bytes whatever they hold.
-/// @param max_bytes  a longer file is refused, unread where the file system knows its size
-/// @param cancel     looked at between pieces of 1 MiB; may be null
-/// Errors: kNotFound; kUnreadable for a folder, for what is no regular file and for a file beyond
-/// `max_bytes`; kIo with the system's reason; kCancelled. Each names the file.
+/// The file is opened without blocking, so a FIFO or a device cannot block the caller. The size is
+/// checked before and during reading, because files of the kernel (/proc, /sys) report 0 bytes.
+/// @param max_bytes  size limit; a larger file is rejected unread if the file system reports its
+/// size
+/// @param cancel     checked after every 1 MiB; may be null
+/// Errors: kNotFound; kUnreadable for a folder, for anything else that is not a regular file, and
+/// for a file larger than `max_bytes`; kIo with the system's reason; kCancelled. Each names the
+/// file.
 [[nodiscard]] Result<std::string> read_file_text(const std::filesystem::path& file,
                                                  std::uint64_t max_bytes,
                                                  const std::atomic<bool>* cancel = nullptr);
 
-/// The same as bytes.
+/// As read_file_text, but returns bytes.
 [[nodiscard]] Result<std::vector<std::uint8_t>> read_file_bytes(const std::filesystem::path& file,
                                                                 std::uint64_t max_bytes);
 
-/// The same piece by piece, for what need not be kept.
+/// As read_file_text, but passes the content to `take` piece by piece.
 [[nodiscard]] Status read_file_pieces(const std::filesystem::path& file,
                                       std::uint64_t max_bytes,
                                       const std::atomic<bool>* cancel,
                                       const std::function<void(std::string_view)>& take);
 
-/// Whether a file is there and regular (links are followed), without opening it.
+/// Checks that a file exists and is regular, without opening it. Symbolic links are followed.
 /// Errors: as read_file_text.
 [[nodiscard]] Status check_regular_file(const std::filesystem::path& file);
 

@@ -20,7 +20,7 @@ struct Geodetic {
 [[nodiscard]] Geodetic geodetic_from_ecef(const Eigen::Vector3d& p_ecef);
 
 /// The `world` frame of a scenario: east-north-up, tangent to WGS84 at an origin [m].
-/// It is flat while the earth is not: a point 10 km away at the origin's height has up = -7.8 m.
+/// The frame is flat, the earth is not: a point 10 km away at the origin's height has up = -7.8 m.
 class LocalFrame {
  public:
   explicit LocalFrame(const Geodetic& origin);
@@ -31,8 +31,8 @@ class LocalFrame {
   [[nodiscard]] Eigen::Vector3d world_from_geodetic(const Geodetic& point) const;
   [[nodiscard]] Geodetic geodetic_from_world(const Eigen::Vector3d& p_world) const;
 
-  /// R_world_enu of the local east-north-up at a point: what turns an attitude given relative to
-  /// the horizon there into one relative to the world frame.
+  /// R_world_enu of the local east-north-up axes at a point. Converts an attitude relative to the
+  /// local horizon into one relative to the world frame.
   [[nodiscard]] Eigen::Quaterniond R_world_enu_at(const Geodetic& point) const;
 
  private:

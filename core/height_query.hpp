@@ -1,4 +1,4 @@
-// The height of the ground, as those see it who must not know where it comes from.
+// Interface to the ground's height, independent of its source.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,7 +12,7 @@ class HeightQuery {
   virtual ~HeightQuery() = default;
 
   /// Up coordinate of the ground on the vertical line through (east, north), world frame [m].
-  /// Beyond the elevation's edge it continues with the edge's value.
+  /// Beyond the edge of the elevation data the value at the edge continues.
   [[nodiscard]] virtual double ground_up_m(double east_m, double north_m) const = 0;
 };
 

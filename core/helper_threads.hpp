@@ -1,4 +1,4 @@
-// The same work on several threads at once.
+// Runs the same work on several threads.
 #pragma once
 
 #include <exception>
@@ -9,9 +9,10 @@
 
 namespace overfly {
 
-/// Calls `work` here and on as many further threads as the system gives, and returns when all are
-/// done. Whatever one of them throws is thrown here.
-/// @param helpers  threads besides this one; work must be right with fewer
+/// Calls `work` on this thread and on up to `helpers` further threads, and returns when all have
+/// finished. Rethrows the first exception.
+/// @param helpers  number of further threads; `work` must be correct with fewer, as the system may
+/// refuse to create them
 template <typename Work>
 void work_with_helpers(unsigned helpers, const Work& work) {
   std::mutex mutex;
@@ -29,7 +30,7 @@ void work_with_helpers(unsigned helpers, const Work& work) {
   try {
     for (unsigned i = 0; i < helpers; ++i) threads.emplace_back(guarded);
   } catch (const std::system_error&) {
-    // The system has no more threads: those that are there do the same work.
+    // No more threads are available: continue with those that started.
   }
   guarded();
   for (std::thread& thread : threads) thread.join();

@@ -1,4 +1,4 @@
-// Images as plain buffers, without a library's type.
+// Images as plain buffers, independent of image libraries.
 #pragma once
 
 #include <cstddef>
@@ -36,7 +36,7 @@ struct ImageBuffer {
 
 using Image = ImageBuffer<std::uint8_t>;     ///< 8 bit, grey or RGB
 using Image16 = ImageBuffer<std::uint16_t>;  ///< more than 8 bit, grey or RGB
-/// Linear radiance, grey or RGB; 1 = what the imagery shows as white.
+/// Linear radiance, grey or RGB; 1 = white in the imagery.
 using RadianceImage = ImageBuffer<float>;
 using DepthImage = ImageBuffer<float>;  ///< z along the optical axis [m]; +infinity = sky
 

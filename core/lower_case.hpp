@@ -4,7 +4,7 @@
 
 namespace overfly {
 
-/// With the letters A to Z in lower case, whatever the locale.
+/// Converts the letters A to Z to lower case, independent of the locale.
 [[nodiscard]] inline std::string lower_case(std::string text) {
   for (char& c : text) {
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');

@@ -48,7 +48,7 @@ Error json_syntax_error(std::string_view text,
                         const std::string& origin) {
   const std::size_t cut = complaint.find("syntax error");
   std::string reason = cut == std::string::npos ? complaint : complaint.substr(cut);
-  // The complaint quotes what was read last, which may be a text of any length.
+  // The parser quotes the last token read, which can have any length.
   constexpr std::size_t kLongest = 200;
   if (reason.size() > kLongest) reason = reason.substr(0, kLongest) + "...";
   return {ErrorCode::kUnreadable, origin + ", " + position_of(text, byte) + ": " + reason};

@@ -1,4 +1,4 @@
-// JSON that comes from outside the program: the wire, options, and files of any kind.
+// Parses JSON from outside the program: network messages, options and files.
 #pragma once
 
 #include <cstddef>
@@ -9,25 +9,24 @@
 
 namespace overfly {
 
-/// Arrays and objects inside each other. No document of ours needs more than a dozen; the limit
-/// keeps what walks a document recursively (a copy, a destructor, a schema) off the stack's end.
+/// Maximum nesting of arrays and objects. Overfly's documents need at most a dozen levels; the
+/// limit prevents a stack overflow in recursive code (copies, destructors, schema checks).
 inline constexpr std::size_t kMaxJsonDepth = 64;
 
-/// Counts brackets outside of strings, before any document is built.
+/// Checks the nesting depth by counting brackets outside strings, before a document is built.
 /// Errors: kUnreadable "ORIGIN: is nested more than 64 deep".
 [[nodiscard]] Status check_json_depth(std::string_view text, const std::string& origin);
 
-/// "ORIGIN, line 3, column 7: REASON" of a parser's complaint at a byte (from 1), cut to a length
-/// that can be shown.
+/// Converts a parser's error at a byte offset (from 1) into "ORIGIN, line 3, column 7: REASON".
+/// Long reasons are cut.
 [[nodiscard]] Error json_syntax_error(std::string_view text,
                                       std::size_t byte,
                                       const std::string& complaint,
                                       const std::string& origin);
 
-/// The one way in for JSON from outside: its depth is checked before it is parsed, and no exception
-/// leaves.
-/// @tparam Json  nlohmann::json or nlohmann::ordered_json; named by the caller, so that this room
-///               needs no JSON library
+/// Parses JSON from outside. The nesting depth is checked first, and no exception is thrown.
+/// @tparam Json  nlohmann::json or nlohmann::ordered_json. The caller names it, so that core needs
+/// no JSON library.
 /// @param origin  names the source in messages: a file, "the body"
 /// Errors: kUnreadable naming origin, line and column, or origin and depth limit.
 template <typename Json>
@@ -38,7 +37,7 @@ template <typename Json>
   } catch (const typename Json::parse_error& error) {
     return json_syntax_error(text, error.byte, error.what(), origin);
   } catch (const typename Json::exception& error) {
-    // A number beyond any double, for one.
+    // For example a number out of the range of a double.
     return Error{ErrorCode::kUnreadable, origin + ": " + error.what()};
   }
 }

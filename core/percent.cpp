@@ -7,7 +7,7 @@
 namespace overfly {
 namespace {
 
-/// Decimals that give a positive number two significant digits.
+/// Number of decimals that show a positive number with two significant digits.
 int decimals_of(double value) {
   constexpr int kMost = 12;
   return std::clamp(1 - static_cast<int>(std::floor(std::log10(value))), 0, kMost);

@@ -18,7 +18,7 @@ Eigen::Matrix4d Pose::matrix() const {
 }
 
 Pose operator*(const Pose& T_a_b, const Pose& T_b_c) {
-  // Renormalised: products of thousands of quaternions drift off the unit sphere.
+  // Renormalise: rounding errors accumulate over thousands of products.
   return {(T_a_b.rotation * T_b_c.rotation).normalized(),
           T_a_b.rotation * T_b_c.translation + T_a_b.translation};
 }

@@ -31,7 +31,7 @@ struct Similarity {
 };
 
 [[nodiscard]] Eigen::Vector3d operator*(const Similarity& S_a_b, const Eigen::Vector3d& p_b);
-/// The pose of a frame known in b, seen from a: rotation is not scaled, position is.
+/// Pose in a of a frame whose pose in b is known: the position is scaled, the rotation is not.
 [[nodiscard]] Pose operator*(const Similarity& S_a_b, const Pose& T_b_c);
 
 /// Interpolates position linearly and rotation along the shorter arc (SLERP), alpha in [0, 1].
@@ -53,11 +53,11 @@ struct RollPitchYaw {
 /// The attitude of R_world_body; roll and yaw in (-pi, pi], pitch in [-pi/2, pi/2].
 [[nodiscard]] RollPitchYaw attitude_from(const Eigen::Quaterniond& R_world_body);
 
-/// The nadir mount: the camera looks down (+z_body), and the image's top is the nose.
+/// Nadir mount: the camera looks down (+z_body), and the top of the image points to the nose.
 /// Camera x (right) = body y, camera y (image down) = -body x, camera z = body z.
 [[nodiscard]] Eigen::Quaterniond R_body_camera_nadir();
 
-/// The angle wrapped to (-pi, pi] [rad].
+/// Wraps an angle to (-pi, pi] [rad].
 [[nodiscard]] double wrap_pi(double angle_rad);
 
 inline constexpr double kPi = 3.14159265358979323846;

@@ -1,4 +1,4 @@
-// What a thread has used of the processor.
+// Processor time of a thread.
 #pragma once
 
 #include <ctime>

@@ -1,5 +1,5 @@
-// Errors as values: what library code returns when the outside world (a file, a peer, a GPU,
-// a user's scenario) is bad. A bug in our own code is an assert, not a Result.
+// Errors as values: returned by library code when something outside the program (a file, a peer, a
+// GPU, a user's scenario) is invalid or fails. A bug in Overfly itself is an assert, not a Result.
 #pragma once
 
 #include <cassert>
@@ -12,19 +12,19 @@ namespace overfly {
 
 enum class ErrorCode {
   kInvalidArgument,  ///< a value outside its limits; the message names field, value and limit
-  kNotFound,         ///< a file, run, frame or name that is not there
-  kUnreadable,       ///< a file that is there and cannot be understood
+  kNotFound,         ///< a file, run, frame or name does not exist
+  kUnreadable,       ///< a file exists but cannot be parsed
   kIo,               ///< reading or writing failed
-  kUnsupported,      ///< this build or machine lacks what is asked
-  kCancelled,        ///< the user stopped it
-  kConflict,         ///< the thing exists already or is in another state
-  kInternal,         ///< a library failed in a way that is not the user's doing
+  kUnsupported,      ///< not supported by this build or machine
+  kCancelled,        ///< cancelled by the user
+  kConflict,         ///< already exists, or is in another state
+  kInternal,         ///< a library failed; not the user's fault
 };
 
-/// The stable lower-case name of a code ("invalid_argument"), as the REST interface prints it.
+/// The stable lower-case name of a code ("invalid_argument"), used by the REST interface.
 [[nodiscard]] const char* to_string(ErrorCode code);
 
-/// One failure: what failed, which value, which limit, which file or field, in `message`.
+/// One failure. `message` says what failed and names the file or field, the value and the limit.
 struct Error {
   ErrorCode code = ErrorCode::kInternal;
   std::string message;
@@ -35,7 +35,7 @@ struct Error {
   }
 };
 
-/// A T, or the Error that kept us from it.
+/// A T, or the Error that prevented it.
 template <typename T>
 class [[nodiscard]] Result {
  public:
@@ -73,7 +73,7 @@ class [[nodiscard]] Result {
   std::variant<T, Error> state_;
 };
 
-/// The outcome of an action without a value.
+/// Success, or an Error.
 template <>
 class [[nodiscard]] Result<void> {
  public:

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Absolute, without `.`, `..` and a slash at its end; links stay.
+/// Makes a path absolute and removes `.`, `..` and a trailing slash; links stay.
 fs::path plain(const fs::path& file) {
   std::error_code ignored;
   fs::path path = fs::absolute(file, ignored).lexically_normal();
@@ -26,7 +26,7 @@ bool lies_in(const fs::path& file, const fs::path& folder) {
   return at_folder == folder.end() && at_file != file.end();
 }
 
-/// Each folder as named and, where that differs, with its links resolved.
+/// Each folder as named and, if that differs, with its links resolved.
 std::vector<fs::path> both_names(const std::vector<fs::path>& folders) {
   std::vector<fs::path> names;
   for (const fs::path& folder : folders) {
@@ -39,7 +39,7 @@ std::vector<fs::path> both_names(const std::vector<fs::path>& folders) {
   return names;
 }
 
-/// Files there are doors into the kernel: some wait for an event, most say they hold 0 bytes.
+/// Files there are interfaces of the kernel: some block on read, and most report 0 bytes.
 bool is_kernels_own(const fs::path& file) {
   constexpr std::array<long, 9> kKinds = {PROC_SUPER_MAGIC,
                                           SYSFS_MAGIC,
@@ -55,7 +55,7 @@ bool is_kernels_own(const fs::path& file) {
   return std::find(kKinds.begin(), kKinds.end(), static_cast<long>(facts.f_type)) != kKinds.end();
 }
 
-/// A name that the system would read in another way than its parts say.
+/// Whether the system resolves the path differently than its components suggest.
 bool is_ambiguous(const fs::path& file) {
   return file.native().find('\0') != std::string::npos ||
          std::find(file.begin(), file.end(), "..") != file.end();
@@ -120,7 +120,8 @@ Status SourcePolicy::check_place(const fs::path& file, const std::string& field)
   if (!confined_) return {};
   const Error outside{ErrorCode::kInvalidArgument,
                       named(field, file) + ": must be a file inside of the server's data folders"};
-  // As named first: a place outside is never looked at, so nothing tells whether it exists.
+  // Check the path as named first: a path outside is never accessed, so the error cannot reveal
+  // whether it exists.
   if (is_ambiguous(file)) return outside;
   const fs::path path = plain(file);
   if (!holds(path)) return outside;

@@ -1,4 +1,4 @@
-// Which files of this machine a scenario, an override or a world manifest may name.
+// Decides which files of this machine a scenario, an override or a world manifest may name.
 #pragma once
 
 #include <filesystem>
@@ -9,34 +9,34 @@
 
 namespace overfly {
 
-/// The one check of every file that is named from outside, before anything opens it.
+/// Checks every file that is named from outside before anything opens it.
 ///
-/// On the command line any regular file may be named: the user may read it anyhow. A server lets
-/// its clients name files inside its data folders only, and says the same about all others, so
-/// that nobody learns what exists on the machine.
+/// On the command line any regular file is allowed, because the user can read it anyway. A server
+/// allows its clients only files inside its data folders. It returns the same error for all other
+/// files, so that clients cannot find out which files exist on the machine.
 class SourcePolicy {
  public:
-  /// Any regular file: of the command line.
+  /// Allows any regular file. For the command line.
   SourcePolicy() = default;
-  /// Only regular files inside of these folders, and not inside of `excluded`. Both are taken as
-  /// given and with their links resolved; a folder that does not exist holds nothing.
+  /// Allows only regular files inside `folders` and outside `excluded`. Both lists apply as given
+  /// and with their links resolved. A folder that does not exist contains nothing.
   static SourcePolicy inside(std::vector<std::filesystem::path> folders,
                              std::vector<std::filesystem::path> excluded = {});
 
-  /// The same policy narrowed to one folder, for files that a file names: a policy of any file
-  /// stays one.
+  /// Restricts the policy to one folder, for files that are named by a file. A policy that allows
+  /// any file stays unrestricted.
   [[nodiscard]] SourcePolicy narrowed_to(const std::filesystem::path& folder) const;
-  /// False for a policy of any file.
+  /// False if any regular file is allowed.
   [[nodiscard]] bool confined() const { return confined_; }
 
-  /// Whether a file may be named: it lies in a data folder as named and with all links resolved,
-  /// is a regular file, and belongs to no file system of the kernel's own (/proc, /sys).
-  /// @param file   confined policies refuse `..` in it: make it lexically normal before
-  /// @param field  that names it, as "world.imagery.0.file"
-  /// Errors: kInvalidArgument "FIELD = FILE: must ...", word for word the same for every file
-  /// outside of the data folders, there or not; kNotFound inside of them.
+  /// Checks that a file may be named: it lies in a data folder both as named and with all links
+  /// resolved, is a regular file, and does not belong to a file system of the kernel (/proc, /sys).
+  /// @param file   must not contain `..` if the policy is confined: normalise it lexically first
+  /// @param field  the field that names the file, e.g. "world.imagery.0.file"
+  /// Errors: kInvalidArgument "FIELD = FILE: must ...", with identical text for every file outside
+  /// the data folders, whether it exists or not; kNotFound inside them.
   [[nodiscard]] Status check(const std::filesystem::path& file, const std::string& field) const;
-  /// The same for a file of any kind, also for none: whether it lies in a data folder.
+  /// Checks only that the path lies in a data folder; the file may be of any kind or not exist.
   [[nodiscard]] Status check_place(const std::filesystem::path& file,
                                    const std::string& field) const;
 

@@ -46,7 +46,7 @@ Equatorial apparent_sun(double t) {
 
 /// Reda and Andreas 2004, eq. 42 [deg].
 double refraction_deg(double elevation_deg, const SunAir& air) {
-  constexpr double kLowestDeg = -0.8;  // the upper limb sets here
+  constexpr double kLowestDeg = -0.8;  // the upper limb sets at this elevation
   if (elevation_deg <= 3.0 * kLowestDeg) return 0.0;
   const double e = std::max(elevation_deg, kLowestDeg);
   const double bend_deg = air.pressure_hpa / 1010.0 * 283.0 / (273.0 + air.temperature_c) * 1.02 /

@@ -72,7 +72,7 @@ std::optional<Decimal> decimal_from(std::string_view text) {
   return decimal;
 }
 
-/// The decimal times 10^9, rounded half away from zero; empty where it does not fit.
+/// The decimal times 10^9, rounded half away from zero; empty on overflow.
 std::optional<std::int64_t> ns_from_decimal(Decimal decimal) {
   decimal.exponent += 9;
   const std::size_t nonzero =
@@ -173,7 +173,7 @@ Result<std::int64_t> FieldFile::time_s(const FieldLine& line, std::size_t column
   const std::optional<Decimal> decimal = decimal_from(line.fields.at(column - 1));
   if (!decimal) return bad_field(line, column, "must be a time in seconds");
   const std::optional<std::int64_t> t_ns = ns_from_decimal(*decimal);
-  if (!t_ns) return bad_field(line, column, "must be below 9.2e9 s in size");
+  if (!t_ns) return bad_field(line, column, "magnitude must be below 9.2e9 s");
   return *t_ns;
 }
 

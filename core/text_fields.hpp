@@ -1,4 +1,5 @@
-// Text files of numbers: lines cut into fields, and errors that say where a value stands.
+// Reads text files of numbers: splits lines into fields and reports errors with file, line and
+// column.
 #pragma once
 
 #include <atomic>
@@ -14,10 +15,10 @@
 
 namespace overfly {
 
-/// One line that is neither empty nor a comment. Comma-separated where it holds a comma, else cut
-/// at white space; fields are trimmed.
+/// One line that is neither empty nor a comment. If it contains a comma it is split at commas,
+/// otherwise at white space. Fields are trimmed.
 struct FieldLine {
-  int number = 0;  ///< in the file, from 1
+  int number = 0;  ///< line number in the file, from 1
   bool comma_separated = false;
   std::vector<std::string_view> fields;
 };
@@ -33,7 +34,7 @@ class FieldFile {
                                 const std::atomic<bool>* cancel = nullptr);
 
   [[nodiscard]] const std::vector<FieldLine>& lines() const { return lines_; }
-  /// `# key value` lines, the last of each key.
+  /// Comments of the form `# key value`; the last value of each key.
   [[nodiscard]] const std::map<std::string, std::string>& comments() const { return comments_; }
 
   /// kUnreadable: "FILE:12: column 5 = 'abc': WHAT"; columns count from 1.
@@ -43,12 +44,12 @@ class FieldFile {
   /// kUnreadable: "FILE:12: WHAT".
   [[nodiscard]] Error bad_line(const FieldLine& line, const std::string& what) const;
 
-  /// Errors: kUnreadable if the line has not exactly `count` fields.
+  /// Errors: kUnreadable if the line does not have exactly `count` fields.
   [[nodiscard]] Status expect_fields(const FieldLine& line, std::size_t count) const;
   /// A finite decimal number. Errors: kUnreadable.
   [[nodiscard]] Result<double> number(const FieldLine& line, std::size_t column) const;
-  /// Seconds as a decimal, exact to the nanosecond whatever their size (a double of today's
-  /// seconds since 1970 resolves 240 ns only). Errors: kUnreadable.
+  /// Seconds as a decimal, exact to the nanosecond for any size (a double holding today's seconds
+  /// since 1970 resolves only 240 ns). Errors: kUnreadable.
   [[nodiscard]] Result<std::int64_t> time_s(const FieldLine& line, std::size_t column) const;
   /// Whole nanoseconds. Errors: kUnreadable.
   [[nodiscard]] Result<std::int64_t> time_ns(const FieldLine& line, std::size_t column) const;

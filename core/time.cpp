@@ -33,7 +33,7 @@ std::int64_t frame_count(std::int64_t duration_ns, const FrameRate& rate) {
   if (duration_ns < 0) return 0;
   const Int128 scaled = Int128{duration_ns} * rate.numerator;
   std::int64_t last = static_cast<std::int64_t>(scaled / (Int128{kNsPerS} * rate.denominator));
-  // Rounding of the stamp can put the next frame just inside.
+  // Rounding of the stamp can move the next frame inside.
   while (frame_time_ns(last + 1, rate) <= duration_ns) ++last;
   while (last >= 0 && frame_time_ns(last, rate) > duration_ns) --last;
   return last + 1;

@@ -1,4 +1,4 @@
-// Time stamps of a camera: exact from the frame's index, so that nothing drifts.
+// Time stamps of camera frames, computed from the frame index so that errors do not accumulate.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ struct FrameRate {
   std::int64_t numerator = 31;
   std::int64_t denominator = 1;
 
-  /// The fraction nearest to a decimal rate, exact to 1e-6 Hz.
+  /// Converts a decimal rate to the nearest fraction, exact to 1e-6 Hz.
   /// Errors: kInvalidArgument outside (0, 10000].
   static Result<FrameRate> from_hz(double rate_hz);
   [[nodiscard]] double hz() const {
@@ -23,16 +23,16 @@ struct FrameRate {
 };
 
 /// Stamp of frame k >= 0: k / rate rounded to the nearest nanosecond [ns].
-/// The error never exceeds 0.5 ns, whatever k (31 Hz has no integer period).
+/// The error is at most 0.5 ns for every k (31 Hz has no integer period).
 [[nodiscard]] std::int64_t frame_time_ns(std::int64_t k, const FrameRate& rate);
 
-/// Number of frames stamped in [0, duration_ns].
+/// Number of frames with stamps in [0, duration_ns].
 [[nodiscard]] std::int64_t frame_count(std::int64_t duration_ns, const FrameRate& rate);
 
 [[nodiscard]] constexpr double s_from_ns(std::int64_t t_ns) {
   return static_cast<double>(t_ns) * 1e-9;
 }
-/// Nearest nanosecond.
+/// Converts seconds to the nearest nanosecond.
 [[nodiscard]] std::int64_t ns_from_s(double t_s);
 
 }  // namespace overfly

@@ -6,7 +6,7 @@
 namespace overfly {
 namespace {
 
-/// Lines that fit a description, and the first of them.
+/// Count of the lines that match, and the first of them.
 struct Found {
   std::size_t count = 0;
   int first_line = 0;
@@ -53,10 +53,10 @@ TimeOrder order_by_time(const std::string& file,
   const Found moved = out_of_order(lines);
   if (repeated.count > 0) {
     order.warnings.push_back(repeated.text(file, what) +
-                             " repeat the time of an earlier line and are left out");
+                             " repeat the time of an earlier line and are ignored");
   }
   if (moved.count > 0) {
-    order.warnings.push_back(moved.text(file, what) + " stand after a later one: sorted by time");
+    order.warnings.push_back(moved.text(file, what) + " are out of time order: sorted by time");
   }
   return order;
 }

@@ -1,4 +1,4 @@
-// Stamped lines of a file, put in order of time.
+// Sorts the stamped lines of a file by time.
 #pragma once
 
 #include <cstddef>
@@ -14,16 +14,16 @@ struct TimedLine {
   int line = 0;  ///< number in the file, from 1
 };
 
-/// Which lines are kept, in which order.
+/// The kept lines in time order.
 struct TimeOrder {
   std::vector<std::size_t> kept;  ///< indices, times strictly increasing
-  /// What was left out or moved, with file, count and first line; empty where nothing was.
+  /// Which lines were dropped or moved: file, count and first line. Empty if none.
   std::vector<std::string> warnings;
 };
 
-/// Sorts by time. Of lines with the same time the first in the file is kept: evo (Grupp 2017) looks
-/// for the nearest stamp with argmin, which takes the first of equal ones.
-/// @param what  one line's content in the plural, for the warnings: "poses"
+/// Sorts lines by time and keeps the first of several with the same time. This matches evo (Grupp
+/// 2017), which finds the nearest stamp with argmin, and argmin returns the first of equal values.
+/// @param what  content of the lines in the plural, for the warnings: "poses"
 [[nodiscard]] TimeOrder order_by_time(const std::string& file,
                                       const std::string& what,
                                       const std::vector<TimedLine>& lines);

@@ -24,10 +24,10 @@ Status Trajectory::append(const StampedPose& stamped) {
   }
   const double norm = stamped.pose.rotation.norm();
   if (!stamped.pose.translation.allFinite() || !stamped.pose.rotation.coeffs().allFinite()) {
-    return Error{ErrorCode::kInvalidArgument, where + ": a number is not finite"};
+    return Error{ErrorCode::kInvalidArgument, where + ": contains a value that is not finite"};
   }
   if (norm < 1e-6) {
-    return Error{ErrorCode::kInvalidArgument, where + ": the quaternion has no length"};
+    return Error{ErrorCode::kInvalidArgument, where + ": the quaternion has zero norm"};
   }
   poses_.push_back(stamped);
   // A quaternion of unit length stays as it is to the last bit: normalising one again can change

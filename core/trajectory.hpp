@@ -19,14 +19,14 @@ struct StampedPose {
 class Trajectory {
  public:
   Trajectory() = default;
-  /// Errors: kInvalidArgument if stamps do not strictly increase (the message gives the index),
-  /// or if a pose is not finite or its quaternion has no length. Quaternions are normalised.
+  /// Errors: kInvalidArgument if the stamps do not strictly increase (the message gives the index),
+  /// if a pose is not finite, or if a quaternion has zero norm. Quaternions are normalised.
   static Result<Trajectory> from_poses(const std::vector<StampedPose>& poses);
 
   /// Appends one pose. Errors: as from_poses.
   Status append(const StampedPose& stamped);
 
-  /// Between the last pose and the next one appended the pose is not known.
+  /// Marks a gap: between the last pose and the next one appended the pose is unknown.
   void append_gap();
 
   [[nodiscard]] const std::vector<StampedPose>& poses() const { return poses_; }
@@ -40,7 +40,7 @@ class Trajectory {
   [[nodiscard]] std::optional<Pose> at(std::int64_t t_ns) const;
   /// Index of the pose whose stamp is nearest to t. @pre !empty()
   [[nodiscard]] std::size_t nearest(std::int64_t t_ns) const;
-  /// Length of the polyline through the positions [m], without gaps.
+  /// Length of the polyline through the positions [m], excluding gaps.
   [[nodiscard]] double path_length_m() const;
 
  private:

@@ -32,26 +32,26 @@ Result<std::vector<double>> numbers(const FieldFile& file,
   return values;
 }
 
-/// A quaternion that is a rotation but for the rounding of its printing.
+/// Checks that a quaternion has unit norm within the rounding of printed decimals.
 Result<Eigen::Quaterniond> rotation_from(const FieldFile& file,
                                          const FieldLine& line,
                                          const Eigen::Quaterniond& q) {
   constexpr double kNormTolerance = 0.01;  // three printed decimals stay within 0.001
   if (std::abs(q.norm() - 1.0) > kNormTolerance) {
     return file.bad_line(
-        line, "the quaternion's length is " + std::to_string(q.norm()) + ": must be 1 within 0.01");
+        line, "the quaternion's norm is " + std::to_string(q.norm()) + ": must be 1 within 0.01");
   }
   return q;
 }
 
-/// A line of a file: a pose, or the word that it is not known.
+/// One line of a file: a pose, or a time at which the pose is unknown.
 struct Row {
   const FieldLine* line = nullptr;
   StampedPose stamped;
   bool known = true;
 };
 
-/// Fills the trajectory with the rows in order of time.
+/// Appends the rows to the trajectory in time order.
 Status take_rows(const FieldFile& file,
                  const std::string& name,
                  const std::vector<Row>& rows,
@@ -87,7 +87,7 @@ Result<StampedPose> tum_pose(const FieldFile& file, const FieldLine& line) {
   return StampedPose{*t_ns, {*q, {n[0], n[1], n[2]}}};
 }
 
-/// TUM monoVO's truth says so where the motion capture did not see the camera.
+/// The truth of TUM monoVO has `nan` where the motion capture did not see the camera.
 bool is_unknown(const FieldLine& line) {
   return line.fields.size() == 8 &&
          std::all_of(line.fields.begin() + 1, line.fields.end(), [](std::string_view field) {
@@ -95,7 +95,7 @@ bool is_unknown(const FieldLine& line) {
          });
 }
 
-/// EuRoC ASL ground truth: t [ns], p_xyz, q_wxyz, and columns that we do not need.
+/// EuRoC ASL ground truth: t [ns], p_xyz, q_wxyz; further columns are ignored.
 Result<StampedPose> euroc_pose(const FieldFile& file, const FieldLine& line) {
   if (line.fields.size() < 8) {
     return file.bad_line(line, std::to_string(line.fields.size()) + " columns: must be 8 or more");
@@ -110,7 +110,7 @@ Result<StampedPose> euroc_pose(const FieldFile& file, const FieldLine& line) {
   return StampedPose{*t_ns, {*q, {n[0], n[1], n[2]}}};
 }
 
-/// KITTI: the upper 3 x 4 of T_world_camera, row-major. The stamp is left to the caller.
+/// KITTI: the upper 3 x 4 of T_world_camera, row-major. The caller sets the stamp.
 Result<Pose> kitti_pose(const FieldFile& file, const FieldLine& line) {
   if (Status status = file.expect_fields(line, 12); !status) return status.error();
   const Result<std::vector<double>> v = numbers(file, line, 1, 12);
@@ -125,17 +125,17 @@ Result<Pose> kitti_pose(const FieldFile& file, const FieldLine& line) {
   return Pose{Eigen::Quaterniond(R).normalized(), {n[3], n[7], n[11]}};
 }
 
-/// The times file of a KITTI file: its lines are as many as the poses.
+/// The times file of a KITTI file, with one line for each pose.
 struct KittiTimes {
   std::string name;
   FieldFile file;
   std::vector<std::int64_t> t_ns;
 };
 
-/// `times.txt` beside a KITTI file; empty where there is none of as many lines.
+/// `times.txt` in the folder of a KITTI file; empty if it is absent or has another number of lines.
 Result<std::optional<KittiTimes>> kitti_times(const fs::path& poses_file, std::size_t count) {
   const fs::path times_file = poses_file.parent_path() / "times.txt";
-  std::error_code unknown;  // what cannot be looked at is taken for absent
+  std::error_code unknown;  // a file that cannot be accessed counts as absent
   if (times_file == poses_file || !fs::exists(times_file, unknown)) {
     return std::optional<KittiTimes>();
   }
@@ -186,7 +186,7 @@ Status read_rows(const fs::path& path, const FieldFile& file, TrajectoryFile* re
   return take_rows(file, path.string(), rows, result);
 }
 
-/// Told by the first line: commas are EuRoC's, 12 columns KITTI's, all else is taken for TUM.
+/// Detects the format from the first line: commas mean EuRoC, 12 columns KITTI, all else TUM.
 TrajectoryFormat format_of(const FieldFile& file, bool comma_separated) {
   if (comma_separated) return TrajectoryFormat::kEuroc;
   return file.lines().front().fields.size() == 12 ? TrajectoryFormat::kKitti
@@ -199,7 +199,7 @@ Result<TrajectoryFile> read_trajectory(const fs::path& path, const std::atomic<b
   const Result<FieldFile> file = FieldFile::read(path, cancel);
   if (!file) return file.error();
   if (file->lines().empty()) {
-    return Error{ErrorCode::kUnreadable, path.string() + ": holds no pose"};
+    return Error{ErrorCode::kUnreadable, path.string() + ": contains no poses"};
   }
   TrajectoryFile result;
   result.comments = file->comments();
@@ -208,7 +208,7 @@ Result<TrajectoryFile> read_trajectory(const fs::path& path, const std::atomic<b
                                                                 : read_rows(path, *file, &result);
   if (!rows) return rows.error();
   if (result.trajectory.empty()) {
-    return Error{ErrorCode::kUnreadable, path.string() + ": holds no pose but `nan`"};
+    return Error{ErrorCode::kUnreadable, path.string() + ": contains no poses, only `nan`"};
   }
   return result;
 }

@@ -1,4 +1,4 @@
-// Trajectory files: TUM, KITTI and EuRoC ASL in, TUM out.
+// Reads TUM, KITTI and EuRoC ASL trajectory files and writes TUM files.
 #pragma once
 
 #include <atomic>
@@ -14,35 +14,36 @@ namespace overfly {
 
 enum class TrajectoryFormat { kTum, kKitti, kEuroc };
 
-/// A trajectory as it stood in a file.
+/// The content of a trajectory file.
 struct TrajectoryFile {
   Trajectory trajectory;
   TrajectoryFormat format = TrajectoryFormat::kTum;
-  /// False for KITTI poses without a times file: stamps are then the line's number in seconds.
+  /// False for KITTI poses without a times file; each stamp is then the line number in seconds.
   bool has_times = true;
   std::size_t unknown_poses = 0;  ///< rows of a TUM file whose pose is `nan`: gaps
   /// `# key value` comments of a TUM file, e.g. init_scene_depth.
   std::map<std::string, std::string> comments;
-  /// Poses that were left out or moved, see order_by_time; empty where none was.
+  /// Poses that were dropped or moved, see order_by_time. Empty if none.
   std::vector<std::string> warnings;
 
-  /// Whether pose i is the file's i-th, as matching by number needs.
+  /// Whether pose i is the i-th of the file, as needed for matching by index.
   [[nodiscard]] bool as_listed() const { return warnings.empty() && unknown_poses == 0; }
 };
 
-/// Reads a trajectory, its format told by its content. TUM: `t tx ty tz qx qy qz qw` [s, m],
-/// seven `nan` where the pose is not known;
-/// KITTI: 12 numbers, row-major 3 x 4, with the times of `times.txt` beside it where there is one
-/// of as many lines; EuRoC: csv `t[ns], p_xyz, q_wxyz, ...`.
-/// Poses that are not in order of time are sorted, and of those with the same time the first is
-/// kept; `warnings` counts them.
-/// @param cancel  ends reading early; may be null
+/// Reads a trajectory and detects its format from the content.
+/// TUM: `t tx ty tz qx qy qz qw` [s, m], with seven `nan` where the pose is unknown.
+/// KITTI: 12 numbers, row-major 3 x 4; times from `times.txt` in the same folder if it exists and
+/// has as many lines.
+/// EuRoC: csv `t[ns], p_xyz, q_wxyz, ...`.
+/// Poses are sorted by time, and of several with the same time the first is kept; `warnings`
+/// reports how many were moved or dropped.
+/// @param cancel  stops reading; may be null
 /// Errors: as FieldFile::read; kUnreadable naming file, line, column and value.
 [[nodiscard]] Result<TrajectoryFile> read_trajectory(const std::filesystem::path& file,
                                                      const std::atomic<bool>* cancel = nullptr);
 
-/// Writes TUM, stamps to the nanosecond and numbers that read back exactly.
-/// The file appears whole or not at all. Errors: kIo.
+/// Writes a TUM file. Stamps are exact to the nanosecond, and numbers read back exactly. The file
+/// is written completely or not at all. Errors: kIo.
 [[nodiscard]] Status write_tum(const std::filesystem::path& file,
                                const Trajectory& trajectory,
                                const std::map<std::string, std::string>& comments = {});

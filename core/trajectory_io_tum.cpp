@@ -1,4 +1,4 @@
-// Writing of TUM files.
+// Writes TUM trajectory files.
 #include <unistd.h>
 
 #include <charconv>
@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 /// Seconds with nine decimals, exact.
 std::string seconds_text(std::int64_t t_ns) {
-  // Unsigned: the size of the smallest int64 has no int64.
+  // Unsigned, because the magnitude of the smallest int64 does not fit in an int64.
   const auto size =
       t_ns < 0 ? 0 - static_cast<std::uint64_t>(t_ns) : static_cast<std::uint64_t>(t_ns);
   constexpr std::uint64_t kNs = kNsPerS;
@@ -63,7 +63,7 @@ Status write_tum(const fs::path& file,
   for (const auto& [key, value] : comments) {
     if (key.empty() || key.find_first_of(" \t\r\n") != std::string::npos ||
         value.find_first_of("\r\n") != std::string::npos) {
-      return failed("the comment '" + key + "' does not fit on one line");
+      return failed("the comment '" + key + "' needs a key without spaces and a value on one line");
     }
   }
   const fs::path unfinished = file.string() + ".part" + std::to_string(getpid());

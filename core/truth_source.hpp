@@ -1,4 +1,4 @@
-// Where truth comes from, as the engine sees it: a simulator, a log or a live autopilot.
+// Interface to the flight's truth: a simulator, a log or a live autopilot.
 #pragma once
 
 #include <cstdint>
@@ -23,19 +23,19 @@ struct AircraftState {
   double airspeed_m_s = 0.0;
 };
 
-/// A flight. Queried with non-decreasing times; a live source may block until it knows.
+/// A flight. Times of queries must not decrease; a live source may block until the state is known.
 class TruthSource {
  public:
   virtual ~TruthSource() = default;
 
-  /// The state at t >= 0 from the run's start; empty after the flight's end.
-  /// Errors: whatever keeps a source from answering.
+  /// The state at time t >= 0 from the start of the run; empty after the end of the flight.
+  /// Errors: any failure of the source.
   [[nodiscard]] virtual Result<std::optional<AircraftState>> state_at(std::int64_t t_ns) = 0;
-  /// Empty for a flight whose end is not known beforehand.
+  /// Empty if the end of the flight is not known in advance.
   [[nodiscard]] virtual std::optional<std::int64_t> duration_ns() const = 0;
-  /// One line for the manifest: what flew ("course: 25 m/s, 45 deg/s, 300 m").
+  /// One line for the manifest that describes the flight ("course: 25 m/s, 45 deg/s, 300 m").
   [[nodiscard]] virtual std::string description() const = 0;
-  /// What was left out or changed of the flight's file; empty where nothing was.
+  /// Lines of the flight's file that were dropped or moved. Empty if none.
   [[nodiscard]] virtual std::vector<std::string> warnings() const { return {}; }
 };
 

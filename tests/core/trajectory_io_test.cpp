@@ -83,7 +83,7 @@ TEST(TrajectoryIo, TakesTumRowsOfNanForGaps) {
   EXPECT_TRUE(file.trajectory.at(10'050'000'000));
   EXPECT_FALSE(file.trajectory.at(10'250'000'000));
   EXPECT_THAT(error_of("10 0 nan 0 0 0 0 1\n").message, HasSubstr(":1: column 3"));
-  EXPECT_THAT(error_of("10 nan nan nan nan nan nan nan\n").message, HasSubstr("holds no pose"));
+  EXPECT_THAT(error_of("10 nan nan nan nan nan nan nan\n").message, HasSubstr("contains no poses"));
 }
 
 TEST(TrajectoryIo, KeepsEveryNanosecondOfUnixTimes) {
@@ -171,8 +171,8 @@ TEST(TrajectoryIo, RefusesWhatIsNoTrajectory) {
   EXPECT_EQ(read_trajectory("/nonexistent/poses.txt").error().code, ErrorCode::kNotFound);
   EXPECT_EQ(read_trajectory(std::filesystem::temp_directory_path()).error().code,
             ErrorCode::kUnreadable);
-  EXPECT_THAT(error_of("").message, HasSubstr("holds no pose"));
-  EXPECT_THAT(error_of("# only a comment\n\n").message, HasSubstr("holds no pose"));
+  EXPECT_THAT(error_of("").message, HasSubstr("contains no poses"));
+  EXPECT_THAT(error_of("# only a comment\n\n").message, HasSubstr("contains no poses"));
   EXPECT_THAT(error_of("0 0 0 0 0 0 0 1\n1 0 0 0\n").message,
               HasSubstr("poses.txt:2: 4 columns: must be 8"));
   EXPECT_THAT(error_of("1,2,3\n").message, HasSubstr("3 columns: must be 8 or more"));
@@ -181,8 +181,8 @@ TEST(TrajectoryIo, RefusesWhatIsNoTrajectory) {
 }
 
 TEST(TrajectoryIo, RefusesRotationsThatAreNone) {
-  EXPECT_THAT(error_of("0 0 0 0 0 0 0 0\n").message, HasSubstr("quaternion's length"));
-  EXPECT_THAT(error_of("0 0 0 0 0 0 0 1.2\n").message, HasSubstr("quaternion's length is 1.2"));
+  EXPECT_THAT(error_of("0 0 0 0 0 0 0 0\n").message, HasSubstr("quaternion's norm"));
+  EXPECT_THAT(error_of("0 0 0 0 0 0 0 1.2\n").message, HasSubstr("quaternion's norm is 1.2"));
   EXPECT_THAT(error_of("2 0 0 0 0 1 0 0 0 0 1 0\n").message, HasSubstr("not a rotation matrix"));
   EXPECT_THAT(error_of("-1 0 0 0 0 1 0 0 0 0 1 0\n").message, HasSubstr("not a rotation matrix"));
 }
@@ -207,7 +207,7 @@ TEST(TrajectoryIo, KeepsTheFirstOfPosesWithTheSameTime) {
   EXPECT_THAT(x_of(file.trajectory), ElementsAre(1, 2, 4));
   ASSERT_EQ(file.warnings.size(), 1U);
   EXPECT_THAT(file.warnings[0],
-              AllOf(HasSubstr("poses.txt: 3 poses (first in line 3)"), HasSubstr("left out")));
+              AllOf(HasSubstr("poses.txt: 3 poses (first in line 3)"), HasSubstr("ignored")));
   EXPECT_FALSE(file.as_listed());
 }
 
@@ -222,7 +222,7 @@ TEST(TrajectoryIo, SortsPosesByTime) {
   EXPECT_THAT(x_of(file.trajectory), ElementsAre(10, 20, 30, 40));
   EXPECT_THAT(file.warnings,
               ElementsAre(HasSubstr("1 poses (first in line 6) repeat the time"),
-                          HasSubstr("3 poses (first in line 3) stand after a later one: sorted")));
+                          HasSubstr("3 poses (first in line 3) are out of time order: sorted")));
   EXPECT_TRUE(read_ok("1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n").warnings.empty());
 }
 

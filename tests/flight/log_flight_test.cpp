@@ -152,7 +152,7 @@ TEST(LogFlight, OrdersRowsByTimeAndSaysSo) {
       local.geodetic_from_world(middle.T_world_body.translation).alt_ellipsoid_m, 401.0, 1e-6);
   EXPECT_THAT((*flight)->warnings(),
               ElementsAre(HasSubstr("log.csv: 1 rows (first in line 5) repeat the time"),
-                          HasSubstr("3 rows (first in line 3) stand after a later one")));
+                          HasSubstr("3 rows (first in line 3) are out of time order")));
 }
 
 TEST(LogFlight, NamesFileLineColumnAndValueOfABadRow) {
