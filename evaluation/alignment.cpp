@@ -39,12 +39,12 @@ Result<double> init_scale(const std::vector<MatchedPose>& matches,
   if (scale && remarks != nullptr) {
     remarks->notes.push_back(std::string("scale from the path of the first 5 s: ") +
                              (has_depth ? "the true depth" : "the estimate's scene depth") +
-                             " at the first pose is not known");
+                             " at the first pose is unknown");
   }
   return scale;
 }
 
-/// The similarity of a scale that makes the first poses equal.
+/// The similarity with a given scale that aligns the first poses.
 Similarity first_pose(const MatchedPose& first, double scale) {
   Similarity S_world_vo;
   S_world_vo.scale = scale;

@@ -19,8 +19,8 @@ std::string range_text(std::int64_t begin_ns, std::int64_t end_ns) {
   return text += "] s";
 }
 
-/// Of several frames that took the same truth pose the nearest keeps it, so that a truth slower
-/// than the estimate does not count its poses twice.
+/// If several frames match the same truth pose, keeps only the nearest, so that a truth with a
+/// lower rate than the estimate does not count its poses twice.
 void keep_nearest_of_each(const Trajectory& truth, std::vector<MatchedPose>* matches) {
   std::vector<MatchedPose> kept;
   std::size_t last_index = truth.size();
@@ -52,7 +52,7 @@ Error no_overlap(const Trajectory& truth,
     first_ns = std::min(first_ns, sample.t_ns);
     last_ns = std::max(last_ns, sample.t_ns);
   }
-  std::string message = "no pose of the estimate has a truth: the estimate spans " +
+  std::string message = "no pose of the estimate has a matching truth pose: the estimate spans " +
                         range_text(first_ns, last_ns) + ", the truth " +
                         range_text(truth.begin_ns(), truth.end_ns());
   if (options.association == Association::kNearest) {
@@ -110,7 +110,7 @@ Result<std::vector<MatchedPose>> associate(const Trajectory& T_world_camera_trut
   const std::optional<int> map_id = longest_map(estimate);
   if (!map_id) return Error{ErrorCode::kInvalidArgument, "the estimate never tracked"};
   if (T_world_camera_truth.empty()) {
-    return Error{ErrorCode::kInvalidArgument, "the truth holds no pose"};
+    return Error{ErrorCode::kInvalidArgument, "the truth contains no poses"};
   }
   std::vector<MatchedPose> matches;
   for (const EstimateSample& sample : estimate.samples) {

@@ -1,4 +1,4 @@
-// Which truth belongs to a frame. Private to evaluation.
+// Associates frames with truth poses. Private to evaluation.
 #pragma once
 
 #include <optional>
@@ -7,18 +7,18 @@
 
 namespace overfly::evaluation {
 
-/// Truth of one frame, and the stamp that it has in the score.
+/// Truth of one frame and the stamp used in the score.
 struct FrameTruth {
   std::int64_t t_ns = 0;
   Pose T_world_camera;
 };
 
-/// Empty where the truth does not cover the frame. With kNearest several frames may get one pose.
+/// Empty if the truth does not cover the frame. With kNearest several frames may get the same pose.
 [[nodiscard]] std::optional<FrameTruth> truth_of(const Trajectory& T_world_camera_truth,
                                                  const EstimateSample& sample,
                                                  const Options& options);
 
-/// The map with the most tracked frames, the first of equals; empty if none is tracked.
+/// The map with the most tracked frames, the first on a tie; empty if no frame is tracked.
 [[nodiscard]] std::optional<int> longest_map(const EstimateTrack& estimate);
 
 }  // namespace overfly::evaluation

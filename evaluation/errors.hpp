@@ -7,25 +7,25 @@
 
 namespace overfly::evaluation {
 
-/// Root mean square, mean, median (of an even number: mean of the middle two) and maximum.
+/// Root mean square, mean, median (for an even count the mean of the middle two) and maximum.
 /// @pre !errors.empty()
 [[nodiscard]] ErrorStatistics statistics_of(std::vector<double> errors);
 
 [[nodiscard]] double rms(const std::vector<double>& values);
 
 /// Norm of the wrapped differences of roll, pitch and yaw of two bodies [rad]. Unlike the geodesic
-/// angle it can exceed pi: (170, 90, -170) deg apart are 256 deg.
+/// angle it can exceed pi: differences of (170, 90, -170) deg give 256 deg.
 [[nodiscard]] double euler_norm_rad(const Eigen::Quaterniond& R_world_body_a,
                                     const Eigen::Quaterniond& R_world_body_b);
 
-/// Fills position, rotation and relative errors of a score whose S_world_vo is set; rotation errors
-/// only where the alignment is not degenerate (relative ones do not depend on it).
+/// Computes position, rotation and relative errors of a score whose S_world_vo is set. Rotation
+/// errors are set only if the alignment is not degenerate; relative errors do not depend on it.
 /// @pre !matches.empty()
 void add_errors(const std::vector<MatchedPose>& matches,
                 const Options& options,
                 AlignmentScore* score);
 
-/// @param T_world_camera_estimate  aligned, one for each match
+/// @param T_world_camera_estimate  aligned poses, one for each match
 [[nodiscard]] std::vector<RelativeError> relative_errors(
     const std::vector<MatchedPose>& matches,
     const std::vector<Pose>& T_world_camera_estimate,

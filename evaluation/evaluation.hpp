@@ -1,4 +1,4 @@
-// Scores of an estimate against the truth. Pure functions of their arguments.
+// Scores an estimate against the truth. Pure functions of their arguments.
 #pragma once
 
 #include <cstdint>
@@ -26,18 +26,20 @@ enum class AlignmentMode { kNone, kOrigin, kInitScale, kSe3, kSim3, kYawOnly, kO
 [[nodiscard]] std::optional<AlignmentMode> alignment_mode_from(const std::string& text);
 [[nodiscard]] const std::vector<AlignmentMode>& all_alignment_modes();
 
-/// How the run of an estimator went. Where several hold, the first of DIVERGED, RESET, LOST,
-/// INIT_LATE is told. CRASHED and TIMEOUT are not seen in a track: who runs the estimator puts them
-/// into Score::outcome.
+/// Result of an estimator's run. If several conditions hold, the first of DIVERGED, RESET, LOST,
+/// INIT_LATE is reported. CRASHED and TIMEOUT cannot be seen in a track: the code that runs the
+/// estimator sets them in Score::outcome.
 ///
-/// COMPLETED: it started in time, tracks at the end of the flight, in one map, and at least 95 % of
-/// the flight's frames after its start count as tracked. LOST: it does not track at the end, or
-/// fewer count. Frames in which it says that it is lost do not count, nor do frames that it never
-/// got (dropped, late, lost on their way) in a stretch of a second or more without a tracked one:
-/// darkness and missing images are judged alike. A shorter stretch of frames that it never got,
-/// between tracked ones or after the last, counts as tracked: it was not lost there.
-/// INIT_LATE: its first tracked frame is later after the first frame of the flight than 10 s or a
-/// tenth of the flight, whichever is less, but never less than 2 s.
+/// COMPLETED: the estimator initialised in time, tracks at the end of the flight in the same map,
+/// and at least 95 % of the flight's frames after initialisation count as tracked.
+/// LOST: it does not track at the end, or fewer frames count as tracked.
+/// INIT_LATE: the time from the flight's first frame to the first tracked one exceeds the limit:
+/// the smaller of 10 s and a tenth of the flight, but at least 2 s.
+///
+/// Frames reported as lost do not count as tracked. Frames that the estimator never received
+/// (dropped, late, lost in transport) do not count if they belong to a stretch of a second or more
+/// without a tracked frame: darkness and missing images are treated alike. Shorter stretches of
+/// such frames count as tracked if they lie between tracked frames or after the last one.
 enum class Outcome {
   kCompleted,
   kNotInitialised,
@@ -50,21 +52,21 @@ enum class Outcome {
 };
 [[nodiscard]] const char* to_string(Outcome outcome);  ///< "COMPLETED", "NOT_INITIALISED", ...
 
-/// A frame that the camera of a flight, or a data set, has; whether an estimator got it or not.
+/// A frame of the flight's camera or of a data set, whether an estimator received it or not.
 struct FlightFrame {
   std::int64_t frame = 0;
   std::int64_t t_ns = 0;
 };
 
 struct Options {
-  /// Every frame of the flight, in order: those that were dropped, late, lost on their way or never
-  /// given are among them. Empty = those of the track.
+  /// Every frame of the flight, in order, including dropped and late frames and those lost in
+  /// transport or never sent. If empty, the frames of the track are used.
   std::vector<FlightFrame> flight;
   Association association = Association::kInterpolate;
   std::int64_t max_time_difference_ns = 10'000'000;  ///< kNearest only
   /// True depth of the ground along the optical axis at the first tracked pose [m].
   std::optional<double> init_true_depth_m;
-  /// Mount of the camera, for roll, pitch and yaw of the body.
+  /// Mount of the camera. Used to compute roll, pitch and yaw of the body.
   Pose T_body_camera{R_body_camera_nadir(), Eigen::Vector3d::Zero()};
   std::vector<double> rpe_lengths_m{100, 200, 300, 400, 500, 600, 700, 800};
 };
@@ -77,7 +79,7 @@ struct MatchedPose {
   std::optional<double> scene_depth;
 };
 
-/// Root mean square, mean, median, maximum of one error.
+/// Root mean square, mean, median and maximum of an error.
 struct ErrorStatistics {
   double rmse = 0.0;
   double mean = 0.0;
@@ -85,15 +87,15 @@ struct ErrorStatistics {
   double max = 0.0;
 };
 
-/// Errors of the pieces of one length (Geiger, Lenz, Urtasun 2012, the KITTI odometry benchmark):
-/// from every tenth pose to the first that is farther along the truth's path.
+/// Errors over segments of one length (Geiger, Lenz, Urtasun 2012, the KITTI odometry benchmark). A
+/// segment goes from every tenth pose to the first pose farther away along the truth's path.
 struct RelativeError {
   double length_m = 0.0;
   int pairs = 0;
   double translation_percent = 0.0;         ///< RMS of position error / length
-  double rotation_deg_per_100m = 0.0;       ///< RMS
-  double translation_mean_percent = 0.0;    ///< the mean, as KITTI prints it
-  double rotation_mean_deg_per_100m = 0.0;  ///< the mean, as KITTI prints it
+  double rotation_deg_per_100m = 0.0;       ///< RMS of rotation error
+  double translation_mean_percent = 0.0;    ///< the mean, as KITTI reports it
+  double rotation_mean_deg_per_100m = 0.0;  ///< the mean, as KITTI reports it
 };
 
 struct AlignmentScore {
@@ -101,60 +103,65 @@ struct AlignmentScore {
   Similarity S_world_vo;
   int matched = 0;
   ErrorStatistics position_m;
-  /// Geodesic angle; empty, as the next, where the alignment is degenerate.
+  /// Geodesic angle. This and the next field are empty if the alignment is degenerate.
   std::optional<ErrorStatistics> rotation_deg;
   std::optional<ErrorStatistics> rotation_euler_norm_deg;
-  /// Over all frames from the first tracked to the end of the flight, those without a pose taken at
-  /// the last one before.
+  /// Over all frames from the first tracked one to the end of the flight. A frame without a pose
+  /// uses the last pose before it.
   double position_rmse_hold_m = 0.0;
   std::vector<RelativeError> relative;
   std::vector<std::string> notes;  ///< e.g. "scale from the path of the first 5 s"
-  /// Why the positions do not determine the rotation; position errors hold all the same.
+  /// Why the positions do not determine the rotation. Position errors remain valid.
   std::optional<std::string> degenerate;
 };
 
 struct Score {
   Outcome outcome = Outcome::kNotInitialised;
-  std::optional<double> outcome_time_s;  ///< of the late start, loss, reset or divergence
+  std::optional<double> outcome_time_s;  ///< of late initialisation, loss, reset or divergence
   int reset_count = 0;                   ///< since the first tracked frame
   double coverage = 0.0;                 ///< tracked frames / frames of the flight, [0, 1]
   std::optional<double> initialised_at_s;
-  int frames = 0;  ///< of the flight
+  int frames = 0;  ///< frames of the flight
   int tracked_frames = 0;
-  /// Per mode; a mode that the data cannot determine has its reason in `unavailable` instead.
+  /// Results by mode. If the data cannot determine a mode, `unavailable` has the reason instead.
   std::map<AlignmentMode, AlignmentScore> alignments;
   std::map<AlignmentMode, std::string> unavailable;
 };
 
-/// Pairs the tracked samples of the longest map with the truth.
-/// Errors: kInvalidArgument when nothing overlaps, with both time ranges.
+/// Matches the tracked samples of the longest map with the truth.
+/// Errors: kInvalidArgument with both time ranges if nothing overlaps.
 [[nodiscard]] Result<std::vector<MatchedPose>> associate(const Trajectory& T_world_camera_truth,
                                                          const EstimateTrack& estimate,
                                                          const Options& options);
 
-/// What a reader of an alignment must know.
+/// Remarks on an alignment.
 struct AlignmentRemarks {
   std::vector<std::string> notes;
   std::optional<std::string> degenerate;  ///< as AlignmentScore::degenerate
 };
 
-/// S_world_vo of one mode from matched poses:
-/// none: as it is. origin: the first poses made equal, scale 1. init_scale: the same with the scale
-/// init_true_depth_m / scene depth of the first pose, or, where one of them is absent, the ratio of
-/// path lengths over the first 5 s (noted). se3, sim3: least squares over positions (Umeyama 1991).
-/// yaw_only: the same with rotation about up only, scale 1 (Zhang, Scaramuzza 2018). origin_sim3:
-/// sim3 with the first position held.
+/// Computes S_world_vo of one mode from matched poses.
+/// - none: identity.
+/// - origin: aligns the first poses; scale 1.
+/// - init_scale: as origin, with the scale init_true_depth_m / scene depth of the first pose. If
+/// one of the two is absent, the ratio of path lengths over the first 5 s is used and noted.
+/// - se3, sim3: least squares over positions (Umeyama 1991).
+/// - yaw_only: least squares with rotation about the vertical only, scale 1 (Zhang, Scaramuzza
+/// 2018).
+/// - origin_sim3: sim3 with the first position fixed.
+///
 /// Near a straight line se3, sim3 and origin_sim3 are degenerate: positions do not determine the
-/// rotation about it (see kStraightRatio in umeyama.hpp). On an exact line that rotation is taken
-/// from the orientations (noted).
-/// Errors: kInvalidArgument when the mode needs more than the data has (the message says what).
+/// rotation about the line (see kStraightRatio in umeyama.hpp). On an exact line that rotation is
+/// taken from the orientations and noted.
+/// Errors: kInvalidArgument if the data is not sufficient for the mode; the message says what is
+/// missing.
 [[nodiscard]] Result<Similarity> align(const std::vector<MatchedPose>& matches,
                                        AlignmentMode mode,
                                        const Options& options,
                                        AlignmentRemarks* remarks = nullptr);
 
 /// Scores an estimate against the truth: outcome, coverage and every alignment mode.
-/// Frames of the flight: Options::flight.
+/// Options::flight defines the frames of the flight.
 [[nodiscard]] Score score(const Trajectory& T_world_camera_truth,
                           const EstimateTrack& estimate,
                           const Options& options);

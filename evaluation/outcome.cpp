@@ -13,19 +13,19 @@ constexpr double kCompletedShare = 0.95;  // of the frames after initialisation
 constexpr std::int64_t kStepNs = kNsPerS;
 constexpr std::size_t kWindowSteps = 10;
 constexpr double kScaleChange = 2.0;
-constexpr double kWindowMinM = 1.0;  // a window with less true way has no scale
-/// So long may frames be missing without the estimator counting as lost.
+constexpr double kWindowMinM = 1.0;  // a window with a shorter true path gives no scale
+/// The estimator counts as lost if frames are missing for this long.
 constexpr std::int64_t kGapNs = kNsPerS;
 constexpr std::int64_t kLateStartNs = 10 * kNsPerS;
-constexpr std::int64_t kLateStartShare = 10;  // of the flight: one part in so many
-/// In flights shorter than ten times this a tenth is less than any estimator needs.
+constexpr std::int64_t kLateStartShare = 10;  // one tenth of the flight
+/// Lower limit, because every estimator needs some time to initialise in a short flight.
 constexpr std::int64_t kShortestLateStartNs = 2 * kNsPerS;
 
 bool has_pose(const FlownFrame& flown) {
   return flown.given && flown.sample.state == TrackingState::kTracking;
 }
 
-/// Way of truth and estimate over one second; `broken` where poses are missing in between.
+/// Path of truth and estimate over one second; `broken` if poses are missing in between.
 struct Step {
   std::int64_t end_ns = 0;
   double truth_m = 0.0;
@@ -50,10 +50,10 @@ std::vector<Step> steps_of(const std::vector<MatchedPose>& matches) {
   return steps;
 }
 
-/// Which frames count as tracked: also those of a short stretch that the estimator never got.
+/// Marks the frames that count as tracked, including short stretches that were never received.
 std::vector<bool> held_frames(const std::vector<FlownFrame>& flown) {
   std::vector<bool> held(flown.size());
-  std::size_t begin = 0;  // of the stretch of frames that were not given
+  std::size_t begin = 0;  // of the stretch of frames not received
   for (std::size_t i = 0; i < flown.size(); ++i) {
     held[i] = has_pose(flown[i]);
     if (flown[i].given) begin = i + 1;
@@ -71,7 +71,7 @@ std::vector<bool> held_frames(const std::vector<FlownFrame>& flown) {
   return held;
 }
 
-/// Begin of the last loss if the flight ends without tracking, else of the first loss.
+/// Start of the last loss if the flight ends without tracking, otherwise of the first loss.
 std::optional<double> loss_time_s(const std::vector<FlownFrame>& flown,
                                   const std::vector<bool>& held,
                                   std::size_t first) {
@@ -84,7 +84,7 @@ std::optional<double> loss_time_s(const std::vector<FlownFrame>& flown,
   return begin_s;
 }
 
-/// Time of the first sample of a later map than the first tracked one's.
+/// Time of the first sample in a later map than that of the first tracked frame.
 std::optional<double> reset_time_s(const std::vector<FlownFrame>& flown, std::size_t first) {
   for (std::size_t i = first; i < flown.size(); ++i) {
     if (flown[i].sample.map_id != flown[first].sample.map_id) {
@@ -117,7 +117,8 @@ std::optional<double> divergence_time_s(const std::vector<MatchedPose>& matches)
       broken = broken || steps[i].broken;
     }
     if (broken || truth_m < kWindowMinM) continue;
-    const double scale = vo / truth_m;  // this way round: an estimate that stands still has 0
+    const double scale =
+        vo / truth_m;  // vo / truth, so that an estimate that does not move gives 0
     smallest = std::min(smallest, scale);
     largest = std::max(largest, scale);
     if (largest > kScaleChange * smallest) return s_from_ns(steps[end - 1].end_ns);

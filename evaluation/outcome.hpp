@@ -1,4 +1,4 @@
-// How the run of an estimator went. Private to evaluation.
+// Determines the outcome of an estimator's run. Private to evaluation.
 #pragma once
 
 #include <vector>
@@ -7,25 +7,25 @@
 
 namespace overfly::evaluation {
 
-/// A frame of the flight, and what the estimator said of it.
+/// A frame of the flight and the estimator's output for it.
 struct FlownFrame {
-  EstimateSample sample;  ///< of a frame that it never got: frame, time, and the map before
-  bool given = true;      ///< false: dropped, late, lost on its way, or never given
+  EstimateSample sample;  ///< if not received: frame, time and the previous map
+  bool given = true;      ///< false: dropped, late, lost in transport or never sent
 };
 
-/// Every frame of the flight, in order: Options::flight, and the samples of the track.
+/// Every frame of the flight, in order: Options::flight and the samples of the track.
 [[nodiscard]] std::vector<FlownFrame> flown_frames(const EstimateTrack& estimate,
                                                    const Options& options);
 
-/// Fills outcome, its time, resets, coverage and counts.
+/// Sets outcome, outcome time, resets, coverage and counts.
 /// @param matches  of the longest map; may be empty
 void add_outcome(const std::vector<FlownFrame>& flown,
                  const std::vector<MatchedPose>& matches,
                  Score* score);
 
-/// Time at which the scale against the truth, over windows of 10 s, has changed by more than a
-/// factor of two between any two windows so far; empty if it never does. Path lengths are summed
-/// over steps of a second, so that jitter from frame to frame does not count as way.
+/// The time at which the estimate's scale relative to the truth has changed by more than a factor
+/// of two between any two windows of 10 s; empty if it never does. Path lengths are summed over
+/// steps of one second, so that jitter between frames does not add to the path.
 [[nodiscard]] std::optional<double> divergence_time_s(const std::vector<MatchedPose>& matches);
 
 }  // namespace overfly::evaluation

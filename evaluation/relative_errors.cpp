@@ -8,9 +8,9 @@
 namespace overfly::evaluation {
 namespace {
 
-constexpr std::size_t kStartStep = 10;  // poses between the begins of pieces, as in the benchmark
+constexpr std::size_t kStartStep = 10;  // poses between starts of segments, as in the benchmark
 
-/// Way along the truth at each match [m].
+/// Distance along the truth's path at each match [m].
 std::vector<double> distances_of(const std::vector<MatchedPose>& matches) {
   std::vector<double> distances_m{0.0};
   for (std::size_t i = 1; i < matches.size(); ++i) {

@@ -9,7 +9,7 @@
 namespace overfly::evaluation {
 namespace {
 
-/// A frame of the flight at or after the first tracked one, with the estimate that holds there.
+/// A frame at or after the first tracked one, with the last known estimate.
 struct HeldPose {
   Eigen::Vector3d p_world = Eigen::Vector3d::Zero();  ///< truth
   Eigen::Vector3d p_vo = Eigen::Vector3d::Zero();     ///< tracked, or the last tracked before
@@ -41,7 +41,7 @@ double hold_rmse_m(const std::vector<HeldPose>& held, const Similarity& S_world_
   return errors.empty() ? 0.0 : rms(errors);
 }
 
-/// What a reader of any of the scores must know.
+/// Notes that apply to all alignment modes.
 std::vector<std::string> common_notes(const Score& score,
                                       const std::vector<MatchedPose>& matches,
                                       const EstimateTrack& estimate) {
@@ -52,7 +52,7 @@ std::vector<std::string> common_notes(const Score& score,
   }
   std::vector<std::string> notes;
   if (map_frames < score.tracked_frames) {
-    notes.push_back("only the piece with the most frames is scored: " + std::to_string(map_frames) +
+    notes.push_back("only the map with the most frames is scored: " + std::to_string(map_frames) +
                     " of " + std::to_string(score.tracked_frames) + " tracked frames, from " +
                     std::to_string(s_from_ns(matches.front().t_ns)) + " s to " +
                     std::to_string(s_from_ns(matches.back().t_ns)) + " s");

@@ -11,10 +11,10 @@
 namespace overfly::evaluation {
 namespace {
 
-/// Second singular value over the first below which the least squares have no rotation about the
-/// line at all, but for rounding.
+/// If the ratio of the second to the first singular value is below this limit, the least squares
+/// determine the rotation about the line only up to rounding errors.
 constexpr double kLineRatio = 1e-10;
-/// Motion below this fraction of the distance from the origin is rounding.
+/// Motion below this fraction of the distance from the origin counts as rounding error.
 constexpr double kRounding = 1e-12;
 
 /// Moments of x (vo) and y (world) about the mean or the first position.
@@ -67,8 +67,8 @@ Status check_motion(const std::vector<MatchedPose>& matches, const Moments& m, b
                    " cannot be determined"};
 }
 
-/// Of all rotations R(angle about `axis`) * R, the one that brings the orientations nearest:
-/// maximises sum tr(R_world_camera^T R(angle) R R_vo_camera) = c + A cos(angle) + B sin(angle).
+/// Rotation R(angle about `axis`) * R that best aligns the orientations: maximises sum
+/// tr(R_world_camera^T R(angle) R R_vo_camera) = c + A cos(angle) + B sin(angle).
 Eigen::Matrix3d turned_to_orientations(const std::vector<MatchedPose>& matches,
                                        const Eigen::Matrix3d& R,
                                        const Eigen::Vector3d& axis) {
@@ -83,8 +83,9 @@ Eigen::Matrix3d turned_to_orientations(const std::vector<MatchedPose>& matches,
   return Eigen::AngleAxisd(angle_rad, axis).toRotationMatrix() * R;
 }
 
-/// Second singular value over the first: of truth and estimate, or of the truth alone where that is
-/// less (an estimate that strays sideways must not lend a straight truth its own shape).
+/// Ratio of the second to the first singular value: of the covariance of truth and estimate, or of
+/// the truth alone if that is smaller (lateral errors of an estimate must not hide that the truth
+/// is straight).
 double straightness(const Moments& m, const Eigen::Vector3d& D) {
   const Eigen::Vector3d own = m.sigma_yy.jacobiSvd().singularValues();
   return std::min(D(1) / D(0), own(1) / own(0));
@@ -92,11 +93,12 @@ double straightness(const Moments& m, const Eigen::Vector3d& D) {
 
 std::string straight_text(double ratio) {
   char text[200];
-  std::snprintf(text,
-                sizeof(text),
-                "the path is nearly straight (its lateral spread is %.2g %% of its spread along): "
-                "positions do not determine the rotation about it",
-                100.0 * std::sqrt(std::max(0.0, ratio)));
+  std::snprintf(
+      text,
+      sizeof(text),
+      "the path is nearly straight (its lateral spread is %.2g %% of its longitudinal spread): "
+      "positions do not determine the rotation about it",
+      100.0 * std::sqrt(std::max(0.0, ratio)));
   return text;
 }
 
@@ -129,7 +131,7 @@ Result<Similarity> fit_similarity(const std::vector<MatchedPose>& matches,
     R = turned_to_orientations(matches, R, svd.matrixU().col(0));
     if (remarks != nullptr) {
       remarks->notes.emplace_back(
-          "the positions lie on a line: the rotation about it is that of the orientations");
+          "the positions lie on a line: the rotation about it is taken from the orientations");
     }
   }
   Similarity S_world_vo;
