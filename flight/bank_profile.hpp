@@ -1,12 +1,12 @@
-// The bank angle over time: holds joined by smooth changes. Private to flight.
+// The bank angle over time: constant holds joined by smooth changes. Private to flight.
 #pragma once
 
 #include <vector>
 
 namespace overfly::flight {
 
-/// Roll rates rise and fall as raised cosines of this length, shorter where the change of bank is
-/// too small for the rate's limit to be reached otherwise [s].
+/// Length of the raised-cosine ramps of the roll rate [s]. Shorter if the change of bank is too
+/// small to reach the rate limit otherwise.
 inline constexpr double kRollRampS = 0.5;
 
 struct BankSample {
@@ -14,15 +14,15 @@ struct BankSample {
   double rate_rad_s = 0.0;
 };
 
-/// One change of bank from t = 0: the rate rises to its limit as a raised cosine, stays, and
-/// falls as it rose. The rate reaches the limit whatever the change; bank is twice continuously
-/// differentiable, roll acceleration continuous.
+/// One change of bank from t = 0. The rate rises to its limit as a raised cosine, stays constant,
+/// and falls symmetrically. Every change reaches the limit. The bank is twice continuously
+/// differentiable and the roll acceleration is continuous.
 class BankChange {
  public:
   BankChange(double from_rad, double to_rad, double rate_max_rad_s);
 
   [[nodiscard]] double duration_s() const { return 2.0 * ramp_s_ + plateau_s_; }
-  /// @param t_s  from the begin; held at the ends outside [0, duration]
+  /// @param t_s  time from the start; outside [0, duration] the end values are returned
   [[nodiscard]] BankSample at(double t_s) const;
   [[nodiscard]] double to_rad() const { return to_rad_; }
 
@@ -42,7 +42,7 @@ class BankProfile {
   void roll_to(double bank_rad);
 
   [[nodiscard]] double end_s() const { return end_s_; }
-  /// Level before the first change, held after the last.
+  /// Level before the first change; the last bank is held after the last change.
   [[nodiscard]] BankSample at(double t_s) const;
 
  private:

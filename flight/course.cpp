@@ -36,7 +36,7 @@ Status check(const Limit& limit) {
                    short_text(limit.high) + "]"};
 }
 
-/// Angles are told in degrees, by the names that they have in a scenario.
+/// Reports angles in degrees under the field names of the scenario.
 Status validate(const CourseParameters& p) {
   constexpr double kFarM = 1e6;
   for (const Limit& limit : {
@@ -63,7 +63,7 @@ class Course final : public TruthSource {
  public:
   Course(GroundTrack track, HeightProfile height, const CourseParameters& parameters)
       : track_(std::move(track)), height_(std::move(height)), parameters_(parameters) {
-    // The flight ends where the way flown, climbs included, is the course's length.
+    // The flight ends when the distance flown, including climbs, reaches the course's length.
     constexpr double kStepS = 0.01;
     double flown_m = 0.0;
     double t_s = 0.0;
@@ -100,13 +100,13 @@ class Course final : public TruthSource {
     return std::hypot(parameters_.airspeed_m_s, height_.at(t_s).climb_m_s);
   }
 
-  /// The x axis of the body lies along the velocity, the wings are banked about it.
+  /// The body's x axis points along the velocity; the bank is a rotation about it.
   [[nodiscard]] AircraftState state(std::int64_t t_ns) const {
     const double t_s = s_from_ns(t_ns);
     const GroundSample ground = track_.at(t_s);
     const HeightSample height = height_.at(t_s);
     const BankSample bank = track_.bank_at(t_s);
-    const double speed_m_s = parameters_.airspeed_m_s;  // over the ground: there is no wind
+    const double speed_m_s = parameters_.airspeed_m_s;  // equals ground speed: no wind
 
     AircraftState state;
     state.t_ns = t_ns;
@@ -121,7 +121,7 @@ class Course final : public TruthSource {
     const double pitch_rate =
         height.climb_rate_m_s2 * speed_m_s / (state.airspeed_m_s * state.airspeed_m_s);
     const double heading_rate = ground.heading_rate_rad_s;
-    // Body rates of Z-Y-X angle rates (Stevens, Lewis, Johnson 2016, eq. 1.4-4).
+    // Body rates from the rates of the Z-Y-X angles (Stevens, Lewis, Johnson 2016, eq. 1.4-4).
     state.omega_body_rad_s = {bank.rate_rad_s - heading_rate * std::sin(pitch_rad),
                               pitch_rate * std::cos(bank.bank_rad) +
                                   heading_rate * std::cos(pitch_rad) * std::sin(bank.bank_rad),
@@ -136,7 +136,7 @@ class Course final : public TruthSource {
   std::int64_t duration_ns_ = 0;
 };
 
-/// The smoothed height must leave room where the ground is rough.
+/// Checks that the smoothed height keeps its clearance over rough ground.
 Status check_clearance(const GroundTrack& track,
                        const HeightProfile& height,
                        const CourseParameters& p,
@@ -161,7 +161,8 @@ Status check_clearance(const GroundTrack& track,
 
 Result<std::unique_ptr<TruthSource>> fly_course(const CourseParameters& parameters,
                                                 std::shared_ptr<const HeightQuery> ground) {
-  if (!ground) return Error{ErrorCode::kInvalidArgument, "the course needs a ground to fly over"};
+  if (!ground)
+    return Error{ErrorCode::kInvalidArgument, "the course requires a ground (height query)"};
   if (Status status = validate(parameters); !status) return status.error().in("course");
   const double speed_m_s = parameters.airspeed_m_s;
   GroundTrack track(

@@ -13,7 +13,7 @@ constexpr double kSwingMinRad = rad_from_deg(30.0);
 constexpr double kSwingMaxRad = rad_from_deg(100.0);
 constexpr double kReversalMaxRad = rad_from_deg(45.0);
 
-/// The x in [low, high] at which a decreasing function falls to `wanted`; an end if none.
+/// The x in [low, high] where a decreasing function equals `wanted`; otherwise the nearer end.
 template <typename Function>
 double bisect_decreasing(double low, double high, double wanted, const Function& function) {
   if (function(low) <= wanted) return low;
@@ -25,7 +25,7 @@ double bisect_decreasing(double low, double high, double wanted, const Function&
   return 0.5 * (low + high);
 }
 
-/// Turns with one bank at one speed and roll rate.
+/// Geometry of turns at a given bank, speed and roll rate.
 class Turns {
  public:
   Turns(const CourseParameters& p, double bank_rad)
@@ -41,17 +41,18 @@ class Turns {
   [[nodiscard]] double roll_in_s() const {
     return BankChange(0.0, bank_rad_, roll_rate_).duration_s();
   }
-  /// Heading gained from wings level to the bank in a reversal; as much is lost before.
+  /// Heading change from wings level to full bank in a reversal; the first half loses as much.
   [[nodiscard]] double half_reversal_rad() const {
     const BankChange change(-bank_rad_, bank_rad_, roll_rate_);
     return heading_change(change, 0.5 * change.duration_s(), change.duration_s());
   }
-  /// Time at the full bank between two reversals that turn the heading from one side's swing to
-  /// the other's.
+  /// Time at full bank between two reversals, so that the heading goes from one side of the swing
+  /// to the other.
   [[nodiscard]] double hold_s(double swing_rad) const {
     return std::max(0.0, 2.0 * (swing_rad - half_reversal_rad()) / rate_rad_s());
   }
-  /// Way made good over way flown in one swing: the mean cosine of heading off the mean.
+  /// Ratio of distance made good to distance flown in one swing: the mean cosine of the heading
+  /// offset.
   [[nodiscard]] double progress(double swing_rad) const {
     BankProfile bank(roll_rate_);
     bank.roll_to(-bank_rad_);
@@ -62,7 +63,7 @@ class Turns {
     const double reversal_s = BankChange(-bank_rad_, bank_rad_, roll_rate_).duration_s();
     const double from_s = swing_begin_s + 0.5 * reversal_s;
     const double to_s = bank.end_s() - 0.5 * reversal_s;
-    const double before_s = from_s;  // the track starts level; turn it so that it begins at -swing
+    const double before_s = from_s;  // the track starts level; rotate it to start at -swing
     const GroundTrack probe(bank, speed_m_s_, {}, to_s);
     const double turn_back_rad = -swing_rad - probe.at(before_s).heading_rad;
     const GroundTrack track(bank, speed_m_s_, {0.0, 0.0, turn_back_rad, 0.0}, to_s);
@@ -71,7 +72,7 @@ class Turns {
 
  private:
   [[nodiscard]] double heading_change(const BankChange& change, double from_s, double to_s) const {
-    // Simpson's rule; the integrand is smooth, 200 intervals leave nothing.
+    // Simpson's rule; the integrand is smooth, so 200 intervals are exact to rounding.
     constexpr int kIntervals = 200;
     const double h_s = (to_s - from_s) / kIntervals;
     double sum = 0.0;
@@ -96,7 +97,7 @@ double course_bank_rad(const CourseParameters& p) {
   });
 }
 
-/// The swing that ends the flight beside its start.
+/// The swing amplitude at which the flight ends next to its start.
 double swing_for(const CourseParameters& p, const Turns& turns) {
   BankProfile turn(p.roll_rate_max_rad_s);
   turn.roll_to(turns.bank_rad());
@@ -121,7 +122,7 @@ BankProfile plan_course(const CourseParameters& p) {
   BankProfile bank(p.roll_rate_max_rad_s);
   bank.hold(p.leg_length_m / p.airspeed_m_s);
   bank.roll_to(turns.bank_rad());
-  // On to the first swing's far side, where the reversal crosses wings level.
+  // Continue to the far side of the first swing, where the reversal crosses wings level.
   const double first_rad = kPi + swing_rad - turns.roll_in_rad() - turns.half_reversal_rad();
   bank.hold(first_rad / turns.rate_rad_s());
   for (double side = -1.0; bank.end_s() < end_s; side = -side) {

@@ -15,7 +15,7 @@ struct QuadraturePoint {
   double weight;
 };
 
-/// Gauss-Legendre of three points on [0, 1], exact to degree 5 (Abramowitz and Stegun 25.4.30).
+/// Three-point Gauss-Legendre rule on [0, 1], exact to degree 5 (Abramowitz and Stegun 25.4.30).
 const std::array<QuadraturePoint, 3> kGauss3{{{0.5 - 0.5 * 0.77459666924148337704, 5.0 / 18.0},
                                               {0.5, 8.0 / 18.0},
                                               {0.5 + 0.5 * 0.77459666924148337704, 5.0 / 18.0}}};

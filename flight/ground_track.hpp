@@ -1,4 +1,4 @@
-// The course over the ground of an aircraft that turns as it banks. Private to flight.
+// Ground track of an aircraft in coordinated turns. Private to flight.
 #pragma once
 
 #include <vector>
@@ -20,16 +20,16 @@ struct GroundSample {
 /// Turn rate of a coordinated level turn: g tan(bank) / V [rad/s].
 [[nodiscard]] double turn_rate_rad_s(double bank_rad, double speed_m_s);
 
-/// Integrates heading and position of a bank profile at constant ground speed.
-/// Nodes every 10 ms; between them 3-point Gauss-Legendre quadrature from the node before, so
-/// that the track is as smooth as its bank (node to node to rounding).
+/// Integrates heading and position of a bank profile at constant ground speed. Nodes are stored
+/// every 10 ms. Between nodes, 3-point Gauss-Legendre quadrature from the previous node keeps the
+/// track as smooth as the bank (continuous at the nodes up to rounding).
 class GroundTrack {
  public:
   GroundTrack(BankProfile bank, double speed_m_s, const GroundSample& start, double duration_s);
 
   [[nodiscard]] double duration_s() const { return duration_s_; }
   [[nodiscard]] BankSample bank_at(double t_s) const { return bank_.at(t_s); }
-  /// Straight on along the heading of the ends outside [0, duration].
+  /// Outside [0, duration] the track continues straight along the heading of the end.
   [[nodiscard]] GroundSample at(double t_s) const;
 
  private:

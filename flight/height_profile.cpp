@@ -8,13 +8,13 @@
 namespace overfly::flight {
 namespace {
 
-constexpr int kMargin = 3;      // a basis of degree five reaches three knots to each side
+constexpr int kMargin = 3;      // a basis of degree five extends three knots to each side
 constexpr long kHalfSteps = 8;  // ground samples in half a knot distance
 
 /// Centred cardinal B-spline of a degree at x (Schoenberg 1946, by truncated powers).
 double basis(int degree, double x) {
   const double half_width = 0.5 * (degree + 1);
-  x = -std::abs(x);  // even; the left half has the fewer terms
+  x = -std::abs(x);  // even function; the left half has fewer terms
   if (x <= -half_width) return 0.0;
   double sum = 0.0;
   double binomial = 1.0;
@@ -31,7 +31,7 @@ double basis(int degree, double x) {
   return sum / factorial;
 }
 
-/// The ground, sampled once at a fixed step from `begin` on.
+/// The ground height, sampled once at a fixed step from `begin`.
 class SampledGround {
  public:
   SampledGround(const std::function<double(double)>& ground,
@@ -51,8 +51,9 @@ class SampledGround {
     if (bad == heights_.end()) return std::nullopt;
     return begin_s_ + static_cast<double>(bad - heights_.begin()) * step_s_;
   }
-  /// Mean around a sample, weighted by a triangle that falls to 0 at `reach` steps to each side:
-  /// the least window that keeps bumps shorter than two knots from showing as long waves.
+  /// Mean around a sample with a triangular window that falls to 0 at `reach` steps to each side.
+  /// This is the shortest window that prevents bumps shorter than two knots from appearing as long
+  /// waves.
   [[nodiscard]] double mean_around(double t_s, long reach) const {
     const auto last = static_cast<long>(heights_.size()) - 1;
     const long centre = std::lround((t_s - begin_s_) / step_s_);
@@ -85,7 +86,7 @@ Result<HeightProfile> HeightProfile::above(const std::function<double(double)>& 
         "the ground's height under the course is not finite at " + std::to_string(*bad_s) + " s"};
   }
   HeightProfile profile;
-  // Knots stay on samples: half their distance is always a whole number of steps.
+  // Keep knots on samples: half the spacing is always a whole number of steps.
   for (long half_steps = kHalfSteps;; half_steps += (half_steps + 3) / 4) {
     profile.knot_s_ = static_cast<double>(2 * half_steps) * step_s;
     const int count = static_cast<int>(std::ceil(duration_s / profile.knot_s_)) + 2 * kMargin + 1;
@@ -116,7 +117,7 @@ HeightSample HeightProfile::at(double t_s) const {
   const int nearest = static_cast<int>(std::lround(x));
   const int last = static_cast<int>(control_m_.size()) - 1;
   HeightSample sample;
-  // Heights relative to one control value: the sums then lose no digits to a tall ground.
+  // Sum heights relative to one control value, so that high ground costs no precision.
   const double base_m = control_m_[static_cast<std::size_t>(std::clamp(nearest, 0, last))];
   for (int j = nearest - kMargin; j <= nearest + kMargin; ++j) {
     const double c_m = control_m_[static_cast<std::size_t>(std::clamp(j, 0, last))] - base_m;

@@ -1,4 +1,4 @@
-// A smooth height over time above a ground that is not smooth. Private to flight.
+// A smooth height over time above rough ground. Private to flight.
 #pragma once
 
 #include <functional>
@@ -15,19 +15,20 @@ struct HeightSample {
 };
 
 struct HeightLimits {
-  double knot_s = 1.6;  ///< distance of the spline's knots
+  double knot_s = 1.6;  ///< knot spacing of the spline
   double climb_max_m_s = 3.5;
 };
 
-/// A uniform B-spline of degree five (four times continuously differentiable) whose control values
-/// are means of the ground, weighted by a triangle of two knots: a low-pass without lag. A wave of
-/// the ground of period P keeps sinc(knot / P)^8 of its size: at 10 knots 88 %, at 20 knots 97 %;
-/// below 2 knots, where waves are aliased, less than 6 %.
-/// Where the climb would exceed its limit the knots are moved apart until it does not.
+/// A uniform B-spline of degree five (four times continuously differentiable). Its control values
+/// are means of the ground height with a triangular window of two knots: a low-pass filter without
+/// lag. A ground wave of period P keeps the fraction sinc(knot / P)^8 of its amplitude: 88 % at 10
+/// knots, 97 % at 20 knots. Below 2 knots, where waves are aliased, less than 6 % remains. If the
+/// climb exceeds its limit, the knot spacing is increased until it does not.
 class HeightProfile {
  public:
-  /// @param ground_up_m  ground under the aircraft at a time, also a little outside [0, duration]
-  /// Errors: kInvalidArgument for ground that is not finite, or too steep whatever the knots.
+  /// @param ground_up_m  height of the ground under the aircraft at a time, also slightly outside
+  /// [0, duration]
+  /// Errors: kInvalidArgument for ground that is not finite, or too steep for any knot spacing.
   static Result<HeightProfile> above(const std::function<double(double t_s)>& ground_up_m,
                                      double height_agl_m,
                                      double duration_s,
@@ -39,7 +40,7 @@ class HeightProfile {
   [[nodiscard]] double steepest_m_s(double duration_s) const;
 
   double knot_s_ = 1.0;
-  std::vector<double> control_m_;  // the first stands kMargin knots before t = 0
+  std::vector<double> control_m_;  // the first is kMargin knots before t = 0
 };
 
 }  // namespace overfly::flight

@@ -12,7 +12,7 @@
 namespace overfly::flight {
 namespace {
 
-/// Normally distributed numbers that are the same with every standard library.
+/// Normally distributed random numbers, identical for every standard library.
 class Noise {
  public:
   explicit Noise(std::uint64_t seed) : generator_(seed) {}
@@ -40,7 +40,7 @@ Eigen::Vector3d log_of(const Eigen::Quaterniond& q) {
   return sign * (2.0 * std::atan2(sine, std::abs(q.w())) / sine) * q.vec();
 }
 
-/// Adds what the unit gets wrong; draws the same numbers whatever the densities are.
+/// Adds noise and bias. Draws the same random numbers for all noise densities.
 class ErrorModel {
  public:
   ErrorModel(const ImuModel& model, std::uint64_t seed) : model_(model), noise_(seed) {}
@@ -114,7 +114,7 @@ Result<std::vector<ImuReading>> synthesize_imu(TruthSource& flight,
   if (Status status = model.validate(); !status) return status.error();
   const Result<FrameRate> rate = FrameRate::from_hz(model.rate_hz);
   if (!rate) return rate.error().in("imu.rate_hz");
-  // Twice as fast: the odd stamps lie between the samples.
+  // Twice the rate: the odd stamps lie between the samples.
   const FrameRate half_steps{2 * rate->numerator, rate->denominator};
   end_ns = std::min(end_ns, flight.duration_ns().value_or(end_ns));
 
@@ -135,7 +135,7 @@ Result<std::vector<ImuReading>> synthesize_imu(TruthSource& flight,
     if (!middle) return middle.error();
     const auto after = *middle ? flight.state_at(after_ns) : middle;
     if (!after) return after.error();
-    // A flight of unknown length ends where it says so.
+    // A flight of unknown duration has ended.
     if (!*after) return readings;
     ImuReading reading = mean_between(before, **middle, **after, gravity_m_s2);
     errors.apply(s_from_ns((*after)->t_ns - before.t_ns), reading);

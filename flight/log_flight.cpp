@@ -95,7 +95,7 @@ class LogFlight final : public TruthSource {
                                      (3 * u2 - 2 * u3) * p1 + (u3 - u2) * m1;
     state.v_body_world_m_s =
         ((6 * u2 - 6 * u) * (p0 - p1) + (3 * u2 - 4 * u + 1) * m0 + (3 * u2 - 2 * u) * m1) / dt_s;
-    state.airspeed_m_s = state.v_body_world_m_s.norm();  // a pose file knows no wind
+    state.airspeed_m_s = state.v_body_world_m_s.norm();  // a pose file contains no wind
     Eigen::Quaterniond step = a.pose.rotation.conjugate() * b.pose.rotation;
     if (step.w() < 0.0) step.coeffs() = -step.coeffs();
     const Eigen::AngleAxisd turn(step);

@@ -99,15 +99,16 @@ Result<FlightLog> read_log(const std::filesystem::path& path,
   const Result<TrajectoryFile> poses = read_trajectory(path, cancel);
   if (!poses) return poses.error();
   if (!poses->has_times) {
-    return Error{ErrorCode::kUnreadable,
-                 path.string() + ": KITTI poses without a times.txt beside them cannot be flown"};
+    return Error{
+        ErrorCode::kUnreadable,
+        path.string() + ": KITTI poses without a times.txt in the same folder cannot be flown"};
   }
   FlightLog log{poses->trajectory, poses->warnings};
   if (!camera_poses) return log;
   const Pose T_camera_body = Pose{R_body_camera_nadir(), Eigen::Vector3d::Zero()}.inverse();
   log.T_world_body = {};
   for (const StampedPose& stamped : poses->trajectory.poses()) {
-    // Cannot fail: stamps increase and poses are sound already.
+    // Cannot fail: the stamps increase and the poses were checked.
     static_cast<void>(log.T_world_body.append({stamped.t_ns, stamped.pose * T_camera_body}));
   }
   return log;

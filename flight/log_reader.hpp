@@ -1,4 +1,5 @@
-// Pose files as flights: TUM, and CSV of geodetic positions and attitudes. Private to flight.
+// Reads pose files as flights: TUM, and CSV with geodetic positions and attitudes. Private to
+// flight.
 #pragma once
 
 #include <atomic>
@@ -13,12 +14,12 @@
 namespace overfly::flight {
 
 struct FlightLog {
-  Trajectory T_world_body;  ///< stamps as they stand in the file
+  Trajectory T_world_body;  ///< stamps as in the file
   std::vector<std::string> warnings;
 };
 
-/// Rows that are not in order of time are sorted, and of those with the same time the first is
-/// kept; `warnings` counts them.
+/// Sorts rows by time and keeps the first of several with the same time; `warnings` reports how
+/// many were moved or dropped.
 /// Errors: as fly_log.
 [[nodiscard]] Result<FlightLog> read_log(const std::filesystem::path& file,
                                          const LocalFrame& frame,
