@@ -1,4 +1,4 @@
-// Bundle adjustment: poses and points together.
+// Bundle adjustment of poses and points.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,7 +10,7 @@
 
 namespace overfly::odometry {
 
-/// A problem by indices, independent of the map.
+/// A bundle adjustment problem in terms of indices, independent of the map.
 struct Bundle {
   struct Camera {
     Pose T_camera_vo;
@@ -29,23 +29,24 @@ struct Bundle {
 
 struct BundleOptions {
   int max_iterations = 5;
-  double huber = 2.0;  ///< residual, in sigmas, from which weight falls
+  double huber = 2.0;  ///< residual from which the weight decreases [sigmas]
 };
 
 /// Minimises the reprojection error over the free cameras and all points.
 ///
 /// Method: Levenberg-Marquardt with the Schur complement over the points (Triggs et al. 2000,
-/// section 6.1) by Ceres, analytic derivatives, one thread: results repeat.
-/// @return root of the mean squared residual after it, in sigmas; infinite where a sight's point is
-/// not in front of its camera, which leaves all as it was
+/// section 6.1) using Ceres, with analytic derivatives and one thread, so that results are
+/// reproducible.
+/// @return root mean square residual after the adjustment [sigmas]. Infinite if an observed point
+/// is not in front of its camera; the bundle is then unchanged.
 double adjust(const PinholeCamera& camera, Bundle& bundle, const BundleOptions& options);
 
-/// Adjusts the newest keyframe, those most covisible with it, and all points that these see; other
-/// keyframes that see the points are held (Mur-Artal and Tardos 2017, section III-B, eq. 3).
-/// Sights that then miss by more than `outlier` sigmas are removed.
+/// Adjusts the newest keyframe, the keyframes most covisible with it, and all points they observe.
+/// Other keyframes that observe these points are fixed (Mur-Artal and Tardos 2017, section III-B,
+/// eq. 3). Observations with a residual above `outlier` sigmas are then removed.
 struct LocalAdjustment {
   int free_keyframes = 8;
-  int fixed_keyframes = 12;  ///< at most so many held
+  int fixed_keyframes = 12;  ///< maximum number of fixed keyframes
   double outlier = 6.0;
   BundleOptions solver;
 };

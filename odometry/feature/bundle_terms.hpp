@@ -1,4 +1,4 @@
-// What Ceres needs to adjust poses: how they move, and the error of one sight.
+// Ceres terms for pose adjustment: the pose manifold and the reprojection error.
 #pragma once
 
 #include <ceres/manifold.h>
@@ -13,7 +13,7 @@
 
 namespace overfly::odometry {
 
-/// A pose as Ceres keeps it: quaternion x, y, z, w, then translation.
+/// A pose in the layout used with Ceres: quaternion x, y, z, w, then translation.
 using PoseBlock = std::array<double, 7>;
 
 inline Pose pose_of(const double* block) {
@@ -28,8 +28,9 @@ inline void store(const Pose& pose, double* block) {
   translation = pose.translation;
 }
 
-/// SE(3) with the step of `moved`. Derivatives by the block are those by the step in the first six
-/// columns and zero in the seventh, which the constant Jacobian here picks out again.
+/// SE(3) with the update of `moved`. Jacobians with respect to the block hold the derivatives with
+/// respect to the update in the first six columns and zeros in the seventh; the constant Jacobian
+/// of this manifold selects the first six.
 class PoseManifold final : public ceres::Manifold {
  public:
   [[nodiscard]] int AmbientSize() const override { return 7; }
@@ -59,7 +60,7 @@ class PoseManifold final : public ceres::Manifold {
   }
 };
 
-/// Reprojection error of one sight, in sigmas.
+/// Reprojection error of one observation [sigmas].
 class Reprojection final : public ceres::SizedCostFunction<2, 7, 3> {
  public:
   Reprojection(const PinholeCamera& camera, const Bundle::Sight& sight)
@@ -73,7 +74,7 @@ class Reprojection final : public ceres::SizedCostFunction<2, 7, 3> {
     const Eigen::Map<const Eigen::Vector3d> point(parameters[1]);
     const Eigen::Matrix3d R = rotation.toRotationMatrix();
     const Eigen::Vector3d p = R * point + translation;
-    // A step that puts a point behind the camera is refused, and a shorter one tried.
+    // Reject a step that puts a point behind the camera; the solver then tries a shorter one.
     if (p.z() < 1e-4) return false;
     residuals[0] = weight_ * (camera_.fx_px * p.x() / p.z() + camera_.cx_px - pixel_.x());
     residuals[1] = weight_ * (camera_.fy_px * p.y() / p.z() + camera_.cy_px - pixel_.y());

@@ -9,7 +9,7 @@
 namespace overfly::odometry {
 namespace {
 
-constexpr int kLeastWidthPx = 480;  ///< of the view, where the image has as many
+constexpr int kLeastWidthPx = 480;  ///< minimum width of the view, if the image is that wide
 constexpr double kFontScale = 0.45;
 const cv::Scalar kGreen(60, 230, 90);
 const cv::Scalar kRed(240, 70, 60);
@@ -24,7 +24,7 @@ cv::Point scaled(const Eigen::Vector2d& pixel, double scale) {
           static_cast<int>(std::lround(pixel.y() * scale))};
 }
 
-/// Turns burnt-out areas towards magenta.
+/// Tints saturated areas magenta.
 void tint_burnt(cv::Mat& canvas, const Pyramid& pyramid, double scale) {
   if (pyramid.burnt.empty()) return;
   for (int y = 0; y < canvas.rows; ++y) {
@@ -87,7 +87,7 @@ std::string text_of(const DebugContent& content) {
   return line;
 }
 
-/// As large as fits across, up to kFontScale.
+/// Draws the text as large as fits the width, up to kFontScale.
 void draw_text(cv::Mat& canvas, const DebugContent& content) {
   const std::string text = text_of(content);
   const int width_px =

@@ -1,4 +1,4 @@
-// The picture of what the estimator sees.
+// Draws the estimator's debug image.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,17 +20,17 @@ struct DebugContent {
   int keyframes = 0;
   const TrackResult* tracked = nullptr;                       ///< null unless tracking
   const std::vector<Initialiser::Track>* followed = nullptr;  ///< null unless initialising
-  std::vector<Eigen::Vector2d> missed_px;      ///< where points were looked for in vain
-  std::vector<Eigen::Vector2d> candidates_px;  ///< corners of a keyframe that wait for a depth
-  /// Wall time by stage; null in lockstep, whose images repeat byte for byte.
+  std::vector<Eigen::Vector2d> missed_px;      ///< where points were searched but not found
+  std::vector<Eigen::Vector2d> candidates_px;  ///< corners of a keyframe without depth yet
+  /// Wall time by stage; null in lockstep, so that images are byte-identical between runs.
   const std::map<std::string, double>* timing_ms = nullptr;
 };
 
-/// RGB image, half as wide and high from 960 px of width on. Map points by state: found green
-/// (coarse patches larger), found elsewhere red, not found grey; corners of a new keyframe without
-/// a depth blue (with one thread: beside tracking they are looked for later); before the first map
-/// the corners being followed yellow with their path. Burnt-out areas are tinted. A line of text; a
-/// blue frame around the image of a keyframe.
+/// Draws an RGB image, at half resolution for widths of 960 px and more.
+/// Map points: green if found (larger for coarse patches), red if found at another place, grey if
+/// not found. Corners of a new keyframe without depth are blue (only with one thread; a mapping
+/// thread searches them later). Before the first map, followed corners and their paths are yellow.
+/// Saturated areas are tinted. A line of text shows the state, and a blue frame marks a keyframe.
 [[nodiscard]] Image draw_debug_view(const Pyramid& pyramid, const DebugContent& content);
 
 }  // namespace overfly::odometry

@@ -10,22 +10,23 @@
 namespace overfly::odometry {
 namespace {
 
-/// Of the image's width: how far a corner may be from where it was seen last.
+/// Search radius around a corner's predicted position, as a fraction of the image's width.
 constexpr double kSearchShare = 0.12;
-/// Of the focal length: a reference that the view moved less away from still serves.
+/// Median displacement below which a reference is still up to date, as a fraction of the focal
+/// length.
 constexpr double kStillShare = 0.02;
-/// Noise of a corner that descriptors found, at the finest level [px].
+/// Noise of a corner matched by descriptors, at the finest level [px].
 constexpr double kMatchSigmaPx = 1.5;
-/// Points of less parallax have no depth worth a map.
+/// Points with less parallax have too uncertain a depth for the map.
 constexpr double kLeastPointParallaxRad = 0.012;
-/// From where the motion puts a point to where its patch is, at the patch's level [px].
+/// Maximum offset of a patch from the position that the motion predicts, at the patch's level [px].
 constexpr double kMaxRefinementPx = 5.0;
 
-/// Of the noise of a corner: less parallax than that is none.
+/// Minimum parallax, in multiples of a corner's noise.
 constexpr double kParallaxSigmas = 8.0;
 constexpr int kMostMisses = 5;
 
-/// By each coordinate; zero of none.
+/// Median of each coordinate; zero for an empty set.
 Eigen::Vector2d median_offset(const std::vector<Eigen::Vector2d>& values) {
   Eigen::Vector2d median = Eigen::Vector2d::Zero();
   if (values.empty()) return median;
@@ -74,7 +75,7 @@ DescriptorInitialiser::Pixels DescriptorInitialiser::match(const Reference& refe
   return pixels;
 }
 
-/// Tries to make the map from a reference and this frame; else remembers the frame as a view.
+/// Tries to create the map from a reference and this frame; otherwise stores the frame as a view.
 bool DescriptorInitialiser::compare(Reference& reference,
                                     const FrameImage& frame,
                                     const DescribedCorners& now,
@@ -88,7 +89,7 @@ bool DescriptorInitialiser::compare(Reference& reference,
     matched.push_back(i);
     steps.emplace_back(*view.pixels[i] - reference.last[i]);
   }
-  // Those that were not seen went with the others.
+  // Assume that corners not found moved like the others.
   const Eigen::Vector2d usual = median_offset(steps);
   for (std::size_t i = 0; i < view.pixels.size(); ++i) {
     reference.last[i] = view.pixels[i] ? *view.pixels[i] : reference.last[i] + usual;
@@ -143,7 +144,7 @@ std::vector<TwoViewReconstruction> DescriptorInitialiser::motions(
   return reconstruct_two_view(camera_, from, to, options);
 }
 
-/// The motion's points, with their pixels in all views from patches.
+/// The motion's points, with their pixels in all views refined by patch alignment.
 FirstMapInput DescriptorInitialiser::input_of(const Reference& reference,
                                               const View& last,
                                               const std::vector<std::size_t>& matched,
@@ -212,8 +213,8 @@ bool DescriptorInitialiser::spread(const FirstMapInput& input) const {
   return std::count(grid.marked.begin(), grid.marked.end(), 1) >= options_.min_cells;
 }
 
-/// Makes the frame a reference when the newest is some way off, and forgets those of which nothing
-/// was seen for some time.
+/// Makes the frame a reference if the newest is far enough away, and drops references that were not
+/// matched for some time.
 void DescriptorInitialiser::keep(const FrameImage& frame, const DescribedCorners& now) {
   std::erase_if(references_,
                 [](const Reference& reference) { return reference.misses > kMostMisses; });

@@ -1,4 +1,5 @@
-// The first map of scenes whose corners cannot be followed by patches over one plane.
+// Creates the first map by descriptor matching, for scenes that cannot be tracked by patches over
+// one plane.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,17 +19,18 @@
 namespace overfly::odometry {
 
 struct DescriptorInitialiserOptions {
-  /// Which a third of the points exceed: ahead of a camera that moves forward there is none.
+  /// Exceeded by a third of the points: ahead of a camera that moves forward points have no
+  /// parallax.
   double min_parallax_rad = 0.05;
-  /// A turn takes the reference out of sight: after so long, less will do.
+  /// A turn moves the reference out of view: after this time `least_parallax_rad` is sufficient.
   double patience_s = 0.25;
   double least_parallax_rad = 0.018;
   bool planar_start = true;
   int coarsest_patch_level = 2;
-  double scale_factor = 1.2;  ///< of the corners' levels
-  int references = 5;         ///< earlier images that a new one is compared with
-  double reference_s = 0.15;  ///< between them, at least
-  int views = 12;             ///< between a reference and the newest, at most
+  double scale_factor = 1.2;  ///< between the corners' levels
+  int references = 5;         ///< number of earlier images to compare with
+  double reference_s = 0.15;  ///< minimum time between references
+  int views = 12;             ///< maximum between a reference and the newest image
   int min_matches = 100;
   int min_points = 60;
   int cells = 1000;
@@ -36,19 +38,19 @@ struct DescriptorInitialiserOptions {
   std::uint64_t seed = 1;
 };
 
-/// Compares each image with several earlier ones by descriptors, so that a corner that is missed
-/// once, or an image that shows little, costs nothing; takes the motion from the first that is far
-/// enough away, then the pixels from patches.
+/// Compares each image with several earlier ones by descriptors, so that a missed corner or an
+/// image with little content does no harm. Takes the motion from the first reference that is far
+/// enough away and refines the pixels by patch alignment.
 ///
-/// Method: matching by descriptors with a first frame, as Mur-Artal, Montiel and Tardos 2015,
-/// section IV, here with several; the essential matrix by five points.
+/// Method: descriptor matching with a first frame as in Mur-Artal, Montiel and Tardos 2015, section
+/// IV, here with several reference frames; essential matrix by the five-point algorithm.
 class DescriptorInitialiser {
  public:
   DescriptorInitialiser(const PinholeCamera& camera, const DescriptorInitialiserOptions& options);
 
-  /// Takes the next frame, as `Initialiser::process`.
+  /// Processes the next frame, see `Initialiser::process`.
   bool process(const FrameImage& frame, OrbExtractor& orb, Map& map);
-  /// Takes an image from before the first that was processed: a reference more.
+  /// Adds an image from before the first processed one as a further reference.
   void remember(const FrameImage& frame, OrbExtractor& orb);
   void reset() { references_.clear(); }
 
@@ -62,8 +64,8 @@ class DescriptorInitialiser {
     FrameImage frame;
     DescribedCorners described;
     std::vector<View> views;
-    std::vector<Eigen::Vector2d> last;  ///< where each corner should be by now
-    int misses = 0;                     ///< images in a row that showed too little of it
+    std::vector<Eigen::Vector2d> last;  ///< predicted position of each corner
+    int misses = 0;                     ///< consecutive images with too few matches
   };
 
   [[nodiscard]] Pixels match(const Reference& reference, const DescribedCorners& now) const;

@@ -7,7 +7,7 @@
 namespace overfly::odometry {
 namespace {
 
-/// Corners by square cells of the image, for looking around a place.
+/// Corners sorted into square cells of the image, for neighbourhood searches.
 class Buckets {
  public:
   Buckets(const std::vector<Corner>& corners, double cell_px) : cell_px_(cell_px) {
@@ -84,7 +84,7 @@ std::vector<std::optional<std::size_t>> match_corners(const DescribedCorners& fr
       }
       const int distance = hamming_distance(from.descriptors[i], to.descriptors[j]);
       if (distance < best) {
-        // The same corner at the next scale is no rival.
+        // The same corner at the next scale does not count as second best.
         const bool rival = best < 257 && (to.corners[found].pixel - corner.pixel).norm() > 4.0;
         if (rival) second = best;
         best = distance;

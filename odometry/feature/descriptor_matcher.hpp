@@ -1,4 +1,4 @@
-// Corners of one image found again in another by their descriptors.
+// Matches corners of two images by their descriptors.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,18 +14,20 @@ struct DescribedCorners {
   std::vector<Descriptor> descriptors;  ///< one for each corner
 };
 
-/// All corners of an image, described.
+/// Detects and describes all corners of an image.
 [[nodiscard]] DescribedCorners describe_image(const cv::Mat& image, OrbExtractor& orb);
 
 struct MatcherOptions {
-  double radius_px = 150.0;  ///< around the expected place
+  double radius_px = 150.0;  ///< around the expected pixel
   int max_distance = 60;     ///< bits
   double ratio = 0.85;       ///< best to second-best distance
   int max_scale_change = 3;  ///< levels
 };
 
-/// @param expected  full-resolution pixel in `to` where each corner of `from` is looked for
-/// @return for each corner of `from` its index in `to`, each of which is taken once, by the nearest
+/// Matches each corner of `from` to at most one corner of `to`.
+/// @param expected  full-resolution pixel in `to` around which each corner of `from` is searched
+/// @return for each corner of `from` its index in `to`. Each index is used once, by the nearest
+/// descriptor.
 [[nodiscard]] std::vector<std::optional<std::size_t>> match_corners(
     const DescribedCorners& from,
     const DescribedCorners& to,

@@ -1,4 +1,4 @@
-// Motions from homographies and essential matrices.
+// Computes motions from homographies and essential matrices.
 #include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 #include <cmath>
@@ -42,7 +42,8 @@ Eigen::Matrix3d essential_of_five(const std::vector<Eigen::Vector2d>& first,
                                          kConfidence,
                                          threshold,
                                          kMaxRounds);
-  // No model gives an empty matrix; five pairs alone could give several, one below the other.
+  // OpenCV returns an empty matrix if no model is found, and several stacked matrices for exactly
+  // five pairs.
   if (E.rows != 3 || E.cols != 3) return Eigen::Matrix3d::Zero();
   Eigen::Matrix3d result;
   for (int row = 0; row < 3; ++row) {

@@ -10,12 +10,12 @@
 namespace overfly::odometry {
 namespace {
 
-/// Images that repeat while the camera should have moved by more than this show nothing new.
+/// An image that repeats although the camera should have moved by more than this is a frozen image.
 constexpr double kFrozenMotionPx = 0.3;
-/// Corners a frame is asked for, per point that is tracked in it.
+/// Number of features requested per frame, relative to the points tracked in it.
 constexpr double kFeaturesPerPoint = 2.0;
 
-/// To which patches may rise where finer ones have no texture.
+/// Coarsest level for patches whose finer levels lack texture.
 int coarsest_patch_level(const FeatureParameters& parameters) {
   return parameters.low_texture ? 3 : 2;
 }
@@ -50,7 +50,7 @@ DescriptorInitialiserOptions descriptor_initialiser_options(const FeatureParamet
   options.coarsest_patch_level = like.coarsest_patch_level;
   options.scale_factor = parameters.scale_factor;
   options.cells = like.cells;
-  // The mapper finds new points with every image where what is seen is no plane.
+  // In scenes that are not planar the mapper finds new points with every image.
   options.min_cells = 3 * like.min_cells / 4;
   return options;
 }
@@ -98,7 +98,7 @@ FrameImage FeatureOdometry::image_of(const VoFrame& frame) const {
   return image;
 }
 
-/// Whether the image stood still while the camera should have moved.
+/// Whether the image repeats although the camera should have moved.
 bool FeatureOdometry::frozen(const VoFrame& frame, bool repeated) const {
   if (!repeated || state_ == TrackingState::kInitialising) return false;
   const double dt_s = static_cast<double>(frame.t_ns - previous_->t_ns) * 1e-9;
@@ -141,7 +141,7 @@ Result<VoEstimate> FeatureOdometry::answer(const VoFrame& frame) {
     parts_->keeper.refresh();
     for (std::string& line : parts_->keeper.take_warnings()) log_->add(std::move(line));
     if (rejoin_old_map(image, estimate, outcome)) {
-      // The old map goes on with this frame.
+      // The old map continues with this frame.
     } else if (state_ == TrackingState::kInitialising) {
       if (!repeated) initialise(image, estimate, outcome);
     } else if (frozen(frame, repeated)) {
@@ -159,7 +159,7 @@ Result<VoEstimate> FeatureOdometry::answer(const VoFrame& frame) {
   return estimate;
 }
 
-/// Corners that can be followed make the better map: descriptors serve where they cannot.
+/// Tracked corners give the better map; descriptors are used where tracking fails.
 bool FeatureOdometry::make_first_map(const FrameImage& frame) {
   Map& first = parts_->keeper.empty_map();
   if (!parts_->initialiser.process(frame, orb_, first)) {
@@ -195,8 +195,8 @@ Pose FeatureOdometry::predicted(std::int64_t t_ns) const {
 }
 
 TrackResult FeatureOdometry::track_map(const FrameImage& frame) const {
-  // From the prediction; then without the coarse search, which blurred ground misleads; then with
-  // a wider one; then as if a turn had just stopped.
+  // Try the prediction first; then without the coarse search, which fails on blurred ground; then
+  // with a wider coarse search; then as if a turn had just stopped.
   const Tracker& tracker = parts_->tracker;
   TrackResult result = tracker.track(frame.pyramid, predicted(frame.t_ns), 3, map());
   if (!result.tracked && parameters_.low_texture) {

@@ -1,4 +1,5 @@
-// The estimator behind the port: which of its parts works on a frame, and what state that gives.
+// Implements the estimator port: selects the component that processes a frame and derives the
+// tracking state.
 #pragma once
 
 #include <atomic>
@@ -21,10 +22,11 @@
 
 namespace overfly::odometry {
 
-/// States: INITIALISING until the first map; TRACKING; LOST until the map is found again. When
-/// that does not come for `kGiveUpS` of images that show something, or the map was just begun, a
-/// new one is begun (map_id grows): INITIALISING. The old one is kept, unless it was just begun,
-/// and looked for beside the new one's work; where it is found, it goes on with its map_id.
+/// States: INITIALISING until the first map exists; TRACKING; LOST until the map is found again. If
+/// relocalisation fails for `kGiveUpS` of images with visible texture, or if the lost map is young,
+/// a new map is started (map_id increases, state INITIALISING). The old map is kept unless it was
+/// young, and is searched for while the new one is built and tracked. If it is found, it becomes
+/// the current map again with its own map_id.
 class FeatureOdometry final : public VoPort {
  public:
   explicit FeatureOdometry(const FeatureParameters& parameters);
@@ -35,12 +37,12 @@ class FeatureOdometry final : public VoPort {
   void reset() override;
   [[nodiscard]] std::vector<std::string> take_log() override { return log_->take(); }
   void set_debug(bool wanted) override { debug_ = wanted; }
-  /// CPU of both threads; memory of the map at its largest: images, points, observations (with two
-  /// threads of the part that tracking has a copy of).
+  /// CPU time of both threads, and the largest memory of the map: images, points, observations.
+  /// With two threads it includes the tracking thread's partial copy.
   [[nodiscard]] std::optional<ResourceUse> resource_use() const override;
 
  private:
-  /// The parts that need the camera, made at the first frame.
+  /// Components that need the camera; created at the first frame.
   struct Parts {
     Parts(const CameraModel& camera, const FeatureParameters& parameters);
     Rectifier rectifier;
@@ -49,12 +51,12 @@ class FeatureOdometry final : public VoPort {
     Tracker tracker;
     MapKeeper keeper;
   };
-  /// Since it was created, whatever was reset. Read by other threads.
+  /// Totals since construction, not affected by reset. Read by other threads.
   struct Account {
     std::atomic<double> cpu_s{0.0};
     std::atomic<double> peak_memory_mb{0.0};
   };
-  /// Lines for people; taken by another thread than that which tracks.
+  /// Log lines for the user; read by another thread than the tracking thread.
   class Log {
    public:
     void add(std::string line);
@@ -64,13 +66,13 @@ class FeatureOdometry final : public VoPort {
     std::mutex mutex_;
     std::vector<std::string> lines_;
   };
-  /// A map that was lost, in case its place is seen again.
+  /// A lost map, kept in case its area is seen again.
   struct OldMap {
     Map map;
     int map_id = 0;
     double m_per_unit = 1.0;
   };
-  /// What happened in the frame at hand.
+  /// Results of processing the current frame.
   struct Outcome {
     TrackResult tracked;
     bool keyframe = false;
@@ -106,16 +108,16 @@ class FeatureOdometry final : public VoPort {
   MotionModel motion_;
   TrackingState state_ = TrackingState::kInitialising;
   int map_id_ = 0;
-  int last_map_id_ = 0;  ///< given to a map so far
+  int last_map_id_ = 0;  ///< highest map id used so far
   std::optional<OldMap> old_map_;
   std::int64_t looked_for_old_map_at_ns_ = 0;
   Pose T_camera_vo_;
-  double known_height_m_ = 0.0;  ///< above ground, for the next map's scale; 0 = not known
-  double m_per_unit_ = 1.0;      ///< of what is reported; 1 where no height is known
+  double known_height_m_ = 0.0;  ///< above ground, scales the next map; 0 = unknown
+  double m_per_unit_ = 1.0;      ///< scale of reported poses; 1 if the height is unknown
   double map_memory_mb_ = 0.0;   ///< at the last keyframe
   std::optional<VoFrame> previous_;
   std::int64_t lost_at_ns_ = 0;
-  double blind_search_s_ = 0.0;  ///< time lost over images that show something
+  double blind_search_s_ = 0.0;  ///< time lost while images show texture
   bool debug_ = false;
 };
 

@@ -1,4 +1,4 @@
-// What the estimator does when its map is lost, and how a map gets its scale.
+// Handling of lost maps, and the scale of a new map.
 #include <algorithm>
 #include <sstream>
 #include <utility>
@@ -10,11 +10,11 @@ namespace overfly::odometry {
 namespace {
 
 constexpr double kGiveUpS = 3.0;
-/// A map of so few keyframes is not worth finding again.
+/// A map with fewer keyframes is not kept for relocalisation.
 constexpr int kYoungMap = 6;
-/// For so long after a loss the prediction is still tried.
+/// Time after a loss during which the predicted pose is still tried.
 constexpr double kExtrapolateS = 1.5;
-/// Between two looks for the old map [s]: each costs as much as several frames.
+/// Interval between searches for the old map [s]; each costs as much as several frames.
 constexpr double kLookForOldMapS = 1.0;
 
 }  // namespace
@@ -58,7 +58,8 @@ void FeatureOdometry::search(const FrameImage& frame, VoEstimate& estimate, Outc
   }
 }
 
-/// Puts the present map away. Of two the one of more keyframes stays; a young one never.
+/// Stores the current map as the old map. Of two, the one with more keyframes is kept; a young map
+/// never.
 void FeatureOdometry::keep_old_map() {
   const int keyframes = map().keyframes().empty() ? 0 : map().newest().id + 1;
   const bool scaled = known_height_m_ > 0.0 && keyframes >= kYoungMap;
@@ -68,7 +69,7 @@ void FeatureOdometry::keep_old_map() {
   if (keyframes > kept) old_map_ = OldMap{std::move(present), map_id_, m_per_unit_};
 }
 
-/// Looks for the old map now and then while the new one is begun and tracked.
+/// Searches for the old map now and then while a new one is built and tracked.
 bool FeatureOdometry::rejoin_old_map(const FrameImage& frame,
                                      VoEstimate& estimate,
                                      Outcome& outcome) {
@@ -85,7 +86,7 @@ bool FeatureOdometry::rejoin_old_map(const FrameImage& frame,
   if (!tracked.tracked) return false;
   std::ostringstream line;
   line << "recovered map " << old_map_->map_id;
-  if (map_id_ != old_map_->map_id) line << ", which goes on in the place of map " << map_id_;
+  if (map_id_ != old_map_->map_id) line << ", which replaces map " << map_id_;
   log_->add(line.str());
   parts_->keeper.adopt(std::move(old_map_->map));
   map_id_ = old_map_->map_id;
@@ -99,25 +100,26 @@ bool FeatureOdometry::rejoin_old_map(const FrameImage& frame,
   return true;
 }
 
-/// Of the newest keyframe, in the map's units.
+/// Height of the newest keyframe, in map units.
 double FeatureOdometry::height_above_ground() const {
   return 1.0 / map().newest().plane.coefficients.norm();
 }
 
-/// The known height above the ground's plane makes the units metres: at the start that which was
-/// told, later that at which the map before was lost.
+/// Scales the units to metres by the known height above the ground plane: for the first map the
+/// given height, later the height at which the previous map was lost.
 void FeatureOdometry::find_scale() {
   if (known_height_m_ <= 0.0) return;
   const Keyframe& first = map().keyframes().begin()->second;
   if (!first.plane.holds) {
-    log_->add("the height above ground is known, but no ground is seen: units are not metres");
+    log_->add(
+        "the height above ground is known, but no ground plane was found: units are not metres");
     return;
   }
-  // A plane n.X = 1 is 1 / |n| away.
+  // The plane n.X = 1 is at distance 1 / |n|.
   m_per_unit_ = known_height_m_ / (1.0 / first.plane.coefficients.norm());
   if (map_id_ == 0) return;
   std::ostringstream line;
-  line << "map " << map_id_ << " is scaled by the height at which the one before was lost, "
+  line << "map " << map_id_ << " is scaled by the height at which the previous map was lost, "
        << known_height_m_ << " m";
   log_->add(line.str());
 }

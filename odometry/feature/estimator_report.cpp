@@ -1,4 +1,4 @@
-// What the estimator tells of a frame.
+// Builds the estimator's results for a frame.
 #include <utility>
 
 #include "odometry/feature/debug_view.hpp"

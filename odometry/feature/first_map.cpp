@@ -11,9 +11,9 @@ namespace {
 
 constexpr int kMinFirstPoints = 60;
 constexpr double kOutlierSigmas = 6.0;
-/// Of two motions over all views the better one's residual must be less than so much of the
-/// other's. Thousands of sights tell residuals apart to a few hundredths; 0.33 to 0.68 was seen in
-/// flight.
+/// Of two motions over all views the better one's residual must be less than this fraction of the
+/// other's. With thousands of observations residuals are comparable to a few hundredths; ratios of
+/// 0.33 to 0.68 were measured in flight.
 constexpr double kMostAlikeResidual = 0.7;
 
 /// Views in time order: first, between, last.
@@ -31,7 +31,7 @@ std::vector<std::optional<Eigen::Vector2d>> pixels_of(const FirstMapPoint& point
   return pixels;
 }
 
-/// Pose of a view between, from the points as two views gave them.
+/// Pose of an intermediate view, from the points of the two-view solution.
 Pose pose_between(const PinholeCamera& camera,
                   const FirstMapInput& input,
                   std::size_t between,
@@ -66,10 +66,10 @@ Bundle bundle_of(const PinholeCamera& camera, const FirstMapInput& input) {
   return bundle;
 }
 
-/// Removes sights that miss; returns how many points keep two or more.
+/// Removes outlier observations; returns the number of points that keep two or more.
 int remove_outliers(const PinholeCamera& camera, Bundle& bundle) {
   struct Seen {
-    bool first = false;  ///< in the first view, which holds the patch
+    bool first = false;  ///< observed in the first view, which contains the patch
     int views = 0;
     [[nodiscard]] bool enough() const { return first && views >= 2; }
   };
@@ -170,7 +170,7 @@ std::optional<FirstMap> solve_first_map(const PinholeCamera& camera, const First
   if (remove_outliers(camera, bundle) < kMinFirstPoints) return std::nullopt;
   adjust(camera, bundle, options);
   if (remove_outliers(camera, bundle) < kMinFirstPoints) return std::nullopt;
-  // Only points that kept their sights may speak for the scale.
+  // Only points that kept their observations determine the scale.
   std::vector<std::uint8_t> kept(bundle.points_vo.size(), 0);
   for (const Bundle::Sight& sight : bundle.sights) kept[static_cast<std::size_t>(sight.point)] = 1;
   for (std::size_t i = 0; i < kept.size(); ++i) {

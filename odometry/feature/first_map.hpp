@@ -1,4 +1,4 @@
-// The first map from views whose corners were followed.
+// Computes the first map from views whose corners were tracked.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,7 +19,7 @@ struct FirstMapPoint {
   Eigen::Vector3d p_first = Eigen::Vector3d::Zero();
   Eigen::Vector2d last_pixel = Eigen::Vector2d::Zero();
   std::vector<std::optional<Eigen::Vector2d>> between_pixels;  ///< one for each view between
-  /// Of the surface, in the first camera; taken where what is seen is no plane.
+  /// Surface normal in the first camera; used if the scene is not planar.
   Eigen::Vector3d normal_first = Eigen::Vector3d::UnitZ();
 };
 
@@ -29,28 +29,28 @@ struct FirstMapInput {
   std::vector<const FrameImage*> between;
   std::vector<FirstMapPoint> points;
   Pose T_last_first;
-  bool plane = true;  ///< the points are taken to lie near one until they show that they do not
+  bool plane = true;  ///< the scene counts as planar until the points show otherwise
 };
 
-/// All views adjusted together, the ground on the first's optical axis 1 away.
+/// All views, adjusted together. The depth of the ground on the first view's optical axis is 1.
 struct FirstMap {
   Bundle bundle;
-  double rms_sigma = 0.0;  ///< of all sights, before those that miss were removed
+  double rms_sigma = 0.0;  ///< of all observations, before outlier removal
 };
 
-/// @return empty when too few points agree
+/// @return empty if too few points agree
 [[nodiscard]] std::optional<FirstMap> solve_first_map(const PinholeCamera& camera,
                                                       const FirstMapInput& input);
-/// The first map of the motion that two views allow and all views agree with best: a wrong one fits
-/// two views, but not all between them as well.
+/// The first map for the motion that best fits all views. Two views can allow several motions; a
+/// wrong one does not fit the views between them as well.
 struct ChosenFirstMap {
   FirstMapInput input;
   FirstMap solved;
 };
-/// @return empty while none stands out
+/// @return empty if no motion is clearly better than the others
 [[nodiscard]] std::optional<ChosenFirstMap> choose_first_map(const PinholeCamera& camera,
                                                              std::vector<FirstMapInput> inputs);
-/// Fills an empty map with the keyframes and points.
+/// Adds the keyframes and points to an empty map.
 void fill_first_map(const PinholeCamera& camera,
                     const FirstMapInput& input,
                     const FirstMap& solved,

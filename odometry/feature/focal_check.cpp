@@ -16,18 +16,18 @@ constexpr int kMinKeyframes = 10;
 constexpr int kMinPoints = 80;
 constexpr int kMinSights = 4;
 constexpr int kEveryKeyframes = 10;
-/// Of three values of the error each, nearer and nearer to the least.
+/// Number of parabola fits, each closer to the minimum.
 constexpr int kRounds = 3;
 constexpr double kFarthest = 1.5;
-/// Evidence weaker than that says nothing.
+/// Evidence with a larger standard deviation is ignored.
 constexpr double kMaxSigma = 0.01;
-/// Patches err together, where the ground's shape or the light deceives them: more than their noise
-/// tells. Off by less is no contradiction.
+/// Smaller deviations are not a contradiction: patch errors are correlated where the ground's shape
+/// or the light misleads them, so the true uncertainty exceeds the noise.
 constexpr double kLeastContradiction = 0.03;
-/// Looks that must tell something before there is a verdict.
+/// Number of evaluations with evidence before a verdict.
 constexpr int kLooks = 2;
 
-/// The newest keyframes and the points that many of them see, as a bundle of its own.
+/// The newest keyframes and the points that many of them observe, as a separate bundle.
 Bundle bundle_of_newest(const FocalCheckOptions& options, const Map& map) {
   Bundle bundle;
   std::map<int, int> camera_of;
@@ -103,7 +103,7 @@ std::optional<FocalEvidence> focal_evidence(const PinholeCamera& camera,
                                    : std::copysign(kFarthest * options.step, smaller - larger);
     const auto residuals = 2.0 * static_cast<double>(bundle.sights.size());
     evidence.scale += std::clamp(step, -kFarthest * options.step, kFarthest * options.step);
-    if (std::abs(step) > options.step) continue;  // the parabola holds between its points
+    if (std::abs(step) > options.step) continue;  // the parabola is valid only between its points
     evidence.sigma = options.step * std::sqrt(2.0 * at_middle / (bend * residuals));
     return evidence;
   }
@@ -116,7 +116,7 @@ std::optional<std::string> FocalCheck::after_keyframe(const Map& map) {
   next_keyframe_ = newest + kEveryKeyframes;
   const auto evidence = focal_evidence(camera_, {}, map);
   if (!evidence || evidence->sigma > kMaxSigma) return std::nullopt;
-  // However small its own noise, one look weighs no more than another.
+  // Limit the weight of a single evaluation, however small its own noise.
   const double weight = 1.0 / (evidence->sigma * evidence->sigma + 1e-4);
   weight_ += weight;
   weighted_sum_ += weight * evidence->scale;

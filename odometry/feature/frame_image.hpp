@@ -1,4 +1,4 @@
-// A frame as the parts of the estimator pass it on.
+// A frame as it is passed between the estimator's components.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace overfly::odometry {
 
-/// An image with its stamp, as the estimator works on it.
+/// An image with its stamp and its pyramid, as processed by the estimator.
 struct FrameImage {
   std::int64_t index = 0;
   std::int64_t t_ns = 0;

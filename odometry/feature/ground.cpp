@@ -1,4 +1,4 @@
-// The ground's local shape: planes, patch tangents and depth, from the map's points.
+// The ground's local shape from the map's points: planes, patch tangents and depth.
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -10,13 +10,14 @@ namespace {
 
 constexpr int kMinPlanePoints = 20;
 constexpr int kMinAxisPoints = 15;
-/// Points less than this far off the axis, as a share of their depth, count as near it.
+/// Points closer to the axis than this, as a fraction of their depth, count as near it.
 constexpr double kAxisTangent = 0.2;
-/// Points whose inverse depth is off the plane's by a smaller share lie near it.
+/// Points whose inverse depth differs from the plane's by a smaller fraction lie near the plane.
 constexpr double kNearPlane = 0.3;
-/// Where fewer do, there is no ground to speak of: a street, a wood, a room.
+/// If a smaller share of points lies near the plane, the scene is not planar: a street, a wood, a
+/// room.
 constexpr double kLeastShareNear = 0.5;
-/// And there is again only where so many do.
+/// Share of points needed to treat the scene as planar again.
 constexpr double kShareNearAgain = 0.85;
 
 double median_of(std::vector<double>& values) {
@@ -30,8 +31,8 @@ struct DepthSample {
   double inverse_depth = 0.0;
 };
 
-/// The plane (as in GroundPlane) through samples, by iteratively reweighted least squares with
-/// Cauchy weights on the relative error of the depth.
+/// Fits a plane (as in GroundPlane) to samples by iteratively reweighted least squares with Cauchy
+/// weights on the relative depth error.
 Eigen::Vector3d plane_of(const std::vector<DepthSample>& samples, const Eigen::Vector3d& start) {
   Eigen::Vector3d plane = start;
   for (int iteration = 0; iteration < 6; ++iteration) {
@@ -49,7 +50,7 @@ Eigen::Vector3d plane_of(const std::vector<DepthSample>& samples, const Eigen::V
   return plane;
 }
 
-/// Of the samples, those near the plane.
+/// Share of the samples near the plane.
 double share_near(const std::vector<DepthSample>& samples, const Eigen::Vector3d& plane) {
   const auto near = std::count_if(samples.begin(), samples.end(), [&](const DepthSample& sample) {
     return std::abs(plane.dot(sample.ray) - sample.inverse_depth) <
@@ -63,7 +64,7 @@ double share_near(const std::vector<DepthSample>& samples, const Eigen::Vector3d
 void set_normal(const PinholeCamera& camera, const Keyframe& source, MapPoint& point) {
   const Eigen::Vector3d ray = camera.ray(point.source_pixel);
   const Eigen::Vector3d& n = source.plane.coefficients;
-  // A plane seen edge-on tells nothing: take one that faces the camera instead.
+  // A plane seen edge-on is unusable: use one that faces the camera.
   const bool grazing = n.dot(ray) < 0.15 * n.norm() * ray.norm();
   const Eigen::Vector3d normal = grazing ? Eigen::Vector3d::UnitZ() : n.normalized();
   point.normal_vo = source.T_camera_vo.rotation.inverse() * normal;

@@ -13,13 +13,14 @@ constexpr double kPlaneThresholdPx = 3.0;
 constexpr double kMaxOffsetStepPx = 4.0;
 constexpr float kMinCorrelation = 0.85F;
 constexpr int kCoarseTracks = 200;
-/// What moved less, while the image moved by a hundredth of its focal length, stands still in it.
+/// A track that moved less while the image moved by a hundredth of its focal length counts as
+/// static.
 constexpr double kStillPx = 1.0;
 constexpr double kLeastStillShare = 0.05;
-/// Residual of a first map, in sigmas, up to which the images count as quiet. Seen: 0.03 to 0.11
-/// with noise of 1.5 grey levels, 0.41 with 10.
+/// First maps with residuals up to this [sigmas] count as noise-free. Measured: 0.03 to 0.11 with
+/// noise of 1.5 grey levels, 0.41 with 10.
 constexpr double kUsualRmsSigma = 0.14;
-/// So many times the parallax, and the patience, are asked for at most.
+/// Maximum factor by which noise increases the required parallax and the patience.
 constexpr double kMostNoise = 4.0;
 constexpr double kLongestWaitS = 6.0;
 
@@ -66,7 +67,7 @@ void Initialiser::start(const FrameImage& frame, OrbExtractor& orb) {
   if (static_cast<int>(corner_count_) < options_.min_tracks) forget();
 }
 
-/// Brings H near the frame with few patches at coarse levels.
+/// Updates H for the frame with few patches at coarse levels.
 bool Initialiser::follow_coarsely(const FrameImage& frame, Eigen::Matrix3d& H) const {
   const std::size_t stride = std::max<std::size_t>(1, tracks_.size() / kCoarseTracks);
   const int coarsest = frame.pyramid.level_count() - 1;
@@ -136,7 +137,8 @@ bool Initialiser::follow(const FrameImage& frame) {
   return true;
 }
 
-/// A track where its patch is now, near its place off the plane's; empty when it is missed.
+/// Finds a track's patch near the position predicted from the plane and its offset; empty if
+/// missed.
 std::optional<Initialiser::Track> Initialiser::found(const Track& track,
                                                      const FrameImage& frame,
                                                      const Eigen::Matrix3d& H) const {
@@ -155,7 +157,7 @@ std::optional<Initialiser::Track> Initialiser::found(const Track& track,
   return seen;
 }
 
-/// Whether so many are left, so widely spread, that they make a map worth following.
+/// Whether the tracks are numerous and widespread enough for a usable map.
 bool Initialiser::enough(const std::vector<Track>& tracks) const {
   if (static_cast<int>(tracks.size()) < options_.min_tracks ||
       2 * tracks.size() < corner_count_ / 2) {
@@ -173,7 +175,7 @@ void Initialiser::remember(const FrameImage& frame) {
   for (std::size_t i = 0; i < tracks_.size(); ++i) snapshot.pixels[origin_[i]] = tracks_[i].pixel;
   snapshots_.push_back(std::move(snapshot));
   if (static_cast<int>(snapshots_.size()) <= options_.max_snapshots) return;
-  // A camera that stands may wait for long: the views stay spread over the whole wait.
+  // A standing camera may wait for long: keep the views spread over the whole wait.
   std::vector<Snapshot> thinned;
   for (std::size_t i = 1; i < snapshots_.size(); i += 2) {
     thinned.push_back(std::move(snapshots_[i]));
@@ -212,8 +214,8 @@ bool Initialiser::process(const FrameImage& frame, OrbExtractor& orb, Map& map) 
   return false;
 }
 
-/// From all tracks; then without those that stand still in the moving image: what sits on the lens
-/// or belongs to the aircraft.
+/// Uses all tracks first; then without those that do not move in the moving image (dirt on the
+/// lens, parts of the aircraft).
 bool Initialiser::reconstruct(const FrameImage& frame, OrbExtractor& orb, Map& map) {
   std::vector<std::size_t> all(tracks_.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
@@ -251,7 +253,7 @@ bool Initialiser::reconstruct_from(const std::vector<std::size_t>& chosen,
   }
   const auto best = choose_first_map(camera_, std::move(inputs));
   if (!best) return false;
-  // Depths are as good as the parallax is large beside the noise, which the residuals tell.
+  // Depth accuracy depends on the ratio of parallax to noise, which the residuals estimate.
   const double noise = std::clamp(best->solved.rms_sigma / kUsualRmsSigma, 1.0, kMostNoise);
   const double least_rad = waited_s > noise * options_.patience_s ? options_.least_parallax_rad
                                                                   : options_.min_parallax_rad;

@@ -1,4 +1,4 @@
-// Waits for enough parallax, then makes the first map.
+// Waits for enough parallax, then creates the first map.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,46 +19,50 @@ namespace overfly::odometry {
 
 struct InitialiserOptions {
   double min_parallax_rad = 0.07;  ///< 4 deg: depths to 0.1 % with points to 0.1 px
-  /// Slow or high flight takes long to get there: after so long, less will do.
+  /// Slow or high flight needs long to reach it: after this time `least_parallax_rad` is
+  /// sufficient.
   double patience_s = 1.2;
   double least_parallax_rad = 0.026;
   double min_motion_rad = 0.02;  ///< median displacement before a reconstruction is tried
   bool planar_start = true;      ///< as in FeatureParameters
   int coarsest_patch_level = 2;  ///< as in MapperOptions
   int attempt_every = 3;         ///< frames
-  int snapshot_every = 6;        ///< frames between the keyframes of the first map, at first
-  int max_snapshots = 32;  ///< when they are full, every second goes, and they come half as often
+  int snapshot_every = 6;        ///< initial number of frames between snapshots
+  int max_snapshots = 32;        ///< when full, every second is dropped and the interval doubles
   int min_tracks = 120;
-  int cells = 1000;  ///< of the image; tracking follows one point in each
-  /// With tracks. Half as many again as the points that tracking asks for: a map that has just
-  /// these is lost with the next frame.
+  int cells = 1000;  ///< of the image; one point is tracked in each
+  /// Minimum number of cells with tracks: 1.5 times the points that tracking requires, because a
+  /// map with just that number is lost at the next frame.
   int min_cells = 60;
   std::uint64_t seed = 1;
 };
 
-/// Follows the corners of a first image, from frame to frame against their patches in that first
-/// image, until two views are far enough apart; then adjusts all views between them together.
+/// Tracks the corners of a first image from frame to frame against their patches in that image
+/// until two views are far enough apart. Then adjusts all views between them together.
 class Initialiser {
  public:
   Initialiser(const PinholeCamera& camera, const InitialiserOptions& options);
 
-  /// Takes the next frame. On success the map has its first keyframes, the newest of which is this
-  /// frame: the first one's camera is the origin, the ground on its axis 1 away.
+  /// Processes the next frame. On success the map has its first keyframes, of which this frame is
+  /// the newest. The first keyframe's camera is the origin, and the depth of the ground on its axis
+  /// is 1.
+  /// @return true when the map was created
   bool process(const FrameImage& frame, OrbExtractor& orb, Map& map);
   void reset();
-  /// The first image that was given up last, since the last map: its corners could not be followed.
+  /// The last first image since the last map that was dropped because its corners could not be
+  /// tracked.
   [[nodiscard]] const std::optional<FrameImage>& given_up() const { return given_up_; }
 
   struct Track {
     Corner corner;
     int patch_level = 0;
-    Eigen::Vector2d pixel = Eigen::Vector2d::Zero();   ///< in the last frame
-    Eigen::Vector2d offset = Eigen::Vector2d::Zero();  ///< from where the homography puts it
+    Eigen::Vector2d pixel = Eigen::Vector2d::Zero();   ///< in the previous frame
+    Eigen::Vector2d offset = Eigen::Vector2d::Zero();  ///< from the homography's prediction
   };
   [[nodiscard]] const std::vector<Track>& tracks() const { return tracks_; }
 
  private:
-  /// A track that was missed, and may come back.
+  /// A track that was missed and may be found again.
   struct Lapsed {
     Track track;
     std::size_t origin = 0;
@@ -91,9 +95,9 @@ class Initialiser {
   InitialiserOptions options_;
   std::optional<FrameImage> first_;
   std::vector<Track> tracks_;
-  std::vector<std::size_t> origin_;  ///< of each track: index of its corner in the first image
+  std::vector<std::size_t> origin_;  ///< for each track the index of its corner in the first image
   std::vector<Lapsed> lapsed_;
-  bool patient_ = false;  ///< tracks that were missed are looked for: the others are too few
+  bool patient_ = false;  ///< search missed tracks, because too few others remain
   std::optional<FrameImage> given_up_;
   std::size_t corner_count_ = 0;
   std::vector<Snapshot> snapshots_;

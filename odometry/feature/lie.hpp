@@ -1,4 +1,4 @@
-// Small steps on SE(3), as every optimiser here takes them.
+// Updates on SE(3), shared by all optimisers.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,14 +13,14 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;
 using Matrix23d = Eigen::Matrix<double, 2, 3>;
 using Matrix26d = Eigen::Matrix<double, 2, 6>;
 
-/// [v]x, the matrix of the cross product.
+/// The cross product matrix [v]x.
 [[nodiscard]] inline Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
   Eigen::Matrix3d m;
   m << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
   return m;
 }
 
-/// The rotation by the vector phi (axis times angle [rad]).
+/// Rotation from the rotation vector phi (axis times angle [rad]).
 [[nodiscard]] inline Eigen::Quaterniond exp_so3(const Eigen::Vector3d& phi) {
   const double angle = phi.norm();
   if (angle < 1e-12) {
@@ -35,14 +35,14 @@ using Matrix26d = Eigen::Matrix<double, 2, 6>;
   return angle_axis.angle() * angle_axis.axis();
 }
 
-/// T_camera_vo moved by a step xi = (rho, phi) on its left: X' = exp(phi) X + rho.
+/// Applies the left update xi = (rho, phi) to T_camera_vo: X' = exp(phi) X + rho.
 [[nodiscard]] inline Pose moved(const Pose& T_camera_vo, const Vector6d& xi) {
   const Eigen::Quaterniond R_step = exp_so3(xi.tail<3>());
   return {(R_step * T_camera_vo.rotation).normalized(),
           R_step * T_camera_vo.translation + xi.head<3>()};
 }
 
-/// Derivative of the pixel by the point in the camera frame.
+/// Derivative of the pixel with respect to the point in the camera frame.
 [[nodiscard]] inline Matrix23d projection_jacobian(double fx, double fy, const Eigen::Vector3d& p) {
   const double inverse_z = 1.0 / p.z();
   Matrix23d J;
@@ -51,7 +51,7 @@ using Matrix26d = Eigen::Matrix<double, 2, 6>;
   return J;
 }
 
-/// Derivative of the pixel by the step xi of `moved` at xi = 0.
+/// Derivative of the pixel with respect to the update xi of `moved` at xi = 0.
 [[nodiscard]] inline Matrix26d pose_jacobian(const Matrix23d& J_projection,
                                              const Eigen::Vector3d& p_camera) {
   Matrix26d J;

@@ -1,4 +1,4 @@
-// The part of the map around the newest keyframe as a bundle.
+// Builds a bundle from the map around the newest keyframe.
 #include <algorithm>
 #include <map>
 #include <set>
@@ -8,7 +8,7 @@
 namespace overfly::odometry {
 namespace {
 
-/// A bundle and where each of its members came from.
+/// A bundle and the map ids of its members.
 struct Window {
   Bundle bundle;
   std::vector<int> keyframes;    ///< id of each camera
@@ -28,7 +28,7 @@ std::set<int> free_keyframes(const LocalAdjustment& options, const Map& map) {
   return ids;
 }
 
-/// Keyframes outside `free` that share most sights of the points, up to the limit.
+/// Keyframes outside `free` that share most observations of the points, up to the limit.
 std::vector<int> fixed_keyframes(const LocalAdjustment& options,
                                  const Map& map,
                                  const std::set<int>& free,
@@ -82,7 +82,7 @@ Window make_window(const LocalAdjustment& options, const Map& map) {
   return window;
 }
 
-/// Writes the result back and removes the sights that do not agree with it.
+/// Writes the result back and removes observations that do not agree with it.
 void apply(const PinholeCamera& camera, const Window& window, double outlier, Map& map) {
   const Bundle& bundle = window.bundle;
   for (std::size_t i = 0; i < window.keyframes.size(); ++i) {

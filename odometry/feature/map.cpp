@@ -7,7 +7,7 @@
 namespace overfly::odometry {
 namespace {
 
-/// Patches of which one starts so near another, at the finer's level, are of the same corner.
+/// Patches whose positions differ by less, at the finer patch's level, belong to the same corner.
 constexpr double kSameCornerPx = 1.5;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What the estimator knows: keyframes, and points of the ground seen from them.
+// The map: keyframes, and ground points observed in them.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,7 +16,7 @@
 
 namespace overfly::odometry {
 
-/// The pixel noise of a patch found at a pyramid level (std. deviation) [px].
+/// Standard deviation of the pixel noise of a patch found at a pyramid level [px].
 [[nodiscard]] inline double sigma_px_of(int patch_level) { return std::ldexp(0.2, patch_level); }
 
 /// A map point seen in a keyframe.
@@ -26,20 +26,20 @@ struct Observation {
   double sigma_px = 1.0;
 };
 
-/// A corner of a keyframe that has no depth yet.
+/// A corner of a keyframe without depth.
 struct Candidate {
   Corner corner;
   Descriptor descriptor{};
   int patch_level = 0;  ///< pyramid level at which it is searched
-  int misses = 0;       ///< keyframes in which it was looked for in vain
+  int misses = 0;       ///< keyframes in which it was not found
   bool done = false;
 };
 
-/// The ground as a plane in a camera: inverse depth = a x + b y + c at the ray (x, y, 1).
+/// The ground as a plane in a camera frame: inverse depth = a x + b y + c at the ray (x, y, 1).
 struct GroundPlane {
   Eigen::Vector3d coefficients{0.0, 0.0, 1.0};  ///< (a, b, c), also the plane's unscaled normal
-  bool holds = true;                            ///< what is seen lies near the plane
-  double median_depth = 1.0;                    ///< of the points seen
+  bool holds = true;                            ///< the observed points lie near the plane
+  double median_depth = 1.0;                    ///< of the observed points
 
   [[nodiscard]] double inverse_depth(const Eigen::Vector3d& ray) const {
     return coefficients.dot(ray);
@@ -51,7 +51,7 @@ struct Keyframe {
   std::int64_t frame = 0;
   std::int64_t t_ns = 0;
   Pose T_camera_vo;
-  Pyramid pyramid;  ///< emptied when the keyframe is too old to be looked at again
+  Pyramid pyramid;  ///< emptied when the keyframe is too old to be searched
   std::vector<Observation> observations;
   std::vector<Candidate> candidates;
   GroundPlane plane;
@@ -59,34 +59,35 @@ struct Keyframe {
 
 struct MapPoint {
   int id = 0;
-  int source_keyframe = 0;  ///< whose image holds its patch
+  int source_keyframe = 0;  ///< keyframe whose image contains its patch
   Eigen::Vector2d source_pixel = Eigen::Vector2d::Zero();
-  Eigen::Vector3d normal_vo = Eigen::Vector3d::UnitZ();  ///< of the ground there
+  Eigen::Vector3d normal_vo = Eigen::Vector3d::UnitZ();  ///< ground normal at the point
   Descriptor descriptor{};
   Eigen::Vector3d position_vo = Eigen::Vector3d::Zero();
-  std::vector<int> keyframes;  ///< ids, ascending, of those that observe it
+  std::vector<int> keyframes;  ///< ids of observing keyframes, ascending
   int patch_level = 0;         ///< pyramid level at which it is searched
-  int expected = 0;            ///< frames in which it should have been seen
-  int found = 0;               ///< frames in which it was
+  int expected = 0;            ///< frames in which it should have been found
+  int found = 0;               ///< frames in which it was found
 };
 
-/// Ids grow and are never used again. Iteration is in the order of ids: results repeat.
+/// Ids increase and are never reused. Iteration is in order of ids, so that results are
+/// reproducible.
 class Map {
  public:
   Keyframe& add_keyframe(Keyframe keyframe);
   MapPoint& add_point(MapPoint point);
   void add_observation(Keyframe& keyframe, const Observation& observation);
-  /// Removes one sight of a point; a point seen from fewer than two keyframes goes.
+  /// Removes one observation of a point. A point with fewer than two observations is removed.
   void remove_observation(int keyframe, int point);
   void remove_point(int point);
-  /// Drops images (and the points whose patch is in them) of all but the newest keyframes, and the
-  /// keyframes that see no point any more.
+  /// Removes the images of all but the newest keyframes, the points whose patch is in them, and
+  /// keyframes without points.
   void forget_images(int keep_newest);
   void clear();
-  /// A copy of what tracking needs: so many of the newest keyframes, of which the newest alone has
-  /// its observations and none has candidates, and the points whose patch is in them.
+  /// Copies the part that tracking needs: the newest `keyframes` keyframes and the points whose
+  /// patch is in them. Only the newest keyframe has observations, and none has candidates.
   [[nodiscard]] Map newest_part(int keyframes) const;
-  /// Of images, points, observations and candidates [bytes].
+  /// Memory of images, points, observations and candidates [bytes].
   [[nodiscard]] std::size_t memory_bytes() const;
 
   [[nodiscard]] std::map<int, Keyframe>& keyframes() { return keyframes_; }
@@ -95,14 +96,14 @@ class Map {
   [[nodiscard]] const std::map<int, MapPoint>& points() const { return points_; }
   [[nodiscard]] Keyframe& keyframe(int id) { return keyframes_.at(id); }
   [[nodiscard]] const Keyframe& keyframe(int id) const { return keyframes_.at(id); }
-  /// Null when it is gone.
+  /// Null if the point was removed.
   [[nodiscard]] MapPoint* point(int id);
   [[nodiscard]] const MapPoint* point(int id) const;
-  /// @pre there is a keyframe
+  /// @pre the map is not empty
   [[nodiscard]] Keyframe& newest() { return keyframes_.rbegin()->second; }
   [[nodiscard]] const Keyframe& newest() const { return keyframes_.rbegin()->second; }
 
-  /// Keyframes that share points with `keyframe`, most shared first (then newest first).
+  /// Keyframes that share points with `keyframe`, by number of shared points, then newest first.
   [[nodiscard]] std::vector<int> covisible(int keyframe, int min_shared) const;
 
  private:
@@ -113,8 +114,8 @@ class Map {
   int first_with_image_ = 0;
 };
 
-/// The point that a keyframe sees at a pixel already, give or take 1.5 px at the finer of the two
-/// patches' levels; null when none.
+/// The point that a keyframe already observes at a pixel, within 1.5 px at the finer of the two
+/// patch levels; null if none.
 [[nodiscard]] const MapPoint* point_at(const Map& map,
                                        const Keyframe& keyframe,
                                        const Eigen::Vector2d& pixel,
@@ -123,13 +124,13 @@ class Map {
 /// Sets the ground's normal at a point from the plane of its source keyframe.
 void set_normal(const PinholeCamera& camera, const Keyframe& source, MapPoint& point);
 
-/// Fits the ground's plane to the keyframe's points, robustly, and tells whether they lie near it;
-/// keeps the old one with too few.
+/// Robustly fits the ground plane to the keyframe's points and sets whether they lie near it. With
+/// too few points the old plane is kept.
 void fit_plane(const PinholeCamera& camera, const Map& map, Keyframe& keyframe);
 
-/// Depth of the ground on the camera's optical axis, which the alignment `init_scale` compares with
-/// the truth: of a plane through the points near the axis if there are enough of them, else the
-/// median of all. Empty without points in front.
+/// Depth of the ground on the camera's optical axis. The alignment `init_scale` compares it with
+/// the truth. Uses a plane through the points near the axis if there are enough of them, otherwise
+/// the median depth of all points. Empty if no point is in front.
 [[nodiscard]] std::optional<double> axis_depth(const Pose& T_camera_vo,
                                                const std::vector<Eigen::Vector3d>& points_vo);
 

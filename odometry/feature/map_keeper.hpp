@@ -1,4 +1,4 @@
-// The map and who works on it: the tracking thread itself, or a thread beside it.
+// Owns the map and runs mapping, on the tracking thread or on a thread of its own.
 #pragma once
 
 #include <condition_variable>
@@ -20,10 +20,11 @@
 
 namespace overfly::odometry {
 
-/// With one thread a keyframe is mapped at once, and `view` is the map itself. With two, a thread
-/// owns the map from `begin` to `clear`; `view` is the newest copy that it published: new points as
-/// soon as they have a depth, then once more after the adjustment.
+/// With one thread a keyframe is mapped immediately and `view` is the map itself. With two threads
+/// the mapping thread owns the map from `begin` to `clear`, and `view` is the newest copy it
+/// published: after new points have a depth, and again after the adjustment.
 ///
+/// All calls must come from the tracking thread.
 /// All calls are for one thread, that which tracks.
 class MapKeeper {
  public:
@@ -34,42 +35,43 @@ class MapKeeper {
   MapKeeper(const MapKeeper&) = delete;
   MapKeeper& operator=(const MapKeeper&) = delete;
 
-  /// The empty map, for who makes its first keyframes; `begin` follows when it has them.
+  /// The empty map, to be filled with its first keyframes before `begin` is called.
   [[nodiscard]] Map& empty_map() { return map_; }
-  /// The first keyframes are there: looks for corners in the newest, and works from now on.
+  /// Call when the first keyframes exist: searches corners in the newest and starts mapping.
   void begin();
-  /// Forgets the map and all work on it.
+  /// Drops the map and all pending work.
   void clear();
-  /// As `clear`. @return the map as it was
+  /// As `clear`. @return the map
   [[nodiscard]] Map release();
-  /// Takes a map that was released, in the place of the present one, and works on it from now on.
+  /// Replaces the current map by a released one and starts mapping it.
   void adopt(Map map);
 
-  /// Takes what the thread published last. @return stays as it is until the next call of this
-  /// What the thread has thrown since the last call is thrown here.
+  /// Takes the map that the mapping thread published last. Rethrows an exception of the mapping
+  /// thread.
+  /// @return valid and unchanged until the next call
   const Map& refresh();
-  /// As `refresh` returned it, with one thread as it is.
+  /// The map that `refresh` returned last; with one thread the map itself.
   [[nodiscard]] const Map& view() const { return view_ ? *view_ : map_; }
 
-  /// Counts for each point whether it was found where it should have been.
+  /// Counts for each point whether it was found where it was expected.
   void note_sights(const TrackResult& tracked);
-  /// Whether a tracked frame should become a keyframe now; no while one is being mapped.
+  /// Whether a tracked frame should become a keyframe now; false while one is being mapped.
   [[nodiscard]] bool wants_keyframe(const FrameImage& frame, const TrackResult& tracked) const;
-  /// Makes it one. @return the frame's pose as known now, T_camera_vo
+  /// Makes the frame a keyframe. @return its pose T_camera_vo after mapping so far
   Pose insert_keyframe(const FrameImage& frame,
                        const TrackResult& tracked,
                        std::map<std::string, double>& timing_ms);
-  /// Adds the wall time that the thread spent since the last call.
+  /// Adds the wall time of the mapping thread since the last call.
   void take_timing(std::map<std::string, double>& timing_ms);
-  /// Processor time of the thread since the last call [s]; 0 with one thread.
+  /// Processor time of the mapping thread since the last call [s]; 0 with one thread.
   [[nodiscard]] double take_cpu_s();
-  /// What was found out about the calibration since the last call, for people.
+  /// Warnings about the calibration since the last call, for the user.
   [[nodiscard]] std::vector<std::string> take_warnings();
-  /// Until no keyframe waits or is being mapped.
+  /// Blocks until no keyframe is waiting or being mapped.
   void wait_until_idle();
 
  private:
-  /// Of a point since the last keyframe, in frames.
+  /// Counts for a point since the last keyframe, in frames.
   struct Sights {
     int expected = 0;
     int found = 0;
@@ -91,10 +93,10 @@ class MapKeeper {
   bool threaded_;
   Map map_;
   FocalCheck focal_check_;
-  std::map<int, Sights> sights_;     ///< by the point's id
+  std::map<int, Sights> sights_;     ///< by point id
   std::shared_ptr<const Map> view_;  ///< null with one thread
 
-  mutable std::mutex mutex_;  ///< guards all below
+  mutable std::mutex mutex_;  ///< protects all members below
   std::condition_variable changed_;
   std::optional<Work> work_;
   std::exception_ptr failure_;
@@ -104,7 +106,7 @@ class MapKeeper {
   std::map<std::string, double> timing_ms_;
   double cpu_s_ = 0.0;
   std::vector<std::string> warnings_;
-  std::thread thread_;  ///< last: it ends before what it uses
+  std::thread thread_;  ///< last member: joined before the members it uses
 };
 
 }  // namespace overfly::odometry

@@ -12,12 +12,12 @@ namespace {
 
 constexpr float kMinMapCorrelation = 0.8F;
 constexpr int kMaxMisses = 3;
-/// A new point's depth relative to the ground's plane: beyond, it is a wrong match.
+/// Maximum ratio of a new point's depth to the ground plane's; beyond it the match is wrong.
 constexpr double kMaxDepthRatio = 2.5;
-/// Ground farther than so many median depths gives no parallax in a view's lifetime.
+/// Ground farther away than this many median depths gives no parallax while it is in view.
 constexpr double kMaxRelativeDepth = 6.0;
 constexpr int kExpectedBeforeCulling = 12;
-/// Where things hide one another, and images are far apart.
+/// For scenes with occlusions and images far apart.
 constexpr int kExpectedBeforeCullingInScene = 5;
 constexpr double kMinFoundShare = 0.25;
 
@@ -56,7 +56,7 @@ void Mapper::extend(const FrameImage& frame,
   made.plane = map.newest().plane;
   Keyframe& keyframe = map.add_keyframe(std::move(made));
   for (const TrackedPoint& seen : tracked.points) {
-    // A copy of the map may know points that are gone.
+    // A copy of the map may contain points that were removed.
     if (map.point(seen.point) == nullptr) continue;
     map.add_observation(keyframe, {seen.point, seen.pixel, seen.sigma_px});
   }
@@ -138,7 +138,7 @@ Mapper::Search Mapper::triangulate_candidate(const Keyframe& source,
   const auto expected = camera_.project(newest.T_camera_vo * point.position_vo);
   if (!expected) return Search::kMissed;
   const PatchWarp warp = warp_of(camera_, newest.T_camera_vo, source, point);
-  // Coarse to fine, for the ground is not quite the plane.
+  // Search coarse to fine, because the ground is not exactly a plane.
   Eigen::Vector2d pixel = *expected;
   for (int level = patch_level + 2; level >= patch_level; --level) {
     const auto patch = make_template(source.pyramid, point.source_pixel, warp, level);
@@ -167,7 +167,7 @@ Mapper::Search Mapper::triangulate_candidate(const Keyframe& source,
   return Search::kFound;
 }
 
-/// Adds a point that its source and the newest keyframe see, and looks for it between the two.
+/// Adds a point observed in its source and the newest keyframe, and searches it in those between.
 void Mapper::add(const MapPoint& point, const Eigen::Vector2d& newest_pixel, Map& map) const {
   Keyframe& newest = map.newest();
   const double sigma_px = sigma_px_of(point.patch_level);
@@ -200,7 +200,7 @@ void Mapper::observe(const MapPoint& point, Keyframe& keyframe, Map& map) const 
   map.add_observation(keyframe, {point.id, match->pixel, sigma_px_of(point.patch_level)});
 }
 
-/// Points that are too seldom found where they should be go.
+/// Removes points that are too rarely found where they are expected.
 void Mapper::cull(Map& map) const {
   const int enough =
       map.newest().plane.holds ? kExpectedBeforeCulling : kExpectedBeforeCullingInScene;

@@ -1,4 +1,4 @@
-// Grows and mends the map: keyframes, new points, culling, adjustment.
+// Extends and refines the map: keyframes, new points, culling, adjustment.
 #pragma once
 
 #include <map>
@@ -17,14 +17,14 @@ struct MapperOptions {
   int min_frames_between = 3;
   double max_rotation_rad = 0.14;   ///< since the last keyframe
   double max_translation = 0.05;    ///< since the last keyframe, of the median depth
-  double min_tracked_share = 0.7;   ///< of the last keyframe's points
-  int candidate_keyframes = 5;      ///< whose corners may still become points
+  double min_tracked_share = 0.7;   ///< share of the last keyframe's points
+  int candidate_keyframes = 5;      ///< number of keyframes whose corners may become points
   double min_parallax_rad = 0.008;  ///< of a new point
   double max_epipolar_px = 1.0;     ///< at the finest level
-  int cells = 900;                  ///< of the image; each should hold a point
-  int images_kept = 50;             ///< keyframes that can still be searched
+  int cells = 900;                  ///< of the image; each should contain a point
+  int images_kept = 50;             ///< number of keyframes that stay searchable
   double scale_factor = 1.2;        ///< of the corners' levels
-  int coarsest_patch_level = 2;     ///< to which a patch without texture at its own may rise
+  int coarsest_patch_level = 2;     ///< for patches without texture at their own level
   cv::Mat seen;                     ///< as in TrackerOptions
   LocalAdjustment adjustment;
 };
@@ -33,32 +33,32 @@ class Mapper {
  public:
   Mapper(const PinholeCamera& camera, const MapperOptions& options);
 
-  /// Whether a tracked frame should become a keyframe: the view turned, moved, or lost points.
+  /// Whether a tracked frame should become a keyframe: the view rotated, moved or lost points.
   [[nodiscard]] bool wants_keyframe(const FrameImage& frame,
                                     const TrackResult& tracked,
                                     const Map& map) const;
-  /// Makes it one, with the sights of its points, and finds new points with the keyframes before.
-  /// Wall time by stage is added to `timing_ms`, here and below.
+  /// Makes the frame a keyframe with the observations of its points, and creates new points with
+  /// earlier keyframes. Here and below, wall time by stage is added to `timing_ms`.
   void extend(const FrameImage& frame,
               const TrackResult& tracked,
               Map& map,
               std::map<std::string, double>& timing_ms) const;
-  /// Mends the map around the newest keyframe: local bundle adjustment and culling; then looks for
-  /// corners that may become points.
+  /// Refines the map around the newest keyframe: local bundle adjustment and culling. Then searches
+  /// for corners that may become points.
   void mend(OrbExtractor& orb, Map& map, std::map<std::string, double>& timing_ms) const;
-  /// Looks for corners without a point in the newest keyframe.
+  /// Searches for corners without a point in the newest keyframe.
   void add_candidates(OrbExtractor& orb, Map& map) const;
 
  private:
   enum class Search { kFound, kFused, kMissed, kTooNear };
   void triangulate_candidates(Map& map) const;
   Search triangulate_candidate(const Keyframe& source, const Candidate& candidate, Map& map) const;
-  /// As above where no plane tells the depth to start from.
+  /// As above, if no plane gives the initial depth.
   Search triangulate_in_scene(const Keyframe& source, const Candidate& candidate, Map& map) const;
   void add(const MapPoint& point, const Eigen::Vector2d& newest_pixel, Map& map) const;
-  /// A candidate that is a point already: the point is looked for in the candidate's keyframe.
+  /// Handles a candidate that is a known point: searches the point in the candidate's keyframe.
   void fuse(const MapPoint& known, const Keyframe& source, Map& map) const;
-  /// Looks for a point in a keyframe that lacks it.
+  /// Searches a point in a keyframe that does not observe it yet.
   void observe(const MapPoint& point, Keyframe& keyframe, Map& map) const;
   void cull(Map& map) const;
 

@@ -1,4 +1,4 @@
-// New points where what is seen is no plane: the depth to start from is that of neighbours.
+// Creates points in scenes that are not planar: the initial depth comes from neighbouring points.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -11,14 +11,14 @@ namespace overfly::odometry {
 namespace {
 
 constexpr std::size_t kNeighbours = 3;
-/// Depths that differ by less lead the search to the same place.
+/// Depths that differ by a smaller ratio lead the search to the same result.
 constexpr double kSameDepthRatio = 1.25;
-/// Beyond the median depth, for what stands behind all neighbours.
+/// Multiple of the median depth, for objects behind all neighbours.
 constexpr double kFarRatio = 4.0;
 constexpr int kCoarserLevels = 2;
 
-/// Depths at which a corner of a keyframe may lie, likeliest first: those of the points next to it
-/// in the image, the median, and a far one.
+/// Candidate depths of a corner of a keyframe, likeliest first: those of neighbouring points in the
+/// image, the median, and a far one.
 std::vector<double> likely_depths(const Map& map,
                                   const Keyframe& source,
                                   const Eigen::Vector2d& pixel) {

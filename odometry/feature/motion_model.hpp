@@ -1,4 +1,4 @@
-// Where the camera will be in the next frame if it goes on as it went.
+// Predicts the camera's pose in the next frame.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace overfly::odometry {
 /// Constant velocity in `vo` and constant angular rate in the camera.
 class MotionModel {
  public:
-  /// Takes a pose as known; the velocity is that since the pose before.
+  /// Adds a known pose; the velocity is computed from it and the previous pose.
   void observe(std::int64_t t_ns, const Pose& T_camera_vo) {
     const Pose T_vo_camera = T_camera_vo.inverse();
     if (poses_ > 0 && t_ns > t_ns_) {
@@ -24,14 +24,14 @@ class MotionModel {
     T_vo_camera_ = T_vo_camera;
     ++poses_;
   }
-  /// T_camera_vo at a time; at most `max_s` are extrapolated.
+  /// Predicts T_camera_vo at a time, extrapolating at most `max_s`.
   [[nodiscard]] Pose predict(std::int64_t t_ns, double max_s = 2.0) const {
     const double dt_s = std::min(max_s, static_cast<double>(t_ns - t_ns_) * 1e-9);
     const Pose T_vo_camera{(T_vo_camera_.rotation * exp_so3(rate_ * dt_s)).normalized(),
                            T_vo_camera_.translation + velocity_ * dt_s};
     return T_vo_camera.inverse();
   }
-  /// As above with the last attitude kept.
+  /// As above, but keeps the last attitude.
   [[nodiscard]] Pose predict_unturned(std::int64_t t_ns, double max_s = 2.0) const {
     const double dt_s = std::min(max_s, static_cast<double>(t_ns - t_ns_) * 1e-9);
     return Pose{T_vo_camera_.rotation, T_vo_camera_.translation + velocity_ * dt_s}.inverse();

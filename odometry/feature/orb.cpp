@@ -11,18 +11,18 @@ namespace overfly::odometry {
 namespace {
 
 constexpr int kCellPx = 32;
-/// Threshold of the last attempt on ground of low texture. Noise passes it, too; whether there is
-/// anything to hold on to shows when a patch is made of it.
+/// FAST threshold of the last attempt on ground of low texture. Noise also exceeds it; whether
+/// there is enough texture is decided when a patch is made.
 constexpr int kFaintest = 2;
-constexpr int kMarginPx = 20;  ///< room for the turned pattern
+constexpr int kMarginPx = 20;  ///< room for the rotated pattern
 constexpr int kPatternRadius = 15;
 
 struct PatternPair {
   float ax, ay, bx, by;
 };
 
-/// One coordinate of Calonder's G II: normal with sigma = S / 5 for a patch of side S, drawn
-/// without <random>'s distributions, whose results differ between standard libraries.
+/// One coordinate of Calonder's G II: normal with sigma = S / 5 for a patch of side S. Does not use
+/// the distributions of <random>, whose results differ between standard libraries.
 float pattern_coordinate(std::mt19937& generator) {
   double sum = 0.0;
   for (int i = 0; i < 12; ++i) sum += static_cast<double>(generator()) / 4294967296.0;
@@ -67,7 +67,7 @@ Eigen::Vector2f centroid_direction(const cv::Mat& image, const Eigen::Vector2i& 
   return length > 0.0F ? Eigen::Vector2f(moment / length) : Eigen::Vector2f(1.0F, 0.0F);
 }
 
-/// Takes corners in rounds: every cell's best, then every cell's second best, ...
+/// Selects corners in rounds: the best of every cell, then the second best of every cell, ...
 std::vector<Corner> take_in_rounds(std::vector<std::vector<Corner>> cells, int wanted) {
   std::vector<Corner> taken;
   for (auto& cell : cells) {
@@ -95,7 +95,7 @@ cv::Size level_size(const cv::Size& full, double scale) {
           static_cast<int>(std::lround(full.height / scale))};
 }
 
-/// A level in which no corner keeps its margin on both sides.
+/// Whether a level is too small for a corner with the margin on both sides.
 bool too_small(const cv::Size& level) {
   return std::min(level.width, level.height) < 4 * kMarginPx;
 }
@@ -138,7 +138,8 @@ int hamming_distance(const Descriptor& a, const Descriptor& b) {
 }
 
 OrbExtractor::OrbExtractor(const FeatureParameters& parameters) : parameters_(parameters) {
-  // Shares fall with the level's side, so that the corners' density per pixel rises slowly.
+  // A level's share is proportional to its side, so that the density of corners per pixel rises
+  // slowly.
   double total = 0.0;
   for (int level = 0; level < parameters.levels; ++level) {
     scales_.push_back(std::pow(parameters.scale_factor, level));
@@ -177,7 +178,7 @@ void OrbExtractor::load(const cv::Mat& image) {
 std::vector<Corner> OrbExtractor::detect_level(int level, const CellGrid* wanted) const {
   const cv::Mat& image = levels_[static_cast<std::size_t>(level)];
   const cv::Mat mask = masks_.empty() ? cv::Mat() : masks_[static_cast<std::size_t>(level)];
-  // Of the sizes as rounded, not the nominal scale.
+  // Use the rounded sizes, not the nominal scale.
   const Eigen::Array2d scale(static_cast<double>(levels_[0].cols) / image.cols,
                              static_cast<double>(levels_[0].rows) / image.rows);
   std::vector<std::vector<Corner>> cells;
@@ -190,7 +191,7 @@ std::vector<Corner> OrbExtractor::detect_level(int level, const CellGrid* wanted
                                                    scale * Eigen::Array2d(x + width, y + height))) {
         continue;
       }
-      // FAST looks 3 px beyond a pixel.
+      // FAST reads up to 3 px around a pixel.
       const cv::Rect cell(x - 3, y - 3, width + 6, height + 6);
       cv::FAST(image(cell), found, parameters_.ini_fast_threshold, true);
       if (found.empty()) cv::FAST(image(cell), found, parameters_.min_fast_threshold, true);

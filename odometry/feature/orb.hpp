@@ -1,4 +1,4 @@
-// Oriented corners with binary descriptors, evenly spread over image and scales.
+// Oriented corners with binary descriptors, spread evenly over image and scales.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,7 +11,7 @@
 
 namespace overfly::odometry {
 
-/// 256 brightness comparisons.
+/// 256 bits of brightness comparisons.
 using Descriptor = std::array<std::uint64_t, 4>;
 
 struct Corner {
@@ -21,7 +21,7 @@ struct Corner {
   Eigen::Vector2i level_pixel = Eigen::Vector2i::Zero();
 };
 
-/// Cells of an image, row-major, each with a mark.
+/// Square cells of an image, row-major, each with a mark.
 struct CellGrid {
   double cell_px = 1.0;
   int columns = 0;
@@ -38,24 +38,26 @@ struct CellGrid {
 /// Number of differing bits, in [0, 256].
 [[nodiscard]] int hamming_distance(const Descriptor& a, const Descriptor& b);
 
-/// Detects and describes. One object serves one image at a time: `detect`, then `describe`.
+/// Detects and describes corners. An object processes one image at a time: `detect`, then
+/// `describe`.
 ///
 /// Method: FAST (Rosten and Drummond 2006) on a scale pyramid, orientation by the intensity
 /// centroid and steered BRIEF (Rublee et al. 2011, ORB, sections 3 and 4; Calonder et al. 2010 for
-/// the Gaussian pattern, G II). The pattern is drawn once from a fixed seed.
+/// the Gaussian pattern, G II). The pattern is generated once from a fixed seed.
 class OrbExtractor {
  public:
   explicit OrbExtractor(const FeatureParameters& parameters);
 
-  /// Corners of an 8-bit image: each cell of each level asks first with the initial threshold,
-  /// then with the minimum, with `low_texture` then with 2; a level takes its share of `features`
-  /// in rounds over the cells.
-  /// @param wanted looks only near marked cells; null = everywhere
+  /// Detects corners in an 8-bit image. Each cell of each level tries the initial threshold, then
+  /// the minimum, and with `low_texture` finally 2. Each level contributes its share of `features`,
+  /// taken in rounds over the cells.
+  /// @param wanted  searches only near marked cells; null = everywhere
   [[nodiscard]] std::vector<Corner> detect(const cv::Mat& image, const CellGrid* wanted = nullptr);
-  /// From now on finds corners only where `seen` is not 0, as far from the rest as from the image's
-  /// border. @param seen  CV_8U of the images' size; empty = everywhere
+  /// Restricts detection to areas where `seen` is not 0, with the same margin to the other areas as
+  /// to the image border.
+  /// @param seen  CV_8U of the images' size; empty = everywhere
   void look_only_at(const cv::Mat& seen);
-  /// Makes an image the one that `describe` looks at, without looking for corners.
+  /// Sets the image for `describe` without detecting corners.
   void load(const cv::Mat& image);
   /// Descriptor of a corner of the image last given to `detect` or `load`.
   [[nodiscard]] Descriptor describe(const Corner& corner);
@@ -69,8 +71,8 @@ class OrbExtractor {
   std::vector<double> scales_;
   std::vector<int> shares_;
   std::vector<cv::Mat> levels_;
-  std::vector<cv::Mat> masks_;     ///< of the levels: not 0 where a corner may be; empty = all
-  std::vector<cv::Mat> smoothed_;  ///< made when first asked for
+  std::vector<cv::Mat> masks_;  ///< per level: not 0 where corners are allowed; empty = everywhere
+  std::vector<cv::Mat> smoothed_;  ///< computed on first use
 };
 
 }  // namespace overfly::odometry

@@ -46,7 +46,7 @@ constexpr std::array<Switch, 4> kSwitches{{
 
 constexpr double kMaxHeightM = 20000.0;
 
-/// Sets one field; false for a name that is not known.
+/// Sets one field; returns false for an unknown name.
 Result<bool> set_field(const std::string& name, double value, FeatureParameters& parameters) {
   for (const WholeField& field : kWholeFields) {
     if (name != field.name) continue;
@@ -67,7 +67,7 @@ Result<bool> set_field(const std::string& name, double value, FeatureParameters&
   }
   if (name == "initial_height_m") {
     if (!(value >= 0.0 && value <= kMaxHeightM)) {
-      return bad(name, value, "in [0, 20000], 0 = not known");
+      return bad(name, value, "in [0, 20000], 0 = unknown");
     }
     parameters.initial_height_m = value;
     return true;
@@ -78,7 +78,7 @@ Result<bool> set_field(const std::string& name, double value, FeatureParameters&
     return true;
   }
   if (name == "seed") {
-    // Above 2^53 a JSON number no longer tells neighbours apart.
+    // Above 2^53 a JSON number cannot represent every integer.
     if (!whole(value) || value < 0.0 || value > 9007199254740992.0) {
       return bad(name, value, "a whole number in [0, 2^53]");
     }
@@ -126,7 +126,7 @@ Result<FeatureParameters> feature_parameters_from(const std::map<std::string, do
     }
   }
   if (parameters.min_fast_threshold > parameters.ini_fast_threshold) {
-    // The default minimum gives way to a lower initial threshold; a stated one is an error.
+    // A default minimum is lowered to the initial threshold; an explicit one above it is an error.
     if (!values.contains("min_fast_threshold")) {
       parameters.min_fast_threshold = parameters.ini_fast_threshold;
       return parameters;

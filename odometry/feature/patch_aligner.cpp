@@ -13,8 +13,8 @@ constexpr int kBorder = kPatchSize + 2;
 constexpr float kHalf = 0.5F * (kPatchSize - 1);
 constexpr int kMaxIterations = 12;
 constexpr float kSettledPx = 0.008F;
-/// Least eigenvalue of the gradients' mean square [grey levels^2 per px^2]: below it the patch
-/// slides along an edge or drowns in noise.
+/// Smallest eigenvalue of the gradients' mean square [grey levels^2 per px^2]. Below it the patch
+/// slides along an edge or is dominated by noise.
 constexpr float kMinEigenvalue = 4.0F;
 constexpr float kMaxTravelPx = 10.0F;
 
@@ -31,14 +31,14 @@ float bilinear(const cv::Mat& image, float x, float y) {
          ay * ((1.0F - ax) * bottom[0] + ax * bottom[1]);
 }
 
-/// Samples a (P + 2)^2 patch around a centre, shaped by the warp.
+/// Samples a (P + 2)^2 patch around a centre with the warp applied.
 bool sample_warped(const cv::Mat& image,
                    const Eigen::Vector2f& centre,
                    const Eigen::Matrix2f& A,
                    const Eigen::Vector2f& g,
                    BorderPatch& patch) {
   const float reach = kHalf + 1.0F;
-  // A plane in front of both views is not turned over: its corners hold all of the patch.
+  // The plane is in front of both views over the whole patch if it is at the patch's corners.
   if (g.cwiseAbs().sum() * reach > 0.5F) return false;
   for (const float u : {-reach, reach}) {
     for (const float v : {-reach, reach}) {
@@ -66,7 +66,7 @@ bool sample_warped(const cv::Mat& image,
   return true;
 }
 
-/// Fills the template from a sampled patch; false without texture in both directions.
+/// Fills the template from a sampled patch; returns false without texture in both directions.
 bool fill_template(const BorderPatch& patch, PatchTemplate& out) {
   float sum = 0.0F;
   Eigen::Vector2f gradient_sum = Eigen::Vector2f::Zero();
@@ -88,7 +88,7 @@ bool fill_template(const BorderPatch& patch, PatchTemplate& out) {
     }
   }
   H(1, 0) = H(0, 1);
-  // The mean is a free parameter: its share is taken out of the normal equations.
+  // The mean is a free parameter: eliminate it from the normal equations.
   H -= gradient_sum * gradient_sum.transpose() / static_cast<float>(kPatchArea);
   out.value.array() -= sum / static_cast<float>(kPatchArea);
   out.gradient_x.array() -= gradient_sum.x() / static_cast<float>(kPatchArea);
@@ -135,7 +135,7 @@ Comparison compare(const PatchTemplate& patch, const PatchVector& sampled) {
   Comparison result;
   const float variance = std::max(sampled.squaredNorm() - sum * sum / kPatchArea, 1e-3F);
   result.correlation = cross / std::sqrt(variance * energy);
-  // Contrast of the image relative to the patch; bounded, or a bad start would run away.
+  // Contrast of the image relative to the patch; bounded so that a bad start cannot diverge.
   const float gain = std::clamp(cross / energy, 0.4F, 2.5F);
   result.gradient_error =
       Eigen::Vector2f(sampled.dot(patch.gradient_x), sampled.dot(patch.gradient_y)) / gain -
@@ -160,7 +160,7 @@ std::optional<PatchTemplate> make_template(const Pyramid& source,
                                            int level) {
   const double area = 1.0 / warp.A_source_other.determinant();
   if (!(area > 0.1 && area < 10.0)) return std::nullopt;
-  // Source level whose pixels are nearest in size to the searched level's.
+  // Source level with the pixel size nearest to that of the searched level.
   const int change = static_cast<int>(std::lround(-0.5 * std::log2(area)));
   const int source_level = std::clamp(level + change, 0, source.level_count() - 1);
   const double scale = std::ldexp(1.0, level - source_level);
@@ -190,8 +190,8 @@ std::optional<int> textured_level(const Pyramid& image,
   for (int level = finest; level <= last; ++level) {
     const auto patch = make_template(image, pixel, PatchWarp{}, level);
     if (!patch) continue;
-    // A coarser pixel is 2^level as wide and its share of white noise 2^-level as strong; what
-    // quantisation and interpolation add, half as much at the finest level, stays.
+    // At level l a pixel is 2^l as wide and white noise is 2^-l as strong. Noise of quantisation
+    // and interpolation, half as strong at the finest level, does not decrease.
     const float variance = 1.0F + std::ldexp(0.25F, 2 * level);
     const float information = patch->least_eigenvalue / variance;
     if (information <= best_information) continue;
@@ -215,7 +215,7 @@ std::optional<PatchMatch> align_patch(const Pyramid& image,
   bool settled = false;
   Comparison comparison;
   for (int iteration = 0; iteration < kMaxIterations && !settled; ++iteration) {
-    // Negated, so that a position that is not a number is outside as well.
+    // Negated, so that NaN also counts as outside.
     if (!(corner.minCoeff() >= 0.0F && corner.x() < limit.x() && corner.y() < limit.y())) {
       return std::nullopt;
     }

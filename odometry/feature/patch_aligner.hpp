@@ -1,4 +1,4 @@
-// Finds a patch again in another image, to a few hundredths of a pixel.
+// Aligns a patch in another image to a few hundredths of a pixel.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,9 +13,9 @@ inline constexpr int kPatchSize = 12;
 inline constexpr int kPatchArea = kPatchSize * kPatchSize;
 using PatchVector = Eigen::Matrix<float, kPatchArea, 1>;  ///< row-major patch
 
-/// How the plane around a patch's middle maps from the view that searches it to its source: the
-/// offset d [px] becomes A d / (1 + g.d). The second term matters where ground is seen obliquely
-/// and at coarse levels, whose patches are wide.
+/// Maps offsets on the plane around a patch's centre from the searching view to the source view:
+/// the offset d [px] becomes A d / (1 + g.d). The second term matters for ground seen obliquely and
+/// for coarse levels, whose patches are wide.
 struct PatchWarp {
   Eigen::Matrix2d A_source_other = Eigen::Matrix2d::Identity();
   Eigen::Vector2d g_per_px = Eigen::Vector2d::Zero();
@@ -25,8 +25,8 @@ struct PatchWarp {
 [[nodiscard]] PatchWarp warp_around(const Eigen::Matrix3d& H_source_other,
                                     const Eigen::Vector2d& other_pixel);
 
-/// A patch as it should look in the image where it is searched, with all that one step of the
-/// search needs. All at one pyramid level.
+/// A patch as predicted for the searched image, with precomputed values for one alignment step. All
+/// at one pyramid level.
 struct PatchTemplate {
   int level = 0;
   PatchVector value;  ///< mean removed
@@ -38,14 +38,14 @@ struct PatchTemplate {
   float least_eigenvalue = 0.0F;   ///< of the Hessian
 };
 
-/// Pyramid level at which a corner of a scale level is followed.
+/// Pyramid level at which a corner of a scale level is tracked.
 [[nodiscard]] int patch_level_of(int scale_level, double scale_factor);
 
-/// The level, at least `finest` and at most `coarsest`, at which the patch around a pixel tells its
-/// position best; empty if none has texture to hold on. Blurred ground is held at coarse levels.
+/// The level in [finest, coarsest] at which the patch around a pixel localises best; empty if no
+/// level has enough texture. Blurred ground is tracked at coarse levels.
 ///
-/// Method: the position's variance is that of the image over the least eigenvalue of the gradients'
-/// normal matrix (Forstner and Gulch 1987).
+/// Method: the variance of the position is that of the image divided by the smallest eigenvalue of
+/// the gradients' normal matrix (Forstner and Gulch 1987).
 [[nodiscard]] std::optional<int> textured_level(const Pyramid& image,
                                                 const Eigen::Vector2d& pixel,
                                                 int finest,
@@ -56,21 +56,21 @@ struct PatchMatch {
   float correlation = 0.0F;                         ///< normalised, in [-1, 1]
 };
 
-/// Samples the patch around `source_pixel` (full resolution), shaped as the other view sees it.
+/// Samples the patch around `source_pixel` (full resolution), warped into the other view.
 ///
-/// @param level pyramid level of the search in the other view
-/// @return empty where the patch leaves the image, is too distorted, or has no texture to hold on
+/// @param level  pyramid level of the search in the other view
+/// @return empty if the patch leaves the image, is too distorted or has too little texture
 std::optional<PatchTemplate> make_template(const Pyramid& source,
                                            const Eigen::Vector2d& source_pixel,
                                            const PatchWarp& warp,
                                            int level);
 
-/// Moves the patch over the image until it fits best.
+/// Aligns the patch with the image, starting at `start_pixel`.
 ///
 /// Method: inverse compositional Lucas-Kanade with translation only (Baker and Matthews 2004,
 /// section 3.2, DOI 10.1023/B:VISI.0000011205.11775.fd), mean and contrast normalised.
-/// @param start_pixel where the search starts, full resolution
-/// @return empty when it leaves the image or does not settle
+/// @param start_pixel  start of the search, full resolution
+/// @return empty if the search leaves the image or does not converge
 std::optional<PatchMatch> align_patch(const Pyramid& image,
                                       const PatchTemplate& patch,
                                       const Eigen::Vector2d& start_pixel);

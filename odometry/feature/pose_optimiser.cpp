@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kMinDepth = 1e-6;
 
-/// Residual in pixels; false when the point is not in front.
+/// Residual in pixels; returns false if the point is not in front.
 bool residual_of(const PinholeCamera& camera,
                  const Eigen::Vector3d& p_camera,
                  const Eigen::Vector2d& pixel,
@@ -22,7 +22,7 @@ bool residual_of(const PinholeCamera& camera,
   return true;
 }
 
-/// One Gauss-Newton step; returns the step's length, or a negative number when it is undetermined.
+/// One Gauss-Newton step; returns its length, or a negative number if it is undetermined.
 double step(const PinholeCamera& camera,
             const std::vector<PoseObservation>& observations,
             const std::vector<std::uint8_t>& used,

@@ -1,4 +1,4 @@
-// The camera's pose from known points.
+// Estimates the camera's pose from known points.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,10 +17,10 @@ struct PoseObservation {
 };
 
 struct PoseFitOptions {
-  int rounds = 3;  ///< each decides anew which observations are outliers
+  int rounds = 3;  ///< outliers are selected again in each round
   int iterations_per_round = 4;
-  double huber = 2.0;    ///< residual, in sigmas, from which weight falls
-  double outlier = 6.0;  ///< residual, in sigmas, from which an observation is left out
+  double huber = 2.0;    ///< residual from which the weight decreases [sigmas]
+  double outlier = 6.0;  ///< residual from which an observation is ignored [sigmas]
 };
 
 struct PoseFit {
@@ -30,9 +30,9 @@ struct PoseFit {
   double rms_px = 0.0;  ///< over the inliers
 };
 
-/// Minimises the reprojection error over the pose alone.
+/// Minimises the reprojection error over the pose only.
 ///
-/// Method: Gauss-Newton on SE(3) with Huber weights and outliers decided between rounds, as
+/// Method: Gauss-Newton on SE(3) with Huber weights and outlier selection between rounds, as in
 /// motion-only bundle adjustment (Mur-Artal and Tardos 2017, section III-B, eq. 2,
 /// DOI 10.1109/TRO.2017.2705103).
 [[nodiscard]] PoseFit optimise_pose(const PinholeCamera& camera,

@@ -9,14 +9,15 @@ namespace overfly::odometry {
 
 namespace {
 
-constexpr int kFullLevel = 250;     ///< grey level from which a pixel says nothing
-constexpr int kFullShare = 192;     ///< of 255: share of such pixels that makes a cell burnt
+constexpr int kFullLevel = 250;     ///< grey level from which a pixel counts as saturated
+constexpr int kFullShare = 192;     ///< of 255: share of such pixels in a saturated cell
 constexpr int kLeastAreaCells = 3;  ///< side of the smallest area
-/// Averages noise to a fifteenth; ground in coarse, blurred pictures still has its corners there.
+/// At this level noise is reduced to a fifteenth, while the ground in coarse, blurred pictures
+/// keeps its corners.
 constexpr int kQuietLevel = 3;
 constexpr int kQuietThreshold = 4;  ///< of FAST [grey levels]
-/// Least number per pixel of the level. Measured: 0.9e-3 and fewer where 2 % of the light is left,
-/// 9e-3 and more over ground that a photograph of 0.8 m per pixel shows blurred from 50 m.
+/// Minimum number of corners per pixel of the level. Measured: 0.9e-3 and less at 2 % of the light,
+/// 9e-3 and more from 50 m over ground shown blurred by a photograph of 0.8 m per pixel.
 constexpr double kQuietCorners = 1.5e-3;
 
 }  // namespace
@@ -33,14 +34,14 @@ cv::Mat find_burnt(const cv::Mat& image) {
   cv::threshold(cells, cells, kFullShare - 1, 255.0, cv::THRESH_BINARY);
   cv::erode(cells, cells, cv::Mat::ones(kLeastAreaCells, kLeastAreaCells, CV_8U));
   if (cv::countNonZero(cells) == 0) return {};
-  // Back to the area's size, and one cell more.
+  // Restore the area's size and add one cell.
   cv::dilate(cells, cells, cv::Mat::ones(kLeastAreaCells + 2, kLeastAreaCells + 2, CV_8U));
   return cells;
 }
 
 Pyramid build_pyramid(std::shared_ptr<const Image> image) {
   Pyramid pyramid;
-  // OpenCV has no view of constant data; nothing here writes to it.
+  // cv::Mat cannot refer to constant data; nothing here writes to it.
   auto* data = const_cast<std::uint8_t*>(image->data.data());
   pyramid.levels.emplace_back(image->height_px, image->width_px, CV_8U, data);
   pyramid.source = std::move(image);

@@ -1,4 +1,4 @@
-// An image at half, quarter, ... resolution, for aligning patches.
+// Image pyramid with half, quarter, ... resolution for patch alignment.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,12 +14,12 @@ namespace overfly::odometry {
 
 inline constexpr int kBurntCellPx = 8;
 
-/// Level l has pixel (x, y) at (2^l x, 2^l y) of the full image (the levels share pixel 0).
-/// Level 0 looks into the image's own buffer, which the pyramid keeps alive.
+/// Pixel (x, y) of level l lies at (2^l x, 2^l y) of the full image (all levels share pixel 0).
+/// Level 0 refers to the image's own buffer, which the pyramid keeps alive.
 struct Pyramid {
   std::shared_ptr<const Image> source;
   std::vector<cv::Mat> levels;  ///< CV_8U
-  /// CV_8U, one pixel for a square of kBurntCellPx: not 0 where the image is burnt out; empty =
+  /// CV_8U, one pixel per square of kBurntCellPx: not 0 where the image is saturated; empty =
   /// nowhere.
   cv::Mat burnt;
 
@@ -34,17 +34,17 @@ struct Pyramid {
   [[nodiscard]] const cv::Mat& level(int l) const { return levels[static_cast<std::size_t>(l)]; }
 };
 
-/// Where light has filled the sensor: areas of a few cells and more without grey levels, and one
-/// cell around them. Single white roofs and markings are no such areas.
+/// Finds saturated areas of a few cells and more, and adds one cell around them. Single white roofs
+/// and markings do not count.
 [[nodiscard]] cv::Mat find_burnt(const cv::Mat& image);
 
 inline constexpr int kPyramidLevels = 5;
 
-/// Builds up to kPyramidLevels levels; stops before a side falls below 32 px.
+/// Builds up to kPyramidLevels levels; stops before a side becomes shorter than 32 px.
 [[nodiscard]] Pyramid build_pyramid(std::shared_ptr<const Image> image);
 
-/// Whether there is anything to see: corners that outlast averaging over pixels. In the dark the
-/// finest level alone is full of corners, of noise.
+/// Whether the image has visible texture: corners that remain after averaging. In the dark the
+/// finest level is full of noise corners.
 [[nodiscard]] bool shows_something(const Pyramid& pyramid);
 
 }  // namespace overfly::odometry

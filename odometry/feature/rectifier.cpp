@@ -29,7 +29,7 @@ Rectifier::Rectifier(const CameraModel& camera) {
 
 std::shared_ptr<const Image> Rectifier::rectify(std::shared_ptr<const Image> image) const {
   if (map_.empty()) return image;
-  // OpenCV has no view of constant data; nothing here writes to it.
+  // cv::Mat cannot refer to constant data; nothing here writes to it.
   auto* data = const_cast<std::uint8_t*>(image->data.data());
   const cv::Mat distorted(image->height_px, image->width_px, CV_8U, data);
   auto rectified = std::make_shared<Image>(image->width_px, image->height_px, 1);

@@ -1,4 +1,4 @@
-// Images as a pinhole of the same intrinsics would have taken them.
+// Converts images into those of a pinhole camera with the same intrinsics.
 #pragma once
 
 #include <memory>
@@ -9,20 +9,20 @@
 
 namespace overfly::odometry {
 
-/// Takes the lens out of images: all behind it works with the pinhole camera of the same size and
-/// K. What the lens shows beyond the pinhole's image is lost; where it shows less than that (a
-/// pincushion), the image is continued with its border, and `seen` is 0.
+/// Removes lens distortion, so that all later stages use the pinhole camera of the same size and K.
+/// Parts of the image outside the pinhole's view are lost. If the lens covers less than the
+/// pinhole's view (pincushion), the border is replicated and `seen` is 0 there.
 class Rectifier {
  public:
   explicit Rectifier(const CameraModel& camera);
 
-  /// The image itself where there is no lens.
+  /// Returns the image itself if there is no distortion.
   [[nodiscard]] std::shared_ptr<const Image> rectify(std::shared_ptr<const Image> image) const;
-  /// CV_8U: 255 where the rectified image shows what the lens saw; empty = everywhere.
+  /// CV_8U: 255 where the rectified image has data from the lens; empty = everywhere.
   [[nodiscard]] const cv::Mat& seen() const { return seen_; }
 
  private:
-  cv::Mat map_;  ///< CV_32FC2: place in the distorted image of each pixel; empty without a lens
+  cv::Mat map_;  ///< CV_32FC2: distorted position of each pixel; empty without distortion
   cv::Mat seen_;
 };
 

@@ -42,7 +42,7 @@ std::vector<PoseObservation> match_points(const RelocaliserOptions& options,
   return matches;
 }
 
-/// A pose through four pairs: three fix it up to four solutions, the fourth chooses.
+/// Pose from four pairs: three give up to four solutions, the fourth selects one.
 std::optional<Pose> pose_of_four(const PinholeCamera& camera,
                                  const std::vector<PoseObservation>& matches,
                                  const std::array<std::size_t, 4>& chosen) {
@@ -56,7 +56,7 @@ std::optional<Pose> pose_of_four(const PinholeCamera& camera,
   }
   cv::Vec3d rotation;
   cv::Vec3d translation;
-  // Four points never throw; coincident ones give no solution.
+  // Does not throw for four points; coincident points give no solution.
   if (!cv::solvePnP(points,
                     rays,
                     cv::Matx33d::eye(),

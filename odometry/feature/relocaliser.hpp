@@ -1,4 +1,4 @@
-// Finds the place again after the track was lost.
+// Relocalises after tracking was lost.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +11,10 @@
 namespace overfly::odometry {
 
 struct RelocaliserOptions {
-  int keyframes = 40;     ///< whose points are compared
+  int keyframes = 40;     ///< number of keyframes whose points are compared
   int max_distance = 64;  ///< bits
   double ratio = 0.85;    ///< best to second-best distance
-  int rounds = 300;       ///< of RANSAC
+  int rounds = 300;       ///< RANSAC iterations
   double threshold_px = 4.0;
   int min_inliers = 25;
   std::uint64_t seed = 1;
@@ -25,10 +25,10 @@ struct Relocalisation {
   std::optional<Pose> T_camera_vo;
 };
 
-/// Compares an image's corners with the points of the newest keyframes.
+/// Matches an image's corners with the points of the newest keyframes.
 ///
-/// Method: descriptors by exhaustive search with a ratio test, then three-point poses in RANSAC
-/// (Fischler and Bolles 1981) and a pose fit to the agreeing points.
+/// Method: exhaustive descriptor search with a ratio test, three-point poses in RANSAC (Fischler
+/// and Bolles 1981), and a pose fit to the inliers.
 [[nodiscard]] Relocalisation relocalise(const PinholeCamera& camera,
                                         const RelocaliserOptions& options,
                                         const cv::Mat& image,

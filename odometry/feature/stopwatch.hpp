@@ -1,4 +1,4 @@
-// Wall time of a stage, for `VoEstimate::timing_ms`. Never an input to the estimate.
+// Measures the wall time of a stage for `VoEstimate::timing_ms`. Never an input to the estimate.
 #pragma once
 
 #include <chrono>
@@ -8,7 +8,7 @@
 
 namespace overfly::odometry {
 
-/// Adds the time from its construction to its end to one entry.
+/// Adds the time between construction and destruction to one entry.
 class Stopwatch {
  public:
   Stopwatch(std::map<std::string, double>& timing_ms, std::string stage)

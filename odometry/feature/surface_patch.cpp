@@ -9,12 +9,12 @@ namespace overfly::odometry {
 namespace {
 
 constexpr float kMinCorrelation = 0.8F;
-/// Agreement beyond which no other plane is tried.
+/// Correlation above which no further plane is tried.
 constexpr float kGoodCorrelation = 0.93F;
-/// Of a normal with the ray: a plane seen nearly edge-on warps its patch beyond use.
+/// Cosine between normal and ray: planes seen nearly edge-on distort the patch too much.
 constexpr double kMinCosine = 0.12;
 
-/// Coarse to fine; the finest level decides.
+/// Aligns coarse to fine; the result of the finest level counts.
 std::optional<PatchMatch> align_over(const PinholeCamera& camera,
                                      const SurfacePoint& point,
                                      const Pose& T_view_source,

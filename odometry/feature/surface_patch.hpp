@@ -1,4 +1,5 @@
-// Finds the patch around a point of unknown surface: walls, roads and trees, not one ground.
+// Aligns patches around points of unknown surface: walls, roads and trees instead of one ground
+// plane.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,7 +12,7 @@
 
 namespace overfly::odometry {
 
-/// A pixel of a source view, with a guess of what lies behind it.
+/// A pixel of a source view with an assumed 3D point.
 struct SurfacePoint {
   const Pyramid* source = nullptr;
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
@@ -24,11 +25,11 @@ struct SurfaceMatch {
   Eigen::Vector3d normal_source = Eigen::Vector3d::UnitZ();  ///< in the source's camera
 };
 
-/// Looks in a view where the point should be, over planes that face the source's camera or lie
-/// along its axes (a road, walls on either side), and takes the one that agrees best.
+/// Aligns the point's patch in another view, using planes that face the source camera or lie along
+/// its axes (a road, walls on either side), and returns the plane with the best agreement.
 ///
-/// @param coarser  levels above the patch's own at which the search begins
-/// @return empty where none agrees
+/// @param coarser  number of levels above the patch's own at which the search starts
+/// @return empty if no plane agrees
 [[nodiscard]] std::optional<SurfaceMatch> align_on_surface(const PinholeCamera& camera,
                                                            const SurfacePoint& point,
                                                            const Pose& T_view_source,

@@ -10,8 +10,8 @@ namespace {
 
 constexpr double kBorderPx = 8.0;
 constexpr int kCoarseMinMatches = 12;
-/// Searched points of which one must agree, at least. Where what is seen is no plane, things hide
-/// one another, and more are looked for in vain.
+/// Tracking fails if fewer than one in this many searched points agrees. In scenes that are not
+/// planar more points are occluded and not found.
 constexpr int kSearchedPerInlier = 3;
 constexpr int kSearchedPerInlierInScene = 6;
 
@@ -53,7 +53,7 @@ PatchWarp warp_of(const PinholeCamera& camera,
                  T_camera_vo.rotation * point.normal_vo);
 }
 
-/// One point of the local map for each cell of the image, best known first.
+/// One point of the local map for each cell of the image, the best observed first.
 std::vector<Tracker::Projection> Tracker::project(const Pyramid& image,
                                                   const Pose& T_camera_vo,
                                                   const Map& map) const {
@@ -76,7 +76,7 @@ std::vector<Tracker::Projection> Tracker::project(const Pyramid& image,
     }
     if (image.burnt_at(*pixel)) continue;
     Projection& cell = cells[grid.index(*pixel)];
-    // Later points replace equals: the newer patch is nearer in view.
+    // On a tie later points win: their patch is from a more similar view.
     if (cell.point == nullptr || point.keyframes.size() >= cell.point->keyframes.size()) {
       cell = {&point, *pixel};
     }

@@ -1,4 +1,4 @@
-// Finds the map's points in a new frame, and the pose from them.
+// Finds the map's points in a new frame and estimates the pose from them.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,12 +13,12 @@
 namespace overfly::odometry {
 
 struct TrackerOptions {
-  int max_points = 900;      ///< searched at full detail in a frame
+  int max_points = 900;      ///< searched at full detail per frame
   int coarse_points = 150;   ///< searched first, from coarse to fine
-  int local_keyframes = 40;  ///< points last seen in so many newest keyframes are searched
+  int local_keyframes = 40;  ///< number of newest keyframes whose points are searched
   float min_correlation = 0.8F;
   int min_inliers = 40;
-  cv::Mat seen;  ///< CV_8U, 0 where the image shows nothing; empty = it shows ground everywhere
+  cv::Mat seen;  ///< CV_8U, 0 where the image has no data; empty = data everywhere
 };
 
 struct TrackedPoint {
@@ -31,8 +31,8 @@ struct TrackResult {
   bool tracked = false;
   Pose T_camera_vo;
   std::vector<TrackedPoint> points;    ///< inliers
-  std::vector<TrackedPoint> outliers;  ///< found, but not where the pose puts them
-  std::vector<int> missed;             ///< ids searched and not found
+  std::vector<TrackedPoint> outliers;  ///< found, but inconsistent with the pose
+  std::vector<int> missed;             ///< ids of points not found
   int searched = 0;
   double rms_px = 0.0;
 };
@@ -40,15 +40,15 @@ struct TrackResult {
 /// Searches the local map around a predicted pose.
 ///
 /// Method: projection search of the local map (Mur-Artal, Montiel and Tardos 2015, section V-D),
-/// with warped patches aligned in place of descriptors compared, coarse to fine as in Klein and
+/// with alignment of warped patches instead of descriptor matching, coarse to fine as in Klein and
 /// Murray 2007, section 5.
 class Tracker {
  public:
   Tracker(const PinholeCamera& camera, const TrackerOptions& options);
 
-  /// @param T_predicted  T_camera_vo to start from
-  /// @param coarse_level pyramid level at which the coarse search starts; 0 = the prediction is
-  ///                     good enough without one
+  /// @param T_predicted  initial T_camera_vo
+  /// @param coarse_level  pyramid level at which the coarse search starts; 0 = the prediction is
+  /// good enough without a coarse search
   [[nodiscard]] TrackResult track(const Pyramid& image,
                                   const Pose& T_predicted,
                                   int coarse_level,
@@ -69,14 +69,14 @@ class Tracker {
   TrackerOptions options_;
 };
 
-/// From a view to a source, over a plane through a point. All in the view's camera.
-/// @param p, n  the point, and the plane's normal
+/// Warp from a view to a source view over a plane through a point. All in the view's camera frame.
+/// @param p, n  the point and the plane's normal
 [[nodiscard]] PatchWarp warp_of(const PinholeCamera& camera,
                                 const Pose& T_source_camera,
                                 const Eigen::Vector3d& p,
                                 const Eigen::Vector3d& n);
 
-/// From a view to the point's source keyframe, over the ground's plane through the point.
+/// Warp from a view to the point's source keyframe over the ground plane through the point.
 [[nodiscard]] PatchWarp warp_of(const PinholeCamera& camera,
                                 const Pose& T_camera_vo,
                                 const Keyframe& source,

@@ -16,11 +16,11 @@ struct TriangulatedPoint {
   double parallax_rad = 0.0;                          ///< angle between the two rays
 };
 
-/// The point on the first ray that lies nearest to the second ray's direction.
+/// The point on the first ray that is closest to the second ray's direction.
 ///
 /// Method: with X2 = R z1 r1 + t parallel to r2, (R r1 x r2) z1 = -(t x r2), by least squares.
 /// @param ray_first, ray_second  directions with z = 1
-/// @return empty when the rays are parallel or the point is behind a camera
+/// @return empty if the rays are parallel or the point is behind a camera
 [[nodiscard]] inline std::optional<TriangulatedPoint> triangulate(const Eigen::Vector3d& ray_first,
                                                                   const Eigen::Vector3d& ray_second,
                                                                   const Pose& T_second_first) {

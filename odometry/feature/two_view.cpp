@@ -21,9 +21,10 @@ constexpr int kRansacRounds = 200;
 constexpr double kChi2Point = 5.99;
 constexpr double kChi2Line = 3.84;
 constexpr double kPlanarRatio = 0.45;
-/// A plane's homography allows two motions. The wrong one's plane is seen edge-on from the first
-/// view, and points beyond its horizon lie behind the camera; where these are fewer than a
-/// twentieth (the camera is tilted by some 30 deg at 69 deg of view) two views cannot tell.
+/// A plane's homography allows two motions. The plane of the wrong one is seen edge-on from the
+/// first view, and points beyond its horizon lie behind the camera. If these are fewer than a
+/// twentieth (camera tilted by about 30 deg at 69 deg field of view), two views cannot distinguish
+/// the motions.
 constexpr double kMostAlike = 0.95;
 
 Eigen::Matrix3d from_null_vector(const Matrix9d& normal_matrix) {
@@ -69,8 +70,8 @@ std::array<std::size_t, N> draw(std::mt19937_64& generator, std::size_t size) {
   return indices;
 }
 
-/// Score of a homography between normalised views: symmetric transfer errors, each point adding
-/// what its squared error lacks to the limit.
+/// Score of a homography between normalised views: from symmetric transfer errors, each point adds
+/// the difference between the limit and its squared error.
 double score_homography(const Eigen::Matrix3d& H, const Pixels& a, const Pixels& b, double sigma) {
   const Eigen::Matrix3d back = H.inverse();
   const double scale = 1.0 / (sigma * sigma);
@@ -89,7 +90,8 @@ double line_distance2(const Eigen::Vector3d& line, const Eigen::Vector2d& p) {
   return value * value / std::max(line.head<2>().squaredNorm(), 1e-18);
 }
 
-/// As above by distances to epipolar lines; the same limit is credited so that scores compare.
+/// As above with distances to epipolar lines. The same limit is credited, so that scores are
+/// comparable.
 double score_essential(const Eigen::Matrix3d& E, const Pixels& a, const Pixels& b, double sigma) {
   const double scale = 1.0 / (sigma * sigma);
   double score = 0.0;
@@ -128,7 +130,7 @@ Model ransac_homography(const Pixels& a, const Pixels& b, double sigma, std::mt1
   return best;
 }
 
-/// Refits to the pairs that agree, keeping the better.
+/// Refits to the inlier pairs and keeps the better model.
 Model refined_homography(Model model, const Pixels& a, const Pixels& b, double sigma) {
   for (int round = 0; round < 2 && model.score > 0.0; ++round) {
     Matrix9d normal_matrix = Matrix9d::Zero();
@@ -161,7 +163,7 @@ Model five_point_essential(const Pixels& a, const Pixels& b, double sigma) {
   return {E, score_essential(E, a, b, sigma)};
 }
 
-/// Points in front of both cameras that both views agree on.
+/// Triangulates the points that are in front of both cameras and agree with both views.
 TwoViewReconstruction triangulate_all(const Pose& T_second_first,
                                       const Pixels& a,
                                       const Pixels& b,
@@ -205,7 +207,7 @@ std::optional<HomographyFit> fit_homography(const Pixels& first,
                                             double threshold_px,
                                             std::uint64_t seed) {
   if (first.size() < 8) return std::nullopt;
-  // A similarity that brings both views' pixels near [-1, 1] (H & Z, section 4.4).
+  // Similarity that normalises the pixels of both views to about [-1, 1] (H & Z, section 4.4).
   Eigen::AlignedBox2d box;
   for (const Eigen::Vector2d& p : first) box.extend(p);
   const double scale = 2.0 / std::max(1.0, box.diagonal().norm());
