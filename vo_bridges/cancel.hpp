@@ -1,4 +1,4 @@
-// Waiting for another program, unless the caller cancels.
+// Cancellable waiting for another program.
 #pragma once
 
 #include <algorithm>
@@ -12,19 +12,19 @@
 
 namespace overfly {
 
-/// A wait looks at the wish that often: the doors promise 50 ms.
+/// Interval at which a wait checks for cancellation; the doors guarantee 50 ms.
 inline constexpr std::chrono::milliseconds kCancelPeriod{20};
-/// What an answer under way has from the wish on: an estimator that works is not cut off in a
-/// frame.
+/// Time that a pending answer gets after a cancellation, so that an estimator is not interrupted
+/// while it processes a frame.
 inline constexpr std::chrono::milliseconds kCancelPatience{1000};
 
 [[nodiscard]] inline Error cancelled(const std::string& wait) {
   return {ErrorCode::kCancelled, "stopped while waiting for " + wait};
 }
 
-/// Waits by `wait(timeout)`, again and again, until it gives something, `end`, or the wish to stop
-/// and `patience` after it.
-/// @return what it gave last
+/// Calls `wait(timeout)` repeatedly until it returns a value, `end` is reached, or `patience` has
+/// passed after a cancellation.
+/// @return the last value of `wait`
 template <typename Wait>
 [[nodiscard]] auto wait_unless_cancelled(const std::atomic<bool>* cancel,
                                          std::chrono::steady_clock::time_point end,

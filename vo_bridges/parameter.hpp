@@ -1,4 +1,4 @@
-// Parameters of estimators, by the names their authors gave them.
+// Parameters of estimators, with the names used by their authors.
 #pragma once
 
 #include <map>
@@ -10,8 +10,8 @@ namespace overfly {
 using ParameterValue = std::variant<bool, double, std::string>;
 using VoParameters = std::map<std::string, ParameterValue>;
 
-/// "true" or "false", the shortest text that reads back as the number (an exponent only beyond
-/// 1e-9 and 2^53), or the text itself.
+/// Converts a value to text: "true" or "false", the shortest decimal that reads back as the same
+/// number (with an exponent only below 1e-9 or above 2^53), or the text itself.
 [[nodiscard]] std::string text_of(const ParameterValue& value);
 
 }  // namespace overfly

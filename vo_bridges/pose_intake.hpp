@@ -1,4 +1,5 @@
-// Poses of an estimator that are none: one is a lost frame, many in a row are its end.
+// Checks poses of estimators. A single invalid pose counts as a lost frame; many in a row end the
+// estimator.
 #pragma once
 
 #include <string>
@@ -9,24 +10,26 @@
 
 namespace overfly {
 
-/// Why this is no pose of a camera: it is not finite, a coordinate is beyond 1e12 units, or the
-/// quaternion's length is off 1 by more than 0.001. Empty where it is one.
+/// Reason why a pose is invalid: it is not finite, a coordinate exceeds 1e12 units, or the
+/// quaternion's norm differs from 1 by more than 0.001. Empty if it is valid.
 [[nodiscard]] std::string fault_of(const Pose& T_vo_camera);
 
-/// Judges the answers of one estimator, in the order of its frames.
+/// Checks the answers of one estimator, in frame order.
 class PoseIntake {
  public:
-  /// So many answers in a row without a usable pose end the estimator: about a second at 31 Hz.
+  /// Number of consecutive answers without a valid pose that ends the estimator: about a second at
+  /// 31 Hz.
   static constexpr int kMostInARow = 30;
-  /// So many are noted one by one.
+  /// Maximum number of individual notes.
   static constexpr int kMostNotes = 20;
 
-  /// Makes an answer LOST that claims a pose which is none (VoEstimate::pose_fault, or found here),
-  /// and notes it; normalises the quaternion of any other. A scene depth that is no length is left
-  /// out.
-  /// Errors: kInternal with the last reason, at the kMostInARow-th such answer in a row.
+  /// Sets an answer with an invalid pose (VoEstimate::pose_fault, or found here) to LOST and adds a
+  /// note. Normalises the quaternion of a valid pose. Drops a scene depth that is not positive and
+  /// finite.
+  /// Errors: kInternal with the last reason after kMostInARow consecutive answers with invalid
+  /// poses.
   [[nodiscard]] Status take(VoEstimate& estimate);
-  /// Lines for the log since the last call.
+  /// Log lines since the last call.
   [[nodiscard]] std::vector<std::string> take_notes();
 
  private:

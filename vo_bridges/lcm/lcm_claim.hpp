@@ -1,4 +1,4 @@
-// The channels of an estimator, which no other one of this process may have at the same time.
+// Reserves an estimator's LCM channels within this process.
 #pragma once
 
 #include <memory>
@@ -8,11 +8,11 @@
 
 namespace overfly {
 
-/// Two estimators on the same channels would answer for each other. Gives the channels back when it
-/// ends. May be used from any thread.
+/// Two estimators on the same channels would receive each other's answers. The channels are
+/// released on destruction. Thread-safe.
 class LcmClaim {
  public:
-  /// @param network  lcm_network_of a URL
+  /// @param network  result of lcm_network_of for a URL
   /// Errors: kConflict naming prefix and network.
   [[nodiscard]] static Result<std::shared_ptr<LcmClaim>> take(const std::string& network,
                                                               const std::string& prefix);

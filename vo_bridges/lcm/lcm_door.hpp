@@ -1,4 +1,4 @@
-// The LCM door on a network that is open already: for tests, whose other end shares a memq node.
+// The LCM door on an open network. For tests, whose other end shares a memq node.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace overfly {
 
-/// As create_lcm_estimator, on a node that is not started yet (this starts it).
+/// As create_lcm_estimator, on a node that has not been started; starts it.
 [[nodiscard]] Result<std::unique_ptr<VoPort>> create_lcm_estimator_on(
     std::shared_ptr<LcmNode> node, const LcmEstimatorOptions& options);
 

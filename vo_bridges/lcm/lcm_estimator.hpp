@@ -1,4 +1,4 @@
-// An estimator that listens and answers on LCM channels (vo_bridges/lcm/types).
+// An estimator that is connected by LCM channels (vo_bridges/lcm/types).
 #pragma once
 
 #include <atomic>
@@ -12,32 +12,35 @@
 namespace overfly {
 
 struct LcmEstimatorOptions {
-  /// "udpm://239.255.76.67:7667?ttl=0", "memq://" (within one process: tests), or
-  /// "file:///PATH?mode=w" (records what is published, and answers nothing: not in lockstep).
-  /// Where udpm has no recv_buf_size, one of at least 2 MiB is asked for.
+  /// "udpm://239.255.76.67:7667?ttl=0", "memq://" (within one process, for tests), or
+  /// "file:///PATH?mode=w" (records the published messages and never answers; not in lockstep). For
+  /// udpm, recv_buf_size defaults to at least 2 MiB.
   std::string url = "udpm://239.255.76.67:7667?ttl=0";
-  /// Of IMAGE, CALIBRATION, TIME, POSE, STATUS, DEBUG: letters, digits, "_", "-", "/";
-  /// at most 40. No two estimators of a process have the same one on one network.
+  /// Prefix of the channels IMAGE, CALIBRATION, TIME, POSE, STATUS, DEBUG: letters, digits, "_",
+  /// "-", "/"; at most 40 characters. Each estimator of a process needs its own prefix on a
+  /// network.
   std::string channel_prefix = "OVERFLY_";
-  /// True: a lost image is sent again, and the first one waits for the estimator to start.
+  /// True: a lost image is sent again, and the first image waits until the estimator has started.
   bool lockstep = true;
-  double start_timeout_s = 30.0;  ///< for the estimator to be there and answer its first frame
-  /// For a frame's answer, in real time as in lockstep; then it counts as unanswered.
+  double start_timeout_s = 30.0;  ///< until the estimator answers its first frame
+  /// Time limit for a frame's answer, in real time and in lockstep; after it the frame counts as
+  /// unanswered.
   double answer_timeout_s = 5.0;
-  VoParameters parameters;  ///< told to the estimator with the calibration
-  /// When it turns true, every wait ends with kCancelled: within 50 ms, that for an answer after a
-  /// second. Null = nobody cancels.
+  VoParameters parameters;  ///< sent to the estimator with the calibration
+  /// Set to true to cancel: every wait ends with kCancelled within 50 ms, the wait for an answer
+  /// within a second. Null = not cancellable.
   const std::atomic<bool>* cancel = nullptr;
 };
 
-/// True where this build speaks LCM.
+/// True if this build supports LCM.
 [[nodiscard]] bool lcm_is_built_in();
 
-/// Errors: kUnsupported where LCM is not built in; kInvalidArgument naming the option, its value
-/// and limit; kIo where LCM cannot be opened (no multicast route, say); kConflict where another
-/// estimator of this process has the channels; kCancelled. Its `prepare` and `track` fail with
-/// kInternal when no estimator is there in time, and `track` when one has left five frames in a row
-/// without a word.
+/// Connects to an estimator over LCM.
+/// Errors: kUnsupported if LCM is not built in; kInvalidArgument naming the option, its value and
+/// limit; kIo if LCM cannot be opened (for example without a multicast route); kConflict if another
+/// estimator of this process uses the channels; kCancelled. `prepare` and `track` fail with
+/// kInternal if no estimator responds in time, and `track` also after five consecutive frames
+/// without any message.
 [[nodiscard]] Result<std::unique_ptr<VoPort>> create_lcm_estimator(
     const LcmEstimatorOptions& options);
 

@@ -1,4 +1,4 @@
-// What is known of the estimator at the other end of an LCM network besides its answers.
+// State of the estimator at the other end of an LCM network, apart from its answers.
 #pragma once
 
 #include <chrono>
@@ -16,22 +16,23 @@
 
 namespace overfly {
 
-/// All methods may be called from any thread.
+/// Thread-safe.
 class LcmFarEnd {
  public:
   void hear(const overfly_lcm::status_t& status);
-  /// Whether it has said that it follows a session; waits for that up to a time.
+  /// Waits up to `timeout` until the estimator reports that it follows a session. @return whether
+  /// it does
   [[nodiscard]] bool wait_until_ready(std::int64_t session, std::chrono::nanoseconds timeout);
 
-  /// A message that cannot be understood.
+  /// Counts and logs a message that cannot be decoded.
   void refuse(const std::string& channel, const std::string& why);
   [[nodiscard]] std::int64_t refused() const;
-  /// Adds a line of ours to its log.
+  /// Adds a line from this program to the estimator's log.
   void say(const std::string& line);
 
   [[nodiscard]] std::vector<std::string> take_log();
   [[nodiscard]] std::optional<ResourceUse> resource_use() const;
-  /// Its name and version as "estimator", and the parameters it told.
+  /// Name and version as "estimator", and the parameters that the estimator reported.
   [[nodiscard]] std::map<std::string, std::string> parameters() const;
 
  private:

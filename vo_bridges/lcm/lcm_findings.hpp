@@ -1,4 +1,4 @@
-// What this machine offers to LCM: for `overfly doctor`.
+// LCM support on this machine, for `overfly doctor`.
 #pragma once
 
 #include <string>
@@ -6,17 +6,17 @@
 namespace overfly {
 
 struct LcmFindings {
-  bool usable = false;  ///< built in, multicast comes back, and the receive buffer holds an image
+  bool usable = false;  ///< built in, multicast works, and the receive buffer holds an image
   std::string finding;
   std::string remedy;  ///< empty when usable
 };
 
-/// Sends one packet to LCM's group, to this machine alone.
+/// Tests multicast by sending one packet to LCM's group on this machine only.
 [[nodiscard]] LcmFindings lcm_findings();
 
-/// As lcm_findings, from what was found.
-/// @param multicast_fault       why multicast does not come back; empty where it does
-/// @param receive_buffer_bytes  largest that the kernel allows; 0 = not known
+/// As lcm_findings, from given measurements.
+/// @param multicast_fault       why multicast does not work; empty if it does
+/// @param receive_buffer_bytes  largest that the kernel allows; 0 = unknown
 [[nodiscard]] LcmFindings lcm_findings_from(const std::string& multicast_fault,
                                             long long receive_buffer_bytes);
 

@@ -1,4 +1,4 @@
-// Whether the lengths that a message announces fit into its bytes.
+// Checks that the lengths announced by a message fit into its bytes.
 #pragma once
 
 #include <cstdint>
@@ -9,9 +9,10 @@
 
 namespace overfly {
 
-/// lcm-gen's decoders make room for as many elements as a message announces before they look for
-/// them: a message of 200 bytes may ask for 80 GB. These walk over the bytes without taking memory.
-/// @param type  says which message it is; its value is not used
+/// The decoders of lcm-gen allocate as many elements as a message announces before they check that
+/// the elements exist: a message of 200 bytes may request 80 GB. These functions walk over the
+/// bytes without allocating memory.
+/// @param type  selects the message type; its value is not used
 [[nodiscard]] bool lengths_fit(std::span<const std::uint8_t> bytes,
                                const overfly_lcm::pose_t& type);
 [[nodiscard]] bool lengths_fit(std::span<const std::uint8_t> bytes,

@@ -1,4 +1,4 @@
-// The conversation with one estimator over LCM: sessions, images out, answers in.
+// Communication with one estimator over LCM: sessions, outgoing images, incoming answers.
 #pragma once
 
 #include <atomic>
@@ -22,31 +22,32 @@
 
 namespace overfly {
 
-/// What an answer says, as a counter, when the image it answers was lost on its way.
+/// Counter in an answer that reports that the image was lost in transport.
 inline constexpr const char* kImageLost = "images_lost";
 
 class LcmLink {
  public:
-  /// @param node    not started yet
-  /// @param prefix  of every channel
-  /// @param hears   whether anything can be heard (not from a log that is written)
+  /// @param node    not yet started
+  /// @param prefix  prefix of every channel
+  /// @param hears   whether messages can be received (not if a log is written)
   /// Errors: kIo.
   static Result<std::unique_ptr<LcmLink>> open(std::shared_ptr<LcmNode> node,
                                                const std::string& prefix,
                                                bool hears);
-  /// Says that the session has ended.
+  /// Announces the end of the session.
   ~LcmLink();
   LcmLink(const LcmLink&) = delete;
   LcmLink& operator=(const LcmLink&) = delete;
 
-  /// Begins a session, the first or one that makes the estimator forget the one before.
+  /// Begins a session. The estimator discards the previous one.
   void begin(overfly_lcm::calibration_t calibration);
   [[nodiscard]] std::int64_t session() const { return session_.load(); }
-  /// Publishes the calibration: whoever hears it for the first time starts anew.
+  /// Publishes the calibration. An estimator that receives it for the first time starts a new
+  /// session.
   [[nodiscard]] Status announce();
-  /// Publishes an image, and the time after it. Its answer is expected from now on.
+  /// Publishes an image, then the time. The image's answer is expected from now on.
   [[nodiscard]] Status send(const VoFrame& frame);
-  /// Publishes the time of the image again: the estimator repeats its answer, or says that the
+  /// Publishes the time of the image again: the estimator repeats its answer or reports that the
   /// image was lost.
   [[nodiscard]] Status ask_again();
 
@@ -54,7 +55,7 @@ class LcmLink {
   [[nodiscard]] StampedAnswers& answers() { return answers_; }
   [[nodiscard]] LcmFarEnd& far_end() { return far_end_; }
   [[nodiscard]] const LcmFarEnd& far_end() const { return far_end_; }
-  /// Answers of sessions that are over.
+  /// Number of answers that belong to previous sessions.
   [[nodiscard]] std::int64_t outdated() const { return outdated_.load(); }
 
  private:
@@ -65,14 +66,14 @@ class LcmLink {
   void hear_debug(std::span<const std::uint8_t> bytes);
   void hear_status(std::span<const std::uint8_t> bytes);
   void attach_debug(VoEstimate& estimate);
-  /// The names of counters, or of timings, in a session.
+  /// Names of the counters or timings of a session.
   struct Names {
     const char* what;
     std::set<std::string> known{};
     bool bad_told = false;
     bool limit_told = false;
   };
-  /// Leaves out figures whose names are none, and those of names beyond the limit.
+  /// Removes figures with invalid names, and those with more names than the limit.
   void limit_names(Names& names, std::map<std::string, double>& figures);
 
   std::shared_ptr<LcmNode> node_;
@@ -80,20 +81,20 @@ class LcmLink {
   LcmFarEnd far_end_;
   StampedAnswers answers_;
   overfly_lcm::calibration_t calibration_{};
-  overfly_lcm::sim_time_t time_{};  ///< published last
+  overfly_lcm::sim_time_t time_{};  ///< last published
   std::atomic<std::int64_t> session_ = 0;
-  std::atomic<std::int64_t> sequence_ = 0;  ///< of the image published last
+  std::atomic<std::int64_t> sequence_ = 0;  ///< of the last published image
   std::atomic<int> width_px_ = 0;
   std::atomic<int> height_px_ = 0;
   std::atomic<bool> debug_wanted_ = false;
   std::atomic<std::int64_t> outdated_ = 0;
-  /// Of the session answered last; touched by the node's thread alone.
+  /// Session of the last answer; used by the node's thread only.
   std::int64_t names_session_ = 0;
   Names counters_{"counter"};
   Names timings_{"timing"};
-  /// Session and stamp of the image answered last; touched by the node's thread alone.
+  /// Session and stamp of the last answered image; used by the node's thread only.
   std::pair<std::int64_t, std::int64_t> answered_{0, 0};
-  /// The debug message that came last, touched by the node's thread alone.
+  /// Stamp of the last debug message; used by the node's thread only.
   std::int64_t debug_t_ns_ = -1;
   DebugView debug_;
 };

@@ -1,5 +1,5 @@
-// LCM event logs of a camera's images, calibration, times and true poses: what an estimator on LCM
-// would have heard, and where the camera was.
+// Writes LCM event logs with a camera's images, calibration, times and true poses: the messages
+// that an estimator on LCM would have received, and the truth.
 #pragma once
 
 #include <cstdint>
@@ -14,15 +14,15 @@
 
 namespace overfly {
 
-/// One image for a log.
+/// An image for a log.
 struct LcmLogImage {
   std::int64_t frame = 0;
-  std::int64_t stamp_ns = 0;     ///< since the run's start
-  std::int64_t exposure_ns = 0;  ///< 0 = not known
+  std::int64_t stamp_ns = 0;     ///< since the start of the run
+  std::int64_t exposure_ns = 0;  ///< 0 = unknown
   const Image& image;            ///< grey
 };
 
-/// The true pose of a frame's camera.
+/// The true camera pose of a frame.
 struct LcmLogTruth {
   std::int64_t frame = 0;
   std::int64_t t_ns = 0;
@@ -30,7 +30,7 @@ struct LcmLogTruth {
   Pose T_world_camera;
 };
 
-/// Events carry the time epoch + stamp. Every camera has its own channel prefix.
+/// Events have the time epoch + stamp. Each camera has its own channel prefix.
 class LcmLogWriter {
  public:
   /// @param epoch_utc_ns  Unix time of t = 0
@@ -39,17 +39,17 @@ class LcmLogWriter {
                                                       std::int64_t epoch_utc_ns);
   virtual ~LcmLogWriter() = default;
 
-  /// PREFIX_CALIBRATION, with the time of the images after it. May be repeated for players that
-  /// begin within the log: it is one session.
+  /// Writes PREFIX_CALIBRATION with the time of the images that follow. May be repeated for players
+  /// that start within the log; the session stays the same.
   [[nodiscard]] virtual Status write_calibration(const std::string& prefix,
                                                  const std::string& camera,
                                                  const CameraModel& model,
                                                  std::int64_t stamp_ns) = 0;
-  /// PREFIX_IMAGE and PREFIX_TIME.
+  /// Writes PREFIX_IMAGE and PREFIX_TIME.
   [[nodiscard]] virtual Status write_image(const std::string& prefix, const LcmLogImage& image) = 0;
-  /// PREFIX_TRUTH.
+  /// Writes PREFIX_TRUTH.
   [[nodiscard]] virtual Status write_truth(const std::string& prefix, const LcmLogTruth& truth) = 0;
-  /// Whether all of it is on its way to the disk. Errors: kIo naming the file.
+  /// Flushes the log. Errors: kIo naming the file.
   [[nodiscard]] virtual Status finish() = 0;
 };
 

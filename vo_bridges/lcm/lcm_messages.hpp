@@ -1,4 +1,4 @@
-// Our values as LCM messages, and theirs as ours.
+// Converts between Overfly's types and LCM messages.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +20,8 @@
 
 namespace overfly {
 
-/// Grey or RGB; session, sequence and what is wanted stay 0.
-/// @param crc32  of the image, where it is known already
+/// Converts a grey or RGB image; session, sequence and request fields stay 0.
+/// @param crc32  of the image, if already known
 [[nodiscard]] overfly_lcm::image_t image_message(const Image& image,
                                                  std::int64_t frame,
                                                  std::int64_t t_ns,
@@ -34,33 +34,33 @@ namespace overfly {
                                                              const Distortion& distortion,
                                                              const VoParameters& parameters);
 
-/// Whether a name of a parameter, counter or timing is one: 1 to 128 printable characters of ASCII
-/// without spaces, as at the process door.
+/// Whether a name of a parameter, counter or timing is valid: 1 to 128 printable ASCII characters
+/// without spaces, as in the process protocol.
 [[nodiscard]] bool is_figure_name(const std::string& name);
 
-/// Without the debug image; the names of counters and timings are as they came. Errors: kUnreadable
-/// naming the field, its value and what it must be.
+/// Converts all but the debug image; the names of counters and timings are not checked. Errors:
+/// kUnreadable naming the field, its value and limit.
 [[nodiscard]] Result<VoEstimate> estimate_from(const overfly_lcm::pose_t& message);
 
-/// What a PREFIX_DEBUG message shows.
+/// Content of a PREFIX_DEBUG message.
 struct DebugView {
   std::optional<Image> image;
   std::vector<Eigen::Vector3f> map_points_vo;
 };
-/// Errors: kUnreadable, as of estimate_from.
+/// Errors: kUnreadable, as for estimate_from.
 [[nodiscard]] Result<DebugView> debug_view_from(const overfly_lcm::debug_t& message,
                                                 int largest_width_px,
                                                 int largest_height_px);
 
-/// Empty for bytes that are not such a message. Those that come from an estimator take no more
-/// memory than their bytes tell of.
+/// Decodes a message; empty if the bytes are not valid. Messages from an estimator cannot allocate
+/// more memory than their size implies.
 template <typename Message>
 [[nodiscard]] std::optional<Message> decode_message(std::span<const std::uint8_t> bytes) {
   Message message;
   if constexpr (requires { lengths_fit(bytes, message); }) {
     if (!lengths_fit(bytes, message)) return std::nullopt;
   }
-  // lcm-gen's code throws where a text has no end.
+  // The code of lcm-gen throws on a string without terminator.
   try {
     if (message.decode(bytes.data(), 0, static_cast<int>(bytes.size())) < 0) return std::nullopt;
   } catch (const std::exception&) {

@@ -1,17 +1,17 @@
-// Which LCM network a URL leads to.
+// Identifies the LCM network of a URL.
 #pragma once
 
 #include <string>
 
 namespace overfly {
 
-/// LCM's own network (lcm_create's documentation).
+/// LCM's default network (documentation of lcm_create).
 inline constexpr const char* kLcmAddress = "239.255.76.67";
 inline constexpr int kLcmPort = 7667;
 
-/// "udpm://239.255.76.67:7667" of "udpm://?ttl=0": URLs of one network meet, whatever their
-/// options.
-/// @param url  as parse_lcm_url takes it
+/// Reduces a URL to its network: "udpm://?ttl=0" gives "udpm://239.255.76.67:7667". URLs with the
+/// same result share a network, whatever their options.
+/// @param url  a URL accepted by parse_lcm_url
 [[nodiscard]] inline std::string lcm_network_of(const std::string& url) {
   const std::string scheme = "udpm://";
   std::string network = url.substr(0, url.find('?'));

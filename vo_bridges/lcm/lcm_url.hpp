@@ -1,4 +1,4 @@
-// URLs of LCM networks: which ones the door takes, and the receive buffer that images need.
+// Parses URLs of LCM networks and sets the receive buffer size for images.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace overfly {
 
-/// What to ask the kernel for at least: an image of 1280 x 960 is 1.2 MB in 830 packets, and of
-/// those the customary 208 KiB lose most.
+/// Minimum receive buffer to request. An image of 1280 x 960 is 1.2 MB in 830 packets, most of
+/// which are lost with the usual 208 KiB.
 inline constexpr std::int64_t kSmallestReceiveBufferBytes = std::int64_t{2} << 20U;
 
 /// "PROVIDER://NETWORK?NAME=VALUE&..."
@@ -20,18 +20,18 @@ struct LcmUrl {
   std::map<std::string, std::string> options;
 
   [[nodiscard]] std::string text() const;
-  /// Of udpm: the multicast address, LCM's own where the URL names none.
+  /// For udpm: the multicast address, by default LCM's.
   [[nodiscard]] std::string address() const;
   [[nodiscard]] int port() const;
 };
 
-/// Errors: kInvalidArgument naming the part of the URL, its value and what it must be.
+/// Errors: kInvalidArgument naming the part of the URL, its value and limit.
 [[nodiscard]] Result<LcmUrl> parse_lcm_url(const std::string& text);
 
-/// The URL with recv_buf_size where it is missing (udpm alone).
+/// Adds recv_buf_size to the URL if it is missing (udpm only).
 [[nodiscard]] LcmUrl with_receive_buffer(LcmUrl url);
 
-/// What the kernel lets a socket's receive buffer be (net.core.rmem_max); 0 = not known.
+/// Largest receive buffer that the kernel allows (net.core.rmem_max); 0 = unknown.
 [[nodiscard]] std::int64_t largest_receive_buffer_bytes();
 
 }  // namespace overfly

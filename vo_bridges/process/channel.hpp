@@ -1,4 +1,4 @@
-// One connection that speaks in messages.
+// A connection that exchanges messages.
 #pragma once
 
 #include <chrono>
@@ -17,24 +17,26 @@ namespace overfly::process {
 
 using Clock = std::chrono::steady_clock;
 
-/// Sends and receives in one loop, so that two programs with full buffers never wait for each
-/// other; what is not sent at a deadline goes on with the next call. One thread at a time.
+/// Sends and receives in one loop, so that two programs with full buffers never block each other.
+/// Data that is not sent at a deadline is sent by the next call. Not thread-safe.
 class Channel {
  public:
   explicit Channel(FileDescriptor socket) : socket_(std::move(socket)) {}
 
-  /// Queues bytes, the image's after them, and a descriptor to go along with the first byte.
+  /// Queues bytes, the pixels of an image after them, and a descriptor to be sent with the first
+  /// byte.
   void enqueue(std::string bytes,
                std::shared_ptr<const Image> pixels = nullptr,
                FileDescriptor attached = {});
-  /// Sends what is queued; returns the next message, or nothing at the deadline.
-  /// Errors: kInternal when the other side has closed, sent what is no message, or floods.
+  /// Sends queued data and returns the next message, or nothing at the deadline.
+  /// Errors: kInternal if the other side has closed the connection, sent an invalid message, or
+  /// sends too much.
   [[nodiscard]] Result<std::optional<Message>> next(Clock::time_point deadline);
-  /// From here on the limits of one frame count anew, for a frame of so many pixels.
+  /// Restarts the per-frame limits for a frame of `pixels` pixels.
   void begin_frame(std::size_t pixels);
-  /// The limits count anew; what the frame under way may still bring stays as it was.
+  /// Restarts the counts; the limits of the current frame stay.
   void begin_counts();
-  /// Whether the other side has closed.
+  /// Whether the other side has closed the connection.
   [[nodiscard]] bool closed() const { return closed_; }
 
  private:
@@ -46,7 +48,7 @@ class Channel {
 
   [[nodiscard]] Status send_some();
   [[nodiscard]] Status receive_some();
-  /// The first whole message of what has come.
+  /// The first complete message in the received bytes.
   [[nodiscard]] Result<std::optional<Message>> take_message();
   [[nodiscard]] Result<MessageType> check_header(std::string_view header, std::size_t* length);
 
@@ -55,7 +57,7 @@ class Channel {
   std::deque<Chunk> out_;
   std::size_t sent_of_first_ = 0;
   std::string in_;
-  std::size_t taken_ = 0;  // of in_
+  std::size_t taken_ = 0;  // bytes consumed from in_
   std::size_t frame_pixels_ = 0;
   std::size_t frame_messages_ = 0;
   std::size_t frame_bytes_ = 0;

@@ -1,4 +1,5 @@
-// What an estimator said: in a file, in lines for the run's log, and the last ones for errors.
+// Collects an estimator's output: in a file, as lines for the run's log, and the last lines for
+// errors.
 #pragma once
 
 #include <chrono>
@@ -16,29 +17,29 @@
 
 namespace overfly::process {
 
-/// Bounded in everything, whatever an estimator pours into it. All methods from any thread.
+/// All storage is bounded, however much an estimator writes. Thread-safe.
 class ChildOutput {
  public:
   static constexpr std::size_t kFileLimitBytes = 64'000'000;
   static constexpr std::size_t kWaitingLineLimit = 2000;
 
-  /// Errors: kIo if the file cannot be opened. An empty path = no file.
+  /// Errors: kIo if the file cannot be opened. An empty path means no file.
   [[nodiscard]] Status open_file(const std::filesystem::path& file);
 
-  /// Bytes of its stdout and stderr.
+  /// Adds bytes from stdout or stderr.
   void add(std::string_view bytes);
-  /// A line that came by the protocol.
+  /// Adds a line received by the protocol.
   void say(const std::string& line);
-  /// A line of ours about it: no word of its own.
+  /// Adds a line from this program about the estimator; not part of the estimator's last output.
   void note(const std::string& line);
-  /// No more bytes will come.
+  /// Marks the end of the output.
   void close();
-  /// Waits until no more bytes will come, or the time is over.
+  /// Waits until the output ends, at most `patience`.
   void wait_closed(std::chrono::milliseconds patience);
 
-  /// The lines since the last call; where more came than are kept, the first says how many.
+  /// The lines since the last call. If lines were dropped, the first line gives their number.
   [[nodiscard]] std::vector<std::string> take_lines();
-  /// "; it last said: ..." with its last lines, or that it said nothing.
+  /// "; it last said: ..." with the last lines, or a note that there was no output.
   [[nodiscard]] std::string last_words() const;
 
  private:
@@ -52,7 +53,7 @@ class ChildOutput {
   bool closed_ = false;
   std::ofstream file_;
   std::size_t file_bytes_ = 0;
-  std::string partial_;  // a line without its end
+  std::string partial_;  // a line without its line end
   std::deque<std::string> waiting_;
   std::size_t dropped_ = 0;
   std::deque<std::string> last_;

@@ -1,4 +1,4 @@
-// A program of somebody else's, started and ended with us.
+// A child process that is started and stopped with the estimator.
 #pragma once
 
 #include <atomic>
@@ -21,44 +21,45 @@
 namespace overfly::process {
 
 struct ChildCommand {
-  std::vector<std::string> arguments;    ///< the program first
-  std::vector<std::string> environment;  ///< "NAME=VALUE", besides ours
-  std::filesystem::path working_folder;  ///< empty = ours
+  std::vector<std::string> arguments;    ///< starting with the program
+  std::vector<std::string> environment;  ///< "NAME=VALUE", in addition to the inherited one
+  std::filesystem::path working_folder;  ///< empty = that of this process
   std::vector<int> cpus;                 ///< empty = all
-  double memory_limit_mb = 0.0;          ///< of its address space; 0 = none
+  double memory_limit_mb = 0.0;          ///< of its address space; 0 = unlimited
 };
 
-/// A running child in a process group of its own, with a folder of its own for temporary files
-/// (TMPDIR). It dies with this process, however this ends, and never stays as a zombie; `stop` ends
-/// all that it has started as well. All methods from any thread, but `stop` from one.
+/// A running child in its own process group, with its own folder for temporary files (TMPDIR). It
+/// is killed when this process ends in any way, and never remains as a zombie. `stop` also ends all
+/// processes that it has started. Thread-safe, except that `stop` must be called from one thread.
 class ChildProcess {
  public:
-  /// `output` gets what the child writes. Errors: kNotFound, kInvalidArgument, kIo, naming the
+  /// `output` receives what the child writes. Errors: kNotFound, kInvalidArgument, kIo, naming the
   /// option.
   static Result<std::unique_ptr<ChildProcess>> start(const ChildCommand& command,
                                                      std::shared_ptr<ChildOutput> output);
-  /// Stops it, if that is still to be done.
+  /// Calls stop() if necessary.
   ~ChildProcess();
 
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
   [[nodiscard]] bool running() const;
-  /// Waits for its end.
+  /// Waits until the child ends. @return whether it has ended
   bool wait(std::chrono::milliseconds patience) const;
-  /// Kills it, its process group and all its descendants, also those with a session of their own;
-  /// takes its exit status and the rest of its output; removes its temporary folder.
+  /// Kills the child, its process group and all its descendants, including those with their own
+  /// session. Collects its exit status and remaining output, and removes its temporary folder.
   void stop();
   /// "exited with code 3", "was killed by signal 9 (Killed)"; empty while it runs.
   [[nodiscard]] std::string how_it_ended() const;
-  /// So far, or at its end.
+  /// Resource use so far, or in total after the end.
   [[nodiscard]] ResourceUse resource_use() const;
 
  private:
   explicit ChildProcess(PrivateFolder temporary) : temporary_(std::move(temporary)) {}
   void sample_use() const;
-  /// Reads its output until `stop`. The thread that forked it must live as long as it does: the
-  /// kernel sends the signal of PR_SET_PDEATHSIG when that thread ends, not only the process.
+  /// Reads the child's output until `stop`. Runs on the thread that forks the child and must not
+  /// end before it: the kernel sends the PR_SET_PDEATHSIG signal when that thread ends, not when
+  /// the process ends.
   void pump();
   /// False at the end of the output.
   bool read_output();

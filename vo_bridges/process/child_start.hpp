@@ -1,4 +1,4 @@
-// fork and exec, and all that must be said between the two.
+// Starts a child process with fork and exec.
 #pragma once
 
 #include <filesystem>
@@ -8,9 +8,10 @@
 
 namespace overfly::process {
 
-/// Starts `program` as a child of the calling thread, its stdout and stderr into `output`; it is
-/// killed when that thread ends. Returns its process id, which is its process group's as well.
-/// Errors: kInvalidArgument, kIo, naming what could not be done.
+/// Starts `program` as a child of the calling thread, with stdout and stderr redirected to
+/// `output`. The child is killed when that thread ends. Returns its process id, which is also its
+/// process group id.
+/// Errors: kInvalidArgument, kIo, naming the step that failed.
 [[nodiscard]] Result<int> start_child(const std::filesystem::path& program,
                                       const ChildCommand& command,
                                       int output);

@@ -1,4 +1,4 @@
-// Counters and timings of an estimator, kept within bounds.
+// Limits the counters and timings of an estimator.
 #pragma once
 
 #include <cstddef>
@@ -9,15 +9,15 @@
 
 namespace overfly::process {
 
-/// Says which figures of a session are taken: finite ones, of a bounded number of names. What it
-/// leaves out ends no flight; each kind of it is noted once.
+/// Decides which figures of a session are accepted: finite values, and a bounded number of names.
+/// Other figures are dropped without ending the flight; each kind is noted once.
 class FigureIntake {
  public:
-  static constexpr std::size_t kNameLimit = 256;  ///< of counters, and as many of timings
+  static constexpr std::size_t kNameLimit = 256;  ///< for counters, and the same for timings
 
   [[nodiscard]] bool takes_counter(std::string_view name, double value);
   [[nodiscard]] bool takes_timing(std::string_view name, double value);
-  /// Lines for the log since the last call.
+  /// Log lines since the last call.
   [[nodiscard]] std::vector<std::string> take_notes();
 
  private:

@@ -1,4 +1,4 @@
-// Memory shared with a local estimator: images reach it without passing through a socket.
+// Shared memory that passes images to a local estimator without a socket.
 #pragma once
 
 #include <cstddef>
@@ -10,12 +10,13 @@
 
 namespace overfly::process {
 
-/// A memory file of slots used in turn. Only this process can write to it, and nobody can cut it.
+/// A memory file with slots used in turn. Only this process can write to it, and no process can
+/// truncate it.
 class FrameMemory {
  public:
   static constexpr std::size_t kSlots = 2;
 
-  /// Empty where this machine cannot make such memory: frames then go through the socket.
+  /// Empty if this machine does not support it; frames are then sent through the socket.
   static std::optional<FrameMemory> create(std::size_t slot_bytes);
 
   FrameMemory(FrameMemory&& other) noexcept;
@@ -23,9 +24,9 @@ class FrameMemory {
   ~FrameMemory();
 
   [[nodiscard]] std::size_t slot_bytes() const { return slot_bytes_; }
-  /// Another descriptor of the file, to be given away.
+  /// A duplicate descriptor of the file, to be passed on.
   [[nodiscard]] FileDescriptor descriptor() const;
-  /// Copies the image into the slot used longest ago and returns its number.
+  /// Copies the image into the least recently used slot and returns the slot's number.
   /// @pre the image has at most slot_bytes()
   [[nodiscard]] std::uint32_t store(const Image& image);
 

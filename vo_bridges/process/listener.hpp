@@ -1,4 +1,4 @@
-// Where an estimator connects to: "unix:PATH" or "tcp:HOST:PORT".
+// Listens for estimators on "unix:PATH" or "tcp:HOST:PORT".
 #pragma once
 
 #include <chrono>
@@ -12,31 +12,30 @@
 
 namespace overfly::process {
 
-/// One who has connected.
+/// A connected peer.
 struct Peer {
   FileDescriptor socket;
-  bool local = false;  ///< by a Unix socket: descriptors can be passed
-  int pid = 0;         ///< 0 = not known
+  bool local = false;  ///< connected by a Unix socket: descriptors can be passed
+  int pid = 0;         ///< 0 = unknown
 };
 
-/// A listening socket; what it made in the file system is gone with it.
+/// A listening socket. Removes what it created in the file system on destruction.
 class Listener {
  public:
-  /// Errors: kInvalidArgument for an address of neither form, that is not this machine's, or where
-  /// something other than a socket stands;
-  /// kConflict for one where somebody listens already; kIo.
+  /// Errors: kInvalidArgument for an address of another form, an address of another machine, or a
+  /// path to something other than a socket; kConflict if the address is in use; kIo.
   static Result<Listener> open(const std::string& address);
-  /// A Unix socket in a new folder that only this user can enter. Errors: kIo.
+  /// Opens a Unix socket in a new folder that only this user can access. Errors: kIo.
   static Result<Listener> open_private();
 
   Listener(Listener&& other) noexcept;
   Listener& operator=(Listener&&) = delete;
   ~Listener();
 
-  /// As OVERFLY_VO_ADDRESS says it; with the true port where 0 was asked for.
+  /// The address in the form of OVERFLY_VO_ADDRESS, with the actual port if 0 was requested.
   [[nodiscard]] const std::string& address() const { return address_; }
-  /// The next to connect within `patience`; empty if nobody did. Somebody of another user, by a
-  /// Unix socket, is turned away. Errors: kIo.
+  /// The next connection within `patience`; empty if there was none. A connection of another user
+  /// by a Unix socket is rejected. Errors: kIo.
   [[nodiscard]] Result<std::optional<Peer>> accept(std::chrono::milliseconds patience);
 
  private:
@@ -46,7 +45,7 @@ class Listener {
 
   FileDescriptor socket_;
   std::string address_;
-  std::optional<PrivateFolder> folder_;  // made for the socket, removed after it
+  std::optional<PrivateFolder> folder_;  // created for the socket, removed after it
   std::filesystem::path path_;           // of a Unix socket
 };
 

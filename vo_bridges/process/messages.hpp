@@ -1,4 +1,4 @@
-// What the messages of the process protocol say, in the room's own types (docs/VO_PROTOCOL.md).
+// Encodes and decodes the messages of the process protocol (docs/VO_PROTOCOL.md).
 #pragma once
 
 #include <cstddef>
@@ -16,20 +16,20 @@
 
 namespace overfly::process {
 
-/// What an estimator said of itself.
+/// What an estimator reports about itself.
 struct EstimatorHello {
   std::string name;
   std::string version;
   bool takes_shared_memory = false;
 };
 
-/// The memory that frames go through; no slots = through the socket.
+/// Shared memory for frames; without slots frames are sent through the socket.
 struct FrameSlots {
   std::size_t count = 0;
   std::size_t bytes_each = 0;
 };
 
-/// How one frame goes out.
+/// How a frame is sent.
 struct FrameSending {
   std::uint32_t crc32 = 0;
   bool debug_wanted = false;
@@ -41,23 +41,23 @@ struct FrameSending {
 [[nodiscard]] std::string calibration_message(const VoFrame& frame,
                                               double rate_hz,
                                               const FrameSlots& slots);
-/// Length of the payload of a FRAME.
+/// Length of the payload of a FRAME message.
 [[nodiscard]] std::size_t frame_payload_bytes(const VoFrame& frame, bool in_shared_memory);
-/// All but the pixels, which follow where they are not in shared memory.
+/// A FRAME message without the pixels. They follow unless they are in shared memory.
 [[nodiscard]] std::string frame_message(const VoFrame& frame, const FrameSending& sending);
 
-/// Errors of all that parse: kInternal saying what is wrong with which field, and its value.
+/// Errors of all decoding functions: kInternal naming the field, its value and the problem.
 [[nodiscard]] Result<EstimatorHello> hello_from(std::string_view payload);
-/// The answer to `frame`: its pose as it came, and of its figures those that `figures` takes.
+/// The answer to `frame`. The pose is not checked; `figures` selects the counters and timings.
 [[nodiscard]] Result<VoEstimate> answer_from(std::string_view payload,
                                              const VoFrame& frame,
                                              FigureIntake* figures);
-/// RGB, whatever it came as.
+/// RGB, converted if necessary.
 [[nodiscard]] Result<Image> debug_image_from(std::string_view payload, const VoFrame& frame);
 [[nodiscard]] Result<std::vector<Eigen::Vector3f>> map_points_from(std::string_view payload,
                                                                    const VoFrame& frame);
 [[nodiscard]] Result<std::map<std::string, std::string>> parameters_from(std::string_view payload);
-/// One line, warnings and errors marked as such.
+/// One line, with a prefix for warnings and errors.
 [[nodiscard]] Result<std::string> log_line_from(std::string_view payload);
 
 }  // namespace overfly::process

@@ -1,4 +1,4 @@
-// Whether a process door can be opened as asked.
+// Checks the options of the process door.
 #pragma once
 
 #include "core/result.hpp"

@@ -1,4 +1,4 @@
-// A folder for temporary files that nobody else uses.
+// A private folder for temporary files.
 #pragma once
 
 #include <filesystem>
@@ -7,7 +7,8 @@
 
 namespace overfly::process {
 
-/// Of this user alone, in the system's folder for temporary files; removed with all that is in it.
+/// Accessible by this user only, in the system's folder for temporary files; removed with its
+/// content.
 class PrivateFolder {
  public:
   /// Errors: kIo.

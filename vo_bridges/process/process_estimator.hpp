@@ -1,4 +1,4 @@
-// An estimator in a process of its own, spoken to over a socket (docs/VO_PROTOCOL.md).
+// An estimator in its own process, connected by a socket (docs/VO_PROTOCOL.md).
 #pragma once
 
 #include <atomic>
@@ -14,32 +14,33 @@
 namespace overfly {
 
 struct ProcessEstimatorOptions {
-  /// Program and arguments of the child to start; empty = somebody else starts the estimator, and
-  /// it connects to `listen`.
+  /// Program and arguments of the child to start; empty = the estimator is started by other means
+  /// and connects to `listen`.
   std::vector<std::string> command;
-  /// "unix:PATH" or "tcp:HOST:PORT"; empty = a Unix socket of its own for a child.
+  /// "unix:PATH" or "tcp:HOST:PORT"; empty = a private Unix socket for a child.
   std::string listen;
-  std::filesystem::path working_folder;  ///< of the child; empty = ours
-  VoParameters parameters;               ///< told to the estimator in our hello
-  /// True: every frame is answered before the next one is sent. False: the estimator may be told to
-  /// hurry; it still answers each frame it gets.
+  std::filesystem::path working_folder;  ///< of the child; empty = that of this process
+  VoParameters parameters;               ///< sent to the estimator in the hello
+  /// True: every frame is answered before the next one is sent. False: the estimator may be asked
+  /// to hurry; it still answers every frame it receives.
   bool lockstep = true;
-  double rate_hz = 0.0;           ///< of the camera, told with its calibration; 0 = not known
-  double start_timeout_s = 30.0;  ///< until it is ready, and again once it is calibrated; (0, 3600]
+  double rate_hz = 0.0;            ///< of the camera, sent with its calibration; 0 = unknown
+  double start_timeout_s = 30.0;   ///< until it is ready, and again after calibration; (0, 3600]
   double answer_timeout_s = 20.0;  ///< for one frame, in (0, 3600]
-  std::vector<int> cpus;           ///< the child may run on; empty = all
-  double memory_limit_mb = 0.0;    ///< of the child's address space [1e6 bytes]; 0 = none
-  /// Where the child's stdout and stderr go, in full (up to 64 MB); empty = only to take_log().
+  std::vector<int> cpus;           ///< CPUs for the child; empty = all
+  double memory_limit_mb = 0.0;    ///< of the child's address space [1e6 bytes]; 0 = unlimited
+  /// File for the child's complete stdout and stderr (up to 64 MB); empty = only take_log().
   std::filesystem::path output_file;
-  /// When it turns true, every wait ends with kCancelled: within 50 ms, that for an answer after a
-  /// second. A child has its time to end by itself after STOP all the same. Null = nobody cancels.
+  /// Set to true to cancel: every wait ends with kCancelled within 50 ms, the wait for an answer
+  /// within a second. A child still gets its time to end by itself after STOP. Null = not
+  /// cancellable.
   const std::atomic<bool>* cancel = nullptr;
 };
 
-/// Starts the child (or waits for the one that connects) and shakes hands.
-/// Errors: kInvalidArgument naming the option; kNotFound for a program that is not there; kInternal
-/// when it does not say hello in time, speaks another version, or dies, with its last lines;
-/// kCancelled.
+/// Starts the child (or waits for a connection) and performs the handshake.
+/// Errors: kInvalidArgument naming the option; kNotFound if the program does not exist; kInternal
+/// with the last lines of output if the estimator sends no hello in time, uses another protocol
+/// version, or dies; kCancelled.
 [[nodiscard]] Result<std::unique_ptr<VoPort>> create_process_estimator(
     const ProcessEstimatorOptions& options);
 

@@ -1,4 +1,4 @@
-// All processes that come of one child, however they have cut themselves loose from it.
+// Finds and ends all descendants of a child process, even detached ones.
 #pragma once
 
 #include <chrono>
@@ -8,23 +8,23 @@
 
 namespace overfly::process {
 
-/// Processes whose parent is `pid`, by any of its threads.
+/// Processes whose parent is `pid`, started by any of its threads.
 [[nodiscard]] std::vector<int> children_of(int pid);
 
-/// Finds the descendants of a child in spite of setsid(2) and double forks: this process is made
-/// the subreaper of its descendants (prctl(2)), so that those who lose their parent become its own
-/// children, and each inherits an environment variable that tells whose it is. One that loses its
-/// parent after it threw its environment away is not found.
+/// Finds the descendants of a child despite setsid(2) and double forks. This process becomes the
+/// subreaper of its descendants (prctl(2)), so that orphans become its own children. Each inherits
+/// an environment variable that identifies its child. An orphan that has cleared its environment is
+/// not found.
 class ProcessFamily {
  public:
   ProcessFamily();
 
-  /// "NAME=VALUE" for the environment of the child.
+  /// "NAME=VALUE" for the child's environment.
   [[nodiscard]] const std::string& mark() const { return mark_; }
-  /// Kills the descendants of the child that are alive now. @param child  not waited for yet
+  /// Kills the descendants that are alive now. @param child  not yet waited for
   void kill_members(int child);
-  /// Kills, until no descendant is left or the time is over, and takes the exit status of those
-  /// that have become ours. @param child  ended, not waited for yet
+  /// Kills until no descendant is left or `patience` has passed, and collects the exit status of
+  /// those that became children of this process. @param child  ended, not yet waited for
   void end(int child, std::chrono::milliseconds patience);
 
  private:

@@ -1,4 +1,4 @@
-// What a process and its children have used, as /proc tells it.
+// Resource use of a process and its children, from /proc.
 #pragma once
 
 #include <optional>
@@ -7,10 +7,10 @@
 
 namespace overfly::process {
 
-/// CPU time (all threads; children that have ended count once they were waited for) and the sum of
-/// the peaks of resident memory [1e6 bytes] of a process and its living descendants. The peak is
-/// that of its program, not of the fork that it began as, which wait4(2) would tell.
-/// Empty when there is no such process, or it has ended.
+/// CPU time (all threads; ended children count after they were waited for) and the sum of the peaks
+/// of resident memory [1e6 bytes] of a process and its living descendants. The peak is that of its
+/// program, not of the initial fork that wait4(2) would report.
+/// Empty if there is no such process or it has ended.
 [[nodiscard]] std::optional<ResourceUse> usage_of(int pid);
 
 }  // namespace overfly::process

@@ -1,4 +1,4 @@
-// Where a command's program is.
+// Finds a command's program.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +8,8 @@
 
 namespace overfly::process {
 
-/// The absolute path of a program: as the shell finds it, in $PATH where it has no slash.
-/// Errors: kNotFound for one that is not there; kInvalidArgument for one that cannot be executed.
+/// The absolute path of a program, found as by the shell: in $PATH if the name has no slash.
+/// Errors: kNotFound if it does not exist; kInvalidArgument if it is not executable.
 [[nodiscard]] Result<std::filesystem::path> find_program(const std::string& program);
 
 }  // namespace overfly::process

@@ -1,4 +1,4 @@
-// The conversation with one estimator, from its start to its end.
+// Communication with one estimator, from start to end.
 #pragma once
 
 #include <cstdint>
@@ -20,31 +20,32 @@
 
 namespace overfly::process {
 
-/// Rounded to a tenth: "0.3 s".
+/// Rounded to one decimal: "0.3 s".
 [[nodiscard]] std::string seconds_text(double seconds);
 
-/// One thread at a time, but for the three methods that say otherwise. The first error ends the
-/// session: the child is killed, and every later call fails with the same error. A frame or camera
-/// that cannot be sent (kInvalidArgument) ends nothing.
+/// Not thread-safe, except for the three methods that say so. The first error ends the session: the
+/// child is killed, and every later call fails with the same error. A frame or camera that cannot
+/// be sent (kInvalidArgument) does not end it.
 class Session {
  public:
-  /// Starts the child or waits for the estimator, says hello, and waits until it is ready.
+  /// Starts the child or waits for the estimator, performs the handshake, and waits until it is
+  /// ready.
   /// Errors: as create_process_estimator.
   static Result<std::unique_ptr<Session>> open(const ProcessEstimatorOptions& options);
-  /// Says stop, waits a little, then kills.
+  /// Sends STOP, waits for a short time, then kills the child.
   ~Session();
 
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// Tells the camera and waits until the estimator is ready for its frames; needs no image.
+  /// Sends the camera and waits until the estimator is ready for frames; needs no image.
   [[nodiscard]] Status calibrate(const VoFrame& frame);
-  /// Sends the frame and waits for its answer; empty when it does not come in time. Such a frame is
-  /// waited for before the next one is sent.
+  /// Sends the frame and waits for its answer; empty on timeout. The next call waits for the
+  /// pending answer before it sends its frame.
   [[nodiscard]] Result<std::optional<VoEstimate>> track(const VoFrame& frame, bool debug_wanted);
   [[nodiscard]] Status reset();
 
-  /// From any thread.
+  /// Thread-safe.
   [[nodiscard]] std::map<std::string, std::string> parameters() const;
   [[nodiscard]] std::vector<std::string> take_log() { return output_->take_lines(); }
   [[nodiscard]] std::optional<ResourceUse> resource_use() const;
@@ -53,21 +54,20 @@ class Session {
   explicit Session(const ProcessEstimatorOptions& options) : options_(options) {}
   [[nodiscard]] Status connect(Listener listener, Clock::time_point deadline);
   [[nodiscard]] Status greet(Clock::time_point deadline);
-  /// As Channel::next; kCancelled `patience` after the cancel.
+  /// As Channel::next; returns kCancelled `patience` after a cancellation.
   [[nodiscard]] Result<std::optional<Message>> next(Clock::time_point deadline,
                                                     std::chrono::milliseconds patience = {});
-  /// Waits until READY says that it is done with `done`; what it still says of frames is passed
-  /// over.
+  /// Waits until READY confirms `done`; late messages about frames are ignored.
   [[nodiscard]] Status wait_ready(MessageType done, Clock::time_point deadline);
-  /// Waits for the answer to the frame under way; empty at the deadline.
+  /// Waits for the answer to the current frame; empty at the deadline.
   [[nodiscard]] Result<std::optional<VoEstimate>> wait_answer(Clock::time_point deadline);
   void send(const VoFrame& frame, bool debug_wanted);
-  /// Whether `message` was one that may come at any time.
+  /// Handles a message that may arrive at any time. @return whether it was one
   [[nodiscard]] Result<bool> take_notice(const Message& message);
   [[nodiscard]] Status take_parameters(const Message& message);
   [[nodiscard]] Status take_debug(const Message& message, VoEstimate* extra) const;
   [[nodiscard]] std::string described() const;
-  /// Ends the session for this reason: says how the child ended and what it last said.
+  /// Ends the session for this reason; the error includes how the child ended and its last output.
   Error end(const Error& why);
 
   ProcessEstimatorOptions options_;
@@ -80,8 +80,8 @@ class Session {
   bool parameters_overflow_noted_ = false;
   EstimatorHello hello_;
   std::optional<FrameMemory> memory_;
-  std::optional<VoFrame> under_way_;  // sent and not answered; without its image
-  VoEstimate extra_;                  // debug image and map points of it
+  std::optional<VoFrame> under_way_;  // sent but not answered; without its image
+  VoEstimate extra_;                  // its debug image and map points
   FigureIntake figures_;
   PoseIntake poses_;
   Clock::time_point sent_at_;

@@ -1,4 +1,4 @@
-// The process protocol's numbers, headers and texts (docs/VO_PROTOCOL.md).
+// Constants, headers and text of the process protocol (docs/VO_PROTOCOL.md).
 #pragma once
 
 #include <cstddef>
@@ -17,9 +17,9 @@ inline constexpr std::size_t kHeaderBytes = 12;
 inline constexpr std::size_t kTextLimitBytes = 65536;
 inline constexpr std::size_t kLogLineLimitBytes = 4096;
 inline constexpr std::size_t kMapPointLimit = 1'000'000;
-/// Pixels of a FRAME through the socket: 8192 x 8192.
+/// Maximum number of pixels of a FRAME through the socket: 8192 x 8192.
 inline constexpr std::size_t kFramePixelLimit = std::size_t{64} << 20U;
-/// Of a FRAME: those pixels, and 1 MiB for what precedes them.
+/// Maximum size of a FRAME: those pixels, and 1 MiB for the fields before them.
 inline constexpr std::size_t kFrameLimitBytes = std::size_t{65} << 20U;
 
 enum class MessageType : std::uint16_t {
@@ -36,10 +36,10 @@ enum class MessageType : std::uint16_t {
   kStop = 11,
 };
 
-/// "HELLO", ...; "message 99" for a number that is none.
+/// "HELLO", ...; "message 99" for an undefined number.
 [[nodiscard]] std::string name_of(MessageType type);
-/// How long the payload of a message may be; `frame_pixels` of the frame under way.
-/// Empty for a message that an estimator must not send.
+/// Maximum payload of a message; `frame_pixels` of the current frame. Empty for a message that an
+/// estimator must not send.
 [[nodiscard]] std::optional<std::size_t> payload_limit_bytes(MessageType type,
                                                              std::size_t frame_pixels);
 
@@ -63,7 +63,7 @@ class ByteWriter {
   std::string bytes_;
 };
 
-/// Takes little-endian numbers off; beyond the end they are 0 and `complete` is false.
+/// Reads little-endian numbers; after the end it returns 0 and `complete` is false.
 class ByteReader {
  public:
   explicit ByteReader(std::string_view bytes) : bytes_(bytes) {}
@@ -81,19 +81,19 @@ class ByteReader {
   bool complete_ = true;
 };
 
-/// A header, to be followed by `payload_bytes` of payload.
+/// A header for `payload_bytes` of payload.
 [[nodiscard]] std::string header_of(MessageType type, std::size_t payload_bytes);
 /// Header and payload.
 [[nodiscard]] std::string message_of(MessageType type, std::string_view payload = {});
 
-/// Cuts "key value" lines: the key ends at the first space.
+/// Splits "key value" lines: the key ends at the first space.
 [[nodiscard]] std::vector<std::pair<std::string_view, std::string_view>> lines_of(
     std::string_view text);
 
-/// The text with every byte that is neither printable nor part of sound UTF-8 made '?', cut to
-/// `limit` bytes: what may stand in a log, an error or a JSON file.
+/// Replaces every byte that is neither printable nor part of valid UTF-8 by '?' and cuts the text
+/// to `limit` bytes. For logs, errors and JSON files.
 [[nodiscard]] std::string printable(std::string_view text, std::size_t limit = kLogLineLimitBytes);
-/// The first bytes in hexadecimal and as text: what an error quotes of garbage.
+/// The first bytes in hexadecimal and as text, to quote invalid data in errors.
 [[nodiscard]] std::string shown(std::string_view bytes);
 
 }  // namespace overfly::process

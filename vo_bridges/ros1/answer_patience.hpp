@@ -1,5 +1,4 @@
-// How long a frame waits for its answer, from an estimator that does not say beforehand whether it
-// answers each one.
+// Time limits for the answers of an estimator that does not announce which frames it answers.
 #pragma once
 
 #include <chrono>
@@ -10,13 +9,13 @@
 
 namespace overfly::ros1 {
 
-/// How far an answer's stamp may be off its frame's: nodes keep time in doubles.
+/// Tolerance between the stamps of an answer and its frame: nodes store times as doubles.
 inline constexpr std::int64_t kStampToleranceNs = 400'000;
 
-/// In lockstep a frame waits up to the time limit while the estimator is known to answer, and else
-/// for one frame's period, so that time goes on by the clock for one that initialises, is lost, or
-/// answers some frames only. Without lockstep a frame waits for one period, or for twice as long as
-/// the last answers took where that is more. Methods may be called from any thread.
+/// In lockstep a frame waits up to the time limit as long as the estimator answers. Otherwise it
+/// waits for one frame period, so that time continues at real-time rate while the estimator
+/// initialises, is lost, or answers only some frames. Without lockstep a frame waits for one period
+/// or for twice the time of the last answers, whichever is longer. Thread-safe.
 class AnswerPatience {
  public:
   using Clock = std::chrono::steady_clock;
@@ -24,22 +23,23 @@ class AnswerPatience {
   AnswerPatience(bool lockstep, std::chrono::nanoseconds limit)
       : lockstep_(lockstep), limit_(limit) {}
 
-  /// A frame goes out. @return for how long to wait for its answer
+  /// Call when a frame is sent. @return how long to wait for its answer
   [[nodiscard]] std::chrono::nanoseconds begin(std::int64_t t_ns, Clock::time_point now);
-  /// An answer arrived, in time or late; one whose stamp is that of no frame changes nothing.
+  /// Call when an answer arrives, in time or late. An answer with the stamp of no frame has no
+  /// effect.
   void answered(std::int64_t t_ns, Clock::time_point now);
-  /// A frame was not answered in time.
+  /// Call when a frame was not answered in time.
   void gave_up();
-  /// For an estimator that starts anew.
+  /// Resets the state for an estimator that restarts.
   void forget();
 
  private:
   const bool lockstep_;
   const std::chrono::nanoseconds limit_;
   std::mutex mutex_;
-  std::map<std::int64_t, Clock::time_point> sent_;  ///< the last of them, by stamp
+  std::map<std::int64_t, Clock::time_point> sent_;  ///< the latest frames, by stamp
   std::optional<std::int64_t> previous_ns_;
-  bool answers_ = true;  ///< the first frame is given a chance
+  bool answers_ = true;  ///< initially true, to wait for the first frame
   std::chrono::nanoseconds latency_{0};
 };
 

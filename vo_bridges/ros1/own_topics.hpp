@@ -1,5 +1,5 @@
-// What of a ROS graph an estimator has for itself: two that share any of it would hear each other's
-// images, or answer for each other.
+// The parts of the ROS graph that one estimator needs exclusively. Two estimators that share any of
+// them would receive each other's images or answers.
 #pragma once
 
 #include <string>
@@ -10,18 +10,18 @@
 namespace overfly::ros1 {
 
 struct OwnTopic {
-  const char* option;  ///< that names it
+  const char* option;  ///< option that names it
   std::string name;
-  bool is_transform = false;  ///< "FRAME in FRAME on /tf": others may be on /tf beside it
+  bool is_transform = false;  ///< "FRAME in FRAME on /tf": other transforms may share /tf
 };
 
-/// Without the slash before it: "world" and "/world" name the same frame (tf2 knows no leading
-/// slash, tf had one), and the same topic where there is no ROS_NAMESPACE.
+/// Removes the leading slash: "world" and "/world" name the same frame (tf2 uses no leading slash,
+/// tf did), and the same topic without a ROS_NAMESPACE.
 [[nodiscard]] inline std::string bare_name(const std::string& name) {
   return name.starts_with('/') ? name.substr(1) : name;
 }
 
-/// What an estimator of these options has for itself; /clock is not of it.
+/// What an estimator with these options needs exclusively; /clock is shared.
 [[nodiscard]] inline std::vector<OwnTopic> own_topics(const Ros1EstimatorOptions& options) {
   std::vector<OwnTopic> own = {{"image_topic", options.image_topic},
                                {"camera_info_topic", options.camera_info_topic}};

@@ -1,4 +1,4 @@
-// Images, calibration and truth as a ROS 1 bag (format 2.0), for tools that read those.
+// Writes images, calibration and truth to a ROS 1 bag (format 2.0).
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,8 @@
 
 namespace overfly {
 
-/// Writes messages in the order of the calls. Stamps are Unix times, in [0, 2^32 s); each is also
-/// the time at which the bag has the message.
+/// Writes messages in call order. Stamps are Unix times in [0, 2^32 s); each is also the message's
+/// time in the bag.
 class Ros1BagWriter {
  public:
   /// Errors: kUnsupported where ROS 1 is not built in; kIo naming the file.
@@ -27,7 +27,7 @@ class Ros1BagWriter {
                                          const std::string& frame_id,
                                          std::int64_t stamp_ns,
                                          const Image& image) = 0;
-  /// sensor_msgs/CameraInfo (the lenses: README.md beside this file).
+  /// sensor_msgs/CameraInfo (lens models: README.md in this folder).
   [[nodiscard]] virtual Status add_camera_info(const std::string& topic,
                                                const std::string& frame_id,
                                                std::int64_t stamp_ns,
@@ -42,7 +42,7 @@ class Ros1BagWriter {
                                              const std::string& child_frame,
                                              std::int64_t stamp_ns,
                                              const Pose& T_parent_child) = 0;
-  /// Writes the index; nothing may be added after that. Errors: kIo naming the file.
+  /// Writes the index; nothing may be added afterwards. Errors: kIo naming the file.
   [[nodiscard]] virtual Status close() = 0;
 };
 

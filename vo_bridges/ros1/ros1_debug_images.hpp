@@ -1,4 +1,4 @@
-// The debug images of an estimator, matched to frames.
+// Matches an estimator's debug images to frames.
 #pragma once
 
 #include <atomic>
@@ -11,21 +11,20 @@
 
 namespace overfly::ros1 {
 
-/// Keeps the newest. May be used from any thread.
+/// Keeps the newest images. Thread-safe.
 class DebugImages {
  public:
-  /// An image that is drawn after the pose was published takes that long at most, on a busy
-  /// machine.
+  /// Maximum delay of an image that is drawn after the pose was published, on a busy machine.
   static constexpr std::chrono::milliseconds kPatience{1000};
 
   void deliver(const ImageMessage::ConstPtr& image);
-  /// The image of the frame of that stamp, else the newest that was not taken yet (an estimator may
-  /// stamp otherwise), else null.
-  /// @param patience  for one that bears the stamp, while such are known to come
+  /// The image with the frame's stamp; otherwise the newest that was not taken yet (an estimator
+  /// may use other stamps); otherwise null.
+  /// @param patience  how long to wait for a matching stamp, if such images usually arrive
   [[nodiscard]] ImageMessage::ConstPtr take(std::int64_t stamp_ns,
                                             std::chrono::nanoseconds patience,
                                             const std::atomic<bool>* cancel = nullptr);
-  /// Forgets what came for earlier frames.
+  /// Discards the images of earlier frames.
   void forget();
 
  private:
@@ -34,7 +33,7 @@ class DebugImages {
   std::mutex mutex_;
   std::condition_variable came_;
   ImageMessage::ConstPtr newest_;
-  bool comes_in_time_ = true;  ///< the first one is given a chance
+  bool comes_in_time_ = true;  ///< initially true, to wait for the first image
 };
 
 }  // namespace overfly::ros1

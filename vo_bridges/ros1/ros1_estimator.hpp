@@ -1,4 +1,4 @@
-// An estimator that is a ROS 1 node: images go out on topics, poses come back on others
+// An estimator in a ROS 1 node: images are published on topics, and poses are received from topics
 // (vo_bridges/ros1/README.md).
 #pragma once
 
@@ -12,13 +12,13 @@
 
 namespace overfly {
 
-/// What the estimator publishes its pose as.
+/// Message type of the estimator's poses.
 enum class Ros1PoseType { kPoseStamped, kPoseWithCovarianceStamped, kOdometry, kTf };
 
-/// No two estimators of a process share a topic, nor a transform on /tf.
+/// Two estimators of a process cannot share a topic or a transform on /tf.
 struct Ros1EstimatorOptions {
   std::string master_uri = "http://127.0.0.1:11311";
-  std::string node_name = "overfly";  ///< of this process: the first estimator's counts
+  std::string node_name = "overfly";  ///< of this process: set by the first estimator
   std::string image_topic = "/camera/image_raw";
   std::string camera_info_topic = "/camera/camera_info";
   std::string pose_topic = "/vo/pose";  ///< not used with kTf
@@ -27,37 +27,37 @@ struct Ros1EstimatorOptions {
   std::string reset_topic;              ///< std_msgs/Empty at every reset; empty = none
   std::string camera_frame = "camera";  ///< frame_id of images; with kTf the pose's child
   std::string vo_frame = "world";       ///< with kTf the pose's parent
-  /// True where the pose says camera from VO frame (T_camera_vo), as ORB-SLAM2's Tcw.
+  /// True if the pose maps the VO frame to the camera (T_camera_vo), like ORB-SLAM2's Tcw.
   bool pose_is_camera_from_world = false;
-  /// True where the pose's camera has ROS's body axes (REP 103: x along the view, y left, z up)
-  /// instead of optical ones.
+  /// True if the pose's camera has ROS body axes (REP 103: x forward, y left, z up) instead of
+  /// optical axes.
   bool pose_in_body_axes = false;
   bool publish_clock = true;  ///< /clock, for nodes under use_sim_time
-  /// The estimate on /tf, as camera_frame in vo_frame, for those that look on. Not with kTf.
+  /// Publishes the estimate on /tf, as camera_frame in vo_frame, for observers. Not with kTf.
   bool publish_tf = false;
   int queue_size = 8;  ///< of each topic, in [1, 1000]
-  /// True: wait for the pose of each frame once it has published a first one. False: by the clock.
+  /// True: after the first pose, wait for the pose of each frame. False: frames follow the clock.
   bool lockstep = true;
-  /// For the master and for a subscriber of images or calibration; again at the first frame, for
-  /// the estimator to load and to advertise its pose.
+  /// Time limit for the master and for a subscriber of images or calibration; and again at the
+  /// first frame, until the estimator has loaded and advertised its pose.
   double start_timeout_s = 30.0;
   double answer_timeout_s = 2.0;
   /// Set on the parameter server under `parameter_namespace` before the estimator is waited for.
   VoParameters parameters;
   std::string
       parameter_namespace;  ///< whose parameters are read back into the result; empty = none
-  /// When it turns true, every wait ends with kCancelled: within 50 ms, that for an answer after a
-  /// second. Null = nobody cancels.
+  /// Set to true to cancel: every wait ends with kCancelled within 50 ms, the wait for an answer
+  /// within a second. Null = not cancellable.
   const std::atomic<bool>* cancel = nullptr;
 };
 
-/// True where this build speaks ROS 1.
+/// True if this build supports ROS 1.
 [[nodiscard]] bool ros1_is_built_in();
 
 /// Waits for the master, then for a subscriber of the images or the calibration.
-/// Errors: kUnsupported where ROS 1 is not built in; kInvalidArgument naming the option; kNotFound
-/// when no master answers, or nobody subscribes to the images, in time; kConflict when this process
-/// is the node of another master already, or another of its estimators has a topic; kCancelled.
+/// Errors: kUnsupported if ROS 1 is not built in; kInvalidArgument naming the option; kNotFound if
+/// no master answers or no node subscribes to the images in time; kConflict if this process is
+/// already a node of another master, or another of its estimators uses a topic; kCancelled.
 [[nodiscard]] Result<std::unique_ptr<VoPort>> create_ros1_estimator(
     const Ros1EstimatorOptions& options);
 

@@ -1,4 +1,4 @@
-// What `overfly doctor` says about ROS 1.
+// ROS 1 support on this machine, for `overfly doctor`.
 #pragma once
 
 #include <string>
@@ -7,13 +7,13 @@ namespace overfly {
 
 struct Ros1Findings {
   bool built_in = false;
-  bool works = false;   ///< nothing in the way of an estimator behind ROS topics
+  bool works = false;   ///< estimators can be connected by ROS topics
   std::string finding;  ///< one line: version, master, environment
-  std::string remedy;   ///< empty when all is well
+  std::string remedy;   ///< empty if there is no problem
 };
 
-/// Looks at this build, the environment (ROS_MASTER_URI, ROS_IP, ROS_HOSTNAME) and the master
-/// there, for at most a second. That no master runs is no fault: one is started with the estimator.
+/// Checks this build, the environment (ROS_MASTER_URI, ROS_IP, ROS_HOSTNAME) and the master, within
+/// a second. A master that does not run is not a problem: it is started with the estimator.
 [[nodiscard]] Ros1Findings ros1_findings();
 
 }  // namespace overfly

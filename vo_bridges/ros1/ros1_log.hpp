@@ -1,4 +1,4 @@
-// What a ROS estimator has to say, until somebody takes it.
+// Collects the log lines of a ROS estimator until they are taken.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace overfly::ros1 {
 
-/// May be used from any thread.
+/// Thread-safe.
 class LineLog {
  public:
   void add(std::string line) {

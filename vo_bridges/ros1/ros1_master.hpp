@@ -1,5 +1,5 @@
-// The ROS master, asked over XML-RPC with a deadline: roscpp's own calls wait for ever for a master
-// that is not there.
+// Calls the ROS master over XML-RPC with a deadline. The calls of roscpp wait forever for a missing
+// master.
 #pragma once
 
 #include <xmlrpcpp/XmlRpcValue.h>
@@ -13,7 +13,7 @@
 
 namespace overfly::ros1 {
 
-/// Where an XML-RPC server listens.
+/// Address of an XML-RPC server.
 struct XmlRpcAddress {
   std::string host;
   int port = 0;
@@ -24,28 +24,29 @@ struct XmlRpcAddress {
   [[nodiscard]] bool is_loopback() const;
 };
 
-/// Reads "http://HOST:PORT" with an optional slash.
+/// Parses "http://HOST:PORT" with an optional trailing slash.
 /// Errors: kInvalidArgument naming the text.
 [[nodiscard]] Result<XmlRpcAddress> parse_xml_rpc_address(const std::string& uri);
 
-/// Calls a method of the ROS master or slave interface and gives back the value of its answer
-/// [code, message, value].
-/// @param cancel  may be null; when it turns true, the call ends as if the time were up
-/// Errors: kNotFound when nobody answers in time; kIo for an answer that says it failed, or none of
-/// that form.
+/// Calls a method of the ROS master or slave interface and returns the value of the answer [code,
+/// message, value].
+/// @param cancel  may be null; set to true to end the call as if it had timed out
+/// Errors: kNotFound if there is no answer in time; kIo if the answer reports a failure or has
+/// another form.
 [[nodiscard]] Result<XmlRpc::XmlRpcValue> call_xml_rpc(const XmlRpcAddress& address,
                                                        const std::string& method,
                                                        const std::vector<std::string>& arguments,
                                                        std::chrono::nanoseconds timeout,
                                                        const std::atomic<bool>* cancel = nullptr);
 
-/// The process id of a node, or of the master, where it tells a restarted one from the one before.
-/// Errors: as call_xml_rpc's.
+/// The process id of a node or of the master. Distinguishes a restarted process from the previous
+/// one.
+/// Errors: as call_xml_rpc.
 [[nodiscard]] Result<int> ask_pid(const XmlRpcAddress& node,
                                   std::chrono::nanoseconds timeout,
                                   const std::atomic<bool>* cancel = nullptr);
 
-/// Tells a node who publishes a topic, as the master does. Errors: as call_xml_rpc's.
+/// Reports the publishers of a topic to a node, as the master does. Errors: as call_xml_rpc.
 [[nodiscard]] Status tell_publishers(const XmlRpcAddress& node,
                                      const std::string& topic,
                                      const XmlRpc::XmlRpcValue& publishers,

@@ -1,4 +1,4 @@
-// The one ROS node that a process can be.
+// The ROS node of this process.
 #pragma once
 
 #include <atomic>
@@ -16,17 +16,16 @@
 
 namespace overfly::ros1 {
 
-/// ROS knows one node, with one master, in the life of a process: it begins with the first
-/// estimator and stays. All methods may be called from any thread.
+/// ROS allows one node, with one master, per process. It is created with the first estimator and
+/// stays. Thread-safe.
 class Node {
  public:
-  /// Begins the node, or finds it. ROS installs no handler of SIGINT; its logging goes to the logs
-  /// of the estimators instead of stdout and stderr.
-  /// @param patience  for the master to answer
-  /// @param cancel    as Ros1EstimatorOptions has it
-  /// Errors: kCancelled; kNotFound when the master does not answer in time; kConflict when this
-  /// process is the node of another master, or the master has a living node of that name;
-  /// kInternal.
+  /// Creates the node, or returns the existing one. ROS installs no SIGINT handler; its log
+  /// messages go to the logs of the estimators instead of stdout and stderr.
+  /// @param patience  time limit for the master's answer
+  /// @param cancel    see Ros1EstimatorOptions
+  /// Errors: kCancelled; kNotFound if the master does not answer in time; kConflict if this process
+  /// is a node of another master, or if the master has a living node of that name; kInternal.
   [[nodiscard]] static Result<Node*> join(const XmlRpcAddress& master,
                                           const std::string& name,
                                           std::chrono::nanoseconds patience,
@@ -35,16 +34,16 @@ class Node {
   Node& operator=(const Node&) = delete;
 
   [[nodiscard]] const XmlRpcAddress& master() const { return master_; }
-  /// With its slash ("/overfly").
+  /// With leading slash ("/overfly").
   [[nodiscard]] const std::string& name() const { return name_; }
-  /// False when it was told to end ("rosnode kill").
+  /// False if the node was told to shut down ("rosnode kill").
   [[nodiscard]] static bool alive();
 
-  /// Takes topics for one estimator: all or none. Errors: kConflict naming option and topic.
+  /// Reserves topics for one estimator: all or none. Errors: kConflict naming option and topic.
   [[nodiscard]] Status claim(const std::vector<OwnTopic>& topics);
   void release(const std::vector<OwnTopic>& topics);
 
-  /// What roscpp logs goes to these.
+  /// Adds a destination for roscpp's log messages.
   void add_log(const std::shared_ptr<LineLog>& log);
   void say(const std::string& line);
 

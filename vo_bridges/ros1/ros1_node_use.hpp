@@ -1,4 +1,4 @@
-// What the process of an estimator's node uses, where it runs on this machine.
+// Resource use of the process of an estimator's node, if it runs on this machine.
 #pragma once
 
 #include <atomic>
@@ -12,10 +12,9 @@
 
 namespace overfly::ros1 {
 
-/// The estimator's node is the one that takes the images and publishes the poses, as the master
-/// knows them. Its process is asked for by getPid, which tells the truth where nodes and this
-/// process share their process ids (not from one container to another). May be used from any
-/// thread.
+/// The estimator's node is the one that subscribes to the images and publishes the poses according
+/// to the master. Its process id comes from getPid, which is valid only if the node and this
+/// process share a process namespace (not across containers). Thread-safe.
 class NodeUse {
  public:
   NodeUse(XmlRpcAddress master,
@@ -23,11 +22,11 @@ class NodeUse {
           std::string image_topic,
           std::string pose_topic);
 
-  /// Looks for the process, unless it is known and runs.
+  /// Searches the process unless it is known and running.
   /// @param timeout  for each of three calls
   void look(std::chrono::nanoseconds timeout, const std::atomic<bool>* cancel);
-  /// CPU since the process was found; of a node that came back, of all its processes. Empty where
-  /// none was found here.
+  /// CPU time since the process was found; for a restarted node the total of its processes. Empty
+  /// if none was found.
   [[nodiscard]] std::optional<ResourceUse> use() const;
 
  private:
@@ -41,8 +40,8 @@ class NodeUse {
   mutable std::mutex mutex_;
   std::optional<int> pid_;
   double cpu_before_s_ = 0.0;  ///< of this process, when it was found
-  ResourceUse earlier_;        ///< of the processes before this one
-  mutable ResourceUse last_;   ///< of this process, as long as it ran
+  ResourceUse earlier_;        ///< of the previous processes
+  mutable ResourceUse last_;   ///< of this process, while it was running
 };
 
 }  // namespace overfly::ros1

@@ -1,4 +1,4 @@
-// What the door checks of its options before it speaks to anybody.
+// Checks the options of the ROS 1 door before any communication.
 #pragma once
 
 #include <map>
@@ -16,10 +16,10 @@ namespace overfly::ros1 {
 /// Errors: kInvalidArgument naming option, value and limit.
 [[nodiscard]] Result<XmlRpcAddress> check(const Ros1EstimatorOptions& options);
 
-/// What of the options tells how the estimator's answers are understood.
+/// The options that determine how the estimator's answers are interpreted.
 [[nodiscard]] std::map<std::string, std::string> effective(const Ros1EstimatorOptions& options);
 
-/// T_vo_camera, optical axes, of a pose as the node publishes it.
+/// Converts a pose as published by the node to T_vo_camera with optical axes.
 [[nodiscard]] Pose T_vo_camera_from(const Pose& published, const Ros1EstimatorOptions& options);
 
 }  // namespace overfly::ros1

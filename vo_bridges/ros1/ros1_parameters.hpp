@@ -1,4 +1,4 @@
-// Parameters of estimators on ROS's parameter server.
+// Reads and writes parameters of estimators on the ROS parameter server.
 #pragma once
 
 #include <map>

@@ -1,4 +1,4 @@
-// An estimator behind ROS topics.
+// An estimator connected by ROS topics.
 #pragma once
 
 #include <atomic>
@@ -26,7 +26,7 @@ class Session final : public VoPort {
   Session(Node& node, const Ros1EstimatorOptions& options);
 
   /// Opens the topics and waits for a subscriber.
-  /// Errors: as create_ros1_estimator's.
+  /// Errors: as create_ros1_estimator.
   [[nodiscard]] Status begin(AnswerPatience::Clock::time_point end);
 
   [[nodiscard]] std::string type() const override { return "ros1"; }
@@ -46,20 +46,20 @@ class Session final : public VoPort {
   [[nodiscard]] TopicHandlers handlers();
   void take_pose(std::int64_t stamp_ns, const std::optional<Pose>& published);
   void report_strays();
-  /// Nodes load and then advertise their poses, some of them after they got the calibration: no
-  /// frame shall be lost to that.
+  /// Waits until the node advertises its poses, so that no frame is lost. Nodes do this after
+  /// loading, some only after they received the calibration.
   /// Errors: kCancelled.
   Status await_readiness(const VoFrame& frame, std::int64_t stamp_ns);
   [[nodiscard]] Status await_estimator();
   [[nodiscard]] Error gone() const;
-  /// Waits until `done`, `end`, or the wish to stop. @return whether it is done
+  /// Waits for `done`, `end` or a cancellation. @return whether `done`
   template <typename Condition>
   [[nodiscard]] bool wait_until(Clock::time_point end, const Condition& done) const;
   /// Errors: kCancelled.
   [[nodiscard]] Result<VoEstimate> exchange(const VoFrame& frame, std::int64_t stamp_ns);
   void add_debug_image(const VoFrame& frame, std::int64_t stamp_ns, VoEstimate& estimate);
-  /// Time on ROS: it never runs back, not even at a reset, and 0 means no time there. The first
-  /// frame after one chooses the offset.
+  /// ROS time of a frame. It never runs backwards, even after a reset, and is never 0, which means
+  /// "no time" in ROS. The first frame after a reset sets the offset.
   /// Errors: kInvalidArgument naming stamp and limit.
   [[nodiscard]] Result<std::int64_t> stamp_of(const VoFrame& frame);
 
@@ -71,17 +71,17 @@ class Session final : public VoPort {
   DebugImages debug_images_;
   std::atomic<bool> debug_ = false;
   PoseIntake poses_;
-  AnswerCounts reported_;  ///< strays that the log has; of the topics' thread
+  AnswerCounts reported_;  ///< stray answers logged so far; used by the topics' thread
   std::optional<VoFrame> previous_;
   bool ready_ = false;
   bool tracked_ = false;
   std::int64_t offset_ns_;
-  std::int64_t earliest_ns_;  ///< on ROS, of the first frame
+  std::int64_t earliest_ns_;  ///< ROS time of the first frame
   std::optional<Clock::time_point> alone_since_;
   std::optional<Error> ended_;
-  // Last, so that nothing comes in any more when the rest goes.
+  // Last, so that no callback runs while the other members are destroyed.
   std::unique_ptr<Topics> topics_;
-  std::unique_ptr<NodeUse> node_use_;  ///< the watch looks after it
+  std::unique_ptr<NodeUse> node_use_;  ///< updated by the watch
   std::unique_ptr<MasterWatch> watch_;
 };
 

@@ -21,17 +21,17 @@
 
 namespace overfly::ros1 {
 
-/// What comes in; called from the topics' thread, until they are destroyed.
+/// Handlers for incoming messages; called on the topics' thread until the topics are destroyed.
 struct TopicHandlers {
-  /// A pose as it was published; empty for one that is none (not finite, a bad quaternion).
+  /// A pose as published; empty if it is invalid (not finite, or a bad quaternion).
   std::function<void(std::int64_t stamp_ns, const std::optional<Pose>& pose)> pose;
   std::function<void(const ImageMessage::ConstPtr& image)> debug_image;
 };
 
 class Topics {
  public:
-  /// Errors: kConflict for a topic that another estimator of this process has; kInternal naming a
-  /// topic that ROS refuses.
+  /// Errors: kConflict if another estimator of this process uses a topic; kInternal naming a topic
+  /// that ROS rejects.
   [[nodiscard]] static Result<std::unique_ptr<Topics>> open(Node& node,
                                                             const Ros1EstimatorOptions& options,
                                                             TopicHandlers handlers,
@@ -40,25 +40,25 @@ class Topics {
   Topics(const Topics&) = delete;
   Topics& operator=(const Topics&) = delete;
 
-  /// Time and calibration; who comes later is told the last calibration.
+  /// Publishes time and calibration; late subscribers receive the last calibration.
   void publish_calibration(const VoFrame& frame, std::int64_t stamp_ns);
-  /// Time, calibration, then the image: who has the image has the others.
+  /// Publishes time, calibration, then the image: a node that has the image has the others.
   void publish(const VoFrame& frame, std::int64_t stamp_ns);
   void publish_reset();
-  /// Nothing without publish_tf.
+  /// Does nothing without publish_tf.
   void publish_estimate(const Pose& T_vo_camera, std::int64_t stamp_ns);
 
   [[nodiscard]] bool somebody_sees_images() const { return images_.getNumSubscribers() > 0; }
   [[nodiscard]] bool somebody_sees_calibration() const { return infos_.getNumSubscribers() > 0; }
   [[nodiscard]] bool somebody_tells_poses() const { return poses_.getNumPublishers() > 0; }
-  /// True also where no debug image is asked for.
+  /// Also true if no debug image is configured.
   [[nodiscard]] bool somebody_draws_debug_images() const {
     return !debug_images_ || debug_images_.getNumPublishers() > 0;
   }
-  /// As the master knows them, with their slash.
+  /// As known to the master, with leading slash.
   [[nodiscard]] std::string image_topic() const { return images_.getTopic(); }
   [[nodiscard]] std::string pose_topic() const { return poses_.getTopic(); }
-  /// As the master shall know them.
+  /// The topics to register with the master.
   [[nodiscard]] std::vector<TopicRegistration> registrations() const;
 
  private:

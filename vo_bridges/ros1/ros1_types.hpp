@@ -1,5 +1,5 @@
-// ROS's messages in C++20. Their headers ask std::allocator<void> for `rebind`, which that standard
-// took away; the messages are templates, and take an allocator of ours that has it.
+// ROS messages in C++20. Their headers need the `rebind` of std::allocator<void>, which C++20
+// removed. The messages are templates and are instantiated with an allocator that provides it.
 #pragma once
 
 #include <geometry_msgs/Pose.h>
@@ -21,9 +21,9 @@
 
 namespace overfly::ros1 {
 
-// NOLINTBEGIN(readability-identifier-naming): these are the standard's names
+// NOLINTBEGIN(readability-identifier-naming): names required by the standard
 
-/// std::allocator with what ROS's serialisation asks of it.
+/// std::allocator with the members that ROS serialisation needs.
 template <typename T>
 struct VectorAllocator : std::allocator<T> {
   VectorAllocator() = default;
@@ -47,9 +47,10 @@ struct MessageAllocator {
 
 // NOLINTEND(readability-identifier-naming)
 
-/// Reads an array of a message, as ROS's serialisation does, which finds this one by the allocator.
-/// ROS makes room for as many elements as are announced before it looks whether they are there.
-/// @throws ros::serialization::StreamOverrunException when they cannot be, before any room is made
+/// Reads an array of a message. ROS serialisation selects this overload by the allocator. The
+/// default implementation allocates the announced number of elements before checking that they
+/// exist.
+/// @throws ros::serialization::StreamOverrunException before any allocation if they do not
 template <typename T>
 void deserialize(ros::serialization::IStream& stream, std::vector<T, VectorAllocator<T>>& array) {
   ros::serialization::IStream ahead = stream;

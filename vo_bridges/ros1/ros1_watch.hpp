@@ -1,5 +1,5 @@
-// Looks after the master while an estimator is in use: roscpp does not notice that it is gone, nor
-// that another one took its place.
+// Monitors the master while an estimator is in use. roscpp does not notice that the master is gone
+// or was replaced.
 #pragma once
 
 #include <atomic>
@@ -17,15 +17,15 @@
 
 namespace overfly::ros1 {
 
-/// A topic as the master knows it.
+/// A topic as registered with the master.
 struct TopicRegistration {
   std::string topic;
   std::string type;  ///< "sensor_msgs/Image"
   bool published = true;
 };
 
-/// Asks the master once a second, and calls `each_second` while it answers. Logs when it goes and
-/// when it comes back; one that was started anew is told of the topics again, as it knows nothing.
+/// Polls the master once a second and calls `each_second` while it answers. Logs when the master
+/// goes and returns. Registers the topics again with a restarted master.
 class MasterWatch {
  public:
   MasterWatch(XmlRpcAddress master,

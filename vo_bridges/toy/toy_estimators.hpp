@@ -1,5 +1,5 @@
-// Estimators that are given the truth, to test what comes after an estimator: their scores
-// have a closed form. Marked as test estimators wherever they appear.
+// Estimators that receive the truth, to test the stages after an estimator: their scores have a
+// closed form. They are always marked as test estimators.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace overfly {
 
-/// Truth in a frame of its own: origin and rotation of the first pose, lengths times `scale`.
+/// Truth in the estimator's frame: origin and rotation of the first pose, lengths times `scale`.
 struct ToyParameters {
   double scale = 0.37;  ///< vo units per metre, > 0
   double drift = 0.0;   ///< position error per path length: 0.01 = 1 %, in (-1, 1]
@@ -17,12 +17,12 @@ struct ToyParameters {
   double scene_depth_m = 0.0;
 };
 
-/// Answers with the truth itself ("perfect").
+/// Returns the truth ("perfect").
 [[nodiscard]] Result<std::unique_ptr<VoPort>> create_perfect_estimator(
     const Trajectory& T_world_camera, const ToyParameters& parameters);
 
-/// The truth with every step along the path lengthened by `drift` ("drifting"): after a path of
-/// length s the position is off by drift * (displacement from the start).
+/// Returns the truth with every step along the path lengthened by `drift` ("drifting"): after a
+/// path of length s the position error is drift * (displacement from the start).
 [[nodiscard]] Result<std::unique_ptr<VoPort>> create_drifting_estimator(
     const Trajectory& T_world_camera, const ToyParameters& parameters);
 
