@@ -8,9 +8,10 @@ namespace overfly {
 
 namespace {
 
-/// Between these (and for 0) a number is written without an exponent.
+/// Numbers between these limits, and 0, are written without an exponent.
 constexpr double kSmallestPlain = 1e-9;
-constexpr double kLargestPlain = 9007199254740992.0;  // 2^53: every whole number up to it
+constexpr double kLargestPlain =
+    9007199254740992.0;  // 2^53: doubles represent every integer up to it
 
 std::string text_of_number(double number) {
   const double size = std::abs(number);

@@ -6,11 +6,11 @@
 namespace overfly {
 namespace {
 
-/// Four decimals of each part, as in many text files.
+/// Components with four decimals, as in many text files.
 constexpr double kUnitTolerance = 1e-3;
-/// What is off by less stays as it came.
+/// Quaternions with a smaller deviation are not normalised.
 constexpr double kExactlyUnit = 1e-12;
-/// Millimetres to the moon and back.
+/// About the distance to the moon and back in millimetres.
 constexpr double kFarthest = 1e12;
 
 }  // namespace
@@ -23,7 +23,7 @@ std::string fault_of(const Pose& T_vo_camera) {
   }
   const double norm = T_vo_camera.rotation.norm();
   if (!(std::abs(norm - 1.0) <= kUnitTolerance)) {
-    return "the quaternion has length " + std::to_string(norm) + ": must be 1";
+    return "the quaternion's norm is " + std::to_string(norm) + ": must be 1";
   }
   return {};
 }
@@ -38,7 +38,7 @@ Status PoseIntake::take(VoEstimate& estimate) {
     if (!std::exchange(depth_noted_, true)) {
       notes_.push_back("warning: frame " + std::to_string(sample.frame) +
                        ": scene depth = " + std::to_string(*sample.scene_depth) +
-                       ": must be positive and finite; it is left out, this one and those to come");
+                       ": must be positive and finite; this and later such values are ignored");
     }
     sample.scene_depth.reset();
   }
@@ -56,14 +56,14 @@ Status PoseIntake::take(VoEstimate& estimate) {
   if (++in_a_row_ < kMostInARow) return {};
   return Error{ErrorCode::kInternal,
                std::to_string(kMostInARow) + " answers in a row had no usable pose, the last one " +
-                   "that to frame " + std::to_string(sample.frame) + ": " + fault};
+                   "for frame " + std::to_string(sample.frame) + ": " + fault};
 }
 
 void PoseIntake::note(const EstimateSample& sample, const std::string& fault) {
   if (notes_made_ >= kMostNotes) return;
   std::string line = "warning: frame " + std::to_string(sample.frame) + ": " + fault +
-                     "; such a frame counts as LOST";
-  if (++notes_made_ == kMostNotes) line += " (further ones are not told)";
+                     "; the frame counts as LOST";
+  if (++notes_made_ == kMostNotes) line += " (further ones are not reported)";
   notes_.push_back(std::move(line));
 }
 

@@ -7,7 +7,7 @@
 namespace overfly {
 namespace {
 
-/// How many frames are remembered: half a minute at 31 Hz.
+/// Number of frames that are remembered: half a minute at 31 Hz.
 constexpr std::size_t kRemembered = 1000;
 
 }  // namespace
@@ -87,7 +87,7 @@ std::optional<VoEstimate> StampedAnswers::take(std::int64_t t_ns,
   std::optional<VoEstimate> answer = wait(t_ns, timeout);
   if (answer) return answer;
   give_up(t_ns);
-  // One that came between the two lines is still an answer.
+  // An answer that arrived between the two lines still counts.
   return wait(t_ns, std::chrono::nanoseconds(0));
 }
 

@@ -7,8 +7,8 @@ namespace overfly {
 
 namespace {
 
-/// Table k: what a byte does to the remainder k bytes later (Sarwate 1988, DOI
-/// 10.1145/63030.63037, eight bytes at a time).
+/// Table k: effect of a byte on the remainder k bytes later (Sarwate 1988, DOI 10.1145/63030.63037,
+/// eight bytes at a time).
 using CrcTables = std::array<std::array<std::uint32_t, 256>, 8>;
 
 constexpr CrcTables crc_tables() {
@@ -71,7 +71,7 @@ Status validate_vo_frame(const VoFrame& frame, const VoFrame* previous) {
                std::to_string(frame.intrinsics.height_px) + " px");
   }
   if (previous == nullptr) {
-    // Only once: it looks along the whole lens.
+    // Only for the first frame: the check covers the whole lens.
     Status status = CameraModel(frame.intrinsics, frame.distortion).validate();
     return status ? status : status.error().in(where);
   }

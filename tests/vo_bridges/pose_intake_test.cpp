@@ -100,7 +100,7 @@ TEST(PoseIntake, GivesUpAfterManyInARow) {
   ASSERT_FALSE(given_up);
   EXPECT_EQ(given_up.error().code, ErrorCode::kInternal);
   EXPECT_EQ(given_up.error().message,
-            "30 answers in a row had no usable pose, the last one that to frame 77: the position "
+            "30 answers in a row had no usable pose, the last one for frame 77: the position "
             "is not finite");
 }
 

@@ -33,7 +33,7 @@ Result<std::shared_ptr<LcmClaim>> LcmClaim::take(const std::string& network,
   if (!claimed().channels.insert(channels).second) {
     return Error{ErrorCode::kConflict,
                  "channel_prefix = \"" + prefix +
-                     "\": another estimator of this process has it on " + network +
+                     "\": another estimator of this process uses it on " + network +
                      "; each needs its own"};
   }
   return std::shared_ptr<LcmClaim>(new LcmClaim(channels));

@@ -19,22 +19,22 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::nanoseconds;
 
-/// While nobody is there: how often the calibration is published.
+/// Interval at which the calibration is published until an estimator responds.
 constexpr std::chrono::milliseconds kAnnouncePeriod{250};
-/// While an answer is missing: how often it is asked for.
+/// Interval at which a missing answer is requested again.
 constexpr std::chrono::milliseconds kAskPeriod{200};
-/// In lockstep an image is sent so many times at most.
+/// Maximum number of times an image is sent in lockstep.
 constexpr int kMostSends = 5;
-/// Frames in a row without a word, after which the estimator is given up.
+/// Number of consecutive frames without any message after which the estimator is given up.
 constexpr int kMostSilentFrames = 5;
-/// As scenarios have it; LCM's limit of a channel's name is 63 characters.
+/// Same limit as in scenarios; LCM limits a channel name to 63 characters.
 constexpr std::size_t kLongestPrefix = 40;
 
 nanoseconds from_seconds(double time_s) {
   return std::chrono::duration_cast<nanoseconds>(std::chrono::duration<double>(time_s));
 }
 
-/// What went wrong so far, as counters name it.
+/// Transport errors so far, by counter name.
 std::map<std::string, std::int64_t> faults_of(LcmLink& link) {
   const AnswerCounts counts = link.answers().counts();
   return {{"answers_late", counts.late},
@@ -77,19 +77,20 @@ class LcmEstimator final : public VoPort {
   Result<Answer> wait_for_answer(const VoFrame& frame, Clock::time_point deadline);
   Error no_estimator() const;
   VoEstimate complete(Answer answer, const VoFrame& frame);
-  /// The estimator is gone for good, unless it was only that we were told to stop.
+  /// Marks the estimator as failed permanently, unless the error is a cancellation.
   Error ended_by(const Error& error);
 
-  const std::shared_ptr<LcmClaim> claim_;  ///< first, so that it goes last; null of a test's node
+  const std::shared_ptr<LcmClaim>
+      claim_;  ///< first, so that it is destroyed last; null for a test's node
   std::unique_ptr<LcmLink> link_;
   const LcmEstimatorOptions options_;
-  const bool hears_;  ///< false: nothing can be heard from this network
+  const bool hears_;  ///< false: no messages can be received from this network
   PoseIntake poses_;
   std::optional<VoFrame> previous_;
   std::optional<Error> gone_;
   Clock::time_point start_deadline_;
   bool in_session_ = false;
-  bool prepared_ = false;  ///< in a session that has seen no frame
+  bool prepared_ = false;  ///< the session has started but had no frame
   bool waiting_told_ = false;
   int silent_frames_ = 0;
   std::int64_t images_lost_ = 0;
@@ -119,7 +120,7 @@ Error LcmEstimator::ended_by(const Error& error) {
   return error;
 }
 
-/// The flight's clock has not begun: there is time to wait, in real time as in lockstep.
+/// Waits in real time as in lockstep, because the flight's clock has not started.
 Status LcmEstimator::prepare(const VoFrame& first) {
   if (gone_) return *gone_;
   if (in_session_) return {};
@@ -141,7 +142,7 @@ Status LcmEstimator::begin_session(const VoFrame& frame) {
   return link_->announce();
 }
 
-/// Errors: the estimator is gone for good. Empty: no answer to this frame.
+/// Errors: the estimator has failed permanently. Empty: no answer to this frame.
 Result<LcmEstimator::Answer> LcmEstimator::ask(const VoFrame& frame) {
   if (!in_session_) {
     if (Status status = begin_session(frame); !status) return status.error();
@@ -295,15 +296,16 @@ Status check(const LcmEstimatorOptions& options, const LcmUrl& url) {
   const auto mode = url.options.find("mode");
   if (mode == url.options.end() || mode->second != "w") {
     return invalid_argument(
-        "url", options.url, "file:///PATH?mode=w: a log that is played takes no images");
+        "url", options.url, "file:///PATH?mode=w: a log that is read cannot record images");
   }
   if (options.lockstep) {
-    return invalid_argument("url", options.url, "another one in lockstep: a log answers nothing");
+    return invalid_argument(
+        "url", options.url, "another one in lockstep: a log returns no answers");
   }
   return {};
 }
 
-/// @param url  of the options, which are checked
+/// @param url  from the checked options
 Result<std::unique_ptr<VoPort>> create_on(std::shared_ptr<LcmNode> node,
                                           const LcmEstimatorOptions& options,
                                           const LcmUrl& url,
@@ -333,7 +335,7 @@ Result<std::unique_ptr<VoPort>> create_lcm_estimator(const LcmEstimatorOptions& 
   if (!url) return url.error();
   if (Status status = check(options, *url); !status) return status.error();
   std::shared_ptr<LcmClaim> claim;
-  if (url->provider != "memq") {  // a network of one node alone
+  if (url->provider != "memq") {  // memq connects only nodes of one process
     auto taken = LcmClaim::take(lcm_network_of(options.url), options.channel_prefix);
     if (!taken) return taken.error();
     claim = std::move(*taken);

@@ -9,13 +9,13 @@
 namespace overfly {
 namespace {
 
-/// Lines that wait to be taken, and messages told of one by one: a flood must not fill memory.
+/// Limits for pending lines and individually reported messages, so that memory stays bounded.
 constexpr std::size_t kMostLines = 1000;
 constexpr std::int64_t kMostRefusalsTold = 20;
 constexpr std::size_t kLongestLine = 2000;
 constexpr std::size_t kLongestName = 128;
 
-/// As may stand in a log or a JSON file.
+/// Makes a text suitable for a log or a JSON file.
 std::string clean(const std::string& text, std::size_t limit) {
   return process::printable(text, limit);
 }
@@ -30,8 +30,8 @@ void LcmFarEnd::hear(const overfly_lcm::status_t& status) {
     if (is_figure_name(name)) {
       parameters_[name] = clean(value, kLongestLine);
     } else if (++bad_names_ <= kMostRefusalsTold) {
-      add_line("parameter \"" + clean(name, kLongestName) + "\" left out: its name must be 1 to " +
-               std::to_string(kLongestName) + " printable characters of ASCII without spaces");
+      add_line("parameter \"" + clean(name, kLongestName) + "\" ignored: its name must be 1 to " +
+               std::to_string(kLongestName) + " printable ASCII characters without spaces");
     }
   }
   if (!status.name.empty()) {

@@ -14,17 +14,17 @@ LcmFindings lcm_findings_from(const std::string& multicast_fault, long long rece
   if (!multicast_fault.empty()) {
     return {false,
             version + ", but " + multicast_fault,
-            "ip link set lo multicast on; ip route add 224.0.0.0/4 dev lo; let the firewall pass "
-            "UDP to 224.0.0.0/4"};
+            "ip link set lo multicast on; ip route add 224.0.0.0/4 dev lo; allow "
+            "UDP to 224.0.0.0/4 in the firewall"};
   }
   const std::string buffer = "net.core.rmem_max = " + std::to_string(receive_buffer_bytes);
   if (receive_buffer_bytes > 0 && receive_buffer_bytes < kSmallestReceiveBufferBytes) {
     return {false,
-            version + ", multicast comes back, but " + buffer +
-                " lets receivers lose most packets of a large image",
+            version + ", multicast works, but " + buffer +
+                " makes receivers lose most packets of a large image",
             "sysctl -w net.core.rmem_max=8388608 (and into /etc/sysctl.d)"};
   }
-  return {true, version + ", multicast comes back, " + buffer, ""};
+  return {true, version + ", multicast works, " + buffer, ""};
 }
 
 LcmFindings lcm_findings() {

@@ -5,7 +5,7 @@
 namespace overfly {
 namespace {
 
-/// Sizes as LCM encodes them: numbers big-endian, without padding; a hash of the type comes first.
+/// Sizes in LCM's encoding: big-endian numbers without padding, preceded by a hash of the type.
 constexpr std::size_t kHash = 8;
 constexpr std::size_t kByte = 1;
 constexpr std::size_t kInt32 = 4;
@@ -22,13 +22,13 @@ class Walk {
     rest_ = sound_ ? rest_.subspan(bytes) : std::span<const std::uint8_t>{};
   }
 
-  /// A number of elements, of which each takes a byte at least.
+  /// A number of elements, each of at least one byte.
   std::size_t count() {
     const std::span<const std::uint8_t> digits = rest_.first(std::min(kInt32, rest_.size()));
     skip(kInt32);
     std::uint32_t number = 0;
     for (const std::uint8_t digit : digits) number = (number << 8U) | digit;
-    // A negative one is large here.
+    // A negative number is large here.
     sound_ = sound_ && number <= rest_.size();
     return sound_ ? number : 0;
   }

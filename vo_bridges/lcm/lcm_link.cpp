@@ -9,11 +9,12 @@
 namespace overfly {
 namespace {
 
-/// Of counters, and of timings, in a session: each is a column of what is recorded.
+/// Maximum number of names of counters, and of timings, in a session: each becomes a recorded
+/// column.
 constexpr std::size_t kMostNames = 256;
 
-/// Unlike that of any run before, here or elsewhere: the time in microseconds since 1970, and one
-/// more where that was taken within this process.
+/// A session number that differs from all previous ones, here and on other machines: the time in
+/// microseconds since 1970, increased by one if it was used within this process.
 std::int64_t new_session() {
   static std::atomic<std::int64_t> last = 0;
   const std::int64_t now = std::chrono::duration_cast<std::chrono::microseconds>(
@@ -40,7 +41,7 @@ Result<std::unique_ptr<LcmLink>> LcmLink::open(std::shared_ptr<LcmNode> node,
 LcmLink::~LcmLink() {
   if (session() != 0) {
     time_.ended = 1;
-    // Nobody is there to tell when this fails.
+    // A failure cannot be reported any more.
     static_cast<void>(publish_message(*node_, prefix_ + "TIME", time_));
   }
   node_->stop();
@@ -103,12 +104,12 @@ void LcmLink::hear_pose(std::span<const std::uint8_t> bytes) {
     ++outdated_;
     return;
   }
-  // An answer that was repeated on request, and has come already, is no fault.
+  // A second answer to the same image was requested and is not an error.
   const std::pair answers_to(message->session, message->t_ns);
   if (message->attempt > 1 && answers_to == answered_) return;
   VoEstimate estimate;
   if (message->image_received == 0) {
-    // One about an image that was sent again since is of no use.
+    // Ignore a report about an image that was sent again in the meantime.
     if (message->sequence != sequence_) return;
     estimate.counters[kImageLost] = 1.0;
   } else if (Result<VoEstimate> understood = estimate_from(*message); understood) {
@@ -140,9 +141,9 @@ void LcmLink::limit_names(Names& names, std::map<std::string, double>& figures) 
     }
     if (!std::exchange(sound ? names.limit_told : names.bad_told, true)) {
       far_end_.say(names.what + (" \"" + process::printable(name, 80)) +
-                   "\" left out, as others like it will be: " +
-                   (sound ? "a session has at most " + std::to_string(kMostNames) + " names of them"
-                          : "names must be 1 to 128 printable characters of ASCII without spaces"));
+                   "\" ignored, as will be others like it: " +
+                   (sound ? "a session has at most " + std::to_string(kMostNames) + " names"
+                          : "names must be 1 to 128 printable ASCII characters without spaces"));
     }
     return true;
   });
@@ -151,7 +152,7 @@ void LcmLink::limit_names(Names& names, std::map<std::string, double>& figures) 
 void LcmLink::attach_debug(VoEstimate& estimate) {
   if (!debug_wanted_) return;
   if (debug_t_ns_ != estimate.sample.t_ns) {
-    // It is published before its pose: it will not come any more.
+    // It is published before its pose, so it was lost.
     estimate.counters["debug_lost"] = 1.0;
     return;
   }

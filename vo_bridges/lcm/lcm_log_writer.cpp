@@ -23,7 +23,7 @@ class EventLogWriter final : public LcmLogWriter {
       : file_(std::move(file)),
         log_(log),
         epoch_utc_us_(epoch_utc_ns / kNsPerUs),
-        // As the door's: unlike that of other runs, and not 0.
+        // Differs from other runs and is not 0, like the sessions of the door.
         session_(std::max<std::int64_t>(epoch_utc_us_, 1)) {}
   ~EventLogWriter() override { lcm_eventlog_destroy(log_); }
   EventLogWriter(const EventLogWriter&) = delete;
@@ -107,7 +107,7 @@ class EventLogWriter final : public LcmLogWriter {
 Result<std::unique_ptr<LcmLogWriter>> LcmLogWriter::create(const std::filesystem::path& file,
                                                            std::int64_t epoch_utc_ns) {
   lcm_eventlog_t* const log = lcm_eventlog_create(file.c_str(), "w");
-  if (log == nullptr) return Error{ErrorCode::kIo, file.string() + ": cannot be made"};
+  if (log == nullptr) return Error{ErrorCode::kIo, file.string() + ": cannot be created"};
   return std::unique_ptr<LcmLogWriter>(std::make_unique<EventLogWriter>(file, log, epoch_utc_ns));
 }
 

@@ -7,7 +7,7 @@
 namespace overfly {
 namespace {
 
-/// How far a quaternion's norm may be from 1: four decimals of each part, as in many text files.
+/// Tolerance of a quaternion's norm: components with four decimals, as in many text files.
 constexpr double kUnitTolerance = 1e-3;
 
 Error unreadable(const std::string& field, const std::string& value, const std::string& limit) {

@@ -15,14 +15,14 @@ namespace overfly {
 
 Result<std::shared_ptr<LcmNode>> LcmNode::open(const LcmUrl& url, const std::atomic<bool>* cancel) {
   if (url.provider == "udpm") {
-    // LCM itself would wait ten seconds for its own packet, and say less.
+    // LCM itself would wait ten seconds for its own packet and report less.
     if (Status status = probe_multicast(url.address(), cancel); !status) return status.error();
   }
   lcm_t* const lcm = lcm_create(url.text().c_str());
   if (lcm == nullptr) return Error{ErrorCode::kIo, "LCM cannot open " + url.text()};
   const std::shared_ptr<LcmNode> node(new LcmNode(lcm));
   node->stop_fd_ = eventfd(0, EFD_CLOEXEC);
-  if (node->stop_fd_ < 0) return Error{ErrorCode::kIo, "LCM: no file descriptor is left"};
+  if (node->stop_fd_ < 0) return Error{ErrorCode::kIo, "LCM: no more file descriptors"};
   return node;
 }
 
@@ -36,7 +36,7 @@ Status LcmNode::subscribe(const std::string& channel, Handler handler) {
   subscriptions_.push_back(std::make_unique<Subscription>(Subscription{std::move(handler)}));
   const auto call = [](const lcm_recv_buf_t* received, const char* /*channel*/, void* context) {
     const std::span message(static_cast<const std::uint8_t*>(received->data), received->data_size);
-    // No exception may pass through LCM's own functions; without memory the message is left out.
+    // LCM's functions are not exception-safe; without memory the message is dropped.
     (void)contained([&] { static_cast<const Subscription*>(context)->handler(message); },
                     [](const char*) {});
   };
@@ -64,7 +64,7 @@ void LcmNode::hear() {
       return;
     }
     if (sources[0].revents != 0) return;
-    // A log that is played ends with an error: there is nothing more to hear.
+    // A log that is read ends with an error: there are no more messages.
     if (sources[1].revents != 0 && lcm_handle(lcm_) != 0) return;
   }
 }

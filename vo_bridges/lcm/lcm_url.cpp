@@ -15,7 +15,7 @@
 namespace overfly {
 namespace {
 
-/// Two debug images of 1280 x 960 RGB and their bookkeeping.
+/// Two debug images of 1280 x 960 RGB with overhead.
 constexpr std::int64_t kWantedReceiveBufferBytes = std::int64_t{8} << 20U;
 
 const std::map<std::string, std::set<std::string>> kOptionsOfProvider = {
@@ -74,14 +74,15 @@ Status check_url(const std::string& text, const LcmUrl& url) {
   }
   for (const auto& [name, value] : url.options) {
     if (!provider->second.contains(name)) {
-      return bad(text, "option " + name + ": " + url.provider + " has none of that name");
+      return bad(text, "option " + name + ": " + url.provider + " does not support it");
     }
   }
   if (url.provider == "udpm") return check_multicast(text, url);
   if (url.provider == "memq" && !url.network.empty()) {
-    return bad(text, "network " + url.network + ": memq has none");
+    return bad(text, "network " + url.network + ": must be empty for memq");
   }
-  if (url.provider == "file" && url.network.empty()) return bad(text, "no path of a log");
+  if (url.provider == "file" && url.network.empty())
+    return bad(text, "the path of the log is missing");
   return {};
 }
 
@@ -124,7 +125,7 @@ Result<LcmUrl> parse_lcm_url(const std::string& text) {
       return bad(text, "option \"" + option + "\": must be NAME=VALUE");
     }
     if (!url.options.emplace(option.substr(0, equals), option.substr(equals + 1)).second) {
-      return bad(text, "option " + option.substr(0, equals) + ": there twice");
+      return bad(text, "option " + option.substr(0, equals) + ": given twice");
     }
     rest.resize(last);
   }
@@ -134,7 +135,7 @@ Result<LcmUrl> parse_lcm_url(const std::string& text) {
 
 LcmUrl with_receive_buffer(LcmUrl url) {
   if (url.provider != "udpm") return url;
-  // LCM warns on the standard error stream where the kernel gives less than was asked for.
+  // LCM writes a warning to stderr if the kernel grants less than requested.
   const std::int64_t size = std::clamp(
       largest_receive_buffer_bytes(), kSmallestReceiveBufferBytes, kWantedReceiveBufferBytes);
   url.options.emplace("recv_buf_size", std::to_string(size));

@@ -34,8 +34,8 @@ class Socket {
 Error failure(const std::string& address, const std::string& what) {
   return {ErrorCode::kIo,
           "multicast to " + address + ": " + what +
-              "; give it a route (ip route add 224.0.0.0/4 dev lo; ip link set lo multicast on) "
-              "and let the firewall pass UDP"};
+              "; add a route (ip route add 224.0.0.0/4 dev lo; ip link set lo multicast on) "
+              "and allow UDP in the firewall"};
 }
 
 std::string last_failure() { return std::system_category().message(errno); }
@@ -56,7 +56,7 @@ Status probe_multicast(const std::string& address, const std::atomic<bool>* canc
   sockaddr_in own{};
   own.sin_family = AF_INET;
   socklen_t length = sizeof(own);
-  // The sockets interface takes every family's address through one type.
+  // The socket functions use one type for the addresses of every family.
   auto* const generic = reinterpret_cast<sockaddr*>(&own);
   if (socket.fd() < 0 || bind(socket.fd(), generic, length) != 0 ||
       getsockname(socket.fd(), generic, &length) != 0) {
@@ -64,7 +64,7 @@ Status probe_multicast(const std::string& address, const std::atomic<bool>* canc
   }
   sockaddr_in group = own;
   if (inet_pton(AF_INET, address.c_str(), &group.sin_addr) != 1) {
-    return failure(address, "no address of IPv4");
+    return failure(address, "not an IPv4 address");
   }
   if (!join(socket.fd(), group.sin_addr)) return failure(address, last_failure());
   const std::array<std::uint8_t, 8> sent{'o', 'v', 'e', 'r', 'f', 'l', 'y', '?'};
@@ -84,7 +84,7 @@ Status probe_multicast(const std::string& address, const std::atomic<bool>* canc
       });
   if (back) return {};
   if (is_cancelled(cancel)) return cancelled("multicast to " + address);
-  return failure(address, "a packet that was sent did not come back");
+  return failure(address, "a sent packet was not received");
 }
 
 }  // namespace overfly

@@ -15,13 +15,13 @@ namespace overfly::process {
 namespace {
 
 constexpr std::size_t kFrameMessageLimit = 10'000;
-/// Of all messages for one frame, beside a debug image as large as it may be.
+/// Maximum size of all messages for one frame, in addition to a debug image of maximum size.
 constexpr std::size_t kFrameBytesLimit = std::size_t{64} << 20U;
 constexpr std::size_t kReadBytes = 65536;
 
 Error broken(const std::string& what) { return {ErrorCode::kInternal, what}; }
 
-/// Sends bytes, and a descriptor along with them; as send(2) otherwise.
+/// Sends bytes and a descriptor with them; otherwise like send(2).
 ssize_t send_part(int socket, const char* bytes, std::size_t count, int attached) {
   iovec part{const_cast<char*>(bytes), count};
   msghdr message{};
@@ -69,7 +69,7 @@ Status Channel::send_some() {
     const ssize_t sent = send_part(socket_.get(), bytes + begin, count, chunk.attached.get());
     if (sent < 0 && errno == EINTR) continue;
     if (sent < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) return {};
-    // A closed connection may still hold the estimator's last words: the reader finds its end.
+    // A closed connection may still hold the estimator's last messages; the reader detects its end.
     if (sent < 0 && (errno == EPIPE || errno == ECONNRESET)) {
       out_.clear();
       sent_of_first_ = 0;
@@ -114,13 +114,14 @@ Result<MessageType> Channel::check_header(std::string_view header, std::size_t* 
   ByteReader reader(header.substr(kMagic.size()));
   const std::uint16_t version = reader.u16();
   if (version != kProtocolVersion) {
-    return broken("the estimator speaks version " + std::to_string(version) +
-                  " of the protocol: this is version " + std::to_string(kProtocolVersion));
+    return broken("the estimator uses protocol version " + std::to_string(version) + ": must be " +
+                  std::to_string(kProtocolVersion));
   }
   const auto type = static_cast<MessageType>(reader.u16());
   *length = reader.u32();
   const std::optional<std::size_t> limit = payload_limit_bytes(type, frame_pixels_);
-  if (!limit) return broken("the estimator sent " + name_of(type) + ", which it must not");
+  if (!limit)
+    return broken("the estimator sent " + name_of(type) + ", which an estimator must not send");
   if (*length > *limit) {
     return broken("the estimator announced " + name_of(type) + " of " + std::to_string(*length) +
                   " bytes: must be at most " + std::to_string(*limit));
@@ -130,7 +131,7 @@ Result<MessageType> Channel::check_header(std::string_view header, std::size_t* 
 
 Result<std::optional<Message>> Channel::take_message() {
   const std::string_view waiting = std::string_view(in_).substr(taken_);
-  // The magic is checked as far as it has come: a stranger may say little and then wait.
+  // Check the magic as far as it was received: another program may send a few bytes and then wait.
   const std::string_view begin = waiting.substr(0, std::min(waiting.size(), kMagic.size()));
   if (!kMagic.starts_with(begin)) {
     std::size_t ignored = 0;

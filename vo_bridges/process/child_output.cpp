@@ -25,7 +25,7 @@ void ChildOutput::write_file(std::string_view bytes) {
   const std::string_view fits = bytes.substr(0, kFileLimitBytes - file_bytes_);
   file_ << fits;
   file_bytes_ += fits.size();
-  if (file_bytes_ >= kFileLimitBytes) file_ << "\n(what follows was not kept: over 64 MB)\n";
+  if (file_bytes_ >= kFileLimitBytes) file_ << "\n(truncated at 64 MB)\n";
   file_.flush();
 }
 
@@ -85,7 +85,7 @@ std::vector<std::string> ChildOutput::take_lines() {
   const std::lock_guard lock(mutex_);
   std::vector<std::string> lines;
   if (dropped_ > 0) {
-    lines.push_back(std::to_string(dropped_) + " lines before these were too many to keep");
+    lines.push_back(std::to_string(dropped_) + " earlier lines were dropped, too many to keep");
   }
   lines.insert(lines.end(), waiting_.begin(), waiting_.end());
   waiting_.clear();

@@ -26,20 +26,20 @@ namespace overfly::process {
 namespace {
 
 constexpr int kSampleMs = 250;
-/// What the kernel has to end descendants that were killed.
+/// Time that the kernel gets to end killed descendants.
 constexpr std::chrono::milliseconds kEndPatience(5000);
 
 double seconds_of(const timeval& time) {
   return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_usec) * 1e-6;
 }
 
-/// Of what waitid(2) says.
+/// Formats the result of waitid(2).
 std::string end_text(int code, int status) {
   if (code == CLD_EXITED) return "exited with code " + std::to_string(status);
   return "was killed by signal " + std::to_string(status) + " (" + ::strsignal(status) + ")";
 }
 
-/// What waitid(2) says, without taking it away; nothing while it runs.
+/// Result of waitid(2) without reaping; empty while the process runs.
 siginfo_t state_of(int pid) {
   siginfo_t info{};
   ::waitid(P_PID, static_cast<id_t>(pid), &info, WEXITED | WNOHANG | WNOWAIT);
@@ -75,7 +75,7 @@ Result<std::unique_ptr<ChildProcess>> ChildProcess::start(const ChildCommand& co
         writing.close();
         const bool runs = pid.ok();
         if (runs) self->pid_ = *pid;
-        started.set_value(std::move(pid));  // what was borrowed is not touched from here on
+        started.set_value(std::move(pid));  // the borrowed arguments are not used after this
         if (runs) self->pump();
       });
   const Result<int> pid = start_result.get();
@@ -106,7 +106,7 @@ void ChildProcess::stop() {
   if (stopped_) return;
   sample_use();
   family_.kill_members(pid_);
-  // The group before its leader is reaped: until then no other group can get its number.
+  // Kill the group before its leader is reaped: until then no other group can get its number.
   ::kill(-pid_, SIGKILL);
   siginfo_t info{};
   while (::waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOWAIT) != 0 &&
@@ -156,7 +156,7 @@ bool ChildProcess::read_output() {
   std::array<char, kBytes> bytes;
   const ssize_t got = ::read(output_pipe_.get(), bytes.data(), bytes.size());
   if (got > 0) {
-    // Without memory this piece is left out.
+    // Out of memory: drop this piece.
     (void)contained(
         [&] {
           output_->add({bytes.data(), static_cast<std::size_t>(got)});
@@ -183,7 +183,7 @@ void ChildProcess::pump() {
       sampled = now;
     }
   }
-  // What is left; a grandchild that got away may hold the pipe open for ever.
+  // Read the rest, but not forever: a detached grandchild may keep the pipe open.
   for (int i = 0; open && i < 64; ++i) open = read_output();
   output_->close();
 }

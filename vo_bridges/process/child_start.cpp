@@ -23,14 +23,14 @@ namespace {
 
 enum class Step : int { kParent, kStreams, kFolder, kCpus, kMemory, kExec };
 
-/// What a child reports that could not be started.
+/// Report of a child that could not be started.
 struct Failure {
   Step step = Step::kExec;
   int number = 0;
 };
 
-/// All that the child needs, made before the fork: after it, in a program of several threads, even
-/// an allocation could wait forever for a lock that another thread held.
+/// Everything the child needs, prepared before the fork. After a fork in a program with several
+/// threads even an allocation could wait forever for a lock held by another thread.
 struct Preparation {
   std::string program;
   std::vector<std::string> environment;
@@ -52,7 +52,7 @@ std::vector<char*> pointers_to(const std::vector<std::string>& texts) {
   return pointers;
 }
 
-/// Ours, and the command's in front: the first of a name counts.
+/// The inherited environment with the command's variables first: the first of a name counts.
 std::vector<std::string> environment_of(const ChildCommand& command) {
   std::vector<std::string> all = command.environment;
   for (char** entry = environ; *entry != nullptr; ++entry) {
@@ -72,7 +72,7 @@ std::vector<std::string> environment_of(const ChildCommand& command) {
   ::_exit(127);
 }
 
-/// Signals as a new program expects them: exec keeps the mask, and what is ignored.
+/// Resets signals to their defaults: exec keeps the mask and ignored signals.
 void reset_signals() {
   for (int number = 1; number < NSIG; ++number) ::signal(number, SIG_DFL);
   sigset_t none;
@@ -80,7 +80,7 @@ void reset_signals() {
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
 }
 
-/// In the child: only calls that are safe between fork and exec.
+/// Runs in the child: only calls that are safe between fork and exec.
 [[noreturn]] void become(const Preparation& child) {
   ::setpgid(0, 0);
   // The parent may have ended before the request took effect.
@@ -98,8 +98,8 @@ void reset_signals() {
     fail(child, Step::kCpus);
   }
   if (child.memory && ::setrlimit(RLIMIT_AS, &*child.memory) != 0) fail(child, Step::kMemory);
-  // Our other descriptors are none of its business; kernels before 5.11 lack the call, and rely on
-  // each descriptor's own flag.
+  // Close the inherited descriptors. Kernels before 5.11 lack this call and rely on the flag of
+  // each descriptor.
   ::close_range(3, ~0U, CLOSE_RANGE_CLOEXEC);
   ::execve(child.program.c_str(), child.argv.data(), child.envp.data());
   fail(child, Step::kExec);
@@ -121,12 +121,12 @@ Error error_of(const Failure& failure, const ChildCommand& command) {
       if (failure.number == ENOEXEC) {
         return Error{ErrorCode::kInvalidArgument,
                      "command[0] = '" + command.arguments[0] +
-                         "': is no program (a script begins with #! and its interpreter)"};
+                         "': is not a program (a script starts with #! and its interpreter)"};
       }
       if (failure.number == ENOENT) {
         return Error{ErrorCode::kNotFound,
                      "command[0] = '" + command.arguments[0] +
-                         "': its interpreter (in its #! line) is not there"};
+                         "': its interpreter (in its #! line) does not exist"};
       }
       return bad("command[0] = '" + command.arguments[0] + "'");
     default:
@@ -170,7 +170,7 @@ Result<int> start_child(const std::filesystem::path& program,
   const pid_t pid = ::fork();
   if (pid == 0) become(child);
   if (pid < 0) return Error{ErrorCode::kIo, "fork: " + std::generic_category().message(errno)};
-  ::setpgid(pid, pid);  // whoever of both comes first
+  ::setpgid(pid, pid);  // parent and child both call it; the first takes effect
   writing.close();
   Failure failure;
   ssize_t got = 0;

@@ -20,7 +20,7 @@ bool FigureIntake::takes(const char* kind, Names* names, std::string_view name, 
   if (!std::isfinite(value)) {
     if (!std::exchange(not_finite_noted_, true)) {
       notes_.push_back("warning: " + named +
-                       " is not finite: such values are left out, this one and those to come");
+                       " is not finite: this and later such values are ignored");
     }
     return false;
   }
@@ -30,9 +30,8 @@ bool FigureIntake::takes(const char* kind, Names* names, std::string_view name, 
     return true;
   }
   if (!std::exchange(names->overflow_noted, true)) {
-    notes_.push_back("warning: " + named + " is one name too many: must be at most " +
-                     std::to_string(kNameLimit) +
-                     " in a session; this one and those to come are left out");
+    notes_.push_back("warning: " + named + " exceeds the limit of " + std::to_string(kNameLimit) +
+                     " names in a session: this and later new names are ignored");
   }
   return false;
 }

@@ -21,8 +21,8 @@ std::optional<FrameMemory> FrameMemory::create(std::size_t slot_bytes) {
       ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, memory.file_.get(), 0);
   if (mapped == MAP_FAILED) return std::nullopt;
   memory.bytes_ = static_cast<std::uint8_t*>(mapped);
-  // Without the first two an estimator could cut the file under us, and our next write would be
-  // fatal. Kernels before 5.1 lack the third, by which only our mapping stays writable.
+  // Without the first two seals an estimator could truncate the file, and the next write here would
+  // be fatal. Kernels before 5.1 lack the third seal, which makes all other mappings read-only.
   if (::fcntl(memory.file_.get(), F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW) != 0) {
     return std::nullopt;
   }

@@ -35,7 +35,7 @@ std::optional<sockaddr_un> unix_name(const std::string& path) {
   return name;
 }
 
-/// What stands at a path, itself and not what it leads to; empty for a socket, and for nothing.
+/// Describes what exists at a path (links are not followed); empty for a socket or nothing.
 std::string other_than_socket(const std::string& path) {
   struct stat status {};
   if (::lstat(path.c_str(), &status) != 0 || S_ISSOCK(status.st_mode)) return "";
@@ -43,15 +43,15 @@ std::string other_than_socket(const std::string& path) {
   return S_ISDIR(status.st_mode) ? "a folder" : "a file";
 }
 
-/// Whether a socket file is one that a dead program left behind. A living one refuses a datagram
-/// socket for its type; it must not take us for its estimator.
+/// Whether a socket file was left behind by a dead program. A living one refuses a datagram socket
+/// because of its type, and does not take the probe for its estimator.
 bool is_stale(const sockaddr_un& name) {
   const FileDescriptor probe(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   return ::connect(probe.get(), reinterpret_cast<const sockaddr*>(&name), sizeof(name)) != 0 &&
          errno == ECONNREFUSED;
 }
 
-/// The port that a socket has got.
+/// The port assigned to a socket.
 int port_of(int socket) {
   sockaddr_storage name{};
   socklen_t size = sizeof(name);
@@ -71,7 +71,7 @@ Listener::Listener(Listener&& other) noexcept
       path_(std::exchange(other.path_, {})) {}
 
 Listener::~Listener() {
-  std::error_code ignored;  // nothing can be done about a file that stays
+  std::error_code ignored;  // a file that cannot be removed stays
   if (std::filesystem::symlink_status(path_, ignored).type() ==
       std::filesystem::file_type::socket) {
     std::filesystem::remove(path_, ignored);
@@ -113,9 +113,9 @@ Result<Listener> Listener::open_unix(const std::string& path) {
   };
   int failed = bind();
   if (failed != 0 && errno == EADDRINUSE) {
-    // Never the user's own file, which refuses a connection as a stale socket does.
+    // Never remove a user's file: it refuses a connection like a stale socket.
     if (const std::string other = other_than_socket(path); !other.empty()) {
-      return bad_address(address, "is " + other + ", and no socket");
+      return bad_address(address, "is " + other + ", not a socket");
     }
     if (!is_stale(*name)) {
       return Error{ErrorCode::kConflict, "listen = '" + address + "': is in use"};

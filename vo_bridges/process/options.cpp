@@ -18,7 +18,7 @@ Status check_number(const char* name, double value, double low, double high, con
                std::string(name) + " = " + std::to_string(value) + ": must be " + limit};
 }
 
-/// The CPUs that this program may use, as "0-1,4".
+/// The CPUs available to this program, as "0-1,4".
 std::string allowed_cpus(const cpu_set_t& set) {
   std::string text;
   for (std::size_t cpu = 0; cpu < CPU_SETSIZE; ++cpu) {
@@ -54,9 +54,9 @@ Status check_parameters(const VoParameters& parameters) {
   for (const auto& [name, value] : parameters) {
     const std::string text = text_of(value);
     if (name.empty() || name.find_first_of(" \n") != std::string::npos) {
-      return Error{ErrorCode::kInvalidArgument,
-                   "parameters: the name '" + printable(name) +
-                       "' must have a character or more, and no space"};
+      return Error{
+          ErrorCode::kInvalidArgument,
+          "parameters: the name '" + printable(name) + "' must not be empty or contain spaces"};
     }
     if (text.find('\n') != std::string::npos) {
       return Error{ErrorCode::kInvalidArgument, "parameters." + name + ": must be one line"};
@@ -74,12 +74,12 @@ Status check_parameters(const VoParameters& parameters) {
 Status validate(const ProcessEstimatorOptions& options) {
   const auto bad = [](const char* what) { return Error{ErrorCode::kInvalidArgument, what}; };
   if (options.command.empty() && options.listen.empty()) {
-    return bad("command: is empty, and so is listen: one of them is needed");
+    return bad("command and listen are both empty: one of them is required");
   }
   if (!options.command.empty() && options.command[0].empty()) return bad("command[0]: is empty");
   if (options.command.empty() && options.listen.starts_with("tcp:") &&
       options.listen.ends_with(":0")) {
-    return bad("listen: port 0 needs a command, or nobody could know the port");
+    return bad("listen: port 0 requires a command, which is told the assigned port");
   }
   for (const Status& status :
        {check_number("start_timeout_s", options.start_timeout_s, 1e-3, 3600.0, "in (0, 3600]"),
@@ -91,10 +91,11 @@ Status validate(const ProcessEstimatorOptions& options) {
     if (!status) return status;
   }
   if (options.command.empty() && !options.cpus.empty()) {
-    return bad("cpus: only a program that is started here (command) can be bound to them");
+    return bad("cpus: requires command, because only a program started here can be bound to CPUs");
   }
   if (options.command.empty() && options.memory_limit_mb > 0.0) {
-    return bad("memory_limit_mb: only a program that is started here (command) can be limited");
+    return bad(
+        "memory_limit_mb: requires command, because only a program started here can be limited");
   }
   return {};
 }

@@ -13,7 +13,7 @@ std::optional<std::istringstream> stat_after_name(int pid) {
   std::ifstream file(proc_folder(pid) / "stat");
   std::string text;
   if (!std::getline(file, text)) return std::nullopt;
-  // The second field is the program's name in parentheses, and may hold anything.
+  // The second field is the program's name in parentheses, which may contain any character.
   const std::size_t name_end = text.rfind(')');
   if (name_end == std::string::npos) return std::nullopt;
   return std::istringstream(text.substr(name_end + 1));

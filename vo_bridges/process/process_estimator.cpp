@@ -45,7 +45,7 @@ class ProcessEstimator final : public VoPort {
     previous_.reset();
     tracked_ = false;
     map_id_ = 0;
-    // A failure ends the session: the next frame tells it.
+    // A failure ends the session; the next frame reports it.
     static_cast<void>(session_->reset());
   }
 
@@ -65,7 +65,7 @@ class ProcessEstimator final : public VoPort {
     return copy;
   }
 
-  /// Where the camera is not the one that was told.
+  /// Sends the camera unless it was already sent.
   [[nodiscard]] Status calibrate(const VoFrame& frame) {
     if (calibrated_for(frame)) return {};
     if (Status status = session_->calibrate(frame); !status) return status;
@@ -95,7 +95,7 @@ class ProcessEstimator final : public VoPort {
 
   std::unique_ptr<process::Session> session_;
   std::optional<VoFrame> previous_;
-  std::optional<VoFrame> calibration_;  // the frame whose camera was told
+  std::optional<VoFrame> calibration_;  // the frame whose camera was sent
   bool debug_ = false;
   bool tracked_ = false;
   int map_id_ = 0;

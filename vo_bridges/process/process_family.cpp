@@ -33,7 +33,7 @@ struct ProcessStat {
   [[nodiscard]] bool zombie() const { return state == 'Z' || state == 'X'; }
 };
 
-/// Fields 3, 5 and 6 of stat (proc(5)); empty when there is no such process.
+/// Fields 3, 5 and 6 of stat (proc(5)); empty if there is no such process.
 std::optional<ProcessStat> stat_of(int pid) {
   std::optional<std::istringstream> fields = stat_after_name(pid);
   if (!fields) return std::nullopt;
@@ -105,8 +105,8 @@ void ProcessFamily::end(int child, std::chrono::milliseconds patience) {
     kill_members(child);
     std::this_thread::sleep_for(kStep);
   }
-  // The list of children may leave one out while another ends (proc(5)), so each that was killed is
-  // asked for by its number; those of others that have not become ours are no children (ECHILD).
+  // The list of children may omit one while another ends (proc(5)), so each killed process is
+  // waited for by its id. Processes that did not become children of this process give ECHILD.
   for (const int pid : killed_) {
     while (::waitpid(pid, nullptr, WNOHANG) == 0 && Clock::now() < deadline) {
       std::this_thread::sleep_for(kStep);
@@ -115,8 +115,8 @@ void ProcessFamily::end(int child, std::chrono::milliseconds patience) {
   reap(child);
 }
 
-/// Those that ended by themselves after they had become ours: of the child's group, or of a session
-/// of their own.
+/// Reaps processes that ended by themselves after they became children of this process: in the
+/// child's group or in their own session.
 void ProcessFamily::reap(int child) const {
   const int own_session = ::getsid(0);
   for (const int ours : children_of(::getpid())) {

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kProcessLimit = 256;
 
-/// Seconds of utime, stime, cutime and cstime: fields 14 to 17 of stat (proc(5)).
+/// utime, stime, cutime and cstime in seconds: fields 14 to 17 of stat (proc(5)).
 std::optional<double> cpu_s_of(int pid) {
   std::optional<std::istringstream> fields = stat_after_name(pid);
   if (!fields) return std::nullopt;

@@ -1,4 +1,4 @@
-// What an estimator says, checked field by field: nothing of it is believed before.
+// Decodes an estimator's messages and checks every field.
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -28,10 +28,10 @@ bool is_name(std::string_view text) {
 Status check_frame(const char* message, std::int64_t index, const VoFrame& frame) {
   if (index == frame.index) return {};
   return bad(std::string(message) + " is for frame " + std::to_string(index) + ": frame " +
-             std::to_string(frame.index) + " is under way");
+             std::to_string(frame.index) + " is expected");
 }
 
-/// As it came: PoseIntake judges it.
+/// Reads the pose unchecked: PoseIntake checks it.
 void read_pose(ByteReader* reader, EstimateSample* sample) {
   for (int i = 0; i < 3; ++i) sample->T_vo_camera.translation[i] = reader->f64();
   for (int i = 0; i < 4; ++i) sample->T_vo_camera.rotation.coeffs()[i] = reader->f64();  // x y z w
@@ -43,7 +43,7 @@ void read_pose(ByteReader* reader, EstimateSample* sample) {
   if (depth != 0.0) sample->scene_depth = depth;
 }
 
-/// "counter NAME VALUE" and "timing_ms NAME VALUE".
+/// Parses "counter NAME VALUE" and "timing_ms NAME VALUE".
 Status read_figures(std::string_view text, FigureIntake* figures, VoEstimate* estimate) {
   for (const auto& [key, value] : lines_of(text)) {
     const bool counter = key == "counter";
@@ -78,8 +78,8 @@ Result<EstimatorHello> hello_from(std::string_view payload) {
     if (key == "protocol") {
       version_said = true;
       if (value != std::to_string(kProtocolVersion)) {
-        return bad("the estimator speaks version '" + printable(value, 40) +
-                   "' of the protocol: this is version " + std::to_string(kProtocolVersion));
+        return bad("the estimator uses protocol version '" + printable(value, 40) + "': must be " +
+                   std::to_string(kProtocolVersion));
       }
     }
     if (key == "name") hello.name = printable(value, kNameLimitBytes);
@@ -183,7 +183,7 @@ Result<std::string> log_line_from(std::string_view payload) {
   ByteReader reader(payload);
   const std::uint32_t level = reader.u32();
   if (!reader.complete() || level > 3) {
-    return bad("LOG has no level of 0 to 3: " + shown(payload));
+    return bad("LOG must have a level in [0, 3]: " + shown(payload));
   }
   const char* const mark = level == 3 ? "error: " : level == 2 ? "warning: " : "";
   return mark + printable(reader.rest());

@@ -1,4 +1,4 @@
-// How a session goes on, frame by frame.
+// Handles the frames of a session.
 #include <utility>
 
 #include "vo_bridges/cancel.hpp"
@@ -8,9 +8,9 @@ namespace overfly::process {
 
 namespace {
 
-/// A frame without an answer for so many times the timeout is the last one.
+/// The session ends if a frame is not answered within this multiple of the timeout.
 constexpr double kTimeoutsToGiveUp = 3.0;
-/// Parameters of one session, with the name and the version of its estimator.
+/// Maximum number of parameters in a session, including the estimator's name and version.
 constexpr std::size_t kParameterLimit = 4096;
 
 Clock::time_point after_s(double seconds) {
@@ -89,9 +89,9 @@ Status Session::take_parameters(const Message& message) {
     if (parameters_.size() < kParameterLimit || parameters_.contains(name)) {
       parameters_[name] = value;
     } else if (!std::exchange(parameters_overflow_noted_, true)) {
-      output_->note("warning: parameter " + name + " is one too many: must be at most " +
+      output_->note("warning: parameter " + name + " exceeds the limit of " +
                     std::to_string(kParameterLimit) +
-                    " in a session; this one and those to come are left out");
+                    " in a session: this and later new ones are ignored");
     }
   }
   return {};
@@ -128,7 +128,7 @@ Result<std::optional<VoEstimate>> Session::wait_answer(Clock::time_point deadlin
     }
     if (type != MessageType::kAnswer) {
       return Error{ErrorCode::kInternal,
-                   "the estimator sent " + name_of(type) + " where ANSWER to frame " +
+                   "the estimator sent " + name_of(type) + " instead of ANSWER to frame " +
                        std::to_string(under_way_->index) + " must come"};
     }
     Result<VoEstimate> estimate = answer_from((*message)->payload, *under_way_, &figures_);

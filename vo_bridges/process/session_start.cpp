@@ -1,4 +1,4 @@
-// How a session begins and ends.
+// Starts and ends a session.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -13,9 +13,10 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// What an estimator has to end by itself after STOP.
+/// Time that an estimator gets to end by itself after STOP.
 constexpr milliseconds kStopPatience(3000);
-/// What a program whose connection broke has to finish dying, for its last words to be whole.
+/// Time that a program gets to exit after its connection broke, so that its last output is
+/// complete.
 constexpr milliseconds kDeathPatience(1000);
 
 }  // namespace
@@ -53,7 +54,7 @@ Result<std::unique_ptr<Session>> Session::open(const ProcessEstimatorOptions& op
 Status Session::connect(Listener listener, Clock::time_point deadline) {
   while (Clock::now() < deadline) {
     if (is_cancelled(options_.cancel)) return cancelled("the estimator's connection");
-    // Asked before accept: a child that connected, and ended, is still heard.
+    // Check before accept, so that a child that connected and ended is still accepted.
     const bool child_gone = child_ != nullptr && !child_->running();
     Result<std::optional<Peer>> peer = listener.accept(kCancelPeriod);
     if (!peer) return peer.error();
@@ -93,8 +94,9 @@ Status Session::greet(Clock::time_point deadline) {
                      seconds_text(options_.start_timeout_s)};
   }
   if ((*message)->type != MessageType::kHello) {
-    return Error{ErrorCode::kInternal,
-                 "the estimator began with " + name_of((*message)->type) + ": must be HELLO"};
+    return Error{
+        ErrorCode::kInternal,
+        "the estimator's first message is " + name_of((*message)->type) + ": must be HELLO"};
   }
   Result<EstimatorHello> hello = hello_from((*message)->payload);
   if (!hello) return hello.error();
@@ -128,8 +130,8 @@ Status Session::wait_ready(MessageType done, Clock::time_point deadline) {
     if (of_a_frame && under_way_ && done == MessageType::kReset) continue;
     if (type != MessageType::kReady) {
       return Error{ErrorCode::kInternal,
-                   "the estimator sent " + name_of(type) + " where READY for " + name_of(done) +
-                       " must come"};
+                   "the estimator sent " + name_of(type) + " instead of READY for " +
+                       name_of(done) + " must come"};
     }
     if (ByteReader((*message)->payload).u32() == static_cast<std::uint32_t>(done)) return {};
     return Error{
@@ -151,7 +153,8 @@ Error Session::end(const Error& why) {
     const bool by_itself = child_->wait(ends_by_itself ? kDeathPatience : milliseconds(0));
     if (by_itself) output_->wait_closed(kDeathPatience);
     const std::string how = child_->how_it_ended();
-    // Killed while it is still connected: its last words are its own, not its complaint about us.
+    // Kill it while it is still connected, so that its last lines are not about the lost
+    // connection.
     child_->stop();
     if (by_itself) text += "; it " + how;
     if (why.code != ErrorCode::kCancelled) text += output_->last_words();
@@ -166,8 +169,8 @@ Session::~Session() {
     channel_->enqueue(message_of(MessageType::kStop));
     channel_->begin_counts();
     const auto deadline = Clock::now() + (child_ ? kStopPatience : kDeathPatience);
-    // Read on: an estimator that still says something must not wait for us with its end. The
-    // connection may outlive it, in a process that it began.
+    // Keep reading, so that an estimator that still sends data is not blocked in its exit. The
+    // connection may outlive it in a process that it started.
     for (bool open = true; open && Clock::now() < deadline;) {
       const auto message = channel_->next(std::min(deadline, Clock::now() + milliseconds(50)));
       open = message.ok() && (!child_ || child_->running());

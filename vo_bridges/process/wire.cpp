@@ -22,7 +22,7 @@ constexpr std::array<const char*, 12> kNames = {"message 0",
                                                 "RESET",
                                                 "STOP"};
 
-/// How many bytes the UTF-8 character at the begin of `text` has; 0 where it is none.
+/// Number of bytes of the UTF-8 character at the start of `text`; 0 if it is invalid.
 std::size_t utf8_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   std::size_t length = 0;

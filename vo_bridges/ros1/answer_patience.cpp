@@ -6,7 +6,7 @@ namespace overfly::ros1 {
 namespace {
 
 constexpr std::size_t kRemembered = 64;
-/// Of the first frame, whose distance to the next one is not known.
+/// Assumed period of the first frame, whose distance to the next one is unknown.
 constexpr std::chrono::nanoseconds kFirstPeriod = std::chrono::milliseconds(100);
 
 }  // namespace
@@ -27,7 +27,7 @@ void AnswerPatience::answered(std::int64_t t_ns, Clock::time_point now) {
   const auto sent = sent_.lower_bound(t_ns - kStampToleranceNs);
   if (sent == sent_.end() || sent->first > t_ns + kStampToleranceNs) return;
   answers_ = true;
-  // A mean over some ten answers: one that was slow by chance is forgotten within a second.
+  // Running mean over about ten answers, so that a single slow answer is forgotten within a second.
   constexpr int kAnswers = 10;
   const std::chrono::nanoseconds took = now - sent->second;
   latency_ = latency_.count() == 0 ? took : latency_ + (took - latency_) / kAnswers;

@@ -30,16 +30,17 @@ Ros1Findings ros1_findings() {
   if (!master) {
     found.works = false;
     found.finding += "ROS_MASTER_URI = " + master.error().message;
-    found.remedy = "unset ROS_MASTER_URI, or make it http://HOST:11311";
+    found.remedy = "unset ROS_MASTER_URI, or set it to http://HOST:11311";
     return found;
   }
   const bool answers = ros1::ask_pid(*master, std::chrono::seconds(1)).ok();
   found.finding += answers ? "a master answers at " + uri : "no master at " + uri;
   const std::string own = variable("ROS_HOSTNAME") + variable("ROS_IP");
-  if (!own.empty()) found.finding += "; nodes are told to find us at " + own;
+  if (!own.empty()) found.finding += "; nodes are told to connect to " + own;
   if (!master->is_loopback() && own.empty()) {
     found.works = false;
-    found.remedy = "export ROS_IP=(this machine's address), so that nodes elsewhere can connect";
+    found.remedy =
+        "export ROS_IP=(this machine's address), so that nodes on other machines can connect";
   }
   return found;
 }

@@ -21,7 +21,7 @@ Result<XmlRpc::XmlRpcValue> value_of_answer(XmlRpc::XmlRpcValue& answer, const s
   if (answer.getType() != XmlRpcValue::TypeArray || answer.size() != 3 ||
       answer[0].getType() != XmlRpcValue::TypeInt ||
       answer[1].getType() != XmlRpcValue::TypeString) {
-    return Error{ErrorCode::kIo, what + ": this is no answer of a ROS master or node"};
+    return Error{ErrorCode::kIo, what + ": not a valid answer of a ROS master or node"};
   }
   if (static_cast<int>(answer[0]) != 1) {
     return Error{ErrorCode::kIo, what + ": " + static_cast<std::string>(answer[1])};
@@ -29,7 +29,7 @@ Result<XmlRpc::XmlRpcValue> value_of_answer(XmlRpc::XmlRpcValue& answer, const s
   return answer[2];
 }
 
-/// Errors: as call_xml_rpc's.
+/// Errors: as call_xml_rpc.
 Result<XmlRpc::XmlRpcValue> call(const XmlRpcAddress& address,
                                  const std::string& method,
                                  const XmlRpc::XmlRpcValue& values,
@@ -45,7 +45,7 @@ Result<XmlRpc::XmlRpcValue> call(const XmlRpcAddress& address,
       XmlRpc::XmlRpcDispatch dispatch;
       dispatch.addSource(&client,
                          XmlRpc::XmlRpcDispatch::WritableEvent | XmlRpc::XmlRpcDispatch::Exception);
-      // Also true for a connection that was lost: then there is no answer.
+      // Also true for a lost connection: then there is no answer.
       const bool over = wait_unless_cancelled(cancel, end, [&](std::chrono::nanoseconds left) {
         dispatch.work(std::chrono::duration<double>(left).count());
         return client.executeCheckDone(answer);
@@ -106,7 +106,7 @@ Result<int> ask_pid(const XmlRpcAddress& node,
   Result<XmlRpc::XmlRpcValue> pid = call_xml_rpc(node, "getPid", {"/overfly"}, timeout, cancel);
   if (!pid) return pid.error();
   if (pid->getType() != XmlRpc::XmlRpcValue::TypeInt) {
-    return Error{ErrorCode::kIo, node.uri() + " getPid: the answer is no number"};
+    return Error{ErrorCode::kIo, node.uri() + " getPid: the answer is not a number"};
   }
   return static_cast<int>(*pid);
 }

@@ -16,13 +16,13 @@ std::optional<Pose> pose_of(const Translation& t, const Rotation& q) {
   pose.translation = {t.x, t.y, t.z};
   pose.rotation = Eigen::Quaterniond(q.w, q.x, q.y, q.z);
   const double length = pose.rotation.norm();
-  constexpr double kPercent = 0.01;  // what is further off is no rounding
+  constexpr double kPercent = 0.01;  // a larger deviation is not a rounding error
   if (!pose.translation.allFinite() || !(std::abs(length - 1.0) < kPercent)) return std::nullopt;
   pose.rotation.normalize();
   return pose;
 }
 
-/// Where the colours are in a pixel.
+/// Offsets of the colours within a pixel.
 struct PixelLayout {
   std::uint32_t bytes;
   std::uint32_t red, green, blue;

@@ -20,7 +20,7 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-/// The node lives until the process ends: roscpp's threads may log after main() returned.
+/// Never destroyed: roscpp's threads may log after main() has returned.
 Node* the_node = nullptr;
 std::timed_mutex joining;
 
@@ -53,7 +53,7 @@ Status await_master(const XmlRpcAddress& master,
   }
 }
 
-/// A second node of a name would make the master end the first one.
+/// The master would shut down the first of two nodes with the same name.
 /// Errors: kConflict; kCancelled.
 Status check_name_is_free(const XmlRpcAddress& master,
                           const std::string& name,
@@ -68,9 +68,9 @@ Status check_name_is_free(const XmlRpcAddress& master,
                    " has a node of that name already"};
 }
 
-/// Without this roscpp listens on every interface.
+/// Restricts roscpp to the loopback interface; by default it listens on every interface.
 void stay_on_loopback() {
-  // roscpp reads it from here alone, in its own threads.
+  // roscpp reads this only from the environment, in its own threads.
   if (std::getenv("ROS_IP") == nullptr && std::getenv("ROS_HOSTNAME") == nullptr) {
     setenv("ROS_IP", "127.0.0.1", 0);
   }
@@ -95,7 +95,7 @@ Result<Node*> Node::join(const XmlRpcAddress& master,
     return Error{ErrorCode::kConflict,
                  "master_uri = " + master.uri() + ": this process is a node of the master at " +
                      the_node->master_.uri() +
-                     " already, and ROS lets a process have one: start another overfly"};
+                     " already, and ROS allows one node per process: start another overfly"};
   }
   if (Status status = await_master(master, patience, cancel); !status) return status.error();
   if (the_node == nullptr) {
@@ -107,7 +107,7 @@ Result<Node*> Node::join(const XmlRpcAddress& master,
   if (!alive()) {
     return Error{ErrorCode::kInternal,
                  "the ROS node " + the_node->name_ +
-                     " of this process was told to end (rosnode kill): start overfly again"};
+                     " of this process was shut down (rosnode kill): restart overfly"};
   }
   return the_node;
 }
@@ -135,7 +135,7 @@ Status Node::claim(const std::vector<OwnTopic>& topics) {
     if (!claimed_.contains(topic.name)) continue;
     return Error{ErrorCode::kConflict,
                  std::string(topic.option) + " = " + topic.name +
-                     ": another estimator of this process has it; each needs its own"};
+                     ": another estimator of this process uses it; each needs its own"};
   }
   for (const OwnTopic& topic : topics) claimed_.insert(topic.name);
   return {};

@@ -21,7 +21,7 @@ bool is_list(const XmlRpcValue& value, int least) {
 
 bool is_text(const XmlRpcValue& value) { return value.getType() == XmlRpcValue::TypeString; }
 
-/// Of [[topic, [node, ...]], ...].
+/// Nodes of a topic in [[topic, [node, ...]], ...].
 std::set<std::string> nodes_of(XmlRpcValue& topics, const std::string& topic) {
   std::set<std::string> nodes;
   for (int i = 0; is_list(topics, i + 1); ++i) {
@@ -35,7 +35,7 @@ std::set<std::string> nodes_of(XmlRpcValue& topics, const std::string& topic) {
   return nodes;
 }
 
-/// Whether a host is this machine: a socket may take its address then.
+/// Whether a host is this machine: a socket can then bind to its address.
 bool is_here(const XmlRpcAddress& node) {
   if (node.is_loopback()) return true;
   addrinfo hints{};

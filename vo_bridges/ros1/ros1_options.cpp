@@ -15,7 +15,7 @@ Error bad(const std::string& option, const std::string& value, const std::string
 
 bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 
-/// Names of ROS's graph: letters, digits, _ and /, beginning with a letter or a slash.
+/// Whether a name is a ROS graph name: letters, digits, _ and /, starting with a letter or a slash.
 bool is_graph_name(const std::string& name) {
   return (name.front() == '/' || std::isalpha(static_cast<unsigned char>(name.front())) != 0) &&
          name.back() != '/' && name.find("//") == std::string::npos &&
@@ -127,7 +127,7 @@ std::map<std::string, std::string> effective(const Ros1EstimatorOptions& options
 Pose T_vo_camera_from(const Pose& published, const Ros1EstimatorOptions& options) {
   Pose T = options.pose_is_camera_from_world ? published.inverse() : published;
   if (options.pose_in_body_axes) {
-    // The optical axes (right, down, ahead) in those of the body (ahead, left, up).
+    // The optical axes (right, down, forward) in the body frame (forward, left, up).
     Eigen::Matrix3d R_body_optical;
     R_body_optical << 0, 0, 1, -1, 0, 0, 0, -1, 0;
     T.rotation = T.rotation * Eigen::Quaterniond(R_body_optical);

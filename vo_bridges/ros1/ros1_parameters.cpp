@@ -22,7 +22,7 @@ XmlRpcValue value_from(const ParameterValue& value) {
   return number;
 }
 
-/// Structures by their names, all else as text.
+/// Expands structures by their names; converts all other values to text.
 void flatten(const std::string& name, XmlRpcValue& value, std::map<std::string, std::string>& out) {
   switch (value.getType()) {
     case XmlRpcValue::TypeStruct:
@@ -67,7 +67,7 @@ std::map<std::string, std::string> read_parameters(const std::string& name_space
     XmlRpcValue value;
     if (ros::param::get(name_space, value)) flatten("", value, out);
   } catch (const std::exception&) {
-    out.clear();  // a name that ROS does not take has no parameters
+    out.clear();  // an invalid ROS name has no parameters
   } catch (const XmlRpc::XmlRpcException&) {
     out.clear();
   }

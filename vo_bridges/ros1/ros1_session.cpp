@@ -16,9 +16,9 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::int64_t kSecondNs = 1'000'000'000;
-/// For each call of a master or node on the way to the node's process.
+/// Timeout of each call to the master or a node when looking up the node's process.
 constexpr std::chrono::milliseconds kLookTimeout{500};
-/// ROS counts seconds in 32 bits.
+/// ROS stores seconds in 32 bits.
 constexpr std::int64_t kEndOfTimeNs = (std::int64_t{1} << 32U) * kSecondNs;
 
 AnswerPatience::Clock::duration seconds(double value) {
@@ -26,7 +26,7 @@ AnswerPatience::Clock::duration seconds(double value) {
       std::chrono::duration<double>(value));
 }
 
-/// 1, 10, 100, ...: what happens to each frame does not fill the log.
+/// True for 1, 10, 100, ...: events of every frame must not fill the log.
 bool worth_a_line(std::int64_t count) {
   while (count >= 10 && count % 10 == 0) count /= 10;
   return count == 1;
@@ -47,7 +47,7 @@ template <typename Condition>
 bool Session::wait_until(Clock::time_point end, const Condition& done) const {
   while (!done()) {
     if (Clock::now() >= end || is_cancelled(options_.cancel)) return false;
-    std::this_thread::sleep_for(5ms);  // roscpp has no event for it
+    std::this_thread::sleep_for(5ms);  // roscpp provides no event for this
   }
   return true;
 }
@@ -79,7 +79,7 @@ Status Session::begin(Clock::time_point end) {
       log_,
       [this](const std::atomic<bool>& cancel) { node_use_->look(kLookTimeout, &cancel); });
   const bool listens = wait_until(end, [&] {
-    // Some nodes ask for the calibration before they ask for images.
+    // Some nodes subscribe to the calibration before the images.
     return topics_->somebody_sees_images() || topics_->somebody_sees_calibration();
   });
   if (listens) return {};
@@ -95,7 +95,7 @@ Status Session::await_readiness(const VoFrame& frame, std::int64_t stamp_ns) {
   const auto end = Clock::now() + seconds(options_.start_timeout_s);
   (void)wait_until(
       end, [&] { return topics_->somebody_sees_images() && topics_->somebody_tells_poses(); });
-  // What is not needed to fly is connected a moment later, where there is any of it.
+  // Wait a moment longer for optional connections, which are made after the required ones.
   (void)wait_until(Clock::now() + 500ms, [&] {
     return topics_->somebody_sees_calibration() && topics_->somebody_draws_debug_images();
   });
@@ -123,7 +123,7 @@ void Session::take_pose(std::int64_t stamp_ns, const std::optional<Pose>& publis
     answer.sample.state = TrackingState::kTracking;
     answer.sample.T_vo_camera = T_vo_camera_from(*published, options_);
   } else {
-    answer.pose_fault = "the pose is not finite, or its quaternion is not of length 1";
+    answer.pose_fault = "the pose is not finite, or its quaternion's norm is not 1";
   }
   patience_.answered(stamp_ns, Clock::now());
   if (!answers_.deliver(stamp_ns, std::move(answer))) report_strays();
@@ -134,11 +134,11 @@ void Session::report_strays() {
   const auto report = [this](std::int64_t now, std::int64_t before, const char* what) {
     if (now != before && worth_a_line(now)) log_->add(std::to_string(now) + what);
   };
-  report(counts.late, reported_.late, " poses came too late for their frames");
-  report(counts.duplicate, reported_.duplicate, " poses were second ones to their frames");
+  report(counts.late, reported_.late, " poses arrived too late for their frames");
+  report(counts.duplicate, reported_.duplicate, " poses were duplicates for their frames");
   report(counts.unknown,
          reported_.unknown,
-         " poses bear the stamp of no frame: it must be that of the image");
+         " poses have a stamp of no frame: it must be that of the image");
   reported_ = counts;
 }
 
@@ -146,21 +146,21 @@ Error Session::gone() const {
   std::string message =
       "nobody subscribes to " + options_.image_topic + " any more: the estimator's node has ended";
   if (!watch_->master_answers()) {
-    message += "; nor does the ROS master at " + node_.master().uri() + " answer";
+    message += "; the ROS master at " + node_.master().uri() + " does not answer either";
   }
   return {ErrorCode::kInternal, message};
 }
 
 Status Session::await_estimator() {
   if (!Node::alive()) {
-    return Error{ErrorCode::kInternal, "the ROS node of this process was told to end"};
+    return Error{ErrorCode::kInternal, "the ROS node of this process was shut down"};
   }
   if (topics_->somebody_sees_images()) {
     alone_since_.reset();
     return {};
   }
   if (!alone_since_) alone_since_ = Clock::now();
-  // Without a master nobody can come back.
+  // Without a master no node can reconnect.
   if (!watch_->master_answers()) return gone();
   if (options_.lockstep) {
     const auto end = Clock::now() + seconds(options_.answer_timeout_s);
@@ -242,7 +242,7 @@ Result<VoEstimate> Session::exchange(const VoFrame& frame, std::int64_t stamp_ns
 
 void Session::add_debug_image(const VoFrame& frame, std::int64_t stamp_ns, VoEstimate& estimate) {
   if (options_.debug_image_topic.empty()) return;
-  // By the clock a picture is not worth a frame.
+  // Without lockstep a debug image is not worth a delay.
   const std::chrono::milliseconds patience = options_.lockstep ? DebugImages::kPatience : 0ms;
   const ImageMessage::ConstPtr message = debug_images_.take(stamp_ns, patience, options_.cancel);
   if (!message) return;
@@ -256,7 +256,7 @@ void Session::add_debug_image(const VoFrame& frame, std::int64_t stamp_ns, VoEst
 }
 
 void Session::reset() {
-  // Later than anything that was sent: no answer from before can be taken for one to come.
+  // Later than any previous stamp, so that an old answer cannot match a new frame.
   if (previous_) earliest_ns_ = previous_->t_ns + offset_ns_ + kSecondNs;
   previous_.reset();
   tracked_ = false;
@@ -265,7 +265,7 @@ void Session::reset() {
   patience_.forget();
   debug_images_.forget();
   if (options_.reset_topic.empty()) {
-    log_->add("no reset_topic: the estimator was not told of a reset");
+    log_->add("no reset_topic: the estimator was not informed of a reset");
   } else {
     topics_->publish_reset();
   }

@@ -44,7 +44,7 @@ Result<std::unique_ptr<Topics>> Topics::open(Node& node,
   std::unique_ptr<Topics> topics(new Topics(node, options, std::move(handlers), std::move(log)));
   if (Status status = topics->claim_all(); !status) return status.error();
   topics->spinner_.start();
-  // First what comes in: an estimator may answer the moment that it sees an image.
+  // Subscribe first: an estimator may answer as soon as it receives an image.
   Status status = topics->subscribe_all();
   if (status) status = topics->advertise_all();
   if (!status) return status.error();
@@ -69,7 +69,7 @@ Status Topics::advertise(const std::string& topic, ros::Publisher& publisher, bo
     return Error{ErrorCode::kInternal, "topic " + topic + ": " + failure.what()};
   }
   if (!publisher) {
-    return Error{ErrorCode::kInternal, "topic " + topic + ": ROS does not let us publish it"};
+    return Error{ErrorCode::kInternal, "topic " + topic + ": ROS rejected the publisher"};
   }
   registrations_.push_back({publisher.getTopic(), ros::message_traits::datatype<M>(), true});
   return {};
@@ -125,7 +125,7 @@ Status Topics::subscribe(const std::string& topic, Handle handle, ros::Subscribe
     return Error{ErrorCode::kInternal, "topic " + topic + ": " + failure.what()};
   }
   if (!subscriber) {
-    return Error{ErrorCode::kInternal, "topic " + topic + ": ROS does not let us subscribe"};
+    return Error{ErrorCode::kInternal, "topic " + topic + ": ROS rejected the subscription"};
   }
   registrations_.push_back({subscriber.getTopic(), ros::message_traits::datatype<M>(), false});
   return {};

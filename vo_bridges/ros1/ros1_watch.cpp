@@ -47,7 +47,7 @@ void MasterWatch::look() {
   if (!pid) {
     if (answers_.exchange(false)) {
       log_->add("the ROS master at " + master_.uri() +
-                " no longer answers: topics that are connected go on, new nodes cannot join");
+                " no longer answers: connected topics keep working, new nodes cannot join");
     }
     return;
   }
@@ -73,15 +73,16 @@ void MasterWatch::register_again() {
       continue;
     }
     if (topic.published || !own) continue;
-    // Nobody has told the new master yet of a publisher that we may be connected to.
+    // The new master has not yet reported publishers that may already be connected.
     const bool known =
         publishers->getType() == XmlRpc::XmlRpcValue::TypeArray && publishers->size() > 0;
     if (!known) continue;
-    // Told as a master tells: roscpp then connects to the publishers that it does not know.
+    // Report them as a master does: roscpp then connects to the publishers that are new to it.
     const Status told = tell_publishers(*own, topic.topic, *publishers, 1s);
     if (!told) log_->add(told.error().message);
   }
-  log_->add("the ROS master at " + master_.uri() + " was started anew and knows the topics again");
+  log_->add("the ROS master at " + master_.uri() +
+            " was restarted; the topics are registered again");
 }
 
 }  // namespace overfly::ros1

@@ -16,7 +16,7 @@ std::string text_of(double value) {
   return text;
 }
 
-/// The image in RGB with a cross in its middle, so that a debug image is seen to be one.
+/// The image in RGB with a cross in the middle, so that a debug image is recognisable.
 Image debug_image(const Image& grey) {
   Image rgb(grey.width_px, grey.height_px, 3);
   for (std::size_t i = 0; i < grey.data.size(); ++i) {
@@ -34,7 +34,7 @@ Image debug_image(const Image& grey) {
   return rgb;
 }
 
-/// Knows the truth. Loses track where the truth does not reach.
+/// Returns the truth. Loses track where the truth ends.
 class ToyEstimator final : public VoPort {
  public:
   ToyEstimator(std::string type, Trajectory T_world_camera, const ToyParameters& parameters)
@@ -63,7 +63,7 @@ class ToyEstimator final : public VoPort {
       if (!T_vo_world_) T_vo_world_ = truth->inverse();
       estimate.sample.state = TrackingState::kTracking;
       estimate.sample.T_vo_camera = *T_vo_world_ * *truth;
-      // A step lengthened by a constant factor lengthens all of the way so.
+      // A step lengthened by a constant factor lengthens the whole path by it.
       const double stretch = parameters_.scale * (1.0 + parameters_.drift);
       estimate.sample.T_vo_camera.translation *= stretch;
       if (parameters_.scene_depth_m > 0.0) {
@@ -115,7 +115,8 @@ Result<std::unique_ptr<VoPort>> create(std::string type,
     return bad("scene_depth_m", parameters.scene_depth_m, "0 or more and finite");
   }
   if (T_world_camera.empty()) {
-    return Error{ErrorCode::kInvalidArgument, "a toy estimator needs a truth with poses"};
+    return Error{ErrorCode::kInvalidArgument,
+                 "a toy estimator requires truth with at least one pose"};
   }
   return std::unique_ptr<VoPort>(
       std::make_unique<ToyEstimator>(std::move(type), T_world_camera, parameters));

@@ -56,7 +56,7 @@ TEST(LcmTrouble, CleansWhatAStatusSays) {
   EXPECT_EQ(pair.door->resource_use()->cpu_s, 1.25) << "of the status before";
   const auto log = pair.door->take_log();
   EXPECT_THAT(log, Contains("at ?"));
-  EXPECT_THAT(log, Contains(HasSubstr("parameter \"bad?name\" left out")));
+  EXPECT_THAT(log, Contains(HasSubstr("parameter \"bad?name\" ignored")));
 }
 
 void add_counter(overfly_lcm::pose_t& pose, const std::string& name) {
@@ -79,10 +79,10 @@ TEST(LcmTrouble, LeavesOutFiguresWithoutASoundName) {
     EXPECT_THAT(estimate.timing_ms, IsEmpty());
   }
   const auto log = pair.door->take_log();
-  EXPECT_THAT(log, Contains(HasSubstr("timing \"two words\" left out")));
+  EXPECT_THAT(log, Contains(HasSubstr("timing \"two words\" ignored")));
   EXPECT_EQ(std::count_if(log.begin(),
                           log.end(),
-                          [](const auto& l) { return l.find("left out") != std::string::npos; }),
+                          [](const auto& l) { return l.find("ignored") != std::string::npos; }),
             2)
       << "once each";
 }

@@ -80,12 +80,12 @@ TEST(LcmUrl, NamesWhatIsWrong) {
       {"udpm://?ttl=-1", "ttl = -1"},
       {"udpm://?recv_buf_size=0", "recv_buf_size = 0"},
       {"udpm://?recv_buf_size=2M", "recv_buf_size = 2M"},
-      {"udpm://?size=2", "option size: udpm has none of that name"},
+      {"udpm://?size=2", "option size: udpm does not support it"},
       {"udpm://?ttl", "option \"ttl\": must be NAME=VALUE"},
-      {"udpm://?ttl=0&ttl=1", "option ttl: there twice"},
-      {"memq://name", "network name: memq has none"},
+      {"udpm://?ttl=0&ttl=1", "option ttl: given twice"},
+      {"memq://name", "network name: must be empty for memq"},
       {"memq://?ttl=0", "option ttl"},
-      {"file://", "no path"},
+      {"file://", "path of the log"},
   };
   for (const BadUrl& bad : cases) {
     const auto url = parse_lcm_url(bad.text);

@@ -239,10 +239,10 @@ TEST(ProcessDoor, LeavesAFileThatIsNoSocketAlone) {
     EXPECT_TRUE(std::filesystem::exists(std::filesystem::symlink_status(path))) << path;
     return estimator.ok() ? "taken" : estimator.error().message;
   };
-  EXPECT_EQ(refusal(file), "listen = 'unix:" + file.string() + "': is a file, and no socket");
-  EXPECT_THAT(refusal(link), HasSubstr("': is a link, and no socket"));
-  EXPECT_THAT(refusal(dangling), HasSubstr("': is a link, and no socket"));
-  EXPECT_THAT(refusal(folder.path()), HasSubstr("': is a folder, and no socket"));
+  EXPECT_EQ(refusal(file), "listen = 'unix:" + file.string() + "': is a file, not a socket");
+  EXPECT_THAT(refusal(link), HasSubstr("': is a link, not a socket"));
+  EXPECT_THAT(refusal(dangling), HasSubstr("': is a link, not a socket"));
+  EXPECT_THAT(refusal(folder.path()), HasSubstr("': is a folder, not a socket"));
   EXPECT_EQ(testing::read_text(file), "of the user\n");
 }
 

@@ -101,7 +101,7 @@ TEST(ProcessMessages, RefuseAnAnswerWithABadField) {
     return estimate.ok() ? "taken" : estimate.error().message;
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THAT(refused(answer_with(0, u32(8))), HasSubstr("frame 8: frame 7 is under way"));
+  EXPECT_THAT(refused(answer_with(0, u32(8))), HasSubstr("frame 8: frame 7 is expected"));
   EXPECT_THAT(refused(answer_with(8, u32(3))), HasSubstr("state = 3"));
   EXPECT_THAT(refused(answer_with(12, u32(0xFFFFFFFF))), HasSubstr("map_id = 4294967295"));
   EXPECT_EQ(refused(answer_with(24, f64(nan))), "taken") << "PoseIntake judges poses";
@@ -120,8 +120,8 @@ TEST(ProcessMessages, LeaveOutFiguresThatAreNotFiniteAndNoteTheFirst) {
   EXPECT_EQ(estimate->counters, (std::map<std::string, double>{{"features", 90.0}}));
   EXPECT_EQ(estimate->timing_ms, (std::map<std::string, double>{{"d", 2.0}}));
   EXPECT_EQ(figures.take_notes(),
-            (std::vector<std::string>{"warning: counter a is not finite: such values are left out, "
-                                      "this one and those to come"}));
+            (std::vector<std::string>{"warning: counter a is not finite: this and later such "
+                                      "values are ignored"}));
   ASSERT_TRUE(answer_from(payload, small_frame(), &figures).ok());
   EXPECT_TRUE(figures.take_notes().empty()) << "it is said once";
 }
@@ -191,7 +191,7 @@ TEST(ProcessMessages, RefuseABadHello) {
   EXPECT_THAT(hello_from("name x\n").error().message, HasSubstr("lacks 'protocol'"));
   EXPECT_THAT(hello_from("protocol 1\n").error().message, HasSubstr("lacks 'name'"));
   EXPECT_THAT(hello_from("protocol 3\nname x\n").error().message,
-              HasSubstr("version '3' of the protocol: this is version 1"));
+              HasSubstr("protocol version '3': must be 1"));
   EXPECT_EQ(hello_from("protocol 1\nname x\nnews 5\nshared_memory true")->takes_shared_memory,
             true);
 }

@@ -41,7 +41,7 @@ TEST_F(ProcessStart, AFileThatCannotBeExecutedIsNamed) {
   EXPECT_EQ(start_error(options).code, ErrorCode::kNotFound);
   EXPECT_THAT(start_error(options).message, HasSubstr("interpreter"));
   testing::write_text(file, "print('hello')\n");
-  EXPECT_THAT(start_error(options).message, HasSubstr("a script begins with #!"));
+  EXPECT_THAT(start_error(options).message, HasSubstr("a script starts with #!"));
   options = scripted("good");
   options.working_folder = folder.path() / "absent";
   EXPECT_THAT(start_error(options).message,
@@ -88,14 +88,14 @@ TEST_F(ProcessStart, GarbageInsteadOfAHelloIsQuoted) {
   EXPECT_THAT(start_error(scripted("huge")).message,
               HasSubstr("HELLO of 4294967295 bytes: must be at most 65536"));
   EXPECT_THAT(start_error(scripted("server_message")).message,
-              HasSubstr("sent STOP, which it must not"));
+              HasSubstr("sent STOP, which an estimator must not send"));
 }
 
 TEST_F(ProcessStart, AnotherVersionIsRefused) {
   EXPECT_THAT(start_error(scripted("version_2")).message,
-              HasSubstr("speaks version 2 of the protocol: this is version 1"));
+              HasSubstr("uses protocol version 2: must be 1"));
   EXPECT_THAT(start_error(scripted("text_version_9")).message,
-              HasSubstr("speaks version '9' of the protocol: this is version 1"));
+              HasSubstr("uses protocol version '9': must be 1"));
 }
 
 TEST_F(ProcessStart, BadOptionsAreNamed) {

@@ -249,8 +249,8 @@ TEST_F(ProcessTrouble, FiguresThatAreNotFiniteAreLeftOutWithOneWarning) {
     EXPECT_EQ(estimate->timing_ms, (std::map<std::string, double>{{"match", 1.5}}));
   }
   EXPECT_EQ(lines_with(*estimator, "not finite"),
-            (std::vector<std::string>{"warning: counter parallax is not finite: such values are "
-                                      "left out, this one and those to come"}));
+            (std::vector<std::string>{"warning: counter parallax is not finite: this and later "
+                                      "such values are ignored"}));
 }
 
 TEST_F(ProcessTrouble, FiguresOfPythonThatAreNotFiniteAreLeftOutWithOneWarning) {
@@ -293,11 +293,11 @@ TEST_F(ProcessTrouble, NamesWithoutEndAreCutWithOneWarningForEachKind) {
   EXPECT_EQ(counters.size(), 256U);
   EXPECT_EQ(timings.size(), 256U);
   EXPECT_EQ(estimator->effective_parameters().size(), 4096U);
-  EXPECT_THAT(lines_with(*estimator, "too many"),
+  EXPECT_THAT(lines_with(*estimator, "exceeds the limit"),
               ::testing::UnorderedElementsAre(
-                  AllOf(HasSubstr("warning: counter c"), HasSubstr("at most 256")),
-                  AllOf(HasSubstr("warning: timing_ms t"), HasSubstr("at most 256")),
-                  AllOf(HasSubstr("warning: parameter p"), HasSubstr("at most 4096"))));
+                  AllOf(HasSubstr("warning: counter c"), HasSubstr("limit of 256")),
+                  AllOf(HasSubstr("warning: timing_ms t"), HasSubstr("limit of 256")),
+                  AllOf(HasSubstr("warning: parameter p"), HasSubstr("limit of 4096"))));
 }
 
 TEST_F(ProcessTrouble, AChildThatDoesNotStopIsKilled) {

@@ -276,7 +276,7 @@ TEST(Ros1Exchange, CountsPosesThatBelongToNoFrame) {
   const TestNode node(options, {"stamp_off_s=5"});
   const auto port = created(options);
   EXPECT_EQ(tracked(*port, grey_frames(1).front()).sample.state, TrackingState::kInitialising);
-  EXPECT_TRUE(logs(*port, "1 poses bear the stamp of no frame"));
+  EXPECT_TRUE(logs(*port, "1 poses have a stamp of no frame"));
 }
 
 TEST(Ros1Exchange, TakesAPoseThatIsNoneForALostTrack) {

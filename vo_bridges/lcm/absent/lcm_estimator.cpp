@@ -1,4 +1,4 @@
-// The door where LCM is not built in.
+// LCM door of a build without LCM.
 #include "vo_bridges/lcm/lcm_estimator.hpp"
 
 namespace overfly {
@@ -7,7 +7,7 @@ bool lcm_is_built_in() { return false; }
 
 Result<std::unique_ptr<VoPort>> create_lcm_estimator(const LcmEstimatorOptions& /*options*/) {
   return Error{ErrorCode::kUnsupported,
-               "this build does not speak LCM: install liblcm-dev and liblcm-bin, and build again"};
+               "this build has no LCM support: install liblcm-dev and liblcm-bin, and rebuild"};
 }
 
 }  // namespace overfly

@@ -1,11 +1,11 @@
-// The findings where LCM is not built in.
+// LCM findings of a build without LCM.
 #include "vo_bridges/lcm/lcm_findings.hpp"
 
 namespace overfly {
 
 LcmFindings lcm_findings_from(const std::string& /*multicast_fault*/,
                               long long /*receive_buffer_bytes*/) {
-  return {false, "not built in", "install liblcm-dev and liblcm-bin, and build again"};
+  return {false, "not built in", "install liblcm-dev and liblcm-bin, and rebuild"};
 }
 
 LcmFindings lcm_findings() { return lcm_findings_from("", 0); }

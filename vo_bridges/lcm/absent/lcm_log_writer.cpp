@@ -1,4 +1,4 @@
-// The log writer where LCM is not built in.
+// LCM log writer of a build without LCM.
 #include "vo_bridges/lcm/lcm_log_writer.hpp"
 
 namespace overfly {
@@ -6,7 +6,7 @@ namespace overfly {
 Result<std::unique_ptr<LcmLogWriter>> LcmLogWriter::create(const std::filesystem::path& /*file*/,
                                                            std::int64_t /*epoch_utc_ns*/) {
   return Error{ErrorCode::kUnsupported,
-               "this build does not speak LCM: install liblcm-dev and liblcm-bin, and build again"};
+               "this build has no LCM support: install liblcm-dev and liblcm-bin, and rebuild"};
 }
 
 }  // namespace overfly

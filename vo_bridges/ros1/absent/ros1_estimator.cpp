@@ -1,4 +1,4 @@
-// The door where ROS 1 is not built in.
+// ROS 1 door of a build without ROS 1.
 #include "vo_bridges/ros1/ros1_estimator.hpp"
 
 namespace overfly {
@@ -7,8 +7,8 @@ bool ros1_is_built_in() { return false; }
 
 Result<std::unique_ptr<VoPort>> create_ros1_estimator(const Ros1EstimatorOptions& /*options*/) {
   return Error{ErrorCode::kUnsupported,
-               "this build does not speak ROS 1: install libroscpp-dev, libsensor-msgs-dev, "
-               "libnav-msgs-dev, libtf2-msgs-dev and librosbag-storage-dev, and build again"};
+               "this build has no ROS 1 support: install libroscpp-dev, libsensor-msgs-dev, "
+               "libnav-msgs-dev, libtf2-msgs-dev and librosbag-storage-dev, and rebuild"};
 }
 
 }  // namespace overfly

@@ -7,7 +7,7 @@ Ros1Findings ros1_findings() {
           false,
           "not built in",
           "apt-get install libroscpp-dev libsensor-msgs-dev libnav-msgs-dev libtf2-msgs-dev "
-          "librosbag-storage-dev, and build again"};
+          "librosbag-storage-dev, and rebuild"};
 }
 
 }  // namespace overfly
