@@ -1,5 +1,5 @@
 # find_orb_slam2(ROOT), find_dso(ROOT), find_svo(ROOT): targets Upstream::ORB_SLAM2, ...::DSO,
-# ...::SVO of libraries that somebody has built. What is missing is named with where it was sought.
+# ...::SVO of installed libraries. An error names a missing file and the folders searched.
 
 # upstream_file(VARIABLE WHAT ROOT NAMES names... SUFFIXES folders... [LIBRARY])
 function(upstream_file variable what root)
@@ -12,8 +12,8 @@ function(upstream_file variable what root)
   if(NOT ${variable})
     list(JOIN arg_NAMES " or " names)
     list(JOIN arg_SUFFIXES ", " suffixes)
-    message(FATAL_ERROR "${what}: no ${names} in ${root} (looked into ${suffixes}), nor where "
-                        "CMAKE_PREFIX_PATH points. Is it built? Or set ${variable} yourself.")
+    message(FATAL_ERROR "${what}: no ${names} in ${root} (searched ${suffixes}), nor in "
+                        "CMAKE_PREFIX_PATH. Build it, or set ${variable}.")
   endif()
 endfunction()
 
@@ -26,7 +26,7 @@ function(upstream_target name)
   target_compile_options(Upstream::${name} INTERFACE ${arg_OPTIONS})
 endfunction()
 
-# By hand, not by find_package: Debian's CMake package of OpenCV wants all of its modules.
+# Without find_package, because Debian's CMake package of OpenCV requires all of its modules.
 macro(upstream_common what)
   find_package(Threads REQUIRED)
   upstream_file(UPSTREAM_EIGEN_INCLUDE_DIR ${what} /usr
@@ -51,12 +51,12 @@ macro(find_orb_slam2 root)
   upstream_file(ORB_SLAM2_INCLUDE_DIR "${what}" ${root} NAMES System.h SUFFIXES include)
   upstream_file(ORB_SLAM2_DBOW2_DIR "${what}" ${root} NAMES Thirdparty/DBoW2/DBoW2/FORB.h
     SUFFIXES . include)
-  # Its headers include g2o's, and those a file that is not in the sources.
+  # Its headers include those of g2o, which include a file that is not in the sources.
   if(NOT EXISTS ${ORB_SLAM2_DBOW2_DIR}/Thirdparty/g2o/config.h)
     message(FATAL_ERROR "${what}: no config.h in ${ORB_SLAM2_DBOW2_DIR}/Thirdparty/g2o. "
                         "g2o's own CMakeLists.txt there writes it when it is configured.")
   endif()
-  # Its headers include Pangolin's too; the adapter, which opens no viewer, needs a name of it alone.
+  # Its headers also include Pangolin's. The adapter opens no viewer and needs only one type name.
   find_path(PANGOLIN_INCLUDE_DIR NAMES pangolin/pangolin.h HINTS ${root} PATH_SUFFIXES include)
   if(NOT PANGOLIN_INCLUDE_DIR)
     set(PANGOLIN_INCLUDE_DIR ${OVERFLY_ADAPTERS_FOLDER}/without_pangolin)
@@ -67,7 +67,7 @@ macro(find_orb_slam2 root)
   upstream_file(ORB_SLAM2_G2O_LIBRARY "${what}" ${root} LIBRARY NAMES g2o
     SUFFIXES lib Thirdparty/g2o/lib)
   set(ORB_SLAM2_VOCABULARY ${root}/Vocabulary/ORBvoc.txt CACHE FILEPATH
-    "Vocabulary that the adapter takes where its parameter names none")
+    "Default vocabulary of the adapter")
   upstream_target(ORB_SLAM2
     INCLUDES ${ORB_SLAM2_DBOW2_DIR} ${ORB_SLAM2_INCLUDE_DIR} ${PANGOLIN_INCLUDE_DIR}
              ${UPSTREAM_EIGEN_INCLUDE_DIR} ${UPSTREAM_OPENCV_INCLUDE_DIR}
@@ -86,8 +86,8 @@ macro(find_dso root)
   upstream_file(DSO_SOPHUS_INCLUDE_DIR "${what}" ${root} NAMES sophus/sim3.hpp
     SUFFIXES thirdparty/Sophus include)
   upstream_file(DSO_LIBRARY "${what}" ${root} LIBRARY NAMES dso SUFFIXES build/lib lib)
-  set(DSO_EXTRA_LIBRARIES "" CACHE STRING "More to link, e.g. OpenCV where DSO was built with it")
-  # Its headers take Boost's placeholders (_1, ...) from the global namespace.
+  set(DSO_EXTRA_LIBRARIES "" CACHE STRING "Further libraries to link, e.g. OpenCV if DSO was built with it")
+  # Its headers use Boost's placeholders (_1, ...) in the global namespace.
   upstream_target(DSO
     INCLUDES ${DSO_INCLUDE_DIR} ${DSO_SOPHUS_INCLUDE_DIR} ${UPSTREAM_EIGEN_INCLUDE_DIR}
              ${UPSTREAM_BOOST_INCLUDE_DIR}

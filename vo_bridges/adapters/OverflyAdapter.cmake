@@ -1,7 +1,8 @@
 # overfly_adapter(NAME LIBS targets... [DEFINITIONS ...] [PROGRAM target])
 #
-# The program overfly-NAME: adapter_main.cpp (C++17) and NAME/*.cpp, which are compiled as the
-# upstream library was (OVERFLY_UPSTREAM_CXX_FLAGS, OVERFLY_UPSTREAM_CXX_STANDARD).
+# Builds the program overfly-NAME from adapter_main.cpp (C++17) and NAME/*.cpp. The latter are
+# compiled with the flags of the upstream library (OVERFLY_UPSTREAM_CXX_FLAGS,
+# OVERFLY_UPSTREAM_CXX_STANDARD).
 set(OVERFLY_ADAPTERS_FOLDER ${CMAKE_CURRENT_LIST_DIR})
 cmake_path(GET OVERFLY_ADAPTERS_FOLDER PARENT_PATH overfly_vo_bridges_folder)
 cmake_path(GET overfly_vo_bridges_folder PARENT_PATH OVERFLY_SOURCE_FOLDER)

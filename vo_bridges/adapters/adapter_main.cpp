@@ -1,6 +1,6 @@
-// An adapter: a program of its own that speaks the process protocol (docs/VO_PROTOCOL.md) on one
-// side and calls an upstream library on the other. Linked with one *_system.cpp. What the library
-// does with exit() or abort() ends this process, which is what the door reports as a crash.
+// An adapter: a separate program that connects an upstream library to the process protocol
+// (docs/VO_PROTOCOL.md). Linked with one *_system.cpp. If the library calls exit() or abort(), this
+// process ends, which the door reports as a crash.
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
@@ -22,7 +22,7 @@ class Adapter : public overfly_vo::Estimator {
     session_.parameters = upstream_parameters().resolve(wanted);
     asked_for_ = upstream_parameters().asked_for(wanted);
     session_.lockstep = lockstep();
-    // What the adapter is to choose by itself is known once the system runs: calibrate() tells it.
+    // Values chosen by the adapter are known once the system runs; calibrate() reports them.
     overfly_vo::Parameters in_force = decided(session_.parameters);
     const auto preset = wanted.find("preset");
     if (preset != wanted.end()) in_force["preset"] = preset->second;
@@ -32,7 +32,7 @@ class Adapter : public overfly_vo::Estimator {
   void calibrate(const overfly_vo::Calibration& calibration) override {
     if (system_ != nullptr) {
       throw std::runtime_error(name() +
-                               " keeps its camera for the life of the process: another camera "
+                               " has one camera for the life of the process: another camera "
                                "needs another process");
     }
     AdapterCamera& camera = session_.camera;
@@ -110,7 +110,7 @@ class Adapter : public overfly_vo::Estimator {
 int main() {
   static overfly_adapters::Adapter adapter;
   const int code = overfly_vo::run(adapter);
-  // Threads of the library may still run: no destructor under their feet.
+  // Threads of the library may still run, so exit without running destructors.
   std::fflush(nullptr);
   std::_Exit(code);
 }

@@ -56,7 +56,7 @@ void check(const ParameterDeclaration& declaration, const std::string& text) {
   if (text.empty()) throw std::runtime_error("parameter " + declaration.name + " must be given");
 }
 
-/// Upstream keeps many of them as float or int: equal to seven digits is equal.
+/// Upstream stores many of them as float or int: values equal to seven digits count as equal.
 bool same(const std::string& a, const std::string& b) {
   double number_a = 0.0;
   double number_b = 0.0;
@@ -162,7 +162,7 @@ void check_in_force(const ParameterValues& asked_for, const ParameterValues& eff
     const std::string value = in_force == effective.end() ? "nothing" : in_force->second;
     if (same(asked.second, value)) continue;
     throw std::runtime_error("parameter " + asked.first + " = " + asked.second +
-                             " was asked for, but the running system has " + value + " in force");
+                             " was requested, but the running system has " + value + " in effect");
   }
 }
 

@@ -7,15 +7,15 @@
 
 namespace overfly_adapters {
 
-/// By upstream's names; numbers as decimals with a point, flags as "true" or "false".
+/// Values by upstream's names: numbers as decimals with a point, flags as "true" or "false".
 using ParameterValues = std::map<std::string, std::string>;
 
 enum class ParameterKind {
   kNumber,
-  kWhole,       ///< number without a fraction
-  kAutoNumber,  ///< number, or "auto": what upstream would take by itself
+  kWhole,       ///< integer
+  kAutoNumber,  ///< number, or "auto": upstream's choice
   kFlag,
-  kAutoFlag,  ///< "true", "false", or "auto": one of them by the session
+  kAutoFlag,  ///< "true", "false", or "auto": depends on the session
   kText
 };
 
@@ -23,27 +23,27 @@ struct ParameterDeclaration {
   std::string name;
   ParameterKind kind;
   std::string standard;  ///< upstream's default; empty = must be given
-  double minimum;        ///< of numbers, as the maximum
+  double minimum;        ///< minimum and maximum apply to numbers
   double maximum;
 };
 
 struct Preset {
   std::string name;
   ParameterValues values;
-  std::string refusal;  ///< why it is not taken, where upstream has it and we have not
+  std::string refusal;  ///< why the adapter does not support this preset of upstream
 };
 
-/// The names an adapter takes, besides `preset`.
+/// The parameters of an adapter, in addition to `preset`.
 class ParameterSet {
  public:
   ParameterSet(std::vector<ParameterDeclaration> declarations, std::vector<Preset> presets);
 
-  /// Defaults, overwritten by the preset's values, overwritten by those wanted by name.
-  /// Throws std::runtime_error naming the parameter, its value and what may stand there.
+  /// Defaults, overwritten by the preset's values, then by those requested by name. Throws
+  /// std::runtime_error naming the parameter, its value and the allowed values.
   ParameterValues resolve(const ParameterValues& wanted) const;
 
-  /// Those that `wanted` or its preset asks for, less the ones that leave the choice to the
-  /// adapter: what the running system must have in force.
+  /// The values requested in `wanted` or by its preset, without those left to the adapter. The
+  /// running system must use them.
   ParameterValues asked_for(const ParameterValues& wanted) const;
 
  private:
@@ -55,18 +55,18 @@ class ParameterSet {
   std::vector<Preset> presets_;
 };
 
-/// Without those that are "auto".
+/// Removes values that are "auto".
 ParameterValues decided(ParameterValues values);
-/// Of a resolved value.
+/// A resolved value as a number.
 double number_of(const ParameterValues& values, const std::string& name);
-/// "auto" becomes `automatic`.
+/// A resolved value as a flag; "auto" gives `automatic`.
 bool flag_of(const ParameterValues& values, const std::string& name, bool automatic = false);
-/// As short as reads back the same.
+/// The shortest text that reads back as the same number.
 std::string text_of_number(double value);
 std::string text_of_flag(bool value);
 
-/// Throws std::runtime_error when the running system has another value in force than asked for:
-/// such a run would be about something else than its scenario says.
+/// Throws std::runtime_error if the running system uses another value than requested: the run would
+/// not match its scenario.
 void check_in_force(const ParameterValues& asked_for, const ParameterValues& effective);
 
 }  // namespace overfly_adapters

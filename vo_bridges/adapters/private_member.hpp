@@ -1,7 +1,7 @@
-// Reads members that an upstream class keeps private. C++11.
+// Reads private members of upstream classes. C++11.
 //
-// An explicit instantiation may name private members ([temp.explicit]), and hand a pointer to one
-// to a friend function: so the adapter reads the values in force without a patch to upstream's
+// An explicit instantiation may name private members ([temp.explicit]) and pass a pointer to one to
+// a friend function. The adapter can thus read the values in effect without patching upstream's
 // headers.
 //
 //   struct SystemTracker {

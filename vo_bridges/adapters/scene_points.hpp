@@ -1,4 +1,4 @@
-// Points that an upstream system sees, made into depths, map points and debug images. C++11.
+// Converts points observed by an upstream system to depths, map points and debug images. C++11.
 #pragma once
 
 #include <array>
@@ -9,16 +9,16 @@
 
 namespace overfly_adapters {
 
-/// Middle one of the depths; 0 for none.
+/// Median of the depths; 0 if there are none.
 double median_depth(std::vector<double> depths);
 
-/// A frame's grey pixels as an image to draw on.
+/// Converts a frame's grey pixels to an RGB image, to draw on.
 RgbImage rgb_of(const AdapterFrame& frame, const AdapterCamera& camera);
 
-/// Draws a square of 7 px around a pixel; what lies outside of the image is cut off.
+/// Draws a square of 7 px around a pixel, clipped at the image border.
 void draw_square(RgbImage* image, double x_px, double y_px, const std::array<std::uint8_t, 3>& rgb);
 
-/// Of unit quaternion x y z w from a rotation matrix, row by row (Shepperd 1978: divides by the
+/// Unit quaternion x y z w from a rotation matrix in row-major order (Shepperd 1978: divides by the
 /// largest of the four components).
 std::array<double, 4> quaternion_from(const std::array<double, 9>& R);
 

@@ -1,17 +1,16 @@
-// How long an upstream call took. C++11 (see upstream_system.hpp).
+// Measures the time of upstream calls. C++11 (see upstream_system.hpp).
 #pragma once
 
 #include <ctime>
 
 namespace overfly_adapters {
 
-/// Wall time, and CPU time, which alone can be compared on a machine that is busy with other
-/// things.
+/// Wall time and CPU time. Only CPU time is comparable on a busy machine.
 class Stopwatch {
  public:
   double wall_ms() const { return now_ms(CLOCK_MONOTONIC) - wall_start_ms_; }
   double thread_cpu_ms() const { return now_ms(CLOCK_THREAD_CPUTIME_ID) - thread_start_ms_; }
-  /// Of all threads of this process.
+  /// CPU time of all threads of this process.
   double process_cpu_ms() const { return now_ms(CLOCK_PROCESS_CPUTIME_ID) - process_start_ms_; }
 
  private:

@@ -1,4 +1,4 @@
-// Plugs an estimator into Overfly's process door (docs/VO_PROTOCOL.md). One header, so that it can
+// Connects an estimator to Overfly's process door (docs/VO_PROTOCOL.md). A single header that can
 // be copied into any project; C++17, standard library and POSIX:
 //
 //   struct Mine : overfly_vo::Estimator { ... };
@@ -32,7 +32,7 @@
 
 namespace overfly_vo {
 
-/// By name; numbers as decimals with a point, flags as "true" or "false".
+/// Values by name: numbers as decimals with a point, flags as "true" or "false".
 using Parameters = std::map<std::string, std::string>;
 
 enum class State : std::uint32_t { kInitialising = 0, kTracking = 1, kLost = 2 };
@@ -45,7 +45,7 @@ struct Calibration {
   double fx_px = 0.0, fy_px = 0.0, cx_px = 0.0, cy_px = 0.0;  ///< (0, 0) = centre of a pixel
   std::string distortion = "none";              ///< "none", "radtan", "equidistant", "fov"
   std::vector<double> distortion_coefficients;  ///< in the model's order
-  double rate_hz = 0.0;                         ///< 0 = not known
+  double rate_hz = 0.0;                         ///< 0 = unknown
 };
 
 struct ImuSample {
@@ -57,16 +57,16 @@ struct ImuSample {
 struct Frame {
   std::int64_t index = 0;        ///< gaps are dropped frames
   std::int64_t t_ns = 0;         ///< mid exposure of the middle row
-  std::int64_t exposure_ns = 0;  ///< 0 = not known
+  std::int64_t exposure_ns = 0;  ///< 0 = unknown
   int width_px = 0;
   int height_px = 0;
   const std::uint8_t* pixels = nullptr;  ///< grey, without padding; valid during track()
-  bool debug_wanted = false;             ///< debug image and map points are
-  std::vector<ImuSample> imu;            ///< since the frame before
+  bool debug_wanted = false;             ///< return a debug image and map points
+  std::vector<ImuSample> imu;            ///< since the previous frame
 };
 
 struct DebugImage {
-  int width_px = 0;  ///< at most the frame's, as the height
+  int width_px = 0;  ///< width and height are at most the frame's
   int height_px = 0;
   int channels = 3;                  ///< 1 grey, 3 RGB
   std::vector<std::uint8_t> pixels;  ///< without padding; empty = no image
@@ -74,18 +74,19 @@ struct DebugImage {
 
 struct Answer {
   State state = State::kInitialising;
-  std::uint32_t map_id = 0;  ///< one more each time the estimator starts over by itself
-  /// T_vo_camera, camera axes x right, y down, z forward. Counts only while tracking.
+  std::uint32_t map_id = 0;  ///< +1 each time the estimator restarts by itself
+  /// T_vo_camera, camera axes x right, y down, z forward. Valid only while tracking.
   std::array<double, 3> position{};
   std::array<double, 4> quaternion_xyzw{0.0, 0.0, 0.0, 1.0};
-  double scene_depth = 0.0;                  ///< on the optical axis, or median; 0 = not known
-  std::map<std::string, double> counters{};  ///< names without spaces; not finite = left out
+  double scene_depth = 0.0;                  ///< on the optical axis, or median; 0 = unknown
+  std::map<std::string, double> counters{};  ///< names without spaces; only finite values
   std::map<std::string, double> timings_ms{};
-  DebugImage debug_image{};                        ///< only where it is wanted
-  std::vector<std::array<float, 3>> map_points{};  ///< likewise; in the frame of position
+  DebugImage debug_image{};  ///< only if debug_wanted
+  std::vector<std::array<float, 3>>
+      map_points{};  ///< only if debug_wanted; in the frame of position
 };
 
-/// The frame in RGB, to draw on.
+/// The frame converted to RGB, to draw on.
 inline DebugImage picture_of(const Frame& frame) {
   DebugImage picture{frame.width_px, frame.height_px, 3, {}};
   const auto width = static_cast<std::size_t>(frame.width_px);
@@ -99,30 +100,31 @@ class Connection;
 class Greeting;
 }  // namespace detail
 
-/// Any exception thrown from a method becomes an error line in the run's log, and ends the session.
+/// An exception from any method is written to the run's log as an error and ends the session.
 class Estimator {
  public:
   virtual ~Estimator() = default;
   virtual std::string name() const = 0;
   virtual std::string version() const { return "0"; }
-  /// Takes the parameters wanted and returns all that are in force. Throw for one that is not
-  /// known: to ignore it would falsify an experiment. Called once, first. As it stands: has none.
+  /// Receives the requested parameters and returns all parameters in effect. Called once, first.
+  /// Throw for an unknown parameter: ignoring it would falsify an experiment. The default
+  /// implementation accepts none.
   virtual Parameters configure(const Parameters& wanted) {
     if (!wanted.empty()) throw std::invalid_argument("unknown parameter " + wanted.begin()->first);
     return {};
   }
-  /// Comes before the first frame; a later call brings another camera and means reset() as well.
+  /// Called before the first frame. A later call gives another camera and implies reset().
   virtual void calibrate(const Calibration& calibration) = 0;
   virtual Answer track(const Frame& frame) = 0;
-  /// Forgets every frame: as newly calibrated.
+  /// Resets to the state after calibrate().
   virtual void reset() = 0;
 
  protected:
-  /// A line for the run's log; from any thread, while run() runs.
+  /// Adds a line to the run's log; may be called from any thread while run() runs.
   void log(Level level, const std::string& line);
-  /// Parameters as read back from the running system, where configure() could not know them yet.
+  /// Reports parameters read back from the running system, if configure() could not know them yet.
   void tell_parameters(const Parameters& effective);
-  /// Whether each frame is waited for; in real time (false) be quick. Known from configure() on.
+  /// True if the server waits for each answer; false in real time. Valid from configure() on.
   bool lockstep() const { return lockstep_; }
 
  private:
@@ -132,12 +134,12 @@ class Estimator {
   bool lockstep_ = true;
 };
 
-/// Serves frames until the server says stop. Returns the program's exit code: 0 after a stop, 1
-/// when something failed (said on stderr). `address`: of the server; null = $OVERFLY_VO_ADDRESS.
+/// Processes frames until the server sends stop. Returns the program's exit code: 0 after a stop, 1
+/// after a failure (reported on stderr). `address`: of the server; null = $OVERFLY_VO_ADDRESS.
 int run(Estimator& estimator, const char* address = nullptr);
 inline int run(Estimator&& estimator) { return run(estimator); }
 
-// What follows is how it is done.
+// Implementation.
 namespace detail {
 
 enum Type : std::uint16_t {
@@ -156,7 +158,7 @@ enum Type : std::uint16_t {
 constexpr std::size_t kHeaderBytes = 12;
 constexpr std::size_t kPayloadLimitBytes = 65U << 20U;
 
-/// Little-endian, whatever the machine.
+/// Little-endian on every machine.
 template <typename T>
 void put(std::string* to, T value) {
   static_assert(sizeof(T) <= 8);
@@ -211,7 +213,7 @@ inline double number_from(const std::string& text) {
   return numbers[0];
 }
 
-/// Cuts "key value" lines.
+/// Splits "key value" lines.
 inline std::vector<std::pair<std::string, std::string>> lines_of(const std::string& text) {
   std::vector<std::pair<std::string, std::string>> lines;
   std::istringstream in(text);
@@ -223,7 +225,7 @@ inline std::vector<std::pair<std::string, std::string>> lines_of(const std::stri
   return lines;
 }
 
-/// CRC-32 as zlib's, eight bytes at a time (Sarwate 1988).
+/// CRC-32 as in zlib, eight bytes at a time (Sarwate 1988).
 inline std::uint32_t crc32_of(const std::uint8_t* bytes, std::size_t count) {
   static const auto tables = [] {
     std::array<std::array<std::uint32_t, 256>, 8> made{};
@@ -279,7 +281,7 @@ class Connection {
   Connection& operator=(const Connection&) = delete;
 
   bool local() const { return local_; }
-  /// True the first time alone.
+  /// True on the first call only.
   bool first_not_finite() {
     const bool first = !not_finite_seen_;
     not_finite_seen_ = true;
@@ -306,15 +308,15 @@ class Connection {
     if (header.compare(0, 4, "OVVO") != 0) throw std::runtime_error("not the OVVO protocol");
     const auto version = get<std::uint16_t>(header, 4);
     if (version != 1) {
-      throw std::runtime_error("the server speaks version " + std::to_string(version) +
-                               " of the protocol: must be 1");
+      throw std::runtime_error("the server uses protocol version " + std::to_string(version) +
+                               ": must be 1");
     }
     const auto length = get<std::uint32_t>(header, 8);
     if (length > kPayloadLimitBytes) throw std::runtime_error("a message is too long");
     return {get<std::uint16_t>(header, 6), receive_bytes(length)};
   }
 
-  /// Maps the memory whose descriptor came with the calibration.
+  /// Maps the shared memory whose descriptor was received with the calibration.
   void map_frames(std::size_t slots, std::size_t slot_bytes) {
     if (memory_ != MAP_FAILED) ::munmap(memory_, memory_bytes_);
     slot_bytes_ = slot_bytes;
@@ -327,7 +329,7 @@ class Connection {
   const std::uint8_t* slot(std::size_t number, std::size_t bytes) const {
     if (memory_ == MAP_FAILED || bytes > slot_bytes_ ||
         (number + 1) * slot_bytes_ > memory_bytes_) {
-      throw std::runtime_error("a frame lies outside of the shared memory");
+      throw std::runtime_error("a frame lies outside the shared memory");
     }
     return static_cast<const std::uint8_t*>(memory_) + number * slot_bytes_;
   }
@@ -368,7 +370,7 @@ class Connection {
     ::setsockopt(socket_, IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
   }
 
-  /// Also takes the descriptor that may come along.
+  /// Also receives a descriptor if one was sent.
   std::string receive_bytes(std::size_t count) {
     std::string bytes(count, '\0');
     for (std::size_t got = 0; got < count;) {
@@ -461,7 +463,7 @@ inline Frame frame_from(const std::string& payload, const Connection& connection
   if ((flags & 2U) != 0) {
     frame.pixels = connection.slot(get<std::uint32_t>(payload, 40), bytes);
   } else {
-    if (payload.size() != at + bytes) throw std::runtime_error("a frame of the wrong length");
+    if (payload.size() != at + bytes) throw std::runtime_error("a frame has the wrong length");
     frame.pixels = reinterpret_cast<const std::uint8_t*>(payload.data()) + at;
   }
   return frame;
@@ -490,7 +492,7 @@ inline void send_debug(Connection& connection, const Frame& frame, const Answer&
   }
 }
 
-/// "KEY NAME VALUE" lines of the finite values; `not_finite`: the first other one, as "KEY NAME".
+/// "KEY NAME VALUE" lines of the finite values; `not_finite`: the first invalid one, "KEY NAME".
 inline std::string figures_text(const std::string& key,
                                 const std::map<std::string, double>& figures,
                                 std::string* not_finite) {
@@ -541,7 +543,7 @@ inline void answer_frame(Estimator& estimator, Connection& connection, const std
   if (!not_finite.empty() && connection.first_not_finite()) {
     log_line(connection,
              Level::kWarning,
-             not_finite + " is not finite: such values are left out, this one and those to come");
+             not_finite + " is not finite: this and later such values are ignored");
   }
   connection.send(kAnswer, answered);
 }
@@ -557,7 +559,7 @@ inline void greet(Estimator& estimator, Connection& connection) {
   if (connection.local()) own += "shared_memory true\n";
   connection.send(kHello, own);
   const Message hello = connection.receive();
-  if (hello.type != kHello) throw std::runtime_error("the server did not say hello");
+  if (hello.type != kHello) throw std::runtime_error("the server did not send HELLO");
   Parameters wanted;
   for (const auto& [key, value] : lines_of(hello.payload)) {
     if (key == "lockstep") Greeting::set_lockstep(&estimator, value == "true");
@@ -597,7 +599,7 @@ inline void Estimator::tell_parameters(const Parameters& effective) {
 }
 
 inline int run(Estimator& estimator, const char* address) {
-  std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);  // the last line before a crash must be kept
+  std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);  // keep the last line before a crash
   if (address == nullptr) address = std::getenv("OVERFLY_VO_ADDRESS");
   if (address == nullptr) {
     std::fprintf(stderr, "OVERFLY_VO_ADDRESS is not set: this program is started by overfly\n");
@@ -613,7 +615,7 @@ inline int run(Estimator& estimator, const char* address) {
       std::fprintf(stderr, "%s: %s\n", estimator.name().c_str(), failure.what());
       try {
         detail::log_line(connection, Level::kError, failure.what());
-      } catch (const std::exception&) {  // the server is gone: stderr has it
+      } catch (const std::exception&) {  // the server is gone: reported on stderr
       }
       estimator.connection_ = nullptr;
       return 1;

@@ -1,4 +1,4 @@
-"""Plugs an estimator into Overfly's process door (docs/VO_PROTOCOL.md).
+"""Connects an estimator to Overfly's process door (docs/VO_PROTOCOL.md).
 
 One file, Python 3.9, standard library only:
 
@@ -32,76 +32,76 @@ class Calibration:
     cy_px: float
     distortion: str  # none, radtan, equidistant, fov
     distortion_coefficients: list  # in the model's order
-    rate_hz: float  # 0 = not known
+    rate_hz: float  # 0 = unknown
 
 
 @dataclasses.dataclass
 class Frame:
     index: int  # gaps are dropped frames
     t_ns: int  # mid exposure of the middle row
-    exposure_ns: int  # 0 = not known
+    exposure_ns: int  # 0 = unknown
     width_px: int
     height_px: int
     pixels: memoryview  # grey bytes, row by row, without padding; valid during track()
-    debug_wanted: bool  # debug image and map points are
-    imu: list  # since the frame before: (t_ns, (x, y, z) m/s2, (x, y, z) rad/s), body axes
+    debug_wanted: bool  # return a debug image and map points
+    imu: list  # since the previous frame: (t_ns, (x, y, z) m/s2, (x, y, z) rad/s), body axes
 
     def numpy(self):
-        """The pixels as an array of height x width, not copied. Needs numpy."""
+        """The pixels as an array of height x width, without a copy. Requires numpy."""
         import numpy
         return numpy.frombuffer(self.pixels, numpy.uint8).reshape(self.height_px, self.width_px)
 
 
 @dataclasses.dataclass
 class Answer:
-    """The pose is T_vo_camera (camera axes x right, y down, z forward); counts while tracking."""
+    """The pose is T_vo_camera (camera axes x right, y down, z forward); valid while tracking."""
     state: int = INITIALISING
-    map_id: int = 0  # one more each time the estimator starts over by itself
+    map_id: int = 0  # +1 each time the estimator restarts by itself
     position: tuple = (0.0, 0.0, 0.0)
     quaternion_xyzw: tuple = (0.0, 0.0, 0.0, 1.0)
-    scene_depth: float = 0.0  # on the optical axis, or median; 0 = not known
-    counters: dict = dataclasses.field(default_factory=dict)  # names without spaces; finite
+    scene_depth: float = 0.0  # on the optical axis, or median; 0 = unknown
+    counters: dict = dataclasses.field(default_factory=dict)  # names without spaces; finite values
     timings_ms: dict = dataclasses.field(default_factory=dict)
-    debug_image: tuple = None  # (width_px, height_px, channels 1 or 3, bytes), where wanted
-    map_points: list = ()  # of (x, y, z), in the frame of position, where wanted
+    debug_image: tuple = None  # (width_px, height_px, channels 1 or 3, bytes), if debug_wanted
+    map_points: list = ()  # of (x, y, z), in the frame of position, if debug_wanted
 
 
 class Estimator:
-    """What to fill in. An exception becomes an error line in the run's log and ends the session."""
+    """Base class. An exception is written to the run's log as an error and ends the session."""
     name = "unnamed"
     version = "0"
-    lockstep = True  # each frame is waited for; False = be quick, what you miss is dropped
+    lockstep = True  # each answer is awaited; False = frames missed while busy are dropped
     _connection = None
 
     def configure(self, wanted):
-        """Takes the parameters wanted {name: text}; returns all that are in force {name: value}.
+        """Takes the requested parameters {name: text}; returns all in effect {name: value}.
 
-        Raise for one that is not known: to ignore it would falsify an experiment.
+        Raise for an unknown parameter: ignoring it would falsify an experiment.
         """
         if wanted:
             raise ValueError(f"unknown parameter {sorted(wanted)[0]}")
         return {}
 
     def calibrate(self, calibration):
-        """Comes before the first frame; a later call brings another camera and means reset()."""
+        """Called before the first frame. A later call gives another camera and implies reset()."""
 
     def track(self, frame):
         """Returns an Answer to the Frame."""
         raise NotImplementedError
 
     def reset(self):
-        """Forgets every frame: as newly calibrated."""
+        """Resets to the state after calibrate()."""
 
     def log(self, level, line):
-        """A line for the run's log."""
+        """Adds a line to the run's log."""
         self._connection.send(_LOG, struct.pack("<I", level) + line.encode()[:4096])
 
     def tell_parameters(self, effective):
-        """Parameters as read back from the running system."""
+        """Reports parameters read back from the running system."""
         self._connection.send(_PARAMETERS, _text_of(effective))
 
 
-# What follows is how it is done.
+# Implementation.
 _HELLO, _READY, _CALIBRATION, _FRAME, _ANSWER, _DEBUG_IMAGE = 1, 2, 3, 4, 5, 6
 _MAP_POINTS, _PARAMETERS, _LOG, _RESET, _STOP = 7, 8, 9, 10, 11
 _HEADER = struct.Struct("<4sHHI")
@@ -148,11 +148,11 @@ class _Connection:
         if magic != b"OVVO":
             raise ConnectionError("not the OVVO protocol")
         if version != 1:
-            raise ConnectionError(f"the server speaks version {version} of the protocol: must be 1")
+            raise ConnectionError(f"the server uses protocol version {version}: must be 1")
         return message_type, self._bytes(length)
 
     def map_frames(self, slots, slot_bytes):
-        """Maps the memory whose descriptor came with the calibration."""
+        """Maps the shared memory whose descriptor was received with the calibration."""
         self._slot_bytes = slot_bytes
         self._memory = memoryview(
             mmap.mmap(self._memory_file, slots * slot_bytes, prot=mmap.PROT_READ))
@@ -219,7 +219,7 @@ def _send_answer(connection, frame, answer, crc32):
         elif not connection.not_finite_seen:
             connection.not_finite_seen = True
             connection.send(_LOG, struct.pack("<I", WARNING) + (
-                f"{key} {name} is not finite: such values are left out, this one and those to come"
+                f"{key} {name} is not finite: this and later such values are ignored"
             ).encode())
     connection.send(_ANSWER, struct.pack("<qII3d4ddII", frame.index, answer.state, answer.map_id,
                                          *answer.position, *answer.quaternion_xyzw,
@@ -232,7 +232,7 @@ def _greet(estimator, connection):
                             f"version {estimator.version}\n{offer}".encode())
     message_type, payload = connection.receive()
     if message_type != _HELLO:
-        raise ConnectionError("the server did not say hello")
+        raise ConnectionError("the server did not send HELLO")
     wanted = {}
     for key, value in _lines(payload):
         if key == "parameter":
@@ -262,11 +262,11 @@ def _serve(estimator, connection):
 
 
 def run(estimator, address=None):
-    """Serves frames until the server says stop; on a failure ends the program with code 1.
+    """Processes frames until the server sends stop; exits with code 1 after a failure.
 
     `address`: of the server; None = $OVERFLY_VO_ADDRESS.
     """
-    sys.stdout.reconfigure(line_buffering=True)  # the last line before a crash must be kept
+    sys.stdout.reconfigure(line_buffering=True)  # keep the last line before a crash
     address = address or os.environ.get("OVERFLY_VO_ADDRESS")
     if not address:
         sys.exit("OVERFLY_VO_ADDRESS is not set: this program is started by overfly")
@@ -278,5 +278,5 @@ def run(estimator, address=None):
         try:
             estimator.log(ERROR, f"{type(failure).__name__}: {failure}")
         except OSError:
-            pass  # the server is gone: stderr has it
+            pass  # the server is gone: reported on stderr
         raise

@@ -1,20 +1,20 @@
-// An example: a camera that looks straight down on flat ground. Shifts both halves of each frame
-// over the one before until they fit (Baker, Matthews 2004); together they tell way, turn, climb.
-// Unit: the height at the start. Takes bank and relief for motion: to start from, not to compete.
+// Example for a camera that looks straight down on flat ground. Aligns both halves of each frame
+// with the previous one (Baker, Matthews 2004); together they give translation, rotation and climb.
+// Unit: the initial height. Takes bank and relief for motion. A starting point, not a competitor.
 #include <Eigen/Dense>
 #include <complex>
 #include "vo_bridges/client/overfly_vo.hpp"
 
 using namespace overfly_vo;
-using Complex = std::complex<double>;  // x + iy of the image: a product turns and stretches
+using Complex = std::complex<double>;  // x + iy in the image: a product rotates and scales
 using Image = Eigen::MatrixXd;
 
 struct NadirOdometry final : Estimator {
   double focal = 1.0;  // [px / 4]
-  Image before;        // the last frame, shrunk by 4
+  Image before;        // the previous frame, reduced by 4
   Complex left, right, place, heading;
 
-  /// Where the part of `now` from column x0 on lies in before; not a number where it fits nowhere.
+  /// Position in before of the part of `now` from column x0 on; NaN if the search fails.
   Complex shift_of(const Image& now, long x0, Complex shift) const {
     const long rim = now.rows() / 6, rows = now.rows() - 2 * rim, cols = now.cols() / 2 - 2 * rim;
     const auto part = [=](const Image& of, double x, double y) -> Image {  // bilinear
@@ -23,7 +23,7 @@ struct NadirOdometry final : Estimator {
       const Image across = at.leftCols(cols) * (1 - s) + at.rightCols(cols) * s;
       return across.topRows(rows) * (1 - t) + across.bottomRows(rows) * t;
     };
-    Eigen::MatrixX2d J(rows * cols, 2);  // how the brightness changes with the shift
+    Eigen::MatrixX2d J(rows * cols, 2);  // derivative of the brightness by the shift
     J.col(0) = (part(now, 0.5, 0) - part(now, -0.5, 0)).reshaped();
     J.col(1) = (part(now, 0, 0.5) - part(now, 0, -0.5)).reshaped();
     for (int round = 0; round < 30 && std::abs(shift) < double(rim - 1); ++round) {
@@ -47,7 +47,7 @@ struct NadirOdometry final : Estimator {
     place += heading * (left + right) / (2 * focal);
     heading *= 1.0 + (right - left) * 2.0 / double(now.cols());
     const double depth = std::abs(heading), half = std::arg(heading) / 2;
-    Answer answer{std::isnan(depth) ? State::kLost : State::kTracking};  // once lost, for good
+    Answer answer{std::isnan(depth) ? State::kLost : State::kTracking};  // once lost, it stays lost
     answer.position = {place.real(), place.imag(), 1 - depth};
     answer.quaternion_xyzw = {0, 0, std::sin(half), std::cos(half)};
     answer.scene_depth = depth;

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""An example: a camera that looks straight down and keeps its heading and its height.
+"""Example for a camera that looks straight down and keeps its heading and its height.
 
-Shifts the sums of the brightness of each row, and of each column, over those of the frame before
-until they fit. Unit: the height. A turn, bank or climb breaks it: to start from, not to compete.
+Aligns the brightness sums of each row and of each column with those of the previous frame.
+Unit: the height. Fails in turns, banks and climbs: a starting point, not a competitor.
 """
 import math
 import pathlib
@@ -13,7 +13,7 @@ import overfly_vo  # noqa: E402
 
 
 def shift_of(now, before, shift):
-    """Where in `before` the middle of `now` lies [px], searched from `shift` on (Gauss-Newton)."""
+    """Position of the middle of `now` in `before` [px], by Gauss-Newton from `shift`."""
     rim = len(now) // 4
     slopes = [(now[i + 1] - now[i - 1]) / 2 for i in range(rim, len(now) - rim)]
     rise = sum(slope * slope for slope in slopes)

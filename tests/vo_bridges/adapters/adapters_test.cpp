@@ -153,11 +153,11 @@ TEST_P(AdapterPreset, GivesWayToAParameterByName) {
 TEST(AdapterParameters, FailTheRunWhenTheRunningSystemHasOthersInForce) {
   const Environment stubborn("STANDIN_KEEPS_ITS_DEFAULT");
   EXPECT_THAT(refusal("orbslam2", {{"preset", std::string("minThFAST_2")}}),
-              HasSubstr("ORBextractor.minThFAST = 2 was asked for, but the running system has 7"));
+              HasSubstr("ORBextractor.minThFAST = 2 was requested, but the running system has 7"));
   EXPECT_THAT(refusal("dso", {{"setting_minGradHistAdd", 5.0}}),
-              HasSubstr("setting_minGradHistAdd = 5 was asked for, but the running system has 7"));
+              HasSubstr("setting_minGradHistAdd = 5 was requested, but the running system has 7"));
   EXPECT_THAT(refusal("svo", {{"triangMinCornerScore", 2.0}}),
-              HasSubstr("triangMinCornerScore = 2 was asked for, but the running system has 20"));
+              HasSubstr("triangMinCornerScore = 2 was requested, but the running system has 20"));
 }
 
 std::vector<VoFrame> contract_frames() { return plain_frames(12, kWidthPx, kHeightPx); }

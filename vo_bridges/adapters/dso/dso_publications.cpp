@@ -23,7 +23,7 @@ void DsoPublications::publishKeyframes(std::vector<dso::FrameHessian*>& frames,
   points_vo_.clear();
   for (dso::FrameHessian* frame : frames) {
     add_points(*frame, calibration);
-    // The frame that completes the start is a keyframe at once, without publishCamPose.
+    // The frame that completes the initialisation becomes a keyframe without publishCamPose.
     if (shell_ == nullptr) take_pose(frame->shell);
   }
   keyframes_ = std::max(keyframes_, frames.empty() ? 0 : frames.back()->frameID + 1);

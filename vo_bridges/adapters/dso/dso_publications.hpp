@@ -1,4 +1,4 @@
-// What DSO publishes of the frame that it works on. C++11.
+// Collects what DSO publishes about the current frame. C++11.
 #pragma once
 
 #include <FullSystem/FullSystem.h>
@@ -13,12 +13,12 @@ namespace overfly_adapters {
 
 using Points = std::vector<Eigen::Vector3d, Eigen::aligned_allocator<Eigen::Vector3d>>;
 
-/// Takes poses and points. In real time DSO's mapping publishes from a thread of its own.
+/// Receives poses and points. In real time DSO's mapping publishes from its own thread.
 class DsoPublications : public dso::IOWrap::Output3DWrapper {
  public:
   EIGEN_MAKE_ALIGNED_OPERATOR_NEW
 
-  /// What comes from now on counts where it is of the frame with this identifier.
+  /// From now on accepts data of the frame with this identifier.
   void begin_frame(int id);
 
   void publishCamPose(dso::FrameShell* frame, dso::CalibHessian* calibration) override;
@@ -26,10 +26,10 @@ class DsoPublications : public dso::IOWrap::Output3DWrapper {
                         bool final,
                         dso::CalibHessian* calibration) override;
 
-  /// Of the frame that began; false without one. `refined`: as mapping has it by now, which is
-  /// sound only while no mapping runs; else as tracked.
+  /// Pose of the current frame; returns false if there is none. `refined`: as refined by mapping,
+  /// valid only while no mapping runs; otherwise as tracked.
   bool pose(bool refined, dso::SE3* T_vo_camera) const;
-  Points points_vo() const;  ///< the active ones of the newest window
+  Points points_vo() const;  ///< active points of the newest window
   int keyframes() const;     ///< so far
 
  private:
@@ -38,7 +38,7 @@ class DsoPublications : public dso::IOWrap::Output3DWrapper {
 
   mutable std::mutex mutex_;
   int id_ = -1;
-  dso::FrameShell* shell_ = nullptr;  ///< of the frame that began; lives as long as its system
+  dso::FrameShell* shell_ = nullptr;  ///< of the current frame; lives as long as its system
   dso::SE3 tracked_;
   Points points_vo_;
   int keyframes_ = 0;

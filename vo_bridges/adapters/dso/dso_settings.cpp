@@ -9,7 +9,7 @@
 namespace overfly_adapters {
 namespace {
 
-/// As DSO's command line does for mode=N.
+/// Same as mode=N in DSO's command line.
 void set_photometric_mode(int mode) {
   dso::setting_photometricCalibration = mode == 0 ? 2 : 0;
   const std::array<float, 3> affine_a = {{1e12F, 0.0F, -1.0F}};
@@ -19,7 +19,7 @@ void set_photometric_mode(int mode) {
   dso::setting_minGradHistAdd = mode == 2 ? 3.0F : 7.0F;
 }
 
-/// A float as the decimal that it was read from, within its seven digits.
+/// A float as the decimal it was parsed from, within seven digits.
 double single(float value) {
   const double scale = std::pow(10.0, 6.0 - std::floor(std::log10(std::fabs(value) + 1e-30)));
   return std::round(static_cast<double>(value) * scale) / scale;
@@ -29,12 +29,12 @@ double single(float value) {
 
 void write_dso_settings(const Session& session) {
   const ParameterValues& values = session.parameters;
-  // With its log it would begin by removing folders named logs and mats from where it runs.
+  // With logging enabled DSO would remove the folders logs and mats in its working folder.
   dso::setting_logStuff = false;
   dso::setting_debugout_runquiet = true;
   dso::disableAllDisplay = true;
   dso::multiThreading = flag_of(values, "multiThreading", !session.lockstep);
-  // The mode first: what is asked for by name must not be overwritten by it.
+  // Set the mode first, so that it does not overwrite parameters requested by name.
   set_photometric_mode(static_cast<int>(number_of(values, "mode")));
   if (values.at("setting_minGradHistAdd") != "auto") {
     dso::setting_minGradHistAdd = static_cast<float>(number_of(values, "setting_minGradHistAdd"));
@@ -59,8 +59,8 @@ void set_dso_camera(const AdapterCamera& camera) {
   Eigen::Matrix3f K = Eigen::Matrix3f::Identity();
   K(0, 0) = static_cast<float>(camera.fx_px);
   K(1, 1) = static_cast<float>(camera.fy_px);
-  // Both have the centre of a pixel at whole numbers here: the half pixel that DSO takes off the
-  // centre in calibration files (whose origin is the corner) must not be taken off again.
+  // In both systems the centre of a pixel is at integers here. DSO subtracts half a pixel from the
+  // centre in calibration files (whose origin is the corner); this must not be repeated.
   K(0, 2) = static_cast<float>(camera.cx_px);
   K(1, 2) = static_cast<float>(camera.cy_px);
   dso::setGlobalCalib(camera.width_px, camera.height_px, K);
@@ -74,8 +74,8 @@ void set_dso_camera(const AdapterCamera& camera) {
   if (dso::pyrLevelsUsed < 3) {
     throw std::runtime_error("frames of " + std::to_string(camera.width_px) + " x " +
                              std::to_string(camera.height_px) +
-                             " px: DSO needs 3 halvings without a"
-                             " rest; take a size that 8 divides, and at least 160 x 120");
+                             " px: DSO needs 3 levels of exact"
+                             " halving; use a size divisible by 8, at least 160 x 120");
   }
 }
 

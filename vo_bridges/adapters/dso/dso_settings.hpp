@@ -5,12 +5,12 @@
 
 namespace overfly_adapters {
 
-/// Writes the session's parameters, then the camera, into DSO's globals. Throws std::runtime_error
-/// for what DSO does not take, or takes for something else.
+/// Writes the session's parameters, then the camera, to DSO's globals. Throws std::runtime_error
+/// for values that DSO does not accept or misinterprets.
 void write_dso_settings(const Session& session);
 void set_dso_camera(const AdapterCamera& camera);
 
-/// What stands in the globals now, photometric mode and camera included.
+/// The current values of the globals, including photometric mode and camera.
 ParameterValues read_dso_settings();
 
 }  // namespace overfly_adapters

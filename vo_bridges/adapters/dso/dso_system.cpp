@@ -1,5 +1,5 @@
-// DSO (Engel, Koltun, Cremers 2018) through its library's interface, without its reader of files.
-// Its settings and its camera are globals: one system of one image size in a process.
+// DSO (Engel, Koltun, Cremers 2018) through its library interface, without its file reader. Its
+// settings and camera are globals: one system with one image size per process.
 #include <FullSystem/FullSystem.h>
 #include <util/ImageAndExposure.h>
 #include <util/settings.h>
@@ -91,7 +91,7 @@ class DsoSystem : public UpstreamSystem {
     const int count = image.w * image.h;
     std::copy(frame.pixels, frame.pixels + count, image.image);
     if (frame.exposure_ms > 0.0) image.exposure_time = static_cast<float>(frame.exposure_ms);
-    // Its identifiers are int; ours may not be.
+    // DSO's identifiers are int; frame numbers may exceed it.
     publications_->begin_frame(++frames_);
     system_->addActiveFrame(&image, frames_);
   }
@@ -104,8 +104,8 @@ class DsoSystem : public UpstreamSystem {
     answer->orientation_xyzw = {{rotation.x(), rotation.y(), rotation.z(), rotation.w()}};
   }
 
-  /// Active points seen from the pose: depth, and on demand the map and an image of them, red where
-  /// near, blue where far (DSO's own image exists at keyframes only).
+  /// Active points observed from the pose: sets the depth and, on request, the map and an image of
+  /// the points, red if near, blue if far (DSO draws its own image only at keyframes).
   void see_points(const dso::SE3& T_vo_camera, const AdapterFrame& frame, AdapterAnswer* answer) {
     const dso::SE3 T_camera_vo = T_vo_camera.inverse();
     const AdapterCamera& camera = session_.camera;
@@ -141,12 +141,12 @@ class DsoSystem : public UpstreamSystem {
   Session session_;
   bool linearize_;
   bool restart_after_loss_;
-  // The system publishes while it is destroyed: it goes first.
+  // The system publishes during its destruction, so it is destroyed before its publications.
   std::unique_ptr<DsoPublications> publications_;
   std::unique_ptr<dso::FullSystem> system_;
   int frames_ = 0;
   unsigned map_id_ = 0;
-  bool posed_ = false;  ///< the map of now has given a pose
+  bool posed_ = false;  ///< the current map has given a pose
 };
 
 }  // namespace

@@ -1,10 +1,10 @@
-// Names of OpenCV 2 and 3 that sources of their time use (CV_BGR2GRAY, CV_RANSAC, CV_SVD,
-// CV_WINDOW_AUTOSIZE, ...), for OpenCV 4, which keeps them in headers that nothing else includes.
-// To be included in front of everything: g++ -include opencv2_names.hpp
+// Names of OpenCV 2 and 3 used by older sources (CV_BGR2GRAY, CV_RANSAC, CV_SVD,
+// CV_WINDOW_AUTOSIZE, ...) for OpenCV 4, which keeps them in headers that are not included by
+// default. Include it before everything else: g++ -include opencv2_names.hpp
 #pragma once
 
 #ifdef __cplusplus
-// usleep and the like, which such sources take for granted.
+// usleep and similar functions, which such sources use without including them.
 #include <unistd.h>
 
 #if __has_include(<opencv2/imgproc/imgproc_c.h>)

@@ -1,4 +1,4 @@
-// Members of ORB-SLAM2 that have no accessor, and that the adapter reads or sets. C++11.
+// Members of ORB-SLAM2 without accessors that the adapter reads or sets. C++11.
 #pragma once
 
 #include <FrameDrawer.h>

@@ -1,5 +1,5 @@
-// ORB-SLAM2's parameters, with the values of its KITTI settings (2000 features), and the published
-// variants of them.
+// ORB-SLAM2's parameters, with the values of its KITTI settings (2000 features), and its published
+// variants.
 #include "vo_bridges/adapters/upstream_system.hpp"
 
 namespace overfly_adapters {

@@ -13,7 +13,7 @@ std::string settings_of(const Session& session) {
   const AdapterCamera& camera = session.camera;
   if (camera.distortion != "none" && camera.distortion != "radtan") {
     throw std::runtime_error("distortion " + camera.distortion +
-                             ": ORB-SLAM2 takes none or radtan");
+                             ": must be none or radtan for ORB-SLAM2");
   }
   std::vector<double> d = camera.distortion_coefficients;
   d.resize(5, 0.0);
@@ -31,7 +31,7 @@ std::string settings_of(const Session& session) {
   line("Camera.p2", d[3]);
   line("Camera.k3", d[4]);
   line("Camera.bf", 0.0);
-  line("Camera.fps", camera.rate_hz);  // 0: it takes 30
+  line("Camera.fps", camera.rate_hz);  // 0: it uses 30
   line("Camera.RGB", 1.0);
   for (const char* key : {"ORBextractor.nFeatures",
                           "ORBextractor.scaleFactor",

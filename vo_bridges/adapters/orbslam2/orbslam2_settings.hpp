@@ -7,11 +7,11 @@
 
 namespace overfly_adapters {
 
-/// A temporary file, removed with this object.
+/// A temporary file, removed on destruction.
 class SettingsFile {
  public:
-  /// Throws std::runtime_error for a distortion that ORB-SLAM2 has not, or a file that cannot be
-  /// written.
+  /// Throws std::runtime_error for a distortion that ORB-SLAM2 does not support, or if the file
+  /// cannot be written.
   explicit SettingsFile(const Session& session);
   ~SettingsFile();
   SettingsFile(const SettingsFile&) = delete;

@@ -1,4 +1,4 @@
-// ORB-SLAM2 (Mur-Artal, Tardos 2017) as a monocular odometry, through its System.
+// ORB-SLAM2 (Mur-Artal, Tardos 2017) as a monocular odometry, through its class System.
 #include <KeyFrame.h>
 #include <MapPoint.h>
 #include <unistd.h>
@@ -16,9 +16,9 @@
 namespace overfly_adapters {
 namespace {
 
-/// ORB-SLAM2 leaves loops alone for ten keyframes after the keyframe of this number, and only adds
-/// each to the database that relocalisation asks. So no loop is ever closed, and the database is
-/// fed: to stop the loop closer's thread instead would starve relocalisation.
+/// ORB-SLAM2 does not search loops for ten keyframes after the keyframe with this number, but adds
+/// each keyframe to the database used by relocalisation. With this value no loop is ever closed and
+/// the database is still filled. Stopping the loop closer's thread would disable relocalisation.
 constexpr long unsigned int kNoLoopBefore = 1UL << 62U;
 
 class OrbSlam2System : public UpstreamSystem {
@@ -68,7 +68,7 @@ class OrbSlam2System : public UpstreamSystem {
     const cv::Mat T_camera_vo = system_->TrackMonocular(image_, frame.t_s);
     answer.timings_ms["track"] = stopwatch.wall_ms();
     answer.timings_ms["track_cpu"] = stopwatch.thread_cpu_ms();
-    keep_loops_open();  // a reset inside forgets it
+    keep_loops_open();  // an internal reset clears it
     set_state(!T_camera_vo.empty(), &answer);
     if (answer.state == AdapterState::kTracking) {
       set_pose(T_camera_vo, &answer);
@@ -113,7 +113,7 @@ class OrbSlam2System : public UpstreamSystem {
         answer->state = AdapterState::kLost;
         break;
       default:
-        // It threw its map away (lost with five keyframes or fewer): new origin, new scale.
+        // It discarded its map (lost with five keyframes or fewer): new origin, new scale.
         if (posed_) ++map_id_;
         posed_ = false;
         answer->state = AdapterState::kInitialising;
@@ -121,7 +121,7 @@ class OrbSlam2System : public UpstreamSystem {
     answer->map_id = map_id_;
   }
 
-  /// T_vo_camera from its inverse: R' and -R' t.
+  /// Sets T_vo_camera from its inverse: R' and -R' t.
   static void set_pose(const cv::Mat& T_camera_vo, AdapterAnswer* answer) {
     std::array<double, 9> R_vo_camera;
     for (int row = 0; row < 3; ++row) {
@@ -153,7 +153,7 @@ class OrbSlam2System : public UpstreamSystem {
     answer->counters["inliers"] = static_cast<double>(depths.size());
   }
 
-  /// Its own drawing, less the line of text below the image. Blue, green, red become RGB.
+  /// Its own debug image without the text line below it, converted from BGR to RGB.
   RgbImage debug_image() const {
     const cv::Mat drawn = drawer_->DrawFrame();
     RgbImage image;
@@ -177,8 +177,8 @@ class OrbSlam2System : public UpstreamSystem {
     return image;
   }
 
-  /// Until its mapping thread has nothing to do: then the result does not hang on the machine's
-  /// speed. The queue is looked at first: mapping says that it is busy before it takes from it.
+  /// Waits until its mapping thread is idle, so that the result does not depend on the machine's
+  /// speed. Checks the queue first: mapping sets its busy flag before it takes from the queue.
   void wait_for_mapping(AdapterAnswer* answer) {
     const Stopwatch stopwatch;
     while (wait_for_mapping_ && (mapper_->KeyframesInQueue() > 0 || !mapper_->AcceptKeyFrames())) {
@@ -187,14 +187,14 @@ class OrbSlam2System : public UpstreamSystem {
     if (wait_for_mapping_) answer->timings_ms["mapping_wait"] = stopwatch.wall_ms();
     answer->counters["keyframes"] = static_cast<double>(map_->KeyFramesInMap());
     answer->counters["map_points"] = static_cast<double>(map_->MapPointsInMap());
-    // It says so of closed loops and of the adjustment after them, of nothing else.
+    // MapChanged reports only loop closures and the adjustment after them.
     if (system_->MapChanged()) ++loops_closed_;
     answer->counters["loops_closed"] = loops_closed_;
   }
 
   Session session_;
   bool wait_for_mapping_;
-  /// Never destroyed: its class has no destructor, and its threads run to the end of the process.
+  /// Never destroyed: its class has no destructor, and its threads run until the process ends.
   ORB_SLAM2::System* system_ = nullptr;
   ORB_SLAM2::Tracking* tracker_ = nullptr;
   ORB_SLAM2::LocalMapping* mapper_ = nullptr;
@@ -203,7 +203,7 @@ class OrbSlam2System : public UpstreamSystem {
   ORB_SLAM2::Map* map_ = nullptr;
   cv::Mat image_;
   unsigned map_id_ = 0;
-  bool posed_ = false;  ///< the map of now has given a pose
+  bool posed_ = false;  ///< the current map has given a pose
   int loops_closed_ = 0;
 };
 

@@ -1,5 +1,5 @@
-// SVO's parameters: its library's own defaults (its ROS node has others: preset ros_fast), and the
-// published variants of them.
+// SVO's parameters with its library's defaults (its ROS node uses others: preset ros_fast), and its
+// published variants.
 #include "vo_bridges/adapters/upstream_system.hpp"
 
 namespace overfly_adapters {

@@ -1,4 +1,4 @@
-// SVO (Forster, Pizzoli, Scaramuzza 2014) through its library's interface, without its ROS node.
+// SVO (Forster, Pizzoli, Scaramuzza 2014) through its library interface, without its ROS node.
 #include <svo/config.h>
 #include <svo/depth_filter.h>
 #include <svo/feature.h>
@@ -19,7 +19,7 @@
 namespace overfly_adapters {
 namespace {
 
-/// Where SVO keeps a parameter: settings for the whole process.
+/// Location of a parameter in SVO: global settings of the process.
 struct Setting {
   std::size_t* whole;
   double* number;
@@ -72,7 +72,7 @@ ParameterValues read_settings() {
   return values;
 }
 
-/// Its halving of images (vikit's halfSample) reads and writes beyond them where a width is odd.
+/// For an odd width its image halving (vikit's halfSample) reads and writes beyond the image.
 void check_size(const AdapterCamera& camera) {
   const std::size_t levels = std::max(svo::Config::nPyrLevels(), svo::Config::kltMaxLevel() + 1);
   const std::size_t divisor = std::size_t{1} << (levels - 1);
@@ -85,8 +85,8 @@ void check_size(const AdapterCamera& camera) {
       std::to_string(divisor) + " divides");
 }
 
-/// It writes its times into one file of a fixed name, in /tmp where it is told nothing: those of
-/// runs at the same time would go into one file.
+/// SVO writes its timings to a file with a fixed name, by default in /tmp: runs at the same time
+/// would write to the same file.
 void set_trace_folder() {
   const char* const folder = std::getenv("TMPDIR");
   if (folder != nullptr && *folder != '\0') svo::Config::traceDir() = folder;
@@ -96,7 +96,7 @@ std::unique_ptr<vk::PinholeCamera> camera_from(const AdapterCamera& camera) {
   std::vector<double> d = camera.distortion_coefficients;
   if (camera.distortion != "none" && camera.distortion != "radtan") {
     throw std::runtime_error("distortion " + camera.distortion +
-                             ": this adapter takes none or radtan");
+                             ": must be none or radtan for this adapter");
   }
   d.resize(5, 0.0);
   return std::unique_ptr<vk::PinholeCamera>(new vk::PinholeCamera(camera.width_px,
@@ -123,7 +123,8 @@ class SvoSystem : public UpstreamSystem {
     check_size(session.camera);
     set_trace_folder();
     handler_.reset(new svo::FrameHandlerMono(camera_.get()));
-    // Without its thread the depth filter takes each frame at once: the same result each time.
+    // Without its thread the depth filter processes each frame immediately, so that results are
+    // reproducible.
     if (!depth_filter_thread_) handler_->depthFilter()->stopThread();
     handler_->start();
   }
@@ -136,11 +137,11 @@ class SvoSystem : public UpstreamSystem {
   }
 
   AdapterAnswer track(const AdapterFrame& frame) override {
-    // It pauses for good when its two-view start fails, until somebody presses a key.
+    // SVO pauses permanently if its two-view initialisation fails, until a key is pressed.
     if (handler_->stage() == svo::FrameHandlerBase::STAGE_PAUSED && restart_when_paused_) {
       handler_->start();
     }
-    // It copies the image.
+    // SVO copies the image.
     const cv::Mat image(session_.camera.height_px,
                         session_.camera.width_px,
                         CV_8UC1,
@@ -161,13 +162,13 @@ class SvoSystem : public UpstreamSystem {
   }
 
   void reset() override {
-    handler_->start();  // with the next image: forgets its map
+    handler_->start();  // at the next image it discards its map
     map_id_ = 0;
     posed_ = false;
   }
 
  private:
-  /// A pose counts only in the default stage: while it relocalises, its pose is frozen.
+  /// A pose is valid only in the default stage: during relocalisation it is frozen.
   void set_state(AdapterAnswer* answer) {
     switch (handler_->stage()) {
       case svo::FrameHandlerBase::STAGE_DEFAULT_FRAME:
@@ -178,7 +179,7 @@ class SvoSystem : public UpstreamSystem {
         answer->state = AdapterState::kLost;
         break;
       default:
-        // Back at the start: the map that had poses is gone, and its scale with it.
+        // Back in the initial stage: the previous map and its scale are gone.
         if (posed_) ++map_id_;
         posed_ = false;
         answer->state = AdapterState::kInitialising;
@@ -208,7 +209,8 @@ class SvoSystem : public UpstreamSystem {
     answer->counters["inliers"] = static_cast<double>(depths.size());
   }
 
-  /// SVO draws none of its own. Tracked features green, those of the two-view start yellow.
+  /// SVO draws no debug image. Draws tracked features in green, those of the initialisation in
+  /// yellow.
   RgbImage debug_image(const AdapterFrame& frame) const {
     RgbImage image = rgb_of(frame, session_.camera);
     const svo::FramePtr last = handler_->lastFrame();
@@ -231,7 +233,7 @@ class SvoSystem : public UpstreamSystem {
   std::unique_ptr<vk::PinholeCamera> camera_;
   std::unique_ptr<svo::FrameHandlerMono> handler_;
   unsigned map_id_ = 0;
-  bool posed_ = false;  ///< the map of now has given a pose
+  bool posed_ = false;  ///< the current map has given a pose
 };
 
 }  // namespace

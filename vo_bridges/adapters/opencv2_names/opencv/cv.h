@@ -1,4 +1,4 @@
-// In the place of OpenCV 2's header of this name, which OpenCV 4 no longer has.
+// Replaces the OpenCV 2 header of this name, which OpenCV 4 no longer has.
 #pragma once
 
 #include <opencv2/calib3d/calib3d.hpp>

@@ -1,4 +1,4 @@
-// What ORB-SLAM2's own headers name of Pangolin: enough to call the library without its viewer.
+// The Pangolin type named by ORB-SLAM2's headers: enough to call the library without its viewer.
 #pragma once
 
 namespace pangolin {
