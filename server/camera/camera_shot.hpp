@@ -1,4 +1,4 @@
-// What one camera made of one frame.
+// One camera's result for one frame.
 #pragma once
 
 #include <cstdint>
@@ -14,20 +14,20 @@ namespace overfly::engine {
 
 struct CameraShot {
   std::size_t camera = 0;           ///< index into Scenario::cameras
-  std::string name;                 ///< of the camera
+  std::string name;                 ///< the camera's name
   renderer::CameraRequest request;  ///< as drawn
-  /// What the renderer said of it; the images have moved on.
+  /// The renderer's metadata; its images have been moved out.
   renderer::CameraFrame drawn;
-  Image image;      ///< as the camera gives it, grey or RGB; of deeper sensors the high 8 bits
-  Image16 image16;  ///< of sensors deeper than 8 bit; else empty
+  Image image;      ///< as the camera delivers it, grey or RGB; the high 8 bits of deeper sensors
+  Image16 image16;  ///< from sensors deeper than 8 bit; else empty
   renderer::ExposureSetting setting;  ///< exposure 0 = a camera without a sensor model
   double saturated_fraction = 0.0;
-  std::int64_t stamp_ns = 0;        ///< what estimators are told; the truth is MadeFrame::t_ns
-  std::vector<std::string> faults;  ///< kinds of those that touch the frame
-  bool delivered = true;            ///< false: lost on its way to the estimators
+  std::int64_t stamp_ns = 0;        ///< as given to estimators; the true time is MadeFrame::t_ns
+  std::vector<std::string> faults;  ///< kinds of the faults that affect the frame
+  bool delivered = true;            ///< false: lost before it reached the estimators
 };
 
-/// One instant, seen by all cameras.
+/// One instant, as seen by all cameras.
 struct MadeFrame {
   std::int64_t frame = 0;
   std::int64_t t_ns = 0;
@@ -35,7 +35,7 @@ struct MadeFrame {
   std::vector<CameraShot> shots;  ///< in the order of Scenario::cameras
 };
 
-/// The image as estimators are given it: luma (ITU-R BT.601) of a colour image.
+/// The image as given to estimators: luma (ITU-R BT.601) of a colour image.
 [[nodiscard]] Image grey_of(const Image& image);
 
 }  // namespace overfly::engine

@@ -1,4 +1,4 @@
-// One camera at work: its shutter along the truth, and what its sensor makes of the light.
+// One camera in operation: its shutter along the true trajectory, and its sensor.
 #pragma once
 
 #include <cstdint>
@@ -17,22 +17,22 @@ namespace overfly::engine {
 /// Used by one thread.
 class CameraUnit {
  public:
-  /// @param spec   must outlive the unit
-  /// @param index  among the scenario's cameras; with `seed` it seeds noise and vibration
+  /// @param spec  must outlive the unit
+  /// @param index  among the scenario's cameras; together with `seed` it seeds noise and vibration
   /// Errors: as Sensor::create and MountVibration::create, with the camera's name.
   static Result<std::unique_ptr<CameraUnit>> create(const CameraSpec& spec,
                                                     std::size_t index,
                                                     std::uint64_t seed);
 
-  /// Half of the longest time over which one image is exposed and read out; 0 = an instant.
+  /// Half of the longest time in which one image is exposed and read out; 0 = an instant.
   [[nodiscard]] std::int64_t half_window_ns() const { return half_window_ns_; }
-  /// Raster of the truth that its shutter needs: 1 ms, or a tenth of the fastest vibration's
-  /// period.
+  /// Sampling period of the truth that the shutter needs: 1 ms, or a tenth of the period of the
+  /// fastest vibration.
   [[nodiscard]] std::int64_t raster_ns() const { return raster_ns_; }
   [[nodiscard]] Pose T_world_camera(const Pose& T_world_body, std::int64_t t_ns) const;
 
-  /// @param states   as TruthWindow::around gives them, over half_window_ns() at least
-  /// @param setting  of the exposure; the sensor's next one where it is empty
+  /// @param states  from TruthWindow::around, over at least half_window_ns()
+  /// @param setting  exposure; if empty, the sensor's next one
   [[nodiscard]] Result<renderer::CameraRequest> request(
       const std::vector<AircraftState>& states,
       std::int64_t t_ns,
@@ -40,9 +40,9 @@ class CameraUnit {
   /// The next exposure; empty without a sensor model.
   [[nodiscard]] std::optional<renderer::ExposureSetting> next_setting() const;
 
-  /// Makes the drawn light into the camera's image: faults on the lens, sensor, frozen image.
-  /// @param setting  forces the exposure, for a frame taken out of its turn: auto-exposure then
-  ///                 learns nothing, and a frozen camera shows what it would have seen
+  /// Converts the rendered light into the camera's image: faults on the lens, sensor, frozen image.
+  /// @param setting  forces the exposure of a frame that is taken out of order: auto-exposure then
+  ///                 does not adapt, and a frozen camera gives the image that it would have taken
   Status develop(renderer::CameraFrame drawn,
                  const FrameFaults& faults,
                  std::int64_t frame,

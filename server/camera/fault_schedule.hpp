@@ -1,4 +1,4 @@
-// Which faults are in force at a frame, and what they do to its stamp and its delivery.
+// Which faults are active at a frame, and how they change its stamp and delivery.
 #pragma once
 
 #include <cstdint>
@@ -10,25 +10,25 @@
 
 namespace overfly::engine {
 
-/// What the faults do to one frame of one camera.
+/// Effect of the faults on one frame of one camera.
 struct FrameFaults {
   std::vector<const FaultSpec*> on_lens;  ///< in the scenario's order
   bool frozen = false;
   bool dropped = false;
-  std::int64_t stamp_ns = 0;       ///< that estimators are told
-  std::vector<std::string> names;  ///< kinds that touch this frame, each once
+  std::int64_t stamp_ns = 0;       ///< as given to estimators
+  std::vector<std::string> names;  ///< kinds that affect this frame, each once
 };
 
-/// Random choices depend on the fault's seed and the frame's number alone.
+/// Random choices depend only on the fault's seed and the frame's number.
 class FaultSchedule {
  public:
   /// @param scenario  must outlive the schedule
   explicit FaultSchedule(const Scenario& scenario);
 
-  /// Stamps that estimators are told always grow: one that would not comes 1 us after the one
-  /// before. Frames of a camera must come in order.
+  /// Stamps given to estimators always increase: one that would not is set to 1 us after the
+  /// previous one. Frames of a camera must come in order.
   [[nodiscard]] FrameFaults at(std::size_t camera, std::int64_t frame, std::int64_t t_ns);
-  /// True when the camera can freeze at some time.
+  /// True if the camera can freeze at some time.
   [[nodiscard]] bool may_freeze(std::size_t camera) const;
 
  private:
@@ -48,7 +48,7 @@ class FaultNews {
     bool begins = true;
     std::string text;
   };
-  /// What has changed since the call before.
+  /// Changes since the previous call.
   [[nodiscard]] std::vector<Line> at(std::int64_t t_ns);
 
  private:

@@ -1,5 +1,5 @@
-// Frames as the aircraft's cameras take them: world, truth and renderer in one place, so that
-// whoever makes the frames of a scenario again gets the same bytes.
+// Makes the frames of the aircraft's cameras. World, truth and renderer are combined in one place,
+// so that rendering a scenario again gives the same bytes.
 #pragma once
 
 #include <atomic>
@@ -29,28 +29,28 @@ class WorldCache;
 struct OpenedWorld;
 
 struct FrameMakerOptions {
-  RendererFactory renderer_factory;           ///< EGL where it is empty
-  WorldCache* worlds = nullptr;               ///< opened worlds to share; its own when null
+  RendererFactory renderer_factory;           ///< EGL if empty
+  WorldCache* worlds = nullptr;               ///< cache of opened worlds to share; private if null
   const std::atomic<bool>* cancel = nullptr;  ///< stops the opening
-  /// What takes long while it opens, one line at a time.
+  /// Called with one line before each slow step of the opening.
   std::function<void(const std::string&)> notice;
-  StageTimer* stages = nullptr;  ///< where the time is booked
+  StageTimer* stages = nullptr;  ///< measures the time of each stage
   bool wait_for_tiles = true;    ///< see renderer::CameraRequest
 };
 
 /// Used and destroyed on one thread.
 class FrameMaker {
  public:
-  /// Opens the world, plans the flight and makes the renderer.
+  /// Opens the world, plans the flight and creates the renderer.
   /// @param scenario  must outlive the maker
-  /// Errors: kCancelled; whatever world, flight and renderer say.
+  /// Errors: kCancelled; any error of world, flight and renderer.
   static Result<std::unique_ptr<FrameMaker>> open(const Scenario& scenario,
                                                   const FrameMakerOptions& options = {});
   static Result<std::unique_ptr<FrameMaker>> open(Scenario&&, const FrameMakerOptions&) = delete;
 
-  /// Frames of the flight; of a flight of unknown length those of a day.
+  /// Number of frames of the flight; for a flight of unknown length, that of one day.
   [[nodiscard]] std::int64_t frames_total() const { return frames_total_; }
-  /// Empty for a flight whose end is not known beforehand.
+  /// Empty for a flight whose end is not known in advance.
   [[nodiscard]] std::optional<std::int64_t> duration_ns() const { return duration_ns_; }
   [[nodiscard]] const terrain::World& world() const { return *world_; }
   [[nodiscard]] const std::shared_ptr<const OpenedWorld>& opened_world() const { return opened_; }
@@ -60,18 +60,20 @@ class FrameMaker {
     return truth_->source().warnings();
   }
 
-  /// Frame k as every camera sees it; empty after the end of a flight whose length was not known.
-  /// k must grow from call to call. Errors: as the truth's and the renderer's; kIo when a file of
-  /// the world could not be read, naming it.
+  /// Frame k as seen by every camera; empty after the end of a flight of unknown length. k must
+  /// increase from call to call.
+  /// Errors: as the truth's and the renderer's; kIo naming a file of the world that could not be
+  /// read.
   [[nodiscard]] Result<std::optional<MadeFrame>> make(std::int64_t k);
 
-  /// T_world_camera of every frame of one camera, by the stamps that estimators are told.
+  /// T_world_camera of every frame of one camera, with the stamps given to estimators.
   [[nodiscard]] Result<Trajectory> rehearse(std::size_t camera) const;
-  /// Depth of the ground along a camera's axis at t = 0 [m]; empty when it meets the sky.
+  /// Depth of the ground along a camera's axis at t = 0 [m]; empty if the axis does not hit the
+  /// ground.
   [[nodiscard]] Result<std::optional<double>> depth_at_start(std::size_t camera);
-  /// Draws the first frame once and waits for its ground, so that a flight in real time does not
-  /// begin over tiles that are still being read. Nothing for a flight whose end is not known: its
-  /// first pose is not either.
+  /// Draws the first frame once and waits for its tiles, so that a real-time flight does not start
+  /// while its tiles are still being read. Does nothing for a flight whose end is not known, since
+  /// its first pose is not known either.
   Status fetch_first_view();
 
  private:
@@ -84,10 +86,11 @@ class FrameMaker {
   [[nodiscard]] Result<CameraShot> take(std::size_t camera,
                                         std::int64_t k,
                                         const std::vector<AircraftState>& states);
-  /// Heights have no way to say that they could not be read, and no picture waits for a tile that
-  /// never comes. @param late_tiles  that a picture was drawn without
+  /// Checks for read errors, because height queries cannot report them and a frame does not wait
+  /// for a tile that cannot be read.
+  /// @param late_tiles  tiles that a frame was drawn without
   [[nodiscard]] Status check_reading(int late_tiles) const;
-  /// A world that could not be read is not for the runs to come.
+  /// Removes a world that could not be read from the cache, so that later runs open it again.
   [[nodiscard]] Error failed(const Error& error);
 
   const Scenario& scenario_;
@@ -95,8 +98,8 @@ class FrameMaker {
   std::unique_ptr<StageTimer> own_stages_;
   StageTimer& stages_;
   std::shared_ptr<const OpenedWorld> opened_;
-  std::shared_ptr<const terrain::World> world_;  ///< that of opened_
-  std::shared_ptr<const WatchedTiles> tiles_;    ///< those of the world
+  std::shared_ptr<const terrain::World> world_;  ///< the world of opened_
+  std::shared_ptr<const WatchedTiles> tiles_;    ///< the tiles of the world
   std::unique_ptr<TruthWindow> truth_;
   std::optional<std::int64_t> duration_ns_;
   std::int64_t frames_total_ = 0;
@@ -104,7 +107,7 @@ class FrameMaker {
   FaultSchedule faults_;
   std::vector<std::unique_ptr<CameraUnit>> cameras_;
   std::int64_t half_window_ns_ = 0;  ///< of the camera that needs the longest
-  std::int64_t raster_ns_ = 0;       ///< of the one that needs the finest
+  std::int64_t raster_ns_ = 0;       ///< of the camera that needs the finest
 };
 
 }  // namespace overfly::engine

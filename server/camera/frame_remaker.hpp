@@ -1,4 +1,4 @@
-// A run's camera image made again at any frame, for playback of what was not recorded.
+// Renders a run's camera image again at any frame, for playback of images that were not recorded.
 #pragma once
 
 #include <memory>
@@ -14,15 +14,15 @@
 
 namespace overfly::engine {
 
-/// With the same renderer the image is that of the run: shutter, vibration, lens faults, exposure
-/// and noise are those of the frame. Only a frozen camera shows what it would have seen.
-/// Used by one thread.
+/// With the same renderer the image equals that of the run: shutter, vibration, lens faults,
+/// exposure and noise are those of the frame. Only a frozen camera gives the image that it would
+/// have taken. Used by one thread.
 class FrameRemaker {
  public:
   static Result<std::unique_ptr<FrameRemaker>> create(Scenario scenario,
                                                       std::shared_ptr<const terrain::World> world);
 
-  /// @param row  of the frame, from the run's record: its exposure is used
+  /// @param row  of the frame, from the run's record; its exposure is used
   /// Errors: as the truth's and the renderer's.
   [[nodiscard]] Result<Image> make(std::size_t camera,
                                    const FrameRow& row,
@@ -37,7 +37,7 @@ class FrameRemaker {
   std::shared_ptr<const terrain::World> world_;
   std::vector<std::unique_ptr<CameraUnit>> cameras_;
   std::unique_ptr<TruthWindow> truth_;
-  std::int64_t asked_ns_ = 0;  ///< of the truth last
+  std::int64_t asked_ns_ = 0;  ///< latest time requested from the truth
 };
 
 }  // namespace overfly::engine

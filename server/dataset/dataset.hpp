@@ -1,4 +1,4 @@
-// Recorded images with their times and calibration, as others lay them out.
+// Recorded images with time stamps and calibration, in the layouts of common data sets.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 namespace overfly::engine {
 
 enum class DatasetLayout {
-  kImages,   ///< a folder of images, times in a file of their own
+  kImages,   ///< a folder of images, times in a separate file
   kEuroc,    ///< EuRoC ASL: mav0/cam0/data.csv, sensor.yaml
   kTumMono,  ///< TUM monoVO: images/, times.txt, camera.txt
   kTumRgbd,  ///< TUM RGB-D: rgb.txt
@@ -29,39 +29,40 @@ enum class TimeUnit { kAuto, kSeconds, kNanoseconds };
 
 struct DatasetImage {
   std::filesystem::path file;
-  std::string listed_at;         ///< "FILE:LINE" that names it
-  int line = 0;                  ///< that LINE
-  std::int64_t index = 0;        ///< the data set's own number, else its line's place; increasing
-  std::int64_t t_ns = 0;         ///< as the data set counts; increasing
+  std::string listed_at;   ///< "FILE:LINE" that names it
+  int line = 0;            ///< LINE of listed_at
+  std::int64_t index = 0;  ///< the data set's own number, else the position in the list; increasing
+  std::int64_t t_ns = 0;   ///< in the data set's time base; increasing
   std::int64_t exposure_ns = 0;  ///< 0 = not known
 };
 
 struct Dataset {
   std::filesystem::path folder;
   DatasetLayout layout = DatasetLayout::kImages;
-  std::string camera_name;           ///< "cam0", "image_0", ...; empty where there is but one
+  std::string camera_name;           ///< "cam0", "image_0", ...; empty if there is only one
   std::vector<DatasetImage> images;  ///< at least one
   CameraModel camera;
   std::optional<Pose> T_body_camera;  ///< the mount: EuRoC's T_BS
-  /// KITTI: this camera in that of image_0, whose poses its truth files hold.
+  /// KITTI: pose of this camera in the frame of image_0, which the truth files use.
   std::optional<Pose> T_first_camera;
-  std::vector<std::string> notes;  ///< what a reader of results should know
-  /// Images and poses of the truth that were left out or moved, with file, count and line.
+  std::vector<std::string> notes;  ///< facts that a reader of the results should know
+  /// Images and truth poses that were left out or reordered, with file, count and line.
   std::vector<std::string> warnings;
-  int sample_bits = 16;  ///< of images with more than 8 bit a sample
+  int sample_bits = 16;  ///< significant bits of samples deeper than 8 bit
 };
 
 struct DatasetOptions {
   std::filesystem::path folder;
-  std::optional<DatasetLayout> layout;  ///< empty = told by the files that are there
-  /// Times of the images of a plain folder, one a line: `TIME`, or the image's name beside it
-  /// (`NAME TIME [EXPOSURE_MS]`, `TIME NAME`, `TIME,NAME`). Given, the folder is a plain one.
+  std::optional<DatasetLayout> layout;  ///< empty = detected from the files
+  /// Times of the images of a plain folder, one a line: `TIME`, or with the image's name (`NAME
+  /// TIME [EXPOSURE_MS]`, `TIME NAME`, `TIME,NAME`). If given, the layout is a plain folder.
   std::optional<std::filesystem::path> times;
-  TimeUnit time_unit = TimeUnit::kAuto;  ///< of `times`; auto: no frame lasts a day or 0.1 ms
-  std::string camera_name;               ///< which of several; empty = the first
-  /// In place of the data set's own; a size of 0 x 0 px is taken from the first image.
+  /// Of `times`; auto assumes frame periods between 0.1 ms and one day
+  TimeUnit time_unit = TimeUnit::kAuto;
+  std::string camera_name;  ///< selects one of several cameras; empty = the first
+  /// Replaces the data set's calibration; a size of 0 x 0 px is taken from the first image.
   std::optional<CameraModel> camera;
-  int sample_bits = 16;  ///< of 16-bit files: values fill so many bits, in [8, 16]
+  int sample_bits = 16;  ///< significant bits of 16-bit files, in [8, 16]
 };
 
 }  // namespace overfly::engine

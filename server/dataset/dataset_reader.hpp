@@ -1,4 +1,4 @@
-// Inside dataset only: the readers of each layout, and what they share.
+// Internal to dataset: the readers of each layout, and what they share.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace overfly::engine {
 
-/// A data set whose images are listed; a camera without size (0 x 0 px) is not known yet.
+/// A data set whose images are listed; a camera of size 0 x 0 px is not known yet.
 struct ListedDataset {
   Dataset dataset;
   std::optional<CameraModel> camera;
@@ -25,10 +25,11 @@ struct ListedDataset {
 [[nodiscard]] Result<ListedDataset> read_kitti(const DatasetOptions& options);
 [[nodiscard]] Result<ListedDataset> read_png_export(const DatasetOptions& options);
 
-/// The folder that holds `mav0/cam0` or what else EuRoC's reader takes; empty where none does.
+/// The folder that holds `mav0/cam0` or another layout that EuRoC's reader accepts; empty if there
+/// is none.
 [[nodiscard]] std::optional<std::filesystem::path> euroc_cameras_folder(
     const std::filesystem::path& folder);
-/// KITTI's image folder: "image_0", else the first of the others that is there.
+/// KITTI's image folder: "image_0", else the first of the others that exists.
 [[nodiscard]] std::optional<std::string> kitti_image_folder(const std::filesystem::path& folder);
 
 /// Calibration files. Errors: kUnreadable naming file, line and value.
@@ -37,29 +38,30 @@ struct EurocSensor {
   Pose T_body_camera;
 };
 [[nodiscard]] Result<EurocSensor> read_euroc_sensor(const std::filesystem::path& file);
-/// As DSO reads it: relative where cx and cy are below 1, and then half a pixel is taken off them.
+/// Follows DSO: the values are relative if cx and cy are below 1; half a pixel is then subtracted
+/// from both.
 [[nodiscard]] Result<CameraModel> read_tum_mono_camera(const std::filesystem::path& file);
 
-/// Appends an image, which must be there. Errors: kNotFound naming the line of `list_file`.
+/// Appends an image; its file must exist. Errors: kNotFound naming the line of `list_file`.
 [[nodiscard]] Status append_image(const std::filesystem::path& list_file,
                                   const FieldLine& line,
                                   DatasetImage image,
                                   std::vector<DatasetImage>& images);
-/// Puts the listed images in order of time; of the same time the first is kept. Images that had to
-/// be moved are numbered anew.
+/// Sorts the listed images by time; of images with the same time the first is kept. If images were
+/// reordered, all are renumbered.
 /// Errors: kUnreadable, naming the line, for images whose own numbers do not increase.
 [[nodiscard]] Status order_images(Dataset& dataset);
 
-/// Exposure in milliseconds, 0 = not known. Errors: kUnreadable, also when negative.
+/// Exposure in milliseconds, 0 = not known. Errors: kUnreadable, also for a negative value.
 [[nodiscard]] Result<std::int64_t> exposure_ms(const FieldFile& list,
                                                const FieldLine& line,
                                                std::size_t column);
 
-/// The images in a folder, numbers in their names taken as numbers. Errors: kNotFound.
+/// The images in a folder, sorted with numbers in names compared as numbers. Errors: kNotFound.
 [[nodiscard]] Result<std::vector<std::filesystem::path>> images_in(
     const std::filesystem::path& folder);
 
-/// Image i beside line i. Errors: kUnreadable with both counts.
+/// Checks that image count and line count are equal. Errors: kUnreadable with both counts.
 [[nodiscard]] Status expect_as_many(const std::filesystem::path& list_file,
                                     std::size_t lines,
                                     const std::filesystem::path& folder,

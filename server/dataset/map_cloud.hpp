@@ -1,4 +1,4 @@
-// The sparse map that an estimator showed along its way.
+// The sparse map that an estimator reported during its run.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,9 +14,9 @@
 
 namespace overfly::engine {
 
-/// Gathers the points that are seen from frame to frame. Estimators move points as they learn more
-/// of them, and give them no names: of all that came to lie in one cell of the grid the last stays.
-/// A cell is 0.5 % of the map's first scene depth wide; without a depth only equal points are one.
+/// Accumulates map points over the frames. Estimators move points as they refine them and give them
+/// no ids. Of all points that fall into one cell of the grid, only the last is kept. A cell is 0.5
+/// % of the map's first scene depth wide; without a depth only equal points are merged.
 class MapCloud {
  public:
   void add(const EstimateSample& sample, const std::vector<Eigen::Vector3f>& points_vo);
@@ -33,7 +33,8 @@ class MapCloud {
 };
 
 /// Writes points as PLY (Turk 1994, text, float x y z); the file appears whole or not at all.
-/// @param comment  one line. Errors: kIo.
+/// @param comment  one line
+/// Errors: kIo.
 [[nodiscard]] Status write_ply(const std::filesystem::path& file,
                                const std::vector<Eigen::Vector3f>& points,
                                const std::string& comment);

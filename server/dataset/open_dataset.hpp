@@ -8,16 +8,16 @@
 
 namespace overfly::engine {
 
-/// Opens a data set and checks all but the images' content: every file is there. Images that are
-/// not in order of time are sorted, and of those with the same time the first is kept; `warnings`
-/// counts them.
-/// Errors: kInvalidArgument for options, a missing calibration or a folder of no known layout;
+/// Opens a data set and checks that every file exists; the content of the images is not checked.
+/// Sorts images that are not in order of time. Of images with the same time it keeps the first.
+/// `warnings` counts both.
+/// Errors: kInvalidArgument for options, a missing calibration or a folder of unknown layout;
 /// kNotFound; kUnreadable naming file, line and value.
 [[nodiscard]] Result<Dataset> open_dataset(const DatasetOptions& options);
 
-/// Reads image `i` as an estimator is to get it: 8-bit grey, with its CRC-32.
-/// Errors: kNotFound, kUnreadable naming the image and where it is listed: not an image, damaged,
-/// or of another size than the calibration's.
+/// Reads image `i` as the estimator gets it: 8-bit grey, with its CRC-32.
+/// Errors: kNotFound; kUnreadable naming the image and the line that lists it, if the file is not
+/// an image, is damaged, or differs in size from the calibration.
 [[nodiscard]] Result<VoFrame> read_frame(const Dataset& dataset, std::size_t i);
 
 }  // namespace overfly::engine

@@ -1,4 +1,4 @@
-// An estimator over a recorded data set, frame by frame, each answered before the next.
+// Runs an estimator over a recorded data set; each frame is answered before the next is sent.
 #pragma once
 
 #include <atomic>
@@ -21,50 +21,53 @@
 namespace overfly::engine {
 
 struct TrackOptions {
-  std::filesystem::path debug_folder;  ///< exists; gets NNNNNN.jpg of each frame; empty = none
-  bool map_points = false;             ///< gather the sparse map
-  const std::atomic<bool>* cancel = nullptr;  ///< stops after the frame at hand
-  /// After each frame: how many of how many, and what the estimator said of it.
+  std::filesystem::path debug_folder;  ///< must exist; gets NNNNNN.jpg of each frame; empty = none
+  bool map_points = false;             ///< collect the sparse map
+  const std::atomic<bool>* cancel = nullptr;  ///< stops after the current frame
+  /// Called after each frame: frames done, frames in total, and the estimator's state.
   std::function<void(std::size_t, std::size_t, TrackingState)> progress;
-  std::function<void(const std::string&)> log;  ///< a line that the estimator said
+  std::function<void(const std::string&)> log;  ///< called with each log line of the estimator
 };
 
 struct TrackedDataset {
-  std::vector<EstimateRecord> records;  ///< one for each frame that the estimator was given
+  std::vector<EstimateRecord> records;  ///< one for each frame that the estimator got
   MapCloud map;
-  DurationList reading;                           ///< of image files, decoding and checksum
-  DurationList tracking;                          ///< from giving the frame to having the answer
-  std::map<std::string, DurationList> stages;     ///< as the estimator times itself
-  std::map<std::string, std::string> parameters;  ///< in force
+  DurationList reading;                           ///< reading image files: decoding and checksum
+  DurationList tracking;                          ///< from sending a frame to its answer
+  std::map<std::string, DurationList> stages;     ///< as reported by the estimator
+  std::map<std::string, std::string> parameters;  ///< effective values
   std::string type;
-  ResourceUse resources;  ///< of the estimator's process; of one in ours: CPU while it tracked
+  /// Of the estimator's process; for one in this process: CPU time while it tracked
+  ResourceUse resources;
   bool own_process = false;
-  std::int64_t unanswered = 0;       ///< frames that a door got no answer to in time
-  std::int64_t hash_mismatches = 0;  ///< images that arrived changed
+  std::int64_t unanswered = 0;       ///< frames that got no answer before the timeout
+  std::int64_t hash_mismatches = 0;  ///< images that arrived corrupted
   bool cancelled = false;
 };
 
-/// Gives every frame to the estimator. A crash (its record says why) ends the run, and is a result.
-/// Errors: as read_frame; kInvalidArgument where the estimator refuses camera or images; kIo.
+/// Sends every frame to the estimator. A crash ends the run and is a result; the last record gives
+/// the reason.
+/// Errors: as read_frame; kInvalidArgument if the estimator rejects camera or images; kIo.
 [[nodiscard]] Result<TrackedDataset> track_dataset(const Dataset& dataset,
                                                    VoPort& port,
                                                    const TrackOptions& options);
 
-/// Why the estimator was gone before it answered a single frame; empty where it ran.
+/// The reason why the estimator ended before it answered a single frame; empty if it ran.
 [[nodiscard]] std::string never_ran(const TrackedDataset& tracked);
 
-/// The answers as they are scored.
+/// The answers in the form used for scoring.
 [[nodiscard]] EstimateTrack track_of(const TrackedDataset& tracked);
 
-/// The map that is scored: that of the most tracked frames, the first of equals; empty where none
-/// was tracked.
+/// The map that is scored: the one with the most tracked frames, on a tie the first; empty if no
+/// frame was tracked.
 [[nodiscard]] std::optional<int> scored_map(const TrackedDataset& tracked);
 
 /// Writes the poses of the scored map as TUM, with its first scene depth (`init_scene_depth`).
 /// Errors: kIo.
 [[nodiscard]] Status write_track(const std::filesystem::path& file, const TrackedDataset& tracked);
 
-/// Writes one line of JSON for each frame, as a run folder's estimates/NAME.jsonl. Errors: kIo.
+/// Writes one JSON line for each frame, in the format of a run folder's estimates/NAME.jsonl.
+/// Errors: kIo.
 [[nodiscard]] Status write_statuses(const std::filesystem::path& file,
                                     const TrackedDataset& tracked);
 

@@ -1,4 +1,4 @@
-// What is said of an estimator after a data set.
+// The report on an estimator after a data set.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -11,22 +11,22 @@
 
 namespace overfly::engine {
 
-/// The truth as poses of the camera: of an EuRoC file, whose poses are the body's, by the data
-/// set's mount; of KITTI's, whose poses are image_0's, by calib.txt. `notes` then says so, and what
-/// the truth does not know.
+/// Converts the truth to camera poses. EuRoC truth holds body poses and is converted by the data
+/// set's mount; KITTI truth holds poses of image_0 and is converted by calib.txt. `notes` then
+/// lists the conversion and what the truth does not contain.
 [[nodiscard]] Result<Trajectory> camera_truth(const Dataset& dataset,
                                               const TrajectoryFile& truth,
                                               std::vector<std::string>& notes);
 
-/// Scores the answers with every alignment; CRASHED where the estimator went.
-/// @param init_true_depth_m  along the optical axis at the first tracked pose
+/// Scores the answers with every alignment; CRASHED if the estimator crashed.
+/// @param init_true_depth_m  true depth along the optical axis at the first tracked pose
 [[nodiscard]] evaluation::Score score_of(const Dataset& dataset,
                                          const TrackedDataset& tracked,
                                          const Trajectory& T_world_camera,
                                          bool truth_has_times,
                                          std::optional<double> init_true_depth_m);
 
-/// Data set, estimator, states, timing, resources; and the score where there is one.
+/// Data set, estimator, states, timing and resources; the score if there is one.
 [[nodiscard]] nlohmann::json report_json(const Dataset& dataset,
                                          const TrackedDataset& tracked,
                                          const std::optional<evaluation::Score>& score);

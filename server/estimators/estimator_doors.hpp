@@ -1,4 +1,4 @@
-// Estimators outside of this process: a spec made into the options of its door.
+// Estimators outside this process: converts a spec into the options of its door.
 #pragma once
 
 #include <memory>

@@ -11,7 +11,7 @@
 
 namespace overfly::engine {
 
-/// @param truth  asked only for test estimators; may be empty where there is none to give
+/// @param truth  called only for test estimators; may be empty if there is none
 /// Errors: kInvalidArgument naming the estimator, its parameter, value and limit; kUnsupported for
 /// a door that is not built in; kNotFound, kIo, kInternal for an estimator that does not start.
 [[nodiscard]] Result<std::unique_ptr<VoPort>> create_estimator(

@@ -8,21 +8,21 @@
 
 namespace overfly::engine {
 
-/// What the test estimators are given, and no other.
+/// The truth that only the test estimators get.
 struct ToyTruth {
   Trajectory T_world_camera;   ///< of every frame
   double scene_depth_m = 0.0;  ///< true depth at the first frame; 0 = not known
 };
 
-/// Where an estimator is to work, whoever feeds it.
+/// Environment of an estimator, independent of where its frames come from.
 struct EstimatorSetting {
-  std::uint64_t seed = 1;  ///< of an estimator whose parameters name none
-  bool lockstep = true;    ///< every frame waits for its answer
-  /// Exists, and is the estimator's own: a child's working folder, and the place of its
-  /// output.log. Empty = ours, and no log.
+  std::uint64_t seed = 1;  ///< for an estimator whose parameters set no seed
+  bool lockstep = true;    ///< each frame waits for its answer
+  /// An existing folder reserved for this estimator: working folder of a child process, and
+  /// location of its output.log. Empty = this process's working folder, and no log.
   std::filesystem::path output_folder;
-  double rate_hz = 0.0;  ///< of the camera; 0 = not known
-  /// When it turns true the estimator ends its waits; null = never.
+  double rate_hz = 0.0;  ///< frame rate of the camera; 0 = not known
+  /// When it becomes true, the estimator stops waiting; null = never.
   const std::atomic<bool>* cancel = nullptr;
 };
 

@@ -1,4 +1,4 @@
-// One estimator at work on a thread of its own.
+// Runs one estimator on its own thread.
 #pragma once
 
 #include <condition_variable>
@@ -23,40 +23,42 @@ namespace overfly::engine {
 
 struct EstimatorWorkerOptions {
   double debug_hz = 0.0;  ///< rate of debug images, 0 = none
-  /// Frames taken a second at most, as if each took that long; 0 = as fast as the estimator is.
+  /// Maximum number of frames taken per second, as if each took that long; 0 = no limit.
   double throttle_hz = 0.0;
-  std::vector<int> cpus;  ///< of the thread, and those that the estimator starts from it
-  /// The estimator looks at our own image: its CRC is computed when it is done with it.
+  std::vector<int> cpus;  ///< for the thread and the threads that the estimator starts from it
+  /// The estimator reads the image in this process: its CRC is computed after the estimator
+  /// returns.
   bool in_process = true;
 };
 
-/// A slot for one frame in front of an estimator: a frame that still waits there when the next one
-/// comes is dropped. Handing over a frame only when idle() makes it lossless.
+/// A slot for one frame in front of an estimator. A frame that still waits in the slot when the
+/// next one arrives is dropped. If frames are handed over only when idle(), none is lost.
 class EstimatorWorker {
  public:
   EstimatorWorker(std::unique_ptr<VoPort> port, EstimatorWorkerOptions options, RunClock& clock);
-  /// Waits for the frame at work, forgets the one in the slot.
+  /// Waits for the frame in progress and discards the one in the slot.
   ~EstimatorWorker();
   EstimatorWorker(const EstimatorWorker&) = delete;
   EstimatorWorker& operator=(const EstimatorWorker&) = delete;
 
-  /// Makes the estimator ready for a camera, on its thread: once, and `wait_until_idle` before the
-  /// first frame. A failure is told with that frame.
+  /// Prepares the estimator for a camera, on its thread. Call it once, then `wait_until_idle`
+  /// before the first frame. A failure is reported with that frame.
   /// @param first  as VoPort::prepare's
   void prepare(VoFrame first);
   void submit(VoFrame frame);
-  /// Waits until no frame is at work or waiting. This and take_events() throw what stopped the
-  /// worker's own thread (too little memory); what the estimator throws is its crash.
+  /// Waits until no frame is in progress or waiting. This and take_events() rethrow the exception
+  /// that stopped the worker's thread (out of memory). An exception thrown by the estimator counts
+  /// as its crash.
   void wait_until_idle();
-  /// Takes what happened since the last call, ordered by frame.
+  /// Returns and clears the events since the last call, ordered by frame.
   [[nodiscard]] std::vector<EstimatorEvent> take_events();
-  /// Takes the lines that the estimator said, or that were noted of it, since the last call.
+  /// Returns and clears the log lines of the estimator, and notes about it, since the last call.
   [[nodiscard]] std::vector<std::string> take_log();
-  /// Read back from the running estimator. @pre idle
+  /// Effective values, read back from the running estimator. @pre idle
   [[nodiscard]] std::map<std::string, std::string> effective_parameters() const {
     return port_->effective_parameters();
   }
-  /// What it has used since it was ready. @pre idle
+  /// Resources used since it was ready. @pre idle
   [[nodiscard]] EstimatorUse use();
 
  private:
@@ -67,7 +69,7 @@ class EstimatorWorker {
   void work();
   void make_ready(std::unique_lock<std::mutex>& lock);
   void answer_waiting(std::unique_lock<std::mutex>& lock);
-  /// Throws what stopped this worker's thread from answering, once. Under the lock.
+  /// Rethrows, once, the exception that stopped this worker's thread. @pre the lock is held
   void rethrow_failure();
   [[nodiscard]] EstimatorEvent answer(const Waiting& waiting);
   [[nodiscard]] Result<VoEstimate> track(const VoFrame& frame);
@@ -80,13 +82,14 @@ class EstimatorWorker {
   const EstimatorWorkerOptions options_;
   RunClock& clock_;
   std::int64_t ready_ns_ = 0;
-  double cpu_to_get_ready_s_ = 0.0;        ///< of the estimator's process, until then
-  std::optional<ResourceUse> last_known_;  ///< an estimator that has ended tells no more
-  std::optional<Error> failure_;           ///< to get ready
+  double cpu_to_get_ready_s_ = 0.0;  ///< of the estimator's process, until it was ready
+  /// Kept because an estimator that has ended reports none
+  std::optional<ResourceUse> last_known_;
+  std::optional<Error> failure_;  ///< of the preparation
   std::int64_t debug_period_ns_ = 0;
   std::int64_t next_debug_ns_ = 0;
-  std::int64_t free_at_ns_ = 0;  ///< of a throttled estimator
-  double cpu_s_ = 0.0;           ///< of our thread, in the estimator
+  std::int64_t free_at_ns_ = 0;  ///< for a throttled estimator
+  double cpu_s_ = 0.0;           ///< of the worker's thread, inside the estimator
   std::int64_t answers_ = 0;
   bool crashed_ = false;
   PoseIntake poses_;
@@ -97,10 +100,11 @@ class EstimatorWorker {
   std::optional<Waiting> waiting_;
   bool busy_ = false;
   bool stopping_ = false;
-  std::exception_ptr thrown_;       ///< by our own lines on the worker's thread
-  std::vector<std::string> notes_;  ///< of ours about its answers
+  std::exception_ptr thrown_;       ///< by this class's own code on the worker's thread
+  std::vector<std::string> notes_;  ///< by this class, about the answers
   std::vector<EstimatorEvent> events_;
-  std::vector<EstimatorEvent> drops_;  ///< after the frame at work, before the one that waits
+  /// Drops after the frame in progress and before the waiting one
+  std::vector<EstimatorEvent> drops_;
   std::thread thread_;
 };
 

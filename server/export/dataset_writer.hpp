@@ -1,4 +1,4 @@
-// Data sets as others lay them out: one writer for each format.
+// Writers of common data set formats, one for each format.
 #pragma once
 
 #include <cstdint>
@@ -22,33 +22,33 @@ enum class DatasetFormat { kTumMono, kEuroc, kKitti, kPng, kLcm, kRosbag };
 [[nodiscard]] const char* to_string(DatasetFormat format);
 [[nodiscard]] std::optional<DatasetFormat> dataset_format_from(const std::string& text);
 
-/// What a writer knows before the first frame.
+/// What a writer needs to know before the first frame.
 struct DatasetPlan {
   std::filesystem::path folder;     ///< exists and is empty
-  std::vector<CameraSpec> cameras;  ///< those to write, in their order
+  std::vector<CameraSpec> cameras;  ///< cameras to write, in this order
   FrameRate rate;
-  std::int64_t last_frame = 0;    ///< the highest index that may come
+  std::int64_t last_frame = 0;    ///< the highest index that may occur
   std::int64_t epoch_utc_ns = 0;  ///< Unix time of t = 0
   flight::ImuModel imu_model;
-  std::vector<flight::ImuReading> imu;  ///< of the time span exported; EuRoC alone
+  std::vector<flight::ImuReading> imu;  ///< over the exported time span; EuRoC only
   std::vector<AircraftState> states;    ///< one for each IMU sample
 };
 
-/// Takes the frames in order and writes their images at once, the text files at the end. Images
-/// that were lost on their way (CameraShot::delivered) are not part of a data set.
+/// Takes the frames in order; writes their images at once and the text files at the end. Images
+/// that were not delivered (CameraShot::delivered) are not part of a data set.
 class DatasetWriter {
  public:
   virtual ~DatasetWriter() = default;
 
   /// @param frame  its shots are of the plan's cameras, in their order
-  /// @return for each shot the name of its image without folder and ending; empty for a lost one
+  /// @return for each shot the name of its image without folder and extension; empty for a lost one
   /// Errors: kIo naming the file.
   [[nodiscard]] virtual Result<std::vector<std::string>> add(const MadeFrame& frame) = 0;
-  /// Writes what describes the images that were added; nothing may be added after that.
+  /// Writes the files that describe the added images; nothing may be added afterwards.
   [[nodiscard]] virtual Status finish() = 0;
 };
 
-/// Errors: kUnsupported when the format cannot hold what the plan asks, naming camera and reason.
+/// Errors: kUnsupported if the format cannot represent the plan, naming camera and reason.
 [[nodiscard]] Result<std::unique_ptr<DatasetWriter>> create_dataset_writer(DatasetFormat format,
                                                                            const DatasetPlan& plan);
 

@@ -1,4 +1,4 @@
-// What an export makes again: the scenario of a run, or one that was never flown.
+// Source of an export: the scenario of a run, or a scenario that was never flown.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace overfly::engine {
 
-/// What a recorded run says of itself, to check what is made again against.
+/// The record of a run, against which rendered frames are checked.
 struct RecordedRun {
   std::filesystem::path folder;
   std::vector<FrameRecord> frames;
@@ -28,16 +28,16 @@ struct ExportSource {
 };
 
 /// Opens a run folder (one with a manifest.json) or a scenario file.
-/// @param overrides  of a scenario file; a run takes none
+/// @param overrides  for a scenario file; not allowed for a run
 /// Errors: kNotFound; as read_run_records and load_scenario; kInvalidArgument for overrides of a
 /// run.
 [[nodiscard]] Result<ExportSource> open_export_source(const std::filesystem::path& path,
                                                       const std::vector<Override>& overrides = {});
 
-/// Checks that the world is the one that the run flew over.
+/// Checks that the world is the one used by the run.
 /// Errors: kConflict naming the file whose content differs.
 [[nodiscard]] Status check_world(const ExportSource& source, const terrain::World& world);
-/// Checks that a frame was made from where the run's camera was.
+/// Checks that a frame was rendered from the recorded pose of the camera.
 /// Errors: kConflict naming frame and distance.
 [[nodiscard]] Status check_frame(const FrameRecord& recorded, const MadeFrame& made);
 

@@ -1,4 +1,4 @@
-// A video that grows frame by frame: what the camera sees, the aircraft from behind, or both.
+// A video written frame by frame: the camera's image, the aircraft from behind, or both.
 #pragma once
 
 #include <cstdint>
@@ -23,24 +23,25 @@ enum class VideoView { kCamera, kChase, kBoth };
 struct VideoLook {
   VideoView view = VideoView::kBoth;
   int quality = 70;         ///< [1, 100], see VideoSettings
-  int max_height_px = 720;  ///< taller images are made smaller by a whole factor; >= 16
+  int max_height_px = 720;  ///< taller images are downsampled by an integer factor; >= 16
 
   /// Errors: kInvalidArgument naming field, value and limit.
   [[nodiscard]] Status validate() const;
 };
 
-/// Stamps in the file are the flight's, to the millisecond, from the first frame shown on. An image
-/// that was lost on its way is shown all the same: the video is for people.
+/// Time stamps in the file are those of the flight, in milliseconds, relative to the first frame
+/// shown. Images that were not delivered are shown too, since the video is for human viewers.
 class FlightVideo {
  public:
-  /// @param file   appears at `finish`, whole
+  /// @param file  appears whole, at `finish`
   /// @param maker  draws the chase view; must outlive the video
   FlightVideo(std::filesystem::path file, const VideoLook& look, FrameMaker& maker);
 
   /// @param frame  its first shot is shown
   /// Errors: as render_scene, Vp9Encoder and WebmFile, naming the frame.
   [[nodiscard]] Status add(const MadeFrame& frame);
-  /// @param rate  how long the last image is shown. Without a frame there is no file.
+  /// @param rate  gives the duration of the last image
+  /// Without a frame no file is written.
   [[nodiscard]] Status finish(const FrameRate& rate);
 
  private:

@@ -1,4 +1,4 @@
-// The frames of an export, one after another, checked against the run that recorded them.
+// The frames of an export in order, checked against the recorded run.
 #pragma once
 
 #include <cstdint>
@@ -30,12 +30,12 @@ class FrameSequence {
                                                      const FrameMakerOptions& options);
 
   /// The next frame with the shots of the chosen cameras; empty at the end.
-  /// Errors: kConflict where it is not what was recorded; as FrameMaker::make.
+  /// Errors: kConflict if it differs from the recorded frame; as FrameMaker::make.
   [[nodiscard]] Result<std::optional<MadeFrame>> next();
 
   [[nodiscard]] FrameMaker& maker() { return *maker_; }
   [[nodiscard]] const std::vector<CameraSpec>& cameras() const { return cameras_; }
-  /// Frames in all; of a flight of unknown length at most so many.
+  /// Number of frames; an upper bound for a flight of unknown length.
   [[nodiscard]] std::int64_t count() const { return static_cast<std::int64_t>(frames_.size()); }
   [[nodiscard]] std::int64_t first_frame() const { return frames_.front(); }
   [[nodiscard]] std::int64_t last_frame() const { return frames_.back(); }
@@ -50,10 +50,10 @@ class FrameSequence {
   const ExportSource& source_;
   std::unique_ptr<FrameMaker> maker_;
   std::vector<std::size_t> chosen_;   ///< indices into Scenario::cameras
-  std::vector<CameraSpec> cameras_;   ///< those
-  std::vector<std::int64_t> frames_;  ///< to be made, growing
+  std::vector<CameraSpec> cameras_;   ///< the chosen cameras
+  std::vector<std::int64_t> frames_;  ///< to be made, increasing
   std::size_t next_ = 0;
-  std::int64_t made_up_to_ = 0;  ///< frames before it are behind the maker
+  std::int64_t made_up_to_ = 0;  ///< the maker has passed all frames before this one
 };
 
 }  // namespace overfly::engine

@@ -1,4 +1,4 @@
-// Truth images beside the images of a data set.
+// Writes truth images next to the images of a data set.
 #pragma once
 
 #include <filesystem>
@@ -19,9 +19,8 @@ enum class TruthKind { kDepth, kRange, kNormal, kFlow, kWorld, kMask };
 [[nodiscard]] const char* to_string(TruthKind kind);
 [[nodiscard]] std::optional<TruthKind> truth_kind_from(const std::string& text);
 
-/// Writes truth/KIND/CAMERA/NAME.EXT for each image (docs/EXPORT.md): TIFF of floats; `.flo` for
-/// the flow, whose file is that of the image that it starts from (so the last one has none);
-/// PNG for the mask.
+/// Writes truth/KIND/CAMERA/NAME.EXT for each image (docs/EXPORT.md): TIFF of floats; PNG for the
+/// mask; `.flo` for the flow, named after the image in which it starts, so the last image has none.
 class TruthWriter {
  public:
   /// @param renderer  draws the depths; it and `tiles` must outlive the writer
@@ -30,18 +29,18 @@ class TruthWriter {
               renderer::Renderer& renderer,
               const terrain::TileSource& tiles);
 
-  /// @param frame  its shots are of the same cameras each time
-  /// @param names  of the shots' files, without ending; a shot with an empty one is left out
+  /// @param frame  its shots are of the same cameras in every call
+  /// @param names  of the shots' files, without extension; a shot with an empty name is skipped
   /// Errors: as the renderer's; kIo.
   [[nodiscard]] Status add(const MadeFrame& frame, const std::vector<std::string>& names);
 
  private:
-  /// What the flow from a frame needs once the next one is there.
+  /// Data of a frame that its flow to the next frame needs.
   struct Before {
     std::string name;
     renderer::PointImage points;
   };
-  /// One camera, from frame to frame.
+  /// State of one camera between frames.
   struct Camera {
     renderer::PixelRays rays;
     std::optional<Before> before;
@@ -67,7 +66,7 @@ class TruthWriter {
   std::vector<Camera> cameras_;
 };
 
-/// Writes a pixel motion in the Middlebury format (Baker et al. 2011, IJCV 92(1)): "PIEH", width,
+/// Writes optical flow in the Middlebury format (Baker et al. 2011, IJCV 92(1)): "PIEH", width,
 /// height, then pairs of floats, little-endian; unknown = 1.666666752e9. Errors: kIo.
 [[nodiscard]] Status write_flow(const std::filesystem::path& file,
                                 const renderer::VectorImage& flow);

@@ -1,4 +1,4 @@
-// A flight as a video file alone.
+// Exports a flight as a video file only.
 #pragma once
 
 #include <atomic>
@@ -24,16 +24,16 @@ struct VideoOptions {
   RendererFactory renderer_factory;
   const std::atomic<bool>* cancel = nullptr;
   std::function<void(const std::string&)> notice;
-  std::function<void(std::int64_t, std::int64_t)> progress;  ///< frames written, of how many
+  std::function<void(std::int64_t, std::int64_t)> progress;  ///< frames written, frames in total
 };
 
 struct VideoSummary {
   std::int64_t frames = 0;
-  bool cancelled = false;  ///< the video ends with the last frame made
+  bool cancelled = false;  ///< the video ends with the last frame rendered
   std::string attribution;
 };
 
-/// Errors: kConflict for a file that exists; as VideoLook, FrameSequence and FlightVideo. The file
+/// Errors: kConflict if the file exists; as VideoLook, FrameSequence and FlightVideo. The file
 /// appears whole or not at all.
 [[nodiscard]] Result<VideoSummary> export_video(const ExportSource& source,
                                                 const VideoOptions& options);

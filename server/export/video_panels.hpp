@@ -1,4 +1,4 @@
-// The pictures that a video is put together from.
+// The images that a video is composed of.
 #pragma once
 
 #include <vector>
@@ -10,14 +10,14 @@
 
 namespace overfly::engine {
 
-/// An image as RGB, made smaller by a whole factor (the mean of the pixels), its sides cut to even
-/// numbers.
+/// The image as RGB, downsampled by an integer factor (mean of the pixels); its sides are cropped
+/// to even numbers.
 [[nodiscard]] Image panel_from(const Image& image, int factor);
 
 /// Two RGB images of the same height side by side.
 [[nodiscard]] Image side_by_side(const Image& left, const Image& right);
 
-/// The aircraft from behind with the way it has flown.
+/// The aircraft from behind, with its path so far.
 class ChasePanel {
  public:
   /// @param wing_span_m  > 0. The references must outlive the panel.

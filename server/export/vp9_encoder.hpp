@@ -1,4 +1,4 @@
-// RGB images to VP9, by libvpx.
+// Encodes RGB images as VP9 with libvpx.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ struct VideoSettings {
   int width_px = 0;   ///< even, in [16, 16384]
   int height_px = 0;  ///< even, in [16, 16384]
   int quality = 70;   ///< [1, 100]: 50 small, 70 clean, 90 near the original
-  /// At most so many images from one that can be decoded by itself to the next.
+  /// Maximum distance between key images, in images.
   int key_every = 64;
 };
 
@@ -22,21 +22,22 @@ struct VideoSettings {
 struct VideoPacket {
   std::vector<std::uint8_t> bytes;
   std::int64_t t_ms = 0;
-  bool key = false;  ///< decodes without the ones before it
+  bool key = false;  ///< decodes without the preceding ones
 };
 
-/// Constant quality, one thread, nothing held back: the same images give the same bytes.
+/// Constant quality, one thread, no lag: the same images give the same bytes.
 class Vp9Encoder {
  public:
-  /// Errors: kInvalidArgument naming field, value and limit; kInternal with libvpx's words.
+  /// Errors: kInvalidArgument naming field, value and limit; kInternal with libvpx's message.
   static Result<Vp9Encoder> open(const VideoSettings& settings);
   ~Vp9Encoder();
   Vp9Encoder(Vp9Encoder&&) noexcept;
   Vp9Encoder& operator=(Vp9Encoder&&) noexcept;
 
-  /// @param rgb   of the settings' size, 3 channels
-  /// @param t_ms  later than the one before
-  /// Errors: kInvalidArgument for an image of another size or an earlier stamp; kInternal.
+  /// @param rgb  of the settings' size, 3 channels
+  /// @param t_ms  increasing
+  /// Errors: kInvalidArgument for an image of another size or a stamp that does not increase;
+  /// kInternal.
   [[nodiscard]] Result<std::vector<VideoPacket>> encode(const Image& rgb, std::int64_t t_ms);
 
  private:

@@ -1,4 +1,4 @@
-// Which build this is, for manifests and `--version`.
+// Version and commit of this build, for manifests and `--version`.
 #pragma once
 
 #include <string>
@@ -6,7 +6,7 @@
 namespace overfly::engine {
 
 [[nodiscard]] std::string version();  ///< "0.1.0"
-/// Abbreviated commit of the source, with "-dirty" when files were changed; "unknown" outside git.
+/// Abbreviated commit of the source, with "-dirty" if files were changed; "unknown" outside git.
 [[nodiscard]] std::string git_commit();
 
 }  // namespace overfly::engine

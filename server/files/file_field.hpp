@@ -1,4 +1,4 @@
-// Values of a run folder's JSON files, read with type and limits checked.
+// Reads values of a run folder's JSON files, with checks of type and limits.
 #pragma once
 
 #include <cstdint>
@@ -12,25 +12,25 @@
 
 namespace overfly::engine {
 
-/// What is wrong with a field: `frames = "many": must be a whole number in [0, 1000]`.
+/// Describes an invalid field: `frames = "many": must be a whole number in [0, 1000]`.
 class FieldFault : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Beyond any stamp [ns], count or number of a frame that a run has (31 years in nanoseconds), and
-/// far enough from the end of 64 bits that sums of some of them do not overflow.
+/// Larger than any stamp [ns], count or frame number of a run (31 years in nanoseconds), and small
+/// enough that sums of a few of them do not overflow 64 bits.
 inline constexpr std::int64_t kLargestFileInteger = 1'000'000'000'000'000'000;
 
-/// One value of a document and its dotted path there. Whatever is not as asked throws FieldFault;
-/// guarded_fields() makes that an Error. The document must outlive it.
+/// One value of a document and its dotted path. A value that does not match throws FieldFault;
+/// guarded_fields() converts that to an Error. The document must outlive it.
 class FileField {
  public:
   explicit FileField(const nlohmann::json& value, std::string path = "");
 
-  /// A field of an object, which must be there.
+  /// A required field of an object.
   [[nodiscard]] FileField at(const std::string& name) const;
-  /// The same; empty where it is absent.
+  /// An optional field of an object; empty if absent.
   [[nodiscard]] std::optional<FileField> find(const std::string& name) const;
   /// The elements of an array.
   [[nodiscard]] std::vector<FileField> items() const;
@@ -38,7 +38,7 @@ class FileField {
   [[nodiscard]] std::vector<double> numbers(std::size_t count) const;
 
   [[nodiscard]] std::string text() const;
-  /// Text that may name a file in the folder: is_plain_name().
+  /// Text that may name a file in the folder: see is_plain_name().
   [[nodiscard]] std::string plain_name() const;
   [[nodiscard]] bool boolean() const;
   [[nodiscard]] double number() const;
@@ -46,7 +46,7 @@ class FileField {
                                      std::int64_t max = kLargestFileInteger) const;
   [[nodiscard]] bool is_null() const { return value_->is_null(); }
   [[nodiscard]] const nlohmann::json& value() const { return *value_; }
-  /// The fault "path = value: must `must`".
+  /// Throws the fault "path = value: must `must`".
   [[noreturn]] void fault(const std::string& must) const;
 
  private:

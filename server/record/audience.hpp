@@ -1,4 +1,4 @@
-// Who watches a run, and what that costs.
+// The viewers of a run and the cost of serving them.
 #pragma once
 
 #include <chrono>
@@ -12,7 +12,7 @@ namespace overfly::engine {
 /// Thread-safe.
 class Audience {
  public:
-  /// One viewer, as long as it lives.
+  /// One viewer; it counts as watching while the object lives.
   class Seat {
    public:
     explicit Seat(std::shared_ptr<Audience> audience);
@@ -26,11 +26,12 @@ class Audience {
   };
 
   enum class Kind { kCamera, kDebug, kScene };
-  /// @param cpu_s  of the thread that made it
+  /// @param cpu_s  processor time of the thread that made it
   void picture_made(Kind kind, double cpu_s);
 
-  /// `viewers` that came, `most_at_once`, `viewer_s` (of all together, those who stay included),
-  /// `pictures.{camera, debug, scene}` and `cpu_s` of making them.
+  /// `viewers` in total, `most_at_once`, `viewer_s` (viewing time of all, present viewers
+  /// included), `pictures.{camera, debug, scene}` and `cpu_s` (processor time spent on the
+  /// pictures).
   [[nodiscard]] nlohmann::json summary() const;
 
  private:
@@ -38,8 +39,8 @@ class Audience {
   int came_ = 0;
   int seated_ = 0;
   int most_ = 0;
-  double left_viewer_s_ = 0.0;     ///< of those who have left
-  double seated_since_sum_s_ = 0;  ///< over those who stay: when they came
+  double left_viewer_s_ = 0.0;     ///< of viewers who have left
+  double seated_since_sum_s_ = 0;  ///< sum of the arrival times of the present viewers
   std::int64_t pictures_[3] = {};
   double cpu_s_ = 0.0;
 };

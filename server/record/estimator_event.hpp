@@ -12,14 +12,14 @@
 
 namespace overfly::engine {
 
-/// What became of one frame: an answer, or a drop (record.dropped).
+/// Result of one frame: an answer, or a drop (record.dropped).
 struct EstimatorEvent {
   EstimateRecord record;
-  double latency_ms = 0.0;  ///< from handing the frame over to the answer
+  double latency_ms = 0.0;  ///< from sending the frame to the answer
   std::optional<Image> debug_image;
   std::vector<Eigen::Vector3f> map_points_vo;
   std::map<std::string, double> timing_ms;
-  /// So far; not with every event.
+  /// Total so far; not set in every event.
   std::optional<EstimatorUse> use;
 };
 

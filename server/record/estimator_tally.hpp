@@ -1,4 +1,4 @@
-// Counts of an estimator's records: the same for a run in flight, its metrics and its replay.
+// Counts over an estimator's records: the same for a live run, its metrics and its replay.
 #pragma once
 
 #include <cstdint>
@@ -10,13 +10,13 @@
 
 namespace overfly::engine {
 
-/// Adds one record, in the order of the frames.
-/// @param frame_crc32  of the image as it was sent; empty where it is not known
+/// Adds one record; records come in frame order.
+/// @param frame_crc32  of the image as sent; empty if not known
 void tally(const EstimateRecord& record,
            std::optional<std::uint32_t> frame_crc32,
            EstimatorStatus& status);
 
-/// All records of one estimator of a run.
+/// Counts all records of one estimator of a run.
 [[nodiscard]] EstimatorStatus tally_of(const RunRecords& records,
                                        const EstimatorRecords& estimator);
 

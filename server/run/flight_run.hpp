@@ -1,4 +1,4 @@
-// One run's tick loop: time, truth, camera, estimators, recorder.
+// The tick loop of one run: time, truth, camera, estimators, recorder.
 #pragma once
 
 #include <cstdint>
@@ -20,12 +20,12 @@ class FlightRun {
  public:
   FlightRun(const Scenario& scenario, const RunOptions& options, RunRecorder& recorder);
 
-  /// Flies to the end; no estimator is left when it returns. Errors: kCancelled when it was
-  /// stopped; whatever a part says.
+  /// Flies to the end; all estimators have ended when it returns.
+  /// Errors: kCancelled if it was stopped; any error of a part.
   Status fly();
   /// Stamp of the last frame; 0 before the first.
   [[nodiscard]] std::int64_t end_ns() const;
-  /// Wall-clock facts of what was flown, for timings.json.
+  /// Wall-clock measurements of the flight, for timings.json.
   [[nodiscard]] nlohmann::json timings() const;
 
  private:
@@ -36,21 +36,21 @@ class FlightRun {
   void prepare_estimators();
   [[nodiscard]] Result<std::unique_ptr<VoPort>> open_estimator(const EstimatorSpec& spec);
   Status describe();
-  /// Records what the estimators have said so far, what they have used and where their parameters
-  /// stand; also after an error.
+  /// Records the estimators' remaining answers, their resource use and their parameters; also after
+  /// an error.
   Status close_estimators();
   Status describe_use();
 
   Status fly_lockstep();
   Status fly_real_time();
-  /// @param start_ns  of the flight, by the run's clock
+  /// @param start_ns  start of the flight on the run's clock
   Status keep_pace(std::int64_t start_ns, PictureRate& pictures);
-  /// Whether the flight goes on after a frame.
+  /// Whether the flight continues after a frame.
   enum class Flight { kGoesOn, kEnded };
-  /// Image and record of frame k, and its way to the estimators; kEnded, and no frame, after the
-  /// end of a flight whose length was not known.
+  /// Makes and records frame k and sends it to the estimators. After the end of a flight of unknown
+  /// length it returns kEnded and makes no frame.
   Result<Flight> fly_frame(std::int64_t k, bool wait_for_estimators);
-  /// Hands each estimator its camera's image, and records all cameras.
+  /// Gives each estimator its camera's image, and records all cameras.
   Status deliver(MadeFrame& made);
   Status record_events();
   Status tell_faults(std::int64_t t_ns);

@@ -1,4 +1,4 @@
-// One camera of the aircraft, as a scenario describes it.
+// One camera of the aircraft, as the scenario describes it.
 #pragma once
 
 #include <string>
@@ -11,15 +11,15 @@
 
 namespace overfly::engine {
 
-inline constexpr const char* kOnlyCameraName = "camera0";  ///< of a scenario's one `camera`
+inline constexpr const char* kOnlyCameraName = "camera0";  ///< name of a scenario's single `camera`
 
 struct CameraSpec {
-  std::string name = kOnlyCameraName;  ///< unique in the scenario; names the files
+  std::string name = kOnlyCameraName;  ///< unique in the scenario; used in file names
   CameraModel model;
-  /// Where it is mounted; vibration shakes it about this pose.
+  /// The mount; vibration moves the camera about this pose.
   Pose T_body_camera{R_body_camera_nadir(), Eigen::Vector3d::Zero()};
-  bool rgb = false;              ///< colour images; estimators are given their luma
-  renderer::SensorModel sensor;  ///< not enabled: the picture as it is drawn
+  bool rgb = false;              ///< colour images; estimators get their luma
+  renderer::SensorModel sensor;  ///< if not enabled, the image stays as rendered
   renderer::VibrationModel vibration;
   renderer::RenderQuality quality = renderer::RenderQuality::kTrilinear;
   renderer::Atmosphere atmosphere;

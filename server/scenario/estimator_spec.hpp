@@ -1,4 +1,4 @@
-// What a scenario, or a command line, asks of one estimator.
+// One estimator, as a scenario or a command line describes it.
 #pragma once
 
 #include <cstddef>
@@ -13,38 +13,39 @@
 namespace overfly::engine {
 
 struct EstimatorSpec {
-  std::string name;  ///< unique in the scenario; names the files
+  std::string name;  ///< unique in the scenario; used in file names
   /// "feature", "perfect", "drifting", "process", "lcm", "ros1"
   std::string type;
   std::size_t camera = 0;   ///< index of the camera whose images it gets
-  VoParameters parameters;  ///< native ones take them, others are told them
+  VoParameters parameters;  ///< set in native estimators, sent to others
 
-  // Of a process: the child's program and arguments, or where somebody else's connects, or both.
+  // For a process: program and arguments of the child, the address where an external one connects,
+  // or both.
   std::vector<std::string> command;
-  std::string listen;            ///< "unix:PATH" or "tcp:HOST:PORT"; empty = the child's own socket
+  std::string listen;  ///< "unix:PATH" or "tcp:HOST:PORT"; empty = the child's private socket
   double memory_limit_mb = 0.0;  ///< of the child's address space; 0 = none
 
-  /// It may run on: the child, or the native estimator's thread with all that it starts; empty =
-  /// all.
+  /// Processors it may run on: for the child, or for the native estimator's thread and its child
+  /// threads; empty = all.
   std::vector<int> cpus;
-  /// In real time it takes at most so many frames a second, as if each took it 1 / throttle_hz;
-  /// 0 = as fast as it can.
+  /// In real time the estimator takes at most this many frames a second, as if each took 1 /
+  /// throttle_hz; 0 = no limit.
   double throttle_hz = 0.0;
 
-  // Of process, lcm and ros1; empty = as the door's options say.
+  // For process, lcm and ros1; empty = default of the door.
   std::optional<double> start_timeout_s;
   std::optional<double> answer_timeout_s;
 
-  // Of lcm; empty = as the door's options say.
+  // For lcm; empty = default of the door.
   std::string lcm_url;
   std::string lcm_channel_prefix;
 
-  Ros1EstimatorOptions ros1;  ///< topics and frames; what is said above goes before its own
+  Ros1EstimatorOptions ros1;  ///< topics and frames; the fields above take precedence
 };
 
-/// True for the types whose estimator runs in a process of its own.
+/// True for types whose estimator runs in another process.
 [[nodiscard]] bool is_outside_estimator(const std::string& type);
-/// True for the types that are given the truth.
+/// True for types that get the truth.
 [[nodiscard]] bool is_test_estimator(const std::string& type);
 
 }  // namespace overfly::engine

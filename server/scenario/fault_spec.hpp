@@ -1,4 +1,4 @@
-// What goes wrong with a camera, as a scenario describes it.
+// A camera fault, as the scenario describes it.
 #pragma once
 
 #include <cstdint>
@@ -12,36 +12,36 @@ namespace overfly::engine {
 
 enum class FaultKind {
   kDroppedFrames,    ///< images that never reach the estimators
-  kFrozenFrame,      ///< the last image again and again, with new stamps
+  kFrozenFrame,      ///< the last image repeated, with new stamps
   kSaturationBurst,  ///< light on the lens: a flash, the sun
   kDirt,
   kWaterDrop,
   kBlackout,
-  kStampJitter,  ///< stamps that estimators are told scatter
-  kStampOffset,  ///< and are off by a constant
+  kStampJitter,  ///< random jitter of the stamps given to estimators
+  kStampOffset,  ///< constant offset of the stamps given to estimators
 };
 
 /// "dropped_frames", "frozen_frame", "saturation_burst", ...
 [[nodiscard]] const char* to_string(FaultKind kind);
 [[nodiscard]] std::optional<FaultKind> fault_kind_from(const std::string& text);
 
-/// In force at frames stamped in [at_ns, end_ns).
+/// Active for frames stamped in [at_ns, end_ns).
 struct FaultSpec {
   FaultKind kind = FaultKind::kBlackout;
   std::int64_t at_ns = 0;
   std::int64_t end_ns = std::numeric_limits<std::int64_t>::max();
   std::optional<std::size_t> camera;  ///< index; empty = all
-  std::int64_t every = 1;             ///< kDroppedFrames: the first and every n-th after it
-  std::optional<double> probability;  ///< kDroppedFrames: of each frame, instead of `every`
+  std::int64_t every = 1;             ///< kDroppedFrames: the first frame and every n-th after it
+  std::optional<double> probability;  ///< kDroppedFrames: per frame, instead of `every`
   double sigma_ns = 0.0;              ///< kStampJitter
   std::int64_t offset_ns = 0;         ///< kStampOffset
-  renderer::ImageFault image;         ///< of those on the lens
+  renderer::ImageFault image;         ///< for faults on the lens
   std::uint64_t seed = 1;
 
   [[nodiscard]] bool in_force(std::size_t of_camera, std::int64_t t_ns) const {
     return t_ns >= at_ns && t_ns < end_ns && camera.value_or(of_camera) == of_camera;
   }
-  /// True for those that change the light on the lens.
+  /// True for faults that change the light on the lens.
   [[nodiscard]] bool on_lens() const;
 };
 

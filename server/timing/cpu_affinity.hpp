@@ -1,4 +1,4 @@
-// Which processors a thread, and those that it starts, may run on.
+// The processors that a thread and its child threads may run on.
 #pragma once
 
 #include <sched.h>
@@ -8,11 +8,11 @@
 
 namespace overfly::engine {
 
-/// Binds the calling thread. `cpus` empty = leaves it as it is.
-/// Errors: kInvalidArgument where none of them is a processor of this machine.
+/// Binds the calling thread. Does nothing if `cpus` is empty.
+/// Errors: kInvalidArgument if none of them is a processor of this machine.
 Status bind_thread(const std::vector<int>& cpus);
 
-/// Puts the calling thread's processors back to what they were.
+/// Restores the processor affinity of the calling thread.
 class AffinityGuard {
  public:
   AffinityGuard();
@@ -25,7 +25,7 @@ class AffinityGuard {
   bool known_ = false;
 };
 
-/// Largest resident memory of this process so far [MB].
+/// Peak resident memory of this process so far [MB].
 [[nodiscard]] double own_peak_memory_mb();
 
 }  // namespace overfly::engine

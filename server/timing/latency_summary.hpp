@@ -2,7 +2,7 @@
 
 namespace overfly::engine {
 
-/// Of the time from handing over a frame to its answer.
+/// Time from sending a frame to its answer.
 struct LatencySummary {
   double median_ms = 0.0;
   double p95_ms = 0.0;
