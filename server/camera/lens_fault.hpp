@@ -1,4 +1,4 @@
-// Faults on the lens of a camera that has no sensor model.
+// Lens faults for a camera without a sensor model.
 #pragma once
 
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace overfly::engine {
 
-/// Applies faults in the light: sRGB (IEC 61966-2-1) undone before and redone after. What no fault
-/// touches keeps its value exactly.
+/// Applies faults in linear light: decodes sRGB (IEC 61966-2-1) before and encodes it after. Pixels
+/// that no fault changes keep their exact value.
 [[nodiscard]] Image with_lens_faults(const Image& image,
                                      const std::vector<const FaultSpec*>& faults);
 

@@ -1,4 +1,4 @@
-// How a run comes by its renderer.
+// Creates the renderer of a run.
 #pragma once
 
 #include <functional>
@@ -10,12 +10,12 @@
 
 namespace overfly::engine {
 
-/// Makes the renderer of a run, on the run's thread.
+/// Creates a run's renderer; called on the run's thread.
 using RendererFactory = std::function<Result<std::unique_ptr<renderer::Renderer>>(
     std::shared_ptr<const terrain::TileSource>)>;
 
-/// The factory's renderer; where it is empty, the one that the scenario asks for.
-/// Errors: as the factory's; kUnsupported when the scenario's renderer does not work here.
+/// The factory's renderer, or the one that the scenario asks for if the factory is empty.
+/// Errors: as the factory's; kUnsupported if the scenario's renderer does not work on this machine.
 [[nodiscard]] Result<std::unique_ptr<renderer::Renderer>> make_renderer(
     const Scenario& scenario,
     const std::shared_ptr<const terrain::TileSource>& tiles,

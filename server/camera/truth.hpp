@@ -12,9 +12,9 @@
 namespace overfly::engine {
 
 /// A new truth source at t = 0; equal arguments give equal flights.
-/// A course starts at the world's runway, else so that it lies centred over the imagery.
-/// @param cancel  ends reading a pose file early; may be null
-/// Errors: as flight::fly_course and flight::fly_log, with the scenario's field before them.
+/// A course starts at the world's runway, or else where it lies centred over the imagery.
+/// @param cancel  cancels reading a pose file; may be null
+/// Errors: as flight::fly_course and flight::fly_log, prefixed with the scenario's field.
 [[nodiscard]] Result<std::unique_ptr<TruthSource>> create_truth(
     const Scenario& scenario,
     const terrain::World& world,

@@ -12,20 +12,19 @@
 
 namespace overfly::engine {
 
-/// The state dt_ns away by its velocity and rate alone.
+/// The state dt_ns later, extrapolated with constant velocity and rate.
 [[nodiscard]] AircraftState extrapolated(const AircraftState& state, std::int64_t dt_ns);
 
-/// Asks a truth source on fixed rasters around growing times. What a window shares with the one
-/// before is answered from memory, since the source never goes back: between the samples then asked
-/// for, linear in position and SLERP in rotation.
+/// Queries a truth source on regular grids around increasing times. The source cannot go back in
+/// time. Times that overlap the previous window are therefore interpolated between the samples in
+/// memory: linear in position, SLERP in rotation.
 class TruthWindow {
  public:
   explicit TruthWindow(std::unique_ptr<TruthSource> source) : source_(std::move(source)) {}
 
-  /// States at t_ns + j step_ns, j in [-n, n], n = ceil(half_ns / step_ns): the middle one is that
-  /// at t_ns. Before t = 0 and after the flight's end the aircraft goes on as it began and ended.
-  /// t_ns must not fall from call to call.
-  /// Empty when the flight has ended at t_ns.
+  /// States at t_ns + j step_ns, j in [-n, n], n = ceil(half_ns / step_ns); the middle one is at
+  /// t_ns. Before t = 0 and after the flight's end the motion is extrapolated. t_ns must not
+  /// decrease from call to call. Empty if the flight has ended at t_ns.
   /// @param step_ns  > 0
   /// Errors: as TruthSource::state_at.
   [[nodiscard]] Result<std::optional<std::vector<AircraftState>>> around(std::int64_t t_ns,
@@ -39,8 +38,8 @@ class TruthWindow {
   void forget_before(std::int64_t t_ns);
 
   std::unique_ptr<TruthSource> source_;
-  std::optional<std::int64_t> ended_ns_;  ///< when it was first asked beyond the flight's end
-  std::deque<AircraftState> known_;  ///< by time; the one before the present window is the first
+  std::optional<std::int64_t> ended_ns_;  ///< the first queried time beyond the flight's end
+  std::deque<AircraftState> known_;       ///< by time; the first one precedes the present window
 };
 
 }  // namespace overfly::engine

@@ -1,4 +1,4 @@
-// The tiles of a world as one run reads them, and which of them could not be read.
+// The tiles of a world as one run reads them; records which ones could not be read.
 #pragma once
 
 #include <map>
@@ -9,13 +9,13 @@
 
 namespace overfly::engine {
 
-/// Passes everything on. Thread-safe.
+/// Forwards all calls. Thread-safe.
 class WatchedTiles final : public terrain::TileDecorator {
  public:
   using TileDecorator::TileDecorator;
 
   [[nodiscard]] Result<terrain::Tile> tile(const terrain::TileId& id) const override;
-  /// The error of a tile that could not be read when it was asked for last, if there is one.
+  /// The error of a tile whose latest read failed, if there is one.
   [[nodiscard]] Status unread() const;
 
  private:

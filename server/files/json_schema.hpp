@@ -1,7 +1,7 @@
-// The part of JSON Schema (draft 2020-12) that our schemas use: type, const, enum, properties,
-// required, additionalProperties, minProperties, dependentRequired, items, minItems, maxItems,
-// minimum, maximum, exclusiveMinimum, exclusiveMaximum, minLength, maxLength, pattern, oneOf,
-// $ref into $defs. Any validator of the full standard gives the same verdicts.
+// The part of JSON Schema (draft 2020-12) that Overfly's schemas use: type, const, enum,
+// properties, required, additionalProperties, minProperties, dependentRequired, items, minItems,
+// maxItems, minimum, maximum, exclusiveMinimum, exclusiveMaximum, minLength, maxLength, pattern,
+// oneOf, $ref into $defs. A validator of the full standard gives the same verdicts.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -10,7 +10,7 @@
 
 namespace overfly::engine {
 
-/// One place where a document breaks its schema.
+/// One violation of the schema in a document.
 struct SchemaFault {
   std::string path;  ///< dotted: "estimators.0.name"; empty = the whole document
   std::string text;  ///< "estimators.0.name = 7: must be text"
@@ -18,15 +18,15 @@ struct SchemaFault {
 
 class JsonSchema {
  public:
-  /// @pre `schema` uses no keyword beyond those above and annotations, and no dangling $ref.
+  /// @pre `schema` uses only the keywords above and annotations, and every $ref resolves
   explicit JsonSchema(nlohmann::json schema) : schema_(std::move(schema)) {}
 
   /// Empty = valid.
   [[nodiscard]] std::vector<SchemaFault> faults(const nlohmann::json& document) const;
-  /// Fills in each absent property that has a `default`, also inside what is filled in.
-  /// @pre faults(document) is empty
+  /// Adds each absent property that has a `default`, also inside objects added this way.
   void apply_defaults(nlohmann::json& document) const;
-  /// Keywords in the schema that neither validate here nor annotate; for a test of the schema.
+  /// Keywords of the schema that are neither implemented here nor annotations; used to test the
+  /// schema.
   [[nodiscard]] std::vector<std::string> unknown_keywords() const;
 
  private:

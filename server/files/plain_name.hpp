@@ -1,12 +1,12 @@
-// Names from outside that become a part of a path.
+// Validates external names that become a part of a path.
 #pragma once
 
 #include <string>
 
 namespace overfly::engine {
 
-/// True for a name that is one plain part of a path: letters, digits, `_`, `-`, `.`, not first `.`;
-/// 200 characters at most.
+/// True for a name that is a single path component: letters, digits, `_`, `-`, `.`, not beginning
+/// with `.`; at most 200 characters.
 [[nodiscard]] bool is_plain_name(const std::string& name);
 
 }  // namespace overfly::engine

@@ -1,4 +1,4 @@
-// Files that are there whole or not at all, and files that only grow.
+// Files written whole or not at all, and files that are only appended to.
 #pragma once
 
 #include <cstdint>
@@ -14,26 +14,27 @@
 
 namespace overfly::engine {
 
-/// Writes beside the target and renames. Errors: kIo naming the file and the system's reason.
+/// Writes a temporary file next to the target and renames it. Errors: kIo naming the file and the
+/// system's reason.
 [[nodiscard]] Status write_whole(const std::filesystem::path& file,
                                  std::span<const std::uint8_t> bytes);
 [[nodiscard]] Status write_whole(const std::filesystem::path& file, const std::string& text);
-/// Indented by two blanks, with a line feed at the end.
+/// Indented by two spaces, with a line feed at the end.
 [[nodiscard]] Status write_json(const std::filesystem::path& file, const nlohmann::json& value);
 
-/// Of a document, as the timings of a day's flight.
+/// Limit for a document; enough for the timings of a day's flight.
 inline constexpr std::uint64_t kMaxDocumentBytes = std::uint64_t{256} << 20U;
-/// Of a file of rows, as the frames of most of a day.
+/// Limit for a file of rows; enough for the frames of most of a day.
 inline constexpr std::uint64_t kMaxRowsBytes = std::uint64_t{1} << 30U;
 
 /// Errors: as read_file_text; kUnreadable naming file, line and column, or the limit of its depth.
 [[nodiscard]] Result<nlohmann::json> read_json(const std::filesystem::path& file,
                                                std::uint64_t max_bytes = kMaxDocumentBytes);
-/// The same for text that was read from `origin`, as json_from_outside.
+/// Parses text that was read from `origin`, as json_from_outside.
 [[nodiscard]] Result<nlohmann::json> parse_json(std::string_view text, const std::string& origin);
 
-/// A file of one JSON document a line. Each line reaches the system as one write, so a process
-/// that is killed leaves at most the last line cut short.
+/// A file with one JSON document a line. Each line reaches the system in one write, so a process
+/// that is killed leaves at most the last line truncated.
 class LineFile {
  public:
   /// Creates the file; must not exist. Errors: kIo.
@@ -50,8 +51,8 @@ class LineFile {
   std::filesystem::path file_;
 };
 
-/// Reads such a file; a last line without its line feed is what a kill left over, and is skipped.
-/// A file that is absent has no lines. Errors: as read_file_text; kUnreadable naming file and line.
+/// Reads such a file. A last line without line feed is the remains of a kill and is skipped. An
+/// absent file has no lines. Errors: as read_file_text; kUnreadable naming file and line.
 [[nodiscard]] Result<std::vector<nlohmann::json>> read_lines(const std::filesystem::path& file);
 
 }  // namespace overfly::engine

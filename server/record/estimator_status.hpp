@@ -31,7 +31,7 @@ struct EstimatorStatus {
   std::int64_t hashes_compared = 0;    ///< images whose CRC the estimator's side reported
   std::int64_t hash_mismatches = 0;    ///< of those, images that differ from the ones sent
   std::optional<TrackingState> state;  ///< of its last answer; empty before the first
-  std::string crash;                   ///< why it ended; empty while it runs
+  std::string crash;  ///< why the estimator ended, at the frame where it ended; else empty
   std::optional<LatencySummary> latency;
   std::optional<EstimatorUse> use;
 };

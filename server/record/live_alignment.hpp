@@ -1,5 +1,5 @@
-// The alignment `init_scale` while the run goes on: an estimate's place in the world from the
-// first frame that it tracked, without waiting for the end.
+// The alignment `init_scale` during the run: places an estimate in the world from its first tracked
+// frame on, without waiting for the end.
 #pragma once
 
 #include <cstdint>
@@ -10,19 +10,19 @@
 
 namespace overfly::engine {
 
-/// Feed it every answer of one estimator in order. A new map (reset) starts a new alignment.
+/// Takes every answer of one estimator in order. A new map (reset) starts a new alignment.
 class LiveAlignment {
  public:
-  /// Without a scene depth the scale comes from the path of the first 5 s of tracking, and rows
-  /// have no place in the world until then.
+  /// Without a scene depth the scale comes from the path length over the first 5 s of tracking;
+  /// until then rows have no pose in the world.
   static constexpr std::int64_t kPathWindowNs = 5'000'000'000;
 
   /// @param T_body_camera  the camera's mount
   explicit LiveAlignment(const Pose& T_body_camera) : T_camera_body_(T_body_camera.inverse()) {}
 
   /// @param T_world_camera  truth at the sample's frame
-  /// @param axis_depth_m    true depth along the optical axis there
-  /// @return T_world_body as the estimator believes; empty while not tracking or not aligned
+  /// @param axis_depth_m  true depth along the optical axis at that frame
+  /// @return estimated T_world_body; empty while not tracking or not aligned
   std::optional<Pose> add(const EstimateSample& sample,
                           const Pose& T_world_camera,
                           const std::optional<double>& axis_depth_m);
@@ -31,9 +31,9 @@ class LiveAlignment {
   [[nodiscard]] const std::optional<double>& init_true_depth_m() const {
     return init_true_depth_m_;
   }
-  /// Scene depth reported there, vo units.
+  /// Scene depth that the estimator reported at that frame, vo units.
   [[nodiscard]] const std::optional<double>& init_scene_depth() const { return init_scene_depth_; }
-  /// S_world_vo of the present map.
+  /// S_world_vo of the current map.
   [[nodiscard]] const std::optional<Similarity>& S_world_vo() const { return S_world_vo_; }
 
  private:

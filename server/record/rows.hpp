@@ -24,12 +24,12 @@ struct FrameRow {
   double texels_per_pixel_min = 0.0;
   double void_fraction = 0.0;
   std::int64_t exposure_ns = 0;      ///< 0 = not known
-  double gain = 1.0;                 ///< of auto-exposure, times the sensor's own
+  double gain = 1.0;                 ///< of auto-exposure, multiplied by the sensor's own
   double saturated_fraction = 0.0;   ///< of the pixels
-  int late_tiles = 0;                ///< drawn from coarser ones
-  std::int64_t stamp_offset_ns = 0;  ///< of the stamp that estimators were told, less t_ns
+  int late_tiles = 0;                ///< tiles drawn from a coarser level
+  std::int64_t stamp_offset_ns = 0;  ///< stamp given to estimators minus t_ns
   std::vector<std::string> faults;   ///< kinds of those in force
-  /// Of the grey image as estimators were sent it; empty where none was.
+  /// Of the grey image as sent to estimators; empty if none was sent.
   std::optional<std::uint32_t> image_crc32;
 };
 
@@ -44,11 +44,11 @@ struct LogRow {
   std::int64_t t_ns = 0;
   std::string level;  ///< "info", "warning", "error"
   std::string text;
-  std::string kind = {};    ///< "fault" where a fault of the scenario begins or ends; else empty
-  std::string source = {};  ///< estimator that said it; empty = the range
+  std::string kind = {};    ///< "fault" if a fault of the scenario begins or ends; else empty
+  std::string source = {};  ///< the estimator that reported it; empty = the range
 };
 
-/// A picture that belongs to a frame; shared, never written to after it is made.
+/// An image that belongs to a frame; shared and immutable.
 struct StampedImage {
   std::int64_t frame = 0;
   std::int64_t t_ns = 0;
@@ -59,11 +59,11 @@ struct StampedImage {
 struct FrameRecord {
   FrameRow row;
   std::optional<double> axis_depth_m;  ///< of the ground along the optical axis
-  /// The camera shakes on its mount: the body's pose is not that of the camera at rest.
+  /// The camera vibrates: the body's pose does not follow from the camera's and the mount.
   bool shaken = false;
 };
 
-/// One line of estimates/NAME.jsonl: an answer, or a frame that a busy estimator never got.
+/// One line of estimates/NAME.jsonl: an answer, or a frame dropped because the estimator was busy.
 struct EstimateRecord {
   EstimateSample sample;
   std::map<std::string, double> counters;

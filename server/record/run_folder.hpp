@@ -7,7 +7,7 @@
 
 namespace overfly::engine {
 
-/// Version of the folder's format, in its manifest.
+/// Version of the folder's format, recorded in the manifest.
 inline constexpr int kRunFormatVersion = 1;
 
 [[nodiscard]] std::filesystem::path manifest_file(const std::filesystem::path& folder);
@@ -23,19 +23,19 @@ inline constexpr int kRunFormatVersion = 1;
                                                   const std::string& estimator);
 [[nodiscard]] std::filesystem::path estimate_tum_file(const std::filesystem::path& folder,
                                                       const std::string& estimator);
-/// estimators/NAME: what the process of an estimator writes
+/// estimators/NAME: output of an estimator's process
 [[nodiscard]] std::filesystem::path estimator_output_folder(const std::filesystem::path& folder,
                                                             const std::string& estimator);
-/// cameras/NAME.jsonl and cameras/NAME.tum, of all cameras but the main one
+/// cameras/NAME.jsonl and cameras/NAME.tum, for all cameras except the main one
 [[nodiscard]] std::filesystem::path camera_frames_file(const std::filesystem::path& folder,
                                                        const std::string& camera);
 [[nodiscard]] std::filesystem::path camera_truth_file(const std::filesystem::path& folder,
                                                       const std::string& camera);
-/// frames/NAME/NNNNNN.jpg; of the main camera, whose name is left empty, frames/NNNNNN.jpg
+/// frames/NAME/NNNNNN.jpg; for the main camera (empty name) frames/NNNNNN.jpg
 [[nodiscard]] std::filesystem::path frame_image_file(const std::filesystem::path& folder,
                                                      const std::string& camera,
                                                      std::int64_t frame);
-/// frames16/NAME/NNNNNN.png, likewise, of sensors deeper than 8 bit
+/// frames16/NAME/NNNNNN.png, likewise, for sensors deeper than 8 bit
 [[nodiscard]] std::filesystem::path deep_frame_file(const std::filesystem::path& folder,
                                                     const std::string& camera,
                                                     std::int64_t frame);
@@ -46,7 +46,7 @@ inline constexpr int kRunFormatVersion = 1;
                                                      const std::string& estimator,
                                                      std::int64_t frame);
 
-/// A run's id.
+/// The run's id.
 [[nodiscard]] std::string folder_name(const std::filesystem::path& folder);
 
 /// `2026-11-21T09:12:04.123456Z`

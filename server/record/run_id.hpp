@@ -1,4 +1,4 @@
-// Ids of runs, which are the names of their folders.
+// Run ids, which are also the names of the run folders.
 #pragma once
 
 #include <cstdint>
@@ -9,17 +9,18 @@
 
 namespace overfly::engine {
 
-/// Makes an empty folder `YYYYMMDD-HHMMSS-SCENARIO-RRRRRR` for a run: UTC, and six random letters
-/// and digits (30 bits). That the folder was made here and now makes the id this run's alone,
-/// whoever else makes runs in the same place.
+/// Creates an empty folder `YYYYMMDD-HHMMSS-SCENARIO-RRRRRR` for a run: UTC, and six random letters
+/// and digits (30 bits). Because the folder is created here, the id is unique even if other
+/// programs create runs in the same place.
 /// @param now_ns  Unix time
-/// @return the id. Errors: kIo naming the folder.
+/// @return the id
+/// Errors: kIo naming the folder.
 [[nodiscard]] Result<std::string> reserve_run(const std::filesystem::path& runs_folder,
                                               const std::string& scenario,
                                               std::int64_t now_ns);
-/// Whether a name begins as reserve_run's do.
+/// Whether a name begins like an id from reserve_run.
 [[nodiscard]] bool is_run_id(const std::string& name);
-/// Gives the folder of a run that was never flown back; nothing where it holds anything.
+/// Removes the folder of a run that was never flown; keeps it if it is not empty.
 void release_run(const std::filesystem::path& runs_folder, const std::string& id);
 
 }  // namespace overfly::engine

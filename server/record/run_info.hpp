@@ -16,35 +16,35 @@ enum class RunStatus {
   kCompleted,
   kFailed,
   kCancelled,
-  kInterrupted,  ///< its program ended before it did
-  kUnreadable,   ///< its folder does not say; RunInfo::problem tells why
+  kInterrupted,  ///< its program ended before the run did
+  kUnreadable,   ///< its folder is invalid; RunInfo::problem gives the reason
 };
 [[nodiscard]] const char* to_string(RunStatus status);  ///< "queued", "running", ...
 
-/// What a list of runs shows.
+/// The fields shown in a list of runs.
 struct RunInfo {
   std::string id;        ///< folder name
   std::string scenario;  ///< name
   std::string title;
   RunStatus status = RunStatus::kQueued;
   std::string created_utc;       ///< ISO 8601
-  std::string error;             ///< why it failed; empty otherwise
-  std::string problem;           ///< file and field of its folder that are wrong; else empty
+  std::string error;  ///< why it cannot be flown on this machine; empty if it can
+  std::string problem;           ///< invalid file and field of its folder; else empty
   std::int64_t duration_ns = 0;  ///< of the flight, 0 = not known yet
   std::int64_t frames = 0;       ///< done
   std::int64_t frames_total = 0;
   std::string pacing;
   std::vector<std::string> estimators;
-  std::vector<std::string> estimator_cameras;  ///< whose images each estimator gets
+  std::vector<std::string> estimator_cameras;  ///< the camera whose images each estimator gets
   std::string attribution;
   std::vector<std::string> cameras;  ///< names, the main one first
-  /// The imagery, not the camera, limits the result: fewer than 0.5 texels a pixel (median).
+  /// The imagery, not the camera, limits the result: the median is below 0.5 texels per pixel.
   bool texture_limited = false;
-  /// What it is busy with before its first frame ("making the built-in world: 30 %"); empty
-  /// otherwise. Of this process only: no file keeps it.
+  /// The step in progress before the first frame ("making the built-in world: 30 %"); else empty.
+  /// Known to this process only; not stored in a file.
   std::string notice;
-  /// Which files of its world have changed since it was flown; empty where none has, and until its
-  /// world was opened for a view. Of this process only: no file keeps it.
+  /// Files of the world that have changed since the flight; empty if none has, and until the world
+  /// was opened for a view. Known to this process only; not stored in a file.
   std::string world_change;
 };
 

@@ -9,13 +9,13 @@
 
 namespace overfly::engine {
 
-/// What the folder says of itself: its manifest, created.json, and the frames
-/// written where the run did not come to its end. A run marked running whose lock nobody holds is
-/// interrupted. A file or field at fault is told in `problem`, and the others are read.
-/// Errors: kNotFound where there is no manifest.
+/// Reads the manifest and created.json; counts the written frames if the run did not reach its end.
+/// A run that is marked as running but whose lock is free is reported as interrupted. An invalid
+/// file or field is reported in `problem`; the other fields are still read.
+/// Errors: kNotFound if there is no manifest.
 [[nodiscard]] Result<RunInfo> read_run_info(const std::filesystem::path& folder);
 
-/// The fields of a RunInfo that stand in a manifest.
+/// Writes the fields of a RunInfo that belong in a manifest.
 void put_run_info(const RunInfo& info, nlohmann::json& manifest);
 
 }  // namespace overfly::engine

@@ -6,13 +6,13 @@
 
 namespace overfly::engine {
 
-/// Says that a process is at work in a run folder, for as long as the object and the process
-/// live: the system itself takes the mark away when the process is killed.
+/// Marks a run folder as in use while both the object and the process live: the operating system
+/// releases the lock when the process is killed.
 class RunLock {
  public:
-  /// Errors: kConflict while another holds it; kIo.
+  /// Errors: kConflict if another process holds it; kIo.
   static Result<RunLock> take(const std::filesystem::path& folder);
-  /// True while some process (this one too) holds the lock.
+  /// True while a process (including this one) holds the lock.
   [[nodiscard]] static bool held(const std::filesystem::path& folder);
   ~RunLock();  ///< releases and removes the file
   RunLock(RunLock&& other) noexcept;

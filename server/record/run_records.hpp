@@ -1,4 +1,4 @@
-// All that a run recorded: the master from which trajectories and metrics are derived.
+// All records of a run; trajectories and metrics are derived from them.
 #pragma once
 
 #include <cstdint>
@@ -16,11 +16,11 @@ namespace overfly::engine {
 struct EstimatorRecords {
   std::string name;
   std::string type;
-  std::vector<EstimateRecord> records;  ///< by frame, drops among them
+  std::vector<EstimateRecord> records;  ///< by frame, including drops
   std::size_t camera = 0;               ///< index: 0 = the main one
 };
 
-/// Of a camera that is not the main one.
+/// Records of a camera other than the main one.
 struct CameraRecords {
   std::string name;
   Pose T_body_camera{R_body_camera_nadir(), Eigen::Vector3d::Zero()};
@@ -30,8 +30,8 @@ struct CameraRecords {
 struct RunRecords {
   Pose T_body_camera{R_body_camera_nadir(), Eigen::Vector3d::Zero()};
   std::vector<FrameRecord> frames;
-  std::vector<CameraRecords> other_cameras;  ///< all but the main one, which is above
-  /// Never drawn, of no camera, since their time had passed.
+  std::vector<CameraRecords> other_cameras;  ///< all except the main camera, which is above
+  /// Frames that no camera drew because their time had passed.
   std::vector<evaluation::FlightFrame> late_frames;
   std::vector<EstimatorRecords> estimators;
 
@@ -44,7 +44,7 @@ struct RunRecords {
   }
 };
 
-/// Reads the line files of a run folder; a kill leaves them readable.
+/// Reads the line files of a run folder; they stay readable after a kill.
 /// Errors: kNotFound without a manifest; kUnreadable naming file and row.
 [[nodiscard]] Result<RunRecords> read_run_records(const std::filesystem::path& folder);
 
@@ -54,14 +54,14 @@ struct RunRecords {
 [[nodiscard]] const FrameRecord* frame_record(const RunRecords& records,
                                               std::size_t camera,
                                               std::int64_t frame);
-/// Every frame that a camera has in the flight, also those that were late or got lost on their way.
+/// Every frame of a camera in the flight, including those that were late or lost.
 [[nodiscard]] std::vector<evaluation::FlightFrame> flight_frames(const RunRecords& records,
                                                                  std::size_t camera);
 /// The answers of one estimator without the drops.
 [[nodiscard]] EstimateTrack track_of(const EstimatorRecords& estimator);
 
-/// What `init_scale` rests on: the first tracked frame of the map that is scored, the one with the
-/// most tracked frames (the earlier of two equal ones).
+/// The basis of `init_scale`: the first tracked frame of the map that is scored. That map is the
+/// one with the most tracked frames (the earlier one on a tie).
 struct InitialFrame {
   std::int64_t frame = 0;
   int map_id = 0;

@@ -18,12 +18,12 @@ namespace overfly::engine {
 [[nodiscard]] nlohmann::json json_from(const EstimateRecord& record);
 [[nodiscard]] nlohmann::json json_from(const LogRow& row);
 
-// The way back. Errors: kUnreadable naming the field.
+// The inverse. Errors: kUnreadable naming the field.
 [[nodiscard]] Result<Pose> pose_from(const nlohmann::json& value);
 [[nodiscard]] Result<PinholeCamera> camera_from(const nlohmann::json& value);
-/// Without a distortion where none is named.
+/// Without distortion if none is given.
 [[nodiscard]] Result<CameraModel> camera_model_from(const nlohmann::json& value);
-/// `T_body_camera` gives the row its pose of the body.
+/// `T_body_camera` is used to compute the row's body pose.
 [[nodiscard]] Result<FrameRecord> frame_record_from(const nlohmann::json& value,
                                                     const Pose& T_body_camera);
 [[nodiscard]] Result<EstimateRecord> estimate_record_from(const nlohmann::json& value);

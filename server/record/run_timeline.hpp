@@ -1,4 +1,4 @@
-// A run as a time line: what every view of it reads, while it is being written and after.
+// A run as a timeline, read by every view both during the run and after it.
 #pragma once
 
 #include <condition_variable>
@@ -28,25 +28,26 @@ namespace overfly::engine {
 class RunTimeline {
  public:
   explicit RunTimeline(RunInfo info, std::vector<std::string> estimators);
-  /// Reads a run folder (complete, failed, or still marked running by a program that is gone:
-  /// then its status is kInterrupted). Errors: kNotFound, kUnreadable naming file and line.
+  /// Reads a run folder: complete, failed, or still marked as running by a program that has ended
+  /// (its status is then kInterrupted).
+  /// Errors: kNotFound, kUnreadable naming file and line.
   static Result<std::shared_ptr<RunTimeline>> open(const std::filesystem::path& folder);
 
   [[nodiscard]] RunInfo info() const;
   [[nodiscard]] const std::vector<std::string>& estimators() const { return estimators_; }
-  /// The cameras, the main one first; there is always one.
+  /// The cameras, the main one first; never empty.
   [[nodiscard]] std::vector<RunCamera> cameras() const;
-  /// Index of a camera by its name; empty name = the main one. Errors: kNotFound naming it.
+  /// Index of a camera by name; an empty name = the main one. Errors: kNotFound naming it.
   [[nodiscard]] Result<std::size_t> camera_index(const std::string& name) const;
-  /// Main camera of the run and its mount.
+  /// The main camera of the run and its mount.
   [[nodiscard]] PinholeCamera camera() const;
   [[nodiscard]] Pose T_body_camera() const;
-  /// Of the manifest that this was read from or written to; none while the run goes on.
+  /// Stamp of the manifest that this was read from or written to; none during the run.
   [[nodiscard]] FileStamp manifest_stamp() const;
   /// Empty object until the run is scored.
   [[nodiscard]] nlohmann::json metrics() const;
 
-  /// Copies rows [first, first + at most `limit`); of the main camera where none is named.
+  /// Copies rows [first, first + at most `limit`); of the main camera by default.
   [[nodiscard]] std::vector<FrameRow> frames(std::size_t first,
                                              std::size_t limit,
                                              std::size_t camera = 0) const;
@@ -61,25 +62,25 @@ class RunTimeline {
   [[nodiscard]] std::optional<EstimateRow> estimate_at(std::size_t estimator,
                                                        std::int64_t t_ns) const;
 
-  /// The newest pictures of a live run; empty after it.
+  /// The latest images of a live run; empty after it.
   [[nodiscard]] std::optional<StampedImage> live_camera(std::size_t camera = 0) const;
   [[nodiscard]] std::optional<StampedImage> live_debug(std::size_t estimator) const;
-  /// Sparse map points seen last, world frame.
+  /// The latest sparse map points, world frame.
   [[nodiscard]] std::vector<Eigen::Vector3f> live_points(std::size_t estimator) const;
 
-  /// Who watches it.
+  /// The viewers.
   [[nodiscard]] const std::shared_ptr<Audience>& audience() const { return audience_; }
 
-  /// How each estimator fares.
+  /// State, latency and resource use of each estimator.
   [[nodiscard]] std::vector<EstimatorStatus> statuses() const;
 
-  /// Grows with every change.
+  /// Increases with every change.
   [[nodiscard]] std::uint64_t revision() const;
-  /// Waits until revision() differs from `seen`, or the timeout. @return revision()
+  /// Waits until revision() differs from `seen`, or for the timeout. @return revision()
   std::uint64_t wait_for_change(std::uint64_t seen, std::int64_t timeout_ms) const;
 
-  // The writer's side: the run that feeds it.
-  /// @pre !cameras.empty(), and no frame is there yet
+  // Written by the run.
+  // @pre !cameras.empty(), and there are no frames yet
   void set_cameras(std::vector<RunCamera> cameras);
   void set_camera(const PinholeCamera& camera, const Pose& T_body_camera);  ///< the only one
   void set_manifest_stamp(const FileStamp& stamp);

@@ -8,8 +8,8 @@
 namespace overfly::engine {
 
 /// Flies, estimates, records and scores; returns when the folder is complete.
-/// Errors: kConflict if the folder holds a run; whatever world, renderer, flight or estimator say.
-/// A lost, diverged or crashed estimator is a result, not an error.
+/// Errors: kConflict if the folder contains a run; any error of world, renderer, flight or
+/// estimator. A lost, diverged or crashed estimator is a result, not an error.
 [[nodiscard]] Result<RunResult> run_scenario(const Scenario& scenario, const RunOptions& options);
 
 }  // namespace overfly::engine

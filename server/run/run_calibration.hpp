@@ -1,4 +1,5 @@
-// The photometric calibration of a run's cameras, as photometric odometry (DSO) loads it.
+// The photometric calibration of a run's cameras, in the format that photometric odometry (DSO)
+// reads.
 #pragma once
 
 #include <filesystem>
@@ -11,17 +12,17 @@
 
 namespace overfly::engine {
 
-/// photometric/NAME, of a camera with a sensor model.
+/// photometric/NAME, for a camera with a sensor model.
 [[nodiscard]] std::filesystem::path calibration_folder(const std::filesystem::path& run_folder,
                                                        const std::string& camera);
 
-/// pcalib.txt and vignette.png there; nothing of a camera without a sensor model.
+/// Writes pcalib.txt and vignette.png; nothing for a camera without a sensor model.
 /// Errors: kIo naming the file.
 [[nodiscard]] Status write_calibration(const std::filesystem::path& run_folder,
                                        const CameraSpec& camera);
 
-/// times.txt there: number, stamp that estimators were told [s] and exposure [ms] of every frame
-/// that reached them, as many as there are recorded images. Nothing without a sensor model.
+/// Writes times.txt: number, stamp given to estimators [s] and exposure [ms] of every delivered
+/// frame, as many lines as there are recorded images. Nothing without a sensor model.
 /// Errors: kIo naming the file.
 [[nodiscard]] Status write_times(const std::filesystem::path& run_folder,
                                  const CameraSpec& camera,

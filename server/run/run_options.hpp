@@ -20,28 +20,29 @@ class RunClock;
 class WorldCache;
 struct OpenedWorld;
 
-/// Makes an estimator instead of the one that its type names.
+/// Creates an estimator in place of the one named by its type.
 using EstimatorFactory = std::function<Result<std::unique_ptr<VoPort>>(const EstimatorSpec&)>;
 
 struct RunOptions {
-  std::filesystem::path folder;        ///< made; must not hold a run already
-  RendererFactory renderer_factory;    ///< EGL where it is empty
-  EstimatorFactory estimator_factory;  ///< by their types where it is empty
-  /// Set by another thread to stop: the folder is then complete to the last frame and cancelled.
+  std::filesystem::path folder;        ///< created; must not contain a run
+  RendererFactory renderer_factory;    ///< EGL if empty
+  EstimatorFactory estimator_factory;  ///< chosen by type if empty
+  /// Set by another thread to stop the run. The folder is then complete up to the last frame and
+  /// marked as cancelled.
   const std::atomic<bool>* cancel = nullptr;
-  /// Where live readers look; made by the run when null.
+  /// Read by live viewers; created by the run if null.
   std::shared_ptr<RunTimeline> timeline;
-  /// Keep live pictures (camera, debug) in the timeline.
+  /// Keep live images (camera, debug) in the timeline.
   bool publish_images = false;
-  /// Opened worlds to share; the run opens its own when null.
+  /// Cache of opened worlds to share; if null the run opens its own.
   WorldCache* worlds = nullptr;
-  /// Hears how much time a flight in real time has left; may be null.
+  /// Is notified of the time that a real-time flight has to spare; may be null.
   PictureRate* picture_rate = nullptr;
-  /// Paces a real-time run; the machine's clock when null.
+  /// Paces a real-time run; the machine's clock if null.
   RunClock* clock = nullptr;
-  /// What takes long before the first frame, one line at a time; on the run's thread.
+  /// Called with one line for each slow step before the first frame; on the run's thread.
   std::function<void(const std::string&)> notice;
-  /// Called with the world that is flown over; on the run's thread.
+  /// Called with the opened world of the flight; on the run's thread.
   std::function<void(std::shared_ptr<const OpenedWorld>)> world_opened;
   /// Called after each frame on the run's thread.
   std::function<void(const RunInfo&)> progress;

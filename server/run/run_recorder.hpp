@@ -1,4 +1,4 @@
-// Writes a run folder while its run goes on, and tells the timeline the same.
+// Writes a run folder during its run, and updates the timeline with the same data.
 #pragma once
 
 #include <filesystem>
@@ -24,40 +24,40 @@
 
 namespace overfly::engine {
 
-/// Used by one thread, that of the run.
+/// Used only by the run's thread.
 class RunRecorder {
  public:
-  /// Makes the folder and takes its lock; the manifest says "running" from then on.
-  /// @param timeline  its info has the id and when the run was asked for; made when null
-  /// Errors: kConflict if the folder holds anything; kIo.
+  /// Creates the folder and takes its lock; from then on the manifest says "running".
+  /// @param timeline  its info has the id and the time of the request; created if null
+  /// Errors: kConflict if the folder is not empty; kIo.
   static Result<std::unique_ptr<RunRecorder>> create(const std::filesystem::path& folder,
                                                      const Scenario& scenario,
                                                      std::shared_ptr<RunTimeline> timeline,
                                                      bool publish_images);
 
-  /// What the manifest says besides the run's info; written out by write_manifest().
+  /// Contents of the manifest besides the run's info; written by write_manifest().
   [[nodiscard]] nlohmann::json& manifest() { return manifest_; }
   Status write_manifest();
 
-  /// Tells manifest and timeline of the cameras, and keeps their photometric calibration.
+  /// Adds the cameras to manifest and timeline, and stores their photometric calibration.
   Status set_cameras();
   void set_length(std::int64_t duration_ns, std::int64_t frames_total);
   void set_attribution(const std::string& attribution);
 
   /// The main camera's (0) record first, then those of the others.
-  /// @param image  null when it got lost: then there is none to keep or to show
-  /// @param deep   the same of a sensor deeper than 8 bit, else empty
+  /// @param image  null if it was lost: then it is neither recorded nor shown
+  /// @param deep  the same image from a sensor deeper than 8 bit, else empty
   Status add_frame(const FrameRecord& record,
                    const std::shared_ptr<const Image>& image,
                    const Image16& deep,
                    std::size_t camera);
   Status add_late_frame(std::int64_t frame, std::int64_t t_ns);
   Status add_event(std::size_t estimator, EstimatorEvent event);
-  /// Lines that an estimator said; of one that says too much only the first.
+  /// Log lines of an estimator; beyond a limit further lines are dropped.
   Status add_estimator_log(std::size_t estimator,
                            std::int64_t t_ns,
                            const std::vector<std::string>& lines);
-  /// At the end: what an estimator has used.
+  /// Called at the end with the resources that an estimator has used.
   void set_use(std::size_t estimator, const EstimatorUse& use);
   Status log(std::int64_t t_ns,
              const std::string& level,
@@ -65,12 +65,12 @@ class RunRecorder {
              const std::string& kind = "",
              const std::string& source = "");
 
-  /// Derives trajectories and metrics, writes timings and the final manifest, lets the folder go.
-  /// @param timings  wall-clock facts to put beside the estimators'
+  /// Derives trajectories and metrics, writes timings and the final manifest, releases the folder.
+  /// @param timings  wall-clock measurements, written with those of the estimators
   Result<nlohmann::json> finish(RunStatus status, const std::string& error, nlohmann::json timings);
 
-  /// After a finish() that did not come to its end: the manifest says "failed" all the same, and
-  /// the folder is let go. Nothing after one that did.
+  /// Called after finish() failed: sets the manifest to "failed" and releases the folder. Does
+  /// nothing if finish() succeeded.
   void give_up(const Error& error);
 
   [[nodiscard]] RunInfo info() const { return info_; }
@@ -102,7 +102,7 @@ class RunRecorder {
   Status log_transition(std::size_t estimator, const EstimateRecord& record);
   Status keep_debug_image(std::size_t estimator, EstimatorEvent& event);
   Status write_timings(nlohmann::json timings) const;
-  /// The last manifest, and the end of the lock.
+  /// Writes the final manifest and releases the lock.
   Status let_go();
 
   std::filesystem::path folder_;

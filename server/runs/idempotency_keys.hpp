@@ -1,4 +1,4 @@
-// Which run each idempotency key gave.
+// Maps idempotency keys to the runs that they started.
 #pragma once
 
 #include <chrono>
@@ -10,18 +10,18 @@
 
 namespace overfly::engine {
 
-/// Bounded in number and age: the key asked for least lately leaves first. Not thread-safe.
+/// Bounded in number and age; the least recently used key is evicted first. Not thread-safe.
 class IdempotencyKeys {
  public:
   using Time = std::chrono::steady_clock::time_point;
   static constexpr std::size_t kMostKeys = 1000;
   static constexpr std::chrono::hours kOldest{24};
 
-  /// The run that a key gave; empty for an unknown, an empty or a forgotten key.
+  /// The run of a key; empty for an unknown, an empty or an evicted key.
   [[nodiscard]] std::optional<std::string> run_of(const std::string& key, Time now);
-  /// An empty key is none.
+  /// Does nothing for an empty key.
   void keep(const std::string& key, const std::string& run_id, Time now);
-  /// The run is gone: its key may give another.
+  /// Call when the run is deleted: its key may then start another.
   void forget_run(const std::string& run_id);
   [[nodiscard]] std::size_t size() const { return entries_.size(); }
 
@@ -33,7 +33,7 @@ class IdempotencyKeys {
   };
   void drop_old(Time now);
 
-  std::list<Entry> entries_;  ///< the one asked for last is in front
+  std::list<Entry> entries_;  ///< most recently used first
   std::unordered_map<std::string, std::list<Entry>::iterator> by_key_;
 };
 

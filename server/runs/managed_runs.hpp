@@ -26,24 +26,24 @@
 
 namespace overfly::engine {
 
-/// A run that this process was asked for, until it is over.
+/// A run requested from this process, until it is over.
 struct ManagedRun {
   std::string id;
   Scenario scenario;
   RunMemory memory;
   std::shared_ptr<RunTimeline> timeline;
   std::atomic<bool> cancel{false};
-  WorldCache::Shared world;  ///< while it flies over it; guarded by the manager
-  bool flies = false;        ///< else it waits
+  WorldCache::Shared world;  ///< while the run flies over it; guarded by the manager
+  bool flies = false;        ///< false: queued
 };
 
-/// Whether it waits or flies.
+/// Whether it is queued or flying.
 [[nodiscard]] bool is_live(const RunTimeline& timeline);
 void set_status(RunTimeline& timeline, RunStatus status, const std::string& error);
 
 class ManagedRuns {
  public:
-  /// Runs that ended before they had a folder are listed until so many newer ones did.
+  /// Number of runs listed that ended before they had a folder; older ones are dropped.
   static constexpr std::size_t kKeptUnflown = 8;
 
   explicit ManagedRuns(RunManagerOptions manager_options);
@@ -52,31 +52,32 @@ class ManagedRuns {
   /// Errors: kInternal with the system's reason.
   Status start_threads();
 
-  /// What scenarios may name now: the declared folders follow the scenario files.
+  /// Sources that scenarios may name now: the declared folders follow the scenario files.
   [[nodiscard]] SourcePolicy sources() const;
-  /// Errors: as RunManager::start, for a scenario that can be flown.
+  /// Errors: as RunManager::start, for a valid scenario.
   Result<RunInfo> enqueue(Scenario scenario,
                           const std::string& idempotency_key,
                           StartReport& report);
   [[nodiscard]] std::optional<RunInfo> started_by(const std::string& idempotency_key);
-  /// All runs, those of this process among them.
+  /// All runs, including those of this process.
   [[nodiscard]] RunList list();
-  /// Of runs that wait, fly, or ended without a folder.
+  /// For runs that are queued, fly, or ended without a folder.
   [[nodiscard]] std::optional<RunInfo> known_info(const std::string& id) const;
   [[nodiscard]] std::shared_ptr<RunTimeline> known_timeline(const std::string& id) const;
-  /// Of a run that is over. Errors: as TimelineShelf::get.
+  /// For a run that is over. Errors: as TimelineShelf::get.
   [[nodiscard]] Result<std::shared_ptr<RunTimeline>> shelved_timeline(const std::string& id);
-  /// Says in the run's info how this world, opened for a view of it, differs from the one it flew.
+  /// Records in the run's info how this world, opened for a view, differs from the one it flew
+  /// over.
   void tell_world_change(const std::string& id, const OpenedWorld& opened);
-  /// Null when it does not fly here.
+  /// Null if the run does not fly in this process.
   [[nodiscard]] WorldCache::Shared flown_world(const std::string& id) const;
   [[nodiscard]] std::optional<Scenario> active_scenario(const std::string& id) const;
-  /// False when the run is not queued or running here.
+  /// False if the run is not queued or running in this process.
   bool cancel(const std::string& id);
   [[nodiscard]] bool is_live(const std::string& id) const;
-  /// Forgets a run without a folder. False when there is no such run.
+  /// Forgets a run without a folder. False if there is no such run.
   bool forget_unflown(const std::string& id);
-  /// Forgets a run whose folder is gone.
+  /// Forgets a run whose folder was deleted.
   void forget(const std::string& id);
 
   const RunManagerOptions options;
@@ -90,13 +91,13 @@ class ManagedRuns {
   void watch();
   void fly(ManagedRun& run);
   void end(const std::shared_ptr<ManagedRun>& run);
-  /// Lets a run go without a word of its own.
+  /// Removes a run that did not set a final state itself.
   void drop(const std::shared_ptr<ManagedRun>& run, const char* reason) noexcept;
 
-  // These need mutex_ to be held.
+  // @pre for those below: mutex_ is held
   [[nodiscard]] std::optional<RunInfo> info_by_key(const std::string& idempotency_key);
   [[nodiscard]] std::shared_ptr<RunTimeline> timeline_of(const std::string& id) const;
-  /// Whether the first in the queue may fly beside those that do.
+  /// Whether the first run in the queue fits in memory next to the flying ones.
   [[nodiscard]] bool next_fits() const;
   void keep_unflown(std::shared_ptr<ManagedRun> run);
 
@@ -104,7 +105,7 @@ class ManagedRuns {
   mutable std::mutex mutex_;
   std::condition_variable wake_;
   bool stopping_ = false;
-  std::map<std::string, std::shared_ptr<ManagedRun>> runs_;  ///< that wait or fly
+  std::map<std::string, std::shared_ptr<ManagedRun>> runs_;  ///< queued or flying
   std::deque<std::shared_ptr<ManagedRun>> queue_;
   std::deque<std::shared_ptr<ManagedRun>> unflown_;  ///< newest first
   IdempotencyKeys keys_;

@@ -16,37 +16,38 @@
 
 namespace overfly::engine {
 
-/// Newest first. The entries are shared and never change.
+/// Newest first. The entries are shared and immutable.
 using RunList = std::vector<std::shared_ptr<const RunInfo>>;
 
 /// Newest first: by time of creation, then by id.
 [[nodiscard]] bool newer(const RunInfo& a, const RunInfo& b);
 
-/// Thread-safe. Every call looks whether the folder's entries and their manifests have changed,
-/// and reads only those that have: whoever else writes there is seen at the next call.
+/// Thread-safe. Every call checks whether the folder's entries or their manifests have changed and
+/// reads only the changed ones. Changes by other programs are thus seen at the next call.
 class RunIndex {
  public:
   explicit RunIndex(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-  /// All runs of the folder. @param skip  ids that are not looked at and not in the list
+  /// All runs of the folder.
+  /// @param skip  ids that are neither read nor listed
   [[nodiscard]] RunList list(const std::set<std::string>& skip);
-  /// One run alone. Errors: kNotFound.
+  /// One run. Errors: kNotFound.
   [[nodiscard]] Result<RunInfo> run(const std::string& id);
-  /// Keeps RunInfo::world_change of a run, from now on.
+  /// Sets RunInfo::world_change of a run.
   void set_world_change(const std::string& id, const std::string& change);
 
  private:
   struct Entry {
     FileStamp manifest;
-    /// Read after the manifest's last change, and nothing but a change of it can change the run.
+    /// Read after the manifest's last change; only a change of the manifest can change the run.
     bool settled = false;
-    std::shared_ptr<const RunInfo> info;  ///< null where there is no manifest
+    std::shared_ptr<const RunInfo> info;  ///< null if there is no manifest
     std::string world_change;
   };
-  /// Both say whether anything has changed. @pre mutex_ is held
+  /// Both return whether anything has changed. @pre mutex_ is held
   bool look_for_folders(int descriptor);
   bool look_at(int descriptor, const std::string& id, Entry& entry);
-  /// The entry of a run as it is now; null where there is none. @pre mutex_ is held
+  /// The current entry of a run; null if there is none. @pre mutex_ is held
   Entry* find(const std::string& id);
   void sort();
 

@@ -11,24 +11,24 @@
 namespace overfly::engine {
 
 struct RunManagerOptions {
-  std::filesystem::path runs_folder;  ///< made if absent
+  std::filesystem::path runs_folder;  ///< created if absent
   std::filesystem::path scenarios_folder;
   RendererFactory renderer_factory;
-  int max_parallel_runs = 1;           ///< further ones wait in a queue
+  int max_parallel_runs = 1;           ///< further runs wait in a queue
   std::size_t max_waiting_runs = 100;  ///< further ones are refused
-  /// That flights and pictures for viewers may use; 0 = most of the machine's.
+  /// Memory for flights and for pictures for viewers; 0 = most of the machine's.
   std::uint64_t memory_limit_bytes = 0;
   /// Overrides may name programs to start and addresses to speak to.
   bool allow_commands = false;
-  /// Folders whose files scenarios may name, besides `declared_folders(scenarios_folder)`; never
-  /// the runs' own. Without a value any regular file may be named.
+  /// Folders whose files scenarios may name, in addition to `declared_folders(scenarios_folder)`;
+  /// never the runs folder. Without a value any regular file may be named.
   std::optional<std::vector<std::filesystem::path>> data_folders;
 };
 
-/// What became of a request for a run, besides its error.
+/// The result of a request for a run, in addition to its error.
 struct StartReport {
-  bool repeated = false;  ///< the idempotency key gave an earlier run
-  /// Why a scenario that can be flown is not flown here now.
+  bool repeated = false;  ///< the idempotency key matched an earlier run
+  /// Why a valid scenario is not flown now.
   enum class Refusal { kNone, kQueueFull, kMemory } refusal = Refusal::kNone;
 };
 

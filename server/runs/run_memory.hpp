@@ -1,4 +1,4 @@
-// How much memory a scenario's flight needs, and whether there is enough of it.
+// How much memory a scenario's flight needs, and whether there is enough.
 #pragma once
 
 #include <cstdint>
@@ -8,39 +8,40 @@
 
 namespace overfly::engine {
 
-/// Of one flight, or of several together.
+/// Memory of one flight, or the total of several.
 struct RunMemory {
-  /// Images in the cameras' and estimators' buffers: what the scenario decides.
+  /// Images in the buffers of cameras and estimators; determined by the scenario.
   std::uint64_t images_bytes = 0;
-  /// What caches of ground and textures grow to at the most.
+  /// Maximum size of the caches of terrain and textures.
   std::uint64_t caches_bytes = 0;
 
   RunMemory& operator+=(const RunMemory& other);
 };
 
-/// From the sizes of cameras, and what holds their images (docs/PERFORMANCE.md, "Memory").
+/// Computed from the camera sizes and the number of image buffers (docs/PERFORMANCE.md, "Memory").
 [[nodiscard]] RunMemory memory_of(const Scenario& scenario);
 
-/// What this process may use: the machine's memory, or its control group's limit [bytes].
+/// Memory available to this process: the machine's memory, or the limit of its control group
+/// [bytes].
 [[nodiscard]] std::uint64_t machine_memory_bytes();
 
-/// Memory that flights may use together.
+/// The memory that flights may use together.
 class MemoryBudget {
  public:
   /// @param limit_bytes  of the process
-  /// @param views        pictures are drawn for viewers, too
+  /// @param views  whether pictures are also drawn for viewers
   MemoryBudget(std::uint64_t limit_bytes, bool views) : limit_bytes_(limit_bytes), views_(views) {}
 
   /// Four fifths of the machine's memory.
   [[nodiscard]] static MemoryBudget of_machine(bool views);
 
-  /// Whether flights that need so much together fit.
+  /// Whether flights that need this total fit.
   [[nodiscard]] bool holds(const RunMemory& together) const;
-  /// Whether a flight fits alone. Errors: kUnsupported "cameras = ...: must ...".
+  /// Whether a flight fits if it is the only one. Errors: kUnsupported "cameras = ...: must ...".
   [[nodiscard]] Status check(const Scenario& scenario) const;
 
  private:
-  /// What is left for images beside the caches: those have at most half of the limit.
+  /// Memory left for images next to the caches, which take at most half of the limit.
   [[nodiscard]] std::uint64_t for_images_bytes(std::uint64_t caches_bytes) const;
 
   std::uint64_t limit_bytes_;

@@ -1,4 +1,4 @@
-// How run folders are deleted.
+// Deletes run folders.
 #pragma once
 
 #include <filesystem>
@@ -7,14 +7,14 @@
 
 namespace overfly::engine {
 
-/// Deletes a run's folder. It is renamed aside first, so that nobody sees a part of it, and of
-/// several who delete it at the same time one succeeds. Links are deleted, not followed.
-/// Errors: kNotFound where it is not there (any more); kConflict while a process is at work in it;
-/// kIo naming what cannot be deleted.
+/// Deletes a run's folder. It is renamed first, so that no one sees a part of it and only one of
+/// several simultaneous calls succeeds. Symbolic links are deleted, not followed.
+/// Errors: kNotFound if it does not exist (any more); kConflict while a process uses it; kIo naming
+/// the file that cannot be deleted.
 [[nodiscard]] Status remove_run_folder(const std::filesystem::path& folder);
 
-/// Deletes what programs that were killed have left in a folder of runs: folders renamed aside, and
-/// empty folders of runs that waited and were never flown (after a day).
+/// Deletes what killed programs have left in a folder of runs: folders renamed for deletion, and
+/// empty folders of queued runs that were never flown (after a day).
 void remove_leftovers(const std::filesystem::path& runs_folder);
 
 }  // namespace overfly::engine

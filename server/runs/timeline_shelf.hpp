@@ -1,4 +1,4 @@
-// Time lines of runs that are over, as long as their folders have not changed.
+// Cache of the timelines of runs that are over, valid while their folders are unchanged.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@
 
 namespace overfly::engine {
 
-/// Thread-safe. Keeps those asked for last.
+/// Thread-safe. Keeps the most recently used ones.
 class TimelineShelf {
  public:
   static constexpr std::size_t kMostTimelines = 8;
@@ -23,13 +23,13 @@ class TimelineShelf {
   explicit TimelineShelf(std::filesystem::path runs_folder)
       : runs_folder_(std::move(runs_folder)) {}
 
-  /// A run's time line, read from its folder where it is not here or its manifest has changed. New
-  /// metrics are taken into the time line that is here. Errors: as RunTimeline::open.
+  /// A run's timeline; read from its folder if it is not cached or its manifest has changed. If
+  /// only the metrics are new, updates the cached timeline. Errors: as RunTimeline::open.
   [[nodiscard]] Result<std::shared_ptr<RunTimeline>> get(const std::string& id);
-  /// Takes the time line of a run that has just ended.
+  /// Adds the timeline of a run that has just ended.
   void put(const std::string& id, std::shared_ptr<RunTimeline> timeline);
   void forget(const std::string& id);
-  /// Takes new metrics into all time lines that are here, for those who watch them.
+  /// Updates the metrics of all cached timelines, for their viewers.
   void refresh();
 
  private:
@@ -40,13 +40,13 @@ class TimelineShelf {
     bool metrics_settled = false;
   };
   [[nodiscard]] Entry entry_of(const std::string& id) const;
-  /// False where the entry is of a folder that is not there any more. @pre mutex_ is held
+  /// False if the entry's folder no longer exists. @pre mutex_ is held
   bool is_fresh(Entry& entry) const;
   void keep(Entry entry);
 
   const std::filesystem::path runs_folder_;
   std::mutex mutex_;
-  std::list<Entry> entries_;  ///< the one asked for last is in front
+  std::list<Entry> entries_;  ///< most recently used first
 };
 
 }  // namespace overfly::engine

@@ -1,5 +1,5 @@
-// A scenario: what to fly, over what, seen by what, judged how. JSON on disk
-// (scenarios/scenario.schema.json), plain values here.
+// A scenario: what to fly, over which world, with which cameras, estimators and scoring. JSON on
+// disk (scenarios/scenario.schema.json), plain values here.
 #pragma once
 
 #include <cstdint>
@@ -26,10 +26,11 @@ namespace overfly::engine {
 
 enum class Pacing {
   kLockstep,  ///< each frame waits for every estimator: nothing dropped, byte-identical results
-  kRealTime,  ///< frames come at their rate; a busy estimator gets the latest, drops are counted
+  /// Frames come at their rate; a busy estimator gets the latest one, drops are counted
+  kRealTime,
 };
 
-/// Light on the ground; the sun by its direction, or where it stands at a time.
+/// Light on the ground; the sun is given by its direction, or computed for a time.
 struct LightSpec {
   terrain::LightOptions options;
   std::optional<std::int64_t> time_unix_ns;
@@ -38,7 +39,7 @@ struct LightSpec {
 struct RendererChoice {
   std::string camera = "auto";  ///< "auto", "egl", "raycast"
   std::string device;           ///< as renderer::RendererOptions::device
-  int threads = 0;              ///< of the ray-caster; 0 = chosen
+  int threads = 0;              ///< of the ray-caster; 0 = automatic
 
   [[nodiscard]] bool operator==(const RendererChoice&) const = default;
 };
@@ -60,37 +61,38 @@ struct Scenario {
   std::string title;
   std::string description;
   std::uint64_t seed = 1;
-  /// Unix time of t = 0; the run chooses where it is not given.
+  /// Unix time of t = 0; chosen by the run if not given.
   std::optional<std::int64_t> epoch_utc_ns;
 
-  /// The built-in world of a seed, a world manifest, or layers listed in the scenario itself.
+  /// The built-in world with a seed, a world manifest, or layers listed in the scenario itself.
   using BuiltinWorld = engine::BuiltinWorld;
   std::variant<BuiltinWorld, std::filesystem::path, terrain::WorldSpec> world;
 
   /// The course, or a pose file.
   using LoggedFlight = engine::LoggedFlight;
   std::variant<flight::CourseParameters, LoggedFlight> flight;
-  /// A course whose start is the world's runway, known only when the world is open.
+  /// The course starts at the world's runway, which is known only when the world is open.
   bool start_at_runway = true;
-  /// Of the course's first leg; the runway's, else south, where it is not given.
+  /// Of the course's first leg; if not given, that of the runway, or else south.
   std::optional<double> course_heading_rad;
   /// Stops the flight early [s].
   std::optional<double> duration_s;
 
-  /// At least one; the first is the main one, whose rows are frames.jsonl.
+  /// At least one; the first is the main one, recorded in frames.jsonl.
   std::vector<CameraSpec> cameras{CameraSpec{}};
-  FrameRate rate;  ///< of all cameras: they have common time stamps
+  FrameRate rate;  ///< of all cameras: they share their time stamps
   std::vector<FaultSpec> faults;
   std::vector<EstimatorSpec> estimators;
   RendererChoice renderer;
-  std::optional<LightSpec> light;                ///< empty = the imagery's own
-  std::optional<terrain::DetailOptions> detail;  ///< synthetic texels; empty = none
+  std::optional<LightSpec> light;  ///< empty = as in the imagery
+  /// Synthetic detail finer than the imagery; empty = none
+  std::optional<terrain::DetailOptions> detail;
   Pacing pacing = Pacing::kLockstep;
 
-  bool record_frames = false;    ///< camera images as frames/NNNNNN.jpg
-  double record_debug_hz = 5.0;  ///< debug images as debug/NAME/NNNNNN.jpg; 0 = none
+  bool record_frames = false;    ///< record camera images as frames/NNNNNN.jpg
+  double record_debug_hz = 5.0;  ///< record debug images as debug/NAME/NNNNNN.jpg; 0 = none
 
-  /// Which files it may name, itself and by what it names.
+  /// Files that the scenario may name, directly or through the files it names.
   SourcePolicy sources;
 
   nlohmann::json resolved;  ///< the document with defaults, overrides and `data` applied

@@ -1,4 +1,4 @@
-// metrics.json and the trajectories: what is derived from a run's records.
+// Derives metrics.json and the trajectories from a run's records.
 #pragma once
 
 #include <filesystem>
@@ -12,27 +12,28 @@
 
 namespace overfly::engine {
 
-/// One alignment as metrics.json and `overfly evaluate --json` print it.
+/// One alignment in the format of metrics.json and `overfly evaluate --json`.
 [[nodiscard]] nlohmann::json json_from(const evaluation::AlignmentScore& score);
-/// {"MODE": alignment, ...} and {"MODE": "reason", ...}
+/// {"MODE": alignment, ...} and, for alignments that failed, {"MODE": "reason", ...}.
 [[nodiscard]] nlohmann::json alignments_json(const evaluation::Score& score);
 [[nodiscard]] nlohmann::json unavailable_json(const evaluation::Score& score);
-/// Outcome, coverage and frames, with the two above.
+/// Outcome, coverage and frames, with the two objects above.
 [[nodiscard]] nlohmann::json json_from(const evaluation::Score& score);
 
-/// Scores every estimator of a run. With fewer than two frames there is nothing to score: then the
-/// estimators have an outcome only.
+/// Scores every estimator of a run. With fewer than two frames the estimators get an outcome but no
+/// errors.
 [[nodiscard]] nlohmann::json metrics_from(const RunRecords& records);
 
-/// Why an estimator was gone before it answered a single frame, by its name: those that never ran.
+/// For each estimator that ended before it answered a single frame: its name and the reason.
 [[nodiscard]] std::map<std::string, std::string> never_ran(const nlohmann::json& metrics);
 
-/// True when the imagery under any camera is too coarse: metrics' `texture`, or that of one of
-/// `cameras`.
+/// True if the imagery under any camera is too coarse, as given by `texture` of the metrics or of
+/// one of `cameras`.
 [[nodiscard]] bool is_texture_limited(const nlohmann::json& metrics);
 
-/// Writes truth.tum, estimates/NAME.tum and metrics.json, each whole.
-/// @return the metrics. Errors: kIo.
+/// Writes truth.tum, estimates/NAME.tum and metrics.json; each file appears whole or not at all.
+/// @return the metrics
+/// Errors: kIo.
 [[nodiscard]] Result<nlohmann::json> write_derived(const std::filesystem::path& folder,
                                                    const RunRecords& records);
 

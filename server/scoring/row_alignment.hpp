@@ -1,4 +1,4 @@
-// Where an estimate's rows lie in the world under each alignment that the run was scored with.
+// Poses of an estimate's rows in the world under each alignment used for scoring.
 #pragma once
 
 #include <optional>
@@ -10,23 +10,24 @@
 
 namespace overfly::engine {
 
-/// The alignment that every row carries from the start, scored or not.
+/// The alignment that every row contains from the start, scored or not.
 inline constexpr const char* kRecordedAlignment = "init_scale";
 
 /// Immutable.
 class RowAlignment {
  public:
-  /// The rows as recorded: `init_scale`, each map from its own first tracked frame.
+  /// The rows as recorded: `init_scale`, each map aligned at its own first tracked frame.
   RowAlignment() = default;
 
-  /// The similarity of `mode` from the run's metrics. It belongs to the map that was scored.
-  /// Errors: kInvalidArgument for a mode that does not exist; kConflict while the run is not
-  /// scored, when its metrics do not say the transform, or why this estimate has no such alignment.
+  /// The similarity of `mode` from the run's metrics. It applies to the map that was scored.
+  /// Errors: kInvalidArgument for an unknown mode; kConflict while the run is not scored, if its
+  /// metrics do not contain the transform, or with the reason why this estimate has no such
+  /// alignment.
   [[nodiscard]] static Result<RowAlignment> of(const RunTimeline& timeline,
                                                std::size_t estimator,
                                                const std::string& mode);
 
-  /// Empty while not tracking, and for rows of another map than the one that was scored.
+  /// Empty while not tracking, and for rows of a map that was not scored.
   [[nodiscard]] std::optional<Pose> T_world_body(const EstimateRow& row) const;
 
  private:
@@ -38,8 +39,8 @@ class RowAlignment {
   std::optional<Scored> scored_;
 };
 
-/// Whether the alignment can be shown for this run: of one estimator at least.
-/// Errors: as RowAlignment::of, when it is of none.
+/// Checks that the alignment can be shown for at least one estimator of this run.
+/// Errors: as RowAlignment::of, if there is none.
 [[nodiscard]] Status check_alignment(const RunTimeline& timeline, const std::string& mode);
 
 }  // namespace overfly::engine

@@ -9,14 +9,14 @@
 
 namespace overfly::engine {
 
-/// Counts durations in classes whose bounds grow by 2 % from 1 us to 1000 s; what lies beyond
-/// counts in the last class at either end. A percentile is the middle of its class, at most 1 % off
-/// the nearest-rank one; the maximum is exact. Adding costs the same however many there are.
+/// Counts durations in classes whose bounds grow by 2 % from 1 us to 1000 s; values beyond these
+/// bounds count in the first or last class. A percentile is the middle of its class, at most 1 %
+/// off the nearest-rank percentile; the maximum is exact. Adding takes constant time.
 class LatencyHistogram {
  public:
   LatencyHistogram();
 
-  /// @param ms  not finite or negative ones count as 0
+  /// @param ms  negative or non-finite values count as 0
   void add(double ms);
   /// Empty without durations.
   [[nodiscard]] std::optional<LatencySummary> summary() const;

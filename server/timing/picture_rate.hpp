@@ -1,4 +1,4 @@
-// How often pictures for viewers may be drawn beside flights in real time: from what they leave.
+// Limits the rate of pictures for viewers to the time that real-time flights leave free.
 #pragma once
 
 #include <cstdint>
@@ -7,26 +7,26 @@
 
 namespace overfly::engine {
 
-/// Watches how much time the flights' frames have left, and moves a limit in steps: down when a
-/// frame came late or few had time to spare, up again after a while in which pictures were drawn
-/// and did no harm. Each step up that was one too many doubles that while. Thread-safe; the caller
-/// gives the clock.
+/// Monitors the time to spare in the flights' frames and moves the limit in steps. The limit goes
+/// down if a frame was late or if several frames had little time to spare. It goes up after a
+/// period in which pictures were drawn without harm. Each step up that proves too much doubles that
+/// period. Thread-safe; the caller provides the time.
 class PictureRate {
  public:
-  /// A flight in real time begins; the limit starts at kFirstHz.
+  /// Call when a real-time flight begins; the limit starts at kFirstHz.
   void flight_began(std::int64_t now_ns);
   void flight_ended();
-  /// A frame is made and handed over. @param left_ns  until the next one is due; negative = too
-  /// late
+  /// Call when a frame was made and handed over.
+  /// @param left_ns  time until the next frame is due; negative = late
   void frame_made(std::int64_t now_ns, std::int64_t period_ns, std::int64_t left_ns);
-  /// A frame was not made, since its time had passed.
+  /// Call when a frame was skipped because its time had passed.
   void frame_missed(std::int64_t now_ns);
-  /// A picture for a viewer was made.
+  /// Call when a picture for a viewer was made.
   void picture_made();
 
   [[nodiscard]] bool flying() const;
-  /// Of each stream of pictures [Hz]; empty = none: nothing flies in real time, or there is time
-  /// for all.
+  /// Maximum rate of each picture stream [Hz]; empty = no limit: no real-time flight, or enough
+  /// time for all pictures.
   [[nodiscard]] std::optional<double> limit_hz() const;
 
   static constexpr double kFirstHz = 5.0;
@@ -36,7 +36,7 @@ class PictureRate {
   struct Window {
     std::int64_t begin_ns = 0;
     int frames = 0;
-    int tight = 0;  ///< with little time left
+    int tight = 0;  ///< frames with little time left
     int missed = 0;
     int pictures = 0;
   };
@@ -49,7 +49,7 @@ class PictureRate {
   std::size_t step_ = 0;
   Window window_;
   int calm_windows_ = 0;
-  int windows_to_wait_ = 0;  ///< of calm, before a step up
+  int windows_to_wait_ = 0;  ///< calm windows required before a step up
   int windows_since_step_up_ = 0;
 };
 

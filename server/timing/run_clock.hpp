@@ -5,11 +5,11 @@
 
 namespace overfly::engine {
 
-/// Nanoseconds from any fixed instant. Thread-safe.
+/// Nanoseconds since an arbitrary fixed instant. Thread-safe.
 ///
-/// A clock that is simulated needs to know who is at work: it may only move on when each worker
-/// sleeps. So a thread enters before it works and leaves when it waits for others' work; the
-/// machine's clock does not care.
+/// A simulated clock may advance only when every worker sleeps, so it must know which threads are
+/// working. A thread therefore enters before it works and leaves before it waits for other threads.
+/// The machine's clock ignores these calls.
 class RunClock {
  public:
   virtual ~RunClock() = default;

@@ -1,4 +1,4 @@
-// Where the wall-clock time of a run goes.
+// Measures the wall-clock time of each stage of a run.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace overfly::engine {
 
-/// Durations of one kind of work.
+/// Durations of one stage.
 struct DurationList {
   std::vector<double> ms;
   /// {"count", "total_ms", "mean_ms", "median_ms", "p95_ms", "p99_ms", "max_ms"}
@@ -27,7 +27,7 @@ class StageTimer {
  public:
   explicit StageTimer(RunClock& clock) : clock_(clock) {}
 
-  /// Runs `work` and books its time on `stage`.
+  /// Runs `work` and adds its duration to `stage`.
   template <typename Work>
   auto measure(const std::string& stage, const Work& work) {
     const Booking booking(*this, stage);

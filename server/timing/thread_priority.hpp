@@ -1,22 +1,23 @@
-// How threads share the processors: flights first, then the network, then pictures for viewers.
+// Thread priorities: flights first, then the network, then pictures for viewers.
 #pragma once
 
 namespace overfly::engine {
 
 enum class ThreadPriority {
-  kBelowFlights,  ///< gives way, and still gets a fair share of a busy machine
-  kLeftOver,      ///< runs only on a processor that nobody else wants
+  kBelowFlights,  ///< yields to flights, and still gets a fair share of a busy machine
+  kLeftOver,      ///< runs only on a processor that is otherwise idle
 };
 
-/// Lowers the calling thread and those that it starts from then on; for good, since a program
-/// without privileges cannot raise a thread again. Does nothing where the system refuses.
+/// Lowers the priority of the calling thread and of the threads that it starts afterwards. This is
+/// permanent, since an unprivileged program cannot raise a thread again. Does nothing if the system
+/// refuses.
 void lower_thread(ThreadPriority priority);
 
 /// Raises the calling thread, and the threads and processes that it starts meanwhile, above the
-/// machine's other programs while this object lives. Where Linux shares the processors among
-/// sessions first (sched(7), "autogroup"), the program's session is raised as well: a thread's nice
-/// value counts only within its session there. Needs root or CAP_SYS_NICE; without it all keep the
-/// priority that they have.
+/// machine's other programs while this object lives. If Linux shares the processors among sessions
+/// first (sched(7), "autogroup"), the program's session is raised as well, because a thread's nice
+/// value counts only within its session. Needs root or CAP_SYS_NICE; otherwise the priorities stay
+/// as they are.
 class RaisedThread {
  public:
   RaisedThread();
@@ -29,8 +30,9 @@ class RaisedThread {
   bool raised_ = false;
 };
 
-/// Has Mesa's software renderer draw on the thread that asks for it, so that this thread's priority
-/// is the drawing's. Before the first use of OpenGL; LP_NUM_THREADS in the environment stays.
+/// Makes Mesa's software renderer draw on the calling thread, so that the drawing has this thread's
+/// priority. Call before the first use of OpenGL. LP_NUM_THREADS in the environment is not
+/// overwritten.
 void draw_on_the_asking_thread();
 
 }  // namespace overfly::engine

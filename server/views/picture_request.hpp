@@ -13,7 +13,7 @@ namespace overfly::engine {
 
 enum class SceneMode { kChase, kOrbit, kTop };
 
-/// How a viewer looks at the scene. Angles are the viewpoint's as seen from the target.
+/// The viewpoint of the scene. Angles give its direction as seen from the target.
 struct SceneSettings {
   SceneMode mode = SceneMode::kChase;
   double azimuth_rad = 0.0;    ///< chase: relative to the tail; orbit: clockwise from north
@@ -30,8 +30,8 @@ struct PictureRequest {
   enum class Kind { kCamera, kDebug, kScene } kind = Kind::kCamera;
   std::size_t estimator = 0;  ///< kDebug
   std::string camera;         ///< kCamera: its name; empty = the first one
-  std::int64_t t_ns = 0;      ///< the frame at or before it
-  bool live = false;          ///< the newest picture of a running run, if it has one
+  std::int64_t t_ns = 0;      ///< selects the frame at or before it
+  bool live = false;          ///< use the latest picture if the run is live
   SceneSettings scene;        ///< kScene
   int quality = 75;           ///< JPEG, in [1, 100]
   int max_width_px = 1280;    ///< camera and debug images are halved until they fit

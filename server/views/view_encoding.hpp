@@ -1,4 +1,4 @@
-// Images made into pictures for viewers.
+// Encodes images as pictures for viewers.
 #pragma once
 
 #include <cstdint>
@@ -13,11 +13,12 @@
 
 namespace overfly::engine {
 
-/// The image halved (each pixel the mean of four) until it is at most `max_width_px` wide.
+/// The image, halved (each pixel the mean of four) until it is at most `max_width_px` wide.
 [[nodiscard]] std::shared_ptr<const Image> halved_to_fit(std::shared_ptr<const Image> image,
                                                          int max_width_px);
 
-/// Width and height from a JPEG's frame header, and whether it is grey; empty if there is none.
+/// Width and height from a JPEG's frame header, and whether it is grey; empty if there is no
+/// header.
 struct JpegSize {
   int width_px = 0;
   int height_px = 0;
@@ -25,12 +26,12 @@ struct JpegSize {
 };
 [[nodiscard]] std::optional<JpegSize> jpeg_size(const std::vector<std::uint8_t>& jpeg);
 
-/// Encodes, and keeps the last few results: two viewers of a live camera cost one encoding.
-/// Not thread-safe.
+/// Encodes, and caches the last few results, so that two viewers of a live camera need one
+/// encoding. Not thread-safe.
 class PictureEncoder {
  public:
   [[nodiscard]] Result<Picture> encode(const StampedImage& image, int quality, int max_width_px);
-  /// A recorded JPEG, as it is where it fits.
+  /// A recorded JPEG; unchanged if it fits.
   [[nodiscard]] Result<Picture> encode_file(const std::filesystem::path& file,
                                             std::int64_t frame,
                                             std::int64_t t_ns,
@@ -39,7 +40,7 @@ class PictureEncoder {
 
  private:
   struct Kept {
-    std::shared_ptr<const Image> image;  ///< held, so that its address is not used again
+    std::shared_ptr<const Image> image;  ///< kept alive, so that its address is not reused
     int quality = 0;
     int max_width_px = 0;
     Picture picture;

@@ -1,4 +1,5 @@
-// Makes the picture that a viewer asked for: taken live, read from the run folder, or drawn again.
+// Makes the picture that a viewer requested: a live image, one read from the run folder, or one
+// rendered again.
 #pragma once
 
 #include <atomic>
@@ -18,11 +19,11 @@ namespace overfly::engine {
 /// Used and destroyed on one thread.
 class ViewPainter {
  public:
-  /// @param stopping  true ends the opening of a world: nobody wants its picture any more
+  /// @param stopping  true cancels the opening of a world
   ViewPainter(RunManager& runs, const std::atomic<bool>& stopping)
       : runs_(runs), renderers_(runs, stopping) {}
 
-  /// Errors: kNotFound when there is nothing to see at that instant; as world and renderer say.
+  /// Errors: kNotFound if there is nothing to show at that instant; as world and renderer.
   [[nodiscard]] Result<Picture> paint(const PictureRequest& request);
 
  private:
@@ -44,7 +45,7 @@ class ViewPainter {
   RunManager& runs_;
   ViewRenderers renderers_;
   PictureEncoder encoder_;
-  std::list<ViewRibbons> ribbons_;  ///< of the runs and alignments watched last
+  std::list<ViewRibbons> ribbons_;  ///< of the runs and alignments viewed most recently
 };
 
 }  // namespace overfly::engine

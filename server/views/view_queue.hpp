@@ -1,4 +1,4 @@
-// Pictures that wait to be drawn: the newest wish of each client's stream, first come first served.
+// Queue of picture requests: the newest request of each client's stream, first come first served.
 #pragma once
 
 #include <cstdint>

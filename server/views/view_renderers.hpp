@@ -1,4 +1,4 @@
-// The renderers of the worlds in view.
+// The renderers of the viewed worlds.
 #pragma once
 
 #include <atomic>
@@ -15,10 +15,11 @@
 
 namespace overfly::engine {
 
-/// One renderer per world, the least recently used leaves. Used and destroyed on one thread.
+/// One renderer per world; the least recently used one is evicted. Used and destroyed on one
+/// thread.
 class ViewRenderers {
  public:
-  /// @param stopping  true ends the opening of a world
+  /// @param stopping  true cancels the opening of a world
   ViewRenderers(RunManager& runs, const std::atomic<bool>& stopping)
       : runs_(runs), stopping_(stopping) {}
 
@@ -26,14 +27,14 @@ class ViewRenderers {
     std::shared_ptr<const terrain::World> world;
     RendererChoice choice;
     std::unique_ptr<renderer::Renderer> renderer;
-    std::string watched_run_id;            ///< the run it was asked for last
-    std::string run_id;                    ///< that `frames` makes again
-    std::unique_ptr<FrameRemaker> frames;  ///< null until asked for
+    std::string watched_run_id;            ///< the run of the latest request
+    std::string run_id;                    ///< the run whose frames `frames` renders
+    std::unique_ptr<FrameRemaker> frames;  ///< null until needed
   };
-  /// The view of a run's world, drawn as its scenario asks. Valid until the next call. Errors: as
-  /// RunManager::world_of and the renderer factory.
+  /// The view of a run's world, drawn with the scenario's settings. Valid until the next call.
+  /// Errors: as RunManager::world_of and the renderer factory.
   [[nodiscard]] Result<WorldView*> of_run(const std::string& run_id);
-  /// One image of one of the run's cameras, made again. Errors: as of_run and FrameRemaker.
+  /// One image of one of the run's cameras, rendered again. Errors: as of_run and FrameRemaker.
   [[nodiscard]] Result<Image> remake(const std::string& run_id,
                                      std::size_t camera,
                                      const FrameRow& row);
@@ -43,9 +44,9 @@ class ViewRenderers {
 
   RunManager& runs_;
   const std::atomic<bool>& stopping_;
-  std::string scenario_run_id_;  ///< whose scenario was read last
+  std::string scenario_run_id_;  ///< the run whose scenario was read last
   std::optional<Scenario> scenario_;
-  std::list<WorldView> views_;  ///< the one used last is in front
+  std::list<WorldView> views_;  ///< most recently used first
 };
 
 }  // namespace overfly::engine

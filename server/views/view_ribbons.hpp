@@ -1,4 +1,5 @@
-// The flown and the estimated trajectories as ribbons, grown with the run and cut at an instant.
+// The true and estimated trajectories as ribbons that grow with the run and can be cut at an
+// instant.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,11 +22,11 @@ inline constexpr std::array<float, 3> kTruthRgb = {0.90F, 0.15F, 0.15F};
 
 class ViewRibbons {
  public:
-  /// @param alignment  of the estimates; one that cannot be had so has no ribbon
+  /// @param alignment  of the estimates; an estimate without this alignment has no ribbon
   explicit ViewRibbons(std::shared_ptr<const RunTimeline> timeline,
                        std::string alignment = kRecordedAlignment);
 
-  /// Takes in the rows since the last call: every third, which is less than a wing span apart.
+  /// Adds the rows since the last call: every third one, which is less than a wing span apart.
   void refresh();
   /// The truth up to t (ending at `T_world_body_now`) and each estimate's tracked pieces up to t.
   [[nodiscard]] std::vector<renderer::Ribbon> until(std::int64_t t_ns,
@@ -34,7 +35,7 @@ class ViewRibbons {
   [[nodiscard]] Eigen::Vector3d centre() const;
   [[nodiscard]] const std::shared_ptr<const RunTimeline>& timeline() const { return timeline_; }
   [[nodiscard]] const std::string& alignment() const { return alignment_; }
-  /// Where an estimate's row lies under the alignment; empty while not tracking.
+  /// Pose of an estimate's row under the alignment; empty while not tracking.
   [[nodiscard]] std::optional<Pose> T_world_body(std::size_t estimator,
                                                  const EstimateRow& row) const;
 
@@ -47,7 +48,7 @@ class ViewRibbons {
   };
   struct Estimate {
     std::size_t rows_seen = 0;
-    bool open = false;  ///< the last piece may go on
+    bool open = false;  ///< the last piece may still grow
     std::optional<RowAlignment> alignment;
     std::vector<Piece> pieces;
   };

@@ -1,4 +1,4 @@
-// The scene view of a run at an instant: from where it is seen, and what is in it.
+// The scene view of a run at an instant: its viewpoint and its contents.
 #pragma once
 
 #include "core/height_query.hpp"
@@ -9,10 +9,10 @@
 
 namespace overfly::engine {
 
-/// Where the viewer stands.
+/// The viewpoint.
 /// @param T_world_body  of the aircraft
 /// @param centre_world  of the trajectory, for a view that does not follow the aircraft
-/// @param ground        keeps the viewer above it
+/// @param ground  keeps the viewpoint above the ground
 [[nodiscard]] renderer::SceneView scene_view(const SceneSettings& settings,
                                              const Pose& T_world_body,
                                              const Eigen::Vector3d& centre_world,

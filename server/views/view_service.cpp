@@ -26,6 +26,7 @@ void answer(const PictureDone& done, Result<Picture> picture) {
 
 struct ViewService::Impl {
   explicit Impl(RunManager& run_manager) : runs(run_manager), thread([this] { work(); }) {}
+  /// Cancels all runs and joins their threads.
   ~Impl();
   void work();
   void paint(bool beside_flight);

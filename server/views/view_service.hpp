@@ -11,18 +11,18 @@
 
 namespace overfly::engine {
 
-/// Thread-safe. Keeps one renderer per world in use, the least recently used leaves.
+/// Thread-safe. Keeps one renderer per world in use; the least recently used one is evicted.
 class ViewService {
  public:
   explicit ViewService(RunManager& runs);
-  /// Waits for the picture that is being drawn; a world that is being opened for one is given up.
+  /// Waits for the picture in progress; cancels the opening of a world.
   ~ViewService();
 
   /// Queues a picture for a client's stream; a request not yet begun of the same (client, stream)
   /// is replaced and its `done` gets kCancelled: a slow machine shows newer pictures, not more.
   /// `done` is called on the service's thread.
   void request(std::uint64_t client, int stream, const PictureRequest& request, PictureDone done);
-  /// Drops what a client still waits for, without calling its `done`s.
+  /// Drops the waiting requests of a client without calling their `done`.
   void forget(std::uint64_t client);
 
  private:

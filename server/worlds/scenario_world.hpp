@@ -1,4 +1,4 @@
-// The world that a scenario names, opened.
+// Opens the world of a scenario.
 #pragma once
 
 #include <functional>
@@ -17,22 +17,22 @@ struct OpenedWorld {
   terrain::World world;
   struct Manifest {
     std::string file;
-    std::string digest;  ///< as those of terrain::World::data_hashes
+    std::string digest;  ///< in the format of terrain::World::data_hashes
   };
-  std::optional<Manifest> manifest;  ///< empty where the scenario lists the layers itself
-  /// What it was read from, as that was before it was opened.
+  std::optional<Manifest> manifest;  ///< empty if the scenario lists the layers itself
+  /// The source files, with their state before the world was opened.
   std::vector<terrain::WorldFile> files;
 };
 
 /// Opens the scenario's world; makes the built-in one if this machine does not have it yet.
 /// @param progress  called with the share done in [0, 1] while it is made, and with 0 while files
-///                  are opened; false cancels
+///                  are opened; returning false cancels
 /// Errors: as terrain::open_world, read_world_manifest and builtin_world; kIo for a file that was
 /// changed meanwhile.
 [[nodiscard]] Result<OpenedWorld> open_scenario_world(
     const Scenario& scenario, const std::function<bool(double)>& progress = {});
 
-/// Equal for scenarios over the same world.
+/// Equal for scenarios with the same world.
 [[nodiscard]] std::string world_key(const Scenario& scenario);
 
 }  // namespace overfly::engine

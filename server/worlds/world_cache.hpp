@@ -12,9 +12,9 @@
 
 namespace overfly::engine {
 
-/// Thread-safe. A world is closed when its last user lets it go, except the one asked for last. One
-/// whose files have changed since it was opened stays with its users; who asks for it next gets
-/// the new one.
+/// Thread-safe. A world is closed when its last user releases it, except the most recently
+/// requested one. If a world's files have changed since it was opened, its present users keep it
+/// and the next request opens it again.
 class WorldCache {
  public:
   using Shared = std::shared_ptr<const OpenedWorld>;
@@ -23,7 +23,7 @@ class WorldCache {
   /// Errors: as open_scenario_world.
   [[nodiscard]] Result<Shared> get(const Scenario& scenario,
                                    const std::function<bool(double)>& progress);
-  /// Has the world opened anew by whoever asks for it next: it could not be read.
+  /// Makes the next request open the world again, because it could not be read.
   void drop(const Shared& world);
 
  private:
@@ -34,7 +34,7 @@ class WorldCache {
   Shared last_;
 };
 
-/// The world alone, kept alive as the whole.
+/// The world without its file information; keeps the whole alive.
 [[nodiscard]] inline std::shared_ptr<const terrain::World> bare_world(
     const WorldCache::Shared& opened) {
   return {opened, &opened->world};

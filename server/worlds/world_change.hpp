@@ -1,4 +1,4 @@
-// Whether a run's world is still as it was flown.
+// Detects whether a run's world has changed since the flight.
 #pragma once
 
 #include <filesystem>
@@ -8,9 +8,9 @@
 
 namespace overfly::engine {
 
-/// Compares the digests of the opened world's files with those in the run's manifest.
-/// @return which files differ, for people; empty where none does and where the manifest has none.
-/// Of files above 32 MiB the digests are samples.
+/// Compares the digests of the opened world's files with those in the run's manifest. Files above
+/// 32 MiB are compared by samples.
+/// @return the files that differ, for people; empty if none does or if the manifest has no digests
 [[nodiscard]] std::string world_change(const std::filesystem::path& run_folder,
                                        const OpenedWorld& opened);
 

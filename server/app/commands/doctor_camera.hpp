@@ -6,7 +6,7 @@
 namespace overfly::app {
 
 struct DoctorCameraArguments {
-  std::string scenario;  ///< file; empty = a built-in one, drawn by every backend there is
+  std::string scenario;  ///< name
   int pairs = 4;
   double limit_px = 0.1;
   bool json = false;

@@ -15,7 +15,7 @@ enum class CheckLevel {
 };
 
 struct Check {
-  std::string name;
+  std::string name;  ///< file name without .json
   CheckLevel level = CheckLevel::kOk;
   std::string finding;
   std::string remedy;  ///< empty when all is well

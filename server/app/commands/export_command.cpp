@@ -25,7 +25,7 @@ struct ExportArguments {
   std::string out;
   std::vector<std::string> sets;
   std::vector<std::string> truth;
-  std::vector<std::string> cameras;
+  std::vector<std::string> cameras;  ///< names, the main camera first
   double from_s = 0.0;
   std::optional<double> to_s;
   int threads = -1;  // -1 = as the scenario says

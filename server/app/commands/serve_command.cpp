@@ -37,8 +37,9 @@ struct ServeArguments {
   bool no_token = false;
   std::vector<std::string> data = {"worlds"};
   int parallel_runs = 1;
-  std::size_t max_waiting_runs = 100;
+  std::size_t max_waiting_runs = 100;  ///< further runs are refused
   double memory_limit_mib = 0.0;
+  /// Overrides may name programs to start and network addresses.
   bool allow_commands = false;
 };
 

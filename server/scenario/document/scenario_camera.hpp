@@ -9,12 +9,13 @@
 
 namespace overfly::engine {
 
-/// Reads `camera` or `cameras`, and fills in the field of view that holds where none is given.
+/// Reads `camera` or `cameras`, and fills in the default field of view if none is given.
 /// @pre the document is valid and has its defaults
 /// Errors: kInvalidArgument with field, value and limit.
 [[nodiscard]] Status read_cameras(nlohmann::json& document, Scenario& scenario);
 
-/// The parts of a camera's entry. `path` is where it stands, as "cameras.1.sensor".
+/// Parts of a camera's entry. `path` is the entry's location in the document, e.g.
+/// "cameras.1.sensor".
 [[nodiscard]] Result<renderer::SensorModel> sensor_from(const nlohmann::json& sensor,
                                                         const std::string& path);
 [[nodiscard]] Result<renderer::VibrationModel> vibration_from(const nlohmann::json& vibration,

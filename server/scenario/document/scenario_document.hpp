@@ -1,4 +1,4 @@
-// A valid scenario document made into values.
+// Converts a valid scenario document to values.
 #pragma once
 
 #include <filesystem>
@@ -10,8 +10,9 @@
 namespace overfly::engine {
 
 /// @param document  valid by the schema, with its defaults filled in
-/// @param base      absolute folder of the scenario file
-/// Errors: kInvalidArgument for what the schema cannot say (two estimators of one name, ...).
+/// @param base  absolute folder of the scenario file
+/// Errors: kInvalidArgument for violations that the schema cannot express (two estimators of the
+/// same name, ...).
 [[nodiscard]] Result<Scenario> scenario_from(nlohmann::json document,
                                              const std::filesystem::path& base);
 

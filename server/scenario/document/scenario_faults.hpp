@@ -8,8 +8,8 @@
 
 namespace overfly::engine {
 
-/// Index of a camera by its name.
-/// Errors: kInvalidArgument naming the field `path`, the value and the names that there are.
+/// Index of a camera by name.
+/// Errors: kInvalidArgument naming the field `path`, the value and the existing names.
 [[nodiscard]] Result<std::size_t> camera_index(const Scenario& scenario,
                                                const nlohmann::json& name,
                                                const std::string& path);

@@ -1,4 +1,4 @@
-// How a scenario's faults are told: field, value, limit.
+// Formats a scenario's errors: field, value, limit.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -13,11 +13,11 @@ namespace overfly::engine {
 /// Reads, overrides, validates and resolves a scenario file. Relative paths in it are relative to
 /// its folder, or to its field `data`.
 /// Errors: kNotFound; kUnreadable (JSON syntax, with line and column); kInvalidArgument with every
-/// fault as "field = value: must be limit", one a line.
+/// invalid field as "field = value: must be limit", one a line.
 [[nodiscard]] Result<Scenario> load_scenario(const std::filesystem::path& file,
                                              const std::vector<Override>& overrides = {});
 
-/// The same for a document in memory; `base` is the folder for its relative paths.
+/// As load_scenario, for a document in memory; `base` is the folder for its relative paths.
 [[nodiscard]] Result<Scenario> resolve_scenario(nlohmann::json document,
                                                 const std::vector<Override>& overrides,
                                                 const std::filesystem::path& base);

@@ -9,8 +9,8 @@
 
 namespace overfly::engine {
 
-/// Finds relative files, and makes those that are not looked for in `data` absolute in the
-/// document too, so that a copy of it elsewhere means the same files.
+/// Resolves relative files. Files that are not searched for in `data` become absolute in the
+/// document too, so that a copy of it elsewhere refers to the same files.
 class FileResolver {
  public:
   /// @param base  absolute folder of the scenario file

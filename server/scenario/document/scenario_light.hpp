@@ -1,4 +1,4 @@
-// Light, detail and renderer of a scenario document, and the ground that they make.
+// Light, detail and renderer of a scenario document, and their application to the world.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -17,13 +17,13 @@ namespace overfly::engine {
 [[nodiscard]] Status read_light_and_detail(const nlohmann::json& document, Scenario& scenario);
 void read_renderer(const nlohmann::json& document, Scenario& scenario);
 
-/// What was put over the world's own tiles, for people: ("light" or "detail", one line).
+/// The layers added to the world's own tiles, for people: ("light" or "detail", one line).
 using WorldDress = std::vector<std::pair<std::string, std::string>>;
 [[nodiscard]] Result<WorldDress> world_dress(const Scenario& scenario, const Geodetic& origin);
 
-/// Puts the scenario's light, and around it the detail, over the world's tiles.
-/// Errors: kInvalidArgument when the sun is down at `light.time_utc`;
-/// as terrain::with_light and with_detail.
+/// Applies the scenario's light to the world's tiles, then the detail.
+/// Errors: kInvalidArgument if the sun is below the horizon at `light.time_utc`; as
+/// terrain::with_light and with_detail.
 [[nodiscard]] Status dress_world(const Scenario& scenario, terrain::World& world);
 
 }  // namespace overfly::engine

@@ -23,19 +23,19 @@ struct ScenarioEntry {
 [[nodiscard]] std::vector<ScenarioEntry> list_scenarios(const std::filesystem::path& folder,
                                                         const SourcePolicy& sources = {});
 
-/// The folder itself and the folder `data` of each scenario in it, as its file alone says it: the
-/// folders whose files whoever keeps these scenarios lets others fly over.
+/// The folder itself and the folder `data` of each scenario in it, taken from the scenario file
+/// without overrides. These are the folders that the owner of the scenarios opens to others.
 [[nodiscard]] std::vector<std::filesystem::path> declared_folders(
     const std::filesystem::path& folder);
 
-/// The file of a scenario name. Errors: kNotFound, also for what is no plain name.
+/// The file of a scenario name. Errors: kNotFound, also for a name that is not plain.
 [[nodiscard]] Result<std::filesystem::path> scenario_path(const std::filesystem::path& folder,
                                                           const std::string& name);
 
-/// What the schema cannot see: whether the files that a scenario names may be named, by its
-/// `sources`, and are there.
-/// Errors: as SourcePolicy::check and terrain::check_world_sources, every fault with its field on a
-/// line; kNotFound where files are absent and nothing else is wrong.
+/// Checks what the schema cannot: whether the scenario's `sources` permit the files that it names,
+/// and whether they exist.
+/// Errors: as SourcePolicy::check and terrain::check_world_sources, every invalid field on its own
+/// line; kNotFound if files are absent and nothing else is wrong.
 [[nodiscard]] Status check_scenario(const Scenario& scenario);
 
 }  // namespace overfly::engine

@@ -1,4 +1,4 @@
-// Overrides put into a scenario document.
+// Applies overrides to a scenario document.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -10,7 +10,7 @@
 
 namespace overfly::engine {
 
-/// "path=VALUE": VALUE parsed as JSON, else taken as a string. Errors: kInvalidArgument.
+/// "path=VALUE": VALUE is parsed as JSON, else taken as a string. Errors: kInvalidArgument.
 [[nodiscard]] Result<Override> parse_override(const std::string& text);
 [[nodiscard]] Result<std::vector<Override>> parse_overrides(const std::vector<std::string>& texts);
 

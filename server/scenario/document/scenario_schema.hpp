@@ -8,7 +8,7 @@
 
 namespace overfly::engine {
 
-/// Faults of a document against the schema alone: (JSON path, message). Empty = valid.
+/// Violations of the schema in a document: (JSON path, message). Empty = valid.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> schema_faults(
     const nlohmann::json& document);
 /// The JSON schema (draft 2020-12) as text, embedded in the program.
