@@ -1,4 +1,4 @@
-// Exit codes of the program (docs/COMMAND_LINE.md) and the one place where errors become them.
+// Exit codes of the program (docs/COMMAND_LINE.md), and their mapping from errors.
 #pragma once
 
 #include "core/result.hpp"
@@ -7,10 +7,10 @@ namespace overfly::app {
 
 enum ExitCode : int {
   kExitOk = 0,
-  kExitFailure = 1,      ///< something failed that is not the caller's doing
-  kExitUsage = 2,        ///< bad option, bad file, bad scenario
-  kExitCancelled = 3,    ///< stopped by SIGINT or SIGTERM; what was done is kept
-  kExitUnsupported = 4,  ///< this build or machine lacks what is asked
+  kExitFailure = 1,      ///< a failure not caused by the user
+  kExitUsage = 2,        ///< invalid option, file or scenario
+  kExitCancelled = 3,    ///< stopped by SIGINT or SIGTERM; results so far are kept
+  kExitUnsupported = 4,  ///< not supported by this build or machine
 };
 
 [[nodiscard]] int exit_code_of(ErrorCode code);

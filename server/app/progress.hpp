@@ -1,4 +1,4 @@
-// What a person sees while something takes long: a bar on a terminal, plain lines elsewhere.
+// Progress display of long operations: a bar on a terminal, plain lines elsewhere.
 #pragma once
 
 #include <chrono>
@@ -6,7 +6,7 @@
 
 namespace overfly::app {
 
-/// Writes to standard error, so that standard output keeps to results.
+/// Writes to standard error, so that standard output contains only results.
 class ProgressDisplay {
  public:
   explicit ProgressDisplay(bool quiet);
@@ -15,11 +15,11 @@ class ProgressDisplay {
   ProgressDisplay& operator=(const ProgressDisplay&) = delete;
 
   /// @param share  done, in [0, 1]
-  /// @param text   behind the bar: "frame 120 of 3911, tracking"
+  /// @param text  shown after the bar: "frame 120 of 3911, tracking"
   void show(double share, const std::string& text);
-  /// One line that stays.
+  /// Prints a permanent line.
   void note(const std::string& text);
-  /// One line that stays, also when quiet.
+  /// Prints a permanent line, also in quiet mode.
   void warn(const std::string& text);
 
  private:

@@ -1,12 +1,12 @@
-// SIGINT and SIGTERM as a flag to look at and a thing to wait for.
+// SIGINT and SIGTERM as a flag and as an event to wait for.
 #pragma once
 
 #include <atomic>
 
 namespace overfly::app {
 
-/// From now on the two signals set the flag instead of ending the process; a second one ends it
-/// at once. Call before threads are started.
+/// Makes the two signals set the flag instead of ending the process; a second signal ends it at
+/// once. Call before threads are started.
 [[nodiscard]] const std::atomic<bool>& catch_stop_signals();
 
 /// Waits for one of the signals. @pre catch_stop_signals() was called

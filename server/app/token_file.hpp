@@ -1,4 +1,4 @@
-// The file that keeps a server's token from one start to the next.
+// The file that keeps a server's token between starts.
 #pragma once
 
 #include <filesystem>
@@ -9,13 +9,15 @@
 namespace overfly::app {
 
 struct TokenFile {
+  /// Every request must carry it (access_token.hpp); empty = no token, only on a loopback address.
   std::string token;
-  std::string warning;  ///< that others of this machine can read the file; else empty
+  std::string warning;  ///< set if other users of this machine can read the file; else empty
 };
 
-/// Reads the token, the file's one line; makes the file with a new token where there is none, for
-/// its owner only. Errors: kInvalidArgument for what is no regular file, more than one line or no
-/// token (net::check_token); kIo with the system's reason.
+/// Reads the token, the file's only line. If the file is absent, creates it with a new token,
+/// readable only by its owner.
+/// Errors: kInvalidArgument if it is not a regular file, has more than one line, or is not a token
+/// (net::check_token); kIo with the system's reason.
 [[nodiscard]] Result<TokenFile> open_token_file(const std::filesystem::path& file);
 
 }  // namespace overfly::app

@@ -1,4 +1,4 @@
-// What this build is.
+// Version text of this build.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Whether a request is served at all: told by its header alone.
+// Decides from a request's header whether it is served.
 #pragma once
 
 #include <boost/asio/ip/address.hpp>
@@ -11,14 +11,14 @@
 
 namespace overfly::net {
 
-/// All of a request but its body, and but its Host where it has several.
+/// The request without its body; without its Host if there are several.
 [[nodiscard]] HttpRequest plain_request(
     const boost::beast::http::request<boost::beast::http::string_body>& message);
 
-/// Checks the name that is asked for, the page that asks and the token.
-/// @param local    the connection's end on this machine
-/// @param request  its target loses the token
-/// @return what is answered in place of the request; empty = serve it
+/// Checks the requested host, the requesting page and the token.
+/// @param local  the connection's local address
+/// @param request  the token is removed from its target
+/// @return the response to send instead of serving the request; empty = serve it
 [[nodiscard]] std::optional<HttpResponse> not_admitted(const ServerContext& context,
                                                        const boost::asio::ip::address& local,
                                                        HttpRequest* request);

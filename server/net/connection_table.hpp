@@ -1,4 +1,4 @@
-// How many connections a server has, of each kind, and which one goes when there are too many.
+// Limits the number of a server's connections of each kind, and chooses which one to close.
 #pragma once
 
 #include <array>
@@ -12,31 +12,31 @@
 
 namespace overfly::net {
 
-/// What a connection does. The kinds keep apart: strangers cannot take the places of those who were
-/// let in, and viewers cannot take those of requests.
+/// What a connection is doing. The kinds are counted separately: clients without a token cannot
+/// take the places of authorised ones, and viewers cannot take those of requests.
 enum class ConnectionPhase {
-  kStranger,   ///< nothing of it was let in yet
+  kStranger,   ///< no request of it was authorised yet
   kIdle,       ///< HTTP: between two requests
-  kReceiving,  ///< HTTP: sends a request that was let in
-  kAnswering,  ///< HTTP: waits for the server
-  kSending,    ///< HTTP: takes an answer
+  kReceiving,  ///< HTTP: receives an authorised request
+  kAnswering,  ///< HTTP: the server is working on the answer
+  kSending,    ///< HTTP: sends an answer
   kViewer,     ///< a WebSocket
-  kClosing,    ///< was asked to end; counts no more
+  kClosing,    ///< was asked to end; not counted any more
 };
 
 struct ConnectionLimits {
-  std::size_t max_strangers = 64;  ///< beyond: the one that is here longest is closed
-  std::size_t max_http = 128;    ///< beyond: the one that is idle longest is closed; none idle: 503
-  std::size_t max_viewers = 64;  ///< beyond: 503
+  std::size_t max_strangers = 64;  ///< beyond: the oldest one is closed
+  std::size_t max_http = 128;      ///< beyond: the one idle longest is closed; if none is idle: 503
+  std::size_t max_viewers = 64;    ///< beyond: 503
 };
 
 /// Thread-safe.
 class ConnectionTable {
  public:
-  /// Asks a connection to end; must not end it before it returns.
+  /// Asks a connection to end; must return before the connection ends.
   using Close = std::function<void()>;
 
-  /// A connection's entry; leaves the table with its owner.
+  /// A connection's entry; removed from the table by its destructor.
   class Place {
    public:
     Place(ConnectionTable& table, std::uint64_t number) : table_(table), number_(number) {}
@@ -44,8 +44,8 @@ class ConnectionTable {
     Place(const Place&) = delete;
     Place& operator=(const Place&) = delete;
 
-    /// @return false where there is no room, or the connection was asked to end: it stays what it
-    /// was
+    /// @return false if there is no room, or if the connection was asked to end; its phase then
+    /// does not change
     [[nodiscard]] bool enter(ConnectionPhase phase) { return table_.enter(number_, phase); }
     [[nodiscard]] std::uint64_t number() const { return number_; }
 
@@ -56,7 +56,7 @@ class ConnectionTable {
 
   explicit ConnectionTable(const ConnectionLimits& limits) : limits_(limits) {}
 
-  /// A new connection, a stranger. There is always room: the oldest stranger makes it.
+  /// Adds a new connection as a stranger. Always succeeds; the oldest stranger is closed if needed.
   [[nodiscard]] std::unique_ptr<Place> add(Close close);
   [[nodiscard]] std::size_t count(ConnectionPhase phase) const;
 

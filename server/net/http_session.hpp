@@ -1,4 +1,4 @@
-// One HTTP connection: requests one after the other, kept alive between them.
+// One HTTP connection: sequential requests with keep-alive.
 #pragma once
 
 #include <boost/asio/ip/tcp.hpp>
@@ -8,8 +8,8 @@
 
 namespace overfly::net {
 
-/// Serves a connection until it ends or becomes a WebSocket. The socket's event loop has one
-/// thread.
+/// Serves a connection until it ends or becomes a WebSocket. @pre one thread runs the socket's
+/// event loop
 void serve_http(boost::asio::ip::tcp::socket socket, std::shared_ptr<ServerContext> context);
 
 }  // namespace overfly::net

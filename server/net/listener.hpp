@@ -10,8 +10,9 @@
 
 namespace overfly::net {
 
-/// Binds and accepts until the event loop ends. @return the port bound
-/// Errors: kIo with address, port and the system's reason; kInvalidArgument for a bad address.
+/// Binds and accepts until the event loop ends.
+/// @return the bound port
+/// Errors: kIo with address, port and the system's reason; kInvalidArgument for an invalid address.
 [[nodiscard]] Result<std::uint16_t> listen(boost::asio::io_context* loop,
                                            const std::shared_ptr<ServerContext>& context);
 

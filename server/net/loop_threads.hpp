@@ -12,10 +12,11 @@
 
 namespace overfly::net {
 
-/// What a handler throws ends that handler alone: it is reported, and its thread goes on.
+/// An exception in a handler ends only that handler: it is reported, and the thread continues.
 class LoopThreads {
  public:
-  /// @param report  called from the loop's threads with what a handler threw; must not throw
+  /// @param report  called on the loop's threads with the text of a handler's exception; must not
+  ///                throw
   explicit LoopThreads(std::function<void(const std::string&)> report)
       : report_(std::move(report)) {}
   ~LoopThreads() { stop(); }
@@ -23,11 +24,11 @@ class LoopThreads {
   LoopThreads& operator=(const LoopThreads&) = delete;
 
   [[nodiscard]] boost::asio::io_context& loop() { return loop_; }
-  /// Errors: kInternal when the system starts no further thread; those that were started have ended
+  /// Errors: kInternal if the system cannot start a thread; the threads already started have ended
   /// then.
-  /// @param begin  what each thread does first
+  /// @param begin  called first on each thread
   [[nodiscard]] Status start(int threads, const std::function<void()>& begin = {});
-  /// Ends the loop and joins its threads; handlers not begun are dropped.
+  /// Stops the loop and joins its threads; handlers not yet begun are dropped.
   void stop();
 
  private:
@@ -35,7 +36,7 @@ class LoopThreads {
 
   std::function<void(const std::string&)> report_;
   boost::asio::io_context loop_;
-  /// The loop goes on while it has nothing to do.
+  /// Keeps the loop running while it has nothing to do.
   boost::asio::executor_work_guard<boost::asio::io_context::executor_type> work_{
       loop_.get_executor()};
   std::vector<std::thread> threads_;

@@ -14,17 +14,17 @@ namespace overfly::net {
 
 class Server {
  public:
-  /// Binds and starts to serve: connections on one thread, what may take long on others.
+  /// Binds and starts to serve: connections on one thread, slow work on others.
   /// Errors: kIo with address, port and the system's reason; kNotFound without the web folder;
-  /// kInternal when the system starts no thread; kInvalidArgument for a bad address, token or
-  /// allowed host, and for none where others can reach the server.
+  /// kInternal if the system cannot start a thread; kInvalidArgument for an invalid address, token
+  /// or allowed host, and for an empty token if other machines can reach the server.
   static Result<std::unique_ptr<Server>> start(const ServerOptions& options,
                                                engine::RunManager& runs,
                                                engine::ViewService& views);
-  ~Server();  ///< tells every viewer that it goes (close code 1001) and joins
+  ~Server();  ///< closes every viewer (close code 1001) and joins
 
   [[nodiscard]] std::uint16_t port() const;
-  /// Address of the dashboard, with the token: for the one who started the server alone.
+  /// Address of the dashboard, with the token: only for the user who started the server.
   [[nodiscard]] std::string url() const;
 
  private:

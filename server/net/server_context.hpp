@@ -1,4 +1,4 @@
-// What all connections of one server share.
+// State shared by all connections of one server.
 #pragma once
 
 #include <atomic>
@@ -21,7 +21,7 @@
 
 namespace overfly::net {
 
-/// Lets other threads call into the server's event loop only while there is one.
+/// Lets other threads call into the server's event loop only while it exists.
 class CallbackGate {
  public:
   template <typename Action>
@@ -53,7 +53,7 @@ struct ServerContext {
         allowed_hosts(server_options.allowed_hosts),
         connections(server_options.limits.connections) {}
 
-  /// Never throws: it is called where something was thrown.
+  /// Never throws, since it is called from exception handlers.
   void log(const char* level, const std::string& text) const noexcept {
     (void)contained(
         [&] {
@@ -62,8 +62,9 @@ struct ServerContext {
         [](const char*) {});
   }
 
-  /// Runs what another thread has for a connection, while there is an event loop; where it throws,
-  /// runs it again for a while: a client waits for it. Never throws: the thread is the engine's.
+  /// Runs an action of another thread for a connection while there is an event loop. If it throws,
+  /// it is retried for a while, because a client waits for the result. Never throws, since the
+  /// thread belongs to the engine.
   template <typename Action>
   void deliver(const Action& action) noexcept {
     constexpr int kTries = 100;
@@ -85,9 +86,9 @@ struct ServerContext {
   const AllowedHosts allowed_hosts;
   CallbackGate gate;
   SessionRegistry sessions;
-  /// Runs what may take long (reading a run from disk) on a thread that serves no connection.
+  /// Runs slow work (reading a run from disk) on a thread that serves no connection.
   std::function<void(std::function<void()>)> offload;
-  std::atomic<std::uint64_t> next_client{1};  ///< numbers clients of the view service
+  std::atomic<std::uint64_t> next_client{1};  ///< next client number for the view service
   ConnectionTable connections;
 };
 

@@ -11,17 +11,17 @@
 
 namespace overfly::net {
 
-/// What one client may ask of the server.
+/// Limits for one client.
 struct ServerLimits {
   std::size_t max_body_bytes = std::size_t{1} << 20U;      ///< of a request; beyond: 413
   std::size_t max_header_bytes = std::size_t{16} << 10U;   ///< of a request; beyond: 431
   std::size_t max_message_bytes = std::size_t{64} << 10U;  ///< WebSocket; beyond: close code 1009
   std::size_t max_unsent_bytes = std::size_t{16} << 20U;   ///< WebSocket; beyond: close code 4000
-  std::int64_t max_stall_ms = 15'000;  ///< WebSocket: one message on its way; beyond: 4000
-  std::int64_t header_ms = 10'000;     ///< a new connection's first request, up to its header
-  std::int64_t idle_ms = 30'000;       ///< connections that say nothing (WebSockets are pinged)
+  std::int64_t max_stall_ms = 15'000;  ///< WebSocket: time to send one message; beyond: 4000
+  std::int64_t header_ms = 10'000;     ///< time for a new connection's first request header
+  std::int64_t idle_ms = 30'000;       ///< connections without traffic (WebSockets are pinged)
   ConnectionLimits connections;
-  /// Kernel buffer of a WebSocket: pictures in it are old ones, so it stays small.
+  /// Kernel send buffer of a WebSocket. Small, because pictures that wait in it become outdated.
   int send_buffer_bytes = 256 << 10;
 };
 
@@ -34,7 +34,7 @@ struct ServerOptions {
   std::vector<std::string> allowed_hosts;
   std::filesystem::path web_folder;  ///< built dashboard; empty = REST and WebSocket only
   ServerLimits limits;
-  /// One line for each thing worth telling: (level, text).
+  /// Called with each log line: (level, text).
   std::function<void(const std::string&, const std::string&)> log;
 };
 

@@ -1,4 +1,4 @@
-// The WebSocket connections of a server, so that each can be told when it shuts down.
+// The WebSocket connections of a server, so that each can be notified of a shutdown.
 #pragma once
 
 #include <chrono>
@@ -14,10 +14,10 @@ namespace overfly::net {
 /// Thread-safe.
 class SessionRegistry {
  public:
-  /// Asks a connection to end; must not end it before it returns.
+  /// Asks a connection to end; must return before the connection ends.
   using GoAway = std::function<void()>;
 
-  /// A connection that comes while the server shuts down is asked to go at once.
+  /// A connection that is added during shutdown is asked to go at once.
   /// @return its number, for remove()
   std::uint64_t add(const GoAway& go_away) {
     const std::lock_guard lock(mutex_);
@@ -32,7 +32,7 @@ class SessionRegistry {
     if (sessions_.empty()) empty_.notify_all();
   }
 
-  /// Asks all to go and waits until they have. @return false when some stay after `patience`
+  /// Asks all to go and waits until they have. @return false if some remain after `patience`
   bool close_all(std::chrono::milliseconds patience) {
     std::unique_lock lock(mutex_);
     closed_ = true;

@@ -10,9 +10,9 @@
 
 namespace overfly::net {
 
-/// Accepts the upgrade and serves the connection until it ends. The socket's event loop has one
-/// thread.
-/// @param place  of a viewer
+/// Accepts the upgrade and serves the connection until it ends. @pre one thread runs the socket's
+/// event loop
+/// @param place  must be in the phase of a viewer
 void serve_websocket(boost::asio::ip::tcp::socket socket,
                      const boost::beast::http::request<boost::beast::http::string_body>& upgrade,
                      std::shared_ptr<ServerContext> context,

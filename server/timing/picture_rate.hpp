@@ -8,9 +8,9 @@
 namespace overfly::engine {
 
 /// Monitors the time to spare in the flights' frames and moves the limit in steps. The limit goes
-/// down if a frame was late or if several frames had little time to spare. It goes up after a
-/// period in which pictures were drawn without harm. Each step up that proves too much doubles that
-/// period. Thread-safe; the caller provides the time.
+/// down if a frame was missed, or if more than half of the frames of a window had little time left.
+/// It goes up after a period in which pictures were drawn without harm. Each step up that proves
+/// too much doubles that period. Thread-safe; the caller provides the time.
 class PictureRate {
  public:
   /// Call when a real-time flight begins; the limit starts at kFirstHz.

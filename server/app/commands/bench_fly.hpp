@@ -9,8 +9,8 @@
 
 namespace overfly::app {
 
-/// Makes a strip of 0.5 m/px imagery, 4 km wide and a little longer than the flight, in a
-/// temporary folder and flies it in lockstep.
+/// Makes a strip of 0.5 m/px imagery, 4 km wide and slightly longer than the flight, in a temporary
+/// folder and flies over it in lockstep.
 /// Errors: as synthesize_strip, open_world and fly_endurance.
 [[nodiscard]] Result<nlohmann::json> bench_long_flight(const renderer::EnduranceOptions& options,
                                                        ProgressDisplay& display);

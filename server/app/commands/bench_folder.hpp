@@ -1,4 +1,4 @@
-// A folder for what a measurement writes, gone with the object.
+// A temporary folder for a measurement's output, removed by the destructor.
 #pragma once
 
 #include <stdlib.h>

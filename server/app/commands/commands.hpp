@@ -1,5 +1,5 @@
-// The commands of the program, one file each. Each adds itself to the command line and leaves its
-// exit code where it is told when it was the one called.
+// The commands of the program, one file each. Each function adds its command to the command line;
+// if the command is run, it stores its exit code in `exit_code`.
 #pragma once
 
 namespace CLI {

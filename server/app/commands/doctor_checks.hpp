@@ -10,18 +10,18 @@ namespace overfly::app {
 
 enum class CheckLevel {
   kOk,
-  kWarning,  ///< something optional is missing
-  kFault,    ///< nothing can be flown
+  kWarning,  ///< an optional part is missing
+  kFault,    ///< no flight is possible
 };
 
 struct Check {
   std::string name;  ///< file name without .json
   CheckLevel level = CheckLevel::kOk;
   std::string finding;
-  std::string remedy;  ///< empty when all is well
+  std::string remedy;  ///< empty if the check passed
 };
 
-/// @param runs_folder  where runs would be written
+/// @param runs_folder  folder in which runs would be written
 [[nodiscard]] std::vector<Check> all_checks(const std::filesystem::path& runs_folder);
 [[nodiscard]] nlohmann::json json_from(const std::vector<Check>& checks);
 

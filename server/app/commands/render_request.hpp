@@ -1,4 +1,4 @@
-// What `overfly render` is asked for.
+// Arguments of `overfly render`.
 #pragma once
 
 #include <optional>
@@ -31,15 +31,15 @@ struct RenderArguments {
   std::string depth;
   bool grey = false;
 
-  /// True when a place is named rather than a frame of the flight.
+  /// True if a place is given instead of a frame of the flight.
   [[nodiscard]] bool has_place() const { return lat_deg || lon_deg || height_agl_m; }
 };
 
-/// T_world_body above the place, its attitude relative to the horizon there.
+/// T_world_body above the place; its attitude is relative to the local horizon.
 /// @pre latitude, longitude and height are given
 [[nodiscard]] Pose body_pose(const RenderArguments& arguments, const terrain::TileSource& tiles);
 
-/// Draws an image with a camera of the scenario: a frame of its flight, or from the place.
+/// Draws an image with a camera of the scenario, at a frame of its flight or at the place.
 /// @return exit code
 [[nodiscard]] int render_scenario(const RenderArguments& arguments);
 

@@ -27,12 +27,13 @@ namespace {
 namespace fs = std::filesystem;
 
 struct ServeArguments {
-  std::string address = "127.0.0.1";
-  std::uint16_t port = 8480;
+  std::string address = "127.0.0.1";  ///< loopback by default
+  std::uint16_t port = 8480;          ///< 0 = any free port
   std::string runs = "runs";
   std::string scenarios;
   std::string web;
   std::string token_file;
+  /// Host names and addresses that clients may use, in addition to those of AllowedHosts.
   std::vector<std::string> allowed_hosts;
   bool no_token = false;
   std::vector<std::string> data = {"worlds"};

@@ -1,4 +1,4 @@
-// What `overfly track` is told, made into a data set and an estimator.
+// Converts the arguments of `overfly track` to a data set and an estimator.
 #pragma once
 
 #include <cstdint>
@@ -44,16 +44,17 @@ struct TrackArguments {
 /// "FX,FY,CX,CY" or "FX,FY,CX,CY,WIDTH,HEIGHT" [px]; without a size it is 0 x 0 px.
 /// Errors: kInvalidArgument.
 [[nodiscard]] Result<PinholeCamera> pinhole_from_text(const std::string& text);
-/// "MODEL:K1,K2,...", as many coefficients as the model has, of radtan also without k3.
+/// "MODEL:K1,K2,...", with all coefficients of the model; k3 of radtan may be omitted.
 /// Errors: kInvalidArgument.
 [[nodiscard]] Result<Distortion> distortion_from_text(const std::string& text);
-/// Words between blanks; quotes hold blanks together, a backslash takes the next character as it
-/// is (not within single quotes). Errors: kInvalidArgument for an open quote.
+/// Splits text at blanks. Quotes group words; a backslash escapes the next character (except within
+/// single quotes).
+/// Errors: kInvalidArgument for an unclosed quote.
 [[nodiscard]] Result<std::vector<std::string>> words_of(const std::string& text);
 
 /// Errors: kInvalidArgument naming the option.
 [[nodiscard]] Result<engine::DatasetOptions> dataset_options_from(const TrackArguments& arguments);
-/// The estimator that is named, or a scenario's, with the parameters and changes put in.
+/// The named estimator, or that of a scenario, with the parameters and overrides applied.
 /// Errors: kInvalidArgument with field, value and limit; as load_scenario.
 [[nodiscard]] Result<engine::EstimatorSpec> estimator_from(const TrackArguments& arguments);
 

@@ -1,4 +1,4 @@
-// The report of `overfly track` for people.
+// The report of `overfly track` as text.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -6,7 +6,7 @@
 
 namespace overfly::app {
 
-/// @param report  as engine::report_json, with `out`, the trajectory's file
+/// @param report  from engine::report_json, with `out`, the trajectory's file
 [[nodiscard]] std::string track_summary(const nlohmann::json& report);
 
 }  // namespace overfly::app

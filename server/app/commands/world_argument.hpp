@@ -1,4 +1,4 @@
-// The world that an option of the command line names.
+// Opens the world given as a command line option.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Errors and JSON values as HTTP answers: the one place where an Error becomes a status.
+// Converts errors and JSON values to HTTP responses; the only place that maps an Error to a status.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -10,15 +10,15 @@
 namespace overfly::net {
 
 [[nodiscard]] HttpResponse json_response(int status, const nlohmann::json& body);
-/// {"error": {"code", "message"}}; faults of fields ("field = value: must be limit", one a line)
-/// are listed as {"field", "message"} under `faults` too.
+/// {"error": {"code", "message"}}; invalid fields ("field = value: must be limit", one a line) are
+/// also listed as {"field", "message"} under `faults`.
 [[nodiscard]] HttpResponse error_response(const Error& error);
-/// The same for a status that no ErrorCode stands for: 403, 405, 413, 415, 422, 426, 429.
+/// As above, for a status without an ErrorCode: 403, 405, 413, 415, 422, 426, 429.
 [[nodiscard]] HttpResponse error_response(int status,
                                           const std::string& code,
                                           const std::string& message);
 
-/// Answers `result`'s value, or its error.
+/// Responds with `result`'s value, or with its error.
 [[nodiscard]] HttpResponse json_or_error(const Result<nlohmann::json>& result);
 
 }  // namespace overfly::net

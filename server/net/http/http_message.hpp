@@ -1,4 +1,4 @@
-// HTTP requests and answers as plain values, without a library's type.
+// HTTP requests and responses as plain values, independent of a library.
 #pragma once
 
 #include <functional>
@@ -29,7 +29,7 @@ struct HttpResponse {
   std::string body;
 };
 
-/// Called once, from any thread, with the answer of a request.
+/// Called once, from any thread, with the response to a request.
 using Respond = std::function<void(HttpResponse)>;
 
 }  // namespace overfly::net

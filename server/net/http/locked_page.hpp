@@ -1,12 +1,12 @@
-// The page for a browser that has not shown the token.
+// The page for a browser without the token.
 #pragma once
 
 #include <string>
 
 namespace overfly::net {
 
-/// HTML that needs nothing else of the server: says where the token is found and takes it.
-/// @param wrong  a token was shown, and it was not the server's
+/// Self-contained HTML that says where to find the token and accepts it.
+/// @param wrong  a token was given, but it is not the server's
 [[nodiscard]] std::string locked_page(bool wrong);
 
 }  // namespace overfly::net

@@ -17,9 +17,9 @@ namespace overfly::net {
 struct RouteCall {
   const HttpRequest& request;                ///< lives until the handler returns, no longer
   std::map<std::string, std::string> path;   ///< values of the pattern's {names}, decoded
-  std::map<std::string, std::string> query;  ///< only names that the route knows
+  std::map<std::string, std::string> query;  ///< only names that the route accepts
 
-  /// Value of a query parameter, or what stands for its absence.
+  /// Value of a query parameter, or `absent` if it is not given.
   [[nodiscard]] std::string query_or(const std::string& name, const std::string& absent) const;
 };
 
@@ -32,11 +32,11 @@ class RestRouter {
     std::string pattern;  ///< "/api/v1/runs/{id}"
     std::vector<std::string> segments;
     Handler handler;
-    std::vector<std::string> query;  ///< parameters that it knows
-    bool quick = false;              ///< waits for nothing: no disk, no other thread
+    std::vector<std::string> query;  ///< accepted parameters
+    bool quick = false;              ///< does not block: no disk, no other thread
   };
 
-  /// @param report  is told what handlers throw, with the request that it was thrown at
+  /// @param report  called with exceptions of handlers and the request that caused them
   explicit RestRouter(std::function<void(const std::string&)> report = {})
       : report_(std::move(report)) {}
 
@@ -44,15 +44,14 @@ class RestRouter {
            const std::string& pattern,
            Handler handler,
            std::vector<std::string> known_query = {});
-  /// The same for a GET that waits for nothing, and need not wait behind those that do.
+  /// As add, for a GET that does not block and need not wait behind those that do.
   void add_quick(const std::string& pattern, Handler handler);
   [[nodiscard]] bool is_quick(const HttpRequest& request) const;
 
-  /// Answers 404 for an unknown path, 405 with `Allow` for a known path's other methods, 400 naming
-  /// a query parameter that the route does not know.
-  /// HEAD is served by GET's handler: the caller leaves the body out. Never throws: what a handler
-  /// throws is reported and answered with 500, after which `respond` may be called again by what
-  /// the handler began.
+  /// Answers 404 for an unknown path, 405 with `Allow` for another method of a known path, and 400
+  /// naming a query parameter that the route does not accept. HEAD is served by GET's handler; the
+  /// caller omits the body. Never throws: an exception of a handler is reported and answered with
+  /// 500. Work that the handler began may call `respond` again afterwards.
   void handle(const HttpRequest& request, const Respond& respond) const noexcept;
   [[nodiscard]] const std::vector<Route>& routes() const { return routes_; }
 

@@ -1,4 +1,4 @@
-// Asks every request for the server's token.
+// Checks every request for the server's token.
 #pragma once
 
 #include <optional>
@@ -11,14 +11,15 @@ namespace overfly::net {
 
 class TokenGate {
  public:
-  /// @param token  empty = nothing is asked for
+  /// @param token  empty = no token is required
   explicit TokenGate(std::string token) : token_(std::move(token)) {}
 
   /// Looks for the token in the query parameter `token`, in `Authorization: Bearer` and in the
-  /// cookie. Takes the parameter out of the request's target: what comes behind the gate neither
-  /// sees the token nor repeats it.
-  /// @return what is answered instead of the request: 401, or for a page asked for with the
-  ///   parameter a redirection to the same page without it, which sets the cookie. Empty = serve it
+  /// cookie. Removes the parameter from the request's target, so that later code neither sees nor
+  /// repeats the token.
+  /// @return the response to send instead of serving the request: 401, or for a page requested with
+  /// the parameter a redirection to the same page without it, which sets the cookie. Empty = serve
+  /// it
   [[nodiscard]] std::optional<HttpResponse> check(HttpRequest* request) const;
 
  private:
@@ -26,8 +27,8 @@ class TokenGate {
   std::string token_;
 };
 
-/// Name of the cookie that holds the token. Cookies do not know ports, so the name has the one that
-/// the client asks for ("overfly_8480"): several servers on one host keep apart.
+/// Name of the cookie that holds the token. Cookies are not separated by port, so the name contains
+/// the requested port ("overfly_8480"). Several servers on one host thus have separate cookies.
 [[nodiscard]] std::string token_cookie_name(const std::string& host_header);
 
 }  // namespace overfly::net

@@ -11,19 +11,20 @@ namespace overfly::net {
 
 struct Url {
   std::vector<std::string> segments;         ///< decoded; "/" has none, "/a/" has "a" and ""
-  std::map<std::string, std::string> query;  ///< decoded; the last one of equal names stays
+  std::map<std::string, std::string> query;  ///< decoded; the last one of equal names is kept
 };
 
-/// Empty for a target that is no absolute path, or has a broken percent escape or a NUL.
+/// Empty for a target that is not an absolute path, or has an invalid percent escape or a NUL.
 /// Segments are split before they are decoded: "%2F" stays inside its segment.
 [[nodiscard]] std::optional<Url> parse_target(std::string_view target);
 
-/// Takes a parameter out of a target's query. @return its decoded value, the last one of several;
-/// "" for a broken escape. Empty when it is not there.
+/// Removes a parameter from a target's query.
+/// @return its decoded value, the last one of several; "" for an invalid escape; empty if it is
+/// absent
 [[nodiscard]] std::optional<std::string> take_query_parameter(std::string* target,
                                                               std::string_view name);
 
-/// Decodes %XX, and '+' as a space where wanted. Empty for a broken escape or a NUL.
+/// Decodes %XX, and optionally '+' as a space. Empty for an invalid escape or a NUL.
 [[nodiscard]] std::optional<std::string> percent_decode(std::string_view text, bool plus_is_space);
 
 }  // namespace overfly::net

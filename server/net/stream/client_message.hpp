@@ -1,4 +1,5 @@
-// What a client may say over the WebSocket, parsed (docs/PROTOCOL.md, "Client to server").
+// Messages that a client may send over the WebSocket, parsed (docs/PROTOCOL.md, "Client to
+// server").
 #pragma once
 
 #include <cstdint>
@@ -13,25 +14,26 @@
 
 namespace overfly::net {
 
-/// One picture stream that a client wants.
+/// One requested picture stream.
 struct StreamWish {
   std::string name;  ///< "camera", "scene" or "debug/NAME"
   double max_hz = 31.0;
   int quality = 75;
   int max_width_px = 1280;
-  std::string camera = {};  ///< of the stream "camera"; empty = the run's first
+  std::string camera = {};  ///< for the stream "camera"; empty = the run's first
   bool operator==(const StreamWish&) const = default;
 };
 
 struct AttachCommand {
   std::string run_id;
-  std::map<std::string, std::size_t> resume;  ///< rows that the client has, by data stream
+  /// Number of rows that the client has, by data stream
+  std::map<std::string, std::size_t> resume;
 };
 struct DetachCommand {};
 struct SubscribeCommand {
   std::vector<StreamWish> streams;
 };
-/// Fields that are empty stay as they are.
+/// Empty fields keep their present value.
 struct ViewCommand {
   std::optional<engine::SceneMode> mode;
   std::optional<double> azimuth_rad;
@@ -43,7 +45,7 @@ struct ViewCommand {
 };
 struct PlayCommand {};
 struct PauseCommand {};
-/// One of the two is given.
+/// Exactly one of the two is set.
 struct SeekCommand {
   std::optional<std::int64_t> t_ns;
   std::optional<std::int64_t> frame;
@@ -58,7 +60,7 @@ struct LoopCommand {
   bool value = false;
 };
 struct LiveCommand {};
-/// Where the estimates of `playback` and of the scene lie.
+/// Alignment of the estimates in `playback` and in the scene.
 struct AlignCommand {
   std::string mode;
 };
@@ -77,9 +79,9 @@ using ClientCommand = std::variant<AttachCommand,
                                    AlignCommand>;
 
 struct ClientMessage {
-  std::optional<std::int64_t> request;  ///< to be repeated in the answer, also in an error
-  Status status;                        ///< whether it was understood
-  ClientCommand command;                ///< meaningful only if it was
+  std::optional<std::int64_t> request;  ///< repeated in the answer, also in an error
+  Status status;                        ///< whether parsing succeeded
+  ClientCommand command;                ///< valid only if status is ok
 };
 
 /// Errors (in `status`): kInvalidArgument naming the field, its value and the limit.

@@ -29,7 +29,7 @@ struct PictureHeader {
 [[nodiscard]] std::array<std::uint8_t, kPictureHeaderBytes> encode_picture_header(
     const PictureHeader& header);
 
-/// Empty unless magic, version, type, lengths and encoding are those of a whole picture message.
+/// Empty if magic, version, type, lengths or encoding are not those of a complete picture message.
 [[nodiscard]] std::optional<PictureHeader> decode_picture_header(
     std::span<const std::uint8_t> message);
 

@@ -1,5 +1,5 @@
-// When to draw the next picture of one stream for one client: keep the newest, one at a time.
-// Pure: the caller gives the clock.
+// Schedules the pictures of one stream for one client: only the newest request counts, one picture
+// at a time. Pure: the caller provides the time.
 #pragma once
 
 #include <cstdint>
@@ -7,10 +7,10 @@
 
 namespace overfly::net {
 
-/// What makes a picture another one: the instant and how it is wanted.
+/// Identifies a picture: the instant, and the settings with which it is drawn.
 struct PictureKey {
   std::int64_t frame = -1;
-  std::uint64_t change = 0;  ///< grows with each seek, subscription and change of the view
+  std::uint64_t change = 0;  ///< increases with each seek, subscription and change of the view
   bool operator==(const PictureKey&) const = default;
 };
 
@@ -18,25 +18,25 @@ class PictureSlot {
  public:
   explicit PictureSlot(double max_hz) : period_ns_(period_of(max_hz)) {}
   void set_max_hz(double max_hz) { period_ns_ = period_of(max_hz); }
-  /// Nothing is drawn more often than this, not even a change; empty = no limit.
+  /// Upper limit of the rate, also for changed settings; empty = no limit.
   void set_limit_hz(std::optional<double> limit_hz) {
     least_period_ns_ = limit_hz ? period_of(*limit_hz) : 0;
   }
 
-  /// Says what the client should see now; only the newest wish counts.
+  /// Sets what the client should see now; only the latest call counts.
   void want(const PictureKey& key) { wanted_ = key; }
-  /// The picture to draw now, which is then in flight. Empty while one is in flight, when the
-  /// client has this one, and before the stream's period is over.
+  /// The picture to draw now, which is then in flight. Empty while one is in flight, if the client
+  /// already has this one, and until the stream's period has passed.
   [[nodiscard]] std::optional<PictureKey> take(std::int64_t now_ns);
-  /// What was in flight has been sent, or is not going to be.
+  /// The picture in flight has been sent or dropped.
   void done() { in_flight_ = false; }
-  /// The picture in flight shows a newer frame than was asked for (a live one does).
+  /// The picture in flight shows a newer frame than requested (as a live one does).
   void answered_with(std::int64_t frame) {
     if (taken_ && frame > taken_->frame) taken_->frame = frame;
   }
 
   [[nodiscard]] bool in_flight() const { return in_flight_; }
-  /// True when a picture waits for nothing but its time.
+  /// True if a picture waits only for its time.
   [[nodiscard]] bool waiting() const { return !in_flight_ && wanted_ && wanted_ != taken_; }
 
  private:

@@ -1,4 +1,5 @@
-// The picture streams of one viewer: which are wanted, what each shows, and which is drawn next.
+// The picture streams of one viewer: which are subscribed, what each shows, and which is drawn
+// next.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +21,7 @@ namespace overfly::net {
 
 class PictureStreams {
  public:
-  /// Where the viewer is.
+  /// The viewer's position.
   struct Instant {
     const engine::RunTimeline& timeline;
     std::string run_id;
@@ -29,25 +30,25 @@ class PictureStreams {
     bool live = false;
   };
 
-  /// Replaces the set of streams; one that stays keeps its number, as does one that comes back.
+  /// Replaces the set of streams. A stream that stays, or comes back later, keeps its number.
   void subscribe(const std::vector<StreamWish>& wishes);
   void set_view(const ViewCommand& command);
   /// The alignment of the estimates in the scene.
   void set_alignment(const std::string& mode);
-  /// What was on its way is no longer wanted: another run is watched, or none.
+  /// Discards the pictures in progress, because another run, or none, is watched now.
   void restart();
-  /// The rate that no stream may exceed; empty = none. @return true when that is another one
+  /// The maximum rate of each stream; empty = none. @return true if it changed
   bool set_limit_hz(std::optional<double> limit_hz);
-  /// Every stream sends the picture of the present instant again.
+  /// Makes every stream send the picture of the present instant again.
   void show_again() { ++change_; }
 
-  /// Has every picture drawn that is due.
+  /// Requests every picture that is due.
   void pump(const Instant& instant, ViewerPort* port, std::int64_t now_ns);
   /// Sends a picture that was drawn, or tells the client why it could not be.
   void ready(const PictureTicket& ticket, const Result<engine::Picture>& picture, ViewerPort* port);
   void sent(const PictureTicket& ticket);
 
-  /// True when a picture waits for nothing but its time.
+  /// True if a picture waits only for its time.
   [[nodiscard]] bool waiting() const;
   /// The `streams` message.
   [[nodiscard]] nlohmann::json streams_json() const;
@@ -58,9 +59,9 @@ class PictureStreams {
     std::uint32_t id = 0;
     PictureSlot slot{1.0};
     std::uint32_t sequence = 0;
-    std::uint64_t ticket = 0;  ///< of the picture on its way; 0 = none
-    bool live = false;         ///< it was asked for as a live one
-    std::uint64_t change = 0;  ///< that it was asked for in
+    std::uint64_t ticket = 0;  ///< of the picture in progress; 0 = none
+    bool live = false;         ///< it was requested as a live one
+    std::uint64_t change = 0;  ///< the change count at its request
     std::optional<std::int64_t> sent_frame;
     std::uint64_t sent_change = 0;
     std::string error_told;
@@ -72,7 +73,7 @@ class PictureStreams {
 
   std::vector<Stream> streams_;
   using StreamKey = std::pair<std::string, std::string>;  ///< name and camera
-  std::map<StreamKey, std::uint32_t> ids_;                ///< of all ever subscribed
+  std::map<StreamKey, std::uint32_t> ids_;                ///< of all streams ever subscribed
   std::map<StreamKey, std::uint32_t> sequences_;          ///< of streams not subscribed now
   engine::SceneSettings scene_;
   std::optional<double> limit_hz_;

@@ -1,5 +1,5 @@
-// Where one viewer is in a run: a cursor over recorded time that plays, pauses, seeks and follows
-// a live run. Pure: the caller gives the clock.
+// Position of one viewer in a run: a cursor over recorded time that plays, pauses, seeks and
+// follows a live run. Pure: the caller provides the time.
 #pragma once
 
 #include <cstdint>
@@ -12,26 +12,26 @@ inline constexpr double kMaxSpeed = 50.0;
 
 class PlaybackCursor {
  public:
-  /// A running run is followed live; a finished one waits paused at 0.
+  /// A live run is followed live; a finished run starts paused at 0.
   explicit PlaybackCursor(bool running) : running_(running), playing_(running), live_(running) {}
 
-  /// What is recorded by now: [0, end_ns], which grows while `running`.
-  /// A live viewer of a run that ends stands paused at its end.
+  /// The recorded time span [0, end_ns], which grows while `running`. When a run ends, its live
+  /// viewers are paused at its end.
   void set_extent(std::int64_t end_ns, bool running);
-  /// Moves by the time since the last call times the speed, within what is recorded. One that
-  /// catches up with a running run becomes live; at the end of a finished one it stops or loops.
+  /// Advances by the elapsed time times the speed, within the recorded span. A cursor that catches
+  /// up with a live run becomes live; at the end of a finished run it stops or loops.
   /// @param now_ns  monotonic wall clock
   void advance(std::int64_t now_ns);
 
-  /// Plays on; from the start again when a finished run is at its end.
+  /// Starts to play; from the beginning if a finished run is at its end.
   void play();
   void pause();
-  /// Clamped to what is recorded; leaves live. Plays on if it played.
+  /// Clamped to the recorded span; leaves live mode. Does not change whether it plays.
   void seek(std::int64_t t_ns);
-  /// @pre speed in [kMinSpeed, kMaxSpeed]. Any speed but 1 leaves live.
+  /// @pre speed in [kMinSpeed, kMaxSpeed]. Any speed other than 1 leaves live mode.
   void set_speed(double speed);
   void set_loop(bool loop) { loop_ = loop; }
-  /// Follows the newest instant of a running run. @return false when it is not running
+  /// Follows the newest instant of a live run. @return false if it is not running
   bool go_live();
 
   [[nodiscard]] std::int64_t t_ns() const { return t_ns_; }

@@ -1,4 +1,4 @@
-// A viewer's place in a run: what is there at an instant, and where the next frame is.
+// A viewer's position in a run: the state at an instant, and the neighbouring frames.
 #pragma once
 
 #include <cstdint>
@@ -13,12 +13,12 @@
 
 namespace overfly::net {
 
-/// Where the estimates lie: one place for each estimator, empty where it has no such alignment.
+/// Alignments of the estimates, one for each estimator; empty if it has no such alignment.
 struct EstimatePlaces {
   std::string mode = engine::kRecordedAlignment;
   std::vector<std::optional<engine::RowAlignment>> of_estimator;
 
-  /// @pre check_alignment says that the run has this mode
+  /// @pre check_alignment succeeds for this mode
   static EstimatePlaces of(const engine::RunTimeline& timeline, const std::string& mode);
 };
 
@@ -30,12 +30,12 @@ struct EstimatePlaces {
 
 /// Stamp of the last recorded frame; 0 before the first.
 [[nodiscard]] std::int64_t end_of(const engine::RunTimeline& timeline);
-/// Stamp of frame `frame`, or of the nearest recorded one before it (else the first).
-/// Empty while nothing is recorded.
+/// Stamp of frame `frame`, or of the nearest recorded one before it (else the first). Empty if
+/// nothing is recorded.
 [[nodiscard]] std::optional<std::int64_t> time_of_frame(const engine::RunTimeline& timeline,
                                                         std::int64_t frame);
-/// Stamp of the frame `steps` recorded frames after (before, when negative) the one at t, within
-/// what is recorded. Empty while nothing is recorded.
+/// Stamp of the frame `steps` recorded frames after (before, if negative) the one at t, clamped to
+/// the recorded frames. Empty if nothing is recorded.
 [[nodiscard]] std::optional<std::int64_t> time_of_step(const engine::RunTimeline& timeline,
                                                        std::int64_t t_ns,
                                                        std::int64_t steps);

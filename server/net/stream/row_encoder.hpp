@@ -1,4 +1,4 @@
-// Rows of a run as JSON columns, and its description as the RUN object (docs/PROTOCOL.md).
+// A run's rows as JSON columns, and its description as the RUN object (docs/PROTOCOL.md).
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -12,18 +12,18 @@
 
 namespace overfly::net {
 
-/// {"x_m", "y_m", "z_m", "roll_deg", "pitch_deg", "yaw_deg"}: millimetres and 1e-4 deg, so that
-/// numbers stay short.
+/// {"x_m", "y_m", "z_m", "roll_deg", "pitch_deg", "yaw_deg"}, rounded to millimetres and 1e-4 deg
+/// to keep the text short.
 [[nodiscard]] nlohmann::json pose_json(const Pose& T_world_body);
 
 /// Columns of the stream `truth`, of `estimate/NAME`, and of `log`.
 [[nodiscard]] nlohmann::json truth_columns(const std::vector<engine::FrameRow>& rows);
-/// Estimates lie where `alignment` says, by default where they were recorded.
+/// Poses of the estimates by `alignment`; by default as recorded.
 [[nodiscard]] nlohmann::json estimate_columns(const std::vector<engine::EstimateRow>& rows,
                                               const engine::RowAlignment& alignment = {});
 [[nodiscard]] nlohmann::json log_columns(const std::vector<engine::LogRow>& rows);
 
-/// {"NAME": status, ...} of a run's estimators, as message `estimators` has them.
+/// {"NAME": status, ...} of a run's estimators, as in the message `estimators`.
 [[nodiscard]] nlohmann::json estimator_statuses_json(const engine::RunTimeline& timeline);
 
 [[nodiscard]] nlohmann::json run_json(const engine::RunInfo& info);

@@ -1,4 +1,4 @@
-// Tells a viewer the rows of a run, each once and in order.
+// Sends a run's rows to a viewer, each once and in order.
 #pragma once
 
 #include <map>
@@ -13,14 +13,14 @@ namespace overfly::net {
 
 class RowFeed {
  public:
-  /// Rows of one message at most.
+  /// Maximum number of rows in one message.
   static constexpr std::size_t kMaxRows = 2000;
 
-  /// @param resume  rows that the viewer already has, by stream; the others start at 0
+  /// @param resume  number of rows that the viewer already has, by stream; others start at 0
   RowFeed(std::shared_ptr<const engine::RunTimeline> timeline,
           const std::map<std::string, std::size_t>& resume);
 
-  /// The next `rows` message; empty when all rows so far are told.
+  /// The next `rows` message; empty if all rows so far have been sent.
   [[nodiscard]] std::optional<std::string> next();
 
  private:

@@ -1,4 +1,4 @@
-// One viewer's watch over one run: its playback cursor, and the text messages that are due.
+// One viewer's session with one run: its playback cursor, and the text messages that are due.
 #pragma once
 
 #include <cstdint>
@@ -24,16 +24,16 @@ class RunWatch {
   [[nodiscard]] PlaybackCursor& cursor() { return cursor_; }
   [[nodiscard]] const PlaybackCursor& cursor() const { return cursor_; }
 
-  /// Moves the cursor to now and takes in what the run has recorded.
+  /// Advances the cursor to now and takes in newly recorded data.
   void refresh(std::int64_t now_ns);
-  /// Sends what is due of `run`, `rows`, `estimators`, `metrics` and `playback`. Rows wait while
-  /// the connection has much unsent: nothing is lost, the run keeps them.
+  /// Sends the messages that are due: `run`, `rows`, `estimators`, `metrics` and `playback`. Rows
+  /// wait while the connection has much unsent data; none is lost, because the run keeps them.
   void tell(ViewerPort* port, std::int64_t now_ns);
-  /// Estimates lie where this alignment says. Errors: as engine::check_alignment.
+  /// Sets the alignment of the estimates. Errors: as engine::check_alignment.
   Status align(const std::string& mode);
-  /// The next tell() sends `playback` whatever its rate.
+  /// Makes the next tell() send `playback` regardless of its rate.
   void cursor_commanded() { playback_due_ = true; }
-  /// True while rows wait for the connection.
+  /// True while rows wait because of unsent data.
   [[nodiscard]] bool behind() const { return behind_; }
 
  private:
@@ -56,12 +56,12 @@ class RunWatch {
   RowFeed feed_;
   PlaybackCursor cursor_;
   EstimatePlaces places_;
-  std::optional<std::uint64_t> revision_;       ///< that the cursor knows
-  std::optional<std::uint64_t> rows_revision_;  ///< that the rows told belong to
+  std::optional<std::uint64_t> revision_;       ///< last revision seen by the cursor
+  std::optional<std::uint64_t> rows_revision_;  ///< revision of the rows sent last
   std::optional<std::uint64_t> run_revision_;
   std::optional<std::uint64_t> estimators_revision_;
   std::optional<std::uint64_t> metrics_revision_;
-  std::optional<std::int64_t> rows_at_ns_;  ///< when they were told last
+  std::optional<std::int64_t> rows_at_ns_;  ///< when they were sent last
   std::optional<std::int64_t> run_at_ns_;
   std::optional<std::int64_t> estimators_at_ns_;
   std::optional<std::int64_t> playback_at_ns_;

@@ -1,5 +1,5 @@
-// One client of the WebSocket: understands its messages and decides what it is sent. Knows no
-// socket and no clock; not thread-safe: the connection calls it from its strand.
+// One WebSocket client: parses its messages and decides what it is sent. Uses no socket and no
+// clock. Not thread-safe: the connection calls it from its strand.
 #pragma once
 
 #include <cstdint>
@@ -23,20 +23,21 @@ class Viewer {
 
   /// Sends `hello`.
   void greet(const std::string& connection_name);
-  /// Takes one text message and answers it, at once or, while a run is being opened, after that:
-  /// messages are carried out in order. @param now_ns  monotonic wall clock, here and below
+  /// Takes one text message and answers it, at once or, while a run is being opened, after that.
+  /// Messages are processed in order.
+  /// @param now_ns  monotonic wall clock, here and below
   void handle(const std::string& text, std::int64_t now_ns);
-  /// True while so many messages wait for a run to open that no more should be read.
+  /// True if so many messages wait for a run to open that no more should be read.
   [[nodiscard]] bool full() const { return waiting_.size() >= kMaxWaiting; }
   void run_opened(Result<std::shared_ptr<engine::RunTimeline>> timeline, std::int64_t now_ns);
-  /// Sends what is due.
+  /// Sends the messages that are due.
   void tick(std::int64_t now_ns);
   void picture_ready(const PictureTicket& ticket,
                      const Result<engine::Picture>& picture,
                      std::int64_t now_ns);
   void picture_sent(const PictureTicket& ticket, std::int64_t now_ns);
 
-  /// When tick() is wanted next, from now; empty while nothing can become due by itself.
+  /// Time until the next tick() is needed; empty if nothing becomes due by itself.
   [[nodiscard]] std::optional<std::int64_t> tick_after_ns() const;
 
  private:
@@ -57,7 +58,7 @@ class Viewer {
 
   ViewerPort& port_;
   std::optional<Opening> opening_;
-  std::deque<std::string> waiting_;  ///< messages that came after the `attach` being carried out
+  std::deque<std::string> waiting_;  ///< messages received after the `attach` in progress
   std::string run_id_;
   std::optional<RunWatch> watch_;
   PictureStreams pictures_;
