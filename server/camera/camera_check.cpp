@@ -17,19 +17,19 @@ namespace {
 constexpr int kFewestPatches = 20;
 constexpr double kMostLost = 0.05;
 
-/// What the comparison needs of one frame.
+/// Data of one frame that the comparison needs.
 struct Drawn {
   RadianceImage radiance;
   DepthImage depth;
 };
 
-/// The range of radiance that is spread over the 256 grey levels.
+/// The range of radiance that is mapped to the 256 grey levels.
 struct Range {
   float low = 0.0F;
   float high = 1.0F;
 };
 
-/// All but the darkest and the brightest percent.
+/// The range without the darkest and the brightest percent.
 Range range_of(const RadianceImage& image) {
   std::vector<float> values = image.data;
   const auto at = [&](double share) {
@@ -42,9 +42,9 @@ Range range_of(const RadianceImage& image) {
   return {low, std::max(at(0.99), low + 1e-3F)};
 }
 
-/// Grey levels as fine as the ground's contrast allows: on faint texture the rounding to the
-/// camera's own 8 bits stays where it was when the image moves by nearly whole pixels, and
-/// registration then reads 0.05 px that no geometry put there.
+/// Stretches the grey levels to the ground's contrast. On faint texture, rounding to the camera's 8
+/// bits does not move with the image if the motion is nearly whole pixels; registration then
+/// measures 0.05 px that are not caused by geometry.
 Image stretched(const RadianceImage& radiance, const Range& range) {
   Image image(radiance.width_px, radiance.height_px, 1);
   std::transform(radiance.data.begin(), radiance.data.end(), image.data.begin(), [&](float value) {
@@ -80,7 +80,8 @@ Result<renderer::Registration> compare(renderer::Renderer& renderer,
       predicted.image, stretched(now->radiance, range), predicted.valid);
 }
 
-/// Sensor and faults change pictures, not geometry: they would only blunt the measurement.
+/// Sensor and faults change the image, not the geometry; they would only make the measurement less
+/// precise.
 Scenario without_sensor(Scenario scenario) {
   scenario.faults.clear();
   for (CameraSpec& camera : scenario.cameras) camera.sensor.auto_exposure.reset();
@@ -180,7 +181,7 @@ Result<std::vector<CameraCheckRow>> check_camera(const Scenario& scenario,
   }
   for (std::int64_t i = 0; i < pairs; ++i) {
     if (is_cancelled(options.cancel)) return Error{ErrorCode::kCancelled, "cancelled"};
-    // Spread over the flight without its very ends, two frames apart at least.
+    // Spread over the flight without its ends, at least two frames apart.
     const std::int64_t k = pairs == 1 ? last_first / 2 : i * last_first / (pairs - 1);
     if (Status status = check_pair(**maker, k, rows); !status) return status.error();
   }

@@ -10,13 +10,13 @@
 namespace overfly::engine {
 namespace {
 
-/// Streams of random numbers of one camera.
+/// Seed of one of a camera's random number streams.
 std::uint64_t stream_seed(std::uint64_t seed, std::size_t camera, std::uint64_t stream) {
   constexpr std::uint64_t kGolden = 0x9E3779B97F4A7C15ULL;
   return (seed + kGolden * (2 * camera + stream + 1)) ^ (seed >> 32U);
 }
 
-/// The highest frequency at which the mount moves; 0 = it does not.
+/// The highest frequency of the mount's motion; 0 = it does not move.
 double fastest_hz(const renderer::VibrationModel& model) {
   const auto any = [](const auto& values) {
     return std::any_of(values.begin(), values.end(), [](double v) { return v != 0.0; });
@@ -160,7 +160,8 @@ Status CameraUnit::develop(renderer::CameraFrame drawn,
   return {};
 }
 
-/// A sensor without auto-exposure that stands at the setting: its noise is that of the frame.
+/// Uses a copy of the sensor without auto-exposure, fixed at the setting; the noise is that of the
+/// frame.
 Result<renderer::SensorImage> CameraUnit::exposed_with(const renderer::ExposureSetting& setting,
                                                        const RadianceImage& radiance,
                                                        std::int64_t frame) const {

@@ -10,8 +10,8 @@
 namespace overfly::engine {
 namespace {
 
-/// A word from a seed and a number: splitmix64 (Steele, Lea, Flood 2014,
-/// doi:10.1145/2660193.2660195), its finaliser.
+/// A random 64-bit word from a seed and a number: the finaliser of splitmix64 (Steele, Lea, Flood
+/// 2014, doi:10.1145/2660193.2660195).
 std::uint64_t mixed(std::uint64_t seed, std::uint64_t number) {
   constexpr std::uint64_t kGolden = 0x9E3779B97F4A7C15ULL;
   std::uint64_t z = seed + kGolden * (number + 1);
@@ -81,7 +81,7 @@ bool FaultSchedule::drops(const FaultSpec& fault, std::int64_t frame) const {
   if (fault.probability) {
     return uniform(fault.seed, static_cast<std::uint64_t>(frame)) < *fault.probability;
   }
-  // The first frame stamped at or after the fault's begin.
+  // The first frame stamped at or after the fault's start.
   auto first = static_cast<std::int64_t>(s_from_ns(fault.at_ns) * scenario_.rate.hz());
   while (first > 0 && frame_time_ns(first - 1, scenario_.rate) >= fault.at_ns) --first;
   while (frame_time_ns(first, scenario_.rate) < fault.at_ns) ++first;

@@ -146,7 +146,7 @@ Result<CameraShot> FrameMaker::take(std::size_t camera,
 }
 
 Result<Trajectory> FrameMaker::rehearse(std::size_t camera) const {
-  // A flight of its own: a truth source never goes back in time.
+  // Needs a separate truth source, since a source never goes back in time.
   const Result<std::unique_ptr<TruthSource>> truth = create_truth(scenario_, *world_);
   if (!truth) return truth.error();
   FaultSchedule faults(scenario_);
@@ -163,7 +163,7 @@ Result<Trajectory> FrameMaker::rehearse(std::size_t camera) const {
 }
 
 Result<renderer::CameraFrame> FrameMaker::draw_at_start(std::size_t camera) {
-  // A flight of its own here as well.
+  // Needs a separate truth source as well.
   const Result<std::unique_ptr<TruthSource>> truth = create_truth(scenario_, *world_);
   if (!truth) return truth.error();
   const auto first = (*truth)->state_at(0);

@@ -22,7 +22,7 @@ Result<std::unique_ptr<FrameRemaker>> FrameRemaker::create(
 
 Result<std::optional<std::vector<AircraftState>>> FrameRemaker::states_around(
     const CameraUnit& unit, std::int64_t t_ns) {
-  // A truth source never goes back: an earlier frame needs a flight of its own.
+  // A truth source never goes back in time: an earlier frame needs a new one.
   if (!truth_ || t_ns < asked_ns_) {
     Result<std::unique_ptr<TruthSource>> source = create_truth(scenario_, *world_);
     if (!source) return source.error();

@@ -17,7 +17,7 @@ Eigen::Vector2d imagery_centre(const Scenario& scenario, const terrain::World& w
   return centre.head<2>();
 }
 
-/// Middle of the box around a course that begins at the origin.
+/// Centre of the bounding box of a course that begins at the origin.
 Result<Eigen::Vector2d> course_centre(flight::CourseParameters course) {
   course.start_east_m = 0.0;
   course.start_north_m = 0.0;

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// The run of digits at `begin` without leading zeros; moves `begin` behind it.
+/// Returns the digits at `begin` without leading zeros; moves `begin` past them.
 std::string number_at(const std::string& text, std::size_t& begin) {
   while (begin < text.size() && text[begin] == '0') ++begin;
   const std::size_t first = begin;
@@ -23,7 +23,7 @@ std::string number_at(const std::string& text, std::size_t& begin) {
   return text.substr(first, begin - first);
 }
 
-/// 9.png before 10.png; of equal numbers ("01", "1") by all characters.
+/// Natural order: 9.png before 10.png; equal numbers ("01", "1") are compared by characters.
 bool before(const fs::path& a_path, const fs::path& b_path) {
   const std::string a = a_path.filename().string();
   const std::string b = b_path.filename().string();

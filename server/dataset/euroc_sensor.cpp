@@ -1,5 +1,5 @@
 // sensor.yaml of the ASL layout: `key: value` and `key: [list]` lines, lists over several lines.
-// Only that much of YAML: the files of the format have no more.
+// Only this subset of YAML, which is all that files of the format use.
 #include <Eigen/LU>
 #include <algorithm>
 #include <charconv>
@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 struct Entry {
   int line = 0;
-  std::string value;  ///< without comment; of a list all of it, on one line
+  std::string value;  ///< without comment; a whole list on one line
 };
 
 std::string trimmed(std::string_view text) {
@@ -26,7 +26,7 @@ std::string trimmed(std::string_view text) {
   return std::string(text.substr(first, text.find_last_not_of(" \t\r") - first + 1));
 }
 
-/// Every `key: value`, nested ones by their own key ("data" of T_BS).
+/// Every `key: value`; nested ones by their inner key ("data" of T_BS).
 std::map<std::string, Entry> entries_of(const std::string& text) {
   std::map<std::string, Entry> entries;
   std::string open;  // key of a list whose bracket is not closed yet
@@ -118,11 +118,11 @@ Result<Distortion> distortion_of(const SensorFile& file) {
     return file.bad("distortion_model", "must be radial-tangential, equidistant, fov or none");
   }
   const auto most = static_cast<std::size_t>(coefficient_count(lens.model));
-  // Radial-tangential without k3 is the format's habit.
+  // Radial-tangential without k3 is customary in this format.
   const std::size_t least = lens.model == DistortionModel::kRadtan ? 4 : most;
   const auto k = file.numbers("distortion_coefficients", least, most);
   if (!k) return k.error();
-  // A pinhole, which the format has no name for.
+  // A pinhole, for which the format has no name.
   const bool all_zero = std::all_of(k->begin(), k->end(), [](double c) { return c == 0.0; });
   if (lens.model == DistortionModel::kRadtan && all_zero) return Distortion{};
   std::copy(k->begin(), k->end(), lens.k.begin());

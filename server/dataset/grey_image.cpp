@@ -24,7 +24,8 @@ Error unreadable(const fs::path& file, const std::string& what) {
   return {ErrorCode::kUnreadable, file.string() + ": " + what};
 }
 
-/// By the first bytes. PNG: the depth of a sample is the 25th byte (W3C PNG, 11.2.1 IHDR).
+/// Detects the format by the first bytes. PNG: byte 25 is the bit depth of a sample (W3C PNG,
+/// 11.2.1 IHDR).
 Kind kind_of(const std::array<unsigned char, 25>& head) {
   constexpr std::array<unsigned char, 8> kPngSignature{0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
   if (std::equal(kPngSignature.begin(), kPngSignature.end(), head.begin())) {

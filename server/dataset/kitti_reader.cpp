@@ -13,8 +13,8 @@ struct KittiCamera {
   Pose T_first_camera;
 };
 
-/// From the line "P0: ..." for image_0, and so on: K [I | t] maps points of image_0's camera, as
-/// KITTI's cameras are rectified.
+/// Parses the line "P0: ..." for image_0, and so on. K [I | t] projects points in the frame of
+/// image_0's camera, since KITTI's cameras are rectified.
 Result<KittiCamera> camera_of(const fs::path& path, char number) {
   const Result<FieldFile> file = FieldFile::read(path);
   if (!file) return file.error();

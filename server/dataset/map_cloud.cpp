@@ -10,7 +10,7 @@ namespace overfly::engine {
 namespace {
 
 constexpr double kCellPerDepth = 0.005;
-/// Beyond it a cell's number leaves the integers; no map is that large.
+/// Beyond this value a cell's number does not fit an integer; no map is that large.
 constexpr double kLargestCell = 1e15;
 
 std::array<std::int64_t, 3> cell_of(const Eigen::Vector3f& p, double cell) {
@@ -24,7 +24,7 @@ std::array<std::int64_t, 3> cell_of(const Eigen::Vector3f& p, double cell) {
   return key;
 }
 
-/// The shortest decimals that read back as the same floats.
+/// The shortest decimals that parse to the same floats.
 std::string point_line(const Eigen::Vector3f& p) {
   std::array<char, 64> text{};
   char* at = text.data();

@@ -73,8 +73,7 @@ std::string size_text(int width_px, int height_px) {
   return std::to_string(width_px) + " x " + std::to_string(height_px) + " px";
 }
 
-/// The calibration that was given, else the data set's own; its size from the first image where it
-/// has none.
+/// The given calibration, else the data set's own; a missing size is taken from the first image.
 Result<CameraModel> choose_camera(const DatasetOptions& options, const ListedDataset& listed) {
   if (!options.camera && !listed.camera) {
     return Error{ErrorCode::kInvalidArgument,

@@ -10,7 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Which column is what; 0 = absent. Columns count from 1.
+/// Column numbers, from 1; 0 = absent.
 struct Columns {
   std::size_t count = 0;
   std::size_t time = 1;
@@ -18,8 +18,8 @@ struct Columns {
   std::size_t exposure = 0;
 };
 
-/// Told by the first line: TIME | TIME NAME | NAME TIME | NAME TIME EXPOSURE. A name is what ends
-/// as an image does, or the first of three columns (TUM monoVO's id).
+/// Detected from the first line: TIME | TIME NAME | NAME TIME | NAME TIME EXPOSURE. A name is a
+/// field with an image extension, or the first of three columns (TUM monoVO's id).
 Result<Columns> columns_of(const FieldFile& file) {
   const FieldLine& line = file.lines().front();
   const std::size_t count = line.fields.size();
@@ -36,7 +36,7 @@ bool is_whole(std::string_view text) {
   return text.find_first_not_of("+-0123456789") == std::string_view::npos;
 }
 
-/// Whole numbers whose mean step would be over a day as seconds are nanoseconds.
+/// True if the mean step of the numbers, read as seconds, exceeds a day: they are nanoseconds.
 bool counts_nanoseconds(const FieldFile& file, const Columns& columns) {
   constexpr double kDay = 86400.0;
   double first = 0.0;
@@ -51,11 +51,11 @@ bool counts_nanoseconds(const FieldFile& file, const Columns& columns) {
     last = *value;
   }
   const auto steps = static_cast<double>(file.lines().size()) - 1.0;
-  // One time alone: today's seconds since 1970 have ten digits.
+  // A single time: present Unix times in seconds have ten digits.
   return steps > 0.0 ? (last - first) / steps > kDay : std::abs(first) > 1e12;
 }
 
-/// The list of times, with the images of the folder beside it.
+/// The list of times, and the images of the folder.
 class PlainList {
  public:
   PlainList(const DatasetOptions& options,
@@ -68,7 +68,7 @@ class PlainList {
                    (options.time_unit == TimeUnit::kAuto && counts_nanoseconds(file, columns));
   }
 
-  /// @param i  the line's place among the lines
+  /// @param i  index of the line
   Result<DatasetImage> image_of(const FieldLine& line, std::size_t i) const {
     if (Status status = file_.expect_fields(line, columns_.count); !status) return status.error();
     DatasetImage image;
@@ -89,7 +89,7 @@ class PlainList {
   }
 
  private:
-  /// The image that a line names: by its file name, or without its ending.
+  /// The image that a line names, with or without extension.
   Result<fs::path> named(const FieldLine& line) const {
     const fs::path name(line.fields[columns_.name - 1]);
     if (is_image_name(name)) return options_.folder / name;

@@ -1,4 +1,5 @@
-// What `overfly export --format png` writes: cameras.json, CAMERA.csv, images/CAMERA/NNNNNN.png.
+// Reads the output of `overfly export --format png`: cameras.json, CAMERA.csv,
+// images/CAMERA/NNNNNN.png.
 #include <algorithm>
 #include <map>
 
@@ -12,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-/// The entry of a camera; the first where none is named.
+/// The entry of the named camera, or the first one if the name is empty.
 Result<Json> camera_entry(const fs::path& path, const std::string& name) {
   const Result<Json> cameras = read_json(path);
   if (!cameras) return cameras.error();
@@ -32,7 +33,7 @@ Result<Json> camera_entry(const fs::path& path, const std::string& name) {
                "camera \"" + name + "\": not in " + path.string() + " (there are " + known + ")"};
 }
 
-/// The columns that are needed, by their names in the first line; from 1.
+/// Numbers, from 1, of the required columns, found by name in the first line.
 Result<std::map<std::string, std::size_t>> named_columns(const FieldFile& file,
                                                          const fs::path& path) {
   std::map<std::string, std::size_t> columns;
@@ -58,7 +59,7 @@ Status list_rows(const FieldFile& file,
   for (auto line = file.lines().begin() + 1; line != file.lines().end(); ++line) {
     if (Status status = file.expect_fields(*line, count); !status) return status;
     const std::string name(line->fields[columns["file"] - 1]);
-    if (name.empty()) continue;  // lost on its way to the estimators
+    if (name.empty()) continue;  // lost before it reached the estimators
     DatasetImage image;
     image.file = folder / name;
     for (const auto& [column, value] : {std::pair("frame", &image.index),

@@ -62,7 +62,8 @@ class Pass {
     }
     result_.type = port_.type();
     result_.parameters = port_.effective_parameters();
-    // One in this process, which does nothing else here, is measured as that.
+    // An estimator in this process is measured by the use of the process, which does nothing else
+    // here.
     const std::optional<ResourceUse> use = port_.resource_use();
     if (use && use->own_process) {
       result_.resources = *use;
@@ -75,7 +76,7 @@ class Pass {
   }
 
  private:
-  /// Errors: the first image's.
+  /// Errors: as for reading the first image.
   Status prepare() {
     Result<VoFrame> first = read_frame(dataset_, 0);
     if (!first) return first.error();
@@ -127,7 +128,7 @@ class Pass {
     return book(*frame, *estimate);
   }
 
-  /// Everything of an answer but its pose.
+  /// Records everything of an answer except its pose.
   Status book(const VoFrame& frame, const VoEstimate& estimate) {
     const auto unanswered = estimate.counters.find("unanswered");
     if (unanswered != estimate.counters.end() && unanswered->second > 0.0) ++result_.unanswered;
@@ -158,7 +159,7 @@ class Pass {
   TrackedDataset result_;
   bool crashed_ = false;
   PoseIntake poses_;
-  std::optional<Error> failure_;  ///< to get ready
+  std::optional<Error> failure_;  ///< of the preparation
 };
 
 }  // namespace

@@ -37,7 +37,7 @@ Json states_json(const TrackedDataset& tracked) {
   return states;
 }
 
-/// Seconds from the first image to the first tracked one; null where there is none.
+/// Seconds from the first image to the first tracked one; null if no image was tracked.
 Json initialised_after_s(const TrackedDataset& tracked) {
   for (const EstimateRecord& record : tracked.records) {
     if (record.sample.state != TrackingState::kTracking) continue;
@@ -63,7 +63,8 @@ Json resources_json(const TrackedDataset& tracked) {
           {"peak_memory_mb", tracked.resources.peak_memory_mb}};
 }
 
-/// All images, whatever became of the estimator; of a pass that was cancelled those before that.
+/// All images, whether or not the estimator answered; for a cancelled pass only those before the
+/// cancellation.
 std::vector<evaluation::FlightFrame> flight_of(const Dataset& dataset,
                                                const TrackedDataset& tracked) {
   std::vector<evaluation::FlightFrame> flight;
@@ -74,7 +75,7 @@ std::vector<evaluation::FlightFrame> flight_of(const Dataset& dataset,
   return flight;
 }
 
-/// Poses of a frame that is held in the one whose poses are given.
+/// Converts a trajectory to the poses of another frame that is rigidly attached.
 Result<Trajectory> moved(const Trajectory& trajectory, const Pose& T_given_wanted) {
   std::vector<StampedPose> poses = trajectory.poses();
   for (StampedPose& stamped : poses) stamped.pose = stamped.pose * T_given_wanted;
@@ -119,7 +120,7 @@ evaluation::Score score_of(const Dataset& dataset,
   EstimateTrack track = track_of(tracked);
   options.flight = flight_of(dataset, tracked);
   if (!truth_has_times) {
-    // Line i of a file without times is the i-th image.
+    // Line i of a file without times belongs to image i.
     options.association = evaluation::Association::kIndex;
     for (std::size_t i = 0; i < track.samples.size(); ++i) {
       track.samples[i].frame = static_cast<std::int64_t>(i);

@@ -1,5 +1,6 @@
-// camera.txt of the TUM monoVO data set, as DSO's documentation gives it: model and intrinsics,
-// size, how to rectify, size of the rectified image. Only the first two lines are of the camera.
+// camera.txt of the TUM monoVO data set, as described in DSO's documentation: model and intrinsics,
+// size, rectification mode, size of the rectified image. Only the first two lines describe the
+// camera.
 #include <cmath>
 
 #include "server/dataset/dataset_reader.hpp"
@@ -13,7 +14,7 @@ struct Lens {
   std::size_t coefficients = 0;
 };
 
-/// A line without a name has five numbers: the FOV model, or a pinhole where the fifth is 0.
+/// A line without a name has five numbers: the FOV model, or a pinhole if the fifth is 0.
 Result<Lens> lens_of(const FieldFile& file, const FieldLine& line) {
   const std::string name(line.fields.front());
   if (name == "Pinhole") return Lens{DistortionModel::kNone, 2, 1};

@@ -1,5 +1,5 @@
-// Data sets of TUM: monoVO (Engel, Usenko, Cremers 2016, arXiv:1607.02555) and RGB-D (Sturm et
-// al. 2012).
+// TUM data sets: monoVO (Engel, Usenko, Cremers 2016, arXiv:1607.02555) and RGB-D (Sturm et al.
+// 2012).
 #include <algorithm>
 #include <charconv>
 #include <map>
@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The number that an id is, or -1.
+/// The id as a number, or -1 if it is none.
 std::int64_t number_of(std::string_view id) {
   std::int64_t number = -1;
   const auto [end, error] = std::from_chars(id.data(), id.data() + id.size(), number);
@@ -31,7 +31,7 @@ Result<fs::path> images_folder(const fs::path& folder) {
   return Error{ErrorCode::kNotFound, images.string() + ": no such folder"};
 }
 
-/// ID TIME [EXPOSURE_MS], the images by their ids.
+/// Lines are ID TIME [EXPOSURE_MS]; images are found by id.
 Status list_images(const FieldFile& file,
                    const fs::path& path,
                    const std::vector<fs::path>& files,

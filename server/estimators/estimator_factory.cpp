@@ -12,7 +12,7 @@ namespace {
 
 using Port = Result<std::unique_ptr<VoPort>>;
 
-/// Switches as 1 and 0. Errors: kInvalidArgument for a text.
+/// Switches become 1 and 0. Errors: kInvalidArgument for text.
 Result<std::map<std::string, double>> numbers_of(const VoParameters& parameters) {
   std::map<std::string, double> numbers;
   for (const auto& [name, value] : parameters) {

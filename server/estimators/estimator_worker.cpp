@@ -20,12 +20,13 @@ EstimatorEvent drop_of(const VoFrame& frame) {
   return event;
 }
 
-/// 0 for a rate of 0.
+/// Returns 0 for a rate of 0.
 std::int64_t period_ns(double rate_hz) {
   return rate_hz > 0.0 ? std::llround(static_cast<double>(kNsPerS) / rate_hz) : 0;
 }
 
-/// Keeps what a run folder can hold: no number that JSON cannot say, nothing of another frame.
+/// Removes values that a run folder cannot hold: numbers that JSON cannot represent, data of
+/// another frame.
 void tidy(const VoFrame& frame, VoEstimate& estimate) {
   estimate.sample.frame = frame.index;
   estimate.sample.t_ns = frame.t_ns;
@@ -117,7 +118,8 @@ EstimatorUse EstimatorWorker::use() {
 }
 
 void EstimatorWorker::work() {
-  // Checked where the estimator was made: a processor that went away since is no reason to stop.
+  // The processors were checked when the estimator was created. If one was removed since then, the
+  // worker continues without it.
   (void)bind_thread(options_.cpus);
   std::unique_lock lock(mutex_);
   while (true) {
@@ -131,7 +133,7 @@ void EstimatorWorker::work() {
         answer_waiting(lock);
       }
     } catch (...) {
-      // Too little memory even for the answer: the run is told with its next call.
+      // Out of memory even for the answer: the failure is reported at the run's next call.
       if (!lock.owns_lock()) lock.lock();
       thrown_ = std::current_exception();
     }
@@ -157,7 +159,7 @@ void EstimatorWorker::make_ready(std::unique_lock<std::mutex>& lock) {
 
 void EstimatorWorker::answer_waiting(std::unique_lock<std::mutex>& lock) {
   const Waiting taken = *std::exchange(waiting_, std::nullopt);
-  // Frames dropped before this one was taken come before its answer.
+  // Frames dropped before this one was taken are reported before its answer.
   std::move(drops_.begin(), drops_.end(), std::back_inserter(events_));
   drops_.clear();
   lock.unlock();
@@ -178,7 +180,8 @@ EstimatorEvent EstimatorWorker::answer(const Waiting& waiting) {
   constexpr std::int64_t kAnswersPerUse = 16;
   if (!estimate || answers_++ % kAnswersPerUse == 0) event.use = use();
   if (!estimate && estimate.error().code == ErrorCode::kCancelled) {
-    // The run is stopped; that the estimator was, too, in a frame, says nothing of it.
+    // The run was stopped, and the estimator with it during a frame; this is not an error of the
+    // estimator.
     return drop_of(waiting.frame);
   }
   if (estimate) {
@@ -231,7 +234,7 @@ std::vector<std::string> EstimatorWorker::take_log() {
 
 void EstimatorWorker::hold_back(const Waiting& waiting) {
   if (options_.throttle_hz <= 0.0) return;
-  // From when it could take the frame, not from when this thread woke up: no drift.
+  // Counts from when it could take the frame, not from when this thread woke up, to avoid drift.
   const std::int64_t taken_ns = std::max(waiting.handed_over_ns, free_at_ns_);
   free_at_ns_ = std::max(taken_ns + period_ns(options_.throttle_hz), clock_.now_ns());
   clock_.sleep_until_ns(free_at_ns_);

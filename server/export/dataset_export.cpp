@@ -26,7 +26,8 @@ bool takes_one_camera(DatasetFormat format) {
 
 std::int64_t frame_period_ns(const FrameRate& rate) { return frame_time_ns(1, rate); }
 
-/// The IMU's samples from a frame before the first to a frame after the last, and the states there.
+/// IMU samples from one frame before the first to one frame after the last, and the states at their
+/// times.
 Status measure_inertially(const ExportSource& source,
                           FrameSequence& frames,
                           const std::function<bool()>& keep_going,
@@ -62,7 +63,7 @@ Status measure_inertially(const ExportSource& source,
   return {};
 }
 
-/// Where the data set comes from, and how to make it again.
+/// Writes where the data set comes from and how to make it again.
 Status write_origin(const ExportSource& source,
                     const ExportOptions& options,
                     const ExportSummary& summary,
@@ -107,7 +108,7 @@ Status write_origin(const ExportSource& source,
   return write_json(options.folder / "overfly.json", about);
 }
 
-/// Errors: kConflict for a folder with something in it.
+/// Errors: kConflict for a folder that is not empty.
 Status prepare_folder(const fs::path& folder) {
   std::error_code failure;
   if (fs::exists(folder, failure) && !fs::is_empty(folder, failure)) {
@@ -168,7 +169,7 @@ Result<DatasetPlan> make_plan(const ExportSource& source,
   return plan;
 }
 
-/// Everything that is made of a frame.
+/// All outputs of a frame.
 class FrameOutputs {
  public:
   FrameOutputs(const ExportOptions& options,

@@ -27,7 +27,7 @@ std::string distortion_text(const Distortion& lens) {
     case DistortionModel::kRadtan:
       break;
   }
-  // k1 k2 p1 p2, and k3 only where there is one: readers of the format expect four.
+  // k1 k2 p1 p2; k3 only if it is not 0, since readers of the format expect four coefficients.
   const std::string third = k[4] == 0.0 ? "" : ", " + number_text(k[4]);
   return "distortion_model: radial-tangential\ndistortion_coefficients: [" +
          number_list({k[0], k[1], k[2], k[3]}, ", ") + third + "]\n";
@@ -147,7 +147,7 @@ class EurocWriter final : public DatasetWriter {
 
   fs::path root_;
   std::int64_t epoch_ns_;
-  std::vector<std::string> lists_;  ///< rows of data.csv, one text a camera
+  std::vector<std::string> lists_;  ///< rows of data.csv, one text for each camera
 };
 
 }  // namespace

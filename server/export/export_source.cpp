@@ -13,7 +13,8 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-/// Where neither run nor scenario say when: 2026-01-01T00:00:00Z, as a lockstep run's manifest.
+/// Default if neither run nor scenario gives a date: 2026-01-01T00:00:00Z, as in a lockstep run's
+/// manifest.
 constexpr std::int64_t kEpochUtcNs = 1'767'225'600 * kNsPerS;
 
 Error unreadable(const fs::path& file, const std::string& fault) {
@@ -90,7 +91,7 @@ Status check_world(const ExportSource& source, const terrain::World& world) {
 }
 
 Status check_frame(const FrameRecord& recorded, const MadeFrame& made) {
-  // Equal to the bit on the same machine; another C library may round sines otherwise.
+  // Poses are bit-identical on the same machine; another C library may round sines differently.
   constexpr double kCloseM = 1e-6;
   constexpr double kCloseRad = 1e-8;
   const Pose& then = recorded.row.T_world_camera;

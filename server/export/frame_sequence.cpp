@@ -8,9 +8,10 @@
 namespace overfly::engine {
 namespace {
 
-/// True when a frame depends on the ones before it, so that none may be left out.
+/// True if a frame depends on the preceding ones, so that none may be skipped.
 bool needs_history(const Scenario& scenario) {
-  // A frozen camera shows an older image, and stamps that faults shift depend on those before.
+  // A frozen camera repeats an older image, and stamps shifted by faults depend on the preceding
+  // ones.
   if (!scenario.faults.empty()) return true;
   return std::any_of(
       scenario.cameras.begin(), scenario.cameras.end(), [](const CameraSpec& camera) {
@@ -89,11 +90,11 @@ const FrameRecord* FrameSequence::record_of(std::int64_t frame) const {
   return found != rows.end() && found->row.frame == frame ? &*found : nullptr;
 }
 
-/// Makes the frames that the next one depends on.
+/// Makes the frames on which the next one depends.
 Status FrameSequence::catch_up(std::int64_t frame) {
   if (!needs_history(source_.scenario)) return {};
   for (std::int64_t k = made_up_to_; k < frame; ++k) {
-    // What a real-time run was too late to draw, its cameras never exposed.
+    // A real-time run did not expose its cameras for frames that were too late.
     if (source_.run && record_of(k) == nullptr) continue;
     const auto passed = maker_->make(k);
     if (!passed) return passed.error();

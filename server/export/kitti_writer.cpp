@@ -27,7 +27,7 @@ class KittiWriter final : public DatasetWriter {
 
   Result<std::vector<std::string>> add(const MadeFrame& frame) override {
     const CameraShot& shot = frame.shots.front();
-    // The format counts images: one that is lost has no line.
+    // The format identifies images by position, so a lost image has no line.
     if (!shot.delivered) return std::vector<std::string>(1);
     const Pose& T_world_camera = shot.drawn.T_world_camera;
     if (written_ == 0) {

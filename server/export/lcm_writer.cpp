@@ -1,5 +1,5 @@
-// LCM event logs: flight.lcm with what an estimator on LCM hears (vo_bridges/lcm/README.md), and
-// the true poses.
+// LCM event logs: flight.lcm contains the messages that an estimator on LCM receives
+// (vo_bridges/lcm/README.md), and the true poses.
 #include <optional>
 
 #include "server/export/dataset_writer.hpp"
@@ -16,7 +16,8 @@ class LcmWriter final : public DatasetWriter {
   LcmWriter(const DatasetPlan& plan, std::unique_ptr<LcmLogWriter> log)
       : cameras_(plan.cameras), log_(std::move(log)) {
     for (const CameraSpec& camera : cameras_) {
-      // The first has the door's own channels, so that its log plays to an estimator as it is.
+      // The first camera uses the door's own channels, so that its log can be played to an
+      // estimator directly.
       prefixes_.push_back(prefixes_.empty() ? "OVERFLY_" : "OVERFLY_" + camera.name + "_");
     }
   }
@@ -60,7 +61,7 @@ class LcmWriter final : public DatasetWriter {
 
   std::vector<CameraSpec> cameras_;
   std::unique_ptr<LcmLogWriter> log_;
-  std::vector<std::string> prefixes_;  ///< of the channels, one a camera
+  std::vector<std::string> prefixes_;  ///< channel prefixes, one for each camera
   std::optional<std::int64_t> next_calibration_ns_;
 };
 

@@ -1,4 +1,4 @@
-// Plain PNG and CSV: images/CAMERA/NNNNNN.png, CAMERA.csv with all that is known of each image,
+// Plain PNG and CSV: images/CAMERA/NNNNNN.png, CAMERA.csv with all metadata of each image,
 // cameras.json.
 #include "server/export/dataset_writer.hpp"
 #include "server/files/number_text.hpp"
@@ -70,7 +70,7 @@ class PngWriter final : public DatasetWriter {
   }
 
  private:
-  /// Faults are separated by blanks; an image that was lost has no file.
+  /// Faults are separated by blanks; a lost image has an empty file name.
   static std::string row_of(const MadeFrame& frame,
                             const CameraShot& shot,
                             const std::string& file) {
@@ -100,7 +100,7 @@ class PngWriter final : public DatasetWriter {
 
   std::filesystem::path folder_;
   std::vector<CameraSpec> cameras_;
-  std::vector<std::string> rows_;  ///< one table a camera
+  std::vector<std::string> rows_;  ///< one table for each camera
 };
 
 }  // namespace

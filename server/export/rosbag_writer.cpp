@@ -1,5 +1,5 @@
-// A ROS 1 bag: of each camera the images that estimators are given, the calibration with each of
-// them, and the truth of every frame.
+// A ROS 1 bag: for each camera the images as given to estimators, the calibration with each image,
+// and the truth of every frame.
 #include <set>
 #include <system_error>
 
@@ -13,13 +13,13 @@ namespace fs = std::filesystem;
 
 constexpr const char* kWorldFrame = "world";
 
-/// What the messages of one camera are called.
+/// Topic and frame names of one camera.
 struct CameraNames {
   std::string image, info, truth;
   std::string frame;
 };
 
-/// The first camera is "/camera", as nodes expect it; further ones go by their names.
+/// The first camera is "/camera", as nodes expect it; the others are called by their names.
 std::vector<CameraNames> names_of(const std::vector<CameraSpec>& cameras) {
   std::vector<CameraNames> names;
   std::set<std::string> taken;
@@ -86,7 +86,7 @@ class RosbagWriter final : public DatasetWriter {
   DatasetPlan plan_;
   std::vector<CameraNames> names_;
   std::unique_ptr<Ros1BagWriter> bag_;
-  fs::path unfinished_;  ///< its name until it is whole, as rosbag names it
+  fs::path unfinished_;  ///< name until it is complete, as used by rosbag
 };
 
 }  // namespace

@@ -13,8 +13,8 @@
 namespace overfly::engine {
 namespace {
 
-/// Name and coefficients of a lens as the first line of camera.txt has them.
-/// Errors: kUnsupported for a lens that the file cannot hold.
+/// Name and coefficients of a lens, as in the first line of camera.txt.
+/// Errors: kUnsupported for a lens that the file cannot represent.
 Result<std::pair<std::string, std::string>> lens_text(const CameraSpec& camera) {
   const Distortion& lens = camera.model.distortion();
   const auto& k = lens.k;
@@ -59,7 +59,7 @@ class TumMonoWriter final : public DatasetWriter {
     truth_.push_back({frame.t_ns, shot.drawn.T_world_camera});
     if (!shot.delivered) return std::vector<std::string>(1);
     const std::string id = padded(frame.frame, digits_);
-    // Gain brightens as exposure does, and the format knows no other factor.
+    // Gain brightens like exposure, and the format has no field for it.
     times_ +=
         id + " " + seconds_text(shot.stamp_ns) + " " +
         number_text(static_cast<double>(shot.setting.exposure_ns) * 1e-6 * shot.setting.gain) +
@@ -77,8 +77,9 @@ class TumMonoWriter final : public DatasetWriter {
   }
 
  private:
-  /// Relative to the image's size, which every reader of the format takes: DSO makes pixels of
-  /// them as cx = cx_relative * width - 0.5, so that half a pixel is added here.
+  /// Intrinsics relative to the image's size, which every reader of the format accepts. DSO
+  /// converts them to pixels as cx = cx_relative * width - 0.5; half a pixel is therefore added
+  /// here.
   Status write_camera() const {
     const auto lens = lens_text(camera_);
     if (!lens) return lens.error();
@@ -110,7 +111,7 @@ Result<std::unique_ptr<DatasetWriter>> create_tum_mono_writer(const DatasetPlan&
                  "tum-mono holds one camera, " + std::to_string(plan.cameras.size()) +
                      " are asked for: name one with --camera"};
   }
-  // Before anything is written: a refused export leaves the folder as it was.
+  // Checked before anything is written: a rejected export leaves the folder unchanged.
   const auto lens = lens_text(plan.cameras.front());
   if (!lens) return lens.error();
   auto writer = std::make_unique<TumMonoWriter>(plan);

@@ -41,7 +41,7 @@ std::uint8_t byte_of(int scaled) {
 }  // namespace
 
 PlanarImage planar_from_rgb(const Image& rgb) {
-  // BT.709 in 1/65536: Kr = 0.2126, Kb = 0.0722; 219 and 224 steps of the 255.
+  // BT.709 in units of 1/65536: Kr = 0.2126, Kb = 0.0722; 219 and 224 of 255 steps.
   constexpr int kShift = 65536;
   PlanarImage planar;
   planar.width_px = rgb.width_px;

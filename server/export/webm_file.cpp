@@ -24,7 +24,7 @@ constexpr std::uint32_t kTracks = 0x1654AE6B;
 constexpr std::uint32_t kCluster = 0x1F43B675;
 constexpr std::uint32_t kCues = 0x1C53BB6B;
 
-/// Blocks stamp relative to their cluster in 16 bits.
+/// Block stamps are 16-bit offsets from their cluster's stamp.
 constexpr std::int64_t kLongestClusterMs = 30'000;
 
 void put_big_endian(std::uint64_t value, int bytes, Bytes& out) {
@@ -38,7 +38,8 @@ void put_id(std::uint32_t id, Bytes& out) {
   put_big_endian(id, bytes, out);
 }
 
-/// Size of an element's content in eight bytes (RFC 8794, section 4): a head of constant length.
+/// Size of an element's content in eight bytes (RFC 8794, section 4), so that the head has constant
+/// length.
 void put_size(std::uint64_t size, Bytes& out) { put_big_endian((1ULL << 56U) | size, 8, out); }
 
 void put_element(std::uint32_t id, const Bytes& content, Bytes& out) {
@@ -143,14 +144,14 @@ Error WebmFile::failure() const {
   return {ErrorCode::kIo, file_.string() + ": cannot be written: " + std::strerror(errno)};
 }
 
-/// Everything before the first cluster: of the same length whatever the numbers are.
+/// Everything before the first cluster; its length does not depend on the values.
 WebmFile::Bytes WebmFile::head(std::int64_t end_ms,
                                std::uint64_t cues_position,
                                std::uint64_t segment_bytes) const {
   const Bytes info = info_element(end_ms);
   const Bytes tracks = tracks_element(width_px_, height_px_);
   Bytes seeks;
-  // Its own length is needed for the positions behind it, and does not depend on them.
+  // Later positions need its length, which does not depend on them.
   for (int pass = 0; pass < 2; ++pass) {
     const std::uint64_t behind = 12 + seeks.size();
     seeks.clear();

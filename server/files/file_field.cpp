@@ -10,7 +10,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// A value as a message shows it.
+/// A value as shown in a message.
 std::string shown(const Json& value) {
   if (value.is_object()) return "an object";
   if (value.is_array()) return "an array";

@@ -6,7 +6,7 @@
 namespace overfly::engine {
 namespace {
 
-/// Times beyond 64 bits of nanoseconds wrap around: equal ones stay equal.
+/// Times beyond 64 bits of nanoseconds wrap around: equal times stay equal.
 std::int64_t ns_from(const timespec& time) {
   return static_cast<std::int64_t>(static_cast<std::uint64_t>(time.tv_sec) * 1'000'000'000U +
                                    static_cast<std::uint64_t>(time.tv_nsec));

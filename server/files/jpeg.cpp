@@ -34,7 +34,7 @@ Result<std::vector<std::uint8_t>> encode_jpeg(const Image& image, int quality) {
                      std::to_string(image.height_px) + " x " + std::to_string(image.channels) +
                      ": must have pixels and 1 or 3 channels"};
   }
-  // One codec per thread: creating it costs more than a small image.
+  // One codec per thread, because creating it costs more than encoding a small image.
   thread_local const Handle handle{tjInitCompress()};
   if (!handle) return Error{ErrorCode::kInternal, "JPEG encoder: out of memory"};
   const bool grey = image.channels == 1;

@@ -27,7 +27,7 @@ std::string names_of(const Json& properties) {
   return names.empty() ? "none" : names;
 }
 
-/// The field whose last words are the one that was given: "datum" was "vertical_datum" meant.
+/// A field whose last words equal the given name: "datum" probably meant "vertical_datum".
 std::string suggestion(const std::string& given, const Json& properties) {
   for (const auto& [name, value] : properties.items()) {
     if (name.ends_with("_" + given)) return "; its name is " + name;
@@ -35,7 +35,7 @@ std::string suggestion(const std::string& given, const Json& properties) {
   return "";
 }
 
-/// What a keyword holds, or an empty object (`.items()` must not walk over a temporary).
+/// The value of a keyword, or an empty object (`.items()` must not iterate over a temporary).
 const Json& keyword(const Json& node, const char* name) {
   static const Json none = Json::object();
   return node.contains(name) ? node.at(name) : none;
@@ -189,7 +189,7 @@ void JsonSchema::check_one_of(const Json& node,
   const auto fits = std::count_if(
       branches.begin(), branches.end(), [&](const Json& branch) { return matches(branch, value); });
   if (fits == 1) return;
-  // The faults of the one branch that was meant say more than "none fits".
+  // The errors of the branch that was probably meant are more useful than "none fits".
   std::vector<const Json*> meant;
   std::string titles;
   for (const Json& branch : branches) {
@@ -210,7 +210,7 @@ void JsonSchema::apply_defaults(const Json& unresolved, Json& value) const {
   const Json& node = resolved(unresolved);
   if (value.is_object()) {
     for (const auto& [key, child] : keyword(node, "properties").items()) {
-      // A default beside a $ref goes before that of what it refers to.
+      // A default next to a $ref takes precedence over that of the referenced schema.
       const Json& property = child.contains("default") ? child : resolved(child);
       if (!value.contains(key) && property.contains("default")) value[key] = property.at("default");
       if (value.contains(key)) apply_defaults(child, value[key]);

@@ -16,7 +16,7 @@ std::string with_article(const std::string& type) {
   return (type == "object" || type == "array" || type == "integer" ? "an " : "a ") + type;
 }
 
-/// Characters (code points), as the standard counts them, of UTF-8 text.
+/// Number of characters (code points) of UTF-8 text, as the standard counts them.
 std::size_t length_of(const std::string& text) {
   return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
     return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;

@@ -26,7 +26,7 @@ std::string padded(std::int64_t number, int digits) {
 }
 
 std::string seconds_text(std::int64_t t_ns) {
-  // Stamps of a clock that is off may lie before the flight's start.
+  // Stamps of a camera with a clock offset may be negative.
   const std::int64_t size_ns = t_ns < 0 ? -t_ns : t_ns;
   std::string text = t_ns < 0 ? "-" : "";
   text += std::to_string(size_ns / kNsPerS);

@@ -29,7 +29,7 @@ void put_chunk(const char* type, const Bytes& data, Bytes& out) {
   put_u32(libdeflate_crc32(0, out.data() + begin, out.size() - begin), out);
 }
 
-/// A row of samples as the file has them: the high byte of 16 bits first.
+/// Copies a row of samples in file order: high byte of 16 bits first.
 void copy_row(const std::uint8_t* row, std::size_t samples, std::uint8_t* out) {
   std::copy(row, row + samples, out);
 }
@@ -40,7 +40,7 @@ void copy_row(const std::uint16_t* row, std::size_t samples, std::uint8_t* out) 
   }
 }
 
-/// Each row behind the number of its filter: 2 = minus the row above.
+/// Each row is preceded by its filter type: 2 = difference to the row above.
 template <typename T>
 Bytes filtered(const ImageBuffer<T>& image) {
   const std::size_t samples = static_cast<std::size_t>(image.width_px) * image.channels;

@@ -20,7 +20,7 @@ Error io_error(const fs::path& file, const char* action) {
   return {ErrorCode::kIo, file.string() + ": cannot " + action + ": " + std::strerror(errno)};
 }
 
-/// Writes all bytes, however often the system takes only a part.
+/// Writes all bytes, repeating partial writes.
 bool write_all(int descriptor, const char* bytes, std::size_t size) {
   while (size > 0) {
     const ssize_t written = ::write(descriptor, bytes, size);
@@ -59,7 +59,8 @@ Status write_whole(const fs::path& file, const std::string& text) {
 }
 
 Status write_json(const fs::path& file, const nlohmann::json& value) {
-  // Text from outside may hold bytes that are no UTF-8: those are replaced, not thrown about.
+  // External text may contain bytes that are not UTF-8: they are replaced instead of causing an
+  // exception.
   return write_whole(file,
                      value.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }

@@ -5,7 +5,7 @@ namespace overfly::engine {
 void tally(const EstimateRecord& record,
            std::optional<std::uint32_t> frame_crc32,
            EstimatorStatus& status) {
-  // An estimator that is gone answers no frame and drops none.
+  // An estimator that has ended answers no frame and drops none.
   if (!status.crash.empty()) return;
   if (record.dropped) {
     ++status.dropped;

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Six of 32 letters and digits that are not taken for each other.
+/// Six of 32 letters and digits that are not easily confused.
 std::string random_part() {
   constexpr std::string_view kLetters = "abcdefghijkmnpqrstuvwxyz23456789";
   static_assert(kLetters.size() == 32);

@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-/// Of a file that a list of runs reads.
+/// Maximum size of a file that is read for a list of runs.
 constexpr std::uint64_t kMostListedBytes = std::uint64_t{16} << 20U;
 
 constexpr std::array<RunStatus, 4> kWrittenStatuses = {
@@ -33,12 +33,12 @@ RunStatus written_status(const FileField& field) {
   field.fault("be running, completed, failed or cancelled");
 }
 
-/// Reads the fields that are right, and keeps the first fault of those that are not.
+/// Reads the valid fields, and keeps the first error of the invalid ones.
 class InfoReader {
  public:
   InfoReader(RunInfo& info, std::string file) : info_(info), file_(std::move(file)) {}
 
-  /// @param read  reads one thing of the document; leaves the info's default where it throws
+  /// @param read  reads one value of the document; if it throws, the info keeps its default
   /// @return whether it could be read
   template <typename Read>
   bool field(const Read& read) {
@@ -59,8 +59,8 @@ class InfoReader {
   std::string file_;
 };
 
-/// Frames in a file of rows, by the number in its last whole row: a long file costs no more than a
-/// short one.
+/// Number of frames in a file of rows, from the number in its last complete row: the cost does not
+/// depend on the file's length.
 std::int64_t frames_written(const fs::path& file) {
   constexpr std::streamoff kLongestRow = 64 << 10;
   std::error_code ignored;
@@ -125,7 +125,7 @@ void read_manifest(const Json& document, const fs::path& file, RunInfo& info) {
     }
   });
   reader.field([&] {
-    // Absent until the run knows its cameras.
+    // Absent until the run has its cameras.
     const auto cameras = manifest.find("cameras");
     if (!cameras) return;
     for (const FileField& camera : cameras->items()) {
@@ -152,7 +152,7 @@ bool is_utc(const std::string& text) {
                           rest.find_first_not_of("0123456789", 1) == std::string::npos);
 }
 
-/// Folders of earlier versions have no such file: their scenario was written when they were made.
+/// Folders of earlier versions have no such file: their scenario was written at creation.
 void read_created(const fs::path& folder, RunInfo& info) {
   const fs::path file = created_file(folder);
   const Result<Json> created = read_json(file, kMostListedBytes);
@@ -185,14 +185,15 @@ void put_run_info(const RunInfo& info, Json& manifest) {
 }
 
 std::string folder_name(const fs::path& folder) {
-  // `folder/.` and `folder/` have no file name of their own.
+  // `folder/.` and `folder/` have an empty file name.
   const fs::path plain = fs::absolute(folder).lexically_normal();
   return (plain.has_filename() ? plain : plain.parent_path()).filename().string();
 }
 
 Result<RunInfo> read_run_info(const fs::path& folder) {
-  // The lock before the manifest: a run that ends in between has its final status written. And
-  // once more after it: a run that begins in between has its lock by then.
+  // The lock is checked before the manifest is read: a run that ends in between has written its
+  // final status. It is checked again afterwards: a run that begins in between holds its lock by
+  // then.
   const bool held = RunLock::held(folder);
   const Result<Json> manifest = read_json(manifest_file(folder), kMostListedBytes);
   if (!manifest && manifest.error().code == ErrorCode::kNotFound) return manifest.error();

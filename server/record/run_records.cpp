@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-/// Reads each line of a file into a row; `read` gives a Result.
+/// Converts each line of a file to a row; `read` returns a Result.
 template <typename Read>
 Status for_each_row(const fs::path& file, const Read& read) {
   const Result<std::vector<Json>> lines = read_lines(file);
@@ -35,8 +35,8 @@ Pose read_manifest_pose(const FileField& field) {
   return *pose;
 }
 
-/// Cameras, and whose images each estimator got. A run that failed before it had a camera keeps
-/// the default mount.
+/// Reads the cameras, and which camera each estimator used. A run that failed before it had a
+/// camera keeps the default mount.
 void read_recorded_cameras(const FileField& manifest, RunRecords& records) {
   if (const auto camera = manifest.find("camera")) {
     if (const auto mount = camera->find("T_body_camera")) {

@@ -1,4 +1,4 @@
-// The rows of a run folder's line files, read back.
+// Reads the rows of a run folder's line files.
 #include <algorithm>
 #include <charconv>
 #include <limits>
@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Field `image_crc32`; empty where it is absent.
+/// Field `image_crc32`; empty if absent.
 std::optional<std::uint32_t> crc32_or_none(const FileField& row) {
   const auto field = row.find("image_crc32");
   if (!field) return std::nullopt;
@@ -58,7 +58,7 @@ std::optional<double> number_of_row(const FileField& row, const char* name) {
 }
 
 PinholeCamera read_pinhole(const FileField& value) {
-  constexpr int kMostPixels = 1 << 20;  // on a side
+  constexpr int kMostPixels = 1 << 20;  // per side
   PinholeCamera camera;
   camera.width_px = small_integer(value.at("width_px"), 1, kMostPixels);
   camera.height_px = small_integer(value.at("height_px"), 1, kMostPixels);

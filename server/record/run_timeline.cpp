@@ -176,7 +176,7 @@ void RunTimeline::set_info(const RunInfo& info) {
   info_ = info;
   const bool live = info.status == RunStatus::kQueued || info.status == RunStatus::kRunning;
   if (!live) {
-    // Pictures of a run that is over are read from its folder or drawn again.
+    // Pictures of a run that is over are read from its folder or rendered again.
     for (CameraRows& camera : cameras_) camera.live.reset();
     for (EstimatorRows& rows : estimates_) {
       rows.debug.reset();

@@ -1,4 +1,4 @@
-// RunTimeline::open: a run folder read back into the rows that its run gave out.
+// RunTimeline::open: reads a run folder back into the rows of the live run.
 #include <optional>
 #include <unordered_map>
 #include <utility>
@@ -19,9 +19,9 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-/// What timings.json says of one estimator, as far as it can be read.
+/// The part of timings.json about one estimator, as far as it is readable.
 struct EstimatorTimings {
-  std::unordered_map<std::int64_t, double> latency_ms;  ///< by frame, once the run is over
+  std::unordered_map<std::int64_t, double> latency_ms;  ///< by frame; filled at the end of the run
   std::optional<EstimatorUse> use;
 };
 
@@ -42,7 +42,7 @@ EstimatorTimings read_timings(const FileField& timings, const std::string& estim
   return read;
 }
 
-/// The problem that is told first stays.
+/// Keeps the first problem reported.
 void tell_problem(RunInfo& info, const std::string& problem) {
   if (info.problem.empty()) info.problem = problem;
 }
@@ -55,7 +55,7 @@ void append_estimates(const RunRecords& records,
   LiveAlignment alignment(records.mount_of(estimator.camera));
   for (const EstimateRecord& record : estimator.records) {
     const FrameRecord* frame = frame_record(records, estimator.camera, record.sample.frame);
-    // A kill can cut the frames' file shorter than this one.
+    // A kill can leave the frames' file shorter than this one.
     if (record.dropped || frame == nullptr) continue;
     EstimateRow row;
     row.sample = record.sample;
@@ -99,7 +99,7 @@ void append_frames(const RunRecords& records, RunTimeline& timeline) {
   }
 }
 
-/// The run plays without its timings; what is wrong with them is told.
+/// The run can be played without its timings; an error in them is reported.
 void append_answers(const fs::path& folder,
                     const RunRecords& records,
                     RunTimeline& timeline,
@@ -118,7 +118,7 @@ void append_answers(const fs::path& folder,
   }
 }
 
-/// Runs of one camera may say so in `camera` alone.
+/// Runs with one camera may contain only `camera`.
 Status tell_cameras(const Json& manifest, const RunRecords& records, RunTimeline& timeline) {
   std::vector<RunCamera> cameras;
   const auto read = guarded_fields([&] {
@@ -141,7 +141,7 @@ Status tell_cameras(const Json& manifest, const RunRecords& records, RunTimeline
   return {};
 }
 
-/// An empty object where the run is not scored; a fault is told in `info`.
+/// An empty object if the run is not scored; an error is reported in `info`.
 Json read_metrics(const fs::path& folder, RunInfo& info) {
   Result<Json> metrics = read_json(metrics_file(folder));
   if (metrics && metrics->is_object()) return std::move(*metrics);

@@ -70,7 +70,7 @@ std::int64_t FlightRun::end_ns() const {
 
 nlohmann::json FlightRun::timings() const {
   const std::int64_t now_ns = clock_.now_ns();
-  // Without the set-up: making or opening the world is no part of a frame's cost.
+  // Excludes the set-up: making or opening the world is not part of a frame's cost.
   const double loop_s = loop_begin_ns_ == 0 ? 0.0 : s_from_ns(now_ns - loop_begin_ns_);
   const double flight_s = s_from_ns(end_ns());
   return {{"finished_utc", utc_text(utc_now_ns())},
@@ -87,7 +87,8 @@ Status FlightRun::fly() {
   // Before the cameras and the estimators start their threads, which inherit the priority.
   std::optional<RaisedThread> before_other_programs;
   if (scenario_.pacing == Pacing::kRealTime) before_other_programs.emplace();
-  // Whatever ends the flight: what an estimator does on leaving belongs into a folder still open.
+  // Runs however the flight ends: output of an estimator that shuts down must be recorded while the
+  // folder is still open.
   struct Leaving {
     FlightRun& run;
     ~Leaving() {
@@ -127,7 +128,7 @@ Status FlightRun::fly_real_time() {
   PictureRate nobody_asks;
   PictureRate& pictures = options_.picture_rate != nullptr ? *options_.picture_rate : nobody_asks;
   loop_begin_ns_ = clock_.now_ns();
-  // Also when something throws: viewers must not be held back for a flight that is over.
+  // Also if an exception is thrown: viewers must not be throttled for a flight that is over.
   struct InTheAir {
     RunClock& clock;
     PictureRate& pictures;
@@ -152,7 +153,7 @@ Status FlightRun::keep_pace(std::int64_t start_ns, PictureRate& pictures) {
     const std::int64_t next_ns = frame_time_ns(k + 1, scenario_.rate);
     const std::int64_t now_ns = clock_.now_ns() - start_ns;
     if (now_ns >= next_ns) {
-      // The next frame is due already: drawing this one would only put off that one.
+      // The next frame is already due: drawing this one would only delay it.
       if (Status recorded = recorder_.add_late_frame(k, t_ns); !recorded) return recorded;
       pictures.frame_missed(clock_.now_ns());
       continue;
@@ -172,7 +173,7 @@ Result<FlightRun::Flight> FlightRun::fly_frame(std::int64_t k, bool wait_for_est
   if (!made) return made.error();
   if (!*made) return Flight::kEnded;
 
-  // While this frame was drawn, the estimators worked on the one before.
+  // The estimators worked on the previous frame while this one was drawn.
   if (wait_for_estimators) {
     stages_.measure("wait_for_estimators", [&] {
       for (auto& worker : workers_) worker->wait_until_idle();
@@ -198,7 +199,7 @@ Status FlightRun::deliver(MadeFrame& made) {
     if (shot.delivered) image = std::make_shared<const Image>(std::move(shot.image));
     const auto grey =
         image && image->channels != 1 ? std::make_shared<const Image>(grey_of(*image)) : image;
-    // Once a frame, whoever gets it: so every estimator's image is known to be the same.
+    // Computed once per frame, so that it applies to the image of every estimator.
     if (grey) record.row.image_crc32 = stages_.measure("hash", [&] { return crc32_of(*grey); });
     for (std::size_t i = 0; i < workers_.size() && grey; ++i) {
       if (scenario_.estimators[i].camera != shot.camera) continue;

@@ -1,4 +1,4 @@
-// FlightRun: estimators before the first frame and after the last.
+// FlightRun: the estimators before the first frame and after the last.
 #include <utility>
 
 #include "server/record/run_folder.hpp"
@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 using Port = Result<std::unique_ptr<VoPort>>;
 
-/// Stands for an estimator that did not start: its first frame says why it is gone.
+/// Replaces an estimator that did not start: its first frame reports the reason.
 class AbsentEstimator final : public VoPort {
  public:
   AbsentEstimator(std::string type, Error reason)
@@ -33,13 +33,13 @@ class AbsentEstimator final : public VoPort {
   Error reason_;
 };
 
-/// A bad value in the scenario ends the run; what an estimator beyond our doors does, or what this
-/// machine lacks for it, ends that estimator alone.
+/// An invalid value in the scenario ends the run. An error of an outside estimator, or a
+/// requirement of it that this machine lacks, ends only that estimator.
 bool ends_the_run(const Error& error) {
   return error.code == ErrorCode::kInvalidArgument || error.code == ErrorCode::kCancelled;
 }
 
-/// Made for an estimator that has something to put there.
+/// Created for an estimator that has files to write.
 Result<fs::path> output_folder(const fs::path& run_folder, const EstimatorSpec& spec) {
   if (spec.type != "process") return fs::path();
   fs::path folder = fs::absolute(estimator_output_folder(run_folder, spec.name));
@@ -71,7 +71,7 @@ Port FlightRun::open_estimator(const EstimatorSpec& spec) {
                                  scenario_.rate.hz(),
                                  options_.cancel};
   if (is_outside_estimator(spec.type)) return create_estimator(spec, setting, truth);
-  // Threads that a native estimator makes at once are bound as well.
+  // Also binds the threads that a native estimator starts at once.
   const AffinityGuard guard;
   if (Status status = bind_thread(spec.cpus); !status) {
     return status.error().in("estimator \"" + spec.name + "\"");
@@ -106,7 +106,8 @@ Status FlightRun::open_estimators() {
 }
 
 void FlightRun::prepare_estimators() {
-  clock_.enter();  // until all are at it: a simulated clock must not move on for the first alone
+  // All enter first: a simulated clock must not advance while only some have entered
+  clock_.enter();
   for (std::size_t i = 0; i < workers_.size(); ++i) {
     const CameraSpec& camera = scenario_.cameras[scenario_.estimators[i].camera];
     VoFrame first;
@@ -140,7 +141,8 @@ Status FlightRun::describe_use() {
     const Json at_begin = entry.value("parameters", Json::object());
     for (const auto& [name, value] : at_end.items()) {
       const std::string was = at_begin.value(name, "");
-      // An estimator may tell some only once it knows its camera: that is no change.
+      // An estimator may report some parameters only after it knows its camera: that is not a
+      // change.
       if (was.empty() || was == value) continue;
       Status logged = recorder_.log(end_ns(),
                                     "warning",

@@ -12,8 +12,8 @@ namespace overfly::engine {
 
 namespace {
 
-/// What ended a flight by an exception: too little memory, a thread that cannot be started, a fault
-/// of a library. It is the end of the flight, not of the program.
+/// Converts an exception that ended a flight: out of memory, a thread that cannot be started, a
+/// library error. It ends the flight, not the program.
 Error error_from(const std::exception& exception) {
   if (dynamic_cast<const std::bad_alloc*>(&exception) != nullptr) {
     return {ErrorCode::kInternal, "the machine has too little memory for this flight"};
@@ -25,7 +25,7 @@ Error error_from(const std::exception& exception) {
   return {ErrorCode::kInternal, "failed unexpectedly: " + std::string(exception.what())};
 }
 
-/// Calls a step of a run; what it throws is its error.
+/// Calls a step of a run; an exception becomes its error.
 template <typename Step>
 auto caught(const Step& step) -> decltype(step()) {
   try {
@@ -35,7 +35,7 @@ auto caught(const Step& step) -> decltype(step()) {
   }
 }
 
-/// A flight and what is left of it: its threads and processes have ended when this returns.
+/// A flight and its result; its threads and processes have ended when this returns.
 struct Flown {
   Status status;
   std::int64_t end_ns = 0;
@@ -54,7 +54,7 @@ Flown fly(const Scenario& scenario, const RunOptions& options, RunRecorder& reco
   return flown;
 }
 
-/// Errors: as the flight's; of the folder.
+/// Errors: as the flight's; as writing the folder.
 Result<RunResult> record_end(const Flown& flown, RunRecorder& recorder) {
   RunStatus status = RunStatus::kCompleted;
   std::string error;

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kFrameDigits = 6;  ///< as of the images in frames/
+constexpr int kFrameDigits = 6;  ///< same as the images in frames/
 constexpr double kNsPerMs = 1e6;
 
 bool got_lost(const FrameRow& row) {
@@ -49,7 +49,7 @@ Status write_times(const fs::path& run_folder,
   for (const FrameRecord& frame : frames) {
     const FrameRow& row = frame.row;
     if (got_lost(row)) continue;
-    // Gain brightens as exposure does, and the format knows no other factor.
+    // Gain brightens like exposure, and the format has no field for it.
     text += padded(row.frame, kFrameDigits) + " " + seconds_text(row.t_ns + row.stamp_offset_ns) +
             " " + number_text(1e-6 * static_cast<double>(row.exposure_ns) * row.gain) + "\n";
   }

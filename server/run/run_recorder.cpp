@@ -19,7 +19,8 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-constexpr int kFrameQuality = 95;  ///< close to lossless: estimators may be flown again over it
+/// Close to lossless: estimators may be run again on these images
+constexpr int kFrameQuality = 95;
 
 Status make_empty_folder(const fs::path& folder) {
   std::error_code failure;
@@ -78,7 +79,7 @@ Result<std::unique_ptr<RunRecorder>> RunRecorder::create(const fs::path& folder,
   if (Status status = make_empty_folder(folder); !status) return status.error();
   Result<RunLock> lock = RunLock::take(folder);
   if (!lock) return lock.error();
-  // Another process may have flown here between the look and the lock.
+  // Another process may have used the folder between the check and the lock.
   std::error_code ignored;
   if (fs::exists(manifest_file(folder), ignored)) {
     return Error{ErrorCode::kConflict, folder.string() + ": holds a run already"};
@@ -122,7 +123,8 @@ Status RunRecorder::open_files() {
                {"seed", scenario_.seed},
                {"world", Json::object()},
                {"estimators", estimators_json(scenario_)}};
-  // The manifest makes the folder a run: what a list of runs reads besides is there before it.
+  // A manifest makes the folder a run, so the other files that a list of runs reads are written
+  // before it.
   if (Status status = write_json(created_file(folder_), {{"created_utc", info_.created_utc}});
       !status) {
     return status;
@@ -279,9 +281,10 @@ Result<Json> RunRecorder::finish(RunStatus status, const std::string& error, Jso
 Status RunRecorder::let_go() {
   put_run_info(info_, manifest_);
   Status written = write_json(manifest_file(folder_), manifest_);
-  // Before anyone hears that the run is over, since others may change the file from then on.
+  // Before the end of the run is announced, since others may change the file from then on.
   timeline_->set_manifest_stamp(FileStamp::of(manifest_file(folder_)));
-  // A client that hears that the run is over may delete it at once, so the lock goes first.
+  // A client that learns of the run's end may delete it at once; the lock is therefore released
+  // first.
   lock_.reset();
   timeline_->set_info(info_);
   return written;
@@ -294,7 +297,7 @@ void RunRecorder::give_up(const Error& error) {
   try {
     (void)let_go();
   } catch (const std::exception&) {
-    // No memory even for the manifest: without its lock the run shows as interrupted.
+    // Out of memory even for the manifest: without its lock the run is shown as interrupted.
     lock_.reset();
   }
 }

@@ -1,4 +1,4 @@
-// RunRecorder: what the estimators answered, said and used.
+// RunRecorder: answers, log lines and resource use of the estimators.
 #include <string_view>
 #include <utility>
 
@@ -15,11 +15,11 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 constexpr int kDebugQuality = 85;
-/// Of one estimator in the run's log; its own output.log has all.
+/// Maximum for one estimator in the run's log; its output.log has all lines.
 constexpr int kMaxLogRows = 1000;
 constexpr std::size_t kMaxLogBytes = 1000;
 
-/// A line's level, as it says itself.
+/// The level given by the line's prefix.
 const char* level_of(std::string_view line) {
   if (line.starts_with("error: ")) return "error";
   return line.starts_with("warning: ") ? "warning" : "info";
@@ -88,7 +88,7 @@ Status RunRecorder::add_answer(std::size_t estimator, EstimatorEvent& event) {
     row.T_world_body =
         state.alignment.add(row.sample, frame->row.T_world_camera, frame->axis_depth_m);
   }
-  // One that is gone answers nothing, and that at once.
+  // An estimator that has ended returns an empty answer at once.
   const bool gone = !event.record.crash.empty() || !state.status.crash.empty();
   if (!gone) {
     state.frames.push_back(row.sample.frame);

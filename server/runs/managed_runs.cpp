@@ -174,7 +174,7 @@ bool ManagedRuns::cancel(const std::string& id) {
   release_run(options.runs_folder, id);
   set_status(*run->timeline, RunStatus::kCancelled, "");
   keep_unflown(run);
-  // The one behind it may fit where this one did not.
+  // The next run in the queue may fit where this one did not.
   wake_.notify_all();
   return true;
 }
@@ -212,7 +212,7 @@ Result<std::shared_ptr<RunTimeline>> ManagedRuns::shelved_timeline(const std::st
 
 void ManagedRuns::tell_world_change(const std::string& id, const OpenedWorld& opened) {
   index.set_world_change(id, world_change(options.runs_folder / id, opened));
-  // Whoever watches it is told by its time line.
+  // Its viewers are notified through its timeline.
   if (!known_timeline(id)) (void)shelved_timeline(id);
 }
 
@@ -220,7 +220,7 @@ void ManagedRuns::forget(const std::string& id) {
   shelf.forget(id);
   const std::lock_guard lock(mutex_);
   keys_.forget_run(id);
-  // Its thread may not have let it go yet.
+  // Its thread may still hold it.
   runs_.erase(id);
   std::erase_if(unflown_, [&](const auto& run) { return run->id == id; });
 }

@@ -14,7 +14,7 @@
 namespace overfly::engine {
 namespace {
 
-/// How often files of runs that are over are looked at for those who watch them.
+/// How often files of runs that are over are checked for their viewers.
 constexpr std::chrono::seconds kWatchPeriod{1};
 
 }  // namespace
@@ -52,7 +52,7 @@ bool ManagedRuns::next_fits() const {
     alone = false;
     together += run->memory;
   }
-  // That it fits alone was checked when it came.
+  // That it fits alone was checked when it was requested.
   return alone || budget_.holds(together);
 }
 
@@ -71,10 +71,10 @@ void ManagedRuns::work() {
       fly(*run);
       end(run);
     } catch (const std::exception& error) {
-      // No memory left even to record the failure: this run is over, the others go on.
+      // Out of memory even to record the failure: this run is over, the others continue.
       drop(run, error.what());
     }
-    // Others may have waited for its memory.
+    // Other runs may have waited for its memory.
     wake_.notify_all();
   }
 }
@@ -85,7 +85,7 @@ void ManagedRuns::drop(const std::shared_ptr<ManagedRun>& run, const char* reaso
   try {
     if (engine::is_live(*run->timeline)) set_status(*run->timeline, RunStatus::kFailed, reason);
   } catch (const std::exception&) {
-    // Its folder tells: interrupted.
+    // Its folder shows it as interrupted.
   }
 }
 
@@ -99,7 +99,7 @@ void ManagedRuns::end(const std::shared_ptr<ManagedRun>& run) {
     release_run(options.runs_folder, run->id);
   }
   const std::lock_guard lock(mutex_);
-  // One that was deleted in the moment since its end is known no more.
+  // False if the run was deleted just after its end.
   const bool known = runs_.erase(run->id) > 0;
   if (!has_folder && known) keep_unflown(run);
 }
@@ -111,7 +111,7 @@ void ManagedRuns::watch() {
     try {
       shelf.refresh();
     } catch (const std::exception&) {
-      // Too little memory now: the files are looked at again in a moment.
+      // Out of memory: the files are checked again in a moment.
     }
     lock.lock();
   }
@@ -128,19 +128,19 @@ void ManagedRuns::fly(ManagedRun& run) {
   run_options.picture_rate = &picture_rate;
   const auto set_world = [this, &run](WorldCache::Shared world) {
     const std::lock_guard lock(mutex_);
-    std::swap(run.world, world);  // one let go is closed without the lock
+    std::swap(run.world, world);  // a released world is closed without the lock held
   };
   run_options.world_opened = set_world;
   run_options.notice = [&run](const std::string& text) {
-    // The run's own next change of its info takes it away again.
+    // The run's next update of its info clears it again.
     RunInfo info = run.timeline->info();
     info.notice = text;
     run.timeline->set_info(info);
   };
   const Result<RunResult> result = run_scenario(run.scenario, run_options);
   set_world(nullptr);
-  // The run itself tells its timeline how it ended; only one that could not even make its folder
-  // has had no chance to.
+  // The run itself sets its final state in the timeline, unless it failed before it could create
+  // its folder.
   if (!result && engine::is_live(*run.timeline)) {
     set_status(*run.timeline, RunStatus::kFailed, result.error().message);
   }

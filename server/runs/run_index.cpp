@@ -16,7 +16,7 @@
 namespace overfly::engine {
 namespace {
 
-/// A directory as long as it is looked at; -1 where there is none.
+/// An open directory; the descriptor is -1 if it does not exist.
 class OpenFolder {
  public:
   explicit OpenFolder(const std::filesystem::path& folder)
@@ -76,7 +76,7 @@ bool RunIndex::look_at(int descriptor, const std::string& id, Entry& entry) {
       entry.info = std::make_shared<const RunInfo>(std::move(*info));
     }
   }
-  // A run that another process flies goes on without a change of its manifest.
+  // A run that another process flies changes without a change of its manifest.
   const bool flies = entry.info && entry.info->status == RunStatus::kRunning;
   entry.settled = manifest.settled(utc_now_ns()) && !flies;
   return !had_none || entry.info != nullptr;

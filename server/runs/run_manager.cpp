@@ -73,7 +73,7 @@ Status RunManager::check_overrides(const std::string& scenario,
   if (!file) return {};
   const Result<Scenario> trusted = load_scenario(*file);
   const Result<Scenario> wanted = load_scenario(*file, overrides);
-  // A file at fault that its overrides mend is trusted with nothing.
+  // If the file itself is invalid and only the overrides make it valid, nothing in it is trusted.
   return wanted ? check_reach(*wanted, trusted ? *trusted : Scenario()) : Status();
 }
 
@@ -115,7 +115,7 @@ Status RunManager::remove(const std::string& id) {
   if (impl_->is_live(id)) {
     return Error{ErrorCode::kConflict, "run \"" + id + "\" is not over: cancel it first"};
   }
-  // A run cancelled while it waited has no folder.
+  // A run cancelled while queued has no folder.
   if (impl_->forget_unflown(id)) return {};
   const Result<fs::path> place = folder(id);
   if (!place) return place.error();

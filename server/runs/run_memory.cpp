@@ -15,21 +15,21 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t kMib = std::uint64_t{1} << 20U;
 
-/// What the caches beside one renderer grow to (docs/PERFORMANCE.md, "Paging"): tiles, heights,
-/// elevation blocks and patches of ground; with OpenGL as many tiles again as textures.
+/// Maximum size of the caches of one renderer (docs/PERFORMANCE.md, "Paging"): tiles, heights,
+/// elevation blocks and terrain patches; with OpenGL the same number of tiles again as textures.
 constexpr std::uint64_t kRaycastCachesBytes = 900 * kMib;
 constexpr std::uint64_t kEglCachesBytes = 1250 * kMib;
-/// Of a second renderer over a world that is open already: tiles, textures, patches.
+/// For a second renderer over a world that is already open: tiles, textures, patches.
 constexpr std::uint64_t kViewCachesBytes = 600 * kMib;
-/// Share of the machine's memory that is the default limit.
+/// Fraction of the machine's memory that is the default limit.
 constexpr double kMachineShare = 0.8;
 
 /// Sizes of one camera's images [bytes].
 struct CameraSizes {
   std::uint64_t pixels = 0;
   std::uint64_t image = 0;     ///< 8 bit
-  std::uint64_t image16 = 0;   ///< of a sensor deeper than 8 bit
-  std::uint64_t radiance = 0;  ///< of a sensor
+  std::uint64_t image16 = 0;   ///< for a sensor deeper than 8 bit
+  std::uint64_t radiance = 0;  ///< for a camera with a sensor
 };
 
 CameraSizes sizes_of(const CameraSpec& camera) {
@@ -49,8 +49,8 @@ bool may_freeze(const Scenario& scenario) {
   });
 }
 
-/// Held from frame to frame: the image of the frame in the making, the one before it that viewers
-/// are shown, and the fields of the sensor's fixed patterns.
+/// Held between frames: the image in progress, the previous one for viewers, and the fields of the
+/// sensor's fixed patterns.
 std::uint64_t held_bytes(const Scenario& scenario, const CameraSpec& camera) {
   const CameraSizes sizes = sizes_of(camera);
   std::uint64_t bytes = 2 * sizes.image + sizes.image16;
@@ -62,8 +62,8 @@ std::uint64_t held_bytes(const Scenario& scenario, const CameraSpec& camera) {
   return bytes;
 }
 
-/// Only while one camera's image is made: the image, the light before the sensor, the same
-/// defocused, the grey copy of a colour image, the file that it is recorded as.
+/// Held only while one camera's image is made: the image, the radiance before the sensor, the
+/// defocused radiance, the grey copy of a colour image, the encoded file.
 std::uint64_t passing_bytes(const Scenario& scenario, const CameraSpec& camera) {
   const CameraSizes sizes = sizes_of(camera);
   std::uint64_t bytes = sizes.image + sizes.radiance;
@@ -73,8 +73,8 @@ std::uint64_t passing_bytes(const Scenario& scenario, const CameraSpec& camera) 
   return bytes;
 }
 
-/// OpenGL's target, which cameras of one size share: colour and depth, and four channels on their
-/// way back.
+/// OpenGL's render target, shared by cameras of the same size: colour and depth, and four channels
+/// for read-back.
 std::uint64_t target_bytes(const CameraSpec& camera) {
   const std::uint64_t sample = camera.sensor.enabled ? 4 : 1;
   const std::uint64_t colour = camera.rgb ? 4 * sample : sample;
@@ -82,8 +82,8 @@ std::uint64_t target_bytes(const CameraSpec& camera) {
   return sizes_of(camera).pixels * (colour + back + 4);
 }
 
-/// Copies of the grey image: one that waits and one at work, and what the estimator makes of it
-/// (a pyramid and its debug image here; the process at the other end of a door has its own).
+/// Copies of the grey image: one waiting and one in progress, and the estimator's own data (here a
+/// pyramid and its debug image; an outside process has its own memory).
 std::uint64_t estimator_bytes(const Scenario& scenario, const EstimatorSpec& estimator) {
   constexpr std::uint64_t kCopies = 8;
   const CameraSpec& camera = scenario.cameras[estimator.camera];
@@ -106,14 +106,14 @@ std::string cameras_text(const Scenario& scenario) {
          (largest->rgb ? " in colour" : "");
 }
 
-/// The number in a file of one number; empty for "max" and what cannot be read.
+/// Reads a file with a single number; empty for "max" and if it cannot be read.
 std::optional<std::uint64_t> number_in(const fs::path& file) {
   std::ifstream in(file);
   std::uint64_t number = 0;
   return in >> number ? std::optional<std::uint64_t>(number) : std::nullopt;
 }
 
-/// The lowest limit from this process's control group up to the root's.
+/// The lowest limit of the control groups from this process's up to the root.
 std::uint64_t control_group_bytes() {
   std::uint64_t limit = std::numeric_limits<std::uint64_t>::max();
   const fs::path root = "/sys/fs/cgroup";
@@ -152,7 +152,7 @@ RunMemory memory_of(const Scenario& scenario) {
             .second;
     if (new_target && !raycast) memory.images_bytes += target_bytes(camera);
   }
-  // Once in the run, and once where a viewer's picture is made again.
+  // Once in the run, and once when an image is rendered again for a viewer.
   memory.images_bytes += 2 * most_passing;
   for (const EstimatorSpec& estimator : scenario.estimators) {
     memory.images_bytes += estimator_bytes(scenario, estimator);

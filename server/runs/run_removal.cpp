@@ -19,10 +19,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of folders renamed aside. No run's id begins with a dot.
+/// Prefix of folders renamed for deletion. No run's id begins with a dot.
 constexpr const char* kAside = ".deleted-";
 
-/// Renames a folder to a name that no list shows. Errors: kNotFound; kIo.
+/// Renames a folder so that no list shows it. Errors: kNotFound; kIo.
 Result<fs::path> put_aside(const fs::path& folder) {
   const std::string id = folder.filename().string();
   fs::path aside = folder.parent_path() / (kAside + id + "-" + std::to_string(utc_now_ns()));
@@ -36,7 +36,7 @@ Result<fs::path> put_aside(const fs::path& folder) {
 Status remove_run_folder(const fs::path& folder) {
   std::error_code failure;
   std::optional<RunLock> lock;
-  // A link to a run elsewhere goes alone: nothing is written there.
+  // Of a symbolic link only the link is deleted: nothing is written to its target.
   if (!fs::is_symlink(folder, failure)) {
     Result<RunLock> taken = RunLock::take(folder);
     if (!taken && FileStamp::of(folder).exists) return taken.error();

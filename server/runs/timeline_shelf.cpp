@@ -25,7 +25,7 @@ bool TimelineShelf::is_fresh(Entry& entry) const {
   entry.metrics = now.metrics;
   entry.metrics_settled = now.metrics_settled;
   const Result<nlohmann::json> metrics = read_json(metrics_file(runs_folder_ / entry.id));
-  // A file that cannot be read is told when the run is opened the next time.
+  // A file that cannot be read is reported when the run is opened again.
   if (!metrics || !metrics->is_object()) return false;
   if (*metrics != entry.timeline->metrics()) entry.timeline->set_metrics(*metrics);
   return true;
@@ -44,13 +44,13 @@ Result<std::shared_ptr<RunTimeline>> TimelineShelf::get(const std::string& id) {
       entries_.erase(found);
     }
   }
-  // Read without the lock, since a long run takes long. The stamp first: what changes meanwhile is
-  // seen at the next call.
+  // Read without the lock, since a long run takes time. The stamp is taken first: a change
+  // meanwhile is seen at the next call.
   Entry entry = entry_of(id);
   Result<std::shared_ptr<RunTimeline>> opened = RunTimeline::open(runs_folder_ / id);
   if (!opened) return opened.error();
   entry.timeline = *opened;
-  // A run that another process still writes is read anew each time.
+  // A run that another process still writes is not cached.
   if ((*opened)->info().status != RunStatus::kRunning) keep(std::move(entry));
   return opened;
 }

@@ -17,7 +17,7 @@ double median_of(std::vector<double> values) {
   return 0.5 * (*middle + *std::max_element(values.begin(), middle));
 }
 
-/// Below so many linear texels a pixel the imagery, not the camera, limits the result.
+/// Below this number of linear texels per pixel the imagery, not the camera, limits the result.
 constexpr double kTextureLimit = 0.5;
 
 struct TexelMetrics {
@@ -41,7 +41,7 @@ TexelMetrics texels_of(const std::vector<FrameRecord>& frames) {
   return texels;
 }
 
-/// Empty when none was late.
+/// Empty if no tile was late.
 Json late_tiles_json(const std::vector<FrameRecord>& frames) {
   std::int64_t tiles = 0;
   std::int64_t touched = 0;
@@ -53,7 +53,7 @@ Json late_tiles_json(const std::vector<FrameRecord>& frames) {
   return {{"tiles", tiles}, {"frames", touched}};
 }
 
-/// {"KIND": frames that it touched}
+/// {"KIND": number of frames affected}
 Json fault_counts(const std::vector<FrameRecord>& frames) {
   std::map<std::string, std::int64_t> counts;
   for (const FrameRecord& frame : frames) {

@@ -85,7 +85,7 @@ Status write_trajectories(const fs::path& folder,
       comments["init_true_depth"] = number_text(*initial->true_depth_m);
     }
     for (const EstimateRecord& record : estimator.records) {
-      // Pieces before and after a reset have no common origin or scale: only the scored one.
+      // Only the scored piece: pieces before and after a reset have no common origin or scale.
       if (record.dropped || record.sample.state != TrackingState::kTracking) continue;
       if (record.sample.map_id != initial->map_id) continue;
       const Status added = trajectory.append({record.sample.t_ns, record.sample.T_vo_camera});

@@ -10,7 +10,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Null when one of the names is not there.
+/// The value at nested names; null if one of them is absent.
 const Json* find(const Json& root, std::initializer_list<std::string> names) {
   const Json* value = &root;
   for (const std::string& name : names) {

@@ -16,7 +16,7 @@ Status bind_thread(const std::vector<int>& cpus) {
     if (cpu >= 0 && cpu < CPU_SETSIZE) CPU_SET(static_cast<std::size_t>(cpu), &set);
     names += (names.empty() ? "" : ", ") + std::to_string(cpu);
   }
-  // Of the calling thread alone: 0 is its own number here.
+  // Pid 0 = the calling thread only.
   if (sched_setaffinity(0, sizeof(set), &set) == 0) return {};
   return Error{ErrorCode::kInvalidArgument,
                "cpus = [" + names + "]: must name a processor of this machine"};

@@ -34,7 +34,7 @@ void LatencyHistogram::add(double ms) {
 }
 
 double LatencyHistogram::quantile_ms(double share) const {
-  // As DurationList's: the nearest rank.
+  // Nearest rank, as in DurationList.
   const auto rank =
       static_cast<std::uint64_t>(std::llround(share * static_cast<double>(count_ - 1)));
   std::uint64_t below = 0;

@@ -8,16 +8,16 @@
 namespace overfly::engine {
 namespace {
 
-/// The last step is without a limit.
+/// The last step means no limit.
 constexpr std::array<double, 6> kSteps_hz = {
     PictureRate::kLeastHz, 2.0, PictureRate::kFirstHz, 10.0, 15.0, 0.0};
 constexpr std::size_t kFirstStep = 2;
 constexpr std::int64_t kWindowNs = kNsPerS;
-/// Of a frame's period: with less left the frame was made only just in time.
+/// Fraction of a frame's period: with less time left the frame counts as tight.
 constexpr double kTightShare = 0.1;
 constexpr int kFirstWait = 2;
 constexpr int kLongestWait = 60;
-/// A step up was one too many if it comes to this within so many windows.
+/// A step up was too much if a step down follows within this many windows.
 constexpr int kTrialWindows = 5;
 
 }  // namespace
@@ -55,7 +55,7 @@ void PictureRate::picture_made() {
   ++window_.pictures;
 }
 
-/// A missed frame has its consequence at once, calm only after whole windows.
+/// A missed frame acts immediately; calm counts only in whole windows.
 void PictureRate::close_window(std::int64_t now_ns) {
   const bool over = now_ns - window_.begin_ns >= kWindowNs;
   const bool pressed = window_.missed > 0 || (over && 2 * window_.tight > window_.frames);

@@ -16,7 +16,7 @@ namespace {
 constexpr int kNiceOfFlights = -10;
 constexpr const char* kAutogroup = "/proc/self/autogroup";
 
-/// The session's nice value; none where the kernel has no such groups.
+/// The session's nice value; empty if the kernel has no autogroups.
 std::optional<int> session_nice() {
   std::ifstream file(kAutogroup);
   std::string group;
@@ -31,7 +31,8 @@ bool set_session_nice(int value) {
   return static_cast<bool>(file << value << std::flush);
 }
 
-/// The session is shared by all flights of the program: the first raises it, the last restores it.
+/// The session is shared by all flights of the program: the first raises its priority, the last
+/// restores it.
 class SessionPriority {
  public:
   void raise() {
@@ -50,7 +51,7 @@ class SessionPriority {
  private:
   std::mutex mutex_;
   int flights_ = 0;
-  std::optional<int> nice_before_;  ///< only while it is raised
+  std::optional<int> nice_before_;  ///< set only while it is raised
 };
 
 SessionPriority& session_priority() {
@@ -64,7 +65,7 @@ void lower_thread(ThreadPriority priority) {
   constexpr int kNiceBelowFlights = 5;
   constexpr int kNicest = 19;
   const bool left_over = priority == ThreadPriority::kLeftOver;
-  // On Linux a nice value belongs to a thread: its number stands in for the process's.
+  // On Linux a nice value belongs to a thread; the thread id is used as the process id.
   (void)setpriority(
       PRIO_PROCESS, static_cast<id_t>(gettid()), left_over ? kNicest : kNiceBelowFlights);
   const sched_param none{};

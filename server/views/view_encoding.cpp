@@ -24,7 +24,7 @@ std::shared_ptr<const Image> halved(const Image& image) {
   return half;
 }
 
-/// True for the markers SOF0 to SOF15 that open a frame (not DHT, JPG, DAC).
+/// True for the markers SOF0 to SOF15 that begin a frame (not DHT, JPG, DAC).
 bool opens_frame(std::uint8_t marker) {
   return marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
 }

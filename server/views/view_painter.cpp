@@ -56,8 +56,7 @@ std::optional<std::int64_t> last_recorded(const fs::path& folder, std::int64_t f
   return last;
 }
 
-/// Stamp of a frame at or before `row`. Row i is of frame i, or of a later one where some were
-/// skipped.
+/// Stamp of a frame at or before `row`. Row i holds frame i, or a later frame if some were skipped.
 std::int64_t stamp_before(const RunTimeline& timeline, const FrameRow& row, std::int64_t frame) {
   if (frame == row.frame) return row.t_ns;
   const auto count = static_cast<std::int64_t>(timeline.frame_count());

@@ -8,7 +8,7 @@
 namespace overfly::engine {
 namespace {
 
-/// Each keeps its tiles as textures: a viewer may go back and forth between two worlds.
+/// Each keeps its tiles as textures: a viewer can switch between two worlds without reloading them.
 constexpr std::size_t kMaxRenderers = 2;
 
 }  // namespace
@@ -24,7 +24,7 @@ Result<const Scenario*> ViewRenderers::scenario_of(const std::string& run_id) {
 }
 
 Result<ViewRenderers::WorldView*> ViewRenderers::of_run(const std::string& run_id) {
-  // Who goes on watching a run goes on seeing its world, whatever becomes of the files.
+  // A viewer of a run keeps its world even if the files change.
   const auto watched = std::find_if(views_.begin(), views_.end(), [&](const WorldView& view) {
     return view.watched_run_id == run_id && view.world->tiles->status();
   });

@@ -18,7 +18,7 @@ constexpr std::array<std::array<float, 3>, 6> kEstimatorRgb = {{{0.15F, 0.45F, 1
                                                                 {0.10F, 0.75F, 0.80F},
                                                                 {0.85F, 0.35F, 0.60F}}};
 
-constexpr double kEstimateRibbonWidth = 0.5;  ///< of the truth's
+constexpr double kEstimateRibbonWidth = 0.5;  ///< relative to the truth's
 
 renderer::Ribbon ribbon_of(const std::vector<std::int64_t>& stamps_ns,
                            const std::vector<Pose>& poses,
@@ -106,7 +106,7 @@ std::vector<renderer::Ribbon> ViewRibbons::until(std::int64_t t_ns,
   for (std::size_t i = 0; i < estimates_.size(); ++i) {
     for (const Piece& piece : estimates_[i].pieces) {
       auto ribbon = ribbon_of(piece.t_ns, piece.T_world_body, t_ns, estimator_rgb(i));
-      // Narrower than the truth: where both coincide, the red edges stay visible on either side.
+      // Narrower than the truth, so that the red edges stay visible where both coincide.
       ribbon.wing_span_m *= kEstimateRibbonWidth;
       if (ribbon.T_world_body.size() > 1) ribbons.push_back(std::move(ribbon));
     }

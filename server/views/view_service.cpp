@@ -30,7 +30,7 @@ struct ViewService::Impl {
   ~Impl();
   void work();
   void paint(bool beside_flight);
-  /// Tells all who wait why they get no picture.
+  /// Answers all waiting requests with an error.
   void refuse(const Error& reason);
   std::optional<ViewQueue::Entry> next(bool beside_flight);
 
@@ -40,7 +40,7 @@ struct ViewService::Impl {
   ViewQueue queue;
   std::vector<PictureDone> replaced;   ///< to be told so on the thread
   std::atomic<bool> stopping = false;  ///< written under the mutex
-  std::thread thread;                  ///< last: it uses all of the above
+  std::thread thread;                  ///< last member, because it uses all of the above
 };
 
 ViewService::Impl::~Impl() {
@@ -52,8 +52,8 @@ ViewService::Impl::~Impl() {
   thread.join();
 }
 
-/// The next picture to draw, once there is one; tells replaced ones meanwhile. Empty at the end,
-/// and when a flight in real time has begun or ended.
+/// Waits for the next picture to draw; meanwhile answers replaced requests. Empty at the end, and
+/// when a real-time flight has begun or ended.
 std::optional<ViewQueue::Entry> ViewService::Impl::next(bool beside_flight) {
   std::unique_lock lock(mutex);
   for (;;) {
@@ -76,7 +76,7 @@ void ViewService::Impl::work() {
       wake.wait(lock, [this] { return stopping || !queue.empty() || !replaced.empty(); });
       if (stopping) return;
     }
-    // A thread's priority can be lowered only: beside a flight another one draws.
+    // A thread's priority can only be lowered: during a real-time flight another thread draws.
     const bool beside_flight = runs.picture_rate().flying();
     (void)contained([&] { std::thread([this, beside_flight] { paint(beside_flight); }).join(); },
                     [this](const char* what) {
@@ -97,7 +97,7 @@ void ViewService::Impl::refuse(const Error& reason) {
 void ViewService::Impl::paint(bool beside_flight) {
   lower_thread(beside_flight ? ThreadPriority::kLeftOver : ThreadPriority::kBelowFlights);
   const auto paint_all = [&] {
-    // The painter's renderers live and die on this thread.
+    // The painter's renderers are created and destroyed on this thread.
     ViewPainter painter(runs, stopping);
     while (auto entry = next(beside_flight)) {
       answer(entry->done, guarded([&] { return painter.paint(entry->request); }));

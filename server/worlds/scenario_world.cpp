@@ -11,12 +11,12 @@ namespace {
 
 using Cancelled = std::function<bool()>;
 
-/// Before anything looks at the files: a server's own tells nothing of others.
+/// Checked before any file is accessed: a server must not reveal anything about other files.
 Status check_confined(const terrain::WorldSpec& spec, const std::string& prefix) {
   return spec.sources.confined() ? terrain::check_world_sources(spec, prefix) : Status{};
 }
 
-/// The digests are of the bytes that fly only if nobody wrote to a file meanwhile.
+/// The digests belong to the data in use only if no file was written meanwhile.
 Result<OpenedWorld> open_layers(const terrain::WorldSpec& spec,
                                 std::vector<terrain::WorldFile> files,
                                 const Cancelled& cancelled) {

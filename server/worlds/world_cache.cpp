@@ -13,8 +13,8 @@ WorldCache::Shared WorldCache::find(const std::string& key) {
     if (known != worlds_.end()) opened = known->second.lock();
   }
   if (!opened) return nullptr;
-  // Without the lock: a slow disk holds up nobody who asks for another world. Heights that could
-  // not be read stay unknown in a world.
+  // Checked without the lock, so that a slow disk does not delay requests for other worlds. Heights
+  // that could not be read stay unknown in an opened world.
   if (terrain::changed_file(opened->files) || !opened->world.tiles->status()) {
     drop(opened);
     return nullptr;
@@ -35,7 +35,7 @@ Result<WorldCache::Shared> WorldCache::get(const Scenario& scenario,
   const std::string key = world_key(scenario);
   if (Shared known = find(key)) return known;
   // Opened without the lock, since making the built-in world takes long. Two threads may open the
-  // same one; the second then uses the first's.
+  // same world; the second then uses the first one's.
   Result<OpenedWorld> opened = open_scenario_world(scenario, progress);
   if (!opened) return opened.error();
   if (Shared known = find(key)) return known;

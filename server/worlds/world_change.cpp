@@ -10,7 +10,7 @@
 namespace overfly::engine {
 namespace {
 
-/// Of the world's own manifest, where it has one, and of its data files in their order.
+/// Digest of the world's manifest, if it has one, and of its data files in their order.
 struct Digests {
   std::string manifest;
   std::vector<std::string> files;

@@ -6,7 +6,7 @@
 namespace overfly::engine {
 namespace {
 
-/// The default of a field, or what some trusted estimator has in it.
+/// True if the field has its default value, or the value of some trusted estimator.
 template <typename Field>
 bool is_trusted(const EstimatorSpec& spec, const Scenario& trusted, const Field& field) {
   if (field(spec) == field(EstimatorSpec())) return true;
@@ -15,7 +15,8 @@ bool is_trusted(const EstimatorSpec& spec, const Scenario& trusted, const Field&
                      [&](const EstimatorSpec& known) { return field(spec) == field(known); });
 }
 
-/// Text with a slash may name a file that the estimator then reads: a vocabulary, a calibration.
+/// Text with a slash may name a file that the estimator then reads, such as a vocabulary or a
+/// calibration.
 const std::string* untrusted_parameter(const EstimatorSpec& spec, const Scenario& trusted) {
   for (const auto& [name, value] : spec.parameters) {
     const auto* text = std::get_if<std::string>(&value);

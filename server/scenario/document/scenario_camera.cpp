@@ -53,7 +53,7 @@ Result<Distortion> distortion_from(const Json& lens, const std::string& path) {
   distortion.model = distortion_model_from(model).value_or(DistortionModel::kNone);
   const Json& values = lens.at("coefficients");
   const auto count = static_cast<std::size_t>(coefficient_count(distortion.model));
-  // k3 of radtan is often left out.
+  // k3 of radtan may be omitted.
   const bool short_radtan = distortion.model == DistortionModel::kRadtan && values.size() == 4;
   if (values.size() != count && !short_radtan) {
     return bad_field(
@@ -88,7 +88,7 @@ renderer::Atmosphere atmosphere_from(const Json& air) {
   return atmosphere;
 }
 
-/// What a sensor may not do within the period of its frames.
+/// Checks a sensor against the frame period.
 Status check_period(const Json& sensor, const std::string& path, const FrameRate& rate) {
   const double period_ms = 1e3 / rate.hz();
   const auto check = [&](const Json& value, const std::string& field) -> Status {

@@ -54,7 +54,7 @@ Status read_flight(Json& document, const FileResolver& files, Scenario& scenario
   return {};
 }
 
-/// A log of camera poses gives the body by a nadir mount.
+/// Logged camera poses are converted to body poses by a nadir mount.
 Status check_camera_poses(const Scenario& scenario) {
   const auto* log = std::get_if<LoggedFlight>(&scenario.flight);
   if (log == nullptr || !log->camera_poses) return {};
@@ -101,7 +101,7 @@ Result<Scenario> scenario_from(Json document, const fs::path& base) {
   try {
     if (Status status = read_all(document, base, scenario); !status) return status.error();
   } catch (const Json::exception& error) {
-    // The schema let through what this reader does not know: a bug, but not one to die of.
+    // The schema accepted a value that this reader does not know: a bug, reported as an error.
     return Error{ErrorCode::kInternal,
                  std::string("scenario schema and reader differ: ") + error.what()};
   }

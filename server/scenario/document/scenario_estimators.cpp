@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-/// Which types have a field.
+/// The estimator types that have a field.
 struct FieldUse {
   const char* field;
   bool native;
@@ -60,8 +60,8 @@ Status check_uses(const Json& entry, const std::string& type, const std::string&
   return {};
 }
 
-/// A program that is a path counts from the scenario's folder, and so does an argument that says
-/// so with `./` or `../`.
+/// A program given as a path is relative to the scenario's folder. So is an argument that begins
+/// with `./` or `../`.
 std::string absolute_argument(const std::string& argument, bool program, const fs::path& base) {
   const bool path = argument.starts_with("./") || argument.starts_with("../") ||
                     (program && argument.find('/') != std::string::npos);
@@ -133,7 +133,7 @@ Ros1EstimatorOptions ros1_from(const Json& ros1) {
   return options;
 }
 
-/// What a door needs besides what every estimator has.
+/// Reads the fields that only outside estimators have.
 Status read_door(Json& entry, const std::string& path, const fs::path& base, EstimatorSpec& spec) {
   if (entry.contains("command")) {
     const Status read = read_command(entry.at("command"), path + ".command", base, spec);
@@ -176,7 +176,7 @@ Result<EstimatorSpec> read_estimator(Json& entry,
   return spec;
 }
 
-/// Of an estimator on LCM.
+/// Channels of an estimator on LCM.
 struct LcmChannels {
   std::string network;
   std::string prefix;
@@ -189,7 +189,7 @@ LcmChannels lcm_channels(const EstimatorSpec& spec) {
           spec.lcm_channel_prefix.empty() ? plain.channel_prefix : spec.lcm_channel_prefix};
 }
 
-/// Two estimators that share what carries the data of one would answer for each other.
+/// Two estimators with shared channels would receive each other's data.
 Status check_apart(const EstimatorSpec& spec, const EstimatorSpec& other, const std::string& path) {
   const std::string who = "\"" + other.name + "\" and \"" + spec.name + "\"";
   if (spec.type == "lcm" && other.type == "lcm" && lcm_channels(spec) == lcm_channels(other)) {

@@ -33,8 +33,8 @@ std::set<std::string> fields_of(FaultKind kind) {
   return {};
 }
 
-/// A field that says nothing of its kind of fault is a mistake, and so is one left out without
-/// which nothing would happen.
+/// Rejects fields that do not apply to this kind of fault, and requires those without which it
+/// would have no effect.
 Status check_fields(const Json& entry, FaultKind kind, const std::string& path) {
   const std::set<std::string> common = {"kind", "at_s", "duration_s", "camera"};
   const std::set<std::string> own = fields_of(kind);
@@ -54,7 +54,7 @@ Status check_fields(const Json& entry, FaultKind kind, const std::string& path) 
   return {};
 }
 
-/// One seed per fault, so that one more fault does not change what the others do.
+/// One seed per fault, so that adding a fault does not change the others.
 std::uint64_t fault_seed(std::uint64_t scenario_seed, std::size_t index) {
   constexpr std::uint64_t kGolden = 0x9E3779B97F4A7C15ULL;
   return scenario_seed + kGolden * (index + 1);

@@ -29,14 +29,14 @@ std::string name_from(std::string text) {
   return text;
 }
 
-/// The document with the file's name where it has none of its own, so that a run's copy of it
-/// keeps saying where it came from.
+/// Adds the file's name to a document without a name, so that a run's copy of it still shows its
+/// origin.
 void put_name(Json& document, const std::string& name) {
   if (!document.is_object()) return;
   if (!document.contains("name")) document["name"] = name;
 }
 
-/// Goes no deeper than the limit itself.
+/// Recursion ends at the limit.
 bool is_deeper_than(const Json& value, std::size_t limit) {
   if (!value.is_structured()) return false;
   return limit == 0 || std::any_of(value.begin(), value.end(), [&](const Json& child) {
@@ -52,7 +52,7 @@ Result<Scenario> resolve_scenario(Json document,
   for (const Override& change : overrides) {
     if (Status status = apply_override(change, document); !status) return status.error();
   }
-  // A value within its limit at a path within its limit may lie deeper than both.
+  // A value within the limit, at a path within the limit, may exceed the limit together.
   if (is_deeper_than(document, kMaxJsonDepth)) {
     return Error{ErrorCode::kInvalidArgument,
                  "the scenario is nested more than " + std::to_string(kMaxJsonDepth) + " deep"};

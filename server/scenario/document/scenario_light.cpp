@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// "2026-06-21T17:30Z" or with seconds, as Unix time.
+/// Parses "2026-06-21T17:30Z", or with seconds, as Unix time.
 Result<std::int64_t> unix_ns_from(const std::string& text, const std::string& path) {
   int year = 0;
   unsigned month = 0;
@@ -29,7 +29,7 @@ Result<std::int64_t> unix_ns_from(const std::string& text, const std::string& pa
   if (!date.ok() || hour > 23 || minute > 59 || second > 59) {
     return bad_field(path, text, "be a date and time that exist");
   }
-  // Nanoseconds of Unix time in 64 bits reach no further.
+  // The range of Unix time in 64-bit nanoseconds.
   if (year < 1678 || year > 2261) return bad_field(path, text, "be in the years 1678 to 2261");
   const auto days = std::chrono::sys_days(date).time_since_epoch();
   const std::chrono::seconds total =
@@ -64,7 +64,7 @@ Status read_light(const Json& light, LightSpec& spec) {
   return {};
 }
 
-/// The sun's place in the sky of the world's origin.
+/// Light with the sun's position as seen from the world's origin.
 Result<terrain::LightOptions> light_over(const LightSpec& spec, const Geodetic& origin) {
   terrain::LightOptions options = spec.options;
   if (!spec.time_unix_ns) return options;

@@ -30,7 +30,7 @@ ScenarioEntry entry_of(const fs::path& file, const SourcePolicy& sources) {
   return entry;
 }
 
-/// The world's files, and whether its texts may be used.
+/// Checks the world's files, and whether its CRS texts are permitted.
 Status check_world(const Scenario& scenario) {
   if (const auto* manifest = std::get_if<fs::path>(&scenario.world)) {
     return scenario.sources.check(*manifest, "world.manifest");
@@ -91,7 +91,7 @@ Status check_scenario(const Scenario& scenario) {
   if (Status status = check_world(scenario); !status) fault = status.error();
   if (const auto* log = std::get_if<Scenario::LoggedFlight>(&scenario.flight)) {
     Status status = scenario.sources.check(log->file, "flight.log.file");
-    // Poses in KITTI's form take their times from there.
+    // Poses in KITTI format take their times from that file.
     const fs::path times = log->file.parent_path() / "times.txt";
     if (status) status = scenario.sources.check_place(times, "flight.log.file (a file beside it)");
     if (!status && fault) {

@@ -36,12 +36,12 @@ std::optional<std::size_t> index_from(const std::string& text) {
   return index;
 }
 
-/// A world or a flight is of one kind only: naming another kind replaces it; and so with `camera`
-/// and `cameras`.
+/// A world or a flight is of exactly one kind, so setting another kind replaces it; likewise for
+/// `camera` and `cameras`.
 void make_room_for_kind(Json& document, const std::vector<std::string>& parts) {
   static const std::vector<std::pair<std::string, std::vector<std::string>>> kinds = {
       {"world", {"builtin", "manifest", "imagery"}}, {"flight", {"course", "log"}}};
-  // One camera or a list of them: the whole of one takes the other's place.
+  // A document has either `camera` or `cameras`: setting the whole of one removes the other.
   if (parts.size() == 1 && parts[0] == "cameras") document.erase("camera");
   if (parts.size() == 1 && parts[0] == "camera") document.erase("cameras");
   if (parts.size() < 2) return;
@@ -93,7 +93,7 @@ Status apply_override(const Override& change, Json& document) {
   Json* place = &document;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const std::string& part = parts[i];
-    // What is not there yet becomes an array where the path goes on with a number.
+    // A missing part becomes an array if the path continues with a number.
     const bool array_next = i + 1 < parts.size() && index_from(parts[i + 1]).has_value();
     const Json made = array_next ? Json::array() : Json::object();
     if (part.empty()) return bad_path(change.path, "has an empty part");

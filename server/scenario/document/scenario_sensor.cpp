@@ -1,4 +1,4 @@
-// scenario_camera.hpp: sensor, vibration and mount.
+// Parts of scenario_camera.hpp: sensor, vibration and mount.
 #include <Eigen/Geometry>
 #include <cmath>
 #include <utility>
@@ -52,7 +52,7 @@ std::array<double, 3> scaled_xyz(const Json& values, double factor) {
           factor * values[2].get<double>()};
 }
 
-/// R_body_camera of a camera that looks along a body axis; the image's top points to the sky, of a
+/// R_body_camera of a camera that looks along a body axis. The image's top points to the sky; for a
 /// nadir camera to the nose.
 Eigen::Quaterniond R_body_camera_facing(const std::string& facing) {
   if (facing == "nadir") return R_body_camera_nadir();
@@ -66,7 +66,7 @@ Eigen::Quaterniond R_body_camera_facing(const std::string& facing) {
   return Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ()) * Eigen::Quaterniond(R_forward);
 }
 
-/// Of the camera, turned as yaw, pitch and roll turn the aircraft (intrinsic Z-Y-X).
+/// Rotation of the camera by yaw, pitch and roll, in the aircraft's convention (intrinsic Z-Y-X).
 Eigen::Quaterniond R_body_turned(const Json& mount) {
   const auto angle = [&](const char* field) { return rad_from_deg(mount.value(field, 0.0)); };
   return Eigen::AngleAxisd(angle("yaw_deg"), Eigen::Vector3d::UnitZ()) *
@@ -139,7 +139,7 @@ Result<Pose> mount_from(const Json& mount, const std::string& path) {
   const Json& q = mount.at("q_xyzw");
   T_body_camera.rotation = Eigen::Quaterniond(
       q[3].get<double>(), q[0].get<double>(), q[1].get<double>(), q[2].get<double>());
-  constexpr double kNormTolerance = 1e-3;  // of numbers rounded to three digits or more
+  constexpr double kNormTolerance = 1e-3;  // numbers are rounded to three digits or more
   if (std::abs(T_body_camera.rotation.norm() - 1.0) > kNormTolerance) {
     return bad_field(path + ".q_xyzw", q, "have length 1");
   }
