@@ -27,7 +27,7 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kExitOk : kExitUsage;
   } catch (const std::exception& failure) {
-    // Nothing that the command's own errors foresee: a folder that is gone, memory that runs out.
+    // Exceptions that no command handles: a removed working folder, out of memory.
     return report({overfly::ErrorCode::kInternal, failure.what()});
   }
   return exit_code;

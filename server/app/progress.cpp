@@ -20,7 +20,7 @@ void ProgressDisplay::show(double share, const std::string& text) {
   const double done = std::clamp(share, 0.0, 1.0);
   const int percent = static_cast<int>(std::floor(100.0 * done));
   if (!terminal_) {
-    // One line for each tenth: a log stays readable.
+    // One line for each tenth keeps a log short.
     if (percent / 10 == last_tenth_) return;
     last_tenth_ = percent / 10;
     std::cerr << percent << " % " << text << "\n";

@@ -20,13 +20,13 @@ using Json = nlohmann::json;
   return line.data();
 }
 
-/// A figure in a column; a dash where there is none.
+/// A number in a column; a dash if there is none.
 std::string figure(const Json& value, int width, int digits) {
   return value.is_number() ? formatted("%*.*f", width, digits, value.get<double>())
                            : formatted("%*s", width, "-");
 }
 
-/// Why an alignment has no rotation errors; empty where it has them.
+/// The reason why an alignment has no rotation errors; empty if it has them.
 std::string degenerate_text(const Json& alignment) {
   const Json& reason = alignment.at("degenerate");
   if (!reason.is_string()) return "";

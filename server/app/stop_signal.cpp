@@ -24,7 +24,7 @@ const std::atomic<bool>& catch_stop_signals() {
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
-  // A reader that went away is told by the write's error.
+  // A closed pipe is reported as the write's error instead.
   std::signal(SIGPIPE, SIG_IGN);
   return stop_wanted;
 }

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The longest token, its line's end, and one byte more to notice a file that is longer.
+/// The longest token, its line end, and one more byte to detect a longer file.
 constexpr std::size_t kReadBytes = net::kMaxTokenCharacters + 3;
 
 class Descriptor {
@@ -43,7 +43,7 @@ Error fault(const fs::path& file, const std::string& what) {
   return {ErrorCode::kInvalidArgument, "token file " + file.string() + ": " + what};
 }
 
-/// Empty when the file is there already.
+/// Empty if the file already exists.
 Result<std::optional<TokenFile>> make_file(const fs::path& file) {
   const Descriptor made(
       ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR));
@@ -66,7 +66,7 @@ Result<TokenFile> open_token_file(const fs::path& file) {
   auto made = make_file(file);
   if (!made) return made.error();
   if (*made) return **made;
-  // A pipe or a device must not block, and is refused below.
+  // Opening a pipe or a device must not block; both are rejected below.
   const Descriptor opened(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
   struct stat status {};
   if (!opened.is_open() || ::fstat(opened.get(), &status) != 0) {

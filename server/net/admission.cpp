@@ -45,7 +45,7 @@ HttpRequest plain_request(const http::request<http::string_body>& message) {
     });
     request.headers[name] = std::string(field.value());
   }
-  // Of two names it would depend on the reader which one counts.
+  // With two Host fields, readers could disagree on which one counts.
   if (message.count(http::field::host) != 1) request.headers.erase("host");
   return request;
 }

@@ -61,7 +61,7 @@ bool ConnectionTable::enter(std::uint64_t number, ConnectionPhase phase) {
     const std::size_t http =
         counted(ConnectionPhase::kIdle) + counted(ConnectionPhase::kReceiving) +
         counted(ConnectionPhase::kAnswering) + counted(ConnectionPhase::kSending);
-    // Those that wait for the server stay: it owes them an answer.
+    // Connections that wait for an answer of the server are not closed.
     if (http >= limits_.max_http && !close_oldest(ConnectionPhase::kIdle) &&
         !close_oldest(ConnectionPhase::kReceiving) && !close_oldest(ConnectionPhase::kSending)) {
       return false;

@@ -27,12 +27,12 @@ using beast::error_code;
 
 constexpr const char* kStreamPath = "/api/v1/stream";
 constexpr const char* kApiPrefix = "/api/";
-/// Requests that are sent ahead wait here, no more than this of them.
+/// Size of the buffer for pipelined requests.
 constexpr std::size_t kReadBufferBytes = std::size_t{128} << 10U;
 constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::max();
-/// A picture may wait for a world to open and for tiles to load, but not for ever.
+/// A picture may wait for a world to open and for tiles to load, but not indefinitely.
 constexpr std::chrono::seconds kAnswerLimit{120};
-/// Of a request that was refused at its header, this much of the rest is taken, and so long.
+/// Limits for reading the rest of a request that was rejected by its header.
 constexpr std::size_t kDrainBytes = std::size_t{2} << 20U;
 constexpr std::size_t kDrainStepBytes = std::size_t{16} << 10U;
 constexpr std::chrono::seconds kDrainLimit{2};
@@ -81,7 +81,7 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession> {
   std::shared_ptr<ServerContext> context_;
   std::unique_ptr<ConnectionTable::Place> place_;
   beast::tcp_stream stream_;
-  /// Runs while an answer is awaited, and keeps the session alive meanwhile.
+  /// Runs while an answer is awaited; keeps the session alive meanwhile.
   asio::steady_timer answer_limit_;
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::string_body>> parser_;
@@ -89,7 +89,7 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession> {
   HttpRequest request_;
   std::vector<char> drained_;
   std::size_t drained_bytes_ = 0;
-  std::uint64_t request_number_ = 0;  ///< an answer to another one comes too late
+  std::uint64_t request_number_ = 0;  ///< an answer with another number comes too late
   bool admitted_ = false;             ///< a request of this connection had the token
   bool failed_ = false;
   bool head_ = false;
@@ -106,7 +106,7 @@ void HttpSession::start() {
   read();
 }
 
-/// The header comes first and alone: nobody's body is taken before the token was seen.
+/// Reads only the header first: no body is accepted before the token was checked.
 void HttpSession::read() {
   const ServerLimits& limits = context_->options.limits;
   if (admitted_ && !place_->enter(ConnectionPhase::kIdle)) {
@@ -222,7 +222,7 @@ void HttpSession::dispatch() {
   }
 }
 
-/// What an upgrade would have got: a browser does not show that to its page.
+/// The answer that the upgrade would have got, because a browser does not show that to its page.
 HttpResponse HttpSession::stream_without_upgrade() const {
   const std::size_t most = context_->options.limits.connections.max_viewers;
   if (context_->connections.count(ConnectionPhase::kViewer) >= most) return too_many_viewers(most);
@@ -274,7 +274,7 @@ void HttpSession::write(HttpResponse response) {
   response_.emplace(static_cast<http::status>(response.status), version_);
   response_->set(http::field::server, "overfly");
   response_->set("X-Content-Type-Options", "nosniff");
-  // The address with the token is nobody else's business.
+  // Keeps the address, which contains the token, from other sites.
   response_->set("Referrer-Policy", "no-referrer");
   response_->set("Content-Security-Policy",
                  "default-src 'self'; img-src 'self' blob: data:; style-src 'self' "
@@ -310,8 +310,8 @@ void HttpSession::on_written(const error_code& error, bool keep_alive) {
   drain();
 }
 
-/// Takes what is left of a request that was answered early: a connection closed over unread bytes
-/// is reset, and the client may lose the answer.
+/// Reads the rest of a request that was answered early: closing a connection with unread bytes
+/// resets it, and the client may lose the answer.
 void HttpSession::drain() {
   stream_.async_read_some(asio::buffer(drained_),
                           [self = shared_from_this()](const error_code& error, std::size_t n) {
@@ -326,7 +326,8 @@ void HttpSession::close() {
   stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
 }
 
-/// What a step of the connection threw becomes a 500, or its end where an answer is under way.
+/// Answers an exception in a step of the connection with 500, or closes the connection if an answer
+/// is being sent.
 void HttpSession::fail(const char* what) {
   const bool again = std::exchange(failed_, true);
   keep_alive_ = false;
@@ -343,7 +344,7 @@ void HttpSession::fail(const char* what) {
   });
 }
 
-/// At once, whatever it does.
+/// Closes at once, in any phase.
 void HttpSession::end() {
   ++request_number_;
   answer_limit_.cancel();

@@ -17,7 +17,7 @@ namespace asio = boost::asio;
 using asio::ip::tcp;
 using boost::system::error_code;
 
-/// Wait after a failed accept (no file descriptors left), so that it does not spin.
+/// Pause after a failed accept (no file descriptors left), to avoid a busy loop.
 constexpr std::chrono::milliseconds kAcceptPause{100};
 
 class Listener final : public std::enable_shared_from_this<Listener> {
@@ -41,7 +41,7 @@ class Listener final : public std::enable_shared_from_this<Listener> {
   tcp::acceptor acceptor_;
   asio::steady_timer pause_;
   std::shared_ptr<ServerContext> context_;
-  bool starting_ = false;  ///< accept() is at work: a handler that it drops need not call it again
+  bool starting_ = false;  ///< accept() is running: a handler that it drops need not call it again
 };
 
 error_code Listener::open(const tcp::endpoint& endpoint) {
@@ -53,8 +53,8 @@ error_code Listener::open(const tcp::endpoint& endpoint) {
   return error;
 }
 
-/// Takes the connection. Where it is dropped uncalled, as by an exception inside of Asio, it
-/// accepts again: a server that accepts no more is as good as gone.
+/// Accepts the connection. If the handler is destroyed without a call, for example by an exception
+/// in Asio, it starts the next accept, since the server could not accept connections any more.
 class Listener::OnAccept {
  public:
   explicit OnAccept(std::shared_ptr<Listener> listener) : listener_(std::move(listener)) {}

@@ -17,9 +17,9 @@ namespace overfly::net {
 
 namespace {
 
-/// Each reads at most one run from disk at a time; the others answer meanwhile.
+/// Each reads at most one run from disk at a time, while the others answer requests.
 constexpr int kWorkers = 4;
-/// How long viewers have to answer the close frame when the server shuts down.
+/// Time for viewers to answer the close frame at shutdown.
 constexpr std::chrono::seconds kFarewell{2};
 
 Status check_options(const ServerOptions& options) {

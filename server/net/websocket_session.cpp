@@ -28,7 +28,7 @@ using asio::ip::tcp;
 using beast::error_code;
 
 constexpr std::uint16_t kTooSlow = 4000;
-/// How long a client that is too slow has to take what is on its way before the close frame.
+/// Time for a slow client to receive the message in progress before the close frame.
 constexpr std::chrono::seconds kCloseGrace{5};
 constexpr std::chrono::seconds kFarewellGrace{1};
 
@@ -38,7 +38,7 @@ std::int64_t monotonic_ns() {
       .count();
 }
 
-/// One message that waits to be written.
+/// One message in the send queue.
 struct Outgoing {
   std::string text;  ///< a text message, unless there is a picture
   std::array<std::uint8_t, kPictureHeaderBytes> header{};
@@ -106,7 +106,7 @@ class WebSocketSession final : public ViewerPort,
   void report(const char* what) const {
     context_->log("error", std::string("a viewer's connection failed: ") + what);
   }
-  /// Runs a step of the session; one that throws is its last.
+  /// Runs a step of the session; an exception ends the session.
   template <typename Step>
   void attempt(const Step& step) noexcept {
     const auto fail = [this](const char* what) {
@@ -120,16 +120,16 @@ class WebSocketSession final : public ViewerPort,
   std::unique_ptr<ConnectionTable::Place> place_;
   websocket::stream<beast::tcp_stream> ws_;
   beast::flat_buffer read_buffer_;
-  std::deque<Outgoing> queue_;  ///< the front one is on its way while writing_
+  std::deque<Outgoing> queue_;  ///< the front one is being sent while writing_
   std::size_t unsent_bytes_ = 0;
   std::int64_t write_began_ns_ = 0;
   bool writing_ = false;
   bool closing_ = false;
   bool ended_ = false;
-  websocket::close_reason reason_;  ///< once closing_
+  websocket::close_reason reason_;  ///< valid once closing_
   std::optional<std::uint64_t> registered_;
   std::shared_ptr<WebSocketSession>
-      unread_;  ///< itself, while it does not read: the viewer is full
+      unread_;  ///< keeps the session alive while it does not read because the viewer is full
   asio::steady_timer timer_;
   Viewer viewer_;
   std::uint64_t client_;
@@ -176,7 +176,7 @@ void WebSocketSession::on_read(const error_code& error) {
     return;
   }
   if (!closing_) {
-    // A binary message is no JSON: it is answered as what is not understood.
+    // A binary message is not JSON: it is answered as one that could not be parsed.
     viewer_.handle(ws_.got_text() ? beast::buffers_to_string(read_buffer_.data()) : std::string(),
                    monotonic_ns());
     schedule();
@@ -336,8 +336,8 @@ void WebSocketSession::go_away() {
   close_with({websocket::close_code::going_away, "the server shuts down"}, kFarewellGrace);
 }
 
-/// The message on its way cannot be taken back: the close frame follows it, or the connection
-/// ends without one when the client takes nothing at all.
+/// The message in progress cannot be withdrawn: the close frame follows it. If the client receives
+/// nothing at all, the connection ends without a close frame.
 void WebSocketSession::close_with(const websocket::close_reason& reason,
                                   std::chrono::seconds grace) {
   if (closing_ || ended_) return;

@@ -1,4 +1,4 @@
-// overfly bench: what drawing, encoding and tracking cost on this machine.
+// overfly bench: measures the cost of rendering, encoding and tracking on this machine.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
@@ -52,7 +52,7 @@ Result<engine::Scenario> bench_scenario(double flight_s) {
                                   std::filesystem::current_path());
 }
 
-/// Camera poses spread over the course: level flight and turns.
+/// Camera poses distributed over the course: level flight and turns.
 Result<std::vector<Pose>> course_poses(const engine::Scenario& scenario,
                                        const terrain::World& world,
                                        int count) {
@@ -89,7 +89,7 @@ Result<Json> bench_drawing(const terrain::World& world,
               {"raycast_banked_per_quad", costs->raycast_banked_per_quad}};
 }
 
-/// What bounds the camera's frame rate, and how near it comes.
+/// Limits of the camera's frame rate, and the rate reached.
 Result<Json> bench_rates(const terrain::World& world,
                          const std::vector<Pose>& poses,
                          const BenchArguments& arguments) {
@@ -154,7 +154,7 @@ Result<Json> bench_encoding(const terrain::World& world, const Pose& T_world_cam
   return result;
 }
 
-/// A lockstep flight with the native estimator, and where its time went.
+/// A lockstep flight with the native estimator, and the time spent in each stage.
 Result<Json> bench_flight(const engine::Scenario& scenario, engine::WorldCache& worlds) {
   Result<BenchFolder> folder = BenchFolder::create();
   if (!folder) return folder.error();

@@ -70,7 +70,7 @@ Result<Json> bench_long_flight(const renderer::EnduranceOptions& options,
   Result<BenchFolder> folder = BenchFolder::create();
   if (!folder) return folder.error();
   terrain::StripOptions strip;
-  // synthesize_strip takes no less than 2 km.
+  // synthesize_strip requires at least 2 km.
   strip.length_m = std::max(options.length_m + 4.0 * options.height_m, 2000.0);
   const auto target = folder->path() / "strip";
   const auto keep_going = [&](const char* what) {

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder that goes with the object.
+/// A temporary folder, removed by the destructor.
 class WorkFolder {
  public:
   WorkFolder()
@@ -39,7 +39,8 @@ class WorkFolder {
 
 struct Findings {
   std::vector<engine::CameraCheckRow> rows;
-  std::vector<std::string> left_out;  ///< backends that do not work here, with the reason
+  /// Backends that do not work on this machine, with the reason
+  std::vector<std::string> left_out;
 
   [[nodiscard]] bool passed() const {
     return !rows.empty() &&
@@ -56,7 +57,7 @@ Result<Findings> check_scenario_file(const DoctorCameraArguments& arguments,
   return Findings{std::move(*rows), {}};
 }
 
-/// Every backend over the same land, so that a fault names its place.
+/// Runs every backend over the same terrain, so that a difference shows which one is wrong.
 Result<Findings> check_backends(const engine::CameraCheckOptions& options) {
   const WorkFolder work;
   auto scenario = engine::camera_check_scenario(work.path());

@@ -74,7 +74,7 @@ Check check_projections() {
           "apt-get install proj-data, and unset PROJ_LIB and PROJ_DATA"};
 }
 
-/// The nearest folder at or above a path that exists.
+/// The nearest existing folder at or above a path.
 fs::path existing_parent(fs::path folder) {
   std::error_code ignored;
   while (!fs::exists(folder, ignored) && folder.has_relative_path()) folder = folder.parent_path();
@@ -102,7 +102,7 @@ Check check_folder(const std::string& name,
   return {name, CheckLevel::kOk, folder.string() + ": writable, " + free_text, ""};
 }
 
-/// Where the built-in worlds are kept (terrain/synthesize.hpp).
+/// Where the built-in worlds are stored (terrain/synthesize.hpp).
 fs::path cache_folder() {
   const auto variable = [](const char* name) -> std::string {
     const char* value = std::getenv(name);

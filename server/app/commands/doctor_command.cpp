@@ -1,4 +1,4 @@
-// overfly doctor: what this machine lacks, and how to mend it.
+// overfly doctor: reports what this machine lacks and how to fix it.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>

@@ -1,4 +1,4 @@
-// overfly evaluate: scores trajectory files, or a run folder again.
+// overfly evaluate: scores trajectory files, or scores a run folder again.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
@@ -42,7 +42,7 @@ std::vector<std::string> mode_names() {
   return names;
 }
 
-/// A number that a TUM file carries as a comment. Errors: kUnreadable naming file and value.
+/// A number given as a comment in a TUM file. Errors: kUnreadable naming file and value.
 Result<std::optional<double>> comment_number(const TrajectoryFile& file,
                                              const std::string& name,
                                              const std::string& key) {
@@ -53,7 +53,7 @@ Result<std::optional<double>> comment_number(const TrajectoryFile& file,
     const double value = std::stod(comment->second, &used);
     if (used == comment->second.size() && value > 0.0) return std::optional<double>(value);
   } catch (const std::exception&) {
-    // Told below, with the rest of what is no positive number.
+    // Reported below, with all values that are not positive numbers.
   }
   return Error{ErrorCode::kUnreadable,
                name + ": # " + key + " " + comment->second + ": must be a positive number"};
@@ -65,7 +65,7 @@ Result<evaluation::Options> options_for(const EvaluateArguments& arguments,
                                         const TrajectoryFile& estimate) {
   evaluation::Options options;
   if (arguments.association == "nearest") options.association = evaluation::Association::kNearest;
-  // Poses without times can be matched by their number only.
+  // Poses without times can be matched only by their number.
   if (arguments.association == "index" || !truth.has_times || !estimate.has_times) {
     options.association = evaluation::Association::kIndex;
   }
@@ -95,7 +95,7 @@ Result<EstimateTrack> track_from(const std::string& name, const TrajectoryFile& 
   return track;
 }
 
-/// Keeps the modes that were asked for.
+/// Keeps only the requested modes.
 void choose_modes(const std::vector<std::string>& wanted, Json& entry) {
   for (const char* kind : {"alignments", "unavailable"}) {
     Json chosen = Json::object();
@@ -110,7 +110,7 @@ void print_warnings(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) std::cerr << "warning: " << warning << "\n";
 }
 
-/// Errors: kInvalidArgument for a file whose i-th pose is not that of its i-th line.
+/// Errors: kInvalidArgument for a file whose i-th pose is not the one of its i-th line.
 Status check_listed(const std::string& name, const TrajectoryFile& file) {
   if (file.as_listed()) return {};
   return Error{ErrorCode::kInvalidArgument,
@@ -134,7 +134,7 @@ Result<Json> evaluate_file(const EvaluateArguments& arguments,
   }
   const Result<EstimateTrack> track = track_from(name, *file);
   if (!track) return track.error();
-  // Asked first for its error: it says why nothing could be matched.
+  // Called first, because its error explains why nothing could be matched.
   const auto matches = evaluation::associate(truth.trajectory, *track, *options);
   if (!matches) return matches.error().in(name);
   const evaluation::Score score = evaluation::score(truth.trajectory, *track, *options);
@@ -189,11 +189,11 @@ void print_run(const EvaluateArguments& arguments, const engine::RunInfo& info, 
 }
 
 int evaluate_run(const EvaluateArguments& arguments) {
-  // Before the lock, which would make an interrupted run look as if it ran.
+  // Read before the lock is taken: the lock would make an interrupted run appear to be running.
   const Result<engine::RunInfo> info = engine::read_run_info(arguments.run);
   if (!info) return report(info.error());
   if (!info->problem.empty()) std::cerr << "warning: " << info->problem << "\n";
-  // Where nothing can be written the scores are printed all the same.
+  // The scores are printed even if nothing can be written.
   const Result<engine::RunLock> lock = engine::RunLock::take(arguments.run);
   if (!lock && lock.error().code == ErrorCode::kConflict) return report(lock.error());
   const Result<engine::RunRecords> records = engine::read_run_records(arguments.run);

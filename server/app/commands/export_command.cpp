@@ -1,4 +1,4 @@
-// overfly export: a run or scenario as a data set of others' layout, or as a video.
+// overfly export: writes a run or scenario as a data set in a common format, or as a video.
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <memory>
@@ -28,9 +28,9 @@ struct ExportArguments {
   std::vector<std::string> cameras;  ///< names, the main camera first
   double from_s = 0.0;
   std::optional<double> to_s;
-  int threads = -1;  // -1 = as the scenario says
+  int threads = -1;  // -1 = use the scenario's value
   flight::ImuModel imu;
-  std::string video;  ///< what is shown; empty = no video, of webm both views
+  std::string video;  ///< contents of the video; empty = no video; for webm, both views
   int video_quality = 70;
   bool json = false;
   bool quiet = false;
@@ -46,7 +46,7 @@ Result<engine::ExportSource> open_source(const ExportArguments& arguments) {
   return source;
 }
 
-/// What every export is told: span, camera, how to stop, whom to tell.
+/// Fills the options common to all exports: time span, camera, cancellation, progress.
 template <typename Options>
 void set_common(const ExportArguments& arguments, ProgressDisplay& display, Options& options) {
   options.from_s = arguments.from_s;

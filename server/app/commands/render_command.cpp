@@ -55,7 +55,7 @@ int render(const RenderArguments& arguments) {
   return kExitOk;
 }
 
-/// Says which of the options are missing or do not go together.
+/// Reports missing or conflicting options.
 Status check(const RenderArguments& arguments) {
   const bool place = arguments.lat_deg && arguments.lon_deg && arguments.height_agl_m;
   if (arguments.has_place() && !place) {
@@ -98,8 +98,8 @@ int render_checked(const RenderArguments& arguments) {
 
 Pose body_pose(const RenderArguments& arguments, const terrain::TileSource& tiles) {
   const LocalFrame& frame = tiles.frame();
-  // The ground's height is known by east and north, and east and north depend a little on the
-  // height: a second pass leaves micrometres.
+  // The ground's height is a function of east and north, which depend slightly on the height; after
+  // a second pass the error is in micrometres.
   Geodetic place =
       geodetic_from_deg(*arguments.lat_deg, *arguments.lon_deg, frame.origin().alt_ellipsoid_m);
   Eigen::Vector3d p_world = frame.world_from_geodetic(place);

@@ -1,4 +1,4 @@
-// overfly render --scenario: an image as a scenario's camera takes it.
+// overfly render --scenario: renders an image with a scenario's camera.
 #include <iostream>
 #include <utility>
 
@@ -14,7 +14,7 @@
 namespace overfly::app {
 namespace {
 
-/// The scenario with the one camera that is asked for, and without estimators.
+/// The scenario with only the requested camera and without estimators.
 Result<engine::Scenario> load_to_render(const RenderArguments& arguments) {
   const auto overrides = engine::parse_overrides(arguments.sets);
   if (!overrides) return overrides.error();

@@ -52,7 +52,7 @@ void show_progress(ProgressDisplay& display, const engine::RunInfo& info) {
                done + " of " + std::to_string(info.frames_total));
 }
 
-/// Tells of the estimators that never ran. @return a failure where that is all of them
+/// Reports the estimators that never ran. @return a failure if none ran
 int exit_code_of_estimators(const nlohmann::json& metrics) {
   const std::map<std::string, std::string> reasons = engine::never_ran(metrics);
   for (const auto& [name, reason] : reasons) {

@@ -56,7 +56,7 @@ void log_line(const std::string& level, const std::string& text) {
   }
 }
 
-/// The token that clients must show; empty with --no-token.
+/// The token that clients must send; empty with --no-token.
 Result<std::string> token_of(const ServeArguments& arguments) {
   if (arguments.no_token) return std::string();
   if (arguments.token_file.empty()) return net::make_token();

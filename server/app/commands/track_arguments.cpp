@@ -23,7 +23,7 @@ Error bad_option(const std::string& option, const std::string& value, const std:
   return {ErrorCode::kInvalidArgument, option + " " + value + ": must be " + limit};
 }
 
-/// Finite numbers between commas; empty where one is none.
+/// Comma-separated finite numbers; empty if one is invalid.
 std::optional<std::vector<double>> numbers_in(std::string_view text) {
   std::vector<double> numbers;
   while (true) {
@@ -40,7 +40,7 @@ std::optional<std::vector<double>> numbers_in(std::string_view text) {
   }
 }
 
-/// The object of one of a scenario's estimators. Its program stands there with its whole path.
+/// The object of one of a scenario's estimators, with the absolute path of its program.
 Result<Json> scenario_entry(const std::string& text) {
   std::string file = text;
   std::string name;
@@ -59,7 +59,7 @@ Result<Json> scenario_entry(const std::string& text) {
     if (its_name != name && !name.empty()) continue;
     if (name.empty() && scenario->estimators.size() > 1) continue;
     Json found = entry;
-    // They speak of the flight that the scenario is about.
+    // These fields refer to the scenario's flight.
     found.erase("camera");
     found.erase("throttle_hz");
     return found;
@@ -180,7 +180,7 @@ Result<engine::EstimatorSpec> estimator_from(const TrackArguments& arguments) {
   for (const std::string& text : arguments.parameters) {
     const Result<engine::Override> parameter = engine::parse_override(text);
     if (!parameter) return parameter.error().in("--parameter");
-    // Names may have points in them: no path.
+    // Names may contain dots, so this is not a path.
     (*entry)["parameters"][parameter->path] = parameter->value;
   }
   for (const std::string& text : arguments.sets) {

@@ -1,4 +1,4 @@
-// overfly track: an estimator over recorded images.
+// overfly track: runs an estimator over recorded images.
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
@@ -24,13 +24,13 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-/// The truth, where one is given.
+/// The truth, if given.
 struct Truth {
   Trajectory T_world_camera;
   bool has_times = true;
 };
 
-/// Nothing is computed for a file that cannot be written afterwards.
+/// Checked before the estimator runs, so that no result is lost because its file cannot be written.
 Status check_outputs(const TrackArguments& arguments) {
   std::error_code failure;
   for (const std::string& file : {arguments.out, arguments.statuses, arguments.points}) {
@@ -63,7 +63,7 @@ Result<std::optional<Truth>> read_truth(const TrackArguments& arguments, engine:
   return std::optional<Truth>(Truth{*camera, file->has_times});
 }
 
-/// What perfect and drifting estimators are given.
+/// The truth for the perfect and drifting estimators.
 Result<engine::ToyTruth> toy_truth(const engine::Dataset& dataset,
                                    const std::optional<Truth>& truth,
                                    double scene_depth_m) {

@@ -72,7 +72,7 @@ std::string cost_text(const Json& report) {
 }
 
 std::string score_text(const Json& score) {
-  // Without its time: that is a data set's, often seconds since 1970.
+  // Without the time of the outcome: it is in the data set's time base, often seconds since 1970.
   return "outcome: " + score.at("outcome").get<std::string>() + ", " + coverage_text(score) + "\n" +
          alignment_table(score.at("alignments"), score.at("unavailable"));
 }

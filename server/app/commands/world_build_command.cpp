@@ -1,4 +1,4 @@
-// overfly world build: tiles and heights made ready beside the manifest.
+// overfly world build: prepares tiles and heights in a cache next to the manifest.
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
@@ -40,7 +40,7 @@ Result<terrain::VerticalDatum> datum_named(const std::string& name) {
       "--vertical-datum " + name + ": must be one of ellipsoid, egm96, egm2008, navd88, unknown"};
 }
 
-/// The manifest among the arguments; empty if they are files of imagery and elevation.
+/// The manifest among the arguments; empty if they are imagery and elevation files.
 fs::path manifest_of(const std::vector<std::string>& files) {
   if (files.size() != 1) return {};
   const fs::path path = files.front();
@@ -70,7 +70,7 @@ Result<terrain::WorldSpec> spec_of(const BuildArguments& arguments) {
   return spec;
 }
 
-/// Writes the manifest into the folder of `--out`; one that is there already must say the same.
+/// Writes the manifest into the folder of `--out`; an existing one must have the same content.
 Status write_manifest(const fs::path& folder, terrain::WorldSpec& spec) {
   const fs::path manifest = folder / "world.json";
   spec.cache_folder = terrain::cache_folder_of(manifest);

@@ -28,7 +28,7 @@ bool is_name(const std::string& host) {
          host.find_first_not_of(kCharacters) == std::string::npos;
 }
 
-/// An address in its one canonical form; empty when the text is no address.
+/// An address in its canonical form; empty if the text is not an address.
 std::string canonical_address(const std::string& text) {
   boost::system::error_code error;
   const auto address = boost::asio::ip::make_address(text, error);
@@ -47,8 +47,8 @@ std::optional<std::uint16_t> parse_port(std::string_view text) {
   return error == std::errc() && rest == end ? std::optional<std::uint16_t>(port) : std::nullopt;
 }
 
-/// "http://host:port" or "https://host:port"; @param host_header's absent port is the same
-/// scheme's.
+/// "http://host:port" or "https://host:port". If host_header has no port, the default port of the
+/// same scheme applies.
 struct SchemeOrigin {
   Authority authority;
   std::uint16_t scheme_port = kHttpPort;

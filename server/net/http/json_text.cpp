@@ -8,7 +8,7 @@
 namespace overfly::net {
 namespace {
 
-/// A value as a message shows it: short whatever the client sent.
+/// A value as shown in a message, truncated to a fixed length.
 std::string shown(const nlohmann::json& value) {
   if (value.is_object()) return "{...}";
   if (value.is_array()) return "[...]";
@@ -86,7 +86,7 @@ std::optional<std::int64_t> JsonFields::integer(const std::string& name,
                                                 std::int64_t max) {
   const nlohmann::json* value = find(name);
   if (value == nullptr) return std::nullopt;
-  // Beyond 2^53 a double is no longer exact, and 2^63 would not convert: only integers go there.
+  // Beyond 2^53 doubles are not exact, and 2^63 cannot be converted: such values must be integers.
   constexpr double kExact = 9007199254740992.0;
   std::optional<std::int64_t> integer;
   if (value->is_number_unsigned()) {

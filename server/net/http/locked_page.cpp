@@ -3,8 +3,8 @@
 namespace overfly::net {
 namespace {
 
-// Colours and type are those of web/src/styles/base.css. The form's GET keeps the page's path and
-// fragment, so that a link to a run leads there.
+// Colours and fonts are those of web/src/styles/base.css. The form's GET keeps the page's path and
+// fragment, so that a link to a run still leads there.
 constexpr const char* kBefore = R"html(<!doctype html>
 <html lang="en">
 <head>

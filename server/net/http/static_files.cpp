@@ -36,7 +36,7 @@ constexpr std::array<std::pair<const char*, const char*>, 18> kMimeTypes = {{
     {".wasm", "application/wasm"},
 }};
 
-/// Quoted size and modification time: changes whenever a build replaces the file.
+/// Quoted size and modification time; changes whenever a build replaces the file.
 std::string etag_of(const fs::path& file, std::uintmax_t size_bytes) {
   std::error_code ignored;
   const auto time = fs::last_write_time(file, ignored).time_since_epoch().count();
@@ -74,7 +74,7 @@ HttpResponse static_response(const fs::path& root,
   return response;
 }
 
-/// True for an address such as /runs/abc, which the dashboard itself understands.
+/// True for an address such as /runs/abc, which the dashboard handles itself.
 bool is_page(const std::string& target) {
   const auto url = parse_target(target);
   return url && (url->segments.empty() || url->segments.back().find('.') == std::string::npos);

@@ -39,7 +39,7 @@ void for_each_cookie(std::string_view header, std::string_view name, Each each) 
   }
 }
 
-/// A person may paste the whole address that the server printed.
+/// Accepts the whole printed address as well, because users may paste it.
 std::string_view token_in(std::string_view text) {
   const std::size_t at = text.rfind("token=");
   return at == std::string_view::npos ? text : text.substr(at + 6);
@@ -63,7 +63,7 @@ HttpResponse token_refusal(const HttpRequest& request, bool wrong) {
   return response;
 }
 
-/// To the same page; never to another host, which "//host" and "/\host" would mean to a browser.
+/// Redirects to the same page, never to another host: a browser reads "//host" and "/\host" as one.
 std::string location_of(const std::string& target) {
   const bool is_local =
       target.starts_with('/') && !(target.size() > 1 && (target[1] == '/' || target[1] == '\\'));

@@ -14,12 +14,12 @@ namespace {
 using engine::Picture;
 using engine::PictureRequest;
 
-/// Clients of the view service that are single requests, apart from those that are connections.
+/// First client number for single requests; lower numbers belong to WebSocket connections.
 constexpr std::uint64_t kFirstRequestClient = std::uint64_t{1} << 63U;
 constexpr int kFullWidth = 1 << 14;
 constexpr int kQuality = 90;
 
-/// The number of "17.jpg".
+/// The frame number in "17.jpg".
 std::optional<std::int64_t> frame_of(const std::string& file_name) {
   std::int64_t frame = 0;
   const char* end = file_name.data() + file_name.size();

@@ -19,17 +19,17 @@ using nlohmann::json;
 
 constexpr const char* kTruth = "truth";
 
-/// Whether a file of a run is none of its own, but a link to somewhere else.
+/// Whether a run's file is a symbolic link to a place outside the run's folder.
 bool leads_out_of(const fs::path& folder, const fs::path& file) {
   std::error_code error;
   const fs::path place = fs::canonical(file, error);
-  if (error) return false;  // Reading it says why.
+  if (error) return false;  // reading it will report the error
   const fs::path home = fs::canonical(folder, error);
   const auto parts = std::mismatch(home.begin(), home.end(), place.begin(), place.end());
   return error || parts.first != home.end();
 }
 
-/// A file of a run as it is. @param name  relative to the run's folder
+/// Serves a file of a run unchanged. @param name  relative to the run's folder
 HttpResponse result_response(const fs::path& folder,
                              const fs::path& name,
                              const std::string& content_type,
@@ -89,7 +89,7 @@ Result<json> columns_of(const RunTimeline& timeline,
   return estimate_columns(timeline.estimates(index, 0, timeline.estimate_count(index)), *placed);
 }
 
-/// The parameters `format` and `alignment` for the trajectory of `name`.
+/// Checks the parameters `format` and `alignment` for the trajectory `name`.
 Status check_trajectory_query(const RouteCall& call, const std::string& name) {
   const std::string format = call.query_or("format", "tum");
   if (format != "tum" && format != "json") {

@@ -42,7 +42,7 @@ bool is_json(const HttpRequest& request) {
   return type == "application/json" || type.starts_with("application/json;");
 }
 
-/// A run that is refused for want of room, or for a fault of the request.
+/// The response for a run that was refused for lack of room or because of an invalid request.
 HttpResponse start_refusal(const engine::StartReport& report, const Error& error) {
   using Refusal = engine::StartReport::Refusal;
   if (report.refusal == Refusal::kQueueFull) {
@@ -76,8 +76,8 @@ HttpResponse start_run(RunManager* runs, const HttpRequest& request) {
   return response;
 }
 
-/// The list of runs as JSON text. A run that has not changed since the last list is the same
-/// object, and its text is kept. Thread-safe.
+/// The list of runs as JSON text. The entry of an unchanged run is the same object as before, so
+/// its text is cached. Thread-safe.
 class RunListText {
  public:
   std::string of(const engine::RunList& runs) {

@@ -5,7 +5,8 @@
 namespace overfly::net {
 namespace {
 
-/// A seek or another view is shown this soon even by a slower stream [ns].
+/// After a seek or a change of the view, even a slow stream shows the next picture within this
+/// period [ns].
 constexpr std::int64_t kChangePeriodNs = 30'000'000;
 
 }  // namespace
@@ -17,7 +18,7 @@ std::optional<PictureKey> PictureSlot::take(std::int64_t now_ns) {
   const std::int64_t change_ns = std::max(std::min(period_ns_, kChangePeriodNs), least_period_ns_);
   const std::int64_t ready_ns = changed ? std::min(due_ns_, taken_at_ns_ + change_ns) : due_ns_;
   if (now_ns < ready_ns) return std::nullopt;
-  // Counted from when it was due, so that late ticks do not lower the rate.
+  // Measured from the time it was due, so that late ticks do not lower the rate.
   const bool on_time = !changed && now_ns - due_ns_ < period_ns;
   due_ns_ = (on_time ? due_ns_ : now_ns) + period_ns;
   taken_ = wanted_;

@@ -151,7 +151,8 @@ void PictureStreams::ready(const PictureTicket& ticket,
 }
 
 void PictureStreams::tell_error(Stream* stream, const Error& error, ViewerPort* port) {
-  // Nothing to see at this instant is no fault: the panel stays empty until there is.
+  // Not an error: there is nothing to show at this instant, and the panel stays empty until there
+  // is.
   if (error.code == ErrorCode::kNotFound || error.code == ErrorCode::kCancelled) return;
   if (stream->error_told == error.message) return;
   stream->error_told = error.message;

@@ -12,7 +12,7 @@ using engine::FrameRow;
 using engine::RunTimeline;
 using nlohmann::json;
 
-/// Number of recorded frames for which `before` holds; it holds for the first ones only.
+/// Number of recorded frames for which `before` holds. @pre it holds for the first ones only
 template <typename Before>
 std::int64_t count_frames(const RunTimeline& timeline, Before before) {
   std::int64_t low = 0;

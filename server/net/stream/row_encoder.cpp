@@ -13,7 +13,7 @@ using nlohmann::json;
 constexpr std::array<const char*, 6> kPoseColumns = {
     "x_m", "y_m", "z_m", "roll_deg", "pitch_deg", "yaw_deg"};
 
-/// Null for a value that JSON cannot say.
+/// Null for a value that JSON cannot represent.
 json rounded(double value, double per_unit) {
   if (!std::isfinite(value)) return nullptr;
   return std::round(value * per_unit) / per_unit;
@@ -32,7 +32,7 @@ std::array<json, 6> pose_values(const Pose& T_world_body) {
           rounded(deg_from_rad(attitude.yaw_rad), kPerDegree)};
 }
 
-/// The six pose columns of rows whose pose may be missing.
+/// The six pose columns; a row's pose may be missing.
 template <typename Rows, typename PoseOf>
 void add_pose_columns(const Rows& rows, PoseOf pose_of, json* columns) {
   std::array<json::array_t, 6> pose_columns;
@@ -56,7 +56,7 @@ json column(const Rows& rows, ValueOf value_of) {
   return values;
 }
 
-/// Adds a column unless every value of it is null: most runs have no sensor and no fault.
+/// Adds a column unless all of its values are null: most runs have no sensor and no faults.
 template <typename ValueOf>
 void add_if_said(const std::vector<engine::FrameRow>& rows,
                  const char* name,
@@ -68,7 +68,7 @@ void add_if_said(const std::vector<engine::FrameRow>& rows,
   if (said) (*columns)[name] = std::move(values);
 }
 
-/// What sensor, tiles and faults did to each frame.
+/// Effects of sensor, tiles and faults on each frame.
 void add_image_columns(const std::vector<engine::FrameRow>& rows, json* columns) {
   using Row = engine::FrameRow;
   constexpr double kDigits = 1e6;

@@ -15,7 +15,7 @@ constexpr std::int64_t kRowsPeriodNs = 100'000'000;
 constexpr std::int64_t kRunPeriodNs = 500'000'000;
 constexpr std::int64_t kPlaybackPeriodNs = 50'000'000;
 constexpr std::int64_t kExtentPeriodNs = 500'000'000;
-/// Rows are not made while more than this is unsent.
+/// No rows are encoded while more than this is unsent.
 constexpr std::size_t kRowsHighWaterBytes = std::size_t{1} << 20U;
 
 bool is_running(RunStatus status) {
@@ -123,7 +123,7 @@ void RunWatch::tell_playback(ViewerPort* port, std::int64_t now_ns) {
   const bool grew =
       cursor_.end_ns() != end_told_ns_ && is_due(playback_at_ns_, now_ns, kExtentPeriodNs);
   if (!playback_due_ && !moved && !grew) return;
-  // The position is told by the next message too: it need not queue behind a slow connection.
+  // Skipped on a slow connection, because the next message contains the position too.
   if (!playback_due_ && port->unsent_bytes() > kRowsHighWaterBytes) return;
   playback_due_ = false;
   cursor_told_ = now;

@@ -9,7 +9,7 @@ namespace overfly::net {
 namespace {
 
 constexpr int kProtocol = 1;
-constexpr std::int64_t kPlayingTickNs = 16'000'000;  ///< twice in a camera frame of 31 Hz
+constexpr std::int64_t kPlayingTickNs = 16'000'000;  ///< two ticks per frame of a 31 Hz camera
 constexpr std::int64_t kRunningTickNs = 100'000'000;
 constexpr std::int64_t kIdleTickNs = 1'000'000'000;
 
@@ -25,7 +25,7 @@ void answer(const std::optional<std::int64_t>& request, const Status& status, Vi
 
 }  // namespace
 
-/// Carries out each command; what follows from it is sent by the tick after the answer.
+/// Executes each command; messages that result from it are sent by the tick after the answer.
 struct Viewer::CommandVisitor {
   Viewer& viewer;
 
