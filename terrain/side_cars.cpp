@@ -45,7 +45,7 @@ Status SideCars::check(const fs::path& file,
                        const std::string& field,
                        const SourcePolicy& sources) {
   for (const fs::path& side_car : of(file)) {
-    Status status = sources.check_place(side_car, field + " (a file beside it)");
+    Status status = sources.check_place(side_car, field + " (a file next to it)");
     if (!status) return status;
   }
   return {};

@@ -50,10 +50,11 @@ std::string notes_of(const std::string& name, const Json& camera, const Json& te
         texture.at("texels_per_pixel_median").get<double>());
   }
   if (camera.contains("late_tiles")) {
-    notes += formatted("warning: %s: %lld tiles came late and were drawn coarser, in %lld frames\n",
-                       name.c_str(),
-                       camera.at("late_tiles").at("tiles").get<long long>(),
-                       camera.at("late_tiles").at("frames").get<long long>());
+    notes += formatted(
+        "warning: %s: %lld tiles were late and drawn at a coarser level, in %lld frames\n",
+        name.c_str(),
+        camera.at("late_tiles").at("tiles").get<long long>(),
+        camera.at("late_tiles").at("frames").get<long long>());
   }
   const Json faults = camera.value("faults", Json::object());
   for (const auto& [kind, frames] : faults.items()) {
@@ -77,7 +78,7 @@ std::string camera_notes(const Json& metrics) {
 
 std::string score_table(const Json& metrics, const std::string& mode) {
   const Json& estimators = metrics.at("estimators");
-  if (estimators.empty()) return "no estimator\n";
+  if (estimators.empty()) return "no estimators\n";
   std::string table = formatted("%-16s %-22s %9s %8s  %12s %12s %12s\n",
                                 "estimator",
                                 "outcome",

@@ -49,7 +49,7 @@ Result<std::optional<TokenFile>> make_file(const fs::path& file) {
       ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR));
   if (!made.is_open()) {
     if (errno == EEXIST) return std::optional<TokenFile>();
-    return failure(file, "cannot be made");
+    return failure(file, "cannot be created");
   }
   auto token = net::make_token();
   if (!token) return token.error();

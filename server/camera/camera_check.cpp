@@ -107,7 +107,7 @@ void judge(CameraCheckRow& row, double limit_px) {
     row.fault = "median residual " + px(row.worst_median_px) + ": must be at most " + px(limit_px);
   } else if (row.worst_lost_share > kMostLost) {
     row.fault = std::to_string(100.0 * row.worst_lost_share) +
-                " % of the patches are not found again: must be at most 5 %";
+                " % of the patches were not found: must be at most 5 %";
   }
 }
 

@@ -168,7 +168,7 @@ Result<renderer::CameraFrame> FrameMaker::draw_at_start(std::size_t camera) {
   if (!truth) return truth.error();
   const auto first = (*truth)->state_at(0);
   if (!first) return first.error();
-  if (!*first) return Error{ErrorCode::kInvalidArgument, "flight: has ended before it began"};
+  if (!*first) return Error{ErrorCode::kInvalidArgument, "flight: ends before its first frame"};
   return renderer_->render_camera(scenario_.cameras[camera].model,
                                   cameras_[camera]->T_world_camera((*first)->T_world_body, 0),
                                   0,

@@ -45,7 +45,7 @@ Result<Image> FrameRemaker::make(std::size_t camera,
   if (!states) return states.error();
   if (!*states) {
     return Error{ErrorCode::kConflict,
-                 "frame " + std::to_string(row.frame) + ": the flight ends before it now"};
+                 "frame " + std::to_string(row.frame) + ": the flight now ends before this frame"};
   }
   Result<renderer::CameraRequest> request = unit.request(**states, row.t_ns, setting);
   if (!request) return request.error();

@@ -81,7 +81,8 @@ Status order_images(Dataset& dataset) {
     if (images[i].index > images[i - 1].index) continue;
     return Error{ErrorCode::kUnreadable,
                  images[i].listed_at + ": image number " + std::to_string(images[i].index) +
-                     ": must be above " + std::to_string(images[i - 1].index) + ", the one before"};
+                     ": must be above " + std::to_string(images[i - 1].index) +
+                     ", the previous one"};
   }
   return {};
 }
@@ -117,8 +118,8 @@ Status expect_as_many(const fs::path& list_file,
   if (lines == images) return {};
   return Error{ErrorCode::kUnreadable,
                list_file.string() + ": " + std::to_string(lines) + " times, but " +
-                   folder.string() + " holds " + std::to_string(images) +
-                   " images: must be as many"};
+                   folder.string() + " contains " + std::to_string(images) +
+                   " images: the numbers must be equal"};
 }
 
 }  // namespace overfly::engine

@@ -37,7 +37,7 @@ Result<KittiCamera> camera_of(const fs::path& path, char number) {
     return KittiCamera{CameraModel(PinholeCamera{0, 0, P[0], P[5], P[2], P[6]}),
                        {Eigen::Quaterniond::Identity(), -t_camera_first}};
   }
-  return Error{ErrorCode::kUnreadable, path.string() + ": holds no line " + name};
+  return Error{ErrorCode::kUnreadable, path.string() + ": contains no line " + name};
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ Result<DatasetLayout> layout_of(const fs::path& folder) {
                folder.string() +
                    ": no data set of a known layout (EuRoC: mav0/cam0/data.csv; TUM monoVO: "
                    "times.txt and images/; TUM RGB-D: rgb.txt; KITTI: times.txt and image_0/; "
-                   "PNG + CSV: cameras.json); a folder of images needs a file of times"};
+                   "PNG + CSV: cameras.json); a folder of images needs a times file"};
 }
 
 Result<ListedDataset> read_layout(DatasetLayout layout, const DatasetOptions& options) {
@@ -47,7 +47,7 @@ Result<ListedDataset> read_layout(DatasetLayout layout, const DatasetOptions& op
   }
   if (!options.times) {
     return Error{ErrorCode::kInvalidArgument,
-                 options.folder.string() + ": a folder of images needs a file of times"};
+                 options.folder.string() + ": a folder of images needs a times file"};
   }
   return read_plain_folder(options);
 }
@@ -63,7 +63,7 @@ Status check_options(const DatasetOptions& options) {
   }
   if (options.times && options.layout.value_or(DatasetLayout::kImages) != DatasetLayout::kImages) {
     return Error{ErrorCode::kInvalidArgument,
-                 "a file of times is for a plain folder of images, not for layout " +
+                 "a times file is only for a plain folder of images, not for layout " +
                      std::string(to_string(*options.layout))};
   }
   return {};
@@ -78,7 +78,7 @@ Result<CameraModel> choose_camera(const DatasetOptions& options, const ListedDat
   if (!options.camera && !listed.camera) {
     return Error{ErrorCode::kInvalidArgument,
                  options.folder.string() + ": layout " + to_string(listed.dataset.layout) +
-                     " holds no calibration: the camera must be given"};
+                     "contains no calibration: the camera must be given"};
   }
   const CameraModel& known = options.camera ? *options.camera : *listed.camera;
   PinholeCamera pinhole = known.pinhole();
@@ -108,7 +108,7 @@ Result<Dataset> open_dataset(const DatasetOptions& options) {
   dataset.folder = options.folder;
   dataset.sample_bits = options.sample_bits;
   if (dataset.images.empty()) {
-    return Error{ErrorCode::kUnreadable, options.folder.string() + ": lists no image"};
+    return Error{ErrorCode::kUnreadable, options.folder.string() + ": lists no images"};
   }
   if (Status status = order_images(dataset); !status) return status.error();
   const Result<CameraModel> camera = choose_camera(options, *listed);

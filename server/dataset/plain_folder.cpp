@@ -114,7 +114,7 @@ Result<ListedDataset> read_plain_folder(const DatasetOptions& options) {
   const Result<FieldFile> file = FieldFile::read(path);
   if (!file) return file.error();
   if (file->lines().empty()) {
-    return Error{ErrorCode::kUnreadable, path.string() + ": holds no time"};
+    return Error{ErrorCode::kUnreadable, path.string() + ": contains no times"};
   }
   const Result<Columns> columns = columns_of(*file);
   if (!columns) return columns.error();

@@ -89,21 +89,22 @@ Result<Trajectory> camera_truth(const Dataset& dataset,
                                 std::vector<std::string>& notes) {
   if (!dataset.T_body_camera) {
     notes.emplace_back(
-        "the camera's mount is not known: Euler angles are those of a body that it looks straight "
-        "down from");
+        "the camera's mount is not known: the Euler angles assume a camera that looks straight "
+        "down");
   }
   if (truth.unknown_poses > 0) {
-    notes.push_back("the truth does not know " + std::to_string(truth.unknown_poses) +
-                    " of its poses: frames between those that it knows are not scored");
+    notes.push_back("unknown poses in the truth: " + std::to_string(truth.unknown_poses) +
+                    "; frames in these gaps are not scored");
   }
   if (truth.format == TrajectoryFormat::kEuroc && dataset.T_body_camera) {
-    notes.emplace_back("the truth is the body's; the camera's is made with T_BS");
+    notes.emplace_back(
+        "the truth gives poses of the body; those of the camera are computed with T_BS");
     return moved(truth.trajectory, *dataset.T_body_camera);
   }
   const bool of_another = dataset.T_first_camera && !dataset.T_first_camera->translation.isZero();
   if (truth.format == TrajectoryFormat::kKitti && of_another) {
-    notes.push_back("the truth is image_0's; that of " + dataset.camera_name +
-                    " is made with calib.txt");
+    notes.push_back("the truth gives poses of image_0; those of " + dataset.camera_name +
+                    " are computed with calib.txt");
     return moved(truth.trajectory, *dataset.T_first_camera);
   }
   return truth.trajectory;

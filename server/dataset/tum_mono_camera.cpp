@@ -56,7 +56,7 @@ Result<Distortion> lens_distortion(const FieldFile& file,
   Distortion distortion;
   const bool zero = lens.coefficients == 1 && values[4] == 0.0;
   if (lens.model == DistortionModel::kNone && !zero) {
-    return file.bad_line(line, "a Pinhole has no coefficient but 0");
+    return file.bad_line(line, "a Pinhole must have only coefficients of 0");
   }
   if (zero) return distortion;
   distortion.model = lens.model;

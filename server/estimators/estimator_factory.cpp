@@ -60,7 +60,8 @@ Result<ToyParameters> toy_parameters_from(const VoParameters& given, double scen
 
 Port create_toy(const EstimatorSpec& spec, const std::function<Result<ToyTruth>()>& truth) {
   if (!truth) {
-    return Error{ErrorCode::kInvalidArgument, spec.type + ": needs the truth, and there is none"};
+    return Error{ErrorCode::kInvalidArgument,
+                 spec.type + ": needs the truth, which is not available"};
   }
   const Result<ToyTruth> known = truth();
   if (!known) return known.error();

@@ -113,7 +113,7 @@ Status prepare_folder(const fs::path& folder) {
   std::error_code failure;
   if (fs::exists(folder, failure) && !fs::is_empty(folder, failure)) {
     return Error{ErrorCode::kConflict,
-                 folder.string() + ": not empty; a data set needs a folder of its own"};
+                 folder.string() + ": is not empty; a data set needs an empty folder"};
   }
   return make_folder(folder);
 }

@@ -57,7 +57,7 @@ Status make_folder(const std::filesystem::path& folder) {
   std::error_code failure;
   std::filesystem::create_directories(folder, failure);
   if (!failure) return {};
-  return Error{ErrorCode::kIo, folder.string() + ": cannot be made: " + failure.message()};
+  return Error{ErrorCode::kIo, folder.string() + ": cannot be created: " + failure.message()};
 }
 
 }  // namespace overfly::engine

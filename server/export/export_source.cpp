@@ -24,7 +24,8 @@ Error unreadable(const fs::path& file, const std::string& fault) {
 Result<std::vector<std::pair<std::string, std::string>>> digests_of(const Json& manifest,
                                                                     const fs::path& file) {
   std::vector<std::pair<std::string, std::string>> digests;
-  if (!manifest.contains("world")) return unreadable(file, "no world: the run never began");
+  if (!manifest.contains("world"))
+    return unreadable(file, "no field world: the run ended before its world was opened");
   for (const Json& row : manifest["world"].value("data_hashes", Json::array())) {
     digests.emplace_back(row.value("file", ""), row.value("digest", ""));
   }
@@ -46,7 +47,7 @@ Result<ExportSource> open_run(const fs::path& folder) {
                       RecordedRun{folder, std::move(records->frames), std::move(*digests)},
                       manifest->value("epoch_utc_ns", kEpochUtcNs)};
   if (source.run->frames.empty()) {
-    return Error{ErrorCode::kNotFound, folder.string() + ": the run has recorded no frame"};
+    return Error{ErrorCode::kNotFound, folder.string() + ": the run recorded no frames"};
   }
   return source;
 }
@@ -58,8 +59,9 @@ Result<ExportSource> open_export_source(const fs::path& path,
   std::error_code failed;
   if (fs::is_directory(path, failed)) {
     if (!overrides.empty()) {
-      return Error{ErrorCode::kInvalidArgument,
-                   path.string() + ": a run is exported as it was flown; --set is for scenarios"};
+      return Error{
+          ErrorCode::kInvalidArgument,
+          path.string() + ": a run is exported as it was flown; --set applies only to scenarios"};
     }
     return open_run(path);
   }
@@ -74,7 +76,7 @@ Status check_world(const ExportSource& source, const terrain::World& world) {
   const auto conflict = [&](const std::string& what) {
     return Error{ErrorCode::kConflict,
                  source.run->folder.string() + ": " + what +
-                     "; its frames cannot be made again over another world"};
+                     "; its frames cannot be rendered again over another world"};
   };
   const auto& then = source.run->world_digests;
   const auto& now = world.data_hashes;
@@ -100,9 +102,9 @@ Status check_frame(const FrameRecord& recorded, const MadeFrame& made) {
   const double away_rad = rotation_angle_rad(then.rotation, now.rotation);
   if (away_m <= kCloseM && away_rad <= kCloseRad && recorded.row.t_ns == made.t_ns) return {};
   return Error{ErrorCode::kConflict,
-               "frame " + std::to_string(made.frame) + ": made " + std::to_string(away_m) +
+               "frame " + std::to_string(made.frame) + ": rendered " + std::to_string(away_m) +
                    " m and " + std::to_string(deg_from_rad(away_rad)) +
-                   " deg from where the run recorded it; the flight's files or this version "
+                   "deg away from the recorded pose; the flight's files or this version "
                    "differ from the run's"};
 }
 

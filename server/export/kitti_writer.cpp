@@ -63,13 +63,14 @@ class KittiWriter final : public DatasetWriter {
 Result<std::unique_ptr<DatasetWriter>> create_kitti_writer(const DatasetPlan& plan) {
   if (plan.cameras.size() != 1) {
     return Error{ErrorCode::kUnsupported,
-                 "kitti is written of one camera, " + std::to_string(plan.cameras.size()) +
-                     " are asked for: name one with --camera"};
+                 "kitti holds one camera, " + std::to_string(plan.cameras.size()) +
+                     " were requested: select one with --camera"};
   }
   const CameraSpec& camera = plan.cameras.front();
   if (!camera.model.distortion().none()) {
     return Error{ErrorCode::kUnsupported,
-                 "camera " + camera.name + ": calib.txt of kitti holds no lens, distortion is " +
+                 "camera " + camera.name +
+                     ": calib.txt of kitti cannot describe a lens, distortion is " +
                      to_string(camera.model.distortion().model) + ": must be none"};
   }
   auto writer = std::make_unique<KittiWriter>(plan);

@@ -95,7 +95,7 @@ Result<std::unique_ptr<DatasetWriter>> create_rosbag_writer(const DatasetPlan& p
   if (plan.epoch_utc_ns <= 0) {
     return Error{ErrorCode::kUnsupported,
                  "epoch_utc_ns = " + std::to_string(plan.epoch_utc_ns) +
-                     ": a bag holds times after 1970 alone"};
+                     ": a bag can hold only times after 1970"};
   }
   const fs::path unfinished = plan.folder / "flight.bag.active";
   auto bag = Ros1BagWriter::create(unfinished);

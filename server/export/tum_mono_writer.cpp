@@ -31,7 +31,7 @@ Result<std::pair<std::string, std::string>> lens_text(const CameraSpec& camera) 
   if (k[4] != 0.0) {
     return Error{ErrorCode::kUnsupported,
                  "camera " + camera.name + ": distortion k3 = " + number_text(k[4]) +
-                     ": camera.txt holds k1 k2 p1 p2 alone; must be 0"};
+                     ": must be 0, since camera.txt holds only k1 k2 p1 p2"};
   }
   return std::pair("RadTan" + std::string(), number_list({k[0], k[1], k[2], k[3]}, " "));
 }
@@ -109,7 +109,7 @@ Result<std::unique_ptr<DatasetWriter>> create_tum_mono_writer(const DatasetPlan&
   if (plan.cameras.size() != 1) {
     return Error{ErrorCode::kUnsupported,
                  "tum-mono holds one camera, " + std::to_string(plan.cameras.size()) +
-                     " are asked for: name one with --camera"};
+                     " were requested: select one with --camera"};
   }
   // Checked before anything is written: a rejected export leaves the folder unchanged.
   const auto lens = lens_text(plan.cameras.front());

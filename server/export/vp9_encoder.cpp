@@ -101,7 +101,7 @@ Result<Vp9Encoder> Vp9Encoder::open(const VideoSettings& settings) {
   state->settings = settings;
   vpx_codec_enc_cfg_t config;
   if (vpx_codec_enc_config_default(vpx_codec_vp9_cx(), &config, 0) != VPX_CODEC_OK) {
-    return Error{ErrorCode::kInternal, "libvpx: no VP9 encoder in this build of it"};
+    return Error{ErrorCode::kInternal, "libvpx: built without a VP9 encoder"};
   }
   config.g_w = static_cast<unsigned>(settings.width_px);
   config.g_h = static_cast<unsigned>(settings.height_px);
@@ -138,7 +138,7 @@ Result<std::vector<VideoPacket>> Vp9Encoder::encode(const Image& rgb, std::int64
   if (state_->last_ms && t_ms <= *state_->last_ms) {
     return Error{ErrorCode::kInvalidArgument,
                  "video: an image at " + std::to_string(t_ms) + " ms after one at " +
-                     std::to_string(*state_->last_ms) + " ms: stamps must grow"};
+                     std::to_string(*state_->last_ms) + " ms: stamps must increase"};
   }
   state_->last_ms = t_ms;
   PlanarImage planar = planar_from_rgb(rgb);

@@ -30,7 +30,7 @@ std::string names_of(const Json& properties) {
 /// A field whose last words equal the given name: "datum" probably meant "vertical_datum".
 std::string suggestion(const std::string& given, const Json& properties) {
   for (const auto& [name, value] : properties.items()) {
-    if (name.ends_with("_" + given)) return "; its name is " + name;
+    if (name.ends_with("_" + given)) return "; did you mean " + name + "?";
   }
   return "";
 }

@@ -23,11 +23,11 @@ std::optional<HttpResponse> forbidden(const AllowedHosts& allowed,
         403,
         "forbidden",
         "host " + authority->host +
-            ": is none of this server's names (overfly serve --allow-host NAME adds one)");
+            ": is not a name of this server (overfly serve --allow-host NAME adds one)");
   }
   const std::string origin = request.header("origin");
   if (!allowed.allows_origin(origin, host, local)) {
-    return error_response(403, "forbidden", "origin " + origin + ": is another site's page");
+    return error_response(403, "forbidden", "origin " + origin + ": is a page of another site");
   }
   return std::nullopt;
 }

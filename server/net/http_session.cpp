@@ -43,7 +43,7 @@ HttpResponse too_many_viewers(std::size_t most) {
   return error_response(
       503,
       "too_many_viewers",
-      std::to_string(most) + " viewers are connected, the most that this server serves at once");
+      std::to_string(most) + " viewers are connected, which is this server's limit");
 }
 
 class HttpSession final : public std::enable_shared_from_this<HttpSession> {
@@ -151,7 +151,7 @@ void HttpSession::on_header(const error_code& error) {
   }
   if (!place_->enter(ConnectionPhase::kReceiving)) {
     keep_alive_ = false;
-    write(error_response(503, "too_many_connections", "every connection is busy: try again soon"));
+    write(error_response(503, "too_many_connections", "all connections are busy: try again soon"));
     return;
   }
   admitted_ = true;
@@ -226,7 +226,7 @@ void HttpSession::dispatch() {
 HttpResponse HttpSession::stream_without_upgrade() const {
   const std::size_t most = context_->options.limits.connections.max_viewers;
   if (context_->connections.count(ConnectionPhase::kViewer) >= most) return too_many_viewers(most);
-  return error_response(426, "upgrade_required", "the stream is a WebSocket: ask for an upgrade");
+  return error_response(426, "upgrade_required", "the stream is a WebSocket: request an upgrade");
 }
 
 void HttpSession::ask_router() {
@@ -339,8 +339,8 @@ void HttpSession::fail(const char* what) {
     return;
   }
   attempt([this] {
-    write(error_response(
-        {ErrorCode::kInternal, "the server failed at this request: its log says why"}));
+    write(
+        error_response({ErrorCode::kInternal, "internal error: the server's log has the reason"}));
   });
 }
 

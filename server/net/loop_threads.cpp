@@ -18,8 +18,8 @@ Status LoopThreads::start(int threads, const std::function<void()>& begin) {
     const std::string started = std::to_string(threads_.size());
     stop();
     return Error{ErrorCode::kInternal,
-                 "the system starts no more than " + started + " of " + std::to_string(threads) +
-                     " threads of the server: " + error.what()};
+                 "only " + started + " of " + std::to_string(threads) +
+                     " server threads could be started: " + error.what()};
   }
   return {};
 }

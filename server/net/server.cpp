@@ -36,7 +36,7 @@ Status check_options(const ServerOptions& options) {
   if (is_loopback_host(options.address)) return {};
   return Error{ErrorCode::kInvalidArgument,
                "address = " + options.address +
-                   ": can be reached from other machines, so a token is needed"};
+                   ": can be reached from other machines, so a token is required"};
 }
 
 }  // namespace

@@ -74,7 +74,7 @@ struct ServerContext {
       if (contained([&] { gate.run(action); }, ignore)) return;
       std::this_thread::sleep_for(kPause);
     }
-    log("error", "an answer was lost: there is no memory for it");
+    log("error", "an answer was lost: out of memory");
   }
 
   const ServerOptions options;

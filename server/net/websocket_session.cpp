@@ -328,12 +328,12 @@ void WebSocketSession::check_pace() {
 
 void WebSocketSession::close_too_slow() {
   if (closing_) return;
-  context_->log("warning", "a client is too slow and is disconnected (it may resume)");
+  context_->log("warning", "a slow client was disconnected (it may reconnect and resume)");
   close_with({static_cast<websocket::close_code>(kTooSlow), "too slow"}, kCloseGrace);
 }
 
 void WebSocketSession::go_away() {
-  close_with({websocket::close_code::going_away, "the server shuts down"}, kFarewellGrace);
+  close_with({websocket::close_code::going_away, "the server is shutting down"}, kFarewellGrace);
 }
 
 /// The message in progress cannot be withdrawn: the close frame follows it. If the client receives

@@ -46,10 +46,10 @@ Result<std::string> reserve_run(const fs::path& runs_folder,
     const fs::path folder = runs_folder / id;
     if (::mkdir(folder.c_str(), 0777) == 0) return id;
     if (errno != EEXIST) {
-      return Error{ErrorCode::kIo, folder.string() + ": cannot make: " + std::strerror(errno)};
+      return Error{ErrorCode::kIo, folder.string() + ": cannot create: " + std::strerror(errno)};
     }
   }
-  return Error{ErrorCode::kIo, runs_folder.string() + ": has no free name for a run"};
+  return Error{ErrorCode::kIo, runs_folder.string() + ": no unused run id found"};
 }
 
 bool is_run_id(const std::string& name) {

@@ -26,7 +26,7 @@ Result<RunLock> RunLock::take(const fs::path& folder) {
   }
   if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
     ::close(descriptor);
-    return Error{ErrorCode::kConflict, folder.string() + ": another process is at work there"};
+    return Error{ErrorCode::kConflict, folder.string() + ": is in use by another process"};
   }
   return RunLock(descriptor, file);
 }

@@ -147,7 +147,8 @@ Status FlightRun::describe_use() {
       Status logged = recorder_.log(end_ns(),
                                     "warning",
                                     scenario_.estimators[i].name + ": parameter " + name + " is " +
-                                        value.get<std::string>() + " at the end, and was " + was);
+                                        value.get<std::string>() +
+                                        " at the end, but at the start it was " + was);
       if (!logged) return logged;
     }
     entry["parameters_at_end"] = at_end;

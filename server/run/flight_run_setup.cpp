@@ -48,7 +48,7 @@ Status FlightRun::open_maker() {
   Json& renderer = recorder_.manifest()["renderer"];
   if (!info.device_note.empty()) renderer["device_note"] = info.device_note;
   if (!info.camera_note.empty()) renderer["camera_note"] = info.camera_note;
-  std::string line = "drawn by " + info.backend + ": " + info.device;
+  std::string line = "rendered by " + info.backend + ": " + info.device;
   if (!info.camera_note.empty()) line += " (" + info.camera_note + ")";
   return recorder_.log(0, "info", line);
 }

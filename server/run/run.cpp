@@ -16,11 +16,11 @@ namespace {
 /// library error. It ends the flight, not the program.
 Error error_from(const std::exception& exception) {
   if (dynamic_cast<const std::bad_alloc*>(&exception) != nullptr) {
-    return {ErrorCode::kInternal, "the machine has too little memory for this flight"};
+    return {ErrorCode::kInternal, "not enough memory for this flight"};
   }
   if (const auto* system = dynamic_cast<const std::system_error*>(&exception)) {
     return {ErrorCode::kInternal,
-            "the system refuses (too many threads?): " + std::string(system->what())};
+            "the system refused a request (too many threads?): " + std::string(system->what())};
   }
   return {ErrorCode::kInternal, "failed unexpectedly: " + std::string(exception.what())};
 }

@@ -27,7 +27,7 @@ Status make_empty_folder(const fs::path& folder) {
   fs::create_directories(folder, failure);
   if (failure) return Error{ErrorCode::kIo, folder.string() + ": " + failure.message()};
   if (fs::exists(fs::symlink_status(manifest_file(folder), failure))) {
-    return Error{ErrorCode::kConflict, folder.string() + ": holds a run already"};
+    return Error{ErrorCode::kConflict, folder.string() + ": already contains a run"};
   }
   if (!fs::is_empty(folder, failure) || failure) {
     return Error{ErrorCode::kConflict, folder.string() + ": is not empty"};
@@ -82,7 +82,7 @@ Result<std::unique_ptr<RunRecorder>> RunRecorder::create(const fs::path& folder,
   // Another process may have used the folder between the check and the lock.
   std::error_code ignored;
   if (fs::exists(manifest_file(folder), ignored)) {
-    return Error{ErrorCode::kConflict, folder.string() + ": holds a run already"};
+    return Error{ErrorCode::kConflict, folder.string() + ": already contains a run"};
   }
   std::unique_ptr<RunRecorder> recorder(new RunRecorder(folder, std::move(lock).value(), scenario));
   RunInfo& info = recorder->info_;

@@ -69,10 +69,12 @@ Status RunRecorder::add_estimator_log(std::size_t estimator,
   for (const std::string& line : lines) {
     if (state.log_rows > kMaxLogRows) return {};
     const bool last = state.log_rows++ == kMaxLogRows;
-    Status logged =
-        last
-            ? log(t_ns, "warning", name + " has said too much: the log has no more of it", "", name)
-            : log(t_ns, level_of(line), line.substr(0, kMaxLogBytes), "", name);
+    Status logged = last ? log(t_ns,
+                               "warning",
+                               name + " logged too many lines: the log has no further ones",
+                               "",
+                               name)
+                         : log(t_ns, level_of(line), line.substr(0, kMaxLogBytes), "", name);
     if (!logged) return logged;
   }
   return {};

@@ -78,7 +78,7 @@ Result<RunInfo> ManagedRuns::enqueue(Scenario scenario,
     report.refusal = StartReport::Refusal::kQueueFull;
     return Error{ErrorCode::kConflict,
                  "waiting runs = " + std::to_string(queue_.size()) + ": must be below " +
-                     std::to_string(options.max_waiting_runs) + " for another one to be queued"};
+                     std::to_string(options.max_waiting_runs) + " for another run to be queued"};
   }
   Result<std::string> id = reserve_run(options.runs_folder, scenario.name, utc_now_ns());
   if (!id) return id.error();

@@ -113,7 +113,7 @@ Status RunManager::cancel(const std::string& id) {
 
 Status RunManager::remove(const std::string& id) {
   if (impl_->is_live(id)) {
-    return Error{ErrorCode::kConflict, "run \"" + id + "\" is not over: cancel it first"};
+    return Error{ErrorCode::kConflict, "run \"" + id + "\" has not ended: cancel it first"};
   }
   // A run cancelled while queued has no folder.
   if (impl_->forget_unflown(id)) return {};

@@ -60,7 +60,7 @@ Result<RowAlignment> RowAlignment::of(const RunTimeline& timeline,
   const Json* scores = find(metrics, {"estimators", name});
   if (scores == nullptr) {
     return Error{ErrorCode::kConflict,
-                 "alignment = " + mode + ": the run is not scored yet, only " + kRecordedAlignment +
+                 "alignment = " + mode + ": the run is not scored yet; only " + kRecordedAlignment +
                      " can be shown"};
   }
   if (const Json* reason = find(*scores, {"unavailable", mode})) {

@@ -78,10 +78,11 @@ void ViewService::Impl::work() {
     }
     // A thread's priority can only be lowered: during a real-time flight another thread draws.
     const bool beside_flight = runs.picture_rate().flying();
-    (void)contained([&] { std::thread([this, beside_flight] { paint(beside_flight); }).join(); },
-                    [this](const char* what) {
-                      refuse({ErrorCode::kInternal, std::string("no thread to draw on: ") + what});
-                    });
+    (void)contained(
+        [&] { std::thread([this, beside_flight] { paint(beside_flight); }).join(); },
+        [this](const char* what) {
+          refuse({ErrorCode::kInternal, std::string("cannot start the drawing thread: ") + what});
+        });
   }
 }
 

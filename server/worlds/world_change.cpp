@@ -36,7 +36,7 @@ std::string told(const std::vector<std::string>& changed) {
   std::string text = changed.front();
   if (changed.size() > 1) text += " and " + std::to_string(changed.size() - 1) + " more";
   return text + (changed.size() > 1 ? " have" : " has") +
-         " changed since this run was flown: what is drawn anew shows the ground as it is now";
+         " changed since this run was flown: newly rendered pictures show the present terrain";
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ describe('the token', { skip, timeout: 120_000 }, () => {
     const answer = await browser.page.goto(`${server.url}/#run=none`);
     assert.equal(answer.status(), 401);
     const text = await browser.page.locator('main').innerText();
-    assert.match(text, /asks for its token/);
+    assert.match(text, /requires its token/);
     assert.match(text, /http:\/\/127\.0\.0\.1:8480\/\?token=/);
     await dashboard.screenshot('token_1280x800');
     await browser.page.setViewportSize({ width: 360, height: 640 });
@@ -49,7 +49,7 @@ describe('the token', { skip, timeout: 120_000 }, () => {
     await browser.page.getByLabel('Token').fill('x'.repeat(32));
     await browser.page.getByRole('button', { name: 'Open' }).click();
     await browser.page.getByRole('alert').waitFor();
-    assert.match(await browser.page.getByRole('alert').innerText(), /not this server's/);
+    assert.match(await browser.page.getByRole('alert').innerText(), /token is wrong/);
     await dashboard.screenshot('token_wrong_1280x800');
   });
 

@@ -125,7 +125,7 @@ TEST_F(SideCarsTest, OfAConfinedWorldLieInsideTheDataFolders) {
       const auto world = open_world(confined);
       ASSERT_FALSE(world.ok()) << name;
       EXPECT_EQ(world.error().message,
-                "imagery.0.file (a file beside it) = " + data(name).string() +
+                "imagery.0.file (a file next to it) = " + data(name).string() +
                     ": must be a file inside of the server's data folders");
       fs::remove(data(name));
     }

@@ -271,7 +271,7 @@ void add_bench_command(CLI::App& app, int& exit_code) {
   command->add_option("--flight-s", arguments->flight_s, "Length of the measured flight [s]")
       ->check(CLI::Range(1.0, 200.0))
       ->capture_default_str();
-  command->add_option("--repetitions", arguments->repetitions, "Of each image")
+  command->add_option("--repetitions", arguments->repetitions, "Repetitions for each image")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   command->add_flag("--json", arguments->json, "Print JSON");
@@ -281,12 +281,13 @@ void add_bench_command(CLI::App& app, int& exit_code) {
   command
       ->add_option("--fly-km",
                    arguments->fly_km,
-                   "Instead: fly this far over a strip of 0.5 m/px in lockstep")
+                   "Instead fly this distance [km] over a strip of 0.5 m/px in lockstep")
       ->check(CLI::Range(1.5, 390.0));
   command->add_option("--fly-hz", arguments->endurance.rate_hz, "Frames per second of that flight")
       ->check(CLI::Range(0.1, 1000.0))
       ->capture_default_str();
-  command->add_option("--fly-camera", arguments->endurance.camera_backend, "What draws that flight")
+  command
+      ->add_option("--fly-camera", arguments->endurance.camera_backend, "Renderer of that flight")
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, renderer::CameraBackend>{
               {"auto", renderer::CameraBackend::kAuto},
@@ -294,8 +295,9 @@ void add_bench_command(CLI::App& app, int& exit_code) {
               {"raycast", renderer::CameraBackend::kRaycast}},
           CLI::ignore_case));
   command
-      ->add_option(
-          "--fly-threads", arguments->endurance.threads, "Of the ray-caster; 0 = one a core")
+      ->add_option("--fly-threads",
+                   arguments->endurance.threads,
+                   "Threads of the ray-caster; 0 = one per core")
       ->check(CLI::Range(0, 64))
       ->capture_default_str();
   command->add_option("--fly-cache-mib", arguments->fly_cache_mib, "Tiles kept in memory [MiB]")

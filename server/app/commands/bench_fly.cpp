@@ -102,7 +102,7 @@ void print_long_flight(const Json& result) {
             << number("/speed_m_s") << " m/s, " << whole("/frames") << " frames of "
             << whole("/width_px") << "x" << whole("/height_px") << " at " << number("/rate_hz")
             << " Hz\n"
-            << "drawn by                " << result.at("renderer").get<std::string>() << ", "
+            << "rendered by             " << result.at("renderer").get<std::string>() << ", "
             << result.at("device").get<std::string>() << "\n"
             << "CPU time a frame        median " << number("/cpu_ms/median") << " ms, p99 "
             << number("/cpu_ms/p99") << " ms, p99.9 " << number("/cpu_ms/p99_9") << " ms ("
@@ -117,7 +117,7 @@ void print_long_flight(const Json& result) {
   std::cout << "MB (medians of the flight's tenths), peak " << number("/resident_mb/peak")
             << " MB\n"
             << "tiles                   " << whole("/tiles/loaded") << " loaded ("
-            << whole("/tiles/read_on_demand") << " on demand; ahead, "
+            << whole("/tiles/read_on_demand") << " on demand; read ahead at "
             << number("/tiles/ahead_cpu_ms_per_tile") << " ms of CPU each), "
             << whole("/tiles/evicted") << " evicted, " << whole("/tiles/late") << " late, at most "
             << number("/tiles/peak_bytes") / 1e6 << " MB kept\n"

@@ -134,10 +134,10 @@ void print_camera_table(const Findings& findings, double limit_px) {
           "FAULT   %s, %s: %s\n", row.camera.c_str(), row.backend.c_str(), row.fault.c_str());
     }
   }
-  for (const std::string& text : findings.left_out) std::printf("left out %s\n", text.c_str());
+  for (const std::string& text : findings.left_out) std::printf("skipped %s\n", text.c_str());
   std::printf(findings.passed()
-                  ? "Depth and pose take each image onto the next within %g px (median).\n"
-                  : "Depth and pose do NOT take each image onto the next within %g px (median).\n",
+                  ? "Depth and pose map each image onto the next within %g px (median).\n"
+                  : "Depth and pose do NOT map each image onto the next within %g px (median).\n",
               limit_px);
 }
 

@@ -28,7 +28,7 @@ Check check_drawing() {
   return {
       "drawing (EGL)",
       CheckLevel::kOk,
-      egl->device + ", OpenGL " + egl->gl_version + (egl->software ? " (the processor draws)" : ""),
+      egl->device + ", OpenGL " + egl->gl_version + (egl->software ? " (software rendering)" : ""),
       ""};
 }
 
@@ -142,7 +142,7 @@ Check check_scenarios() {
   return {"scenarios",
           CheckLevel::kWarning,
           found + ", of which cannot be flown here: " + blocked,
-          "`overfly scenario list` says why; OVERFLY_DATA names the folder of the data"};
+          "`overfly scenario list` shows the reasons; OVERFLY_DATA sets the data folder"};
 }
 
 Check check_lcm() {

@@ -34,14 +34,14 @@ int doctor(const std::string& runs, bool json) {
     if (!check.remedy.empty()) std::cout << "          -> " << check.remedy << "\n";
   }
   std::cout << (healthy ? "Overfly can fly on this machine.\n"
-                        : "Overfly cannot fly on this machine until the faults are mended.\n");
+                        : "Overfly cannot fly on this machine until the faults are fixed.\n");
   return healthy ? kExitOk : kExitUnsupported;
 }
 
 }  // namespace
 
 void add_doctor_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("doctor", "Check this machine and say what is missing");
+  CLI::App* command = app.add_subcommand("doctor", "Check this machine and report what is missing");
   const auto runs = std::make_shared<std::string>("runs");
   const auto json = std::make_shared<bool>(false);
   command->add_option("--runs", *runs, "Folder of the runs")->capture_default_str();
@@ -51,14 +51,15 @@ void add_doctor_command(CLI::App& app, int& exit_code) {
   CLI::Option* self_test = command->add_flag(
       "--camera",
       *wanted,
-      "Take images onto the next by depth and pose instead, and print the residual");
-  command
-      ->add_option("--scenario", camera->scenario, "--camera: its cameras, not the built-in ones")
+      "Instead map images onto the next by depth and pose, and print the residual");
+  command->add_option("--scenario", camera->scenario, "With --camera: use this scenario's cameras")
       ->needs(self_test);
-  command->add_option("--pairs", camera->pairs, "--camera: of frames, spread over the flight")
+  command
+      ->add_option(
+          "--pairs", camera->pairs, "With --camera: pairs of frames, spread over the flight")
       ->needs(self_test)
       ->capture_default_str();
-  command->add_option("--limit-px", camera->limit_px, "--camera: of the median residual")
+  command->add_option("--limit-px", camera->limit_px, "With --camera: limit of the median residual")
       ->needs(self_test)
       ->capture_default_str();
   command->callback([runs, json, camera, wanted, &exit_code] {

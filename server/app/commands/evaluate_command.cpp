@@ -115,8 +115,8 @@ Status check_listed(const std::string& name, const TrajectoryFile& file) {
   if (file.as_listed()) return {};
   return Error{ErrorCode::kInvalidArgument,
                name +
-                   ": holds poses that are not known, repeat a time or stand out of order, so that "
-                   "its poses cannot be matched by number; give both files times"};
+                   ": contains unknown poses, repeated times or unsorted times, so that "
+                   "its poses cannot be matched by number; add times to both files"};
 }
 
 Result<Json> evaluate_file(const EvaluateArguments& arguments,
@@ -213,7 +213,7 @@ int evaluate(EvaluateArguments arguments) {
   if (!arguments.run.empty()) return evaluate_run(arguments);
   if (arguments.truth.empty() || arguments.estimates.empty()) {
     return report(
-        {ErrorCode::kInvalidArgument, "--truth and --estimate must be given, or --run alone"});
+        {ErrorCode::kInvalidArgument, "--truth and --estimate must be given, or only --run"});
   }
   return evaluate_files(arguments);
 }
@@ -227,28 +227,30 @@ void add_evaluate_command(CLI::App& app, int& exit_code) {
   command->add_option("--estimate", arguments->estimates, "Trajectory files to score");
   command
       ->add_option(
-          "--run", arguments->run, "A run folder to score again, and whose metrics.json to write")
+          "--run", arguments->run, "Run folder to score again; its metrics.json is updated")
       ->excludes("--truth")
       ->excludes("--estimate");
   std::vector<std::string> modes = mode_names();
   modes.emplace_back("all");
   arguments->alignments = {"init_scale"};
-  command->add_option("--alignment", arguments->alignments, "How the estimate meets the truth")
+  command
+      ->add_option("--alignment", arguments->alignments, "Alignment of the estimate to the truth")
       ->check(CLI::IsMember(modes))
       ->capture_default_str();
-  command->add_option("--association", arguments->association, "How poses are paired in time")
+  command->add_option("--association", arguments->association, "How poses are matched in time")
       ->check(CLI::IsMember({"interpolate", "nearest", "index"}))
       ->capture_default_str();
   command
-      ->add_option(
-          "--max-time-difference-ms", arguments->max_time_difference_ms, "Of --association nearest")
+      ->add_option("--max-time-difference-ms",
+                   arguments->max_time_difference_ms,
+                   "Limit for --association nearest")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command
       ->add_option("--init-true-depth-m",
                    arguments->init_true_depth_m,
-                   "True depth along the optical axis at the first pose, for init_scale; where it "
-                   "is not given, the comment init_true_depth of the estimate's file")
+                   "True depth along the optical axis at the first pose, for init_scale; by "
+                   "default the comment init_true_depth of the estimate's file")
       ->check(CLI::PositiveNumber);
   command->add_flag("--json", arguments->json, "Print JSON");
   command->callback([arguments, &exit_code] { exit_code = evaluate(*arguments); });

@@ -71,7 +71,7 @@ int tell(const ExportArguments& arguments,
     if (!credit.empty()) std::cout << "imagery: " << credit << "\n";
   }
   if (!cancelled) return kExitOk;
-  std::cerr << "cancelled; what was made so far is there\n";
+  std::cerr << "cancelled; the output so far is kept\n";
   return kExitCancelled;
 }
 
@@ -190,13 +190,13 @@ void add_export_command(CLI::App& app, int& exit_code) {
   command
       ->add_option("--format",
                    arguments->format,
-                   "tum-mono, euroc, kitti, png, lcm, rosbag, or webm for a video alone")
+                   "tum-mono, euroc, kitti, png, lcm, rosbag, or webm for only a video")
       ->required();
-  command->add_option("--out", arguments->out, "Folder to make; of webm the file")->required();
+  command->add_option("--out", arguments->out, "Folder to create; for webm the file")->required();
   command
       ->add_option("--truth",
                    arguments->truth,
-                   "Images beside each frame: depth,range,normal,flow,world,mask")
+                   "Truth images of each frame: depth,range,normal,flow,world,mask")
       ->delimiter(',')
       ->allow_extra_args(false);
   command->add_option("--camera", arguments->cameras, "Only this camera; may be repeated")
@@ -205,16 +205,16 @@ void add_export_command(CLI::App& app, int& exit_code) {
   command->add_option("--to", arguments->to_s, "Last time in the flight [s]");
   command->add_option("--set", arguments->sets, "Override a field of a scenario: path=value")
       ->allow_extra_args(false);
-  command->add_option("--threads", arguments->threads, "Of the ray-caster; 0 = one a core")
+  command
+      ->add_option("--threads", arguments->threads, "Threads of the ray-caster; 0 = one per core")
       ->check(CLI::Range(0, 64));
   add_imu_options(*command, arguments->imu);
   command
-      ->add_option(
-          "--video",
-          arguments->video,
-          "What a video shows: of webm (default both), else of video.webm beside the images")
+      ->add_option("--video",
+                   arguments->video,
+                   "Contents of a webm (default both), or of a video.webm next to the images")
       ->check(CLI::IsMember({"camera", "chase", "both"}));
-  command->add_option("--video-quality", arguments->video_quality, "1 to 100")
+  command->add_option("--video-quality", arguments->video_quality, "Quality of the video, 1 to 100")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
   command->add_flag("--json", arguments->json, "Print a summary with wall times as JSON");

@@ -73,15 +73,15 @@ Status check(const RenderArguments& arguments) {
 }
 
 void add_picture_options(CLI::App& command, RenderArguments& arguments) {
-  command.add_option("--width", arguments.width_px, "[px], with --world")
+  command.add_option("--width", arguments.width_px, "Image width [px], with --world")
       ->check(CLI::Range(1, 8192))
       ->capture_default_str();
-  command.add_option("--height", arguments.height_px, "[px], with --world")
+  command.add_option("--height", arguments.height_px, "Image height [px], with --world")
       ->check(CLI::Range(1, 8192))
       ->capture_default_str();
   command.add_option("--fov", arguments.fov_deg, "Horizontal field of view [deg], with --world")
       ->capture_default_str();
-  command.add_option("--renderer", arguments.renderer, "What draws the image")
+  command.add_option("--renderer", arguments.renderer, "Renderer of the image")
       ->check(CLI::IsMember({"auto", "egl", "raycast"}))
       ->capture_default_str();
   command.add_option("--out", arguments.out, "PNG file to write")->required();
@@ -124,7 +124,7 @@ void add_render_command(CLI::App& app, int& exit_code) {
   command->add_option("--scenario", arguments->scenario, "Scenario file: its world and cameras");
   command->add_option("--set", arguments->sets, "Override a field of the scenario: path=value")
       ->allow_extra_args(false);
-  command->add_option("--camera", arguments->camera, "Camera of the scenario; else its first");
+  command->add_option("--camera", arguments->camera, "Camera of the scenario; default: its first");
   command->add_option("--frame", arguments->frame, "Frame of the scenario's flight")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
@@ -134,9 +134,9 @@ void add_render_command(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(-180.0, 180.0));
   command->add_option("--height-agl", arguments->height_agl_m, "Height above the ground [m]")
       ->check(CLI::Range(0.1, 100000.0));
-  command->add_option("--roll", arguments->roll_deg, "[deg], right wing down > 0");
-  command->add_option("--pitch", arguments->pitch_deg, "[deg], nose up > 0");
-  command->add_option("--yaw", arguments->yaw_deg, "[deg], clockwise from north");
+  command->add_option("--roll", arguments->roll_deg, "Roll [deg], right wing down > 0");
+  command->add_option("--pitch", arguments->pitch_deg, "Pitch [deg], nose up > 0");
+  command->add_option("--yaw", arguments->yaw_deg, "Yaw [deg], clockwise from north");
   add_picture_options(*command, *arguments);
   command->callback([arguments, &exit_code] { exit_code = render_checked(*arguments); });
 }

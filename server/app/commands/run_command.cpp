@@ -95,10 +95,10 @@ void add_run_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<RunArguments>();
   CLI::App* command = app.add_subcommand("run", "Fly one scenario and score its estimators");
   command->add_option("scenario", arguments->scenario, "Scenario file (JSON)")->required();
-  command->add_option("--out", arguments->out, "Run folder to make")->required();
+  command->add_option("--out", arguments->out, "Run folder to create")->required();
   command->add_option("--set", arguments->sets, "Override a field: path=value, e.g. seed=2")
       ->allow_extra_args(false);
-  command->add_option("--renderer", arguments->renderer, "What draws the camera's image")
+  command->add_option("--renderer", arguments->renderer, "Renderer of the camera's image")
       ->check(CLI::IsMember({"auto", "egl", "raycast"}));
   command->add_flag("--json", arguments->json, "Print metrics.json instead of a table");
   command->add_flag("--quiet", arguments->quiet, "No progress");

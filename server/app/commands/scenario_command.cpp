@@ -53,7 +53,7 @@ void add_scenario_command(CLI::App& app, int& exit_code) {
   command->require_subcommand(1);
   const auto folder = std::make_shared<std::string>();
   CLI::App* lists = command->add_subcommand("list", "Names and titles of a folder's scenarios");
-  lists->add_option("folder", *folder, "Folder; the program's own where it is not given");
+  lists->add_option("folder", *folder, "Folder; default: the program's own");
   lists->callback([folder, &exit_code] { exit_code = list(*folder); });
 
   const auto files = std::make_shared<std::vector<std::string>>();

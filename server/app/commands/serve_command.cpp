@@ -101,7 +101,7 @@ int serve(const ServeArguments& arguments) {
   }
   std::cout << "Overfly is at " << (*server)->url() << std::endl;
   wait_for_stop_signal();
-  spdlog::info("stopping: running flights are cancelled, their folders stay readable");
+  spdlog::info("stopping: running flights are cancelled; their folders stay readable");
   return kExitOk;
 }
 
@@ -116,42 +116,44 @@ void add_serve_command(CLI::App& app, int& exit_code) {
   command->add_option("--runs", arguments->runs, "Folder of the runs")->capture_default_str();
   command->add_option("--scenarios", arguments->scenarios, "Folder of the scenario files");
   command
-      ->add_option("--data",
-                   arguments->data,
-                   "Folder whose files scenarios may name (repeatable); besides it the folder of "
-                   "the scenario files and the folders `data` in them")
+      ->add_option(
+          "--data",
+          arguments->data,
+          "Folder whose files scenarios may name (repeatable), in addition to the folder of "
+          "the scenario files and the folders `data` in them")
       ->allow_extra_args(false)
       ->capture_default_str();
   command->add_option("--web", arguments->web, "Folder of the built dashboard");
   CLI::Option* token_file = command->add_option(
       "--token-file",
       arguments->token_file,
-      "File with the token that clients must show, one line; made where there is none");
+      "File with the token that clients must show, one line; created if absent");
   command
-      ->add_flag("--no-token", arguments->no_token, "Ask for no token; on a loopback address only")
+      ->add_flag("--no-token", arguments->no_token, "Require no token; only on a loopback address")
       ->excludes(token_file);
   command
       ->add_option("--allow-host",
                    arguments->allowed_hosts,
-                   "Another host name or address by which clients may ask; repeatable")
+                   "Additional host name or address that clients may use; repeatable")
       ->allow_extra_args(false);
   command->add_option("--parallel-runs", arguments->parallel_runs, "Flights at the same time")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
   command
-      ->add_option("--waiting-runs", arguments->max_waiting_runs, "Flights that may wait for one")
+      ->add_option(
+          "--waiting-runs", arguments->max_waiting_runs, "Flights that may wait in the queue")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
   command
       ->add_option("--memory-limit",
                    arguments->memory_limit_mib,
-                   "MiB that flights and pictures may use; four fifths of the machine's where it "
-                   "is not given")
+                   "MiB that flights and pictures may use; four fifths of the machine's memory by "
+                   "default")
       ->check(CLI::Range(256.0, 1e9));
   command->add_flag(
       "--allow-commands",
       arguments->allow_commands,
-      "Let clients name programs and addresses of estimators, not scenario files alone");
+      "Let clients, not only scenario files, set programs and addresses of estimators");
   command->callback([arguments, &exit_code] { exit_code = serve(*arguments); });
 }
 

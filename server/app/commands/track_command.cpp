@@ -36,13 +36,13 @@ Status check_outputs(const TrackArguments& arguments) {
   for (const std::string& file : {arguments.out, arguments.statuses, arguments.points}) {
     const fs::path folder = fs::path(file).parent_path();
     if (file.empty() || folder.empty() || fs::is_directory(folder, failure)) continue;
-    return Error{ErrorCode::kNotFound, file + ": folder " + folder.string() + " is not there"};
+    return Error{ErrorCode::kNotFound, file + ": folder " + folder.string() + " does not exist"};
   }
   for (const std::string& folder : {arguments.debug, arguments.estimator_folder}) {
     if (folder.empty()) continue;
     fs::create_directories(folder, failure);
     if (failure) {
-      return Error{ErrorCode::kIo, folder + ": cannot be made: " + failure.message()};
+      return Error{ErrorCode::kIo, folder + ": cannot be created: " + failure.message()};
     }
   }
   return {};
@@ -68,7 +68,7 @@ Result<engine::ToyTruth> toy_truth(const engine::Dataset& dataset,
                                    const std::optional<Truth>& truth,
                                    double scene_depth_m) {
   if (!truth || !truth->has_times) {
-    return Error{ErrorCode::kInvalidArgument, "needs --truth with times: it is given the truth"};
+    return Error{ErrorCode::kInvalidArgument, "needs --truth with times, since it gets the truth"};
   }
   engine::ToyTruth known;
   known.scene_depth_m = scene_depth_m;
@@ -182,26 +182,31 @@ int track(const TrackArguments& arguments) {
 void add_dataset_options(CLI::App& command, TrackArguments& arguments) {
   command.add_option("--images", arguments.images, "Folder of the images, or of the data set")
       ->required();
-  command.add_option("--times", arguments.times, "Times of a plain folder's images, one a line")
+  command
+      .add_option("--times",
+                  arguments.times,
+                  "File with the times of a plain folder's images, one per line")
       ->check(CLI::ExistingFile);
-  command.add_option("--time-unit", arguments.time_unit, "Of --times")
+  command.add_option("--time-unit", arguments.time_unit, "Unit of --times")
       ->check(CLI::IsMember({"auto", "s", "ns"}))
       ->capture_default_str();
   command.add_option("--camera",
                      arguments.camera,
-                     "FX,FY,CX,CY[,WIDTH,HEIGHT] in pixels, pixel centres at integers; in place "
-                     "of the data set's own calibration");
+                     "FX,FY,CX,CY[,WIDTH,HEIGHT] in pixels, pixel centres at integers; replaces "
+                     "the data set's own calibration");
   command.add_option("--distortion",
                      arguments.distortion,
                      "radtan:K1,K2,P1,P2[,K3], equidistant:K1,K2,K3,K4 or fov:W; with --camera");
-  command.add_option("--layout", arguments.layout, "Where it cannot be told by the files")
+  command
+      .add_option("--layout", arguments.layout, "Layout, if it cannot be detected from the files")
       ->check(CLI::IsMember({"images", "euroc", "tum-mono", "tum-rgbd", "kitti", "png"}));
-  command.add_option(
-      "--camera-name", arguments.camera_name, "Of several: cam1 (EuRoC), image_2 (KITTI)");
+  command.add_option("--camera-name",
+                     arguments.camera_name,
+                     "One of several cameras: cam1 (EuRoC), image_2 (KITTI)");
   command
       .add_option("--bits",
                   arguments.sample_bits,
-                  "How many bits the values of 16-bit images have; the upper 8 are used")
+                  "Significant bits of 16-bit images; the upper 8 are used")
       ->check(CLI::Range(8, 16))
       ->capture_default_str();
 }
@@ -216,11 +221,12 @@ void add_estimator_options(CLI::App& command, TrackArguments& arguments) {
   command
       .add_option("--scenario-estimator",
                   arguments.scenario_estimator,
-                  "FILE:NAME, an estimator as a scenario has it; without :NAME its only one")
+                  "FILE:NAME, an estimator of a scenario; without :NAME its only one")
       ->excludes("--estimator");
   command
-      .add_option(
-          "--parameter", arguments.parameters, "KEY=VALUE of the estimator; may be repeated")
+      .add_option("--parameter",
+                  arguments.parameters,
+                  "Parameter KEY=VALUE of the estimator; may be repeated")
       ->allow_extra_args(false);
   command
       .add_option("--set",
@@ -229,20 +235,20 @@ void add_estimator_options(CLI::App& command, TrackArguments& arguments) {
                   "lcm.channel_prefix=MINE_")
       ->allow_extra_args(false);
   command.add_option(
-      "--command", arguments.command, "Program and arguments of a process, in one text");
+      "--command", arguments.command, "Program and arguments of a process, as one text");
   command.add_option(
       "--listen", arguments.listen, "Where a process connects: unix:PATH or tcp:HOST:PORT");
   command.add_option("--estimator-folder",
                      arguments.estimator_folder,
-                     "Working folder of a process; its output.log goes there");
-  command.add_option("--seed", arguments.seed, "Of an estimator that draws lots")
+                     "Working folder of a process; it also gets output.log");
+  command.add_option("--seed", arguments.seed, "Seed of an estimator that uses random numbers")
       ->capture_default_str();
 }
 
 void add_output_options(CLI::App& command, TrackArguments& arguments) {
   command.add_option("--out", arguments.out, "Trajectory to write (TUM)")->required();
-  command.add_option("--statuses", arguments.statuses, "One line of JSON for each frame");
-  command.add_option("--points", arguments.points, "The sparse map (PLY)");
+  command.add_option("--statuses", arguments.statuses, "File for one line of JSON per frame");
+  command.add_option("--points", arguments.points, "File for the sparse map (PLY)");
   command.add_option("--debug", arguments.debug, "Folder for the debug image of each frame");
   command.add_option("--truth", arguments.truth, "Trajectory to score against: TUM, KITTI, EuRoC")
       ->check(CLI::ExistingFile);

@@ -42,7 +42,7 @@ std::string states_text(const Json& report) {
                      " of " + number(report.at("frames")) + " frames";
   const auto never_given = report.at("dataset").at("images").get<std::int64_t>() -
                            report.at("frames").get<std::int64_t>();
-  if (never_given > 0) text += ", " + std::to_string(never_given) + " never given";
+  if (never_given > 0) text += ", " + std::to_string(never_given) + " not sent";
   const Json& after_s = report.at("initialised_after_s");
   if (after_s.is_number()) text += ", first pose after " + rounded(after_s, 2) + " s";
   text += "\n";

@@ -120,18 +120,20 @@ int build(const BuildArguments& arguments) {
 void add_world_build_command(CLI::App& world, int& exit_code) {
   const auto arguments = std::make_shared<BuildArguments>();
   CLI::App* command = world.add_subcommand(
-      "build", "Make a world quick: tiles and heights in a cache beside its manifest");
+      "build", "Prepare a world's tiles and heights in a cache next to its manifest");
   command->add_option("files", arguments->files, "A manifest, or imagery and elevation files")
       ->required();
   command->add_option("--out", arguments->out, "Folder for manifest and cache of a new world");
-  command->add_option("--vertical-datum",
-                      arguments->datum,
-                      "Of elevation files: ellipsoid, egm96, egm2008, navd88, unknown");
+  command->add_option(
+      "--vertical-datum",
+      arguments->datum,
+      "Vertical datum of elevation files: ellipsoid, egm96, egm2008, navd88, unknown");
   command->add_option("--attribution", arguments->attribution, "Credit line of the files");
-  command->add_option("--name", arguments->name, "Of the new world; else its folder's");
+  command->add_option(
+      "--name", arguments->name, "Name of the new world; default: that of its folder");
   command->add_option("--ground-height-m",
                       arguments->ground_height_m,
-                      "Above the ellipsoid, of a new world without elevation files");
+                      "Ground height above the ellipsoid [m], for a world without elevation files");
   command->add_flag("--quiet", arguments->quiet, "No progress");
   command->callback([arguments, &exit_code] { exit_code = build(*arguments); });
 }

@@ -74,13 +74,15 @@ void add_synthesize_strip(CLI::App& world, int& exit_code) {
   terrain::StripOptions& options = arguments->options;
   CLI::App* command =
       world.add_subcommand("synthesize-strip", "Make a long strip of land for endurance flights");
-  command->add_option("--out", arguments->out, "Folder to make")->required();
-  command->add_option("--seed", options.seed, "Another seed, another landscape")
+  command->add_option("--out", arguments->out, "Folder to create")->required();
+  command->add_option("--seed", options.seed, "Seed of the landscape")->capture_default_str();
+  command->add_option("--length-m", options.length_m, "Length from west to east")
       ->capture_default_str();
-  command->add_option("--length-m", options.length_m, "West to east")->capture_default_str();
-  command->add_option("--width-m", options.width_m, "South to north")->capture_default_str();
+  command->add_option("--width-m", options.width_m, "Width from south to north")
+      ->capture_default_str();
   command->add_option("--texel-m", options.texel_m, "Imagery resolution")->capture_default_str();
-  command->add_option("--post-m", options.post_m, "Elevation's spacing")->capture_default_str();
+  command->add_option("--post-m", options.post_m, "Spacing of the elevation")
+      ->capture_default_str();
   command->add_option("--relief-m", options.relief_m, "Height between valley and hilltop")
       ->capture_default_str();
   command->add_flag("--quiet", arguments->quiet, "No progress");
@@ -91,9 +93,8 @@ void add_synthesize(CLI::App& world, int& exit_code) {
   const auto arguments = std::make_shared<SynthesizeArguments>();
   terrain::SynthesisOptions& options = arguments->options;
   CLI::App* command = world.add_subcommand("synthesize", "Make an airfield landscape (GeoTIFFs)");
-  command->add_option("--out", arguments->out, "Folder to make")->required();
-  command->add_option("--seed", options.seed, "Another seed, another landscape")
-      ->capture_default_str();
+  command->add_option("--out", arguments->out, "Folder to create")->required();
+  command->add_option("--seed", options.seed, "Seed of the landscape")->capture_default_str();
   command->add_option("--size-m", options.size_m, "Side of the square")->capture_default_str();
   command->add_option("--texel-m", options.texel_m, "Imagery resolution")->capture_default_str();
   command->add_option("--relief-m", options.relief_m, "Height between valley and hilltop")

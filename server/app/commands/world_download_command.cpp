@@ -64,7 +64,7 @@ int print_plan(const DownloadArguments& arguments) {
       std::cout << "  " << request.url << '\n';
     }
   }
-  std::cout << "in all about " << megabytes(transfer_bytes) << " to fetch, up to "
+  std::cout << "in total about " << megabytes(transfer_bytes) << " to fetch, up to "
             << megabytes(disk_bytes) << " of disk\n";
   for (const std::string& warning : plan->warnings) std::cout << "warning: " << warning << '\n';
   return kExitOk;
@@ -106,9 +106,10 @@ void add_world_download_command(CLI::App& world, int& exit_code) {
   command->add_option("--center", arguments->center, "LAT,LON in degrees")->required();
   command->add_option("--size", arguments->size_km, "Side of the square [km]")
       ->capture_default_str();
-  command->add_option("--out", arguments->out, "Folder to make, or to go on in")->required();
-  command->add_option("--imagery-m", options.imagery_m, "Texel [m]")->capture_default_str();
-  command->add_option("--elevation-m", options.elevation_m, "Distance of posts [m]")
+  command->add_option("--out", arguments->out, "Folder to create, or to resume in")->required();
+  command->add_option("--imagery-m", options.imagery_m, "Texel size of the imagery [m]")
+      ->capture_default_str();
+  command->add_option("--elevation-m", options.elevation_m, "Spacing of the elevation [m]")
       ->capture_default_str();
   command
       ->add_option(
@@ -119,26 +120,36 @@ void add_world_download_command(CLI::App& world, int& exit_code) {
                    options.imagery_source,
                    "usgs, or addresses with {z} {x} {y}, or a WMS with {bbox} {width} {height}")
       ->capture_default_str();
-  command->add_option("--attribution", options.imagery_attribution, "Credit of such a source");
-  command->add_option("--tile-px", options.tile_px, "Side of its tiles")->capture_default_str();
-  command->add_option("--finest-zoom", options.finest_zoom, "Of its tiles")->capture_default_str();
+  command->add_option("--attribution", options.imagery_attribution, "Credit line of such a source");
+  command->add_option("--tile-px", options.tile_px, "Side of its tiles [px]")
+      ->capture_default_str();
+  command->add_option("--finest-zoom", options.finest_zoom, "Finest zoom level of its tiles")
+      ->capture_default_str();
   command->add_option("--elevation-source", options.elevation_source, "usgs or none")
       ->capture_default_str();
-  command->add_option(
-      "--ground-height-m", arguments->ground_height_m, "Ellipsoidal, without elevation");
-  command->add_option("--imagery-service", options.imagery_service, "Address of the image service")
+  command->add_option("--ground-height-m",
+                      arguments->ground_height_m,
+                      "Ground height above the ellipsoid [m], without elevation");
+  command
+      ->add_option("--imagery-service", options.imagery_service, "Address of the imagery service")
       ->capture_default_str();
   command
-      ->add_option("--elevation-service", options.elevation_service, "Address of that of heights")
+      ->add_option(
+          "--elevation-service", options.elevation_service, "Address of the elevation service")
       ->capture_default_str();
-  command->add_option("--parallel", options.parallel, "Requests at a time")->capture_default_str();
-  command->add_option("--chunk-px", options.chunk_px, "Side of the largest image asked for")
+  command->add_option("--parallel", options.parallel, "Simultaneous requests")
       ->capture_default_str();
-  command->add_option("--attempts", options.attempts, "Of one request")->capture_default_str();
-  command->add_option("--most-requests", options.most_requests, "A larger plan is refused")
+  command->add_option("--chunk-px", options.chunk_px, "Side of the largest requested image [px]")
       ->capture_default_str();
-  command->add_flag("--keep-chunks", options.keep_chunks, "Leave what was fetched as it came");
-  command->add_flag("--dry-run", arguments->dry_run, "Print sizes and fetch no image");
+  command->add_option("--attempts", options.attempts, "Attempts for one request")
+      ->capture_default_str();
+  command
+      ->add_option("--most-requests",
+                   options.most_requests,
+                   "Maximum number of requests; a larger plan is refused")
+      ->capture_default_str();
+  command->add_flag("--keep-chunks", options.keep_chunks, "Keep the fetched files");
+  command->add_flag("--dry-run", arguments->dry_run, "Print sizes without fetching images");
   command->add_flag("--list", arguments->list, "With --dry-run: print every address");
   command->add_flag("--quiet", arguments->quiet, "No progress");
   command->callback([arguments, &exit_code] { exit_code = download(*arguments); });

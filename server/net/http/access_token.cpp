@@ -25,7 +25,7 @@ Result<std::string> make_token() {
   std::array<std::uint8_t, kRandomBytes> bytes{};
   if (::getentropy(bytes.data(), bytes.size()) != 0) {
     return Error{ErrorCode::kIo,
-                 std::string("the system gives no random numbers: ") + std::strerror(errno)};
+                 std::string("the system's random number source failed: ") + std::strerror(errno)};
   }
   std::string token;
   for (std::size_t i = 0; i < bytes.size(); i += 3) {

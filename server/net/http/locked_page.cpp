@@ -37,11 +37,11 @@ a { color: #86b4ff; }
 <body>
 <main>
 <h1>Overfly</h1>
-<p>This server asks for its token.</p>
+<p>This server requires its token.</p>
 )html";
 
 constexpr const char* kWrong =
-    "<p class=\"wrong\" role=\"alert\">That is not this server's token. "
+    "<p class=\"wrong\" role=\"alert\">This token is wrong. "
     "A server without a token file makes a new one at every start.</p>\n";
 
 constexpr const char* kAfter = R"html(<form method="get">
@@ -52,7 +52,7 @@ constexpr const char* kAfter = R"html(<form method="get">
 <p class="hint">When the server started it printed its address with the token, a line such as
 <code>http://127.0.0.1:8480/?token=...</code> &mdash; open that address, or paste it here. In a container it
 is in the log: <code>docker compose logs</code>.</p>
-<p class="hint">This browser was let in before, and a link of another site led here?
+<p class="hint">Did a link of another site lead here, in a browser that has access already?
 <a href="">Continue</a></p>
 </main>
 </body>

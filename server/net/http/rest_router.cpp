@@ -36,7 +36,7 @@ HttpResponse method_not_allowed(const std::string& method, const std::set<std::s
   std::string list;
   for (const std::string& name : allowed) list += (list.empty() ? "" : ", ") + name;
   HttpResponse response = error_response(
-      405, "method_not_allowed", "method " + method + " is not served here: allowed are " + list);
+      405, "method_not_allowed", "method " + method + " is not allowed here: use one of " + list);
   response.headers.emplace_back("Allow", list);
   return response;
 }
@@ -48,7 +48,7 @@ Status check_query(const std::map<std::string, std::string>& query,
   for (const auto& [name, value] : query) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     return Error{ErrorCode::kInvalidArgument,
-                 "query." + name + ": is not a known parameter, there " +
+                 "query." + name + ": is not a known parameter; there " +
                      (names.empty() ? "are none here" : "are: " + names)};
   }
   return {};
@@ -87,8 +87,8 @@ bool RestRouter::is_quick(const HttpRequest& request) const {
 
 void RestRouter::handle(const HttpRequest& request, const Respond& respond) const noexcept {
   const auto refuse = [&] {
-    respond(error_response(
-        {ErrorCode::kInternal, "the server failed at this request: its log says why"}));
+    respond(
+        error_response({ErrorCode::kInternal, "internal error: the server's log has the reason"}));
   };
   const auto refuse_briefly = [&](const char*) {
     HttpResponse response;

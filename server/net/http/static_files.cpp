@@ -119,12 +119,12 @@ StaticFiles::StaticFiles(const fs::path& root) {
 HttpResponse StaticFiles::serve(const HttpRequest& request) const {
   if (request.method != "GET" && request.method != "HEAD") {
     HttpResponse response = error_response(
-        405, "method_not_allowed", "method " + request.method + " is not served here");
+        405, "method_not_allowed", "method " + request.method + " is not allowed here");
     response.headers.emplace_back("Allow", "GET, HEAD");
     return response;
   }
   if (root_.empty()) {
-    return error_response({ErrorCode::kNotFound, "this server has no dashboard: see /api/v1"});
+    return error_response({ErrorCode::kNotFound, "this server serves no dashboard: see /api/v1"});
   }
   if (const auto file = resolve_below(root_, request.target)) {
     return static_response(root_, *file, request);

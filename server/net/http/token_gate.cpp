@@ -50,8 +50,8 @@ HttpResponse token_refusal(const HttpRequest& request, bool wrong) {
   if (is_api(request)) {
     response = error_response(401,
                               "unauthorized",
-                              wrong ? "the token is not this server's"
-                                    : "this server asks for its token, which it printed when it "
+                              wrong ? "the token is wrong"
+                                    : "a token is required, which the server printed when it "
                                       "started: Authorization: Bearer TOKEN, or ?token=TOKEN");
   } else {
     response.status = 401;

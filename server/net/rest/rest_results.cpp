@@ -37,7 +37,9 @@ HttpResponse result_response(const fs::path& folder,
   constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 30U;
   const fs::path file = folder / name;
   if (leads_out_of(folder, file)) {
-    return error_response({ErrorCode::kIo, name.string() + ": is a link out of the run's folder"});
+    return error_response(
+        {ErrorCode::kIo,
+         name.string() + ": is a symbolic link to a place outside the run's folder"});
   }
   Result<std::string> text = read_file_text(file, kMaxBytes);
   if (!text) {
@@ -97,9 +99,10 @@ Status check_trajectory_query(const RouteCall& call, const std::string& name) {
                  "format = " + format + ": must be \"tum\" or \"json\""};
   }
   if (call.query.contains("alignment") && (format == "tum" || name == kTruth)) {
-    return Error{ErrorCode::kInvalidArgument,
-                 "alignment = " + call.query.at("alignment") +
-                     ": is for an estimate with format=json (a TUM file has no alignment)"};
+    return Error{
+        ErrorCode::kInvalidArgument,
+        "alignment = " + call.query.at("alignment") +
+            ": applies only to an estimate with format=json (a TUM file has no alignment)"};
   }
   return {};
 }
@@ -127,7 +130,7 @@ HttpResponse trajectory(RunManager* runs, const RouteCall& call) {
       *folder,
       name == kTruth ? fs::path(file_name) : fs::path("estimates") / file_name,
       "text/plain; charset=utf-8",
-      file_name + " is written when the run ends; format=json has the rows so far");
+      file_name + " is written when the run ends; format=json returns the rows so far");
 }
 
 }  // namespace

@@ -51,9 +51,9 @@ Result<StreamWish> read_stream(const json& entry, const std::string& where) {
     fields.fault("name", ": must be \"camera\", \"scene\" or \"debug/NAME\"");
   }
   wish.camera = fields.text("camera").value_or("");
-  if (wish.camera.size() > kMaxNameBytes) fields.fault("camera", ": is too long a name");
+  if (wish.camera.size() > kMaxNameBytes) fields.fault("camera", ": the name is too long");
   if (!wish.camera.empty() && wish.name != "camera") {
-    fields.fault("camera", ": is for the stream \"camera\" only");
+    fields.fault("camera", ": applies only to the stream \"camera\"");
   }
   wish.max_hz = fields.number("max_hz", 0.1, 120.0).value_or(wish.max_hz);
   wish.quality = static_cast<int>(fields.integer("quality", 1, 100).value_or(wish.quality));
@@ -80,7 +80,7 @@ ClientCommand read_subscribe(JsonFields* fields) {
     }
     for (const StreamWish& other : command.streams) {
       if (other.name == wish->name && other.camera == wish->camera) {
-        fields->fault("streams", ": " + wish->name + " comes twice");
+        fields->fault("streams", ": " + wish->name + " occurs twice");
       }
     }
     command.streams.push_back(std::move(*wish));
@@ -175,11 +175,11 @@ const std::map<std::string, std::function<ClientCommand(JsonFields*)>>& readers(
 Status read_command(const json& message, ClientCommand* command) {
   const auto type = message.find("type");
   if (type == message.end() || !type->is_string()) {
-    return Error{ErrorCode::kInvalidArgument, "type: a message needs it, as a string"};
+    return Error{ErrorCode::kInvalidArgument, "type: is required and must be a string"};
   }
   const auto reader = readers().find(type->get<std::string>());
   if (reader == readers().end()) {
-    return Error{ErrorCode::kInvalidArgument, "type = " + to_text(*type) + ": is not known"};
+    return Error{ErrorCode::kInvalidArgument, "type = " + to_text(*type) + ": is not a known type"};
   }
   JsonFields fields(message, reader->first);
   fields.allow("type");

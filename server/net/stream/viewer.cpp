@@ -63,7 +63,7 @@ struct Viewer::CommandVisitor {
   Status operator()(const LiveCommand& /*command*/) const {
     bool live = false;
     Status status = with_cursor([&](PlaybackCursor* cursor) { live = cursor->go_live(); });
-    if (status && !live) return Error{ErrorCode::kConflict, "the run is not running any more"};
+    if (status && !live) return Error{ErrorCode::kConflict, "the run is no longer running"};
     return status;
   }
 

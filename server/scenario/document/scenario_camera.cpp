@@ -110,7 +110,7 @@ Status read_sensor(const Json& camera,
   const int bits = camera.at("bits").get<int>();
   if (!camera.contains("sensor")) {
     if (bits == 8) return {};
-    return bad_field(path + ".bits", bits, "be 8 where " + path + ".sensor is not given");
+    return bad_field(path + ".bits", bits, "be 8 if " + path + ".sensor is not given");
   }
   const std::string place = path + ".sensor";
   if (Status s = check_period(camera.at("sensor"), place, rate); !s) return s;

@@ -45,12 +45,12 @@ Status check_uses(const Json& entry, const std::string& type, const std::string&
   for (const FieldUse& use : kFieldUses) {
     const auto given = entry.find(use.field);
     if (given == entry.end() || used_by(use, type)) continue;
-    return bad_field(path + "." + use.field, *given, "be left out where type is " + type);
+    return bad_field(path + "." + use.field, *given, "be left out if type is " + type);
   }
   if (type != "process") return {};
   if (!entry.contains("command") && !entry.contains("listen")) {
     return Error{ErrorCode::kInvalidArgument,
-                 path + ".command: must be given where type is process, or else listen"};
+                 path + ".command: must be given if type is process (or listen instead)"};
   }
   for (const char* of_child : {"cpus", "memory_limit_mb"}) {
     if (!entry.contains(of_child) || entry.contains("command")) continue;
@@ -170,7 +170,7 @@ Result<EstimatorSpec> read_estimator(Json& entry,
   if (spec.throttle_hz > 0.0 && scenario.pacing == Pacing::kLockstep) {
     return bad_field(path + ".throttle_hz",
                      entry.at("throttle_hz"),
-                     "be left out where pacing is lockstep: nothing is dropped there");
+                     "be left out if pacing is lockstep, which drops nothing");
   }
   if (Status status = read_door(entry, path, base, spec); !status) return status.error();
   return spec;
@@ -205,7 +205,7 @@ Status check_apart(const EstimatorSpec& spec, const EstimatorSpec& other, const 
       return bad_field(path + ".ros1." + mine.option,
                        mine.name,
                        "not be the " + std::string(known.option) + " of another: estimators " +
-                           who + " each need their own");
+                           who + " each need one of their own");
     }
   }
   return {};

@@ -72,9 +72,9 @@ Result<terrain::LightOptions> light_over(const LightSpec& spec, const Geodetic& 
   constexpr double kLowestDeg = 1.0;
   if (sun.apparent_elevation_rad < rad_from_deg(kLowestDeg)) {
     return Error{ErrorCode::kInvalidArgument,
-                 "light.time_utc: the sun stands " +
+                 "light.time_utc: the sun is " +
                      std::to_string(deg_from_rad(sun.apparent_elevation_rad)) +
-                     " deg above the horizon then: must be at least 1 deg"};
+                     "deg above the horizon at that time: must be at least 1 deg"};
   }
   options.sun_azimuth_rad = sun.azimuth_rad;
   options.sun_elevation_rad = sun.apparent_elevation_rad;

@@ -93,7 +93,7 @@ Status check_scenario(const Scenario& scenario) {
     Status status = scenario.sources.check(log->file, "flight.log.file");
     // Poses in KITTI format take their times from that file.
     const fs::path times = log->file.parent_path() / "times.txt";
-    if (status) status = scenario.sources.check_place(times, "flight.log.file (a file beside it)");
+    if (status) status = scenario.sources.check_place(times, "flight.log.file (a file next to it)");
     if (!status && fault) {
       fault->message += "\n" + status.error().message;
       if (status.error().code != ErrorCode::kNotFound) fault->code = status.error().code;
@@ -104,7 +104,7 @@ Status check_scenario(const Scenario& scenario) {
   if (!fault) return {};
   if (fault->code == ErrorCode::kNotFound && scenario.resolved.contains("data")) {
     fault->message += "\n(data folder: " + scenario.resolved.value("data", "") +
-                      "; the environment variable OVERFLY_DATA names another one)";
+                      "; set the environment variable OVERFLY_DATA to use another one)";
   }
   return *fault;
 }

@@ -110,7 +110,7 @@ Status apply_override(const Override& change, Json& document) {
       if (!place->contains(part)) (*place)[part] = made;
       place = &(*place)[part];
     } else {
-      return bad_path(change.path, "\"" + part + "\": what holds it is no object or array");
+      return bad_path(change.path, "\"" + part + "\": its parent is not an object or array");
     }
   }
   *place = change.value;

@@ -89,7 +89,7 @@ TEST_F(CommandLine, RunWritesAFolderAndPrintsTheScores) {
 
   const Outcome again = overfly_program({"run", scenario_file(), "--out", path("r1")});
   EXPECT_EQ(again.exit_code, 2);
-  EXPECT_THAT(again.err, HasSubstr("holds a run already"));
+  EXPECT_THAT(again.err, HasSubstr("already contains a run"));
 
   const Outcome scored = overfly_program({"evaluate", "--run", path("r1"), "--json"});
   ASSERT_EQ(scored.exit_code, 0) << scored.err;
@@ -181,7 +181,7 @@ TEST_F(CommandLine, EvaluateWritesMetricsOfARunThatNobodyFlies) {
   ASSERT_EQ(::flock(lock, LOCK_EX | LOCK_NB), 0);
   const Outcome refused = overfly_program({"evaluate", "--run", path("scored")});
   EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_THAT(refused.err, HasSubstr("another process is at work there"));
+  EXPECT_THAT(refused.err, HasSubstr("is in use by another process"));
   EXPECT_EQ(read_text(file), "{}");
   ::close(lock);
 }
@@ -304,7 +304,7 @@ TEST_F(CommandLine, EvaluateOrdersPosesByTimeAndSaysSo) {
 
   const Outcome by_number = evaluate("index");
   EXPECT_EQ(by_number.exit_code, 2);
-  EXPECT_THAT(by_number.err, HasSubstr("repeated.tum: holds poses that"));
+  EXPECT_THAT(by_number.err, HasSubstr("repeated.tum: contains unknown poses"));
 }
 
 TEST_F(CommandLine, WorldInfoDescribesAndNamesWhatIsMissing) {

@@ -100,7 +100,7 @@ TEST_F(TrackCommand, ScoresAPerfectEstimateAgainstTheTruthOfAnEurocDataSet) {
   EXPECT_THAT(people.out, HasSubstr("data set: euroc, 21 images of 160 x 120 px\n"));
   EXPECT_THAT(people.out, HasSubstr("outcome: COMPLETED, coverage 100.0 %\n"));
   EXPECT_THAT(people.out, HasSubstr("sim3"));
-  EXPECT_THAT(people.out, HasSubstr("note: the truth is the body's"));
+  EXPECT_THAT(people.out, HasSubstr("note: the truth gives poses of the body"));
 }
 
 TEST_F(TrackCommand, TakesAScenariosEstimatorWithItsParametersAndOthers) {
@@ -160,14 +160,14 @@ TEST_F(TrackCommand, NamesWhatIsWrong) {
       {{"--parameter", "corners=7"}, "corners"},
       {{"--parameter", "features"}, "--parameter"},
       {{"--set", "lcm.url=memq://"}, "lcm"},
-      {{"--estimator", "process"}, "command: must be given where type is process"},
+      {{"--estimator", "process"}, "command: must be given if type is process"},
       {{"--command", "'/bin/true"}, "must be without an open '"},
       {{"--command", "/no/such/program"}, "/no/such/program"},
       {{"--estimator", "perfect"}, "needs --truth with times"},
       {{"--estimator", "orb"}, "--estimator"},
       {{"--layout", "tum-mono"}, "images: no such folder"},
       {{"--camera-name", "cam7"}, "cam7/data.csv: no such file"},
-      {{"--points", "/no/such/folder/p.ply"}, "folder /no/such/folder is not there"},
+      {{"--points", "/no/such/folder/p.ply"}, "folder /no/such/folder does not exist"},
   };
   for (const auto& [arguments, message] : cases) {
     const Outcome outcome = track(arguments);
@@ -219,7 +219,7 @@ TEST_F(TrackCommand, CountsTheFramesOfTheDataSetAfterACrash) {
   const Outcome crashed =
       track({"--command", joined(failing_estimator(folder_.path(), "flight")), "--truth", truth()});
   EXPECT_EQ(crashed.exit_code, 0) << crashed.err;
-  EXPECT_THAT(crashed.out, HasSubstr("LOST 1 of 8 frames, 13 never given"));
+  EXPECT_THAT(crashed.out, HasSubstr("LOST 1 of 8 frames, 13 not sent"));
   EXPECT_THAT(crashed.out, HasSubstr("outcome: CRASHED, coverage 33.3 %\n"));
   // The estimator's warnings are shown even with --quiet, what else it says is not.
   EXPECT_THAT(crashed.err, HasSubstr("estimator: warning: few corners\n"));

@@ -172,7 +172,10 @@ TEST(TumMonoLayout, SaysWhatIsBroken) {
                {"camera.txt", "0.349153000000000", "Omni 0.3", "camera.txt:1: column 1 = 'Omni'"},
                {"camera.txt", "1280 1024", "1280", "camera.txt:2: 1 columns: must be 2"},
                {"camera.txt", "1280 1024", "1280 -1", "camera.txt:2: column 2 = '-1'"},
-               {"camera.txt", "0.349153000000000", "Pinhole 0.3", "a Pinhole has no coefficient"}});
+               {"camera.txt",
+                "0.349153000000000",
+                "Pinhole 0.3",
+                "a Pinhole must have only coefficients of 0"}});
   const TemporaryFolder folder;
   testing::write_tum_mono(folder.path());
   fs::rename(folder.path() / "images", folder.path() / "images.zip");
@@ -218,7 +221,7 @@ TEST(KittiLayout, SaysWhatIsBroken) {
   expect_told(testing::write_kitti,
               {{"times.txt", "2.073579e-01\n", "", "2 times, but"},
                {"times.txt", "2.073579e-01", "x", "times.txt:3: column 1 = 'x'"},
-               {"calib.txt", "P0:", "Q0:", "calib.txt: holds no line P0:"},
+               {"calib.txt", "P0:", "Q0:", "calib.txt: contains no line P0:"},
                {"calib.txt", "7.188560000000e+02", "nan", "calib.txt:1: column 2"},
                {"calib.txt", " 7.188560000000e+02", "", "calib.txt:1: 12 columns: must be 13"},
                {"calib.txt", "0.000000000000e+00", "0.1", "calib.txt:1: must be [fx 0 cx a;"}});

@@ -129,13 +129,13 @@ TEST_F(PlainFolder, SaysWhereTheTimesAreBroken) {
   write_images(path() / "images", 3);
   const std::vector<std::pair<std::string, std::string>> cases{
       {"0.1\n0.2\n", "times.txt: 2 times, but"},
-      {"0.1\n0.2\n0.3\n0.4\n", "holds 3 images: must be as many"},
+      {"0.1\n0.2\n0.3\n0.4\n", "contains 3 images: the numbers must be equal"},
       {"0.1\nnan\n0.3\n", "times.txt:2: column 1 = 'nan': must be a time in seconds"},
       {"0.1\ninf\n0.3\n", "times.txt:2: column 1 = 'inf': must be a time in seconds"},
       {"0.1\n0.2 0.3\n0.4\n", "times.txt:2: 2 columns: must be 1"},
       {"0.1 0.2 0.3 0.4\n", "times.txt:1: 4 columns: must be TIME"},
-      {"", "times.txt: holds no time"},
-      {"# 0.1\n", "times.txt: holds no time"},
+      {"", "times.txt: contains no times"},
+      {"# 0.1\n", "times.txt: contains no times"},
       {"0.1 00000.png\n0.2 00007.png\n", "times.txt:2: "},
       {"0.1 00000.png\n0.2 00007.png\n", "00007.png: no such file"},
       {"00000 0.1 1\n00009 0.2 1\n", "times.txt:2: column 1 = '00009': no image of this name"},
@@ -155,7 +155,7 @@ TEST_F(PlainFolder, SaysWhatIsMissing) {
   EXPECT_THAT(error_of(wanted), HasSubstr("times.txt: no such file"));
   write_times("0.1\n");
   wanted.camera.reset();
-  EXPECT_THAT(error_of(wanted), HasSubstr("holds no calibration: the camera must be given"));
+  EXPECT_THAT(error_of(wanted), HasSubstr("contains no calibration: the camera must be given"));
   wanted = options();
   wanted.camera = CameraModel(PinholeCamera{0, 0, -20, 20, 7.5, 5.5});
   EXPECT_THAT(error_of(wanted), HasSubstr("camera: "));

@@ -314,7 +314,7 @@ TEST_F(TrackDataset, PutsKittisTruthIntoTheCameraThatIsTracked) {
   const Result<Trajectory> camera = camera_truth(dataset_, truth, notes);
   ASSERT_TRUE(camera.ok());
   EXPECT_NEAR(camera->poses()[0].pose.translation.y(), -0.06, 1e-12);
-  EXPECT_THAT(notes.back(), HasSubstr("that of image_2 is made with calib.txt"));
+  EXPECT_THAT(notes.back(), HasSubstr("those of image_2 are computed with calib.txt"));
 }
 
 TEST_F(TrackDataset, ScoresNoFrameWhereTheTruthDoesNotKnow) {
@@ -330,7 +330,7 @@ TEST_F(TrackDataset, ScoresNoFrameWhereTheTruthDoesNotKnow) {
   }
   std::vector<std::string> notes;
   const Result<Trajectory> camera = camera_truth(dataset_, truth, notes);
-  EXPECT_THAT(notes.back(), HasSubstr("does not know 3 of its poses"));
+  EXPECT_THAT(notes.back(), HasSubstr("unknown poses in the truth: 3;"));
   const evaluation::Score score = score_of(dataset_, tracked(well), *camera, true, std::nullopt);
   EXPECT_EQ(score.alignments.at(evaluation::AlignmentMode::kSe3).matched, 3);
 }

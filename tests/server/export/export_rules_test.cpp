@@ -191,14 +191,14 @@ TEST(Export, NamesWhatCannotBeExported) {
   expect_refused(small_source({lens}),
                  options(DatasetFormat::kKitti),
                  ErrorCode::kUnsupported,
-                 "calib.txt of kitti holds no lens, distortion is radtan");
+                 "calib.txt of kitti cannot describe a lens, distortion is radtan");
   expect_refused(
       small_source({lens}), options(DatasetFormat::kTumMono), ErrorCode::kUnsupported, "k3 = 0.01");
   const char* two = R"(cameras=[{"name":"a","width_px":64,"height_px":48,"rate_hz":10},
                                 {"name":"b","width_px":64,"height_px":48,"rate_hz":10}])";
   changed = options(DatasetFormat::kKitti);
   changed.cameras = {"a", "b"};
-  expect_refused(small_source({two}), changed, ErrorCode::kUnsupported, "name one with --camera");
+  expect_refused(small_source({two}), changed, ErrorCode::kUnsupported, "select one with --camera");
 }
 
 TEST(ExportSource, RefusesARunThatCannotBeMadeAgain) {
@@ -209,7 +209,7 @@ TEST(ExportSource, RefusesARunThatCannotBeMadeAgain) {
   const fs::path run = flown(folder.path() / "run", {"duration_s=0.5"});
   const auto overridden = open_export_source(run, {parse_override("duration_s=1").value()});
   EXPECT_EQ(overridden.error().code, ErrorCode::kInvalidArgument);
-  EXPECT_THAT(overridden.error().message, HasSubstr("--set is for scenarios"));
+  EXPECT_THAT(overridden.error().message, HasSubstr("--set applies only to scenarios"));
 
   const fs::path moved = folder.path() / "moved";
   fs::copy(run, moved, fs::copy_options::recursive);
@@ -217,7 +217,7 @@ TEST(ExportSource, RefusesARunThatCannotBeMadeAgain) {
   expect_refused(opened(moved),
                  export_options(folder.path() / "d1", DatasetFormat::kPng),
                  ErrorCode::kConflict,
-                 "from where the run recorded it");
+                 "away from the recorded pose");
 
   const fs::path other = folder.path() / "other";
   fs::copy(run, other, fs::copy_options::recursive);

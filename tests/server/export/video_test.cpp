@@ -216,7 +216,7 @@ TEST(Video, SaysWhatItCannotTake) {
   auto encoder = Vp9Encoder::open(settings_of(64, 48)).value();
   EXPECT_THAT(encoder.encode(picture(32, 48, 0), 0).error().message, HasSubstr("32 x 48 px"));
   ASSERT_TRUE(encoder.encode(picture(64, 48, 0), 5).ok());
-  EXPECT_FALSE(encoder.encode(picture(64, 48, 1), 5).ok()) << "stamps must grow";
+  EXPECT_FALSE(encoder.encode(picture(64, 48, 1), 5).ok()) << "stamps must increase";
 
   const auto nowhere = WebmFile::create("/no/such/folder/f.webm", 64, 48);
   ASSERT_FALSE(nowhere.ok());

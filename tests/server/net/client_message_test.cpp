@@ -80,7 +80,7 @@ TEST(ClientMessage, NamesTheFaultyField) {
       {R"({"type":"subscribe","streams":[{"name":"x"}]})", "streams.0.name"},
       {R"({"type":"subscribe","streams":[{"name":"debug/"}]})", "streams.0.name"},
       {R"({"type":"subscribe","streams":[7]})", "streams.0"},
-      {R"({"type":"subscribe","streams":[{"name":"camera"},{"name":"camera"}]})", "comes twice"},
+      {R"({"type":"subscribe","streams":[{"name":"camera"},{"name":"camera"}]})", "occurs twice"},
       {R"({"type":"subscribe","streams":[{"name":"camera","max_hz":0}]})", "streams.0.max_hz"},
       {R"({"type":"view","mode":"side"})", "view.mode"},
       {R"({"type":"view","width_px":63})", "view.width_px = 63"},

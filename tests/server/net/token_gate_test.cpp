@@ -152,9 +152,9 @@ TEST(TokenGate, AnswersBrowsersWithAPageAndProgramsWithJson) {
   ASSERT_TRUE(html);
   EXPECT_EQ(html->content_type, "text/html; charset=utf-8");
   EXPECT_THAT(html->body, HasSubstr("<form"));
-  EXPECT_THAT(html->body, Not(HasSubstr("not this server's")));
+  EXPECT_THAT(html->body, Not(HasSubstr("token is wrong")));
   HttpRequest wrong = get_from_host("/?token=<script>");
-  EXPECT_THAT(TokenGate(kToken).check(&wrong)->body, HasSubstr("not this server's"));
+  EXPECT_THAT(TokenGate(kToken).check(&wrong)->body, HasSubstr("token is wrong"));
   HttpRequest api = get_from_host("/api/v1/runs?token=0123456789abcdefABCDEF__");
   const auto json = TokenGate(kToken).check(&api);
   ASSERT_TRUE(json);

@@ -339,7 +339,7 @@ TEST(EstimatorRun, AFloodOfLinesIsCutShort) {
   }
   ASSERT_EQ(said.size(), 1001U);
   EXPECT_EQ(said.front().size(), 1000U);
-  EXPECT_THAT(said.back(), HasSubstr("too much"));
+  EXPECT_THAT(said.back(), HasSubstr("too many lines"));
 }
 
 TEST(EstimatorRun, OneThatDoesNotStartIsCrashedAndTheOthersFly) {

@@ -35,7 +35,7 @@ struct Failure {
 };
 
 std::vector<Failure> failures() {
-  return {{throw_bad_alloc, "too little memory"},
+  return {{throw_bad_alloc, "not enough memory"},
           {throw_no_thread, "Resource temporarily unavailable"},
           {throw_other, "a library's fault"}};
 }
@@ -96,7 +96,7 @@ TEST(RunFailure, ExceptionInFlightEndsTheRunAfterItsLastFrame) {
   };
   const auto scenario = testing::small_scenario({R"(estimators=[{"name":"p","type":"perfect"}])"});
   ASSERT_FALSE(run_scenario(scenario, options).ok());
-  expect_failed(options.folder, "too little memory");
+  expect_failed(options.folder, "not enough memory");
   EXPECT_EQ(read_run_info(options.folder).value().frames, 5);
   EXPECT_TRUE(fs::exists(metrics_file(options.folder)));
 }

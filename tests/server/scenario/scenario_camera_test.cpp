@@ -107,7 +107,7 @@ TEST(ScenarioCamera, ReadsTheSensorInUnitsForPeople) {
 
 TEST(ScenarioCamera, SaysWhatOneFieldForbidsAnother) {
   const std::vector<std::pair<const char*, const char*>> cases = {
-      {R"({"camera": {"bits": 10}})", "camera.bits = 10: must be 8 where camera.sensor is not"},
+      {R"({"camera": {"bits": 10}})", "camera.bits = 10: must be 8 if camera.sensor is not"},
       {R"({"camera": {"rate_hz": 50, "sensor": {"exposure_ms": 21}}})",
        "camera.sensor.exposure_ms = 21: must be at most the frame's period, 20.0 ms"},
       {R"({"camera": {"rate_hz": 50, "sensor": {"readout_ms": 25}}})",

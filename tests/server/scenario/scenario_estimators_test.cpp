@@ -98,7 +98,7 @@ struct Refused {
 TEST(ScenarioEstimators, FieldsOfOtherDoorsAreRefusedByName) {
   const Refused cases[] = {
       {R"({"name": "x", "type": "feature", "command": ["vo"]})",
-       R"(estimators.0.command = ["vo"]: must be left out where type is feature)"},
+       R"(estimators.0.command = ["vo"]: must be left out if type is feature)"},
       {R"({"name": "x", "type": "lcm", "command": ["vo"]})", "where type is lcm"},
       {R"({"name": "x", "type": "lcm", "cpus": [0]})", "estimators.0.cpus = [0]: must be left out"},
       {R"({"name": "x", "type": "perfect", "memory_limit_mb": 10})", "memory_limit_mb = 10"},
@@ -161,7 +161,7 @@ TEST(ScenarioEstimators, ThatWouldAnswerForEachOtherOnRosAreRefused) {
   EXPECT_EQ(verdict_on(one, ros1(apart + R"(, "pose_topic": "/b/pose")")), "fine");
   EXPECT_THAT(verdict_on(one, ros1(apart)),
               HasSubstr(R"(estimators.1.ros1.pose_topic = "/vo/pose": must not be the pose_topic )"
-                        R"(of another: estimators "a" and "b" each need their own)"));
+                        R"(of another: estimators "a" and "b" each need one of their own)"));
   EXPECT_THAT(verdict_on(one, ros1(R"("image_topic": "/b", "pose_topic": "/c")")),
               HasSubstr("estimators.1.ros1.camera_info_topic"));
   EXPECT_THAT(verdict_on(one, ros1(apart + R"(, "pose_topic": "vo/pose")")),

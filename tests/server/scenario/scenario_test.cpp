@@ -70,8 +70,8 @@ TEST(Scenario, NamesTheVerticalDatumAsAManifestDoes) {
   // The name of before.
   document["world"]["elevation"][0] = {{"file", "b.tif"}, {"datum", "egm2008"}};
   EXPECT_THAT(fault_of(document, {}),
-              HasSubstr("world.elevation.0.datum = \"egm2008\": no such field; its name is "
-                        "vertical_datum (known: "));
+              HasSubstr("world.elevation.0.datum = \"egm2008\": no such field; did you mean "
+                        "vertical_datum? (known: "));
 }
 
 TEST(Scenario, SaysWhatTheSchemaCannotSay) {
@@ -156,7 +156,7 @@ TEST(ScenarioOverride, ReachesArraysAndReplacesTheKindOfWorld) {
   EXPECT_EQ(std::get<std::filesystem::path>(scenario->world), "/base/w.json");
   EXPECT_THAT(fault_of(document, {"estimators.2.name=e"}), HasSubstr("must be a number in [0, 0]"));
   EXPECT_THAT(fault_of(document, {"seed.x=1", "seed.y.z=2"}), HasSubstr("seed"));
-  EXPECT_THAT(fault_of(document, {"format_version.x=1"}), HasSubstr("no object or array"));
+  EXPECT_THAT(fault_of(document, {"format_version.x=1"}), HasSubstr("not an object or array"));
 }
 
 TEST(ScenarioOverride, WholeCamerasTakeTheCamerasPlaceAndBack) {

@@ -66,8 +66,8 @@ TEST_F(WorldChangeTest, NamesTheFilesUntilTheyAreAsTheyWere) {
   write_picture(2);
   EXPECT_EQ(told(*runs, id),
             picture().string() +
-                " has changed since this run was flown: what is drawn anew shows the ground as it "
-                "is now");
+                " has changed since this run was flown: newly rendered pictures show the present "
+                "terrain");
   const std::string manifest = read_text(world());
   write_text(
       world(),

@@ -61,7 +61,7 @@ describe('RestClient', () => {
 
   it('takes an answer that asks for an upgrade as no refusal of the stream', async () => {
     const { client, calls } = answering(426, {
-      error: { code: 'upgrade_required', message: 'ask for an upgrade' },
+      error: { code: 'upgrade_required', message: 'request an upgrade' },
     });
     expect(await client.streamRefusal()).toBeNull();
     expect(calls[0]?.url).toBe('api/v1/stream');
