@@ -1,4 +1,4 @@
-// The dashboard in a browser, on the server that it came from.
+// The dashboard's entry point; it connects to the server that served it.
 import 'uplot/dist/uPlot.min.css';
 import './styles/base.css';
 import './styles/layout.css';

@@ -6,7 +6,7 @@ import type { Json, JsonObject, Manifest, Run, ScenarioEntry } from '../protocol
 
 const kUnauthorized = 401;
 
-/** An answer that was no success; `status` 0 = the server did not answer. */
+/** A response that reports a failure; `status` 0 = the server did not answer. */
 export class RestError extends Error {
   constructor(
     readonly status: number,
@@ -24,7 +24,7 @@ export class RestClient {
   constructor(
     private readonly base: string,
     private readonly fetch: Fetch,
-    /** Called when the server does not take this browser's token. */
+    /** Called when the server rejects this browser's token. */
     private readonly onLocked: () => void = () => {},
   ) {}
 
@@ -45,7 +45,7 @@ export class RestClient {
     return (await this.call('GET', `/runs/${encodeURIComponent(run)}/manifest`)) as Manifest;
   }
 
-  /** Columns of an estimate placed by an alignment of the score. */
+  /** Columns of an estimate under one of the score's alignments. */
   async estimate(run: string, name: string, alignment: string): Promise<Record<string, Cell[]>> {
     const place = `/runs/${encodeURIComponent(run)}/trajectories/${encodeURIComponent(name)}`;
     const query = `?format=json&alignment=${encodeURIComponent(alignment)}`;
@@ -56,7 +56,7 @@ export class RestClient {
     return ((await this.call('GET', '/runs')) as { runs: Run[] }).runs;
   }
 
-  /** `key` makes a repeated request give the same run. */
+  /** Repeated requests with the same `key` give the same run. */
   async startRun(scenario: string, overrides: Record<string, Json>, key: string): Promise<Run> {
     const headers = { 'Idempotency-Key': key };
     return (await this.call('POST', '/runs', { scenario, overrides }, headers)) as Run;
@@ -70,12 +70,15 @@ export class RestClient {
     await this.call('DELETE', `/runs/${encodeURIComponent(id)}`);
   }
 
-  /** Why the server refuses the stream: a browser does not say why a WebSocket failed to open. */
+  /**
+   * The reason why the server refuses the stream, because a browser does not report why a WebSocket
+   * failed to open.
+   */
   async streamRefusal(): Promise<RestError | null> {
     try {
       await this.call('GET', '/stream');
     } catch (error) {
-      // Asked for without an upgrade, a stream that is open to this browser answers so.
+      // If the stream is available, a request without an upgrade gets this answer.
       if (error instanceof RestError && error.code !== 'upgrade_required') return error;
     }
     return null;

@@ -1,5 +1,5 @@
-// One WebSocket that heals itself: what the viewer wants (run, streams, view) is remembered here
-// and said again after every reconnection.
+// A WebSocket that reconnects by itself. It stores the viewer's settings (run, streams, view) and
+// sends them again after every reconnection.
 import { backoffDelay_ms } from './backoff';
 import type {
   ClientMessage,
@@ -30,21 +30,21 @@ export interface Timers {
 export type ConnectionState =
   | { status: 'connecting'; attempt: number }
   | { status: 'open'; server: string }
-  /** `reason`: why the server did not let this viewer in, once that is known. */
+  /** `reason`: why the server rejected this viewer, if known. */
   | { status: 'waiting'; attempt: number; delay_ms: number; reason?: string }
-  /** The server does not take this browser's token: the page is of no use until it is loaded again. */
+  /** The server rejects this browser's token: the page must be reloaded. */
   | { status: 'locked' }
   | { status: 'incompatible'; reason: string };
 
 export interface StreamListener {
   onState(state: ConnectionState): void;
-  /** What belongs to the run attached, and errors; nothing of a run left behind. */
+  /** Messages of the attached run, and errors; never messages of a previous run. */
   onMessage(message: ServerMessage): void;
   onAttachFailed(run: string, message: string): void;
   onPicture(name: string, picture: PictureMessage): void;
-  /** Commands that bring the cursor back where it was, after a reconnection to the same run. */
+  /** Commands that restore the cursor after a reconnection to the same run. */
   restore(): ClientMessage[];
-  /** Rows at hand of the run attached, to go on from. */
+  /** Rows already received of the attached run, from which the stream resumes. */
   resume(): Resume;
   onFault(text: string): void;
 }
@@ -53,14 +53,17 @@ export interface StreamClientOptions {
   open: () => Socket;
   timers: Timers;
   random: () => number;
-  /** Called when a connection failed to open, to find out why: refused() or lock() tells. */
+  /**
+   * Called when a connection failed to open, to find out the reason; the answer is given by
+   * refused() or lock().
+   */
   ask: () => void;
   listener: StreamListener;
 }
 
 const kCloseTooSlow = 4000;
 
-/** Under which name the pictures of a stream come. */
+/** The name under which a stream's pictures arrive. */
 export function picturesOf(stream: string, camera?: string): string {
   return camera === undefined ? stream : `${stream}/${camera}`;
 }
@@ -74,7 +77,9 @@ export class StreamClient {
   private timer: number | null = null;
   private request = 0;
   private run: string | null = null;
-  /** Request number of the `attach` not answered yet: until then, data are of the run before. */
+  /**
+   * Request number of the unanswered `attach`; until its answer, data belong to the previous run.
+   */
   private attaching: number | null = null;
   private subscriptions: PictureStream[] = [];
   private view: Partial<SceneView> = {};
@@ -82,7 +87,7 @@ export class StreamClient {
 
   constructor(private readonly options: StreamClientOptions) {}
 
-  /** Connects, or tries again at once when waiting. */
+  /** Connects; if a retry is pending, tries immediately. */
   connect(): void {
     if (this.timer !== null) this.options.timers.clear(this.timer);
     this.timer = null;
@@ -97,7 +102,7 @@ export class StreamClient {
     socket.onclose = (event) => this.onClosed(socket, event.code);
   }
 
-  /** Gives up: the server refuses this browser, and would refuse every further attempt. */
+  /** Stops reconnecting: the server would reject every further attempt of this browser. */
   lock(): void {
     if (this.locked) return;
     this.locked = true;
@@ -108,7 +113,7 @@ export class StreamClient {
     this.options.listener.onState({ status: 'locked' });
   }
 
-  /** The server answers and did not let this viewer in; tried again all the same. */
+  /** The server answered but rejected this viewer; retries all the same. */
   refused(reason: string): void {
     if (this.waiting === null) return;
     this.options.listener.onState({ ...this.waiting, reason });
@@ -131,7 +136,7 @@ export class StreamClient {
     this.send({ type: 'view', ...view });
   }
 
-  /** Sends a playback command; nothing happens while there is no connection. */
+  /** Sends a playback command; does nothing without a connection. */
   command(message: ClientMessage): void {
     this.send(message);
   }

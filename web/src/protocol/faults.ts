@@ -1,12 +1,15 @@
-// Faults of a scenario as the server tells them: `error.faults` of a 400.
+// Errors of a scenario as reported by the server: `error.faults` of a 400.
 
 export interface Fault {
-  /** Dotted path; empty when it is about no field. */
+  /** Dotted path; empty if the error belongs to no field. */
   field: string;
   message: string;
 }
 
-/** Reads `error.faults`; what stands beside the field need not name field and value again. */
+/**
+ * Reads `error.faults`; removes field and value from the message, since it is shown next to the
+ * field.
+ */
 export function readFaults(faults: unknown): Fault[] {
   if (!Array.isArray(faults)) return [];
   return faults.filter(isFault).map(({ field, message }) => {

@@ -17,14 +17,14 @@ export interface SceneView {
 
 export interface PictureStream {
   name: string;
-  /** Which camera, where there are several; by default the first. */
+  /** Selects one of several cameras; by default the first. */
   camera?: string;
   max_hz?: number;
   quality?: number;
   max_width_px?: number;
 }
 
-/** Rows that the client has already, by data stream. */
+/** Number of rows that the client already has, by data stream. */
 export type Resume = Record<string, number>;
 
 export type ClientMessage =
@@ -65,7 +65,7 @@ export interface Playback {
   loop: boolean;
   begin_ns: number;
   end_ns: number;
-  /** Where the estimates lie. */
+  /** Alignment of the estimates. */
   alignment: string;
   truth: PoseValues | null;
   estimates: Record<string, EstimateInstant>;
@@ -84,9 +84,9 @@ export interface StreamInfo {
   id: number;
   name: string;
   camera?: string;
-  /** As asked for. */
+  /** Requested rate. */
   max_hz?: number;
-  /** As often as pictures come at the most, beside a flight in real time. */
+  /** Maximum rate of pictures during a real-time flight. */
   limit_hz?: number;
 }
 

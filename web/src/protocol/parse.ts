@@ -1,4 +1,4 @@
-// Pure readers of what comes over the wire. They throw ParseError and nothing else.
+// Pure parsers of received messages. They throw only ParseError.
 import type { ServerMessage } from './messages';
 
 export class ParseError extends Error {}
@@ -15,7 +15,7 @@ const kRequired: Record<ServerMessage['type'], Record<string, string>> = {
   playback: { t_ns: 'number', frame: 'number', playing: 'boolean', estimates: 'object' },
 };
 
-/** @return null for a type that this version does not know: newer servers may say more. */
+/** @return null for a type unknown to this version, since newer servers may send more types. */
 export function parseServerMessage(text: string): ServerMessage | null {
   let value: unknown;
   try {
@@ -58,7 +58,10 @@ const kPictureType = 1;
 const kEncodingGrey = 1;
 const kEncodingColour = 2;
 
-/** Reads a binary message; @return null for a message type that this version does not know. */
+/**
+ * Parses a binary message.
+ * @return null for a message type unknown to this version.
+ */
 export function parsePicture(buffer: ArrayBuffer): PictureMessage | null {
   if (buffer.byteLength < kPictureHeaderBytes) {
     throw new ParseError(`picture of ${buffer.byteLength} bytes is shorter than its header`);

@@ -1,4 +1,4 @@
-// What the REST interface under /api/v1 says; docs/PROTOCOL.md is the contract.
+// Documents of the REST interface under /api/v1; docs/PROTOCOL.md is the contract.
 
 export type RunStatus =
   | 'queued'
@@ -16,7 +16,7 @@ export interface Run {
   status: RunStatus;
   created_utc: string;
   error: string | null;
-  /** File and field of the run's folder that are wrong. */
+  /** Invalid file and field of the run's folder. */
   problem: string | null;
   duration_ns: number;
   frames: number;
@@ -26,13 +26,13 @@ export interface Run {
   attribution: string;
   /** The imagery, not the camera, limits the result. */
   texture_limited: boolean;
-  /** What the run is busy with before its first frame. */
+  /** The step in progress before the first frame. */
   notice: string | null;
-  /** Which files of the run's world have changed since it was flown. */
+  /** Files of the run's world that have changed since the flight. */
   world_change: string | null;
 }
 
-/** One camera of a run, as its manifest lists it. */
+/** One camera of a run, as listed in its manifest. */
 export interface CameraInfo {
   name: string;
   width_px: number;
@@ -48,7 +48,7 @@ export interface ScenarioEntry {
   name: string;
   title: string;
   description: string;
-  /** Why it cannot be flown on this machine; null when it can. */
+  /** Why it cannot be flown on this machine; null if it can. */
   error: string | null;
 }
 
@@ -56,18 +56,20 @@ export interface ScenarioEntry {
 export type Json = null | boolean | number | string | Json[] | { [key: string]: Json };
 export type JsonObject = Record<string, Json>;
 
-/** Errors of one estimate under one alignment; null where there is none to give. */
+/** Errors of one estimate under one alignment; null if not available. */
 export interface AlignmentErrors {
   scale?: number | null;
   position_rmse_m?: number | null;
   rotation_rmse_deg?: number | null;
   position_rmse_hold_m?: number | null;
   rotation_euler_norm_rmse_deg?: number | null;
-  /** Why the positions do not determine the rotation, which then has no errors. */
+  /**
+   * The reason why the positions do not determine the rotation; there are then no rotation errors.
+   */
   degenerate?: string | null;
-  /** Why this alignment has no numbers. */
+  /** The reason why this alignment has no errors. */
   error?: string | null;
-  /** Takes the estimate into the world; runs recorded earlier lack it. */
+  /** Transforms the estimate to the world; absent in older runs. */
   S_world_vo?: object | null;
 }
 
@@ -103,17 +105,17 @@ export interface EstimatorUse {
   cpu_s: number;
   /** Of one processor. */
   cpu_percent: number;
-  /** null where it is not known. */
+  /** null if not known. */
   peak_memory_mb: number | null;
-  /** own_account: of its threads in the server, and the memory that it says it holds. */
+  /** own_account: its threads in the server, and the memory that it reports. */
   measured: 'process' | 'own_account' | 'calling_thread';
 }
 
-/** How an estimator fares in its run. */
+/** Status of an estimator in its run. */
 export interface EstimatorStatus {
   /** STARTING, a tracking state, or CRASHED. */
   state: string;
-  /** Why it is gone. */
+  /** The reason why it ended. */
   crash: string | null;
   answered: number;
   dropped: number;

@@ -1,4 +1,4 @@
-// The alignment of the estimates: chosen by the viewer, computed by the server, drawn everywhere.
+// The alignment of the estimates: chosen by the viewer, computed by the server, used in all views.
 import type { RestClient } from '../connection/rest_client';
 import { RestError } from '../connection/rest_client';
 import type { Metrics } from '../protocol/rest_types';
@@ -9,7 +9,9 @@ import type { Session } from './session';
 import { shownAlignment } from './state';
 import type { Store } from './state';
 
-/** Whether the score says where the estimates lie by this alignment. */
+/**
+ * Whether the score contains the transform of this alignment, so that estimates can be drawn by it.
+ */
 export function canBeDrawn(metrics: Metrics | null, mode: string): boolean {
   if (mode === kDefaultAlignment) return true;
   return Object.values(metrics?.estimators ?? {}).some(
@@ -34,7 +36,7 @@ export class Alignment {
     await this.refresh();
   }
 
-  /** Brings what is drawn to what is chosen, as far as the run's score allows. */
+  /** Updates the drawn alignment to the chosen one, if the run's score permits. */
   async refresh(): Promise<void> {
     const { state } = this.store;
     const { metrics, runId } = state;
@@ -66,7 +68,7 @@ export class Alignment {
     this.store.change('rows', 'metrics', 'scene');
   }
 
-  /** null where this estimate has no such alignment. */
+  /** null if this estimate has no such alignment. */
   private async place(run: string, name: string, mode: string) {
     try {
       return estimateRows(await this.rest.estimate(run, name, mode));

@@ -1,4 +1,4 @@
-// The cameras of the run being watched, read from its manifest once it has them.
+// The cameras of the watched run, read from its manifest.
 import type { RestClient } from '../connection/rest_client';
 import type { Store } from './state';
 
@@ -10,7 +10,7 @@ export class Cameras {
     private readonly rest: RestClient,
   ) {}
 
-  /** Reads them once a run. */
+  /** Reads them once per run. */
   async refresh(): Promise<void> {
     const { runId, playback } = this.store.state;
     if (runId === null) this.asked = null;
@@ -23,7 +23,7 @@ export class Cameras {
       this.store.state.cameras = cameras;
       this.store.change('cameras');
     } catch {
-      // Without it there is one camera without a name, and its pictures come all the same.
+      // Without a manifest the run has one unnamed camera, whose pictures arrive all the same.
     }
   }
 }

@@ -1,4 +1,4 @@
-// Scenarios and runs of the server: read, launched, cancelled and deleted over REST.
+// Scenarios and runs of the server: listed, launched, cancelled and deleted over REST.
 import type { RestClient } from '../connection/rest_client';
 import { RestError } from '../connection/rest_client';
 import type { Fault } from '../protocol/faults';
@@ -9,7 +9,7 @@ import { sectionFaults, sectionOverrides } from './scenario_schema';
 import type { Session } from './session';
 import type { Store } from './state';
 
-/** Offered first: it needs no data. */
+/** Selected first, because it needs no data. */
 const kPreferred = 'course';
 const kPollActive_ms = 1500;
 const kPollIdle_ms = 8000;
@@ -26,7 +26,7 @@ export class Catalogue {
     private readonly newKey: () => string,
   ) {}
 
-  /** Reads the scenarios, and the runs again and again. */
+  /** Reads the scenarios once, and the runs periodically. */
   start(): void {
     void this.readScenarios();
     void this.poll();
@@ -82,7 +82,7 @@ export class Catalogue {
     this.store.change('launch');
   }
 
-  /** Starts a run with the form's values and watches it; faults come back to the form. */
+  /** Starts a run with the form's values and watches it; invalid fields are shown in the form. */
   async launch(texts: ReadonlyMap<string, string>): Promise<void> {
     const { state } = this.store;
     const { scenarioName, scenarioDocument } = state;

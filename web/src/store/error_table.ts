@@ -1,10 +1,12 @@
-// metrics.json made into the error table: one column an estimator, one row a figure.
+// Converts metrics.json to the error table: one column per estimator, one row per quantity.
 import type { AlignmentErrors, EstimatorMetrics, Metrics, Run } from '../protocol/rest_types';
 import { formatNumber, formatPercent, kNothing } from './format';
 
 export const kDefaultAlignment = 'init_scale';
 
-/** Below this the camera sees less detail than it has pixels: the imagery limits the estimate. */
+/**
+ * Below this value the imagery has less detail than the camera has pixels, and limits the estimate.
+ */
 export const kTextureLimit = 0.5;
 
 export interface ErrorRow {
@@ -13,7 +15,7 @@ export interface ErrorRow {
   unit: string;
   hint: string;
   cells: string[];
-  /** What a cell without a figure means; empty where there is no more to say. */
+  /** Explains a cell without a number; empty if there is no explanation. */
   cellHints: string[];
 }
 
@@ -22,7 +24,7 @@ export interface ErrorTable {
   rows: ErrorRow[];
 }
 
-/** Names of the alignments in the metrics, the paper's first. */
+/** Names of the alignments in the metrics; the paper's comes first. */
 export function alignmentModes(metrics: Metrics | null): string[] {
   const modes = new Set<string>();
   for (const estimator of Object.values(metrics?.estimators ?? {})) {
@@ -114,7 +116,7 @@ export function errorTable(
   };
 }
 
-/** Why a figure is missing, where the metrics say so. */
+/** The reason why a number is missing, if the metrics contain it. */
 function missingHint(error: AlignmentErrors, key: keyof AlignmentErrors): string {
   return numberOf(error[key]) === null ? (error.degenerate ?? '') : '';
 }
@@ -123,21 +125,21 @@ function numberOf(value: unknown): number | null {
   return typeof value === 'number' ? value : null;
 }
 
-/** Median over the run of the texels per pixel; null while it is not known. */
+/** Median over the run of the texels per pixel; null if not known yet. */
 export function texelsPerPixel(metrics: Metrics | null): number | null {
   return (
     metrics?.texture?.texels_per_pixel_median ?? metrics?.camera?.texels_per_pixel?.median ?? null
   );
 }
 
-/** Whether the imagery, not the camera, limits what the run says about its estimators. */
+/** Whether the imagery, not the camera, limits the run's results. */
 export function textureLimited(run: Run | null, metrics: Metrics | null): boolean {
   if (run?.texture_limited === true || metrics?.texture?.texture_limited === true) return true;
   const median = texelsPerPixel(metrics);
   return metrics?.texture === undefined && median !== null && median > 0 && median < kTextureLimit;
 }
 
-/** What it means and what to do about it. */
+/** Explains the limitation and how to avoid it. */
 export function textureHint(median: number | null): string {
   const found =
     median === null

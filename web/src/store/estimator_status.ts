@@ -1,4 +1,4 @@
-// How the estimators fare besides where they say the camera is: one row each.
+// Status of the estimators, apart from their poses: one row each.
 import type { EstimatorStatus, EstimatorUse, Run } from '../protocol/rest_types';
 import { formatNumber, kNothing } from './format';
 import type { LogLine } from './run_data';
@@ -49,14 +49,14 @@ export function statusRows(
   });
 }
 
-/** Whether some estimator is gone, or got other images than were sent. */
+/** Whether some estimator has ended, or received images that differ from those sent. */
 export function needsAttention(statuses: Readonly<Record<string, EstimatorStatus>>): boolean {
   return Object.values(statuses).some(
     ({ crash, hash_mismatches }) => crash !== null || hash_mismatches > 0,
   );
 }
 
-/** What estimators said, newest last; `name` null = all of them. */
+/** The latest lines logged by estimators, in order. */
 export function saidBy(log: readonly LogLine[], most: number): LogLine[] {
   const said: LogLine[] = [];
   for (let i = log.length - 1; i >= 0 && said.length < most; i -= 1) {

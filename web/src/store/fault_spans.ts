@@ -1,17 +1,17 @@
-// Faults of the scenario as spans of time, and what each kind means.
+// Faults of the scenario as spans of time, with an explanation of each kind.
 import type { RunData } from './run_data';
 
 export interface FaultSpan {
   kind: string;
   begin_ns: number;
-  /** Stamp of the first frame after it; of the last one where the fault lasts on. */
+  /** Stamp of the first frame after it; of the last frame if the fault has not ended. */
   end_ns: number;
   frames: number;
 }
 
 interface FaultMeaning {
   label: string;
-  /** Stands over the camera's picture: what is shown is not what the estimators got. */
+  /** Shown over the camera's picture if it differs from what the estimators received. */
   mark: string | null;
   hint: string;
 }
@@ -51,10 +51,10 @@ export function faultMeaning(kind: string): FaultMeaning {
   return kMeanings[kind] ?? { label: kind.replaceAll('_', ' '), mark: null, hint: '' };
 }
 
-/** Kinds in the order in which the time line stacks and colours them. */
+/** Kinds in the order in which the timeline stacks and colours them. */
 export const kFaultKinds: readonly string[] = Object.keys(kMeanings);
 
-/** Grows with the rows: only those since the last call are read. */
+/** Updated incrementally: each call reads only the rows added since the last one. */
 export class FaultSpans {
   readonly spans: FaultSpan[] = [];
   private readonly open = new Map<string, FaultSpan>();
@@ -85,7 +85,7 @@ export class FaultSpans {
   }
 }
 
-/** Kinds that the run has, in their order, unknown ones last. */
+/** Kinds that occur in the run, in display order; unknown ones last. */
 export function kindsOf(spans: readonly FaultSpan[]): string[] {
   const place = (kind: string) => {
     const index = kFaultKinds.indexOf(kind);

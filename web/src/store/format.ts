@@ -1,8 +1,8 @@
-// Numbers as people read them.
+// Formats numbers for display.
 
 export const kNothing = '–';
 
-/** Fixed digits with a true minus sign; an en dash for what is not there. */
+/** Fixed digits with a true minus sign; an en dash for a missing value. */
 export function formatNumber(value: number | null | undefined, digits: number): string {
   if (value === null || value === undefined || !Number.isFinite(value)) return kNothing;
   const text = value.toFixed(digits);
@@ -30,7 +30,7 @@ export function formatDate(utc: string): string {
   return `${day} ${pad(date.getHours(), 2)}:${pad(date.getMinutes(), 2)}`;
 }
 
-/** Into (-180, 180]. */
+/** Wraps to (-180, 180]. */
 export function wrapDegrees(angle_deg: number): number {
   const wrapped = angle_deg - 360 * Math.floor((angle_deg + 180) / 360);
   return wrapped === -180 ? 180 : wrapped;

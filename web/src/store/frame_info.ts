@@ -1,4 +1,4 @@
-// What is known of the image of one frame: exposure, texture, tiles, faults.
+// Details of one frame's image: exposure, texture, tiles, faults.
 import { formatNumber, formatPercent } from './format';
 import { kTextureLimit } from './error_table';
 import { faultMeaning } from './fault_spans';
@@ -16,11 +16,11 @@ export interface FrameFigure {
 export interface FrameInfo {
   figures: FrameFigure[];
   faults: string[];
-  /** In large letters over the picture: the estimators got something else, or nothing. */
+  /** Shown in large letters over the picture: the estimators received another image, or none. */
   marks: string[];
 }
 
-/** @return null where the frame has no row (yet) */
+/** @return null if the frame has no row (yet) */
 export function frameInfo(data: RunData, frame: number | null): FrameInfo | null {
   if (frame === null) return null;
   const row = lastAtOrBefore(data.truth.column('frame'), frame);

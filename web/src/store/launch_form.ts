@@ -1,4 +1,4 @@
-// The launcher's fields: read from a scenario document, turned into overrides.
+// The launcher's fields: read from a scenario document, converted to overrides.
 import type { Fault } from '../protocol/faults';
 import type { Json, JsonObject } from '../protocol/rest_types';
 
@@ -10,9 +10,9 @@ export interface FieldSpec {
   kind: 'number' | 'choice' | 'estimators';
   choices?: readonly { value: string; label: string }[];
   step?: number;
-  /** The field is left out where the document has nothing at this path. */
+  /** The field is omitted if the document has no value at this path. */
   needs?: string;
-  /** May stay empty. */
+  /** May be empty. */
   optional?: boolean;
   hint: string;
 }
@@ -122,7 +122,10 @@ export function fieldsOf(document: JsonObject): FieldSpec[] {
   );
 }
 
-/** What a field shows for a document: text of a number or choice, estimators' names by commas. */
+/**
+ * The text that a field shows for a document: a number, a choice, or comma-separated estimator
+ * names.
+ */
 export function fieldText(document: JsonObject, field: FieldSpec): string {
   const value = valueAt(document, field.path);
   if (field.kind === 'estimators') return estimatorsOf(value).map(nameOf).join(',');
@@ -134,7 +137,7 @@ export interface Overrides {
   faults: Fault[];
 }
 
-/** Only what differs from the document is overridden; limits are left to the server. */
+/** Overrides only the values that differ from the document; limits are checked by the server. */
 export function overridesOf(document: JsonObject, texts: ReadonlyMap<string, string>): Overrides {
   const overrides: Record<string, Json> = {};
   const faults: Fault[] = [];
@@ -154,7 +157,9 @@ export function overridesOf(document: JsonObject, texts: ReadonlyMap<string, str
   return { overrides, faults };
 }
 
-/** The field that a fault belongs to: the same path, or one it lies in. */
+/**
+ * The field to which an error belongs: the one with the same path, or with a path that contains it.
+ */
 export function fieldOfFault(fields: readonly FieldSpec[], fault: Fault): FieldSpec | null {
   return (
     fields.find(({ path }) => fault.field === path || fault.field.startsWith(`${path}.`)) ?? null
@@ -174,7 +179,7 @@ function nameOf(estimator: JsonObject): string {
   return typeof name === 'string' ? name : '';
 }
 
-/** Estimators that the document has stay as they are; others are native ones, named as their type. */
+/** Keeps the document's estimators unchanged; others are native ones, named after their type. */
 function estimatorList(text: string, known: JsonObject[]): Json[] {
   return text
     .split(',')

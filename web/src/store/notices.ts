@@ -1,4 +1,4 @@
-// Short messages to the viewer that go by themselves.
+// Short messages to the viewer that disappear by themselves.
 import type { Store } from './state';
 
 const kShown_ms = 8000;

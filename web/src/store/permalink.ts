@@ -1,11 +1,11 @@
-// What the address bar keeps: the run, and the instant unless it follows live.
+// State stored in the address bar: the run, and the instant unless the view is live.
 
 export interface Permalink {
   run: string | null;
   t_ns: number | null;
 }
 
-/** "#run=ID&t=SECONDS"; what is not understood is left out. */
+/** "#run=ID&t=SECONDS"; unknown parts are ignored. */
 export function parsePermalink(hash: string): Permalink {
   const fields = new URLSearchParams(hash.replace(/^#/, ''));
   const run = fields.get('run');

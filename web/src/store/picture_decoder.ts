@@ -1,4 +1,4 @@
-// Decodes pictures off the main path and keeps the newest of each stream.
+// Decodes pictures asynchronously and keeps the newest of each stream.
 import type { PictureMessage } from '../protocol/parse';
 import type { Picture } from './state';
 
@@ -19,7 +19,7 @@ export class PictureDecoder {
     private readonly failed: (text: string) => void,
   ) {}
 
-  /** While one picture of a stream is being decoded only the newest of the others waits. */
+  /** While one picture of a stream is being decoded, only the newest of the others waits. */
   push(name: string, message: PictureMessage): void {
     let stream = this.streams.get(name);
     if (stream === undefined) {
@@ -30,7 +30,7 @@ export class PictureDecoder {
     if (!stream.busy) void this.run(name, stream);
   }
 
-  /** Forgets what is under way: it belongs to a run left behind. */
+  /** Discards pictures in progress, because they belong to the previous run. */
   clear(): void {
     this.epoch += 1;
     this.streams.clear();

@@ -1,4 +1,4 @@
-// How often pictures come while a flight in real time needs the machine.
+// Rates of the picture streams while a real-time flight limits them.
 import { picturesOf } from '../connection/stream_client';
 import type { StreamInfo } from '../protocol/messages';
 
@@ -7,7 +7,7 @@ export interface PictureRate {
   asked_hz: number;
 }
 
-/** By the name of their pictures: the streams that come more slowly than they were asked for. */
+/** The streams whose rate is below the requested one, by picture name. */
 export function pictureRates(streams: readonly StreamInfo[]): Map<string, PictureRate> {
   const rates = new Map<string, PictureRate>();
   for (const { name, camera, max_hz, limit_hz } of streams) {
@@ -17,7 +17,7 @@ export function pictureRates(streams: readonly StreamInfo[]): Map<string, Pictur
   return rates;
 }
 
-/** Empty where nothing holds the pictures back. */
+/** Empty if the rate is not limited. */
 export function rateText(rate: PictureRate | undefined): string {
   return rate === undefined ? '' : `${rate.now_hz}/${rate.asked_hz} Hz`;
 }

@@ -1,5 +1,5 @@
-// Playback as the viewer steers it: every wish becomes a command to the server, which answers
-// with where the cursor is.
+// Playback control: every action becomes a command to the server, which answers with the cursor's
+// position.
 import type { ClientMessage } from '../protocol/messages';
 import type { Session } from './session';
 import type { Store } from './state';
@@ -25,7 +25,10 @@ export class Player {
     this.command({ type: 'step', frames });
   }
 
-  /** Goes to the frame nearest to a time, so that every panel has a picture of that very instant. */
+  /**
+   * Seeks to the frame nearest to a time, so that every panel has a picture of exactly that
+   * instant.
+   */
   seekTime(t_ns: number): void {
     const { truth } = this.store.state.data;
     const row = nearestIndex(truth.column('t_ns'), t_ns);

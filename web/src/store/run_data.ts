@@ -1,11 +1,11 @@
-// All rows received of the run being watched.
+// All rows received of the watched run.
 import type { Cell, Resume, Rows } from '../protocol/messages';
 import { Table } from './table';
 
 export const kAxes = ['x_m', 'y_m', 'z_m', 'roll_deg', 'pitch_deg', 'yaw_deg'] as const;
 export type Axis = (typeof kAxes)[number];
 
-/** What is known of a frame's image; NaN where nothing is. */
+/** Quantities of a frame's image; NaN if not known. */
 export const kImageColumns = [
   'texels_per_pixel',
   'void_fraction',
@@ -24,9 +24,9 @@ export interface LogLine {
   t_ns: number;
   level: string;
   text: string;
-  /** 'fault' where one of the scenario begins or ends; else empty. */
+  /** 'fault' if a fault of the scenario begins or ends; else empty. */
   kind: string;
-  /** The estimator that said it; empty = the range. */
+  /** The estimator that logged it; empty = the range. */
   source: string;
 }
 
@@ -39,16 +39,16 @@ const kEstimatePrefix = 'estimate/';
 
 export class RunData {
   readonly truth = new Table<TruthColumn>(['frame', 't_ns', ...kAxes, ...kImageColumns]);
-  /** Faults of the scenario in force at each frame. */
+  /** Faults of the scenario active at each frame. */
   readonly faults: (readonly string[])[] = [];
   readonly estimates = new Map<string, EstimateRows>();
   readonly log: LogLine[] = [];
-  /** Grows when rows are replaced: what was computed from them is then out of date. */
+  /** Increases when rows are replaced, which invalidates values computed from them. */
   generation = 0;
 
   /**
-   * Takes rows in. The server is right about rows sent again: they replace ours.
-   * @return false when rows before these are missing; nothing is changed then
+   * Adds rows. If rows are sent again, the server's version replaces the stored one.
+   * @return false if preceding rows are missing; nothing is changed then
    */
   apply(rows: Rows): boolean {
     const count = Math.max(0, ...Object.values(rows.columns).map((cells) => cells.length));
@@ -69,7 +69,7 @@ export class RunData {
     return true;
   }
 
-  /** Rows at hand by stream, as `attach` wants them. */
+  /** Number of rows received by stream, in the form of `attach`. */
   resume(): Resume {
     const counts: Resume = {};
     if (this.truth.length > 0) counts['truth'] = this.truth.length;

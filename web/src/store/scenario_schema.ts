@@ -1,9 +1,9 @@
-// A scenario's sections checked against the server's JSON schema while they are typed. What the
-// schema cannot say, the server says when the flight is launched.
+// Checks a scenario's sections against the server's JSON schema while they are typed. Rules that
+// the schema cannot express are checked by the server at launch.
 import type { Fault } from '../protocol/faults';
 import type { Json, JsonObject } from '../protocol/rest_types';
 
-/** Top-level sections that are worth editing as JSON, in the schema's order. */
+/** Top-level sections offered for editing as JSON, in the schema's order. */
 export function sectionsOf(schema: JsonObject): string[] {
   return Object.entries(objectAt(schema, 'properties'))
     .filter(([name, node]) => {
@@ -19,7 +19,7 @@ export interface FieldNote {
   description: string;
 }
 
-/** The fields that a section may have, for a reader; of a list those of its entries. */
+/** The fields that a section may have, for display; for a list, those of its entries. */
 export function fieldNotes(schema: JsonObject, section: string): FieldNote[] {
   const node = sectionNode(schema, section);
   const inner = objectOf(resolved(schema, node['items'] ?? node));
@@ -39,7 +39,7 @@ export function sectionDescription(schema: JsonObject, section: string): string 
   return typeof description === 'string' ? description : '';
 }
 
-/** Faults of a section's text; empty text leaves the section as the scenario has it. */
+/** Errors in a section's text; empty text leaves the section as in the scenario. */
 export function sectionFaults(schema: JsonObject, section: string, text: string): Fault[] {
   if (text.trim() === '') return [];
   let value: Json;
@@ -53,7 +53,7 @@ export function sectionFaults(schema: JsonObject, section: string, text: string)
   return faults;
 }
 
-/** The sections edited, as overrides. @pre they have no faults */
+/** The edited sections as overrides. @pre they have no errors */
 export function sectionOverrides(edits: ReadonlyMap<string, string>): Record<string, Json> {
   const overrides: Record<string, Json> = {};
   for (const [section, text] of edits) {
@@ -62,7 +62,7 @@ export function sectionOverrides(edits: ReadonlyMap<string, string>): Record<str
   return overrides;
 }
 
-/** How a section stands in a document, for editing. */
+/** Text of a document's section, for editing. */
 export function sectionText(document: JsonObject, section: string): string {
   const value = document[section];
   return value === undefined ? '' : JSON.stringify(value, null, 2);
@@ -158,7 +158,7 @@ function hasType(value: Json, type: string): boolean {
 
 function sectionNode(schema: JsonObject, section: string): JsonObject {
   const raw = objectOf(objectAt(schema, 'properties')[section]);
-  // A description beside the reference is nearer to the section than the definition's own.
+  // A description next to the reference describes the section better than the definition's own.
   return { ...objectOf(resolved(schema, raw)), ...raw };
 }
 

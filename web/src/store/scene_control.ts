@@ -1,4 +1,4 @@
-// The viewpoint of the 3D view: each mode keeps its own.
+// The viewpoint of the 3D view, stored separately for each mode.
 import type { StreamClient } from '../connection/stream_client';
 import type { SceneMode } from '../protocol/messages';
 import type { SceneOrbit, Store } from './state';

@@ -1,4 +1,4 @@
-// Rows made into curves: on one time axis, and without jumps where an angle wraps.
+// Converts rows to curves with a common time axis and unwrapped angles.
 import type { Axis, EstimateRows, RunData } from './run_data';
 import { wrapDegrees } from './format';
 import { lastAtOrBefore } from './table';
@@ -12,7 +12,7 @@ export function nearestTurn(angle_deg: number, reference_deg: number): number {
   return reference_deg + wrapDegrees(angle_deg - reference_deg);
 }
 
-/** One axis of the truth, followed across the wrap; grows with the rows. */
+/** One axis of the truth, unwrapped; updated incrementally. */
 export class TruthCurve {
   private values = new Float64Array(1024);
   private count = 0;
@@ -37,7 +37,9 @@ export class TruthCurve {
   }
 }
 
-/** One axis of an estimate on the truth's rows; null where there is no pose, so that lines break. */
+/**
+ * One axis of an estimate at the truth's rows; null if there is no pose, so that the line breaks.
+ */
 export class EstimateCurve {
   private readonly values: (number | null)[] = [];
   private taken = 0;
@@ -60,7 +62,9 @@ export class EstimateCurve {
   }
 }
 
-/** -1 if the frame is no row; the number of rows if it is newer than all of them. */
+/**
+ * -1 if there is no row of the frame; the number of rows if the frame is newer than all of them.
+ */
 function rowOfFrame(frames: Float64Array, frame: number): number {
   if (Number.isNaN(frame)) return -1;
   if (frame > (frames[frames.length - 1] ?? -Infinity)) return frames.length;

@@ -1,4 +1,4 @@
-// Watching one run: asks for it and takes what the stream tells about it into the store.
+// Watches one run: requests it and stores what the stream sends about it.
 import type { ConnectionState, StreamClient, StreamListener } from '../connection/stream_client';
 import type {
   ClientMessage,
@@ -19,13 +19,15 @@ import type { Store } from './state';
 export class Session implements StreamListener {
   private client: StreamClient | null = null;
   private readonly decoder: PictureDecoder;
-  /** Where to go once the run just attached tells its playback. */
+  /** Where to seek when the attached run sends its playback. */
   private pendingSeek_ns: number | null = null;
-  /** Where a live viewer was when the connection was lost: its place, should the run be over. */
+  /**
+   * Position of a live viewer when the connection was lost; used if the run has ended meanwhile.
+   */
   private livePlace_ns: number | null = null;
   private pictureWidth_px = 640;
   private subscribed = '';
-  /** Of the run that is watched: what was said of its ground. */
+  /** The latest message about the watched run's world. */
   private saidOfWorld: string | null = null;
 
   constructor(
@@ -48,9 +50,9 @@ export class Session implements StreamListener {
     this.client = client;
   }
 
-  // ---- what the viewer wants -------------------------------------------------------------------
+  // ---- commands of the viewer ------------------------------------------------------------------
 
-  /** Watches a run from `t_ns` on, or from where the server starts it. */
+  /** Watches a run from `t_ns` on, or from the server's default position. */
   selectRun(id: string | null, t_ns: number | null = null): void {
     const { state } = this.store;
     if (id !== null && id === state.runId) {
@@ -86,13 +88,13 @@ export class Session implements StreamListener {
     this.store.change('cameras', 'pictures');
   }
 
-  /** How wide camera and debug images are shown, in device pixels. */
+  /** Displayed width of camera and debug images, in device pixels. */
   setPictureWidth(width_px: number): void {
     this.pictureWidth_px = width_px;
     this.subscribe();
   }
 
-  // ---- what the stream tells -------------------------------------------------------------------
+  // ---- messages of the stream ------------------------------------------------------------------
 
   onState(state: ConnectionState): void {
     this.store.state.connection = state;
@@ -219,7 +221,7 @@ export class Session implements StreamListener {
     this.client?.subscribe(streams);
   }
 
-  /** Sends a playback command to the run being watched. */
+  /** Sends a playback command to the watched run. */
   command(message: ClientMessage): void {
     if (this.store.state.runId !== null) this.client?.command(message);
   }

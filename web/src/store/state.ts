@@ -1,4 +1,4 @@
-// Everything the screen shows, in one place, and who wants to know when it changes.
+// The whole state of the screen in one place, and notification of its changes.
 import type { ConnectionState } from '../connection/stream_client';
 import { picturesOf } from '../connection/stream_client';
 import type { Fault } from '../protocol/faults';
@@ -34,44 +34,44 @@ export interface Notice {
 
 export type SceneOrbit = Pick<SceneView, 'azimuth_deg' | 'elevation_deg' | 'distance_m' | 'follow'>;
 
-/** Estimates placed by another alignment than the one that their rows come with. */
+/** Estimates under an alignment other than the recorded one. */
 export interface AlignedEstimates {
   mode: string;
-  /** An estimator that has no such alignment is not here. */
+  /** Contains no entry for an estimator without this alignment. */
   estimates: Map<string, EstimateRows>;
 }
 
 export interface State {
   connection: ConnectionState;
-  /** null until they were read. */
+  /** null until read. */
   scenarios: ScenarioEntry[] | null;
   runs: Run[] | null;
   listError: string | null;
   scenarioName: string | null;
   scenarioDocument: JsonObject | null;
   scenarioSchema: JsonObject | null;
-  /** Sections of the scenario edited as JSON: text by the section's name. */
+  /** Sections of the scenario edited as JSON: text by section name. */
   scenarioEdits: Map<string, string>;
   editorOpen: boolean;
   launchFaults: Fault[];
   launching: boolean;
-  /** The run being watched; `run` is null until the list or the stream has told about it. */
+  /** The watched run; `run` is null until the list or the stream has sent it. */
   runId: string | null;
   run: Run | null;
   data: RunData;
   metrics: Metrics | null;
-  /** How the run's estimators fare, by name. */
+  /** Status of the run's estimators, by name. */
   statuses: Record<string, EstimatorStatus>;
   playback: Playback | null;
-  /** Asked for and not confirmed yet. */
+  /** Requested and not confirmed yet. */
   wantedSpeed: number | null;
   pictures: Map<string, Picture>;
-  /** Of the streams that come more slowly than they were asked for, by name. */
+  /** For the streams whose rate is below the requested one, by name. */
   rates: Map<string, PictureRate>;
   /** Chosen by the viewer; shown once the run is scored. */
   alignment: string;
   aligned: AlignedEstimates | null;
-  /** Of the run being watched; empty until its manifest was read. */
+  /** Of the watched run; empty until its manifest was read. */
   cameras: CameraInfo[];
   /** null = the first. */
   camera: string | null;
@@ -123,19 +123,19 @@ export function shownAlignment(state: State): string {
   return state.aligned?.mode ?? kDefaultAlignment;
 }
 
-/** Rows of an estimate as they are to be drawn. */
+/** Rows of an estimate under the shown alignment. */
 export function shownEstimate(state: State, name: string): EstimateRows | undefined {
   return state.aligned === null
     ? state.data.estimates.get(name)
     : state.aligned.estimates.get(name);
 }
 
-/** Under which name the pictures of the chosen camera come. */
+/** The name under which the chosen camera's pictures arrive. */
 export function cameraPictures(state: State): string {
   return picturesOf('camera', state.camera ?? undefined);
 }
 
-/** Views draw themselves for the topics that changed since the last frame. */
+/** Views redraw themselves for the topics that changed since the last frame. */
 export type Topic =
   | 'connection'
   | 'lists'
@@ -157,7 +157,7 @@ export class Store {
   private changed = new Set<Topic>();
   private listener: (() => void) | null = null;
 
-  /** Calls back once when something changed after the last take(), or has already. */
+  /** Calls back once when something has changed since the last take(). */
   onChange(listener: () => void): void {
     this.listener = listener;
     if (this.changed.size > 0) listener();

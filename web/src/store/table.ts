@@ -3,7 +3,7 @@ import type { Cell } from '../protocol/messages';
 
 const kFirstCapacity = 1024;
 
-/** Numbers; what is absent or null is NaN. */
+/** Numbers; absent or null values are NaN. */
 export class NumberColumn {
   private values = new Float64Array(kFirstCapacity);
   private count = 0;
@@ -21,7 +21,7 @@ export class NumberColumn {
     return row < this.count ? (this.values[row] ?? NaN) : NaN;
   }
 
-  /** Writes `cells` from row `first` on, and forgets what was there and behind. */
+  /** Writes `cells` from row `first` on, and discards all old rows from there. */
   write(first: number, cells: readonly Cell[]): void {
     const end = first + cells.length;
     if (end > this.values.length) {

@@ -1,10 +1,10 @@
-// The part of the flight that the plots show: all of it, or what the viewer zoomed to.
+// The part of the flight that the plots show: all of it, or the part zoomed to.
 
 const kNarrowest_s = 0.5;
 
 export type Span = readonly [number, number];
 
-/** Zooms about a time that stays where it is; null = the whole flight. */
+/** Zooms about a fixed time; null = the whole flight. */
 export function zoomed(span: Span, whole: Span, centre_s: number, factor: number): Span | null {
   const low = centre_s - (centre_s - span[0]) * factor;
   const high = centre_s + (span[1] - centre_s) * factor;
@@ -13,7 +13,7 @@ export function zoomed(span: Span, whole: Span, centre_s: number, factor: number
   return shiftedInto([low, high], whole);
 }
 
-/** The window moved on so that the cursor is in it. */
+/** The window moved so that it contains the cursor. */
 export function following(span: Span, whole: Span, cursor_s: number): Span {
   if (cursor_s >= span[0] && cursor_s <= span[1]) return span;
   const width = span[1] - span[0];

@@ -1,4 +1,5 @@
-// Keeps the address bar and the store in step: a copied address shows the same run and instant.
+// Synchronises the address bar and the store, so that a copied address shows the same run and
+// instant.
 import { formatPermalink, parsePermalink } from '../store/permalink';
 import type { Context } from './view';
 

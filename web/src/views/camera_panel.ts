@@ -1,4 +1,4 @@
-// The aircraft's camera: its picture, what is known of the frame, and what is wrong with it.
+// The aircraft's camera: its picture, details of the frame, and active faults.
 import { frameInfo } from '../store/frame_info';
 import type { FrameInfo } from '../store/frame_info';
 import { faultMeaning } from '../store/fault_spans';
@@ -58,7 +58,7 @@ export class CameraPanel extends PicturePanel {
     const model = shown?.distortion?.model ?? 'none';
     const size = shown === undefined ? '' : `${shown.width_px}×${shown.height_px} px`;
     setText(this.lens, shown === undefined || model === 'none' ? size : `${model} · ${size}`);
-    // A narrow panel shows the beginning: the lens, where there is one.
+    // A narrow panel shows only the beginning: the lens, if there is one.
     this.lens.title = model === 'none' ? `${size}, no distortion` : `${size}, distortion: ${model}`;
   }
 
@@ -98,7 +98,7 @@ function faultMarks({ faults, marks }: FrameInfo): HTMLElement[] {
 
 const kLabels = ['Exposure', 'Gain', 'Saturated', 'Texels/px', 'Late tiles'];
 
-/** Without a frame the places are there already: nothing jumps when it comes. */
+/** Without a frame, placeholders keep the layout stable. */
 function figureList(info: FrameInfo | null): HTMLElement[] {
   const figures =
     info?.figures ?? kLabels.map((label) => ({ key: '', label, text: '–', hint: '', warn: false }));

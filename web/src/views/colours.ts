@@ -1,8 +1,8 @@
-// One colour scheme: the ribbons in the 3D view, the curves and the table agree.
+// The common colour scheme of the 3D view's ribbons, the curves and the table.
 
 export const kTruthColour = 'rgb(230, 38, 38)';
 
-/** By the estimator's place in the run. */
+/** By the estimator's index in the run. */
 const kEstimateColours = [
   'rgb(38, 115, 255)',
   'rgb(26, 184, 89)',

@@ -1,9 +1,12 @@
-// Making elements, shortly.
+// Helpers that create and update DOM elements.
 
 type Props = Record<string, string | number | boolean | undefined | ((event: never) => void)>;
 type Child = Node | string | null;
 
-/** `on...` props listen, booleans set or leave out an attribute, the rest become attributes. */
+/**
+ * `on...` props add listeners, boolean props set or omit an attribute, the others become
+ * attributes.
+ */
 export function h<K extends keyof HTMLElementTagNameMap>(
   tag: K,
   props: Props = {},
@@ -25,7 +28,7 @@ export function h<K extends keyof HTMLElementTagNameMap>(
   return element;
 }
 
-/** Sets text only when it differs, so that a still screen costs nothing. */
+/** Sets text only if it differs, so that an unchanged screen costs nothing. */
 export function setText(element: HTMLElement, text: string): void {
   if (element.textContent !== text) element.textContent = text;
 }
@@ -36,14 +39,14 @@ export function setAttribute(element: HTMLElement, name: string, value: string |
   else element.setAttribute(name, value);
 }
 
-/** Replaces the children when `key` differs from the one they were made for. */
+/** Replaces the children if `key` differs from the one they were made for. */
 export function rebuild(element: HTMLElement, key: string, make: () => Node[]): void {
   if (element.dataset['key'] === key) return;
   element.dataset['key'] = key;
   element.replaceChildren(...make());
 }
 
-/** Calls `action` at most once a frame, with the newest argument. */
+/** Calls `action` at most once per frame, with the latest argument. */
 export function perFrame<T>(action: (value: T) => void): (value: T) => void {
   let waiting: { value: T } | null = null;
   return (value) => {

@@ -1,4 +1,4 @@
-// Errors of the estimates as the server scored them; the screen computes none.
+// Errors of the estimates as scored by the server; the dashboard computes none.
 import type { ErrorRow, ErrorTable } from '../store/error_table';
 import { canBeDrawn } from '../store/alignment';
 import {
@@ -146,7 +146,7 @@ function textureOf({ run, metrics }: State): Texture {
   return { median: texelsPerPixel(metrics), limited: textureLimited(run, metrics) };
 }
 
-/** Of the run, not of an estimator: one cell across. */
+/** A value of the run, not of an estimator: one cell across all columns. */
 function textureRow({ median, limited }: Texture, columns: number): HTMLElement {
   const row = { key: 'texture', label: 'Texture', unit: 'texels/px', hint: 'Median of the run' };
   const badge = limited ? h('span', { class: 'chip small texture-limited' }, 'limited') : null;

@@ -1,4 +1,4 @@
-// How each estimator fares, and what they said last; a group of the panel in the middle.
+// Status and latest log lines of the estimators; a tab of the middle panel.
 import { kStatusColumns, saidBy, statusRows } from '../store/estimator_status';
 import type { StatusRow } from '../store/estimator_status';
 import { formatTime } from '../store/format';

@@ -1,4 +1,4 @@
-// The line on top: which run this is, how it stands, and whether the server is there.
+// The top bar: the run, its status, and the connection to the server.
 import type { State, Topic } from '../store/state';
 import { texelsPerPixel, textureHint, textureLimited } from '../store/error_table';
 import { formatNumber, formatPercent } from '../store/format';

@@ -1,4 +1,4 @@
-// The keyboard shortcuts, listed.
+// The list of keyboard shortcuts.
 import type { Topic } from '../store/state';
 import { h } from './dom';
 import { kShortcuts } from './shortcuts';

@@ -1,4 +1,4 @@
-// Icons as inline drawings: nothing to download.
+// Icons as inline SVG paths: nothing to download.
 
 const kPaths = {
   play: 'M5 3.5v9l7.5-4.5z',

@@ -1,4 +1,4 @@
-// Choosing a scenario, changing its main parameters, starting a run.
+// Selects a scenario, changes its main parameters, starts a run.
 import { fieldOfFault, fieldsOf, fieldText } from '../store/launch_form';
 import type { FieldSpec } from '../store/launch_form';
 import type { Topic } from '../store/state';
@@ -181,7 +181,7 @@ function estimatorControl(spec: FieldSpec, text: string) {
     });
     return { box, label: h('label', { class: 'check' }, box, label) };
   });
-  // In the scenario's order where nothing changed, so that nothing is overridden.
+  // Keeps the scenario's order if nothing changed, so that nothing is overridden.
   const read = () => {
     const ticked = boxes.filter(({ box }) => box.checked).map(({ box }) => box.value);
     const kept = chosen.filter((name) => ticked.includes(name));

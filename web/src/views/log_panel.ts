@@ -1,4 +1,4 @@
-// What the run said, newest last.
+// The run's log, newest last.
 import { formatTime } from '../store/format';
 import type { RunData } from '../store/run_data';
 import type { Topic } from '../store/state';

@@ -1,4 +1,4 @@
-// Messages that stand over the screen's corner for a while.
+// Messages shown for a while over a corner of the screen.
 import type { Topic } from '../store/state';
 import { h, rebuild } from './dom';
 import type { Context, View } from './view';

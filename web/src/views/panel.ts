@@ -1,4 +1,4 @@
-// The frame around every panel: title, tools, and the number of the frame that it shows.
+// The frame of every panel: title, tools, and the number of the frame that it shows.
 import type { Playback } from '../protocol/messages';
 import { h, setAttribute, setText } from './dom';
 import { icon } from './icons';
@@ -7,11 +7,11 @@ export interface Panel {
   root: HTMLElement;
   tools: HTMLElement;
   body: HTMLElement;
-  /** @param expected  frame of the playback cursor; another one shows by how much it is off */
+  /** @param expected  frame of the playback cursor; if it differs, the difference is shown */
   showFrame(frame: number | null, expected?: number | null): void;
-  /** The rate of its pictures, where it is less than was asked for; else empty. */
+  /** The rate of its pictures if it is below the requested one; else empty. */
   showRate(text: string): void;
-  /** Text in place of what is not there; null = it is. */
+  /** Text shown if there is no content; null = there is content. */
   showEmpty(text: string | null): void;
 }
 

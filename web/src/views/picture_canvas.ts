@@ -1,4 +1,4 @@
-// A canvas that shows the newest picture of a stream, in its own proportions.
+// A canvas that shows the newest picture of a stream with its aspect ratio.
 import type { Picture } from '../store/state';
 import { h } from './dom';
 
@@ -24,7 +24,7 @@ export class PictureCanvas {
     this.canvas.getContext('2d', { alpha: false })?.drawImage(picture.bitmap, 0, 0);
   }
 
-  /** Fades a picture that is not of the instant at which the playback stands. */
+  /** Fades a picture that does not belong to the playback's instant. */
   markStale(cursor_ns: number | null): void {
     const picture = this.shown;
     const stale =

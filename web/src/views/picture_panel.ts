@@ -1,4 +1,4 @@
-// Panels that show the pictures of a stream; here that of what the estimators draw.
+// Panels that show the pictures of a stream; here the debug images of the estimators.
 import type { Playback } from '../protocol/messages';
 import { rateText } from '../store/picture_rates';
 import type { State, Topic } from '../store/state';
@@ -45,7 +45,7 @@ export abstract class PicturePanel implements View {
   protected abstract emptyText(state: State): string;
 }
 
-/** What one of the estimators draws. */
+/** The debug image of one of the estimators. */
 export class DebugPanel extends PicturePanel {
   private readonly chooser = h('select', { id: 'debug-of', 'aria-label': 'Estimator' });
   private selected: string | null = null;
@@ -95,7 +95,7 @@ export class DebugPanel extends PicturePanel {
   }
 }
 
-/** The playback while it does not move; null while it does. */
+/** The playback while it is paused or stopped; null while it moves. */
 export function standingStill({ playback }: State): Playback | null {
   return playback === null || playback.playing ? null : playback;
 }
@@ -108,7 +108,7 @@ export function waitingText(state: State): string {
   if (state.runId === null) return 'Choose a run, or launch one.';
   if (state.run?.status === 'queued') return 'The run waits for its turn.';
   if (state.run?.status === 'failed') return 'The run failed.';
-  // The first flight over a world has to make it.
+  // The first flight over a world has to make the world.
   if (state.run !== null && state.run.notice !== null) return sentence(state.run.notice);
   return 'Waiting for the first picture';
 }

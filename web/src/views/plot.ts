@@ -1,4 +1,4 @@
-// One plot of curves over time, with a playback cursor. A click or drag seeks.
+// One plot of curves over time with a playback cursor. A click or drag seeks.
 import uPlot from 'uplot';
 import { h, perFrame, setText } from './dom';
 import { formatNumber } from '../store/format';
@@ -6,32 +6,32 @@ import type { Span } from '../store/time_window';
 import { paddedRange } from './plot_range';
 
 export interface PlotOptions {
-  /** Names the plot in the page. */
+  /** Identifies the plot in the page. */
   key: string;
   label: string;
   unit: string;
-  /** Of the values beside the title. */
+  /** Digits of the values next to the title. */
   digits: number;
-  /** The axis spans at least so much, so that noise does not fill the plot. */
+  /** Minimum span of the axis, so that noise does not fill the plot. */
   least: number;
-  /** Of each curve; the first lies below the others and is wider. */
+  /** One for each curve; the first curve is wider and lies below the others. */
   colours: readonly string[];
   /** Whether the time axis has numbers. */
   timeLabels: boolean;
-  /** Tells where the mouse is: one plot of a group speaks for all. */
+  /** Reports the mouse position for its group of plots. */
   leads: boolean;
-  /** A value below which something is wrong: a dashed line. */
+  /** Lower limit of good values, drawn as a dashed line. */
   limit?: number;
   onSeek: (t_s: number) => void;
   onHover: (index: number | null) => void;
-  /** Above 1 shows more; 0 shows all. */
+  /** A factor above 1 zooms in; 0 shows all. */
   onZoom: (centre_s: number, factor: number) => void;
 }
 
 const kGrid = 'rgba(140, 155, 180, 0.11)';
 const kText = '#8a94a6';
 const kFont = '10px system-ui, sans-serif';
-// The truth lies below the estimates: it stays visible where they agree.
+// The truth lies below the estimates and stays visible where they agree.
 const kTruthWidth_px = 3;
 const kEstimateWidth_px = 1.25;
 const kZoom_per_px = 0.0015;
@@ -40,7 +40,7 @@ const kLimitColour = '#eab766';
 
 export type Curve = ArrayLike<number | null>;
 
-/** Three values begin at the edge, more take rows of their own, as many as they need: none is cut. */
+/** Up to three values start at the edge; more use separate rows, so that none is cut off. */
 function crowding(curves: number): string {
   if (curves <= 2) return '';
   return curves === 3 ? ' crowded' : ' own-rows';
@@ -74,10 +74,10 @@ export class Plot {
     new ResizeObserver(() => this.fit()).observe(this.area);
   }
 
-  /** @param curves  one a colour */
+  /** @param curves  one per colour */
   setData(t_s: Float64Array, curves: Curve[], span_s: Span): void {
     this.span_s = span_s;
-    // uPlot reads the series by index only; its type asks for one kind of array.
+    // uPlot reads the series only by index; its type requires one kind of array.
     this.plot.setData([t_s, ...curves] as unknown as uPlot.AlignedData, true);
   }
 
@@ -86,7 +86,7 @@ export class Plot {
     this.placeCursor(this.plot);
   }
 
-  /** Values beside the title, one a curve. */
+  /** Values next to the title, one per curve. */
   showValues(values: (number | null | undefined)[]): void {
     const { digits } = this.options;
     this.readouts.forEach((readout, i) => setText(readout, formatNumber(values[i], digits)));
@@ -184,7 +184,7 @@ export class Plot {
         })),
       ],
       hooks: {
-        // Only now the scales are those of the data.
+        // The scales match the data only now.
         draw: [(plot: uPlot) => this.placeCursor(plot), (plot: uPlot) => this.drawLimit(plot)],
         setCursor: [
           (plot: uPlot) => {

@@ -1,4 +1,4 @@
-// The two groups of plots: the pose with its estimates, and the camera's image.
+// The two groups of plots: poses of truth and estimates, and properties of the camera's image.
 import { kTextureLimit } from '../store/error_table';
 import { wrapDegrees } from '../store/format';
 import type { Axis, ImageColumn } from '../store/run_data';

@@ -1,5 +1,5 @@
-// Plots over time, drawn at most 15 times a second: the pose, or the camera's image; or, in their
-// place, how the estimators fare.
+// Plots over time, drawn at most 15 times a second: the pose or the camera's image; or instead the
+// status of the estimators.
 import { needsAttention } from '../store/estimator_status';
 import { formatTime } from '../store/format';
 import { lastAtOrBefore } from '../store/table';
@@ -43,7 +43,7 @@ export class PlotsPanel implements View {
   private drawn_ms = -Infinity;
   private timer = 0;
   private hovered: number | null = null;
-  /** What the viewer zoomed to; null = the whole flight. */
+  /** The part zoomed to; null = the whole flight. */
   private window_s: Span | null = null;
 
   constructor(private readonly context: Context) {
@@ -96,7 +96,7 @@ export class PlotsPanel implements View {
     this.drawSoon();
   }
 
-  /** Keeps the cursor in the window when it moves. */
+  /** Keeps the cursor inside the window. */
   private followCursor(): void {
     const { playback } = this.context.store.state;
     if (this.window_s === null || playback === null) return;
@@ -106,7 +106,7 @@ export class PlotsPanel implements View {
     this.drawSoon();
   }
 
-  /** Equal as long as the plots need not be made anew. */
+  /** Unchanged as long as the plots need not be rebuilt. */
   private wantedKey(): string {
     const { state } = this.context.store;
     const names = state.run?.estimators ?? [];
@@ -182,7 +182,7 @@ export class PlotsPanel implements View {
     for (const strip of this.strips) strip.showCursor(state, row);
   }
 
-  /** Values under the mouse in place of those at the cursor. */
+  /** Shows values under the mouse in place of those at the cursor. */
   private hover(row: number | null): void {
     this.hovered = row;
     const { state } = this.context.store;

@@ -16,7 +16,7 @@ export class RunList implements View {
   readonly root: HTMLElement;
   private readonly panel: Panel;
   private readonly list = h('ul', { class: 'runs' });
-  /** The run whose deletion the viewer was asked to confirm. */
+  /** The run whose deletion awaits confirmation. */
   private confirming: string | null = null;
 
   constructor(private readonly context: Context) {

@@ -1,4 +1,4 @@
-// The scenario's sections (camera, faults, light, ...) edited as JSON, checked as they are typed.
+// Edits the scenario's sections (camera, faults, light, ...) as JSON, with checks while typing.
 import type { JsonObject } from '../protocol/rest_types';
 import {
   fieldNotes,
@@ -27,7 +27,7 @@ export class ScenarioEditor implements View {
 
   constructor(private readonly context: Context) {
     this.text.addEventListener('input', () => this.edit(this.text.value));
-    // A click beside the dialog must not lose what was typed: it is kept as it is, and closed.
+    // A click outside the dialog closes it and keeps the text.
     this.root = h(
       'div',
       {

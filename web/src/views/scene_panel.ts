@@ -1,4 +1,4 @@
-// The 3D view: drawn by the server, steered here. Drag turns, the wheel zooms.
+// The 3D view, drawn by the server and controlled here. Dragging turns the view, the wheel zooms.
 import type { SceneMode } from '../protocol/messages';
 import { rateText } from '../store/picture_rates';
 import { shownAlignment } from '../store/state';
@@ -137,7 +137,7 @@ export class ScenePanel implements View {
     );
   }
 
-  /** Asks for pictures of the panel's size, once it stays. */
+  /** Requests pictures of the panel's size once the size is stable. */
   private observeSize(area: HTMLElement): void {
     let timer = 0;
     let asked = '';

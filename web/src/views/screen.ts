@@ -1,4 +1,4 @@
-// Everything in its place.
+// The layout of the screen.
 import { CameraPanel } from './camera_panel';
 import { ErrorPanel } from './error_panel';
 import { h } from './dom';
@@ -33,7 +33,7 @@ const kEverything = new Set([
   'help',
 ] as const);
 
-/** Builds the screen and redraws what changed, once a frame at most. */
+/** Builds the screen and redraws changed parts, at most once per frame. */
 export function showScreen(context: Context, place: HTMLElement): void {
   const header = new HeaderBar(context);
   const left = [new Launcher(context), new RunList(context), new LogPanel(context)];

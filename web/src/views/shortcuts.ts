@@ -1,8 +1,8 @@
-// Keys that work wherever no text is being typed.
+// Keyboard shortcuts, active unless text is being typed.
 import type { Context } from './view';
 
 interface Shortcut {
-  /** KeyboardEvent.key values, lower case; "shift+" before one asks for the shift key. */
+  /** KeyboardEvent.key values, lower case; "shift+" means that the shift key is held. */
   keys: readonly string[];
   label: string;
   what: string;
@@ -97,14 +97,14 @@ export function listenToKeys(context: Context): void {
   leaveAfterMouse();
 }
 
-/** Whether what has the focus needs the key itself. */
+/** Whether the focused element needs the key itself. */
 function wantsKey({ target, key }: KeyboardEvent): boolean {
   if (target instanceof HTMLSelectElement || target instanceof HTMLTextAreaElement) return true;
   if (target instanceof HTMLInputElement && target.type !== 'checkbox') return true;
   return key === ' ' && (target instanceof HTMLButtonElement || target instanceof HTMLInputElement);
 }
 
-/** What was used with the mouse gives the focus back, so that the shortcuts work again. */
+/** A control used with the mouse loses the focus, so that the shortcuts work again. */
 function leaveAfterMouse(): void {
   let mouse = false;
   document.addEventListener('pointerdown', () => (mouse = true), true);

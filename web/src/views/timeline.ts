@@ -1,4 +1,4 @@
-// Playback: buttons, the time line, speed.
+// Playback controls: buttons, timeline, speed.
 import type { Topic } from '../store/state';
 import { formatTime } from '../store/format';
 import { kSpeeds } from '../store/player';

@@ -1,4 +1,4 @@
-// The bar of the time line: what is recorded, how each estimator fared, where the cursor is.
+// The bar of the timeline: the recorded span, the estimators' states, the cursor.
 import { formatTime } from '../store/format';
 import type { EstimateRows } from '../store/run_data';
 import type { Topic } from '../store/state';
@@ -9,7 +9,7 @@ import { h, perFrame, rebuild, setAttribute, setText } from './dom';
 import type { Context } from './view';
 
 const kStripHeight_px = 4;
-/** A fault of one frame is still to be seen. */
+/** Minimum width, so that a fault of one frame stays visible. */
 const kLeastFault_px = 2;
 const kMostFaults = 4;
 
@@ -24,7 +24,7 @@ export class TimelineTrack {
   private readonly bar: HTMLElement;
   private spans = new FaultSpans();
   private spansOf = '';
-  /** Where the mouse holds the head, until the server says it is there. */
+  /** Position dragged to by the mouse, until the server confirms it. */
   private held_ns: number | null = null;
 
   constructor(private readonly context: Context) {
@@ -91,7 +91,7 @@ export class TimelineTrack {
     });
   }
 
-  /** Runs of the same state become one rectangle. */
+  /** Consecutive rows of the same state become one rectangle. */
   private drawStrip(
     pen: CanvasRenderingContext2D,
     rows: EstimateRows,
@@ -112,7 +112,7 @@ export class TimelineTrack {
     }
   }
 
-  /** One lane for all: where several are in force, the later kinds are drawn below. */
+  /** One lane for all faults; if several are active, the later kinds are drawn below. */
   private drawFaults(): void {
     const { runId, data } = this.context.store.state;
     const key = `${String(runId)}/${data.generation}`;
@@ -150,7 +150,7 @@ export class TimelineTrack {
     }
   }
 
-  /** What the tip says of the faults at a time. */
+  /** The tooltip's text about the faults at a time. */
   private faultText(t_ns: number): string {
     const slack_ns = (kLeastFault_px / this.bar.clientWidth) * this.span_ns();
     const here = this.spans.spans.filter(

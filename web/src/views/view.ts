@@ -1,4 +1,4 @@
-// What every part of the screen is.
+// The interface of every part of the screen.
 import type { Alignment } from '../store/alignment';
 import type { Cameras } from '../store/cameras';
 import type { Store, Topic } from '../store/state';
@@ -11,7 +11,7 @@ import type { StreamClient } from '../connection/stream_client';
 
 export interface View {
   readonly root: HTMLElement;
-  /** Draws the store's state anew where these topics matter. */
+  /** Redraws if one of the changed topics matters to this view. */
   update(changed: ReadonlySet<Topic>): void;
 }
 
