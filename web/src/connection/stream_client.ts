@@ -197,7 +197,7 @@ export class StreamClient {
 
   private onHello(message: ServerMessage & { type: 'hello' }): void {
     if (message.protocol !== kProtocolVersion) {
-      const reason = `the server speaks protocol ${message.protocol}, this page ${kProtocolVersion}: reload it`;
+      const reason = `the server uses protocol ${message.protocol}, this page ${kProtocolVersion}: reload the page`;
       this.options.listener.onState({ status: 'incompatible', reason });
       this.drop();
       return;

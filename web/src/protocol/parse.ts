@@ -23,7 +23,7 @@ export function parseServerMessage(text: string): ServerMessage | null {
   } catch {
     throw new ParseError('message is not JSON');
   }
-  if (typeof value !== 'object' || value === null) throw new ParseError('message is no object');
+  if (typeof value !== 'object' || value === null) throw new ParseError('message is not an object');
   const message = value as Record<string, unknown>;
   const type = message['type'];
   if (typeof type !== 'string') throw new ParseError('message has no type');

@@ -95,7 +95,7 @@ export function errorTable(
         key: 'coverage',
         label: 'Coverage',
         unit: '',
-        hint: 'Tracked frames / all frames of the flight, dropped and late ones too',
+        hint: 'Tracked frames / all frames of the flight, including dropped and late ones',
         cells: estimators.map(({ coverage }) => formatPercent(coverage)),
         cellHints: [],
       },

@@ -20,10 +20,14 @@ export interface StatusRow {
 export const kStatusColumns: readonly { key: string; label: string; hint: string }[] = [
   { key: 'answered', label: 'Answers', hint: 'Frames that it has answered' },
   { key: 'dropped', label: 'Dropped', hint: 'Frames that came while it was busy' },
-  { key: 'unanswered', label: 'Late', hint: 'Frames taken whose pose did not come back in time' },
+  { key: 'unanswered', label: 'Late', hint: 'Frames taken whose pose was not returned in time' },
   { key: 'latency', label: 'Latency ms', hint: 'From a frame to its answer: median / 99 %' },
   { key: 'cpu', label: 'CPU %', hint: 'Of one processor' },
-  { key: 'memory', label: 'Peak MB', hint: 'Of its own process, or what a native estimator holds' },
+  {
+    key: 'memory',
+    label: 'Peak MB',
+    hint: 'Of its own process, or as reported by a native estimator',
+  },
   { key: 'hashes', label: 'Image hash', hint: 'Images that arrived just as they were sent' },
 ];
 
@@ -34,7 +38,7 @@ const kCpuHints: Readonly<Record<EstimatorUse['measured'], string>> = {
 };
 const kMemoryHints: Readonly<Record<EstimatorUse['measured'], string>> = {
   process: 'Of its own process',
-  own_account: "Its map's images, points and sights at their most, in the server's memory",
+  own_account: "Peak size of its map's images, points and observations, in the server's memory",
   calling_thread: "It shares the server's memory",
 };
 
@@ -119,7 +123,7 @@ function hashCell({
 }: EstimatorStatus): Omit<StatusCell, 'column'> {
   const hint =
     hashes_compared === 0
-      ? 'It does not tell what arrived'
+      ? 'It does not report which images arrived'
       : `${hashes_compared} images compared, ${hash_mismatches} differ`;
   if (hashes_compared === 0) return { text: kNothing, hint, bad: false };
   if (hash_mismatches === 0) return { text: 'equal', hint, bad: false };

@@ -25,7 +25,7 @@ const kMeanings: Readonly<Record<string, FaultMeaning>> = {
   frozen_frame: {
     label: 'Frozen frame',
     mark: 'Image frozen',
-    hint: 'the last image again and again, with new time stamps',
+    hint: 'the last image repeated, with new time stamps',
   },
   blackout: { label: 'Blackout', mark: 'Blackout', hint: 'no light reaches the sensor' },
   saturation_burst: {
@@ -38,12 +38,12 @@ const kMeanings: Readonly<Record<string, FaultMeaning>> = {
   stamp_jitter: {
     label: 'Stamp jitter',
     mark: null,
-    hint: 'the time stamps that the estimators are told scatter',
+    hint: 'random errors in the time stamps given to the estimators',
   },
   stamp_offset: {
     label: 'Stamp offset',
     mark: null,
-    hint: 'the time stamps that the estimators are told are off by a constant',
+    hint: 'a constant error in the time stamps given to the estimators',
   },
 };
 

@@ -44,7 +44,7 @@ function figuresOf({ truth }: RunData, row: number): FrameFigure[] {
       key: 'exposure',
       label: 'Exposure',
       text: withUnit(formatNumber(exposure_ms, 3), 'ms'),
-      hint: 'Exposure time; none = the image is taken in an instant',
+      hint: 'Exposure time; none = instantaneous',
       warn: false,
     },
     {
@@ -72,7 +72,7 @@ function figuresOf({ truth }: RunData, row: number): FrameFigure[] {
       key: 'late',
       label: 'Late tiles',
       text: formatNumber(Number.isNaN(late) ? 0 : late, 0),
-      hint: 'Drawn from coarser ones, since they were not loaded in time',
+      hint: 'Not loaded in time and drawn from a coarser level',
       warn: late > 0,
     },
   ];
@@ -81,7 +81,7 @@ function figuresOf({ truth }: RunData, row: number): FrameFigure[] {
       key: 'stamp',
       label: 'Stamp',
       text: withUnit((offset_ms > 0 ? '+' : '') + formatNumber(offset_ms, 3), 'ms'),
-      hint: 'Time stamp that the estimators were told, less the true one',
+      hint: 'Time stamp given to the estimators minus the true one',
       warn: true,
     });
   }

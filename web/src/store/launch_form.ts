@@ -62,7 +62,7 @@ export const kFields: readonly FieldSpec[] = [
     unit: '',
     kind: 'number',
     step: 1,
-    hint: 'Of everything random but the world',
+    hint: 'Seed of all random effects except the world',
   },
   {
     path: 'world.builtin.seed',
@@ -71,7 +71,7 @@ export const kFields: readonly FieldSpec[] = [
     kind: 'number',
     step: 1,
     needs: 'world.builtin',
-    hint: 'Of the built-in landscape',
+    hint: 'Seed of the built-in landscape',
   },
   {
     path: 'duration_s',
@@ -80,14 +80,14 @@ export const kFields: readonly FieldSpec[] = [
     kind: 'number',
     step: 5,
     optional: true,
-    hint: 'Stops the flight early; empty flies all of it',
+    hint: 'Ends the flight early; empty = the whole flight',
   },
   {
     path: 'pacing',
     label: 'Pacing',
     unit: '',
     kind: 'choice',
-    hint: 'Lockstep waits for the estimators, real time drops frames',
+    hint: 'Lockstep waits for the estimators; real time drops frames',
     choices: [
       { value: 'lockstep', label: 'Lockstep' },
       { value: 'real_time', label: 'Real time' },

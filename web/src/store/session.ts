@@ -135,7 +135,7 @@ export class Session implements StreamListener {
   }
 
   onFault(text: string): void {
-    this.notices.error(`The server sent something unreadable: ${text}`);
+    this.notices.error(`The server sent an invalid message: ${text}`);
   }
 
   resume(): Resume {

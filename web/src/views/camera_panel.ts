@@ -73,7 +73,8 @@ export class CameraPanel extends PicturePanel {
     );
     const key = JSON.stringify([info?.figures, other, state.runId === null]);
     rebuild(this.figures, key, () => {
-      if (other) return [h('span', { class: 'note' }, `Figures are recorded of ${first ?? ''}`)];
+      if (other)
+        return [h('span', { class: 'note' }, `Values are recorded only for ${first ?? ''}`)];
       return figureList(info);
     });
   }

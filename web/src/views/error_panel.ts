@@ -56,8 +56,8 @@ export class ErrorPanel implements View {
     this.alignment.disabled = modes.length === 0;
     const drawn = canBeDrawn(state.metrics, state.alignment);
     this.alignment.title = drawn
-      ? 'Of the errors, the plots and the 3D view'
-      : 'Of the errors only: this run does not say where its estimates lie by this alignment';
+      ? 'Alignment of the errors, the plots and the 3D view'
+      : 'Alignment of the errors only: this run does not contain its transform';
   }
 
   private draw(state: State): void {
@@ -125,7 +125,7 @@ function outcomeRow(table: ErrorTable, scored: boolean): HTMLElement {
     key: 'outcome',
     label: 'Outcome',
     unit: '',
-    hint: 'Of the whole flight. INIT_LATE: it started later than 10 s or a tenth of the flight',
+    hint: 'For the whole flight. INIT_LATE: tracking started later than 10 s or a tenth of the flight',
   };
   return tableRow(
     row,
@@ -169,6 +169,6 @@ function tableRow(row: Omit<ErrorRow, 'cells' | 'cellHints'>, cells: HTMLElement
 
 function emptyText(state: State): string | null {
   if (state.runId === null) return 'Errors of the estimates appear here.';
-  if (state.run?.estimators.length === 0) return 'This flight has no estimator.';
+  if (state.run?.estimators.length === 0) return 'This flight has no estimators.';
   return null;
 }

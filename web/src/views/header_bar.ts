@@ -115,15 +115,15 @@ export class HeaderBar implements View {
         }
       case 'locked': {
         this.connection.title =
-          'The server takes no longer what this browser has: it was started anew, or the cookie ' +
-          'is gone. Click to load the page again and give the token that the server printed.';
-        setText(this.connection, 'Session over · click to give the token');
+          'The server no longer accepts the token of this browser: the server was restarted, or the cookie ' +
+          'is gone. Click to reload the page and enter the token that the server printed.';
+        setText(this.connection, 'Session over · click to enter the token');
         return;
       }
       case 'waiting':
         this.connection.title = `${connection.reason ?? 'Connection lost'}. Click to try again now.`;
         {
-          const what = connection.reason === undefined ? 'Connection lost' : 'Not let in';
+          const what = connection.reason === undefined ? 'Connection lost' : 'Rejected';
           this.countDown(what, connection.delay_ms);
           return;
         }

@@ -19,7 +19,7 @@ export class HelpOverlay implements View {
     const mouse = [
       ['Drag in 3D', 'turn the view'],
       ['Wheel in 3D', 'zoom'],
-      ['Double-click in 3D', 'follow the aircraft or not'],
+      ['Double-click in 3D', 'toggle following the aircraft'],
       ['Click or drag in a plot', 'seek'],
       ['Wheel in a plot', 'zoom in time'],
       ['Double-click in a plot', 'show the whole flight'],

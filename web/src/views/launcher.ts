@@ -27,7 +27,7 @@ export class Launcher implements View {
       class: 'secondary',
       type: 'button',
       'data-role': 'edit-json',
-      title: 'Camera, lens, sensor, faults, light and everything else of the scenario',
+      title: 'All settings of the scenario: camera, lens, sensor, faults, light, ...',
     },
     kEditLabel,
   );
@@ -92,7 +92,8 @@ export class Launcher implements View {
     if (scenarioName !== null) this.picker.value = scenarioName;
     this.picker.disabled = scenarios === null || scenarios.length === 0;
     const entry = scenarios?.find(({ name }) => name === scenarioName);
-    const empty = scenarios?.length === 0 ? 'The server has no scenario.' : 'Reading the scenarios';
+    const empty =
+      scenarios?.length === 0 ? 'The server has no scenarios.' : 'Reading the scenarios';
     setText(this.description, entry?.description ?? empty);
     this.description.title = entry?.description ?? '';
   }

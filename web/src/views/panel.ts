@@ -15,8 +15,7 @@ export interface Panel {
   showEmpty(text: string | null): void;
 }
 
-const kRateHint =
-  'Pictures a second, and as many as were asked for: the flight in real time comes first';
+const kRateHint = 'Pictures per second, actual / requested: the real-time flight has priority';
 
 /** Frame at the cursor; null before the first one. */
 export function frameOf(playback: Playback | null): number | null {

@@ -71,7 +71,7 @@ export class DebugPanel extends PicturePanel {
 
   protected override emptyText(state: State): string {
     if (state.run !== null && state.run.estimators.length === 0) {
-      return 'This flight has no estimator.';
+      return 'This flight has no estimators.';
     }
     const recorded = state.run !== null && state.playback !== null && !state.playback.live;
     return recorded ? 'No debug image at this instant.' : waitingText(state);
@@ -106,7 +106,7 @@ function sentence(text: string): string {
 
 export function waitingText(state: State): string {
   if (state.runId === null) return 'Choose a run, or launch one.';
-  if (state.run?.status === 'queued') return 'The run waits for its turn.';
+  if (state.run?.status === 'queued') return 'The run is queued.';
   if (state.run?.status === 'failed') return 'The run failed.';
   // The first flight over a world has to make the world.
   if (state.run !== null && state.run.notice !== null) return sentence(state.run.notice);

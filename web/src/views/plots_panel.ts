@@ -33,7 +33,7 @@ export class PlotsPanel implements View {
   private readonly alignment = h('span', {
     class: 'alignment-note',
     'data-role': 'alignment',
-    title: 'How the estimates are laid onto the truth (chosen above the errors)',
+    title: 'Alignment of the estimates to the truth (selected above the errors)',
   });
   private readonly hoverTime = h('span', { class: 'hover-time' });
   private group: Group = 'pose';

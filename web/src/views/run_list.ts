@@ -43,7 +43,7 @@ export class RunList implements View {
     const detail = [
       formatDate(run.created_utc),
       length,
-      run.estimators.join(', ') || 'no estimator',
+      run.estimators.join(', ') || 'no estimators',
     ];
     return h(
       'li',
@@ -102,7 +102,7 @@ export class RunList implements View {
       'button',
       {
         class: 'icon-button',
-        title: 'Stop this run; what was flown stays',
+        title: 'Stop this run; its data so far is kept',
         'aria-label': 'Stop this run',
         onclick: () => void this.context.catalogue.cancel(run.id),
       },

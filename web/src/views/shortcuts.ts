@@ -24,7 +24,12 @@ export const kShortcuts: readonly Shortcut[] = [
     what: 'one frame back',
     run: ({ player }) => player.step(-1),
   },
-  { keys: ['arrowright'], label: '→', what: 'one frame on', run: ({ player }) => player.step(1) },
+  {
+    keys: ['arrowright'],
+    label: '→',
+    what: 'one frame forward',
+    run: ({ player }) => player.step(1),
+  },
   {
     keys: ['shift+arrowleft'],
     label: 'Shift ←',
@@ -34,13 +39,13 @@ export const kShortcuts: readonly Shortcut[] = [
   {
     keys: ['shift+arrowright'],
     label: 'Shift →',
-    what: 'one second on',
+    what: 'one second forward',
     run: ({ player }) => player.seekBy(kSecond_ns),
   },
   {
     keys: ['home'],
     label: 'Home',
-    what: 'to the begin',
+    what: 'to the start',
     run: ({ player }) => player.seekEdge('begin'),
   },
   {
@@ -72,10 +77,15 @@ export const kShortcuts: readonly Shortcut[] = [
   {
     keys: ['f'],
     label: 'F',
-    what: 'follow the aircraft or not',
+    what: 'toggle following the aircraft',
     run: ({ scene }) => scene.toggleFollow(),
   },
-  { keys: ['l'], label: 'L', what: 'live', run: ({ player }) => player.goLive() },
+  {
+    keys: ['l'],
+    label: 'L',
+    what: 'follow the running flight',
+    run: ({ player }) => player.goLive(),
+  },
   { keys: ['?', 'shift+?'], label: '?', what: 'this help', run: ({ store }) => toggleHelp(store) },
   {
     keys: ['escape'],

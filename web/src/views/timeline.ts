@@ -33,7 +33,7 @@ export class Timeline implements View {
     this.play.classList.add('play');
     this.play.append(this.pauseIcon);
     this.play.replaceChildren(this.playIcon, this.pauseIcon);
-    this.loop = iconButton('loop', 'Start again at the end', () => player.toggleLoop());
+    this.loop = iconButton('loop', 'Repeat from the start', () => player.toggleLoop());
     this.live = h(
       'button',
       {
@@ -52,10 +52,10 @@ export class Timeline implements View {
       h(
         'div',
         { class: 'transport' },
-        iconButton('toBegin', 'To the begin (Home)', () => player.seekEdge('begin')),
+        iconButton('toBegin', 'To the start (Home)', () => player.seekEdge('begin')),
         iconButton('stepBack', 'One frame back (←)', () => player.step(-1)),
         this.play,
-        iconButton('stepForward', 'One frame on (→)', () => player.step(1)),
+        iconButton('stepForward', 'One frame forward (→)', () => player.step(1)),
         iconButton('toEnd', 'To the end (End)', () => player.seekEdge('end')),
       ),
       h('div', { class: 'clock' }, h('div', {}, this.time, this.end), this.frame),
