@@ -1,4 +1,4 @@
-// Inside terrain only: how the caller ends long work.
+// Inside terrain only: cancellation of long operations.
 #pragma once
 
 #include <filesystem>
@@ -8,7 +8,7 @@
 
 namespace overfly::terrain {
 
-/// Asked between parts of the work; true ends it. May be empty.
+/// Polled between parts of the work; returning true cancels it. May be empty.
 using Cancelled = std::function<bool()>;
 
 /// Errors: kCancelled naming the file.
@@ -17,7 +17,7 @@ using Cancelled = std::function<bool()>;
   return Error{ErrorCode::kCancelled, file.string() + ": reading it was cancelled"};
 }
 
-/// How many blocks of a file are looked at, without being read, between two questions.
+/// Number of a file's blocks examined, without reading them, between two polls.
 inline constexpr int kBlocksAtOnce = 4096;
 
 }  // namespace overfly::terrain

@@ -1,17 +1,17 @@
-// Inside terrain only: where clouds take the sun's light.
+// Inside terrain only: the attenuation of sunlight by clouds.
 #pragma once
 
 #include "terrain/light.hpp"
 
 namespace overfly::terrain {
 
-/// Fractal noise (octaves of half the size and half the strength) over a threshold that is set so
-/// that the mean over the ground is the cover that was asked.
+/// Fractal noise (each octave has half the size and half the strength) above a threshold, which is
+/// chosen so that the mean over the ground equals the requested cover.
 class CloudField {
  public:
   explicit CloudField(const CloudOptions& options);
 
-  /// Share of the direct light that is left at a place of the map, in [1 - strength, 1].
+  /// Fraction of the direct light that remains at a place of the map, in [1 - strength, 1].
   [[nodiscard]] double transmission(double x_map_m, double y_map_m) const;
 
  private:

@@ -1,4 +1,4 @@
-// Inside terrain only: how well a coordinate reference system's datum is related to WGS84 here.
+// Inside terrain only: accuracy of the relation between a CRS's datum and WGS84 on this machine.
 #pragma once
 
 #include <optional>
@@ -8,8 +8,9 @@
 
 namespace overfly::terrain {
 
-/// A warning when the best relation that PROJ can use at a place (x, y in the CRS) is worse than
-/// 5 m, or a mere guess, for want of a grid. (NAD83 and WGS84 are within 4 m by definition.)
+/// A warning if the best relation available to PROJ at a place (x, y in the CRS) is worse than 5 m
+/// or only approximate, because a grid is missing. (NAD83 and WGS84 agree within 4 m by
+/// definition.)
 [[nodiscard]] std::optional<std::string> datum_shift_doubt(const OGRSpatialReference& crs,
                                                            double x,
                                                            double y,

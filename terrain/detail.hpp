@@ -1,8 +1,8 @@
-// Detail that no survey saw: synthetic texels finer than the imagery, for low flights.
+// Synthetic detail: texels finer than the imagery, for low flights.
 //
-// This is not the ground. It gives an estimator something to hold on to where the imagery's texels
-// are larger than the camera's pixels, with statistics that continue those of the imagery; it
-// belongs into the record of every run that uses it.
+// This is not the real ground. It gives an estimator texture where the imagery's texels are larger
+// than the camera's pixels, with statistics that continue those of the imagery. Every run that uses
+// it must record that.
 #pragma once
 
 #include <cstdint>
@@ -15,25 +15,26 @@
 namespace overfly::terrain {
 
 struct DetailOptions {
-  int octaves = 2;         ///< each halves the texel, in [1, 4]
-  double strength = 1.0;   ///< amplitude over what the imagery's spectrum continues to, in [0, 2]
-  std::uint64_t seed = 1;  ///< another seed, other detail
+  int octaves = 2;  ///< each halves the texel, in [1, 4]
+  /// Amplitude relative to the continued spectrum of the imagery, in [0, 2]
+  double strength = 1.0;
+  std::uint64_t seed = 1;  ///< another seed gives other detail
 
   /// Errors: kInvalidArgument naming field, value and limit.
   [[nodiscard]] Status validate() const;
 };
 
-/// What the imagery's finest bands look like: wavelet details of luma, see `with_detail`.
+/// Statistics of the imagery's finest bands: wavelet details of luma, see `with_detail`.
 struct DetailStatistics {
   /// Mean squares of the details of blocks of 2 x 2 texels [grey levels^2]: across (east-west),
   /// down, diagonal.
   double band_energy[3] = {0.0, 0.0, 0.0};
-  /// Amplitude of a band over that of the band one octave coarser, over the finest three.
+  /// Ratio of a band's amplitude to that of the band one octave coarser, over the finest three.
   double decay = 0.5;
-  /// Root of band_energy over what the local contrast, as the synthesis measures it, foretells.
+  /// Root of band_energy divided by the value predicted from the local contrast.
   double contrast_gain = 1.0;
-  int tiles = 0;  ///< that were measured
-  /// Exponent of the power spectrum per area that `decay` stands for: power ~ frequency^slope.
+  int tiles = 0;  ///< number of measured tiles
+  /// Exponent of the power spectrum per area that corresponds to `decay`: power ~ frequency^slope.
   [[nodiscard]] double spectrum_slope() const;
 };
 
@@ -41,16 +42,17 @@ struct DetailStatistics {
 [[nodiscard]] Result<DetailStatistics> measure_detail(const TileSource& tiles);
 
 /// The same tiles with `octaves` finer levels below: level n of the result is level n - octaves of
-/// `tiles`, texel for texel, and the finer levels average to it within 1 grey level. The amplitude
-/// at each place follows the imagery's own contrast there, its decay from octave to octave that of
+/// `tiles`, texel for texel, and the finer levels average to it within 1 grey level. The local
+/// amplitude follows the local contrast of the imagery; the decay from octave to octave is that of
 /// the whole imagery. real_texel_m() stays that of the imagery.
 ///
-/// Method: one step of the inverse biorthogonal wavelet transform CDF(1,3) an octave (Cohen,
-/// Daubechies, Feauveau 1992, doi:10.1002/cpa.3160450502): its low pass keeps the mean of every
-/// block; its details are drawn from a Laplace distribution, as those of photographs are (Mallat
-/// 1989, doi:10.1109/34.192463, sec. IV), scaled by the mean of their absolute values nearby.
-/// Deterministic: a texel depends on its place, the imagery around it and the seed. Thread-safe.
-/// Errors: kInvalidArgument as `validate`; kIo when the imagery cannot be read.
+/// Method: one step of the inverse biorthogonal wavelet transform CDF(1,3) per octave (Cohen,
+/// Daubechies, Feauveau 1992, doi:10.1002/cpa.3160450502). Its low pass keeps the mean of every
+/// block. Its details are drawn from a Laplace distribution, as those of photographs are
+/// distributed (Mallat 1989, doi:10.1109/34.192463, sec. IV), scaled by the mean of their absolute
+/// values nearby. Deterministic: a texel depends on its place, the imagery around it and the seed.
+/// Thread-safe.
+/// Errors: kInvalidArgument as `validate`; kIo if the imagery cannot be read.
 [[nodiscard]] Result<std::shared_ptr<const TileSource>> with_detail(
     std::shared_ptr<const TileSource> tiles, const DetailOptions& options);
 

@@ -1,4 +1,4 @@
-// Inside terrain only: one tile's texels made finer.
+// Inside terrain only: synthesises the finer texels of one tile.
 #pragma once
 
 #include <array>
@@ -12,8 +12,8 @@ class DetailSynthesis {
   DetailSynthesis(const DetailOptions& options, const DetailStatistics& statistics);
 
   /// The tile `finer` octaves below level 0 of the imagery.
-  /// @param parent    the imagery's tile of level 0 that holds it
-  /// @param col, row  of the finer tile, in tiles of its own size from the grid's corner
+  /// @param parent  the imagery's tile of level 0 that contains it
+  /// @param col,  row  of the finer tile, in tiles of its own size from the grid's corner
   [[nodiscard]] Tile tile(const Tile& parent, int finer, int col, int row) const;
 
  private:
@@ -24,7 +24,7 @@ class DetailSynthesis {
     int y = 0;
     ImageBuffer<float> rgb;       ///< three channels
     ImageBuffer<float> contrast;  ///< of the imagery there
-    Image valid;                  ///< 0 where there is no imagery
+    Image valid;                  ///< 0 if there is no imagery
     bool all_valid = true;
 
     Region(int left, int top, int width, int height)
@@ -40,7 +40,7 @@ class DetailSynthesis {
 
   /// The inner part of the parent with its local contrast.
   [[nodiscard]] static Region base_region(const Tile& parent, int finer, int col, int row);
-  /// One octave finer, of the same centre. @param origin  of the finer tile, in coarse texels
+  /// One octave finer, with the same centre. @param origin  of the finer tile, in coarse texels
   [[nodiscard]] Region refined(const Region& coarse,
                                int octave,
                                const std::array<int, 2>& origin,
@@ -48,8 +48,8 @@ class DetailSynthesis {
   [[nodiscard]] Random draw(int x, int y, int octave) const;
   void refine_texel(const Region& coarse, int x, int y, const Random& random, Region& fine) const;
 
-  std::array<float, 1024> laplace_{};  ///< of mean absolute value 1, at evenly spread probabilities
-  std::array<float, 3> amplitude_{};   ///< over the local contrast: across, down, diagonal
+  std::array<float, 1024> laplace_{};  ///< mean absolute value 1, at equally spaced probabilities
+  std::array<float, 3> amplitude_{};   ///< relative to the local contrast: across, down, diagonal
   float decay_ = 0.5F;
   std::uint32_t seed_ = 0;
 };

@@ -1,4 +1,4 @@
-// Public terrain from the web: imagery and elevation of a square, as GeoTIFFs with a manifest.
+// Downloads public terrain: imagery and elevation of a square, as GeoTIFFs with a manifest.
 #pragma once
 
 #include <cstdint>
@@ -21,8 +21,8 @@ struct DownloadOptions {
   double size_m = 4000.0;  ///< side of the square, in [100, 100000]
   std::filesystem::path folder;
   double imagery_m = 0.6;    ///< texel, in [0.05, 100]
-  double elevation_m = 5.0;  ///< distance of posts, in [0.5, 500]
-  /// Elevation reaches this far beyond the imagery, in [0, 50000]: banked cameras look far.
+  double elevation_m = 5.0;  ///< spacing of the posts, in [0.5, 500]
+  /// Margin of elevation beyond the imagery, in [0, 50000], because banked cameras look far.
   double elevation_margin_m = 1000.0;
 
   /// `usgs`, or a template of addresses: tiles of Web Mercator with {z} {x} {y} ({-y} counts from
@@ -33,7 +33,7 @@ struct DownloadOptions {
   int finest_zoom = 19;             ///< of a tile template, in [0, 24]
   /// `usgs` or `none`.
   std::string elevation_source = kUsgsSource;
-  std::optional<double> ground_height_m;  ///< ellipsoidal, where there is no elevation
+  std::optional<double> ground_height_m;  ///< ellipsoidal, used without elevation
 
   /// Image services of The National Map.
   std::string imagery_service =
@@ -41,14 +41,15 @@ struct DownloadOptions {
   std::string elevation_service =
       "https://elevation.nationalmap.gov/arcgis/rest/services/3DEPElevation/ImageServer";
 
-  int chunk_px = 2048;        ///< side of one request, in [64, 8192]; less if the service says so
-  int parallel = 2;           ///< requests at a time, in [1, 8]
-  int attempts = 6;           ///< of one request, in [1, 20]
+  int chunk_px = 2048;  ///< side of one request, in [64, 8192]; smaller if the service requires it
+  int parallel = 2;     ///< simultaneous requests, in [1, 8]
+  int attempts = 6;     ///< of one request, in [1, 20]
   double first_wait_s = 1.0;  ///< before the second attempt; doubles, with jitter, up to 60 s
-  double longest_wait_s = 300.0;  ///< that a service may ask for before the download gives up
-  double stall_s = 60.0;          ///< without data before a request counts as failed, >= 1
-  int most_requests = 20000;      ///< a plan with more is refused: mind the service
-  bool keep_chunks = false;       ///< leave the chunks beside the result
+  /// Longest wait requested by a service; beyond it the download gives up
+  double longest_wait_s = 300.0;
+  double stall_s = 60.0;      ///< without data before a request counts as failed, >= 1
+  int most_requests = 20000;  ///< a larger plan is rejected to protect the service
+  bool keep_chunks = false;   ///< keep the chunks next to the result
 
   /// Errors: kInvalidArgument naming field, value and limit.
   [[nodiscard]] Status validate() const;
@@ -57,7 +58,7 @@ struct DownloadOptions {
 /// One request that a download makes.
 struct DownloadRequest {
   std::string url;
-  std::filesystem::path file;  ///< where its answer goes, below the folder
+  std::filesystem::path file;  ///< file for its answer, relative to the folder
   int width_px = 0;
   int height_px = 0;
 };
@@ -73,35 +74,35 @@ struct DownloadPlan {
     int height_px = 0;
     std::vector<DownloadRequest> requests;
     std::uint64_t transfer_bytes = 0;  ///< estimate
-    std::uint64_t disk_bytes = 0;      ///< estimate, chunks and result together
+    std::uint64_t disk_bytes = 0;      ///< estimate, for chunks and result together
   };
   std::vector<Layer> layers;
   std::vector<std::string> warnings;
 };
 
-/// Asks the services for their limits and lists every request; downloads nothing else.
-/// A service that cannot be asked is taken at its documented limits, with a warning.
-/// Errors: kInvalidArgument as `validate`, or when a template or a place is not usable.
+/// Asks the services for their limits and lists every request; downloads nothing else. If a service
+/// does not answer, its documented limits are used, with a warning.
+/// Errors: kInvalidArgument as `validate`, or if a template or a place is not usable.
 [[nodiscard]] Result<DownloadPlan> plan_download(const DownloadOptions& options);
 
-/// Called on the caller's thread with the done share in [0, 1]; returning false cancels.
+/// Called on the caller's thread with the share done in [0, 1]; returning false cancels.
 using DownloadProgress = std::function<bool(double share, const std::string& doing)>;
 
 struct DownloadReport {
   std::filesystem::path manifest;
   int fetched = 0;   ///< requests answered now
-  int reused = 0;    ///< chunks that an earlier, interrupted download had left
+  int reused = 0;    ///< chunks left by an earlier, interrupted download
   int absent = 0;    ///< tiles that the service does not have
-  int repeated = 0;  ///< attempts beyond each first one
+  int repeated = 0;  ///< attempts after the first one
   std::vector<std::string> warnings;
 };
 
 /// Downloads the square into `folder`: imagery.tif, elevation.tif, world.json and download.json
-/// (what was asked, and where). Chunks are verified (size, type, place, every block read) and kept
-/// until all are there, so that a download that was cut short goes on where it stopped.
+/// (the request and its sources). Chunks are verified (size, type, place, every block read) and
+/// kept until all are complete, so that an interrupted download resumes where it stopped.
 /// Errors: as plan_download; kConflict if the folder holds a download with other options, or
-/// another world; kIo for a full disk or a service that does not answer as it should, naming the
-/// request; kCancelled.
+/// another world; kIo for a full disk or an invalid answer of a service, naming the request;
+/// kCancelled.
 [[nodiscard]] Result<DownloadReport> download_world(const DownloadOptions& options,
                                                     const DownloadProgress& progress = {});
 

@@ -1,23 +1,23 @@
-// How far imagery that was photographed from above is stretched where it is draped over slopes.
+// Stretching of vertically photographed imagery that is draped over slopes.
 #pragma once
 
 #include "terrain/tile_source.hpp"
 
 namespace overfly::terrain {
 
-/// From here on a cliff's texels count as smeared: a slope of 60 deg.
+/// From this stretch on texels count as smeared: a slope of 60 deg.
 inline constexpr double kSmearedStretch = 2.0;
 
-/// Length of the ground along its steepest line over that line's length on the map:
-/// 1 / cos(slope), >= 1.
-/// The slope is that between points a quarter of a texel from the place, at least 0.1 m.
+/// Length of the ground along its steepest line divided by that line's length on the map: 1 /
+/// cos(slope), >= 1. The slope is measured between points a quarter of a texel from the place, at
+/// least 0.1 m.
 [[nodiscard]] double drape_stretch(const TileSource& tiles, double x_map_m, double y_map_m);
 
 /// Stretch of a surface with this normal (any length but zero), world frame.
 [[nodiscard]] double drape_stretch(const Eigen::Vector3d& normal);
 
-/// Share of the imagery's area on the map that is stretched beyond `limit`, from `samples` x
-/// `samples` places; 0 where there is no imagery.
+/// Fraction of the imagery's area on the map that is stretched beyond `limit`, from `samples` x
+/// `samples` places; 0 if there is no imagery.
 [[nodiscard]] double stretched_share(const TileSource& tiles,
                                      double limit = kSmearedStretch,
                                      int samples = 200);

@@ -15,7 +15,7 @@
 
 namespace overfly::terrain {
 
-/// Filled blocks of an elevation model that were made before. Thread-safe.
+/// Precomputed filled blocks of an elevation model. Thread-safe.
 class HeightStore {
  public:
   HeightStore() = default;
@@ -27,16 +27,16 @@ class HeightStore {
   [[nodiscard]] virtual Result<HeightGrid> block(int level, int column, int row) const = 0;
 };
 
-/// Continuous everywhere; beyond the posts it goes on with the edge's value. Heights are read in
-/// blocks when asked for. Thread-safe once it was surveyed or given a store.
+/// Continuous everywhere; beyond the posts the edge's value continues. Heights are read in blocks
+/// on demand. Thread-safe after a survey or after it was given a store.
 class ElevationModel {
  public:
   static ElevationModel flat(double height_m);
 
-  /// Opens the layers over `area` of the map plane. One layer is sampled at its own posts;
-  /// several are laid onto one grid of the finest spacing, the first that has data wins.
-  /// @param imagery    the part of the map where missing elevation is worth a warning
-  /// @param max_posts  more is kUnsupported, so that the caller may ask for a smaller area
+  /// Opens the layers over `area` of the map plane. A single layer is sampled at its own posts.
+  /// Several layers are resampled to one grid of the finest spacing; the first one with data wins.
+  /// @param imagery  the part of the map where missing elevation causes a warning
+  /// @param max_posts  more is kUnsupported, so that the caller may request a smaller area
   /// Errors: as ElevationRaster::open; kInvalidArgument if none overlaps the imagery.
   static Result<ElevationModel> open(const std::vector<ElevationLayer>& layers,
                                      const MapPlane& plane,
@@ -45,35 +45,35 @@ class ElevationModel {
                                      double max_posts,
                                      std::vector<std::string>& warnings);
 
-  /// Reads every post once: range, voids. Doubts go to `warnings`.
-  /// @param cancelled  asked before each block of posts; may be empty
+  /// Reads every post once: range, voids. Doubts are added to `warnings`.
+  /// @param cancelled  polled before each block of posts; may be empty
   /// Errors: kIo; kCancelled; kInvalidArgument if no post has data.
   Status survey(const std::function<bool()>& cancelled, std::vector<std::string>& warnings);
-  /// Takes heights from a store instead, made from a model with the same fingerprint.
+  /// Uses heights from a store instead, made from a model with the same fingerprint.
   Status use(std::shared_ptr<const HeightStore> store, std::vector<std::string>& warnings);
 
   /// Ellipsoidal height [m].
   [[nodiscard]] double height_m(double x_map_m, double y_map_m) const;
-  /// Of the level whose posts are at most `spacing_m` apart (the finest where none is).
+  /// From the level whose posts are at most `spacing_m` apart (or the finest level).
   [[nodiscard]] double coarse_height_m(double x_map_m, double y_map_m, double spacing_m) const;
   /// Lowest and highest ellipsoidal height [m].
   [[nodiscard]] Eigen::Vector2d range_m() const { return range_m_; }
   /// Distance between posts on the map [m]; 0 for flat ground.
   [[nodiscard]] double spacing_m() const { return spacing_m_; }
-  /// kIo once heights could not be read: those places have the lowest height instead.
+  /// kIo after a read error: the height at such places is the lowest height.
   [[nodiscard]] Status status() const;
-  /// What the posts are and how they became ellipsoidal: equal for equal heights.
+  /// Identifies the posts and their conversion to ellipsoidal heights; equal for equal heights.
   [[nodiscard]] std::string fingerprint() const;
-  /// How each layer became ellipsoidal: the grid's name, a constant, or nothing.
+  /// How each layer was converted to ellipsoidal heights: the grid's name, a constant, or nothing.
   [[nodiscard]] std::vector<std::string> relations() const;
-  /// What the heights of each layer count from.
+  /// The vertical datum of each layer.
   [[nodiscard]] std::vector<HeightDatum> datums() const;
   /// Null for flat ground.
   [[nodiscard]] const PagedHeights* heights() const { return parts_ ? parts_->heights : nullptr; }
   [[nodiscard]] const HeightSurvey& survey_result() const { return survey_; }
 
  private:
-  /// What blocks are made from; stays where it is when the model moves.
+  /// The sources of blocks; keeps its address when the model is moved.
   struct Parts {
     std::vector<std::shared_ptr<ElevationRaster>> rasters;
     std::shared_ptr<BlockCache> cache;

@@ -1,5 +1,5 @@
 // Inside terrain only: one elevation file as ellipsoidal heights in metres at its own posts, read
-// in pieces.
+// in parts.
 #pragma once
 
 #include <atomic>
@@ -23,8 +23,9 @@ namespace overfly::terrain {
 /// Thread-safe after `open`.
 class ElevationRaster {
  public:
-  /// Opens the file and works out which of its posts lie over `area` of the map plane and how they
-  /// become metres above the ellipsoid. Doubts about unit and datum go to `warnings`.
+  /// Opens the file and determines which of its posts lie over `area` of the map plane and how they
+  /// are converted to metres above the ellipsoid. Doubts about unit and datum are added to
+  /// `warnings`.
   /// @param cache  holds the posts that `height_m` read
   /// Errors: kNotFound, kUnreadable, kInvalidArgument naming the file.
   static Result<std::shared_ptr<ElevationRaster>> open(const ElevationLayer& layer,
@@ -33,11 +34,11 @@ class ElevationRaster {
                                                        std::shared_ptr<BlockCache> cache,
                                                        std::vector<std::string>& warnings);
 
-  /// Looks for signs of a damaged file. Errors: kUnreadable, kNotFound naming it.
+  /// Checks for signs of a damaged file. Errors: kUnreadable, kNotFound naming it.
   [[nodiscard]] Status check(const Cancelled& cancelled, std::vector<std::string>& warnings) const;
-  /// Looks through all posts for undeclared values of missing data, once reading has met numbers
-  /// that may be such; they are NaN from then on. Not while other threads read.
-  /// @param cancelled  asked before each strip; may be empty
+  /// Searches all posts for undeclared no-data values, if reading has found candidates; they are
+  /// NaN from then on. Must not run while other threads read.
+  /// @param cancelled  polled before each strip; may be empty
   /// @return whether there are any. Errors: kIo; kCancelled
   Result<bool> find_undeclared_voids(const Cancelled& cancelled);
   [[nodiscard]] const VoidRuns& undeclared_voids() const { return voids_; }
@@ -48,29 +49,29 @@ class ElevationRaster {
 
   /// True within half a post of the window's posts.
   [[nodiscard]] bool covers(double x_map_m, double y_map_m) const;
-  /// NaN outside, where there is no data and where the file cannot be read (see `fault`).
+  /// NaN outside, where there is no data, and where the file cannot be read (see `fault`).
   [[nodiscard]] double height_m(double x_map_m, double y_map_m) const;
   [[nodiscard]] std::optional<Error> fault() const { return posts_->fault(); }
 
-  /// True when `height_m` met values that no ground on earth has.
+  /// True if `height_m` found values that do not occur on earth.
   [[nodiscard]] bool implausible_seen() const { return implausible_; }
 
   [[nodiscard]] const std::string& file() const { return file_; }
   [[nodiscard]] const SmoothMap<2>& post_from_map() const { return *post_from_map_; }
   [[nodiscard]] int columns() const { return window_.columns; }
   [[nodiscard]] int rows() const { return window_.rows; }
-  /// Where imagery and elevation lie, in brackets, for an error.
+  /// The places of imagery and elevation, in brackets, for an error message.
   [[nodiscard]] const std::string& whereabouts() const { return whereabouts_; }
   /// Distance between posts on the map at the area's middle [m].
   [[nodiscard]] double spacing_m() const { return spacing_m_; }
   /// How its heights were related to the ellipsoid: the grid's name, a constant, or nothing.
   [[nodiscard]] const std::string& relation() const { return relation_; }
-  /// What its heights count from: said by the manifest, else by the file.
+  /// The vertical datum of its heights, from the manifest or else from the file.
   [[nodiscard]] const HeightDatum& datum() const { return datum_; }
 
  private:
-  /// The part of the file that is used, in its posts. Of a file around the whole earth columns may
-  /// lie before its first and beyond its last.
+  /// The used part of the file, in its posts. For a file around the whole earth, columns may lie
+  /// before its first and beyond its last.
   struct Window {
     int column = 0;
     int row = 0;
@@ -99,18 +100,18 @@ class ElevationRaster {
   std::unique_ptr<DatasetPool> pool_;
   int file_columns_ = 0;
   int file_rows_ = 0;
-  std::optional<int> columns_around_;  ///< the earth, where the file goes around it
+  std::optional<int> columns_around_;  ///< around the earth, if the file covers a full turn
   Window window_;
   std::optional<SmoothMap<2>> post_from_map_;
   double spacing_m_ = 0.0;
   double scale_m_ = 1.0;  ///< metres per unit of the raster
   double offset_m_ = 0.0;
   std::optional<double> nodata_;
-  bool trusted_ = false;  ///< the manifest says what is void: nothing else is
+  bool trusted_ = false;  ///< the manifest defines what is void; no other rule applies
   VoidRuns voids_;
   mutable std::atomic<bool> usual_void_seen_{false};
   std::shared_ptr<BlockCache> cache_;
-  bool masked_ = false;      ///< a mask band says where there is data
+  bool masked_ = false;      ///< a mask band marks the posts with data
   HeightGrid separation_m_;  ///< of the datum's zero, on a lattice over the window; may be empty
   std::string relation_;
   HeightDatum datum_;

@@ -1,4 +1,4 @@
-// Inside terrain only: fingerprints of data files, for the record of a run.
+// Inside terrain only: digests of data files, for the record of a run.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,8 @@ namespace overfly::terrain {
 /// SHA-256 (FIPS 180-4) as 64 hexadecimal digits.
 [[nodiscard]] std::string sha256_hex(std::span<const std::uint8_t> bytes);
 
-/// "sha256:..." of the whole file up to 32 MiB; of larger files "sha256-sampled:..." of the size
-/// and 32 evenly spread MiB, so that opening a large world stays quick.
+/// "sha256:..." of the whole file up to 32 MiB. For larger files "sha256-sampled:..." of the size
+/// and of 32 evenly spaced MiB, so that opening a large world stays fast.
 /// Errors: kIo.
 [[nodiscard]] Result<std::string> file_digest(const std::filesystem::path& file);
 

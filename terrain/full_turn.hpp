@@ -1,5 +1,5 @@
-// Inside terrain only: coordinates that begin anew after a full turn of the earth. A place near
-// 180 deg has one longitude in a file that counts to 180 and another in one that counts to 360.
+// Inside terrain only: coordinates that wrap after a full turn of the earth. A place near 180 deg
+// has different longitudes in files that count to 180 and in files that count to 360.
 #pragma once
 
 #include <cmath>
@@ -18,11 +18,11 @@ class MapPlane;
   return x + turn * std::round((near - x) / turn);
 }
 
-/// Distance along x after which a coordinate system comes back to the same meridian: 360 deg in its
-/// unit, or the equator's length of a cylindrical projection; empty where x never does.
+/// Period of x after which a coordinate system returns to the same meridian: 360 deg in its unit,
+/// or the equator's length of a cylindrical projection; empty if x is not periodic.
 [[nodiscard]] std::optional<double> full_turn_of(const OGRSpatialReference& crs);
 
-/// Which of the x that mean the same meridian are meant: those within half a turn of `near`.
+/// Selects one of the x values of the same meridian: the one within half a turn of `near`.
 struct Turn {
   double length = 0.0;
   double near = 0.0;
@@ -30,9 +30,9 @@ struct Turn {
   void apply(double& x) const { x = unwrapped(x, near, length); }
 };
 
-/// The turns on which a raster's columns meet an area of the map: one, or two where a raster around
+/// The turns on which a raster's columns meet an area of the map: one, or two if a raster around
 /// the whole earth has its seam there. Empty values for a CRS without turns.
-/// Errors: kInvalidArgument when PROJ knows no way; `what` names the file.
+/// Errors: kInvalidArgument if PROJ knows no transformation; `what` names the file.
 [[nodiscard]] Result<std::vector<std::optional<Turn>>> turns_over(const MapPlane& plane,
                                                                   const MapRect& area,
                                                                   const Georeference& place,

@@ -1,4 +1,4 @@
-// Inside terrain only: GDAL datasets with an owner, and what GDAL says while one is used.
+// Inside terrain only: GDAL datasets with an owner, and the messages of GDAL while one is used.
 #pragma once
 
 #include <gdal_priv.h>
@@ -22,12 +22,12 @@ struct DatasetCloser {
 };
 using DatasetPtr = std::unique_ptr<GDALDataset, DatasetCloser>;
 
-/// Registers the drivers of local raster files, closes GDAL's other file systems and bounds the
-/// block cache; any number of calls.
+/// Registers the drivers of local raster files, disables GDAL's other file systems and limits the
+/// block cache; may be called repeatedly.
 void initialise_gdal();
 
-/// Collects what GDAL and PROJ report on this thread instead of printing it. While several are
-/// alive, the one made last hears it.
+/// Collects the messages of GDAL and PROJ on this thread instead of printing them. If several
+/// objects exist, the newest receives them.
 class GdalMessages {
  public:
   GdalMessages();
@@ -36,9 +36,9 @@ class GdalMessages {
   GdalMessages& operator=(const GdalMessages&) = delete;
 
   [[nodiscard]] bool empty() const { return text_.empty(); }
-  /// The messages, "; " between them; "no reason given" when there are none.
+  /// The messages, joined by "; "; "no reason given" if there are none.
   [[nodiscard]] std::string text() const;
-  /// Tells it to the one that was alive before this one was made, if there is one.
+  /// Passes the messages on to the object created before this one, if there is one.
   void pass_on() const;
 
  private:
@@ -49,29 +49,30 @@ class GdalMessages {
   std::string text_;
 };
 
-/// A warning of what GDAL said about a file that it opened all the same.
+/// A warning with GDAL's messages about a file that was opened nevertheless.
 [[nodiscard]] std::string heard_while_opening(const std::filesystem::path& file,
                                               const GdalMessages& messages);
 
-/// Opens a raster for reading. Level 0 is the file itself, n > 0 its n-th overview. What GDAL says
-/// without failing is passed on to the caller's GdalMessages.
-/// Errors: kNotFound; kUnreadable with GDAL's reason, for what is no regular file, and as
+/// Opens a raster for reading. Level 0 is the file itself, n > 0 its n-th overview. GDAL's messages
+/// without an error are passed to the caller's GdalMessages.
+/// Errors: kNotFound; kUnreadable with GDAL's reason, also for anything but a regular file, and as
 /// check_virtual_raster.
 [[nodiscard]] Result<DatasetPtr> open_raster(const std::filesystem::path& file, int level = 0);
 
-/// Several handles on one file, since a GDAL handle serves one thread at a time. All of them are of
-/// the file that the name stood for when the pool was made: where it was taken away or replaced
-/// since, those that are open go on.
+/// Several handles on one file, because a GDAL handle serves one thread at a time. All refer to the
+/// file that the name denoted when the pool was created: if it was removed or replaced since, the
+/// open handles continue to work.
 class DatasetPool {
  public:
-  /// @param first  a handle that is open already, or null
+  /// @param first  an open handle, or null
   DatasetPool(std::filesystem::path file, int level, DatasetPtr first = nullptr);
   ~DatasetPool();
   DatasetPool(const DatasetPool&) = delete;
   DatasetPool& operator=(const DatasetPool&) = delete;
 
-  /// A handle that nobody else uses; give it back with `put`.
-  /// Errors: kIo naming the file: it was written to, or it is gone and no handle comes back in 2 s.
+  /// A handle for exclusive use; return it with `put`.
+  /// Errors: kIo naming the file: it was written to, or it was removed and no handle is returned
+  /// within 2 s.
   [[nodiscard]] Result<DatasetPtr> take();
   void put(DatasetPtr dataset);
 
@@ -99,15 +100,17 @@ struct GeoTransform {
   void pixel_from_crs(double x, double y, double& px, double& py) const;
 };
 
-/// Place of a raster on the earth, checked.
+/// Checked georeference of a raster.
 struct Georeference {
   GeoTransform transform;
   OGRSpatialReference crs;  ///< traditional axis order: x = east or longitude
 };
 
-/// Reads the georeference; `crs_override` ("EPSG:2994", see check_crs_text) stands in where the
-/// file has none. Errors: kInvalidArgument naming the file: no CRS, no or degenerate transform, a
-/// place outside the CRS's range. `said` is what GDAL reported when it opened the file.
+/// Reads the georeference; `crs_override` ("EPSG:2994", see check_crs_text) is used if the file has
+/// none.
+/// @param said  GDAL's messages from opening the file
+/// Errors: kInvalidArgument naming the file: no CRS, no or degenerate transform, a place outside
+/// the CRS's range.
 [[nodiscard]] Result<Georeference> read_georeference(GDALDataset& dataset,
                                                      const std::filesystem::path& file,
                                                      const std::optional<std::string>& crs_override,

@@ -1,4 +1,4 @@
-// Inside terrain only: how far a vertical datum's zero lies above the ellipsoid.
+// Inside terrain only: heights of vertical datums above the ellipsoid.
 #pragma once
 
 #include <optional>
@@ -11,20 +11,20 @@
 
 namespace overfly::terrain {
 
-/// A source of separations, chosen once for a layer.
+/// A geoid model, chosen once for a layer.
 struct GeoidModel {
-  /// File of PROJ's grid that is installed ("egm96_15.gtx"), which is not always the one that PROJ
-  /// was asked for; empty where a constant or the built-in table serves.
+  /// The installed PROJ grid in use ("egm96_15.gtx"), which may differ from the requested one;
+  /// empty if a constant or the built-in table is used.
   std::string grid;
   std::optional<double> constant_m;
   bool built_in = false;  ///< the coarse table of EGM96 inside the program
 };
 
 /// Chooses the model for a datum: its own PROJ grid, else the given constant, else EGM96's grid,
-/// else the built-in table. Whatever is not the datum's own is named in `warnings` with its
-/// possible error. Empty for ellipsoidal and unknown heights (the latter with a warning).
-/// @param lat_rad, lon_rad  the layer's middle, for the size of the error
-/// @param named  what the file calls an unknown datum; empty where it names none
+/// else the built-in table. A substitute for the datum's own model is reported in `warnings` with
+/// its possible error. Empty for ellipsoidal and unknown heights (the latter with a warning).
+/// @param lat_rad,  lon_rad  the layer's centre, for the size of the error
+/// @param named  the file's name of an unknown datum; empty if it names none
 [[nodiscard]] std::optional<GeoidModel> choose_geoid(VerticalDatum datum,
                                                      std::optional<double> constant_m,
                                                      double lat_rad,

@@ -4,7 +4,8 @@
 namespace overfly::terrain {
 
 inline constexpr int kEgm96TableStepDeg = 5;
-/// 99 % of the earth lies within this of the 15' model; the worst place (a trench) is 23 m off [m].
+/// Error bound of the table against the 15' model for 99 % of the earth; the worst place (a trench)
+/// is 23 m off [m].
 inline constexpr int kEgm96TableErrorM = 8;
 
 /// Height of EGM96's geoid above WGS84, bilinear in the table [m].

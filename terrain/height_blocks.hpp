@@ -1,5 +1,5 @@
-// Inside terrain only: heights in square blocks that are read when asked for and forgotten when
-// the memory meant for them is spent.
+// Inside terrain only: heights in square blocks that are read on demand and evicted when the memory
+// budget is exceeded.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@
 
 namespace overfly::terrain {
 
-/// Posts along a block's side; it also holds the first row and column of its neighbours to the
-/// south and east, so that one block answers for every place within it.
+/// Posts per side of a block. A block also holds the first row and column of its neighbours to the
+/// south and east, so that interpolation within it needs no other block.
 inline constexpr int kBlockPosts = 64;
 
 struct BlockKey {
@@ -29,7 +29,7 @@ struct BlockKey {
 
 using BlockPtr = std::shared_ptr<const HeightGrid>;
 
-/// The blocks used last, of any number of owners, within a budget. Thread-safe.
+/// A cache of the most recently used blocks of all owners, within a budget. Thread-safe.
 class BlockCache {
  public:
   explicit BlockCache(std::size_t budget_bytes) : budget_bytes_(budget_bytes) {}
@@ -49,11 +49,11 @@ class BlockCache {
   std::unordered_map<BlockKey, std::list<Entry>::iterator, Hash> places_;
 };
 
-/// A number that no other owner of blocks in this process has.
+/// A unique number for an owner of blocks in this process.
 [[nodiscard]] std::uint64_t new_block_owner();
 
-/// A pyramid of posts, level L's about 2^L as far apart as level 0's. Thread-safe; a look-up in a
-/// block that this thread used lately takes no lock.
+/// A pyramid of posts; those of level L are about 2^L times as far apart as those of level 0.
+/// Thread-safe; a look-up in a block that this thread used recently takes no lock.
 class PagedHeights {
  public:
   /// Makes a block of (kBlockPosts + 1)^2 posts; beyond the pyramid's edge they repeat it.
@@ -62,17 +62,17 @@ class PagedHeights {
   PagedHeights(int columns, int rows, std::shared_ptr<BlockCache> cache, Loader loader);
 
   /// Bilinear between the posts of a level (post centres at integers of that level); outside, the
-  /// edge's value. NaN where one of the posts that count is, or could not be read (see `fault`).
+  /// edge's value. NaN if a contributing post is NaN or could not be read (see `fault`).
   [[nodiscard]] double bilinear(int level, double column, double row) const;
   /// The block itself. Errors: those of the loader.
   [[nodiscard]] Result<BlockPtr> block(int level, int column, int row) const;
 
-  /// What went wrong first when a block was read, if anything did.
+  /// The first read error of a block, if there was one.
   [[nodiscard]] std::optional<Error> fault() const;
 
   [[nodiscard]] int columns(int level) const;
   [[nodiscard]] int rows(int level) const;
-  /// At level `levels() - 1` there is one post.
+  /// Level `levels() - 1` has a single post.
   [[nodiscard]] int levels() const { return levels_; }
 
  private:

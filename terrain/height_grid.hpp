@@ -18,13 +18,13 @@ struct HeightGrid {
   [[nodiscard]] float at(int column, int row) const {
     return heights_m[static_cast<std::size_t>(row) * columns + column];
   }
-  /// Bilinear between the four posts around (post centres at integers); outside, the edge's value.
-  /// NaN where one of the posts that count is.
+  /// Bilinear between the four surrounding posts (post centres at integers); outside, the edge's
+  /// value. NaN if a contributing post is NaN.
   [[nodiscard]] double bilinear(double column, double row) const;
 };
 
-/// Fills posts without data from those around them: coarser and coarser averages of what is there,
-/// interpolated back (push-pull: Gortler et al., The Lumigraph, 1996, sec. 3.4).
+/// Fills posts without data from those around them, by interpolation between successively coarser
+/// averages (push-pull: Gortler et al., The Lumigraph, 1996, sec. 3.4).
 /// @return number of posts filled; all posts have data afterwards unless none had
 std::size_t fill_voids(HeightGrid& grid);
 

@@ -1,5 +1,6 @@
-// Inside terrain only: the ground's up coordinate on lattices of node distances s, 2 s, 4 s ...,
-// read once and kept, since a ray to the sun passes many nodes and neighbouring rays the same ones.
+// Inside terrain only: the ground's up coordinate on lattices with node spacings s, 2 s, 4 s ...
+// Values are cached, because a ray to the sun passes many nodes and neighbouring rays use the same
+// ones.
 #pragma once
 
 #include <array>
@@ -12,8 +13,8 @@
 
 namespace overfly::terrain {
 
-/// Node (i, j) of lattice l lies at x_map = left + i s 2^l, y_map = top - j s 2^l, from the tile
-/// grid's corner. Thread-safe; what a node is worth does not depend on what was asked before.
+/// Node (i, j) of lattice l lies at x_map = left + i s 2^l, y_map = top - j s 2^l, relative to the
+/// tile grid's corner. Thread-safe; a node's value does not depend on earlier queries.
 class HeightLattice {
  public:
   HeightLattice(std::shared_ptr<const TileSource> tiles, double spacing_m);

@@ -1,10 +1,10 @@
 // Inside terrain only: averaged levels of posts with their voids filled, block by block.
 //
-// Method: push-pull (Gortler et al., The Lumigraph, 1996, sec. 3.4). Post (i, j) of raw level
-// L + 1 is the mean of those of the posts (2i, 2j) .. (2i + 1, 2j + 1) of raw level L that have
-// data. A post without data is filled by interpolating the filled level above at its own place.
-// Each filled post is a function of the file alone: how blocks are cut, in which order they are
-// read and how many fit into memory changes nothing.
+// Method: push-pull (Gortler et al., The Lumigraph, 1996, sec. 3.4). Post (i, j) of raw level L + 1
+// is the mean of those of the posts (2i, 2j) .. (2i + 1, 2j + 1) of raw level L that have data. A
+// post without data is interpolated from the filled level above at its own place. Each filled post
+// depends only on the file: it does not depend on the block boundaries, the order of reading or the
+// memory budget.
 #pragma once
 
 #include <cstddef>
@@ -21,10 +21,10 @@ namespace overfly::terrain {
 /// A window of posts in metres, NaN where there is no data.
 struct RawPosts {
   HeightGrid grid;
-  std::size_t implausible = 0;  ///< values no ground on earth has, now NaN
+  std::size_t implausible = 0;  ///< implausible values, replaced by NaN
 };
 
-/// Undeclared values of missing data that were found in one layer.
+/// Undeclared no-data values found in one layer.
 struct UndeclaredVoids {
   double posts = 0.0;
   double of_posts = 0.0;
@@ -34,16 +34,16 @@ struct UndeclaredVoids {
 /// Reads the posts [column, column + columns) x [row, row + rows), all within the raster.
 using PostReader = std::function<Result<RawPosts>(int column, int row, int columns, int rows)>;
 
-/// What reading every post once tells.
+/// Results of reading every post once.
 struct HeightSurvey {
   double lowest_m = 0.0;
   double highest_m = 0.0;
   double posts = 0;
   double voids = 0;
   double implausible = 0;
-  std::vector<bool> implausible_layers;     ///< of several: each that had such values
-  double steep = 0.0;                       ///< steps between neighbours that no ground makes
-  double steepest_m = 0.0;                  ///< the largest of them
+  std::vector<bool> implausible_layers;  ///< for several layers: those with such values
+  double steep = 0.0;                    ///< number of implausibly steep steps between neighbours
+  double steepest_m = 0.0;               ///< the largest of them
   std::vector<UndeclaredVoids> undeclared;  ///< of each layer
 };
 
@@ -55,9 +55,9 @@ class HeightPyramid {
   HeightPyramid& operator=(const HeightPyramid&) = delete;
 
   /// Reads all posts once, row of blocks by row, and keeps the coarse levels. May be called again
-  /// when the reader has learnt more.
-  /// @param cancelled  asked before each block; may be empty
-  /// @param steep_m    steps between neighbours above which are counted
+  /// if the reader has found no-data values.
+  /// @param cancelled  polled before each block; may be empty
+  /// @param steep_m  steps between neighbours above this value are counted
   /// Errors: those of the reader; kCancelled.
   Result<HeightSurvey> survey(const std::function<bool()>& cancelled = {},
                               double steep_m = std::numeric_limits<double>::infinity());
@@ -69,7 +69,7 @@ class HeightPyramid {
  private:
   struct Pending {
     HeightGrid grid;
-    int missing = 0;  ///< quarters that have not come yet
+    int missing = 0;  ///< quarters not received yet
   };
   struct Hash {
     std::size_t operator()(const BlockKey& key) const;

@@ -1,4 +1,4 @@
-// Pictures as files: PNG for images, GeoTIFF for depth.
+// Image files: PNG for images, GeoTIFF for depth.
 #pragma once
 
 #include <filesystem>
@@ -12,14 +12,14 @@ namespace overfly::terrain {
 /// Errors: kInvalidArgument for an empty image or other channels; kIo naming the file.
 [[nodiscard]] Status write_png(const std::filesystem::path& file, const Image& image);
 
-/// The same with 16 bits a sample.
+/// As above, with 16 bits per sample.
 [[nodiscard]] Status write_png(const std::filesystem::path& file, const Image16& image);
 
-/// Reads a 16-bit grey or RGB picture. Errors: kNotFound; kUnreadable, also for samples of other
+/// Reads a 16-bit grey or RGB image. Errors: kNotFound; kUnreadable, also for samples of other
 /// types.
 [[nodiscard]] Result<Image16> read_png16(const std::filesystem::path& file);
 
-/// Reads any 8-bit picture that GDAL knows; palettes become RGB, alpha is dropped.
+/// Reads any 8-bit image format of GDAL; palettes become RGB, alpha is dropped.
 /// Errors: kNotFound, kUnreadable.
 [[nodiscard]] Result<Image> read_png(const std::filesystem::path& file);
 

@@ -25,13 +25,13 @@ class ImageryRaster {
                                                            const Cancelled& cancelled,
                                                            std::vector<std::string>& warnings);
 
-  /// What reading needs, once: that the file's blocks lie inside it, and which of its overviews are
-  /// area averages (others are not used). `read` does it if it was not done before. One that was
-  /// cancelled stays so: the raster is of no use then.
+  /// One-time preparation for reading: checks that the file's blocks lie inside it, and which of
+  /// its overviews are area averages (others are not used). `read` calls it if needed. After a
+  /// cancelled call the raster is unusable.
   /// Errors: kUnreadable; kCancelled.
   [[nodiscard]] Status prepare(const Cancelled& cancelled = {}) const;
-  /// Warnings of a file that may be damaged, is of one colour, or must be read to a large part for
-  /// far views; call after `prepare`.
+  /// Warnings about a file that may be damaged, has a single colour, or must be read to a large
+  /// part for distant views; call after `prepare`.
   [[nodiscard]] std::vector<std::string> doubts() const;
 
   /// Texels [x, x + width) x [y, y + height) of a level; void outside the file.
@@ -48,8 +48,8 @@ class ImageryRaster {
  private:
   /// The file itself or one of its overviews.
   struct Stored {
-    int level = 0;         ///< the power of two it stands for
-    double ratio_x = 1.0;  ///< file texels per texel of this, not always 2^level exactly
+    int level = 0;         ///< its power of two
+    double ratio_x = 1.0;  ///< file texels per texel, not always exactly 2^level
     double ratio_y = 1.0;
     int width_px = 0;
     int height_px = 0;
@@ -60,13 +60,13 @@ class ImageryRaster {
     }
   };
   using Levels = std::vector<Patch>;
-  /// Levels that no overview holds, made when asked for and kept while memory allows.
+  /// Levels without a stored overview, computed on demand and kept while memory allows.
   struct Pyramid {
     std::once_flag prepared;
     Status state;
     std::vector<std::string> doubts;
     std::vector<Stored> stored;
-    int first_level = 0;  ///< of `levels`: where the stored ones are too fine
+    int first_level = 0;  ///< of `levels`: from where the stored ones are too fine
     std::mutex mutex;
     std::weak_ptr<const Levels> levels;
   };

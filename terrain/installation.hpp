@@ -1,4 +1,4 @@
-// Whether the libraries that read terrain are complete on this machine (for `overfly doctor`).
+// Checks whether the terrain libraries on this machine are complete (for `overfly doctor`).
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@ namespace overfly::terrain {
 
 struct Installation {
   std::string gdal_version;                  ///< "3.6.2"
-  std::vector<std::string> missing_drivers;  ///< of those that our data need
+  std::vector<std::string> missing_drivers;  ///< of the required ones
   bool geotiff_jpeg = true;                  ///< JPEG-compressed GeoTIFFs can be read
   bool projection_database = true;           ///< PROJ finds its proj.db
 };

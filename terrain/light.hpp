@@ -1,9 +1,9 @@
 // Light on the ground: hill shading, cast shadows and cloud shadows as a layer over any tiles.
 //
-// The imagery was photographed in light of its own: its shadows and its shading stay in it, and
-// nothing here takes them out. What is added tells how the same ground would differ from flat,
-// open ground under another sun. Steep slopes in shade in the photograph stay dark; trees and
-// buildings, which are in the imagery and not in the elevation, cast no new shadows.
+// The imagery contains the light at the time of the photograph: its shadows and shading remain. The
+// added light is the ratio between this ground and flat, open ground under another sun. Slopes that
+// are dark in the photograph stay dark. Trees and buildings, which are in the imagery but not in
+// the elevation, cast no new shadows.
 #pragma once
 
 #include <cstdint>
@@ -19,18 +19,18 @@ namespace overfly::terrain {
 struct CloudOptions {
   double cover = 0.0;      ///< share of the ground in shadow, in [0, 1]; 0 = no clouds
   double size_m = 400.0;   ///< of a typical cloud, in [20, 20000]
-  double strength = 0.75;  ///< share of the direct light that a cloud takes, in [0, 1]
-  std::uint64_t seed = 1;  ///< another seed, other clouds
+  double strength = 0.75;  ///< fraction of the direct light that a cloud blocks, in [0, 1]
+  std::uint64_t seed = 1;  ///< another seed gives other clouds
 };
 
 struct LightOptions {
   double sun_azimuth_rad = 2.35619449;    ///< clockwise from north at the world's origin
   double sun_elevation_rad = 0.78539816;  ///< above the horizon, in [1 deg, 90 deg]
-  /// Share of the light on open flat ground that comes from the sky and not from the sun, [0, 1].
+  /// Fraction of the light on open flat ground that comes from the sky instead of the sun, [0, 1].
   double ambient = 0.35;
-  /// 0 = no hill shading, 1 = as physics has it, in [0, 1].
+  /// 0 = no hill shading, 1 = physical, in [0, 1].
   double hill_shading = 1.0;
-  /// 0 = no cast shadows, 1 = the direct light is gone in them, in [0, 1].
+  /// 0 = no cast shadows, 1 = no direct light in them, in [0, 1].
   double cast_shadows = 1.0;
   CloudOptions clouds;
 
@@ -38,23 +38,23 @@ struct LightOptions {
   [[nodiscard]] Status validate() const;
 };
 
-/// The light that a slope receives over that of open flat ground, direct light unblocked:
+/// The light on a slope relative to open flat ground, with unobstructed direct light:
 ///   1 + s (ambient + (1 - ambient) max(0, cos i) / sin e - 1),  at most kMaxLight,
-/// i the angle between the normal and the sun, e the sun's elevation, s = hill_shading
-/// (Lambert's cosine law; the sky's light is taken as the same from everywhere).
+/// i = angle between normal and sun, e = the sun's elevation, s = hill_shading (Lambert's cosine
+/// law; the light of the sky is assumed to be isotropic).
 /// @param normal  upward unit normal, world frame
 [[nodiscard]] double slope_light(const LightOptions& options, const Eigen::Vector3d& normal);
 
-/// Brighter than this many times open flat ground nothing becomes: imagery has no more headroom.
+/// Upper limit of the light relative to open flat ground, since imagery has no more headroom.
 inline constexpr double kMaxLight = 3.0;
 
 /// Unit vector from the ground to the sun, world frame.
 [[nodiscard]] Eigen::Vector3d sun_direction(const LightOptions& options);
 
-/// The same tiles in another light. Texels are scaled in linear light (sRGB undone and redone).
-/// Neighbouring tiles agree exactly; a level is the average of the one below but for how finely
-/// each samples the light (figures in docs/WORLDS.md). Put detail synthesis around it, not below.
-/// Deterministic and thread-safe as the tiles it covers.
+/// The same tiles in another light. Texels are scaled in linear light (sRGB is decoded and
+/// encoded). Neighbouring tiles agree exactly. A level is the average of the finer one, except for
+/// the resolution at which each samples the light (figures in docs/WORLDS.md). Apply detail
+/// synthesis on top of it, not below. Deterministic, and as thread-safe as the underlying tiles.
 /// Errors: kInvalidArgument as `validate`.
 [[nodiscard]] Result<std::shared_ptr<const TileSource>> with_light(
     const std::shared_ptr<const TileSource>& tiles, const LightOptions& options);

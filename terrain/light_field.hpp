@@ -10,11 +10,11 @@
 
 namespace overfly::terrain {
 
-/// Share of the sun's disc above a straight horizon.
-/// @param above_rad  of the disc's centre over the horizon
+/// Visible fraction of the sun's disc above a straight horizon.
+/// @param above_rad  elevation of the disc's centre above the horizon
 [[nodiscard]] double visible_disc(double above_rad);
 
-/// What a node is worth depends on its place alone, so neighbouring tiles agree.
+/// A node's value depends only on its place, so that neighbouring tiles agree.
 class LightField {
  public:
   LightField(std::shared_ptr<const TileSource> tiles,
@@ -23,15 +23,15 @@ class LightField {
 
   [[nodiscard]] double spacing_m(int lattice) const { return heights_.spacing_m(lattice); }
 
-  /// Light over that of open flat ground, in [0, kMaxLight], at nodes
-  /// [i, i + columns) x [j, j + rows) of a lattice (numbered as in HeightLattice).
+  /// Light relative to open flat ground, in [0, kMaxLight], at nodes [i, i + columns) x [j, j +
+  /// rows) of a lattice (numbered as in HeightLattice).
   [[nodiscard]] ImageBuffer<float> nodes(int lattice, int i, int j, int columns, int rows) const;
 
  private:
-  /// The map around a place, to the first order.
+  /// First-order approximation of the map around a place.
   struct Chart {
     Eigen::Matrix2d world_per_map;
-    Eigen::Vector2d sunward_map;  ///< map metres for a metre towards the sun, seen from above
+    Eigen::Vector2d sunward_map;  ///< map metres per metre towards the sun, seen from above
   };
   [[nodiscard]] Chart chart(int lattice, int block_i, int block_j) const;
   [[nodiscard]] double sunlight(

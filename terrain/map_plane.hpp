@@ -14,14 +14,14 @@
 
 namespace overfly::terrain {
 
-/// Coordinates of one CRS in another, as PROJ says. Thread-safe (serialised).
+/// Transforms coordinates from one CRS to another with PROJ. Thread-safe (serialised).
 class CrsTransform {
  public:
-  /// Errors: kInvalidArgument when PROJ knows no way; `what` names the file.
+  /// Errors: kInvalidArgument if PROJ knows no transformation; `what` names the file.
   static Result<std::shared_ptr<const CrsTransform>> create(const OGRSpatialReference& from,
                                                             const OGRSpatialReference& to,
                                                             const std::string& what);
-  /// In place, x = east or longitude first. False if any point has no answer.
+  /// In place, x = east or longitude first. False if any point cannot be transformed.
   bool apply(Eigen::Matrix2Xd& points) const;
 
  private:
@@ -36,24 +36,23 @@ class CrsTransform {
 /// Transverse Mercator with scale 1 at a point.
 [[nodiscard]] OGRSpatialReference transverse_mercator_at(double lat_rad, double lon_rad);
 
-/// The CRS of the tiles with the factors that turn its units into map metres.
+/// The CRS of the tiles with the factors that convert its units to map metres.
 class MapPlane {
  public:
   /// x_map = scale_x X, y_map = scale_y Y.
-  /// @param x_near  of a CRS whose X begins anew after a full turn: map points lie within half a
-  ///                turn of it
+  /// @param x_near  for a CRS whose X is periodic: map points lie within half a turn of it
   static Result<MapPlane> create(const OGRSpatialReference& crs,
                                  double scale_x,
                                  double scale_y,
                                  double x_near,
                                  const std::string& what);
 
-  /// Longitude, latitude [rad] of map points, longitudes as PROJ gives them: they may jump by a
-  /// turn at the antimeridian. False if any has none.
+  /// Longitude, latitude [rad] of map points, longitudes as PROJ returns them: they may jump by a
+  /// turn at the antimeridian. False if any point cannot be transformed.
   bool geodetic_from_map(Eigen::Matrix2Xd& points) const;
   /// The inverse.
   bool map_from_geodetic(Eigen::Matrix2Xd& points) const;
-  /// Map points into another CRS's own units.
+  /// Transforms map points to another CRS in its own units.
   bool to_crs(const CrsTransform& crs_from_wgs84, Eigen::Matrix2Xd& points) const;
 
   [[nodiscard]] const OGRSpatialReference& crs() const { return crs_; }

@@ -1,5 +1,5 @@
-// Inside terrain only: an imagery file laid on the map plane, texel for texel where its own grid
-// is the map's, resampled where it is not.
+// Inside terrain only: an imagery file on the map plane, used texel for texel if its grid is the
+// map's, resampled if not.
 #pragma once
 
 #include <memory>
@@ -15,9 +15,9 @@ namespace overfly::terrain {
 
 class MappedImagery {
  public:
-  /// The layer whose own grid the tiles use: grid texel (0, 0) is file texel (-pad_x, -pad_y),
+  /// The layer whose grid is used for the tiles: grid texel (0, 0) is file texel (-pad_x, -pad_y),
   /// with pads that are multiples of 2^(levels - 1).
-  /// @param validity  that of the raster, where it was read before
+  /// @param validity  of the raster, if it was read before
   /// Errors: kIo, kCancelled.
   static Result<MappedImagery> aligned(std::shared_ptr<const ImageryRaster> raster,
                                        const TileGrid& grid,
@@ -25,27 +25,28 @@ class MappedImagery {
                                        int pad_y,
                                        std::optional<ValidityGrid> validity,
                                        const Cancelled& cancelled);
-  /// A layer that is resampled. Errors: also kInvalidArgument if its CRS has no place for the grid.
-  /// @param turn  the one of `turns_over_grid` that its columns are counted on
+  /// A layer that is resampled. Errors: also kInvalidArgument if the grid cannot be transformed to
+  /// its CRS.
+  /// @param turn  the one of `turns_over_grid` to which its columns refer
   static Result<MappedImagery> warped(std::shared_ptr<const ImageryRaster> raster,
                                       const MapPlane& plane,
                                       const TileGrid& grid,
                                       const std::optional<Turn>& turn,
                                       std::optional<ValidityGrid> validity,
                                       const Cancelled& cancelled);
-  /// The turns of the earth on which a file meets the grid; each asks for a layer of its own.
+  /// The turns of the earth on which a file meets the grid; each needs a separate layer.
   static Result<std::vector<std::optional<Turn>>> turns_over_grid(const ImageryRaster& raster,
                                                                   const MapPlane& plane,
                                                                   const TileGrid& grid);
 
-  /// The tile's texels as far as this layer has them. Errors: kIo.
+  /// The tile's texels that this layer covers. Errors: kIo.
   [[nodiscard]] Result<Patch> read(const TileId& id) const;
-  /// What is certain about a tile without reading it.
+  /// Coverage of a tile that is known without reading it.
   [[nodiscard]] TileCoverage coverage(const TileId& id) const;
   [[nodiscard]] bool has_imagery(double x_map_m, double y_map_m) const;
   [[nodiscard]] bool resampled() const { return pixel_from_map_.has_value(); }
   [[nodiscard]] const ImageryRaster& raster() const { return *raster_; }
-  /// Null where every texel of the file is valid.
+  /// Null if every texel of the file is valid.
   [[nodiscard]] const ValidityGrid* validity() const { return validity_ ? &*validity_ : nullptr; }
   /// Size of a file's texel on the map [m].
   [[nodiscard]] double file_texel_m() const { return grid_.texel_m / texel_px_.minCoeff(); }
@@ -64,7 +65,7 @@ class MappedImagery {
   /// File pixel coordinates (corners at integers) of a map point; empty for the aligned layer.
   std::optional<SmoothMap<2>> pixel_from_map_;
   Eigen::Vector2d texel_px_{1.0, 1.0};    ///< size of a texel of level 0 in file pixels
-  std::optional<ValidityGrid> validity_;  ///< empty where every texel is valid
+  std::optional<ValidityGrid> validity_;  ///< empty if every texel is valid
 };
 
 }  // namespace overfly::terrain

@@ -1,11 +1,12 @@
-// The network of the geographic libraries.
+// Network access of the geographic libraries.
 #pragma once
 
 namespace overfly::terrain {
 
-/// Forbids GDAL and PROJ every address for the rest of the program, whatever the environment
-/// says (PROJ_NETWORK): of a server, whose clients name data. Only `download_world` needs it.
-/// @pre no other thread runs yet: it changes the environment
+/// Disables all network access of GDAL and PROJ for the rest of the program, regardless of the
+/// environment (PROJ_NETWORK). Needed by a server, whose clients name data. Only `download_world`
+/// uses the network.
+/// @pre no other thread is running, since it changes the environment
 void turn_network_off();
 
 }  // namespace overfly::terrain

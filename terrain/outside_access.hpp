@@ -1,11 +1,11 @@
-// Inside terrain only: what of GDAL this program leaves open to the world outside.
+// Inside terrain only: restricts GDAL's access to the outside.
 #pragma once
 
 namespace overfly::terrain {
 
-/// Leaves of GDAL's drivers those that read and write local raster files, and closes its network,
-/// archive and stream file systems ("/vsicurl/", "/vsizip/", "/vsistdin/", ...) for the whole
-/// program: no name in a scenario, a manifest or a data file can make GDAL call out or unpack.
+/// Keeps only GDAL's drivers for local raster files, and disables its network, archive and stream
+/// file systems ("/vsicurl/", "/vsizip/", "/vsistdin/", ...) for the whole program. A name in a
+/// scenario, a manifest or a data file thus cannot make GDAL access the network or unpack archives.
 /// @pre GDALAllRegister() was called
 void close_outside_access();
 

@@ -1,4 +1,4 @@
-// Inside terrain only: which bands of a file make its colours, and how they become 8 bit.
+// Inside terrain only: selects the bands with a file's colours and converts them to 8 bit.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ struct RasterBands {
   bool has_mask = false;
   /// Some blocks of the file were never written: they are void.
   bool unwritten = false;
-  /// Value that marks void texels, said by the manifest in place of the file.
+  /// Value of void texels, given by the manifest instead of the file.
   std::optional<double> nodata;
   /// 8-bit value = (value - low) * 255 / (high - low), for bands that are not 8 bit.
   bool rescaled = false;
@@ -27,8 +27,7 @@ struct RasterBands {
   double high = 255.0;
 };
 
-/// Finds them; what was assumed goes to `warnings`. `nodata` takes the place of the file's own
-/// mask.
+/// Selects the bands; assumptions are added to `warnings`. `nodata` replaces the file's own mask.
 /// Errors: kUnreadable naming the file for complex samples; kCancelled.
 [[nodiscard]] Result<RasterBands> find_bands(GDALDataset& dataset,
                                              const std::string& file,

@@ -12,20 +12,20 @@
 
 namespace overfly::terrain {
 
-/// World coordinates of the ground as functions of the map: p = foot + height * up, exact on the
-/// ellipsoid to the polynomial's bound, by PROJ outside its domain.
+/// World coordinates of the ground as functions of the map: p = foot + height * up. Uses a
+/// polynomial within its error bound inside its domain, and PROJ outside.
 class MapGeodesy {
  public:
-  /// Errors: kInvalidArgument if the plane has no place on the earth around the domain.
+  /// Errors: kInvalidArgument if the plane cannot be transformed around the domain.
   static Result<MapGeodesy> create(const MapPlane& plane,
                                    const LocalFrame& frame,
                                    const MapRect& domain);
 
   [[nodiscard]] Eigen::Vector3d world(double x_map_m, double y_map_m, double height_m) const;
-  /// Map point whose world point at this height has these east and north, to the first order:
-  /// a start for an iteration.
+  /// Map point whose world point at this height has these east and north, to first order: a start
+  /// value for an iteration.
   [[nodiscard]] Eigen::Vector2d map_near(double east_m, double north_m) const;
-  /// d(map) / d(east, north) at the middle of the domain.
+  /// d(map) / d(east, north) at the centre of the domain.
   [[nodiscard]] const Eigen::Matrix2d& map_per_world() const { return map_per_world_; }
   [[nodiscard]] double max_error_m() const { return ground_->max_error(); }
 
@@ -84,10 +84,10 @@ class RasterWorld final : public TileSource {
   MapGeodesy geodesy_;
   LocalFrame frame_;
   std::string attribution_;
-  std::shared_ptr<const WorldCache> cache_;  ///< null where tiles are made of the files
+  std::shared_ptr<const WorldCache> cache_;  ///< null if tiles are read from the files
 };
 
-/// Grid and heights in words: equal for equal places of tiles and posts.
+/// Grid and heights as text: equal for equal places of tiles and posts.
 [[nodiscard]] std::string world_fingerprint(const TileGrid& grid, const ElevationModel& elevation);
 
 }  // namespace overfly::terrain

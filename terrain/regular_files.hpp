@@ -1,11 +1,11 @@
-// Inside terrain only: GDAL's view of this machine's files.
+// Inside terrain only: restricts GDAL to regular files.
 #pragma once
 
 namespace overfly::terrain {
 
-/// Shows GDAL regular files and folders alone, for the whole program: a FIFO, a socket or a device
-/// is not there, whatever name leads to it. What GDAL looks for by itself, as the files beside a
-/// raster, is otherwise opened whatever it is, and a FIFO waits for a writer.
+/// Hides everything except regular files and folders from GDAL, for the whole program: a FIFO, a
+/// socket or a device appears as absent. GDAL would otherwise also open side-cars of any kind by
+/// itself, and opening a FIFO blocks until there is a writer.
 void show_regular_files_alone();
 
 }  // namespace overfly::terrain

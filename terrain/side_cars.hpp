@@ -1,4 +1,4 @@
-// Inside terrain only: the files beside a raster that GDAL may take for parts of it.
+// Inside terrain only: the files next to a raster that GDAL may treat as parts of it.
 #pragma once
 
 #include <filesystem>
@@ -10,22 +10,22 @@
 
 namespace overfly::terrain {
 
-/// World files, headers, masks, overviews, statistics: whatever is named as the raster, with
-/// another ending or one more. Lists each folder once in its life. Not thread-safe.
+/// World files, headers, masks, overviews, statistics: files named as the raster, with another or
+/// an additional extension. Each object lists a folder only once. Not thread-safe.
 class SideCars {
  public:
-  /// Whether all of them lie where the policy allows, with links resolved.
-  /// Errors: as SourcePolicy::check_place, the first fault alone.
+  /// Whether all of them lie where the policy permits, with symbolic links resolved.
+  /// Errors: as SourcePolicy::check_place, only the first error.
   [[nodiscard]] Status check(const std::filesystem::path& file,
                              const std::string& field,
                              const SourcePolicy& sources);
-  /// A warning for each that is there but no regular file: GDAL does not see it.
+  /// A warning for each existing one that is not a regular file: GDAL does not see it.
   [[nodiscard]] std::vector<std::string> doubts(const std::filesystem::path& file);
 
  private:
   [[nodiscard]] std::vector<std::filesystem::path> of(const std::filesystem::path& file);
 
-  /// Names by themselves in lower case, of the folders seen.
+  /// File names and their lower-case forms, for the folders listed so far.
   std::map<std::filesystem::path, std::multimap<std::string, std::string>> folders_;
 };
 

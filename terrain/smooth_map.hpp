@@ -1,9 +1,9 @@
 // Inside terrain only: a smooth function of the plane as one polynomial with a checked error, so
-// that a map projection costs tens of nanoseconds instead of a library call.
+// that a map projection takes tens of nanoseconds instead of a library call.
 //
 // Method: interpolation at Chebyshev nodes (Trefethen, Approximation Theory and Approximation
-// Practice, 2013, ch. 3), terms of total degree <= n, n raised until the error at points between
-// the nodes is below the tolerance.
+// Practice, 2013, ch. 3), with terms of total degree <= n; n is increased until the error at points
+// between the nodes is below the tolerance.
 #pragma once
 
 #include <Eigen/Core>
@@ -30,7 +30,7 @@ struct MapRect {
 
 inline constexpr int kSmoothMapMaxDegree = 14;
 
-/// Values of the exact function at points (columns): false when it has none somewhere.
+/// Values of the exact function at points (columns); false if it is undefined at one of them.
 using PlaneFunction = std::function<bool(const Eigen::Matrix2Xd& points, Eigen::MatrixXd& values)>;
 
 /// Coefficients of T_i(x) T_j(y), i + j <= degree, one column each, j outermost.
@@ -46,7 +46,7 @@ struct ChebyshevFit {
                                                         const PlaneFunction& exact,
                                                         double tolerance);
 
-/// K functions of the plane. Outside its domain the polynomial is not to be trusted.
+/// K functions of the plane. Not valid outside the polynomial's domain.
 template <int K>
 class SmoothMap {
  public:

@@ -1,4 +1,4 @@
-// Inside terrain only: neighbouring posts between which no ground can lie.
+// Inside terrain only: implausibly steep steps between neighbouring posts.
 #pragma once
 
 #include <limits>
@@ -8,11 +8,12 @@
 
 namespace overfly::terrain {
 
-/// The least step between posts so far apart that ground does not make [m]: steeper than 70 deg,
-/// and more than 1000 m (the highest cliffs, 1250 m, are spread over several posts).
+/// Smallest height difference between neighbouring posts that does not occur on real ground [m]:
+/// steeper than 70 deg and more than 1000 m (the highest cliffs, 1250 m, extend over several
+/// posts).
 [[nodiscard]] double impossible_step_m(double spacing_m);
 
-/// Counts such steps in posts that come block by block, row of blocks by row.
+/// Counts such steps in posts given block by block, row of blocks by row.
 class SteepSteps {
  public:
   explicit SteepSteps(int columns, double least_m)
@@ -31,8 +32,8 @@ class SteepSteps {
   double least_m_;
   double count_ = 0.0;
   double largest_m_ = 0.0;
-  std::vector<float> above_m_;   ///< last row of the blocks above
-  std::vector<float> before_m_;  ///< last column of the block before
+  std::vector<float> above_m_;   ///< last row of the preceding row of blocks
+  std::vector<float> before_m_;  ///< last column of the preceding block
 };
 
 }  // namespace overfly::terrain

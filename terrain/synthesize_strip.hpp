@@ -1,4 +1,4 @@
-// A very long strip of land for endurance flights: little on disk, gigapixels through GDAL.
+// A very long strip of land for endurance flights: small on disk, gigapixels through GDAL.
 #pragma once
 
 #include <cstdint>
@@ -18,9 +18,10 @@ struct StripOptions {
 };
 
 /// Writes a world into `folder`, which must not exist or be empty (complete or not at all):
-/// `ground.tif`, one painted landscape with its mirror images, joins itself without a seam;
+/// `ground.tif`, one painted landscape with its mirror images, which repeats seamlessly;
 /// `imagery.vrt` repeats it along the strip, with area-averaged overviews; `elevation.tif` has
-/// hills that never repeat. Sides are rounded up to 1024 texels. Same options, same bytes.
+/// hills that do not repeat. Sides are rounded up to 1024 texels. The same options give the same
+/// bytes.
 /// Errors: kInvalidArgument naming the option, kConflict, kIo, kCancelled.
 [[nodiscard]] Status synthesize_strip(const std::filesystem::path& folder,
                                       const StripOptions& options,

@@ -1,4 +1,4 @@
-// Tiles that change some of what other tiles say.
+// Base class of layers that modify other tiles.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace overfly::terrain {
 
-/// Passes everything on; derived classes override what they change.
+/// Forwards all calls; derived classes override what they change.
 class TileDecorator : public TileSource {
  public:
   explicit TileDecorator(std::shared_ptr<const TileSource> base) : base_(std::move(base)) {}

@@ -1,9 +1,9 @@
 // The ground as tiles of imagery over a map plane, and as a surface in the world frame.
 //
-// The map plane is a projected coordinate system in metres: x_map right (east), y_map up (north),
-// that of the first imagery layer where it is metric and north-up (its texels are then used as
-// they are), else a transverse Mercator at the world's origin. Texels of level 0 have the size
-// grid().texel_m; level L doubles it L times. Tile (level, col, row) spans
+// The map plane is a projected coordinate system in metres: x_map right (east), y_map up (north).
+// It is that of the first imagery layer if that is metric and north-up (its texels are then used
+// unchanged), else a transverse Mercator at the world's origin. Texels of level 0 have the size
+// grid().texel_m, which doubles with each level. Tile (level, col, row) spans
 //   x_map in [left_x_m + col * s, + s],  y_map in [top_y_m - (row + 1) * s, top_y_m - row * s],
 //   s = kTileTexels * texel_m * 2^level.
 // Columns and rows may be negative or beyond the imagery: such tiles have no imagery, and the
@@ -22,7 +22,7 @@
 namespace overfly::terrain {
 
 inline constexpr int kTileTexels = 512;  ///< side of a tile without its border
-/// Texels of the neighbours around each tile, so that filtering shows no seam down to mip 3.
+/// Texels of the neighbours around each tile, so that filtering is seamless down to mip 3.
 inline constexpr int kTileBorder = 8;
 /// Texels of a tile\'s side with its border.
 inline constexpr int kTileSide = kTileTexels + 2 * kTileBorder;
@@ -56,15 +56,15 @@ enum class TileCoverage { kNone, kPartial, kFull };
 /// One tile's texels: (kTileTexels + 2 kTileBorder)^2, row 0 in the north.
 struct Tile {
   Image rgb;    ///< void texels have kVoidRgb
-  Image valid;  ///< 255 where there is imagery, 0 where not
+  Image valid;  ///< 255 = imagery, 0 = none
 };
 
 /// Thread-safe: the implementation guards its readers.
 class TileSource : public HeightQuery {
  public:
   [[nodiscard]] virtual const TileGrid& grid() const = 0;
-  /// Texel size of what was photographed [m]: coarser than grid().texel_m where finer levels are
-  /// synthetic. What texels per pixel are counted in.
+  /// Texel size of the photographed imagery [m]; coarser than grid().texel_m if finer levels are
+  /// synthetic. Texels per pixel are counted in it.
   [[nodiscard]] virtual double real_texel_m() const { return grid().texel_m; }
   [[nodiscard]] virtual TileCoverage coverage(const TileId& id) const = 0;
   /// Reads a tile with its border. Errors: kIo when a file cannot be read.
@@ -72,8 +72,8 @@ class TileSource : public HeightQuery {
 
   /// The ground's point in the world frame above a place of the map plane [m].
   [[nodiscard]] virtual Eigen::Vector3d world_from_map(double x_map_m, double y_map_m) const = 0;
-  /// The same of elevation averaged to posts about `spacing_m` apart: what far ground is drawn
-  /// from, so that a wide view needs little memory. Not finer than the elevation itself.
+  /// As world_from_map, with elevation averaged to posts about `spacing_m` apart. Distant ground is
+  /// drawn from it, so that a wide view needs little memory. Not finer than the elevation itself.
   [[nodiscard]] virtual Eigen::Vector3d coarse_world_from_map(double x_map_m,
                                                               double y_map_m,
                                                               double /*spacing_m*/) const {
@@ -89,8 +89,8 @@ class TileSource : public HeightQuery {
   [[nodiscard]] virtual Eigen::Vector2d height_range_m() const = 0;
   /// Credit line of the imagery and elevation.
   [[nodiscard]] virtual std::string attribution() const = 0;
-  /// kIo once a height could not be read (a file cut short, a disk taken away): look-ups of heights
-  /// have no way to say so and answer with the lowest ground. `tile` repeats it.
+  /// kIo after a height could not be read (a truncated file, a removed disk): height queries cannot
+  /// report errors and return the lowest ground. `tile` returns the same error.
   [[nodiscard]] virtual Status status() const { return {}; }
 };
 

@@ -1,5 +1,5 @@
 // Inside terrain only: blocks of a TIFF that were never written ("sparse"). They read as zeros,
-// which in a picture is a black that nobody photographed.
+// which would appear as black imagery.
 #pragma once
 
 #include <gdal_priv.h>
@@ -9,7 +9,7 @@
 
 namespace overfly::terrain {
 
-/// Whether the band has such blocks: looks at the file's table of blocks, reads none of them.
+/// Whether the band has such blocks; examines the file's table of blocks and reads none of them.
 /// Errors: kCancelled naming `file`.
 [[nodiscard]] Result<bool> has_unwritten_blocks(GDALRasterBand& band,
                                                 const std::filesystem::path& file,

@@ -17,13 +17,13 @@ class ValidityGrid {
   /// Reads the mask once. Errors: kIo; kCancelled.
   static Result<ValidityGrid> read(const ImageryRaster& raster, const Cancelled& cancelled);
 
-  /// As bytes and back; empty if they are not those of a grid.
+  /// Conversion to bytes and back; empty if they are not those of a grid.
   [[nodiscard]] std::vector<std::uint8_t> to_bytes() const;
   static std::optional<ValidityGrid> from_bytes(const std::vector<std::uint8_t>& bytes);
 
   /// Whether there is any valid texel.
   [[nodiscard]] bool any() const;
-  /// Share of the cells that are mostly void.
+  /// Fraction of the cells that are mostly void.
   [[nodiscard]] double void_share() const;
   /// Whether most of the cell around a file texel is valid; false outside the file.
   [[nodiscard]] bool valid_at(double px, double py) const;

@@ -1,4 +1,4 @@
-// Inside terrain only: what a GDAL virtual raster (VRT) may be made of.
+// Inside terrain only: restricts the contents of GDAL virtual rasters (VRT).
 #pragma once
 
 #include <filesystem>
@@ -7,15 +7,15 @@
 
 namespace overfly::terrain {
 
-/// Reads a virtual raster's description before GDAL does, and those of the rasters that it is made
-/// of; of any other file it reads the first bytes alone.
+/// Reads the description of a virtual raster, and of the rasters it consists of, before GDAL does.
+/// Of any other file it reads only the first bytes.
 ///
-/// A description may be made of plain sources, named relative to it, inside its folder after links
-/// are resolved. All else that GDAL would follow is refused: absolute names, addresses, archives,
-/// parts of containers, descriptions in place of names, raw bytes, warps, computed bands,
-/// elements that are not known here, and sources with a file beside them (an overview, a header)
+/// A description may contain only plain sources that are named relative to it and lie inside its
+/// folder after symbolic links are resolved. All else that GDAL would follow is rejected: absolute
+/// names, addresses, archives, parts of containers, descriptions in place of names, raw bytes,
+/// warps, computed bands, unknown elements, and sources with a side-car (an overview, a header)
 /// that leads out of the folder.
-/// Errors: kNotFound for a source that is not there; kUnreadable naming the file and what is wrong.
+/// Errors: kNotFound for a missing source; kUnreadable naming the file and the reason.
 [[nodiscard]] Status check_virtual_raster(const std::filesystem::path& file);
 
 }  // namespace overfly::terrain

@@ -1,8 +1,8 @@
-// Inside terrain only: posts whose value usually means "no data" though nothing declares it.
+// Inside terrain only: detects undeclared no-data values in posts.
 //
 // Method: plateaus of one such value, connected along rows and columns, are found in one pass over
 // the rows (runs joined by union-find; Rosenfeld and Pfaltz 1966, doi:10.1145/321356.321357). A
-// plateau is void where the posts around it lie a step away that ground does not make: a sea at 0 m
+// plateau is void if the step to the posts around it does not occur on real ground: a sea at 0 m
 // has a beach somewhere, a hole filled with 0 in ground at 300 m has none.
 #pragma once
 
@@ -17,7 +17,7 @@ namespace overfly::terrain {
 /// 0, 9999, 32767, 65535, and -9999, -10000, -32767, -32768, -99999, in the raster's own numbers.
 [[nodiscard]] bool is_usual_void(float value);
 
-/// Posts that were found void: runs along rows, in order.
+/// Posts found to be void, as runs along rows, in order.
 struct VoidRuns {
   struct Run {
     int row = 0;
@@ -28,7 +28,7 @@ struct VoidRuns {
   double posts = 0.0;
   std::set<float> values;
 
-  /// Makes those of a window NaN whose first post is (column, row).
+  /// Sets the void posts of a window to NaN; the window's first post is (column, row).
   void erase_from(HeightGrid& window, int column, int row) const;
 };
 
@@ -36,11 +36,11 @@ class VoidPlateaus {
  public:
   VoidPlateaus(int columns, double spacing_m) : columns_(columns), spacing_m_(spacing_m) {}
 
-  /// The next row of posts, from the top.
-  /// @param raw       `columns` numbers as the raster has them
+  /// Adds the next row of posts, from the top.
+  /// @param raw  `columns` numbers in the raster's units
   /// @param height_m  the same as heights, NaN where there is no data
   void add_row(const float* raw, const float* height_m);
-  /// The void plateaus, after the last row. Empty where there were too many to keep in memory.
+  /// The void plateaus, after the last row. Empty if there were too many to keep in memory.
   [[nodiscard]] VoidRuns finish();
 
  private:
@@ -48,8 +48,8 @@ class VoidPlateaus {
   struct Plateau {
     Label parent = 0;
     float value = 0.0F;
-    std::int64_t possible = 0;    ///< posts beside it that ground can reach
-    std::int64_t impossible = 0;  ///< posts beside it that it cannot
+    std::int64_t possible = 0;    ///< neighbouring posts with a plausible step
+    std::int64_t impossible = 0;  ///< neighbouring posts with an implausible step
   };
   struct LabelledRun {
     VoidRuns::Run run;
@@ -64,14 +64,14 @@ class VoidPlateaus {
   [[nodiscard]] Label root(Label label);
   [[nodiscard]] Label joined(Label a, Label b);
   [[nodiscard]] bool is_void(const Plateau& plateau) const;
-  /// Counts what a post beside a plateau says about it.
+  /// Counts a post next to a plateau.
   void judge(Label label, float value_m, const Row& row, int column);
   void find_runs(Row& row);
   void join_above(Row& row);
   void judge_sides(const Row& row);
   void judge_between(const Row& upper, const Row& lower);
   void store_above();
-  /// Forgets the plateaus that are known to be ground, and those without posts.
+  /// Discards the plateaus that are known to be ground, and those without posts.
   void compact();
 
   int columns_;
@@ -81,7 +81,7 @@ class VoidPlateaus {
   std::size_t compact_at_ = std::size_t{1} << 20U;  ///< plateaus and runs kept
   Row above_;
   std::vector<Plateau> plateaus_;
-  std::vector<LabelledRun> stored_;  ///< of rows that are done, without those known to be ground
+  std::vector<LabelledRun> stored_;  ///< of finished rows, without those known to be ground
 };
 
 }  // namespace overfly::terrain

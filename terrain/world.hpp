@@ -18,9 +18,9 @@ enum class VerticalDatum { kEllipsoid, kEgm96, kEgm2008, kNavd88, kUnknown };
 struct ImageryLayer {
   std::filesystem::path file;
   std::string attribution;
-  /// Coordinate reference system where the file names none, as "EPSG:2994".
+  /// Coordinate reference system if the file names none, as "EPSG:2994".
   std::optional<std::string> crs{};
-  /// Texels whose colour bands all have this value are void, whatever the file says.
+  /// Texels whose colour bands all have this value are void, regardless of the file.
   std::optional<double> nodata{};
 };
 
@@ -29,23 +29,23 @@ struct ElevationLayer {
   VerticalDatum datum = VerticalDatum::kUnknown;
   /// Geoid height above the ellipsoid [m], for a datum whose PROJ grid is not installed.
   std::optional<double> geoid_separation_m;
-  /// Metres per unit of the raster; taken from the file where it says, else 1.
+  /// Metres per unit of the raster; by default from the file, else 1.
   std::optional<double> unit_m;
   std::string attribution;
-  /// Coordinate reference system where the file names none, as "EPSG:2994".
+  /// Coordinate reference system if the file names none, as "EPSG:2994".
   std::optional<std::string> crs{};
-  /// Value of posts without data, in place of the one that the file declares.
+  /// Value of posts without data; replaces the one declared by the file.
   std::optional<double> nodata{};
 };
 
-/// What a world is made of; layers in priority order, the first one wins.
+/// The contents of a world; layers in priority order, the first one wins.
 struct WorldSpec {
   std::string name;
   std::vector<ImageryLayer> imagery;
   std::vector<ElevationLayer> elevation;
-  /// Ellipsoidal height of flat ground, where there is no elevation layer [m].
+  /// Ellipsoidal height of flat ground if there is no elevation layer [m].
   std::optional<double> ground_height_m;
-  /// Origin of the world frame; the imagery's centre on the ground where it is not given.
+  /// Origin of the world frame; by default the imagery's centre on the ground.
   std::optional<Geodetic> origin;
   /// A named place for courses to start: the threshold of the runway's north end, and the
   /// direction of the take-off run, clockwise from north [rad].
@@ -55,15 +55,15 @@ struct WorldSpec {
     double heading_rad = 0.0;
   };
   std::optional<Runway> runway;
-  /// Where `overfly world build` keeps what it made of these files; empty = nowhere. Of a manifest
-  /// that was read: the folder beside it, world.json's is world.cache.
+  /// The cache folder of `overfly world build`; empty = none. For a manifest that was read: the
+  /// folder next to it, e.g. world.cache for world.json.
   std::filesystem::path cache_folder{};
-  /// Which files may be named, here and by the files themselves.
+  /// Files that may be named, here and by the files themselves.
   SourcePolicy sources{};
 };
 
 /// Reads a world manifest (JSON, format in docs/WORLDS.md). Relative files are relative to it.
-/// @param sources  what the manifest may be, and what it may name; kept in the spec
+/// @param sources  policy for the manifest and the files that it names; kept in the spec
 /// Errors: kNotFound, kUnreadable, kInvalidArgument naming file, field, value and limit; as
 /// SourcePolicy::check.
 [[nodiscard]] Result<WorldSpec> read_world_manifest(const std::filesystem::path& manifest,
@@ -71,31 +71,32 @@ struct WorldSpec {
 [[nodiscard]] Status write_world_manifest(const std::filesystem::path& manifest,
                                           const WorldSpec& spec);
 
-/// The folder of a manifest's cache: beside it, with the extension "cache".
+/// The folder of a manifest's cache: next to it, with the extension "cache".
 [[nodiscard]] std::filesystem::path cache_folder_of(const std::filesystem::path& manifest);
 
-/// An opened world, with what was doubtful about its files.
+/// An opened world, with warnings about its files.
 struct World {
   std::shared_ptr<const TileSource> tiles;
-  WorldSpec spec;                     ///< with the origin resolved
-  std::vector<std::string> warnings;  ///< each names file, what was assumed, and the possible error
+  WorldSpec spec;  ///< with the origin resolved
+  /// Each names the file, the assumption and the possible error
+  std::vector<std::string> warnings;
   /// SHA-256 or size-and-time digests of the files, for the run's manifest: (file, digest).
   std::vector<std::pair<std::string, std::string>> data_hashes;
   /// State of its cache, for people: "none", "in use: FOLDER, 120 MB", "stale: REASON".
   std::string cache;
 };
 
-/// Whether a world may be made of these files and coordinate reference systems: their places and
-/// kinds and the form of texts, before anything is opened.
+/// Checks, before anything is opened, whether a world may consist of these files and coordinate
+/// reference systems: their places and kinds, and the form of texts.
 /// @param prefix  of the fields in messages, as "world."
-/// Errors: as SourcePolicy::check and check_crs_text, every fault on a line; kNotFound where files
-/// are absent and nothing else is wrong.
+/// Errors: as SourcePolicy::check and check_crs_text, each error on its own line; kNotFound if
+/// files are absent and nothing else is wrong.
 [[nodiscard]] Status check_world_sources(const WorldSpec& spec, const std::string& prefix);
 
-/// Opens the files, or what `build_world` made of them where that is up to date.
-/// @param cancelled  asked between parts of the work; true ends it. May be empty
+/// Opens the files, or the cache from `build_world` if it is up to date.
+/// @param cancelled  polled between parts of the work; true cancels it. May be empty
 /// Errors: as check_world_sources; kCancelled; kUnreadable or kInvalidArgument naming the file: no
-/// or broken georeference, missing CRS, imagery and elevation that do not overlap, a file GDAL
+/// or broken georeference, missing CRS, imagery and elevation that do not overlap, a file that GDAL
 /// cannot read.
 [[nodiscard]] Result<World> open_world(const WorldSpec& spec,
                                        const std::function<bool()>& cancelled = {});

@@ -1,4 +1,4 @@
-// The files that a world is read from, so that another version of them is noticed.
+// The files that a world is read from, used to detect changes.
 #pragma once
 
 #include <filesystem>
@@ -14,18 +14,18 @@ struct WorldSpec;
 
 struct WorldFile {
   std::filesystem::path file;  ///< absolute
-  /// Empty: it was not there. GDAL would read it if it came (a side-car, a mask, overviews).
+  /// Empty if it did not exist. GDAL would read it if it appeared (a side-car, a mask, overviews).
   std::optional<FileIdentity> identity;
 };
 
-/// The layers' files, their side-cars and the sources of virtual rasters, as they are now. What
-/// cannot be opened is left to whoever opens it to complain about.
+/// The present layers' files, their side-cars and the sources of virtual rasters. Files that cannot
+/// be opened are skipped; opening the world reports them.
 [[nodiscard]] std::vector<WorldFile> world_files(const WorldSpec& spec);
 
-/// The first of the files that is another now, came or went; empty where all are as they were.
+/// The first of the files that was changed, created or removed; empty if all are unchanged.
 [[nodiscard]] std::optional<std::filesystem::path> changed_file(
     const std::vector<WorldFile>& files);
-/// The same, but for files that came.
+/// The same, except for files that were created.
 [[nodiscard]] std::optional<std::filesystem::path> lost_file(const std::vector<WorldFile>& files);
 
 }  // namespace overfly::terrain

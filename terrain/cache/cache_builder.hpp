@@ -1,4 +1,4 @@
-// Inside terrain only: makes the chunks of a world's cache on all processors.
+// Inside terrain only: builds the chunks of a world's cache, using all processors.
 #pragma once
 
 #include <atomic>
@@ -28,9 +28,11 @@ class CacheBuilder {
   /// @param folder  of the cache; need not exist
   CacheBuilder(const RasterWorld& world, std::filesystem::path folder);
 
-  /// Makes what is missing or damaged in the folder. Errors: kIo, kCancelled, those of reading.
+  /// Makes the chunks that are missing or damaged in the folder. Errors: kIo, kCancelled, those of
+  /// reading.
   Status make(const BuildProgress& progress);
-  /// Only counts what is missing or damaged; `expected` are the chunks of tiles per level.
+  /// Only counts the chunks that are missing or damaged; `expected` are the chunks of tiles per
+  /// level.
   Result<int> count_damaged(const std::vector<CacheHeader::Chunks>& expected,
                             const BuildProgress& progress);
 
@@ -41,7 +43,7 @@ class CacheBuilder {
 
  private:
   using Work = std::function<Status(const Job&)>;
-  /// All jobs on all processors; the first error ends it.
+  /// Runs all jobs on all processors; the first error stops it.
   Status run(const Work& work, const std::string& doing, const BuildProgress& progress);
   Status report_until_done(const std::string& doing, const BuildProgress& progress);
   void take_jobs(const Work& work);

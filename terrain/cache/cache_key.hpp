@@ -1,4 +1,4 @@
-// Inside terrain only: what a world's cache depends on.
+// Inside terrain only: the inputs on which a world's cache depends.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace overfly::terrain {
 
-/// Raised whenever tiles or heights of the same files would come out differently.
+/// Increase whenever the same files would give different tiles or heights.
 inline constexpr int kCacheVersion = 3;
 
 struct CacheSource {
@@ -21,17 +21,17 @@ struct CacheSource {
   std::string digest;
 };
 
-/// The manifest's fields that decide tiles and heights, as text: equal texts, equal meaning.
+/// The manifest's fields that affect tiles and heights, as text; equal texts mean equal results.
 [[nodiscard]] std::string cache_fields(const WorldSpec& spec);
 
-/// All files the layers are read from (side-cars and the sources of virtual rasters included),
-/// with size and time but without digests. Errors: kNotFound, kUnreadable.
+/// All files from which the layers are read (including side-cars and the sources of virtual
+/// rasters), with size and time but without digests. Errors: kNotFound, kUnreadable.
 [[nodiscard]] Result<std::vector<CacheSource>> cache_sources(const WorldSpec& spec);
 
 [[nodiscard]] std::filesystem::path source_path(const WorldSpec& spec, const CacheSource& source);
 
-/// Empty if the files are those of before (same size and time, else same digest), else what is
-/// different about which file.
+/// Empty if the files are unchanged (same size and time, or else same digest); otherwise which file
+/// differs, and how.
 [[nodiscard]] std::string source_changes(const WorldSpec& spec,
                                          const std::vector<CacheSource>& before,
                                          const std::vector<CacheSource>& now);

@@ -11,19 +11,19 @@
 
 namespace overfly::terrain {
 
-/// Writes under another name and renames, so that a reader, a second writer or a killed program
-/// never leaves half a file. Errors: kIo.
+/// Writes to a temporary name and renames the file, so that a reader, a second writer or a killed
+/// program never leaves a partial file. Errors: kIo.
 [[nodiscard]] Status write_chunk(const std::filesystem::path& file,
                                  const std::vector<Bytes>& pieces);
 
-/// One piece; empty where there is none. Errors: kIo naming the file when it is missing, cut short
-/// or damaged.
+/// One piece; empty if there is none. Errors: kIo naming the file if it is missing, truncated or
+/// damaged.
 [[nodiscard]] Result<Bytes> read_piece(const std::filesystem::path& file, int index);
 
 /// Reads all of it. Errors: kIo as `read_piece`.
 [[nodiscard]] Status check_chunk(const std::filesystem::path& file);
 
-/// Writes a file whole. Errors: kIo.
+/// Writes a file whole or not at all. Errors: kIo.
 [[nodiscard]] Status write_whole(const std::filesystem::path& file,
                                  std::span<const std::uint8_t> bytes);
 

@@ -1,7 +1,7 @@
-// Inside terrain only: a world's tiles and heights as made before, kept beside its manifest.
+// Inside terrain only: a world's precomputed tiles and heights, stored next to its manifest.
 //
-// CACHE/KEY/cache.json says what it was made from and is written last; CACHE/KEY/tiles/LEVEL/ and
-// CACHE/KEY/heights/LEVEL/ hold chunks; CACHE/KEY/validity-N says where layer N has texels.
+// CACHE/KEY/cache.json describes the sources and is written last; CACHE/KEY/tiles/LEVEL/ and
+// CACHE/KEY/heights/LEVEL/ hold chunks; CACHE/KEY/validity-N tells where layer N has texels.
 #pragma once
 
 #include <memory>
@@ -17,17 +17,17 @@
 
 namespace overfly::terrain {
 
-inline constexpr int kChunkTiles = 8;    ///< tiles along a chunk's side
-inline constexpr int kChunkBlocks = 16;  ///< blocks of heights along a chunk's side
+inline constexpr int kChunkTiles = 8;    ///< tiles per side of a chunk
+inline constexpr int kChunkBlocks = 16;  ///< blocks of heights per side of a chunk
 
-/// What cache.json says.
+/// Contents of cache.json.
 struct CacheHeader {
   using Chunks = std::set<std::pair<int, int>>;  ///< (column, row)
   std::string fields;
   std::vector<CacheSource> sources;
   std::string layout;  ///< fingerprint of grid and heights
   int levels = 0;      ///< of tiles
-  /// Per level, the chunks that hold tiles.
+  /// For each level, the chunks that contain tiles.
   std::vector<Chunks> chunks;
   HeightSurvey survey;
   std::vector<bool> masked;  ///< per imagery layer: has a validity file
@@ -44,22 +44,23 @@ struct CacheHeader {
                                                       int row);
 [[nodiscard]] std::filesystem::path validity_path(const std::filesystem::path& folder, int layer);
 
-/// Writes cache.json: from then on the folder counts. Errors: kIo.
+/// Writes cache.json, which makes the folder valid. Errors: kIo.
 [[nodiscard]] Status write_header(const std::filesystem::path& folder, const CacheHeader& header);
 
 class WorldCache final : public HeightStore {
  public:
-  /// What was found beside a manifest: a cache that fits, or why not.
+  /// The result of the search next to a manifest: a matching cache, or the reason why there is
+  /// none.
   struct Found {
     std::shared_ptr<const WorldCache> cache;
-    std::string stale;  ///< of one that does not fit: what is different
+    std::string stale;  ///< what differs, if a cache does not match
   };
   [[nodiscard]] static Found find(const WorldSpec& spec);
 
   WorldCache(std::filesystem::path folder, CacheHeader header)
       : folder_(std::move(folder)), header_(std::move(header)) {}
 
-  /// A tile of a level that the cache holds. Errors: kIo naming the file.
+  /// A tile of a level that the cache contains. Errors: kIo naming the file.
   [[nodiscard]] Result<Tile> tile(const TileId& id) const;
   [[nodiscard]] bool holds(int level) const { return level >= 0 && level < header_.levels; }
   [[nodiscard]] const HeightSurvey& survey() const override { return header_.survey; }

@@ -1,4 +1,4 @@
-// Inside download only: one request's answer as a raster with a place.
+// Inside download only: one request's answer as a georeferenced raster.
 #pragma once
 
 #include <cstdint>
@@ -13,11 +13,11 @@
 namespace overfly::terrain::download {
 
 enum class Payload {
-  kGeoTiff,  ///< brings its place with it, which is checked
-  kPicture,  ///< PNG, JPEG and the like; its place is that of the request
+  kGeoTiff,  ///< contains its georeference, which is checked
+  kPicture,  ///< PNG, JPEG and the like; located by the request
 };
 
-/// Heights below or above these are no heights [m].
+/// Values below or above these are not heights [m].
 inline constexpr double kLowestHeightM = -12000.0;
 inline constexpr double kHighestHeightM = 12000.0;
 inline constexpr float kNoHeight = -999999.0F;
@@ -31,11 +31,11 @@ struct Chunk {
   int width_px = 0;
   int height_px = 0;
   Payload payload = Payload::kGeoTiff;
-  /// Accept that the service has nothing there (404, 204): tiles of a template.
+  /// Accept that the service has no data there (404, 204): tiles of a template.
   bool may_be_absent = false;
 };
 
-/// The raster of which chunks are parts.
+/// The raster that the chunks compose.
 struct ChunkLayer {
   std::string what;
   std::string source;
@@ -51,20 +51,20 @@ struct ChunkLayer {
   double transfer_bytes_per_px = 3.0;
 };
 
-/// Judges an answer without writing it: HTML or JSON instead of an image, a damaged or truncated
+/// Checks an answer without writing it: HTML or JSON instead of an image, a damaged or truncated
 /// raster (every block is read), wrong size, type or place.
 [[nodiscard]] Verdict judge_chunk(const ChunkLayer& layer,
                                   const Chunk& chunk,
                                   const HttpReply& reply);
 
-/// Writes a judged answer beside its name and renames it. Errors: kIo.
+/// Writes a checked answer to a temporary file and renames it. Errors: kIo.
 [[nodiscard]] Status write_chunk(const Chunk& chunk, const HttpReply& reply);
 
-/// True if an earlier download left this chunk whole; a damaged one is removed.
+/// True if an earlier download left this chunk complete; a damaged one is removed.
 [[nodiscard]] bool chunk_is_there(const ChunkLayer& layer, const Chunk& chunk);
 
-/// What a service that answers with words says: the message of an ArcGIS error, the title of a
-/// page, or the first words.
+/// The text of a service's error answer: the message of an ArcGIS error, the title of a page, or
+/// the first words.
 [[nodiscard]] std::string words_of(const HttpReply& reply);
 
 }  // namespace overfly::terrain::download

@@ -1,4 +1,4 @@
-// Inside download only: one HTTP request, by the curl inside GDAL.
+// Inside download only: one HTTP request, sent by GDAL's curl.
 #pragma once
 
 #include <atomic>
@@ -10,11 +10,11 @@
 namespace overfly::terrain::download {
 
 struct HttpReply {
-  int status = 0;            ///< of the last answer after redirects; 0 = none came whole
+  int status = 0;            ///< of the last answer after redirects; 0 = no complete answer
   std::string content_type;  ///< in lower case
   std::vector<std::uint8_t> body;
-  std::optional<double> retry_after_s;  ///< what the service asked for
-  std::string error;                    ///< why there is no whole answer; empty when there is one
+  std::optional<double> retry_after_s;  ///< wait requested by the service
+  std::string error;                    ///< why there is no complete answer; empty if there is one
   bool cancelled = false;
 };
 
@@ -25,7 +25,7 @@ struct HttpReply {
                                  double stall_s,
                                  const std::atomic<bool>& stop);
 
-/// Seconds that a Retry-After header asks for (RFC 9110, 10.2.3): a number, or a date after `now`.
+/// Seconds to wait by a Retry-After header (RFC 9110, 10.2.3): a number, or a date after `now`.
 [[nodiscard]] std::optional<double> retry_after_s(const std::string& value,
                                                   std::int64_t unix_now_s);
 

@@ -1,4 +1,4 @@
-// Inside download only: the layers of a download, cut into requests.
+// Inside download only: the layers of a download, divided into requests.
 #pragma once
 
 #include <string>
@@ -19,14 +19,14 @@ struct ImageServiceLimits {
 [[nodiscard]] Result<ImageServiceLimits> ask_image_service(const std::string& service,
                                                            PoliteFetcher& fetcher);
 
-/// The imagery and elevation that the options ask for; an elevation layer only where it has a
-/// source. Errors: kInvalidArgument naming the option; kIo, kCancelled.
+/// The imagery and elevation for the options; an elevation layer only if it has a source.
+/// Errors: kInvalidArgument naming the option; kIo, kCancelled.
 [[nodiscard]] Result<std::vector<ChunkLayer>> lay_out_download(const DownloadOptions& options,
                                                                PoliteFetcher& fetcher,
                                                                std::vector<std::string>& warnings);
 
-/// Layers of The National Map's image services. NAD83 UTM where it has zones there, which is what
-/// the imagery was made in, else WGS84 UTM.
+/// Layers of The National Map's image services. NAD83 UTM where its zones exist, which is the CRS
+/// of the original imagery; else WGS84 UTM.
 [[nodiscard]] Result<ChunkLayer> usgs_layer(const DownloadOptions& options,
                                             bool heights,
                                             PoliteFetcher& fetcher,
@@ -35,10 +35,10 @@ struct ImageServiceLimits {
 /// Layer of a template of tile or WMS addresses, Web Mercator.
 [[nodiscard]] Result<ChunkLayer> template_layer(const DownloadOptions& options);
 
-/// Replaces "{name}" wherever it stands; false if it stands nowhere.
+/// Replaces all occurrences of "{name}"; false if there are none.
 bool replace_field(std::string& text, const std::string& name, const std::string& value);
 
-/// Metres or other units with as many digits as bits can hold, no exponent.
+/// Decimal text of full double precision, without exponent.
 [[nodiscard]] std::string plain_number(double value);
 
 }  // namespace overfly::terrain::download

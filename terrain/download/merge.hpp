@@ -1,4 +1,4 @@
-// Inside download only: chunks become one file.
+// Inside download only: merges chunks into one file.
 #pragma once
 
 #include <functional>
@@ -7,16 +7,16 @@
 
 namespace overfly::terrain::download {
 
-/// What the pixels say once they are together.
+/// Statistics of the merged pixels.
 struct MergeReport {
   double void_share = 0.0;  ///< of the layer's pixels
-  int uniform_chunks = 0;   ///< of one colour throughout: places a service has no imagery of
+  int uniform_chunks = 0;   ///< of one colour throughout: the service has no imagery there
 };
 
-/// Writes a tiled, losslessly compressed GeoTIFF with area-averaged overviews; chunks that are not
-/// there, pixels outside a chunk's mask and heights that are none become void.
-/// Complete or not at all: written beside its name and renamed.
-/// @param go_on  called with the done share; false cancels
+/// Writes a tiled, losslessly compressed GeoTIFF with area-averaged overviews. Missing chunks,
+/// pixels outside a chunk's mask and invalid heights become void. Written to a temporary name and
+/// renamed, so that it appears whole or not at all.
+/// @param go_on  called with the share done; returning false cancels
 /// Errors: kIo, kCancelled.
 [[nodiscard]] Result<MergeReport> merge_chunks(const ChunkLayer& layer,
                                                const std::filesystem::path& file,

@@ -1,4 +1,4 @@
-// Inside download only: requests repeated with patience.
+// Inside download only: HTTP requests with retries that respect the service's limits.
 #pragma once
 
 #include <atomic>
@@ -14,16 +14,16 @@
 
 namespace overfly::terrain::download {
 
-/// What the one who asked thinks of an answer.
+/// The caller's verdict on an answer.
 struct Verdict {
   enum class Kind { kGood, kAbsent, kTryAgain, kFailed };
   Kind kind = Kind::kGood;
   std::string reason;
 };
 
-/// Shared by all threads of a download. Failures that may pass (no answer, 408, 429, 5xx, damaged
-/// answers) are tried again after a wait that doubles, with jitter; a wait that the service asks
-/// for holds back every request to it.
+/// Shared by all threads of a download. Temporary failures (no answer, 408, 429, 5xx, damaged
+/// answers) are retried after a wait that doubles, with jitter. A wait requested by the service
+/// delays all requests to it.
 class PoliteFetcher {
  public:
   PoliteFetcher(const DownloadOptions& options, const std::atomic<bool>& stop)
@@ -35,7 +35,8 @@ class PoliteFetcher {
     HttpReply reply;
     Verdict verdict;
   };
-  /// @param judge  of answers with status 200; also sees 204 and 404, which it may call absent
+  /// @param judge  judges answers with status 200; also gets 204 and 404, which it may accept as
+  ///               absent
   /// Errors: kIo naming the address, the last reason and the number of attempts; kCancelled.
   [[nodiscard]] Result<Outcome> get(const std::string& url, const Judge& judge);
 
@@ -44,7 +45,7 @@ class PoliteFetcher {
  private:
   using Clock = std::chrono::steady_clock;
   [[nodiscard]] Verdict judged(const HttpReply& reply, const Judge& judge) const;
-  /// Waits for the time from which the service wants to be asked. False when stopped.
+  /// Waits until the service accepts requests again. False if stopped.
   [[nodiscard]] bool wait_for_turn();
   [[nodiscard]] bool pause(double wait_s);
   [[nodiscard]] double back_off_s(int attempt);
@@ -55,7 +56,8 @@ class PoliteFetcher {
   std::atomic<int> repeated_{0};
   std::mutex mutex_;
   Clock::time_point not_before_{};
-  std::minstd_rand jitter_{std::random_device{}()};  // spreads clients, decides no result
+  // Spreads clients in time; does not affect the result
+  std::minstd_rand jitter_{std::random_device{}()};
 };
 
 }  // namespace overfly::terrain::download

@@ -1,4 +1,4 @@
-// A block of the picture while it is painted: colour and shadow of each texel.
+// A block of the image being painted: colour and shadow of each texel.
 #pragma once
 
 #include <vector>
@@ -40,7 +40,7 @@ struct Canvas {
     return static_cast<std::size_t>(v) * width + u;
   }
 
-  /// Calls visit(u, v) for texels within `reach_m` of a place, as far as the block goes.
+  /// Calls visit(u, v) for the block's texels within `reach_m` of a place.
   template <typename Visit>
   void around(float x, float y, float reach_m, Visit visit) {
     const float inverse = 1.0F / texel_m;
@@ -54,7 +54,7 @@ struct Canvas {
   }
 };
 
-/// Darkens what the trees' and structures' shadows fall on.
+/// Darkens the texels in the shadow of trees and structures.
 void cast_shadow(Canvas& canvas, const Tree& tree);
 void cast_shadow(Canvas& canvas, const Structure& structure);
 void draw(Canvas& canvas, const Tree& tree);

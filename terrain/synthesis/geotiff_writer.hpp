@@ -14,7 +14,7 @@ namespace overfly::terrain::synthesis {
 
 [[nodiscard]] Error io_error(const std::filesystem::path& file, const GdalMessages& messages);
 
-/// Creation settings that only configuration options reach, for the time of one file.
+/// Sets creation options that exist only as configuration options, while one file is created.
 class TiffSettings {
  public:
   TiffSettings();
@@ -53,7 +53,7 @@ class LevelWriter {
  public:
   LevelWriter(GDALDataset& dataset, int levels) : dataset_(dataset), levels_(levels) {}
 
-  /// Rows must come in order. @return false when GDAL failed
+  /// Rows must come in order. @return false if GDAL failed
   bool write(int level, int y, const Image& rows);
 
  private:

@@ -7,12 +7,12 @@
 
 namespace overfly::terrain::synthesis {
 
-/// What varies so slowly that it is worked out on a coarse lattice and interpolated.
+/// Slowly varying quantities, computed on a coarse lattice and interpolated.
 struct Slow {
   float bend_x = 0.0F;  ///< of the boundaries [m]
   float bend_y = 0.0F;
   float soil = 0.0F;      ///< variation of the soil, about [-1, 1], 20 m and more
-  float patches = 0.0F;   ///< the same, 4 m to 30 m
+  float patches = 0.0F;   ///< as soil, 4 m to 30 m
   float light = 1.0F;     ///< on the slope
   float stream_m = 0.0F;  ///< distance to the stream's middle
   float stream_half_m = 3.0F;

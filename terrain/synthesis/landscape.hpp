@@ -1,4 +1,4 @@
-// The plan of the built-in world: everything in it as shapes, before anything is painted.
+// The plan of the built-in world: all of its objects as shapes, before painting.
 #pragma once
 
 #include <vector>
@@ -14,7 +14,7 @@ namespace overfly::terrain::synthesis {
 struct LandscapeOptions {
   std::uint32_t seed = 1;
   float half_m = 2100.0F;   ///< half the side of the imagery
-  float reach_m = 1500.0F;  ///< the hills go on so far beyond it
+  float reach_m = 1500.0F;  ///< the hills extend this far beyond it
   float relief_m = 40.0F;
 };
 
@@ -30,7 +30,7 @@ struct Landscape {
 
   /// The parcels of a place, with the old boundaries' bends.
   [[nodiscard]] ParcelHit parcel_at(float x, float y) const;
-  /// Where woods stand whatever the fields say, 0 to 1 over a soft edge.
+  /// Woods that do not depend on the fields, 0 to 1 with a soft edge.
   [[nodiscard]] float wood_at(float x, float y) const;
   /// How far boundaries bend away from straight lines here [m].
   [[nodiscard]] Point bend_at(float x, float y) const;

@@ -1,4 +1,4 @@
-// Deterministic noise: values that only the place and the seed decide.
+// Deterministic noise: values that depend only on the place and the seed.
 #pragma once
 
 #include <algorithm>
@@ -32,8 +32,7 @@ inline float smoothstep(float low, float high, float value) {
   return t * t * (3.0F - 2.0F * t);
 }
 
-/// How much an edge covers: 1 well inside (negative distance), 0 well outside, linear over the
-/// width.
+/// Coverage by an edge: 1 well inside (negative distance), 0 well outside, linear over the width.
 inline float soft(float distance_m, float width_m = 0.2F) {
   return std::clamp(0.5F - 0.5F * distance_m / width_m, 0.0F, 1.0F);
 }
@@ -56,8 +55,8 @@ inline float noise(float x, float y, std::uint32_t seed) {
   return 2.0F * lerp(north, south, t) - 1.0F;
 }
 
-/// Sum of `octaves` noises, each half as large and `gain` as strong as the one before; about
-/// [-1, 1].
+/// Sum of `octaves` noises, each with half the size and `gain` times the strength of the preceding
+/// one; about [-1, 1].
 inline float fractal(float x, float y, int octaves, float gain, std::uint32_t seed) {
   float sum = 0.0F;
   float weight = 1.0F;
@@ -66,7 +65,7 @@ inline float fractal(float x, float y, int octaves, float gain, std::uint32_t se
     sum += weight * noise(x, y, seed + static_cast<std::uint32_t>(k) * 101U);
     total += weight;
     weight *= gain;
-    // A turn between octaves hides the lattice's axes.
+    // A rotation between octaves hides the lattice's axes.
     const float turned = 1.6F * x - 1.2F * y;
     y = 1.2F * x + 1.6F * y;
     x = turned + 17.3F;

@@ -1,4 +1,4 @@
-// Paints the landscape as a camera far above would see it.
+// Paints the landscape as seen vertically from above.
 #pragma once
 
 #include "core/image.hpp"

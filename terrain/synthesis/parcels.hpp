@@ -27,7 +27,7 @@ struct Point {
 
 struct Parcel {
   LandUse use = LandUse::kCrop;
-  Rgb light;  ///< the two colours between which the soil's variation mixes
+  Rgb light;  ///< the two colours between which the soil varies
   Rgb dark;
   float row_cos = 1.0F;  ///< direction of the rows, from east towards north
   float row_sin = 0.0F;
@@ -53,11 +53,11 @@ struct ParcelHit {
   float road_m = 0.0F;              ///< distance to the nearest road, gravel road or track
   Border road = Border::kTrack;
   float road_along_m = 0.0F;
-  float road_signed_m = 0.0F;  ///< side of the road's middle
+  float road_signed_m = 0.0F;  ///< side of the road's centre line
 };
 
-/// A tree of dividing lines; its leaves are convex parcels. Distances to the borders come with
-/// the descent, since a leaf is bounded by lines on its path only.
+/// A tree of dividing lines; its leaves are convex parcels. The descent also gives the distances to
+/// the borders, since a leaf is bounded only by lines on its path.
 class Parcels {
  public:
   /// Divides a square of +-half_m around the middle.

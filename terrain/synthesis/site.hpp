@@ -1,4 +1,4 @@
-// Inside synthesis only: where a synthesised world lies, and how its folder comes to be.
+// Inside synthesis only: location of a synthesised world, and creation of its folder.
 #pragma once
 
 #include <filesystem>
@@ -16,8 +16,8 @@ inline constexpr double kDefaultLonDeg = -86.03;
 [[nodiscard]] Result<Site> choose_site(double lat_deg = kDefaultLatDeg,
                                        double lon_deg = kDefaultLonDeg);
 
-/// Fills a new folder: `write` is given a temporary one, which is renamed when it succeeds and
-/// removed when not.
+/// Fills a new folder: `write` gets a temporary folder, which is renamed if it succeeds and removed
+/// otherwise.
 /// Errors: kConflict if `folder` exists and is not an empty folder; kIo; those of `write`.
 [[nodiscard]] Status make_folder_whole(
     const std::filesystem::path& folder,

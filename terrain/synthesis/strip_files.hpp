@@ -9,7 +9,7 @@
 
 namespace overfly::terrain::synthesis {
 
-/// Texels of a strip's sides are multiples of this, so that all its overviews are exact.
+/// The sides of a strip are multiples of this number of texels, so that all overviews are exact.
 inline constexpr int kStripStepPx = 1024;
 
 struct Strip {
@@ -22,14 +22,14 @@ struct Strip {
 };
 
 /// A landscape of `swatch_px` texels a side (a multiple of kStripStepPx) with its mirror images to
-/// the east, south and south-east: repeated, it has no seam. Errors: kIo, kCancelled.
+/// the east, south and south-east, so that it repeats seamlessly. Errors: kIo, kCancelled.
 [[nodiscard]] Status write_ground(const std::filesystem::path& file,
                                   const Landscape& land,
                                   const Strip& strip,
                                   int swatch_px,
                                   const std::function<bool(double)>& progress);
 
-/// `imagery.vrt` over the ground file, and beside it one file for each overview. Errors: kIo.
+/// `imagery.vrt` over the ground file, and one file next to it for each overview. Errors: kIo.
 [[nodiscard]] Status write_mosaic(const std::filesystem::path& folder,
                                   const std::filesystem::path& ground,
                                   const Strip& strip,

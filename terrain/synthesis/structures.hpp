@@ -22,7 +22,7 @@ struct Structure {
   Rgb colour;
   std::uint32_t seed = 0;
 
-  /// Farthest point of the structure and its shadow from its middle.
+  /// Farthest point of the structure and its shadow from its centre.
   [[nodiscard]] float reach_m() const {
     return std::hypot(half_length_m, half_width_m) + 1.1F * height_m + 1.0F;
   }
