@@ -21,10 +21,10 @@ struct CameraShot {
   Image image;      ///< as the camera delivers it, grey or RGB; the high 8 bits of deeper sensors
   Image16 image16;  ///< from sensors deeper than 8 bit; else empty
   renderer::ExposureSetting setting;  ///< exposure 0 = a camera without a sensor model
-  double saturated_fraction = 0.0;   ///< fraction of the pixels
-  std::int64_t stamp_ns = 0;        ///< as given to estimators; the true time is MadeFrame::t_ns
-  std::vector<std::string> faults;   ///< kinds of the active faults
-  bool delivered = true;            ///< false: lost before it reached the estimators
+  double saturated_fraction = 0.0;    ///< of the pixels
+  std::int64_t stamp_ns = 0;          ///< as given to estimators; the true time is MadeFrame::t_ns
+  std::vector<std::string> faults;    ///< kinds of the faults that affect the frame
+  bool delivered = true;              ///< false: lost before it reached the estimators
 };
 
 /// One instant, as seen by all cameras.

@@ -33,7 +33,7 @@ struct DatasetImage {
   int line = 0;            ///< LINE of listed_at
   std::int64_t index = 0;  ///< the data set's own number, else the position in the list; increasing
   std::int64_t t_ns = 0;   ///< in the data set's time base; increasing
-  std::int64_t exposure_ns = 0;      ///< 0 = not known
+  std::int64_t exposure_ns = 0;  ///< 0 = not known
 };
 
 struct Dataset {

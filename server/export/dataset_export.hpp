@@ -37,7 +37,7 @@ struct ExportOptions {
 };
 
 struct ExportSummary {
-  std::int64_t frames = 0;       ///< frames done
+  std::int64_t frames = 0;  ///< frames written
   /// Differs from frames if images were lost or there are several cameras
   std::int64_t images = 0;
   bool cancelled = false;   ///< the output is complete up to the last frame written

@@ -25,10 +25,10 @@ struct FrameRow {
   double void_fraction = 0.0;
   std::int64_t exposure_ns = 0;      ///< 0 = not known
   double gain = 1.0;                 ///< of auto-exposure, multiplied by the sensor's own
-  double saturated_fraction = 0.0;   ///< of the pixels
+  double saturated_fraction = 0.0;   ///< fraction of the pixels
   int late_tiles = 0;                ///< tiles drawn from a coarser level
   std::int64_t stamp_offset_ns = 0;  ///< stamp given to estimators minus t_ns
-  std::vector<std::string> faults;   ///< kinds of those in force
+  std::vector<std::string> faults;   ///< kinds of the active faults
   /// Of the grey image as sent to estimators; empty if none was sent.
   std::optional<std::uint32_t> image_crc32;
 };

@@ -28,10 +28,10 @@ struct RunInfo {
   std::string title;
   RunStatus status = RunStatus::kQueued;
   std::string created_utc;       ///< ISO 8601
-  std::string error;  ///< why it cannot be flown on this machine; empty if it can
+  std::string error;             ///< why it failed; else empty
   std::string problem;           ///< invalid file and field of its folder; else empty
   std::int64_t duration_ns = 0;  ///< of the flight, 0 = not known yet
-  std::int64_t frames = 0;       ///< done
+  std::int64_t frames = 0;       ///< frames done
   std::int64_t frames_total = 0;
   std::string pacing;
   std::vector<std::string> estimators;

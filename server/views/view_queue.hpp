@@ -21,8 +21,8 @@ class ViewQueue {
     PictureDone done;
   };
 
-  /// A stream that waits already keeps its place in the line and gets the new wish.
-  /// @return the `done` of the wish replaced, empty if there was none
+  /// A stream that waits already keeps its place in the queue and gets the new request.
+  /// @return the `done` of the request replaced, empty if there was none
   [[nodiscard]] PictureDone push(Entry entry) {
     for (Entry& waiting : entries_) {
       if (waiting.client != entry.client || waiting.stream != entry.stream) continue;

@@ -15,7 +15,7 @@ struct ScenarioEntry {
   std::filesystem::path file;
   std::string title;
   std::string description;
-  std::string error;  ///< why it cannot be flown here; empty when it can
+  std::string error;  ///< why it cannot be flown on this machine; empty if it can
 };
 
 /// All `*.json` that are scenarios (not schemas), by name, with why one cannot be flown here.
