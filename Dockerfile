@@ -1,6 +1,6 @@
-# One image for any machine: it renders with a GPU where the host lends one, else in software.
+# One image for any machine: it renders with a GPU if the host provides one, otherwise in software.
 #   docker build -t overfly . && docker run --rm -p 127.0.0.1:8480:8480 overfly
-# The log names the URL to open, with the token.
+# The log contains the URL to open, with the token.
 FROM debian:bookworm-slim AS build
 WORKDIR /opt/overfly
 COPY scripts scripts
@@ -27,6 +27,6 @@ EXPOSE 8480
 HEALTHCHECK --interval=30s --timeout=5s --start-period=10s \
   CMD printf 'header = "Authorization: Bearer %s"' "$(cat /data/token)" \
     | curl -fsS -K - http://127.0.0.1:8480/api/v1/health || exit 1
-# The first process of a container must reap what estimators leave behind.
+# The first process of a container must reap the orphans of estimators.
 ENTRYPOINT ["tini", "-s", "--", "/opt/overfly/build/release/overfly"]
 CMD ["serve", "--address", "0.0.0.0", "--token-file", "/data/token", "--runs", "/data/runs", "--scenarios", "/opt/overfly/scenarios", "--web", "/opt/overfly/web/dist"]

@@ -1,4 +1,4 @@
-# The scenario schema as a source file, ${overfly_schema_source}, of the target that includes it.
+# Generates a source file with the scenario schema, ${overfly_schema_source}, for the including target.
 set(schema ${CMAKE_SOURCE_DIR}/scenarios/scenario.schema.json)
 set(embed_schema ${CMAKE_SOURCE_DIR}/server/scenario/document/embed_schema.cmake)
 set(overfly_schema_source ${CMAKE_CURRENT_BINARY_DIR}/generated/scenario_schema_text.cpp)

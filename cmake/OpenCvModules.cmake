@@ -1,5 +1,5 @@
-# overfly_opencv(MODULE...) makes a target OpenCV::MODULE of each. Debian ships OpenCV's CMake
-# package only with all of its modules (and their gigabyte of dependencies); we need five.
+# overfly_opencv(MODULE...) creates a target OpenCV::MODULE for each module. Debian's CMake package of
+# OpenCV requires all modules (and a gigabyte of dependencies); Overfly needs five.
 function(overfly_opencv)
   find_path(OVERFLY_OPENCV_INCLUDE_DIR opencv2/core.hpp PATH_SUFFIXES opencv4 REQUIRED)
   foreach(module ${ARGN})

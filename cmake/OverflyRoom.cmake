@@ -1,7 +1,7 @@
 # overfly_room(NAME [DEPENDS targets...] [PRIVATE_DEPENDS targets...] [FOLDERS subfolders...])
 #
-# A room is a static library, overfly_NAME, of every .cpp in the current folder and its FOLDERS.
-# Third-party libraries go under PRIVATE_DEPENDS: their types must not leak into a room's headers.
+# Creates a room: a static library overfly_NAME with every .cpp in the current folder and in FOLDERS.
+# Third-party libraries belong in PRIVATE_DEPENDS: their types must not appear in a room's headers.
 function(overfly_room name)
   cmake_parse_arguments(arg "" "" "DEPENDS;PRIVATE_DEPENDS;FOLDERS" ${ARGN})
   set(patterns ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
@@ -20,8 +20,8 @@ endfunction()
 
 # overfly_test(NAME [FOLDER folder] [LIBS targets...] [TIMEOUT seconds])
 #
-# One GoogleTest program, NAME_tests, of every *_test.cpp in the folder, or in the current one; each TEST is a
-# ctest case of its own, so that a skipped one is seen.
+# Creates a GoogleTest program NAME_tests with every *_test.cpp in FOLDER (default: the current
+# folder). Each TEST is a separate ctest case, so that skipped tests are visible.
 function(overfly_test name)
   cmake_parse_arguments(arg "" "TIMEOUT;FOLDER" "LIBS" ${ARGN})
   if(NOT arg_TIMEOUT)
