@@ -45,7 +45,7 @@ double adjust(const PinholeCamera& camera, Bundle& bundle, const BundleOptions& 
     ordering->AddElementToGroup(point.data(), 0);
   }
   for (const Bundle::Sight& sight : bundle.sights) {
-    problem.AddResidualBlock(new Reprojection(camera, sight),
+    problem.AddResidualBlock(new Reprojection(camera, sight.pixel, sight.sigma_px),
                              &loss,
                              blocks[static_cast<std::size_t>(sight.camera)].data(),
                              bundle.points_vo[static_cast<std::size_t>(sight.point)].data());

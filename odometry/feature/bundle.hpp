@@ -6,7 +6,6 @@
 
 #include "core/camera.hpp"
 #include "core/pose.hpp"
-#include "odometry/feature/map.hpp"
 
 namespace overfly::odometry {
 
@@ -40,16 +39,5 @@ struct BundleOptions {
 /// @return root mean square residual after the adjustment [sigmas]. Infinite if an observed point
 /// is not in front of its camera; the bundle is then unchanged.
 double adjust(const PinholeCamera& camera, Bundle& bundle, const BundleOptions& options);
-
-/// Adjusts the newest keyframe, the keyframes most covisible with it, and all points they observe.
-/// Other keyframes that observe these points are fixed (Mur-Artal and Tardos 2017, section III-B,
-/// eq. 3). Observations with a residual above `outlier` sigmas are then removed.
-struct LocalAdjustment {
-  int free_keyframes = 8;
-  int fixed_keyframes = 12;  ///< maximum number of fixed keyframes
-  double outlier = 6.0;
-  BundleOptions solver;
-};
-void adjust_locally(const PinholeCamera& camera, const LocalAdjustment& options, Map& map);
 
 }  // namespace overfly::odometry

@@ -4,11 +4,12 @@
 #include <ceres/manifold.h>
 #include <ceres/sized_cost_function.h>
 
+#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 
 #include "core/camera.hpp"
 #include "core/pose.hpp"
-#include "odometry/feature/bundle.hpp"
 #include "odometry/feature/lie.hpp"
 
 namespace overfly::odometry {
@@ -63,8 +64,9 @@ class PoseManifold final : public ceres::Manifold {
 /// Reprojection error of one observation [sigmas].
 class Reprojection final : public ceres::SizedCostFunction<2, 7, 3> {
  public:
-  Reprojection(const PinholeCamera& camera, const Bundle::Sight& sight)
-      : camera_(camera), pixel_(sight.pixel), weight_(1.0 / sight.sigma_px) {}
+  /// @param sigma_px  std. deviation of the pixel's noise
+  Reprojection(const PinholeCamera& camera, const Eigen::Vector2d& pixel, double sigma_px)
+      : camera_(camera), pixel_(pixel), weight_(1.0 / sigma_px) {}
 
   bool Evaluate(double const* const* parameters,
                 double* residuals,

@@ -83,7 +83,7 @@ std::map<std::string, std::string> FeatureOdometry::effective_parameters() const
 void FeatureOdometry::reset() {
   if (parts_) {
     parts_->keeper.clear();
-    account_->cpu_s = account_->cpu_s + parts_->keeper.take_cpu_s();
+    account_->add_cpu_s(parts_->keeper.take_cpu_s());
   }
   FeatureOdometry fresh(parameters_);
   fresh.debug_ = debug_;
@@ -106,7 +106,7 @@ bool FeatureOdometry::frozen(const VoFrame& frame, bool repeated) const {
 }
 
 std::optional<ResourceUse> FeatureOdometry::resource_use() const {
-  return ResourceUse{account_->cpu_s, account_->peak_memory_mb, false};
+  return ResourceUse{account_->cpu_s(), account_->peak_memory_mb(), false};
 }
 
 Result<VoEstimate> FeatureOdometry::track(const VoFrame& frame) {
@@ -114,8 +114,8 @@ Result<VoEstimate> FeatureOdometry::track(const VoFrame& frame) {
   Result<VoEstimate> estimate = answer(frame);
   double used_s = thread_cpu_s() - before_s;
   if (parts_) used_s += parts_->keeper.take_cpu_s();
-  account_->cpu_s = account_->cpu_s + used_s;
-  account_->peak_memory_mb = std::max<double>(account_->peak_memory_mb, map_memory_mb_);
+  account_->add_cpu_s(used_s);
+  account_->note_memory_mb(map_memory_mb_);
   return estimate;
 }
 

@@ -2,15 +2,14 @@
 // tracking state.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "odometry/feature/descriptor_initialiser.hpp"
+#include "odometry/feature/estimator_log.hpp"
 #include "odometry/feature/feature_odometry.hpp"
 #include "odometry/feature/initialiser.hpp"
 #include "odometry/feature/map_keeper.hpp"
@@ -18,6 +17,7 @@
 #include "odometry/feature/orb.hpp"
 #include "odometry/feature/rectifier.hpp"
 #include "odometry/feature/relocaliser.hpp"
+#include "odometry/feature/resource_account.hpp"
 #include "odometry/feature/tracker.hpp"
 
 namespace overfly::odometry {
@@ -50,21 +50,6 @@ class FeatureOdometry final : public VoPort {
     DescriptorInitialiser descriptor_initialiser;
     Tracker tracker;
     MapKeeper keeper;
-  };
-  /// Totals since construction, not affected by reset. Read by other threads.
-  struct Account {
-    std::atomic<double> cpu_s{0.0};
-    std::atomic<double> peak_memory_mb{0.0};
-  };
-  /// Log lines for the user; read by another thread than the tracking thread.
-  class Log {
-   public:
-    void add(std::string line);
-    [[nodiscard]] std::vector<std::string> take();
-
-   private:
-    std::mutex mutex_;
-    std::vector<std::string> lines_;
   };
   /// A lost map, kept in case its area is seen again.
   struct OldMap {
@@ -99,8 +84,8 @@ class FeatureOdometry final : public VoPort {
   void report_pose(const Outcome& outcome, VoEstimate& estimate) const;
   void draw(const FrameImage& frame, const Outcome& outcome, VoEstimate& estimate) const;
 
-  std::unique_ptr<Account> account_ = std::make_unique<Account>();
-  std::unique_ptr<Log> log_ = std::make_unique<Log>();
+  std::unique_ptr<ResourceAccount> account_ = std::make_unique<ResourceAccount>();
+  std::unique_ptr<EstimatorLog> log_ = std::make_unique<EstimatorLog>();
   FeatureParameters parameters_;
   PinholeCamera camera_;
   OrbExtractor orb_;

@@ -1,21 +1,9 @@
-// Builds the estimator's results for a frame.
-#include <utility>
-
+// What the estimator tells of a frame.
 #include "odometry/feature/debug_view.hpp"
 #include "odometry/feature/estimator.hpp"
 #include "odometry/feature/stopwatch.hpp"
 
 namespace overfly::odometry {
-
-void FeatureOdometry::Log::add(std::string line) {
-  const std::lock_guard lock(mutex_);
-  lines_.push_back(std::move(line));
-}
-
-std::vector<std::string> FeatureOdometry::Log::take() {
-  const std::lock_guard lock(mutex_);
-  return std::exchange(lines_, {});
-}
 
 void FeatureOdometry::report(const FrameImage& frame,
                              const Outcome& outcome,

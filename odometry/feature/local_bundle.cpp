@@ -1,9 +1,8 @@
-// Builds a bundle from the map around the newest keyframe.
+#include "odometry/feature/local_bundle.hpp"
+
 #include <algorithm>
 #include <map>
 #include <set>
-
-#include "odometry/feature/bundle.hpp"
 
 namespace overfly::odometry {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "core/camera.hpp"
-#include "odometry/feature/bundle.hpp"
 #include "odometry/feature/initialiser.hpp"
+#include "odometry/feature/local_bundle.hpp"
 #include "odometry/feature/map.hpp"
 #include "odometry/feature/orb.hpp"
 #include "odometry/feature/tracker.hpp"

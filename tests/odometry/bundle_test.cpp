@@ -105,7 +105,7 @@ TEST(Bundle, RepeatsToTheLastBit) {
 
 TEST(Reprojection, JacobiansAgreeWithFiniteDifferences) {
   const PinholeCamera lens{1280, 960, 714.0, 690.0, 639.5, 479.5};
-  const Reprojection sight(lens, {0, 0, {500.0, 300.0}, 0.4});
+  const Reprojection sight(lens, {500.0, 300.0}, 0.4);
   const PoseManifold manifold;
   PoseBlock pose{};
   store({exp_so3({0.3, -0.2, 0.5}), {0.1, -0.3, 0.4}}, pose.data());
