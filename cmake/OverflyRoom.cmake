@@ -18,21 +18,23 @@ function(overfly_room name)
   target_link_libraries(overfly_${name} PUBLIC ${arg_DEPENDS} PRIVATE ${arg_PRIVATE_DEPENDS})
 endfunction()
 
-# overfly_test(NAME [FOLDER folder] [LIBS targets...] [TIMEOUT seconds])
+# overfly_test(NAME [LIBS targets...] [TIMEOUT seconds] [FOLDERS subfolders...])
 #
-# Creates a GoogleTest program NAME_tests with every *_test.cpp in FOLDER (default: the current
-# folder). Each TEST is a separate ctest case, so that skipped tests are visible.
+# One GoogleTest program, NAME_tests, of every *_test.cpp in the current folder and its FOLDERS;
+# each TEST is a ctest case of its own, so that a skipped one is seen.
 function(overfly_test name)
-  cmake_parse_arguments(arg "" "TIMEOUT;FOLDER" "LIBS" ${ARGN})
+  cmake_parse_arguments(arg "" "TIMEOUT" "LIBS;FOLDERS" ${ARGN})
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 300)
   endif()
   if(OVERFLY_SANITIZE)
     math(EXPR arg_TIMEOUT "4 * ${arg_TIMEOUT}")  # Sanitized programs are several times slower.
   endif()
-  cmake_path(APPEND CMAKE_CURRENT_SOURCE_DIR "${arg_FOLDER}" OUTPUT_VARIABLE folder)
-  cmake_path(NORMAL_PATH folder)
-  file(GLOB sources CONFIGURE_DEPENDS ${folder}/*_test.cpp)
+  set(patterns ${CMAKE_CURRENT_SOURCE_DIR}/*_test.cpp)
+  foreach(folder ${arg_FOLDERS})
+    list(APPEND patterns ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*_test.cpp)
+  endforeach()
+  file(GLOB sources CONFIGURE_DEPENDS ${patterns})
   if(NOT sources)
     return()
   endif()

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <opencv2/imgproc.hpp>
 
-namespace overfly::odometry {
+namespace overfly::odometry::feature {
 namespace {
 
 constexpr int kLeastWidthPx = 480;  ///< minimum width of the view, if the image is that wide
@@ -123,4 +123,4 @@ Image draw_debug_view(const Pyramid& pyramid, const DebugContent& content) {
   return image;
 }
 
-}  // namespace overfly::odometry
+}  // namespace overfly::odometry::feature

@@ -8,10 +8,10 @@
 
 #include "core/estimate.hpp"
 #include "core/image.hpp"
-#include "odometry/feature/initialiser.hpp"
+#include "odometry/feature/start/initialiser.hpp"
 #include "odometry/feature/tracker.hpp"
 
-namespace overfly::odometry {
+namespace overfly::odometry::feature {
 
 struct DebugContent {
   TrackingState state = TrackingState::kInitialising;
@@ -33,4 +33,4 @@ struct DebugContent {
 /// Saturated areas are tinted. A line of text shows the state, and a blue frame marks a keyframe.
 [[nodiscard]] Image draw_debug_view(const Pyramid& pyramid, const DebugContent& content);
 
-}  // namespace overfly::odometry
+}  // namespace overfly::odometry::feature

@@ -5,9 +5,9 @@
 
 #include "core/processor_time.hpp"
 #include "odometry/feature/debug_view.hpp"
-#include "odometry/feature/stopwatch.hpp"
+#include "odometry/shell/stopwatch.hpp"
 
-namespace overfly::odometry {
+namespace overfly::odometry::feature {
 namespace {
 
 /// An image that repeats although the camera should have moved by more than this is a frozen image.
@@ -243,4 +243,4 @@ Result<std::unique_ptr<VoPort>> create_feature_odometry(const FeatureParameters&
   return std::unique_ptr<VoPort>(std::make_unique<FeatureOdometry>(parameters));
 }
 
-}  // namespace overfly::odometry
+}  // namespace overfly::odometry::feature

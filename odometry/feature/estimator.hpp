@@ -8,19 +8,19 @@
 #include <string>
 #include <vector>
 
-#include "odometry/feature/descriptor_initialiser.hpp"
-#include "odometry/feature/estimator_log.hpp"
 #include "odometry/feature/feature_odometry.hpp"
-#include "odometry/feature/initialiser.hpp"
 #include "odometry/feature/map_keeper.hpp"
-#include "odometry/feature/motion_model.hpp"
 #include "odometry/feature/orb.hpp"
-#include "odometry/feature/rectifier.hpp"
 #include "odometry/feature/relocaliser.hpp"
-#include "odometry/feature/resource_account.hpp"
+#include "odometry/feature/start/descriptor_initialiser.hpp"
+#include "odometry/feature/start/initialiser.hpp"
 #include "odometry/feature/tracker.hpp"
+#include "odometry/geometry/motion_model.hpp"
+#include "odometry/image/rectifier.hpp"
+#include "odometry/shell/estimator_log.hpp"
+#include "odometry/shell/resource_account.hpp"
 
-namespace overfly::odometry {
+namespace overfly::odometry::feature {
 
 /// States: INITIALISING until the first map exists; TRACKING; LOST until the map is found again. If
 /// relocalisation fails for `kGiveUpS` of images with visible texture, or if the lost map is young,
@@ -106,4 +106,4 @@ class FeatureOdometry final : public VoPort {
   bool debug_ = false;
 };
 
-}  // namespace overfly::odometry
+}  // namespace overfly::odometry::feature

@@ -4,9 +4,9 @@
 #include <utility>
 
 #include "odometry/feature/estimator.hpp"
-#include "odometry/feature/stopwatch.hpp"
+#include "odometry/shell/stopwatch.hpp"
 
-namespace overfly::odometry {
+namespace overfly::odometry::feature {
 namespace {
 
 constexpr double kGiveUpS = 3.0;
@@ -124,4 +124,4 @@ void FeatureOdometry::find_scale() {
   log_->add(line.str());
 }
 
-}  // namespace overfly::odometry
+}  // namespace overfly::odometry::feature

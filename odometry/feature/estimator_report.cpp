@@ -1,9 +1,9 @@
 // What the estimator tells of a frame.
 #include "odometry/feature/debug_view.hpp"
 #include "odometry/feature/estimator.hpp"
-#include "odometry/feature/stopwatch.hpp"
+#include "odometry/shell/stopwatch.hpp"
 
-namespace overfly::odometry {
+namespace overfly::odometry::feature {
 
 void FeatureOdometry::report(const FrameImage& frame,
                              const Outcome& outcome,
@@ -69,4 +69,4 @@ void FeatureOdometry::draw(const FrameImage& frame,
   estimate.debug_image = draw_debug_view(frame.pyramid, content);
 }
 
-}  // namespace overfly::odometry
+}  // namespace overfly::odometry::feature

@@ -9,7 +9,7 @@
 #include "core/result.hpp"
 #include "vo_bridges/vo_port.hpp"
 
-namespace overfly::odometry {
+namespace overfly::odometry::feature {
 
 /// Parameters. Each field name is also the key in a scenario's `parameters`.
 struct FeatureParameters {
@@ -45,4 +45,4 @@ struct FeatureParameters {
 [[nodiscard]] Result<std::unique_ptr<VoPort>> create_feature_odometry(
     const FeatureParameters& parameters);
 
-}  // namespace overfly::odometry
+}  // namespace overfly::odometry::feature

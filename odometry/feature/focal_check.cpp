@@ -7,9 +7,9 @@
 #include <sstream>
 #include <vector>
 
-#include "odometry/feature/bundle.hpp"
+#include "odometry/adjustment/bundle.hpp"
 
-namespace overfly::odometry {
+namespace overfly::odometry::feature {
 namespace {
 
 constexpr int kMinKeyframes = 10;
@@ -132,4 +132,4 @@ std::optional<std::string> FocalCheck::after_keyframe(const Map& map) {
   return text.str();
 }
 
-}  // namespace overfly::odometry
+}  // namespace overfly::odometry::feature

@@ -7,7 +7,7 @@
 #include "core/camera.hpp"
 #include "odometry/feature/map.hpp"
 
-namespace overfly::odometry {
+namespace overfly::odometry::feature {
 
 /// Estimate of the focal length from a part of the map.
 struct FocalEvidence {
@@ -53,4 +53,4 @@ class FocalCheck {
   bool concluded_ = false;
 };
 
-}  // namespace overfly::odometry
+}  // namespace overfly::odometry::feature

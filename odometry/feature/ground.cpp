@@ -5,7 +5,7 @@
 
 #include "odometry/feature/map.hpp"
 
-namespace overfly::odometry {
+namespace overfly::odometry::feature {
 namespace {
 
 constexpr int kMinPlanePoints = 20;
@@ -107,4 +107,4 @@ std::optional<double> axis_depth(const Pose& T_camera_vo,
   return median_of(all);
 }
 
-}  // namespace overfly::odometry
+}  // namespace overfly::odometry::feature

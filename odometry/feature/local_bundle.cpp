@@ -4,7 +4,7 @@
 #include <map>
 #include <set>
 
-namespace overfly::odometry {
+namespace overfly::odometry::feature {
 namespace {
 
 /// A bundle and the map ids of its members.
@@ -110,4 +110,4 @@ void adjust_locally(const PinholeCamera& camera, const LocalAdjustment& options,
   apply(camera, window, options.outlier, map);
 }
 
-}  // namespace overfly::odometry
+}  // namespace overfly::odometry::feature

@@ -2,10 +2,10 @@
 #pragma once
 
 #include "core/camera.hpp"
-#include "odometry/feature/bundle.hpp"
+#include "odometry/adjustment/bundle.hpp"
 #include "odometry/feature/map.hpp"
 
-namespace overfly::odometry {
+namespace overfly::odometry::feature {
 
 /// Adjusts the newest keyframe, the keyframes most covisible with it, and all points they observe.
 /// Other keyframes that observe these points are fixed (Mur-Artal and Tardos 2017, section III-B,
@@ -18,4 +18,4 @@ struct LocalAdjustment {
 };
 void adjust_locally(const PinholeCamera& camera, const LocalAdjustment& options, Map& map);
 
-}  // namespace overfly::odometry
+}  // namespace overfly::odometry::feature

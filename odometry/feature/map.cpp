@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace overfly::odometry {
+namespace overfly::odometry::feature {
 namespace {
 
 /// Patches whose positions differ by less, at the finer patch's level, belong to the same corner.
@@ -148,4 +148,4 @@ std::vector<int> Map::covisible(int keyframe, int min_shared) const {
   return ids;
 }
 
-}  // namespace overfly::odometry
+}  // namespace overfly::odometry::feature

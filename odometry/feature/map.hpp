@@ -10,11 +10,11 @@
 
 #include "core/camera.hpp"
 #include "core/pose.hpp"
-#include "odometry/feature/lie.hpp"
 #include "odometry/feature/orb.hpp"
-#include "odometry/feature/pyramid.hpp"
+#include "odometry/geometry/lie.hpp"
+#include "odometry/image/pyramid.hpp"
 
-namespace overfly::odometry {
+namespace overfly::odometry::feature {
 
 /// Standard deviation of the pixel noise of a patch found at a pyramid level [px].
 [[nodiscard]] inline double sigma_px_of(int patch_level) { return std::ldexp(0.2, patch_level); }
@@ -134,4 +134,4 @@ void fit_plane(const PinholeCamera& camera, const Map& map, Keyframe& keyframe);
 [[nodiscard]] std::optional<double> axis_depth(const Pose& T_camera_vo,
                                                const std::vector<Eigen::Vector3d>& points_vo);
 
-}  // namespace overfly::odometry
+}  // namespace overfly::odometry::feature

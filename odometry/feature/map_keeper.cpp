@@ -3,9 +3,9 @@
 #include <utility>
 
 #include "core/processor_time.hpp"
-#include "odometry/feature/stopwatch.hpp"
+#include "odometry/shell/stopwatch.hpp"
 
-namespace overfly::odometry {
+namespace overfly::odometry::feature {
 
 MapKeeper::MapKeeper(const PinholeCamera& camera,
                      const MapperOptions& options,
@@ -182,4 +182,4 @@ void MapKeeper::publish() {
   published_ = std::move(copy);
 }
 
-}  // namespace overfly::odometry
+}  // namespace overfly::odometry::feature

@@ -12,13 +12,13 @@
 #include <vector>
 
 #include "odometry/feature/focal_check.hpp"
-#include "odometry/feature/frame_image.hpp"
 #include "odometry/feature/map.hpp"
 #include "odometry/feature/mapper.hpp"
 #include "odometry/feature/orb.hpp"
 #include "odometry/feature/tracker.hpp"
+#include "odometry/image/frame_image.hpp"
 
-namespace overfly::odometry {
+namespace overfly::odometry::feature {
 
 /// With one thread a keyframe is mapped immediately and `view` is the map itself. With two threads
 /// the mapping thread owns the map from `begin` to `clear`, and `view` is the newest copy it
@@ -109,4 +109,4 @@ class MapKeeper {
   std::thread thread_;  ///< last member: joined before the members it uses
 };
 
-}  // namespace overfly::odometry
+}  // namespace overfly::odometry::feature

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "odometry/feature/patch_aligner.hpp"
-#include "odometry/feature/stopwatch.hpp"
-#include "odometry/feature/triangulation.hpp"
+#include "odometry/geometry/triangulation.hpp"
+#include "odometry/image/patch_aligner.hpp"
+#include "odometry/shell/stopwatch.hpp"
 
-namespace overfly::odometry {
+namespace overfly::odometry::feature {
 namespace {
 
 constexpr float kMinMapCorrelation = 0.8F;
@@ -213,4 +213,4 @@ void Mapper::cull(Map& map) const {
   for (const int id : gone) map.remove_point(id);
 }
 
-}  // namespace overfly::odometry
+}  // namespace overfly::odometry::feature

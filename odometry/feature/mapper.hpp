@@ -5,13 +5,13 @@
 #include <string>
 
 #include "core/camera.hpp"
-#include "odometry/feature/initialiser.hpp"
 #include "odometry/feature/local_bundle.hpp"
 #include "odometry/feature/map.hpp"
 #include "odometry/feature/orb.hpp"
 #include "odometry/feature/tracker.hpp"
+#include "odometry/image/frame_image.hpp"
 
-namespace overfly::odometry {
+namespace overfly::odometry::feature {
 
 struct MapperOptions {
   int min_frames_between = 3;
@@ -66,4 +66,4 @@ class Mapper {
   MapperOptions options_;
 };
 
-}  // namespace overfly::odometry
+}  // namespace overfly::odometry::feature

@@ -5,9 +5,9 @@
 
 #include "odometry/feature/mapper.hpp"
 #include "odometry/feature/surface_patch.hpp"
-#include "odometry/feature/triangulation.hpp"
+#include "odometry/geometry/triangulation.hpp"
 
-namespace overfly::odometry {
+namespace overfly::odometry::feature {
 namespace {
 
 constexpr std::size_t kNeighbours = 3;
@@ -94,4 +94,4 @@ Mapper::Search Mapper::triangulate_in_scene(const Keyframe& source,
   return outcome;
 }
 
-}  // namespace overfly::odometry
+}  // namespace overfly::odometry::feature

@@ -7,7 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <random>
 
-namespace overfly::odometry {
+namespace overfly::odometry::feature {
 namespace {
 
 constexpr int kCellPx = 32;
@@ -246,4 +246,4 @@ Descriptor OrbExtractor::describe(const Corner& corner) {
   return descriptor;
 }
 
-}  // namespace overfly::odometry
+}  // namespace overfly::odometry::feature

@@ -9,7 +9,7 @@
 
 #include "odometry/feature/feature_odometry.hpp"
 
-namespace overfly::odometry {
+namespace overfly::odometry::feature {
 
 /// 256 bits of brightness comparisons.
 using Descriptor = std::array<std::uint64_t, 4>;
@@ -75,4 +75,4 @@ class OrbExtractor {
   std::vector<cv::Mat> smoothed_;  ///< computed on first use
 };
 
-}  // namespace overfly::odometry
+}  // namespace overfly::odometry::feature

@@ -1,8 +1,8 @@
 // The parameters of the feature estimator and their limits.
 #include "odometry/feature/feature_odometry.hpp"
-#include "odometry/feature/parameter_table.hpp"
+#include "odometry/shell/parameter_table.hpp"
 
-namespace overfly::odometry {
+namespace overfly::odometry::feature {
 namespace {
 
 using Table = ParameterTable<FeatureParameters>;
@@ -55,4 +55,4 @@ Result<FeatureParameters> feature_parameters_from(const std::map<std::string, do
       "at most ini_fast_threshold = " + std::to_string(read->ini_fast_threshold));
 }
 
-}  // namespace overfly::odometry
+}  // namespace overfly::odometry::feature

@@ -6,9 +6,9 @@
 #include <random>
 #include <vector>
 
-#include "odometry/feature/pose_optimiser.hpp"
+#include "odometry/adjustment/pose_optimiser.hpp"
 
-namespace overfly::odometry {
+namespace overfly::odometry::feature {
 namespace {
 
 std::vector<PoseObservation> match_points(const RelocaliserOptions& options,
@@ -130,4 +130,4 @@ Relocalisation relocalise(const PinholeCamera& camera,
   return result;
 }
 
-}  // namespace overfly::odometry
+}  // namespace overfly::odometry::feature

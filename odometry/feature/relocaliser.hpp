@@ -8,7 +8,7 @@
 #include "odometry/feature/map.hpp"
 #include "odometry/feature/orb.hpp"
 
-namespace overfly::odometry {
+namespace overfly::odometry::feature {
 
 struct RelocaliserOptions {
   int keyframes = 40;     ///< number of keyframes whose points are compared
@@ -35,4 +35,4 @@ struct Relocalisation {
                                         OrbExtractor& orb,
                                         const Map& map);
 
-}  // namespace overfly::odometry
+}  // namespace overfly::odometry::feature

@@ -5,11 +5,11 @@
 
 #include "odometry/feature/tracker.hpp"
 
-namespace overfly::odometry {
+namespace overfly::odometry::feature {
 namespace {
 
-constexpr float kMinCorrelation = 0.8F;
-/// Correlation above which no further plane is tried.
+constexpr float kMinSurfaceCorrelation = 0.8F;
+/// Agreement beyond which no other plane is tried.
 constexpr float kGoodCorrelation = 0.93F;
 /// Cosine between normal and ray: planes seen nearly edge-on distort the patch too much.
 constexpr double kMinCosine = 0.12;
@@ -32,7 +32,7 @@ std::optional<PatchMatch> align_over(const PinholeCamera& camera,
     if (level >= view.level_count()) continue;
     const auto patch = make_template(*point.source, point.pixel, warp, level);
     match = patch ? align_patch(view, *patch, pixel) : std::nullopt;
-    if (match && match->correlation < kMinCorrelation) match.reset();
+    if (match && match->correlation < kMinSurfaceCorrelation) match.reset();
     if (match) pixel = match->pixel;
   }
   return match;
@@ -58,4 +58,4 @@ std::optional<SurfaceMatch> align_on_surface(const PinholeCamera& camera,
   return best;
 }
 
-}  // namespace overfly::odometry
+}  // namespace overfly::odometry::feature

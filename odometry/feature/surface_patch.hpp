@@ -7,10 +7,10 @@
 
 #include "core/camera.hpp"
 #include "core/pose.hpp"
-#include "odometry/feature/patch_aligner.hpp"
-#include "odometry/feature/pyramid.hpp"
+#include "odometry/image/patch_aligner.hpp"
+#include "odometry/image/pyramid.hpp"
 
-namespace overfly::odometry {
+namespace overfly::odometry::feature {
 
 /// A pixel of a source view with an assumed 3D point.
 struct SurfacePoint {
@@ -36,4 +36,4 @@ struct SurfaceMatch {
                                                            const Pyramid& view,
                                                            int coarser);
 
-}  // namespace overfly::odometry
+}  // namespace overfly::odometry::feature

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "odometry/feature/patch_aligner.hpp"
+#include "odometry/image/patch_aligner.hpp"
 
-namespace overfly::odometry {
+namespace overfly::odometry::feature {
 namespace {
 
 constexpr double kBorderPx = 8.0;
@@ -156,4 +156,4 @@ TrackResult Tracker::track(const Pyramid& image,
   return result;
 }
 
-}  // namespace overfly::odometry
+}  // namespace overfly::odometry::feature

@@ -5,12 +5,12 @@
 #include <vector>
 
 #include "core/camera.hpp"
+#include "odometry/adjustment/pose_optimiser.hpp"
 #include "odometry/feature/map.hpp"
-#include "odometry/feature/patch_aligner.hpp"
-#include "odometry/feature/pose_optimiser.hpp"
-#include "odometry/feature/pyramid.hpp"
+#include "odometry/image/patch_aligner.hpp"
+#include "odometry/image/pyramid.hpp"
 
-namespace overfly::odometry {
+namespace overfly::odometry::feature {
 
 struct TrackerOptions {
   int max_points = 900;      ///< searched at full detail per frame
@@ -82,4 +82,4 @@ class Tracker {
                                 const Keyframe& source,
                                 const MapPoint& point);
 
-}  // namespace overfly::odometry
+}  // namespace overfly::odometry::feature

@@ -33,9 +33,9 @@ Port create_feature(const EstimatorSpec& spec, const EstimatorSetting& setting) 
   if (!values) return values.error();
   values->try_emplace("seed", static_cast<double>(setting.seed));
   values->try_emplace("threads", setting.lockstep ? 1.0 : 2.0);
-  const auto parameters = odometry::feature_parameters_from(*values);
+  const auto parameters = odometry::feature::feature_parameters_from(*values);
   if (!parameters) return parameters.error();
-  return odometry::create_feature_odometry(*parameters);
+  return odometry::feature::create_feature_odometry(*parameters);
 }
 
 Result<ToyParameters> toy_parameters_from(const VoParameters& given, double scene_depth_m) {

@@ -48,7 +48,7 @@ double detection_ms() {
   const Image& image = *frames().front().image;
   const cv::Mat view(
       image.height_px, image.width_px, CV_8U, const_cast<std::uint8_t*>(image.data.data()));
-  OrbExtractor orb(FeatureParameters{});
+  feature::OrbExtractor orb(feature::FeatureParameters{});
   const auto start = std::chrono::steady_clock::now();
   constexpr int kRepeats = 10;
   for (int i = 0; i < kRepeats; ++i) benchmark::DoNotOptimize(orb.detect(view));
@@ -61,7 +61,7 @@ void track_flight(benchmark::State& state) {
   std::vector<double> total_ms;
   std::map<std::string, double> stages_ms;
   for (auto _ : state) {
-    const auto odometry = create_feature_odometry({}).value();
+    const auto odometry = feature::create_feature_odometry({}).value();
     for (const VoFrame& frame : frames()) {
       const VoEstimate estimate = odometry->track(frame).value();
       total_ms.push_back(estimate.timing_ms.at("total"));

@@ -1,4 +1,4 @@
-#include "level_scene.hpp"
+#include "tests/odometry/level_scene.hpp"
 
 #include "core/time.hpp"
 

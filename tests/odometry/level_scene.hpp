@@ -1,8 +1,8 @@
 // A short level flight in small images: the estimator's parts at work on it, one by one.
 #pragma once
 
-#include "odometry/feature/initialiser.hpp"
-#include "synthetic_flight.hpp"
+#include "odometry/image/frame_image.hpp"
+#include "tests/odometry/synthetic_flight.hpp"
 
 namespace overfly::odometry::testing {
 

@@ -1,4 +1,4 @@
-#include "street_scene.hpp"
+#include "tests/odometry/street_scene.hpp"
 
 #include <algorithm>
 #include <cmath>

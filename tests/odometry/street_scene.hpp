@@ -8,7 +8,7 @@
 #include "core/camera.hpp"
 #include "core/image.hpp"
 #include "core/pose.hpp"
-#include "synthetic_flight.hpp"
+#include "tests/odometry/synthetic_flight.hpp"
 
 namespace overfly::odometry::testing {
 

@@ -1,4 +1,4 @@
-#include "synthetic_flight.hpp"
+#include "tests/odometry/synthetic_flight.hpp"
 
 #include <algorithm>
 #include <cmath>
