@@ -12,19 +12,19 @@ namespace {
 using Eigen::Vector3d;
 
 /// A section of the fuselage; lengths in wing spans, body frame (forward-right-down).
-struct Section {
+struct FuselageSection {
   double x, z, half_width, half_height;
 };
 
-constexpr std::array<Section, 9> kFuselage{{{0.300, 0.012, 0.004, 0.004},
-                                            {0.292, 0.012, 0.022, 0.022},
-                                            {0.220, 0.010, 0.043, 0.043},
-                                            {0.120, 0.004, 0.052, 0.058},
-                                            {0.040, 0.000, 0.052, 0.062},
-                                            {-0.060, 0.000, 0.046, 0.052},
-                                            {-0.180, -0.008, 0.026, 0.032},
-                                            {-0.340, -0.018, 0.012, 0.018},
-                                            {-0.400, -0.020, 0.004, 0.012}}};
+constexpr std::array<FuselageSection, 9> kFuselage{{{0.300, 0.012, 0.004, 0.004},
+                                                    {0.292, 0.012, 0.022, 0.022},
+                                                    {0.220, 0.010, 0.043, 0.043},
+                                                    {0.120, 0.004, 0.052, 0.058},
+                                                    {0.040, 0.000, 0.052, 0.062},
+                                                    {-0.060, 0.000, 0.046, 0.052},
+                                                    {-0.180, -0.008, 0.026, 0.032},
+                                                    {-0.340, -0.018, 0.012, 0.018},
+                                                    {-0.400, -0.020, 0.004, 0.012}}};
 
 /// A wing or fin: chord line at root and tip, thickness along `normal`.
 struct Foil {
@@ -92,7 +92,7 @@ class AircraftBuilder {
 
   void add_fuselage() {
     constexpr int kSides = 12;
-    const auto point = [](const Section& s, int side) -> Vector3d {
+    const auto point = [](const FuselageSection& s, int side) -> Vector3d {
       const double angle_rad = 2.0 * kPi * side / kSides;
       return {s.x, s.half_width * std::sin(angle_rad), s.z - s.half_height * std::cos(angle_rad)};
     };

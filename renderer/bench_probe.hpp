@@ -12,6 +12,10 @@
 
 namespace overfly::renderer {
 
+/// Size of the images that the probes draw.
+inline constexpr int kProbeWidthPx = 1280;
+inline constexpr int kProbeHeightPx = 960;
+
 /// Medians over the repetitions.
 struct CallCost {
   double cpu_ms = 0.0;   ///< CPU time of the process, the driver's threads included

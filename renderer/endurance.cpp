@@ -66,7 +66,7 @@ class Track {
 };
 
 /// What the counted frames cost, in flight order.
-struct Series {
+struct FrameSeries {
   std::vector<double> cpu_ms, thread_cpu_ms, wall_ms, resident_mb;
 
   void summarise(EnduranceReport& report) const {
@@ -173,7 +173,7 @@ class Flight {
   Track track_;
   TileStore& store_;
   EnduranceReport report_;
-  Series series_;
+  FrameSeries series_;
   double cpu_mark_ms_ = process_cpu_ms();
 };
 

@@ -14,9 +14,6 @@ namespace overfly::renderer {
 
 namespace {
 
-constexpr int kColumns = 40;
-constexpr int kRows = 30;
-
 /// The nearest ground on one ray.
 struct Hit {
   double depth_m = std::numeric_limits<double>::infinity();
@@ -82,8 +79,8 @@ class SeenTriangle {
 class RayGrid {
  public:
   RayGrid(const View& view, const CameraModel& camera) : view_(view), camera_(camera) {
-    for (int row = 0; row < kRows; ++row) {
-      for (int column = 0; column < kColumns; ++column) add_ray(pixel(column, row));
+    for (int row = 0; row < kMeasureRows; ++row) {
+      for (int column = 0; column < kMeasureColumns; ++column) add_ray(pixel(column, row));
     }
   }
 
@@ -109,11 +106,11 @@ class RayGrid {
       }
       return;
     }
-    int left = 0, right = kColumns - 1, top = 0, bottom = kRows - 1;
+    int left = 0, right = kMeasureColumns - 1, top = 0, bottom = kMeasureRows - 1;
     bound(triangle, left, right, top, bottom);
     for (int row = top; row <= bottom; ++row) {
       for (int column = left; column <= right; ++column) {
-        test(static_cast<std::size_t>(row) * kColumns + column);
+        test(static_cast<std::size_t>(row) * kMeasureColumns + column);
       }
     }
   }
@@ -140,8 +137,8 @@ class RayGrid {
   }
 
   [[nodiscard]] Eigen::Vector2d pixel(int column, int row) const {
-    return {(column + 0.5) * camera_.pinhole().width_px / kColumns - 0.5,
-            (row + 0.5) * camera_.pinhole().height_px / kRows - 0.5};
+    return {(column + 0.5) * camera_.pinhole().width_px / kMeasureColumns - 0.5,
+            (row + 0.5) * camera_.pinhole().height_px / kMeasureRows - 0.5};
   }
 
   /// Narrows the range of rays to those that may meet the triangle.
@@ -154,15 +151,16 @@ class RayGrid {
       low = low.min(projected->array());
       high = high.max(projected->array());
     }
-    const double column_px = static_cast<double>(view_.camera.width_px) / kColumns;
-    const double row_px = static_cast<double>(view_.camera.height_px) / kRows;
+    const double column_px = static_cast<double>(view_.camera.width_px) / kMeasureColumns;
+    const double row_px = static_cast<double>(view_.camera.height_px) / kMeasureRows;
     const auto clamped = [](double value, int last) {
       return static_cast<int>(std::clamp(value, -1.0, last + 1.0));
     };
-    left = std::max(left, clamped(std::ceil((low.x() + 0.5) / column_px - 0.5), kColumns));
-    right = std::min(right, clamped(std::floor((high.x() + 0.5) / column_px - 0.5), kColumns));
-    top = std::max(top, clamped(std::ceil((low.y() + 0.5) / row_px - 0.5), kRows));
-    bottom = std::min(bottom, clamped(std::floor((high.y() + 0.5) / row_px - 0.5), kRows));
+    left = std::max(left, clamped(std::ceil((low.x() + 0.5) / column_px - 0.5), kMeasureColumns));
+    right =
+        std::min(right, clamped(std::floor((high.x() + 0.5) / column_px - 0.5), kMeasureColumns));
+    top = std::max(top, clamped(std::ceil((low.y() + 0.5) / row_px - 0.5), kMeasureRows));
+    bottom = std::min(bottom, clamped(std::floor((high.y() + 0.5) / row_px - 0.5), kMeasureRows));
   }
 
   const View& view_;
@@ -230,7 +228,7 @@ FrameStatistics measure_frame(const GroundMesh& mesh,
       ++void_rays;
     }
   }
-  statistics.void_fraction = static_cast<double>(void_rays) / (kColumns * kRows);
+  statistics.void_fraction = static_cast<double>(void_rays) / (kMeasureColumns * kMeasureRows);
   if (!texels.empty()) {
     const auto middle = texels.begin() + static_cast<std::ptrdiff_t>(texels.size() / 2);
     std::nth_element(texels.begin(), middle, texels.end());

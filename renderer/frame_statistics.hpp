@@ -9,6 +9,10 @@
 
 namespace overfly::renderer {
 
+/// Rays of a frame that its statistics are measured on.
+inline constexpr int kMeasureColumns = 40;
+inline constexpr int kMeasureRows = 30;
+
 struct FrameStatistics {
   double texels_per_pixel_min = 0.0;
   double texels_per_pixel_median = 0.0;

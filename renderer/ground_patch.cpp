@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "renderer/ground_reach.hpp"
+
 namespace overfly::renderer {
 
 using terrain::TileCoverage;
@@ -11,7 +13,6 @@ using terrain::TileId;
 
 namespace {
 
-constexpr double kEarthRadiusM = 6371000.0;
 /// What a patch without points takes, with its place in the containers.
 constexpr std::size_t kOutlineBytes = sizeof(GroundPatch) + 160;
 

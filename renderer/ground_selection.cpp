@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "renderer/ground_reach.hpp"
+
 namespace overfly::renderer {
 
 using terrain::TileCoverage;
@@ -11,8 +13,6 @@ using terrain::TileId;
 
 namespace {
 
-constexpr double kEarthRadiusM = 6371000.0;
-constexpr double kMaxReachM = 300e3;  // map projections bend beyond
 /// The texel density is taken at the outline's points; between them it may be lower by this.
 constexpr double kDensityMargin = 0.9;
 /// Elevation finer than a patch's 32 cells is followed by splitting it, until its cells are no
@@ -65,9 +65,7 @@ class Selector {
         patches_.tiles().frame().geodetic_from_world(view_.position_world).alt_ellipsoid_m;
     const double above_m = std::max(camera_m - range_m.x(), 2.0);
     const double relief_m = std::max(range_m.y() - range_m.x(), 0.0);
-    return std::min(
-        kMaxReachM,
-        std::sqrt(2.0 * kEarthRadiusM * above_m) + std::sqrt(2.0 * kEarthRadiusM * relief_m));
+    return horizon_m(above_m, relief_m);
   }
 
   [[nodiscard]] bool outside(const Eigen::AlignedBox3d& box) const {

@@ -17,7 +17,7 @@ namespace {
 
 /// Stripes whose phase and direction follow the pose: equal poses give equal images, and a moving
 /// camera gives moving ones.
-Image pattern(int width_px, int height_px, int channels, const Pose& pose) {
+Image pose_pattern(int width_px, int height_px, int channels, const Pose& pose) {
   const Eigen::Vector3d& p = pose.translation;
   const Eigen::Quaterniond& q = pose.rotation;
   const double phase = p.x() + 3.0 * p.y() + 7.0 * p.z() + 40.0 * q.x() + 90.0 * q.y();
@@ -58,7 +58,7 @@ class NoopRenderer final : public Renderer {
     frame.t_ns = request.t_ns;
     frame.T_world_camera = request.T_world_camera.at(request.t_ns);
     frame.camera = request.camera;
-    frame.image = pattern(
+    frame.image = pose_pattern(
         camera.width_px, camera.height_px, channel_count(request.format), frame.T_world_camera);
     if (is_linear(request.format)) {
       frame.radiance = radiance_of(frame.image);
@@ -97,7 +97,7 @@ class NoopRenderer final : public Renderer {
   Result<Image> render_scene(const SceneView& view, const SceneContent& /*content*/) override {
     const Result<PinholeCamera> camera = camera_of(view);
     if (!camera.ok()) return camera.error();
-    return pattern(view.width_px, view.height_px, 3, view.T_world_camera);
+    return pose_pattern(view.width_px, view.height_px, 3, view.T_world_camera);
   }
 
   [[nodiscard]] RendererInfo info() const override {

@@ -13,8 +13,6 @@ namespace overfly::renderer {
 
 namespace {
 
-constexpr int kWidthPx = 1280;
-constexpr int kHeightPx = 960;
 constexpr int kBatch = 16;  // calls that are timed together
 
 /// Wall time of a call [s], added to `times`.
@@ -42,7 +40,8 @@ class PipedCamera {
 
   Status frames(const std::vector<Pose>& poses, int count) {
     const PinholeCamera camera =
-        PinholeCamera::from_fov(kWidthPx, kHeightPx, rad_from_deg(84.872), FovAxis::kHorizontal)
+        PinholeCamera::from_fov(
+            kProbeWidthPx, kProbeHeightPx, rad_from_deg(84.872), FovAxis::kHorizontal)
             .value();
     for (int i = 0; i < count + in_flight_; ++i) {
       if (i >= in_flight_) {
@@ -68,7 +67,7 @@ class PipedCamera {
 /// The ceilings: copies in memory, readback and fill.
 struct Ceilings {
   std::vector<double> memcpy_s, readback_s, fill_s, copy_s;
-  Image from{kWidthPx, kHeightPx, 1, 7}, to{kWidthPx, kHeightPx, 1, 8};
+  Image from{kProbeWidthPx, kProbeHeightPx, 1, 7}, to{kProbeWidthPx, kProbeHeightPx, 1, 8};
 
   Status round(QuadProbe& quad) {
     if (Status s = time(fill_s,

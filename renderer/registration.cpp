@@ -40,7 +40,7 @@ std::optional<double> cubic_sample(const Image& image, double x, double y) {
   return sum;
 }
 
-double bilinear(const Image& image, double x, double y) {
+double grey_at(const Image& image, double x, double y) {
   const int x0 = static_cast<int>(x);
   const int y0 = static_cast<int>(y);
   const double a = x - x0;
@@ -50,15 +50,18 @@ double bilinear(const Image& image, double x, double y) {
 }
 
 /// The patch of `seen` around a pixel, with what its alignment needs.
-struct Patch {
+struct GreyPatch {
   std::vector<double> values;
   std::vector<Eigen::Vector2d> gradients;
   Eigen::Matrix2d inverse_hessian = Eigen::Matrix2d::Zero();
 };
 
 /// Empty without enough texture.
-std::optional<Patch> make_patch(const Image& seen, int cx, int cy, const RegistrationOptions& o) {
-  Patch patch;
+std::optional<GreyPatch> make_patch(const Image& seen,
+                                    int cx,
+                                    int cy,
+                                    const RegistrationOptions& o) {
+  GreyPatch patch;
   Eigen::Matrix2d H = Eigen::Matrix2d::Zero();
   for (int y = cy - o.half_patch_px; y <= cy + o.half_patch_px; ++y) {
     for (int x = cx - o.half_patch_px; x <= cx + o.half_patch_px; ++x) {
@@ -78,7 +81,7 @@ std::optional<Patch> make_patch(const Image& seen, int cx, int cy, const Registr
 
 /// Shift at which `predicted` shows the patch: predicted(pixel + shift) = seen(pixel).
 std::optional<Eigen::Vector2d> align(
-    const Image& predicted, const Patch& patch, int cx, int cy, const RegistrationOptions& o) {
+    const Image& predicted, const GreyPatch& patch, int cx, int cy, const RegistrationOptions& o) {
   constexpr int kIterations = 50;
   constexpr double kClosePx = 1e-4;
   Eigen::Vector2d shift = Eigen::Vector2d::Zero();
@@ -88,7 +91,7 @@ std::optional<Eigen::Vector2d> align(
     for (int y = cy - o.half_patch_px; y <= cy + o.half_patch_px; ++y) {
       for (int x = cx - o.half_patch_px; x <= cx + o.half_patch_px; ++x, ++k) {
         const double difference =
-            bilinear(predicted, x + shift.x(), y + shift.y()) - patch.values[k];
+            grey_at(predicted, x + shift.x(), y + shift.y()) - patch.values[k];
         b += difference * patch.gradients[k];
       }
     }

@@ -17,8 +17,6 @@ namespace overfly::renderer {
 namespace egl {
 namespace {
 
-constexpr int kWidthPx = 1280;
-constexpr int kHeightPx = 960;
 constexpr int kTextureTexels = 4096;
 
 constexpr const char* kQuadVertexSource = R"(#version 330 core
@@ -65,7 +63,7 @@ class EglQuadProbe final : public QuadProbe {
     const float uv_from_pixel[4] = {c, s, -s, c};
     program_.use();
     glUniformMatrix2fv(program_.uniform("uv_from_pixel"), 1, GL_FALSE, uv_from_pixel);
-    glUniform2f(program_.uniform("size_px"), kWidthPx, kHeightPx);
+    glUniform2f(program_.uniform("size_px"), kProbeWidthPx, kProbeHeightPx);
   }
   ~EglQuadProbe() override { (void)context_->make_current(); }
   EglQuadProbe(const EglQuadProbe&) = delete;
@@ -131,7 +129,7 @@ Result<std::unique_ptr<QuadProbe>> QuadProbe::create(const std::string& device) 
   Result<std::unique_ptr<egl::EglContext>> context = egl::EglContext::create(device);
   if (!context.ok()) return context.error();
   Result<egl::RenderTarget> target =
-      egl::RenderTarget::create(egl::kWidthPx, egl::kHeightPx, egl::TargetFormat::kGrey8, 0);
+      egl::RenderTarget::create(kProbeWidthPx, kProbeHeightPx, egl::TargetFormat::kGrey8, 0);
   if (!target.ok()) return target.error();
   Result<egl::GlProgram> program =
       egl::GlProgram::link(egl::kQuadVertexSource, egl::kQuadFragmentSource);

@@ -9,7 +9,7 @@
 #include "core/image.hpp"
 #include "renderer/raycast/block_builder.hpp"
 #include "renderer/raycast/painter.hpp"
-#include "renderer/raycast/raycast_renderer.hpp"
+#include "renderer/raycast/raycast_options.hpp"
 #include "renderer/raycast/texel_tiles.hpp"
 #include "renderer/raycast/worker_pool.hpp"
 

@@ -13,13 +13,10 @@ namespace overfly::renderer::raycast {
 
 namespace {
 
-constexpr int kColumns = 40;
-constexpr int kRows = 30;
-
 /// The depth on the optical axis.
-std::optional<double> axis_depth(const Pose& T_world_camera,
-                                 const GroundCaster& caster,
-                                 const HeightQuery& ground) {
+std::optional<double> cast_axis_depth(const Pose& T_world_camera,
+                                      const GroundCaster& caster,
+                                      const HeightQuery& ground) {
   const RowPose pose = RowPose::of(T_world_camera);
   const Eigen::Vector3d axis = pose.R_world_camera.col(2);
   const GroundHit hit = caster.cast(pose.position, axis, 0.0);
@@ -43,14 +40,14 @@ FrameStatistics measure_rays(const CameraModel& camera,
                              const ImageryAt& has_imagery,
                              WorkerPool& pool) {
   const PinholeCamera& size = camera.pinhole();
-  std::array<RowMeasure, kRows> rows;
-  pool.run(kRows, [&](int row) {
+  std::array<RowMeasure, kMeasureRows> rows;
+  pool.run(kMeasureRows, [&](int row) {
     RowMeasure& seen = rows[row];
-    const double y_px = (row + 0.5) * size.height_px / kRows - 0.5;
+    const double y_px = (row + 0.5) * size.height_px / kMeasureRows - 0.5;
     const RowPose& pose = poses.at(std::floor(2.0 * y_px) / 2.0);
     GroundHit last;
-    for (int column = 0; column < kColumns; ++column) {
-      const double x_px = (column + 0.5) * size.width_px / kColumns - 0.5;
+    for (int column = 0; column < kMeasureColumns; ++column) {
+      const double x_px = (column + 0.5) * size.width_px / kMeasureColumns - 0.5;
       const auto ray = camera.ray({x_px, y_px});
       const auto right = camera.ray({x_px + 0.5, y_px}), left = camera.ray({x_px - 0.5, y_px});
       const auto down = camera.ray({x_px, y_px + 0.5}), up = camera.ray({x_px, y_px - 0.5});
@@ -76,14 +73,14 @@ FrameStatistics measure_rays(const CameraModel& camera,
     void_rays += row.void_rays;
   }
   FrameStatistics statistics;
-  statistics.void_fraction = static_cast<double>(void_rays) / (kColumns * kRows);
+  statistics.void_fraction = static_cast<double>(void_rays) / (kMeasureColumns * kMeasureRows);
   if (!texels.empty()) {
     const auto middle = texels.begin() + static_cast<std::ptrdiff_t>(texels.size() / 2);
     std::nth_element(texels.begin(), middle, texels.end());
     statistics.texels_per_pixel_median = *middle;
     statistics.texels_per_pixel_min = *std::min_element(texels.begin(), texels.end());
   }
-  statistics.axis_depth_m = axis_depth(T_world_camera, caster, ground);
+  statistics.axis_depth_m = cast_axis_depth(T_world_camera, caster, ground);
   return statistics;
 }
 

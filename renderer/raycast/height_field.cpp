@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "renderer/ground_reach.hpp"
+
 namespace overfly::renderer::raycast {
 
 namespace {
 
-constexpr double kEarthRadiusM = 6371000.0;
-constexpr double kMaxReachM = 300e3;  // map projections bend beyond
 constexpr double kNearestM = 0.5;
 
 /// Lowest and highest up coordinate of a tile's ground, with room for what its posts do not show.
@@ -105,15 +105,13 @@ double HeightField::reach_m(const ViewSweep& view) const {
   const Geodetic camera = tiles_->frame().geodetic_from_world(view.position);
   const double above_m = std::max(camera.alt_ellipsoid_m - range_m.x(), 2.0) + view.slack_m;
   const double relief_m = std::max(range_m.y() - range_m.x(), 0.0);
-  const double horizon_m = std::min(
-      kMaxReachM,
-      std::sqrt(2.0 * kEarthRadiusM * above_m) + std::sqrt(2.0 * kEarthRadiusM * relief_m));
-  if (!view.bounded) return horizon_m;
+  const double to_horizon_m = horizon_m(above_m, relief_m);
+  if (!view.bounded) return to_horizon_m;
   const double centre_m = view.position.head<2>().norm();
   double reach_m = 0.0;
   for (const Eigen::Vector3d& corner : view.corners) {
     const double level = corner.head<2>().norm();
-    if (!(-corner.z() > 0.02 * level)) return horizon_m;
+    if (!(-corner.z() > 0.02 * level)) return to_horizon_m;
     const double run = level / -corner.z();
     double ground_m = above_m * run;
     for (int i = 0; i < 20; ++i) {
@@ -124,7 +122,7 @@ double HeightField::reach_m(const ViewSweep& view) const {
     }
     reach_m = std::max(reach_m, ground_m);
   }
-  return std::min(1.05 * reach_m + 10.0 + 2.0 * view.slack_m, horizon_m);
+  return std::min(1.05 * reach_m + 10.0 + 2.0 * view.slack_m, to_horizon_m);
 }
 
 HeightTileId HeightField::first_root(const ViewSweep& view) const {

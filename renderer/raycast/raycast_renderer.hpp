@@ -1,19 +1,12 @@
-// The CPU ray-caster, with the choices that tests make.
+// The CPU ray-caster.
 #pragma once
 
 #include <memory>
 
-#include "renderer/raycast/sample.hpp"
+#include "renderer/raycast/raycast_options.hpp"
 #include "renderer/renderer.hpp"
 
 namespace overfly::renderer::raycast {
-
-struct RaycastOptions {
-  std::size_t tile_cache_bytes = std::size_t{256} << 20U;
-  std::shared_ptr<TileStore> tile_store;  ///< null = one of its own
-  int threads = 0;                        ///< 0 = one a core, at most 8
-  SampleKernel kernel = nullptr;          ///< null = the fastest
-};
 
 /// Neither `threads` nor `kernel` changes an image.
 [[nodiscard]] std::unique_ptr<Renderer> create_raycaster(

@@ -1,7 +1,7 @@
 // What chooses the exposure: nothing, or a controller on the mean level.
 #pragma once
 
-#include "renderer/sensor/sensor.hpp"
+#include "renderer/sensor/sensor_model.hpp"
 
 namespace overfly::renderer {
 

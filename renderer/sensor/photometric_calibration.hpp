@@ -8,7 +8,7 @@
 #include "core/camera_model.hpp"
 #include "core/image.hpp"
 #include "core/result.hpp"
-#include "renderer/sensor/sensor.hpp"
+#include "renderer/sensor/sensor_model.hpp"
 
 namespace overfly::renderer {
 

@@ -12,12 +12,13 @@ using Lanes = std::array<float, kChunk>;
 
 /// The light this many samples on is fetched early: a page of memory, beyond which the processor
 /// does not look by itself.
-constexpr int kAhead = 1024;
+constexpr int kPrefetchSamples = 1024;
 
 OVERFLY_LANES void fetch_ahead(const SensorRow& row, int start) {
   constexpr int kCacheLine = 16;
-  const int end = std::min(start + kAhead + kChunk, row.readable);
-  for (int i = start + kAhead; i < end; i += kCacheLine) __builtin_prefetch(row.radiance + i);
+  const int end = std::min(start + kPrefetchSamples + kChunk, row.readable);
+  for (int i = start + kPrefetchSamples; i < end; i += kCacheLine)
+    __builtin_prefetch(row.radiance + i);
 }
 
 /// What the light of a chunk leaves on average, the pattern of the pixels' gains included.

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "renderer/sensor/noise_source.hpp"
-#include "renderer/sensor/sensor.hpp"
+#include "renderer/sensor/vector_units.hpp"
 
 namespace overfly::renderer {
 

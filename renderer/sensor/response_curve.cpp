@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "renderer/sensor/sensor.hpp"
+#include "renderer/sensor/sensor_model.hpp"
 
 namespace overfly::renderer {
 

@@ -1,9 +1,10 @@
+#include "renderer/sensor/sensor_model.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "renderer/sensor/number_limit.hpp"
-#include "renderer/sensor/sensor.hpp"
 
 namespace overfly::renderer {
 

@@ -13,13 +13,13 @@ namespace {
 
 using overfly::testing::ProceduralGround;
 
-constexpr double kHeightM = 200.0;
-constexpr double kFocalPx = 350.0;
+constexpr double kShutterHeightM = 200.0;
+constexpr double kShutterFocalPx = 350.0;
 constexpr double kEdgesM = 50.0;  // between the painted edges
 constexpr double kSoftM = 1.0;
 
 /// The camera's top is the nose, which points north: image x grows to the east.
-const PinholeCamera kCamera{641, 241, kFocalPx, kFocalPx, 320.0, 120.0};
+const PinholeCamera kCamera{641, 241, kShutterFocalPx, kShutterFocalPx, 320.0, 120.0};
 
 /// Stripes from south to north whose edges lie at multiples of kEdgesM, soft enough for the place
 /// of an edge between two pixels not to matter; level ground.
@@ -34,7 +34,8 @@ std::shared_ptr<ProceduralGround> striped_ground() {
 }
 
 Pose rolled_pose(double roll_rad, double east_m) {
-  return {R_world_body_from({roll_rad, 0.0, 0.0}) * R_body_camera_nadir(), {east_m, 0.0, kHeightM}};
+  return {R_world_body_from({roll_rad, 0.0, 0.0}) * R_body_camera_nadir(),
+          {east_m, 0.0, kShutterHeightM}};
 }
 
 /// The picture's change from pixel to pixel around a column, as a distribution: its mean is the
@@ -98,7 +99,7 @@ TEST_P(Shutter, StreaksAreSpeedTimesExposureTimesFocalLengthOverHeight) {
       const RadianceImage sharp = draw(poses, 0, 0);
       const RadianceImage blurred = draw(poses, exposure_ns, 0);
       const double expected_px =
-          speed_m_s * 1e-9 * static_cast<double>(exposure_ns) * kFocalPx / kHeightM;
+          speed_m_s * 1e-9 * static_cast<double>(exposure_ns) * kShutterFocalPx / kShutterHeightM;
       const double before = edge_near(sharp, 120, 320.0, 30).variance_px2;
       const double after = edge_near(blurred, 120, 320.0, 30).variance_px2;
       // A box of length L has the variance L^2 / 12.
@@ -116,12 +117,13 @@ TEST_P(Shutter, SkewIsRateTimesReadoutTimesFocalLengthAndGrowsOffTheAxis) {
                                        {100'000'000, rolled_pose(0.05 * kRateRadS, 0.0)}};
   const RadianceImage image = draw(poses, 0, kReadoutNs);
   for (const int edge : {0, 1, 2, 3, -3}) {
-    const double x_px = kFocalPx * kEdgesM * edge / kHeightM;
+    const double x_px = kShutterFocalPx * kEdgesM * edge / kShutterHeightM;
     const double top_px = edge_near(image, 2, 320.0 + x_px, 24).x_px;
     const double bottom_px = edge_near(image, 238, 320.0 + x_px, 24).x_px;
     const double skew_px = std::abs(bottom_px - top_px) * 240.0 / 236.0;
-    const double tangent = x_px / kFocalPx;
-    const double expected_px = kRateRadS * 1e-9 * kReadoutNs * kFocalPx * (1.0 + tangent * tangent);
+    const double tangent = x_px / kShutterFocalPx;
+    const double expected_px =
+        kRateRadS * 1e-9 * kReadoutNs * kShutterFocalPx * (1.0 + tangent * tangent);
     std::printf("[ SKEW     ] %s, x / f = %.2f: %.2f px of %.2f\n",
                 GetParam(),
                 tangent,

@@ -1,0 +1,19 @@
+// The choices that tests of the ray-caster make.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+#include "renderer/raycast/sample.hpp"
+#include "renderer/renderer.hpp"
+
+namespace overfly::renderer::raycast {
+
+struct RaycastOptions {
+  std::size_t tile_cache_bytes = std::size_t{256} << 20U;
+  std::shared_ptr<TileStore> tile_store;  ///< null = one of its own
+  int threads = 0;                        ///< 0 = one a core, at most 8
+  SampleKernel kernel = nullptr;          ///< null = the fastest
+};
+
+}  // namespace overfly::renderer::raycast

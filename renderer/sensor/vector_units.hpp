@@ -1,0 +1,12 @@
+// The processor's vector units, for the sensor's loops.
+#pragma once
+
+namespace overfly::renderer {
+
+/// The vector units that a sensor may use. The image does not depend on them; for tests and
+/// figures.
+enum class VectorUnits { kBest, kNone, kAvx2, kAvx512 };
+/// Whether this machine has them.
+[[nodiscard]] bool supported(VectorUnits units);
+
+}  // namespace overfly::renderer
