@@ -2,7 +2,7 @@
 #include <utility>
 
 #include "renderer/renderer.hpp"
-#include "renderer/tile_store.hpp"
+#include "renderer/tiles/tile_store.hpp"
 
 namespace overfly::renderer {
 

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <limits>
 
-#include "renderer/frame_statistics.hpp"
-#include "renderer/ground_mesh.hpp"
-#include "renderer/image_parts.hpp"
+#include "renderer/camera/frame_statistics.hpp"
+#include "renderer/camera/image_parts.hpp"
+#include "renderer/ground/ground_mesh.hpp"
 #include "renderer/renderer.hpp"
 #include "renderer/request_check.hpp"
 

@@ -5,11 +5,11 @@
 #include <limits>
 #include <utility>
 
-#include "renderer/air_light.hpp"
-#include "renderer/frame_statistics.hpp"
-#include "renderer/ground_mesh.hpp"
-#include "renderer/image_motion.hpp"
-#include "renderer/image_parts.hpp"
+#include "renderer/camera/air_light.hpp"
+#include "renderer/camera/frame_statistics.hpp"
+#include "renderer/camera/image_motion.hpp"
+#include "renderer/camera/image_parts.hpp"
+#include "renderer/ground/ground_mesh.hpp"
 
 namespace overfly::renderer::egl {
 

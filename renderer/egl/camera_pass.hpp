@@ -6,12 +6,12 @@
 
 #include "core/image.hpp"
 #include "core/result.hpp"
+#include "renderer/camera/part_sampling.hpp"
 #include "renderer/egl/ground_pass.hpp"
 #include "renderer/egl/pixel_ring.hpp"
 #include "renderer/egl/target_pool.hpp"
 #include "renderer/egl/tile_textures.hpp"
-#include "renderer/ground_patch.hpp"
-#include "renderer/part_sampling.hpp"
+#include "renderer/ground/ground_patch.hpp"
 #include "renderer/renderer.hpp"
 
 namespace overfly::renderer::egl {

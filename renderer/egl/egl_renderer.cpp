@@ -2,6 +2,7 @@
 #include <string>
 #include <utility>
 
+#include "renderer/camera/view_ahead.hpp"
 #include "renderer/camera_pipeline.hpp"
 #include "renderer/egl/camera_pass.hpp"
 #include "renderer/egl/camera_queue.hpp"
@@ -11,7 +12,6 @@
 #include "renderer/egl/tile_textures.hpp"
 #include "renderer/renderer.hpp"
 #include "renderer/request_check.hpp"
-#include "renderer/view_ahead.hpp"
 
 namespace overfly::renderer {
 

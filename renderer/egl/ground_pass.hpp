@@ -9,7 +9,7 @@
 #include "renderer/egl/gl_objects.hpp"
 #include "renderer/egl/gl_program.hpp"
 #include "renderer/egl/tile_textures.hpp"
-#include "renderer/ground_mesh.hpp"
+#include "renderer/ground/ground_mesh.hpp"
 #include "renderer/renderer.hpp"
 
 namespace overfly::renderer::egl {

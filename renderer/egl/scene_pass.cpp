@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstddef>
 
-#include "renderer/aircraft_mesh.hpp"
-#include "renderer/ribbon_mesh.hpp"
+#include "renderer/scene/aircraft_mesh.hpp"
+#include "renderer/scene/ribbon_mesh.hpp"
 
 namespace overfly::renderer::egl {
 

@@ -8,7 +8,7 @@
 #include "renderer/egl/ground_pass.hpp"
 #include "renderer/egl/render_target.hpp"
 #include "renderer/renderer.hpp"
-#include "renderer/scene_triangles.hpp"
+#include "renderer/scene/scene_triangles.hpp"
 
 namespace overfly::renderer::egl {
 

@@ -5,7 +5,7 @@
 
 #include "core/image.hpp"
 #include "renderer/egl/gl_objects.hpp"
-#include "renderer/tile_store.hpp"
+#include "renderer/tiles/tile_store.hpp"
 
 namespace overfly::renderer::egl {
 

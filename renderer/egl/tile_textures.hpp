@@ -11,7 +11,7 @@
 #include "core/result.hpp"
 #include "renderer/egl/gl_objects.hpp"
 #include "renderer/renderer.hpp"
-#include "renderer/tile_store.hpp"
+#include "renderer/tiles/tile_store.hpp"
 #include "terrain/tile_source.hpp"
 
 namespace overfly::renderer::egl {

@@ -4,10 +4,10 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "renderer/raycast/blocks.hpp"
-#include "renderer/raycast/ground_caster.hpp"
-#include "renderer/raycast/ray_grid.hpp"
-#include "renderer/raycast/shutter.hpp"
+#include "renderer/raycast/ground/ground_caster.hpp"
+#include "renderer/raycast/ground/ray_grid.hpp"
+#include "renderer/raycast/ground/shutter.hpp"
+#include "renderer/raycast/paint/blocks.hpp"
 
 namespace overfly::renderer::raycast {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "renderer/raycast/blocks.hpp"
+#include "renderer/raycast/paint/blocks.hpp"
 
 namespace overfly::renderer::raycast {
 

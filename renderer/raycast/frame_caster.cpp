@@ -6,9 +6,9 @@
 #include <map>
 #include <thread>
 
-#include "renderer/image_motion.hpp"
+#include "renderer/camera/image_motion.hpp"
 #include "renderer/raycast/frame_measure.hpp"
-#include "renderer/raycast/view_sweep.hpp"
+#include "renderer/raycast/ground/view_sweep.hpp"
 
 namespace overfly::renderer::raycast {
 

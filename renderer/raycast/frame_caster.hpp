@@ -8,9 +8,9 @@
 
 #include "core/image.hpp"
 #include "renderer/raycast/block_builder.hpp"
-#include "renderer/raycast/painter.hpp"
+#include "renderer/raycast/paint/painter.hpp"
+#include "renderer/raycast/paint/texel_tiles.hpp"
 #include "renderer/raycast/raycast_options.hpp"
-#include "renderer/raycast/texel_tiles.hpp"
 #include "renderer/raycast/worker_pool.hpp"
 
 namespace overfly::renderer::raycast {

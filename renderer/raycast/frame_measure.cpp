@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "renderer/ground_ray.hpp"
+#include "renderer/ground/ground_ray.hpp"
 #include "renderer/raycast/block_builder.hpp"
 #include "renderer/raycast/block_places.hpp"
 

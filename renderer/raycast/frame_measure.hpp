@@ -3,9 +3,9 @@
 
 #include <functional>
 
-#include "renderer/frame_statistics.hpp"
-#include "renderer/raycast/ground_caster.hpp"
-#include "renderer/raycast/shutter.hpp"
+#include "renderer/camera/frame_statistics.hpp"
+#include "renderer/raycast/ground/ground_caster.hpp"
+#include "renderer/raycast/ground/shutter.hpp"
 #include "renderer/raycast/worker_pool.hpp"
 
 namespace overfly::renderer::raycast {

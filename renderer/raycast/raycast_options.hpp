@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <memory>
 
-#include "renderer/raycast/sample.hpp"
+#include "renderer/raycast/paint/sample.hpp"
 #include "renderer/renderer.hpp"
 
 namespace overfly::renderer::raycast {

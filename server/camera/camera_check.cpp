@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/cancel.hpp"
-#include "renderer/truth_images.hpp"
+#include "renderer/camera/truth_images.hpp"
 #include "server/camera/frame_maker.hpp"
 #include "server/scenario/document/scenario_file.hpp"
 #include "terrain/synthesize.hpp"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/result.hpp"
-#include "renderer/registration.hpp"
+#include "renderer/probes/registration.hpp"
 #include "server/camera/renderer_factory.hpp"
 #include "server/scenario/scenario.hpp"
 

@@ -8,7 +8,7 @@
 #include "core/image.hpp"
 #include "core/truth_source.hpp"
 #include "renderer/renderer.hpp"
-#include "renderer/sensor/sensor.hpp"
+#include "sensor/sensor.hpp"
 
 namespace overfly::engine {
 

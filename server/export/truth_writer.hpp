@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/result.hpp"
-#include "renderer/truth_images.hpp"
+#include "renderer/camera/truth_images.hpp"
 #include "server/camera/frame_maker.hpp"
 
 namespace overfly::engine {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/trajectory_io.hpp"
-#include "renderer/sensor/photometric_calibration.hpp"
+#include "sensor/photometric_calibration.hpp"
 #include "server/export/dataset_writer.hpp"
 #include "server/files/number_text.hpp"
 #include "server/files/png_file.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <system_error>
 
-#include "renderer/sensor/photometric_calibration.hpp"
+#include "sensor/photometric_calibration.hpp"
 #include "server/files/number_text.hpp"
 #include "server/files/png_file.hpp"
 #include "server/files/whole_file.hpp"

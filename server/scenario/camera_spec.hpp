@@ -6,8 +6,8 @@
 #include "core/camera_model.hpp"
 #include "core/pose.hpp"
 #include "renderer/renderer.hpp"
-#include "renderer/sensor/mount_vibration.hpp"
-#include "renderer/sensor/sensor.hpp"
+#include "sensor/mount_vibration.hpp"
+#include "sensor/sensor.hpp"
 
 namespace overfly::engine {
 

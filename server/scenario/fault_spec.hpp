@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "renderer/sensor/image_faults.hpp"
+#include "sensor/image_faults.hpp"
 
 namespace overfly::engine {
 

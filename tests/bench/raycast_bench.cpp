@@ -12,7 +12,7 @@
 #include <memory>
 #include <vector>
 
-#include "renderer/bench_probe.hpp"
+#include "renderer/probes/bench_probe.hpp"
 #include "tests/bench/bench_ground.hpp"
 #include "tests/bench/median.hpp"
 

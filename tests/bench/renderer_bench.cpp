@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "renderer/bench_probe.hpp"
+#include "renderer/probes/bench_probe.hpp"
 #include "tests/bench/bench_ground.hpp"
 
 namespace overfly::renderer {

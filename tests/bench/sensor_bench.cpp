@@ -10,10 +10,10 @@
 #include <memory>
 #include <vector>
 
-#include "renderer/bench_probe.hpp"
-#include "renderer/sensor/image_faults.hpp"
-#include "renderer/sensor/mount_vibration.hpp"
-#include "renderer/sensor/sensor.hpp"
+#include "renderer/probes/bench_probe.hpp"
+#include "sensor/image_faults.hpp"
+#include "sensor/mount_vibration.hpp"
+#include "sensor/sensor.hpp"
 #include "tests/bench/median.hpp"
 #include "tests/renderer/procedural_ground.hpp"
 

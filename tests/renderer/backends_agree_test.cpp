@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "renderer/renderer.hpp"
-#include "renderer/tile_store.hpp"
+#include "renderer/tiles/tile_store.hpp"
 #include "tests/renderer/image_distance.hpp"
 #include "tests/renderer/procedural_ground.hpp"
 

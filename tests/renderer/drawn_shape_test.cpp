@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "renderer/ground/view.hpp"
 #include "renderer/renderer.hpp"
-#include "renderer/view.hpp"
 #include "terrain/synthesize.hpp"
 #include "terrain/world.hpp"
 #include "tests/renderer/procedural_ground.hpp"

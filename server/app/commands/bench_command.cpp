@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "renderer/bench_probe.hpp"
+#include "renderer/probes/bench_probe.hpp"
 #include "server/app/commands/bench_fly.hpp"
 #include "server/app/commands/bench_folder.hpp"
 #include "server/app/commands/commands.hpp"

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/result.hpp"
-#include "renderer/endurance.hpp"
+#include "renderer/probes/endurance.hpp"
 #include "server/app/progress.hpp"
 
 namespace overfly::app {

@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "core/trajectory_io.hpp"
-#include "renderer/sensor/photometric_calibration.hpp"
+#include "sensor/photometric_calibration.hpp"
 #include "tests/server/export/export_fixture.hpp"
 
 namespace overfly::engine {

@@ -1,0 +1,80 @@
+#include "renderer/camera/image_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace overfly::renderer {
+
+namespace {
+
+constexpr double kInstantsPerPx = 2.0;
+constexpr double kStillPx = 0.05;
+
+}  // namespace
+
+double largest_motion_px(const CameraModel& camera,
+                         const Pose& T_world_camera_before,
+                         const Pose& T_world_camera_after,
+                         const HeightQuery& ground) {
+  constexpr int kSteps = 4;
+  constexpr double kFarM = 1e6;
+  const Eigen::Vector3d& at = T_world_camera_before.translation;
+  const double height_m = std::max(at.z() - ground.ground_up_m(at.x(), at.y()), 1.0);
+  const Pose T_after_before = T_world_camera_after.inverse() * T_world_camera_before;
+  const PinholeCamera& size = camera.pinhole();
+  double largest_px = 0.0;
+  for (int j = 0; j <= kSteps; ++j) {
+    for (int i = 0; i <= kSteps; ++i) {
+      const Eigen::Vector2d pixel((size.width_px - 1.0) * i / kSteps,
+                                  (size.height_px - 1.0) * j / kSteps);
+      const std::optional<Eigen::Vector3d> ray = camera.ray(pixel);
+      if (!ray) continue;
+      const double descent = -(T_world_camera_before.rotation * *ray).z();
+      const double depth_m = descent > height_m / kFarM ? height_m / descent : kFarM;
+      const auto moved = camera.project(T_after_before * Eigen::Vector3d(depth_m * *ray));
+      if (moved) largest_px = std::max(largest_px, (*moved - pixel).norm());
+    }
+  }
+  return largest_px;
+}
+
+int exposure_instants(const CameraRequest& request, const HeightQuery& ground) {
+  if (request.exposure_ns == 0 || request.T_world_camera.still()) return 1;
+  const auto pose = [&](std::int64_t t_ns) { return request.T_world_camera.at(t_ns); };
+  // The way there and back again: a vibration may return within the exposure.
+  constexpr int kPieces = 8;
+  double streak_px = 0.0;
+  const std::int64_t from_ns = request.t_ns - request.readout_ns / 2 - request.exposure_ns / 2;
+  const std::int64_t all_ns = request.readout_ns + request.exposure_ns;
+  for (int i = 0; i < kPieces; ++i) {
+    streak_px += largest_motion_px(request.camera,
+                                   pose(from_ns + all_ns * i / kPieces),
+                                   pose(from_ns + all_ns * (i + 1) / kPieces),
+                                   ground);
+  }
+  streak_px *= static_cast<double>(request.exposure_ns) / static_cast<double>(all_ns);
+  if (streak_px < kStillPx) return 1;
+  return std::clamp(static_cast<int>(std::ceil(kInstantsPerPx * streak_px)) + 1, 2, kMaxInstants);
+}
+
+int rows_of_one_pose(const CameraRequest& request, const HeightQuery& ground) {
+  const int rows = request.camera.pinhole().height_px;
+  if (request.readout_ns == 0 || request.T_world_camera.still() || rows < 2) return rows;
+  constexpr int kPieces = 16;
+  double fastest_px = 0.0;  // over a piece of the readout
+  for (int i = 0; i < kPieces; ++i) {
+    const auto time_ns = [&](int piece) {
+      return request.row_time_ns((rows - 1.0) * piece / kPieces);
+    };
+    fastest_px = std::max(fastest_px,
+                          largest_motion_px(request.camera,
+                                            request.T_world_camera.at(time_ns(i)),
+                                            request.T_world_camera.at(time_ns(i + 1)),
+                                            ground));
+  }
+  const double px_per_row = fastest_px * kPieces / (rows - 1.0);
+  if (px_per_row * 0.5 * rows <= kStillPx) return rows;
+  return std::clamp(static_cast<int>(2.0 * kStillPx / px_per_row), 1, rows);
+}
+
+}  // namespace overfly::renderer

@@ -1,0 +1,69 @@
+// Where rays meet the ground.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+#include "renderer/raycast/ground/height_field.hpp"
+
+namespace overfly::renderer::raycast {
+
+struct GroundHit {
+  double depth = 0.0;  ///< the ray's parameter: origin + depth * direction; 0 = the sky
+  const GroundNode* node = nullptr;
+  int column = 0, row = 0;        ///< cell of the node's tile
+  double across = 0.0, up = 0.0;  ///< place in the cell, east and north, in [0, 1]
+
+  [[nodiscard]] bool sky() const { return node == nullptr; }
+  /// Place on the map, in texels of level 0.
+  [[nodiscard]] Eigen::Vector2d texel() const;
+  /// d(height) / d(east, north).
+  [[nodiscard]] Eigen::Vector2d slope() const;
+  /// d(texel) / d(east, north).
+  [[nodiscard]] Eigen::Matrix2d texels_per_m() const;
+};
+
+/// Casts rays onto a ground tree. Where a ray is steeper than all ground it meets the ground only
+/// once, and Newton's method finds the place; elsewhere the ray is marched from square to square,
+/// over those whose highest post it passes (maximum mipmaps: Tevs, Ihrke, Seidel, Maximum mipmaps
+/// for fast, accurate, and scalable dynamic height field rendering, I3D 2008), and meets the
+/// bilinear surface of a cell at a root of a quadratic.
+class GroundCaster {
+ public:
+  explicit GroundCaster(const GroundTree& tree) : tree_(tree) {}
+
+  /// The first ground along a ray.
+  /// @param direction  any length
+  /// @param guess      a depth near the answer, or 0
+  /// @param near       a leaf near the answer, or null: makes the search shorter
+  [[nodiscard]] GroundHit cast(const Eigen::Vector3d& origin,
+                               const Eigen::Vector3d& direction,
+                               double guess,
+                               const GroundNode* near = nullptr) const;
+
+  /// True for a direction steeper than all ground: nothing can stand before what it meets.
+  [[nodiscard]] bool meets_ground_once(const Eigen::Vector3d& direction) const {
+    const double slope = tree_.steepest;
+    return direction.z() < 0.0 &&
+           direction.z() * direction.z() > slope * slope * direction.head<2>().squaredNorm();
+  }
+
+  [[nodiscard]] const GroundTree& tree() const { return tree_; }
+
+ private:
+  [[nodiscard]] const GroundNode* leaf_at(double east_m, double north_m) const;
+  [[nodiscard]] GroundHit descend(const Eigen::Vector3d& origin,
+                                  const Eigen::Vector3d& direction,
+                                  double guess,
+                                  const GroundNode* near) const;
+  [[nodiscard]] GroundHit march(const Eigen::Vector3d& origin,
+                                const Eigen::Vector3d& direction) const;
+
+  const GroundTree& tree_;
+};
+
+/// Vertical distance between the ground in a square of about `size_m` around a hit and a bilinear
+/// surface over it, at most [m].
+[[nodiscard]] double relief_around(const GroundTree& tree, const GroundHit& hit, double size_m);
+
+}  // namespace overfly::renderer::raycast

@@ -1,0 +1,173 @@
+#include "renderer/raycast/ground/height_tile.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+
+namespace overfly::renderer::raycast {
+
+namespace {
+
+/// Where no map point is found the ground falls away: nothing is seen there.
+constexpr double kAbyssM = -1e6;
+
+/// A point of the ground and its place on the map.
+struct Post {
+  Eigen::Vector2d map_m{0.0, 0.0};
+  double up_m = kAbyssM;
+};
+
+/// Finds the ground above points of the east-north plane.
+class Sampler {
+ public:
+  Sampler(const HeightTileId& id, const TexelMap& map) : map_(map), spacing_m_(id.spacing_m()) {}
+
+  /// Moves a guess on the map until the ground there lies above (east, north).
+  [[nodiscard]] Post find(const Eigen::Vector2d& wanted, const Eigen::Vector2d& guess_m) const {
+    Post post;
+    post.map_m = guess_m;
+    // Left over, the miss times the slope is an error of height: far below the tile's own.
+    const double close_m = 1e-3 * spacing_m_;
+    for (int i = 0; i < 20; ++i) {
+      // Half the spacing: what the cells cannot show is averaged away, what they can is not.
+      const Eigen::Vector3d p =
+          map_.tiles->coarse_world_from_map(post.map_m.x(), post.map_m.y(), 0.5 * spacing_m_);
+      if (!p.allFinite()) break;
+      const Eigen::Vector2d miss = wanted - p.head<2>();
+      post.map_m += map_.map_per_world * miss;
+      post.up_m = p.z();
+      if (miss.cwiseAbs().maxCoeff() < close_m) return post;
+    }
+    post.up_m = kAbyssM;
+    return post;
+  }
+
+ private:
+  const TexelMap& map_;
+  double spacing_m_;
+};
+
+void sample_posts(HeightTile& tile, const TexelMap& map) {
+  const Sampler sampler(tile.id, map);
+  const auto world = [&](int column, int row) {
+    return Eigen::Vector2d(tile.east_m + column * tile.spacing_m,
+                           tile.north_m + row * tile.spacing_m);
+  };
+  std::array<Eigen::Vector2d, 4> corners;
+  for (int i = 0; i < 4; ++i) {
+    const Eigen::Vector2d at = world((i & 1) * kTileCells, (i >> 1) * kTileCells);
+    corners[i] = sampler.find(at, map.origin_map_m + map.map_per_world * at).map_m;
+  }
+  std::array<double, kTilePosts * kTilePosts> up_m{};
+  tile.texels.resize(up_m.size());
+  tile.texel = map.texel_from_map(0.25 * (corners[0] + corners[1] + corners[2] + corners[3]));
+  for (int row = 0; row < kTilePosts; ++row) {
+    const double b = static_cast<double>(row) / kTileCells;
+    for (int column = 0; column < kTilePosts; ++column) {
+      const double a = static_cast<double>(column) / kTileCells;
+      const Eigen::Vector2d guess_m = (1.0 - b) * ((1.0 - a) * corners[0] + a * corners[1]) +
+                                      b * ((1.0 - a) * corners[2] + a * corners[3]);
+      const Post post = sampler.find(world(column, row), guess_m);
+      const std::size_t i = static_cast<std::size_t>(row) * kTilePosts + column;
+      up_m[i] = post.up_m;
+      tile.texels[i] = (map.texel_from_map(post.map_m) - tile.texel).cast<float>();
+    }
+  }
+  tile.up_m = up_m[up_m.size() / 2];
+  std::transform(up_m.begin(), up_m.end(), tile.height_m.begin(), [&](double up) {
+    return static_cast<float>(up - tile.up_m);
+  });
+}
+
+void measure_heights(HeightTile& tile) {
+  tile.lowest_m = *std::min_element(tile.height_m.begin(), tile.height_m.end());
+  float steepest_east = 0.0F, steepest_north = 0.0F;
+  std::vector<float>& cells = tile.highest_m[0];
+  cells.reserve(kTileCells * kTileCells);
+  for (int row = 0; row < kTileCells; ++row) {
+    for (int column = 0; column < kTileCells; ++column) {
+      const float sw = tile.height(column, row), se = tile.height(column + 1, row);
+      const float nw = tile.height(column, row + 1), ne = tile.height(column + 1, row + 1);
+      cells.push_back(std::max({sw, se, nw, ne}));
+      steepest_east = std::max({steepest_east, std::abs(se - sw), std::abs(ne - nw)});
+      steepest_north = std::max({steepest_north, std::abs(nw - sw), std::abs(ne - se)});
+    }
+  }
+  tile.steepest = std::hypot(steepest_east, steepest_north) / static_cast<float>(tile.spacing_m);
+  for (int k = 1; k <= kLog2TileCells; ++k) {
+    const int side = kTileCells >> k;
+    for (int row = 0; row < side; ++row) {
+      for (int column = 0; column < side; ++column) {
+        const std::vector<float>& finer = tile.highest_m[k - 1];
+        const std::size_t at = static_cast<std::size_t>(2 * row) * (2 * side) + 2 * column;
+        tile.highest_m[k].push_back(
+            std::max({finer[at], finer[at + 1], finer[at + 2 * side], finer[at + 2 * side + 1]}));
+      }
+    }
+  }
+}
+
+float square_deviation(const HeightTile& tile, int column, int row, int cells) {
+  const float sw = tile.height(column, row), se = tile.height(column + cells, row);
+  const float nw = tile.height(column, row + cells);
+  const float ne = tile.height(column + cells, row + cells);
+  const float scale = 1.0F / static_cast<float>(cells);
+  float worst = 0.0F;
+  for (int j = 0; j <= cells; ++j) {
+    const float b = static_cast<float>(j) * scale;
+    const float west = sw + b * (nw - sw);
+    const float slope = (se + b * (ne - se) - west) * scale;
+    const float* heights = &tile.height_m[static_cast<std::size_t>(row + j) * kTilePosts + column];
+    for (int i = 0; i <= cells; ++i) {
+      worst = std::max(worst, std::abs(heights[i] - (west + slope * static_cast<float>(i))));
+    }
+  }
+  return worst;
+}
+
+void measure_deviations(HeightTile& tile) {
+  for (int k = 1; k <= kLog2TileCells; ++k) {
+    const int cells = 1 << k;
+    for (int row = 0; row < kTileCells; row += cells) {
+      for (int column = 0; column < kTileCells; column += cells) {
+        tile.deviation_m[k].push_back(square_deviation(tile, column, row, cells));
+      }
+    }
+  }
+  // Between the posts: cells half as long as those of k = 1 have half the deviation of a kinked
+  // surface, a quarter of that of a smooth one.
+  for (int row = 0; row < kTileCells; ++row) {
+    for (int column = 0; column < kTileCells; ++column) {
+      tile.deviation_m[0].push_back(0.5F * tile.deviation(1, column, row));
+      tile.hidden_m = std::max(tile.hidden_m, tile.deviation_m[0].back());
+    }
+  }
+}
+
+}  // namespace
+
+TexelMap TexelMap::of(const terrain::TileSource& tiles) {
+  TexelMap map;
+  map.tiles = &tiles;
+  map.origin_map_m = tiles.map_from_world(0.0, 0.0);
+  constexpr double kStepM = 100.0;
+  map.map_per_world.col(0) =
+      (tiles.map_from_world(kStepM, 0.0) - tiles.map_from_world(-kStepM, 0.0)) / (2.0 * kStepM);
+  map.map_per_world.col(1) =
+      (tiles.map_from_world(0.0, kStepM) - tiles.map_from_world(0.0, -kStepM)) / (2.0 * kStepM);
+  return map;
+}
+
+HeightTile HeightTile::sample(const HeightTileId& id, const TexelMap& map) {
+  HeightTile tile;
+  tile.id = id;
+  tile.spacing_m = id.spacing_m();
+  tile.per_m = 1.0 / tile.spacing_m;
+  tile.east_m = id.col * id.side_m();
+  tile.north_m = id.row * id.side_m();
+  sample_posts(tile, map);
+  measure_heights(tile);
+  measure_deviations(tile);
+  return tile;
+}
+
+}  // namespace overfly::renderer::raycast

@@ -1,0 +1,164 @@
+#include "renderer/raycast/paint/painter.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace overfly::renderer::raycast {
+
+namespace {
+
+constexpr int kMaxValues = 3 * kBlockPixels;
+
+/// A bilinear function with its pixels' origin moved.
+Bilinear4 moved_and_scaled(const Bilinear4& f, float x, float y, float scale) {
+  return {(f[0] + f[1] * x + (f[2] + f[3] * x) * y) * scale,
+          (f[1] + f[3] * y) * scale,
+          (f[2] + f[3] * x) * scale,
+          f[3] * scale};
+}
+
+void fill(const Block& block, const Colour& colour, int channels, float* values) {
+  for (int c = 0; c < channels; ++c) {
+    std::fill_n(values + c * kBlockPixels, block.rows * kBlockSide, colour[c]);
+  }
+}
+
+template <int kChannels>
+void put_bytes(const Block& block, const float* values, const Canvas& canvas) {
+  const auto byte = [](float value) { return static_cast<std::uint8_t>(rounded(value)); };
+  for (int y = 0; y < block.rows; ++y) {
+    std::uint8_t* out =
+        canvas.bytes +
+        (static_cast<std::size_t>(block.y + y) * canvas.width_px + block.x) * kChannels;
+    for (int c = 0; c < kChannels; ++c) {
+      const float* row = values + c * kBlockPixels + y * kBlockSide;
+      if (block.columns == kBlockSide) {  // a length that the compiler knows
+        for (int x = 0; x < kBlockSide; ++x) out[x * kChannels + c] = byte(row[x]);
+      } else {
+        for (int x = 0; x < block.columns; ++x) out[x * kChannels + c] = byte(row[x]);
+      }
+    }
+  }
+}
+
+template <int kChannels>
+void add_sums(const Block& block, const float* values, const Canvas& canvas) {
+  for (int y = 0; y < block.rows; ++y) {
+    float* out = canvas.sums +
+                 (static_cast<std::size_t>(block.y + y) * canvas.width_px + block.x) * kChannels;
+    for (int c = 0; c < kChannels; ++c) {
+      const float* row = values + c * kBlockPixels + y * kBlockSide;
+      for (int x = 0; x < block.columns; ++x) out[x * kChannels + c] += canvas.weight * row[x];
+    }
+  }
+}
+
+using Put = void (*)(const Block& block, const float* values, const Canvas& canvas);
+
+Put put_of(const Canvas& canvas) {
+  if (canvas.bytes != nullptr) return canvas.channels == 1 ? put_bytes<1> : put_bytes<3>;
+  return canvas.channels == 1 ? add_sums<1> : add_sums<3>;
+}
+
+}  // namespace
+
+Painter::Painter(const CameraRequest& request, SampleKernel kernel)
+    : kernel_(kernel),
+      colours_(SceneColours::of(request)),
+      channels_(channel_count(request.format)),
+      unit_(is_linear(request.format) ? 1.0F / 65535.0F : 1.0F),
+      reference_(request.quality == RenderQuality::kReference),
+      hazy_(request.atmosphere.extinction_per_m > 0.0) {}
+
+void Painter::paint(const Band& band,
+                    const std::vector<FoundTile>& tiles,
+                    const Canvas& canvas) const {
+  const Put put = put_of(canvas);
+  float values[kMaxValues] = {};
+  for (std::size_t i = 0; i < band.blocks.size(); ++i) {
+    const Block& block = band.blocks[i];
+    colour_of(block, tiles, values);
+    if (block.quarter) {
+      float part[kMaxValues];
+      for (int k = 1; k < 4; ++k) {
+        colour_of(band.blocks[++i], tiles, part);
+        for (int c = 0; c < channels_; ++c) values[c * kBlockPixels] += part[c * kBlockPixels];
+      }
+      for (int c = 0; c < channels_; ++c) values[c * kBlockPixels] *= 0.25F;
+    }
+    put(block, values, canvas);
+  }
+}
+
+void Painter::colour_of(const Block& block,
+                        const std::vector<FoundTile>& tiles,
+                        float* values) const {
+  switch (block.kind) {
+    case Block::Kind::kSky:
+      return fill(block, colours_.sky, channels_, values);
+    case Block::Kind::kVoid:
+      fill(block, colours_.nothing, channels_, values);
+      break;
+    case Block::Kind::kGround:
+      sample(block, tiles[block.tile], values);
+      break;
+  }
+  if (hazy_) haze(block, values);
+}
+
+void Painter::sample(const Block& block, const FoundTile& tile, float* values) const {
+  const float per_texel = std::ldexp(1.0F, -tile.id.level);
+  const double side = static_cast<double>(terrain::kTileTexels) * (1 << tile.id.level);
+  TexelBlock texels;
+  texels.columns = block.columns;
+  texels.rows = block.rows;
+  texels.u0 = static_cast<float>((block.u - tile.id.col * side) * per_texel) +
+              static_cast<float>(terrain::kTileBorder);
+  texels.v0 = static_cast<float>((block.v - tile.id.row * side) * per_texel) +
+              static_cast<float>(terrain::kTileBorder);
+  const auto draw = [&](float x, float y, float* out) {
+    texels.numerator_u = moved_and_scaled(block.numerator_u, x, y, per_texel);
+    texels.numerator_v = moved_and_scaled(block.numerator_v, x, y, per_texel);
+    texels.inverse_depth = moved_and_scaled(block.inverse_depth, x, y, 1.0F);
+    texels.lod = moved_and_scaled(block.lod, x, y, 1.0F);
+    texels.lod[0] -= static_cast<float>(tile.id.level);
+    kernel_(texels, *tile.texels, out);
+  };
+  if (!reference_ || block.quarter) {
+    draw(0.0F, 0.0F, values);
+    if (unit_ == 1.0F) return;
+    for (int c = 0; c < channels_; ++c) {
+      float* plane = values + c * kBlockPixels;
+      for (int i = 0; i < block.rows * kBlockSide; ++i) plane[i] *= unit_;
+    }
+    return;
+  }
+  float taps[4][kMaxValues];
+  draw(-0.25F, -0.25F, taps[0]);
+  draw(0.25F, -0.25F, taps[1]);
+  draw(-0.25F, 0.25F, taps[2]);
+  draw(0.25F, 0.25F, taps[3]);
+  const float share = 0.25F * unit_;
+  for (int c = 0; c < channels_; ++c) {
+    for (int i = c * kBlockPixels; i < c * kBlockPixels + block.rows * kBlockSide; ++i) {
+      values[i] = share * ((taps[0][i] + taps[1][i]) + (taps[2][i] + taps[3][i]));
+    }
+  }
+}
+
+void Painter::haze(const Block& block, float* values) const {
+  for (int y = 0; y < block.rows; ++y) {
+    const auto row = static_cast<float>(y);
+    for (int x = 0; x < block.columns; ++x) {
+      const auto column = static_cast<float>(x);
+      const float clear = block.clear[0] + block.clear[1] * column +
+                          (block.clear[2] + block.clear[3] * column) * row;
+      for (int c = 0; c < channels_; ++c) {
+        float& value = values[c * kBlockPixels + y * kBlockSide + x];
+        value = colours_.air[c] + clear * (value - colours_.air[c]);
+      }
+    }
+  }
+}
+
+}  // namespace overfly::renderer::raycast

@@ -1,0 +1,44 @@
+// Fills an image from blocks.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "renderer/raycast/paint/blocks.hpp"
+#include "renderer/raycast/paint/colours.hpp"
+#include "renderer/raycast/paint/sample.hpp"
+#include "renderer/raycast/paint/texel_tiles.hpp"
+
+namespace overfly::renderer::raycast {
+
+/// Where a frame's values go: bytes at once, or floats to which they are added.
+struct Canvas {
+  int width_px = 0;
+  int channels = 1;
+  std::uint8_t* bytes = nullptr;  ///< digital numbers, rounded
+  float* sums = nullptr;          ///< where `bytes` is null
+  float weight = 1.0F;            ///< of what is added
+};
+
+class Painter {
+ public:
+  Painter(const CameraRequest& request, SampleKernel kernel);
+
+  /// Paints a row of cells. @param tiles  what stands for each of the band's tiles
+  void paint(const Band& band, const std::vector<FoundTile>& tiles, const Canvas& canvas) const;
+
+ private:
+  /// Values of a block's pixels, by plane, row and column.
+  void colour_of(const Block& block, const std::vector<FoundTile>& tiles, float* values) const;
+  void sample(const Block& block, const FoundTile& tile, float* values) const;
+  void haze(const Block& block, float* values) const;
+
+  SampleKernel kernel_;
+  SceneColours colours_;
+  int channels_;
+  float unit_;  // of the kernel's values
+  bool reference_;
+  bool hazy_;
+};
+
+}  // namespace overfly::renderer::raycast

@@ -1,0 +1,55 @@
+// The packed tiles of the frames drawn last, within a budget.
+#pragma once
+
+#include <cstddef>
+#include <list>
+#include <map>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "renderer/raycast/paint/packed_tile.hpp"
+#include "renderer/tiles/tile_store.hpp"
+
+namespace overfly::renderer::raycast {
+
+/// The tile that stands for one that was asked for: itself, or a coarser one that covers it.
+struct FoundTile {
+  std::shared_ptr<const PackedTile> texels;
+  terrain::TileId id;
+};
+
+class TexelTiles {
+ public:
+  TexelTiles(std::shared_ptr<TileStore> store, std::size_t budget_bytes);
+
+  /// The tile itself, read if need be. Errors: kIo naming the tile.
+  [[nodiscard]] Result<FoundTile> get(const terrain::TileId& id, PixelFormat format);
+  /// What is there now: the tile, or the nearest coarser one; the missing one is asked for. The
+  /// coarsest of all is waited for. Errors: kIo.
+  [[nodiscard]] Result<FoundTile> find(const terrain::TileId& id, PixelFormat format);
+  /// Asks for tiles that a later frame will need, and packs one of those that are there.
+  /// @return true when it packed one
+  bool prefetch(const std::vector<terrain::TileId>& ids, PixelFormat format);
+  /// Lets the tiles used longest ago go until the budget holds, with an eighth of it to spare: for
+  /// what is packed ahead of the next frames. Call between frames.
+  void trim();
+
+ private:
+  using Key = std::pair<terrain::TileId, PixelFormat>;
+  using Order = std::list<Key>;  // last used first
+  struct Entry {
+    std::shared_ptr<const PackedTile> texels;
+    Order::iterator place;
+  };
+  std::shared_ptr<const PackedTile> held(const Key& key);
+  std::shared_ptr<const PackedTile> keep(const Key& key, const TilePixels& pixels);
+
+  std::shared_ptr<TileStore> store_;
+  std::size_t budget_bytes_;
+  std::size_t held_bytes_ = 0;
+  Order order_;
+  std::map<Key, Entry> entries_;
+};
+
+}  // namespace overfly::renderer::raycast

@@ -1,0 +1,122 @@
+#include "renderer/tiles/tile_pixels.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace overfly::renderer {
+
+namespace {
+
+/// @tparam Channels  of the image, known here so that the loops are tight
+template <int Channels, typename T>
+void halve_rows(const ImageBuffer<T>& image, ImageBuffer<T>& half) {
+  const std::size_t right = image.width_px > 1 ? Channels : 0;
+  const std::size_t down =
+      image.height_px > 1 ? static_cast<std::size_t>(image.width_px) * Channels : 0;
+  for (int y = 0; y < half.height_px; ++y) {
+    const T* from = &image.at(0, std::min(2 * y, image.height_px - 1));
+    T* to = &half.at(0, y);
+    for (int x = 0; x < half.width_px; ++x, from += 2 * Channels, to += Channels) {
+      for (int c = 0; c < Channels; ++c) {
+        const std::uint32_t sum = static_cast<std::uint32_t>(from[c]) + from[c + right] +
+                                  from[c + down] + from[c + right + down];
+        to[c] = static_cast<T>((sum + 2U) / 4U);
+      }
+    }
+  }
+}
+
+template <typename T>
+ImageBuffer<T> halved(const ImageBuffer<T>& image) {
+  ImageBuffer<T> half(
+      std::max(image.width_px / 2, 1), std::max(image.height_px / 2, 1), image.channels);
+  switch (image.channels) {
+    case 1:
+      halve_rows<1>(image, half);
+      break;
+    case 3:
+      halve_rows<3>(image, half);
+      break;
+    default:
+      halve_rows<4>(image, half);
+      break;
+  }
+  return half;
+}
+
+template <typename T>
+std::vector<ImageBuffer<T>> chain(ImageBuffer<T> level_0) {
+  std::vector<ImageBuffer<T>> levels;
+  levels.push_back(std::move(level_0));
+  while (levels.back().width_px > 1 || levels.back().height_px > 1) {
+    levels.push_back(halved(levels.back()));
+  }
+  return levels;
+}
+
+std::array<std::uint16_t, 256> make_linear_from_srgb() {
+  std::array<std::uint16_t, 256> table{};
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const double encoded = static_cast<double>(i) / 255.0;
+    // IEC 61966-2-1:1999, eq. 5 and 6.
+    const double linear =
+        encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+    table[i] = static_cast<std::uint16_t>(std::lround(65535.0 * linear));
+  }
+  return table;
+}
+
+}  // namespace
+
+Image grey_from_rgb(const Image& rgb) {
+  Image grey(rgb.width_px, rgb.height_px, 1);
+  for (std::size_t i = 0; i < grey.data.size(); ++i) {
+    const std::uint8_t* p = &rgb.data[3 * i];
+    grey.data[i] = static_cast<std::uint8_t>((77 * p[0] + 150 * p[1] + 29 * p[2] + 128) / 256);
+  }
+  return grey;
+}
+
+Image with_alpha(const Image& rgb, const Image& alpha) {
+  Image rgba(rgb.width_px, rgb.height_px, 4);
+  for (std::size_t i = 0; i < alpha.data.size(); ++i) {
+    for (std::size_t c = 0; c < 3; ++c) rgba.data[4 * i + c] = rgb.data[3 * i + c];
+    rgba.data[4 * i + 3] = alpha.data[i];
+  }
+  return rgba;
+}
+
+const std::array<std::uint16_t, 256>& linear_from_srgb() {
+  static const std::array<std::uint16_t, 256> kTable = make_linear_from_srgb();
+  return kTable;
+}
+
+Image16 linear_grey_from_rgb(const Image& rgb) {
+  const auto& linear = linear_from_srgb();
+  Image16 grey(rgb.width_px, rgb.height_px, 1);
+  for (std::size_t i = 0; i < grey.data.size(); ++i) {
+    const std::uint8_t* p = &rgb.data[3 * i];
+    // 0.2126, 0.7152, 0.0722; together 65536.
+    const std::uint32_t sum =
+        13933U * linear[p[0]] + 46871U * linear[p[1]] + 4732U * linear[p[2]] + 32768U;
+    grey.data[i] = static_cast<std::uint16_t>(sum >> 16U);
+  }
+  return grey;
+}
+
+Image16 linear_with_alpha(const Image& rgb, const Image& alpha) {
+  const auto& linear = linear_from_srgb();
+  Image16 rgba(rgb.width_px, rgb.height_px, 4);
+  for (std::size_t i = 0; i < alpha.data.size(); ++i) {
+    for (std::size_t c = 0; c < 3; ++c) rgba.data[4 * i + c] = linear[rgb.data[3 * i + c]];
+    rgba.data[4 * i + 3] = alpha.data[i] != 0 ? 65535 : 0;
+  }
+  return rgba;
+}
+
+std::vector<Image> mip_chain(Image level_0) { return chain(std::move(level_0)); }
+
+std::vector<Image16> mip_chain(Image16 level_0) { return chain(std::move(level_0)); }
+
+}  // namespace overfly::renderer

@@ -1,0 +1,348 @@
+#include "renderer/tiles/tile_store.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <condition_variable>
+#include <ctime>
+#include <deque>
+#include <exception>
+#include <list>
+#include <map>
+#include <mutex>
+#include <set>
+#include <string>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+#include "core/barrier.hpp"
+#include "core/processor_time.hpp"
+#include "renderer/tiles/tile_pixels.hpp"
+
+namespace overfly::renderer {
+
+using terrain::TileId;
+
+namespace {
+
+constexpr int kValidStep = 8;
+/// Requests of `find` that wait; older ones are forgotten, whoever needs them asks again.
+constexpr std::size_t kMaxAsked = 256;
+/// Of a thread between two tiles that are read ahead, per time spent on the last.
+constexpr double kRestPerWork = 6.0;
+
+Image thinned(const Image& valid) {
+  const bool all_valid =
+      std::all_of(valid.data.begin(), valid.data.end(), [](auto value) { return value != 0; });
+  if (all_valid) return {};
+  Image thin(valid.width_px / kValidStep, valid.height_px / kValidStep, 1);
+  for (int y = 0; y < thin.height_px; ++y) {
+    for (int x = 0; x < thin.width_px; ++x) {
+      thin.at(x, y) = valid.at(x * kValidStep + kValidStep / 2, y * kValidStep + kValidStep / 2);
+    }
+  }
+  return thin;
+}
+
+/// Has the elevation under a tile read, about as finely as who draws the tile will want it.
+void touch_heights(const terrain::TileSource& tiles, const TileId& id) {
+  constexpr int kSteps = 4;
+  constexpr double kSpacingTexels = 8.0;
+  const terrain::TileGrid& grid = tiles.grid();
+  const double texel_m = std::ldexp(grid.texel_m, id.level);
+  const double side_m = terrain::kTileTexels * texel_m;
+  for (int j = 0; j <= kSteps; ++j) {
+    for (int i = 0; i <= kSteps; ++i) {
+      const double x_m = grid.left_x_m + (id.col + static_cast<double>(i) / kSteps) * side_m;
+      const double y_m = grid.top_y_m - (id.row + static_cast<double>(j) / kSteps) * side_m;
+      (void)tiles.coarse_world_from_map(x_m, y_m, kSpacingTexels * texel_m);
+    }
+  }
+}
+
+}  // namespace
+
+std::size_t TilePixels::bytes() const {
+  std::size_t sum = valid.data.size();
+  for (const Image& level : levels) sum += level.data.size();
+  for (const Image16& level : linear_levels) sum += level.data.size() * sizeof(std::uint16_t);
+  return sum;
+}
+
+bool TilePixels::has_imagery(double u, double v) const {
+  if (valid.empty()) return true;
+  const int x = std::clamp(static_cast<int>(u * valid.width_px), 0, valid.width_px - 1);
+  const int y = std::clamp(static_cast<int>(v * valid.height_px), 0, valid.height_px - 1);
+  return valid.at(x, y) != 0;
+}
+
+TilePixels tile_pixels_from(const terrain::Tile& tile, PixelFormat format) {
+  TilePixels pixels;
+  pixels.valid = thinned(tile.valid);
+  switch (format) {
+    case PixelFormat::kGrey8:
+      pixels.levels = mip_chain(grey_from_rgb(tile.rgb));
+      break;
+    case PixelFormat::kRgb8:
+      pixels.levels = mip_chain(with_alpha(tile.rgb, tile.valid));
+      break;
+    case PixelFormat::kGreyLinear:
+      pixels.linear_levels = mip_chain(linear_grey_from_rgb(tile.rgb));
+      break;
+    case PixelFormat::kRgbLinear:
+      pixels.linear_levels = mip_chain(linear_with_alpha(tile.rgb, tile.valid));
+      break;
+  }
+  return pixels;
+}
+
+/// Everything behind the lock, and the threads.
+struct TileStore::State {
+  using Key = std::pair<TileId, PixelFormat>;
+  using Pixels = std::shared_ptr<const TilePixels>;
+  using Order = std::list<Key>;  // last used first
+  struct Entry {
+    Pixels pixels;
+    std::size_t bytes = 0;
+    std::uint64_t round = 0;  // of prefetch calls, when it was last of use
+    Order::iterator place;
+  };
+
+  State(std::shared_ptr<const terrain::TileSource> source, const TileStoreOptions& wanted)
+      : tiles(std::move(source)), options(wanted) {
+    try {
+      for (int i = 0; i < options.threads; ++i) threads.emplace_back([this] { fetch_ahead(); });
+    } catch (const std::system_error&) {
+      // The system has no more threads: without any, tiles are read on demand.
+    }
+  }
+
+  ~State() {
+    {
+      const std::lock_guard lock(mutex);
+      stopping = true;
+    }
+    work.notify_all();
+    for (std::thread& thread : threads) thread.join();
+  }
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+
+  /// The entry, marked as used. Under the lock.
+  Pixels use(const Key& key) {
+    const auto found = entries.find(key);
+    if (found == entries.end()) return nullptr;
+    found->second.round = round;
+    order.splice(order.begin(), order, found->second.place);
+    return found->second.pixels;
+  }
+
+  /// Keeps a tile and drops those used longest ago. Under the lock.
+  void keep(const Key& key, const Pixels& pixels) {
+    const std::size_t bytes = pixels->bytes();
+    Order place(1, key);
+    entries.emplace(key, Entry{pixels, bytes, round, place.begin()});
+    order.splice(order.begin(), place);
+    held_bytes += bytes;
+    while (held_bytes > options.budget_bytes && !order.empty()) {
+      const auto oldest = entries.find(order.back());
+      held_bytes -= oldest->second.bytes;
+      entries.erase(oldest);
+      order.pop_back();
+      ++counts.let_go;
+    }
+  }
+
+  /// Leaves the processor to the frames in between, unless someone draws without a tile.
+  void rest(double spent_s, std::unique_lock<std::mutex>& lock) {
+    work.wait_for(lock, std::chrono::duration<double>(kRestPerWork * spent_s), [this] {
+      return stopping || waiting > 0 || !asked.empty();
+    });
+  }
+
+  /// A tile's pixels, read without the lock; too little memory is an error like others.
+  Result<Pixels> read(const Key& key, bool urgent, std::unique_lock<std::mutex>& lock) {
+    try {
+      const double before_s = thread_cpu_s();
+      const Result<terrain::Tile> tile = tiles->tile(key.first);
+      if (!urgent) {
+        touch_heights(*tiles, key.first);
+        lock.lock();
+        rest(thread_cpu_s() - before_s, lock);
+        lock.unlock();
+      }
+      if (!tile) return tile.error();
+      return Pixels(std::make_shared<const TilePixels>(tile_pixels_from(*tile, key.second)));
+    } catch (const std::exception& error) {
+      return Error{ErrorCode::kInternal, error.what()};
+    }
+  }
+
+  /// Reads a tile that this thread has put into `loading`; the lock is open meanwhile.
+  Result<Pixels> load(const Key& key, bool urgent, std::unique_lock<std::mutex>& lock) {
+    lock.unlock();
+    const Result<Pixels> pixels = read(key, urgent, lock);
+    lock.lock();
+    loading.erase(key);
+    // One that there is no memory to keep is read again when it is wanted again.
+    if (pixels) (void)contained([&] { keep(key, *pixels); }, [](const char*) {});
+    loaded.notify_all();
+    if (pixels) return pixels;
+    const TileId& id = key.first;
+    return pixels.error().in("tile " + std::to_string(id.level) + "/" + std::to_string(id.col) +
+                             "/" + std::to_string(id.row));
+  }
+
+  Result<Pixels> get(const Key& key) {
+    std::unique_lock lock(mutex);
+    while (true) {
+      if (Pixels pixels = use(key); pixels != nullptr) return pixels;
+      if (loading.insert(key).second) break;
+      ++waiting;
+      work.notify_all();
+      loaded.wait(lock);
+      --waiting;
+    }
+    ++counts.read_on_demand;
+    return load(key, true, lock);
+  }
+
+  Pixels find(const Key& key) {
+    if (threads.empty()) {
+      Result<Pixels> read = get(key);
+      return read.ok() ? *read : nullptr;
+    }
+    const std::lock_guard lock(mutex);
+    if (Pixels pixels = use(key); pixels != nullptr) return pixels;
+    if (loading.count(key) != 0 || std::find(asked.begin(), asked.end(), key) != asked.end()) {
+      return nullptr;
+    }
+    asked.push_back(key);
+    if (asked.size() > kMaxAsked) asked.pop_front();
+    work.notify_one();
+    return nullptr;
+  }
+
+  void prefetch(std::span<const TileId> ids, PixelFormat format) {
+    const std::lock_guard lock(mutex);
+    ++round;
+    ahead.clear();
+    // From the least urgent on, so that the most urgent one is dropped last.
+    for (std::size_t i = ids.size(); i-- > 0;) (void)use({ids[i], format});
+    for (const TileId& id : ids) {
+      if (const Key key{id, format}; entries.count(key) == 0) ahead.push_back(key);
+    }
+    if (!ahead.empty()) work.notify_all();
+  }
+
+  /// True when the tile that would have to go is still of use. Under the lock.
+  [[nodiscard]] bool full() const {
+    if (order.empty() || held_bytes + entries.at(order.back()).bytes <= options.budget_bytes) {
+      return false;
+    }
+    return entries.at(order.back()).round + 1 >= round;
+  }
+
+  /// The next tile to read, put into `loading`; `urgent` when someone draws without it. Under the
+  /// lock.
+  bool take_next(Key& key, bool& urgent) {
+    const auto take_from = [&](std::deque<Key>& queue) {
+      while (!queue.empty()) {
+        key = queue.front();
+        queue.pop_front();
+        if (entries.count(key) == 0 && loading.insert(key).second) return true;
+      }
+      return false;
+    };
+    urgent = take_from(asked);
+    if (urgent) return true;
+    if (!ahead.empty() && full()) ahead.clear();
+    return take_from(ahead);
+  }
+
+  void fetch_ahead() {
+    std::unique_lock lock(mutex);
+    // A tile that there is no memory to fetch ahead is read when it is drawn.
+    while (!stopping) (void)contained([&] { fetch_next(lock); }, [](const char*) {});
+  }
+
+  void fetch_next(std::unique_lock<std::mutex>& lock) {
+    Key key;
+    bool urgent = false;
+    if (!take_next(key, urgent)) {
+      loaded.notify_all();
+      work.wait(lock);
+      return;
+    }
+    ++counts.read_ahead;
+    const double before_s = thread_cpu_s();
+    // A tile that cannot be read is reported to whoever gets it.
+    (void)load(key, urgent, lock);
+    const double spent_s = thread_cpu_s() - before_s;
+    counts.ahead_cpu_s += spent_s;
+    // Tiles ahead have seconds to come.
+    if (!urgent) rest(spent_s, lock);
+  }
+
+  std::shared_ptr<const terrain::TileSource> tiles;
+  TileStoreOptions options;
+  mutable std::mutex mutex;
+  std::condition_variable loaded;  // a tile was read, or a thread ran out of work
+  std::condition_variable work;    // something was asked for, or the end
+  std::map<Key, Entry> entries;
+  Order order;
+  std::size_t held_bytes = 0;
+  std::set<Key> loading;
+  std::deque<Key> asked;  // by find
+  std::deque<Key> ahead;  // by prefetch
+  std::uint64_t round = 0;
+  bool stopping = false;
+  int waiting = 0;  // who needs a tile that is being read
+  TileStoreCounts counts;
+  std::vector<std::thread> threads;
+};
+
+TileStore::TileStore(std::shared_ptr<const terrain::TileSource> tiles,
+                     const TileStoreOptions& options)
+    : state_(std::make_unique<State>(std::move(tiles), options)) {}
+
+TileStore::~TileStore() = default;
+
+Result<std::shared_ptr<const TilePixels>> TileStore::get(const TileId& id, PixelFormat format) {
+  return state_->get({id, format});
+}
+
+std::shared_ptr<const TilePixels> TileStore::find(const TileId& id, PixelFormat format) {
+  return state_->find({id, format});
+}
+
+std::shared_ptr<const TilePixels> TileStore::peek(const TileId& id, PixelFormat format) {
+  const std::lock_guard lock(state_->mutex);
+  return state_->use({id, format});
+}
+
+void TileStore::prefetch(std::span<const TileId> ids, PixelFormat format) {
+  if (!state_->threads.empty()) state_->prefetch(ids, format);
+}
+
+void TileStore::wait_until_idle() {
+  std::unique_lock lock(state_->mutex);
+  state_->loaded.wait(lock, [this] {
+    return state_->loading.empty() && state_->asked.empty() && state_->ahead.empty();
+  });
+}
+
+std::size_t TileStore::held_bytes() const {
+  const std::lock_guard lock(state_->mutex);
+  return state_->held_bytes;
+}
+
+TileStoreCounts TileStore::counts() const {
+  const std::lock_guard lock(state_->mutex);
+  return state_->counts;
+}
+
+const terrain::TileSource& TileStore::tiles() const { return *state_->tiles; }
+
+}  // namespace overfly::renderer
