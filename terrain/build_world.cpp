@@ -140,12 +140,12 @@ Result<CacheHeader> new_header(const WorldSpec& spec,
 }
 
 /// Makes all parts, and the header last.
-Status fill(const WorldSpec& spec,
-            CacheBuilder& builder,
-            const RasterWorld& tiles,
-            CacheHeader& header,
-            const fs::path& folder,
-            const BuildProgress& progress) {
+Status fill_cache(const WorldSpec& spec,
+                  CacheBuilder& builder,
+                  const RasterWorld& tiles,
+                  CacheHeader& header,
+                  const fs::path& folder,
+                  const BuildProgress& progress) {
   Status done = builder.make(progress);
   if (done) done = write_validity(tiles, folder, header);
   if (!done) return done;
@@ -195,7 +195,7 @@ Result<BuildReport> build_world(const WorldSpec& spec, const BuildProgress& prog
   report.warnings = world->warnings;
   report.folder = spec.cache_folder / key_of(*header);
   CacheBuilder builder(tiles, report.folder);
-  const Status filled = fill(spec, builder, tiles, *header, report.folder, progress);
+  const Status filled = fill_cache(spec, builder, tiles, *header, report.folder, progress);
   if (!filled) return filled.error();
   remove_others(spec.cache_folder, report.folder);
   report.bytes = header->bytes;

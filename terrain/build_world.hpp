@@ -4,11 +4,11 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "core/result.hpp"
+#include "terrain/build_progress.hpp"
 #include "terrain/world.hpp"
 
 namespace overfly::terrain {
@@ -22,9 +22,6 @@ struct BuildReport {
   std::vector<std::string> warnings;
 };
 
-/// Called from time to time with the share done in [0, 1]; returning false cancels.
-using BuildProgress = std::function<bool(double share, const std::string& doing)>;
-
 /// Fills `spec.cache_folder` with the tiles of all levels and the heights, byte-identical to those
 /// read from the files. Parts are written whole: an interrupted or killed build resumes where it
 /// stopped, and two processes may build at the same time. Caches of other states of the files are
@@ -33,14 +30,7 @@ using BuildProgress = std::function<bool(double share, const std::string& doing)
 [[nodiscard]] Result<BuildReport> build_world(const WorldSpec& spec,
                                               const BuildProgress& progress = {});
 
-/// Creates a world from files. Imagery and elevation are distinguished by content: elevation has
-/// one band that is not 8 bit; imagery has colours or 8 bits. Layers of either kind are sorted from
-/// fine to coarse.
-/// Errors: kInvalidArgument naming a file that could be both (one band of 16-bit whole numbers
-/// without a unit), or if there is no imagery; kNotFound; kUnreadable.
-[[nodiscard]] Result<WorldSpec> world_from_files(const std::vector<std::filesystem::path>& files);
-
-/// Whether two worlds consist of the same files, read in the same way.
+/// Whether two worlds are made of the same files, read in the same way.
 [[nodiscard]] bool same_layers(const WorldSpec& a, const WorldSpec& b);
 
 }  // namespace overfly::terrain

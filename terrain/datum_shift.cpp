@@ -6,17 +6,10 @@
 #include <cmath>
 #include <cstdio>
 
+#include "terrain/proj_handles.hpp"
+
 namespace overfly::terrain {
 namespace {
-
-struct ContextCloser {
-  void operator()(PJ_CONTEXT* context) const { proj_context_destroy(context); }
-};
-struct ObjectCloser {
-  void operator()(PJ* object) const { proj_destroy(object); }
-};
-using Context = std::unique_ptr<PJ_CONTEXT, ContextCloser>;
-using Object = std::unique_ptr<PJ, ObjectCloser>;
 
 std::string wkt_of(const OGRSpatialReference& crs) {
   char* text = nullptr;
@@ -33,15 +26,15 @@ std::optional<std::string> datum_shift_doubt(const OGRSpatialReference& crs,
                                              double x,
                                              double y,
                                              const std::string& file) {
-  const Context context(proj_context_create());
+  const ProjContext context(proj_context_create());
   proj_log_level(context.get(), PJ_LOG_NONE);
-  const Object raw(
+  const ProjObject raw(
       proj_create_crs_to_crs(context.get(), wkt_of(crs).c_str(), "EPSG:4326", nullptr));
   if (!raw) return std::nullopt;
-  const Object transform(proj_normalize_for_visualization(context.get(), raw.get()));
+  const ProjObject transform(proj_normalize_for_visualization(context.get(), raw.get()));
   if (!transform) return std::nullopt;
   proj_trans(transform.get(), PJ_FWD, proj_coord(x, y, 0.0, 0.0));
-  const Object used(proj_trans_get_last_used_operation(transform.get()));
+  const ProjObject used(proj_trans_get_last_used_operation(transform.get()));
   if (!used) return std::nullopt;
   const bool guess =
       proj_coordoperation_has_ballpark_transformation(context.get(), used.get()) != 0;

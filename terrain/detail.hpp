@@ -5,38 +5,14 @@
 // it must record that.
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <string>
 
 #include "core/result.hpp"
+#include "terrain/detail_model.hpp"
 #include "terrain/tile_source.hpp"
 
 namespace overfly::terrain {
-
-struct DetailOptions {
-  int octaves = 2;  ///< each halves the texel, in [1, 4]
-  /// Amplitude relative to the continued spectrum of the imagery, in [0, 2]
-  double strength = 1.0;
-  std::uint64_t seed = 1;  ///< another seed gives other detail
-
-  /// Errors: kInvalidArgument naming field, value and limit.
-  [[nodiscard]] Status validate() const;
-};
-
-/// Statistics of the imagery's finest bands: wavelet details of luma, see `with_detail`.
-struct DetailStatistics {
-  /// Mean squares of the details of blocks of 2 x 2 texels [grey levels^2]: across (east-west),
-  /// down, diagonal.
-  double band_energy[3] = {0.0, 0.0, 0.0};
-  /// Ratio of a band's amplitude to that of the band one octave coarser, over the finest three.
-  double decay = 0.5;
-  /// Root of band_energy divided by the value predicted from the local contrast.
-  double contrast_gain = 1.0;
-  int tiles = 0;  ///< number of measured tiles
-  /// Exponent of the power spectrum per area that corresponds to `decay`: power ~ frequency^slope.
-  [[nodiscard]] double spectrum_slope() const;
-};
 
 /// Measures up to 16 tiles spread over the imagery. Errors: kIo as TileSource::tile.
 [[nodiscard]] Result<DetailStatistics> measure_detail(const TileSource& tiles);

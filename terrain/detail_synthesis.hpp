@@ -3,7 +3,8 @@
 
 #include <array>
 
-#include "terrain/detail.hpp"
+#include "terrain/detail_model.hpp"
+#include "terrain/tile_source.hpp"
 
 namespace overfly::terrain {
 

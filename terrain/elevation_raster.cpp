@@ -10,7 +10,9 @@
 #include "terrain/elevation_units.hpp"
 #include "terrain/file_soundness.hpp"
 #include "terrain/geoid.hpp"
+#include "terrain/place_doubt.hpp"
 #include "terrain/raster_bands.hpp"
+#include "terrain/raster_turns.hpp"
 
 namespace overfly::terrain {
 namespace {

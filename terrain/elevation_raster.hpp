@@ -12,6 +12,7 @@
 #include "terrain/cancelled.hpp"
 #include "terrain/elevation_units.hpp"
 #include "terrain/gdal_dataset.hpp"
+#include "terrain/georeference.hpp"
 #include "terrain/height_pyramid.hpp"
 #include "terrain/map_plane.hpp"
 #include "terrain/smooth_map.hpp"

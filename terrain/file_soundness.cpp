@@ -3,11 +3,8 @@
 #include <cpl_minixml.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
 #include <memory>
 
-#include "terrain/map_plane.hpp"
 #include "terrain/side_cars.hpp"
 
 namespace overfly::terrain {
@@ -150,69 +147,6 @@ Status check_whole(GDALDataset& dataset,
   if (format == "GTiff") return check_tiff(dataset, file, cancelled);
   if (format == "VRT") return check_sources(dataset, file, cancelled, warnings);
   return check_last_row(dataset, file, cancelled, warnings);
-}
-
-Status check_pixel_size(const Georeference& place, const std::string& file) {
-  const double* g = place.transform.g;
-  constexpr double kEarthRadiusM = 6371e3;
-  const double unit_m = place.crs.IsGeographic() != 0 ? place.crs.GetAngularUnits() * kEarthRadiusM
-                                                      : place.crs.GetLinearUnits();
-  for (const double size_m : {std::hypot(g[1], g[4]) * unit_m, std::hypot(g[2], g[5]) * unit_m}) {
-    if (size_m >= 1e-3 && size_m <= 100e3) continue;
-    char text[32];
-    std::snprintf(text, sizeof(text), "%.3g", size_m);
-    const char* name = nullptr;
-    if (place.crs.IsGeographic() != 0) {
-      (void)place.crs.GetAngularUnits(&name);
-    } else {
-      (void)place.crs.GetLinearUnits(&name);
-    }
-    return Error{ErrorCode::kInvalidArgument,
-                 file + ": pixels are " + text +
-                     " m on the ground: must be in [0.001, 100000]; is its georeference in the "
-                     "unit of its coordinate reference system (" +
-                     (name != nullptr ? name : "unknown") + ")?"};
-  }
-  return {};
-}
-
-std::optional<std::string> place_doubt(const Georeference& place,
-                                       int width_px,
-                                       int height_px,
-                                       const std::string& file) {
-  double west = 0.0;
-  double south = 0.0;
-  double east = 0.0;
-  double north = 0.0;
-  const char* area = nullptr;
-  if (!place.crs.GetAreaOfUse(&west, &south, &east, &north, &area) || west < -180.0) {
-    return std::nullopt;
-  }
-  if (west > east) east += 360.0;  // across the antimeridian
-  const auto transform = CrsTransform::create(place.crs, wgs84_crs(), file);
-  if (!transform) return std::nullopt;
-  Eigen::Matrix2Xd middle(2, 1);
-  place.transform.crs_from_pixel(0.5 * width_px, 0.5 * height_px, middle(0, 0), middle(1, 0));
-  if (!(*transform)->apply(middle)) return std::nullopt;  // laying out the world says so
-  const double lon = unwrapped(middle(0, 0), 0.5 * (west + east), 360.0);
-  const double lat = middle(1, 0);
-  const double outside = std::max({west - lon, lon - east, south - lat, lat - north, 0.0});
-  constexpr double kFarDeg = 3.0;
-  if (outside < kFarDeg) return std::nullopt;
-  char text[400];
-  std::snprintf(text,
-                sizeof(text),
-                ": its middle lies at %.4f deg N, %.4f deg E, %.0f deg outside the area of its "
-                "coordinate reference system (%.0f to %.0f deg N, %.0f to %.0f deg E); are its "
-                "coordinates in the right unit and zone?",
-                lat,
-                middle(0, 0),
-                outside,
-                south,
-                north,
-                west,
-                east > 180.0 ? east - 360.0 : east);
-  return file + text;
 }
 
 }  // namespace overfly::terrain

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,15 +23,5 @@ namespace overfly::terrain {
 /// Rows to read in this order before the last one, for formats that decode all preceding rows to
 /// find a row; each step is then short. Empty for other formats.
 [[nodiscard]] std::vector<int> rows_on_the_way(GDALRasterBand& band);
-
-/// Errors: kInvalidArgument for implausible pixel sizes: below 1 mm or above 100 km.
-[[nodiscard]] Status check_pixel_size(const Georeference& place, const std::string& file);
-
-/// A warning if the raster's centre lies far outside the area of use of its coordinate reference
-/// system, a sign of coordinates in another unit or zone.
-[[nodiscard]] std::optional<std::string> place_doubt(const Georeference& place,
-                                                     int width_px,
-                                                     int height_px,
-                                                     const std::string& file);
 
 }  // namespace overfly::terrain

@@ -2,16 +2,12 @@
 // has different longitudes in files that count to 180 and in files that count to 360.
 #pragma once
 
+#include <ogr_spatialref.h>
+
 #include <cmath>
 #include <optional>
-#include <vector>
-
-#include "terrain/gdal_dataset.hpp"
-#include "terrain/smooth_map.hpp"
 
 namespace overfly::terrain {
-
-class MapPlane;
 
 /// Of the values x + k turn the one nearest to `near`.
 [[nodiscard]] inline double unwrapped(double x, double near, double turn) {
@@ -29,15 +25,5 @@ struct Turn {
 
   void apply(double& x) const { x = unwrapped(x, near, length); }
 };
-
-/// The turns on which a raster's columns meet an area of the map: one, or two if a raster around
-/// the whole earth has its seam there. Empty values for a CRS without turns.
-/// Errors: kInvalidArgument if PROJ knows no transformation; `what` names the file.
-[[nodiscard]] Result<std::vector<std::optional<Turn>>> turns_over(const MapPlane& plane,
-                                                                  const MapRect& area,
-                                                                  const Georeference& place,
-                                                                  int width_px,
-                                                                  int height_px,
-                                                                  const std::string& what);
 
 }  // namespace overfly::terrain

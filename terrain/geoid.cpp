@@ -9,16 +9,10 @@
 
 #include "core/pose.hpp"
 #include "terrain/geoid_table.hpp"
+#include "terrain/proj_handles.hpp"
 
 namespace overfly::terrain {
 namespace {
-
-struct ContextCloser {
-  void operator()(PJ_CONTEXT* context) const { proj_context_destroy(context); }
-};
-struct TransformCloser {
-  void operator()(PJ* transform) const { proj_destroy(transform); }
-};
 
 /// A vertical grid shift of PROJ, on a context of its own.
 class GridShift {
@@ -37,8 +31,8 @@ class GridShift {
   }
 
  private:
-  std::unique_ptr<PJ_CONTEXT, ContextCloser> context_;
-  std::unique_ptr<PJ, TransformCloser> transform_;
+  ProjContext context_;
+  ProjObject transform_;
 };
 
 /// The names under which PROJ distributes each datum's grid, best first.

@@ -9,7 +9,7 @@ namespace overfly::terrain {
 namespace fs = std::filesystem;
 namespace {
 
-Error io_error(const fs::path& file, const std::string& reason) {
+Error cannot_write(const fs::path& file, const std::string& reason) {
   return {ErrorCode::kIo, file.string() + ": cannot be written: " + reason};
 }
 
@@ -40,7 +40,7 @@ DatasetPtr in_memory(const void* data, int width, int height, int channels, GDAL
 /// Writes beside the file and renames, so that nobody sees half of it.
 Status copy_to(GDALDataset* source, const char* format, const fs::path& file, char** options) {
   const GdalMessages messages;
-  if (source == nullptr) return io_error(file, messages.text());
+  if (source == nullptr) return cannot_write(file, messages.text());
   auto* driver = GetGDALDriverManager()->GetDriverByName(format);
   if (driver == nullptr) {
     return Error{ErrorCode::kUnsupported, std::string("GDAL has no driver for ") + format};
@@ -60,7 +60,7 @@ Status copy_to(GDALDataset* source, const char* format, const fs::path& file, ch
   if (good && !failed) return {};
   const std::string reason = failed ? failed.message() : messages.text();
   fs::remove(part, failed);
-  return io_error(file, reason);
+  return cannot_write(file, reason);
 }
 
 template <typename T>

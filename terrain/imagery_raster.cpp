@@ -6,6 +6,7 @@
 
 #include "terrain/datum_shift.hpp"
 #include "terrain/file_soundness.hpp"
+#include "terrain/place_doubt.hpp"
 
 namespace overfly::terrain {
 namespace {

@@ -10,6 +10,7 @@
 #include "terrain/area_average.hpp"
 #include "terrain/cancelled.hpp"
 #include "terrain/gdal_dataset.hpp"
+#include "terrain/georeference.hpp"
 #include "terrain/raster_bands.hpp"
 #include "terrain/world.hpp"
 

@@ -2,14 +2,13 @@
 #include <array>
 #include <cmath>
 
+#include "terrain/floor_div.hpp"
 #include "terrain/light.hpp"
 #include "terrain/light_field.hpp"
 #include "terrain/tile_decorator.hpp"
 
 namespace overfly::terrain {
 namespace {
-
-int floor_div(int a, int b) { return a / b - (a % b < 0 ? 1 : 0); }
 
 /// Scales sRGB values in linear light (IEC 61966-2-1).
 class SrgbScale {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "terrain/georeference.hpp"
 #include "terrain/resample.hpp"
 
 namespace overfly::terrain {

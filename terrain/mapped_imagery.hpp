@@ -8,6 +8,7 @@
 #include "terrain/cancelled.hpp"
 #include "terrain/imagery_raster.hpp"
 #include "terrain/map_plane.hpp"
+#include "terrain/raster_turns.hpp"
 #include "terrain/smooth_map.hpp"
 #include "terrain/validity_grid.hpp"
 

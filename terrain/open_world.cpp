@@ -7,6 +7,7 @@
 #include "terrain/cache/world_cache.hpp"
 #include "terrain/cancelled.hpp"
 #include "terrain/file_digest.hpp"
+#include "terrain/raster_turns.hpp"
 #include "terrain/raster_world.hpp"
 #include "terrain/side_cars.hpp"
 #include "terrain/world.hpp"

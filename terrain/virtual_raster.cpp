@@ -15,7 +15,7 @@
 #include "core/lower_case.hpp"
 #include "core/source_policy.hpp"
 #include "terrain/crs_text.hpp"
-#include "terrain/gdal_dataset.hpp"
+#include "terrain/gdal_messages.hpp"
 #include "terrain/side_cars.hpp"
 
 namespace overfly::terrain {

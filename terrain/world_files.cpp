@@ -14,7 +14,7 @@ constexpr const char* kSideCars[] = {".aux.xml", ".ovr", ".msk"};
 
 fs::path absolute_name(const fs::path& file) { return fs::absolute(file).lexically_normal(); }
 
-void add_files(const fs::path& file, std::set<fs::path>& files, int depth) {
+void collect_files(const fs::path& file, std::set<fs::path>& files, int depth) {
   constexpr int kDeepest = 8;
   if (depth > kDeepest || !files.insert(absolute_name(file)).second) return;
   for (const char* extension : kSideCars) {
@@ -29,7 +29,7 @@ void add_files(const fs::path& file, std::set<fs::path>& files, int depth) {
     std::error_code ignored;
     if (!fs::is_regular_file(other, ignored)) continue;
     if (other.extension() == ".vrt") {
-      add_files(other, files, depth + 1);
+      collect_files(other, files, depth + 1);
     } else {
       files.insert(other);
     }
@@ -40,8 +40,8 @@ void add_files(const fs::path& file, std::set<fs::path>& files, int depth) {
 
 std::vector<WorldFile> world_files(const WorldSpec& spec) {
   std::set<fs::path> names;
-  for (const ImageryLayer& layer : spec.imagery) add_files(layer.file, names, 0);
-  for (const ElevationLayer& layer : spec.elevation) add_files(layer.file, names, 0);
+  for (const ImageryLayer& layer : spec.imagery) collect_files(layer.file, names, 0);
+  for (const ElevationLayer& layer : spec.elevation) collect_files(layer.file, names, 0);
   std::vector<WorldFile> files;
   files.reserve(names.size());
   for (const fs::path& name : names) files.push_back({name, file_identity(name)});

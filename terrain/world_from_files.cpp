@@ -1,9 +1,10 @@
-// Which files are pictures and which are heights.
+#include "terrain/world_from_files.hpp"
+
 #include <algorithm>
 #include <cmath>
 
-#include "terrain/build_world.hpp"
 #include "terrain/gdal_dataset.hpp"
+#include "terrain/georeference.hpp"
 
 namespace overfly::terrain {
 namespace {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/pose.hpp"
+#include "terrain/georeference.hpp"
 
 namespace overfly::terrain {
 namespace {

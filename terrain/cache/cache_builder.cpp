@@ -6,6 +6,7 @@
 
 #include "core/barrier.hpp"
 #include "terrain/cache/chunk_file.hpp"
+#include "terrain/floor_div.hpp"
 
 namespace overfly::terrain {
 namespace fs = std::filesystem;
@@ -15,9 +16,7 @@ using Job = CacheBuilder::Job;
 
 /// Tiles one beyond the imagery have some of it in their borders.
 void add_tile_jobs(const TileGrid& grid, std::vector<Job>& jobs) {
-  const auto chunk_of = [](int tile) {
-    return tile >= 0 ? tile / kChunkTiles : -((-tile + kChunkTiles - 1) / kChunkTiles);
-  };
+  const auto chunk_of = [](int tile) { return floor_div(tile, kChunkTiles); };
   for (int level = 0; level < grid.levels; ++level) {
     const int last_column = (grid.cols - 1) >> level;
     const int last_row = (grid.rows - 1) >> level;

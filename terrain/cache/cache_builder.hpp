@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "terrain/build_world.hpp"
+#include "terrain/build_progress.hpp"
 #include "terrain/cache/block_codec.hpp"
 #include "terrain/raster_world.hpp"
 

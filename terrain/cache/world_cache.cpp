@@ -8,14 +8,13 @@
 #include "core/outside_json.hpp"
 #include "terrain/cache/chunk_file.hpp"
 #include "terrain/file_digest.hpp"
+#include "terrain/floor_div.hpp"
 
 namespace overfly::terrain {
 namespace fs = std::filesystem;
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-int floor_div(int a, int b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
 
 std::string chunk_name(int column, int row) {
   return "x" + std::to_string(column) + "y" + std::to_string(row) + ".chunk";

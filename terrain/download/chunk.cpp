@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/outside_json.hpp"
+#include "terrain/georeference.hpp"
 #include "terrain/map_plane.hpp"
 
 namespace overfly::terrain::download {

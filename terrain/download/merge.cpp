@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "terrain/georeference.hpp"
+
 namespace overfly::terrain::download {
 namespace fs = std::filesystem;
 
 namespace {
 
-Error io_error(const fs::path& file, const GdalMessages& messages) {
+Error gdal_failure(const fs::path& file, const GdalMessages& messages) {
   return {ErrorCode::kIo, file.string() + ": " + messages.text()};
 }
 
@@ -32,12 +34,12 @@ Result<DatasetPtr> create(const ChunkLayer& layer, const fs::path& file) {
                                     layer.heights ? 1 : 3,
                                     layer.heights ? GDT_Float32 : GDT_Byte,
                                     options.List()));
-  if (!dataset) return io_error(file, messages);
+  if (!dataset) return gdal_failure(file, messages);
   double g[6] = {layer.left, layer.pixel, 0.0, layer.top, 0.0, -layer.pixel};
   OGRSpatialReference crs;
   crs.SetFromUserInput(layer.crs.c_str());
   if (dataset->SetGeoTransform(g) != CE_None || dataset->SetSpatialRef(&crs) != CE_None) {
-    return io_error(file, messages);
+    return gdal_failure(file, messages);
   }
   if (layer.heights) {
     dataset->GetRasterBand(1)->SetNoDataValue(kNoHeight);
@@ -71,7 +73,7 @@ Status read_heights(GDALDataset& dataset, const Chunk& chunk, Pixels& pixels) {
                      0,
                      0,
                      nullptr) != CE_None) {
-    return io_error(chunk.file, messages);
+    return gdal_failure(chunk.file, messages);
   }
   for (std::size_t i = 0; i < pixels.valid.size(); ++i) {
     float& value = pixels.heights_m[i];
@@ -117,7 +119,7 @@ Status read_imagery(GDALDataset& dataset, const Chunk& chunk, Pixels& pixels) {
                        0,
                        0,
                        nullptr) != CE_None) {
-      return io_error(chunk.file, messages);
+      return gdal_failure(chunk.file, messages);
     }
   }
   const GDALColorTable* table = dataset.GetRasterBand(1)->GetColorTable();
@@ -145,7 +147,7 @@ Result<Pixels> read(const ChunkLayer& layer, const Chunk& chunk) {
                                                                              0,
                                                                              0,
                                                                              nullptr) != CE_None) {
-    return io_error(chunk.file, messages);
+    return gdal_failure(chunk.file, messages);
   }
   for (std::uint8_t& value : pixels.valid) value = value >= 128 ? 255 : 0;
   const Status done = layer.heights ? read_heights(**dataset, chunk, pixels)
@@ -254,7 +256,7 @@ Status add_overviews(GDALDataset& dataset,
                                               const_cast<std::function<bool(double)>*>(&go_on));
   if (built != CE_None) {
     if (!go_on(1.0)) return Error{ErrorCode::kCancelled, "the download was cancelled"};
-    return io_error(file, messages);
+    return gdal_failure(file, messages);
   }
   return {};
 }
@@ -314,7 +316,7 @@ Result<MergeReport> merge_chunks(const ChunkLayer& layer,
     }
     GdalMessages messages;
     (*dataset)->FlushCache(true);
-    if (report && !messages.empty()) report = io_error(part, messages);
+    if (report && !messages.empty()) report = gdal_failure(part, messages);
   }
   std::error_code failed;
   if (!report) {

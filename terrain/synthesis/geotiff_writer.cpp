@@ -3,6 +3,7 @@
 #include <cpl_conv.h>
 
 #include "terrain/area_average.hpp"
+#include "terrain/georeference.hpp"
 
 namespace overfly::terrain::synthesis {
 namespace fs = std::filesystem;

@@ -8,7 +8,7 @@
 
 #include "core/image.hpp"
 #include "terrain/gdal_dataset.hpp"
-#include "terrain/synthesis/world_files.hpp"
+#include "terrain/synthesis/site.hpp"
 
 namespace overfly::terrain::synthesis {
 

@@ -5,12 +5,19 @@
 #include <functional>
 
 #include "core/result.hpp"
-#include "terrain/synthesis/world_files.hpp"
 
 namespace overfly::terrain::synthesis {
 
 inline constexpr double kDefaultLatDeg = 39.35;
 inline constexpr double kDefaultLonDeg = -86.03;
+
+/// Where the landscape lies on the earth.
+struct Site {
+  int epsg = 32616;       ///< a UTM zone on WGS84
+  double middle_x_m = 0;  ///< of the landscape, in that CRS
+  double middle_y_m = 0;
+  double base_height_m = 200.0;  ///< ellipsoidal height of the landscape's zero
+};
 
 /// The UTM zone of a place, and the landscape's middle in it. Errors: kInternal.
 [[nodiscard]] Result<Site> choose_site(double lat_deg = kDefaultLatDeg,

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "core/helper_threads.hpp"
+#include "terrain/georeference.hpp"
 #include "terrain/synthesis/geotiff_writer.hpp"
 #include "terrain/synthesis/noise.hpp"
 #include "terrain/synthesis/painter.hpp"
@@ -15,9 +16,9 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int kStripOverviews = 9;  ///< down to 2 texels for kStripStepPx
-constexpr int kRows = 1 << kStripOverviews;
+constexpr int kBlockRows = 1 << kStripOverviews;
 
-Error cancelled(const fs::path& file) {
+Error strip_cancelled(const fs::path& file) {
   return {ErrorCode::kCancelled, "synthesis of " + file.string() + " was cancelled"};
 }
 
@@ -28,19 +29,19 @@ Image paint_swatch(const Landscape& land,
                    const std::function<bool(double)>& progress) {
   Image swatch(side_px, side_px, 3);
   const unsigned processors = std::max(1U, std::thread::hardware_concurrency());
-  const int across = side_px / kRows;
-  for (int y = 0; y < side_px; y += kRows) {
+  const int across = side_px / kBlockRows;
+  for (int y = 0; y < side_px; y += kBlockRows) {
     std::atomic<int> next{0};
     const auto work = [&] {
       for (int i = next++; i < across; i = next++) {
-        const Image block = paint_block(land, texel_m, i * kRows, y, kRows, kRows);
-        for (int row = 0; row < kRows; ++row) {
-          std::copy_n(&block.at(0, row), 3 * kRows, &swatch.at(i * kRows, y + row));
+        const Image block = paint_block(land, texel_m, i * kBlockRows, y, kBlockRows, kBlockRows);
+        for (int row = 0; row < kBlockRows; ++row) {
+          std::copy_n(&block.at(0, row), 3 * kBlockRows, &swatch.at(i * kBlockRows, y + row));
         }
       }
     };
     work_with_helpers(processors - 1, work);
-    if (progress && !progress(static_cast<double>(y + kRows) / side_px)) return {};
+    if (progress && !progress(static_cast<double>(y + kBlockRows) / side_px)) return {};
   }
   return swatch;
 }
@@ -127,7 +128,7 @@ Status write_ground(const fs::path& file,
                     int swatch_px,
                     const std::function<bool(double)>& progress) {
   const Image swatch = paint_swatch(land, static_cast<float>(strip.texel_m), swatch_px, progress);
-  if (swatch.empty()) return cancelled(file);
+  if (swatch.empty()) return strip_cancelled(file);
   const GdalMessages messages;
   const TiffSettings settings;
   const int side = 2 * swatch_px;
@@ -136,14 +137,14 @@ Status write_ground(const fs::path& file,
   Status placed = place(**dataset, file, strip.site, strip.left_x_m, strip.top_y_m, strip.texel_m);
   if (!placed) return placed;
   LevelWriter writer(**dataset, kStripOverviews + 1);
-  for (int y = 0; y < side; y += kRows) {
-    Image rows(side, kRows, 3);
-    for (int row = 0; row < kRows; ++row) {
+  for (int y = 0; y < side; y += kBlockRows) {
+    Image rows(side, kBlockRows, 3);
+    for (int row = 0; row < kBlockRows; ++row) {
       const int from = y + row < swatch_px ? y + row : side - 1 - (y + row);
       copy_mirrored(swatch, from, &rows.at(0, row));
     }
     if (!writer.write(0, y, rows)) return io_error(file, messages);
-    if (progress && !progress(1.0)) return cancelled(file);
+    if (progress && !progress(1.0)) return strip_cancelled(file);
   }
   return {};
 }
@@ -198,7 +199,7 @@ Status write_hills(const fs::path& file,
     }
     Status written = write_height_rows(**dataset, file, row, count, posts);
     if (!written) return written;
-    if (progress && !progress(static_cast<double>(row) / rows)) return cancelled(file);
+    if (progress && !progress(static_cast<double>(row) / rows)) return strip_cancelled(file);
   }
   return {};
 }

@@ -5,7 +5,8 @@
 #include <functional>
 
 #include "core/result.hpp"
-#include "terrain/synthesis/world_files.hpp"
+#include "terrain/synthesis/landscape.hpp"
+#include "terrain/synthesis/site.hpp"
 
 namespace overfly::terrain::synthesis {
 

@@ -6,16 +6,9 @@
 
 #include "core/result.hpp"
 #include "terrain/synthesis/landscape.hpp"
+#include "terrain/synthesis/site.hpp"
 
 namespace overfly::terrain::synthesis {
-
-/// Where the landscape lies on the earth.
-struct Site {
-  int epsg = 32616;       ///< a UTM zone on WGS84
-  double middle_x_m = 0;  ///< of the landscape, in that CRS
-  double middle_y_m = 0;
-  double base_height_m = 200.0;  ///< ellipsoidal height of the landscape's zero
-};
 
 /// Writes the imagery as a tiled JPEG GeoTIFF with its area-averaged overviews.
 /// @param side_px  a multiple of 32

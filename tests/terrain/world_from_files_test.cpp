@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "terrain/build_world.hpp"
+#include "terrain/world_from_files.hpp"
 #include "tests/support/support.hpp"
 #include "tests/terrain/raster_file.hpp"
 
