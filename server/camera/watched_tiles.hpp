@@ -5,7 +5,7 @@
 #include <memory>
 #include <mutex>
 
-#include "terrain/tile_decorator.hpp"
+#include "terrain/decoration/tile_decorator.hpp"
 
 namespace overfly::engine {
 

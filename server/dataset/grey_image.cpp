@@ -11,7 +11,7 @@
 #include "core/lower_case.hpp"
 #include "server/camera/camera_shot.hpp"
 #include "server/files/jpeg.hpp"
-#include "terrain/image_file.hpp"
+#include "terrain/raster/image_file.hpp"
 
 namespace overfly::engine {
 namespace {

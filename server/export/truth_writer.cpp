@@ -9,7 +9,7 @@
 #include "server/files/number_text.hpp"
 #include "server/files/png_file.hpp"
 #include "server/files/whole_file.hpp"
-#include "terrain/image_file.hpp"
+#include "terrain/raster/image_file.hpp"
 
 namespace overfly::engine {
 

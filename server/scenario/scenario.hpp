@@ -18,8 +18,8 @@
 #include "server/scenario/camera_spec.hpp"
 #include "server/scenario/estimator_spec.hpp"
 #include "server/scenario/fault_spec.hpp"
-#include "terrain/detail.hpp"
-#include "terrain/light.hpp"
+#include "terrain/decoration/detail.hpp"
+#include "terrain/decoration/light.hpp"
 #include "terrain/world.hpp"
 
 namespace overfly::engine {

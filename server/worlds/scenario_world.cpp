@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "server/scenario/document/scenario_light.hpp"
-#include "terrain/file_digest.hpp"
+#include "terrain/files/file_digest.hpp"
 #include "terrain/synthesize.hpp"
 
 namespace overfly::engine {

@@ -9,7 +9,7 @@
 #include "core/result.hpp"
 #include "server/scenario/scenario.hpp"
 #include "terrain/world.hpp"
-#include "terrain/world_files.hpp"
+#include "terrain/world/world_files.hpp"
 
 namespace overfly::engine {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "terrain/height_grid.hpp"
+#include "terrain/elevation/height_grid.hpp"
 #include "terrain/tile_source.hpp"
 
 namespace overfly::terrain {

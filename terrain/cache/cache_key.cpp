@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "terrain/file_digest.hpp"
-#include "terrain/gdal_dataset.hpp"
-#include "terrain/geoid.hpp"
+#include "terrain/files/file_digest.hpp"
+#include "terrain/place/geoid.hpp"
+#include "terrain/raster/gdal_dataset.hpp"
 
 namespace overfly::terrain {
 namespace fs = std::filesystem;

@@ -7,7 +7,7 @@
 #include "core/file_text.hpp"
 #include "core/outside_json.hpp"
 #include "terrain/cache/chunk_file.hpp"
-#include "terrain/file_digest.hpp"
+#include "terrain/files/file_digest.hpp"
 #include "terrain/floor_div.hpp"
 
 namespace overfly::terrain {

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "terrain/cache/cache_key.hpp"
-#include "terrain/elevation_model.hpp"
+#include "terrain/elevation/elevation_model.hpp"
+#include "terrain/imagery/validity_grid.hpp"
 #include "terrain/tile_source.hpp"
-#include "terrain/validity_grid.hpp"
 
 namespace overfly::terrain {
 

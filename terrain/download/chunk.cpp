@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "core/outside_json.hpp"
-#include "terrain/georeference.hpp"
-#include "terrain/map_plane.hpp"
+#include "terrain/place/map_plane.hpp"
+#include "terrain/raster/georeference.hpp"
 
 namespace overfly::terrain::download {
 namespace fs = std::filesystem;

@@ -8,7 +8,7 @@
 
 #include "terrain/download.hpp"
 #include "terrain/download/polite_fetcher.hpp"
-#include "terrain/gdal_dataset.hpp"
+#include "terrain/raster/gdal_dataset.hpp"
 
 namespace overfly::terrain::download {
 

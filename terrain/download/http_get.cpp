@@ -10,7 +10,7 @@
 #include <memory>
 
 #include "core/lower_case.hpp"
-#include "terrain/gdal_dataset.hpp"
+#include "terrain/raster/gdal_dataset.hpp"
 
 namespace overfly::terrain::download {
 namespace {

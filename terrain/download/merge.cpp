@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "terrain/georeference.hpp"
+#include "terrain/raster/georeference.hpp"
 
 namespace overfly::terrain::download {
 namespace fs = std::filesystem;

@@ -6,7 +6,7 @@
 #include "core/outside_json.hpp"
 #include "core/pose.hpp"
 #include "terrain/download/layers.hpp"
-#include "terrain/map_plane.hpp"
+#include "terrain/place/map_plane.hpp"
 
 namespace overfly::terrain::download {
 namespace {

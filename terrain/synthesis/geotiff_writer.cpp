@@ -2,8 +2,8 @@
 
 #include <cpl_conv.h>
 
-#include "terrain/area_average.hpp"
-#include "terrain/georeference.hpp"
+#include "terrain/raster/area_average.hpp"
+#include "terrain/raster/georeference.hpp"
 
 namespace overfly::terrain::synthesis {
 namespace fs = std::filesystem;

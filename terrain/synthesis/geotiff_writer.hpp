@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/image.hpp"
-#include "terrain/gdal_dataset.hpp"
+#include "terrain/raster/gdal_dataset.hpp"
 #include "terrain/synthesis/site.hpp"
 
 namespace overfly::terrain::synthesis {

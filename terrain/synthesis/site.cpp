@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "terrain/map_plane.hpp"
+#include "terrain/place/map_plane.hpp"
 
 namespace overfly::terrain::synthesis {
 namespace fs = std::filesystem;

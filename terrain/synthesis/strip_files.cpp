@@ -6,10 +6,10 @@
 #include <thread>
 
 #include "core/helper_threads.hpp"
-#include "terrain/georeference.hpp"
+#include "terrain/decoration/noise.hpp"
+#include "terrain/raster/georeference.hpp"
 #include "terrain/synthesis/geotiff_writer.hpp"
-#include "terrain/synthesis/noise.hpp"
-#include "terrain/synthesis/painter.hpp"
+#include "terrain/synthesis/landscape/painter.hpp"
 
 namespace overfly::terrain::synthesis {
 namespace fs = std::filesystem;

@@ -5,9 +5,9 @@
 #include <thread>
 
 #include "core/helper_threads.hpp"
-#include "terrain/gdal_dataset.hpp"
+#include "terrain/raster/gdal_dataset.hpp"
 #include "terrain/synthesis/geotiff_writer.hpp"
-#include "terrain/synthesis/painter.hpp"
+#include "terrain/synthesis/landscape/painter.hpp"
 
 namespace overfly::terrain::synthesis {
 namespace fs = std::filesystem;

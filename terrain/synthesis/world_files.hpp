@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "core/result.hpp"
-#include "terrain/synthesis/landscape.hpp"
+#include "terrain/synthesis/landscape/landscape.hpp"
 #include "terrain/synthesis/site.hpp"
 
 namespace overfly::terrain::synthesis {

@@ -7,7 +7,7 @@
 #include "terrain/world.hpp"
 #include "tests/support/support.hpp"
 #include "tests/support/synthetic_world.hpp"
-#include "tests/terrain/independent_elevation.hpp"
+#include "tests/terrain/elevation/independent_elevation.hpp"
 
 namespace overfly::renderer {
 namespace {

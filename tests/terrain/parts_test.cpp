@@ -6,12 +6,12 @@
 #include <random>
 
 #include "core/pose.hpp"
-#include "terrain/file_digest.hpp"
-#include "terrain/geoid.hpp"
-#include "terrain/geoid_table.hpp"
-#include "terrain/height_grid.hpp"
-#include "terrain/image_file.hpp"
-#include "terrain/smooth_map.hpp"
+#include "terrain/elevation/height_grid.hpp"
+#include "terrain/files/file_digest.hpp"
+#include "terrain/place/geoid.hpp"
+#include "terrain/place/geoid_table.hpp"
+#include "terrain/place/smooth_map.hpp"
+#include "terrain/raster/image_file.hpp"
 #include "tests/support/support.hpp"
 #include "tests/support/synthetic_world.hpp"
 

@@ -8,7 +8,7 @@
 #include "renderer/renderer.hpp"
 #include "server/app/install_paths.hpp"
 #include "server/scenario/document/scenario_list.hpp"
-#include "terrain/installation.hpp"
+#include "terrain/raster/installation.hpp"
 #include "vo_bridges/lcm/lcm_findings.hpp"
 #include "vo_bridges/ros1/ros1_findings.hpp"
 

@@ -11,7 +11,7 @@
 #include "server/app/commands/render_request.hpp"
 #include "server/app/commands/world_argument.hpp"
 #include "server/app/exit_code.hpp"
-#include "terrain/image_file.hpp"
+#include "terrain/raster/image_file.hpp"
 
 namespace overfly::app {
 namespace {

@@ -9,7 +9,7 @@
 #include "server/scenario/document/scenario_faults.hpp"
 #include "server/scenario/document/scenario_file.hpp"
 #include "server/scenario/document/scenario_override.hpp"
-#include "terrain/image_file.hpp"
+#include "terrain/raster/image_file.hpp"
 
 namespace overfly::app {
 namespace {

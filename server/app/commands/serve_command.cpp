@@ -19,7 +19,7 @@
 #include "server/net/http/access_token.hpp"
 #include "server/net/server.hpp"
 #include "server/timing/thread_priority.hpp"
-#include "terrain/network.hpp"
+#include "terrain/files/network.hpp"
 
 namespace overfly::app {
 namespace {

@@ -12,7 +12,7 @@
 #include "server/app/progress.hpp"
 #include "server/app/stop_signal.hpp"
 #include "terrain/build_world.hpp"
-#include "terrain/world_from_files.hpp"
+#include "terrain/world/world_from_files.hpp"
 
 namespace overfly::app {
 namespace {

@@ -8,7 +8,7 @@
 #include "server/files/whole_file.hpp"
 #include "server/run/run.hpp"
 #include "server/scenario/document/scenario_override.hpp"
-#include "terrain/image_file.hpp"
+#include "terrain/raster/image_file.hpp"
 #include "tests/server/export/export_fixture.hpp"
 
 namespace overfly::engine {

@@ -11,7 +11,7 @@
 #include "server/files/whole_file.hpp"
 #include "server/record/run_folder.hpp"
 #include "server/run/run_options.hpp"
-#include "terrain/image_file.hpp"
+#include "terrain/raster/image_file.hpp"
 #include "tests/server/support/engine_fixture.hpp"
 
 namespace overfly::engine {

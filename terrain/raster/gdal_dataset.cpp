@@ -1,0 +1,143 @@
+#include "terrain/raster/gdal_dataset.hpp"
+
+#include <cpl_conv.h>
+
+#include <atomic>
+#include <chrono>
+
+#include "core/file_text.hpp"
+#include "terrain/files/outside_access.hpp"
+#include "terrain/files/regular_files.hpp"
+#include "terrain/files/side_cars.hpp"
+#include "terrain/raster/virtual_raster.hpp"
+
+namespace overfly::terrain {
+namespace fs = std::filesystem;
+
+void initialise_gdal() {
+  static const bool done = [] {
+    GDALAllRegister();
+    close_outside_access();
+    show_regular_files_alone();
+    constexpr GIntBig kBlockCacheBytes = GIntBig{128} << 20;
+    GDALSetCacheMax64(kBlockCacheBytes);
+    // Side-car files of one directory listing per open cost more than they bring.
+    CPLSetConfigOption("GDAL_PAM_ENABLED", "YES");
+    return true;
+  }();
+  (void)done;
+}
+
+namespace {
+
+/// A file may say that its overviews lie in another one, wherever that is.
+Status check_overviews(GDALDataset& dataset, const fs::path& file) {
+  const char* named = dataset.GetMetadataItem("OVERVIEW_FILE", "OVERVIEWS");
+  if (named == nullptr) return {};
+  std::string name = named;
+  const std::string beside = ":::BASE:::";  // GDAL's mark of the file's own folder
+  if (name.starts_with(beside)) name = name.substr(beside.size());
+  if (name.find('/') == std::string::npos && name.find(':') == std::string::npos) return {};
+  return Error{ErrorCode::kUnreadable, file.string() + ": names overviews outside of its folder"};
+}
+
+}  // namespace
+
+Result<DatasetPtr> open_raster(const fs::path& file, int level) {
+  initialise_gdal();
+  if (Status status = check_regular_file(file); !status) return status.error();
+  std::error_code ignored;
+  if (fs::file_size(file, ignored) == 0) {
+    return Error{ErrorCode::kUnreadable, file.string() + ": is empty (0 bytes)"};
+  }
+  if (Status status = check_virtual_raster(file); !status) return status.error();
+  GdalMessages messages;
+  CPLStringList options;
+  if (level > 0) options.SetNameValue("OVERVIEW_LEVEL", std::to_string(level - 1).c_str());
+  DatasetPtr dataset(GDALDataset::Open(
+      fs::absolute(file).c_str(),  // begins with a slash: no name that GDAL has a meaning for
+      GDAL_OF_RASTER | GDAL_OF_READONLY,
+      nullptr,
+      options.List(),
+      nullptr));
+  if (!dataset) {
+    std::string reason = messages.text();
+    for (const std::string& doubt : SideCars().doubts(file)) reason += "; " + doubt;
+    return Error{ErrorCode::kUnreadable,
+                 file.string() + ": not a raster that can be read: " + reason};
+  }
+  if (dataset->GetRasterCount() < 1) {
+    return Error{ErrorCode::kUnreadable, file.string() + ": has no raster band"};
+  }
+  if (Status status = check_overviews(*dataset, file); !status) return status.error();
+  messages.pass_on();
+  return dataset;
+}
+
+namespace {
+
+/// Handles that wait in all pools together.
+std::atomic<int>& idle_handles() {
+  static std::atomic<int> count{0};
+  return count;
+}
+
+}  // namespace
+
+DatasetPool::DatasetPool(fs::path file, int level, DatasetPtr first)
+    : file_(std::move(file)), level_(level), identity_(file_identity(file_)) {
+  if (!first) return;
+  idle_.push_back(std::move(first));
+  ++idle_handles();
+}
+
+Result<DatasetPtr> DatasetPool::take() {
+  const auto now = file_identity(file_);
+  const bool there = now && identity_ && now->same_file(*identity_);
+  if (there && !now->same_content(*identity_)) {
+    return Error{ErrorCode::kIo, file_.string() + ": was written to while it was in use"};
+  }
+  std::unique_lock lock(mutex_);
+  if (!there && in_use_ > 0) {
+    constexpr std::chrono::seconds kPatience{2};
+    returned_.wait_for(lock, kPatience, [this] { return !idle_.empty(); });
+  }
+  if (idle_.empty() && !there) {
+    return Error{ErrorCode::kIo,
+                 file_.string() + (now ? ": was replaced while it was in use"
+                                       : ": is gone; it was there when the world was opened")};
+  }
+  ++in_use_;
+  if (idle_.empty()) {
+    lock.unlock();
+    return open_another();
+  }
+  DatasetPtr dataset = std::move(idle_.back());
+  idle_.pop_back();
+  --idle_handles();
+  return dataset;
+}
+
+Result<DatasetPtr> DatasetPool::open_another() {
+  Result<DatasetPtr> opened = open_raster(file_, level_);
+  if (opened) return opened;
+  const std::lock_guard lock(mutex_);
+  --in_use_;
+  // What was readable before and is not now is a fault of reading, whatever GDAL finds.
+  return Error{ErrorCode::kIo, opened.error().message};
+}
+
+void DatasetPool::put(DatasetPtr dataset) {
+  // A world of a thousand files must not use up the process's file descriptors.
+  constexpr int kMostIdle = 400;
+  const std::lock_guard lock(mutex_);
+  --in_use_;
+  if (idle_handles() >= kMostIdle) return;
+  ++idle_handles();
+  idle_.push_back(std::move(dataset));
+  returned_.notify_one();
+}
+
+DatasetPool::~DatasetPool() { idle_handles() -= static_cast<int>(idle_.size()); }
+
+}  // namespace overfly::terrain

@@ -1,0 +1,53 @@
+#include "terrain/raster/gdal_messages.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace overfly::terrain {
+
+namespace {
+
+/// The one that hears what is said on this thread.
+GdalMessages*& innermost() {
+  thread_local GdalMessages* messages = nullptr;
+  return messages;
+}
+
+}  // namespace
+
+GdalMessages::GdalMessages() : outer_(innermost()) {
+  innermost() = this;
+  CPLPushErrorHandlerEx(&GdalMessages::collect, this);
+}
+
+GdalMessages::~GdalMessages() {
+  CPLPopErrorHandler();
+  innermost() = outer_;
+}
+
+void CPL_STDCALL GdalMessages::collect(CPLErr severity, CPLErrorNum, const char* message) {
+  if (severity < CE_Warning) return;
+  static_cast<GdalMessages*>(CPLGetErrorHandlerUserData())->add(message);
+}
+
+void GdalMessages::add(std::string line) {
+  constexpr std::size_t kLongest = 600;
+  if (text_.size() > kLongest) return;
+  std::replace(line.begin(), line.end(), '\n', ' ');
+  while (!line.empty() && line.back() == ' ') line.pop_back();
+  if (text_.find(line) != std::string::npos) return;
+  if (!text_.empty()) text_ += "; ";
+  text_ += line;
+}
+
+void GdalMessages::pass_on() const {
+  if (outer_ != nullptr && !text_.empty()) outer_->add(text_);
+}
+
+std::string GdalMessages::text() const { return text_.empty() ? "no reason given" : text_; }
+
+std::string heard_while_opening(const std::filesystem::path& file, const GdalMessages& messages) {
+  return file.string() + ": opening it, GDAL said: " + messages.text();
+}
+
+}  // namespace overfly::terrain

@@ -1,0 +1,187 @@
+#include "terrain/raster/virtual_raster.hpp"
+
+#include <cpl_minixml.h>
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <memory>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "core/file_text.hpp"
+#include "core/lower_case.hpp"
+#include "core/source_policy.hpp"
+#include "terrain/files/side_cars.hpp"
+#include "terrain/raster/crs_text.hpp"
+#include "terrain/raster/gdal_messages.hpp"
+
+namespace overfly::terrain {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::uint64_t kMaxBytes = std::uint64_t{64} << 20U;
+constexpr int kMaxElementDepth = 32;
+constexpr std::size_t kMaxFileDepth = 16;  ///< overviews of overviews of a long strip take ten
+
+/// Elements of https://gdal.org/drivers/raster/vrt.html that name no file but SourceFilename, whose
+/// text is checked, and compute nothing from code; in lower case.
+constexpr std::string_view kElements =
+    " vrtdataset srs geotransform gcplist gcp metadata mdi blockxsize blockysize overviewlist "
+    "overview maskband vrtrasterband colorinterp nodatavalue hidenodatavalue colortable entry "
+    "description unittype offset scale categorynames category simplesource averagedsource "
+    "complexsource kernelfilteredsource nodatafrommasksource sourcefilename sourceband "
+    "sourceproperties srcrect dstrect scaleoffset scaleratio colortablecomponent exponent "
+    "srcmin srcmax dstmin dstmax clamp lut nodata usemaskband maskvaluethreshold remappedvalue "
+    "kernel size coefs histograms histitem histmin histmax bucketcount includeoutofrange "
+    "approximate histcounts gdalrasterattributetable fielddefn name type usage "
+    "row f openoptions ooi ";
+
+using Xml = std::unique_ptr<CPLXMLNode, decltype(&CPLDestroyXMLNode)>;
+
+/// GDAL compares names in a description without case.
+/// What GDAL would take for a virtual raster by its first 1024 bytes.
+bool is_virtual(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::string head(1024, '\0');
+  in.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(in.gcount()));
+  return lower_case(std::move(head)).find("<vrtdataset") != std::string::npos;
+}
+
+class Description {
+ public:
+  /// @param file  its links resolved, since GDAL counts from a link's target too
+  Description(const fs::path& file, SideCars& side_cars)
+      : file_(file),
+        folder_(file.parent_path()),
+        inside_(SourcePolicy::inside({folder_})),
+        side_cars_(side_cars) {}
+
+  /// Errors: as check_virtual_raster.
+  Status read() {
+    const Result<std::string> text = read_file_text(file_, kMaxBytes);
+    if (!text) return text.error();
+    const GdalMessages messages;
+    const Xml xml(CPLParseXMLString(text->c_str()), &CPLDestroyXMLNode);
+    if (!xml) return refuse("is not XML that can be read");
+    return check_list(xml.get(), 0);
+  }
+  [[nodiscard]] const std::set<fs::path>& sources() const { return sources_; }
+
+ private:
+  [[nodiscard]] Error refuse(const std::string& why) const {
+    return {ErrorCode::kUnreadable, file_.string() + ": " + why};
+  }
+
+  Status check_list(const CPLXMLNode* node, int depth) {
+    if (depth > kMaxElementDepth) return refuse("its elements are nested too deep");
+    for (; node != nullptr; node = node->psNext) {
+      if (node->eType != CXT_Element) continue;
+      if (Status status = check_element(*node); !status) return status;
+      if (Status status = check_list(node->psChild, depth + 1); !status) return status;
+    }
+    return {};
+  }
+
+  Status check_element(const CPLXMLNode& node) {
+    const std::string name = lower_case(node.pszValue);
+    if (name.starts_with("?") || name.starts_with("!")) return {};  // the declaration of XML
+    if (kElements.find(" " + name + " ") == std::string_view::npos) {
+      return refuse("a virtual raster may not have the element " + name.substr(0, 40));
+    }
+    const std::string kind = CPLGetXMLValue(&node, "subClass", "VRTSourcedRasterBand");
+    if (lower_case(kind) != "vrtsourcedrasterband") {
+      return refuse("a virtual raster may not be a " + kind.substr(0, 40));
+    }
+    const std::string option = CPLGetXMLValue(&node, "key", "");
+    if (name == "ooi" && lower_case(option) != "overview_level") {
+      return refuse("a virtual raster may not open its sources with " + option.substr(0, 40));
+    }
+    if (name == "srs") return check_crs(CPLGetXMLValue(&node, nullptr, ""));
+    if (name == "gcplist") return check_crs(CPLGetXMLValue(&node, "Projection", ""));
+    return name == "sourcefilename" ? check_source(node) : Status{};
+  }
+
+  [[nodiscard]] Status check_crs(const std::string& text) const {
+    if (text.empty()) return {};
+    Status status = check_crs_text(text, "SRS");
+    return status ? status : Status(status.error().in(file_.string()));
+  }
+
+  Status check_source(const CPLXMLNode& node) {
+    const std::string text = CPLGetXMLValue(&node, nullptr, "");
+    const bool relative = std::string(CPLGetXMLValue(&node, "relativeToVRT", "0")) == "1";
+    if (relative && names_.count(text) > 0) return {};
+    const fs::path source = text;
+    const bool plain = relative && text.find_first_of(":<\"?") == std::string::npos &&
+                       !source.empty() && source.is_relative();
+    const fs::path place = (folder_ / source).lexically_normal();
+    const Status inside = plain ? inside_.check(place, "SourceFilename") : Status{};
+    if (!plain || (!inside && inside.error().code == ErrorCode::kInvalidArgument)) {
+      return refuse(
+          "is made of a file that is not named relative to it (relativeToVRT=\"1\") and "
+          "inside its folder: " +
+          text.substr(0, 200));
+    }
+    if (!inside) {
+      return Error{ErrorCode::kNotFound, place.string() + ": no such file"}.in(file_.string() +
+                                                                               ": is made of");
+    }
+    if (Status beside = side_cars_.check(place, "SourceFilename", inside_); !beside) {
+      return refuse("a file beside one of its sources leads out of its folder: " +
+                    text.substr(0, 200));
+    }
+    names_.insert(text);
+    std::error_code failed;
+    sources_.insert(fs::weakly_canonical(place, failed));  // found good a moment ago
+    return {};
+  }
+
+  fs::path file_;
+  fs::path folder_;
+  SourcePolicy inside_;
+  SideCars& side_cars_;
+  std::set<std::string> names_;  ///< found good
+  std::set<fs::path> sources_;
+};
+
+/// @param whole_of  the rasters that this one is a part of
+/// @param sound     those that were found good
+Status check_tree(const fs::path& file,
+                  std::set<fs::path>& whole_of,
+                  std::set<fs::path>& sound,
+                  SideCars& side_cars) {
+  if (sound.count(file) > 0 || !is_virtual(file)) return {};
+  if (!whole_of.insert(file).second || whole_of.size() > kMaxFileDepth) {
+    return Error{ErrorCode::kUnreadable,
+                 file.string() + ": a virtual raster is made of itself, or of others more than " +
+                     std::to_string(kMaxFileDepth) + " deep"};
+  }
+  Description description(file, side_cars);
+  if (Status status = description.read(); !status) return status;
+  for (const fs::path& source : description.sources()) {
+    if (Status status = check_tree(source, whole_of, sound, side_cars); !status) {
+      return status.error().in(file.string() + ": is made of");
+    }
+  }
+  whole_of.erase(file);
+  sound.insert(file);
+  return {};
+}
+
+}  // namespace
+
+Status check_virtual_raster(const fs::path& file) {
+  std::set<fs::path> whole_of;
+  std::set<fs::path> sound;
+  SideCars side_cars;
+  std::error_code failed;
+  const fs::path place = fs::weakly_canonical(file, failed);
+  if (failed) return Error{ErrorCode::kIo, file.string() + ": " + failed.message()};
+  return check_tree(place, whole_of, sound, side_cars);
+}
+
+}  // namespace overfly::terrain

@@ -1,0 +1,289 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "core/pose.hpp"
+#include "terrain/cache/world_cache.hpp"
+#include "terrain/cancelled.hpp"
+#include "terrain/files/file_digest.hpp"
+#include "terrain/files/side_cars.hpp"
+#include "terrain/place/raster_turns.hpp"
+#include "terrain/world.hpp"
+#include "terrain/world/raster_world.hpp"
+#include "terrain/world/world_layout.hpp"
+
+namespace overfly::terrain {
+namespace {
+
+using Rasters = std::vector<std::shared_ptr<const ImageryRaster>>;
+Result<Rasters> open_imagery(const WorldSpec& spec,
+                             const Cancelled& cancelled,
+                             std::vector<std::string>& warnings) {
+  if (spec.imagery.empty()) {
+    return Error{ErrorCode::kInvalidArgument, "imagery: is empty; a world needs at least one file"};
+  }
+  Rasters rasters;
+  for (const ImageryLayer& layer : spec.imagery) {
+    if (Status status = go_on(cancelled, layer.file); !status) return status.error();
+    auto raster = ImageryRaster::open(layer, cancelled, warnings);
+    if (!raster) return raster.error();
+    rasters.push_back(std::move(*raster));
+  }
+  return rasters;
+}
+
+/// Files beside those of the layers that are left out.
+void add_side_car_doubts(const WorldSpec& spec, std::vector<std::string>& warnings) {
+  SideCars side_cars;
+  const auto add = [&](const std::filesystem::path& file) {
+    const std::vector<std::string> doubts = side_cars.doubts(file);
+    warnings.insert(warnings.end(), doubts.begin(), doubts.end());
+  };
+  for (const ImageryLayer& layer : spec.imagery) add(layer.file);
+  for (const ElevationLayer& layer : spec.elevation) add(layer.file);
+}
+
+/// What reading the files themselves needs.
+Status prepare(const Rasters& rasters,
+               const Cancelled& cancelled,
+               std::vector<std::string>& warnings) {
+  for (const auto& raster : rasters) {
+    if (Status status = go_on(cancelled, raster->file()); !status) return status;
+    Status prepared = raster->prepare(cancelled);
+    if (!prepared) return prepared;
+    const std::vector<std::string> doubts = raster->doubts();
+    warnings.insert(warnings.end(), doubts.begin(), doubts.end());
+  }
+  return {};
+}
+
+Result<std::vector<MappedImagery>> map_imagery(const Rasters& rasters,
+                                               const WorldLayout& layout,
+                                               const Cancelled& cancelled,
+                                               const WorldCache* cache) {
+  std::vector<MappedImagery> layers;
+  for (std::size_t i = 0; i < rasters.size(); ++i) {
+    if (Status status = go_on(cancelled, rasters[i]->file()); !status) return status.error();
+    const bool aligned = i == 0 && layout.first_aligned;
+    Result<std::vector<std::optional<Turn>>> turns(std::vector<std::optional<Turn>>{std::nullopt});
+    if (!aligned) turns = MappedImagery::turns_over_grid(*rasters[i], layout.plane, layout.grid);
+    if (!turns) return turns.error();
+    for (const std::optional<Turn>& turn : *turns) {
+      std::optional<ValidityGrid> validity;
+      if (cache != nullptr) {
+        auto kept = cache->validity(static_cast<int>(layers.size()));
+        if (!kept) return kept.error();
+        validity = std::move(*kept);
+      }
+      auto layer =
+          aligned
+              ? MappedImagery::aligned(rasters[i],
+                                       layout.grid,
+                                       layout.pad_x,
+                                       layout.pad_y,
+                                       std::move(validity),
+                                       cancelled)
+              : MappedImagery::warped(
+                    rasters[i], layout.plane, layout.grid, turn, std::move(validity), cancelled);
+      if (!layer) return layer.error();
+      layers.push_back(std::move(*layer));
+    }
+  }
+  return layers;
+}
+
+/// A layer without a texel is worth a word, a world without one an error.
+Status check_picture(const std::vector<MappedImagery>& layers, std::vector<std::string>& warnings) {
+  std::size_t empty = 0;
+  for (const MappedImagery& layer : layers) {
+    if (layer.validity() == nullptr || layer.validity()->any()) continue;
+    ++empty;
+    warnings.push_back(layer.raster().file().string() +
+                       ": every texel is void by its mask or nodata value; it shows nothing");
+  }
+  if (empty < layers.size()) return {};
+  return Error{ErrorCode::kInvalidArgument,
+               layers.front().raster().file().string() +
+                   ": every texel is void by its mask or nodata value: there is no picture to fly "
+                   "over"};
+}
+
+/// Elevation as far around the imagery as is quickly read, at most to about the horizon of a low
+/// flight.
+Result<ElevationModel> open_elevation(const WorldSpec& spec,
+                                      const WorldLayout& layout,
+                                      std::vector<std::string>& warnings) {
+  if (spec.elevation.empty()) {
+    if (!spec.ground_height_m) {
+      warnings.emplace_back(
+          "there is neither elevation nor a ground height: the ground is the ellipsoid (height 0). "
+          "Positions on the map are right, heights above the ellipsoid are not");
+    }
+    return ElevationModel::flat(spec.ground_height_m.value_or(0.0));
+  }
+  constexpr double kReachesM[] = {30e3, 10e3, 3e3, 300.0};
+  constexpr double kMaxPosts = 40e6;
+  Error last;
+  for (const double reach_m : kReachesM) {
+    std::vector<std::string> doubts;
+    const bool least = reach_m == kReachesM[3];
+    auto model = ElevationModel::open(spec.elevation,
+                                      layout.plane,
+                                      layout.extent,
+                                      layout.extent.grown(reach_m),
+                                      least ? std::numeric_limits<double>::max() : kMaxPosts,
+                                      doubts);
+    if (model) {
+      warnings.insert(warnings.end(), doubts.begin(), doubts.end());
+      return model;
+    }
+    last = model.error();
+    if (last.code != ErrorCode::kUnsupported) break;
+  }
+  return last;
+}
+
+std::string credit_line(const WorldSpec& spec) {
+  std::string line;
+  std::set<std::string> named;
+  const auto add = [&](const std::string& credit) {
+    if (credit.empty() || !named.insert(credit).second) return;
+    line += (line.empty() ? "" : "; ") + credit;
+  };
+  for (const ImageryLayer& layer : spec.imagery) add(layer.attribution);
+  for (const ElevationLayer& layer : spec.elevation) add(layer.attribution);
+  return line;
+}
+
+Status check_spec(const WorldSpec& spec, const WorldLayout& layout) {
+  if (spec.ground_height_m && !(std::abs(*spec.ground_height_m) <= 12000.0)) {
+    return Error{ErrorCode::kInvalidArgument,
+                 "ground_height_m = " + std::to_string(*spec.ground_height_m) +
+                     ": must be in [-12000, 12000]"};
+  }
+  if (!spec.origin) return {};
+  const Geodetic middle{layout.center_lat_rad, layout.center_lon_rad, 0.0};
+  const Geodetic origin{spec.origin->lat_rad, spec.origin->lon_rad, 0.0};
+  const double away_m = (ecef_from_geodetic(middle) - ecef_from_geodetic(origin)).norm();
+  constexpr double kFarthestM = 500e3;
+  if (!(away_m <= kFarthestM)) {
+    return Error{ErrorCode::kInvalidArgument,
+                 "origin: lies " + std::to_string(static_cast<long>(away_m / 1000.0)) +
+                     " km from the imagery, limit 500 km"};
+  }
+  return {};
+}
+
+Status add_digests(World& world, const Cancelled& cancelled, const WorldCache* cache) {
+  const auto add = [&](const std::filesystem::path& file) -> Status {
+    if (Status status = go_on(cancelled, file); !status) return status;
+    if (cache != nullptr) {
+      for (const CacheSource& source : cache->header().sources) {
+        if (source_path(world.spec, source) != std::filesystem::absolute(file).lexically_normal()) {
+          continue;
+        }
+        world.data_hashes.emplace_back(file.string(), source.digest);
+        return {};
+      }
+    }
+    auto digest = file_digest(file);
+    if (!digest) return digest.error();
+    world.data_hashes.emplace_back(file.string(), *digest);
+    return {};
+  };
+  for (const ImageryLayer& layer : world.spec.imagery) {
+    Status added = add(layer.file);
+    if (!added) return added;
+  }
+  for (const ElevationLayer& layer : world.spec.elevation) {
+    Status added = add(layer.file);
+    if (!added) return added;
+  }
+  return {};
+}
+
+/// Looks for a cache that fits; says in the world what it found.
+std::shared_ptr<const WorldCache> find_cache(const WorldSpec& spec,
+                                             const WorldLayout& layout,
+                                             const ElevationModel& elevation,
+                                             World& world) {
+  WorldCache::Found found = WorldCache::find(spec);
+  if (found.cache && found.cache->header().layout != world_fingerprint(layout.grid, elevation)) {
+    found.cache = nullptr;
+    found.stale = "PROJ or its grids relate these files to the earth in another way now";
+  }
+  world.cache = "none";
+  if (found.cache) {
+    constexpr double kMega = 1e-6;
+    world.cache = "in use: " + found.cache->folder().string() + ", " +
+                  std::to_string(
+                      static_cast<long>(kMega * static_cast<double>(found.cache->header().bytes))) +
+                  " MB";
+  } else if (!found.stale.empty()) {
+    world.cache = "stale: " + found.stale;
+    world.warnings.push_back(spec.cache_folder.string() + ": is not used, " + found.stale +
+                             "; the files are read directly. Run `overfly world build`");
+  }
+  return found.cache;
+}
+
+}  // namespace
+
+Result<World> open_world(const WorldSpec& spec, const Cancelled& cancelled) {
+  if (spec.sources.confined()) {
+    if (Status status = check_world_sources(spec, ""); !status) return status.error();
+  }
+  World world;
+  world.spec = spec;
+  add_side_car_doubts(spec, world.warnings);
+  auto rasters = open_imagery(spec, cancelled, world.warnings);
+  if (!rasters) return rasters.error();
+  auto layout = lay_out_world(*rasters, spec.origin);
+  if (!layout) return layout.error();
+  const Status sane = check_spec(spec, *layout);
+  if (!sane) return sane.error();
+  auto elevation = open_elevation(spec, *layout, world.warnings);
+  if (!elevation) return elevation.error();
+  const auto cache = find_cache(spec, *layout, *elevation, world);
+  if (!cache) {
+    const Status prepared = prepare(*rasters, cancelled, world.warnings);
+    if (!prepared) return prepared.error();
+  }
+  auto imagery = map_imagery(*rasters, *layout, cancelled, cache.get());
+  if (!imagery) return imagery.error();
+  const Status picture = check_picture(*imagery, world.warnings);
+  if (!picture) return picture.error();
+  if (elevation->heights() != nullptr) {
+    const Status ready = cache ? elevation->use(cache, world.warnings)
+                               : elevation->survey(cancelled, world.warnings);
+    if (!ready) return ready.error();
+  }
+
+  if (!world.spec.origin) {
+    const MapRect& all = layout->extent;
+    const double height_m =
+        elevation->height_m(0.5 * (all.x_min + all.x_max), 0.5 * (all.y_min + all.y_max));
+    world.spec.origin = Geodetic{layout->center_lat_rad, layout->center_lon_rad, height_m};
+  }
+  const LocalFrame frame(*world.spec.origin);
+  // As far as the polynomial holds: to the horizon where the projection allows.
+  Result<MapGeodesy> geodesy = Error{};
+  for (const double reach_m : {50e3, 10e3, 1e3}) {
+    geodesy = MapGeodesy::create(layout->plane, frame, layout->extent.grown(reach_m));
+    if (geodesy) break;
+  }
+  if (!geodesy) return geodesy.error().in(rasters->front()->file().string());
+  world.tiles = std::make_shared<RasterWorld>(layout->grid,
+                                              std::move(*imagery),
+                                              std::move(*elevation),
+                                              std::move(*geodesy),
+                                              frame,
+                                              credit_line(spec),
+                                              cache);
+  const Status hashed = add_digests(world, cancelled, cache.get());
+  if (!hashed) return hashed.error();
+  return world;
+}
+
+}  // namespace overfly::terrain

@@ -1,0 +1,98 @@
+// A damaged cache is named or mended, and never shows another picture.
+#include "tests/terrain/cache/built_world.hpp"
+
+namespace overfly::terrain {
+namespace {
+
+/// What a cache with one damaged file answers: an error that names the file, or the right bytes.
+void expect_error_or_same(const WorldSpec& spec,
+                          const fs::path& damaged,
+                          const std::vector<std::pair<TileId, Tile>>& right) {
+  const auto world = open_world(spec);
+  if (!world) {
+    EXPECT_THAT(world.error().message, HasSubstr(damaged.filename().string()));
+    EXPECT_THAT(world.error().message, HasSubstr("`overfly world build`"));
+    return;
+  }
+  bool noticed = false;
+  const TileGrid& grid = world->tiles->grid();
+  // Beyond the north-western corner, where the first block of heights answers.
+  (void)world->tiles->world_from_map(grid.left_x_m - grid.width_m, grid.top_y_m + grid.height_m);
+  for (const auto& [id, expected] : right) {
+    const auto tile = world->tiles->tile(id);
+    if (tile) {
+      EXPECT_TRUE(tile->rgb.data == expected.rgb.data) << damaged;
+      continue;
+    }
+    noticed = true;
+    EXPECT_EQ(tile.error().code, ErrorCode::kIo);
+    EXPECT_THAT(tile.error().message, HasSubstr(damaged.string()));
+    EXPECT_THAT(tile.error().message, HasSubstr("`overfly world build`"));
+  }
+  EXPECT_TRUE(noticed) << damaged;
+}
+
+TEST_F(BuiltWorld, NeverShowsADamagedPart) {
+  const World files = opened_without_cache(spec_);
+  std::vector<std::pair<TileId, Tile>> right;
+  for (const TileId id : {TileId{0, 0, 0}, TileId{0, 1, 0}, TileId{0, 1, 1}, TileId{0, 2, 2}}) {
+    right.emplace_back(id, *files.tiles->tile(id));
+  }
+  const fs::path tile = cache_ / "tiles/0/x0y0.chunk";
+  const fs::path heights = cache_ / "heights/0/x0y0.chunk";
+  for (const fs::path& file : {tile, heights, cache_ / "validity-0"}) {
+    const std::string bytes = testing::read_text(file);
+    ASSERT_GT(bytes.size(), 50U) << file;
+    // The magic word, the first piece's place, its check, the first piece.
+    const std::size_t first =
+        static_cast<unsigned char>(bytes[12]) | static_cast<unsigned char>(bytes[13]) << 8;
+    for (const std::size_t at : {std::size_t{0}, std::size_t{13}, std::size_t{25}, first + 9}) {
+      flip_byte(file, at);
+      expect_error_or_same(spec_, file, right);
+      testing::write_text(file, bytes);
+    }
+    testing::write_text(file, bytes.substr(0, first + 9));
+    expect_error_or_same(spec_, file, right);
+    fs::remove(file);
+    expect_error_or_same(spec_, file, right);
+    testing::write_text(file, bytes);
+  }
+  expect_same_tiles(files, opened(spec_));
+}
+
+TEST_F(BuiltWorld, MendsWhatIsDamaged) {
+  const World files = opened_without_cache(spec_);
+  const fs::path tile = cache_ / "tiles/0/x0y0.chunk";
+  const fs::path heights = cache_ / "heights/0/x0y0.chunk";
+  flip_byte(tile, fs::file_size(tile) / 2);
+  fs::resize_file(heights, 0);
+  const BuildReport mended = build();
+  EXPECT_FALSE(mended.was_fresh);
+  EXPECT_EQ(mended.chunks_made, 2);
+  EXPECT_EQ(mended.chunks_kept, report_.chunks_made - 2);
+  flip_byte(cache_ / "validity-0", 40);
+  EXPECT_EQ(build().chunks_made, 0);
+  const World built = opened(spec_);
+  expect_same_tiles(files, built);
+  expect_same_ground(files, built);
+}
+
+TEST_F(BuiltWorld, DoesNotTrustADamagedTableOfContents) {
+  const fs::path header = cache_ / "cache.json";
+  const std::string text = testing::read_text(header);
+  const std::size_t chunk = text.find("\"chunks\"");
+  ASSERT_NE(chunk, std::string::npos);
+  const std::size_t digit = text.find('0', chunk);
+  std::string bent = text;
+  bent[digit] = '7';
+  for (const std::string& bad : {text.substr(0, text.size() / 2), bent, std::string()}) {
+    testing::write_text(header, bad);
+    const World world = opened(spec_);
+    EXPECT_EQ(world.cache, "stale: its cache.json is damaged or of another version");
+  }
+  EXPECT_EQ(build().chunks_made, 0) << "the chunks themselves are good";
+  EXPECT_EQ(testing::read_text(header), text);
+}
+
+}  // namespace
+}  // namespace overfly::terrain
