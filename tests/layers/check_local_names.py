@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
-"""Fails where two source files of one folder have a local function of the same name.
+"""Fails where two source files of one CMake target have a local name in common.
 
-A folder's files are compiled in batches as one unit, in which equal names in unnamed namespaces
-become overloads: a call may then take the other file's function without a word.
+The sources of a target are compiled in batches, several files as one translation unit, in which
+equal functions of unnamed namespaces become overloads: a call may then take the other file's
+function without a warning. Equal constants and types fail only in those batches that hold both.
+A target's sources are those below its CMakeLists.txt.
 Usage: check_local_names.py SOURCE_ROOT
 """
 
@@ -12,25 +14,39 @@ import re
 import subprocess
 import sys
 
+# Targets with duplicates across their folders: of these, only the functions of one folder are
+# compared.
+KNOWN_DUPLICATES = re.compile(r"(server|vo_bridges|tests/(engine|app|net))(/|$)")
 # The program of a shader, in a raw string.
 SHADER_ENTRY = "main"
 NO_FUNCTION = r"(?=[A-Za-z])(?!(using|struct|class|enum|namespace|template|return|static_assert|[A-Z_]+\())"
 FUNCTION = re.compile(rf"^{NO_FUNCTION}[\w:<>,&*\[\] ]+?[ &*](\w+)\(")
+CONSTANT = re.compile(r"^(?:static |inline )?(?:constexpr|const) [\w:<>,&*\[\] ]*?[ &*](k[A-Z]\w*)\b")
+TYPE = re.compile(r"^(?:struct|class|enum class|enum) (\w+)\b(?!;)")
 
 
-def local_functions(lines):
+def local_names(lines):
     inside = False
     for line in lines:
         if line.startswith("namespace {"):
             inside = True
         elif line.startswith("}  // namespace\n"):
             inside = False
-        elif inside and (match := FUNCTION.match(line)) and match.group(2) != SHADER_ENTRY:
-            yield match.group(2)
+        elif inside:
+            for pattern, kind in ((CONSTANT, "constant"), (TYPE, "type")):
+                if match := pattern.match(line):
+                    yield match.group(1), kind
+            if (match := FUNCTION.match(line)) and match.group(2) != SHADER_ENTRY:
+                yield match.group(2), "function"
+
+
+def target_of(file):
+    """The nearest folder above with a CMakeLists.txt."""
+    return next(folder for folder in file.parents if (folder / "CMakeLists.txt").exists())
 
 
 def main():
-    root = pathlib.Path(sys.argv[1])
+    root = pathlib.Path(sys.argv[1]).resolve()
     listed = subprocess.run(["git", "-C", str(root), "ls-files", "-co", "--exclude-standard",
                              "*.cpp"], capture_output=True, text=True, check=True).stdout.split()
     files = [root / name for name in listed if (root / name).exists()]
@@ -38,12 +54,19 @@ def main():
         sys.exit(f"{root}: no source files found")
     homes = collections.defaultdict(set)
     for file in files:
+        target = target_of(file)
+        known = KNOWN_DUPLICATES.match(target.relative_to(root).as_posix())
+        if known:
+            target = file.parent
         with open(file, encoding="utf-8") as lines:
-            for name in local_functions(lines):
-                homes[file.parent.relative_to(root), name].add(file.name)
+            for name, kind in local_names(lines):
+                if known and kind != "function":
+                    continue
+                homes[target.relative_to(root), name, kind].add(
+                    file.relative_to(target).as_posix())
     twice = {place: names for place, names in homes.items() if len(names) > 1}
-    for (folder, name), names in sorted(twice.items()):
-        print(f"{folder}: {name} is a local function of {', '.join(sorted(names))}")
+    for (target, name, kind), names in sorted(twice.items()):
+        print(f"{target}: {name} is a local {kind} of {', '.join(sorted(names))}")
     sys.exit(1 if twice else 0)
 
 
