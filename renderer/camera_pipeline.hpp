@@ -1,5 +1,5 @@
-// The camera's images with several in flight: while a GPU draws and copies one, the next is
-// prepared. For whoever makes many images and needs none of them at once.
+// Renders camera images with several in flight: while a GPU draws and copies one, the next is
+// prepared. For callers that make many images and do not need each at once.
 #pragma once
 
 #include <memory>
@@ -12,7 +12,7 @@ namespace overfly::renderer {
 /// Not thread-safe: create, use and destroy on one thread.
 class CameraPipeline {
  public:
-  /// Draws with OpenGL. @param in_flight  images at a time, in [1, 16]
+  /// Draws with OpenGL. @param in_flight  number of simultaneous images, in [1, 16]
   /// Errors: as create_egl_renderer; kInvalidArgument for `in_flight`.
   static Result<std::unique_ptr<CameraPipeline>> create(
       std::shared_ptr<const terrain::TileSource> tiles,
@@ -20,11 +20,11 @@ class CameraPipeline {
       int in_flight);
   virtual ~CameraPipeline() = default;
 
-  /// Starts an image. Errors: as Renderer::render_camera; kConflict when `in_flight` of them are
-  /// begun and none finished.
+  /// Starts an image. Errors: as Renderer::render_camera; kConflict if `in_flight` images are
+  /// already begun.
   virtual Status begin(const CameraRequest& request) = 0;
-  /// The oldest image that was begun, the same bytes as Renderer::render_camera gives.
-  /// Errors: kConflict when none is begun; kInternal when OpenGL fails.
+  /// Returns the oldest image that was begun, with the same bytes as Renderer::render_camera.
+  /// Errors: kConflict if none is begun; kInternal if OpenGL fails.
   virtual Result<CameraFrame> finish() = 0;
   [[nodiscard]] virtual RendererInfo info() const = 0;
 };

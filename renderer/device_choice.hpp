@@ -1,4 +1,4 @@
-// Which of a machine's graphics devices to draw with.
+// Selects the graphics device to draw with.
 #pragma once
 
 #include <optional>
@@ -9,30 +9,30 @@
 
 namespace overfly::renderer {
 
-/// What RendererOptions::device asks for.
+/// The parsed value of RendererOptions::device.
 struct DeviceWish {
   std::optional<int> index;
-  std::string pci_address;  ///< lower case with its domain, as "0000:01:00.0"; empty = none named
+  std::string pci_address;  ///< lower case with its domain, as "0000:01:00.0"; empty if not given
   bool software = false;
 
   [[nodiscard]] bool any() const { return !index && pci_address.empty() && !software; }
-  /// Errors: kInvalidArgument naming the text, when it is none of the forms.
+  /// Errors: kInvalidArgument naming the text if it has none of the forms.
   static Result<DeviceWish> parse(const std::string& text);
 };
 
-/// A device as it is offered, before anything is drawn with it.
+/// A device as listed, before it is used.
 struct OfferedDevice {
-  int index = -1;  ///< -1 = the platform without a device, whatever that draws with
+  int index = -1;  ///< -1 = the platform without a device; its renderer is not known
   std::string pci_address;
   bool software = false;
 };
 
-/// The devices to try, the best first, as places in `offered`. After the device that was asked for
-/// come those that draw in software.
+/// The devices to try, best first, as indices into `offered`. The requested device is followed by
+/// those that render in software.
 [[nodiscard]] std::vector<std::size_t> devices_to_try(const DeviceWish& wish,
                                                       const std::vector<OfferedDevice>& offered);
 
-/// True where the wish names this device.
+/// True if the request names this device.
 [[nodiscard]] bool asks_for(const DeviceWish& wish, const OfferedDevice& device);
 
 }  // namespace overfly::renderer

@@ -1,6 +1,6 @@
-// The renderer's port: views of the world, off-screen. One implementation draws with OpenGL over
-// EGL, one casts rays on the CPU (the camera alone), and a no-op one serves tests without either.
-// All pass one contract test.
+// The renderer's port: off-screen views of the world. One implementation draws with OpenGL over
+// EGL, one casts rays on the CPU (camera only), and a no-op one serves tests without either. All
+// pass one contract test.
 #pragma once
 
 #include <array>
@@ -23,8 +23,8 @@ namespace overfly::renderer {
 enum class PixelFormat {
   kGrey8,
   kRgb8,
-  /// Linear radiance: the imagery's sRGB transfer function (IEC 61966-2-1) undone before texels
-  /// are filtered; what a sensor model starts from.
+  /// Linear radiance: the imagery's sRGB transfer function (IEC 61966-2-1) is decoded before texels
+  /// are filtered; the input of a sensor model.
   kGreyLinear,
   kRgbLinear,
 };
@@ -37,19 +37,19 @@ enum class PixelFormat {
 }
 
 enum class RenderQuality {
-  kTrilinear,  ///< one trilinear sample a pixel
+  kTrilinear,  ///< one trilinear sample per pixel
   kReference,  ///< the mean of 2 x 2 of them, at +-1/4 px
 };
 
-/// Homogeneous air between the camera and the ground (Koschmieder's law): what arrives from a
+/// Homogeneous air between the camera and the ground (Koschmieder's law): the light received from a
 /// range d is L exp(-extinction d) + airlight (1 - exp(-extinction d)).
 struct Atmosphere {
   double extinction_per_m = 0.0;  ///< 0 = clear; 3.912 / extinction = the meteorological visibility
-  /// Of the air at the horizon, as the imagery encodes it (sRGB), in [0, 1].
+  /// Of the air at the horizon, in the imagery's encoding (sRGB), in [0, 1].
   std::array<float, 3> airlight_rgb{0.72F, 0.80F, 0.88F};
 };
 
-/// What is asked of the aircraft's camera.
+/// A request for an image of the aircraft's camera.
 struct CameraRequest {
   CameraModel camera;
   CameraMotion T_world_camera;
@@ -61,13 +61,13 @@ struct CameraRequest {
   PixelFormat format = PixelFormat::kGrey8;
   RenderQuality quality = RenderQuality::kTrilinear;
   Atmosphere atmosphere;
-  /// Of the camera; lets the ground ahead be fetched early, and changes nothing in the image.
+  /// Of the camera; used to read tiles ahead, does not change the image.
   Eigen::Vector3d velocity_world_m_s = Eigen::Vector3d::Zero();
-  /// True: the image waits for every tile at the detail it needs. False: a tile that is not there
-  /// in time is drawn from a coarser one that is, and counted.
+  /// True: the image waits for every tile at the required detail. False: a tile that is not
+  /// available in time is replaced by a coarser one, and counted.
   bool wait_for_tiles = true;
 
-  /// A camera that stands still.
+  /// A camera at rest.
   static CameraRequest still(const CameraModel& camera,
                              const Pose& T_world_camera,
                              std::int64_t t_ns,
@@ -79,27 +79,27 @@ struct CameraRequest {
     request.format = format;
     return request;
   }
-  /// Middle of a row's exposure, the row counted from the top; between rows where it is no integer.
+  /// Middle of a row's exposure, with rows counted from the top; fractional rows are interpolated.
   [[nodiscard]] std::int64_t row_time_ns(double row) const;
 };
 
-/// One image of the aircraft's camera, with all that makes it: the pose in the record is the
-/// pose that was drawn.
+/// One image of the aircraft's camera with its metadata: the recorded pose is the pose that was
+/// drawn.
 struct CameraFrame {
-  Image image;             ///< of the 8-bit formats; else empty
-  RadianceImage radiance;  ///< of the linear formats; else empty
+  Image image;             ///< for the 8-bit formats; else empty
+  RadianceImage radiance;  ///< for the linear formats; else empty
   std::int64_t t_ns = 0;
   Pose T_world_camera;  ///< at t_ns
   CameraModel camera;
-  /// Linear texels of the finest imagery per image pixel, over pixels that see ground with
-  /// imagery: below 0.5 the imagery, not the camera, limits the result. 0 when none does.
+  /// Linear texels of the finest imagery per image pixel, over pixels that see ground with imagery:
+  /// below 0.5 the imagery, not the camera, limits the result. 0 if there are no such pixels.
   double texels_per_pixel_min = 0.0;
   double texels_per_pixel_median = 0.0;
-  /// Share of the image that shows ground without imagery, in [0, 1].
+  /// Fraction of the image that shows ground without imagery, in [0, 1].
   double void_fraction = 0.0;
-  /// Depth of the ground along the optical axis [m]; empty when the axis meets the sky.
+  /// Depth of the ground along the optical axis [m]; empty if the axis points to the sky.
   std::optional<double> axis_depth_m;
-  /// Tiles that were late and replaced by coarser ones; 0 whenever the request waited.
+  /// Tiles that were late and replaced by coarser ones; 0 if the request waited.
   int late_tiles = 0;
 };
 
@@ -118,7 +118,7 @@ struct SceneView {
   Pose T_world_camera;  ///< optical axes, as everywhere
 };
 
-/// What a scene view shows besides the ground and the sky.
+/// Contents of a scene view in addition to ground and sky.
 struct SceneContent {
   struct Aircraft {
     Pose T_world_body;
@@ -143,10 +143,10 @@ struct RendererInfo {
   std::string device;      ///< GL_RENDERER
   std::string gl_version;  ///< GL_VERSION
   bool software = true;    ///< true when the CPU draws
-  /// What was asked for by RendererOptions::device, what came of it and why; where nothing was
-  /// asked for, which devices do not work; else empty.
+  /// What RendererOptions::device requested, which device is used instead and why; without a
+  /// request, the devices that do not work; else empty.
   std::string device_note;
-  /// Why the camera is drawn by this backend; empty where there was no choice.
+  /// Why the camera is drawn by this backend; empty if there was no choice.
   std::string camera_note;
 };
 
@@ -156,15 +156,15 @@ class Renderer {
   virtual ~Renderer() = default;
 
   /// Draws the camera's image.
-  /// Errors: kInvalidArgument for a bad camera, times below 0, or a pose that is not finite or
-  /// below the ground by more than 1 m; kIo when a tile cannot be read; kUnsupported naming what
-  /// this renderer cannot do.
+  /// Errors: kInvalidArgument for an invalid camera, times below 0, or a pose that is not finite or
+  /// more than 1 m below the ground; kIo if a tile cannot be read; kUnsupported naming what this
+  /// renderer does not support.
   [[nodiscard]] virtual Result<CameraFrame> render_camera(const CameraRequest& request) = 0;
-  /// Depth along the optical axis of the same image [m], each row at its mid exposure; sky and
-  /// pixels that no ray reaches are +infinity.
+  /// Depth along the optical axis of the same image [m], each row at its mid exposure; +infinity
+  /// for sky and for pixels without a ray.
   [[nodiscard]] virtual Result<DepthImage> render_depth(const CameraRequest& request) = 0;
 
-  /// The same for a camera that stands still.
+  /// As above, for a camera at rest.
   [[nodiscard]] Result<CameraFrame> render_camera(const CameraModel& camera,
                                                   const Pose& T_world_camera,
                                                   std::int64_t t_ns,
@@ -183,33 +183,33 @@ class Renderer {
 
 class TileStore;
 
-/// Who draws the aircraft's camera. Scene views always come from OpenGL.
+/// The backend for the aircraft's camera. Scene views are always drawn by OpenGL.
 enum class CameraBackend {
-  kAuto,     ///< OpenGL on a GPU; without one the ray-caster, which is faster and equally right
-  kEgl,      ///< OpenGL, on whatever device there is
+  kAuto,  ///< OpenGL on a GPU; without a GPU the ray-caster, which is faster and equally accurate
+  kEgl,   ///< OpenGL, on any device
   kRaycast,  ///< the ray-caster on the CPU
 };
 
 struct RendererOptions {
-  /// Tiles kept in memory, and as many again as textures; > 64 MiB.
+  /// Budget for tiles in memory, and the same again for textures; > 64 MiB.
   std::size_t tile_cache_bytes = std::size_t{256} << 20U;
-  /// Shared with other renderers of the same world; null = one of its own.
+  /// Shared with other renderers of the same world; null = a private one.
   std::shared_ptr<TileStore> tile_store;
   /// The EGL device: "" = the first that works, "0" = by index, "0000:01:00.0" = by PCI address,
-  /// "software". Where it does not work the software renderer draws, and RendererInfo says so.
+  /// "software". If it does not work, the software renderer is used and RendererInfo reports that.
   std::string device;
   CameraBackend camera_backend = CameraBackend::kAuto;  ///< of create_renderer()
-  int threads = 0;  ///< of the ray-caster; 0 = one a core, at most 8. They change no image
+  int threads = 0;  ///< of the ray-caster; 0 = one per core, at most 8. Does not change the image
 };
 
-/// The renderer for this machine: the camera by the backend that the options name, scene views by
-/// OpenGL. Where OpenGL does not work the camera still does, and scene views are kUnsupported.
-/// Errors: as create_egl_renderer, for CameraBackend::kEgl alone.
+/// The renderer for this machine: the camera by the backend of the options, scene views by OpenGL.
+/// If OpenGL does not work, the camera still does and scene views are kUnsupported.
+/// Errors: as create_egl_renderer, only for CameraBackend::kEgl.
 [[nodiscard]] Result<std::unique_ptr<Renderer>> create_renderer(
     std::shared_ptr<const terrain::TileSource> tiles, const RendererOptions& options = {});
 
 /// Draws with OpenGL on an EGL device or the surfaceless platform, without a display.
-/// Errors: kUnsupported with what EGL said and which package is missing.
+/// Errors: kUnsupported with EGL's error and the missing package.
 [[nodiscard]] Result<std::unique_ptr<Renderer>> create_egl_renderer(
     std::shared_ptr<const terrain::TileSource> tiles, const RendererOptions& options = {});
 
@@ -221,18 +221,18 @@ struct RendererOptions {
 [[nodiscard]] std::unique_ptr<Renderer> create_noop_renderer(
     std::shared_ptr<const terrain::TileSource> tiles);
 
-/// What EGL offers on this machine, without a world (for `overfly doctor`).
+/// EGL's capabilities on this machine, without a world (for `overfly doctor`).
 [[nodiscard]] Result<RendererInfo> probe_egl(const std::string& device = "");
 
 /// A device that RendererOptions::device can name.
 struct GraphicsDevice {
   int index = 0;
-  std::string pci_address;  ///< empty where it has none or it is not known
-  RendererInfo info;        ///< empty where it does not work
-  std::string fault;        ///< why it does not work; empty where it does
+  std::string pci_address;  ///< empty if it has none or it is not known
+  RendererInfo info;        ///< empty if it does not work
+  std::string fault;        ///< why it does not work; empty if it does
 };
 
-/// Opens each device that EGL offers once; none where there is no EGL.
+/// Opens each device listed by EGL once; empty if there is no EGL.
 [[nodiscard]] std::vector<GraphicsDevice> list_graphics_devices();
 
 }  // namespace overfly::renderer

@@ -1,4 +1,4 @@
-// Checks what callers ask of a renderer, the same in every implementation.
+// Checks requests to a renderer, the same way for every implementation.
 #pragma once
 
 #include "core/camera.hpp"
@@ -12,8 +12,9 @@ namespace overfly::renderer {
 inline constexpr int kMaxImageSidePx = 8192;
 inline constexpr double kMaxDepthBelowGroundM = 1.0;
 
-/// Errors: kInvalidArgument for a bad or too large camera, times below 0, air that is none, a
-/// pose that is not finite, or an optical centre more than kMaxDepthBelowGroundM below the ground.
+/// Errors: kInvalidArgument for an invalid or too large camera, times below 0, an invalid
+/// atmosphere, a pose that is not finite, or an optical centre more than kMaxDepthBelowGroundM
+/// below the ground.
 [[nodiscard]] Status check_camera_request(const terrain::TileSource& tiles,
                                           const CameraRequest& request);
 

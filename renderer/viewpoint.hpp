@@ -1,4 +1,4 @@
-// Where to look from: viewpoints that follow, circle or overlook the aircraft.
+// Viewpoints that follow, circle or overlook the aircraft.
 #pragma once
 
 #include "core/height_query.hpp"
@@ -6,16 +6,17 @@
 
 namespace overfly::renderer {
 
-/// Angles are the viewpoint's as seen from the target.
+/// Angles give the viewpoint's direction as seen from the target.
 struct Viewpoint {
   double azimuth_rad = 0.0;
   double elevation_rad = 0.4;  ///< above the horizon, in [-pi/2, pi/2]
   double distance_m = 120.0;   ///< > 0
-  double min_above_m = 2.0;    ///< the camera is lifted to at least this above the ground
+  double min_above_m = 2.0;    ///< the camera is raised to at least this above the ground
 };
 
-/// Follows from behind, whatever the bank. @param view  azimuth 0 = straight behind the tail,
-/// positive to the left of the tail as seen from above (clockwise)
+/// Follows from behind, independent of the bank.
+/// @param view  azimuth 0 = straight behind the tail, positive to the left of the tail as seen from
+///              above (clockwise)
 /// @return T_world_camera, upright, looking at the aircraft
 [[nodiscard]] Pose chase_viewpoint(const Pose& T_world_body,
                                    const Viewpoint& view,

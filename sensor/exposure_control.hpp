@@ -1,4 +1,4 @@
-// What chooses the exposure: nothing, or a controller on the mean level.
+// Exposure control: fixed, or a controller on the mean level.
 #pragma once
 
 #include "sensor/sensor_model.hpp"
@@ -7,16 +7,16 @@ namespace overfly::renderer {
 
 /// A damped Newton step on the logarithm of exposure times gain:
 ///   ln E' = ln E + alpha ln(target / mean) / slope,
-/// with slope = d ln mean / d ln E = 1 - saturated / mean, because light that saturates answers no
-/// more. alpha leaves 5 % of three stops after settle_frames frames. From below it never
-/// overshoots; from a saturated image at most once.
+/// with slope = d ln mean / d ln E = 1 - saturated / mean, because saturated pixels do not respond.
+/// alpha is chosen so that 5 % of three stops remain after settle_frames frames. From below it
+/// never overshoots; from a saturated image at most once.
 class ExposureControl {
  public:
   explicit ExposureControl(const SensorModel& model);
 
   [[nodiscard]] ExposureSetting setting() const;
-  /// Takes in what came of the setting.
-  /// @param mean_level          of the converter's numbers, black level taken off, in [0, 1]
+  /// Updates the controller with the result of the setting.
+  /// @param mean_level  of the converter's numbers, without black level, in [0, 1]
   /// @param saturated_fraction  in [0, 1]
   void observe(double mean_level, double saturated_fraction);
 

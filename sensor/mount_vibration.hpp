@@ -1,17 +1,17 @@
-// The camera shaken by engine and airframe through a compliant mount.
+// Vibration of the camera by engine and airframe through a compliant mount.
 //
 // The airframe shakes the mount about and along each axis of the camera with
 //   - lines at h * rpm / 60, h = 1, 2, ... (engine and propeller), and
 //   - noise of constant power spectral density between two frequencies.
-// The mount is a mass on a damped spring, a low-pass of second order: with r = f / natural_hz,
+// The mount is a mass on a damped spring, a second-order low-pass: with r = f / natural_hz,
 //   |H(f)|^2 = 1 / ((1 - r^2)^2 + (2 damping r)^2)                       (rigid: |H| = 1).
 // The camera's disturbance has the one-sided spectrum |H(f)|^2 * (airframe's). Axes are
 // independent.
 //
 // Noise is a sum of cosines whose frequencies divide the camera's spectrum into strata of equal
 // power, one drawn in each, with uniform phases (Shinozuka, Deodatis 1991, "Simulation of
-// stochastic processes by spectral representation", Appl. Mech. Rev. 44(4)): stationary, near
-// normal, and known at any time without the times before.
+// stochastic processes by spectral representation", Appl. Mech. Rev. 44(4)). It is stationary,
+// nearly normal, and can be evaluated at any time without the preceding times.
 #pragma once
 
 #include <array>
@@ -57,7 +57,8 @@ class MountVibration {
   /// Errors: as VibrationModel::validate.
   static Result<MountVibration> create(const VibrationModel& model, std::uint64_t seed);
 
-  /// Takes points of the shaken camera to the camera at rest: T_body_camera * T_mount_camera(t).
+  /// Transforms points of the vibrating camera to the camera at rest: T_body_camera *
+  /// T_mount_camera(t).
   [[nodiscard]] Pose T_mount_camera(std::int64_t t_ns) const;
   /// Rotation vector and translation [rad, m] in the camera's axes.
   [[nodiscard]] std::array<double, 6> disturbance(std::int64_t t_ns) const;
@@ -69,7 +70,7 @@ class MountVibration {
   [[nodiscard]] double rms(VibrationAxis axis) const;
 
  private:
-  /// A cosine with an amplitude and phase of its own in each axis.
+  /// A cosine with separate amplitude and phase for each axis.
   struct Tone {
     double omega_rad_s = 0.0;
     std::array<double, 6> cosine{};

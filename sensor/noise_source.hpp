@@ -1,15 +1,15 @@
-// Random numbers by counter: a value is a function of seed, frame, stage and place alone, so that
-// it depends neither on the order of the pixels nor on the machine.
+// Counter-based random numbers: a value is a function of seed, frame, stage and place only, and
+// independent of the order of the pixels and of the machine.
 //
 // Words: the hash pcg4d (Jarzynski, Olano 2020, "Hash functions for GPU rendering", JCGT 9(3),
-// section 4.1) of a running number and three odd words made of seed, frame and stage; its upper
-// half is folded into the lower at the end, because the lowest bits of its products are so even
-// between keys that two frames' noise would be correlated by up to 6 %.
+// section 4.1) of a running number and three odd words made of seed, frame and stage. The upper
+// half is folded into the lower at the end, because the lowest bits of its products differ so
+// little between keys that the noise of two frames would be correlated by up to 6 %.
 // Normals: Box and Muller 1958; logarithm, sine and cosine are polynomials (Chebyshev
-// interpolation, errors below 1e-5, 1.4e-4 and 7e-6), because the C library's functions
-// differ in the last bit between machines.
+// interpolation, errors below 1e-5, 1.4e-4 and 7e-6), because the C library's functions differ in
+// the last bit between machines.
 //
-// Loops run over arrays of a fixed length, which the compiler turns into vector code.
+// Loops run over arrays of fixed length, which the compiler vectorises.
 #pragma once
 
 #include <array>
@@ -47,10 +47,10 @@ class SeededSequence {
 };
 
 inline constexpr int kQuads = 64;
-/// Samples that are worked on together; one hash serves samples i, kQuads + i, 2 kQuads + i, ...
+/// Samples processed together; one hash serves samples i, kQuads + i, 2 kQuads + i, ...
 inline constexpr int kChunk = 4 * kQuads;
 
-/// Must be inlined to be compiled for the vector units of the caller.
+/// Must be inlined, so that it is compiled for the caller's vector units.
 #define OVERFLY_LANES static inline __attribute__((always_inline))
 
 /// A random word for each sample of a chunk.
@@ -89,8 +89,8 @@ OVERFLY_LANES float uniform(std::uint32_t word) {
   return (static_cast<float>(static_cast<std::int32_t>(word >> 1U)) + 0.5F) * 0x1p-31F;
 }
 
-/// a b + c, rounded once, as IEEE 754 defines it: one instruction where the vector units have it,
-/// else the C library's, slow and of the same result.
+/// a b + c, rounded once, as IEEE 754 defines it: one instruction if the vector units support it,
+/// else the C library's function, which is slow and gives the same result.
 OVERFLY_LANES float fused(float a, float b, float c) { return __builtin_fmaf(a, b, c); }
 
 /// -2 ln(u) >= 0, u in (0, 1]: exponent and a polynomial in the mantissa m - 1, m in

@@ -12,13 +12,13 @@
 
 namespace overfly::renderer {
 
-/// Irradiance of each value of the 8-bit image (of a deeper sensor: of the middle of the numbers
-/// that share their high 8 bits), scaled so that the last is 255. Strictly grows. A black level
-/// is part of the values: for photometric methods leave it 0.
+/// Irradiance of each value of the 8-bit image (for a deeper sensor: at the middle of the numbers
+/// with the same high 8 bits), scaled so that the last is 255. Strictly increasing. A black level
+/// is included in the values; for photometric methods set it to 0.
 [[nodiscard]] std::array<double, 256> inverse_response(const SensorModel& model);
 
-/// The transmission of each pixel over the image's largest; 65535 = 1. Flat without a vignette.
-/// Write it as a 16-bit PNG, `vignette.png`.
+/// The transmission of each pixel divided by the image's largest; 65535 = 1. Flat without a
+/// vignette. Write it as a 16-bit PNG, `vignette.png`.
 /// @pre Sensor::create accepts model and camera
 [[nodiscard]] Image16 vignette_map(const SensorModel& model, const CameraModel& camera);
 

@@ -1,4 +1,4 @@
-// The stages that act on each sample by itself, from light to the converter's number.
+// The stages that act on each sample independently, from light to the converter's number.
 #pragma once
 
 #include <array>
@@ -10,9 +10,9 @@
 
 namespace overfly::renderer {
 
-/// Below this mean [electrons] shot noise is drawn from the Poisson distribution itself; from it
-/// on as a normal variable with the Poisson's mean, variance and skewness, rounded to electrons
-/// (total variation distance at most 9e-4).
+/// Below this mean [electrons] shot noise is drawn from the Poisson distribution itself. From it on
+/// it is drawn as a normal variable with the Poisson's mean, variance and skewness, rounded to
+/// electrons (total variation distance at most 9e-4).
 inline constexpr float kExactPoissonBelowE = 24.0F;
 
 /// The stages' constants for one frame.
@@ -22,7 +22,7 @@ struct PixelChain {
   bool shot_noise = false;
   float full_well_e = std::numeric_limits<float>::max();
   float read_noise_e = 0.0F;
-  float dn_per_e = 1.0F;  ///< of the converter, gain included
+  float dn_per_e = 1.0F;  ///< of the converter, including gain
   float black_dn = 0.0F;
   int largest_dn = 255;
   NoiseKey temporal;
@@ -43,18 +43,18 @@ struct SensorRow {
 
 struct RowResult {
   std::uint16_t* numbers = nullptr;  ///< of the converter; room for whole chunks
-  std::uint64_t sum = 0;             ///< of the numbers, added to
-  std::uint64_t saturated = 0;       ///< at the largest number or the full well, added to
+  std::uint64_t sum = 0;             ///< of the numbers, accumulated
+  std::uint64_t saturated = 0;       ///< at the largest number or the full well, accumulated
 };
 
-/// Hashes that a row of this many samples takes.
+/// Hashes needed for a row of this many samples.
 [[nodiscard]] constexpr std::uint32_t counters_per_row(int samples) {
   return static_cast<std::uint32_t>((samples + kChunk - 1) / kChunk * kQuads);
 }
 
 using ExposeRow = void (*)(const PixelChain& chain, const SensorRow& row, RowResult& result);
 
-/// The same function compiled for the units. @pre supported(units)
+/// The implementation compiled for the units. @pre supported(units)
 [[nodiscard]] ExposeRow expose_row_for(VectorUnits units);
 
 }  // namespace overfly::renderer

@@ -18,7 +18,7 @@
 
 namespace overfly::renderer {
 
-/// What the sensor made of one radiance image.
+/// The sensor's output for one radiance image.
 struct SensorImage {
   Image image;      ///< 8 bit; of deeper sensors the high 8 bits
   Image16 image16;  ///< of sensors deeper than 8 bit: raw numbers, 0 to 2^bits - 1; else empty
@@ -28,18 +28,18 @@ struct SensorImage {
 };
 
 /// One camera's sensor. Deterministic: the same seed, frames and radiances give the same bytes,
-/// whatever the machine's vector units.
+/// regardless of the machine's vector units.
 class Sensor {
  public:
-  /// Errors: as SensorModel::validate (`enabled` is not looked at); a vignette that leaves (0, 1]
-  /// within the image; a camera that is not valid. @pre supported(units)
+  /// Errors: as SensorModel::validate (`enabled` is ignored); a vignette outside (0, 1] within the
+  /// image; an invalid camera. @pre supported(units)
   static Result<std::unique_ptr<Sensor>> create(const SensorModel& model,
                                                 const CameraModel& camera,
                                                 std::uint64_t seed,
                                                 VectorUnits units = VectorUnits::kBest);
   virtual ~Sensor() = default;
 
-  /// The exposure of the next frame: fixed, or what auto-exposure chose from the frames before.
+  /// The exposure of the next frame: fixed, or chosen by auto-exposure from the preceding frames.
   [[nodiscard]] virtual ExposureSetting next_setting() const = 0;
   /// @param radiance  finite; grey or RGB, of the camera's size, taken with next_setting()
   /// @param frame     index of the frame, the noise's second seed

@@ -3,8 +3,7 @@
 
 namespace overfly::renderer {
 
-/// The vector units that a sensor may use. The image does not depend on them; for tests and
-/// figures.
+/// The vector units that a sensor may use; they do not affect the image. For tests and benchmarks.
 enum class VectorUnits { kBest, kNone, kAvx2, kAvx512 };
 /// Whether this machine has them.
 [[nodiscard]] bool supported(VectorUnits units);

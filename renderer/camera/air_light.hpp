@@ -1,4 +1,4 @@
-// The light of the air and of the sky in a camera's pixel formats.
+// The light of air and sky in a camera's pixel formats.
 #pragma once
 
 #include <array>
@@ -7,12 +7,12 @@
 
 namespace overfly::renderer {
 
-/// A colour as the imagery encodes it, in the channels and the light of a format: encoded luma or
-/// RGB for the 8-bit formats, linear luminance or RGB for the others; 1 = white.
+/// Converts a colour in the imagery's encoding to the channels and encoding of a format: encoded
+/// luma or RGB for the 8-bit formats, linear luminance or RGB for the others; 1 = white.
 [[nodiscard]] std::array<float, 3> light_in(PixelFormat format,
                                             const std::array<float, 3>& encoded_rgb);
 
-/// What pixels without ground show: the airlight, or in a vacuum a pale blue.
+/// The colour of pixels without ground: the airlight, or a pale blue if there is no air.
 [[nodiscard]] std::array<float, 3> sky_light(const CameraRequest& request);
 
 }  // namespace overfly::renderer

@@ -1,4 +1,4 @@
-// What a camera frame says about the imagery it was made from.
+// Statistics of a camera frame about its imagery.
 #pragma once
 
 #include <functional>
@@ -23,16 +23,16 @@ struct FrameStatistics {
 /// True where a textured tile has imagery at texture coordinates (u, v).
 using ImageryQuery = std::function<bool(const terrain::TileId& tile, double u, double v)>;
 
-/// Asks the tile source itself. @param tiles  must outlive the query
+/// Queries the tile source. @param tiles  must outlive the query
 [[nodiscard]] ImageryQuery imagery_query(const terrain::TileSource& tiles);
 
-/// Measures a frame on a grid of 40 x 30 rays through the mesh that was drawn, one at the centre
-/// of each 1/40 x 1/30 of the image: void_fraction has a step of 1/1200, and details smaller than
-/// a cell may be missed by the minimum. Texels per pixel are those of level 0, the root of their
-/// number per pixel area. The axis depth is refined on the ground itself (to 1 mm).
-/// @param mesh    of a view that sees all rays of the camera (covering_pinhole)
+/// Measures a frame on a grid of 40 x 30 rays through the drawn mesh, one at the centre of each
+/// 1/40 x 1/30 of the image: void_fraction has a step of 1/1200, and the minimum may miss details
+/// smaller than a cell. Texels per pixel are those of level 0, as the root of their number per
+/// pixel area. The axis depth is refined on the ground itself (to 1 mm).
+/// @param mesh  of a view that sees all rays of the camera (covering_pinhole)
 /// @param camera  whose pixels are counted
-/// @pre all triangles face the camera, as build_ground_mesh leaves them
+/// @pre all triangles face the camera, as build_ground_mesh ensures
 [[nodiscard]] FrameStatistics measure_frame(const GroundMesh& mesh,
                                             const View& view,
                                             const CameraModel& camera,

@@ -1,9 +1,9 @@
-// Samples an image from the pinhole pictures of its parts.
+// Samples an image from the pinhole images of its parts.
 //
-// Method: a pixel is the mean of its taps (pixel_taps); a tap that meets the centre of a picture's
-// pixel takes it, others are interpolated by cubic convolution (Keys, Cubic convolution
+// Method: a pixel is the mean of its taps (pixel_taps). A tap at the centre of a pinhole image's
+// pixel takes its value; others are interpolated by cubic convolution (Keys, Cubic convolution
 // interpolation for digital image processing, IEEE Trans. ASSP 29, 1981, eq. 15) over 4 x 4 pixels
-// of a picture that is kOversampling times as dense as the image.
+// of an image that is kOversampling times as dense as the result.
 #pragma once
 
 #include <Eigen/Core>
@@ -29,18 +29,19 @@ class TapRays {
   CameraModel camera_;
   RenderQuality quality_;
   std::vector<Eigen::Vector2d> taps_;
-  std::vector<Eigen::Vector2f> plane_;  // of a lens
+  std::vector<Eigen::Vector2f> plane_;  // for a lens
 };
 
-/// Adds weight times a part's picture to its rectangle of the image. Pixels without a ray stay.
+/// Adds weight times a part's image to its rectangle of the result. Pixels without a ray are
+/// unchanged.
 void add_part(const ImagePart& part,
               const ImageBuffer<float>& picture,
               const TapRays& rays,
               float weight,
               ImageBuffer<float>& image);
 
-/// Writes the depth along the camera's axis of a part's rectangle, from the picture of the depth
-/// along the picture's axis: interpolated on planes, the nearest sample's at edges.
+/// Writes the depth along the camera's axis in a part's rectangle, from the depth along the pinhole
+/// image's axis: interpolated on planes, the nearest sample's at edges.
 void write_depth(const ImagePart& part,
                  const DepthImage& picture,
                  const TapRays& rays,

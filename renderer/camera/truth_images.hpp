@@ -1,7 +1,7 @@
-// What is true of every pixel of a camera image: range, world position, surface normal, motion to
-// another image, validity. Pure functions of the depth image and the requests that were drawn.
+// Ground truth of every pixel of a camera image: range, world position, surface normal, motion to
+// another image, validity. Pure functions of the depth image and the rendered requests.
 //
-// Pixels that see no ground (sky, or no ray through the lens) are NaN in every image but range,
+// Pixels that see no ground (sky, or no ray through the lens) are NaN in every image except range,
 // where they are +infinity as in the depth image, and the mask, where they are 0.
 #pragma once
 
@@ -20,12 +20,13 @@ using PointImage = ImageBuffer<double>;
 /// Normals (3 channels) or pixel motions (2 channels: right, down [px]).
 using VectorImage = ImageBuffer<float>;
 
-/// The direction of every pixel of a camera, found once: through a lens each costs an iteration.
+/// The direction of every pixel of a camera, computed once, because a lens needs an iteration for
+/// each.
 class PixelRays {
  public:
   explicit PixelRays(const CameraModel& camera);
 
-  /// Direction with z = 1 through a pixel's centre, camera frame; NaN where the lens has none.
+  /// Direction with z = 1 through a pixel's centre, camera frame; NaN if the lens has none.
   [[nodiscard]] Eigen::Vector3d at(int x, int y) const;
   [[nodiscard]] const CameraModel& camera() const { return camera_; }
 
@@ -43,8 +44,8 @@ enum class NormalFrame {
 /// Values of the validity mask.
 inline constexpr std::uint8_t kMaskNothing = 0;  ///< sky, or no ray
 inline constexpr std::uint8_t kMaskVoid = 128;   ///< ground without imagery
-/// Ground whose imagery is smeared, too steep to be photographed from above: beyond 60 deg a texel
-/// is stretched to more than twice its length.
+/// Ground whose imagery is smeared because it is too steep to be photographed from above: beyond 60
+/// deg a texel is stretched to more than twice its length.
 inline constexpr std::uint8_t kMaskSmeared = 192;
 inline constexpr double kSmearedNormalUp = 0.5;    ///< cosine of that slope
 inline constexpr std::uint8_t kMaskImagery = 255;  ///< ground with imagery
@@ -60,24 +61,24 @@ inline constexpr std::uint8_t kMaskImagery = 255;  ///< ground with imagery
 
 /// Unit normals of the ground, upwards in the world: (-dh/de, -dh/dn, 1) normalised, from central
 /// differences of the height h over `step_m` on either side.
-/// Cost: four height queries a pixel.
+/// Cost: four height queries per pixel.
 [[nodiscard]] VectorImage surface_normals(const PointImage& points,
                                           const HeightQuery& ground,
                                           const CameraRequest& request,
                                           NormalFrame frame,
                                           double step_m = 0.5);
 
-/// Motion of each pixel's ground point to its place in another image of a camera, of the same or
-/// another time: place there = pixel + flow. NaN where that place is outside the image, behind the
-/// camera, or hidden there by nearer ground (by more than 1 % of its depth and 0.3 m).
-/// @param other        the request of that image; its rows are solved for (RowProjector)
+/// Motion of each pixel's ground point to its position in another image of a camera, of the same or
+/// another time: other position = pixel + flow. NaN if that position is outside the image, behind
+/// the camera, or occluded by nearer ground (by more than 1 % of its depth and 0.3 m).
+/// @param other  the request of that image; its rows are solved for (RowProjector)
 /// @param other_depth  depth image of that request
 [[nodiscard]] VectorImage optical_flow(const PointImage& points,
                                        const CameraRequest& other,
                                        const DepthImage& other_depth);
 
 /// One channel of kMaskNothing, kMaskVoid, kMaskSmeared, kMaskImagery.
-/// Cost: four height queries a pixel.
+/// Cost: four height queries per pixel.
 [[nodiscard]] Image validity_mask(const PointImage& points, const terrain::TileSource& tiles);
 
 }  // namespace overfly::renderer

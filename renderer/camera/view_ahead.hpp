@@ -1,4 +1,4 @@
-// Fetches the ground that a moving camera is about to see.
+// Reads ahead the ground that a moving camera is about to see.
 #pragma once
 
 #include <cstdint>
@@ -10,13 +10,13 @@
 
 namespace overfly::renderer {
 
-inline constexpr double kAheadS = 3.0;         ///< of flight whose ground is fetched
-inline constexpr double kAheadEveryS = 0.375;  ///< of flight between two looks ahead
+inline constexpr double kAheadS = 3.0;         ///< flight time ahead whose ground is read
+inline constexpr double kAheadEveryS = 0.375;  ///< flight time between two read-aheads
 
 /// A thread that selects the ground of the views of the next kAheadS along the camera's velocity,
-/// each a third wider than the camera's, samples its patches and asks the store for its tiles, at
-/// the levels that the views need and one coarser. It changes when things are in memory, never
-/// what they are.
+/// each a third wider than the camera's, samples its patches and requests its tiles from the store,
+/// at the levels that the views need and one coarser. It affects when data is in memory, never its
+/// values.
 class ViewAhead {
  public:
   ViewAhead(std::shared_ptr<TileStore> tiles, std::shared_ptr<GroundPatchStore> patches);
@@ -24,9 +24,10 @@ class ViewAhead {
   ViewAhead(const ViewAhead&) = delete;
   ViewAhead& operator=(const ViewAhead&) = delete;
 
-  /// Tells of an image that is drawn now; returns at once. Cameras of one time are all followed.
+  /// Notifies the thread of an image being drawn; returns at once. Cameras of the same time are all
+  /// followed.
   void expect(const CameraRequest& request);
-  /// Waits until the thread has looked ahead for all that it was told.
+  /// Waits until the thread has processed all notifications.
   void wait_until_idle();
   /// CPU time of the thread so far.
   [[nodiscard]] double cpu_s() const;

@@ -1,4 +1,4 @@
-// Draws the camera's image: pinhole pictures, and what is put together from them.
+// Draws the camera's image: pinhole images, and images composed from them.
 #pragma once
 
 #include <memory>
@@ -22,13 +22,13 @@ class CameraPass {
   CameraPass(GroundPatches& patches, GroundPass& ground, TileTextures& textures)
       : patches_(patches), ground_(ground), textures_(textures) {}
 
-  /// Draws the image or radiance and what the frame says of it; the rest of the frame stays.
-  /// Errors: kIo when a tile cannot be read; kUnsupported when there is no such framebuffer.
+  /// Draws the image or radiance and sets its metadata; other fields of the frame are unchanged.
+  /// Errors: kIo if a tile cannot be read; kUnsupported if there is no such framebuffer.
   Status draw(const CameraRequest& request, CameraFrame& frame);
-  /// The same, but where the image is one 8-bit picture it goes into the ring.
-  /// @return true where it did, and the frame's image is empty
+  /// As draw(), but an image that is a single 8-bit pinhole image is copied through the ring.
+  /// @return true if it was; the frame's image is then empty
   Result<bool> draw_into(PixelRing& ring, const CameraRequest& request, CameraFrame& frame);
-  /// Errors: kUnsupported when there is no such framebuffer.
+  /// Errors: kUnsupported if there is no such framebuffer.
   Result<DepthImage> depth(const CameraRequest& request);
 
  private:

@@ -1,4 +1,4 @@
-// Camera frames whose images are on their way from the GPU.
+// Camera frames whose images are being copied from the GPU.
 #pragma once
 
 #include <cstddef>
@@ -16,15 +16,14 @@ class CameraQueue {
   explicit CameraQueue(std::size_t in_flight) : ring_(in_flight), in_flight_(in_flight) {}
 
   [[nodiscard]] bool full() const { return frames_.size() == in_flight_; }
-  /// Starts an image; `frame` holds what is known of it. @pre not full. Errors: as
-  /// CameraPass::draw.
+  /// Starts an image; `frame` holds its metadata. @pre not full. Errors: as CameraPass::draw.
   Status begin(CameraPass& pass, const CameraRequest& request, CameraFrame frame) {
     const Result<bool> in_ring = pass.draw_into(ring_, request, frame);
     if (!in_ring.ok()) return in_ring.error();
     frames_.push_back({std::move(frame), *in_ring});
     return {};
   }
-  /// Errors: kConflict when none was begun; kInternal when OpenGL fails.
+  /// Errors: kConflict if none was begun; kInternal if OpenGL fails.
   Result<CameraFrame> finish() {
     if (frames_.empty()) return Error{ErrorCode::kConflict, "no image was begun"};
     Begun begun = std::move(frames_.front());
@@ -38,7 +37,7 @@ class CameraQueue {
  private:
   struct Begun {
     CameraFrame frame;
-    bool in_ring = false;  // else its image is in the frame
+    bool in_ring = false;  // else its image is already in the frame
   };
   PixelRing ring_;
   std::size_t in_flight_;

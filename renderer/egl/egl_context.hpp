@@ -12,23 +12,23 @@ namespace overfly::renderer::egl {
 
 struct EglDevice;
 
-/// One context; those of one device share its EGL display, which the process keeps open.
-/// A context belongs to the thread that makes it.
+/// One context. The contexts of one device share its EGL display, which the process keeps open. A
+/// context belongs to the thread that creates it.
 class EglContext {
  public:
-  /// Makes a context and leaves it current. OpenGL 4.5 core, or 3.3 core with
-  /// ARB_clip_control. What does not work is passed over, and info() says so.
+  /// Creates a context and makes it current: OpenGL 4.5 core, or 3.3 core with ARB_clip_control.
+  /// Devices that do not work are skipped and listed in info().
   /// @param wanted  as RendererOptions::device
-  /// Errors: kInvalidArgument when `wanted` is none of its forms; kUnsupported with what EGL said
-  /// and which package is missing.
+  /// Errors: kInvalidArgument if `wanted` has none of its forms; kUnsupported with EGL's error and
+  /// the missing package.
   static Result<std::unique_ptr<EglContext>> create(const std::string& wanted = "");
-  /// The same on one device. Errors: kUnsupported with what EGL said.
+  /// The same on a given device. Errors: kUnsupported with EGL's error.
   static Result<std::unique_ptr<EglContext>> open(const EglDevice& device);
   ~EglContext();
   EglContext(const EglContext&) = delete;
   EglContext& operator=(const EglContext&) = delete;
 
-  /// Makes the context current on this thread. Errors: kInternal if EGL refuses.
+  /// Makes the context current on this thread. Errors: kInternal if EGL fails.
   Status make_current();
   [[nodiscard]] RendererInfo info() const;
 

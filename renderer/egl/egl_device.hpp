@@ -1,4 +1,4 @@
-// What EGL offers to draw with.
+// The devices listed by EGL.
 #pragma once
 
 #include <string>
@@ -17,17 +17,17 @@ struct EglDevice : OfferedDevice {
   [[nodiscard]] std::string name() const;
 };
 
-/// True where a list of names parted by spaces holds the name.
+/// True if a space-separated list of names contains the name.
 [[nodiscard]] bool has_extension(const char* list, const char* name);
-/// An EGL error as EGL's documents write it, as in "0x3001".
+/// An EGL error code in the notation of EGL's documentation, as "0x3001".
 [[nodiscard]] std::string egl_error_text(int error);
 
 /// All of them: devices in EGL's order, then the surfaceless platform.
-/// Errors: kUnsupported when there is no EGL, or it offers nothing.
+/// Errors: kUnsupported if there is no EGL, or if it lists nothing.
 [[nodiscard]] Result<std::vector<EglDevice>> egl_devices();
 
-/// The device's display, initialised; the process keeps it. Errors: kUnsupported with what EGL
-/// said.
+/// The device's initialised display, kept open by the process. Errors: kUnsupported with EGL's
+/// error.
 [[nodiscard]] Result<void*> open_display(const EglDevice& device);
 
 }  // namespace overfly::renderer::egl

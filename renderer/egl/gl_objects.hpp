@@ -1,4 +1,4 @@
-// OpenGL names that delete themselves. Their context must be current when they go.
+// OpenGL object names that are deleted by their destructor, while their context must be current.
 #pragma once
 
 #include <epoxy/gl.h>
@@ -8,7 +8,7 @@
 
 namespace overfly::renderer::egl {
 
-/// An offset into the bound buffer, as OpenGL's calls want it.
+/// An offset into the bound buffer, in the form of OpenGL's arguments.
 inline const void* buffer_offset(std::size_t bytes) {
   return reinterpret_cast<const void*>(bytes);  // NOLINT(performance-no-int-to-ptr): GL's offsets
 }

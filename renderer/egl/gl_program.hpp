@@ -20,7 +20,7 @@ class GlProgram {
   GlProgram& operator=(const GlProgram&) = delete;
 
   void use() const { glUseProgram(name_); }
-  /// Location of a uniform; -1 (which setters ignore) where the program does not use it.
+  /// Location of a uniform; -1 (ignored by setters) if the program does not use it.
   [[nodiscard]] GLint uniform(const char* name) const { return glGetUniformLocation(name_, name); }
 
  private:

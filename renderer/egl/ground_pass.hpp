@@ -14,19 +14,19 @@
 
 namespace overfly::renderer::egl {
 
-/// Everything nearer than this is cut away [m].
+/// Near clipping distance [m].
 inline constexpr float kNearM = 0.05F;
 
 /// Colour of the air at the horizon in scene views.
 inline constexpr float kHazeRgb[3] = {0.84F, 0.89F, 0.93F};
 
-/// Sets the uniform `projection` (fx', fy', cx', cy') of a program: clip coordinates of a point
-/// (x, y, z) of the camera frame are (fx' x + cx' z, fy' y + cy' z, kNearM, z). Depth is then
-/// kNearM / z: 1 at the near plane, 0 at infinity, and floats keep it precise everywhere.
-/// The window's row 0 is the image's row 0, and the centre of pixel i is at window i + 0.5.
+/// Sets the uniform `projection` (fx', fy', cx', cy') of a program: clip coordinates of a point (x,
+/// y, z) of the camera frame are (fx' x + cx' z, fy' y + cy' z, kNearM, z). Depth is then kNearM /
+/// z: 1 at the near plane, 0 at infinity, and precise as a float at all distances. The window's row
+/// 0 is the image's row 0, and the centre of pixel i is at window i + 0.5.
 void set_projection(const GlProgram& program, const PinholeCamera& camera);
 
-/// How the ground is drawn.
+/// Appearance of the ground.
 struct GroundLook {
   enum class Output {
     kColour,
@@ -36,10 +36,11 @@ struct GroundLook {
   Output output = Output::kColour;
   PixelFormat format = PixelFormat::kGrey8;  ///< of the textures; ignored for depth
   bool wait_for_tiles = true;
-  /// Of kColour: the air between the camera and the ground, its light in the format's own terms.
+  /// For kColour: the air between the camera and the ground, with its light in the format's
+  /// encoding.
   double extinction_per_m = 0.0;
   std::array<float, 3> airlight{};
-  /// Of kColour: added to the level of detail at the image's corners, between them bilinear.
+  /// For kColour: added to the level of detail at the image's corners, bilinear in between.
   std::array<float, 4> lod_bias{};
 };
 
@@ -48,7 +49,7 @@ class GroundPass {
   static Result<GroundPass> create();
 
   /// Draws into the bound target, which is cleared except for colour.
-  /// Errors: kIo when a tile cannot be read.
+  /// Errors: kIo if a tile cannot be read.
   Status draw(const GroundMesh& mesh,
               const PinholeCamera& camera,
               TileTextures& textures,

@@ -1,4 +1,4 @@
-// Images on their way from the GPU, several at a time.
+// Images being copied from the GPU, several at a time.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +11,8 @@
 
 namespace overfly::renderer::egl {
 
-/// Pixel buffers used in turn. OpenGL copies into them while the next image is drawn, so that
-/// nobody waits for a copy but whoever takes the oldest image.
+/// A ring of pixel buffers. OpenGL copies into them while the next image is drawn; only taking the
+/// oldest image waits for its copy.
 class PixelRing {
  public:
   explicit PixelRing(std::size_t images) : slots_(images) {}
@@ -22,10 +22,10 @@ class PixelRing {
 
   [[nodiscard]] bool full() const { return used_ == slots_.size(); }
   [[nodiscard]] bool empty() const { return used_ == 0; }
-  /// Starts to copy what was drawn. @pre not full; an 8-bit target without multisampling
+  /// Starts to copy the drawn image. @pre not full; an 8-bit target without multisampling
   void push(const RenderTarget& target);
   /// Waits for the oldest copy and takes it. @pre not empty
-  /// Errors: kInternal when OpenGL does not give the buffer.
+  /// Errors: kInternal if OpenGL cannot map the buffer.
   Status pop(Image& image);
 
  private:

@@ -1,4 +1,4 @@
-// An off-screen image to draw into and read back.
+// An off-screen image for drawing and reading back.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@ namespace overfly::renderer::egl {
 
 enum class TargetFormat { kGrey8, kRgba8, kGreyFloat, kRgbaFloat, kDepthM };
 
-/// Drops the alpha of so many pixels.
+/// Removes the alpha channel of `pixels` pixels.
 template <typename T>
 void rgb_from_rgba(const T* rgba, T* rgb, std::size_t pixels) {
   for (std::size_t i = 0; i < pixels; ++i) {
@@ -21,8 +21,8 @@ void rgb_from_rgba(const T* rgba, T* rgb, std::size_t pixels) {
   }
 }
 
-/// A colour buffer with a depth buffer. Image row 0 is the window's row 0: what is drawn must
-/// have y pointing down, and rows are read in image order.
+/// A colour buffer with a depth buffer. Image row 0 is the window's row 0: y must point down in the
+/// drawing, and rows are read in image order.
 class RenderTarget {
  public:
   /// @param samples  0 or 1: no multisampling; more: resolved when read
@@ -41,7 +41,7 @@ class RenderTarget {
 
   /// Starts to copy an 8-bit target into the bound pixel buffer, as red or RGBA.
   void read_to_buffer() const;
-  /// Reads what was drawn: grey from kGrey8, RGB from kRgba8.
+  /// Reads the drawn image: grey from kGrey8, RGB from kRgba8.
   void read(Image& image) const;
   /// Reads a float target: one channel from kDepthM and kGreyFloat, RGB from kRgbaFloat.
   void read(ImageBuffer<float>& values) const;

@@ -1,4 +1,4 @@
-// Draws a scene view: sky, hazy ground, and what is in the air above it.
+// Draws a scene view: sky, hazy ground, and the objects above it.
 #pragma once
 
 #include <optional>
@@ -16,7 +16,7 @@ class ScenePass {
  public:
   static Result<ScenePass> create();
 
-  /// Errors: kIo when a tile cannot be read; kUnsupported when there is no such framebuffer.
+  /// Errors: kIo if a tile cannot be read; kUnsupported if there is no such framebuffer.
   Result<Image> draw(const SceneContent& content,
                      const View& view,
                      const terrain::TileSource& tiles,

@@ -1,4 +1,4 @@
-// Off-screen images by size and format, kept for the next time.
+// A pool of off-screen images by size and format.
 #pragma once
 
 #include <list>
@@ -9,7 +9,7 @@ namespace overfly::renderer::egl {
 
 class TargetPool {
  public:
-  /// Good until the next call. Errors: as RenderTarget::create.
+  /// Valid until the next call. Errors: as RenderTarget::create.
   Result<RenderTarget*> get(int width_px, int height_px, TargetFormat format);
 
  private:

@@ -1,4 +1,4 @@
-// Images to textures.
+// Uploads images as textures.
 #pragma once
 
 #include <vector>
@@ -11,7 +11,7 @@ namespace overfly::renderer::egl {
 
 /// A texture of an image (grey or RGBA) and its mip levels, trilinear, clamped at the edges.
 [[nodiscard]] GlTexture upload_texture(const std::vector<Image>& levels);
-/// The same of a tile, in its 8 or 16 bits.
+/// As above for a tile, with 8 or 16 bits.
 [[nodiscard]] GlTexture upload_texture(const TilePixels& pixels);
 
 }  // namespace overfly::renderer::egl

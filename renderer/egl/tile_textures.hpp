@@ -1,4 +1,4 @@
-// Tiles on the GPU.
+// Tiles as textures on the GPU.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 
 namespace overfly::renderer::egl {
 
-/// A texture to draw a tile from.
+/// A texture that shows a tile.
 struct DrawnTile {
   GLuint texture = 0;
   /// Texture coordinates in it: scale * (u, v) + offset; (1, 0, 0) unless the tile was late.
@@ -24,22 +24,22 @@ struct DrawnTile {
   std::array<float, 2> offset{};
 };
 
-/// Uploads tiles of a store as textures and keeps those used last within a budget. Tiles of the
-/// view being drawn stay, even if they alone exceed it.
+/// Uploads tiles of a store as textures and keeps the most recently used ones within a budget.
+/// Tiles of the view being drawn are kept, even if they alone exceed it.
 class TileTextures {
  public:
   TileTextures(std::shared_ptr<TileStore> store, std::size_t budget_bytes);
 
-  /// The texture of a tile. Good until end_view().
-  /// @param wait  true: reads the tile if need be; false: takes the nearest coarser tile there is
-  /// Errors: kIo when a tile cannot be read.
+  /// The texture of a tile. Valid until end_view().
+  /// @param wait  true: reads the tile if needed; false: uses the nearest available coarser tile
+  /// Errors: kIo if a tile cannot be read.
   Result<DrawnTile> texture(const terrain::TileId& id, PixelFormat format, bool wait);
   /// A texture of the void's colour.
   GLuint void_texture(PixelFormat format);
-  /// True where the tile has imagery. @pre its texture was asked for in this view
+  /// True if the tile has imagery there. @pre its texture was requested in this view
   [[nodiscard]] bool has_imagery(const terrain::TileId& id, PixelFormat format, double u, double v);
-  /// Lets the textures used longest ago go until the budget holds.
-  /// @return how many tiles of the view were late
+  /// Evicts the least recently used textures until the budget is met.
+  /// @return number of late tiles of the view
   int end_view();
 
   [[nodiscard]] std::size_t held_bytes() const { return held_bytes_; }

@@ -1,4 +1,4 @@
-// The corners of a mesh of squares of many sizes, found by their place.
+// The corners of a mesh of squares of different sizes, indexed by place.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,16 +9,16 @@
 
 namespace overfly::renderer {
 
-/// A set of lattice points with their ground points. Where a small square meets a large one, the
-/// large one finds here the corners that lie on its side and takes them over, and where patches
-/// of different levels know different heights of a corner, all take the finest patch's: so that
-/// the mesh has neither gaps nor T-junctions.
+/// A set of lattice points with their ground points, which avoids gaps and T-junctions in the mesh.
+/// Where a small square meets a large one, the large one finds and uses the corners on its side.
+/// Where patches of different levels have different heights for a corner, all use that of the
+/// finest patch.
 class GroundCorners {
  public:
   GroundCorners();
 
   /// @param point  must outlive the set
-  /// @param level  of the patch that knows it; the lowest wins, equal ones know the same
+  /// @param level  of the patch that provides the point; the lowest level wins, equal levels agree
   void add(const LatticePoint& at, const Eigen::Vector3d& point, int level);
   /// The corner at a place, or null.
   [[nodiscard]] const Eigen::Vector3d* find(const LatticePoint& at) const;
@@ -26,7 +26,7 @@ class GroundCorners {
  private:
   struct Slot {
     LatticePoint at{};
-    const Eigen::Vector3d* point = nullptr;  // null: free
+    const Eigen::Vector3d* point = nullptr;  // null = free slot
     int level = 0;
   };
   [[nodiscard]] std::size_t slot_of(const LatticePoint& at) const;

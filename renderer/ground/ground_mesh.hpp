@@ -13,7 +13,7 @@ struct GroundVertex {
   float u = 0.0F, v = 0.0F;            ///< texture coordinates in the tile with its border
 };
 
-/// Triangles that take their texels from one tile, or show ground without imagery.
+/// Triangles with texels of one tile, or ground without imagery.
 struct GroundBatch {
   bool textured = false;
   terrain::TileId texture;
@@ -23,15 +23,16 @@ struct GroundBatch {
 
 struct GroundMesh {
   std::vector<GroundVertex> vertices;
-  std::vector<std::uint32_t> indices;  ///< three a triangle
+  std::vector<std::uint32_t> indices;  ///< three per triangle
   std::vector<GroundBatch> batches;
-  /// False when no triangle in the image is seen from behind. A ray that meets the ground twice
-  /// leaves it from behind in between, so then nothing hides anything and no depth test is needed.
+  /// False if no triangle in the image faces away. A ray that meets the ground twice leaves it
+  /// through a back face in between; without back faces nothing is hidden and no depth test is
+  /// needed.
   bool needs_depth_test = false;
 };
 
-/// Builds the mesh of a view. Triangles outside the image or seen from behind (from below the
-/// ground) are left out.
+/// Builds the mesh of a view. Triangles outside the image or facing away (seen from below the
+/// ground) are omitted.
 [[nodiscard]] GroundMesh build_ground_mesh(GroundPatches& patches,
                                            const View& view,
                                            const MeshLimits& limits);

@@ -1,7 +1,7 @@
-// Squares of ground, sampled in the world frame: the pieces of which the mesh is made.
+// Square patches of ground, sampled in the world frame, of which the mesh is composed.
 //
-// Patches use the addressing of terrain tiles and may also be finer than level 0: a patch of
-// level L spans kTileTexels * texel_m * 2^L map units, L in [kFinestPatchLevel, ...].
+// Patches use the addressing of terrain tiles and may also be finer than level 0: a patch of level
+// L spans kTileTexels * texel_m * 2^L map units, L in [kFinestPatchLevel, ...].
 #pragma once
 
 #include <Eigen/Core>
@@ -20,22 +20,22 @@ namespace overfly::renderer {
 
 inline constexpr int kFinestPatchLevel = -6;
 inline constexpr int kLog2PatchCells = 5;
-inline constexpr int kPatchCells = 1 << kLog2PatchCells;  ///< cells along a side, at the finest
+inline constexpr int kPatchCells = 1 << kLog2PatchCells;  ///< maximum number of cells per side
 inline constexpr int kOutlineCells = 4;                   ///< cells of the coarse outline
 
-/// Written once, by whoever asks first; then read by all threads.
+/// Written once, by the first thread that needs it; then read by all threads.
 struct GroundPatch {
   terrain::TileId id;
   double size_map_m = 0.0;
   /// (kOutlineCells + 1)^2 points of the ground, world frame; rows from north to south.
   std::array<Eigen::Vector3d, 25> outline;
-  Eigen::AlignedBox3d bounds;  ///< holds the ground of the patch, world frame
+  Eigen::AlignedBox3d bounds;  ///< contains the ground of the patch, world frame
   terrain::TileCoverage coverage = terrain::TileCoverage::kNone;
 
   /// (kPatchCells + 1)^2 points of the ground; empty until sampled.
   std::vector<Eigen::Vector3d> points;
   /// Largest distance between the ground in a square of 2^t cells and the square's two triangles
-  /// [m], by t and the square's place. The ground is known there at points half a cell apart.
+  /// [m], by t and the square's place. The ground is sampled there at points half a cell apart.
   std::array<std::vector<float>, kLog2PatchCells + 1> square_error_m;
 
   std::once_flag outlined, sampled;
@@ -43,20 +43,20 @@ struct GroundPatch {
   [[nodiscard]] const Eigen::Vector3d& point(int column, int row) const {
     return points[static_cast<std::size_t>(row) * (kPatchCells + 1) + column];
   }
-  /// @param t  log2 of the square's cells a side
+  /// @param t  log2 of the square's cells per side
   [[nodiscard]] float square_error(int t, int column, int row) const {
     return square_error_m[t][static_cast<std::size_t>(row) * (kPatchCells >> t) + column];
   }
 };
 
-/// A ground point by its place in the lattice of the finest patches' cells, counted from the
-/// grid's corner to the east and to the south.
+/// A ground point by its place in the cell lattice of the finest patches, relative to the grid's
+/// corner, to the east and to the south.
 using LatticePoint = std::array<std::int32_t, 2>;
 [[nodiscard]] LatticePoint lattice_point(const terrain::TileId& id, int column, int row);
 
-/// Patches that several threads draw from, those used last, within a budget. A patch depends on
-/// its address alone: elevation is averaged to half a cell of its lattice, so that far ground
-/// costs little memory and near ground is as fine as the elevation is.
+/// A cache of patches shared by several threads, within a budget. A patch depends only on its
+/// address: elevation is averaged to half a cell of its lattice, so that distant ground needs
+/// little memory and near ground has the full resolution of the elevation.
 class GroundPatchStore {
  public:
   explicit GroundPatchStore(std::shared_ptr<const terrain::TileSource> tiles,
@@ -91,21 +91,21 @@ class GroundPatchStore {
   std::size_t held_bytes_ = 0;
 };
 
-/// The patches of one view at a time, of one thread.
+/// The patches of one view at a time, for one thread.
 class GroundPatches {
  public:
   explicit GroundPatches(std::shared_ptr<const terrain::TileSource> tiles);
   explicit GroundPatches(std::shared_ptr<GroundPatchStore> store);
 
-  /// The patch with its outline. References stay good until end_view().
+  /// The patch with its outline. References stay valid until end_view().
   GroundPatch& outline(const terrain::TileId& id);
   void sample(GroundPatch& patch) const { store_->sample(patch); }
   void end_view() { in_use_.clear(); }
 
   [[nodiscard]] const terrain::TileSource& tiles() const { return store_->tiles(); }
-  /// True where the patch, coarser than the coarsest tile, holds some of the imagery.
+  /// True if the patch, coarser than the coarsest tile, contains imagery.
   [[nodiscard]] bool above_imagery(const terrain::TileId& id) const;
-  /// The tile whose texels cover a patch: itself, or its ancestor of level 0.
+  /// The tile that provides a patch's texels: itself, or its ancestor of level 0.
   [[nodiscard]] static terrain::TileId tile_of(const terrain::TileId& id);
 
  private:

@@ -1,5 +1,5 @@
-// Which patches of ground a view shows, how fine each is meshed, and from which tile it takes
-// its texels.
+// Selects the patches of ground that a view shows, their mesh resolution and the tiles that provide
+// their texels.
 #pragma once
 
 #include <array>
@@ -13,12 +13,13 @@ namespace overfly::renderer {
 
 struct MeshLimits {
   double max_edge_px = 64.0;  ///< longest side of a mesh square in the image
-  /// Largest displacement by the mesh's deviation from the ground; the mean is a fifth of it.
+  /// Largest displacement in the image by the mesh's deviation from the ground; the mean is a fifth
+  /// of it.
   double max_error_px = 0.08;
 };
 
-/// A sampled patch that the view shows, and how the image magnifies it at the points of its
-/// outline; 0 at those that belong to no visible part.
+/// A sampled patch that the view shows, and its magnification in the image at the points of its
+/// outline; 0 at points of invisible parts.
 struct GroundLeaf {
   const GroundPatch* patch = nullptr;
   terrain::TileId texture;               ///< tile of level >= 0 that covers the patch
@@ -27,12 +28,12 @@ struct GroundLeaf {
   std::array<float, 25> px_per_map_m{};  ///< image length of a step on the map
 };
 
-/// Called for each patch that the selection divides: its outline holds the points that are new
-/// corners of its parts.
+/// Called for each patch that the selection divides: its outline contains the new corners of its
+/// parts.
 using OnDivided = std::function<void(const GroundPatch&)>;
 
-/// Selects the patches of a view: as coarse as the image allows (the texel of a patch's tile is
-/// nowhere larger than a pixel's footprint, except at level 0), to the horizon.
+/// Selects the patches of a view as coarse as the image allows (a texel of the patch's tile is
+/// nowhere larger than a pixel's footprint, except at level 0), up to the horizon.
 /// Method: quadtree over the tile grid; a pure function of the view.
 /// Cost: O(visited patches); new ones are sampled from the tile source.
 [[nodiscard]] std::vector<GroundLeaf> select_ground(GroundPatches& patches,

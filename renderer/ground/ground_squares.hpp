@@ -1,4 +1,4 @@
-// Divides the patches of a view into the squares that the mesh consists of.
+// Divides the patches of a view into the squares of the mesh.
 #pragma once
 
 #include <cstdint>
@@ -16,13 +16,13 @@ struct GroundSquare {
   std::uint8_t row = 0;
 };
 
-/// The squares of one patch: as large as the limits allow at their place.
-/// @param corners  gets every point that a division makes a corner
+/// The squares of one patch, as large as the limits allow at their place.
+/// @param corners  gets every point that becomes a corner by a division
 [[nodiscard]] std::vector<GroundSquare> divide_into_squares(const GroundLeaf& leaf,
                                                             const MeshLimits& limits,
                                                             GroundCorners& corners);
 
-/// Adds the points that dividing a patch into four makes corners.
+/// Adds the corners created by dividing a patch into four.
 void add_division(const GroundPatch& patch, GroundCorners& corners);
 
 }  // namespace overfly::renderer

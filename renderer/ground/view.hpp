@@ -1,4 +1,4 @@
-// A pinhole view placed in the world: what culling, meshing and drawing share.
+// A pinhole view placed in the world, shared by culling, meshing and drawing.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,14 +16,14 @@ struct View {
 
   static View from(const PinholeCamera& camera, const Pose& T_world_camera);
 
-  /// p_camera of a world point. The camera is subtracted in double precision, so that what is
-  /// left can be stored in floats however far the origin is.
+  /// p_camera of a world point. The camera is subtracted in double precision, so that the result
+  /// fits floats at any distance from the origin.
   [[nodiscard]] Eigen::Vector3d camera_from_world(const Eigen::Vector3d& p_world) const {
     return R_camera_world * (p_world - position_world);
   }
 
-  /// Bits of the sides (left, right, top, bottom, behind) that a camera-frame point is beyond.
-  /// Points that share a bit lie outside the image together with all between them.
+  /// Bits of the sides (left, right, top, bottom, behind) beyond which a camera-frame point lies.
+  /// Points that share a bit lie outside the image together with all points between them.
   [[nodiscard]] unsigned outcode(const Eigen::Vector3d& p_camera) const;
 
   /// Inward normals of the four side planes through the optical centre, world frame.

@@ -1,4 +1,4 @@
-// What this process has used so far.
+// Resources used by this process so far.
 #pragma once
 
 #include <vector>
@@ -9,10 +9,10 @@ namespace overfly::renderer {
 [[nodiscard]] double process_cpu_ms();
 /// CPU time of the calling thread [ms].
 [[nodiscard]] double thread_cpu_ms();
-/// Resident memory [MB]; 0 where /proc cannot be read.
+/// Resident memory [MB]; 0 if /proc cannot be read.
 [[nodiscard]] double resident_mb();
 
-/// The smallest value that at least `share` of the values do not exceed; 0 of none.
+/// The smallest value that at least `share` of the values do not exceed; 0 if there are none.
 /// @param share  in (0, 1]
 [[nodiscard]] double quantile(std::vector<double> values, double share);
 

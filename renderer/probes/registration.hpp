@@ -1,4 +1,4 @@
-// How far two images of the same place lie apart: the measure of the camera's self-test.
+// Registers two images of the same place; the measure of the camera's self-test.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,10 +8,10 @@
 
 namespace overfly::renderer {
 
-/// An image taken along motions to another one.
+/// An image warped to another one.
 struct WarpedImage {
   Image image;  ///< grey
-  Image valid;  ///< 255 where the motion led into the source, else 0
+  Image valid;  ///< 255 if the motion leads into the source, else 0
 };
 
 /// The source as seen from another image: result(pixel) = source(pixel + motion(pixel)).
@@ -25,10 +25,10 @@ struct RegistrationOptions {
   int spacing_px = 24;        ///< between the patches' centres
   int half_patch_px = 10;     ///< a patch is 2 * half + 1 pixels wide
   double min_texture = 1.0;   ///< smaller eigenvalue of the mean gradient product [(grey / px)^2]
-  double max_shift_px = 5.0;  ///< a patch that moves farther counts as lost, with this shift
+  double max_shift_px = 5.0;  ///< a patch that moves farther is lost and keeps this shift
 };
 
-/// What registering two images patch by patch gave.
+/// Result of registering two images patch by patch.
 struct Registration {
   int patches = 0;  ///< with enough texture, all valid
   int lost = 0;     ///< of those: not found within max_shift_px
@@ -39,12 +39,12 @@ struct Registration {
   double p95_grey = 0.0;
 };
 
-/// Finds each patch of `seen` in `predicted`.
+/// Locates each patch of `seen` in `predicted`.
 ///
-/// Method: translation by least squares on the image's gradient (Lucas and Kanade 1981), the
+/// Method: translation by least squares on the image's gradient (Lucas and Kanade 1981), with the
 /// gradient of the template (Baker and Matthews 2004, IJCV 56(3), section 3.2), iterated to 1e-4
 /// px.
-/// @param valid  255 where `predicted` means something; of the images' size
+/// @param valid  255 where `predicted` is valid; of the images' size
 [[nodiscard]] Registration register_images(const Image& predicted,
                                            const Image& seen,
                                            const Image& valid,

@@ -1,4 +1,4 @@
-// Draws frames: casts their rays, finds their tiles, paints them.
+// Draws frames: casts rays, finds tiles, paints pixels.
 #pragma once
 
 #include <list>
@@ -19,14 +19,14 @@ class FrameCaster {
  public:
   FrameCaster(std::shared_ptr<const terrain::TileSource> tiles, const RaycastOptions& options);
 
-  /// Errors: kIo when a tile cannot be read.
+  /// Errors: kIo if a tile cannot be read.
   [[nodiscard]] Result<CameraFrame> draw(const CameraRequest& request);
   [[nodiscard]] DepthImage depth(const CameraRequest& request);
   [[nodiscard]] int threads() const { return pool_.threads(); }
   [[nodiscard]] SampleKernel kernel() const { return kernel_; }
 
  private:
-  /// What one frame's drawing shares.
+  /// Data shared by the steps of drawing one frame.
   struct Frame {
     const CameraRequest& request;
     const RayGrid& rays;
@@ -36,7 +36,7 @@ class FrameCaster {
   };
   const RayGrid& rays_of(const CameraModel& camera);
   Frame begin(const CameraRequest& request);
-  /// Blocks of one instant of the exposure, in bands_.
+  /// Computes the blocks of one instant of the exposure, into bands_.
   void cast(const Frame& frame, const ShutterPoses& poses, bool depth_only);
   /// Finds the tiles that the bands need. Errors: kIo.
   Status find_tiles(Frame& frame);
@@ -50,10 +50,10 @@ class FrameCaster {
   SampleKernel kernel_;
   HeightField field_;
   TexelTiles texels_;
-  std::list<RayGrid> rays_;                         // of the cameras drawn last, the last first
+  std::list<RayGrid> rays_;                         // of recently drawn cameras, most recent first
   std::vector<NodeRow> nodes_;                      // by row of nodes
   std::vector<Band> bands_;                         // by row of cells
-  std::vector<std::vector<FoundTile>> band_tiles_;  // what stands for each band's tiles
+  std::vector<std::vector<FoundTile>> band_tiles_;  // the tiles found for each band
 };
 
 }  // namespace overfly::renderer::raycast

@@ -1,4 +1,4 @@
-// What a frame's record says about the imagery under it, from rays of its own.
+// Measures a frame's imagery statistics with separate rays.
 #pragma once
 
 #include <functional>
@@ -10,11 +10,13 @@
 
 namespace overfly::renderer::raycast {
 
-/// True where there is imagery; called by several threads at once. @param u, v  texels of level 0;
-/// @param lod  at which it is drawn
+/// True if there is imagery; called by several threads at once.
+/// @param u,  v  texels of level 0
+/// @param lod  level of detail at which it is drawn
 using ImageryAt = std::function<bool(double u, double v, double lod)>;
 
-/// Measures on the same 40 x 30 rays as measure_frame() does; the axis depth by casting it.
+/// Measures on the same 40 x 30 rays as measure_frame(); determines the axis depth by casting a
+/// ray.
 /// @param poses  of the rows at mid exposure
 [[nodiscard]] FrameStatistics measure_rays(const CameraModel& camera,
                                            const ShutterPoses& poses,

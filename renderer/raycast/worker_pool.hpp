@@ -1,4 +1,4 @@
-// A few threads that share out the parts of one image.
+// A few threads that share the work on one image.
 #pragma once
 
 #include <functional>
@@ -6,8 +6,8 @@
 
 namespace overfly::renderer::raycast {
 
-/// Threads that wait between images. The caller's thread works too, so that a pool of one has none
-/// of its own.
+/// Threads that wait between images. The caller's thread works too, so a pool of one starts no
+/// threads.
 class WorkerPool {
  public:
   /// @param threads  that work at once, >= 1
@@ -17,7 +17,7 @@ class WorkerPool {
   WorkerPool& operator=(const WorkerPool&) = delete;
 
   /// Calls job(i) once for every i in [0, jobs), in any order and on any of the threads; returns
-  /// when all are done. @param job  does not throw
+  /// when all are done. @param job  must not throw
   void run(int jobs, const std::function<void(int)>& job);
   [[nodiscard]] int threads() const;
 

@@ -1,4 +1,4 @@
-// A small fixed-wing aircraft, and where its camera looks.
+// Meshes of a small fixed-wing aircraft and of its camera's field of view.
 #pragma once
 
 #include "core/height_query.hpp"
@@ -7,8 +7,9 @@
 
 namespace overfly::renderer {
 
-/// Draws a high-wing aircraft with its nose along +x, lit, the wings and tail in its colour.
-/// @param min_span_px  enlarged to at least this wing span in the image, so that it is not lost
+/// Draws a lit high-wing aircraft with its nose along +x, wings and tail in its colour.
+/// @param min_span_px  minimum wing span in the image; a smaller aircraft is enlarged to stay
+///                     visible
 void add_aircraft(const SceneContent::Aircraft& aircraft,
                   double min_span_px,
                   SceneTriangles& triangles);

@@ -7,9 +7,9 @@
 namespace overfly::renderer {
 
 /// Draws a ribbon: a translucent strip between the wing tips with solid darker edges, lit from
-/// above and darker from below, so that its bank can be seen. Where it would be narrower in the
-/// image than `min_width_px`, a line of that width follows its middle. Poses that lie closer
-/// together in the image than can be seen are drawn as one.
+/// above and darker from below, so that its bank is visible. If it would be narrower in the image
+/// than `min_width_px`, a line of that width along its middle is added. Poses that are
+/// indistinguishable in the image are merged.
 void add_ribbon(const Ribbon& ribbon,
                 double min_width_px,
                 SceneTriangles& solid,

@@ -1,4 +1,4 @@
-// What a scene view draws over the ground: coloured triangles in the camera frame.
+// The objects that a scene view draws over the ground: coloured triangles in the camera frame.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,20 +27,20 @@ class SceneTriangles {
  public:
   explicit SceneTriangles(const View& view) : view_(view) {}
 
-  /// Draws the following nearer to the camera by this share of their distance: they keep their
-  /// place in the image and win against the surface they lie on.
+  /// Moves the following triangles closer to the camera by this share of their distance: their
+  /// position in the image is unchanged, and they are drawn over the surface on which they lie.
   void pull_nearer(double share) { scale_ = 1.0 - share; }
 
   void add_triangle(const Eigen::Vector3d& a_camera,
                     const Eigen::Vector3d& b_camera,
                     const Eigen::Vector3d& c_camera,
                     const Rgba& colour);
-  /// A line as wide as asked in the image, whatever its distance.
+  /// A line of constant width in the image, independent of distance.
   void add_line(const Eigen::Vector3d& from_camera,
                 const Eigen::Vector3d& to_camera,
                 double width_px,
                 const Rgba& colour);
-  /// A square mark as large as asked in the image.
+  /// A square mark of constant size in the image.
   void add_mark(const Eigen::Vector3d& p_camera, double size_px, const Rgba& colour);
 
   [[nodiscard]] const View& view() const { return view_; }
@@ -56,7 +56,7 @@ class SceneTriangles {
 };
 
 /// Brightness of a surface in the scene's sunlight, in [0, 1].
-/// @param normal_world  unit vector towards the side that is seen
+/// @param normal_world  unit vector towards the visible side
 [[nodiscard]] float sunlight(const Eigen::Vector3d& normal_world);
 
 }  // namespace overfly::renderer

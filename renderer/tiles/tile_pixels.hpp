@@ -1,4 +1,4 @@
-// Tile texels as a texture wants them.
+// Tile texels in the formats of textures.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace overfly::renderer {
 
-/// Luma of an RGB image (ITU-R BT.601 weights in 1/256; grey stays exactly as it is).
+/// Luma of an RGB image (ITU-R BT.601 weights in 1/256; grey is unchanged).
 [[nodiscard]] Image grey_from_rgb(const Image& rgb);
 
 /// RGB with a fourth channel. @param alpha  one channel, of the same size
@@ -25,8 +25,8 @@ namespace overfly::renderer {
 /// An sRGB image in linear light, with a fourth channel of 0 or 65535.
 [[nodiscard]] Image16 linear_with_alpha(const Image& rgb, const Image& alpha);
 
-/// The image and its halvings (means of 2 x 2 texels, rounded) down to 1 x 1; an odd last column
-/// or row is left out, as OpenGL's level sizes do.
+/// The image and its halvings (means of 2 x 2 texels, rounded) down to 1 x 1; an odd last column or
+/// row is dropped, as in OpenGL's level sizes.
 [[nodiscard]] std::vector<Image> mip_chain(Image level_0);
 [[nodiscard]] std::vector<Image16> mip_chain(Image16 level_0);
 

@@ -1,4 +1,4 @@
-// Tiles as renderers draw them, in memory within a budget, fetched ahead by threads of its own.
+// Tiles in the renderers' formats, in memory within a budget, read ahead by the store's threads.
 #pragma once
 
 #include <cstddef>
@@ -15,15 +15,15 @@
 namespace overfly::renderer {
 
 /// One tile's texels with their border, and their halvings down to 1 x 1 (tile_pixels.hpp).
-/// Immutable: shared between the store and those who draw from it.
+/// Immutable: shared between the store and its users.
 struct TilePixels {
   std::vector<Image> levels;           ///< kGrey8: 1 channel; kRgb8: RGB and validity as alpha
   std::vector<Image16> linear_levels;  ///< kGreyLinear, kRgbLinear likewise; 65535 = 1.0
-  /// Validity, an eighth of the tile's texels a side; empty where all are valid.
+  /// Validity, with an eighth of the tile's texels per side; empty if all are valid.
   Image valid;
 
   [[nodiscard]] std::size_t bytes() const;
-  /// True where there is imagery. @param u, v  in the tile with its border, in [0, 1]
+  /// True if there is imagery. @param u, v  in the tile with its border, in [0, 1]
   [[nodiscard]] bool has_imagery(double u, double v) const;
 };
 
@@ -32,18 +32,18 @@ struct TilePixels {
 
 struct TileStoreOptions {
   std::size_t budget_bytes = std::size_t{512} << 20U;
-  int threads = 1;  ///< that fetch ahead; 0 = none, everything is read when it is asked for
+  int threads = 1;  ///< read-ahead threads; 0 = none, every tile is read on request
 };
 
-/// What the store has done so far.
+/// Statistics of the store.
 struct TileStoreCounts {
   std::int64_t read_on_demand = 0;  ///< tiles that a `get` had to wait for
   std::int64_t read_ahead = 0;      ///< tiles that the store's threads read
-  std::int64_t let_go = 0;          ///< tiles dropped to keep the budget
+  std::int64_t let_go = 0;          ///< tiles evicted to keep the budget
   double ahead_cpu_s = 0.0;         ///< CPU time of the store's threads
 };
 
-/// Thread-safe. Which tiles are in memory never changes a value that `get` returns.
+/// Thread-safe. Which tiles are in memory does not affect the values that `get` returns.
 class TileStore {
  public:
   TileStore(std::shared_ptr<const terrain::TileSource> tiles, const TileStoreOptions& options);
@@ -51,22 +51,22 @@ class TileStore {
   TileStore(const TileStore&) = delete;
   TileStore& operator=(const TileStore&) = delete;
 
-  /// The tile, read now if it is not there. Errors: kIo naming the tile, when it cannot be read.
+  /// The tile, read now if it is not in memory. Errors: kIo naming the tile if it cannot be read.
   [[nodiscard]] Result<std::shared_ptr<const TilePixels>> get(const terrain::TileId& id,
                                                               PixelFormat format);
-  /// The tile if it is there, else null, and the tile is asked for (without threads: read).
+  /// The tile if it is in memory; else null, and the tile is requested (without threads: read).
   [[nodiscard]] std::shared_ptr<const TilePixels> find(const terrain::TileId& id,
                                                        PixelFormat format);
-  /// The tile if it is there, else null.
+  /// The tile if it is in memory, else null.
   [[nodiscard]] std::shared_ptr<const TilePixels> peek(const terrain::TileId& id,
                                                        PixelFormat format);
-  /// Asks for tiles that will be needed, the most urgent first; replaces what was asked before.
-  /// What was used since the last call but one is not dropped to make room for them.
+  /// Requests tiles that will be needed, most urgent first; replaces the previous request. Tiles
+  /// used since the last call but one are not evicted to make room for them.
   void prefetch(std::span<const terrain::TileId> ids, PixelFormat format);
-  /// Waits until the threads have nothing left to do.
+  /// Waits until the threads are idle.
   void wait_until_idle();
 
-  /// Bytes of the tiles kept here; tiles that others still hold and the store let go do not count.
+  /// Bytes of the tiles in the store; evicted tiles that are still in use elsewhere do not count.
   [[nodiscard]] std::size_t held_bytes() const;
   [[nodiscard]] TileStoreCounts counts() const;
   [[nodiscard]] const terrain::TileSource& tiles() const;

@@ -25,7 +25,7 @@ class SideCars {
  private:
   [[nodiscard]] std::vector<std::filesystem::path> of(const std::filesystem::path& file);
 
-  /// File names and their lower-case forms, for the folders listed so far.
+  /// File names by their lower-case form, for the folders listed so far.
   std::map<std::filesystem::path, std::multimap<std::string, std::string>> folders_;
 };
 

@@ -1,4 +1,4 @@
-// Where rays meet the ground.
+// Intersects rays with the ground.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,25 +23,25 @@ struct GroundHit {
   [[nodiscard]] Eigen::Matrix2d texels_per_m() const;
 };
 
-/// Casts rays onto a ground tree. Where a ray is steeper than all ground it meets the ground only
-/// once, and Newton's method finds the place; elsewhere the ray is marched from square to square,
-/// over those whose highest post it passes (maximum mipmaps: Tevs, Ihrke, Seidel, Maximum mipmaps
-/// for fast, accurate, and scalable dynamic height field rendering, I3D 2008), and meets the
-/// bilinear surface of a cell at a root of a quadratic.
+/// Casts rays onto a ground tree. A ray steeper than all ground meets it only once, and Newton's
+/// method finds the point. Other rays are marched from square to square, skipping squares whose
+/// highest post they pass (maximum mipmaps: Tevs, Ihrke, Seidel, Maximum mipmaps for fast,
+/// accurate, and scalable dynamic height field rendering, I3D 2008), and meet the bilinear surface
+/// of a cell at a root of a quadratic.
 class GroundCaster {
  public:
   explicit GroundCaster(const GroundTree& tree) : tree_(tree) {}
 
-  /// The first ground along a ray.
+  /// The first intersection of a ray with the ground.
   /// @param direction  any length
-  /// @param guess      a depth near the answer, or 0
-  /// @param near       a leaf near the answer, or null: makes the search shorter
+  /// @param guess  a depth near the answer, or 0
+  /// @param near  a leaf near the answer, or null; shortens the search
   [[nodiscard]] GroundHit cast(const Eigen::Vector3d& origin,
                                const Eigen::Vector3d& direction,
                                double guess,
                                const GroundNode* near = nullptr) const;
 
-  /// True for a direction steeper than all ground: nothing can stand before what it meets.
+  /// True for a direction steeper than all ground, for which nothing can hide the intersection.
   [[nodiscard]] bool meets_ground_once(const Eigen::Vector3d& direction) const {
     const double slope = tree_.steepest;
     return direction.z() < 0.0 &&
@@ -62,8 +62,8 @@ class GroundCaster {
   const GroundTree& tree_;
 };
 
-/// Vertical distance between the ground in a square of about `size_m` around a hit and a bilinear
-/// surface over it, at most [m].
+/// Maximum vertical distance between the ground in a square of about `size_m` around a hit and a
+/// bilinear surface over it [m].
 [[nodiscard]] double relief_around(const GroundTree& tree, const GroundHit& hit, double size_m);
 
 }  // namespace overfly::renderer::raycast

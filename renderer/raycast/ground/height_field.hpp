@@ -13,31 +13,32 @@
 
 namespace overfly::renderer::raycast {
 
-/// Displacement in the image by what the height tiles leave out [px].
+/// Limit of the displacement in the image by the approximation of the ground by height tiles [px].
 inline constexpr double kSurfaceErrorPx = 0.05;
-/// Cells of the height tiles are at most this large in the image, so that a hill on a plain cannot
-/// hide between their posts.
+/// Maximum size of the height tiles' cells in the image, so that a hill on a plain cannot be missed
+/// between their posts.
 inline constexpr double kMaxCellPx = 16.0;
-/// And they need not be smaller than this.
+/// Minimum useful size of a cell.
 inline constexpr double kMinCellPx = 1.0;
 
-/// All places and directions of a view's rays, roughly.
+/// Approximate bounds of all origins and directions of a view's rays.
 struct ViewSweep {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< world frame [m]
-  double slack_m = 0.0;  ///< the rays begin within this of the position
-  /// Inward normals of planes through the position that hold all rays (unit length); zero for none.
+  double slack_m = 0.0;  ///< the rays begin within this distance of the position
+  /// Inward normals of planes through the position that contain all rays (unit length); zero if
+  /// there are none.
   std::array<Eigen::Vector3d, 4> side_normals{};
-  /// Along the edges between the planes; empty lengths where there are none.
+  /// Along the edges between the planes; zero length if there are none.
   std::array<Eigen::Vector3d, 4> corners{};
-  bool bounded = false;     ///< corners are known
-  double px_per_rad = 1.0;  ///< at the image's sharpest place
+  bool bounded = false;     ///< whether corners are known
+  double px_per_rad = 1.0;  ///< at the sharpest place of the image
 };
 
-/// A node of the quadtree over the ground that the view shows.
+/// A node of the quadtree over the visible ground.
 struct GroundNode {
   const HeightTile* tile = nullptr;
   double east_m = 0.0, north_m = 0.0, side_m = 0.0;
-  double highest_m = -1e9;  ///< up coordinate of what is drawn below this node
+  double highest_m = -1e9;  ///< up coordinate of the highest ground drawn below this node
   std::int32_t parent = -1;
   /// By (north half) * 2 + (east half); -1 = out of view; all -1 and `leaf` = draw the tile itself.
   std::array<std::int32_t, 4> children{-1, -1, -1, -1};
@@ -60,16 +61,16 @@ struct GroundTree {
 
 inline constexpr std::size_t kMaxHeightTiles = 3000;  ///< some 75 MB
 
-/// Samples height tiles and keeps those used last. What it keeps changes no value.
+/// Samples height tiles and caches the most recently used ones. The cache does not affect values.
 class HeightField {
  public:
-  /// @param max_tiles  kept; those of the view selected last are kept in any case
+  /// @param max_tiles  in the cache; those of the view selected last are always kept
   explicit HeightField(std::shared_ptr<const terrain::TileSource> tiles,
                        std::size_t max_tiles = kMaxHeightTiles);
 
-  /// The ground of a view. Good until the next call.
+  /// The ground of a view. Valid until the next call.
   [[nodiscard]] const GroundTree& select(const ViewSweep& view);
-  /// Samples one of the tiles that a later view will need and that is not there yet.
+  /// Samples one of the missing tiles that a later view will need.
   void prepare(const ViewSweep& later);
   [[nodiscard]] const TexelMap& map() const { return map_; }
   [[nodiscard]] std::size_t held_tiles() const { return kept_.size(); }
@@ -84,12 +85,12 @@ class HeightField {
   std::int32_t visit(const HeightTileId& id, std::int32_t parent, const ViewSweep& view);
   /// The south-western of the 3 x 3 squares around a view.
   [[nodiscard]] HeightTileId first_root(const ViewSweep& view) const;
-  /// True once a tile was sampled.
+  /// True if a tile was sampled.
   bool prepare_below(const HeightTileId& id, const ViewSweep& later);
   [[nodiscard]] bool outside(const HeightTile& tile, const ViewSweep& view) const;
   [[nodiscard]] bool fine_enough(const HeightTile& tile, const ViewSweep& view) const;
   [[nodiscard]] double reach_m(const ViewSweep& view) const;
-  /// Drops what was used longest ago, tile by tile, so that no frame pays for many.
+  /// Evicts the least recently used tiles one at a time, to spread the cost over frames.
   void forget_old();
 
   std::shared_ptr<const terrain::TileSource> tiles_;

@@ -52,14 +52,14 @@ struct HeightTile {
   double east_m = 0.0, north_m = 0.0;  ///< south-west corner
   double spacing_m = 0.0;
   double per_m = 0.0;                  ///< cells per metre
-  double up_m = 0.0;                   ///< what `height_m` counts from
-  Eigen::Vector2d texel = {0.0, 0.0};  ///< what `texels` count from
+  double up_m = 0.0;                   ///< reference of `height_m`
+  Eigen::Vector2d texel = {0.0, 0.0};  ///< reference of `texels`
   std::array<float, kTilePosts * kTilePosts> height_m{};
   std::vector<Eigen::Vector2f> texels;  ///< by post, as height_m
   /// Highest post of each square of 2^k cells a side, above up_m.
   std::array<std::vector<float>, kLog2TileCells + 1> highest_m;
   /// Largest vertical distance between the posts in a square of 2^k cells and the bilinear surface
-  /// through its corners; for k = 0 what may lie between the posts.
+  /// through its corners; for k = 0 a bound for the ground between the posts.
   std::array<std::vector<float>, kLog2TileCells + 1> deviation_m;
   float hidden_m = 0.0F;  ///< the largest of deviation_m[0]
   float lowest_m = 0.0F;

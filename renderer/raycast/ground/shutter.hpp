@@ -1,4 +1,4 @@
-// Where the camera is while each row of an image is exposed.
+// The camera's pose while each row of an image is exposed.
 #pragma once
 
 #include <Eigen/Core>
@@ -26,7 +26,7 @@ class ShutterPoses {
   [[nodiscard]] const RowPose& at(double row) const {
     return poses_.size() == 1 ? poses_.front() : poses_[static_cast<std::size_t>(2.0 * row + 1.0)];
   }
-  /// Of every row, or the one of all.
+  /// One per row, or one for all rows.
   [[nodiscard]] const std::vector<RowPose>& all() const { return poses_; }
 
  private:

@@ -1,4 +1,4 @@
-// What a view sweeps over while it is exposed.
+// Bounds of a view during its exposure.
 #pragma once
 
 #include "renderer/raycast/ground/height_field.hpp"

@@ -1,5 +1,5 @@
-// What the rays of an image hit, as blocks of pixels over which the ground's place on the map is a
-// fraction of two bilinear functions of the pixel: exact where the ground is a plane.
+// The hits of an image's rays as blocks of pixels. In a block the ground's place on the map is a
+// fraction of two bilinear functions of the pixel, which is exact if the ground is a plane.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace overfly::renderer::raycast {
 
-/// c[0] + c[1] x + c[2] y + c[3] x y, pixels counted from the block's first pixel.
+/// c[0] + c[1] x + c[2] y + c[3] x y, with pixels relative to the block's first pixel.
 using Bilinear4 = std::array<float, 4>;
 
 struct Block {
@@ -20,20 +20,20 @@ struct Block {
   std::uint16_t x = 0, y = 0;  ///< first pixel
   std::uint8_t columns = 0, rows = 0;
   Kind kind = Kind::kSky;
-  bool quarter = false;     ///< one of four in a row that are a single pixel's parts
-  std::int32_t tile = -1;   ///< in the band's list
-  double u = 0.0, v = 0.0;  ///< place on the map the numerators count from, texels of level 0
+  bool quarter = false;     ///< one of four successive blocks that form a single pixel
+  std::int32_t tile = -1;   ///< index in the band's list
+  double u = 0.0, v = 0.0;  ///< map origin of the numerators, texels of level 0
   Bilinear4 numerator_u{}, numerator_v{};  ///< (u - u_0) * inverse depth [texels / m]
   Bilinear4 inverse_depth{};               ///< [1 / m]
-  /// log2 of the texels of level 0 from sample to sample (OpenGL 4.5, section 8.14.1).
+  /// log2 of the texels of level 0 between samples (OpenGL 4.5, section 8.14.1).
   Bilinear4 lod{};
   Bilinear4 clear{};  ///< transmission of the air, 1 in a vacuum
 };
 
-/// What one thread writes while another writes the next: each on its own line of the cache.
+/// Data of different threads is placed on different cache lines.
 inline constexpr std::size_t kCacheLineBytes = 64;
 
-/// The blocks of one row of cells, from left to right, and the tiles that they need.
+/// The blocks of one row of cells, from left to right, and their tiles.
 struct alignas(kCacheLineBytes) Band {
   std::vector<Block> blocks;
   std::vector<terrain::TileId> tiles;

@@ -1,4 +1,4 @@
-// Colours that no tile holds, in the units of a pixel format.
+// Colours that do not come from tiles, in the units of a pixel format.
 #pragma once
 
 #include <array>
@@ -7,10 +7,10 @@
 
 namespace overfly::renderer::raycast {
 
-/// One value a channel: digital numbers of the 8-bit formats, radiance of the linear ones.
+/// One value per channel: digital numbers for the 8-bit formats, radiance for the linear ones.
 using Colour = std::array<float, 3>;
 
-/// What is painted where there are no texels, and the air before them.
+/// Colours of ground without texels and of the air.
 struct SceneColours {
   Colour sky{}, nothing{}, air{};
   static SceneColours of(const CameraRequest& request);

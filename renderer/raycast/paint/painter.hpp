@@ -11,20 +11,20 @@
 
 namespace overfly::renderer::raycast {
 
-/// Where a frame's values go: bytes at once, or floats to which they are added.
+/// Output of a frame: bytes, or floats to which values are added.
 struct Canvas {
   int width_px = 0;
   int channels = 1;
   std::uint8_t* bytes = nullptr;  ///< digital numbers, rounded
-  float* sums = nullptr;          ///< where `bytes` is null
-  float weight = 1.0F;            ///< of what is added
+  float* sums = nullptr;          ///< used if `bytes` is null
+  float weight = 1.0F;            ///< of the added values
 };
 
 class Painter {
  public:
   Painter(const CameraRequest& request, SampleKernel kernel);
 
-  /// Paints a row of cells. @param tiles  what stands for each of the band's tiles
+  /// Paints a row of cells. @param tiles  the tiles found for the band
   void paint(const Band& band, const std::vector<FoundTile>& tiles, const Canvas& canvas) const;
 
  private:

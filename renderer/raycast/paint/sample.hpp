@@ -10,7 +10,7 @@ namespace overfly::renderer::raycast {
 
 /// The nearest integer, half up. @param value  >= 0
 inline std::int32_t rounded(float value) {
-  // NOLINTNEXTLINE(bugprone-incorrect-roundings): right from 0 up, and as the vector units do it
+  // NOLINTNEXTLINE(bugprone-incorrect-roundings): correct from 0 up; same as vector code
   return static_cast<std::int32_t>(value + 0.5F);
 }
 
@@ -19,7 +19,7 @@ inline constexpr int kBlockSide = 16;
 inline constexpr int kBlockPixels = kBlockSide * kBlockSide;
 
 /// A block's place in a tile: u = u0 + numerator_u / inverse_depth, in texels of the tile's own
-/// level from its border's corner.
+/// level relative to its border's corner.
 struct TexelBlock {
   int columns = 0, rows = 0;  ///< at most kBlockSide
   float u0 = 0.0F, v0 = 0.0F;
@@ -27,14 +27,15 @@ struct TexelBlock {
   Bilinear4 lod{};  ///< of the tile's own level
 };
 
-/// Samples a block. @param out  by plane, then row, then column, kBlockPixels a plane and
-/// kBlockSide a row: in the texels' own units. Values right of the block are of no use.
+/// Samples a block.
+/// @param out  by plane, then row, then column, kBlockPixels per plane and kBlockSide per row, in
+///             the texels' units. Values right of the block are undefined.
 using SampleKernel = void (*)(const TexelBlock& block, const PackedTile& tile, float* out);
 
-/// The plain kernel, which says what the others must give to the last bit.
+/// The plain kernel; the other kernels must give the same bits.
 void sample_plain(const TexelBlock& block, const PackedTile& tile, float* out);
 
-/// The fastest kernel that this machine runs.
+/// The fastest kernel supported by this machine.
 [[nodiscard]] SampleKernel best_sample_kernel();
 /// "avx2" or "plain".
 [[nodiscard]] const char* name_of(SampleKernel kernel);

@@ -1,4 +1,4 @@
-// Numbers that all sampling kernels share.
+// Constants shared by all sampling kernels.
 #pragma once
 
 namespace overfly::renderer::raycast {

@@ -1,4 +1,4 @@
-// The packed tiles of the frames drawn last, within a budget.
+// A cache of packed tiles of recent frames, within a budget.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace overfly::renderer::raycast {
 
-/// The tile that stands for one that was asked for: itself, or a coarser one that covers it.
+/// The tile found for a request: itself, or a coarser one that covers it.
 struct FoundTile {
   std::shared_ptr<const PackedTile> texels;
   terrain::TileId id;
@@ -23,16 +23,16 @@ class TexelTiles {
  public:
   TexelTiles(std::shared_ptr<TileStore> store, std::size_t budget_bytes);
 
-  /// The tile itself, read if need be. Errors: kIo naming the tile.
+  /// The tile itself, read if needed. Errors: kIo naming the tile.
   [[nodiscard]] Result<FoundTile> get(const terrain::TileId& id, PixelFormat format);
-  /// What is there now: the tile, or the nearest coarser one; the missing one is asked for. The
-  /// coarsest of all is waited for. Errors: kIo.
+  /// The best tile available now: the tile, or the nearest coarser one; a missing tile is
+  /// requested. Waits for the coarsest one if there is no other. Errors: kIo.
   [[nodiscard]] Result<FoundTile> find(const terrain::TileId& id, PixelFormat format);
-  /// Asks for tiles that a later frame will need, and packs one of those that are there.
-  /// @return true when it packed one
+  /// Requests tiles for later frames, and packs one that is available.
+  /// @return true if it packed one
   bool prefetch(const std::vector<terrain::TileId>& ids, PixelFormat format);
-  /// Lets the tiles used longest ago go until the budget holds, with an eighth of it to spare: for
-  /// what is packed ahead of the next frames. Call between frames.
+  /// Evicts the least recently used tiles until an eighth of the budget is free for tiles packed
+  /// ahead of the next frames. Call between frames.
   void trim();
 
  private:
