@@ -13,7 +13,7 @@ namespace overfly::terrain {
 namespace fs = std::filesystem;
 namespace {
 
-/// Masks as the opened world knows them.
+/// Writes the masks of the opened world.
 Status write_validity(const RasterWorld& world, const fs::path& folder, CacheHeader& header) {
   for (std::size_t i = 0; i < world.imagery().size(); ++i) {
     const ValidityGrid* validity = world.imagery()[i].validity();
@@ -43,7 +43,7 @@ Result<std::vector<CacheSource>> digested_sources(const WorldSpec& spec,
 
 constexpr std::size_t kKeyDigits = 16;
 
-/// A name that fields and contents of the files decide.
+/// A name that depends on the fields and on the contents of the files.
 std::string key_of(const CacheHeader& header) {
   std::string text = header.fields + header.layout;
   for (const CacheSource& source : header.sources) text += source.file + source.digest;
@@ -51,7 +51,7 @@ std::string key_of(const CacheHeader& header) {
   return sha256_hex({bytes, text.size()}).substr(0, kKeyDigits);
 }
 
-/// Calls for each entry at any depth that can be looked at.
+/// Calls `take` for each accessible entry at any depth.
 template <typename Take>
 void for_each_below(const fs::path& folder, const Take& take) {
   std::error_code failed;
@@ -74,8 +74,8 @@ std::uint64_t size_of(const fs::path& folder) {
   return bytes;
 }
 
-/// Files that a killed build left half written; those of the last minutes may be another's that
-/// is at work.
+/// Removes files that a killed build left incomplete. Recent ones are kept, since another build may
+/// be writing them.
 void remove_leftovers(const fs::path& folder) {
   const auto now = fs::file_time_type::clock::now();
   std::vector<fs::path> leftovers;
@@ -89,7 +89,7 @@ void remove_leftovers(const fs::path& folder) {
   for (const fs::path& leftover : leftovers) fs::remove(leftover, failed);
 }
 
-/// Caches of other states of the files. Nothing else that may lie in the folder is touched.
+/// Removes the caches of other states of the files, and nothing else in the folder.
 void remove_others(const fs::path& cache, const fs::path& kept) {
   std::error_code failed;
   std::vector<fs::path> others;
@@ -105,7 +105,7 @@ void remove_others(const fs::path& cache, const fs::path& kept) {
   for (const fs::path& other : others) fs::remove_all(other, failed);
 }
 
-/// A cache that fits and is whole, as a report; empty where something must be made.
+/// Reports on a valid and complete cache; empty if something must be built.
 Result<std::optional<BuildReport>> check_fresh(const WorldSpec& spec,
                                                const World& world,
                                                const BuildProgress& progress) {
@@ -124,7 +124,7 @@ Result<std::optional<BuildReport>> check_fresh(const WorldSpec& spec,
   return std::optional<BuildReport>(std::move(report));
 }
 
-/// What the cache of an opened world is made of.
+/// The header of an opened world's cache.
 Result<CacheHeader> new_header(const WorldSpec& spec,
                                const RasterWorld& tiles,
                                const BuildProgress& progress) {
@@ -152,7 +152,7 @@ Status fill_cache(const WorldSpec& spec,
   header.chunks = builder.tile_chunks();
   remove_leftovers(folder);
   header.bytes = size_of(folder);
-  // Files that changed while they were read must not be taken for those of the digests.
+  // The digests must not be used for files that changed while they were read.
   const auto now = cache_sources(spec);
   if (!now) return now.error();
   if (const std::string changes = source_changes(spec, header.sources, *now); !changes.empty()) {
@@ -184,7 +184,7 @@ Result<BuildReport> build_world(const WorldSpec& spec, const BuildProgress& prog
     if (!fresh) return fresh.error();
     if (*fresh) return std::move(**fresh);
   }
-  // A cache that is damaged or stale takes no part in making the new one.
+  // A damaged or stale cache is not used to build the new one.
   if (!world || world->cache != "none") world = open_world(direct);
   if (!world) return world.error();
   const auto& tiles = dynamic_cast<const RasterWorld&>(*world->tiles);

@@ -14,7 +14,7 @@ namespace {
 
 using Job = CacheBuilder::Job;
 
-/// Tiles one beyond the imagery have some of it in their borders.
+/// Tiles adjacent to the imagery contain some of it in their borders.
 void add_tile_jobs(const TileGrid& grid, std::vector<Job>& jobs) {
   const auto chunk_of = [](int tile) { return floor_div(tile, kChunkTiles); };
   for (int level = 0; level < grid.levels; ++level) {

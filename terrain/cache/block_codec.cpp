@@ -61,7 +61,7 @@ bool is_grey(const Tile& tile) {
 
 constexpr std::size_t kTexels = std::size_t{kTileSide} * kTileSide;
 
-/// Differences to the west along each row, of one plane.
+/// Writes one plane as differences to the west along each row.
 void write_plane(const std::uint8_t* values, Bytes& out) {
   for (int y = 0; y < kTileSide; ++y) {
     std::uint8_t before = 0;

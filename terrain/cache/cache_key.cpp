@@ -21,7 +21,7 @@ std::string relative_name(const WorldSpec& spec, const fs::path& file) {
   return fs::absolute(file).lexically_normal().lexically_proximate(home_of(spec)).generic_string();
 }
 
-/// A file and those it refers to, in a fixed order.
+/// Adds a file and the files to which it refers, in a fixed order.
 Status add_files(const fs::path& file, std::set<fs::path>& files, int depth) {
   constexpr int kDeepest = 8;
   if (depth > kDeepest || !files.insert(fs::absolute(file).lexically_normal()).second) return {};

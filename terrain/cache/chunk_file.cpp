@@ -18,7 +18,7 @@ constexpr std::size_t kRowBytes = 16;
 
 std::uint32_t adler32(std::span<const std::uint8_t> bytes) {
   constexpr std::uint32_t kModulus = 65521;
-  constexpr std::size_t kRun = 5552;  // sums stay below 2^32 so long
+  constexpr std::size_t kRun = 5552;  // maximum run for which the sums stay below 2^32
   std::uint32_t a = 1;
   std::uint32_t b = 0;
   for (std::size_t at = 0; at < bytes.size(); at += kRun) {
@@ -117,7 +117,7 @@ Status check_chunk(const fs::path& file) {
   if (!in.read(reinterpret_cast<char*>(head), kHeadBytes)) {
     return damaged(file, "is missing or cut short");
   }
-  // Zeros are what a disk that lost its power may leave.
+  // A power loss may leave zeros on the disk.
   const auto count = static_cast<int>(get(head + kMagicBytes, 4));
   if (count <= 0) return damaged(file, "is damaged");
   for (int i = 0; i < count; ++i) {

@@ -60,7 +60,7 @@ std::string check_of(const Json& json) {
   return sha256_hex({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
 }
 
-/// Empty if the file is not whole or of another version.
+/// Empty if the file is incomplete or of another version.
 std::optional<CacheHeader> read_header(const fs::path& file) {
   // Large worlds have one entry for each of tens of thousands of chunks.
   constexpr std::uint64_t kMaxBytes = std::uint64_t{64} << 20U;
@@ -143,7 +143,7 @@ WorldCache::Found WorldCache::find(const WorldSpec& spec) {
   std::sort(folders.begin(), folders.end());
   if (folders.empty()) return found;
   const auto now = cache_sources(spec);
-  if (!now) return found;  // opening the world says what is wrong with the file
+  if (!now) return found;  // opening the world will report the error
   const std::string fields = cache_fields(spec);
   for (const fs::path& folder : folders) {
     auto header = read_header(folder / "cache.json");

@@ -22,7 +22,7 @@ CloudField::CloudField(const CloudOptions& options)
     : options_(options),
       seed_(static_cast<std::uint32_t>(options.seed ^ (options.seed >> 32U)) * 0x85EBCA6BU + 11U) {
   if (options.cover <= 0.0) return;
-  // Places some clouds apart stand for all the ground.
+  // Samples at a distance of several clouds represent all the ground.
   constexpr int kSide = 160;
   std::vector<float> samples;
   samples.reserve(static_cast<std::size_t>(kSide) * kSide);

@@ -35,7 +35,7 @@ class DetailedTiles final : public TileDecorator {
   }
 
   [[nodiscard]] Result<Tile> tile(const TileId& id) const override {
-    if (id.level < 0) return base().tile(id);  // which says what is wrong with it
+    if (id.level < 0) return base().tile(id);  // reports the error
     if (id.level >= octaves_) return base().tile({id.level - octaves_, id.col, id.row});
     auto parent = base().tile(parent_of(id));
     if (!parent) return parent;

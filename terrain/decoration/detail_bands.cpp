@@ -9,10 +9,10 @@ namespace {
 constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
 
 /// Weights of the blocks before, at and after that of an even texel: a triangle of half width 3
-/// texels around the texel. Odd texels mirror it.
+/// texels around the texel. Odd texels use the mirrored weights.
 constexpr float kWeights[3] = {1.5F / 4.5F, 2.5F / 4.5F, 0.5F / 4.5F};
 
-/// One texel's weighted mean over the blocks around; blocks without value are left out.
+/// A texel's weighted mean over the surrounding blocks; blocks without value are omitted.
 float contrast_at(const ImageBuffer<float>& strength, int x, int y) {
   float sum = 0.0F;
   float total = 0.0F;
@@ -68,7 +68,7 @@ ImageBuffer<float> block_details(const ImageBuffer<float>& image, const ImageBuf
           0.25F * (a + d - b - c) - (means.at(x - 1, y - 1) + means.at(x + 1, y + 1) -
                                      means.at(x + 1, y - 1) - means.at(x - 1, y + 1)) /
                                         64.0F;
-      if (std::isnan(across + down + diagonal)) continue;  // a void texel among them
+      if (std::isnan(across + down + diagonal)) continue;  // one of the texels is void
       details.at(x, y, 0) = across;
       details.at(x, y, 1) = down;
       details.at(x, y, 2) = diagonal;

@@ -15,7 +15,7 @@ constexpr int kBands = 3;
 struct Sums {
   double square[kBands][3] = {};
   double count[kBands] = {};
-  double foretold = 0.0;  ///< of the finest band's mean square, by its local contrast
+  double foretold = 0.0;  ///< prediction of the finest band's mean square from its local contrast
   double foretold_count = 0.0;
 };
 
@@ -53,7 +53,7 @@ void add_tile(const Tile& tile, Sums& sums) {
       sums.count[band] += 1.0;
     }
     if (band == 0) {
-      // A Laplace variable of mean absolute value b has the mean square 2 b^2.
+      // A Laplace variable with mean absolute value b has the mean square 2 b^2.
       for (const float contrast : local_contrast(details).data) {
         sums.foretold += 2.0 * contrast * contrast;
         sums.foretold_count += contrast > 0.0F ? 1.0 : 0.0;
@@ -66,7 +66,7 @@ void add_tile(const Tile& tile, Sums& sums) {
 }  // namespace
 
 double DetailStatistics::spectrum_slope() const {
-  // An octave of the spectrum f^s over the plane holds power ~ f^(s + 2).
+  // An octave of the spectrum f^s over the plane has power ~ f^(s + 2).
   return 2.0 * std::log2(decay) - 2.0;
 }
 
@@ -86,7 +86,7 @@ Result<DetailStatistics> measure_detail(const TileSource& tiles) {
   }
   for (int c = 0; c < 3; ++c) statistics.band_energy[c] = sums.square[0][c] / sums.count[0];
   if (energy[0] <= 0.0 || sums.foretold_count == 0.0) return statistics;
-  // Noise and sharpening can make the finest band the strongest; it must not run away.
+  // Limits the amplitude, since noise and sharpening can make the finest band the strongest.
   constexpr double kWeakest = 0.25;
   constexpr double kStrongest = 1.0;
   statistics.decay = std::clamp(

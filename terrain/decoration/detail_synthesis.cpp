@@ -13,7 +13,7 @@ namespace {
 int floor_shift(int value, int shift) { return value >> shift; }
 int ceil_shift(int value, int shift) { return -((-value) >> shift); }
 
-/// A square of a patch; beyond its rim void.
+/// A square of a patch; void beyond the patch's edge.
 Patch part_of(const Patch& patch, int left, int top, int side) {
   Patch part = void_patch(side, side);
   const int x_begin = std::max(left, 0);
@@ -50,7 +50,8 @@ DetailSynthesis::Region DetailSynthesis::base_region(const Tile& parent,
                                                      int finer,
                                                      int col,
                                                      int row) {
-  // What `finer` refinements, each needing one texel around, make the tile with its border from.
+  // The texels from which `finer` refinements, each needing one texel around, compute the tile with
+  // its border.
   int low = -kTileBorder;
   int high = kTileTexels + kTileBorder;
   for (int octave = 0; octave < finer; ++octave) {
@@ -61,7 +62,7 @@ DetailSynthesis::Region DetailSynthesis::base_region(const Tile& parent,
   const int mask = (1 << finer) - 1;
   const int left = kTileBorder + (col & mask) * share + low;
   const int top = kTileBorder + (row & mask) * share + low;
-  // The contrast looks four texels further, on blocks that begin at even texels.
+  // The contrast needs four more texels, in blocks that begin at even texels.
   constexpr int kLook = 4;
   const int cut_x = (left - kLook) & ~1;
   const int cut_y = (top - kLook) & ~1;
@@ -93,13 +94,13 @@ void DetailSynthesis::refine_texel(
     const Region& coarse, int x, int y, const Random& random, Region& fine) const {
   const float contrast = coarse.contrast.at(x, y);
   const std::uint8_t valid = coarse.valid.at(x, y);
-  float around = 1.0F;  // 0 at the imagery's edge, where the neighbours say nothing
+  float around = 1.0F;  // 0 at the imagery's edge, where the neighbours have no values
   for (int j = coarse.all_valid ? 2 : -1; j <= 1; ++j) {
     for (int i = -1; i <= 1; ++i) around *= coarse.valid.at(x + i, y + j) != 0 ? 1.0F : 0.0F;
   }
   const auto at = [&](int i, int j, int c) { return coarse.rgb.at(x + i, y + j, c); };
   float across[3], down[3], diagonal[3];
-  float room = 1.0F;  // share of the deviations that keeps every texel within [0, 255]
+  float room = 1.0F;  // largest scale of the deviations that keeps every texel within [0, 255]
   for (int c = 0; c < 3; ++c) {
     const float corners = at(-1, -1, c) + at(1, 1, c) - at(1, -1, c) - at(-1, 1, c);
     across[c] = around * (0.125F * (at(1, 0, c) - at(-1, 0, c)) + contrast * random.across);
@@ -149,7 +150,7 @@ DetailSynthesis::Region DetailSynthesis::refined(const Region& coarse,
 Tile DetailSynthesis::tile(const Tile& parent, int finer, int col, int row) const {
   Region region = base_region(parent, finer, col, row);
   for (int octave = 1; octave <= finer; ++octave) {
-    // Coarse texels of this step: the finer tile's corner among them, and the part to make.
+    // Coarse texels of this step: the finer tile's corner, and the part to compute.
     const int left = finer - octave + 1;
     const std::array<int, 2> origin{(col * kTileTexels) >> left, (row * kTileTexels) >> left};
     const int low = 2 * (region.x + 1);

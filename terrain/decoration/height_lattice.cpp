@@ -51,7 +51,7 @@ HeightLattice::Heights HeightLattice::get(int lattice, int chunk_i, int chunk_j)
   }
   Heights heights = read(lattice, chunk_i, chunk_j);
   const std::lock_guard lock(mutex_);
-  // Readers hold what they use; forgetting all at once is rare and keeps this simple.
+  // Readers hold the chunks they use; clearing all is rare and keeps this simple.
   if (chunks_.size() >= kMostChunks) chunks_.clear();
   chunks_.emplace(key, heights);
   return heights;

@@ -12,11 +12,11 @@ namespace {
 
 constexpr double kSunRadiusRad = 0.2666 * kPi / 180.0;  // mean angular radius
 constexpr double kFarthestM = 60e3;
-/// Steps to the sun grow with the distance gone, as the penumbra does (2 tan 0.2666 deg = 0.0093).
+/// Steps towards the sun grow with the distance, as the penumbra does (2 tan 0.2666 deg = 0.0093).
 constexpr double kStepPerDistance = 0.02;
-constexpr int kLog2Block = 6;  ///< nodes of a side that share a chart
+constexpr int kLog2Block = 6;  ///< nodes per side that share a chart
 
-/// The direct light on a slope over that on flat ground.
+/// The direct light on a slope relative to flat ground.
 double lambert(const LightOptions& options, const Eigen::Vector3d& sun, const Eigen::Vector3d& n) {
   const double ratio = std::max(0.0, n.dot(sun)) / sun.z();
   return 1.0 + options.hill_shading * (ratio - 1.0);
@@ -42,7 +42,7 @@ LightField::LightField(std::shared_ptr<const TileSource> tiles,
       sun_(sun_direction(options)),
       heights_(std::move(tiles), spacing_m),
       clouds_(options.clouds) {
-  // Up coordinates fall behind heights with the distance from the origin, never the other way.
+  // Up coordinates decrease relative to heights with the distance from the origin, never increase.
   highest_up_m_ = tiles_->height_range_m().y() - tiles_->frame().origin().alt_ellipsoid_m;
 }
 
@@ -51,7 +51,7 @@ LightField::Chart LightField::chart(int lattice, int block_i, int block_j) const
   const Eigen::Vector2d map = heights_.map_of(
       lattice, (block_i << kLog2Block) + kMiddle, (block_j << kLog2Block) + kMiddle);
   constexpr double kStepM = 10.0;
-  // Differences over flat steps of the map; the ground's relief moves them by a part in 10^5.
+  // Differences over flat steps of the map; the relief changes them by a part in 10^5.
   const auto world = [&](double dx, double dy) {
     return Eigen::Vector2d(tiles_->world_from_map(map.x() + dx, map.y() + dy).head<2>());
   };

@@ -32,13 +32,13 @@ class SrgbScale {
   }
 
  private:
-  static constexpr int kLast = 32767;  ///< so fine that the darkest values keep their steps
+  static constexpr int kLast = 32767;  ///< fine enough to resolve the darkest values
   std::array<float, 256> linear_{};
   std::array<std::uint8_t, kLast + 1> encoded_{};
 };
 
-/// Distance of the light's nodes at level 0: finer than posts usually are, coarse enough to be
-/// quick. A power of two of texels.
+/// Distance of the light's nodes at level 0: finer than typical posts, and coarse enough to be
+/// fast. A power of two of texels.
 double light_spacing_m(const TileSource& tiles) {
   constexpr double kCoarsestM = 6.0;
   for (const double texels : {8.0, 4.0}) {
@@ -60,7 +60,7 @@ class LitTiles final : public TileDecorator {
   }
 
  private:
-  /// A texel's place between the nodes of one axis.
+  /// A texel's position between the nodes of one axis.
   struct Between {
     int node = 0;  ///< before the texel's centre, from the first
     float share = 0.0F;

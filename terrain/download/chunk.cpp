@@ -18,12 +18,12 @@ namespace {
 
 using Kind = Verdict::Kind;
 
-/// A name in GDAL's memory for the bytes of an answer, for as long as this lives.
+/// A file name in GDAL's memory for the bytes of an answer, while this object lives.
 class MemoryFile {
  public:
   explicit MemoryFile(const std::vector<std::uint8_t>& bytes)
       : name_("/vsimem/overfly_chunk_" + std::to_string(reinterpret_cast<std::uintptr_t>(this))) {
-    // GDAL only reads what it does not own.
+    // GDAL does not write to memory that it does not own.
     auto* data = const_cast<GByte*>(bytes.data());
     VSIFCloseL(VSIFileFromMemBuffer(name_.c_str(), data, bytes.size(), FALSE));
   }
@@ -37,14 +37,14 @@ class MemoryFile {
 };
 
 DatasetPtr open_image(const char* name) {
-  // No sibling listing, no remote or virtual formats: what came over the wire is data.
+  // No sibling listing, no remote or virtual formats: the answer is untrusted data.
   const std::array<const char*, 7> drivers = {
       "GTiff", "PNG", "JPEG", "WEBP", "GIF", "BMP", nullptr};
   return DatasetPtr(
       GDALDataset::Open(name, GDAL_OF_RASTER | GDAL_OF_READONLY, drivers.data(), nullptr, nullptr));
 }
 
-/// Places of one CRS and another differ by less than a centimetre around a point.
+/// True if coordinates in both CRSs differ by less than a centimetre around a point.
 bool same_place(const OGRSpatialReference& a, const OGRSpatialReference& b, double x, double y) {
   if (a.IsSame(&b) != 0) return true;
   GdalMessages quiet;
@@ -101,7 +101,7 @@ Verdict judge_place(GDALDataset& dataset, const ChunkLayer& layer, const Chunk& 
   return {};
 }
 
-/// Reads every block, which is how a truncated body shows.
+/// Reads every block, which detects a truncated body.
 Verdict judge_blocks(GDALDataset& dataset) {
   GdalMessages messages;
   for (int number = 1; number <= dataset.GetRasterCount(); ++number) {
@@ -121,7 +121,7 @@ Verdict judge_blocks(GDALDataset& dataset) {
       }
     }
   }
-  // Decoders that make the best of a cut file only warn.
+  // Decoders that recover what they can from a truncated file only warn.
   if (!messages.empty() && messages.text().find("runcated") != std::string::npos) {
     return {Kind::kTryAgain, "the image that came is cut short: " + messages.text()};
   }
@@ -194,7 +194,7 @@ Verdict judge_chunk(const ChunkLayer& layer, const Chunk& chunk, const HttpReply
                      reply.content_type.find("xml") != std::string::npos ||
                      reply.content_type.find("text/plain") != std::string::npos;
   if (words || reply.body.empty() || reply.body[0] == '{' || reply.body[0] == '<') {
-    // Services under load say "try later" in words as well as in numbers.
+    // Services under load report temporary errors as text as well as by status.
     return {Kind::kTryAgain, "the service answers in words: " + words_of(reply)};
   }
   const MemoryFile file(reply.body);

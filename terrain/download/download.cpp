@@ -25,7 +25,7 @@ constexpr double kFetchShare = 0.8;  // of the progress; the rest is merging
 
 Error cancelled() { return {ErrorCode::kCancelled, "the download was cancelled"}; }
 
-/// Fetches chunks on threads while the caller's thread reports.
+/// Fetches chunks on threads while the caller's thread reports progress.
 class Fetching {
  public:
   Fetching(const DownloadOptions& options,
@@ -91,7 +91,7 @@ class Fetching {
     return write_chunk(*job.chunk, outcome->reply);
   }
 
-  /// Tells how far it is until all threads are done.
+  /// Reports progress until all threads are done.
   void watch() {
     std::unique_lock lock(mutex_);
     constexpr auto kTell = std::chrono::milliseconds(200);
@@ -127,7 +127,7 @@ class Fetching {
   std::optional<Error> error_;
 };
 
-/// What decides the bytes of a download.
+/// The inputs that determine the bytes of a download.
 nlohmann::json asked(const std::vector<ChunkLayer>& layers) {
   nlohmann::json all = nlohmann::json::array();
   for (const ChunkLayer& layer : layers) {
@@ -145,7 +145,7 @@ nlohmann::json asked(const std::vector<ChunkLayer>& layers) {
   return {{"format_version", 1}, {"layers", all}};
 }
 
-/// Makes the folder, or finds in it what an equal download has left.
+/// Creates the folder, or accepts one that contains an equal, interrupted download.
 Status claim_folder(const fs::path& folder, const nlohmann::json& wanted) {
   std::error_code failed;
   fs::create_directories(folder / "chunks", failed);
@@ -258,7 +258,7 @@ Result<DownloadReport> download_world(const DownloadOptions& options,
   PoliteFetcher fetcher(options, stop);
   DownloadReport report;
   if (progress && !progress(0.0, "asking the services")) return cancelled();
-  DownloadOptions quick = options;  // limits that cannot be asked now are assumed, with a warning
+  DownloadOptions quick = options;  // limits that cannot be queried now are assumed, with a warning
   quick.attempts = std::min(options.attempts, 2);
   PoliteFetcher asker(quick, stop);
   const auto layers = lay_out_download(options, asker, report.warnings);
@@ -267,7 +267,7 @@ Result<DownloadReport> download_world(const DownloadOptions& options,
   if (!claimed) return claimed.error();
   report.manifest = options.folder / "world.json";
   std::error_code failed;
-  if (fs::exists(report.manifest, failed)) return report;  // all is there already
+  if (fs::exists(report.manifest, failed)) return report;  // everything exists already
 
   const Status room = check_space(options.folder, *layers);
   if (!room) return room.error();

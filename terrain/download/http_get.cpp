@@ -23,7 +23,7 @@ int CPL_STDCALL go_on(double, const char*, void* stop) {
   return static_cast<const std::atomic<bool>*>(stop)->load() ? FALSE : TRUE;
 }
 
-/// The status that GDAL tells only in words ("HTTP error code : 404").
+/// The status that GDAL reports only as text ("HTTP error code : 404").
 int status_of(const CPLHTTPResult& result) {
   const std::string said = result.pszErrBuf == nullptr ? "" : result.pszErrBuf;
   const std::size_t at = said.find("HTTP error code");
@@ -55,12 +55,13 @@ HttpReply http_get(const std::string& url, double stall_s, const std::atomic<boo
   options.SetNameValue("LOW_SPEED_LIMIT", "1");
   options.SetNameValue("LOW_SPEED_TIME",
                        std::to_string(std::max(1, static_cast<int>(stall_s))).c_str());
-  options.SetNameValue("MAX_RETRY", "0");  // repeating is the caller's, who knows all requests
+  // Retries are left to the caller, which knows all requests
+  options.SetNameValue("MAX_RETRY", "0");
   const std::unique_ptr<CPLHTTPResult, ResultDestroyer> result(
       CPLHTTPFetchEx(url.c_str(),
                      options.List(),
                      &go_on,
-                     const_cast<std::atomic<bool>*>(&stop),  // GDAL hands it back as it came
+                     const_cast<std::atomic<bool>*>(&stop),  // GDAL passes it back unchanged
                      nullptr,
                      nullptr));
   HttpReply reply;

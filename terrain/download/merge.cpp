@@ -48,7 +48,7 @@ Result<DatasetPtr> create(const ChunkLayer& layer, const fs::path& file) {
   return dataset;
 }
 
-/// One chunk's pixels, band after band, and where they count.
+/// One chunk's pixels, band after band, and their validity.
 struct Pixels {
   std::vector<std::uint8_t> rgb;
   std::vector<float> heights_m;
@@ -85,7 +85,7 @@ Status read_heights(GDALDataset& dataset, const Chunk& chunk, Pixels& pixels) {
   return {};
 }
 
-/// Colours of a palette as they look.
+/// Converts palette indices to colours.
 Status expand_palette(const GDALColorTable& table, std::size_t count, Pixels& pixels) {
   for (std::size_t i = 0; i < count; ++i) {
     GDALColorEntry entry{};
@@ -166,7 +166,7 @@ bool uniform(const Pixels& pixels) {
   return true;
 }
 
-/// True if a chunk is absent or says itself where it is void.
+/// True if a chunk is absent or has its own mask.
 bool may_have_voids(const ChunkLayer& layer) {
   return std::any_of(layer.chunks.begin(), layer.chunks.end(), [](const Chunk& chunk) {
     const auto dataset = open_raster(chunk.file);
@@ -176,7 +176,7 @@ bool may_have_voids(const ChunkLayer& layer) {
   });
 }
 
-/// Writes one chunk's pixels, and its mask where the file has one.
+/// Writes one chunk's pixels, and its mask if the file has one.
 Status write(GDALDataset& to, const ChunkLayer& layer, const Chunk& chunk, Pixels& pixels) {
   GdalMessages messages;
   const int x = chunk.column_px;

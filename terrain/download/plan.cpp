@@ -90,7 +90,7 @@ Status DownloadOptions::validate() const {
 
 Result<DownloadPlan> plan_download(const DownloadOptions& options) {
   const std::atomic<bool> stop{false};
-  DownloadOptions quick = options;  // what cannot be asked now is assumed, with a warning
+  DownloadOptions quick = options;  // values that cannot be queried now are assumed, with a warning
   quick.attempts = std::min(options.attempts, 2);
   download::PoliteFetcher fetcher(quick, stop);
   DownloadPlan plan;
@@ -111,7 +111,7 @@ Result<DownloadPlan> plan_download(const DownloadOptions& options) {
     const double pixels = static_cast<double>(from.width_px) * from.height_px;
     const double bytes_per_px = from.heights ? 4.0 : 3.0;
     layer.transfer_bytes = static_cast<std::uint64_t>(pixels * from.transfer_bytes_per_px);
-    // The result with its overviews, compressed to no less than its size.
+    // The result with its overviews; compression is assumed to save nothing.
     layer.disk_bytes =
         layer.transfer_bytes + static_cast<std::uint64_t>(pixels * bytes_per_px * 4.0 / 3.0);
     plan.layers.push_back(std::move(layer));

@@ -66,8 +66,8 @@ Status check_template(const DownloadOptions& options) {
   return {};
 }
 
-/// A grid of pixels of Web Mercator over the square, from multiples of `step` pixels counted from
-/// the world's north-west corner.
+/// A grid of Web Mercator pixels over the square, in multiples of `step` pixels from the world's
+/// north-west corner.
 struct PixelRange {
   double pixel = 1.0;
   int left = 0, top = 0, right = 0, bottom = 0;  ///< in steps
@@ -115,7 +115,7 @@ void cut_tiles(const DownloadOptions& options, ChunkLayer& layer) {
   set_extent(layer, range, options.tile_px);
   for (int y = range.top; y <= range.bottom; ++y) {
     for (int column = range.left; column <= range.right; ++column) {
-      const int x = (column + around) % around;  // beyond the antimeridian columns begin anew
+      const int x = (column + around) % around;  // columns wrap at the antimeridian
       Chunk chunk;
       chunk.url = tile_url(options.imagery_source, zoom, x, y);
       chunk.file = options.folder / "chunks" /
@@ -132,8 +132,8 @@ void cut_tiles(const DownloadOptions& options, ChunkLayer& layer) {
   }
 }
 
-/// Columns at which requests begin: every `chunk_px`, and at the antimeridian, beyond which a
-/// service counts anew. Ends with the layer's width.
+/// Columns at which requests begin: every `chunk_px`, and at the antimeridian, where the services'
+/// columns wrap. Ends with the layer's width.
 std::vector<int> column_cuts(const ChunkLayer& layer, int chunk_px) {
   std::vector<int> cuts;
   for (int column = 0; column < layer.width_px; column += chunk_px) cuts.push_back(column);
@@ -200,7 +200,7 @@ Result<ChunkLayer> template_layer(const DownloadOptions& options) {
   layer.source = options.imagery_source;
   layer.attribution = options.imagery_attribution;
   layer.crs = "EPSG:3857";
-  layer.transfer_bytes_per_px = 0.6;  // photographs as JPEG; PNG is some three times that
+  layer.transfer_bytes_per_px = 0.6;  // photographs as JPEG; PNG is about three times as large
   if (has(options.imagery_source, "bbox")) {
     cut_wms(options, layer);
   } else {

@@ -136,7 +136,7 @@ Result<ChunkLayer> usgs_layer(const DownloadOptions& options,
   const auto middle = middle_in(layer.crs, options);
   if (!middle) return middle.error();
   const double reach_m = 0.5 * options.size_m + (heights ? options.elevation_margin_m : 0.0);
-  // Corners at multiples of a pixel, so that the same place always has the same pixels.
+  // Corners are multiples of a pixel, so that the same place always has the same pixels.
   const auto snapped = [&](double value) { return std::floor(value / layer.pixel) * layer.pixel; };
   layer.left = snapped(middle->x() - reach_m);
   layer.top = snapped(middle->y() + reach_m) + layer.pixel;

@@ -13,12 +13,12 @@ namespace {
 using RasterPtr = std::shared_ptr<ElevationRaster>;
 using Rasters = std::vector<RasterPtr>;
 
-/// Blocks of heights in memory at most.
+/// Maximum memory for blocks of heights.
 constexpr std::size_t kCacheBytes = std::size_t{128} << 20U;
-/// Posts of a merged grid at most.
+/// Maximum number of posts of a merged grid.
 constexpr double kMaxMergedPosts = 200e6;
 
-/// Share of the imagery's area over which some raster has posts.
+/// Fraction of the imagery's area that is covered by posts of some raster.
 double covered_share(const Rasters& rasters, const MapRect& imagery) {
   constexpr int kSteps = 64;
   int covered = 0;
@@ -34,7 +34,7 @@ double covered_share(const Rasters& rasters, const MapRect& imagery) {
   return static_cast<double>(covered) / (kSteps * kSteps);
 }
 
-/// The part of an area where some raster has posts, to a hundredth of the area.
+/// The part of an area that is covered by posts of some raster, to a hundredth of the area.
 MapRect covered_part(const Rasters& rasters, const MapRect& area) {
   constexpr int kSteps = 200;
   const double step_x = (area.x_max - area.x_min) / kSteps;
@@ -62,7 +62,7 @@ MapRect covered_part(const Rasters& rasters, const MapRect& area) {
           std::min(part.y_max, area.y_max)};
 }
 
-/// Posts of a merged grid: those of the first raster that has data there.
+/// Reads the posts of a merged grid from the first raster that has data.
 PostReader merged_reader(Rasters rasters, const MapRect& area, double spacing_m) {
   return [rasters = std::move(rasters), area, spacing_m](
              int column, int row, int columns, int rows) -> Result<RawPosts> {
@@ -150,7 +150,7 @@ Result<ElevationModel> ElevationModel::open(const std::vector<ElevationLayer>& l
   return model;
 }
 
-/// Lays the rasters onto one grid parallel to the map's axes.
+/// Resamples the rasters to one grid parallel to the map's axes.
 Status ElevationModel::merge(const MapRect& area,
                              double max_posts,
                              std::vector<std::string>& warnings) {
@@ -210,7 +210,7 @@ double ElevationModel::at_level(int level, double x_map_m, double y_map_m) const
   if (level == 0) {
     height = parts_->heights->bilinear(0, post.x(), post.y());
   } else {
-    // The middle of a level's post (i, j) is the middle of the posts it averages.
+    // The centre of a level's post (i, j) is the centre of the posts that it averages.
     const double scale = std::ldexp(1.0, -level);
     height = parts_->heights->bilinear(
         level, (post.x() + 0.5) * scale - 0.5, (post.y() + 0.5) * scale - 0.5);

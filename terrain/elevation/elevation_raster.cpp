@@ -17,7 +17,7 @@
 namespace overfly::terrain {
 namespace {
 
-/// Nodes a side of the lattice that holds the geoid's separation.
+/// Nodes per side of the lattice that holds the geoid's separation.
 constexpr int kLatticeNodes = 65;
 
 PlaneFunction posts_of(const MapPlane& plane,
@@ -38,7 +38,7 @@ PlaneFunction posts_of(const MapPlane& plane,
   };
 }
 
-/// How many columns of a file go around the earth; empty where it has fewer.
+/// Number of the file's columns around the earth; empty if it has fewer.
 std::optional<int> columns_around(const std::optional<Turn>& turn,
                                   const GeoTransform& transform,
                                   int file_columns) {
@@ -141,7 +141,7 @@ Status ElevationRaster::check(const Cancelled& cancelled,
   return whole;
 }
 
-/// Where imagery and elevation are, for an error.
+/// The places of imagery and elevation, for an error message.
 std::string ElevationRaster::places_of(const MapPlane& plane,
                                        const MapRect& area,
                                        const Georeference& place) const {

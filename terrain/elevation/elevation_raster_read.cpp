@@ -1,4 +1,4 @@
-// ElevationRaster: the file's numbers as heights.
+// ElevationRaster: conversion of the file's numbers to heights.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,7 +8,7 @@
 
 namespace overfly::terrain {
 
-/// Posts as the file has them, NaN where its mask or its declared value says that there is no data.
+/// Posts as in the file; NaN if its mask or its declared value marks them as no data.
 Result<HeightGrid> ElevationRaster::read_numbers(int column, int row, int columns, int rows) const {
   HeightGrid grid;
   grid.columns = columns;
@@ -20,7 +20,7 @@ Result<HeightGrid> ElevationRaster::read_numbers(int column, int row, int column
   GDALRasterBand* band = (*dataset)->GetRasterBand(1);
   const auto read_into = [&](GDALRasterBand* from, auto* data, GDALDataType type) {
     CPLErr outcome = CE_None;
-    // In one piece, but where the window goes on beyond the last of the columns around the earth.
+    // In one read, unless the window continues beyond the last of the columns around the earth.
     for (int done = 0, count = 0; done < columns && outcome == CE_None; done += count) {
       int first = window_.column + column + done;
       count = columns - done;
@@ -73,7 +73,7 @@ Result<RawPosts> ElevationRaster::read(int column, int row, int columns, int row
   return posts;
 }
 
-/// The height of a number above its own datum; NaN for what no ground on earth has.
+/// The height of a number above its own datum; NaN for implausible values.
 double ElevationRaster::metres_of(float number) const {
   constexpr double kLowestM = -12000.0;
   constexpr double kHighestM = 9000.0;
@@ -82,7 +82,7 @@ double ElevationRaster::metres_of(float number) const {
                                                    : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Turns numbers into metres above the ellipsoid.
+/// Converts numbers to metres above the ellipsoid.
 void ElevationRaster::to_metres(RawPosts& posts, int column, int row) const {
   bool usual_void = false;
   for (float& height : posts.grid.heights_m) {
@@ -124,7 +124,7 @@ Result<bool> ElevationRaster::find_undeclared_voids(const Cancelled& cancelled) 
     }
   }
   voids_ = plateaus.finish();
-  page_posts(cache_);  // the blocks that are in the cache have those posts as they were
+  page_posts(cache_);  // because cached blocks contain the posts as they were
   return !voids_.runs.empty();
 }
 

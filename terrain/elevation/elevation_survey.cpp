@@ -1,4 +1,4 @@
-// ElevationModel: what reading all posts once tells, and in which words.
+// ElevationModel: evaluates the survey of all posts and words its warnings.
 #include <algorithm>
 #include <cstdio>
 
@@ -9,12 +9,12 @@
 namespace overfly::terrain {
 namespace {
 
-/// Beyond this many posts, reading each once when a world is opened is worth a word.
+/// With more posts than this, reading each once when a world is opened causes a warning.
 constexpr double kManyPosts = 40e6;
 
 std::string count_text(double count) { return std::to_string(static_cast<long long>(count)); }
 
-/// Of one layer: how many posts had which undeclared value of missing data.
+/// The undeclared no-data values of one layer and the number of posts with each.
 std::string undeclared_text(const UndeclaredVoids& voids) {
   std::string values;
   for (const float value : voids.values) {

@@ -10,13 +10,14 @@ namespace {
 
 std::size_t bytes_of(const HeightGrid& grid) { return sizeof(float) * grid.heights_m.size() + 256; }
 
-/// Blends two posts; one that does not count must not spread its NaN.
+/// Interpolates two posts; the NaN of a post with weight 0 must not propagate.
 double blend(double a, double b, double share) {
   if (share == 0.0) return a;
   return share == 1.0 ? b : a + share * (b - a);
 }
 
-/// What one thread used lately: enough for a flight's ground queries and a mesh over a few levels.
+/// The blocks that one thread used recently: enough for a flight's ground queries and a mesh over a
+/// few levels.
 struct Recent {
   BlockKey key;
   BlockPtr block;
@@ -108,7 +109,7 @@ const HeightGrid& PagedHeights::near(int level, int column, int row) const {
     if (!fault_) fault_ = found.error();
     return unreadable_;
   }
-  // A loader may have used the same slot meanwhile: it is looked up again by its index only.
+  // A loader may have used the same slot meanwhile, so it is accessed by index again.
   slot = {key, std::move(*found)};
   return *slot.block;
 }

@@ -15,7 +15,7 @@ double HeightGrid::bilinear(double column, double row) const {
   const double t = v - j;
   const int east = std::min(i + 1, columns - 1);
   const int south = std::min(j + 1, rows - 1);
-  // A post that does not count must not spread its NaN.
+  // The NaN of a post with weight 0 must not propagate.
   const auto blend = [](double a, double b, double share) {
     if (share == 0.0) return a;
     return share == 1.0 ? b : a + share * (b - a);

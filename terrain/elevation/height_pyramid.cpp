@@ -9,10 +9,11 @@
 namespace overfly::terrain {
 namespace {
 
-/// Posts of the levels that stay in memory, at most (16 MB of them and their coarser ones).
+/// Maximum number of posts of the levels kept in memory (16 MB with their coarser levels).
 constexpr double kKeptPosts = 3e6;
 
-/// The four raw posts under one of the next level, as far as they exist and have data.
+/// Averages the four raw posts under one post of the next level, as far as they exist and have
+/// data.
 void halve_into(const HeightGrid& fine, int at_column, int at_row, HeightGrid& coarse) {
   for (int j = 0; j < (fine.rows + 1) / 2; ++j) {
     for (int i = 0; i < (fine.columns + 1) / 2; ++i) {
@@ -164,7 +165,7 @@ Result<HeightGrid> HeightPyramid::unfilled(int level, int column, int row) const
   result.columns = kBlockPosts + 1;
   result.rows = kBlockPosts + 1;
   result.heights_m.resize(static_cast<std::size_t>(result.columns) * result.rows);
-  // The block itself and its neighbours to the east and south, for their first column and row.
+  // The block and its neighbours to the east and south, for their first column and row.
   BlockPtr raws[2][2];
   for (int j = 0; j < result.rows; ++j) {
     const int y = std::min(j, height - 1);

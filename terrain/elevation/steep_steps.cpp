@@ -13,7 +13,7 @@ double impossible_step_m(double spacing_m) {
 
 void SteepSteps::compare(float a, float b) {
   const double step_m = std::abs(static_cast<double>(a) - b);
-  if (!(step_m > least_m_)) return;  // also where one of them is missing
+  if (!(step_m > least_m_)) return;  // also if one of them is NaN
   ++count_;
   largest_m_ = std::max(largest_m_, step_m);
 }

@@ -9,12 +9,12 @@
 namespace overfly::terrain {
 namespace {
 
-/// Runs and plateaus in memory at most (some 200 MB).
+/// Maximum number of runs and plateaus in memory (about 200 MB).
 constexpr std::size_t kMostKept = 6'000'000;
 
-/// Whether ground can rise or fall so much between neighbouring posts.
+/// Whether such a step between neighbouring posts occurs on real ground.
 bool is_possible(double step_m, double spacing_m, float value) {
-  constexpr double kLeastM = 50.0;  // a quay, a wall or a bank may be as steep as it likes
+  constexpr double kLeastM = 50.0;  // a quay, a wall or a bank may have any slope
   constexpr double kTangent70Deg = 2.75;
   constexpr double kPitM = 2000.0;  // a hole of the numbers below -9000
   if (value < 0.0F && step_m >= kPitM) return false;
@@ -69,8 +69,9 @@ VoidPlateaus::Label VoidPlateaus::joined(Label a, Label b) {
 }
 
 bool VoidPlateaus::is_void(const Plateau& plateau) const {
-  // Numbers below -9000 are hardly ever heights: they need no witness, and outvote a few false ones
-  // (edges that were interpolated). All others need every post around them.
+  // Numbers below -9000 are hardly ever heights, so a majority of the surrounding posts is enough,
+  // and a few false ones (edges that were interpolated) do not matter. All other values require
+  // every surrounding post.
   if (plateau.value < 0.0F) return plateau.impossible >= plateau.possible;
   return plateau.impossible > 0 && plateau.possible == 0;
 }

@@ -19,19 +19,19 @@
 namespace overfly::terrain {
 namespace {
 
-/// Raster formats of one local file (and side-cars of its name). Left out are those that name other
-/// files or addresses inside of them (WMS, MRF, ERS, HDF5 with external storage, ...), databases,
-/// and texts that are read whole to be opened.
+/// Raster formats of one local file (and side-cars of its name). Excluded are formats that name
+/// other files or addresses inside (WMS, MRF, ERS, HDF5 with external storage, ...), databases, and
+/// text formats that are read completely when opened.
 constexpr std::array<std::string_view, 20> kDrivers = {
     "GTiff", "COG",     "VRT",     "MEM",    "PNG",         "JPEG", "BMP",
     "PNM",   "GIF",     "WEBP",    "JPEGXL", "JP2OpenJPEG", "HFA",  "EHdr",
     "ENVI",  "AAIGrid", "SRTMHGT", "DTED",   "USGSDEM",     "SAGA"};
 
-/// GDAL's own drivers need these for what they keep in memory.
+/// GDAL's own drivers need these for data in memory.
 constexpr std::array<std::string_view, 3> kFileSystems = {
     "/vsimem/", "/vsisubfile/", "/vsisparse/"};
 
-/// A file system in which there is nothing.
+/// An empty file system.
 class ClosedFileSystem final : public VSIFilesystemHandler {
  public:
   VSIVirtualHandle* Open(const char* name, const char*, bool, CSLConstList) override {
@@ -61,7 +61,7 @@ void remove_drivers() {
 }
 
 void close_file_systems() {
-  // GDAL owns what is installed; what stood there before may still be known to others.
+  // GDAL owns the installed handler; the replaced one may still be in use.
   static std::vector<VSIFilesystemHandler*> replaced;
   const CPLStringList prefixes(VSIFileManager::GetPrefixes());
   for (int i = 0; i < prefixes.size(); ++i) {
@@ -89,7 +89,7 @@ void close_outside_access() {
 }
 
 void turn_network_off() {
-  // The contexts of PROJ's own interface follow the environment, those of GDAL its switch.
+  // PROJ's own contexts follow the environment, those of GDAL follow its switch.
   ::setenv("PROJ_NETWORK", "OFF", 1);
   OSRSetPROJEnableNetwork(FALSE);
   CPLHTTPSetFetchCallback(&refuse_fetch, nullptr);

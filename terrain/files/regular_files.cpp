@@ -8,7 +8,7 @@
 namespace overfly::terrain {
 namespace {
 
-/// Passes everything on to GDAL's own, but for what is not regular.
+/// Forwards to GDAL's own file system, except for files that are not regular.
 class RegularFiles final : public VSIFilesystemHandler {
  public:
   explicit RegularFiles(VSIFilesystemHandler& files) : files_(files) {}
@@ -35,7 +35,7 @@ class RegularFiles final : public VSIFilesystemHandler {
   }
 
  private:
-  /// True for what is there and of another kind; sets errno then.
+  /// True for an existing file that is neither regular nor a folder; sets errno then.
   static bool hidden(const char* name) {
     struct stat facts {};
     if (::stat(name, &facts) != 0 || S_ISREG(facts.st_mode) || S_ISDIR(facts.st_mode)) return false;

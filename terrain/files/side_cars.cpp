@@ -9,11 +9,11 @@ namespace overfly::terrain {
 namespace fs = std::filesystem;
 namespace {
 
-/// GDAL looks for endings in upper and in lower case.
+/// GDAL looks for extensions in upper and in lower case.
 std::multimap<std::string, std::string> names_in(const fs::path& folder) {
   std::multimap<std::string, std::string> names;
   std::error_code failed;
-  // A folder that cannot be listed has no neighbours that GDAL would list either.
+  // GDAL could not list such a folder either.
   for (fs::directory_iterator entry(folder, failed), end; !failed && entry != end;
        entry.increment(failed)) {
     std::string name = entry->path().filename().string();

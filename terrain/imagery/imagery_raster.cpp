@@ -11,13 +11,13 @@
 namespace overfly::terrain {
 namespace {
 
-/// Texels of the finest in-memory level of one file at most (16 MB).
+/// Maximum number of texels of the finest in-memory level of one file (16 MB).
 constexpr double kPyramidTexels = 4.0 * 1024 * 1024;
-/// Of all files together.
+/// For all files together.
 constexpr std::size_t kPyramidBytes = std::size_t{384} << 20U;
 
-/// Holds on to the coarse levels used last, whatever file they are of; the others are made again
-/// when asked for.
+/// Keeps the most recently used coarse levels of all files; the others are computed again on
+/// demand.
 class KeptLevels {
  public:
   void keep(const std::shared_ptr<const std::vector<Patch>>& levels) {
@@ -109,7 +109,7 @@ Status ImageryRaster::look_at_blocks(const Cancelled& cancelled) const {
   pyramid_->stored.front().pool->put(std::move(*dataset));
   Status sampled = look_for_a_picture(on_the_way, cancelled);
   if (!sampled) return sampled;
-  // The in-memory levels start where the stored ones are left behind, later if they were too big.
+  // The in-memory levels start after the stored ones, or later if they would be too large.
   int& level = pyramid_->first_level;
   level = pyramid_->stored.back().level + 2;
   const double texels = static_cast<double>(width_px_) * height_px_;
@@ -131,7 +131,7 @@ std::vector<std::string> ImageryRaster::doubts() const {
   return all;
 }
 
-/// Tiles that a service had nothing for are often of one colour, without a mask.
+/// Tiles without data at a service are often of one colour, without a mask.
 Status ImageryRaster::look_for_a_picture(const std::vector<int>& rows_on_the_way,
                                          const Cancelled& cancelled) const {
   const auto texel_at = [&](int x, int y) -> Result<Patch> {
@@ -139,7 +139,7 @@ Status ImageryRaster::look_for_a_picture(const std::vector<int>& rows_on_the_way
     return read_stored(pyramid_->stored.front(), x, y, 1, 1);
   };
   std::optional<std::array<std::uint8_t, 3>> first;
-  // A few samples clear nearly every file; more are taken before one is suspected.
+  // A few samples are enough for nearly every file; more are taken before a warning.
   for (const int steps : {5, 32}) {
     auto on_the_way = rows_on_the_way.begin();
     for (int i = 0; i < steps * steps; ++i) {
@@ -152,7 +152,7 @@ Status ImageryRaster::look_for_a_picture(const std::vector<int>& rows_on_the_way
       }
       const auto texel = texel_at(x, y);
       if (!texel) return texel.error();
-      if (texel->valid.data[0] == 0) return {};  // a mask says what is missing
+      if (texel->valid.data[0] == 0) return {};  // a mask marks missing data
       const auto& rgb = texel->rgb.data;
       if (!first) first = {rgb[0], rgb[1], rgb[2]};
       if (!std::equal(first->begin(), first->end(), rgb.begin())) return {};
@@ -165,7 +165,7 @@ Status ImageryRaster::look_for_a_picture(const std::vector<int>& rows_on_the_way
 }
 
 Status ImageryRaster::add_overviews(GDALDataset& dataset, const Cancelled& cancelled) const {
-  // Overviews have mixed what was never written into what was.
+  // Overviews contain averages of written and unwritten blocks.
   if (bands_.unwritten) return {};
   std::vector<Stored>& all = pyramid_->stored;
   GDALRasterBand* band = dataset.GetRasterBand(bands_.rgb[0]);
@@ -183,7 +183,7 @@ Status ImageryRaster::add_overviews(GDALDataset& dataset, const Cancelled& cance
                               std::abs(stored.ratio_y / power - 1.0) < 0.02;
     if (!power_of_two || stored.level <= all.back().level) continue;
     stored.pool = std::make_unique<DatasetPool>(file_, i + 1);
-    // Coarse tiles are then made afresh, which costs time and nothing else.
+    // Coarse tiles are then computed again, which only costs time.
     const auto average = overview_is_average(all.back(), stored, cancelled);
     if (!average) return average.error();
     if (!*average) return {};
@@ -230,7 +230,7 @@ Result<bool> ImageryRaster::overview_is_average(const Stored& finer,
     }
   }
   // Compression keeps an average within a few grey levels of ours; a nearest-neighbour overview
-  // differs as much as single texels do.
+  // differs by as much as single texels do.
   constexpr double kShare = 0.35;
   const double noise = 3.5 * 3.5 * 5 * width * height;
   return to_average <= std::max(noise, kShare * to_nearest);
@@ -264,8 +264,8 @@ Result<Patch> ImageryRaster::read_stored(
   return patch;
 }
 
-/// The coarsest stored texels that can make a level: the level itself where it is exact, else
-/// texels of at most half its size, so that their shifts average out.
+/// The coarsest stored texels from which a level can be computed: the level itself if it is exact,
+/// else texels of at most half its size, so that their shifts average out.
 const ImageryRaster::Stored& ImageryRaster::source_for(int level) const {
   const Stored* best = &pyramid_->stored.front();
   for (const Stored& stored : pyramid_->stored) {
@@ -292,7 +292,7 @@ Result<ImageryRaster::Levels> ImageryRaster::make_levels() const {
   const int level = pyramid_->first_level;
   const Stored& source = source_for(level);
   Patch first = void_patch(ceil_div(width_px_, 1 << level), ceil_div(height_px_, 1 << level));
-  // Pieces whose texels of the source take some 16 MB, in the order of the file's rows.
+  // Parts that need about 16 MB of source texels, in the order of the file's rows.
   const int step = 1 << std::max(0, level - source.level);
   const int columns = std::max(1, 8192 / step);
   const int rows = std::max(1, 512 / step);

@@ -9,7 +9,7 @@
 namespace overfly::terrain {
 namespace {
 
-/// Texels beyond the grid for which a warped layer's place must be known.
+/// Margin of texels beyond the grid in which a warped layer must be transformable.
 constexpr double kMarginTexels = 64.0;
 
 MapRect extent_of(const TileGrid& grid) {
@@ -172,7 +172,7 @@ TileCoverage MappedImagery::coverage(const TileId& id) const {
   if (validity_) {
     return validity_->coverage(low.x(), low.y(), high.x(), high.y());
   }
-  // A warped tile's bounding box says no more than that there may be void corners.
+  // A warped tile's bounding box shows only that there may be void corners.
   const double slack = pixel_from_map_ ? 1.0 : -1e-6;
   const bool inside = low.x() >= slack && low.y() >= slack && high.x() <= width - slack &&
                       high.y() <= height - slack;

@@ -43,14 +43,15 @@ class Kernel {
   /// @param width  of the result's texel, in texels of the level that is read
   /// @param base   of a texel of the result's level 0, in file pixels
   static Kernel across(double width, double base) {
-    // Where level 0 magnifies, it interpolates at texel centres, and a coarser level is the mean of
-    // the same interpolations; where it reduces, they are spread evenly over its texel.
+    // If level 0 magnifies, it interpolates at texel centres, and a coarser level is the mean of
+    // the same interpolations. If level 0 reduces, the interpolations are spread evenly over its
+    // texel.
     const double spacing = base <= 1.0 + 1e-6 ? base : 0.25;
     return {width, std::max(1, static_cast<int>(std::lround(width / spacing)))};
   }
 
   [[nodiscard]] int taps() const { return taps_; }
-  /// First texel of the taps and their weights, for a place with texel centres at integers.
+  /// First texel of the taps and their weights, for a position with texel centres at integers.
   const float* at(double place, int& first) const {
     const double base = std::floor(place);
     first = static_cast<int>(base) - (taps_ / 2 - 1);
@@ -110,7 +111,7 @@ Result<Patch> resample(const ImageryRaster& raster,
   const Kernel kernel_x = Kernel::across(size_px.x() * scale, base_px.x());
   const Kernel kernel_y = Kernel::across(size_px.y() * scale, base_px.y());
 
-  // The window of the file that the result needs, as far as the file goes.
+  // The window of the file that the result needs, clipped to the file.
   const double reach_x = (kernel_x.taps() + 1) / scale;
   const double reach_y = (kernel_y.taps() + 1) / scale;
   Eigen::Vector2d low(1e18, 1e18);

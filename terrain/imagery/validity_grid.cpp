@@ -17,7 +17,7 @@ Result<ValidityGrid> ValidityGrid::read(const ImageryRaster& raster, const Cance
   grid.columns_ = (grid.width_px_ + size - 1) / size;
   grid.rows_ = (grid.height_px_ + size - 1) / size;
   grid.cells_.resize(static_cast<std::size_t>(grid.columns_) * grid.rows_);
-  // Pieces of some 4 million texels, whatever the file's width.
+  // Parts of about 4 million texels, independent of the file's width.
   const int piece_columns = std::max(1, (1 << 22) / (size * size));
   for (int row = 0; row < grid.rows_; ++row) {
     for (int column = 0; column < grid.columns_; column += piece_columns) {

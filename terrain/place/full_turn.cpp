@@ -7,7 +7,8 @@
 namespace overfly::terrain {
 std::optional<double> full_turn_of(const OGRSpatialReference& crs) {
   if (crs.IsGeographic() != 0) return 2.0 * M_PI / crs.GetAngularUnits();
-  // A projection is cylindrical where the equator is a line of constant y, and x grows evenly.
+  // A projection is cylindrical if the equator is a line of constant y along which x increases
+  // evenly.
   const auto transform = CrsTransform::create(wgs84_crs(), crs, "");
   if (!transform) return std::nullopt;
   const double central_deg = crs.GetNormProjParm(SRS_PP_CENTRAL_MERIDIAN, 0.0);

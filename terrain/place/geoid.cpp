@@ -22,7 +22,7 @@ class GridShift {
     const std::string definition = "+proj=vgridshift +grids=" + grid + " +multiplier=1";
     transform_.reset(proj_create(context_.get(), definition.c_str()));
   }
-  /// NaN where the grid has no value.
+  /// NaN if the grid has no value.
   [[nodiscard]] double at(double lon_rad, double lat_rad) const {
     if (!transform_) return std::nan("");
     const PJ_COORD place = proj_coord(lon_rad, lat_rad, 0.0, 0.0);
@@ -56,7 +56,7 @@ std::vector<std::string> grids_of(VerticalDatum datum) {
   return {};
 }
 
-/// The file that PROJ opens for a grid: one of an older name may stand in for the one asked for.
+/// The file that PROJ opens for a grid; a file of an older name may replace the requested one.
 std::string file_of_grid(const std::string& grid) {
   const PJ_GRID_INFO info = proj_grid_info(grid.c_str());
   const std::string file = std::filesystem::path(info.filename).filename().string();
@@ -142,7 +142,7 @@ Eigen::VectorXd geoid_separation_m(const GeoidModel& model, const Eigen::Matrix2
     const double lon_rad = lon_lat_rad(0, i);
     const double lat_rad = lon_lat_rad(1, i);
     double value = shift ? shift->at(lon_rad, lat_rad) : std::nan("");
-    // A regional grid may end inside a large raster.
+    // A regional grid may cover only a part of a large raster.
     if (!std::isfinite(value)) value = egm96_table_m(lat_rad, lon_rad);
     result[i] = value;
   }

@@ -65,7 +65,7 @@ std::optional<ChebyshevFit> fit_chebyshev(const MapRect& domain,
                                           int outputs,
                                           const PlaneFunction& exact,
                                           double tolerance) {
-  // Check points: a regular grid with the edges, which falls between the nodes of every degree.
+  // Check points: a regular grid including the edges, which lies between the nodes of every degree.
   constexpr int kChecks = 23;
   Eigen::Matrix2Xd checks(2, kChecks * kChecks);
   const auto unit = [](int i) { return -1.0 + 2.0 * i / (kChecks - 1); };

@@ -7,7 +7,7 @@
 namespace overfly::terrain {
 namespace {
 
-/// The source texels under one result texel, with their shares.
+/// The source texels under one result texel, with their weights.
 struct Span {
   int begin = 0;
   std::vector<float> weights;

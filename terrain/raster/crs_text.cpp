@@ -39,7 +39,7 @@ bool is_wkt(const std::string& text) {
   return std::find(kKeywords.begin(), kKeywords.end(), keyword) != kKeywords.end();
 }
 
-/// "a.tif,@b.gtx", "@null": what PROJ looks for among its own grids.
+/// "a.tif,@b.gtx", "@null": names that PROJ looks up among its own grids.
 bool are_bare_names(const std::string& text) {
   const auto allowed = [](unsigned char c) {
     return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.' || c == ',' || c == '@';
@@ -52,8 +52,8 @@ bool is_number(const std::string& text) {
          text.find("..") == std::string::npos;
 }
 
-/// Every `+key=value` of a PROJ text without a place in a file system or a network; `+init` reads
-/// a file by its nature.
+/// True if no `+key=value` of a PROJ text names a location in a file system or a network; `+init`
+/// always reads a file.
 bool is_safe_proj_text(const std::string& text) {
   std::istringstream parts(text);
   for (std::string part; parts >> part;) {
@@ -70,8 +70,8 @@ bool is_safe_proj_text(const std::string& text) {
   return true;
 }
 
-/// The parts of WKT that may name a file: extensions with PROJ texts or grids, and the grids of a
-/// bound system.
+/// Checks the parts of WKT that may name a file: extensions with PROJ texts or grids, and the grids
+/// of a bound system.
 bool is_safe_wkt(const std::string& text) {
   const std::string all = lower_case(text);
   for (const std::string_view keyword : {"extension", "parameterfile"}) {

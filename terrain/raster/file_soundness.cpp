@@ -48,7 +48,7 @@ Status check_tiff(GDALDataset& dataset, const fs::path& file, const Cancelled& c
   if (failed) return {};
   Status whole = check_blocks(*dataset.GetRasterBand(1), file, file_bytes, cancelled);
   const int last = dataset.GetRasterCount();
-  // Bands may lie one after the other.
+  // Bands may be stored one after the other.
   if (whole && last > 1) {
     whole = check_blocks(*dataset.GetRasterBand(last), file, file_bytes, cancelled);
   }
@@ -95,7 +95,7 @@ Status check_sources(GDALDataset& dataset,
   return {};
 }
 
-/// Formats that are read from the start stumble over a cut before they reach the end.
+/// Formats that are read sequentially fail at the truncated part before they reach the end.
 Status check_last_row(GDALDataset& dataset,
                       const fs::path& file,
                       const Cancelled& cancelled,

@@ -21,7 +21,7 @@ void initialise_gdal() {
     show_regular_files_alone();
     constexpr GIntBig kBlockCacheBytes = GIntBig{128} << 20;
     GDALSetCacheMax64(kBlockCacheBytes);
-    // Side-car files of one directory listing per open cost more than they bring.
+    // Listing the directory at every open to find side-cars costs more than it saves.
     CPLSetConfigOption("GDAL_PAM_ENABLED", "YES");
     return true;
   }();
@@ -30,7 +30,7 @@ void initialise_gdal() {
 
 namespace {
 
-/// A file may say that its overviews lie in another one, wherever that is.
+/// A file may declare that its overviews are in another file, in any place.
 Status check_overviews(GDALDataset& dataset, const fs::path& file) {
   const char* named = dataset.GetMetadataItem("OVERVIEW_FILE", "OVERVIEWS");
   if (named == nullptr) return {};
@@ -76,7 +76,7 @@ Result<DatasetPtr> open_raster(const fs::path& file, int level) {
 
 namespace {
 
-/// Handles that wait in all pools together.
+/// Number of idle handles in all pools.
 std::atomic<int>& idle_handles() {
   static std::atomic<int> count{0};
   return count;
@@ -123,12 +123,12 @@ Result<DatasetPtr> DatasetPool::open_another() {
   if (opened) return opened;
   const std::lock_guard lock(mutex_);
   --in_use_;
-  // What was readable before and is not now is a fault of reading, whatever GDAL finds.
+  // A file that was readable before and is not now is a read error, whatever error GDAL reports.
   return Error{ErrorCode::kIo, opened.error().message};
 }
 
 void DatasetPool::put(DatasetPtr dataset) {
-  // A world of a thousand files must not use up the process's file descriptors.
+  // A world of a thousand files must not exhaust the process's file descriptors.
   constexpr int kMostIdle = 400;
   const std::lock_guard lock(mutex_);
   --in_use_;

@@ -7,7 +7,7 @@ namespace overfly::terrain {
 
 namespace {
 
-/// The one that hears what is said on this thread.
+/// The object that receives the messages of this thread.
 GdalMessages*& innermost() {
   thread_local GdalMessages* messages = nullptr;
   return messages;

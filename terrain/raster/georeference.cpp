@@ -24,7 +24,7 @@ void GeoTransform::pixel_from_crs(double x, double y, double& px, double& py) co
 
 namespace {
 
-/// Corner coordinates that no place on earth has betray a transform and a CRS that do not match.
+/// Corner coordinates that do not exist on earth show that transform and CRS do not match.
 Status check_range(const Georeference& place, int width, int height, const std::string& file) {
   for (int corner = 0; corner < 4; ++corner) {
     double x = 0.0;

@@ -13,7 +13,7 @@ Error cannot_write(const fs::path& file, const std::string& reason) {
   return {ErrorCode::kIo, file.string() + ": cannot be written: " + reason};
 }
 
-/// An image that lives in memory, as GDAL's drivers want it for copying.
+/// An image in memory, in the form that GDAL's drivers copy from.
 DatasetPtr in_memory(const void* data, int width, int height, int channels, GDALDataType type) {
   auto* driver = GetGDALDriverManager()->GetDriverByName("MEM");
   DatasetPtr dataset(driver->Create("", width, height, channels, type, nullptr));
@@ -37,7 +37,7 @@ DatasetPtr in_memory(const void* data, int width, int height, int channels, GDAL
   return outcome == CE_None ? std::move(dataset) : nullptr;
 }
 
-/// Writes beside the file and renames, so that nobody sees half of it.
+/// Writes to a temporary name and renames, so that no partial file is visible.
 Status copy_to(GDALDataset* source, const char* format, const fs::path& file, char** options) {
   const GdalMessages messages;
   if (source == nullptr) return cannot_write(file, messages.text());
@@ -47,7 +47,7 @@ Status copy_to(GDALDataset* source, const char* format, const fs::path& file, ch
   }
   fs::path part = file;
   part += ".part";
-  // The copy would otherwise leave statistics and colours in a side-car file.
+  // Otherwise the copy would store statistics and colours in a side-car file.
   CPLSetThreadLocalConfigOption("GDAL_PAM_ENABLED", "NO");
   CPLErrorReset();
   DatasetPtr written(driver->CreateCopy(part.c_str(), source, 0, options, nullptr, nullptr));

@@ -21,7 +21,7 @@ bool has_mask(GDALDataset& dataset, const RasterBands& bands) {
   });
 }
 
-/// GDAL's question, between the rows of a reading, whether it goes on.
+/// GDAL's progress callback, called between rows: whether reading continues.
 int CPL_STDCALL ask(double, const char*, void* cancelled) {
   const auto& asked = *static_cast<const Cancelled*>(cancelled);
   return asked && asked() ? FALSE : TRUE;
@@ -146,7 +146,7 @@ CPLErr read_rescaled(GDALDataset& dataset, const RasterBands& bands, int x, int 
   return CE_None;
 }
 
-/// A texel is void when every colour band has the manifest's value.
+/// A texel is void if every colour band has the manifest's value.
 CPLErr read_nodata(GDALDataset& dataset, const RasterBands& bands, int x, int y, Image& valid) {
   std::vector<float> values(valid.data.size());
   std::vector<std::uint8_t> differs(valid.data.size(), 0);
@@ -177,7 +177,7 @@ CPLErr read_nodata(GDALDataset& dataset, const RasterBands& bands, int x, int y,
   return CE_None;
 }
 
-/// A texel is void when every colour band says so (nodata 0 must not pierce a dark red).
+/// A texel is void if every colour band says so (nodata 0 must not mask a dark red).
 CPLErr read_mask(GDALDataset& dataset, const RasterBands& bands, int x, int y, Image& valid) {
   if (bands.nodata) return read_nodata(dataset, bands, x, y, valid);
   std::fill(valid.data.begin(), valid.data.end(), std::uint8_t{0});
@@ -228,7 +228,7 @@ void mask_palette(GDALDataset& dataset, const RasterBands& bands, int x, int y, 
   }
 }
 
-/// A texel is void when it was written in none of the colour bands.
+/// A texel is void if it was written in none of the colour bands.
 void mask_unwritten(GDALDataset& dataset, const RasterBands& bands, int x, int y, Image& valid) {
   Image written(valid.width_px, valid.height_px, 1);
   Image one(valid.width_px, valid.height_px, 1);

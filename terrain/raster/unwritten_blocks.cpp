@@ -6,8 +6,8 @@
 namespace overfly::terrain {
 namespace {
 
-/// By the file's table of blocks. (GDAL 3.6's GetDataCoverageStatus takes written strips for
-/// absent.)
+/// Reads the file's table of blocks, because GDAL 3.6's GetDataCoverageStatus reports written
+/// strips as absent.
 bool was_written(GDALRasterBand& band, int column, int row) {
   const std::string at = std::to_string(column) + "_" + std::to_string(row);
   return band.GetMetadataItem(("BLOCK_OFFSET_" + at).c_str(), "TIFF") != nullptr;

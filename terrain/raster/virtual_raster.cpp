@@ -24,10 +24,11 @@ namespace {
 
 constexpr std::uint64_t kMaxBytes = std::uint64_t{64} << 20U;
 constexpr int kMaxElementDepth = 32;
-constexpr std::size_t kMaxFileDepth = 16;  ///< overviews of overviews of a long strip take ten
+constexpr std::size_t kMaxFileDepth = 16;  ///< overviews of overviews of a long strip need ten
 
-/// Elements of https://gdal.org/drivers/raster/vrt.html that name no file but SourceFilename, whose
-/// text is checked, and compute nothing from code; in lower case.
+/// Elements of https://gdal.org/drivers/raster/vrt.html that compute nothing from code and name no
+/// file except SourceFilename, whose text is checked; in lower case.
+/// GDAL compares names in a description without case.
 constexpr std::string_view kElements =
     " vrtdataset srs geotransform gcplist gcp metadata mdi blockxsize blockysize overviewlist "
     "overview maskband vrtrasterband colorinterp nodatavalue hidenodatavalue colortable entry "
@@ -41,8 +42,7 @@ constexpr std::string_view kElements =
 
 using Xml = std::unique_ptr<CPLXMLNode, decltype(&CPLDestroyXMLNode)>;
 
-/// GDAL compares names in a description without case.
-/// What GDAL would take for a virtual raster by its first 1024 bytes.
+/// Whether GDAL would treat a file as a virtual raster, by its first 1024 bytes.
 bool is_virtual(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::string head(1024, '\0');
@@ -53,7 +53,8 @@ bool is_virtual(const fs::path& file) {
 
 class Description {
  public:
-  /// @param file  its links resolved, since GDAL counts from a link's target too
+  /// @param file  its symbolic links resolved, since GDAL also resolves names relative to a link's
+  ///              target
   Description(const fs::path& file, SideCars& side_cars)
       : file_(file),
         folder_(file.parent_path()),
@@ -136,7 +137,7 @@ class Description {
     }
     names_.insert(text);
     std::error_code failed;
-    sources_.insert(fs::weakly_canonical(place, failed));  // found good a moment ago
+    sources_.insert(fs::weakly_canonical(place, failed));  // checked just before
     return {};
   }
 
@@ -144,12 +145,12 @@ class Description {
   fs::path folder_;
   SourcePolicy inside_;
   SideCars& side_cars_;
-  std::set<std::string> names_;  ///< found good
+  std::set<std::string> names_;  ///< checked names
   std::set<fs::path> sources_;
 };
 
-/// @param whole_of  the rasters that this one is a part of
-/// @param sound     those that were found good
+/// @param whole_of  the rasters that contain this one
+/// @param sound  those that were checked successfully
 Status check_tree(const fs::path& file,
                   std::set<fs::path>& whole_of,
                   std::set<fs::path>& sound,

@@ -131,7 +131,7 @@ bool LevelWriter::write(int level, int y, const Image& rows) {
       return false;
     }
   }
-  // Flushed here, blocks reach the file in one order whatever else fills GDAL's cache.
+  // Flushing here writes the blocks in a fixed order, independent of other use of GDAL's cache.
   for (int c = 0; c < 3; ++c) {
     GDALRasterBand* band = dataset_.GetRasterBand(c + 1);
     if (overview) band = band->GetOverview(level - 1);

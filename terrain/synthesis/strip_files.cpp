@@ -59,7 +59,7 @@ std::string level_name(int level) {
   return level == 0 ? "imagery.vrt" : "imagery_" + std::to_string(1 << level) + ".vrt";
 }
 
-/// One level of the mosaic as GDAL's virtual format.
+/// One level of the mosaic in GDAL's virtual format.
 std::string mosaic_text(
     const fs::path& ground, const Strip& strip, const std::string& wkt, int period_px, int level) {
   const int width = strip.width_px >> level;

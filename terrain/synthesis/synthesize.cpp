@@ -20,7 +20,7 @@ namespace overfly::terrain {
 namespace fs = std::filesystem;
 namespace {
 
-/// Raised whenever the landscape changes, so that cached worlds of before are not mistaken for it.
+/// Increase whenever the landscape changes, so that earlier cached worlds are not used.
 constexpr int kLandscapeVersion = 4;
 /// Texels per side are a multiple of this, so that all overviews are exact.
 constexpr int kSideStepPx = 32;
@@ -61,7 +61,8 @@ Result<WorldSpec::Runway> runway_of(const synthesis::Landscape& land, const synt
       site.middle_y_m + ahead.y;
   if (!(*transform)->apply(points)) return Error{ErrorCode::kInternal, "runway: no place in WGS84"};
   points *= rad_from_deg(1.0);
-  // Grid north is not true north: the heading is that of the far end seen from the threshold.
+  // Grid north is not true north: the heading is the direction of the far end as seen from the
+  // threshold.
   const LocalFrame frame(Geodetic{points(1, 0), points(0, 0), site.base_height_m});
   const Eigen::Vector3d far =
       frame.world_from_geodetic({points(1, 1), points(0, 1), site.base_height_m});
@@ -163,7 +164,7 @@ Status ensure_world(const fs::path& folder,
     return Error{ErrorCode::kIo, parent.string() + ": cannot be written to"};
   }
   while (!lock.try_lock()) {
-    // Another process is at it; its folder appears when it is done.
+    // Another process is making it; its folder appears when it is complete.
     if (progress && !progress(0.0)) return Error{ErrorCode::kCancelled, "synthesis was cancelled"};
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }

@@ -61,7 +61,7 @@ Status write_strip(const fs::path& folder, const StripOptions& options, const Pr
   synthesis::LandscapeOptions plan;
   plan.seed = static_cast<std::uint32_t>(options.seed ^ (options.seed >> 32U));
   plan.half_m = static_cast<float>(0.5 * swatch * options.texel_m);
-  plan.relief_m = 30.0F;  // decides the light on the painted slopes, no more
+  plan.relief_m = 30.0F;  // affects only the light on the painted slopes
   if (progress && !progress(0.0)) return Error{ErrorCode::kCancelled, "synthesis was cancelled"};
   constexpr double kPainting = 0.7;
   const auto part = [&progress](double from, double share) -> Progress {

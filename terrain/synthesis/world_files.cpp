@@ -13,7 +13,7 @@ namespace overfly::terrain::synthesis {
 namespace fs = std::filesystem;
 namespace {
 
-/// Side of the blocks that are painted at once.
+/// Side of the blocks that are painted at a time.
 constexpr int kPaintBlockPx = 512;
 constexpr int kOverviews = 5;
 

@@ -30,7 +30,7 @@ std::string crs_name(const OGRSpatialReference& crs) {
   return text;
 }
 
-/// Share of the grid's area without imagery, from a lattice of look-ups.
+/// Fraction of the grid's area without imagery, sampled on a lattice.
 double gap_share(const TileSource& tiles) {
   const TileGrid& grid = tiles.grid();
   constexpr int kSteps = 200;
@@ -88,7 +88,7 @@ std::string elevation_lines(const World& world, const RasterWorld& source) {
   return text + line("elevation posts: every %.2f m", source.elevation().spacing_m());
 }
 
-/// Latitudes and longitudes between which the imagery lies; across the antimeridian the western
+/// The range of latitude and longitude of the imagery; across the antimeridian the western
 /// longitude is the greater number, as in GeoJSON (RFC 7946, sec. 5.2).
 std::string bounds_line(const TileSource& tiles) {
   const TileGrid& grid = tiles.grid();

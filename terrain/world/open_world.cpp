@@ -33,7 +33,7 @@ Result<Rasters> open_imagery(const WorldSpec& spec,
   return rasters;
 }
 
-/// Files beside those of the layers that are left out.
+/// Warns of files next to those of the layers that are ignored.
 void add_side_car_doubts(const WorldSpec& spec, std::vector<std::string>& warnings) {
   SideCars side_cars;
   const auto add = [&](const std::filesystem::path& file) {
@@ -44,7 +44,7 @@ void add_side_car_doubts(const WorldSpec& spec, std::vector<std::string>& warnin
   for (const ElevationLayer& layer : spec.elevation) add(layer.file);
 }
 
-/// What reading the files themselves needs.
+/// Preparation needed only for reading the files themselves.
 Status prepare(const Rasters& rasters,
                const Cancelled& cancelled,
                std::vector<std::string>& warnings) {
@@ -93,7 +93,7 @@ Result<std::vector<MappedImagery>> map_imagery(const Rasters& rasters,
   return layers;
 }
 
-/// A layer without a texel is worth a word, a world without one an error.
+/// A layer without valid texels is a warning, a world without any is an error.
 Status check_picture(const std::vector<MappedImagery>& layers, std::vector<std::string>& warnings) {
   std::size_t empty = 0;
   for (const MappedImagery& layer : layers) {
@@ -109,8 +109,8 @@ Status check_picture(const std::vector<MappedImagery>& layers, std::vector<std::
                    "over"};
 }
 
-/// Elevation as far around the imagery as is quickly read, at most to about the horizon of a low
-/// flight.
+/// Opens elevation as far around the imagery as can be read fast, at most to about the horizon of a
+/// low flight.
 Result<ElevationModel> open_elevation(const WorldSpec& spec,
                                       const WorldLayout& layout,
                                       std::vector<std::string>& warnings) {
@@ -203,7 +203,7 @@ Status add_digests(World& world, const Cancelled& cancelled, const WorldCache* c
   return {};
 }
 
-/// Looks for a cache that fits; says in the world what it found.
+/// Looks for a matching cache and records the result in the world.
 std::shared_ptr<const WorldCache> find_cache(const WorldSpec& spec,
                                              const WorldLayout& layout,
                                              const ElevationModel& elevation,
@@ -267,7 +267,7 @@ Result<World> open_world(const WorldSpec& spec, const Cancelled& cancelled) {
     world.spec.origin = Geodetic{layout->center_lat_rad, layout->center_lon_rad, height_m};
   }
   const LocalFrame frame(*world.spec.origin);
-  // As far as the polynomial holds: to the horizon where the projection allows.
+  // As far as the polynomial is valid: to the horizon if the projection allows.
   Result<MapGeodesy> geodesy = Error{};
   for (const double reach_m : {50e3, 10e3, 1e3}) {
     geodesy = MapGeodesy::create(layout->plane, frame, layout->extent.grown(reach_m));

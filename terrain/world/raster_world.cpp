@@ -18,7 +18,7 @@ Result<MapGeodesy> MapGeodesy::create(const MapPlane& plane,
     values.resize(6, points.cols());
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
       const Eigen::Vector3d foot = frame.world_from_geodetic({lon_lat(1, i), lon_lat(0, i), 0.0});
-      // The ellipsoid's normal, over a length that keeps its digits.
+      // Length along the ellipsoid's normal, large enough for full precision.
       constexpr double kLengthM = 1000.0;
       const Eigen::Vector3d above =
           frame.world_from_geodetic({lon_lat(1, i), lon_lat(0, i), kLengthM});
@@ -63,7 +63,7 @@ MapGeodesy::Ground::Value MapGeodesy::ground(double x_map_m, double y_map_m) con
     value << foot, frame_->world_from_geodetic({point(1, 0), point(0, 0), 1.0}) - foot;
     return value;
   }
-  // Beyond the projection's reach there is no right answer: the nearest known place stands in.
+  // Beyond the projection's range there is no correct answer: the nearest known place is used.
   return (*ground_)(std::clamp(x_map_m, known.x_min, known.x_max),
                     std::clamp(y_map_m, known.y_min, known.y_max));
 }
@@ -102,7 +102,7 @@ Result<Tile> RasterWorld::tile(const TileId& id) const {
     return Error{ErrorCode::kInvalidArgument,
                  "tile level = " + std::to_string(id.level) + ": must be in [0, 24)"};
   }
-  // Heights cannot say that they failed: the next tile does, so that a flight ends and says why.
+  // Height queries cannot report errors: the next tile does, so that a flight ends with the reason.
   if (const Status heights = elevation_.status(); !heights) return heights.error();
   if (cache_ && cache_->holds(id.level)) return cache_->tile(id);
   std::optional<Tile> result;
@@ -137,7 +137,7 @@ Eigen::Vector3d RasterWorld::coarse_world_from_map(double x_map_m,
 Eigen::Vector2d RasterWorld::map_from_world(double east_m, double north_m) const {
   const Eigen::Vector2d wanted(east_m, north_m);
   Eigen::Vector2d map = geodesy_.map_near(east_m, north_m);
-  // A contraction: the map is conformal to a part in hundreds, and the up axis tilts by the
+  // The iteration converges: the map is conformal to a few percent, and the up axis tilts by the
   // distance over the earth's radius, times the ground's slope.
   constexpr int kMaxIterations = 30;
   constexpr double kCloseM = 1e-6;

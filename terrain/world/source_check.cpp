@@ -6,7 +6,7 @@
 namespace overfly::terrain {
 namespace {
 
-/// All faults, one a line; the code of the gravest: what may not be named before what is absent.
+/// Collects all errors, one a line, with the code of the most severe one: forbidden before absent.
 class Faults {
  public:
   void add(const Status& status) {

@@ -9,7 +9,7 @@ namespace overfly::terrain {
 namespace fs = std::filesystem;
 namespace {
 
-/// What GDAL looks for beside a raster.
+/// Side-cars that GDAL looks for next to a raster.
 constexpr const char* kSideCars[] = {".aux.xml", ".ovr", ".msk"};
 
 fs::path absolute_name(const fs::path& file) { return fs::absolute(file).lexically_normal(); }

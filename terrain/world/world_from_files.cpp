@@ -24,7 +24,7 @@ Content content_of(GDALDataset& dataset) {
   return Content::kEither;
 }
 
-/// About the size of a pixel on the ground, to sort by.
+/// Approximate size of a pixel on the ground, used for sorting.
 double pixel_m(const Georeference& place) {
   const double* g = place.transform.g;
   const double size = std::hypot(g[1], g[4]);

@@ -9,8 +9,8 @@
 namespace overfly::terrain {
 namespace {
 
-/// Points along a file's border and in its inside, file pixels to longitude and latitude [rad],
-/// without a jump at the antimeridian.
+/// Points along a file's border and inside it, converted from file pixels to longitude and latitude
+/// [rad], without a jump at the antimeridian.
 Result<Eigen::Matrix2Xd> geodetic_outline(const ImageryRaster& raster) {
   const Georeference& place = raster.georeference();
   auto transform = CrsTransform::create(place.crs, wgs84_crs(), raster.file().string());
@@ -37,7 +37,7 @@ Result<Eigen::Matrix2Xd> geodetic_outline(const ImageryRaster& raster) {
   return Eigen::Matrix2Xd(points * rad_from_deg(1.0));
 }
 
-/// Sizes of a file's texel on the ground at its middle [m], along its columns and rows.
+/// Sizes of a texel on the ground at the file's centre [m], along its columns and rows.
 Result<Eigen::Vector2d> texel_on_ground(const ImageryRaster& raster) {
   const Georeference& place = raster.georeference();
   auto transform = CrsTransform::create(place.crs, wgs84_crs(), raster.file().string());
@@ -81,7 +81,7 @@ Status choose_plane(const ImageryRaster& first,
     const double width = place.transform.g[1];
     const double height = -place.transform.g[5];
     const double unit_m = place.crs.GetLinearUnits();
-    // A projection that is not true to scale here (Web Mercator) is scaled to the ground.
+    // A projection that is not true to scale at this place (Web Mercator) is scaled to the ground.
     const bool true_scale = std::abs(ground->x() / (width * unit_m) - 1.0) < kTolerance;
     layout.first_aligned = true;
     layout.grid.texel_m = true_scale ? width * unit_m : ground->x();

@@ -23,7 +23,7 @@ std::string shown(const Json& value) {
   return text.size() > kLongest ? text.substr(0, kLongest) + "..." : text;
 }
 
-/// Reads the fields of one JSON object and remembers the first thing that was wrong.
+/// Reads the fields of one JSON object and keeps the first error.
 class Fields {
  public:
   Fields(const Json& object, std::string file, std::string path, std::optional<Error>& error)
@@ -74,7 +74,7 @@ class Fields {
   [[nodiscard]] std::string name(const std::string& field) const {
     return path_.empty() ? field : field.empty() ? path_ : path_ + "." + field;
   }
-  /// Call last: a field that nobody asked for is a spelling mistake.
+  /// Call last: reports fields that were never read, which are probably misspelt.
   void reject_unknown() {
     if (!object_.is_object()) return;
     for (const auto& [key, value] : object_.items()) {
@@ -193,7 +193,7 @@ struct Reader {
   }
 };
 
-/// A path as the manifest names it: relative where the file lies in the manifest's folder.
+/// A path in the manifest's form: relative if the file is in the manifest's folder.
 std::string path_in(const fs::path& folder, const fs::path& file) {
   const fs::path relative = fs::absolute(file).lexically_relative(fs::absolute(folder));
   const bool inside = !relative.empty() && *relative.begin() != "..";

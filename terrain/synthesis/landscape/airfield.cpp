@@ -96,7 +96,7 @@ Rgb Airfield::runway_colour(float u, float v, float fine, float small, float mid
   if (end > 75.0F && std::fmod(u + 2000.0F, 50.0F) < 30.0F) {
     paint = std::max(paint, inside(std::abs(v) - 0.4F));
   }
-  // Landing at the north end one looks along +u with +v to the right.
+  // Landing at the north end, the view is along +u with +v to the right.
   paint = std::max(paint,
                    u < 0.0F ? end_marking(u + half, v, width_m, designator)
                             : end_marking(half - u, -v, width_m, designator + 18));
@@ -110,7 +110,7 @@ Rgb Airfield::colour(float u, float v, float x, float y) const {
   const float middle = fractal(x * 0.16F, y * 0.16F, 3, 0.6F, seed + 3);
   const float large = fractal(x * 0.017F, y * 0.017F, 3, 0.6F, seed + 4);
 
-  // Mown grass in passes, drier on the thin soil beside the pavements.
+  // Mown grass in passes, drier on the thin soil next to the pavements.
   const int pass = floor_int(v / 7.5F);
   const float stripe = (pass & 1) != 0 ? 0.022F : -0.022F;
   const float dry = smoothstep(-0.5F, 0.9F, large + 0.45F * middle + 0.2F * small);

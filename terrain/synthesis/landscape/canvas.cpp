@@ -43,7 +43,7 @@ float outline_m(const Structure& s, const Local& at) {
   }
 }
 
-/// Distance of a place to the outline swept along the shadow's direction.
+/// Distance from a place to the outline swept along the shadow's direction.
 float shadow_m(const Structure& s, float x, float y) {
   float nearest = 1e9F;
   constexpr int kSteps = 6;
@@ -58,7 +58,7 @@ float shadow_m(const Structure& s, float x, float y) {
 }  // namespace
 
 void cast_shadow(Canvas& canvas, const Tree& tree) {
-  // The crown is a ball on a trunk: its shadow is a disc that reaches back to the foot.
+  // The crown is a sphere on a trunk: its shadow is a disc that extends back to the foot.
   const float reach = tree.radius_m * 1.15F;
   for (const float level : {0.3F, 0.62F}) {
     const float height = level * tree.height_m;
@@ -118,7 +118,7 @@ void draw(Canvas& canvas, const Structure& structure) {
     if (distance > 0.3F) return;
     float light = 1.0F;
     if (structure.roof == Roof::kGable) {
-      // Two slopes of 25 degrees: how each faces the sun follows from its direction.
+      // Two slopes of 25 degrees; their light follows from the structure's direction.
       const float side = at.across > 0.0F ? 1.0F : -1.0F;
       const float tilt_east = -structure.sin * side * 0.42F;
       const float tilt_north = structure.cos * side * 0.42F;

@@ -3,7 +3,7 @@
 namespace overfly::terrain::synthesis {
 namespace {
 
-/// The fine textures that all ground shares, about [-1, 1] each.
+/// The fine textures shared by all ground, about [-1, 1] each.
 struct Texture {
   float grain;  ///< a texel
   float clods;  ///< a metre
@@ -24,7 +24,7 @@ Rgb field_colour(const Parcel& parcel,
                  const Texture& tex,
                  float x,
                  float y) {
-  // On the headland the machine turns, and the rows follow the boundary.
+  // The machine turns on the headland, and the rows follow the boundary.
   const float headland_m = 2.0F * parcel.pass_width_m;
   const bool headland = parcel.pass_contrast > 0.0F && hit.border_m < headland_m;
   const float across = headland ? hit.border_m : -parcel.row_sin * x + parcel.row_cos * y;
@@ -70,7 +70,7 @@ Rgb grass_colour(const Slow& slow, const Texture& tex) {
          (1.0F + 0.10F * tex.grain + 0.09F * tex.clods + 0.06F * tex.tufts);
 }
 
-/// A road's surface over what is beside it.
+/// A road's surface, blended into the ground next to it.
 Rgb road_colour(const Rgb& beside, const ParcelHit& hit, const Slow& slow, const Texture& tex) {
   const float m = hit.road_m;
   const float ragged = 0.25F * tex.clods + 0.25F * tex.tufts;
@@ -133,7 +133,7 @@ Rgb yard_colour(
 
 Rgb water_colour(
     const Rgb& bank, float inside_m, float deep_m, const Texture& tex, float x, float y) {
-  // Shallows over mud, then water that mirrors an even sky: a poor place for any tracker.
+  // Shallows over mud, then water that reflects a uniform sky: poor texture for any tracker.
   const float depth = smoothstep(0.0F, deep_m, inside_m);
   const float ripple = 0.6F * noise(x * 0.05F, y * 0.11F, 321) + 0.15F * tex.clods;
   const Rgb water = mix({92, 94, 72}, {52, 66, 66}, depth) * (1.0F + 0.035F * ripple);
@@ -148,7 +148,7 @@ Slow slow_at(const Landscape& land, float x, float y) {
   const std::uint32_t seed = land.water.seed + 80;
   slow.bend_x = bend.x;
   slow.bend_y = bend.y;
-  // Old watercourses show as dark, crooked bands in the soil.
+  // Old watercourses appear as dark, winding bands in the soil.
   const float swale = std::abs(fractal(x / 240.0F, y / 240.0F, 3, 0.55F, seed + 20));
   slow.soil = 1.2F * fractal(x / 170.0F, y / 170.0F, 4, 0.62F, seed) -
               0.55F * (1.0F - smoothstep(0.02F, 0.13F, swale));

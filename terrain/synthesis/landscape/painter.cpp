@@ -8,9 +8,9 @@
 namespace overfly::terrain::synthesis {
 namespace {
 
-/// Spacing of the lattice of slow values, aligned to the whole picture.
+/// Spacing of the lattice of slow values, aligned to the whole image.
 constexpr int kLattice = 8;
-/// Texels around a block that its last filter needs.
+/// Texels around a block that the last filter needs.
 constexpr int kRim = 1;
 
 void paint_ground(Canvas& canvas, const Landscape& land) {
@@ -59,7 +59,7 @@ void paint_ground(Canvas& canvas, const Landscape& land) {
   }
 }
 
-/// Sky light is all that reaches a shadow: darker and bluer.
+/// Only sky light reaches a shadow: darker and bluer.
 void apply_shadows(Canvas& canvas) {
   for (std::size_t i = 0; i < canvas.colour.size(); ++i) {
     const float s = canvas.shadow[i];
@@ -71,7 +71,7 @@ void apply_shadows(Canvas& canvas) {
   }
 }
 
-/// The camera's: a little blur, a little noise, 8 bit.
+/// The camera's effects: slight blur, slight noise, 8 bit.
 Image expose(const Canvas& canvas, int width, int height) {
   Image image(width, height, 3);
   constexpr float kBlur[3] = {0.11F, 0.78F, 0.11F};
@@ -84,7 +84,7 @@ Image expose(const Canvas& canvas, int width, int height) {
           sum = sum + row[i] * (kBlur[i] * kBlur[j]);
         }
       }
-      // A little haze lies over everything.
+      // Slight haze over the whole image.
       const float grey = 0.3F * sum.r + 0.59F * sum.g + 0.11F * sum.b;
       sum = mix(sum, {grey, grey, grey}, 0.10F) * 0.95F + Rgb{7.0F, 9.0F, 12.0F};
       const std::uint32_t bits = hash(canvas.x0 + u, canvas.y0 + v, 0x5e5eU);

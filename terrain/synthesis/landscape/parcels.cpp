@@ -73,7 +73,7 @@ float extent_along(const Polygon& polygon, const Point& direction) {
   return high - low;
 }
 
-/// What a season's land looks like from above.
+/// Chooses the seasonal appearance of a parcel from above.
 void choose_use(Parcel& parcel, Dice& dice) {
   const float lot = dice.unit();
   const auto vary = [&](Rgb colour, float spread) {
@@ -160,7 +160,7 @@ class ParcelPlanner {
  public:
   ParcelPlanner(Parcels& parcels, Dice& dice) : parcels_(parcels), dice_(dice) {}
 
-  /// Divides with a given line first.
+  /// Divides by a given line first.
   template <typename Below, typename Above>
   int cut(
       const Polygon& land, float nx, float ny, float d, Border border, Below below, Above above) {
@@ -184,7 +184,7 @@ class ParcelPlanner {
     const float wanted = 9e3F * std::exp(3.4F * dice_.unit());
     if (area < wanted || depth > 14 || std::max(length, width) < 70.0F)
       return leaf(land, along, area);
-    // Cut across the longer extent, a little off square as old boundaries are.
+    // Cut across the longer extent, slightly off square like old boundaries.
     const Point main = length >= width ? along : across;
     const float turn = dice_.between(-0.09F, 0.09F) * (dice_.chance(0.2F) ? 3.0F : 1.0F);
     const float nx = main.x * std::cos(turn) - main.y * std::sin(turn);
@@ -216,7 +216,7 @@ class ParcelPlanner {
 Parcels Parcels::plan(float half_m, float airfield_half_x_m, float airfield_half_y_m, Dice& dice) {
   Parcels parcels;
   ParcelPlanner planner(parcels, dice);
-  const float edge = 1.5F * half_m;  // beyond the picture, so that its edge cuts fields
+  const float edge = 1.5F * half_m;  // beyond the image, so that its edge cuts fields
   const Polygon land = {{-edge, -edge}, {edge, -edge}, {edge, edge}, {-edge, edge}};
   const float west = -airfield_half_x_m - dice.between(0.05F, 0.12F) * half_m;
   const float east = airfield_half_x_m + dice.between(0.05F, 0.14F) * half_m;

@@ -3,7 +3,7 @@
 namespace overfly::terrain::synthesis {
 namespace {
 
-/// Untouched hills in [0, 1], about.
+/// Hills before the other features, in about [0, 1].
 float hills(float x, float y, std::uint32_t seed) {
   const float broad = noise(x / 1500.0F, y / 1500.0F, seed);
   const float ridges = fractal(x / 620.0F, y / 620.0F, 3, 0.42F, seed + 31);

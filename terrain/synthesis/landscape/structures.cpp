@@ -165,7 +165,7 @@ Structures Structures::plan(float half_m,
   Structures structures;
   Planner planner(structures, dice);
   planner.airfield(airfield);
-  // Homes stand beside roads: places are drawn until enough of them are good.
+  // Houses stand next to roads: places are drawn at random until enough are suitable.
   const float area_km2 = 4e-6F * half_m * half_m;
   int farms = std::max(1, static_cast<int>(0.9F * area_km2));
   int houses = static_cast<int>(3.2F * area_km2);
@@ -177,7 +177,7 @@ Structures Structures::plan(float half_m,
                       water.stream_m(at.x, at.y) > 60.0F && water.pond_m(at.x, at.y) > 50.0F &&
                       hit.parcel->use != LandUse::kWood;
     if (!free || hit.road > Border::kGravelRoad) continue;
-    // Along the road: its direction follows from two places beside each other.
+    // Along the road: its direction follows from two neighbouring places.
     const float nx = parcels.at(at.x + 1.0F, at.y).road_signed_m - hit.road_signed_m;
     const float ny = parcels.at(at.x, at.y + 1.0F).road_signed_m - hit.road_signed_m;
     const float direction = std::atan2(nx, -ny);

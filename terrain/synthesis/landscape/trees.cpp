@@ -15,7 +15,7 @@ struct Stand {
   bool bale = false;    ///< a bale of straw instead
 };
 
-/// How likely a tree is here.
+/// Probability of a tree at a place.
 Stand stand_at(const Landscape& land, float x, float y) {
   const Point uv = land.airfield.to_uv(x, y);
   const float outside = land.airfield.outside_m(uv.x, uv.y);
@@ -35,7 +35,7 @@ Stand stand_at(const Landscape& land, float x, float y) {
   const float clump =
       noise(x / 31.0F, y / 31.0F, seed) + 0.5F * noise(x / 12.0F, y / 12.0F, seed + 1);
   Stand stand{0.0008F, 1.0F};
-  // No tall trees where aircraft come in.
+  // No tall trees in the approach path.
   const bool approach = std::abs(uv.y) < 120.0F && outside < 260.0F;
   const float wood = land.wood_at(x, y);
   const float ragged = 3.0F + 9.0F * noise(x / 37.0F, y / 37.0F, seed + 3);
@@ -94,7 +94,7 @@ Tree grown(const Stand& stand, float x, float y, std::uint32_t seed) {
   return tree;
 }
 
-/// An orchard's trees stand in rows of their own.
+/// An orchard's trees stand in rows.
 void plant_orchards(const Landscape& land,
                     float x_min,
                     float y_min,
