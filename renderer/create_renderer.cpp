@@ -8,10 +8,10 @@ namespace overfly::renderer {
 
 namespace {
 
-/// The camera by casting rays, scene views by OpenGL where it works.
+/// Draws the camera by casting rays, and scene views by OpenGL if it works.
 class CombinedRenderer final : public Renderer {
  public:
-  /// @param scenes  null when OpenGL is first started for the first scene view
+  /// @param scenes  null if OpenGL is to be started at the first scene view
   CombinedRenderer(std::shared_ptr<const terrain::TileSource> tiles,
                    const RendererOptions& options,
                    Result<std::unique_ptr<Renderer>> scenes,

@@ -1,5 +1,5 @@
-// A renderer without graphics: the same checks and records as the real one, and images that are
-// a pattern of their pose.
+// A renderer without graphics: the same checks and metadata as a real one, and images that are a
+// pattern of their pose.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

@@ -9,9 +9,9 @@ namespace overfly::renderer {
 
 namespace {
 
-/// A mean of nothing says only "much more": at most this many times in one step.
+/// Limits the step for a black image, which shows only that more exposure is needed.
 constexpr double kDarkestLevel = 1e-3;
-/// Of a wholly saturated image, whose slope would be 0.
+/// The slope for a completely saturated image, which would be 0.
 constexpr double kLeastSlope = 0.25;
 
 }  // namespace

@@ -11,13 +11,13 @@ namespace overfly::renderer {
 
 namespace {
 
-/// A place in the image [px], between pixels.
+/// A position in the image [px], between pixels.
 struct Place {
   double x = 0.0;
   double y = 0.0;
 };
 
-/// Pixels from the first to before the second, within the image.
+/// A range of pixels [first, last) within the image.
 struct Box {
   int x0, y0, x1, y1;
 };
@@ -37,7 +37,7 @@ Box box_around(const Place& centre, double radius_px, const RadianceImage& image
           clamped(std::ceil(centre.y + radius_px) + 1.0, image.height_px)};
 }
 
-/// 0 up to `low`, 1 from `high` on, a cubic between with level ends.
+/// 0 up to `low`, 1 from `high` on, in between a cubic with zero slope at both ends.
 double smooth_step(double low, double high, double value) {
   const double t = std::clamp((value - low) / (high - low), 0.0, 1.0);
   return t * t * (3.0 - 2.0 * t);
@@ -54,7 +54,7 @@ void add_glare(const ImageFault& fault, RadianceImage& image) {
   }
   SeededSequence random(fault.seed);
   const Place centre = draw_place(random, image);
-  // The Gaussian is a product: one factor for each column, one for each row.
+  // The Gaussian is separable: one factor for each column, one for each row.
   const auto factor = [&](double distance_px) {
     return std::exp(-0.5 * distance_px * distance_px / (fault.radius_px * fault.radius_px));
   };
@@ -80,7 +80,7 @@ void add_speck(const Place& centre, double radius_px, double opacity, RadianceIm
   }
 }
 
-/// Radiance between pixels, bilinear; beyond the edge the edge's pixel goes on.
+/// Bilinear interpolation of the radiance; beyond the edge the edge's pixel is repeated.
 float sampled(const RadianceImage& image, double x, double y, int channel) {
   const double inside_x = std::clamp(x, 0.0, image.width_px - 1.0);
   const double inside_y = std::clamp(y, 0.0, image.height_px - 1.0);
@@ -95,7 +95,7 @@ float sampled(const RadianceImage& image, double x, double y, int channel) {
   return above * (1 - v) + below * v;
 }
 
-/// A drop is a strong lens: it shows a field three times its own size, turned by 180 deg.
+/// A drop is a strong lens: it shows a field three times its own size, rotated by 180 deg.
 constexpr double kDropDemagnification = 3.0;
 constexpr double kLargestDropBlurPx = 12.0;
 
@@ -118,7 +118,7 @@ void add_drop(const Place& centre, double radius_px, double opacity, RadianceIma
     for (int x = box.x0; x < box.x1; ++x) {
       const double r = std::hypot(x - centre.x, y - centre.y) / radius_px;
       const auto cover = static_cast<float>(opacity * (1.0 - smooth_step(0.8, 1.0, r)));
-      // Near the rim most light is bent away from the camera.
+      // Near the rim most light is refracted away from the camera.
       const auto light = static_cast<float>(1.0 - 0.6 * smooth_step(0.55, 0.95, r));
       for (int c = 0; c < image.channels; ++c) {
         float& value = image.at(x, y, c);
@@ -128,7 +128,7 @@ void add_drop(const Place& centre, double radius_px, double opacity, RadianceIma
   }
 }
 
-/// Specks and drops: each with a place and a size of its own.
+/// Adds specks or drops, each with its own position and size.
 void add_spots(const ImageFault& fault, RadianceImage& image) {
   SeededSequence random(fault.seed);
   const bool dirt = fault.kind == ImageFaultKind::kDirt;
@@ -140,7 +140,7 @@ void add_spots(const ImageFault& fault, RadianceImage& image) {
     if (dirt) {
       add_speck(centre, fault.radius_px * (0.5 + size), opacity, image);
     } else {
-      // The first drop has the size that was asked for.
+      // The first drop has the requested size.
       const double share = i == 0 ? 1.0 : 0.3 + 0.7 * size;
       add_drop(centre, fault.radius_px * share, fault.strength, image);
     }

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kAxes = 6;
 constexpr std::size_t kNoiseTones = 128;
-/// Steps of the integral of |H|^2 over the band; a resonance of damping 0.01 spans several.
+/// Steps of the integral of |H|^2 over the band; a resonance with damping 0.01 spans several.
 constexpr std::size_t kSpectrumSteps = 8192;
 
 Status check_lines(const char* field, const std::vector<double>& rms, double most) {
@@ -34,7 +34,7 @@ Status check_axes(const char* field, const std::array<double, 3>& rms, double mo
   return check_lines(field, std::vector<double>(rms.begin(), rms.end()), most);
 }
 
-/// The camera's noise spectrum for an airframe of density 1, cumulated over its band.
+/// The camera's noise spectrum for an airframe of density 1, accumulated over its band.
 struct CumulatedSpectrum {
   std::vector<double> f_hz;
   std::vector<double> power;  ///< up to f_hz
@@ -54,7 +54,7 @@ struct CumulatedSpectrum {
 
   [[nodiscard]] double total() const { return power.back(); }
 
-  /// The frequency up to which the cumulated power is `wanted`.
+  /// The frequency up to which the accumulated power is `wanted`.
   [[nodiscard]] double frequency_of(double wanted) const {
     const auto above = std::upper_bound(power.begin() + 1, power.end() - 1, wanted);
     const auto i = static_cast<std::size_t>(above - power.begin());
@@ -62,8 +62,8 @@ struct CumulatedSpectrum {
     return f_hz[i - 1] + share * (f_hz[i] - f_hz[i - 1]);
   }
 
-  /// Limits of the strata in cumulated power: half of them follow power, half bandwidth, so that
-  /// neither the resonance nor the band's quiet end is left to a few tones.
+  /// Limits of the strata in accumulated power: half of them by power, half by bandwidth, so that
+  /// both the resonance and the weak end of the band get enough tones.
   [[nodiscard]] std::vector<double> strata() const {
     std::vector<double> limits;
     limits.reserve(kNoiseTones + 1);

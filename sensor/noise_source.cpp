@@ -25,7 +25,7 @@ NoiseKey noise_key(std::uint64_t seed, std::int64_t frame, NoiseStage stage) {
   state = mixed(state + kGoldenGamma * (static_cast<std::uint64_t>(frame) + 1));
   state = mixed(state + kGoldenGamma * static_cast<std::uint64_t>(stage));
   const std::uint64_t more = mixed(state + kGoldenGamma);
-  // Odd, so that the first multiplications of the hash lose nothing of the counter.
+  // Odd, so that the first multiplications of the hash keep all bits of the counter.
   return {static_cast<std::uint32_t>(state) | 1U,
           static_cast<std::uint32_t>(state >> 32U) | 1U,
           static_cast<std::uint32_t>(more) | 1U};

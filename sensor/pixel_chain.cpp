@@ -21,7 +21,7 @@ OVERFLY_LANES void fetch_ahead(const SensorRow& row, int start) {
     __builtin_prefetch(row.radiance + i);
 }
 
-/// What the light of a chunk leaves on average, the pattern of the pixels' gains included.
+/// Mean electrons of a chunk, including the pattern of the pixels' gains.
 /// @return whether any sample is below kExactPoissonBelowE
 OVERFLY_LANES bool mean_electrons(
     const PixelChain& chain, const SensorRow& row, int start, int count, Lanes& mean_e) {
@@ -46,12 +46,12 @@ OVERFLY_LANES bool mean_electrons(
   return few != 0;
 }
 
-/// x rounded to a whole number while |x| < 2^22, and to 1e-7 of itself above.
+/// x rounded to a whole number if |x| < 2^22, and to 1e-7 of itself above.
 OVERFLY_LANES float whole(float x) { return (x + 0x1.8p23F) - 0x1.8p23F; }
 
-/// Normal with the second term of the expansion of Cornish and Fisher (1938): for z standard
-/// normal, mu + s z + (z^2 - 1) / 6 has the skewness of Poisson's distribution; s^2 leaves out the
-/// variances that the term (1/18) and the rounding (1/12) bring. Positive, as |z| < 5.3.
+/// A normal variable with the second term of the expansion of Cornish and Fisher (1938): for z
+/// standard normal, mu + s z + (z^2 - 1) / 6 has the skewness of Poisson's distribution; s^2
+/// excludes the variances of the term (1/18) and of the rounding (1/12). Positive, since |z| < 5.3.
 /// @pre mean_e >= kExactPoissonBelowE
 OVERFLY_LANES float many_electrons(float mean_e, float z) {
   const float s = std::sqrt(mean_e - 5.0F / 36.0F);
@@ -78,9 +78,9 @@ OVERFLY_LANES double exp_of_minus(double x) {
   return p * p;
 }
 
-/// Inversion by sequential search (Devroye 1986, "Non-uniform random variate generation",
-/// section X.3.3): the smallest k with P(X <= k) >= u, all samples of the chunk in step. Samples
-/// of kExactPoissonBelowE and more get 0.
+/// Inversion by sequential search (Devroye 1986, "Non-uniform random variate generation", section
+/// X.3.3): the smallest k with P(X <= k) >= u, for all samples of the chunk in parallel. Samples of
+/// kExactPoissonBelowE and more get 0.
 OVERFLY_LANES void few_electrons(const NoiseKey& key,
                                  std::uint32_t counter,
                                  const Lanes& mean_e,
@@ -98,7 +98,7 @@ OVERFLY_LANES void few_electrons(const NoiseKey& key,
     sum[i] = probability[i];
     electrons[i] = 0.0F;
   }
-  // The sum of floats may stay below a `wanted` next to 1: terms below 3e-9 past the mode end it.
+  // The sum of floats may stay below a `wanted` close to 1: terms below 3e-9 past the mode end it.
   for (int n = 1; n <= 80; ++n) {
     const auto terms = static_cast<float>(n);
     const float factor = 1.0F / terms;
@@ -114,22 +114,22 @@ OVERFLY_LANES void few_electrons(const NoiseKey& key,
   }
 }
 
-/// What is drawn for a chunk; the compiler makes a loop of its own for each.
+/// The random numbers drawn for a chunk; the compiler makes a separate loop for each case.
 enum class Drawn { kNothing, kReadNoise, kManyElectrons, kFewAndMany };
 
-/// What a chunk is made of; all arrays are of its samples.
+/// Data of a chunk; all arrays are indexed by its samples.
 struct Chunk {
   alignas(64) Lanes mean_e;
-  alignas(64) Lanes few_e;  ///< of kFewAndMany
+  alignas(64) Lanes few_e;  ///< for kFewAndMany
   alignas(64) Lanes offset_e;
-  ChunkWords words;  ///< of all but kNothing
+  ChunkWords words;  ///< for all except kNothing
   int start = 0;
-  int count = kChunk;  ///< samples that are in the image
+  int count = kChunk;  ///< samples inside the image
   bool has_offsets = false;
 };
 
-/// From mean electrons to the converter's numbers.
-/// @tparam kPlain  the chunk is whole and has no offsets
+/// Converts mean electrons to the converter's numbers.
+/// @tparam kPlain  the chunk is complete and has no offsets
 template <Drawn kDrawn, bool kPlain>
 OVERFLY_LANES void convert(const PixelChain& chain, const Chunk& chunk, RowResult& result) {
   const auto largest = static_cast<float>(chain.largest_dn);
@@ -213,8 +213,8 @@ void expose_row(const PixelChain& chain, const SensorRow& row, RowResult& result
 }
 
 #if defined(__x86_64__)
-// Nothing is contracted to a fused multiply-add (-ffp-contract=off) that is not written as one:
-// every version rounds alike.
+// Only explicit fused multiply-adds are used (-ffp-contract=off), so that every version rounds
+// alike.
 __attribute__((target("avx2,fma"))) void expose_row_avx2(const PixelChain& chain,
                                                          const SensorRow& row,
                                                          RowResult& result) {

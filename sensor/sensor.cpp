@@ -19,7 +19,7 @@ double half_diagonal_px(const PinholeCamera& pinhole) {
   return 0.5 * std::hypot(pinhole.width_px, pinhole.height_px);
 }
 
-/// The vignette must transmit between nothing and all, at every pixel.
+/// The vignette's transmission must be in (0, 1] at every pixel.
 Status check_vignette(const Vignette& vignette, const PinholeCamera& pinhole) {
   const double far_x = std::max(pinhole.cx_px, pinhole.width_px - 1 - pinhole.cx_px);
   const double far_y = std::max(pinhole.cy_px, pinhole.height_px - 1 - pinhole.cy_px);
@@ -36,7 +36,7 @@ Status check_vignette(const Vignette& vignette, const PinholeCamera& pinhole) {
   return {};
 }
 
-/// A field of standard normals that belongs to the sensor, one value a sample.
+/// A field of standard normals that belongs to the sensor, one value per sample.
 std::vector<float> pattern(std::uint64_t seed, NoiseStage stage, std::size_t samples) {
   const NoiseKey key = noise_key(seed, 0, stage);
   std::vector<float> values(samples);
@@ -101,7 +101,7 @@ class ModelledSensor final : public Sensor {
   }
 
  private:
-  /// What belongs to the number of channels; grey and colour may alternate.
+  /// Prepares the data that depends on the number of channels; grey and colour may alternate.
   void prepare(int channels) {
     if (channels == channels_) return;
     channels_ = channels;
@@ -173,7 +173,7 @@ class ModelledSensor final : public Sensor {
     made.saturated_fraction = static_cast<double>(result.saturated) / count;
   }
 
-  /// From the converter's numbers of a row to the file's.
+  /// Converts a row of the converter's numbers to the file's.
   void respond(int samples, std::size_t start, SensorImage& made) {
     std::uint8_t* eight_bits = &made.image.data[start];
     if (model_.bits == 8) {
@@ -186,7 +186,7 @@ class ModelledSensor final : public Sensor {
     for (int i = 0; i < samples; ++i) eight_bits[i] = static_cast<std::uint8_t>(deep[i] >> shift);
   }
 
-  /// The pointers do not overlap: without saying so, bytes written might be anything's.
+  /// The pointers do not overlap. Without __restrict, writing bytes could alias any other data.
   void respond_8bit(const std::uint16_t* __restrict numbers,
                     int samples,
                     std::uint8_t* __restrict out) const {
@@ -208,7 +208,7 @@ class ModelledSensor final : public Sensor {
   std::vector<std::uint8_t> table_8bit_;  ///< the same for 8-bit images
   int largest_adc_ = 255;
   double adc_per_dn_ = 1.0;  ///< converter's numbers per number of depth `bits`
-  int channels_ = 0;         ///< that the following are made for
+  int channels_ = 0;         ///< for which the following are prepared
   std::vector<float> x_term_;
   std::vector<float> gain_pattern_;
   std::vector<float> offset_pattern_e_;

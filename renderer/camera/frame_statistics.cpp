@@ -22,7 +22,7 @@ struct Hit {
   const GroundBatch* batch = nullptr;
 };
 
-/// A triangle as rays from the optical centre see it.
+/// A triangle in the form used for intersection with rays from the optical centre.
 class SeenTriangle {
  public:
   SeenTriangle(const GroundVertex& a, const GroundVertex& b, const GroundVertex& c)
@@ -47,7 +47,7 @@ class SeenTriangle {
   [[nodiscard]] bool intersect(const Eigen::Vector3d& ray, Hit& hit) const {
     const std::array<double, 3> weights = {
         edge_normals_[0].dot(ray), edge_normals_[1].dot(ray), edge_normals_[2].dot(ray)};
-    // Facing the camera, the edge normals of a triangle point away from the rays within.
+    // If the triangle faces the camera, its edge normals point away from the rays inside.
     if (weights[0] > 0.0 || weights[1] > 0.0 || weights[2] > 0.0) return false;
     const double sum = weights[0] + weights[1] + weights[2];
     const double along = normal_.dot(ray);
@@ -60,7 +60,7 @@ class SeenTriangle {
       hit.u += weights[i] / sum * vertices_[i]->u;
       hit.v += weights[i] / sum * vertices_[i]->v;
     }
-    // Surface seen by a unit of the image plane at z = 1: depth^3 / distance of the plane.
+    // Surface area seen per unit area of the image plane at z = 1: depth^3 / distance of the plane.
     hit.texels_per_px = depth_m * depth_m * depth_m * doubled_area_m2_ / std::abs(offset_);
     return true;
   }
@@ -94,7 +94,7 @@ class RayGrid {
       hits_[i].batch = &batch;
     };
     if (!camera_.distortion().none()) {
-      // The rays are no grid in the plane: look at each.
+      // The rays do not form a grid in the plane, so each is examined.
       Eigen::AlignedBox2d box;
       bool in_front = true;
       for (const Eigen::Vector3d& p : triangle.points()) {
@@ -215,7 +215,7 @@ FrameStatistics measure_frame(const GroundMesh& mesh,
                batch);
     }
   }
-  // Levels finer than the photograph are synthetic: they do not count.
+  // Levels finer than the photograph are synthetic and do not count.
   const double real_share = tiles.grid().texel_m / tiles.real_texel_m();
   FrameStatistics statistics;
   std::vector<double> texels;

@@ -41,7 +41,7 @@ double largest_motion_px(const CameraModel& camera,
 int exposure_instants(const CameraRequest& request, const HeightQuery& ground) {
   if (request.exposure_ns == 0 || request.T_world_camera.still()) return 1;
   const auto pose = [&](std::int64_t t_ns) { return request.T_world_camera.at(t_ns); };
-  // The way there and back again: a vibration may return within the exposure.
+  // Sums the motion in both directions, because a vibration may return within the exposure.
   constexpr int kPieces = 8;
   double streak_px = 0.0;
   const std::int64_t from_ns = request.t_ns - request.readout_ns / 2 - request.exposure_ns / 2;

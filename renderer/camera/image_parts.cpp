@@ -10,12 +10,13 @@ namespace overfly::renderer {
 
 namespace {
 
-/// With a lens: so small that a pinhole picture of it is hardly stretched towards its rim.
+/// Maximum part size with a lens, small enough that its pinhole image is hardly stretched at the
+/// rim.
 constexpr int kLensPartPx = 256;
-/// Around a picture for the taps' neighbours [px].
+/// Margin around a part's pinhole image for the taps' neighbours [px].
 constexpr double kMarginPx = 4.0;
 
-/// Places on the rim and inside of a part's rectangle where a lens is looked at.
+/// Points on the rim and inside a part's rectangle at which a lens is evaluated.
 std::vector<Eigen::Vector2d> probe_pixels(const ImagePart& part) {
   constexpr int kSteps = 8;
   std::vector<Eigen::Vector2d> pixels;
@@ -52,7 +53,7 @@ std::optional<Eigen::Vector2d> plane_per_pixel(const CameraModel& camera,
   return Eigen::JacobiSVD<Eigen::Matrix2d>(J).singularValues();
 }
 
-/// A picture of the rays through a part's rectangle, looking at its middle.
+/// A pinhole image of the rays through a part's rectangle, looking at its centre.
 void aim_through_lens(const CameraModel& camera, double lod_shift, ImagePart& part) {
   const Eigen::Vector2d middle(part.left_px + 0.5 * (part.width_px - 1),
                                part.top_px + 0.5 * (part.height_px - 1));
@@ -86,14 +87,14 @@ void aim_through_lens(const CameraModel& camera, double lod_shift, ImagePart& pa
   }
 }
 
-/// Rows of the image as they are, or `scale` times as dense.
+/// Rows of the image at the original or `scale` times the density.
 void aim_straight(const PinholeCamera& camera, int scale, ImagePart& part) {
   PinholeCamera& source = part.source;
   source.width_px = scale * part.width_px;
   source.height_px = scale * part.height_px;
   source.fx_px = scale * camera.fx_px;
   source.fy_px = scale * camera.fy_px;
-  // Pixel edges coincide: place + 0.5 scales.
+  // Pixel edges coincide: position + 0.5 scales.
   source.cx_px = scale * (camera.cx_px - part.left_px + 0.5) - 0.5;
   source.cy_px = scale * (camera.cy_px - part.top_px + 0.5) - 0.5;
   part.direct = scale == 1;
@@ -145,7 +146,7 @@ PinholeCamera covering_pinhole(const CameraModel& camera) {
       box.extend(ray->head<2>().cwiseMax(-kFarthest).cwiseMin(kFarthest));
     }
   }
-  // Between the probed places a lens may bulge a little.
+  // Margin, because a lens may bulge slightly between the probed points.
   const Eigen::Vector2d focal(wide.fx_px, wide.fy_px);
   const Eigen::Vector2d margin = 0.02 * focal.cwiseProduct(box.sizes());
   const Eigen::Vector2d low = focal.cwiseProduct(box.min()) - margin;

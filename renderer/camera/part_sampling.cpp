@@ -9,7 +9,7 @@ namespace overfly::renderer {
 
 namespace {
 
-/// Nearer to a pixel's centre than this, its value is taken as it is.
+/// Closer to a pixel's centre than this, the pixel's value is used directly.
 constexpr double kOnCentrePx = 1e-6;
 
 /// Keys 1981, eq. 15 (a = -1/2), at distances 1 + f, f, 1 - f, 2 - f.
@@ -22,7 +22,7 @@ std::array<float, 4> cubic_weights(double f) {
           static_cast<float>(0.5 * f3 - 0.5 * f2)};
 }
 
-/// Adds the picture's value at a place to `sums`.
+/// Adds the interpolated value at a position to `sums`.
 void add_sample(const ImageBuffer<float>& picture,
                 const Eigen::Vector2d& at,
                 std::array<float, 3>& sums) {
@@ -52,7 +52,7 @@ void add_sample(const ImageBuffer<float>& picture,
   for (int c = 0; c < picture.channels; ++c) sums[c] += std::max(value[c], 0.0F);
 }
 
-/// Depth of the picture at a place; by 1 / z, which is affine over a plane's image.
+/// Interpolated depth at a position, through 1 / z, which is affine over a plane's image.
 float depth_at(const DepthImage& picture, const Eigen::Vector2d& at) {
   const int left = std::clamp(static_cast<int>(std::floor(at.x())), 0, picture.width_px - 1);
   const int top = std::clamp(static_cast<int>(std::floor(at.y())), 0, picture.height_px - 1);
@@ -149,7 +149,8 @@ void write_depth(const ImagePart& part,
       const Eigen::Vector3d ray = rays.ray(part.left_px + x, part.top_px + y, 0);
       to = std::numeric_limits<float>::infinity();
       if (std::isnan(ray.x())) continue;
-      // The point is both z_picture along the picture's axis and z_camera times the ray.
+      // The point is both at z_picture along the pinhole image's axis and at z_camera times the
+      // ray.
       const double along = (part.R_source_camera * ray).z();
       to = static_cast<float>(depth_at(picture, source_pixel(part, ray)) / along);
     }

@@ -51,7 +51,7 @@ std::optional<ProjectedPoint> RowProjector::project(const Eigen::Vector3d& p_wor
     const ProjectedPoint point{(1.0 - share) * upper->pixel + share * lower->pixel,
                                (1.0 - share) * upper->depth_m + share * lower->depth_m};
     if (std::abs(point.pixel.y() - row) < kCloseRows) return point;
-    // Beyond the image no row is exposed: the point is seen from the pose of the border's row.
+    // No row is exposed beyond the image: the pose of the border's row is used there.
     if (i > 0 && (row < 0.0 || row > last) && (point.pixel.y() < 0.0 || point.pixel.y() > last)) {
       return point;
     }

@@ -30,8 +30,8 @@ Eigen::Vector3d normal_at(const HeightQuery& ground, const Eigen::Vector3d& p, d
       .normalized();
 }
 
-/// The farthest of the four depths around a place in the image: across a ridge the place belongs
-/// to either side.
+/// The farthest of the four depths around a position in the image: across a ridge the position
+/// belongs to either side.
 double farthest_depth_m(const DepthImage& depth, const Eigen::Vector2d& pixel) {
   const int x = std::clamp(static_cast<int>(pixel.x()), 0, depth.width_px - 1);
   const int y = std::clamp(static_cast<int>(pixel.y()), 0, depth.height_px - 1);
@@ -136,7 +136,7 @@ VectorImage optical_flow(const PointImage& points,
 
 Image validity_mask(const PointImage& points, const terrain::TileSource& tiles) {
   Image mask(points.width_px, points.height_px, 1, kMaskNothing);
-  // As terrain's drape_stretch(), which `overfly world info` uses.
+  // Same as terrain's drape_stretch(), which `overfly world info` uses.
   const double step_m = std::max(0.1, 0.25 * tiles.real_texel_m());
   for (int y = 0; y < points.height_px; ++y) {
     for (int x = 0; x < points.width_px; ++x) {

@@ -69,7 +69,7 @@ struct ViewAhead::State {
       try {
         look_ahead(requests);
       } catch (const std::exception&) {
-        // Too little memory to look ahead: what the views need is read when they are drawn.
+        // Out of memory for reading ahead: the views read what they need when they are drawn.
       }
       const double spent_s = thread_cpu_s() - before_s;
       lock.lock();
@@ -95,7 +95,7 @@ struct ViewAhead::State {
           if (leaf.textured) add(leaf.texture);
         }
         patches.end_view();
-        // There is time: leave the processor to the frames in between.
+        // Not urgent: leaves the processor to the frames in between.
         std::this_thread::sleep_for(std::chrono::duration<double>(thread_cpu_s() - before_s));
       }
     }
@@ -104,7 +104,8 @@ struct ViewAhead::State {
       const TileId& id = ids[i];
       if (id.level + 1 < levels) add({id.level + 1, id.col >> 1, id.row >> 1});
     }
-    // All cameras of an aircraft share a format; where not, the others' tiles are read on demand.
+    // The cameras of an aircraft normally share a format; otherwise the others' tiles are read on
+    // demand.
     tiles->prefetch(ids, requests.front().format);
   }
 
@@ -112,12 +113,12 @@ struct ViewAhead::State {
   GroundPatches patches;
   std::mutex mutex;
   std::condition_variable changed;
-  std::vector<CameraRequest> waiting;  // of one time
+  std::vector<CameraRequest> waiting;  // of the same time
   std::int64_t looked_at_ns = -kEveryNs;
   bool busy = true;
   bool stopping = false;
   double cpu_s = 0.0;
-  std::thread thread;  // last: starts when all else is there
+  std::thread thread;  // last member: starts after all others are initialised
 };
 
 ViewAhead::ViewAhead(std::shared_ptr<TileStore> tiles, std::shared_ptr<GroundPatchStore> patches)

@@ -15,7 +15,7 @@ namespace overfly::renderer::egl {
 
 namespace {
 
-/// True where one picture at one instant is the image.
+/// True if the image is a single pinhole image at one instant.
 bool is_plain(const CameraRequest& request) {
   const bool instant = request.exposure_ns == 0 && request.readout_ns == 0;
   return request.camera.distortion().none() && request.quality == RenderQuality::kTrilinear &&
@@ -67,7 +67,7 @@ void prepare_depth_test(bool needed) {
   glClear(GL_DEPTH_BUFFER_BIT);
 }
 
-/// The pose of a part's picture at a time.
+/// The pose of a part's pinhole image at a time.
 View view_of(const CameraRequest& request, const ImagePart& part, std::int64_t t_ns) {
   View view = View::from(part.source, request.T_world_camera.at(t_ns));
   view.R_camera_world = part.R_source_camera * view.R_camera_world;
@@ -134,7 +134,7 @@ Result<RenderTarget*> CameraPass::draw_plain(const CameraRequest& request, Camer
   Result<RenderTarget*> target =
       draw_picture(request, mesh, view.camera, look_of(request), target_of(request.format));
   if (!target.ok()) return target;
-  // A GPU starts now; the frame is measured meanwhile.
+  // Starts the GPU; the frame is measured meanwhile.
   glFlush();
   const auto has_imagery = [&](const terrain::TileId& tile, double u, double v) {
     return textures_.has_imagery(tile, request.format, u, v);
@@ -158,7 +158,7 @@ Status CameraPass::draw_composed(const CameraRequest& request, CameraFrame& fram
   for (const ImagePart& part : divide_image(request, rows_of_one_pose(request, tiles))) {
     look.lod_bias = part.lod_bias;
     for (int i = 0; i < instants; ++i) {
-      // The middles of equal shares of the exposure.
+      // The midpoints of equal intervals of the exposure.
       const double share = (i + 0.5) / instants - 0.5;
       const std::int64_t t_ns =
           part.t_ns + std::llround(share * static_cast<double>(request.exposure_ns));

@@ -51,7 +51,7 @@ std::string gl_string(GLenum name) {
   return text == nullptr ? "unknown" : text;
 }
 
-/// What RendererInfo says of a device that was asked for.
+/// The RendererInfo note about a requested device.
 std::string note_of(const std::string& asked,
                     bool granted,
                     const EglDevice& device,
@@ -100,7 +100,7 @@ Result<std::unique_ptr<EglContext>> EglContext::create(const std::string& wanted
       continue;
     }
     const bool software = (*context)->info().software;
-    // A platform without a device may draw with a GPU, which is not what was asked for.
+    // A platform without a device may draw with another GPU than the requested one.
     if (!wish->any() && !asks_for(*wish, device) && !software) continue;
     const bool granted = asks_for(*wish, device) || (wish->software && software);
     (*context)->note_ = note_of(wanted, granted, device, said);

@@ -16,10 +16,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// EGL_DRM_RENDER_NODE_FILE_EXT, which epoxy's header does not have.
+/// EGL_DRM_RENDER_NODE_FILE_EXT, which is missing in epoxy's header.
 constexpr EGLint kRenderNodeFile = 0x3377;
 
-/// Where the kernel says on which bus a device file's device sits.
+/// The PCI address of a device file's device, as given by the kernel.
 std::string pci_address_of_node(const char* node) {
   if (node == nullptr) return {};
   std::error_code failure;
@@ -31,7 +31,7 @@ std::string pci_address_of_node(const char* node) {
   return address.ok() ? address->pci_address : std::string();
 }
 
-/// Of a machine's only NVIDIA device, where no device file tells.
+/// The PCI address of a machine's only NVIDIA device, if no device file gives it.
 std::string pci_address_of_only_nvidia() {
   std::error_code failure;
   std::string found;
@@ -98,7 +98,7 @@ std::string egl_error_text(int error) {
 }
 
 Result<std::vector<EglDevice>> egl_devices() {
-  // Epoxy ends the process when the library is not there, so look first.
+  // Epoxy ends the process if the library is missing, so it is checked first.
   if (dlopen("libEGL.so.1", RTLD_LAZY | RTLD_GLOBAL) == nullptr) {
     return Error{ErrorCode::kUnsupported, "libEGL.so.1 is not installed"};
   }
@@ -129,7 +129,7 @@ Result<void*> open_display(const EglDevice& device) {
     return Error{ErrorCode::kUnsupported,
                  device.name() + ": no display (" + egl_error_text(eglGetError()) + ")"};
   }
-  // Of a display that is initialised this does nothing.
+  // Does nothing for a display that is already initialised.
   if (eglInitialize(display, nullptr, nullptr) != EGL_TRUE) {
     return Error{ErrorCode::kUnsupported,
                  device.name() + ": eglInitialize failed (" + egl_error_text(eglGetError()) + ")"};

@@ -96,7 +96,7 @@ class EglRenderer final : public Renderer, public CameraPipeline {
   }
 
  private:
-  /// What is known of a frame before it is drawn.
+  /// The metadata of a frame that is known before drawing.
   static CameraFrame frame_of(const CameraRequest& request) {
     CameraFrame frame;
     frame.t_ns = request.t_ns;
@@ -105,7 +105,7 @@ class EglRenderer final : public Renderer, public CameraPipeline {
     return frame;
   }
 
-  std::unique_ptr<EglContext> context_;  // first: goes last
+  std::unique_ptr<EglContext> context_;  // declared first, so that it is destroyed last
   const terrain::TileSource& tiles_;     // of the store in textures_
   GroundPatches patches_;
   TileTextures textures_;

@@ -23,7 +23,7 @@ std::string program_log(GLuint program) {
   return text.data();
 }
 
-/// Compiles and attaches one shader, which then lives as long as the program.
+/// Compiles and attaches one shader, which then exists as long as the program.
 Status attach(GLuint program, GLenum kind, const char* source) {
   const GLuint shader = glCreateShader(kind);
   glShaderSource(shader, 1, &source, nullptr);

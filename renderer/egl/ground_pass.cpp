@@ -22,7 +22,7 @@ void main() {
   uv = texel * window.x + window.yz;
   place_m = position;
   depth_m = position.z;
-  // By vertex: at the horizon's slivers a sample outside its triangle would extrapolate depth.
+  // Per vertex: in slivers at the horizon a sample outside its triangle would extrapolate depth.
   clarity = exp(-max(position.z, 0.0) / 9000.0);
   gl_Position = vec4(projection.xy * position.xy + projection.zw * position.z, near, position.z);
 }

@@ -86,7 +86,7 @@ void RenderTarget::bind_for_reading() const {
 
 namespace {
 
-/// Reading RGB directly takes a slow path in software drivers.
+/// Reading RGB directly is slow in software drivers.
 template <typename T>
 ImageBuffer<T> read_rgb(int width_px, int height_px, GLenum type) {
   std::vector<T> rgba(static_cast<std::size_t>(width_px) * height_px * 4);

@@ -14,7 +14,7 @@ namespace {
 constexpr int kSamples = 4;
 constexpr double kRibbonMinPx = 3.0;
 constexpr double kAircraftMinPx = 44.0;
-/// Over ground of one colour and in a picture to look at, the mesh may be coarser.
+/// Coarser than for the camera, since the ground has one colour and the view is only for display.
 constexpr MeshLimits kSceneMesh{96.0, 1.0};
 
 constexpr const char* kSkyVertexSource = R"(#version 330 core
@@ -58,7 +58,7 @@ out vec4 colour;
 void main() { colour = tint; }
 )";
 
-/// True where a corner of the image looks less than 10 deg below the horizon.
+/// True if a corner of the image looks less than 10 deg below the horizon.
 bool sees_sky(const View& view) {
   const PinholeCamera& camera = view.camera;
   for (const double x : {-0.5, camera.width_px - 0.5}) {
@@ -151,7 +151,7 @@ Result<Image> ScenePass::draw(const SceneContent& content,
                               TileTextures& textures) {
   SceneTriangles solid(view), translucent(view);
   for (std::size_t i = 0; i < content.ribbons.size(); ++i) {
-    // Where ribbons coincide the later one is seen.
+    // Where ribbons coincide, the later one is visible.
     solid.pull_nearer(4e-4 * static_cast<double>(i));
     translucent.pull_nearer(4e-4 * static_cast<double>(i));
     add_ribbon(content.ribbons[i], kRibbonMinPx, solid, translucent);

@@ -19,7 +19,8 @@ GlTexture upload(const std::vector<ImageBuffer<T>>& levels) {
   const GLenum format = grey ? GL_RED : GL_RGBA;
   const GLenum type = kDeep ? GL_UNSIGNED_SHORT : GL_UNSIGNED_BYTE;
   const auto count = static_cast<GLint>(levels.size());
-  // At once where it can be: a GPU's driver then neither moves nor checks the texture later.
+  // Immutable storage if available: a GPU's driver then neither moves nor validates the texture
+  // later.
   const bool at_once = epoxy_gl_version() >= 42 || epoxy_has_gl_extension("GL_ARB_texture_storage");
   if (at_once) {
     glTexStorage2D(GL_TEXTURE_2D,

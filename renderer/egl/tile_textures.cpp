@@ -11,7 +11,7 @@ using terrain::TileId;
 
 namespace {
 
-/// Where a tile lies in its ancestor `steps` levels up, in texture coordinates with borders.
+/// Position of a tile in its ancestor `steps` levels up, in texture coordinates with borders.
 DrawnTile window_in(const TileId& id, int steps) {
   constexpr double kSide = terrain::kTileTexels + 2.0 * terrain::kTileBorder;
   const double scale = std::ldexp(1.0, -steps);
@@ -69,7 +69,7 @@ Result<DrawnTile> TileTextures::coarser(const Key& key) {
     if (entry == nullptr) {
       std::shared_ptr<const TilePixels> pixels = store_->peek(above.first, format);
       if (pixels == nullptr && level == coarsest) {
-        // Nothing at all is there: the one tile that covers the world is worth its time.
+        // No tile is available: wait for the one tile that covers the world.
         auto read = store_->get(above.first, format);
         if (!read.ok()) return read.error();
         pixels = *read;
@@ -115,8 +115,8 @@ bool TileTextures::has_imagery(const TileId& id, PixelFormat format, double u, d
 }
 
 int TileTextures::end_view() {
-  // Called after a view is drawn: the newest entries are that view's, so that a budget smaller
-  // than one view still leaves nothing of older ones.
+  // Called after a view is drawn: the newest entries belong to that view, so a budget smaller than
+  // one view still evicts all older ones.
   while (held_bytes_ > budget_bytes_ && !entries_.empty()) {
     held_bytes_ -= entries_.back().bytes;
     by_key_.erase(entries_.back().key);

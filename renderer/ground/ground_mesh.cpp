@@ -14,7 +14,7 @@ using terrain::TileId;
 
 namespace {
 
-/// Texture coordinates of a patch's corner and of its extent in the tile that covers it.
+/// Texture coordinates of a patch's corner, and its extent, in the tile that covers it.
 struct TextureWindow {
   double u = 0.0, v = 0.0, size = 0.0;
 };
@@ -64,7 +64,7 @@ class Builder {
     return index;
   }
 
-  /// The patch's own ground point, or on its rim the one that all its neighbours use.
+  /// The patch's own ground point, or on its rim the one shared by all neighbours.
   [[nodiscard]] const Eigen::Vector3d& point(int column, int row) const {
     const auto on_rim = [](int i) { return i == 0 || i == kPatchCells; };
     if (on_rim(column) || on_rim(row)) {
@@ -81,7 +81,7 @@ class Builder {
     const std::uint32_t nw = vertex(west, north), ne = vertex(east, north);
     const std::uint32_t sw = vertex(west, south), se = vertex(east, south);
     if ((codes_[nw] & codes_[ne] & codes_[sw] & codes_[se]) != 0U) return;
-    // Counter-clockwise from above.
+    // Counter-clockwise seen from above.
     rim_.clear();
     append_side(nw, west, north, west, south);
     append_side(sw, west, south, east, south);
@@ -114,8 +114,8 @@ class Builder {
     append_between(from, to, {c0 * 1.0, r0 * 1.0}, {c1 * 1.0, r1 * 1.0});
   }
 
-  /// Whoever divides a square or patch adds the middles of its sides, so that a side without a
-  /// corner in its middle has none.
+  /// A division of a square or patch adds the midpoints of its sides, so a side without a corner at
+  /// its midpoint has no corners at all.
   void append_between(const LatticePoint& from,
                       const LatticePoint& to,
                       const Eigen::Vector2d& from_cell,

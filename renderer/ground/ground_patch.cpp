@@ -27,8 +27,8 @@ std::vector<Eigen::Vector3d> sample_lattice(const terrain::TileSource& tiles,
   std::vector<Eigen::Vector3d> points;
   points.reserve(static_cast<std::size_t>(points_a_side) * points_a_side);
   for (int row = 0; row < points_a_side; ++row) {
-    // Patches that share a place must compute the same coordinates for it: from its whole number
-    // of steps, which is exact whatever the patch's level.
+    // Patches that share a point must compute identical coordinates for it, so they are computed
+    // from its integer number of steps, which is exact at every level.
     const double y_m = grid.top_y_m - (id.row * (points_a_side - 1.0) + row) * step_m;
     for (int column = 0; column < points_a_side; ++column) {
       const double x_m = grid.left_x_m + (id.col * (points_a_side - 1.0) + column) * step_m;
@@ -124,7 +124,7 @@ void GroundPatchStore::add_bytes(const TileId& id, std::size_t bytes) {
     found->second.bytes += bytes;
     held_bytes_ += bytes;
   }
-  // A view that has the patch still holds it.
+  // A view that uses the patch still holds it.
   while (held_bytes_ > budget_bytes_ && !order_.empty()) {
     const auto oldest = patches_.find(order_.back());
     held_bytes_ -= oldest->second.bytes;
@@ -147,8 +147,8 @@ void GroundPatchStore::make_outline(GroundPatch& patch) const {
       sample_lattice(*tiles_, patch.id, kOutlineCells + 1, patch.size_map_m / (2.0 * kPatchCells));
   std::copy(points.begin(), points.end(), patch.outline.begin());
   for (const Eigen::Vector3d& point : points) patch.bounds.extend(point);
-  // Room for the relief between the outline's points: for large patches the whole range of
-  // heights, for small ones a share of what the outline shows.
+  // Margin for the relief between the outline's points: for large patches the whole range of
+  // heights, for small ones a fraction of the outline's range.
   const Eigen::Vector2d range_m = tiles_->height_range_m();
   const double relief_m = range_m.y() - range_m.x();
   const double seen_m = patch.bounds.sizes().z();
@@ -162,7 +162,7 @@ void GroundPatchStore::sample(GroundPatch& patch) {
   std::call_once(patch.sampled, [&] {
     const double cell_m = patch.size_map_m / kPatchCells;
     patch.points = sample_lattice(*tiles_, patch.id, kPatchCells + 1, 0.5 * cell_m);
-    // What a finer mesh of this place would show: the lattice of the patches one level below.
+    // The points of a finer mesh at this place: the lattice of the patches one level below.
     const std::vector<Eigen::Vector3d> fine =
         sample_lattice(*tiles_, patch.id, kFinePoints, 0.25 * cell_m);
     std::size_t bytes = patch.points.size() * sizeof(Eigen::Vector3d);

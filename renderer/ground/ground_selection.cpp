@@ -15,11 +15,11 @@ namespace {
 
 /// The texel density is taken at the outline's points; between them it may be lower by this.
 constexpr double kDensityMargin = 0.9;
-/// Elevation finer than a patch's 32 cells is followed by splitting it, until its cells are no
-/// longer than this in the image.
+/// A patch whose elevation is finer than its 32 cells is split until its cells are no longer than
+/// this in the image.
 constexpr double kFinestCellPx = 2.0;
 
-/// How a patch looks in the image.
+/// The appearance of a patch in the image.
 struct Appearance {
   GroundLeaf leaf;
   double texels_per_px_min = std::numeric_limits<double>::infinity();  ///< of level 0
@@ -46,7 +46,7 @@ class Selector {
     while (level < 24 && grid.tile_m(level) < reach_m) ++level;
     const Eigen::Vector2d map =
         tiles.map_from_world(view_.position_world.x(), view_.position_world.y());
-    if (!map.allFinite()) return {};  // beyond what the map's projection knows
+    if (!map.allFinite()) return {};  // outside the range of the map's projection
     const double size_m = grid.tile_m(level);
     const int column = static_cast<int>(std::floor((map.x() - grid.left_x_m) / size_m));
     const int row = static_cast<int>(std::floor((grid.top_y_m - map.y()) / size_m));
@@ -57,8 +57,7 @@ class Selector {
   }
 
  private:
-  /// Distance to the farthest ground that can be seen: the camera's horizon plus that of the
-  /// highest ground.
+  /// Distance to the farthest visible ground: the camera's horizon plus that of the highest ground.
   [[nodiscard]] double reach() const {
     const Eigen::Vector2d range_m = patches_.tiles().height_range_m();
     const double camera_m =
@@ -89,7 +88,7 @@ class Selector {
     emit(patch, appearance.leaf);
   }
 
-  /// Keeps a patch, or divides it on where its relief is finer than its cells.
+  /// Keeps a patch, or divides it further if its relief is finer than its cells.
   void emit(GroundPatch& patch, const GroundLeaf& leaf) {
     patches_.sample(patch);
     if (!leaf.textured || patch.id.level <= kFinestPatchLevel || !has_finer_relief(leaf)) {
@@ -106,7 +105,7 @@ class Selector {
     });
   }
 
-  /// True where the ground between the points of a patch leaves its finest mesh visibly.
+  /// True if the ground between the points of a patch visibly deviates from its finest mesh.
   [[nodiscard]] bool has_finer_relief(const GroundLeaf& leaf) const {
     const double cell_m = leaf.patch->size_map_m / kPatchCells;
     constexpr int kCells = kPatchCells / kOutlineCells;
@@ -121,7 +120,7 @@ class Selector {
     return false;
   }
 
-  /// At the corners of the outline's cell whose north-west corner is given.
+  /// The largest value at the corners of the outline's cell with the given north-west corner.
   [[nodiscard]] static float largest_of(const std::array<float, 25>& values, int corner) {
     return std::max({values[corner],
                      values[corner + 1],
@@ -143,7 +142,7 @@ class Selector {
   [[nodiscard]] bool needs_finer_texels(const GroundPatch& patch,
                                         const Appearance& appearance) const {
     if (patches_.above_imagery(patch.id)) return true;
-    // So near that the outline's points say little about what lies between them.
+    // So close that the outline's points do not represent the ground between them.
     const double distance_m = patch.bounds.exteriorDistance(view_.position_world);
     if (patch.bounds.sizes().head<2>().maxCoeff() / kOutlineCells > 0.5 * distance_m) return true;
     return std::ldexp(1.0, patch.id.level) > kDensityMargin * appearance.texels_per_px_min;
@@ -203,8 +202,8 @@ void Selector::measure_point(int column, int row, double step_m, Appearance& app
       view_.pixel_rate(p, (at(east, row) - at(west, row)) / (step_m * (east - west)));
   const Eigen::Vector2d b =
       view_.pixel_rate(p, (at(column, south) - at(column, north)) / (step_m * (south - north)));
-  // The inverse of [a b] takes a pixel step to map metres; its largest element is the footprint
-  // by which the sampler chooses the mip level.
+  // The inverse of [a b] maps a pixel step to map metres; its largest element is the footprint by
+  // which the sampler chooses the mip level.
   const double determinant = std::abs(a.x() * b.y() - a.y() * b.x());
   const double largest = std::max(a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff());
   if (determinant > 1e-12 * largest * largest) {

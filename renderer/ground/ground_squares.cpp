@@ -11,7 +11,7 @@ class Divider {
   Divider(const GroundLeaf& leaf, const MeshLimits& limits, GroundCorners& corners)
       : leaf_(leaf), limits_(limits), corners_(corners) {
     if (!leaf.textured) {
-      // Ground of one colour shows its shape at the skyline only.
+      // Ground of one colour shows its shape only at the skyline.
       limits_.max_edge_px *= 2.0;
       limits_.max_error_px *= 8.0;
     }
@@ -73,7 +73,7 @@ class Divider {
                  leaf_.patch->id.level);
   }
 
-  /// The middles of the sides of a square that is divided.
+  /// Adds the midpoints of the sides of a square that is divided.
   void add_corners(int t, int column, int row) {
     const int half = 1 << (t - 1);
     add(column + half, row);
@@ -82,7 +82,7 @@ class Divider {
     add(column + half, row + 2 * half);
   }
 
-  /// The corners that a neighbouring patch may know differently: those on the patch's rim.
+  /// Adds the corners that a neighbouring patch may compute differently: those on the patch's rim.
   void add_own_corners(int side, int column, int row) {
     const auto on_rim = [](int i) { return i == 0 || i == kPatchCells; };
     for (const int c : {column, column + side}) {

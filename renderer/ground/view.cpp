@@ -12,7 +12,7 @@ View View::from(const PinholeCamera& camera, const Pose& T_world_camera) {
 
 namespace {
 
-/// Inward normals of the image's left, right, top and bottom planes in the camera frame: pixel
+/// Inward normals of the image's left, right, top and bottom planes in the camera frame. Pixel
 /// centres are integers, so that the image spans [-0.5, size - 0.5].
 std::array<Eigen::Vector3d, 4> side_normals_camera(const PinholeCamera& camera) {
   return {Eigen::Vector3d(camera.fx_px, 0.0, camera.cx_px + 0.5),

@@ -12,7 +12,7 @@ namespace {
 
 double median(const std::vector<double>& values) { return quantile(values, 0.5); }
 
-/// The costs of one kind of call, in order.
+/// The costs of the counted frames, in flight order.
 struct Series {
   std::vector<double> cpu_ms, wall_ms;
 
@@ -39,7 +39,7 @@ PinholeCamera standard_camera() {
   return PinholeCamera::from_fov(1280, 960, rad_from_deg(84.872), FovAxis::kHorizontal).value();
 }
 
-/// The nadir camera from the same place and with the same heading, the wings rolled by so much.
+/// The nadir camera at the same place and heading, with the wings rolled by `roll_rad`.
 Pose banked(const Pose& T_world_camera, double roll_rad) {
   const Eigen::Quaterniond R_world_body =
       T_world_camera.rotation * R_body_camera_nadir().conjugate();
@@ -106,7 +106,8 @@ class Measurement {
     return status_of(renderer_.render_camera(camera_, pose, 0, format));
   }
 
-  /// Measured when its ground is ready, as in flight, where each view is near the one before.
+  /// Measured after its ground was prepared, as in flight, where each view is near the previous
+  /// one.
   Status cast(const Pose& pose, Series& series) {
     const auto draw = [&] {
       return status_of(raycaster_.render_camera(camera_, pose, 0, PixelFormat::kGrey8));

@@ -14,7 +14,7 @@ namespace overfly::renderer {
 
 namespace {
 
-/// FNV-1a over words of eight bytes, each folded so that its high bits count as well.
+/// FNV-1a over words of eight bytes, folded so that their high bits count as well.
 std::uint64_t digest_of(const Image& image, std::uint64_t digest) {
   constexpr std::uint64_t kPrime = 0x100000001B3ULL;
   std::size_t i = 0;
@@ -28,7 +28,7 @@ std::uint64_t digest_of(const Image& image, std::uint64_t digest) {
   return digest;
 }
 
-/// The flight: where the camera is at a time.
+/// The flight path: the camera's position at a time.
 class Track {
  public:
   Track(const terrain::TileSource& tiles, const EnduranceOptions& options)
@@ -36,9 +36,9 @@ class Track {
 
   [[nodiscard]] Eigen::Vector3d position(double t_s) const {
     const terrain::TileGrid& grid = tiles_.grid();
-    // From where the first image lies within the imagery.
+    // Starts where the first image lies within the imagery.
     const double x_m = grid.left_x_m + options_.height_m + options_.speed_m_s * t_s;
-    // Smooth elevation, as a pilot follows it.
+    // Smoothed elevation, as a pilot would follow it.
     Eigen::Vector3d p =
         tiles_.coarse_world_from_map(x_m, grid.top_y_m - 0.5 * grid.height_m, 400.0);
     p.z() += options_.height_m;
@@ -123,7 +123,7 @@ RendererOptions renderer_options_of(const std::shared_ptr<const terrain::TileSou
   return result;
 }
 
-/// Draws the frames and notes what each of them cost.
+/// Draws the frames and records their costs.
 class Flight {
  public:
   Flight(const terrain::TileSource& tiles, const EnduranceOptions& options, TileStore& store)
@@ -151,8 +151,8 @@ class Flight {
       series_.wall_ms.push_back(wall.count());
       series_.thread_cpu_ms.push_back(own_ms - drawing_from_ms);
     }
-    // From frame to frame, so that what other threads do between two frames counts; without what
-    // this thread did to measure.
+    // Measured from frame to frame, to include the work of other threads between frames, but
+    // without this thread's own measuring work.
     const double now_ms = process_cpu_ms();
     if (counted) series_.cpu_ms.push_back(now_ms - cpu_mark_ms_ - (thread_cpu_ms() - own_ms));
     cpu_mark_ms_ = now_ms;

@@ -55,7 +55,7 @@ class EglQuadProbe final : public QuadProbe {
         program_(std::move(program)),
         texture_(make_texture()),
         vertex_array_(GlVertexArray::make()) {
-    // 2^0.5 texels a pixel: level of detail 0.5.
+    // 2^0.5 texels per pixel: level of detail 0.5.
     const double scale = std::sqrt(2.0) / kTextureTexels;
     const double angle_rad = rad_from_deg(30.0);
     const auto c = static_cast<float>(scale * std::cos(angle_rad));
@@ -113,7 +113,7 @@ class EglQuadProbe final : public QuadProbe {
   }
 
  private:
-  std::unique_ptr<EglContext> context_;  // first: goes last
+  std::unique_ptr<EglContext> context_;  // declared first, so that it is destroyed last
   RenderTarget target_;
   GlProgram program_;
   GlTexture texture_;

@@ -32,7 +32,7 @@ Status repeat(int count, const std::function<Status()>& call) {
 
 double per_s(const std::vector<double>& times) { return kBatch / quantile(times, 0.5); }
 
-/// Draws frames along the poses with as many in flight as the pipeline takes.
+/// Draws frames along the poses with as many in flight as the pipeline allows.
 class PipedCamera {
  public:
   PipedCamera(std::unique_ptr<CameraPipeline> pipeline, int in_flight)
@@ -86,7 +86,7 @@ struct Ceilings {
     }
     return time(memcpy_s, [&] {
       std::memcpy(to.data.data(), from.data.data(), to.data.size());
-      from.data[0] = to.data[1];  // keeps the copy from being left out
+      from.data[0] = to.data[1];  // prevents the copy from being optimised away
       return Status();
     });
   }
@@ -112,7 +112,7 @@ Result<RateCosts> measure_rate_costs(const std::shared_ptr<const terrain::TileSo
         CameraPipeline::create(tiles, options, in_flight);
     if (!pipeline.ok()) return pipeline.error();
     cameras.emplace_back(std::move(*pipeline), in_flight);
-    // Every place once, so that tiles and patches are there.
+    // Visits every pose once, so that tiles and patches are loaded.
     const Status warm =
         cameras.back().frames(T_world_camera, static_cast<int>(T_world_camera.size()));
     if (!warm) return warm.error();

@@ -12,7 +12,7 @@
 namespace overfly::renderer {
 namespace {
 
-/// Weights of the four samples around a place, `t` in [0, 1) after the second.
+/// Weights of the four samples around a position, `t` in [0, 1) after the second.
 std::array<double, 4> keys_weights(double t) {
   const double t2 = t * t;
   const double t3 = t2 * t;
@@ -22,7 +22,7 @@ std::array<double, 4> keys_weights(double t) {
           0.5 * (t3 - t2)};
 }
 
-/// Empty where the sixteen samples do not all lie in the image.
+/// Empty if the sixteen samples do not all lie in the image.
 std::optional<double> cubic_sample(const Image& image, double x, double y) {
   const double x0 = std::floor(x);
   const double y0 = std::floor(y);
@@ -79,7 +79,7 @@ std::optional<GreyPatch> make_patch(const Image& seen,
   return patch;
 }
 
-/// Shift at which `predicted` shows the patch: predicted(pixel + shift) = seen(pixel).
+/// Shift at which the patch appears in `predicted`: predicted(pixel + shift) = seen(pixel).
 std::optional<Eigen::Vector2d> align(
     const Image& predicted, const GreyPatch& patch, int cx, int cy, const RegistrationOptions& o) {
   constexpr int kIterations = 50;
@@ -103,7 +103,7 @@ std::optional<Eigen::Vector2d> align(
   return shift;
 }
 
-/// True when all pixels that a patch may touch are valid and in the image.
+/// True if all pixels that a patch may touch are valid and in the image.
 bool usable(const Image& valid, int cx, int cy, int reach_px) {
   for (int y = cy - reach_px; y <= cy + reach_px; ++y) {
     for (int x = cx - reach_px; x <= cx + reach_px; ++x) {

@@ -9,14 +9,15 @@ namespace overfly::renderer::raycast {
 
 namespace {
 
-/// The camera seen from straight above the ground: a change of height moves nothing in the image,
-/// but the depth that flow and warping use; taken as this much of a change seen from the side.
+/// Seen from straight above, a change of height does not move the image, but it changes the depth
+/// that flow and warping use. It is counted as this fraction of a change seen from the side.
 constexpr double kLeastSide = 0.1;
-constexpr int kFewPixels = 4;  ///< blocks are not divided below: each pixel has its ray
-/// A bound of the error this many times too large may still hide a good block of an image; a depth
-/// image shows more of the ground than an image does, and keeps to the bound.
+constexpr int kFewPixels = 4;  ///< blocks this small are not divided: each pixel is cast
+/// Ratio by which an error bound may exceed the limit while the block is still tested by a ray. A
+/// depth image resolves the ground more finely, so it applies the bound directly.
 constexpr double kLooseBound = 4.0;
-constexpr double kMuchLonger = 1.5;  ///< of a block's sides: only the longer one is halved
+/// Ratio of a block's sides above which only the longer one is halved
+constexpr double kMuchLonger = 1.5;
 
 /// @param near  a node whose ground is near this ray's, or null
 Node cast_node(const BlockSettings& settings,
@@ -48,7 +49,7 @@ Node cast_node(const BlockSettings& settings,
   return node;
 }
 
-/// A rectangle of pixels between four rays.
+/// The patch of `seen` around a pixel, with precomputed data for its alignment.
 struct Patch {
   int x = 0, y = 0, columns = 0, rows = 0;  // pixels
   std::array<const Node*, 4> corners{};     // upper left, upper right, lower left, lower right
@@ -93,10 +94,10 @@ class BandBuilder {
     return worst_px;
   }
 
-  /// True where interpolation is good to kBlockErrorPx. The measured relief bounds the error,
-  /// mostly by several times: where it leaves room, the ray through the patch's middle decides,
-  /// where the deviation of a smooth surface is largest. It also finds what stands before the
-  /// corners' ground.
+  /// True if the interpolation error is below kBlockErrorPx. The measured relief gives a bound,
+  /// which is usually several times too large. If the bound exceeds the limit only moderately, the
+  /// ray through the patch's centre decides, where a smooth surface deviates most. That ray also
+  /// detects objects in front of the corners' ground.
   [[nodiscard]] bool flat_enough(const Patch& patch) const {
     const double bound_px = interpolation_error_px(patch);
     const double loose = settings_.depth_only ? 1.0 : kLooseBound;
@@ -110,13 +111,13 @@ class BandBuilder {
     if (middle.hit.sky()) return false;
     const double expected = 0.25 * (c[0]->inverse_depth + c[1]->inverse_depth +
                                     c[2]->inverse_depth + c[3]->inverse_depth);
-    // The ground's height here off the patch's surface, from the distance between them on the ray.
+    // Deviation of the ground's height from the patch's surface, from their distance along the ray.
     const double off_m = std::abs(1.0 - middle.inverse_depth / expected) * middle.range_m;
     const double limit_px = bound_px <= kBlockErrorPx ? kBlockErrorPx : 0.5 * kBlockErrorPx;
     return off_m * middle.drop * middle.px_per_m <= limit_px;
   }
 
-  /// The ray at a place of a patch, in [0, 1]^2.
+  /// The ray at a position of a patch, in [0, 1]^2.
   static Eigen::Vector2d ray_in(const Patch& patch, double a, double b) {
     const auto& c = patch.corners;
     return (1.0 - b) * ((1.0 - a) * c[0]->ray + a * c[1]->ray) +
@@ -136,7 +137,7 @@ class BandBuilder {
         settings_, settings_.poses->at(row), ray_in(patch, a, b), farthest_corner(patch));
   }
 
-  /// Distance over the ground between two rays' hits; far where one of them meets the sky.
+  /// Distance on the ground between two rays' hits; large if one of them hits the sky.
   static double apart(const Node& a, const Node& b) {
     if (a.hit.sky() || b.hit.sky()) return a.hit.sky() == b.hit.sky() ? 0.0 : 1e9;
     return std::hypot(a.u - b.u, a.v - b.v);
@@ -265,7 +266,7 @@ class BandBuilder {
     }
   }
 
-  /// One pixel (or a quarter of one) by its own ray, with the ground's tangent plane around it.
+  /// One pixel (or a quarter of one) with a ray of its own and the ground's tangent plane there.
   void add_pixel(const Patch& patch, int x, int y, double dx, double dy, bool quarter) {
     Block block = block_of({patch.x + x, patch.y + y, 1, 1, {}});
     block.quarter = quarter;
@@ -303,7 +304,7 @@ class BandBuilder {
   BlockPlaces places_;
   double air_per_m_;
   bool reference_;
-  double lod_shift_;  // samples at half the distance ask for half the texel
+  double lod_shift_;  // for samples at half the distance, texels of half the size
 };
 
 }  // namespace

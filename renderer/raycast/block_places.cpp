@@ -38,7 +38,7 @@ BlockPlaces::BlockPlaces(const terrain::TileSource& tiles, Band& band)
 
 BlockPlaces::Extent BlockPlaces::extent_of(const Block& block) {
   Extent extent{1e300, -1e300, 1e300, -1e300, 1e30F, -1e30F};
-  // The reference quality looks a quarter of a pixel beyond the pixels' centres.
+  // The reference quality samples up to a quarter of a pixel beyond the pixels' centres.
   for (const float y : {-0.25F, static_cast<float>(block.rows) - 0.75F}) {
     for (const float x : {-0.25F, static_cast<float>(block.columns) - 0.75F}) {
       const float depth_m = 1.0F / value_at(block.inverse_depth, x, y);
@@ -64,7 +64,7 @@ void BlockPlaces::add(const Block& block) {
   const double side = terrain::kTileTexels * texel;
   const double col = std::floor(0.5 * (extent.low_u + extent.high_u) / side);
   const double row = std::floor(0.5 * (extent.low_v + extent.high_v) / side);
-  // Half a texel of filtering at the coarsest mip level that is drawn from.
+  // Half a texel of filtering at the coarsest mip level in use.
   const int mips = std::clamp(static_cast<int>(std::floor(extent.high_lod)) - level + 1, 0, 9);
   const double margin = terrain::kTileBorder * texel - 0.5 * std::ldexp(texel, mips);
   const bool inside = extent.low_u >= col * side - margin && extent.low_v >= row * side - margin &&

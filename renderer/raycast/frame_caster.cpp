@@ -16,10 +16,11 @@ using terrain::TileId;
 
 namespace {
 
-constexpr std::size_t kMaxCameras = 8;   // whose rays are kept
-constexpr double kAheadS = 1.5;          // of flight whose tiles are asked for
-constexpr double kHeightsAheadS = 0.75;  // and whose heights are sampled, a tile a frame
-/// To each side of the way, in tiles, so that a roll finds its tiles as well.
+constexpr std::size_t kMaxCameras = 8;  // number of cameras whose rays are cached
+constexpr double kAheadS = 1.5;         // flight time ahead for which tiles are requested
+// Flight time ahead for which heights are sampled, one tile per frame
+constexpr double kHeightsAheadS = 0.75;
+/// Margin on each side of the path, in tiles, so that a roll finds its tiles as well.
 constexpr double kAsideTiles = 0.25;
 
 int chosen_threads(int wanted) {
@@ -191,7 +192,8 @@ void FrameCaster::measure(const Frame& frame, CameraFrame& drawn) {
   drawn.axis_depth_m = statistics.axis_depth_m;
 }
 
-/// Asks for the frame's tiles moved along the camera's way over the map, samples heights there.
+/// Requests the frame's tiles shifted along the camera's path over the map, and samples heights
+/// there.
 void FrameCaster::look_ahead(const Frame& frame) {
   const CameraRequest& request = frame.request;
   const Eigen::Vector2d way_m = kAheadS * request.velocity_world_m_s.head<2>();
@@ -218,7 +220,7 @@ void FrameCaster::look_ahead(const Frame& frame) {
   std::copy_if(ahead.begin(), ahead.end(), std::back_inserter(ids), [&](const TileId& id) {
     return tiles_->coverage(id) != terrain::TileCoverage::kNone;
   });
-  // Work for later frames is shared out among them: texels in one, heights in another.
+  // Work for later frames is distributed among them: texels in one, heights in another.
   if (texels_.prefetch(ids, request.format)) return;
   ViewSweep later = sweep_of(request, frame.rays);
   later.position += kHeightsAheadS * request.velocity_world_m_s;

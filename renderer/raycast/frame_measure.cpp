@@ -24,7 +24,7 @@ std::optional<double> cast_axis_depth(const Pose& T_world_camera,
   return refine_depth(ground, pose.position, axis, hit.depth);
 }
 
-/// What one row of rays sees.
+/// The measurements of one row of rays.
 struct RowMeasure {
   std::vector<double> texels;
   int void_rays = 0;

@@ -14,8 +14,8 @@ namespace overfly::renderer::raycast {
 
 namespace {
 
-/// An image is cast in several rounds a few milliseconds long: a thread that sleeps in between
-/// takes longer to wake than the gap lasts. It looks again this often before it does: some 100 us.
+/// Number of polls before a thread sleeps, about 100 us. An image is cast in several rounds of a
+/// few milliseconds, and waking a sleeping thread takes longer than the gap between rounds.
 constexpr int kLooksBeforeSleep = 600;
 
 template <typename Condition>
@@ -30,7 +30,7 @@ bool comes_soon(const Condition& condition) {
 }  // namespace
 
 struct WorkerPool::State {
-  /// What a job throws (too little memory, say) is kept for the caller of run().
+  /// An exception in a job (out of memory, for example) is kept for the caller of run().
   void work() {
     try {
       for (int i = next++; i < jobs; i = next++) (*job)(i);
@@ -75,7 +75,7 @@ WorkerPool::WorkerPool(int threads) : state_(std::make_unique<State>()) {
   try {
     for (int i = 1; i < threads; ++i) state_->threads.emplace_back([this] { state_->serve(); });
   } catch (const std::system_error&) {
-    // The system has no more threads: those that are there do the same work.
+    // The system cannot start more threads: the existing ones do all the work.
   }
 }
 

@@ -71,7 +71,7 @@ class AircraftBuilder {
     return centre_camera_ + R_camera_body_ * (span_m_ * p_body);
   }
 
-  /// A lit triangle, seen from whichever side.
+  /// A lit triangle, visible from both sides.
   void add(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Rgba& colour) {
     const Vector3d normal_body = (b - a).cross(c - a);
     if (normal_body.norm() <= 0.0) return;
@@ -98,7 +98,7 @@ class AircraftBuilder {
     };
     for (std::size_t i = 0; i + 1 < kFuselage.size(); ++i) {
       for (int side = 0; side < kSides; ++side) {
-        // The windscreen and the windows: the upper sides ahead of the wing's middle.
+        // The windscreen and the windows: the upper sides ahead of the wing's centre.
         const bool window = i >= 2 && i <= 3 && (side <= 2 || side >= 9);
         add_quad(point(kFuselage[i], side),
                  point(kFuselage[i], side + 1),

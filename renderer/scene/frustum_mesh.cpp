@@ -15,7 +15,7 @@ constexpr double kMaxRangeM = 20e3;
 constexpr Rgba kFrustumColour{1.0F, 0.85F, 0.25F, 0.9F};
 constexpr Rgba kFaceColour{1.0F, 0.9F, 0.4F, 0.10F};
 
-/// The image's border as pixels, corner by corner, kRaysPerSide a side.
+/// The image's border as pixels, corner by corner, kRaysPerSide per side.
 std::vector<Eigen::Vector2d> border_pixels(const PinholeCamera& camera) {
   const double right = camera.width_px - 0.5;
   const double bottom = camera.height_px - 0.5;
@@ -47,7 +47,7 @@ void add_frustum(const SceneContent::Frustum& frustum,
   }
   const Eigen::Vector3d apex = view.camera_from_world(pose.translation);
   const std::vector<Eigen::Vector2d> pixels = border_pixels(frustum.camera);
-  // Rays to the sky end where the longest of the others does.
+  // Rays to the sky are as long as the longest of the others.
   const auto end_of = [&](std::size_t i) -> Eigen::Vector3d {
     if (hits[i]) return view.camera_from_world(*hits[i]);
     const Eigen::Vector3d direction = (pose.rotation * frustum.camera.ray(pixels[i])).normalized();

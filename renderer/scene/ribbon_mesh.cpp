@@ -10,7 +10,7 @@ namespace {
 constexpr double kStepPx = 3.0;      // wing tips closer than this in the image are merged
 constexpr double kEdgeShare = 0.09;  // of the width, on each side
 constexpr float kSurfaceAlpha = 0.62F;
-/// Whose ribbon it is must be seen in its own shade too.
+/// The ribbon's colour must be recognisable in its own shadow too.
 constexpr float kDimmest = 0.7F;
 
 /// One cross-section of the strip, camera frame.
@@ -49,7 +49,7 @@ class RibbonBuilder {
             T_world_body.rotation * Eigen::Vector3d(0.0, 0.0, -1.0)};
   }
 
-  /// How far the tips are apart in the image, at most.
+  /// Maximum distance of the wing tips in the image.
   [[nodiscard]] double step_px(const Section& a, const Section& b) const {
     const double moved_m = std::max((a.left - b.left).norm(), (a.right - b.right).norm());
     const double distance_m = std::max(std::min(a.left.norm(), b.left.norm()), 1e-3);
@@ -60,7 +60,7 @@ class RibbonBuilder {
     const Rgba colour{ribbon_.rgb[0], ribbon_.rgb[1], ribbon_.rgb[2], 1.0F};
     const Eigen::Vector3d middle_a = 0.5 * (a.left + a.right);
     const Eigen::Vector3d middle_b = 0.5 * (b.left + b.right);
-    // From above the sun lights it; from below it lies in its own shade.
+    // Lit by the sun from above; in its own shadow from below.
     const Eigen::Vector3d up_world = (a.up_world + b.up_world).normalized();
     const Eigen::Vector3d up_camera = solid_.view().R_camera_world * up_world;
     const bool from_above = up_camera.dot(middle_a) < 0.0;

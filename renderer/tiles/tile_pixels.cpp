@@ -8,7 +8,7 @@ namespace overfly::renderer {
 
 namespace {
 
-/// @tparam Channels  of the image, known here so that the loops are tight
+/// @tparam Channels  of the image, a constant so that the loops are optimised
 template <int Channels, typename T>
 void halve_rows(const ImageBuffer<T>& image, ImageBuffer<T>& half) {
   const std::size_t right = image.width_px > 1 ? Channels : 0;

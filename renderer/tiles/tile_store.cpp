@@ -27,9 +27,10 @@ using terrain::TileId;
 namespace {
 
 constexpr int kValidStep = 8;
-/// Requests of `find` that wait; older ones are forgotten, whoever needs them asks again.
+/// Maximum number of waiting requests of `find`; older ones are dropped and requested again if
+/// needed.
 constexpr std::size_t kMaxAsked = 256;
-/// Of a thread between two tiles that are read ahead, per time spent on the last.
+/// A thread's pause between two tiles read ahead, relative to the time spent on the last one.
 constexpr double kRestPerWork = 6.0;
 
 Image thinned(const Image& valid) {
@@ -45,7 +46,7 @@ Image thinned(const Image& valid) {
   return thin;
 }
 
-/// Has the elevation under a tile read, about as finely as who draws the tile will want it.
+/// Reads the elevation under a tile, at about the resolution needed to draw the tile.
 void touch_heights(const terrain::TileSource& tiles, const TileId& id) {
   constexpr int kSteps = 4;
   constexpr double kSpacingTexels = 8.0;
@@ -97,7 +98,7 @@ TilePixels tile_pixels_from(const terrain::Tile& tile, PixelFormat format) {
   return pixels;
 }
 
-/// Everything behind the lock, and the threads.
+/// The data protected by the lock, and the threads.
 struct TileStore::State {
   using Key = std::pair<TileId, PixelFormat>;
   using Pixels = std::shared_ptr<const TilePixels>;
@@ -105,7 +106,7 @@ struct TileStore::State {
   struct Entry {
     Pixels pixels;
     std::size_t bytes = 0;
-    std::uint64_t round = 0;  // of prefetch calls, when it was last of use
+    std::uint64_t round = 0;  // of prefetch calls, when it was last needed
     Order::iterator place;
   };
 
@@ -114,7 +115,7 @@ struct TileStore::State {
     try {
       for (int i = 0; i < options.threads; ++i) threads.emplace_back([this] { fetch_ahead(); });
     } catch (const std::system_error&) {
-      // The system has no more threads: without any, tiles are read on demand.
+      // The system cannot start more threads: without any, tiles are read on demand.
     }
   }
 
@@ -129,7 +130,7 @@ struct TileStore::State {
   State(const State&) = delete;
   State& operator=(const State&) = delete;
 
-  /// The entry, marked as used. Under the lock.
+  /// The entry, marked as used. @pre the lock is held
   Pixels use(const Key& key) {
     const auto found = entries.find(key);
     if (found == entries.end()) return nullptr;
@@ -138,7 +139,7 @@ struct TileStore::State {
     return found->second.pixels;
   }
 
-  /// Keeps a tile and drops those used longest ago. Under the lock.
+  /// Stores a tile and evicts the least recently used ones. @pre the lock is held
   void keep(const Key& key, const Pixels& pixels) {
     const std::size_t bytes = pixels->bytes();
     Order place(1, key);
@@ -154,14 +155,14 @@ struct TileStore::State {
     }
   }
 
-  /// Leaves the processor to the frames in between, unless someone draws without a tile.
+  /// Leaves the processor to the frames in between, unless a frame is being drawn without a tile.
   void rest(double spent_s, std::unique_lock<std::mutex>& lock) {
     work.wait_for(lock, std::chrono::duration<double>(kRestPerWork * spent_s), [this] {
       return stopping || waiting > 0 || !asked.empty();
     });
   }
 
-  /// A tile's pixels, read without the lock; too little memory is an error like others.
+  /// A tile's pixels, read without the lock; out of memory is an ordinary error.
   Result<Pixels> read(const Key& key, bool urgent, std::unique_lock<std::mutex>& lock) {
     try {
       const double before_s = thread_cpu_s();
@@ -179,13 +180,13 @@ struct TileStore::State {
     }
   }
 
-  /// Reads a tile that this thread has put into `loading`; the lock is open meanwhile.
+  /// Reads a tile that this thread has put into `loading`; releases the lock meanwhile.
   Result<Pixels> load(const Key& key, bool urgent, std::unique_lock<std::mutex>& lock) {
     lock.unlock();
     const Result<Pixels> pixels = read(key, urgent, lock);
     lock.lock();
     loading.erase(key);
-    // One that there is no memory to keep is read again when it is wanted again.
+    // If there is no memory to store it, it is read again when needed.
     if (pixels) (void)contained([&] { keep(key, *pixels); }, [](const char*) {});
     loaded.notify_all();
     if (pixels) return pixels;
@@ -228,7 +229,7 @@ struct TileStore::State {
     const std::lock_guard lock(mutex);
     ++round;
     ahead.clear();
-    // From the least urgent on, so that the most urgent one is dropped last.
+    // Starts with the least urgent one, so that the most urgent one is evicted last.
     for (std::size_t i = ids.size(); i-- > 0;) (void)use({ids[i], format});
     for (const TileId& id : ids) {
       if (const Key key{id, format}; entries.count(key) == 0) ahead.push_back(key);
@@ -236,7 +237,7 @@ struct TileStore::State {
     if (!ahead.empty()) work.notify_all();
   }
 
-  /// True when the tile that would have to go is still of use. Under the lock.
+  /// True if the tile to be evicted next is still needed. @pre the lock is held
   [[nodiscard]] bool full() const {
     if (order.empty() || held_bytes + entries.at(order.back()).bytes <= options.budget_bytes) {
       return false;
@@ -244,8 +245,8 @@ struct TileStore::State {
     return entries.at(order.back()).round + 1 >= round;
   }
 
-  /// The next tile to read, put into `loading`; `urgent` when someone draws without it. Under the
-  /// lock.
+  /// The next tile to read, put into `loading`; `urgent` if a frame is drawn without it. @pre the
+  /// lock is held
   bool take_next(Key& key, bool& urgent) {
     const auto take_from = [&](std::deque<Key>& queue) {
       while (!queue.empty()) {
@@ -263,7 +264,7 @@ struct TileStore::State {
 
   void fetch_ahead() {
     std::unique_lock lock(mutex);
-    // A tile that there is no memory to fetch ahead is read when it is drawn.
+    // A tile that cannot be read ahead for lack of memory is read when it is drawn.
     while (!stopping) (void)contained([&] { fetch_next(lock); }, [](const char*) {});
   }
 
@@ -277,11 +278,11 @@ struct TileStore::State {
     }
     ++counts.read_ahead;
     const double before_s = thread_cpu_s();
-    // A tile that cannot be read is reported to whoever gets it.
+    // An error is reported to the caller that gets the tile.
     (void)load(key, urgent, lock);
     const double spent_s = thread_cpu_s() - before_s;
     counts.ahead_cpu_s += spent_s;
-    // Tiles ahead have seconds to come.
+    // Tiles read ahead are not needed for seconds.
     if (!urgent) rest(spent_s, lock);
   }
 
@@ -289,16 +290,16 @@ struct TileStore::State {
   TileStoreOptions options;
   mutable std::mutex mutex;
   std::condition_variable loaded;  // a tile was read, or a thread ran out of work
-  std::condition_variable work;    // something was asked for, or the end
+  std::condition_variable work;    // a request was added, or the end
   std::map<Key, Entry> entries;
   Order order;
   std::size_t held_bytes = 0;
   std::set<Key> loading;
-  std::deque<Key> asked;  // by find
-  std::deque<Key> ahead;  // by prefetch
+  std::deque<Key> asked;  // requested by find
+  std::deque<Key> ahead;  // requested by prefetch
   std::uint64_t round = 0;
   bool stopping = false;
-  int waiting = 0;  // who needs a tile that is being read
+  int waiting = 0;  // threads that need a tile that is being read
   TileStoreCounts counts;
   std::vector<std::thread> threads;
 };

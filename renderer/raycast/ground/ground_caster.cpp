@@ -10,9 +10,10 @@ namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kFarthest = 1e7;  // of a ray's parameter
-constexpr double kNearest = 0.05;  // a camera in the ground sees the ground right before it
-/// A square is chosen by a place this far ahead along each axis (metres, or cells of a tile), so
-/// that a ray on a square's side is in the square that it goes to, however slowly.
+// A camera below the ground sees the ground directly in front of it
+constexpr double kNearest = 0.05;
+/// A square is chosen by the point this far ahead along each axis (metres, or cells of a tile), so
+/// that a ray on a square's side belongs to the square that it enters, however slowly.
 constexpr double kAhead = 1e-7;
 
 /// A ray in the cells of one tile: place and height as functions of the ray's parameter.
@@ -34,8 +35,8 @@ struct TileRay {
   }
 };
 
-/// Parameter at which a coordinate moving from `from` leaves [low, low + side].
-/// @param per_rate  of the parameter per unit of the coordinate, infinite where it stands still
+/// Parameter at which a coordinate that moves from `from` leaves [low, low + side].
+/// @param per_rate  parameter per unit of the coordinate, infinite if it does not change
 double leave(double from, double per_rate, double low, double side) {
   if (std::isinf(per_rate)) return kNever;
   return ((per_rate > 0.0 ? low + side : low) - from) * per_rate;
@@ -90,7 +91,7 @@ double enter_cell(
   return clearance(to) <= 0.0 ? to : kNever;
 }
 
-/// Marches through one tile from parameter `from` to `to`; depth 0 where nothing is met.
+/// Marches through one tile from parameter `from` to `to`; depth 0 if nothing is hit.
 GroundHit march_tile(const GroundNode& node, const TileRay& ray, double from, double to) {
   const HeightTile& tile = *node.tile;
   int k = kLog2TileCells;
@@ -207,7 +208,7 @@ GroundHit GroundCaster::descend(const Eigen::Vector3d& origin,
     const double step = clearance / rate;
     t -= step;
     if (!(t > 0.0)) return {};
-    // What is left is far smaller than the step: a thousandth of a pixel at most, at a kink.
+    // The remaining error is far smaller than the step: at most a thousandth of a pixel, at a kink.
     if (std::abs(step) > 1e-5 * t) continue;
     GroundHit hit;
     hit.depth = std::max(t, kNearest);
@@ -276,7 +277,7 @@ double relief_around(const GroundTree& tree, const GroundHit& hit, double size_m
   while (true) {
     const double cells = size_m * node->tile->per_m;
     if (cells <= 2.0) {
-      // Within a kink's reach the deviation shrinks with the size.
+      // Close to a kink the deviation decreases with the size.
       return node->tile->deviation(1, column, row) * 0.5 * cells;
     }
     if (cells <= kTileCells || node->parent < 0) {

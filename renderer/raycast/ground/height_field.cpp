@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kNearestM = 0.5;
 
-/// Lowest and highest up coordinate of a tile's ground, with room for what its posts do not show.
+/// Lowest and highest up coordinate of a tile's ground, with a margin for relief between its posts.
 Eigen::Vector2d height_bounds(const HeightTile& tile, double relief_m) {
   const double low_m = tile.up_m + tile.lowest_m;
   const double high_m = tile.up_m + tile.highest_m.back().front();
@@ -98,8 +98,8 @@ std::int32_t HeightField::visit(const HeightTileId& id,
   return index;
 }
 
-/// Distance to the farthest ground that can be seen: the camera's horizon plus that of the highest
-/// ground, or where the view's lowest corner is sure to be below all ground.
+/// Distance to the farthest visible ground: the camera's horizon plus that of the highest ground,
+/// or the distance at which the view's lowest corner is certainly below all ground.
 double HeightField::reach_m(const ViewSweep& view) const {
   const Eigen::Vector2d range_m = tiles_->height_range_m();
   const Geodetic camera = tiles_->frame().geodetic_from_world(view.position);
@@ -178,7 +178,7 @@ bool HeightField::prepare_below(const HeightTileId& id, const ViewSweep& later) 
 void HeightField::forget_old() {
   while (kept_.size() > max_tiles_) {
     const auto oldest = kept_.find(order_.back());
-    // The tiles of the view just selected stay: the tree points to them.
+    // The tiles of the latest view stay, because the tree points to them.
     if (oldest->second.tile->last_use == view_) return;
     kept_.erase(oldest);
     order_.pop_back();

@@ -7,7 +7,7 @@ namespace overfly::renderer::raycast {
 
 namespace {
 
-/// Where no map point is found the ground falls away: nothing is seen there.
+/// Height if no map point is found: so low that nothing is visible there.
 constexpr double kAbyssM = -1e6;
 
 /// A point of the ground and its place on the map.
@@ -25,10 +25,10 @@ class Sampler {
   [[nodiscard]] Post find(const Eigen::Vector2d& wanted, const Eigen::Vector2d& guess_m) const {
     Post post;
     post.map_m = guess_m;
-    // Left over, the miss times the slope is an error of height: far below the tile's own.
+    // The remaining offset times the slope is an error of height, far below the tile's own error.
     const double close_m = 1e-3 * spacing_m_;
     for (int i = 0; i < 20; ++i) {
-      // Half the spacing: what the cells cannot show is averaged away, what they can is not.
+      // Half the spacing averages away relief that the cells cannot represent, and keeps the rest.
       const Eigen::Vector3d p =
           map_.tiles->coarse_world_from_map(post.map_m.x(), post.map_m.y(), 0.5 * spacing_m_);
       if (!p.allFinite()) break;
@@ -134,7 +134,7 @@ void measure_deviations(HeightTile& tile) {
     }
   }
   // Between the posts: cells half as long as those of k = 1 have half the deviation of a kinked
-  // surface, a quarter of that of a smooth one.
+  // surface, and a quarter of that of a smooth one.
   for (int row = 0; row < kTileCells; ++row) {
     for (int column = 0; column < kTileCells; ++column) {
       tile.deviation_m[0].push_back(0.5F * tile.deviation(1, column, row));

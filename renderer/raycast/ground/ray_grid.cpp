@@ -30,7 +30,7 @@ RayGrid::RayGrid(const CameraModel& camera)
       const Eigen::Vector2d right = ray(column + 1, row) - here;
       const Eigen::Vector2d down = ray(column, row + 1) - here;
       if (!right.allFinite() || !down.allFinite()) continue;
-      // A step of the image plane is an angle of at least step / (1 + r^2).
+      // A step in the image plane corresponds to an angle of at least step / (1 + r^2).
       const double squeeze = 1.0 + here.squaredNorm();
       const double width = left_px(column + 1) - left_px(column);
       const double height = top_px(row + 1) - top_px(row);
@@ -63,8 +63,8 @@ void RayGrid::lay_out(int cell_px) {
   }
 }
 
-/// The largest distance between a cell's middle and the middle of its corners' rays [px], measured
-/// at every fourth cell.
+/// The largest distance between a cell's centre and the mean of its corners' rays [px], measured at
+/// every fourth cell.
 double RayGrid::bend_px() const {
   double worst_px = 0.0;
   for (int row = 0; row < rows_; row += 4) {

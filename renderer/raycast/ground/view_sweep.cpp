@@ -6,7 +6,7 @@ namespace overfly::renderer::raycast {
 
 namespace {
 
-/// Instants that stand for the whole exposure: evenly spread, and all poses given in between.
+/// Instants that represent the whole exposure: evenly spaced, plus all given poses in between.
 std::vector<Pose> poses_of(const CameraRequest& request) {
   const CameraMotion& motion = request.T_world_camera;
   if (motion.still()) return {motion.at(request.t_ns)};
@@ -65,7 +65,7 @@ ViewSweep sweep_of(const CameraRequest& request, const RayGrid& rays) {
     }
   }
   if (edge.empty() || !bounded) return sweep;
-  // Room for what lies between the rays and the instants that were looked at.
+  // Margin for rays and instants between the examined ones.
   const Eigen::Array2d room = 0.02 * (high - low) + 1e-3;
   low -= room;
   high += room;

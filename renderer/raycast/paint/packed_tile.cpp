@@ -29,7 +29,7 @@ void pack(PackedTile& tile, const std::vector<ImageBuffer<Texel>>& levels, std::
     tile.offset[m] = static_cast<std::int32_t>(elements);
     elements += static_cast<std::size_t>(level.width_px) * level.height_px;
   }
-  // The last texel's right neighbour is read, with a weight of zero.
+  // The right neighbour of the last texel is read too, with weight zero.
   tile.plane_elements = elements + 2;
   to.resize(tile.plane_elements * tile.planes);
   for (int m = 0; m < mips; ++m) {

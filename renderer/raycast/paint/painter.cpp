@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kMaxValues = 3 * kBlockPixels;
 
-/// A bilinear function with its pixels' origin moved.
+/// A bilinear function with a moved pixel origin.
 Bilinear4 moved_and_scaled(const Bilinear4& f, float x, float y, float scale) {
   return {(f[0] + f[1] * x + (f[2] + f[3] * x) * y) * scale,
           (f[1] + f[3] * y) * scale,
@@ -32,7 +32,7 @@ void put_bytes(const Block& block, const float* values, const Canvas& canvas) {
         (static_cast<std::size_t>(block.y + y) * canvas.width_px + block.x) * kChannels;
     for (int c = 0; c < kChannels; ++c) {
       const float* row = values + c * kBlockPixels + y * kBlockSide;
-      if (block.columns == kBlockSide) {  // a length that the compiler knows
+      if (block.columns == kBlockSide) {  // a length known to the compiler
         for (int x = 0; x < kBlockSide; ++x) out[x * kChannels + c] = byte(row[x]);
       } else {
         for (int x = 0; x < block.columns; ++x) out[x * kChannels + c] = byte(row[x]);

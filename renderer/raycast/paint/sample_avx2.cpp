@@ -1,5 +1,5 @@
-// The sampling kernel for machines with AVX2: eight pixels at a time, the same operations in the
-// same order as the plain kernel, and so the same bits.
+// The sampling kernel for machines with AVX2: eight pixels at a time, with the same operations in
+// the same order as the plain kernel, and therefore the same bits.
 #include <algorithm>
 
 #include "renderer/raycast/paint/sample.hpp"
@@ -15,7 +15,7 @@ namespace overfly::renderer::raycast {
 
 namespace {
 
-/// The tile's tables by mip level, and the numbers of one level for eight pixels.
+/// The tile's tables by mip level, and the values of one level for eight pixels.
 struct Tables {
   __m256i offset, stride;
   __m256 scale_x, scale_y, last_x, last_y;
@@ -75,7 +75,7 @@ OVERFLY_AVX2 Footprints footprints(const Tables& at, __m256 u, __m256 v) {
           _mm256_sub_ps(t, _mm256_cvtepi32_ps(row))};
 }
 
-/// The two rows' weights as bytes and the two columns' as shorts, ready for the multiplications.
+/// The weights of the two rows as bytes and of the two columns as shorts, ready for multiplication.
 struct Weights {
   __m256i rows, columns;
 };
@@ -126,20 +126,20 @@ OVERFLY_AVX2 __m256 bilinear(const PackedTile& tile,
                    : narrow_samples(&tile.pairs[first], at.element, w);
 }
 
-/// Which mip levels a block's pixels take.
+/// The mip levels used by a block's pixels.
 enum class Mips {
-  kFirst,  ///< all the first one alone
+  kFirst,  ///< all only the first one
   kTwo,    ///< all the same two
   kAny,
 };
 
-/// What is the same for a whole block.
+/// Values common to a whole block.
 struct BlockMips {
   Mips mips = Mips::kAny;
   int first = 0;  ///< of kTwo
 };
 
-/// Rounding moves a level of detail far less than this.
+/// Rounding changes a level of detail by far less than this.
 constexpr float kLodSlack = 1e-3F;
 
 BlockMips mips_of(const TexelBlock& block) {

@@ -8,7 +8,7 @@ namespace overfly::renderer::raycast {
 
 namespace {
 
-/// One bilinear sample's place.
+/// The position of one bilinear sample.
 struct Footprint {
   std::int32_t element;
   float across, down;  // in [0, 1)

@@ -55,7 +55,7 @@ bool TexelTiles::prefetch(const std::vector<TileId>& ids, PixelFormat format) {
     return entries_.count({id, format}) == 0;
   });
   store_->prefetch(missing, format);
-  // One a frame, so that a row of tiles that comes into view does not cost one frame all of them.
+  // One per frame, so that a row of tiles that comes into view does not slow down a single frame.
   for (const TileId& id : missing) {
     const auto pixels = store_->peek(id, format);
     if (pixels == nullptr) continue;
