@@ -68,15 +68,14 @@ Result<std::unique_ptr<Renderer>> create_renderer(std::shared_ptr<const terrain:
     shared.tile_store = std::make_shared<TileStore>(tiles, store);
   }
   Result<std::unique_ptr<Renderer>> scenes = std::unique_ptr<Renderer>();
-  std::string note = "the ray-caster was asked for";
+  std::string note = "the ray-caster was requested";
   if (options.camera_backend == CameraBackend::kAuto) {
     scenes = create_egl_renderer(tiles, shared);
     if (scenes.ok() && !(*scenes)->info().software) return scenes;
-    note =
-        scenes.ok()
-            ? "OpenGL has no GPU here (" + (*scenes)->info().device +
-                  "): the ray-caster is faster but on hills towards the horizon, and equally right"
-            : "OpenGL does not work here: " + scenes.error().message;
+    note = scenes.ok() ? "OpenGL has no GPU here (" + (*scenes)->info().device +
+                             "): the ray-caster is faster except on hills towards the horizon, and "
+                             "equally accurate"
+                       : "OpenGL does not work here: " + scenes.error().message;
   }
   return std::unique_ptr<Renderer>(
       std::make_unique<CombinedRenderer>(std::move(tiles), shared, std::move(scenes), note));

@@ -15,7 +15,7 @@ Status check_table(const std::vector<double>& table) {
     return Error{ErrorCode::kInvalidArgument, "response.table: " + text};
   };
   if (table.size() < 2) {
-    return fault("has " + std::to_string(table.size()) + " values: at least 2 are needed");
+    return fault("has " + std::to_string(table.size()) + " values: at least 2 are required");
   }
   if (table.front() != 0.0 || table.back() != 1.0) {
     return fault("runs from " + number_text(table.front()) + " to " + number_text(table.back()) +
@@ -24,7 +24,7 @@ Status check_table(const std::vector<double>& table) {
   for (std::size_t i = 1; i < table.size(); ++i) {
     if (!(table[i] > table[i - 1])) {
       return fault("value " + std::to_string(i) + " = " + number_text(table[i]) +
-                   ": must be larger than the one before, " + number_text(table[i - 1]));
+                   ": must be larger than the previous value, " + number_text(table[i - 1]));
     }
   }
   return {};

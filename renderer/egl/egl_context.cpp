@@ -58,10 +58,10 @@ std::string note_of(const std::string& asked,
                     const std::string& said) {
   const std::string drawn = device.name() + " draws";
   if (asked.empty()) return said.empty() ? std::string() : drawn + ": " + said;
-  if (granted) return "device \"" + asked + "\" was asked for: " + drawn;
-  return "device \"" + asked + "\" was asked for and does not draw: " +
-         (said.empty() ? std::string("EGL offers no such device") : said) + "; " + drawn +
-         " in its place";
+  if (granted) return "device \"" + asked + "\" was requested: " + drawn;
+  return "device \"" + asked + "\" was requested and does not work: " +
+         (said.empty() ? std::string("EGL lists no such device") : said) + "; " + drawn +
+         " instead";
 }
 
 }  // namespace
@@ -106,7 +106,8 @@ Result<std::unique_ptr<EglContext>> EglContext::create(const std::string& wanted
     (*context)->note_ = note_of(wanted, granted, device, said);
     return context;
   }
-  return Error{ErrorCode::kUnsupported, "EGL gives no OpenGL context: " + said + "; " + kPackages};
+  return Error{ErrorCode::kUnsupported,
+               "EGL provides no OpenGL context: " + said + "; " + kPackages};
 }
 
 EglContext::~EglContext() {

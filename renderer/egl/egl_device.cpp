@@ -104,8 +104,7 @@ Result<std::vector<EglDevice>> egl_devices() {
   }
   const char* extensions = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
   if (!has_extension(extensions, "EGL_EXT_platform_base")) {
-    return Error{ErrorCode::kUnsupported,
-                 "libEGL offers no platforms (no EGL vendor is installed)"};
+    return Error{ErrorCode::kUnsupported, "libEGL lists no platforms (no EGL vendor is installed)"};
   }
   std::vector<EglDevice> devices;
   const bool enumerates = has_extension(extensions, "EGL_EXT_device_base") ||

@@ -61,7 +61,8 @@ class EglRenderer final : public Renderer, public CameraPipeline {
   }
 
   Status begin(const CameraRequest& request) override {
-    if (queue_.full()) return Error{ErrorCode::kConflict, "as many images as fit are in flight"};
+    if (queue_.full())
+      return Error{ErrorCode::kConflict, "the maximum number of images is in flight"};
     if (Status s = check_camera_request(tiles_, request); !s) return s;
     if (Status s = context_->make_current(); !s) return s;
     ahead_.expect(request);

@@ -40,14 +40,14 @@ Status PixelRing::pop(Image& image) {
   glDeleteSync(slot.copied);
   slot.copied = nullptr;
   if (waited == GL_WAIT_FAILED || waited == GL_TIMEOUT_EXPIRED) {
-    return Error{ErrorCode::kInternal, "OpenGL does not finish an image within 10 s"};
+    return Error{ErrorCode::kInternal, "OpenGL did not finish an image within 10 s"};
   }
   glBindBuffer(GL_PIXEL_PACK_BUFFER, slot.buffer.name());
   const auto* pixels = static_cast<const std::uint8_t*>(glMapBufferRange(
       GL_PIXEL_PACK_BUFFER, 0, static_cast<GLsizeiptr>(slot.bytes), GL_MAP_READ_BIT));
   if (pixels == nullptr) {
     glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
-    return Error{ErrorCode::kInternal, "OpenGL does not map a pixel buffer"};
+    return Error{ErrorCode::kInternal, "OpenGL failed to map a pixel buffer"};
   }
   const int channels = slot.grey ? 1 : 3;
   if (image.width_px != slot.width_px || image.height_px != slot.height_px ||

@@ -102,7 +102,7 @@ Status check(const terrain::TileSource& tiles, const EnduranceOptions& options) 
   if ((flight_s - options.warm_up_s) * options.rate_hz < 11.0) {
     return Error{ErrorCode::kInvalidArgument,
                  "the flight of " + std::to_string(flight_s) +
-                     " s must hold at least ten frames after its warm-up of " +
+                     " s must contain at least ten frames after its warm-up of " +
                      std::to_string(options.warm_up_s) + " s"};
   }
   return {};

@@ -29,7 +29,7 @@ class RaycastRenderer final : public Renderer {
 
   Result<Image> render_scene(const SceneView& /*view*/, const SceneContent& /*content*/) override {
     return Error{ErrorCode::kUnsupported,
-                 "the ray-caster draws the aircraft's camera alone; scene views need EGL"};
+                 "the ray-caster draws only the aircraft's camera; scene views need EGL"};
   }
 
   [[nodiscard]] RendererInfo info() const override {

@@ -32,7 +32,7 @@ Result<std::vector<CacheSource>> digested_sources(const WorldSpec& spec,
   if (!sources) return sources;
   for (CacheSource& source : *sources) {
     if (progress && !progress(0.0, "reading " + source.file)) {
-      return Error{ErrorCode::kCancelled, "the build was stopped"};
+      return Error{ErrorCode::kCancelled, "the build was cancelled"};
     }
     auto digest = file_digest(source_path(spec, source));
     if (!digest) return digest.error();
@@ -156,7 +156,8 @@ Status fill_cache(const WorldSpec& spec,
   const auto now = cache_sources(spec);
   if (!now) return now.error();
   if (const std::string changes = source_changes(spec, header.sources, *now); !changes.empty()) {
-    return Error{ErrorCode::kConflict, changes + " while the world was built; build it again"};
+    return Error{ErrorCode::kConflict,
+                 changes + " while the world was being built; build it again"};
   }
   return write_header(folder, header);
 }
@@ -171,10 +172,11 @@ bool same_layers(const WorldSpec& a, const WorldSpec& b) {
 
 Result<BuildReport> build_world(const WorldSpec& spec, const BuildProgress& progress) {
   if (spec.cache_folder.empty()) {
-    return Error{ErrorCode::kInvalidArgument, "this world has no manifest to keep a cache beside"};
+    return Error{ErrorCode::kInvalidArgument,
+                 "this world has no manifest, next to which its cache would be"};
   }
   if (progress && !progress(0.0, "opening the files")) {
-    return Error{ErrorCode::kCancelled, "the build was stopped"};
+    return Error{ErrorCode::kCancelled, "the build was cancelled"};
   }
   WorldSpec direct = spec;
   direct.cache_folder.clear();

@@ -169,7 +169,7 @@ Status CacheBuilder::report_until_done(const std::string& doing, const BuildProg
     if (!go_on) cancelled = stop_ = true;
   }
   if (!cancelled) return {};
-  return Error{ErrorCode::kCancelled, "the build was stopped; the next one goes on from there"};
+  return Error{ErrorCode::kCancelled, "the build was cancelled; the next one resumes it"};
 }
 
 Status CacheBuilder::run(const Work& work,
@@ -177,7 +177,7 @@ Status CacheBuilder::run(const Work& work,
                          const BuildProgress& progress) {
   const std::string all = std::to_string(jobs_.size());
   if (progress && !progress(0.0, doing + "0 of " + all + " chunks")) {
-    return Error{ErrorCode::kCancelled, "the build was stopped; the next one goes on from there"};
+    return Error{ErrorCode::kCancelled, "the build was cancelled; the next one resumes it"};
   }
   next_ = 0;
   done_ = 0;

@@ -106,12 +106,12 @@ std::string source_changes(const WorldSpec& spec,
       return other.file == source.file;
     });
     if (old == before.end()) return source.file + " is new";
-    if (old->size_bytes != source.size_bytes) return source.file + " has another size";
+    if (old->size_bytes != source.size_bytes) return source.file + " has a different size";
     if (old->modified_ns == source.modified_ns) continue;
     const auto digest = file_digest(source_path(spec, source));
     if (!digest || *digest != old->digest) return source.file + " has changed";
   }
-  if (before.size() != now.size()) return "a file is gone";
+  if (before.size() != now.size()) return "a file was removed";
   return "";
 }
 

@@ -44,14 +44,14 @@ std::uint64_t get(const std::uint8_t* in, int bytes) {
 
 Error damaged(const fs::path& file, const std::string& how) {
   return {ErrorCode::kIo,
-          file.string() + ": " + how + "; `overfly world build` mends the world's cache"};
+          file.string() + ": " + how + "; `overfly world build` repairs the world's cache"};
 }
 
 Result<Bytes> read_piece(std::ifstream& in, const fs::path& file, int index) {
   in.seekg(0);
   std::uint8_t head[kHeadBytes];
   if (!in.read(reinterpret_cast<char*>(head), kHeadBytes)) {
-    return damaged(file, "is missing or cut short");
+    return damaged(file, "is missing or truncated");
   }
   if (std::memcmp(head, kMagic, kMagicBytes) != 0 ||
       static_cast<std::uint64_t>(index) >= get(head + kMagicBytes, 4)) {
@@ -59,14 +59,14 @@ Result<Bytes> read_piece(std::ifstream& in, const fs::path& file, int index) {
   }
   std::uint8_t row[kRowBytes];
   in.seekg(static_cast<std::streamoff>(kHeadBytes + kRowBytes * static_cast<std::size_t>(index)));
-  if (!in.read(reinterpret_cast<char*>(row), kRowBytes)) return damaged(file, "is cut short");
+  if (!in.read(reinterpret_cast<char*>(row), kRowBytes)) return damaged(file, "is truncated");
   constexpr std::uint64_t kLargest = std::uint64_t{64} << 20U;
   const std::uint64_t size = get(row + 8, 4);
   if (size > kLargest) return damaged(file, "is damaged");
   Bytes piece(size);
   in.seekg(static_cast<std::streamoff>(get(row, 8)));
   if (!in.read(reinterpret_cast<char*>(piece.data()), static_cast<std::streamsize>(size))) {
-    return damaged(file, "is cut short");
+    return damaged(file, "is truncated");
   }
   if (adler32(piece) != get(row + 12, 4)) return damaged(file, "is damaged");
   return piece;
@@ -115,7 +115,7 @@ Status check_chunk(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::uint8_t head[kHeadBytes];
   if (!in.read(reinterpret_cast<char*>(head), kHeadBytes)) {
-    return damaged(file, "is missing or cut short");
+    return damaged(file, "is missing or truncated");
   }
   // A power loss may leave zeros on the disk.
   const auto count = static_cast<int>(get(head + kMagicBytes, 4));

@@ -176,7 +176,7 @@ Result<Tile> WorldCache::tile(const TileId& id) const {
   if (!piece) return piece.error();
   if (piece->empty()) return nothing();
   auto tile = unpack_tile(*piece);
-  if (!tile) return Error{ErrorCode::kIo, file.string() + ": holds a tile that cannot be read"};
+  if (!tile) return Error{ErrorCode::kIo, file.string() + ": contains a tile that cannot be read"};
   return std::move(*tile);
 }
 
@@ -187,7 +187,7 @@ Result<HeightGrid> WorldCache::block(int level, int column, int row) const {
   if (!piece) return piece.error();
   auto grid = unpack_heights(*piece);
   if (!grid || grid->columns != kBlockPosts + 1) {
-    return Error{ErrorCode::kIo, file.string() + ": holds heights that cannot be read"};
+    return Error{ErrorCode::kIo, file.string() + ": contains heights that cannot be read"};
   }
   return std::move(*grid);
 }

@@ -59,7 +59,7 @@ bool same_place(const OGRSpatialReference& a, const OGRSpatialReference& b, doub
 Verdict judge_place(GDALDataset& dataset, const ChunkLayer& layer, const Chunk& chunk) {
   double g[6] = {};
   if (dataset.GetGeoTransform(g) != CE_None) {
-    return {Kind::kFailed, "the image that came has no georeference"};
+    return {Kind::kFailed, "the received image has no georeference"};
   }
   const double left = layer.left + chunk.column_px * layer.pixel;
   const double top = layer.top - chunk.row_px * layer.pixel;
@@ -75,8 +75,8 @@ Verdict judge_place(GDALDataset& dataset, const ChunkLayer& layer, const Chunk& 
     std::snprintf(
         text,
         sizeof(text),
-        "the image that came lies elsewhere: corner %.3f, %.3f with pixels of %.6g, %.6g; "
-        "asked for %.3f, %.3f with %.6g",
+        "the received image has another place: corner %.3f, %.3f with pixels of %.6g, %.6g; "
+        "requested %.3f, %.3f with %.6g",
         g[0],
         g[3],
         g[1],
@@ -95,8 +95,8 @@ Verdict judge_place(GDALDataset& dataset, const ChunkLayer& layer, const Chunk& 
   came.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
   if (!same_place(came, asked, left, top)) {
     return {Kind::kFailed,
-            std::string("the image that came has the coordinate reference system ") +
-                came.GetName() + ", asked for " + layer.crs};
+            std::string("the received image has the coordinate reference system ") +
+                came.GetName() + ", requested " + layer.crs};
   }
   return {};
 }
@@ -116,14 +116,14 @@ Verdict judge_blocks(GDALDataset& dataset) {
     for (int row = 0; row < rows; ++row) {
       for (int column = 0; column < columns; ++column) {
         if (band->ReadBlock(column, row, block.data()) != CE_None) {
-          return {Kind::kTryAgain, "the image that came is damaged: " + messages.text()};
+          return {Kind::kTryAgain, "the received image is damaged: " + messages.text()};
         }
       }
     }
   }
   // Decoders that recover what they can from a truncated file only warn.
   if (!messages.empty() && messages.text().find("runcated") != std::string::npos) {
-    return {Kind::kTryAgain, "the image that came is cut short: " + messages.text()};
+    return {Kind::kTryAgain, "the received image is truncated: " + messages.text()};
   }
   return {};
 }
@@ -132,25 +132,25 @@ Verdict judge_raster(const ChunkLayer& layer, const Chunk& chunk, const char* na
   GdalMessages messages;
   const DatasetPtr dataset = open_image(name);
   if (!dataset) {
-    return {Kind::kTryAgain, "what came is no image that can be read: " + messages.text()};
+    return {Kind::kTryAgain, "the answer is not a readable image: " + messages.text()};
   }
   if (dataset->GetRasterXSize() != chunk.width_px || dataset->GetRasterYSize() != chunk.height_px) {
     return {Kind::kFailed,
-            "the image that came has " + std::to_string(dataset->GetRasterXSize()) + " x " +
-                std::to_string(dataset->GetRasterYSize()) + " px, asked for " +
+            "the received image has " + std::to_string(dataset->GetRasterXSize()) + " x " +
+                std::to_string(dataset->GetRasterYSize()) + " px, requested " +
                 std::to_string(chunk.width_px) + " x " + std::to_string(chunk.height_px)};
   }
   const int bands = dataset->GetRasterCount();
   const GDALDataType type = dataset->GetRasterBand(1)->GetRasterDataType();
   if (layer.heights && (bands != 1 || (type != GDT_Float32 && type != GDT_Float64))) {
     return {Kind::kFailed,
-            std::string("the heights that came are ") + std::to_string(bands) + " bands of " +
-                GDALGetDataTypeName(type) + ", asked for one of Float32"};
+            std::string("the received heights have ") + std::to_string(bands) + " bands of " +
+                GDALGetDataTypeName(type) + ", requested one of Float32"};
   }
   if (!layer.heights && type != GDT_Byte) {
     return {Kind::kFailed,
-            std::string("the imagery that came is of type ") + GDALGetDataTypeName(type) +
-                ", asked for 8 bit"};
+            std::string("the received imagery is of type ") + GDALGetDataTypeName(type) +
+                ", requested 8 bit"};
   }
   Verdict verdict = judge_blocks(*dataset);
   if (verdict.kind == Kind::kGood && chunk.payload == Payload::kGeoTiff) {
@@ -195,7 +195,7 @@ Verdict judge_chunk(const ChunkLayer& layer, const Chunk& chunk, const HttpReply
                      reply.content_type.find("text/plain") != std::string::npos;
   if (words || reply.body.empty() || reply.body[0] == '{' || reply.body[0] == '<') {
     // Services under load report temporary errors as text as well as by status.
-    return {Kind::kTryAgain, "the service answers in words: " + words_of(reply)};
+    return {Kind::kTryAgain, "the service answered with text: " + words_of(reply)};
   }
   const MemoryFile file(reply.body);
   return judge_raster(layer, chunk, file.name());

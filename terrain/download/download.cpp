@@ -157,13 +157,14 @@ Status claim_folder(const fs::path& folder, const nlohmann::json& wanted) {
     const auto found = text ? json_from_outside<nlohmann::json>(*text, record.string())
                             : Result<nlohmann::json>(text.error());
     if (found && *found == wanted) return {};
-    return Error{ErrorCode::kConflict,
-                 record.string() +
-                     ": holds a download with other options; give another folder, or remove it"};
+    return Error{
+        ErrorCode::kConflict,
+        record.string() +
+            ": contains a download with other options; choose another folder, or remove it"};
   }
   if (fs::exists(folder / "world.json", failed)) {
     return Error{ErrorCode::kConflict,
-                 folder.string() + ": holds another world; give another folder"};
+                 folder.string() + ": contains another world; choose another folder"};
   }
   std::ofstream out(record);
   out << wanted.dump(2) << '\n';
@@ -202,8 +203,7 @@ Status merge_all(const DownloadOptions& options,
         });
     if (!merged) return merged.error();
     if (merged->void_share >= 1.0) {
-      return Error{ErrorCode::kIo,
-                   layer.source + ": has no " + layer.what + " in this square at all"};
+      return Error{ErrorCode::kIo, layer.source + ": has no " + layer.what + " in this square"};
     }
     if (merged->void_share > 0.0) {
       report.warnings.push_back(layer.what + ": " + percent_text(merged->void_share) +
@@ -212,7 +212,7 @@ Status merge_all(const DownloadOptions& options,
     if (merged->uniform_chunks > 0) {
       report.warnings.push_back(layer.what + ": " + std::to_string(merged->uniform_chunks) +
                                 " of " + std::to_string(layer.chunks.size()) +
-                                " chunks are of one colour: the service may have nothing there");
+                                " chunks are of one colour: the service may have no data there");
     }
   }
   return {};
@@ -257,7 +257,7 @@ Result<DownloadReport> download_world(const DownloadOptions& options,
   std::atomic<bool> stop{false};
   PoliteFetcher fetcher(options, stop);
   DownloadReport report;
-  if (progress && !progress(0.0, "asking the services")) return cancelled();
+  if (progress && !progress(0.0, "querying the services")) return cancelled();
   DownloadOptions quick = options;  // limits that cannot be queried now are assumed, with a warning
   quick.attempts = std::min(options.attempts, 2);
   PoliteFetcher asker(quick, stop);

@@ -27,11 +27,12 @@ Result<std::vector<ChunkLayer>> lay_out_download(const DownloadOptions& options,
   std::size_t requests = 0;
   for (const ChunkLayer& layer : layers) requests += layer.chunks.size();
   if (requests > static_cast<std::size_t>(options.most_requests)) {
-    return Error{ErrorCode::kInvalidArgument,
-                 "the square needs " + std::to_string(requests) + " requests, limit " +
-                     std::to_string(options.most_requests) +
-                     " (most_requests): ask for less, or coarser, or raise the limit if the "
-                     "service's terms allow it"};
+    return Error{
+        ErrorCode::kInvalidArgument,
+        "the square needs " + std::to_string(requests) + " requests, limit " +
+            std::to_string(options.most_requests) +
+            " (most_requests): request a smaller or coarser area, or raise the limit if the "
+            "service's terms allow it"};
   }
   return layers;
 }

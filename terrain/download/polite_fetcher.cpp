@@ -36,10 +36,10 @@ Result<PoliteFetcher::Outcome> PoliteFetcher::get(const std::string& url, const 
     const double asked_s = reply.retry_after_s.value_or(0.0);
     if (asked_s > options_.longest_wait_s) {
       return Error{ErrorCode::kIo,
-                   url + ": " + verdict.reason + "; the service asks to wait " +
+                   url + ": " + verdict.reason + "; the service requests a wait of " +
                        std::to_string(std::lround(asked_s)) + " s, limit " +
                        std::to_string(std::lround(options_.longest_wait_s)) +
-                       " s. Start again later; what is there stays"};
+                       " s. Resume later; downloaded chunks are kept"};
     }
     ++repeated_;
     if (asked_s > 0.0) hold_back(asked_s);

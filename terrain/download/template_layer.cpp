@@ -50,14 +50,15 @@ Status check_template(const DownloadOptions& options) {
                      (has(url, "TileMatrix") && has(url, "TileCol") && has(url, "TileRow"));
   if (!wms && !tiles) {
     return wrong(
-        "must hold {z} {x} {y}, or {TileMatrix} {TileCol} {TileRow}, or {bbox} {width} {height}");
+        "must contain {z} {x} {y}, or {TileMatrix} {TileCol} {TileRow}, or {bbox} {width} "
+        "{height}");
   }
   if (wms && (!has(url, "width") || !has(url, "height"))) {
-    return wrong("a WMS template needs {width} and {height} beside {bbox}");
+    return wrong("a WMS template needs {width} and {height} in addition to {bbox}");
   }
   if (options.imagery_attribution.empty()) {
     return Error{ErrorCode::kInvalidArgument,
-                 "attribution: is empty; a source of your own needs its credit line"};
+                 "attribution: is empty; a custom source needs its credit line"};
   }
   if (std::abs(options.center_lat_rad) > kHighestLatRad) {
     return Error{ErrorCode::kInvalidArgument,

@@ -38,7 +38,7 @@ Result<Eigen::Vector2d> middle_in(const std::string& crs, const DownloadOptions&
   point << deg_from_rad(options.center_lon_rad), deg_from_rad(options.center_lat_rad);
   if (!(*transform)->apply(point)) {
     return Error{ErrorCode::kInvalidArgument,
-                 "center: has no place in " + crs + "; latitudes go to 84 deg"};
+                 "center: is outside the area of " + crs + "; the latitude must be within 84 deg"};
   }
   return Eigen::Vector2d(point.col(0));
 }
@@ -99,7 +99,7 @@ Result<ImageServiceLimits> ask_image_service(const std::string& service, PoliteF
     const std::string text(reply.body.begin(), reply.body.end());
     auto json = json_from_outside<nlohmann::json>(text, url);
     if (!json || !json->is_object() || json->contains("error")) {
-      return {Verdict::Kind::kTryAgain, "the service answers: " + words_of(reply)};
+      return {Verdict::Kind::kTryAgain, "the service answered: " + words_of(reply)};
     }
     answer = std::move(*json);
     return {};
@@ -112,7 +112,7 @@ Result<ImageServiceLimits> ask_image_service(const std::string& service, PoliteF
   read("maxImageWidth", limits.width_px);
   read("maxImageHeight", limits.height_px);
   if (limits.width_px < 16 || limits.height_px < 16) {
-    return Error{ErrorCode::kIo, url + ": allows images of less than 16 px"};
+    return Error{ErrorCode::kIo, url + ": permits only images of less than 16 px"};
   }
   if (answer.contains("copyrightText") && answer["copyrightText"].is_string()) {
     limits.credit = answer["copyrightText"].get<std::string>();
@@ -146,7 +146,7 @@ Result<ChunkLayer> usgs_layer(const DownloadOptions& options,
   auto limits = ask_image_service(service, fetcher);
   if (!limits) {
     if (limits.error().code == ErrorCode::kCancelled) return limits.error();
-    warnings.push_back("the service's own limits are not known, 4000 px are assumed: " +
+    warnings.push_back("the service's limits are not known; 4000 px are assumed: " +
                        limits.error().message);
     limits = ImageServiceLimits{};
   }

@@ -122,7 +122,7 @@ Result<ElevationModel> ElevationModel::open(const std::vector<ElevationLayer>& l
   }
   if (share < 0.999) {
     warnings.push_back(first->file() + ": elevation covers " + percent_text(share) +
-                       " of the imagery; the ground beyond goes on with the edge's height");
+                       " of the imagery; beyond, the ground continues with the edge's height");
   }
   if (parts.rasters.size() > 1) {
     const Status merged = model.merge(covered_part(parts.rasters, area), max_posts, warnings);

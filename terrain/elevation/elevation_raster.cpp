@@ -77,7 +77,7 @@ Result<HeightGrid> separation_lattice(const GeoidModel& model,
     }
   }
   if (!wgs84_from_crs.apply(points)) {
-    return Error{ErrorCode::kInvalidArgument, file + ": posts have no place in WGS84"};
+    return Error{ErrorCode::kInvalidArgument, file + ": posts cannot be transformed to WGS84"};
   }
   const Eigen::VectorXd separation = geoid_separation_m(model, points * rad_from_deg(1.0));
   HeightGrid lattice;
@@ -252,7 +252,8 @@ Status ElevationRaster::find_conversion(GDALDataset& dataset,
     warnings.push_back(std::move(*doubt));
   }
   if (!(*wgs84_from_crs)->apply(middle)) {
-    return Error{ErrorCode::kInvalidArgument, file_ + ": its middle has no place in WGS84"};
+    return Error{ErrorCode::kInvalidArgument,
+                 file_ + ": its centre cannot be transformed to WGS84"};
   }
   middle *= rad_from_deg(1.0);
   datum_ = height_datum(layer, place.crs);

@@ -25,20 +25,20 @@ std::string undeclared_text(const UndeclaredVoids& voids) {
   return count_text(voids.posts) + " of " + count_text(voids.of_posts) + " posts (" +
          percent_text(voids.posts / voids.of_posts) + ") have a usual value of missing data (" +
          values +
-         ") that nothing declares, and no ground reaches it: they are taken as missing; say "
-         "\"nodata\" in the manifest to decide it";
+         ") that is not declared, unlike the ground around: they are treated as missing; set "
+         "\"nodata\" in the manifest to override this";
 }
 
 std::string steep_text(const HeightSurvey& survey, double step_m) {
   char text[240];
-  std::snprintf(text,
-                sizeof(text),
-                "%.0f neighbouring posts differ by more than %.0f m, up to %.0f m: no ground does; "
-                "is there a value of missing data that is not declared? Say \"nodata\" in the "
-                "manifest",
-                survey.steep,
-                step_m,
-                survey.steepest_m);
+  std::snprintf(
+      text,
+      sizeof(text),
+      "%.0f neighbouring posts differ by more than %.0f m, up to %.0f m, unlike any ground; "
+      "is there an undeclared value of missing data? Set \"nodata\" in the manifest",
+      survey.steep,
+      step_m,
+      survey.steepest_m);
   return text;
 }
 
@@ -71,9 +71,10 @@ Status ElevationModel::survey(const std::function<bool()>& cancelled,
                                   {voids.values.begin(), voids.values.end()}});
   }
   if (survey->posts > kManyPosts) {
-    warnings.push_back(what_ + ": " + count_text(survey->posts) +
-                       " posts are read whenever this world is opened; `overfly world build` makes "
-                       "it quick");
+    warnings.push_back(
+        what_ + ": " + count_text(survey->posts) +
+        " posts are read whenever this world is opened; `overfly world build` avoids "
+        "that");
   }
   return take(*survey, warnings);
 }
@@ -82,13 +83,13 @@ Status ElevationModel::take(const HeightSurvey& survey, std::vector<std::string>
   survey_ = survey;
   if (survey.implausible > 0) {
     warnings.push_back(what_ + ": " + count_text(survey.implausible) +
-                       " heights outside -12000 to 9000 m are taken as missing");
+                       " heights outside -12000 to 9000 m are treated as missing");
   }
   const std::size_t layers = std::min(parts_->rasters.size(), survey.implausible_layers.size());
   for (std::size_t i = 0; survey.implausible == 0 && i < layers; ++i) {
     if (!survey.implausible_layers[i]) continue;
     warnings.push_back(parts_->rasters[i]->file() +
-                       ": heights outside -12000 to 9000 m are taken as missing");
+                       ": heights outside -12000 to 9000 m are treated as missing");
   }
   std::string undeclared;
   for (std::size_t i = 0; i < std::min(parts_->rasters.size(), survey.undeclared.size()); ++i) {
@@ -103,7 +104,7 @@ Status ElevationModel::take(const HeightSurvey& survey, std::vector<std::string>
     std::string why = ": has no heights near the imagery";
     if (survey.implausible > 0) {
       why +=
-          ", only values outside -12000 to 9000 m; if their unit is not the metre, say "
+          ", only values outside -12000 to 9000 m; if their unit is not the metre, set "
           "\"unit_m\" in the manifest";
     } else {
       why += undeclared;

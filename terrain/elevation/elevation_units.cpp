@@ -27,10 +27,11 @@ double height_unit_m(GDALDataset& dataset,
   const bool vertical_feet =
       crs.IsVertical() != 0 && std::abs(crs.GetTargetLinearUnits("VERT_CS") - 1.0) > 1e-3;
   if (is_metre(unit) && vertical_feet) {
-    warnings.push_back(layer.file.string() +
-                       ": the band says heights in metres, its vertical reference system feet; "
-                       "taken as metres. If they are feet, the ground is 3.28 times too high: say "
-                       "\"unit_m\" in the manifest");
+    warnings.push_back(
+        layer.file.string() +
+        ": the band gives metres as the unit of heights, its vertical reference system feet; "
+        "metres are assumed. If they are feet, the ground is 3.28 times too high: set "
+        "\"unit_m\" in the manifest");
   }
   if (is_metre(unit)) return 1.0;
   if (unit.find("us") != std::string::npos && unit.find('f') != std::string::npos) {
@@ -40,12 +41,13 @@ double height_unit_m(GDALDataset& dataset,
   if (crs.IsVertical() != 0) return crs.GetTargetLinearUnits("VERT_CS");
   if (!unit.empty()) {
     warnings.push_back(layer.file.string() + ": unit of the heights is \"" + unit +
-                       "\", which is not known here; taken as metres: say \"unit_m\" in the "
-                       "manifest if they are something else");
+                       "\", which is unknown; metres are assumed: set \"unit_m\" in the "
+                       "manifest if that is wrong");
   } else if (crs.IsProjected() != 0 && std::abs(crs.GetLinearUnits() - 1.0) > 1e-3) {
-    warnings.push_back(layer.file.string() +
-                       ": unit of the heights is not said; taken as metres. If they are feet, the "
-                       "ground is 3.28 times too high: say \"unit_m\" in the manifest");
+    warnings.push_back(
+        layer.file.string() +
+        ": unit of the heights is not given; metres are assumed. If they are feet, the "
+        "ground is 3.28 times too high: set \"unit_m\" in the manifest");
   }
   return 1.0;
 }
@@ -82,12 +84,12 @@ Status check_height_band(GDALDataset& dataset,
   if (dataset.GetRasterCount() >= 3 || band->GetColorTable() != nullptr) {
     return Error{ErrorCode::kInvalidArgument,
                  file +
-                     ": is a picture (8-bit colours), not elevation; is it listed in the wrong "
+                     ": is an image (8-bit colours), not elevation; is it listed in the wrong "
                      "place?"};
   }
   warnings.push_back(file +
                      ": elevation has 8 bits: 256 heights in steps of one unit, so it may be a "
-                     "picture of the relief; the ground will have terraces");
+                     "shaded relief image; the ground will have terraces");
   return {};
 }
 

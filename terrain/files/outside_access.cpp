@@ -76,7 +76,7 @@ CPLHTTPResult* refuse_fetch(
     const char* url, CSLConstList, GDALProgressFunc, void*, CPLHTTPFetchWriteFunc, void*, void*) {
   auto* result = static_cast<CPLHTTPResult*>(CPLCalloc(1, sizeof(CPLHTTPResult)));
   result->nStatus = 1;
-  result->pszErrBuf = CPLStrdup("this program's network is off");
+  result->pszErrBuf = CPLStrdup("network access is disabled in this program");
   CPLError(CE_Failure, CPLE_NotSupported, "%.200s: %s", url, result->pszErrBuf);
   return result;
 }

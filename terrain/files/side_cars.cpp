@@ -57,8 +57,8 @@ std::vector<std::string> SideCars::doubts(const fs::path& file) {
     std::error_code failed;
     const fs::file_status found = fs::status(side_car, failed);
     if (!fs::is_other(found)) continue;
-    doubts.push_back(side_car.string() + ": is not a regular file and is left out, though " +
-                     file.filename().string() + " lies beside it");
+    doubts.push_back(side_car.string() + ": is not a regular file and is ignored, although " +
+                     file.filename().string() + " is next to it");
   }
   return doubts;
 }

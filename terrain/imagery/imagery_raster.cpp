@@ -125,8 +125,8 @@ std::vector<std::string> ImageryRaster::doubts() const {
   if (texels >= kMany) {
     all.push_back(file_.string() + ": has no area-averaged overviews below " +
                   std::to_string(coarsest.width_px) + " x " + std::to_string(coarsest.height_px) +
-                  " px: far views read " + std::to_string(static_cast<long>(texels / 1e6)) +
-                  " million texels; `overfly world build` makes them quick");
+                  " px: distant views read " + std::to_string(static_cast<long>(texels / 1e6)) +
+                  " million texels; `overfly world build` avoids that");
   }
   return all;
 }

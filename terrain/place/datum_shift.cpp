@@ -45,7 +45,7 @@ std::optional<std::string> datum_shift_doubt(const OGRSpatialReference& crs,
   const std::string datum = geographic != nullptr ? geographic : "its datum";
   if (guess || accuracy_m < 0.0) {
     return file + ": " + datum +
-           " is taken for WGS84, since no PROJ grid between them is installed: positions may be "
+           " is treated as WGS84, since no PROJ grid between them is installed: positions may be "
            "wrong by 100 m or more";
   }
   char text[32];

@@ -77,11 +77,12 @@ std::string rounded(double value) {
 }
 
 std::string unknown_datum_text(const std::string& named, double separation_m) {
-  return (named.empty() ? "vertical datum is not said"
-                        : "vertical datum \"" + named + "\" is not known here") +
-         "; heights are taken as ellipsoidal. If they are above sea level, the ground is wrong by "
+  return (named.empty() ? "vertical datum is not given"
+                        : "vertical datum \"" + named + "\" is unknown") +
+         "; heights are assumed to be ellipsoidal. If they are above sea level, the ground is "
+         "wrong by "
          "about " +
-         rounded(std::abs(separation_m)) + " m here: say \"vertical_datum\" in the manifest";
+         rounded(std::abs(separation_m)) + " m here: set \"vertical_datum\" in the manifest";
 }
 
 }  // namespace
@@ -119,14 +120,16 @@ std::optional<GeoidModel> choose_geoid(VerticalDatum datum,
   const std::string name = to_string(datum);
   if (constant_m) return GeoidModel{"", constant_m, false};
   if (auto grid = installed_grid(VerticalDatum::kEgm96, lat_rad, lon_rad)) {
-    warnings.push_back(file + ": no PROJ grid for " + name + " is installed; EGM96 stands in (" +
-                       *grid + "): heights may be wrong by about 2 m");
+    warnings.push_back(file + ": no PROJ grid for " + name +
+                       " is installed; EGM96 is used instead (" + *grid +
+                       "): heights may be wrong by about 2 m");
     return GeoidModel{*grid, {}, false};
   }
-  warnings.push_back(
-      file + ": no PROJ grid for " + name + " is installed; the built-in table of EGM96 every " +
-      std::to_string(kEgm96TableStepDeg) + " degrees stands in: heights may be wrong by about " +
-      std::to_string(kEgm96TableErrorM) + " m");
+  warnings.push_back(file + ": no PROJ grid for " + name +
+                     " is installed; the built-in table of EGM96 every " +
+                     std::to_string(kEgm96TableStepDeg) +
+                     " degrees is used instead: heights may be wrong by about " +
+                     std::to_string(kEgm96TableErrorM) + " m");
   return GeoidModel{"", {}, true};
 }
 

@@ -86,9 +86,9 @@ Status check_sources(GDALDataset& dataset,
   for (const fs::path& source : sources) {
     if (Status status = go_on(cancelled, file); !status) return status;
     auto opened = open_raster(source);
-    if (!opened) return opened.error().in(file.string() + ": is made of");
+    if (!opened) return opened.error().in(file.string() + ": has the source");
     const Status whole = check_whole(**opened, source, cancelled, warnings);
-    if (!whole) return whole.error().in(file.string() + ": is made of");
+    if (!whole) return whole.error().in(file.string() + ": has the source");
     const std::vector<std::string> doubts = side_cars.doubts(source);
     warnings.insert(warnings.end(), doubts.begin(), doubts.end());
   }
@@ -117,8 +117,8 @@ Status check_last_row(GDALDataset& dataset,
                  file.string() + ": its last row cannot be read: " + messages.text()};
   }
   if (!messages.empty()) {
-    warnings.push_back(file.string() +
-                       ": may be damaged; reading its last row, GDAL said: " + messages.text());
+    warnings.push_back(file.string() + ": may be damaged; GDAL reported on reading its last row: " +
+                       messages.text());
   }
   return {};
 }

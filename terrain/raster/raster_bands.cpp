@@ -268,7 +268,7 @@ Result<RasterBands> find_bands(GDALDataset& dataset,
   if (bands.rgb[0] == bands.rgb[1]) read_palette(dataset, bands);
   const GDALDataType type = dataset.GetRasterBand(bands.rgb[0])->GetRasterDataType();
   if (GDALDataTypeIsComplex(type) != 0) {
-    return Error{ErrorCode::kUnreadable, file + ": has complex samples, not a picture"};
+    return Error{ErrorCode::kUnreadable, file + ": has complex samples, not an image"};
   }
   if (type != GDT_Byte) {
     bands.rescaled = true;

@@ -132,7 +132,7 @@ class Description {
                                                                                ": is made of");
     }
     if (Status beside = side_cars_.check(place, "SourceFilename", inside_); !beside) {
-      return refuse("a file beside one of its sources leads out of its folder: " +
+      return refuse("a file next to one of its sources leads out of its folder: " +
                     text.substr(0, 200));
     }
     names_.insert(text);

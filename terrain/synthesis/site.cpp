@@ -25,7 +25,7 @@ Result<Site> choose_site(double lat_deg, double lon_deg) {
   Eigen::Matrix2Xd point(2, 1);
   point << lon_deg, lat_deg;
   if (!(*transform)->apply(point)) {
-    return Error{ErrorCode::kInternal, "the world's middle has no place in its UTM zone"};
+    return Error{ErrorCode::kInternal, "the world's centre cannot be transformed to its UTM zone"};
   }
   site.middle_x_m = std::round(point(0, 0));
   site.middle_y_m = std::round(point(1, 0));

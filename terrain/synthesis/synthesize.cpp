@@ -59,7 +59,8 @@ Result<WorldSpec::Runway> runway_of(const synthesis::Landscape& land, const synt
   Eigen::Matrix2Xd points(2, 2);
   points << site.middle_x_m + threshold.x, site.middle_x_m + ahead.x, site.middle_y_m + threshold.y,
       site.middle_y_m + ahead.y;
-  if (!(*transform)->apply(points)) return Error{ErrorCode::kInternal, "runway: no place in WGS84"};
+  if (!(*transform)->apply(points))
+    return Error{ErrorCode::kInternal, "runway: cannot be transformed to WGS84"};
   points *= rad_from_deg(1.0);
   // Grid north is not true north: the heading is the direction of the far end as seen from the
   // threshold.

@@ -100,7 +100,7 @@ Status check_picture(const std::vector<MappedImagery>& layers, std::vector<std::
     if (layer.validity() == nullptr || layer.validity()->any()) continue;
     ++empty;
     warnings.push_back(layer.raster().file().string() +
-                       ": every texel is void by its mask or nodata value; it shows nothing");
+                       ": every texel is void by its mask or nodata value; the file is not used");
   }
   if (empty < layers.size()) return {};
   return Error{ErrorCode::kInvalidArgument,
@@ -117,8 +117,8 @@ Result<ElevationModel> open_elevation(const WorldSpec& spec,
   if (spec.elevation.empty()) {
     if (!spec.ground_height_m) {
       warnings.emplace_back(
-          "there is neither elevation nor a ground height: the ground is the ellipsoid (height 0). "
-          "Positions on the map are right, heights above the ellipsoid are not");
+          "neither elevation nor a ground height is given: the ground is the ellipsoid (height 0). "
+          "Positions on the map are correct, heights above the ellipsoid are not");
     }
     return ElevationModel::flat(spec.ground_height_m.value_or(0.0));
   }
@@ -211,7 +211,7 @@ std::shared_ptr<const WorldCache> find_cache(const WorldSpec& spec,
   WorldCache::Found found = WorldCache::find(spec);
   if (found.cache && found.cache->header().layout != world_fingerprint(layout.grid, elevation)) {
     found.cache = nullptr;
-    found.stale = "PROJ or its grids relate these files to the earth in another way now";
+    found.stale = "PROJ or its grids now georeference these files differently";
   }
   world.cache = "none";
   if (found.cache) {
@@ -222,7 +222,7 @@ std::shared_ptr<const WorldCache> find_cache(const WorldSpec& spec,
                   " MB";
   } else if (!found.stale.empty()) {
     world.cache = "stale: " + found.stale;
-    world.warnings.push_back(spec.cache_folder.string() + ": is not used, " + found.stale +
+    world.warnings.push_back(spec.cache_folder.string() + ": is not used: " + found.stale +
                              "; the files are read directly. Run `overfly world build`");
   }
   return found.cache;

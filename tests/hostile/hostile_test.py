@@ -381,7 +381,7 @@ class Files(Attack):
                         for file in ("beside.tif", "beside.vrt"):
                             run = self.assert_flies("listed", {"world.imagery.0.file": file})
                             log = self.victim.get(f"/runs/{run['id']}/manifest").text
-                            self.assertIn(f"{name}: is not a regular file and is left out", log)
+                            self.assertIn(f"{name}: is not a regular file and is ignored", log)
                     else:
                         side_car.symlink_to(self.victim.outside / (
                             "secret.tif" if kind == "link to a file" else "absent.tif"))

@@ -82,7 +82,7 @@ TEST_F(DrawingDevice, SoftwareDrawsWhenItIsAskedFor) {
   const auto info = info_of("software");
   ASSERT_TRUE(info.ok()) << info.error().message;
   EXPECT_TRUE(info->software);
-  EXPECT_EQ(info->device_note.find("in its place"), std::string::npos) << info->device_note;
+  EXPECT_EQ(info->device_note.find(" instead"), std::string::npos) << info->device_note;
 }
 
 TEST_F(DrawingDevice, EveryListedDeviceCanBeAskedForByItsIndex) {
@@ -93,7 +93,7 @@ TEST_F(DrawingDevice, EveryListedDeviceCanBeAskedForByItsIndex) {
     ASSERT_TRUE(info.ok()) << info.error().message;
     if (device.fault.empty()) {
       EXPECT_EQ(info->device, device.info.device);
-      EXPECT_EQ(info->device_note.find("in its place"), std::string::npos) << info->device_note;
+      EXPECT_EQ(info->device_note.find(" instead"), std::string::npos) << info->device_note;
     } else {
       EXPECT_TRUE(info->software);
     }

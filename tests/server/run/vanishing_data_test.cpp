@@ -135,7 +135,7 @@ TEST_P(VanishingData, ImageryCutShortEndsTheRunAndNotTheNextOne) {
   const auto run = flown("cut", [&] { fs::resize_file(imagery(), 4000); });
   ASSERT_FALSE(run.ok());
   EXPECT_EQ(run.error().code, ErrorCode::kIo);
-  expect_failed("cut", 5, imagery().string() + ": was written to while it was in use");
+  expect_failed("cut", 5, imagery().string() + ": was modified while it was in use");
   overfly::testing::write_text(imagery(), whole);
   const auto next = flown("next");
   ASSERT_TRUE(next.ok()) << next.error().message;

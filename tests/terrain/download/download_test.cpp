@@ -286,7 +286,7 @@ TEST_F(Download, RefusesWhatCannotBeMeant) {
   options.size_m = 4000.0;
   options.imagery_source = "https://example.org/{z}/{x}.png";
   options.imagery_attribution = "x";
-  EXPECT_NE(message().find("must hold {z} {x} {y}"), std::string::npos);
+  EXPECT_NE(message().find("must contain {z} {x} {y}"), std::string::npos);
   options.imagery_source = "https://example.org/{z}/{x}/{y}.png";
   options.imagery_attribution.clear();
   EXPECT_NE(message().find("attribution"), std::string::npos);

@@ -85,7 +85,7 @@ TEST_F(DownloadTrouble, GivesUpWhereTheServiceAsksForMoreThanTheLimit) {
     busy.headers.emplace_back("Retry-After: 7200");
     return busy;
   });
-  EXPECT_NE(message.find("asks to wait 7200 s, limit 300 s"), std::string::npos) << message;
+  EXPECT_NE(message.find("requests a wait of 7200 s, limit 300 s"), std::string::npos) << message;
 }
 
 TEST_F(DownloadTrouble, ReadsARetryDate) {
@@ -113,21 +113,21 @@ TEST_F(DownloadTrouble, SaysWhatIsWrongWithAnAnswer) {
        }},
       {"HTTP status 403", [](const HttpRequest&) { return words(403, "text/plain", "no"); }},
       {"HTTP status 404", [](const HttpRequest&) { return words(404, "text/plain", "no"); }},
-      {"the service answers in words: Sorry",
+      {"the service answered with text: Sorry",
        [](const HttpRequest&) {
          return words(200, "text/html", "<html><title>Sorry</title></html>");
        }},
-      {"asked for 300 x 300",
+      {"requested 300 x 300",
        [&](const HttpRequest& request) { return changed(request, "size", "256,256"); }},
       {"has the coordinate reference system",
        [&](const HttpRequest& request) { return changed(request, "imageSR", "26917"); }},
-      {"lies elsewhere",
+      {"has another place",
        [&](const HttpRequest& request) {
          return changed(request, "bbox", "583000,4356000,583300,4356300");
        }},
-      {"asked for 8 bit",
+      {"requested 8 bit",
        [&](const HttpRequest& request) { return changed(request, "pixelType", "F32"); }},
-      {"no image that can be read",
+      {"not a readable image",
        [](const HttpRequest&) { return words(200, "image/tiff", "II*\1garbage"); }},
   };
   for (const Case& wrong : cases) {

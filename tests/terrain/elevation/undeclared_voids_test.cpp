@@ -78,7 +78,7 @@ TEST_F(UndeclaredVoids, HolesOfTheUsualValuesAreMissingWithAWarningThatCountsThe
           Contains(AllOf(HasSubstr("heights.tif: 120 of 10000 posts (1.2 %) have a usual value of "
                                    "missing data (" +
                                    std::to_string(static_cast<int>(value)) + ")"),
-                         HasSubstr("taken as missing"))));
+                         HasSubstr("treated as missing"))));
     } else {
       EXPECT_THAT(world.warnings, Contains(HasSubstr("120 heights outside -12000 to 9000 m")));
     }

@@ -225,7 +225,7 @@ TEST_F(OutsideAccess, ThroughTheNetworkIsTurnedOffForGood) {
   CPLHTTPResult* reply = CPLHTTPFetch((address() + "/a").c_str(), nullptr);
   ASSERT_NE(reply, nullptr);
   EXPECT_EQ(reply->nDataLen, 0);
-  EXPECT_STREQ(reply->pszErrBuf, "this program's network is off");
+  EXPECT_STREQ(reply->pszErrBuf, "network access is disabled in this program");
   CPLHTTPDestroyResult(reply);
   CPLHTTPSetFetchCallback(nullptr, nullptr);  // other tests of this program download
 }

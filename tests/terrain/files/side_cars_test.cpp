@@ -76,7 +76,7 @@ TEST_F(SideCarsTest, ThatAreNoFilesAreLeftOutWithAWarning) {
       if (!fs::is_fifo(data(name))) continue;
       EXPECT_THAT(
           world->warnings,
-          Contains(HasSubstr(data(name).string() + ": is not a regular file and is left out")));
+          Contains(HasSubstr(data(name).string() + ": is not a regular file and is ignored")));
     }
   }
 }
@@ -89,7 +89,7 @@ TEST_F(SideCarsTest, ThatAreNoFilesAreNotWaitedForInPlaceOfNeededOnes) {
   make_fifo("e.hdr");
   const auto world = open_world(over(data("e.img")));
   ASSERT_FALSE(world.ok());
-  EXPECT_THAT(world.error().message, HasSubstr("e.hdr: is not a regular file and is left out"));
+  EXPECT_THAT(world.error().message, HasSubstr("e.hdr: is not a regular file and is ignored"));
 }
 
 TEST_F(SideCarsTest, OfAMosaicsSourcesAreLeftOutToo) {
@@ -137,7 +137,7 @@ TEST_F(SideCarsTest, OfAConfinedWorldLieInsideTheDataFolders) {
   fs::create_symlink(data("a.tif"), data("a.again.tif"));
   const auto world = open_world(confined);
   EXPECT_TRUE(world.ok()) << world.error().message;
-  EXPECT_THAT(world->warnings, Not(Contains(HasSubstr("is left out"))));
+  EXPECT_THAT(world->warnings, Not(Contains(HasSubstr("is ignored"))));
 }
 
 }  // namespace

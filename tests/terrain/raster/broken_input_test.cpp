@@ -115,7 +115,7 @@ TEST_F(BrokenInput, AsImageryIsNamedInTheseWords) {
   const Broken all[] = {
       {"no CRS",
        [](RasterFile& r) { r.crs = ""; },
-       "error: bad: has no coordinate reference system; say it in the manifest's field \"crs\", "
+       "error: bad: has no coordinate reference system; set it in the manifest's field \"crs\", "
        "for example \"EPSG:4326\""},
       {"no position",
        [](RasterFile& r) { r.transform.reset(); },
@@ -129,11 +129,11 @@ TEST_F(BrokenInput, AsImageryIsNamedInTheseWords) {
        [](RasterFile& r) {
          r.transform = {{std::nan(""), 2.0, 0.0, kNorthM, 0.0, -2.0}};
        },
-       "error: bad: georeference is broken: a corner lies at (nan, 4357000.000000), outside its "
+       "error: bad: georeference is invalid: a corner lies at (nan, 4357000.000000), outside its "
        "coordinate reference system"},
       {"metres that are said to be degrees",
        [](RasterFile& r) { r.crs = "EPSG:4326"; },
-       "error: bad: georeference is broken: a corner lies at (583000.000000, 4357000.000000), "
+       "error: bad: georeference is invalid: a corner lies at (583000.000000, 4357000.000000), "
        "outside its coordinate reference system"},
       {"degrees that are said to be metres",
        [](RasterFile& r) {
@@ -145,7 +145,7 @@ TEST_F(BrokenInput, AsImageryIsNamedInTheseWords) {
        [](RasterFile& r) {
          r.transform = {{kEastM / 0.3048, 6.56, 0.0, kNorthM / 0.3048, 0.0, -6.56}};
        },
-       "warning: bad: its middle lies at 49.7719 deg N, 73.2952 deg E, 157 deg outside the area of "
+       "warning: bad: its centre lies at 49.7719 deg N, 73.2952 deg E, 157 deg outside the area of "
        "its coordinate reference system (0 to 84 deg N, -90 to -84 deg E); are its coordinates in "
        "the right unit and zone?"},
       {"one colour",
@@ -160,7 +160,7 @@ TEST_F(BrokenInput, AsImageryIsNamedInTheseWords) {
        "over"},
       {"complex numbers",
        [](RasterFile& r) { r.type = "CFloat32"; },
-       "error: bad: has complex samples, not a picture"},
+       "error: bad: has complex samples, not an image"},
       {"a cut GeoTIFF",
        [](RasterFile&) {},
        "error: cut.tif: is truncated: block 0_6 ends at byte 57132, the file has 54259",
@@ -181,7 +181,8 @@ TEST_F(BrokenInput, AsImageryIsNamedInTheseWords) {
        0.6},
       {"a cut JPEG",
        [](RasterFile& r) { r.driver = "JPEG"; },
-       "warning: cut.jpg: may be damaged; reading its last row, GDAL said: libjpeg: Premature end "
+       "warning: cut.jpg: may be damaged; GDAL reported on reading its last row: libjpeg: "
+       "Premature end "
        "of JPEG file*",
        "cut.jpg",
        0.6},
@@ -192,7 +193,7 @@ TEST_F(BrokenInput, AsImageryIsNamedInTheseWords) {
        0.6},
       {"a cut Erdas file",
        [](RasterFile& r) { r.driver = "HFA"; },
-       "error: cut.img: not a raster that can be read: *",
+       "error: cut.img: not a readable raster: *",
        "cut.img",
        0.6},
       {"no bytes at all",
@@ -210,11 +211,11 @@ TEST_F(BrokenInput, AsElevationIsNamedInTheseWords) {
   const Broken all[] = {
       {"no CRS",
        [](RasterFile& r) { r.crs = ""; },
-       "error: bad: has no coordinate reference system; say it in the manifest's field \"crs\", "
+       "error: bad: has no coordinate reference system; set it in the manifest's field \"crs\", "
        "for example \"EPSG:4326\""},
       {"metres that are said to be degrees",
        [](RasterFile& r) { r.crs = "EPSG:4326"; },
-       "error: bad: georeference is broken: a corner lies at (582800.000000, 4357200.000000), "
+       "error: bad: georeference is invalid: a corner lies at (582800.000000, 4357200.000000), "
        "outside its coordinate reference system"},
       {"elsewhere",
        [](RasterFile& r) { (*r.transform)[0] += 3000.0; },
@@ -224,42 +225,42 @@ TEST_F(BrokenInput, AsElevationIsNamedInTheseWords) {
        "error: bad: elevation lies nowhere near the imagery; check both georeferences (*"},
       {"over a part of the imagery",
        [](RasterFile& r) { (*r.transform)[0] += 500.0; },
-       "warning: bad: elevation covers 50 % of the imagery; the ground beyond goes on with the "
-       "edge's height"},
+       "warning: bad: elevation covers 50 % of the imagery; beyond, the ground continues with "
+       "the edge's height"},
       {"8 bits",
        [](RasterFile& r) {
          r.type = "Byte";
          r.value = [](int x, int y, int) { return (x + y) % 256; };
        },
        "warning: bad: elevation has 8 bits: 256 heights in steps of one unit, so it may be a "
-       "picture of the relief; the ground will have terraces"},
+       "shaded relief image; the ground will have terraces"},
       {"a picture",
        [](RasterFile& r) {
          r.type = "Byte";
          r.bands = 3;
          r.value = {};
        },
-       "error: bad: is a picture (8-bit colours), not elevation; is it listed in the wrong place?"},
+       "error: bad: is an image (8-bit colours), not elevation; is it listed in the wrong place?"},
       {"heights of a map in feet",
        [](RasterFile& r) {
          r.crs = "+proj=utm +zone=16 +datum=WGS84 +units=us-ft";
          for (double& value : *r.transform) value *= 3937.0 / 1200.0;
        },
-       "warning: bad: unit of the heights is not said; taken as metres. If they are feet, the "
-       "ground is 3.28 times too high: say \"unit_m\" in the manifest"},
+       "warning: bad: unit of the heights is not given; metres are assumed. If they are feet, the "
+       "ground is 3.28 times too high: set \"unit_m\" in the manifest"},
       {"an unknown unit",
        [](RasterFile& r) { r.unit = "cm"; },
-       "warning: bad: unit of the heights is \"cm\", which is not known here; taken as metres: say "
-       "\"unit_m\" in the manifest if they are something else"},
+       "warning: bad: unit of the heights is \"cm\", which is unknown; metres are assumed: set "
+       "\"unit_m\" in the manifest if that is wrong"},
       {"heights in millimetres",
        [](RasterFile& r) { r.value = [](int x, int, int) { return 200000.0 + x; }; },
        "error: bad: has no heights near the imagery, only values outside -12000 to 9000 m; if "
-       "their unit is not the metre, say \"unit_m\" in the manifest"},
+       "their unit is not the metre, set \"unit_m\" in the manifest"},
       {"some heights beyond reason",
        [](RasterFile& r) {
          r.value = [](int x, int y, int) { return x == 50 && y < 10 ? 32767.0 : 200.0; };
        },
-       "warning: bad: 10 heights outside -12000 to 9000 m are taken as missing\nwarning: bad: 10 "
+       "warning: bad: 10 heights outside -12000 to 9000 m are treated as missing\nwarning: bad: 10 "
        "of 10000 posts (0.10 %) have no data and are filled from those around them"},
       {"nothing but nodata",
        [](RasterFile& r) {
@@ -284,7 +285,7 @@ TEST_F(BrokenInput, AsElevationIsNamedInTheseWords) {
        0.6},
       {"a cut Erdas file",
        [](RasterFile& r) { r.driver = "HFA"; },
-       "error: cut.img: not a raster that can be read: *",
+       "error: cut.img: not a readable raster: *",
        "cut.img",
        0.6},
       {"no bytes at all",

@@ -35,7 +35,7 @@ class DatasetPoolTest : public ::testing::Test {
 TEST_F(DatasetPoolTest, AFileThatVanishedIsAFaultOfReading) {
   DatasetPool pool(file(), 0);
   fs::remove(file());
-  expect_io_error(pool, ": is gone; it was there when the world was opened");
+  expect_io_error(pool, ": was removed after the world was opened");
 }
 
 TEST_F(DatasetPoolTest, AnotherFileOfThatNameIsNotRead) {
@@ -48,7 +48,7 @@ TEST_F(DatasetPoolTest, AnotherFileOfThatNameIsNotRead) {
 TEST_F(DatasetPoolTest, AFileWrittenToIsNotRead) {
   DatasetPool pool(file(), 0, open_raster(file()).value());
   fs::resize_file(file(), 1000);
-  expect_io_error(pool, ": was written to while it was in use");
+  expect_io_error(pool, ": was modified while it was in use");
 }
 
 TEST_F(DatasetPoolTest, OpenHandlesOfAVanishedFileAreShared) {

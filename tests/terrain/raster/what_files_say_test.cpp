@@ -70,7 +70,7 @@ TEST_F(WhatFilesSay, AVerticalCrsThatIsKnownIsNamedAsTheDatum) {
 TEST_F(WhatFilesSay, AVerticalCrsThatIsNotKnownIsNamedInTheWarning) {
   const World world = world_over("EPSG:32616+5711", kUtm);  // AHD height
   EXPECT_THAT(elevation_line(world), HasSubstr("vertical datum unknown (the file's: AHD height)"));
-  EXPECT_THAT(world.warnings, Contains(HasSubstr("vertical datum \"AHD height\" is not known")));
+  EXPECT_THAT(world.warnings, Contains(HasSubstr("vertical datum \"AHD height\" is unknown")));
 }
 
 TEST_F(WhatFilesSay, HeightsOfAThreeDimensionalCrsAreEllipsoidal) {
@@ -175,7 +175,7 @@ void exchange_tags(const fs::path& file) {
 
 TEST_F(WhatFilesSay, WhatGdalSaysWhileOpeningIsAWarning) {
   const World good = world_over("EPSG:32616", kUtm);
-  EXPECT_THAT(good.warnings, Not(Contains(HasSubstr("GDAL said"))));
+  EXPECT_THAT(good.warnings, Not(Contains(HasSubstr("GDAL reported"))));
   exchange_tags(path("picture.tif"));
   exchange_tags(path("heights.tif"));
   WorldSpec spec = good.spec;
@@ -183,7 +183,7 @@ TEST_F(WhatFilesSay, WhatGdalSaysWhileOpeningIsAWarning) {
   ASSERT_TRUE(world) << world.error().message;
   for (const char* file : {"picture.tif", "heights.tif"}) {
     EXPECT_THAT(world->warnings,
-                Contains(AllOf(HasSubstr(path(file).string() + ": opening it, GDAL said: "),
+                Contains(AllOf(HasSubstr(path(file).string() + ": GDAL reported on opening it: "),
                                Not(HasSubstr("no reason given")))));
   }
 }

@@ -141,7 +141,7 @@ TEST_F(WorldErrors, AnUnknownVerticalDatumWarnsOfTheErrorsSize) {
   ASSERT_TRUE(world) << world.error().message;
   ASSERT_EQ(world->warnings.size(), 1U);
   // The geoid lies 33 m below the ellipsoid in Indiana.
-  EXPECT_NE(world->warnings[0].find("vertical datum is not said"), std::string::npos);
+  EXPECT_NE(world->warnings[0].find("vertical datum is not given"), std::string::npos);
   EXPECT_NE(world->warnings[0].find(" 33."), std::string::npos) << world->warnings[0];
 }
 
