@@ -30,8 +30,8 @@ Status Trajectory::append(const StampedPose& stamped) {
     return Error{ErrorCode::kInvalidArgument, where + ": the quaternion has zero norm"};
   }
   poses_.push_back(stamped);
-  // A quaternion of unit length stays as it is to the last bit: normalising one again can change
-  // it, and a file written and read back must be the same file.
+  // Do not normalise a quaternion of unit norm again: its last bits could change, and a file that
+  // is read and written back must be identical.
   constexpr double kUnitTolerance = 1e-15;
   if (std::abs(norm - 1.0) > kUnitTolerance) poses_.back().pose.rotation.normalize();
   return {};

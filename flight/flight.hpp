@@ -1,4 +1,4 @@
-// Flights: the parametric course and logged trajectories.
+// Sources of true flights: the parametric course and logged trajectories.
 #pragma once
 
 #include <atomic>

@@ -19,7 +19,7 @@ namespace overfly::odometry::feature {
 /// Standard deviation of the pixel noise of a patch found at a pyramid level [px].
 [[nodiscard]] inline double sigma_px_of(int patch_level) { return std::ldexp(0.2, patch_level); }
 
-/// A map point seen in a keyframe.
+/// Observation of a map point in a keyframe.
 struct Observation {
   int point = 0;  ///< id
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
@@ -121,7 +121,7 @@ class Map {
                                        const Eigen::Vector2d& pixel,
                                        int patch_level);
 
-/// Sets the ground's normal at a point from the plane of its source keyframe.
+/// Sets the ground normal at a point from the ground plane of its source keyframe.
 void set_normal(const PinholeCamera& camera, const Keyframe& source, MapPoint& point);
 
 /// Robustly fits the ground plane to the keyframe's points and sets whether they lie near it. With

@@ -25,7 +25,7 @@ namespace overfly::odometry::feature {
 /// published: after new points have a depth, and again after the adjustment.
 ///
 /// All calls must come from the tracking thread.
-/// All calls are for one thread, that which tracks.
+/// All calls must come from the tracking thread.
 class MapKeeper {
  public:
   MapKeeper(const PinholeCamera& camera,

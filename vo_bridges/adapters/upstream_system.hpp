@@ -71,7 +71,7 @@ class UpstreamSystem {
   virtual void reset() = 0;
 };
 
-// Each adapter defines these three.
+// Each adapter defines the following three functions.
 
 /// Upstream's name, e.g. "ORB-SLAM2".
 std::string upstream_name();

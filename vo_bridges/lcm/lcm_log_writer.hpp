@@ -34,7 +34,7 @@ struct LcmLogTruth {
 class LcmLogWriter {
  public:
   /// @param epoch_utc_ns  Unix time of t = 0
-  /// Errors: kUnsupported where LCM is not built in; kIo naming the file.
+  /// Errors: kUnsupported if LCM is not built in; kIo naming the file.
   static Result<std::unique_ptr<LcmLogWriter>> create(const std::filesystem::path& file,
                                                       std::int64_t epoch_utc_ns);
   virtual ~LcmLogWriter() = default;

@@ -79,7 +79,7 @@ Status validate(const ProcessEstimatorOptions& options) {
   if (!options.command.empty() && options.command[0].empty()) return bad("command[0]: is empty");
   if (options.command.empty() && options.listen.starts_with("tcp:") &&
       options.listen.ends_with(":0")) {
-    return bad("listen: port 0 requires a command, which is told the assigned port");
+    return bad("listen: port 0 requires a command, which receives the assigned port");
   }
   for (const Status& status :
        {check_number("start_timeout_s", options.start_timeout_s, 1e-3, 3600.0, "in (0, 3600]"),

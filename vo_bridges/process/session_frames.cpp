@@ -176,7 +176,7 @@ Result<std::optional<VoEstimate>> Session::track(const VoFrame& frame, bool debu
 
 Status Session::reset() {
   if (ended_) return *ended_;
-  channel_->begin_counts();  // a debug image may be on its way
+  channel_->begin_counts();  // a debug image may still arrive
   channel_->enqueue(message_of(MessageType::kReset));
   Status ready = wait_ready(MessageType::kReset, after_s(options_.answer_timeout_s));
   if (!ready) return end(ready.error());

@@ -17,7 +17,7 @@ namespace overfly {
 /// time in the bag.
 class Ros1BagWriter {
  public:
-  /// Errors: kUnsupported where ROS 1 is not built in; kIo naming the file.
+  /// Errors: kUnsupported if ROS 1 is not built in; kIo naming the file.
   [[nodiscard]] static Result<std::unique_ptr<Ros1BagWriter>> create(
       const std::filesystem::path& file);
   virtual ~Ros1BagWriter() = default;

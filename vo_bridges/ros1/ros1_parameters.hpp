@@ -9,12 +9,12 @@
 
 namespace overfly::ros1 {
 
-/// Sets parameters below a namespace; whole numbers as such, since nodes tell them from others.
-/// Errors: kInternal naming the parameter.
+/// Sets parameters below a namespace. Whole numbers are set as integers: nodes distinguish the
+/// types. Errors: kInternal naming the parameter.
 [[nodiscard]] Status write_parameters(const std::string& name_space,
                                       const VoParameters& parameters);
 
-/// All parameters below a namespace, by their names there ("tracker/levels"), as text.
+/// All parameters below a namespace as text, by relative name ("tracker/levels").
 [[nodiscard]] std::map<std::string, std::string> read_parameters(const std::string& name_space);
 
 }  // namespace overfly::ros1

@@ -82,7 +82,7 @@ class OrbSlam2System : public UpstreamSystem {
   }
 
   void reset() override {
-    system_->Reset();  // with the next image
+    system_->Reset();  // takes effect at the next image
     map_id_ = 0;
     posed_ = false;
   }
