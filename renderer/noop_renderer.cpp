@@ -15,8 +15,8 @@ namespace overfly::renderer {
 
 namespace {
 
-/// Stripes whose phase and direction follow the pose: equal poses give equal images, and a moving
-/// camera gives moving ones.
+/// Stripes whose phase and direction depend on the pose: equal poses give equal images, and a
+/// moving camera gives moving ones.
 Image pose_pattern(int width_px, int height_px, int channels, const Pose& pose) {
   const Eigen::Vector3d& p = pose.translation;
   const Eigen::Quaterniond& q = pose.rotation;

@@ -10,8 +10,8 @@ namespace {
 
 using Lanes = std::array<float, kChunk>;
 
-/// The light this many samples on is fetched early: a page of memory, beyond which the processor
-/// does not look by itself.
+/// Radiance this many samples ahead is prefetched: a page of memory, across which the processor
+/// does not prefetch by itself.
 constexpr int kPrefetchSamples = 1024;
 
 OVERFLY_LANES void fetch_ahead(const SensorRow& row, int start) {

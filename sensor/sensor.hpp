@@ -1,7 +1,7 @@
 // The camera's image chain, from the radiance at the lens to digital numbers, in physical order:
 // defocus, vignetting, exposure, photo-electrons, shot noise, full well, read noise, gain,
 // quantisation, response curve. Every stage is off by default: an enabled sensor without a stage
-// gives the imagery's own picture. Equations and sources: docs/CAMERA.md.
+// reproduces the imagery. Equations and sources: docs/CAMERA.md.
 //
 // A colour image passes the chain channel by channel: three equal sensors behind ideal colour
 // filters, without a Bayer mosaic.

@@ -30,7 +30,7 @@ struct BuildReport {
 [[nodiscard]] Result<BuildReport> build_world(const WorldSpec& spec,
                                               const BuildProgress& progress = {});
 
-/// Whether two worlds are made of the same files, read in the same way.
+/// Whether two worlds consist of the same files, read in the same way.
 [[nodiscard]] bool same_layers(const WorldSpec& a, const WorldSpec& b);
 
 }  // namespace overfly::terrain

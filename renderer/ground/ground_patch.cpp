@@ -13,7 +13,7 @@ using terrain::TileId;
 
 namespace {
 
-/// What a patch without points takes, with its place in the containers.
+/// Memory of a patch without points, including its place in the containers.
 constexpr std::size_t kOutlineBytes = sizeof(GroundPatch) + 160;
 
 /// The ground at a lattice over a patch, row by row from the north.

@@ -13,7 +13,8 @@ using terrain::TileId;
 
 namespace {
 
-/// The texel density is taken at the outline's points; between them it may be lower by this.
+/// The texel density is computed at the outline's points; between them it may be lower by this
+/// factor.
 constexpr double kDensityMargin = 0.9;
 /// A patch whose elevation is finer than its 32 cells is split until its cells are no longer than
 /// this in the image.

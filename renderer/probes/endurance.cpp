@@ -65,7 +65,7 @@ class Track {
   const EnduranceOptions& options_;
 };
 
-/// What the counted frames cost, in flight order.
+/// The costs of the counted frames, in flight order.
 struct FrameSeries {
   std::vector<double> cpu_ms, thread_cpu_ms, wall_ms, resident_mb;
 

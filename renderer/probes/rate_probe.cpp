@@ -13,7 +13,7 @@ namespace overfly::renderer {
 
 namespace {
 
-constexpr int kBatch = 16;  // calls that are timed together
+constexpr int kBatch = 16;  // calls timed together
 
 /// Wall time of a call [s], added to `times`.
 Status time(std::vector<double>& times, const std::function<Status()>& call) {

@@ -49,7 +49,7 @@ double grey_at(const Image& image, double x, double y) {
          b * ((1.0 - a) * image.at(x0, y0 + 1) + a * image.at(x0 + 1, y0 + 1));
 }
 
-/// The patch of `seen` around a pixel, with what its alignment needs.
+/// The patch of `seen` around a pixel, with precomputed data for its alignment.
 struct GreyPatch {
   std::vector<double> values;
   std::vector<Eigen::Vector2d> gradients;

@@ -11,8 +11,8 @@ namespace overfly::renderer::raycast {
 
 struct RaycastOptions {
   std::size_t tile_cache_bytes = std::size_t{256} << 20U;
-  std::shared_ptr<TileStore> tile_store;  ///< null = one of its own
-  int threads = 0;                        ///< 0 = one a core, at most 8
+  std::shared_ptr<TileStore> tile_store;  ///< null = a private one
+  int threads = 0;                        ///< 0 = one per core, at most 8
   SampleKernel kernel = nullptr;          ///< null = the fastest
 };
 

@@ -29,7 +29,7 @@ enum class TimeUnit { kAuto, kSeconds, kNanoseconds };
 
 struct DatasetImage {
   std::filesystem::path file;
-  std::string listed_at;   ///< "FILE:LINE" that names it
+  std::string listed_at;   ///< "FILE:LINE" of its entry
   int line = 0;            ///< LINE of listed_at
   std::int64_t index = 0;  ///< the data set's own number, else the position in the list; increasing
   std::int64_t t_ns = 0;   ///< in the data set's time base; increasing

@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Told by the files that only this layout has.
+/// Detects the layout by files that only this layout has.
 Result<DatasetLayout> layout_of(const fs::path& folder) {
   const auto has = [&](const char* name) {
     std::error_code ignored;

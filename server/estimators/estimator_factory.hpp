@@ -1,4 +1,4 @@
-// Makes estimators, native ones and those behind the doors to other processes.
+// Creates estimators: native ones and those behind doors to other processes.
 #pragma once
 
 #include <functional>

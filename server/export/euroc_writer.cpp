@@ -1,6 +1,6 @@
 // The ASL layout of the EuRoC data set (Burri et al. 2016, IJRR 35(10)): mav0/ with cam0, cam1,
-// ..., imu0, state_groundtruth_estimate0. Body = the aircraft's (forward-right-down), in whose
-// origin the IMU sits; reference = the world frame (east-north-up).
+// ..., imu0, state_groundtruth_estimate0. Body = the aircraft's (forward-right-down); the IMU is at
+// its origin. Reference = the world frame (east-north-up).
 #include "server/export/dataset_writer.hpp"
 #include "server/files/number_text.hpp"
 #include "server/files/png_file.hpp"

@@ -1,5 +1,5 @@
-// The layout of a sequence of the KITTI odometry benchmark (Geiger, Lenz, Urtasun 2012), of one
-// camera: image_0/ (grey) or image_2/ (colour), times.txt, calib.txt, poses.txt.
+// A sequence of the KITTI odometry benchmark (Geiger, Lenz, Urtasun 2012) with one camera: image_0/
+// (grey) or image_2/ (colour), times.txt, calib.txt, poses.txt.
 #include "server/export/dataset_writer.hpp"
 #include "server/files/number_text.hpp"
 #include "server/files/png_file.hpp"

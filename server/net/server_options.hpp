@@ -26,11 +26,11 @@ struct ServerLimits {
 };
 
 struct ServerOptions {
-  std::string address = "127.0.0.1";  ///< loopback unless told otherwise
+  std::string address = "127.0.0.1";  ///< loopback by default
   std::uint16_t port = 8480;          ///< 0 = any free port
-  /// What every request must show (access_token.hpp); empty = nothing, on a loopback address only.
+  /// Every request must carry it (access_token.hpp); empty = no token, only on a loopback address.
   std::string token;
-  /// Host names and addresses by which clients may ask, besides those of AllowedHosts.
+  /// Host names and addresses that clients may use, in addition to those of AllowedHosts.
   std::vector<std::string> allowed_hosts;
   std::filesystem::path web_folder;  ///< built dashboard; empty = REST and WebSocket only
   ServerLimits limits;

@@ -68,8 +68,8 @@ struct EstimateRecord {
   EstimateSample sample;
   std::map<std::string, double> counters;
   bool dropped = false;
-  std::string crash;  ///< why the estimator is gone, at the frame where it went; else empty
-  /// Of the image as it arrived where the estimator runs, as far as that place tells.
+  std::string crash;  ///< why the estimator ended, at the frame where it ended; else empty
+  /// Of the image as received by the estimator; empty if not reported.
   std::optional<std::uint32_t> image_crc32;
 };
 

@@ -23,8 +23,8 @@
 
 namespace overfly::engine {
 
-/// Thread-safe. Rows are only ever appended and are numbered from 0: a reader asks for the rows
-/// from its next number on, so nothing is lost or told twice, live or replayed.
+/// Thread-safe. Rows are only appended and are numbered from 0. A reader asks for the rows from its
+/// next number on, so no row is lost or delivered twice, live or in replay.
 class RunTimeline {
  public:
   explicit RunTimeline(RunInfo info, std::vector<std::string> estimators);

@@ -1,4 +1,4 @@
-// Flies one scenario into one run folder.
+// Flies one scenario and records it in one run folder.
 #pragma once
 
 #include "core/result.hpp"

@@ -15,10 +15,10 @@ struct RunManagerOptions {
   std::filesystem::path scenarios_folder;
   RendererFactory renderer_factory;
   int max_parallel_runs = 1;           ///< further runs wait in a queue
-  std::size_t max_waiting_runs = 100;  ///< further ones are refused
+  std::size_t max_waiting_runs = 100;  ///< further runs are refused
   /// Memory for flights and for pictures for viewers; 0 = most of the machine's.
   std::uint64_t memory_limit_bytes = 0;
-  /// Overrides may name programs to start and addresses to speak to.
+  /// Overrides may name programs to start and network addresses.
   bool allow_commands = false;
   /// Folders whose files scenarios may name, in addition to `declared_folders(scenarios_folder)`;
   /// never the runs folder. Without a value any regular file may be named.

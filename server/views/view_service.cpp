@@ -17,7 +17,7 @@
 namespace overfly::engine {
 namespace {
 
-/// A client that there is no memory to answer asks again.
+/// If there is no memory for the answer, the client will ask again.
 void answer(const PictureDone& done, Result<Picture> picture) {
   (void)contained([&] { done(std::move(picture)); }, [](const char*) {});
 }
@@ -38,7 +38,7 @@ struct ViewService::Impl {
   std::mutex mutex;
   std::condition_variable wake;
   ViewQueue queue;
-  std::vector<PictureDone> replaced;   ///< to be told so on the thread
+  std::vector<PictureDone> replaced;   ///< still to be answered, on the thread
   std::atomic<bool> stopping = false;  ///< written under the mutex
   std::thread thread;                  ///< last member, because it uses all of the above
 };
@@ -63,7 +63,7 @@ std::optional<ViewQueue::Entry> ViewService::Impl::next(bool beside_flight) {
     const std::vector<PictureDone> told = std::exchange(replaced, {});
     lock.unlock();
     for (const PictureDone& done : told) {
-      answer(done, Error{ErrorCode::kCancelled, "a newer picture was asked for"});
+      answer(done, Error{ErrorCode::kCancelled, "a newer picture was requested"});
     }
     lock.lock();
   }

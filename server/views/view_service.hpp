@@ -1,5 +1,6 @@
-// Pictures for viewers: the camera, debug and scene views of a run at any instant, drawn on one
-// thread of its own, which beside a flight in real time gets only what that leaves of the machine.
+// Pictures for viewers: camera, debug and scene views of a run at any instant. They are drawn on a
+// separate thread, which during a real-time flight gets only the processor time that the flight
+// leaves.
 #pragma once
 
 #include <cstdint>
@@ -18,9 +19,9 @@ class ViewService {
   /// Waits for the picture in progress; cancels the opening of a world.
   ~ViewService();
 
-  /// Queues a picture for a client's stream; a request not yet begun of the same (client, stream)
-  /// is replaced and its `done` gets kCancelled: a slow machine shows newer pictures, not more.
-  /// `done` is called on the service's thread.
+  /// Queues a picture for a client's stream. A waiting request of the same (client, stream) is
+  /// replaced and its `done` gets kCancelled, so that a slow machine shows newer pictures, not
+  /// more. `done` is called on the service's thread.
   void request(std::uint64_t client, int stream, const PictureRequest& request, PictureDone done);
   /// Drops the waiting requests of a client without calling their `done`.
   void forget(std::uint64_t client);

@@ -139,7 +139,7 @@ Result<CacheHeader> new_header(const WorldSpec& spec,
   return header;
 }
 
-/// Makes all parts, and the header last.
+/// Writes all parts, and the header last.
 Status fill_cache(const WorldSpec& spec,
                   CacheBuilder& builder,
                   const RasterWorld& tiles,

@@ -14,7 +14,7 @@
 namespace overfly::terrain {
 namespace {
 
-/// A vertical grid shift of PROJ, on a context of its own.
+/// A vertical grid shift of PROJ with a separate context.
 class GridShift {
  public:
   explicit GridShift(const std::string& grid) : context_(proj_context_create()) {

@@ -25,7 +25,7 @@ std::optional<std::string> place_doubt(const Georeference& place,
   if (!transform) return std::nullopt;
   Eigen::Matrix2Xd middle(2, 1);
   place.transform.crs_from_pixel(0.5 * width_px, 0.5 * height_px, middle(0, 0), middle(1, 0));
-  if (!(*transform)->apply(middle)) return std::nullopt;  // laying out the world says so
+  if (!(*transform)->apply(middle)) return std::nullopt;  // laying out the world reports it
   const double lon = unwrapped(middle(0, 0), 0.5 * (west + east), 360.0);
   const double lat = middle(1, 0);
   const double outside = std::max({west - lon, lon - east, south - lat, lat - north, 0.0});
@@ -34,7 +34,7 @@ std::optional<std::string> place_doubt(const Georeference& place,
   char text[400];
   std::snprintf(text,
                 sizeof(text),
-                ": its middle lies at %.4f deg N, %.4f deg E, %.0f deg outside the area of its "
+                ": its centre lies at %.4f deg N, %.4f deg E, %.0f deg outside the area of its "
                 "coordinate reference system (%.0f to %.0f deg N, %.0f to %.0f deg E); are its "
                 "coordinates in the right unit and zone?",
                 lat,

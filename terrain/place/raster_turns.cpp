@@ -32,7 +32,8 @@ XRange columns_of(const Georeference& place, int width_px, int height_px) {
   return {*low, *high};
 }
 
-/// The area in x of the raster's CRS, unwrapped around its middle; empty where PROJ has no answer.
+/// The area in x of the raster's CRS, unwrapped around its centre; empty if PROJ cannot transform
+/// it.
 std::optional<XRange> span_of(const MapPlane& plane,
                               const MapRect& area,
                               const CrsTransform& crs_from_wgs84,

@@ -38,7 +38,7 @@ Status check_overviews(GDALDataset& dataset, const fs::path& file) {
   const std::string beside = ":::BASE:::";  // GDAL's mark of the file's own folder
   if (name.starts_with(beside)) name = name.substr(beside.size());
   if (name.find('/') == std::string::npos && name.find(':') == std::string::npos) return {};
-  return Error{ErrorCode::kUnreadable, file.string() + ": names overviews outside of its folder"};
+  return Error{ErrorCode::kUnreadable, file.string() + ": names overviews outside its folder"};
 }
 
 }  // namespace
@@ -55,7 +55,8 @@ Result<DatasetPtr> open_raster(const fs::path& file, int level) {
   CPLStringList options;
   if (level > 0) options.SetNameValue("OVERVIEW_LEVEL", std::to_string(level - 1).c_str());
   DatasetPtr dataset(GDALDataset::Open(
-      fs::absolute(file).c_str(),  // begins with a slash: no name that GDAL has a meaning for
+      // Absolute, so that GDAL does not interpret it as one of its special names
+      fs::absolute(file).c_str(),
       GDAL_OF_RASTER | GDAL_OF_READONLY,
       nullptr,
       options.List(),
@@ -63,8 +64,7 @@ Result<DatasetPtr> open_raster(const fs::path& file, int level) {
   if (!dataset) {
     std::string reason = messages.text();
     for (const std::string& doubt : SideCars().doubts(file)) reason += "; " + doubt;
-    return Error{ErrorCode::kUnreadable,
-                 file.string() + ": not a raster that can be read: " + reason};
+    return Error{ErrorCode::kUnreadable, file.string() + ": not a readable raster: " + reason};
   }
   if (dataset->GetRasterCount() < 1) {
     return Error{ErrorCode::kUnreadable, file.string() + ": has no raster band"};
@@ -95,7 +95,7 @@ Result<DatasetPtr> DatasetPool::take() {
   const auto now = file_identity(file_);
   const bool there = now && identity_ && now->same_file(*identity_);
   if (there && !now->same_content(*identity_)) {
-    return Error{ErrorCode::kIo, file_.string() + ": was written to while it was in use"};
+    return Error{ErrorCode::kIo, file_.string() + ": was modified while it was in use"};
   }
   std::unique_lock lock(mutex_);
   if (!there && in_use_ > 0) {
@@ -105,7 +105,7 @@ Result<DatasetPtr> DatasetPool::take() {
   if (idle_.empty() && !there) {
     return Error{ErrorCode::kIo,
                  file_.string() + (now ? ": was replaced while it was in use"
-                                       : ": is gone; it was there when the world was opened")};
+                                       : ": was removed after the world was opened")};
   }
   ++in_use_;
   if (idle_.empty()) {

@@ -47,7 +47,7 @@ void GdalMessages::pass_on() const {
 std::string GdalMessages::text() const { return text_.empty() ? "no reason given" : text_; }
 
 std::string heard_while_opening(const std::filesystem::path& file, const GdalMessages& messages) {
-  return file.string() + ": opening it, GDAL said: " + messages.text();
+  return file.string() + ": GDAL reported on opening it: " + messages.text();
 }
 
 }  // namespace overfly::terrain

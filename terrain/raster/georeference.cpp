@@ -37,7 +37,7 @@ Status check_range(const Georeference& place, int width, int height, const std::
     const double limit_y = geographic ? 0.5 * M_PI + kTolerance : 5e7;
     if (!(std::abs(x * unit) <= limit_x) || !(std::abs(y * unit) <= limit_y)) {
       return Error{ErrorCode::kInvalidArgument,
-                   file + ": georeference is broken: a corner lies at (" + std::to_string(x) +
+                   file + ": georeference is invalid: a corner lies at (" + std::to_string(x) +
                        ", " + std::to_string(y) + "), outside its coordinate reference system"};
     }
   }
@@ -50,7 +50,7 @@ Result<Georeference> read_georeference(GDALDataset& dataset,
                                        const fs::path& file,
                                        const std::optional<std::string>& crs_override,
                                        const std::string& said) {
-  const std::string heard = said.empty() ? "" : " (GDAL said: " + said + ")";
+  const std::string heard = said.empty() ? "" : " (GDAL reported: " + said + ")";
   Georeference place;
   if (dataset.GetGeoTransform(place.transform.g) != CE_None) {
     return Error{ErrorCode::kInvalidArgument,
@@ -80,7 +80,7 @@ Result<Georeference> read_georeference(GDALDataset& dataset,
   } else {
     return Error{ErrorCode::kInvalidArgument,
                  file.string() + ": has no coordinate reference system" + heard +
-                     "; say it in the manifest's field \"crs\", for example \"EPSG:4326\""};
+                     "; set it in the manifest's field \"crs\", for example \"EPSG:4326\""};
   }
   if (place.crs.IsProjected() == 0 && place.crs.IsGeographic() == 0) {
     return Error{ErrorCode::kInvalidArgument,

@@ -1,4 +1,4 @@
-// check_world_sources: what a world's description names, judged before anything is opened.
+// check_world_sources: checks the names in a world's description before anything is opened.
 #include "terrain/files/side_cars.hpp"
 #include "terrain/raster/crs_text.hpp"
 #include "terrain/world.hpp"

@@ -8,10 +8,10 @@
 
 namespace overfly::engine {
 
-/// One estimator's object (an entry of `estimators`) that belongs to no scenario; `camera` and
-/// `throttle_hz` say nothing there and are errors.
-/// @param base  absolute folder that relative programs count from
-/// Errors: kInvalidArgument with every fault as "field = value: must be limit", one a line.
+/// Reads one estimator object (an entry of `estimators`) outside a scenario; `camera` and
+/// `throttle_hz` have no meaning there and are errors.
+/// @param base  absolute folder to which relative programs refer
+/// Errors: kInvalidArgument with every invalid field as "field = value: must be limit", one a line.
 [[nodiscard]] Result<EstimatorSpec> estimator_from_json(nlohmann::json entry,
                                                         const std::filesystem::path& base);
 

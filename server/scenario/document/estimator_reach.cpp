@@ -34,7 +34,7 @@ const std::string* untrusted_parameter(const EstimatorSpec& spec, const Scenario
 Error out_of_reach(std::size_t estimator, const std::string& field) {
   return {ErrorCode::kInvalidArgument,
           "estimators." + std::to_string(estimator) + "." + field +
-              ": must be as the scenario's file has it; a client may set it where the server was "
+              ": must be as in the scenario's file; clients may set it only if the server was "
               "started with --allow-commands"};
 }
 

@@ -5,9 +5,9 @@
 
 namespace overfly::engine {
 
-/// Refuses what a scenario may say only where it comes from the machine itself: an estimator whose
-/// command, addresses or parameters that may name files (text with a slash) differ from those of
-/// every estimator in `trusted`.
+/// Rejects settings that only the machine's own scenarios may contain: an estimator whose command,
+/// addresses or parameters that may name files (text with a slash) differ from those of every
+/// estimator in `trusted`.
 /// Errors: kInvalidArgument naming the field.
 [[nodiscard]] Status check_reach(const Scenario& scenario, const Scenario& trusted);
 

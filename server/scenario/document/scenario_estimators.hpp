@@ -10,7 +10,7 @@
 
 namespace overfly::engine {
 
-/// Reads `estimators`, and makes the programs in their commands absolute in the document too.
+/// Reads `estimators`, and makes the programs in their commands absolute, in the document too.
 /// @pre the document is valid and has its defaults; cameras and pacing are read
 /// @param base  absolute folder of the scenario file
 /// Errors: kInvalidArgument with field, value and limit.

@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-/// A file's name as a scenario's: what a name may not hold becomes `_`.
+/// Converts a file's name to a scenario name; invalid characters become `_`.
 std::string name_from(std::string text) {
   const auto allowed = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');

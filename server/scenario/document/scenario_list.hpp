@@ -18,8 +18,9 @@ struct ScenarioEntry {
   std::string error;  ///< why it cannot be flown on this machine; empty if it can
 };
 
-/// All `*.json` that are scenarios (not schemas), by name, with why one cannot be flown here.
-/// @param sources  what they may name
+/// All `*.json` files that are scenarios (not schemas), sorted by name, each with the reason if it
+/// cannot be flown on this machine.
+/// @param sources  sources that they may name
 [[nodiscard]] std::vector<ScenarioEntry> list_scenarios(const std::filesystem::path& folder,
                                                         const SourcePolicy& sources = {});
 

@@ -14,11 +14,11 @@ namespace overfly::engine {
 [[nodiscard]] Result<Override> parse_override(const std::string& text);
 [[nodiscard]] Result<std::vector<Override>> parse_overrides(const std::vector<std::string>& texts);
 
-/// Sets the value at a dotted path, making the objects and arrays on the way. A number names an
-/// element of an array, its length the place after the last. Setting `world.builtin...` in a
-/// document whose world is of another kind replaces that world, and so with `flight`; setting the
-/// whole of `camera` or `cameras` takes the other away. Errors: kInvalidArgument naming the part of
-/// the path that does not fit the document.
+/// Sets the value at a dotted path and creates the objects and arrays on the way. A number selects
+/// an element of an array; the array's length appends one. Setting `world.builtin...` in a document
+/// whose world is of another kind replaces that world; likewise for `flight`. Setting the whole of
+/// `camera` or `cameras` removes the other.
+/// Errors: kInvalidArgument naming the part of the path that does not fit the document.
 [[nodiscard]] Status apply_override(const Override& change, nlohmann::json& document);
 
 }  // namespace overfly::engine
