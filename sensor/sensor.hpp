@@ -21,7 +21,7 @@ namespace overfly::renderer {
 /// The sensor's output for one radiance image.
 struct SensorImage {
   Image image;      ///< 8 bit; of deeper sensors the high 8 bits
-  Image16 image16;  ///< of sensors deeper than 8 bit: raw numbers, 0 to 2^bits - 1; else empty
+  Image16 image16;  ///< for sensors deeper than 8 bit: raw numbers, 0 to 2^bits - 1; else empty
   ExposureSetting setting;
   double saturated_fraction = 0.0;  ///< of the samples at full scale or full well
   double mean_level = 0.0;          ///< of the digital numbers before response, in [0, 1]

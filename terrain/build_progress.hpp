@@ -1,4 +1,4 @@
-// How the caller follows and cancels the making of a world's cache.
+// Progress and cancellation of building a world's cache.
 #pragma once
 
 #include <functional>

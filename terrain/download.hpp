@@ -45,7 +45,7 @@ struct DownloadOptions {
   int parallel = 2;     ///< simultaneous requests, in [1, 8]
   int attempts = 6;     ///< of one request, in [1, 20]
   double first_wait_s = 1.0;  ///< before the second attempt; doubles, with jitter, up to 60 s
-  /// Longest wait requested by a service; beyond it the download gives up
+  /// Longest wait requested by a service; beyond it the download gives up.
   double longest_wait_s = 300.0;
   double stall_s = 60.0;      ///< without data before a request counts as failed, >= 1
   int most_requests = 20000;  ///< a larger plan is rejected to protect the service

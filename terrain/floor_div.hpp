@@ -1,4 +1,4 @@
-// Division rounded down, for places counted from a grid's corner in both directions.
+// Division that rounds down, for grid positions that may be negative.
 #pragma once
 
 namespace overfly::terrain {

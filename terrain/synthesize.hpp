@@ -11,7 +11,7 @@
 namespace overfly::terrain {
 
 struct SynthesisOptions {
-  std::uint64_t seed = 1;     ///< another seed, another landscape
+  std::uint64_t seed = 1;     ///< another seed gives another landscape
   double size_m = 4200.0;     ///< side of the square, in [500, 10000]
   double texel_m = 0.3;       ///< imagery resolution, in [0.1, 5]
   double center_lat_rad = 0;  ///< 0, 0 = the default place (39.35 N, 86.03 W)
@@ -19,7 +19,7 @@ struct SynthesisOptions {
   double relief_m = 40.0;  ///< height between valley and hilltop, in [0, 400]
 };
 
-/// Called with the done share in [0, 1]; returning false cancels.
+/// Called with the share done in [0, 1]; returning false cancels.
 using Progress = std::function<bool(double)>;
 
 /// Writes imagery, elevation and manifest `world.json` into `folder` (complete or not at all:
@@ -29,8 +29,8 @@ using Progress = std::function<bool(double)>;
                                       const SynthesisOptions& options,
                                       const Progress& progress = {});
 
-/// The world in `folder`, synthesised if it is not there yet. Safe when two processes ask at once:
-/// the second waits for the first (a lock file beside the folder).
+/// The world in `folder`, synthesised if it does not exist yet. If two processes call it at the
+/// same time, the second waits for the first (a lock file next to the folder).
 /// Errors: as synthesize_world.
 [[nodiscard]] Status ensure_world(const std::filesystem::path& folder,
                                   const SynthesisOptions& options,

@@ -78,7 +78,7 @@ struct WorldSpec {
 struct World {
   std::shared_ptr<const TileSource> tiles;
   WorldSpec spec;  ///< with the origin resolved
-  /// Each names the file, the assumption and the possible error
+  /// Each names the file, the assumption and the possible error.
   std::vector<std::string> warnings;
   /// SHA-256 or size-and-time digests of the files, for the run's manifest: (file, digest).
   std::vector<std::pair<std::string, std::string>> data_hashes;

@@ -1,4 +1,4 @@
-// How far a camera sees the ground.
+// The distance to which a camera sees the ground.
 #pragma once
 
 #include <algorithm>
@@ -7,12 +7,12 @@
 namespace overfly::renderer {
 
 inline constexpr double kEarthRadiusM = 6371000.0;
-inline constexpr double kMaxReachM = 300e3;  ///< map projections bend beyond
+inline constexpr double kMaxReachM = 300e3;  ///< map projections are distorted beyond
 
-/// Distance to the farthest ground that can be seen [m]: the camera's horizon plus that of the
-/// highest ground, at most kMaxReachM.
-/// @param above_m   of the camera above the lowest ground, > 0
-/// @param relief_m  highest ground above the lowest, >= 0
+/// Distance to the farthest visible ground [m]: the camera's horizon plus that of the highest
+/// ground, at most kMaxReachM.
+/// @param above_m  height of the camera above the lowest ground, > 0
+/// @param relief_m  height of the highest ground above the lowest, >= 0
 [[nodiscard]] inline double horizon_m(double above_m, double relief_m) {
   return std::min(
       kMaxReachM,

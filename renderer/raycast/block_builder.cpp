@@ -16,7 +16,7 @@ constexpr int kFewPixels = 4;  ///< blocks this small are not divided: each pixe
 /// Ratio by which an error bound may exceed the limit while the block is still tested by a ray. A
 /// depth image resolves the ground more finely, so it applies the bound directly.
 constexpr double kLooseBound = 4.0;
-/// Ratio of a block's sides above which only the longer one is halved
+/// Ratio of a block's sides above which only the longer one is halved.
 constexpr double kMuchLonger = 1.5;
 
 /// @param near  a node whose ground is near this ray's, or null

@@ -36,7 +36,7 @@ struct BlockSettings {
   const ShutterPoses* poses = nullptr;
   const GroundCaster* caster = nullptr;
   const terrain::TileSource* tiles = nullptr;
-  /// Blocks for a depth image: heights count from whichever side they are seen
+  /// Blocks for a depth image: heights count from whichever side they are seen.
   bool depth_only = false;
 };
 

@@ -1,4 +1,4 @@
-// The choices that tests of the ray-caster make.
+// Options of the ray-caster for tests.
 #pragma once
 
 #include <cstddef>

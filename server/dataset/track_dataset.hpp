@@ -37,7 +37,7 @@ struct TrackedDataset {
   std::map<std::string, DurationList> stages;     ///< as reported by the estimator
   std::map<std::string, std::string> parameters;  ///< effective values
   std::string type;
-  /// Of the estimator's process; for one in this process: CPU time while it tracked
+  /// Of the estimator's process; for one in this process: CPU time while it tracked.
   ResourceUse resources;
   bool own_process = false;
   std::int64_t unanswered = 0;       ///< frames that got no answer before the timeout

@@ -83,7 +83,7 @@ class EstimatorWorker {
   RunClock& clock_;
   std::int64_t ready_ns_ = 0;
   double cpu_to_get_ready_s_ = 0.0;  ///< of the estimator's process, until it was ready
-  /// Kept because an estimator that has ended reports none
+  /// Kept because an estimator that has ended reports none.
   std::optional<ResourceUse> last_known_;
   std::optional<Error> failure_;  ///< of the preparation
   std::int64_t debug_period_ns_ = 0;
@@ -103,7 +103,7 @@ class EstimatorWorker {
   std::exception_ptr thrown_;       ///< by this class's own code on the worker's thread
   std::vector<std::string> notes_;  ///< by this class, about the answers
   std::vector<EstimatorEvent> events_;
-  /// Drops after the frame in progress and before the waiting one
+  /// Drops after the frame in progress and before the waiting one.
   std::vector<EstimatorEvent> drops_;
   std::thread thread_;
 };

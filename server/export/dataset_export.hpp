@@ -38,7 +38,7 @@ struct ExportOptions {
 
 struct ExportSummary {
   std::int64_t frames = 0;  ///< frames written
-  /// Differs from frames if images were lost or there are several cameras
+  /// Differs from frames if images were lost or there are several cameras.
   std::int64_t images = 0;
   bool cancelled = false;   ///< the output is complete up to the last frame written
   std::string attribution;  ///< of the world's imagery: must accompany every published image

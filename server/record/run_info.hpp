@@ -1,4 +1,4 @@
-// What a list of runs shows of each.
+// The fields of a run that are shown in a list of runs.
 #pragma once
 
 #include <cstdint>
@@ -37,7 +37,7 @@ struct RunInfo {
   std::vector<std::string> estimators;
   std::vector<std::string> estimator_cameras;  ///< the camera whose images each estimator gets
   std::string attribution;
-  std::vector<std::string> cameras;  ///< names, the main one first
+  std::vector<std::string> cameras;  ///< names, the main camera first
   /// The imagery, not the camera, limits the result: the median is below 0.5 texels per pixel.
   bool texture_limited = false;
   /// The step in progress before the first frame ("making the built-in world: 30 %"); else empty.

@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-/// Close to lossless: estimators may be run again on these images
+/// Close to lossless: estimators may be run again on these images.
 constexpr int kFrameQuality = 95;
 
 Status make_empty_folder(const fs::path& folder) {

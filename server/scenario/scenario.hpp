@@ -26,7 +26,7 @@ namespace overfly::engine {
 
 enum class Pacing {
   kLockstep,  ///< each frame waits for every estimator: nothing dropped, byte-identical results
-  /// Frames come at their rate; a busy estimator gets the latest one, drops are counted
+  /// Frames come at their rate; a busy estimator gets the latest one, drops are counted.
   kRealTime,
 };
 
@@ -85,7 +85,7 @@ struct Scenario {
   std::vector<EstimatorSpec> estimators;
   RendererChoice renderer;
   std::optional<LightSpec> light;  ///< empty = as in the imagery
-  /// Synthetic detail finer than the imagery; empty = none
+  /// Synthetic detail finer than the imagery; empty = none.
   std::optional<terrain::DetailOptions> detail;
   Pacing pacing = Pacing::kLockstep;
 

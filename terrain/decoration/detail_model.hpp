@@ -1,4 +1,4 @@
-// The parameters of synthetic detail, and what is measured of the imagery for it.
+// Parameters of synthetic detail, and the statistics of the imagery that it uses.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,8 @@
 namespace overfly::terrain {
 
 struct DetailOptions {
-  int octaves = 2;  ///< each halves the texel, in [1, 4]
-  /// Amplitude relative to the continued spectrum of the imagery, in [0, 2]
+  int octaves = 2;  ///< each halves the texel size, in [1, 4]
+  /// Amplitude relative to the continued spectrum of the imagery, in [0, 2].
   double strength = 1.0;
   std::uint64_t seed = 1;  ///< another seed gives other detail
 

@@ -1,4 +1,4 @@
-// Inside terrain only: coordinate reference systems and their relations, as PROJ knows them.
+// Inside terrain only: coordinate reference systems and the transformations between them, by PROJ.
 #pragma once
 
 #include <ogr_spatialref.h>

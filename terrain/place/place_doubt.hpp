@@ -1,4 +1,4 @@
-// Inside terrain only: signs that a file lies somewhere else than it says.
+// Inside terrain only: detects files whose declared place is probably wrong.
 #pragma once
 
 #include <optional>

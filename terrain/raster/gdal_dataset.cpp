@@ -55,7 +55,7 @@ Result<DatasetPtr> open_raster(const fs::path& file, int level) {
   CPLStringList options;
   if (level > 0) options.SetNameValue("OVERVIEW_LEVEL", std::to_string(level - 1).c_str());
   DatasetPtr dataset(GDALDataset::Open(
-      // Absolute, so that GDAL does not interpret it as one of its special names
+      // Absolute, so that GDAL does not interpret it as one of its special names.
       fs::absolute(file).c_str(),
       GDAL_OF_RASTER | GDAL_OF_READONLY,
       nullptr,

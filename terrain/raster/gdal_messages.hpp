@@ -1,4 +1,4 @@
-// Inside terrain only: what GDAL and PROJ report.
+// Inside terrain only: the messages of GDAL and PROJ.
 #pragma once
 
 #include <cpl_error.h>

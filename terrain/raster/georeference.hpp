@@ -1,4 +1,4 @@
-// Inside terrain only: where a raster lies on the earth.
+// Inside terrain only: the place of a raster on the earth.
 #pragma once
 
 #include <gdal_priv.h>

@@ -39,7 +39,7 @@ class WorkFolder {
 
 struct Findings {
   std::vector<engine::CameraCheckRow> rows;
-  /// Backends that do not work on this machine, with the reason
+  /// Backends that do not work on this machine, with the reason.
   std::vector<std::string> left_out;
 
   [[nodiscard]] bool passed() const {

@@ -26,7 +26,7 @@ struct StreamWish {
 
 struct AttachCommand {
   std::string run_id;
-  /// Number of rows that the client has, by data stream
+  /// Number of rows that the client has, by data stream.
   std::map<std::string, std::size_t> resume;
 };
 struct DetachCommand {};

@@ -1,4 +1,4 @@
-// Scenario documents, from files or memory, made into scenarios.
+// Converts scenario documents, from files or memory, to scenarios.
 #pragma once
 
 #include <filesystem>

@@ -13,7 +13,7 @@ namespace overfly::engine {
     const nlohmann::json& document);
 /// The JSON schema (draft 2020-12) as text, embedded in the program.
 [[nodiscard]] const std::string& scenario_schema_text();
-/// Fills in what the schema has defaults for. @pre the document is valid
+/// Adds the schema's defaults. @pre the document is valid
 void apply_schema_defaults(nlohmann::json& document);
 
 }  // namespace overfly::engine
