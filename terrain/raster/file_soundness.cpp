@@ -86,9 +86,9 @@ Status check_sources(GDALDataset& dataset,
   for (const fs::path& source : sources) {
     if (Status status = go_on(cancelled, file); !status) return status;
     auto opened = open_raster(source);
-    if (!opened) return opened.error().in(file.string() + ": has the source");
+    if (!opened) return opened.error().in(file.string() + ": is made of");
     const Status whole = check_whole(**opened, source, cancelled, warnings);
-    if (!whole) return whole.error().in(file.string() + ": has the source");
+    if (!whole) return whole.error().in(file.string() + ": is made of");
     const std::vector<std::string> doubts = side_cars.doubts(source);
     warnings.insert(warnings.end(), doubts.begin(), doubts.end());
   }

@@ -306,7 +306,7 @@ TEST(EstimatorRun, ParametersAreReadBackAtTheEndAndAChangeIsTold) {
   EXPECT_EQ(entry.at("parameters_at_end").at("threshold"), "3");
   EXPECT_EQ(entry.at("parameters_at_end").at("levels"), "8");
   const std::string log = overfly::testing::read_text(log_file(flight.folder.path() / "r"));
-  EXPECT_THAT(log, HasSubstr("parameter threshold is 3 at the end, and was 7"));
+  EXPECT_THAT(log, HasSubstr("parameter threshold is 3 at the end, but at the start it was 7"));
   EXPECT_THAT(log, ::testing::Not(HasSubstr("levels")));
 }
 
