@@ -16,7 +16,9 @@ import sys
 
 # Targets with duplicates across their folders: of these, only the functions of one folder are
 # compared.
-KNOWN_DUPLICATES = re.compile(r"(server|vo_bridges|tests/(engine|app|net))(/|$)")
+KNOWN_DUPLICATES = re.compile(r"(server|vo_bridges)(/|$)")
+# Folders each of whose sub-folders is a target of its own without a CMakeLists.txt.
+TARGET_PER_FOLDER = ["tests/server"]
 # The program of a shader, in a raw string.
 SHADER_ENTRY = "main"
 NO_FUNCTION = r"(?=[A-Za-z])(?!(using|struct|class|enum|namespace|template|return|static_assert|[A-Z_]+\())"
@@ -40,9 +42,10 @@ def local_names(lines):
                 yield match.group(2), "function"
 
 
-def target_of(file):
+def target_of(file, root):
     """The nearest folder above with a CMakeLists.txt."""
-    return next(folder for folder in file.parents if (folder / "CMakeLists.txt").exists())
+    target = next(folder for folder in file.parents if (folder / "CMakeLists.txt").exists())
+    return file.parent if target.relative_to(root).as_posix() in TARGET_PER_FOLDER else target
 
 
 def main():
@@ -54,7 +57,7 @@ def main():
         sys.exit(f"{root}: no source files found")
     homes = collections.defaultdict(set)
     for file in files:
-        target = target_of(file)
+        target = target_of(file, root)
         known = KNOWN_DUPLICATES.match(target.relative_to(root).as_posix())
         if known:
             target = file.parent

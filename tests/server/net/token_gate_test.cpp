@@ -12,7 +12,7 @@ using ::testing::HasSubstr;
 using ::testing::MatchesRegex;
 using ::testing::Not;
 
-constexpr const char* kToken = "0123456789abcdefABCDEF-_";
+constexpr const char* kGateToken = "0123456789abcdefABCDEF-_";
 
 HttpRequest get_from_host(const std::string& target,
                           const std::map<std::string, std::string>& headers = {}) {
@@ -23,7 +23,7 @@ HttpRequest get_from_host(const std::string& target,
 
 /// 0 = the request is served.
 int status_of(HttpRequest request) {
-  const auto response = TokenGate(kToken).check(&request);
+  const auto response = TokenGate(kGateToken).check(&request);
   return response ? response->status : 0;
 }
 
@@ -58,14 +58,14 @@ TEST(AccessToken, MustBeLongAndPlain) {
 }
 
 TEST(AccessToken, IsComparedWhole) {
-  EXPECT_TRUE(same_token(kToken, kToken));
-  EXPECT_FALSE(same_token("0123456789abcdefABCDEF-", kToken));
-  EXPECT_FALSE(same_token("0123456789abcdefABCDEF-~", kToken));
-  EXPECT_FALSE(same_token("", kToken));
+  EXPECT_TRUE(same_token(kGateToken, kGateToken));
+  EXPECT_FALSE(same_token("0123456789abcdefABCDEF-", kGateToken));
+  EXPECT_FALSE(same_token("0123456789abcdefABCDEF-~", kGateToken));
+  EXPECT_FALSE(same_token("", kGateToken));
 }
 
 TEST(TokenGate, TakesTheTokenFromQueryHeaderOrCookie) {
-  const std::string token = kToken;
+  const std::string token = kGateToken;
   EXPECT_EQ(status_of(get_from_host("/api/v1/runs?token=" + token)), 0);
   EXPECT_EQ(status_of(get_from_host("/api/v1/runs", {{"authorization", "Bearer " + token}})), 0);
   EXPECT_EQ(status_of(get_from_host("/api/v1/runs", {{"authorization", "bearer " + token}})), 0);
@@ -76,7 +76,7 @@ TEST(TokenGate, TakesTheTokenFromQueryHeaderOrCookie) {
 }
 
 TEST(TokenGate, RefusesEverythingElse) {
-  const std::string token = kToken;
+  const std::string token = kGateToken;
   for (const HttpRequest& request :
        {get_from_host("/api/v1/runs"),
         get_from_host("/api/v1/health"),
@@ -99,10 +99,10 @@ TEST(TokenGate, RefusesEverythingElse) {
 }
 
 TEST(TokenGate, TakesTheTokenOutOfTheTarget) {
-  const std::string token = kToken;
+  const std::string token = kGateToken;
   const auto left = [](const std::string& target) {
     HttpRequest request = get_from_host(target);
-    (void)TokenGate(kToken).check(&request);
+    (void)TokenGate(kGateToken).check(&request);
     return request.target;
   };
   EXPECT_EQ(left("/api/v1/runs?token=" + token), "/api/v1/runs");
@@ -115,23 +115,23 @@ TEST(TokenGate, TakesTheTokenOutOfTheTarget) {
 }
 
 TEST(TokenGate, SendsABrowserOnToTheAddressWithoutTheToken) {
-  HttpRequest request = get_from_host(std::string("/map?a=1&token=") + kToken);
-  const auto response = TokenGate(kToken).check(&request);
+  HttpRequest request = get_from_host(std::string("/map?a=1&token=") + kGateToken);
+  const auto response = TokenGate(kGateToken).check(&request);
   ASSERT_TRUE(response);
   EXPECT_EQ(response->status, 303);
   EXPECT_EQ(header(*response, "Location"), "/map?a=1");
   EXPECT_EQ(header(*response, "Set-Cookie"),
-            std::string("overfly_8480=") + kToken + "; Path=/; HttpOnly; SameSite=Strict");
+            std::string("overfly_8480=") + kGateToken + "; Path=/; HttpOnly; SameSite=Strict");
   EXPECT_EQ(header(*response, "Cache-Control"), "no-store");
 }
 
 TEST(TokenGate, KnowsAPastedAddressAndForgetsAnOldToken) {
   const std::string pasted = std::string("/?token=http%3A%2F%2Flocalhost%3A8480%2F%3Ftoken%3D");
-  EXPECT_EQ(status_of(get_from_host(pasted + kToken)), 303);
+  EXPECT_EQ(status_of(get_from_host(pasted + kGateToken)), 303);
   // Let in by its cookie: the stale token of a bookmark leaves the address bar, nothing else.
   HttpRequest request =
-      get_from_host("/?token=old", {{"cookie", std::string("overfly_8480=") + kToken}});
-  const auto response = TokenGate(kToken).check(&request);
+      get_from_host("/?token=old", {{"cookie", std::string("overfly_8480=") + kGateToken}});
+  const auto response = TokenGate(kGateToken).check(&request);
   ASSERT_TRUE(response);
   EXPECT_EQ(response->status, 303);
   EXPECT_EQ(header(*response, "Set-Cookie"), "");
@@ -139,8 +139,8 @@ TEST(TokenGate, KnowsAPastedAddressAndForgetsAnOldToken) {
 
 TEST(TokenGate, NeverRedirectsToAnotherHost) {
   for (const char* path : {"//evil.example/", "/\\evil.example/", "http://evil.example/"}) {
-    HttpRequest request = get_from_host(std::string(path) + "?token=" + kToken);
-    const auto response = TokenGate(kToken).check(&request);
+    HttpRequest request = get_from_host(std::string(path) + "?token=" + kGateToken);
+    const auto response = TokenGate(kGateToken).check(&request);
     ASSERT_TRUE(response) << path;
     EXPECT_EQ(header(*response, "Location"), "/") << path;
   }
@@ -148,21 +148,21 @@ TEST(TokenGate, NeverRedirectsToAnotherHost) {
 
 TEST(TokenGate, AnswersBrowsersWithAPageAndProgramsWithJson) {
   HttpRequest page = get_from_host("/runs/abc");
-  const auto html = TokenGate(kToken).check(&page);
+  const auto html = TokenGate(kGateToken).check(&page);
   ASSERT_TRUE(html);
   EXPECT_EQ(html->content_type, "text/html; charset=utf-8");
   EXPECT_THAT(html->body, HasSubstr("<form"));
   EXPECT_THAT(html->body, Not(HasSubstr("token is wrong")));
   HttpRequest wrong = get_from_host("/?token=<script>");
-  EXPECT_THAT(TokenGate(kToken).check(&wrong)->body, HasSubstr("token is wrong"));
+  EXPECT_THAT(TokenGate(kGateToken).check(&wrong)->body, HasSubstr("token is wrong"));
   HttpRequest api = get_from_host("/api/v1/runs?token=0123456789abcdefABCDEF__");
-  const auto json = TokenGate(kToken).check(&api);
+  const auto json = TokenGate(kGateToken).check(&api);
   ASSERT_TRUE(json);
   EXPECT_EQ(json->content_type, "application/json");
   EXPECT_THAT(json->body, HasSubstr("\"unauthorized\""));
   EXPECT_THAT(header(*json, "WWW-Authenticate"), HasSubstr("Bearer"));
   for (const auto& answer : {*html, *json}) {
-    EXPECT_THAT(answer.body, Not(HasSubstr(kToken)));
+    EXPECT_THAT(answer.body, Not(HasSubstr(kGateToken)));
     EXPECT_THAT(answer.body, Not(HasSubstr("ABCDEF__")));
   }
 }

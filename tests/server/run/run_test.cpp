@@ -25,7 +25,7 @@ using testing::noop_factory;
 using testing::options_for;
 using testing::small_scenario;
 
-constexpr const char* kThree =
+constexpr const char* kThreeTypes =
     R"(estimators=[{"name":"p","type":"perfect"},
                    {"name":"d","type":"drifting","parameters":{"drift":0.01}},
                    {"name":"f","type":"feature","parameters":{"features":300}}])";
@@ -42,7 +42,7 @@ void expect_equal_folders(const fs::path& a, const fs::path& b) {
 
 TEST(Run, EqualLockstepRunsAreEqualByteByByteButForTimings) {
   const TemporaryFolder folder;
-  const Scenario scenario = small_scenario({kThree, "recording.frames=true"});
+  const Scenario scenario = small_scenario({kThreeTypes, "recording.frames=true"});
   for (const char* name : {"a", "b"}) {
     const auto run = run_scenario(scenario, options_for(folder.path() / name));
     ASSERT_TRUE(run.ok()) << run.error().message;
@@ -55,7 +55,7 @@ TEST(Run, EqualLockstepRunsAreEqualByteByByteButForTimings) {
 TEST(Run, EqualLockstepRunsDrawnWithOpenGlAreEqualByteByByteButForTimings) {
   if (const auto egl = renderer::probe_egl(); !egl) GTEST_SKIP() << egl.error().message;
   const TemporaryFolder folder;
-  const Scenario scenario = small_scenario({kThree, "recording.frames=true"});
+  const Scenario scenario = small_scenario({kThreeTypes, "recording.frames=true"});
   for (const char* name : {"a", "b"}) {
     RunOptions options;
     options.folder = folder.path() / name;
@@ -67,8 +67,8 @@ TEST(Run, EqualLockstepRunsDrawnWithOpenGlAreEqualByteByByteButForTimings) {
 
 TEST(Run, PerfectEstimatorHasNoErrorAndDriftingOneTheClosedForm) {
   const TemporaryFolder folder;
-  const auto run =
-      run_scenario(small_scenario({kThree, "duration_s=20"}), options_for(folder.path() / "r"));
+  const auto run = run_scenario(small_scenario({kThreeTypes, "duration_s=20"}),
+                                options_for(folder.path() / "r"));
   ASSERT_TRUE(run.ok()) << run.error().message;
   const auto& estimators = run->metrics.at("estimators");
   EXPECT_EQ(estimators.at("p").at("outcome"), "COMPLETED");
@@ -97,7 +97,7 @@ TEST(Run, PerfectEstimatorHasNoErrorAndDriftingOneTheClosedForm) {
 TEST(Run, FolderHasEveryFileAndReadsBackAsTheLiveRunWas) {
   const TemporaryFolder folder;
   RunOptions options = options_for(folder.path() / "r");
-  const Scenario scenario = small_scenario({kThree});
+  const Scenario scenario = small_scenario({kThreeTypes});
   RunInfo info;
   info.id = "r";
   options.timeline = std::make_shared<RunTimeline>(info, std::vector<std::string>{"p", "d", "f"});
@@ -145,7 +145,7 @@ TEST(Run, FolderHasEveryFileAndReadsBackAsTheLiveRunWas) {
 TEST(Run, ManifestSaysWhatMadeIt) {
   const TemporaryFolder folder;
   ASSERT_TRUE(
-      run_scenario(small_scenario({kThree, "seed=9"}), options_for(folder.path() / "r")).ok());
+      run_scenario(small_scenario({kThreeTypes, "seed=9"}), options_for(folder.path() / "r")).ok());
   const auto manifest = read_json(manifest_file(folder.path() / "r"));
   ASSERT_TRUE(manifest.ok());
   EXPECT_EQ(manifest->at("status"), "completed");
@@ -163,7 +163,7 @@ TEST(Run, CancelLeavesACompleteFolderUpToTheLastFrame) {
   RunOptions options = options_for(folder.path() / "r");
   options.cancel = &cancel;
   options.progress = [&](const RunInfo& info) { cancel = info.frames >= 5; };
-  const auto run = run_scenario(small_scenario({kThree}), options);
+  const auto run = run_scenario(small_scenario({kThreeTypes}), options);
   ASSERT_TRUE(run.ok()) << run.error().message;
   EXPECT_EQ(run->info.status, RunStatus::kCancelled);
   EXPECT_EQ(run->metrics.at("camera").at("frames"), 5);
