@@ -1,12 +1,13 @@
 #include "server/scenario/document/estimator_entry.hpp"
 
+#include <filesystem>
 #include <utility>
 
 #include "server/scenario/document/scenario_file.hpp"
 
 namespace overfly::engine {
 
-Result<EstimatorSpec> estimator_from_json(nlohmann::json entry, const fs::path& base) {
+Result<EstimatorSpec> estimator_from_json(nlohmann::json entry, const std::filesystem::path& base) {
   nlohmann::json document = {{"format_version", 1},
                              {"world", {{"builtin", nlohmann::json::object()}}},
                              {"flight", {{"course", nlohmann::json::object()}}},
