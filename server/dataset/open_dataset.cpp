@@ -78,7 +78,7 @@ Result<CameraModel> choose_camera(const DatasetOptions& options, const ListedDat
   if (!options.camera && !listed.camera) {
     return Error{ErrorCode::kInvalidArgument,
                  options.folder.string() + ": layout " + to_string(listed.dataset.layout) +
-                     "contains no calibration: the camera must be given"};
+                     " contains no calibration: the camera must be given"};
   }
   const CameraModel& known = options.camera ? *options.camera : *listed.camera;
   PinholeCamera pinhole = known.pinhole();

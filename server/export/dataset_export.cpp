@@ -118,7 +118,7 @@ Status prepare_folder(const fs::path& folder) {
   return make_folder(folder);
 }
 
-Status check_options(const ExportOptions& options) {
+Status check_export(const ExportOptions& options) {
   if (options.format == DatasetFormat::kLcm && !lcm_is_built_in()) {
     return Error{ErrorCode::kUnsupported,
                  "format = lcm: this build does not speak LCM: install liblcm-dev and liblcm-bin, "
@@ -224,7 +224,7 @@ Status write_frames(const ExportOptions& options,
 }  // namespace
 
 Result<ExportSummary> export_dataset(const ExportSource& source, const ExportOptions& options) {
-  if (Status status = check_options(options); !status) return status.error();
+  if (Status status = check_export(options); !status) return status.error();
   if (Status status = prepare_folder(options.folder); !status) return status.error();
   StageTimer stages(machine_clock());
   FrameMakerOptions making;

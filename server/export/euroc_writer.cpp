@@ -33,7 +33,7 @@ std::string distortion_text(const Distortion& lens) {
          number_list({k[0], k[1], k[2], k[3]}, ", ") + third + "]\n";
 }
 
-std::string camera_text(const CameraSpec& camera, const FrameRate& rate) {
+std::string sensor_text(const CameraSpec& camera, const FrameRate& rate) {
   const PinholeCamera& c = camera.model.pinhole();
   return "# Camera " + camera.name +
          " of an Overfly flight.\nsensor_type: camera\ncomment: " + camera.name + "\n\n" +
@@ -78,7 +78,7 @@ class EurocWriter final : public DatasetWriter {
     for (std::size_t i = 0; i < plan.cameras.size(); ++i) {
       if (Status status = make_folder(camera_folder(i) / "data"); !status) return status;
       Status status =
-          write_whole(camera_folder(i) / "sensor.yaml", camera_text(plan.cameras[i], plan.rate));
+          write_whole(camera_folder(i) / "sensor.yaml", sensor_text(plan.cameras[i], plan.rate));
       if (!status) return status;
     }
     if (Status status = write_imu(plan); !status) return status;

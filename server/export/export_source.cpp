@@ -17,7 +17,7 @@ using Json = nlohmann::json;
 /// manifest.
 constexpr std::int64_t kEpochUtcNs = 1'767'225'600 * kNsPerS;
 
-Error unreadable(const fs::path& file, const std::string& fault) {
+Error unusable_run(const fs::path& file, const std::string& fault) {
   return {ErrorCode::kUnreadable, file.string() + ": " + fault};
 }
 
@@ -25,7 +25,7 @@ Result<std::vector<std::pair<std::string, std::string>>> digests_of(const Json& 
                                                                     const fs::path& file) {
   std::vector<std::pair<std::string, std::string>> digests;
   if (!manifest.contains("world"))
-    return unreadable(file, "no field world: the run ended before its world was opened");
+    return unusable_run(file, "no field world: the run ended before its world was opened");
   for (const Json& row : manifest["world"].value("data_hashes", Json::array())) {
     digests.emplace_back(row.value("file", ""), row.value("digest", ""));
   }

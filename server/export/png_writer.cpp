@@ -16,7 +16,7 @@ constexpr const char* kHeader =
     "texels_per_pixel_median,void_fraction,faults,p_world_camera_x_m,p_world_camera_y_m,"
     "p_world_camera_z_m,q_world_camera_x,q_world_camera_y,q_world_camera_z,q_world_camera_w\n";
 
-Json camera_json(const CameraSpec& camera) {
+Json exported_camera(const CameraSpec& camera) {
   const PinholeCamera& c = camera.model.pinhole();
   const Distortion& lens = camera.model.distortion();
   const std::vector<double> coefficients(lens.k.begin(),
@@ -41,7 +41,7 @@ class PngWriter final : public DatasetWriter {
     Json list = Json::array();
     for (const CameraSpec& camera : cameras_) {
       if (Status status = make_folder(folder_ / "images" / camera.name); !status) return status;
-      list.push_back(camera_json(camera));
+      list.push_back(exported_camera(camera));
     }
     return write_json(folder_ / "cameras.json", list);
   }

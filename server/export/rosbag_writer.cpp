@@ -20,7 +20,7 @@ struct CameraNames {
 };
 
 /// The first camera is "/camera", as nodes expect it; the others are called by their names.
-std::vector<CameraNames> names_of(const std::vector<CameraSpec>& cameras) {
+std::vector<CameraNames> topic_names(const std::vector<CameraSpec>& cameras) {
   std::vector<CameraNames> names;
   std::set<std::string> taken;
   for (const CameraSpec& camera : cameras) {
@@ -43,7 +43,7 @@ class RosbagWriter final : public DatasetWriter {
  public:
   RosbagWriter(const DatasetPlan& plan, std::unique_ptr<Ros1BagWriter> bag, fs::path unfinished)
       : plan_(plan),
-        names_(names_of(plan.cameras)),
+        names_(topic_names(plan.cameras)),
         bag_(std::move(bag)),
         unfinished_(std::move(unfinished)) {}
 

@@ -90,7 +90,7 @@ std::uint64_t estimator_bytes(const Scenario& scenario, const EstimatorSpec& est
   return kCopies * sizes_of(camera).pixels;
 }
 
-std::string size_text(std::uint64_t bytes) {
+std::string bytes_text(std::uint64_t bytes) {
   return std::to_string((bytes + kMib - 1) / kMib) + " MiB";
 }
 
@@ -190,9 +190,9 @@ Status MemoryBudget::check(const Scenario& scenario) const {
   const std::uint64_t most_bytes = for_images_bytes(memory.caches_bytes);
   return Error{ErrorCode::kUnsupported,
                cameras_text(scenario) + " with " + std::to_string(scenario.estimators.size()) +
-                   " estimators need " + size_text(memory.images_bytes) +
-                   " for images: must be at most " + size_text(most_bytes) + " of the limit of " +
-                   size_text(limit_bytes_) + " (the rest is for maps and pictures)"};
+                   " estimators need " + bytes_text(memory.images_bytes) +
+                   " for images: must be at most " + bytes_text(most_bytes) + " of the limit of " +
+                   bytes_text(limit_bytes_) + " (the rest is for maps and pictures)"};
 }
 
 }  // namespace overfly::engine

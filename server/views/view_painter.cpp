@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMaxRibbons = 4;
 
-Audience::Kind kind_of(const PictureRequest& request) {
+Audience::Kind audience_kind(const PictureRequest& request) {
   switch (request.kind) {
     case PictureRequest::Kind::kDebug:
       return Audience::Kind::kDebug;
@@ -74,7 +74,8 @@ Result<Picture> ViewPainter::paint(const PictureRequest& request) {
   auto timeline = runs_.timeline(request.run_id);
   if (!timeline) return timeline.error();
   Result<Picture> picture = paint_of(request, *timeline);
-  if (picture) (*timeline)->audience()->picture_made(kind_of(request), thread_cpu_s() - before_s);
+  if (picture)
+    (*timeline)->audience()->picture_made(audience_kind(request), thread_cpu_s() - before_s);
   runs_.picture_rate().picture_made();
   return picture;
 }

@@ -14,9 +14,6 @@ import re
 import subprocess
 import sys
 
-# Targets with duplicates across their folders: of these, only the functions of one folder are
-# compared.
-KNOWN_DUPLICATES = re.compile(r"(server|vo_bridges)(/|$)")
 # Folders each of whose sub-folders is a target of its own without a CMakeLists.txt.
 TARGET_PER_FOLDER = ["tests/server"]
 # The program of a shader, in a raw string.
@@ -58,13 +55,8 @@ def main():
     homes = collections.defaultdict(set)
     for file in files:
         target = target_of(file, root)
-        known = KNOWN_DUPLICATES.match(target.relative_to(root).as_posix())
-        if known:
-            target = file.parent
         with open(file, encoding="utf-8") as lines:
             for name, kind in local_names(lines):
-                if known and kind != "function":
-                    continue
                 homes[target.relative_to(root), name, kind].add(
                     file.relative_to(target).as_posix())
     twice = {place: names for place, names in homes.items() if len(names) > 1}

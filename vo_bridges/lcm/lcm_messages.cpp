@@ -8,7 +8,7 @@ namespace overfly {
 namespace {
 
 /// Tolerance of a quaternion's norm: components with four decimals, as in many text files.
-constexpr double kUnitTolerance = 1e-3;
+constexpr double kQuaternionTolerance = 1e-3;
 
 Error unreadable(const std::string& field, const std::string& value, const std::string& limit) {
   return {ErrorCode::kUnreadable, field + " = " + value + ": must be " + limit};
@@ -33,7 +33,7 @@ Result<Pose> pose_from(const overfly_lcm::pose_t& message) {
   const double* const q = message.orientation;
   const Eigen::Quaterniond rotation(q[3], q[0], q[1], q[2]);
   const double norm = rotation.norm();
-  if (!(std::abs(norm - 1.0) <= kUnitTolerance)) {
+  if (!(std::abs(norm - 1.0) <= kQuaternionTolerance)) {
     return unreadable("norm of orientation", std::to_string(norm), "1 (x y z w)");
   }
   return Pose{rotation.normalized(), position};

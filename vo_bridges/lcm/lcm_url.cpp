@@ -31,7 +31,7 @@ std::optional<std::int64_t> integer_from(std::string_view text) {
   return value;
 }
 
-Error bad(const std::string& url, const std::string& what) {
+Error bad_url(const std::string& url, const std::string& what) {
   return {ErrorCode::kInvalidArgument, "LCM URL " + url + ": " + what};
 }
 
@@ -44,23 +44,23 @@ Status check_integer(const std::string& text,
   if (found == url.options.end()) return {};
   const auto value = integer_from(found->second);
   if (value && *value >= from && *value <= to) return {};
-  return bad(text,
-             name + " = " + found->second + ": must be in [" + std::to_string(from) + ", " +
-                 std::to_string(to) + "]");
+  return bad_url(text,
+                 name + " = " + found->second + ": must be in [" + std::to_string(from) + ", " +
+                     std::to_string(to) + "]");
 }
 
 Status check_multicast(const std::string& text, const LcmUrl& url) {
   in_addr address{};
   if (inet_pton(AF_INET, url.address().c_str(), &address) != 1 ||
       !IN_MULTICAST(ntohl(address.s_addr))) {
-    return bad(text, "address " + url.address() + ": must be in 224.0.0.0 to 239.255.255.255");
+    return bad_url(text, "address " + url.address() + ": must be in 224.0.0.0 to 239.255.255.255");
   }
   const std::size_t colon = url.network.find(':');
   if (colon != std::string::npos && colon + 1 < url.network.size()) {
     const std::string port = url.network.substr(colon + 1);
     const auto value = integer_from(port);
     if (!value || *value < 1 || *value > 65535) {
-      return bad(text, "port " + port + ": must be in [1, 65535]");
+      return bad_url(text, "port " + port + ": must be in [1, 65535]");
     }
   }
   if (Status status = check_integer(text, url, "ttl", 0, 255); !status) return status;
@@ -70,19 +70,19 @@ Status check_multicast(const std::string& text, const LcmUrl& url) {
 Status check_url(const std::string& text, const LcmUrl& url) {
   const auto provider = kOptionsOfProvider.find(url.provider);
   if (provider == kOptionsOfProvider.end()) {
-    return bad(text, "provider " + url.provider + ": must be udpm, memq or file");
+    return bad_url(text, "provider " + url.provider + ": must be udpm, memq or file");
   }
   for (const auto& [name, value] : url.options) {
     if (!provider->second.contains(name)) {
-      return bad(text, "option " + name + ": " + url.provider + " does not support it");
+      return bad_url(text, "option " + name + ": " + url.provider + " does not support it");
     }
   }
   if (url.provider == "udpm") return check_multicast(text, url);
   if (url.provider == "memq" && !url.network.empty()) {
-    return bad(text, "network " + url.network + ": must be empty for memq");
+    return bad_url(text, "network " + url.network + ": must be empty for memq");
   }
   if (url.provider == "file" && url.network.empty())
-    return bad(text, "the path of the log is missing");
+    return bad_url(text, "the path of the log is missing");
   return {};
 }
 
@@ -111,7 +111,7 @@ int LcmUrl::port() const {
 
 Result<LcmUrl> parse_lcm_url(const std::string& text) {
   const std::size_t scheme_end = text.find("://");
-  if (scheme_end == std::string::npos) return bad(text, "must be PROVIDER://NETWORK");
+  if (scheme_end == std::string::npos) return bad_url(text, "must be PROVIDER://NETWORK");
   LcmUrl url;
   url.provider = text.substr(0, scheme_end);
   std::string rest = text.substr(scheme_end + 3);
@@ -122,10 +122,10 @@ Result<LcmUrl> parse_lcm_url(const std::string& text) {
     const std::string option = rest.substr(last + 1);
     const std::size_t equals = option.find('=');
     if (equals == 0 || equals == std::string::npos || equals + 1 == option.size()) {
-      return bad(text, "option \"" + option + "\": must be NAME=VALUE");
+      return bad_url(text, "option \"" + option + "\": must be NAME=VALUE");
     }
     if (!url.options.emplace(option.substr(0, equals), option.substr(equals + 1)).second) {
-      return bad(text, "option " + option.substr(0, equals) + ": given twice");
+      return bad_url(text, "option " + option.substr(0, equals) + ": given twice");
     }
     rest.resize(last);
   }

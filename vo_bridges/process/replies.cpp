@@ -11,10 +11,11 @@ namespace {
 
 constexpr std::size_t kNameLimitBytes = 128;
 
-Error bad(const std::string& what) { return {ErrorCode::kInternal, what}; }
+Error bad_reply(const std::string& what) { return {ErrorCode::kInternal, what}; }
 
 Error wrong_length(const char* message, std::size_t bytes, const std::string& limit) {
-  return bad(std::string(message) + " has " + std::to_string(bytes) + " bytes: must be " + limit);
+  return bad_reply(std::string(message) + " has " + std::to_string(bytes) + " bytes: must be " +
+                   limit);
 }
 
 bool is_name(std::string_view text) {
@@ -27,8 +28,8 @@ bool is_name(std::string_view text) {
 
 Status check_frame(const char* message, std::int64_t index, const VoFrame& frame) {
   if (index == frame.index) return {};
-  return bad(std::string(message) + " is for frame " + std::to_string(index) + ": frame " +
-             std::to_string(frame.index) + " is expected");
+  return bad_reply(std::string(message) + " is for frame " + std::to_string(index) + ": frame " +
+                   std::to_string(frame.index) + " is expected");
 }
 
 /// Reads the pose unchecked: PoseIntake checks it.
@@ -56,8 +57,8 @@ Status read_figures(std::string_view text, FigureIntake* figures, VoEstimate* es
     const auto [end, failure] = std::from_chars(digits.begin(), digits.end(), number);
     const bool too_large = failure == std::errc::result_out_of_range;
     if (!is_name(name) || (failure != std::errc{} && !too_large) || end != digits.end()) {
-      return bad(std::string("'") + printable(key) + " " + printable(value, 80) +
-                 "': must be a name and a number");
+      return bad_reply(std::string("'") + printable(key) + " " + printable(value, 80) +
+                       "': must be a name and a number");
     }
     if (too_large) number = std::numeric_limits<double>::infinity();
     if (counter) {
@@ -78,16 +79,16 @@ Result<EstimatorHello> hello_from(std::string_view payload) {
     if (key == "protocol") {
       version_said = true;
       if (value != std::to_string(kProtocolVersion)) {
-        return bad("the estimator uses protocol version '" + printable(value, 40) + "': must be " +
-                   std::to_string(kProtocolVersion));
+        return bad_reply("the estimator uses protocol version '" + printable(value, 40) +
+                         "': must be " + std::to_string(kProtocolVersion));
       }
     }
     if (key == "name") hello.name = printable(value, kNameLimitBytes);
     if (key == "version") hello.version = printable(value, kNameLimitBytes);
     if (key == "shared_memory") hello.takes_shared_memory = value == "true";
   }
-  if (!version_said) return bad("HELLO lacks 'protocol': " + shown(payload));
-  if (hello.name.empty()) return bad("HELLO lacks 'name': " + shown(payload));
+  if (!version_said) return bad_reply("HELLO lacks 'protocol': " + shown(payload));
+  if (hello.name.empty()) return bad_reply("HELLO lacks 'name': " + shown(payload));
   return hello;
 }
 
@@ -100,9 +101,9 @@ Result<VoEstimate> answer_from(std::string_view payload,
   const std::uint32_t map_id = reader.u32();
   if (payload.size() < 88) return wrong_length("ANSWER", payload.size(), "88 or more");
   if (Status status = check_frame("ANSWER", index, frame); !status) return status.error();
-  if (state > 2) return bad("state = " + std::to_string(state) + ": must be 0, 1 or 2");
+  if (state > 2) return bad_reply("state = " + std::to_string(state) + ": must be 0, 1 or 2");
   if (map_id > static_cast<std::uint32_t>(std::numeric_limits<int>::max())) {
-    return bad("map_id = " + std::to_string(map_id) + ": is too large");
+    return bad_reply("map_id = " + std::to_string(map_id) + ": is too large");
   }
   VoEstimate estimate;
   estimate.sample.frame = frame.index;
@@ -131,10 +132,10 @@ Result<Image> debug_image_from(std::string_view payload, const VoFrame& frame) {
   const PinholeCamera& camera = frame.intrinsics;
   if (width < 1 || height < 1 || width > static_cast<std::uint32_t>(camera.width_px) ||
       height > static_cast<std::uint32_t>(camera.height_px) || (channels != 1 && channels != 3)) {
-    return bad("DEBUG_IMAGE is " + std::to_string(width) + " x " + std::to_string(height) +
-               " px of " + std::to_string(channels) + " channels: must be at most " +
-               std::to_string(camera.width_px) + " x " + std::to_string(camera.height_px) +
-               " px of 1 or 3 channels");
+    return bad_reply("DEBUG_IMAGE is " + std::to_string(width) + " x " + std::to_string(height) +
+                     " px of " + std::to_string(channels) + " channels: must be at most " +
+                     std::to_string(camera.width_px) + " x " + std::to_string(camera.height_px) +
+                     " px of 1 or 3 channels");
   }
   const std::string_view pixels = reader.rest();
   const std::size_t bytes = std::size_t{width} * height * channels;
@@ -162,7 +163,7 @@ Result<std::vector<Eigen::Vector3f>> map_points_from(std::string_view payload,
   std::vector<Eigen::Vector3f> points(count);
   for (Eigen::Vector3f& point : points) {
     for (int i = 0; i < 3; ++i) point[i] = reader.f32();
-    if (!point.allFinite()) return bad("MAP_POINTS has a point that is not finite");
+    if (!point.allFinite()) return bad_reply("MAP_POINTS has a point that is not finite");
   }
   return points;
 }
@@ -171,8 +172,8 @@ Result<std::map<std::string, std::string>> parameters_from(std::string_view payl
   std::map<std::string, std::string> parameters;
   for (const auto& [name, value] : lines_of(payload)) {
     if (!is_name(name)) {
-      return bad("PARAMETERS names '" + printable(name, 80) +
-                 "': must be 1 to 128 visible ASCII characters");
+      return bad_reply("PARAMETERS names '" + printable(name, 80) +
+                       "': must be 1 to 128 visible ASCII characters");
     }
     parameters[std::string(name)] = printable(value);
   }
@@ -183,7 +184,7 @@ Result<std::string> log_line_from(std::string_view payload) {
   ByteReader reader(payload);
   const std::uint32_t level = reader.u32();
   if (!reader.complete() || level > 3) {
-    return bad("LOG must have a level in [0, 3]: " + shown(payload));
+    return bad_reply("LOG must have a level in [0, 3]: " + shown(payload));
   }
   const char* const mark = level == 3 ? "error: " : level == 2 ? "warning: " : "";
   return mark + printable(reader.rest());

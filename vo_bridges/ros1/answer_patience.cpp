@@ -5,7 +5,7 @@
 namespace overfly::ros1 {
 namespace {
 
-constexpr std::size_t kRemembered = 64;
+constexpr std::size_t kRememberedFrames = 64;
 /// Assumed period of the first frame, whose distance to the next one is unknown.
 constexpr std::chrono::nanoseconds kFirstPeriod = std::chrono::milliseconds(100);
 
@@ -17,7 +17,7 @@ std::chrono::nanoseconds AnswerPatience::begin(std::int64_t t_ns, Clock::time_po
   if (previous_ns_) period = std::chrono::nanoseconds(t_ns - *previous_ns_);
   previous_ns_ = t_ns;
   sent_[t_ns] = now;
-  if (sent_.size() > kRemembered) sent_.erase(sent_.begin());
+  if (sent_.size() > kRememberedFrames) sent_.erase(sent_.begin());
   if (lockstep_) return answers_ ? limit_ : std::min(period, limit_);
   return std::min(std::max(period, 2 * latency_), limit_);
 }

@@ -9,7 +9,7 @@
 namespace overfly::ros1 {
 namespace {
 
-Error bad(const std::string& option, const std::string& value, const std::string& limit) {
+Error bad_option(const std::string& option, const std::string& value, const std::string& limit) {
   return {ErrorCode::kInvalidArgument, option + " = " + value + ": " + limit};
 }
 
@@ -25,14 +25,15 @@ bool is_graph_name(const std::string& name) {
 Status check_name(const std::string& option, const std::string& name, bool may_be_empty) {
   if (may_be_empty && name.empty()) return {};
   if (!name.empty() && is_graph_name(name)) return {};
-  return bad(option,
-             "'" + name + "'",
-             "must be a ROS name of letters, digits, _ and / that begins with / or a letter");
+  return bad_option(
+      option,
+      "'" + name + "'",
+      "must be a ROS name of letters, digits, _ and / that begins with / or a letter");
 }
 
 Status check_seconds(const std::string& option, double value) {
   if (value > 0.0 && value <= 3600.0) return {};
-  return bad(option, std::to_string(value), "must be in (0, 3600]");
+  return bad_option(option, std::to_string(value), "must be in (0, 3600]");
 }
 
 Status check_names(const Ros1EstimatorOptions& options) {
@@ -54,31 +55,32 @@ Status check_names(const Ros1EstimatorOptions& options) {
   if (options.node_name.empty() ||
       !std::isalpha(static_cast<unsigned char>(options.node_name[0])) ||
       !std::all_of(options.node_name.begin(), options.node_name.end(), is_word)) {
-    return bad("node_name",
-               "'" + options.node_name + "'",
-               "must be of letters, digits and _, and begin with a letter");
+    return bad_option("node_name",
+                      "'" + options.node_name + "'",
+                      "must be of letters, digits and _, and begin with a letter");
   }
   const std::vector<OwnTopic> own = own_topics(options);
   for (std::size_t i = 0; i < own.size(); ++i) {
     for (std::size_t k = 0; k < i; ++k) {
       if (bare_name(own[i].name) != bare_name(own[k].name)) continue;
-      return bad(own[i].option, own[i].name, std::string("must not be the ") + own[k].option);
+      return bad_option(
+          own[i].option, own[i].name, std::string("must not be the ") + own[k].option);
     }
   }
   return {};
 }
 
 Status check_frames(const Ros1EstimatorOptions& options) {
-  if (options.camera_frame.empty()) return bad("camera_frame", "''", "must not be empty");
+  if (options.camera_frame.empty()) return bad_option("camera_frame", "''", "must not be empty");
   const bool needs_vo_frame = options.publish_tf || options.pose_type == Ros1PoseType::kTf;
   if (needs_vo_frame && options.vo_frame.empty()) {
-    return bad("vo_frame", "''", "must not be empty");
+    return bad_option("vo_frame", "''", "must not be empty");
   }
   if (needs_vo_frame && options.vo_frame == options.camera_frame) {
-    return bad("vo_frame", "'" + options.vo_frame + "'", "must not be the camera_frame");
+    return bad_option("vo_frame", "'" + options.vo_frame + "'", "must not be the camera_frame");
   }
   if (options.publish_tf && options.pose_type == Ros1PoseType::kTf) {
-    return bad("publish_tf", "true", "must be false where the pose comes by TF");
+    return bad_option("publish_tf", "true", "must be false where the pose comes by TF");
   }
   return {};
 }
@@ -105,7 +107,7 @@ Result<XmlRpcAddress> check(const Ros1EstimatorOptions& options) {
   if (Status status = check_names(options); !status) return status.error();
   if (Status status = check_frames(options); !status) return status.error();
   if (options.queue_size < 1 || options.queue_size > 1000) {
-    return bad("queue_size", std::to_string(options.queue_size), "must be in [1, 1000]");
+    return bad_option("queue_size", std::to_string(options.queue_size), "must be in [1, 1000]");
   }
   if (Status status = check_seconds("start_timeout_s", options.start_timeout_s); !status) {
     return status.error();

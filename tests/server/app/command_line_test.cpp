@@ -296,7 +296,8 @@ TEST_F(CommandLine, EvaluateOrdersPosesByTimeAndSaysSo) {
   EXPECT_EQ(entry.at("alignments").at("none").at("position_max_m"), 0.0);
   const std::string repeated =
       path("repeated.tum") + ": 1 poses (first in line 9) repeat the time of an earlier line";
-  const std::string moved = path("backwards.tum") + ": 19 poses (first in line 2) stand after";
+  const std::string moved =
+      path("backwards.tum") + ": 19 poses (first in line 2) are out of time order";
   EXPECT_THAT(result.at("warnings").at(0).get<std::string>(), HasSubstr(repeated));
   EXPECT_THAT(entry.at("warnings").at(0).get<std::string>(), HasSubstr(moved));
   EXPECT_THAT(scored.err, HasSubstr("warning: " + repeated));

@@ -186,7 +186,7 @@ TEST(TumRgbdLayout, NeedsACamera) {
   const TemporaryFolder folder;
   testing::write_tum_rgbd(folder.path());
   DatasetOptions options = options_of(folder.path());
-  EXPECT_THAT(error_of(options), HasSubstr("layout tum-rgbd holds no calibration"));
+  EXPECT_THAT(error_of(options), HasSubstr("layout tum-rgbd contains no calibration"));
   options.camera = CameraModel(PinholeCamera{0, 0, 20, 20, 7.5, 5.5});
   const Dataset dataset = opened(options);
   EXPECT_EQ(dataset.layout, DatasetLayout::kTumRgbd);
@@ -228,7 +228,7 @@ TEST(KittiLayout, SaysWhatIsBroken) {
   const TemporaryFolder folder;
   testing::write_kitti(folder.path());
   fs::remove(folder.path() / "image_0" / "000001.png");
-  EXPECT_THAT(error_of(options_of(folder.path())), HasSubstr("holds 2 images"));
+  EXPECT_THAT(error_of(options_of(folder.path())), HasSubstr("contains 2 images"));
 }
 
 TEST(Layouts, UnknownFoldersAreToldWhatIsKnown) {

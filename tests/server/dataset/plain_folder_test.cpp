@@ -122,7 +122,8 @@ TEST_F(PlainFolder, SortsImagesByTime) {
   ASSERT_EQ(dataset.images.size(), 3U);
   EXPECT_EQ(dataset.images[1].t_ns, 200'000'000);
   EXPECT_EQ(dataset.images[1].index, 1);
-  EXPECT_THAT(dataset.warnings, ElementsAre(HasSubstr("1 images (first in line 3) stand after")));
+  EXPECT_THAT(dataset.warnings,
+              ElementsAre(HasSubstr("1 images (first in line 3) are out of time order")));
 }
 
 TEST_F(PlainFolder, SaysWhereTheTimesAreBroken) {

@@ -148,7 +148,7 @@ TEST(Export, CancelledDataSetIsWholeAndTheRestCanFollow) {
   const auto again = export_dataset(source, options);
   ASSERT_FALSE(again.ok());
   EXPECT_EQ(again.error().code, ErrorCode::kConflict);
-  EXPECT_THAT(again.error().message, HasSubstr("cut: not empty"));
+  EXPECT_THAT(again.error().message, HasSubstr("cut: is not empty"));
   EXPECT_EQ(rows_of(folder.path() / "cut" / "camera0.csv", ',').size(), 6U);
 
   options.folder = folder.path() / "rest";

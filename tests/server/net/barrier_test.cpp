@@ -113,7 +113,7 @@ TEST(Barrier, AHandlerThatThrowsIsAnsweredWith500AndTheReasonIsLogged) {
     const Answer answer = ask(server.port, "GET", std::string("/api/v1/throws/") + kind);
     EXPECT_EQ(answer.status, 500) << kind;
     EXPECT_EQ(answer.json().at("error").at("code"), "internal");
-    EXPECT_EQ(answer.body.find("reason"), std::string::npos);
+    EXPECT_EQ(answer.body.find("handler's reason"), std::string::npos);
     EXPECT_THAT(server.log.all(), HasSubstr(std::string("GET /api/v1/throws/") + kind));
   }
   EXPECT_THAT(server.log.all(), HasSubstr("the handler's reason"));
@@ -140,7 +140,7 @@ int start_threads_beyond_the_limit() {
   LoopThreads threads([](const std::string&) {});
   const Status started = threads.start(3);
   if (started) return 4;
-  return started.error().message.find("0 of 3 threads") != std::string::npos ? 0 : 5;
+  return started.error().message.find("0 of 3 server threads") != std::string::npos ? 0 : 5;
 }
 
 TEST(Barrier, AThreadThatCannotStartIsAnError) {

@@ -99,7 +99,7 @@ TEST(ScenarioEstimators, FieldsOfOtherDoorsAreRefusedByName) {
   const Refused cases[] = {
       {R"({"name": "x", "type": "feature", "command": ["vo"]})",
        R"(estimators.0.command = ["vo"]: must be left out if type is feature)"},
-      {R"({"name": "x", "type": "lcm", "command": ["vo"]})", "where type is lcm"},
+      {R"({"name": "x", "type": "lcm", "command": ["vo"]})", "if type is lcm"},
       {R"({"name": "x", "type": "lcm", "cpus": [0]})", "estimators.0.cpus = [0]: must be left out"},
       {R"({"name": "x", "type": "perfect", "memory_limit_mb": 10})", "memory_limit_mb = 10"},
       {R"({"name": "x", "type": "process", "command": ["vo"], "ros1": {}})", "estimators.0.ros1"},

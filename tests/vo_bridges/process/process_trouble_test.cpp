@@ -86,9 +86,9 @@ TEST_F(ProcessTrouble, BadAnswersEndTheFlightAndAreQuoted) {
 }
 
 TEST_F(ProcessTrouble, APoseThatIsNoneIsOneLostFrameWithAWarning) {
-  for (const auto& [behaviour, complaint] :
-       std::map<std::string, std::string>{{"nan_pose", "frame 2: the position is not finite"},
-                                          {"long_quaternion", "frame 2: the quaternion has"}}) {
+  for (const auto& [behaviour, complaint] : std::map<std::string, std::string>{
+           {"nan_pose", "frame 2: the position is not finite"},
+           {"long_quaternion", "frame 2: the quaternion's norm is"}}) {
     const auto estimator = started(scripted(behaviour, "2"));
     for (const VoFrame& frame : ground_frames(4, 1.0, 1.0, 64, 48)) {
       const Result<VoEstimate> estimate = estimator->track(frame);
@@ -113,7 +113,7 @@ TEST_F(ProcessTrouble, ManyPosesThatAreNoneEndTheFlight) {
   EXPECT_EQ(gone.error().code, ErrorCode::kInternal);
   EXPECT_THAT(gone.error().message,
               AllOf(HasSubstr("30 answers in a row had no usable pose"),
-                    HasSubstr("to frame 30: the position is not finite"),
+                    HasSubstr("for frame 30: the position is not finite"),
                     HasSubstr("it last said: camera0 64x48")));
 }
 
