@@ -34,6 +34,7 @@ struct ManagedRun {
   std::shared_ptr<RunTimeline> timeline;
   std::atomic<bool> cancel{false};
   WorldCache::Shared world;  ///< while the run flies over it; guarded by the manager
+  bool recorded = false;     ///< it had a folder when it ended
   bool flies = false;        ///< false: queued
 };
 

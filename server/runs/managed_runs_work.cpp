@@ -95,13 +95,15 @@ void ManagedRuns::end(const std::shared_ptr<ManagedRun>& run) {
       std::filesystem::exists(manifest_file(options.runs_folder / run->id), ignored);
   if (has_folder) {
     shelf.put(run->id, run->timeline);
-  } else {
+  } else if (!run->recorded) {
     release_run(options.runs_folder, run->id);
   }
   const std::lock_guard lock(mutex_);
   // False if the run was deleted just after its end.
   const bool known = runs_.erase(run->id) > 0;
-  if (!has_folder && known) keep_unflown(run);
+  // A folder that is gone again was deleted by a client: listing the run would let another delete
+  // it.
+  if (!run->recorded && known) keep_unflown(run);
 }
 
 void ManagedRuns::watch() {
@@ -141,7 +143,8 @@ void ManagedRuns::fly(ManagedRun& run) {
   set_world(nullptr);
   // The run itself sets its final state in the timeline, unless it failed before it could create
   // its folder.
-  if (!result && engine::is_live(*run.timeline)) {
+  run.recorded = result.ok() || !engine::is_live(*run.timeline);
+  if (!run.recorded) {
     set_status(*run.timeline, RunStatus::kFailed, result.error().message);
   }
 }
