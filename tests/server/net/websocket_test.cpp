@@ -287,8 +287,11 @@ TEST(WebSocket, TellsHowOftenPicturesComeBesideAFlightInRealTime) {
   client.command({{"type", "attach"}, {"run", id}});
   server.runs().picture_rate().flight_began(0);
   client.command({{"type", "play"}});
+  client.command({{"type", "subscribe"}, {"streams", streams}});
   client.wait_until(lowered);
   server.runs().picture_rate().flight_ended();
+  // The short run may have been played to its end: from then on only commands are answered.
+  client.command({{"type", "subscribe"}, {"streams", streams}});
   client.wait_until(wanted);
 }
 
