@@ -18,10 +18,18 @@ function(overfly_room name)
   target_link_libraries(overfly_${name} PUBLIC ${arg_DEPENDS} PRIVATE ${arg_PRIVATE_DEPENDS})
 endfunction()
 
+# overfly_optimise(TARGET LEVEL)
+#
+# The level of optimisation in release builds, where less than CMake's -O3 is enough: it takes a
+# quarter (-O2) or a third (-O1) of the compiler's time less.
+function(overfly_optimise target level)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O${level}>)
+endfunction()
+
 # overfly_test(NAME [LIBS targets...] [TIMEOUT seconds] [FOLDERS subfolders...])
 #
 # One GoogleTest program, NAME_tests, of every *_test.cpp in the current folder and its FOLDERS;
-# each TEST is a ctest case of its own, so that a skipped one is seen.
+# each TEST is a separate ctest case, so that skipped tests are reported.
 function(overfly_test name)
   cmake_parse_arguments(arg "" "TIMEOUT" "LIBS;FOLDERS" ${ARGN})
   if(NOT arg_TIMEOUT)
@@ -40,6 +48,7 @@ function(overfly_test name)
   endif()
   add_executable(${name}_tests ${sources})
   target_link_libraries(${name}_tests PRIVATE ${arg_LIBS} overfly_test_support GTest::gmock GTest::gtest_main)
+  overfly_optimise(${name}_tests 1)
   gtest_discover_tests(${name}_tests
     TEST_PREFIX "${name}."
     DISCOVERY_MODE PRE_TEST

@@ -39,23 +39,24 @@ void add_errors(const std::vector<MatchedPose>& matches,
                 const Options& options,
                 AlignmentScore* score) {
   const Eigen::Quaterniond R_camera_body = options.T_body_camera.rotation.conjugate();
-  std::vector<double> position_m;
-  std::vector<double> rotation_deg;
   std::vector<double> euler_deg;
   std::vector<Pose> aligned;
   for (const MatchedPose& match : matches) {
     const Pose estimate = score->S_world_vo * match.T_vo_camera;
     const Pose& truth = match.T_world_camera;
-    position_m.push_back((estimate.translation - truth.translation).norm());
-    rotation_deg.push_back(deg_from_rad(rotation_angle_rad(truth.rotation, estimate.rotation)));
+    score->position_errors_m.push_back((estimate.translation - truth.translation).norm());
+    if (!score->degenerate) {
+      score->rotation_errors_deg.push_back(
+          deg_from_rad(rotation_angle_rad(truth.rotation, estimate.rotation)));
+    }
     euler_deg.push_back(deg_from_rad(
         euler_norm_rad(estimate.rotation * R_camera_body, truth.rotation * R_camera_body)));
     aligned.push_back(estimate);
   }
   score->matched = static_cast<int>(matches.size());
-  score->position_m = statistics_of(position_m);
+  score->position_m = statistics_of(score->position_errors_m);
   if (!score->degenerate) {
-    score->rotation_deg = statistics_of(rotation_deg);
+    score->rotation_deg = statistics_of(score->rotation_errors_deg);
     score->rotation_euler_norm_deg = statistics_of(euler_deg);
   }
   score->relative = relative_errors(matches, aligned, options.rpe_lengths_m);

@@ -18,8 +18,9 @@ namespace overfly::evaluation {
 [[nodiscard]] double euler_norm_rad(const Eigen::Quaterniond& R_world_body_a,
                                     const Eigen::Quaterniond& R_world_body_b);
 
-/// Computes position, rotation and relative errors of a score whose S_world_vo is set. Rotation
-/// errors are set only if the alignment is not degenerate; relative errors do not depend on it.
+/// Computes position, rotation and relative errors of a score whose S_world_vo is set, and the
+/// statistics of the first two. Rotation errors are set only if the alignment is not degenerate;
+/// relative errors do not depend on it.
 /// @pre !matches.empty()
 void add_errors(const std::vector<MatchedPose>& matches,
                 const Options& options,

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "core/estimate.hpp"
+#include "core/motion/estimate.hpp"
+#include "core/motion/trajectory.hpp"
 #include "core/result.hpp"
-#include "core/trajectory.hpp"
 
 namespace overfly::evaluation {
 
@@ -51,6 +51,7 @@ enum class Outcome {
   kTimeout,
 };
 [[nodiscard]] const char* to_string(Outcome outcome);  ///< "COMPLETED", "NOT_INITIALISED", ...
+[[nodiscard]] std::optional<Outcome> outcome_from(const std::string& text);
 
 /// A frame of the flight's camera or of a data set, whether an estimator received it or not.
 struct FlightFrame {
@@ -102,6 +103,10 @@ struct AlignmentScore {
   AlignmentMode mode = AlignmentMode::kNone;
   Similarity S_world_vo;
   int matched = 0;
+  /// Error of each matched pose; Score::matched_t_ns has their stamps. Only in scores from score(),
+  /// not in those read from a file.
+  std::vector<double> position_errors_m;
+  std::vector<double> rotation_errors_deg;  ///< geodesic angle; empty if degenerate
   ErrorStatistics position_m;
   /// Geodesic angle. This and the next field are empty if the alignment is degenerate.
   std::optional<ErrorStatistics> rotation_deg;
@@ -123,6 +128,7 @@ struct Score {
   std::optional<double> initialised_at_s;
   int frames = 0;  ///< frames of the flight
   int tracked_frames = 0;
+  std::vector<std::int64_t> matched_t_ns;  ///< stamps of the matched poses, in time order
   /// Results by mode. If the data cannot determine a mode, `unavailable` has the reason instead.
   std::map<AlignmentMode, AlignmentScore> alignments;
   std::map<AlignmentMode, std::string> unavailable;

@@ -211,4 +211,18 @@ const char* to_string(Outcome outcome) {
   return "";
 }
 
+std::optional<Outcome> outcome_from(const std::string& text) {
+  for (const Outcome outcome : {Outcome::kCompleted,
+                                Outcome::kNotInitialised,
+                                Outcome::kInitLate,
+                                Outcome::kLost,
+                                Outcome::kReset,
+                                Outcome::kDiverged,
+                                Outcome::kCrashed,
+                                Outcome::kTimeout}) {
+    if (text == to_string(outcome)) return outcome;
+  }
+  return std::nullopt;
+}
+
 }  // namespace overfly::evaluation

@@ -80,6 +80,7 @@ Score score(const Trajectory& T_world_camera_truth,
     }
     return result;
   }
+  for (const MatchedPose& match : *matches) result.matched_t_ns.push_back(match.t_ns);
   const std::vector<HeldPose> held =
       held_poses(T_world_camera_truth, flown, longest_map(estimate), options);
   for (const AlignmentMode mode : all_alignment_modes()) {
@@ -96,7 +97,7 @@ Score score(const Trajectory& T_world_camera_truth,
     alignment.degenerate = std::move(remarks.degenerate);
     add_errors(*matches, options, &alignment);
     alignment.position_rmse_hold_m = hold_rmse_m(held, *S_world_vo);
-    result.alignments[mode] = alignment;
+    result.alignments[mode] = std::move(alignment);
   }
   return result;
 }

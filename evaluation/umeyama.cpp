@@ -84,7 +84,7 @@ Eigen::Matrix3d turned_to_orientations(const std::vector<MatchedPose>& matches,
 }
 
 /// Ratio of the second to the first singular value: of the covariance of truth and estimate, or of
-/// the truth alone if that is smaller (lateral errors of an estimate must not hide that the truth
+/// the truth if that is smaller (lateral errors of an estimate must not hide that the truth
 /// is straight).
 double straightness(const Moments& m, const Eigen::Vector3d& D) {
   const Eigen::Vector3d own = m.sigma_yy.jacobiSvd().singularValues();

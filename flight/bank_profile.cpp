@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/pose.hpp"
+#include "core/motion/pose.hpp"
 
 namespace overfly::flight {
 

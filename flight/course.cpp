@@ -77,16 +77,6 @@ class Course final : public TruthSource {
     duration_ns_ = ns_from_s(std::min(t_s, track_.duration_s()));
   }
 
-  [[nodiscard]] Result<std::optional<AircraftState>> state_at(std::int64_t t_ns) override {
-    if (t_ns < 0) {
-      return Error{ErrorCode::kInvalidArgument,
-                   "t_ns = " + std::to_string(t_ns) + ": the flight spans [0, " +
-                       std::to_string(duration_ns_) + "] ns"};
-    }
-    if (t_ns > duration_ns_) return std::optional<AircraftState>();
-    return std::optional(state(t_ns));
-  }
-
   [[nodiscard]] std::optional<std::int64_t> duration_ns() const override { return duration_ns_; }
 
   [[nodiscard]] std::string description() const override {
@@ -96,6 +86,17 @@ class Course final : public TruthSource {
   }
 
  private:
+  [[nodiscard]] Result<std::optional<AircraftState>> find_state(
+      std::int64_t t_ns, const std::atomic<bool>* /*cancel*/) override {
+    if (t_ns < 0) {
+      return Error{ErrorCode::kInvalidArgument,
+                   "t_ns = " + std::to_string(t_ns) + ": the flight spans [0, " +
+                       std::to_string(duration_ns_) + "] ns"};
+    }
+    if (t_ns > duration_ns_) return std::optional<AircraftState>();
+    return std::optional(state(t_ns));
+  }
+
   [[nodiscard]] double speed_at(double t_s) const {
     return std::hypot(parameters_.airspeed_m_s, height_.at(t_s).climb_m_s);
   }

@@ -6,10 +6,10 @@
 #include <memory>
 #include <string>
 
-#include "core/geodesy.hpp"
-#include "core/height_query.hpp"
-#include "core/pose.hpp"
-#include "core/truth_source.hpp"
+#include "core/earth/geodesy.hpp"
+#include "core/earth/height_query.hpp"
+#include "core/motion/pose.hpp"
+#include "core/motion/truth_source.hpp"
 
 namespace overfly::flight {
 

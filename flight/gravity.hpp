@@ -1,7 +1,7 @@
 // Gravity of the reference ellipsoid.
 #pragma once
 
-#include "core/geodesy.hpp"
+#include "core/earth/geodesy.hpp"
 
 namespace overfly::flight {
 

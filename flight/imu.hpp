@@ -7,8 +7,8 @@
 #include <functional>
 #include <vector>
 
+#include "core/motion/truth_source.hpp"
 #include "core/result.hpp"
-#include "core/truth_source.hpp"
 
 namespace overfly::flight {
 

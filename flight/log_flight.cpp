@@ -34,7 +34,15 @@ class LogFlight final : public TruthSource {
     for (std::size_t i = 0; i < count; ++i) velocities_m_s_.push_back(velocity_of(i));
   }
 
-  [[nodiscard]] Result<std::optional<AircraftState>> state_at(std::int64_t t_ns) override {
+  [[nodiscard]] std::optional<std::int64_t> duration_ns() const override {
+    return trajectory_.end_ns() - trajectory_.begin_ns();
+  }
+  [[nodiscard]] std::string description() const override { return description_; }
+  [[nodiscard]] std::vector<std::string> warnings() const override { return warnings_; }
+
+ private:
+  [[nodiscard]] Result<std::optional<AircraftState>> find_state(
+      std::int64_t t_ns, const std::atomic<bool>* /*cancel*/) override {
     const std::int64_t last_ns = *duration_ns();
     if (t_ns < 0) {
       return Error{ErrorCode::kInvalidArgument,
@@ -49,16 +57,9 @@ class LogFlight final : public TruthSource {
           return t < stamped.t_ns;
         });
     const auto pose = static_cast<std::size_t>(after - poses.begin()) - 1;
-    return std::optional(between(pose, file_ns, t_ns));
+    return std::optional(between(pose, t_ns));
   }
 
-  [[nodiscard]] std::optional<std::int64_t> duration_ns() const override {
-    return trajectory_.end_ns() - trajectory_.begin_ns();
-  }
-  [[nodiscard]] std::string description() const override { return description_; }
-  [[nodiscard]] std::vector<std::string> warnings() const override { return warnings_; }
-
- private:
   [[nodiscard]] std::pair<double, Eigen::Vector3d> point(std::size_t i) const {
     const StampedPose& stamped = trajectory_.poses()[i];
     return {s_from_ns(stamped.t_ns - trajectory_.begin_ns()), stamped.pose.translation};
@@ -73,33 +74,26 @@ class LogFlight final : public TruthSource {
     return parabola_velocity(point(i).first, point(middle - 1), point(middle), point(middle + 1));
   }
 
-  /// Cubic Hermite in position, SLERP in rotation, from pose i to i + 1.
-  [[nodiscard]] AircraftState between(std::size_t i,
-                                      std::int64_t file_ns,
-                                      std::int64_t t_ns) const {
-    const StampedPose& a = trajectory_.poses()[i];
-    const StampedPose& b = trajectory_.poses()[i + 1];
-    const double dt_s = s_from_ns(b.t_ns - a.t_ns);
-    const double u = s_from_ns(file_ns - a.t_ns) / dt_s;
-    const Eigen::Vector3d& p0 = a.pose.translation;
-    const Eigen::Vector3d& p1 = b.pose.translation;
-    const Eigen::Vector3d m0 = velocities_m_s_[i] * dt_s;
-    const Eigen::Vector3d m1 = velocities_m_s_[i + 1] * dt_s;
-    const double u2 = u * u;
-    const double u3 = u2 * u;
-
+  /// The file's row i as a state of the flight.
+  [[nodiscard]] AircraftState row_state(std::size_t i) const {
+    const StampedPose& row = trajectory_.poses()[i];
     AircraftState state;
-    state.t_ns = t_ns;
-    state.T_world_body = interpolate(a.pose, b.pose, u);
-    state.T_world_body.translation = (2 * u3 - 3 * u2 + 1) * p0 + (u3 - 2 * u2 + u) * m0 +
-                                     (3 * u2 - 2 * u3) * p1 + (u3 - u2) * m1;
-    state.v_body_world_m_s =
-        ((6 * u2 - 6 * u) * (p0 - p1) + (3 * u2 - 4 * u + 1) * m0 + (3 * u2 - 2 * u) * m1) / dt_s;
+    state.t_ns = row.t_ns - trajectory_.begin_ns();
+    state.T_world_body = row.pose;
+    state.v_body_world_m_s = velocities_m_s_[i];
+    return state;
+  }
+
+  /// From row i to i + 1; the angular rate is that of the SLERP.
+  [[nodiscard]] AircraftState between(std::size_t i, std::int64_t t_ns) const {
+    const AircraftState a = row_state(i);
+    const AircraftState b = row_state(i + 1);
+    AircraftState state = interpolate(a, b, t_ns);
     state.airspeed_m_s = state.v_body_world_m_s.norm();  // a pose file contains no wind
-    Eigen::Quaterniond step = a.pose.rotation.conjugate() * b.pose.rotation;
+    Eigen::Quaterniond step = a.T_world_body.rotation.conjugate() * b.T_world_body.rotation;
     if (step.w() < 0.0) step.coeffs() = -step.coeffs();
     const Eigen::AngleAxisd turn(step);
-    state.omega_body_rad_s = turn.axis() * (turn.angle() / dt_s);
+    state.omega_body_rad_s = turn.axis() * (turn.angle() / s_from_ns(b.t_ns - a.t_ns));
     return state;
   }
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <utility>
 
-#include "core/text_fields.hpp"
-#include "core/time_order.hpp"
-#include "core/trajectory_io.hpp"
+#include "core/motion/time_order.hpp"
+#include "core/motion/trajectory_io.hpp"
+#include "core/text/text_fields.hpp"
 
 namespace overfly::flight {
 namespace {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "core/geodesy.hpp"
+#include "core/earth/geodesy.hpp"
+#include "core/motion/trajectory.hpp"
 #include "core/result.hpp"
-#include "core/trajectory.hpp"
 
 namespace overfly::flight {
 

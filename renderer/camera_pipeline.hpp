@@ -9,24 +9,32 @@
 
 namespace overfly::renderer {
 
-/// Not thread-safe: create, use and destroy on one thread.
+namespace egl {
+class EglRenderer;
+}
+
+/// Draws with OpenGL. Not thread-safe: create, use and destroy on one thread.
 class CameraPipeline {
  public:
-  /// Draws with OpenGL. @param in_flight  number of simultaneous images, in [1, 16]
+  /// @param in_flight  number of simultaneous images, in [1, 16]
   /// Errors: as create_egl_renderer; kInvalidArgument for `in_flight`.
-  static Result<std::unique_ptr<CameraPipeline>> create(
-      std::shared_ptr<const terrain::TileSource> tiles,
-      const RendererOptions& options,
-      int in_flight);
-  virtual ~CameraPipeline() = default;
+  static Result<CameraPipeline> create(std::shared_ptr<const terrain::TileSource> tiles,
+                                       const RendererOptions& options,
+                                       int in_flight);
+  ~CameraPipeline();
+  CameraPipeline(CameraPipeline&&) noexcept;
+  CameraPipeline& operator=(CameraPipeline&&) noexcept;
 
   /// Starts an image. Errors: as Renderer::render_camera; kConflict if `in_flight` images are
   /// already begun.
-  virtual Status begin(const CameraRequest& request) = 0;
+  [[nodiscard]] Status begin(const CameraRequest& request);
   /// Returns the oldest image that was begun, with the same bytes as Renderer::render_camera.
   /// Errors: kConflict if none is begun; kInternal if OpenGL fails.
-  virtual Result<CameraFrame> finish() = 0;
-  [[nodiscard]] virtual RendererInfo info() const = 0;
+  [[nodiscard]] Result<CameraFrame> finish();
+
+ private:
+  explicit CameraPipeline(std::unique_ptr<egl::EglRenderer> renderer);
+  std::unique_ptr<egl::EglRenderer> renderer_;
 };
 
 }  // namespace overfly::renderer

@@ -5,36 +5,36 @@
 
 namespace overfly::renderer {
 
-Result<DeviceWish> DeviceWish::parse(const std::string& text) {
+Result<DeviceRequest> DeviceRequest::parse(const std::string& text) {
   static const std::regex number("[0-9]{1,3}");
   static const std::regex address("([0-9a-fA-F]{4,8}:)?[0-9a-fA-F]{2}:[0-9a-fA-F]{2}\\.[0-7]");
-  DeviceWish wish;
+  DeviceRequest request;
   if (text == "software") {
-    wish.software = true;
+    request.software = true;
   } else if (std::regex_match(text, number)) {
-    wish.index = std::stoi(text);
+    request.index = std::stoi(text);
   } else if (std::regex_match(text, address)) {
-    wish.pci_address = text;
-    std::transform(text.begin(), text.end(), wish.pci_address.begin(), [](char c) {
+    request.pci_address = text;
+    std::transform(text.begin(), text.end(), request.pci_address.begin(), [](char c) {
       return c >= 'A' && c <= 'F' ? static_cast<char>(c - 'A' + 'a') : c;
     });
-    if (std::count(text.begin(), text.end(), ':') == 1) wish.pci_address.insert(0, "0000:");
+    if (std::count(text.begin(), text.end(), ':') == 1) request.pci_address.insert(0, "0000:");
   } else if (!text.empty()) {
     return Error{ErrorCode::kInvalidArgument,
                  "device \"" + text +
                      "\": must be empty, an index, a PCI address such as 0000:01:00.0, or "
                      "\"software\""};
   }
-  return wish;
+  return request;
 }
 
-bool asks_for(const DeviceWish& wish, const OfferedDevice& device) {
-  if (wish.index) return device.index == *wish.index;
-  if (!wish.pci_address.empty()) return device.pci_address == wish.pci_address;
-  return wish.software ? device.software : true;
+bool asks_for(const DeviceRequest& request, const OfferedDevice& device) {
+  if (request.index) return device.index == *request.index;
+  if (!request.pci_address.empty()) return device.pci_address == request.pci_address;
+  return request.software ? device.software : true;
 }
 
-std::vector<std::size_t> devices_to_try(const DeviceWish& wish,
+std::vector<std::size_t> devices_to_try(const DeviceRequest& request,
                                         const std::vector<OfferedDevice>& offered) {
   std::vector<std::size_t> order;
   const auto add = [&](const auto& suits) {
@@ -45,12 +45,13 @@ std::vector<std::size_t> devices_to_try(const DeviceWish& wish,
   };
   const auto platform = [](const OfferedDevice& device) { return device.index < 0; };
   const auto software = [](const OfferedDevice& device) { return device.software; };
-  if (wish.any()) {
+  if (request.any()) {
     add([](const OfferedDevice& device) { return device.index >= 0 && !device.software; });
     add(platform);
     add(software);
   } else {
-    if (!wish.software) add([&](const OfferedDevice& device) { return asks_for(wish, device); });
+    if (!request.software)
+      add([&](const OfferedDevice& device) { return asks_for(request, device); });
     add(software);
     add(platform);
   }

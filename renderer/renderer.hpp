@@ -10,11 +10,11 @@
 #include <string>
 #include <vector>
 
-#include "core/camera.hpp"
-#include "core/camera_model.hpp"
-#include "core/camera_motion.hpp"
-#include "core/image.hpp"
-#include "core/pose.hpp"
+#include "core/camera/camera.hpp"
+#include "core/camera/camera_model.hpp"
+#include "core/camera/camera_motion.hpp"
+#include "core/camera/image.hpp"
+#include "core/motion/pose.hpp"
 #include "core/result.hpp"
 #include "terrain/tile_source.hpp"
 

@@ -1,8 +1,8 @@
 // Checks requests to a renderer, the same way for every implementation.
 #pragma once
 
-#include "core/camera.hpp"
-#include "core/pose.hpp"
+#include "core/camera/camera.hpp"
+#include "core/motion/pose.hpp"
 #include "core/result.hpp"
 #include "renderer/renderer.hpp"
 #include "terrain/tile_source.hpp"

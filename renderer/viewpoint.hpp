@@ -1,8 +1,8 @@
 // Viewpoints that follow, circle or overlook the aircraft.
 #pragma once
 
-#include "core/height_query.hpp"
-#include "core/pose.hpp"
+#include "core/earth/height_query.hpp"
+#include "core/motion/pose.hpp"
 
 namespace overfly::renderer {
 

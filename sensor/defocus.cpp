@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace overfly::renderer {
+namespace overfly::sensor {
 
 namespace {
 
@@ -55,4 +55,4 @@ RadianceImage defocused(const RadianceImage& sharp, double sigma_px) {
   return out;
 }
 
-}  // namespace overfly::renderer
+}  // namespace overfly::sensor

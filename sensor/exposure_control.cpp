@@ -5,7 +5,7 @@
 
 #include "core/time.hpp"
 
-namespace overfly::renderer {
+namespace overfly::sensor {
 
 namespace {
 
@@ -45,4 +45,4 @@ void ExposureControl::observe(double mean_level, double saturated_fraction) {
                                       automatic_->max_exposure_s * automatic_->max_gain);
 }
 
-}  // namespace overfly::renderer
+}  // namespace overfly::sensor

@@ -3,7 +3,7 @@
 
 #include "sensor/sensor_model.hpp"
 
-namespace overfly::renderer {
+namespace overfly::sensor {
 
 /// A damped Newton step on the logarithm of exposure times gain:
 ///   ln E' = ln E + alpha ln(target / mean) / slope,
@@ -28,4 +28,4 @@ class ExposureControl {
   double exposure_times_gain_s_;
 };
 
-}  // namespace overfly::renderer
+}  // namespace overfly::sensor

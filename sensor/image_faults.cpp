@@ -7,7 +7,7 @@
 #include "sensor/noise_source.hpp"
 #include "sensor/number_limit.hpp"
 
-namespace overfly::renderer {
+namespace overfly::sensor {
 
 namespace {
 
@@ -196,4 +196,4 @@ void apply_fault(const ImageFault& fault, RadianceImage& radiance) {
   }
 }
 
-}  // namespace overfly::renderer
+}  // namespace overfly::sensor

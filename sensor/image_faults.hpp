@@ -8,10 +8,10 @@
 #include <optional>
 #include <string>
 
-#include "core/image.hpp"
+#include "core/camera/image.hpp"
 #include "core/result.hpp"
 
-namespace overfly::renderer {
+namespace overfly::sensor {
 
 enum class ImageFaultKind {
   kSaturation,  ///< adds light: everywhere, or a glare around a seeded place
@@ -47,4 +47,4 @@ struct ImageFault {
 /// Applies the fault to the radiance at the lens. @pre fault.validate()
 void apply_fault(const ImageFault& fault, RadianceImage& radiance);
 
-}  // namespace overfly::renderer
+}  // namespace overfly::sensor

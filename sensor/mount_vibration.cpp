@@ -8,7 +8,7 @@
 #include "sensor/noise_source.hpp"
 #include "sensor/number_limit.hpp"
 
-namespace overfly::renderer {
+namespace overfly::sensor {
 
 namespace {
 
@@ -218,4 +218,4 @@ double MountVibration::rms(VibrationAxis axis) const {
   return std::sqrt(variance);
 }
 
-}  // namespace overfly::renderer
+}  // namespace overfly::sensor

@@ -18,10 +18,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/pose.hpp"
+#include "core/motion/pose.hpp"
 #include "core/result.hpp"
 
-namespace overfly::renderer {
+namespace overfly::sensor {
 
 struct VibrationModel {
   bool enabled = false;
@@ -85,4 +85,4 @@ class MountVibration {
   std::vector<Tone> tones_;
 };
 
-}  // namespace overfly::renderer
+}  // namespace overfly::sensor

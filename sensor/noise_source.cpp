@@ -1,6 +1,6 @@
 #include "sensor/noise_source.hpp"
 
-namespace overfly::renderer {
+namespace overfly::sensor {
 
 namespace {
 
@@ -31,4 +31,4 @@ NoiseKey noise_key(std::uint64_t seed, std::int64_t frame, NoiseStage stage) {
           static_cast<std::uint32_t>(more) | 1U};
 }
 
-}  // namespace overfly::renderer
+}  // namespace overfly::sensor

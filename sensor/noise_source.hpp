@@ -17,7 +17,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace overfly::renderer {
+namespace overfly::sensor {
 
 enum class NoiseStage : std::uint32_t {
   kTemporal = 1,
@@ -133,4 +133,4 @@ OVERFLY_LANES NormalPair normal_pair(std::uint32_t word) {
   return {std::bit_cast<float>(signed_r) * c, r * (s * x)};
 }
 
-}  // namespace overfly::renderer
+}  // namespace overfly::sensor

@@ -6,7 +6,7 @@
 
 #include "core/result.hpp"
 
-namespace overfly::renderer {
+namespace overfly::sensor {
 
 /// A number with its name and closed limits.
 struct NumberLimit {
@@ -16,10 +16,10 @@ struct NumberLimit {
   double high;
 };
 
-/// Six significant digits.
-[[nodiscard]] std::string number_text(double value);
+/// Six significant digits, for messages.
+[[nodiscard]] std::string rounded_text(double value);
 
 /// Errors: kInvalidArgument naming the first field outside its limits (or not a number).
 [[nodiscard]] Status check_limits(std::initializer_list<NumberLimit> limits);
 
-}  // namespace overfly::renderer
+}  // namespace overfly::sensor

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace overfly::renderer {
+namespace overfly::sensor {
 namespace fs = std::filesystem;
 
 std::array<double, 256> inverse_response(const SensorModel& model) {
@@ -61,4 +61,4 @@ Status write_pcalib(const fs::path& file, const SensorModel& model) {
   return Error{ErrorCode::kIo, file.string() + ": cannot be written"};
 }
 
-}  // namespace overfly::renderer
+}  // namespace overfly::sensor

@@ -5,12 +5,12 @@
 #include <array>
 #include <filesystem>
 
-#include "core/camera_model.hpp"
-#include "core/image.hpp"
+#include "core/camera/camera_model.hpp"
+#include "core/camera/image.hpp"
 #include "core/result.hpp"
 #include "sensor/sensor_model.hpp"
 
-namespace overfly::renderer {
+namespace overfly::sensor {
 
 /// Irradiance of each value of the 8-bit image (for a deeper sensor: at the middle of the numbers
 /// with the same high 8 bits), scaled so that the last is 255. Strictly increasing. A black level
@@ -25,4 +25,4 @@ namespace overfly::renderer {
 /// `pcalib.txt`: the 256 values of inverse_response in one line. Errors: kIo naming the file.
 [[nodiscard]] Status write_pcalib(const std::filesystem::path& file, const SensorModel& model);
 
-}  // namespace overfly::renderer
+}  // namespace overfly::sensor

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace overfly::renderer {
+namespace overfly::sensor {
 
 namespace {
 
@@ -262,4 +262,4 @@ ExposeRow expose_row_for(VectorUnits units) {
   return expose_row;
 }
 
-}  // namespace overfly::renderer
+}  // namespace overfly::sensor

@@ -8,7 +8,7 @@
 #include "sensor/noise_source.hpp"
 #include "sensor/vector_units.hpp"
 
-namespace overfly::renderer {
+namespace overfly::sensor {
 
 /// Below this mean [electrons] shot noise is drawn from the Poisson distribution itself. From it on
 /// it is drawn as a normal variable with the Poisson's mean, variance and skewness, rounded to
@@ -57,4 +57,4 @@ using ExposeRow = void (*)(const PixelChain& chain, const SensorRow& row, RowRes
 /// The implementation compiled for the units. @pre supported(units)
 [[nodiscard]] ExposeRow expose_row_for(VectorUnits units);
 
-}  // namespace overfly::renderer
+}  // namespace overfly::sensor

@@ -3,7 +3,7 @@
 
 #include "sensor/sensor_model.hpp"
 
-namespace overfly::renderer {
+namespace overfly::sensor {
 
 namespace {
 
@@ -77,4 +77,4 @@ double ResponseCurve::inverse(double output) const {
   return gamma == 1.0 ? clamped : std::pow(clamped, gamma);
 }
 
-}  // namespace overfly::renderer
+}  // namespace overfly::sensor

@@ -11,7 +11,7 @@
 #include "sensor/noise_source.hpp"
 #include "sensor/pixel_chain.hpp"
 
-namespace overfly::renderer {
+namespace overfly::sensor {
 
 namespace {
 
@@ -232,4 +232,4 @@ Result<std::unique_ptr<Sensor>> Sensor::create(const SensorModel& model,
       std::make_unique<ModelledSensor>(model, camera.pinhole(), seed, units));
 }
 
-}  // namespace overfly::renderer
+}  // namespace overfly::sensor

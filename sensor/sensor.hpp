@@ -10,13 +10,13 @@
 #include <cstdint>
 #include <memory>
 
-#include "core/camera_model.hpp"
-#include "core/image.hpp"
+#include "core/camera/camera_model.hpp"
+#include "core/camera/image.hpp"
 #include "core/result.hpp"
 #include "sensor/sensor_model.hpp"
 #include "sensor/vector_units.hpp"
 
-namespace overfly::renderer {
+namespace overfly::sensor {
 
 /// The sensor's output for one radiance image.
 struct SensorImage {
@@ -46,4 +46,4 @@ class Sensor {
   [[nodiscard]] virtual SensorImage expose(const RadianceImage& radiance, std::int64_t frame) = 0;
 };
 
-}  // namespace overfly::renderer
+}  // namespace overfly::sensor

@@ -6,25 +6,25 @@
 
 #include "sensor/number_limit.hpp"
 
-namespace overfly::renderer {
+namespace overfly::sensor {
 
 namespace {
 
 Status check_table(const std::vector<double>& table) {
-  const auto fault = [](const std::string& text) {
+  const auto invalid = [](const std::string& text) {
     return Error{ErrorCode::kInvalidArgument, "response.table: " + text};
   };
   if (table.size() < 2) {
-    return fault("has " + std::to_string(table.size()) + " values: at least 2 are required");
+    return invalid("has " + std::to_string(table.size()) + " values: at least 2 are required");
   }
   if (table.front() != 0.0 || table.back() != 1.0) {
-    return fault("runs from " + number_text(table.front()) + " to " + number_text(table.back()) +
-                 ": must run from 0 to 1");
+    return invalid("runs from " + rounded_text(table.front()) + " to " +
+                   rounded_text(table.back()) + ": must run from 0 to 1");
   }
   for (std::size_t i = 1; i < table.size(); ++i) {
     if (!(table[i] > table[i - 1])) {
-      return fault("value " + std::to_string(i) + " = " + number_text(table[i]) +
-                   ": must be larger than the previous value, " + number_text(table[i - 1]));
+      return invalid("value " + std::to_string(i) + " = " + rounded_text(table[i]) +
+                     ": must be larger than the previous value, " + rounded_text(table[i - 1]));
     }
   }
   return {};
@@ -94,4 +94,4 @@ int SensorModel::effective_adc_bits() const {
   return response.is_linear() ? bits : std::min(bits + 4, 16);
 }
 
-}  // namespace overfly::renderer
+}  // namespace overfly::sensor

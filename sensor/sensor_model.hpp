@@ -9,7 +9,7 @@
 
 #include "core/result.hpp"
 
-namespace overfly::renderer {
+namespace overfly::sensor {
 
 struct Vignette {
   /// Transmission at the radius r, in units of half the image's diagonal from the principal point:
@@ -92,4 +92,4 @@ struct ExposureSetting {
   double gain = 1.0;  ///< times gain_dn_per_e
 };
 
-}  // namespace overfly::renderer
+}  // namespace overfly::sensor

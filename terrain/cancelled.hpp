@@ -1,4 +1,4 @@
-// Inside terrain only: cancellation of long operations.
+// Cancellation of long operations.
 #pragma once
 
 #include <filesystem>

@@ -14,10 +14,11 @@
 #include <cstdint>
 #include <string>
 
-#include "core/geodesy.hpp"
-#include "core/height_query.hpp"
-#include "core/image.hpp"
+#include "core/camera/image.hpp"
+#include "core/earth/geodesy.hpp"
+#include "core/earth/height_query.hpp"
 #include "core/result.hpp"
+#include "terrain/cancelled.hpp"
 
 namespace overfly::terrain {
 
@@ -67,8 +68,12 @@ class TileSource : public HeightQuery {
   /// synthetic. Texels per pixel are counted in it.
   [[nodiscard]] virtual double real_texel_m() const { return grid().texel_m; }
   [[nodiscard]] virtual TileCoverage coverage(const TileId& id) const = 0;
-  /// Reads a tile with its border. Errors: kIo when a file cannot be read.
-  [[nodiscard]] virtual Result<Tile> tile(const TileId& id) const = 0;
+  /// Reads a tile with its border. The first distant tile of a large image without overviews reads
+  /// the whole image, which may take minutes.
+  /// Errors: kIo when a file cannot be read; kCancelled.
+  [[nodiscard]] Result<Tile> tile(const TileId& id, const Cancelled& cancelled = {}) const {
+    return read_tile(id, cancelled);
+  }
 
   /// The ground's point in the world frame above a place of the map plane [m].
   [[nodiscard]] virtual Eigen::Vector3d world_from_map(double x_map_m, double y_map_m) const = 0;
@@ -92,6 +97,11 @@ class TileSource : public HeightQuery {
   /// kIo after a height could not be read (a truncated file, a removed disk): height queries cannot
   /// report errors and return the lowest ground. `tile` returns the same error.
   [[nodiscard]] virtual Status status() const { return {}; }
+
+ private:
+  /// As tile.
+  [[nodiscard]] virtual Result<Tile> read_tile(const TileId& id,
+                                               const Cancelled& cancelled) const = 0;
 };
 
 }  // namespace overfly::terrain

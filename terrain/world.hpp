@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/source_policy.hpp"
+#include "core/outside/source_policy.hpp"
 #include "terrain/tile_source.hpp"
 
 namespace overfly::terrain {

@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "core/camera.hpp"
-#include "core/camera_model.hpp"
-#include "core/estimate.hpp"
-#include "core/image.hpp"
+#include "core/camera/camera.hpp"
+#include "core/camera/camera_model.hpp"
+#include "core/camera/image.hpp"
+#include "core/motion/estimate.hpp"
 #include "core/result.hpp"
 
 namespace overfly {
@@ -84,7 +84,9 @@ class VoPort {
   /// frame that is not after the previous one; kInternal if the estimator has failed permanently
   /// (the run is CRASHED).
   [[nodiscard]] virtual Result<VoEstimate> track(const VoFrame& frame) = 0;
-  /// Resets to the state after construction; the set_debug setting stays.
+  /// Resets to the state after construction; the set_debug setting stays. A run creates its
+  /// estimators and resets none: this sends what the wires define for a reset, RESET of the process
+  /// protocol (docs/VO_PROTOCOL.md) and `reset_topic` of ROS 1.
   virtual void reset() = 0;
   /// Whether `track` produces debug images and map points, which cost time. Default: no.
   virtual void set_debug(bool wanted) = 0;
@@ -94,10 +96,6 @@ class VoPort {
   /// Empty if unknown. May be called from another thread than `track`.
   [[nodiscard]] virtual std::optional<ResourceUse> resource_use() const { return std::nullopt; }
 };
-
-/// CRC-32 of the image's bytes, row by row, as in zlib and PNG. Used to check that several
-/// estimators received the same frames.
-[[nodiscard]] std::uint32_t crc32_of(const Image& image);
 
 /// Checks the general requirements of a frame; `previous` is the previous frame, or null.
 [[nodiscard]] Status validate_vo_frame(const VoFrame& frame, const VoFrame* previous);

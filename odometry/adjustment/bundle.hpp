@@ -4,8 +4,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "core/camera.hpp"
-#include "core/pose.hpp"
+#include "core/camera/camera.hpp"
+#include "core/motion/pose.hpp"
 
 namespace overfly::odometry {
 

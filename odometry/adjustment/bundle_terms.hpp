@@ -8,8 +8,8 @@
 #include <Eigen/Geometry>
 #include <array>
 
-#include "core/camera.hpp"
-#include "core/pose.hpp"
+#include "core/camera/camera.hpp"
+#include "core/motion/pose.hpp"
 #include "odometry/geometry/lie.hpp"
 
 namespace overfly::odometry {

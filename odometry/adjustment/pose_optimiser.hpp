@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/camera.hpp"
-#include "core/pose.hpp"
+#include "core/camera/camera.hpp"
+#include "core/motion/pose.hpp"
 
 namespace overfly::odometry {
 

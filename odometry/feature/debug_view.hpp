@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "core/estimate.hpp"
-#include "core/image.hpp"
+#include "core/camera/image.hpp"
+#include "core/motion/estimate.hpp"
 #include "odometry/feature/start/initialiser.hpp"
 #include "odometry/feature/tracker.hpp"
 

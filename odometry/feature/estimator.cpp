@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/processor_time.hpp"
+#include "core/measure/processor_time.hpp"
 #include "odometry/feature/debug_view.hpp"
-#include "odometry/shell/stopwatch.hpp"
+#include "odometry/shell/stage_stopwatch.hpp"
 
 namespace overfly::odometry::feature {
 namespace {
@@ -131,10 +131,10 @@ Result<VoEstimate> FeatureOdometry::answer(const VoFrame& frame) {
   VoEstimate estimate;
   Outcome outcome;
   {
-    const Stopwatch stopwatch(estimate.timing_ms, "total");
+    const StageStopwatch stopwatch(estimate.timing_ms, "total");
     FrameImage image;
     {
-      const Stopwatch pyramid_watch(estimate.timing_ms, "pyramid");
+      const StageStopwatch pyramid_watch(estimate.timing_ms, "pyramid");
       image = image_of(frame);
     }
     const bool repeated = previous_ && previous_->image->data == frame.image->data;
@@ -174,7 +174,7 @@ bool FeatureOdometry::make_first_map(const FrameImage& frame) {
 }
 
 void FeatureOdometry::initialise(const FrameImage& frame, VoEstimate& estimate, Outcome& outcome) {
-  const Stopwatch stopwatch(estimate.timing_ms, "initialisation");
+  const StageStopwatch stopwatch(estimate.timing_ms, "initialisation");
   if (!make_first_map(frame)) return;
   for (const auto& [id, keyframe] : parts_->keeper.empty_map().keyframes()) {
     motion_.observe(keyframe.t_ns, keyframe.T_camera_vo);
@@ -214,7 +214,7 @@ TrackResult FeatureOdometry::track_map(const FrameImage& frame) const {
 
 void FeatureOdometry::follow(const FrameImage& frame, VoEstimate& estimate, Outcome& outcome) {
   {
-    const Stopwatch stopwatch(estimate.timing_ms, "tracking");
+    const StageStopwatch stopwatch(estimate.timing_ms, "tracking");
     outcome.tracked = track_map(frame);
   }
   if (!outcome.tracked.tracked) {

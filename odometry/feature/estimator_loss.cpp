@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "odometry/feature/estimator.hpp"
-#include "odometry/shell/stopwatch.hpp"
+#include "odometry/shell/stage_stopwatch.hpp"
 
 namespace overfly::odometry::feature {
 namespace {
@@ -37,7 +37,7 @@ void FeatureOdometry::start_over() {
 }
 
 void FeatureOdometry::search(const FrameImage& frame, VoEstimate& estimate, Outcome& outcome) {
-  const Stopwatch stopwatch(estimate.timing_ms, "relocalisation");
+  const StageStopwatch stopwatch(estimate.timing_ms, "relocalisation");
   const double lost_s = static_cast<double>(frame.t_ns - lost_at_ns_) * 1e-9;
   if (lost_s < kExtrapolateS) outcome.tracked = track_map(frame);
   if (!outcome.tracked.tracked && shows_something(frame.pyramid)) {
@@ -75,7 +75,7 @@ bool FeatureOdometry::rejoin_old_map(const FrameImage& frame,
                                      Outcome& outcome) {
   const double since_s = static_cast<double>(frame.t_ns - looked_for_old_map_at_ns_) * 1e-9;
   if (!old_map_ || since_s < kLookForOldMapS || !shows_something(frame.pyramid)) return false;
-  const Stopwatch stopwatch(estimate.timing_ms, "relocalisation");
+  const StageStopwatch stopwatch(estimate.timing_ms, "relocalisation");
   looked_for_old_map_at_ns_ = frame.t_ns;
   RelocaliserOptions options;
   options.seed = parameters_.seed + static_cast<std::uint64_t>(frame.index);

@@ -1,7 +1,7 @@
-// What the estimator tells of a frame.
+// What the estimator reports about a frame.
 #include "odometry/feature/debug_view.hpp"
 #include "odometry/feature/estimator.hpp"
-#include "odometry/shell/stopwatch.hpp"
+#include "odometry/shell/stage_stopwatch.hpp"
 
 namespace overfly::odometry::feature {
 
@@ -45,7 +45,7 @@ void FeatureOdometry::report_pose(const Outcome& outcome, VoEstimate& estimate) 
 void FeatureOdometry::draw(const FrameImage& frame,
                            const Outcome& outcome,
                            VoEstimate& estimate) const {
-  const Stopwatch stopwatch(estimate.timing_ms, "debug_view");
+  const StageStopwatch stopwatch(estimate.timing_ms, "debug_view");
   DebugContent content;
   content.state = state_;
   content.keyframe = outcome.keyframe;

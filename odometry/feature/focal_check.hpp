@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "core/camera.hpp"
+#include "core/camera/camera.hpp"
 #include "odometry/feature/map.hpp"
 
 namespace overfly::odometry::feature {

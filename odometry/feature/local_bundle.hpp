@@ -1,7 +1,7 @@
 // Bundle adjustment of the part of the map around the newest keyframe.
 #pragma once
 
-#include "core/camera.hpp"
+#include "core/camera/camera.hpp"
 #include "odometry/adjustment/bundle.hpp"
 #include "odometry/feature/map.hpp"
 

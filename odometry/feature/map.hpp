@@ -8,8 +8,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/camera.hpp"
-#include "core/pose.hpp"
+#include "core/camera/camera.hpp"
+#include "core/motion/pose.hpp"
 #include "odometry/feature/orb.hpp"
 #include "odometry/geometry/lie.hpp"
 #include "odometry/image/pyramid.hpp"

@@ -2,8 +2,8 @@
 
 #include <utility>
 
-#include "core/processor_time.hpp"
-#include "odometry/shell/stopwatch.hpp"
+#include "core/measure/processor_time.hpp"
+#include "odometry/shell/stage_stopwatch.hpp"
 
 namespace overfly::odometry::feature {
 
@@ -155,12 +155,12 @@ void MapKeeper::run() {
 }
 
 void MapKeeper::map_keyframe(const Work& work, std::map<std::string, double>& timing_ms) {
-  const Stopwatch stopwatch(timing_ms, "mapping");
+  const StageStopwatch stopwatch(timing_ms, "mapping");
   count(work.sights);
   mapper_.extend(work.frame, work.tracked, map_, timing_ms);
   if (threaded_) publish();
-  mapper_.mend(orb_, map_, timing_ms);
-  const Stopwatch check_watch(timing_ms, "focal_check");
+  mapper_.refine(orb_, map_, timing_ms);
+  const StageStopwatch check_watch(timing_ms, "focal_check");
   if (auto warning = focal_check_.after_keyframe(map_)) {
     const std::lock_guard lock(mutex_);
     warnings_.push_back(std::move(*warning));

@@ -1,4 +1,4 @@
-// Owns the map and runs mapping, on the tracking thread or on a thread of its own.
+// Owns the map and runs mapping, on the tracking thread or on its own thread.
 #pragma once
 
 #include <condition_variable>

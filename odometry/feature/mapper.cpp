@@ -5,7 +5,7 @@
 
 #include "odometry/geometry/triangulation.hpp"
 #include "odometry/image/patch_aligner.hpp"
-#include "odometry/shell/stopwatch.hpp"
+#include "odometry/shell/stage_stopwatch.hpp"
 
 namespace overfly::odometry::feature {
 namespace {
@@ -47,7 +47,7 @@ void Mapper::extend(const FrameImage& frame,
                     const TrackResult& tracked,
                     Map& map,
                     std::map<std::string, double>& timing_ms) const {
-  const Stopwatch stopwatch(timing_ms, "triangulation");
+  const StageStopwatch stopwatch(timing_ms, "triangulation");
   Keyframe made;
   made.frame = frame.index;
   made.t_ns = frame.t_ns;
@@ -64,15 +64,15 @@ void Mapper::extend(const FrameImage& frame,
   triangulate_candidates(map);
 }
 
-void Mapper::mend(OrbExtractor& orb, Map& map, std::map<std::string, double>& timing_ms) const {
+void Mapper::refine(OrbExtractor& orb, Map& map, std::map<std::string, double>& timing_ms) const {
   {
-    const Stopwatch stopwatch(timing_ms, "bundle_adjustment");
+    const StageStopwatch stopwatch(timing_ms, "bundle_adjustment");
     adjust_locally(camera_, options_.adjustment, map);
     cull(map);
     fit_plane(camera_, map, map.newest());
   }
   {
-    const Stopwatch stopwatch(timing_ms, "features");
+    const StageStopwatch stopwatch(timing_ms, "features");
     add_candidates(orb, map);
   }
   map.forget_images(options_.images_kept);

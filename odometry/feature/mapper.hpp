@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "core/camera.hpp"
+#include "core/camera/camera.hpp"
 #include "odometry/feature/local_bundle.hpp"
 #include "odometry/feature/map.hpp"
 #include "odometry/feature/orb.hpp"
@@ -45,7 +45,7 @@ class Mapper {
               std::map<std::string, double>& timing_ms) const;
   /// Refines the map around the newest keyframe: local bundle adjustment and culling. Then searches
   /// for corners that may become points.
-  void mend(OrbExtractor& orb, Map& map, std::map<std::string, double>& timing_ms) const;
+  void refine(OrbExtractor& orb, Map& map, std::map<std::string, double>& timing_ms) const;
   /// Searches for corners without a point in the newest keyframe.
   void add_candidates(OrbExtractor& orb, Map& map) const;
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "core/camera.hpp"
+#include "core/camera/camera.hpp"
 #include "odometry/feature/map.hpp"
 #include "odometry/feature/orb.hpp"
 

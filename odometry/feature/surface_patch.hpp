@@ -5,8 +5,8 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "core/camera.hpp"
-#include "core/pose.hpp"
+#include "core/camera/camera.hpp"
+#include "core/motion/pose.hpp"
 #include "odometry/image/patch_aligner.hpp"
 #include "odometry/image/pyramid.hpp"
 

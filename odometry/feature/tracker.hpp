@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "core/camera.hpp"
+#include "core/camera/camera.hpp"
 #include "odometry/adjustment/pose_optimiser.hpp"
 #include "odometry/feature/map.hpp"
 #include "odometry/image/patch_aligner.hpp"

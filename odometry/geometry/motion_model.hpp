@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "core/pose.hpp"
+#include "core/motion/pose.hpp"
 #include "odometry/geometry/lie.hpp"
 
 namespace overfly::odometry {

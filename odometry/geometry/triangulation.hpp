@@ -7,7 +7,7 @@
 #include <cmath>
 #include <optional>
 
-#include "core/pose.hpp"
+#include "core/motion/pose.hpp"
 
 namespace overfly::odometry {
 

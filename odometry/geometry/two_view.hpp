@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/camera.hpp"
-#include "core/pose.hpp"
+#include "core/camera/camera.hpp"
+#include "core/motion/pose.hpp"
 
 namespace overfly::odometry {
 

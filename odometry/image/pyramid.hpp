@@ -8,7 +8,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "core/image.hpp"
+#include "core/camera/image.hpp"
 
 namespace overfly::odometry {
 

@@ -39,7 +39,7 @@ struct ParameterTable {
     const char* limit;      ///< as the error message states it
     double Parameters::*field;
   };
-  /// Of random numbers, in [0, 2^53]: above, a JSON number no longer tells neighbours apart.
+  /// Of random numbers, in [0, 2^53]: above, JSON numbers cannot represent every integer.
   struct Seed {
     const char* name;
     std::uint64_t Parameters::*field;

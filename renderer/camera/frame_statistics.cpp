@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <vector>
+#include <utility>
 
 #include "renderer/ground/ground_ray.hpp"
 
@@ -76,9 +76,9 @@ class SeenTriangle {
 };
 
 /// The grid of rays over the image.
-class RayGrid {
+class SampleGrid {
  public:
-  RayGrid(const View& view, const CameraModel& camera) : view_(view), camera_(camera) {
+  SampleGrid(const View& view, const CameraModel& camera) : view_(view), camera_(camera) {
     for (int row = 0; row < kMeasureRows; ++row) {
       for (int column = 0; column < kMeasureColumns; ++column) add_ray(pixel(column, row));
     }
@@ -201,12 +201,23 @@ ImageryQuery imagery_query(const terrain::TileSource& tiles) {
   };
 }
 
+FrameStatistics statistics_of_rays(std::vector<double> texels_per_px, int void_rays) {
+  FrameStatistics statistics;
+  statistics.void_fraction = static_cast<double>(void_rays) / (kMeasureColumns * kMeasureRows);
+  if (texels_per_px.empty()) return statistics;
+  const auto middle = texels_per_px.begin() + static_cast<std::ptrdiff_t>(texels_per_px.size() / 2);
+  std::nth_element(texels_per_px.begin(), middle, texels_per_px.end());
+  statistics.texels_per_pixel_median = *middle;
+  statistics.texels_per_pixel_min = *std::min_element(texels_per_px.begin(), texels_per_px.end());
+  return statistics;
+}
+
 FrameStatistics measure_frame(const GroundMesh& mesh,
                               const View& view,
                               const CameraModel& camera,
                               const terrain::TileSource& tiles,
                               const ImageryQuery& has_imagery) {
-  RayGrid grid(view, camera);
+  SampleGrid grid(view, camera);
   for (const GroundBatch& batch : mesh.batches) {
     for (std::uint32_t i = batch.first_index; i < batch.first_index + batch.index_count; i += 3) {
       grid.add(SeenTriangle(mesh.vertices[mesh.indices[i]],
@@ -217,7 +228,6 @@ FrameStatistics measure_frame(const GroundMesh& mesh,
   }
   // Levels finer than the photograph are synthetic and do not count.
   const double real_share = tiles.grid().texel_m / tiles.real_texel_m();
-  FrameStatistics statistics;
   std::vector<double> texels;
   int void_rays = 0;
   for (const Hit& hit : grid.hits()) {
@@ -228,13 +238,7 @@ FrameStatistics measure_frame(const GroundMesh& mesh,
       ++void_rays;
     }
   }
-  statistics.void_fraction = static_cast<double>(void_rays) / (kMeasureColumns * kMeasureRows);
-  if (!texels.empty()) {
-    const auto middle = texels.begin() + static_cast<std::ptrdiff_t>(texels.size() / 2);
-    std::nth_element(texels.begin(), middle, texels.end());
-    statistics.texels_per_pixel_median = *middle;
-    statistics.texels_per_pixel_min = *std::min_element(texels.begin(), texels.end());
-  }
+  FrameStatistics statistics = statistics_of_rays(std::move(texels), void_rays);
   statistics.axis_depth_m = axis_depth(mesh, view, tiles);
   return statistics;
 }

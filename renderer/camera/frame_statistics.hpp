@@ -3,8 +3,9 @@
 
 #include <functional>
 #include <optional>
+#include <vector>
 
-#include "core/camera_model.hpp"
+#include "core/camera/camera_model.hpp"
 #include "renderer/ground/ground_mesh.hpp"
 
 namespace overfly::renderer {
@@ -19,6 +20,11 @@ struct FrameStatistics {
   double void_fraction = 0.0;
   std::optional<double> axis_depth_m;
 };
+
+/// Statistics from the rays that met the ground; the axis depth stays empty.
+/// @param texels_per_px  of each ray that met imagery
+/// @param void_rays  number of rays that met ground without imagery
+[[nodiscard]] FrameStatistics statistics_of_rays(std::vector<double> texels_per_px, int void_rays);
 
 /// True where a textured tile has imagery at texture coordinates (u, v).
 using ImageryQuery = std::function<bool(const terrain::TileId& tile, double u, double v)>;

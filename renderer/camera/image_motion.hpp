@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "core/height_query.hpp"
+#include "core/earth/height_query.hpp"
 #include "renderer/renderer.hpp"
 
 namespace overfly::renderer {

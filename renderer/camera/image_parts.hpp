@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/camera_model.hpp"
+#include "core/camera/camera_model.hpp"
 #include "renderer/renderer.hpp"
 
 namespace overfly::renderer {

@@ -9,8 +9,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "core/camera_model.hpp"
-#include "core/image.hpp"
+#include "core/camera/camera_model.hpp"
+#include "core/camera/image.hpp"
 #include "renderer/camera/image_parts.hpp"
 
 namespace overfly::renderer {

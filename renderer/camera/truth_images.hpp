@@ -8,8 +8,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "core/height_query.hpp"
-#include "core/image.hpp"
+#include "core/camera/image.hpp"
+#include "core/earth/height_query.hpp"
 #include "renderer/renderer.hpp"
 #include "terrain/tile_source.hpp"
 

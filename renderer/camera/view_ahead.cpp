@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/processor_time.hpp"
+#include "core/measure/processor_time.hpp"
 #include "renderer/camera/image_parts.hpp"
 #include "renderer/ground/ground_selection.hpp"
 

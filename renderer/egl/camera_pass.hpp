@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 
-#include "core/image.hpp"
+#include "core/camera/image.hpp"
 #include "core/result.hpp"
 #include "renderer/camera/part_sampling.hpp"
 #include "renderer/egl/ground_pass.hpp"

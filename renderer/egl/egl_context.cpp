@@ -85,14 +85,14 @@ Result<std::unique_ptr<EglContext>> EglContext::open(const EglDevice& device) {
 }
 
 Result<std::unique_ptr<EglContext>> EglContext::create(const std::string& wanted) {
-  const Result<DeviceWish> wish = DeviceWish::parse(wanted);
-  if (!wish.ok()) return wish.error();
+  const Result<DeviceRequest> request = DeviceRequest::parse(wanted);
+  if (!request.ok()) return request.error();
   const Result<std::vector<EglDevice>> devices = egl_devices();
   if (!devices.ok()) {
     return Error{ErrorCode::kUnsupported, "EGL: " + devices.error().message + "; " + kPackages};
   }
   std::string said;
-  for (const std::size_t place : devices_to_try(*wish, {devices->begin(), devices->end()})) {
+  for (const std::size_t place : devices_to_try(*request, {devices->begin(), devices->end()})) {
     const EglDevice& device = (*devices)[place];
     Result<std::unique_ptr<EglContext>> context = open(device);
     if (!context.ok()) {
@@ -101,8 +101,8 @@ Result<std::unique_ptr<EglContext>> EglContext::create(const std::string& wanted
     }
     const bool software = (*context)->info().software;
     // A platform without a device may draw with another GPU than the requested one.
-    if (!wish->any() && !asks_for(*wish, device) && !software) continue;
-    const bool granted = asks_for(*wish, device) || (wish->software && software);
+    if (!request->any() && !asks_for(*request, device) && !software) continue;
+    const bool granted = asks_for(*request, device) || (request->software && software);
     (*context)->note_ = note_of(wanted, granted, device, said);
     return context;
   }

@@ -27,7 +27,7 @@ std::string pci_address_of_node(const char* node) {
       fs::canonical(fs::path("/sys/class/drm") / fs::path(node).filename() / "device", failure);
   if (failure) return {};
   const std::string name = device.filename().string();
-  const Result<DeviceWish> address = DeviceWish::parse(name);
+  const Result<DeviceRequest> address = DeviceRequest::parse(name);
   return address.ok() ? address->pci_address : std::string();
 }
 

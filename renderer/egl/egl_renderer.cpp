@@ -16,9 +16,8 @@
 namespace overfly::renderer {
 
 namespace egl {
-namespace {
 
-class EglRenderer final : public Renderer, public CameraPipeline {
+class EglRenderer final : public Renderer {
  public:
   EglRenderer(std::unique_ptr<EglContext> context,
               GroundPass ground,
@@ -60,7 +59,8 @@ class EglRenderer final : public Renderer, public CameraPipeline {
     return frame;
   }
 
-  Status begin(const CameraRequest& request) override {
+  /// As CameraPipeline::begin.
+  Status begin(const CameraRequest& request) {
     if (queue_.full())
       return Error{ErrorCode::kConflict, "the maximum number of images is in flight"};
     if (Status s = check_camera_request(tiles_, request); !s) return s;
@@ -70,7 +70,8 @@ class EglRenderer final : public Renderer, public CameraPipeline {
     return tiles_.status();
   }
 
-  Result<CameraFrame> finish() override {
+  /// As CameraPipeline::finish.
+  Result<CameraFrame> finish() {
     if (Status s = context_->make_current(); !s) return s.error();
     return queue_.finish();
   }
@@ -117,6 +118,8 @@ class EglRenderer final : public Renderer, public CameraPipeline {
   CameraQueue queue_;
 };
 
+namespace {
+
 Result<std::unique_ptr<EglRenderer>> create(std::shared_ptr<const terrain::TileSource> tiles,
                                             const RendererOptions& options,
                                             int in_flight) {
@@ -149,10 +152,20 @@ Result<std::unique_ptr<Renderer>> create_egl_renderer(
   return std::unique_ptr<Renderer>(std::move(*renderer));
 }
 
-Result<std::unique_ptr<CameraPipeline>> CameraPipeline::create(
-    std::shared_ptr<const terrain::TileSource> tiles,
-    const RendererOptions& options,
-    int in_flight) {
+CameraPipeline::CameraPipeline(std::unique_ptr<egl::EglRenderer> renderer)
+    : renderer_(std::move(renderer)) {}
+
+CameraPipeline::~CameraPipeline() = default;
+CameraPipeline::CameraPipeline(CameraPipeline&&) noexcept = default;
+CameraPipeline& CameraPipeline::operator=(CameraPipeline&&) noexcept = default;
+
+Status CameraPipeline::begin(const CameraRequest& request) { return renderer_->begin(request); }
+
+Result<CameraFrame> CameraPipeline::finish() { return renderer_->finish(); }
+
+Result<CameraPipeline> CameraPipeline::create(std::shared_ptr<const terrain::TileSource> tiles,
+                                              const RendererOptions& options,
+                                              int in_flight) {
   if (in_flight < 1 || in_flight > 16) {
     return Error{ErrorCode::kInvalidArgument,
                  "in_flight is " + std::to_string(in_flight) + ", must be in [1, 16]"};
@@ -160,7 +173,7 @@ Result<std::unique_ptr<CameraPipeline>> CameraPipeline::create(
   Result<std::unique_ptr<egl::EglRenderer>> renderer =
       egl::create(std::move(tiles), options, in_flight);
   if (!renderer.ok()) return renderer.error();
-  return std::unique_ptr<CameraPipeline>(std::move(*renderer));
+  return CameraPipeline(std::move(*renderer));
 }
 
 Result<RendererInfo> probe_egl(const std::string& device) {

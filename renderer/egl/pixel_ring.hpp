@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/image.hpp"
+#include "core/camera/image.hpp"
 #include "core/result.hpp"
 #include "renderer/egl/gl_objects.hpp"
 #include "renderer/egl/render_target.hpp"

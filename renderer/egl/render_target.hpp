@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "core/image.hpp"
+#include "core/camera/image.hpp"
 #include "core/result.hpp"
 #include "renderer/egl/gl_objects.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "core/image.hpp"
+#include "core/camera/image.hpp"
 #include "core/result.hpp"
 #include "renderer/egl/ground_pass.hpp"
 #include "renderer/egl/render_target.hpp"

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "core/image.hpp"
+#include "core/camera/image.hpp"
 #include "renderer/egl/gl_objects.hpp"
 #include "renderer/tiles/tile_store.hpp"
 

@@ -25,7 +25,7 @@ struct DrawnTile {
 };
 
 /// Uploads tiles of a store as textures and keeps the most recently used ones within a budget.
-/// Tiles of the view being drawn are kept, even if they alone exceed it.
+/// Tiles of the view being drawn are kept, even if they exceed it.
 class TileTextures {
  public:
   TileTextures(std::shared_ptr<TileStore> store, std::size_t budget_bytes);

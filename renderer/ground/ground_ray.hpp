@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "core/height_query.hpp"
+#include "core/earth/height_query.hpp"
 
 namespace overfly::renderer {
 

@@ -4,7 +4,8 @@
 #include <functional>
 #include <optional>
 
-#include "renderer/probes/process_cost.hpp"
+#include "core/measure/processor_time.hpp"
+#include "core/measure/quantile.hpp"
 
 namespace overfly::renderer {
 
@@ -17,12 +18,12 @@ struct Series {
   std::vector<double> cpu_ms, wall_ms;
 
   Status time(const std::function<Status()>& call) {
-    const double cpu_before_ms = process_cpu_ms();
+    const double cpu_before_s = process_cpu_s();
     const auto before = std::chrono::steady_clock::now();
     Status status = call();
     const std::chrono::duration<double, std::milli> wall =
         std::chrono::steady_clock::now() - before;
-    cpu_ms.push_back(process_cpu_ms() - cpu_before_ms);
+    cpu_ms.push_back(1e3 * (process_cpu_s() - cpu_before_s));
     wall_ms.push_back(wall.count());
     return status;
   }

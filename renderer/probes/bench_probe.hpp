@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/pose.hpp"
+#include "core/motion/pose.hpp"
 #include "core/result.hpp"
 #include "renderer/renderer.hpp"
 #include "terrain/tile_source.hpp"

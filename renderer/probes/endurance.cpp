@@ -7,8 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "core/measure/process_memory.hpp"
+#include "core/measure/processor_time.hpp"
+#include "core/measure/quantile.hpp"
 #include "core/time.hpp"
-#include "renderer/probes/process_cost.hpp"
 
 namespace overfly::renderer {
 
@@ -135,27 +137,29 @@ class Flight {
   Status draw(Renderer& renderer, int number) {
     const double t_s = number / options_.rate_hz;
     const CameraRequest request = track_.request(t_s);
-    const double drawing_from_ms = thread_cpu_ms();
+    const double drawing_from_s = thread_cpu_s();
     const auto before = std::chrono::steady_clock::now();
     const Result<CameraFrame> drawn = renderer.render_camera(request);
     if (!drawn.ok()) return drawn.error();
     const std::chrono::duration<double, std::milli> wall =
         std::chrono::steady_clock::now() - before;
-    const double own_ms = thread_cpu_ms();
+    const double own_s = thread_cpu_s();
     report_.digest = digest_of(drawn->image, report_.digest);
     report_.late_tiles += drawn->late_tiles;
     report_.tiles_peak_bytes = std::max(report_.tiles_peak_bytes, store_.held_bytes());
     const bool counted = t_s >= options_.warm_up_s;
     if (counted) {
-      series_.resident_mb.push_back(resident_mb());
+      series_.resident_mb.push_back(resident_memory_mb());
       series_.wall_ms.push_back(wall.count());
-      series_.thread_cpu_ms.push_back(own_ms - drawing_from_ms);
+      series_.thread_cpu_ms.push_back(1e3 * (own_s - drawing_from_s));
     }
     // Measured from frame to frame, to include the work of other threads between frames, but
     // without this thread's own measuring work.
-    const double now_ms = process_cpu_ms();
-    if (counted) series_.cpu_ms.push_back(now_ms - cpu_mark_ms_ - (thread_cpu_ms() - own_ms));
-    cpu_mark_ms_ = now_ms;
+    const double now_s = process_cpu_s();
+    if (counted) {
+      series_.cpu_ms.push_back(1e3 * (now_s - cpu_mark_s_ - (thread_cpu_s() - own_s)));
+    }
+    cpu_mark_s_ = now_s;
     return {};
   }
 
@@ -174,7 +178,7 @@ class Flight {
   TileStore& store_;
   EnduranceReport report_;
   FrameSeries series_;
-  double cpu_mark_ms_ = process_cpu_ms();
+  double cpu_mark_s_ = process_cpu_s();
 };
 
 }  // namespace

@@ -2,7 +2,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/pose.hpp"
+#include "core/motion/pose.hpp"
 #include "renderer/egl/egl_context.hpp"
 #include "renderer/egl/gl_objects.hpp"
 #include "renderer/egl/gl_program.hpp"

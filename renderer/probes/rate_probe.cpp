@@ -4,9 +4,9 @@
 #include <string>
 #include <utility>
 
+#include "core/measure/quantile.hpp"
 #include "renderer/camera_pipeline.hpp"
 #include "renderer/probes/bench_probe.hpp"
-#include "renderer/probes/process_cost.hpp"
 #include "renderer/tiles/tile_store.hpp"
 
 namespace overfly::renderer {
@@ -35,7 +35,7 @@ double per_s(const std::vector<double>& times) { return kBatch / quantile(times,
 /// Draws frames along the poses with as many in flight as the pipeline allows.
 class PipedCamera {
  public:
-  PipedCamera(std::unique_ptr<CameraPipeline> pipeline, int in_flight)
+  PipedCamera(CameraPipeline pipeline, int in_flight)
       : pipeline_(std::move(pipeline)), in_flight_(in_flight) {}
 
   Status frames(const std::vector<Pose>& poses, int count) {
@@ -45,11 +45,11 @@ class PipedCamera {
             .value();
     for (int i = 0; i < count + in_flight_; ++i) {
       if (i >= in_flight_) {
-        if (const auto frame = pipeline_->finish(); !frame.ok()) return frame.error();
+        if (const auto frame = pipeline_.finish(); !frame.ok()) return frame.error();
       }
       if (i >= count) continue;
       const Pose& pose = poses[next_++ % poses.size()];
-      Status begun = pipeline_->begin(CameraRequest::still(camera, pose, 0, PixelFormat::kGrey8));
+      Status begun = pipeline_.begin(CameraRequest::still(camera, pose, 0, PixelFormat::kGrey8));
       if (!begun) return begun;
     }
     return {};
@@ -59,7 +59,7 @@ class PipedCamera {
   std::vector<double> times;
 
  private:
-  std::unique_ptr<CameraPipeline> pipeline_;
+  CameraPipeline pipeline_;
   int in_flight_;
   std::size_t next_ = 0;
 };
@@ -108,8 +108,7 @@ Result<RateCosts> measure_rate_costs(const std::shared_ptr<const terrain::TileSo
   options.tile_store = std::make_shared<TileStore>(tiles, TileStoreOptions{});
   std::vector<PipedCamera> cameras;
   for (const int in_flight : {1, 2, 4}) {
-    Result<std::unique_ptr<CameraPipeline>> pipeline =
-        CameraPipeline::create(tiles, options, in_flight);
+    Result<CameraPipeline> pipeline = CameraPipeline::create(tiles, options, in_flight);
     if (!pipeline.ok()) return pipeline.error();
     cameras.emplace_back(std::move(*pipeline), in_flight);
     // Visits every pose once, so that tiles and patches are loaded.

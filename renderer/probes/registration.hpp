@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "core/image.hpp"
+#include "core/camera/image.hpp"
 #include "renderer/camera/truth_images.hpp"
 
 namespace overfly::renderer {

@@ -103,10 +103,10 @@ class BandBuilder {
     const double loose = settings_.depth_only ? 1.0 : kLooseBound;
     if (bound_px > loose * kBlockErrorPx) return false;
     const auto& c = patch.corners;
-    const bool alone = std::all_of(c.begin(), c.end(), [&](const Node* node) {
+    const bool unoccluded = std::all_of(c.begin(), c.end(), [&](const Node* node) {
       return settings_.caster->meets_ground_once(node->direction);
     });
-    if (bound_px <= kBlockErrorPx && alone) return true;
+    if (bound_px <= kBlockErrorPx && unoccluded) return true;
     const Node middle = cast_in(patch, 0.5, 0.5);
     if (middle.hit.sky()) return false;
     const double expected = 0.25 * (c[0]->inverse_depth + c[1]->inverse_depth +
@@ -266,7 +266,7 @@ class BandBuilder {
     }
   }
 
-  /// One pixel (or a quarter of one) with a ray of its own and the ground's tangent plane there.
+  /// One pixel (or a quarter of one) with its own ray and the ground's tangent plane there.
   void add_pixel(const Patch& patch, int x, int y, double dx, double dy, bool quarter) {
     Block block = block_of({patch.x + x, patch.y + y, 1, 1, {}});
     block.quarter = quarter;

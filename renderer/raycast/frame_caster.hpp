@@ -6,7 +6,7 @@
 #include <set>
 #include <vector>
 
-#include "core/image.hpp"
+#include "core/camera/image.hpp"
 #include "renderer/raycast/block_builder.hpp"
 #include "renderer/raycast/paint/painter.hpp"
 #include "renderer/raycast/paint/texel_tiles.hpp"

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "renderer/ground/ground_ray.hpp"
 #include "renderer/raycast/block_builder.hpp"
@@ -72,14 +73,7 @@ FrameStatistics measure_rays(const CameraModel& camera,
     texels.insert(texels.end(), row.texels.begin(), row.texels.end());
     void_rays += row.void_rays;
   }
-  FrameStatistics statistics;
-  statistics.void_fraction = static_cast<double>(void_rays) / (kMeasureColumns * kMeasureRows);
-  if (!texels.empty()) {
-    const auto middle = texels.begin() + static_cast<std::ptrdiff_t>(texels.size() / 2);
-    std::nth_element(texels.begin(), middle, texels.end());
-    statistics.texels_per_pixel_median = *middle;
-    statistics.texels_per_pixel_min = *std::min_element(texels.begin(), texels.end());
-  }
+  FrameStatistics statistics = statistics_of_rays(std::move(texels), void_rays);
   statistics.axis_depth_m = cast_axis_depth(T_world_camera, caster, ground);
   return statistics;
 }

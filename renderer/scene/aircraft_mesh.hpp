@@ -1,7 +1,7 @@
 // Meshes of a small fixed-wing aircraft and of its camera's field of view.
 #pragma once
 
-#include "core/height_query.hpp"
+#include "core/earth/height_query.hpp"
 #include "renderer/renderer.hpp"
 #include "renderer/scene/scene_triangles.hpp"
 

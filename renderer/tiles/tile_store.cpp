@@ -17,7 +17,7 @@
 #include <utility>
 
 #include "core/barrier.hpp"
-#include "core/processor_time.hpp"
+#include "core/measure/processor_time.hpp"
 #include "renderer/tiles/tile_pixels.hpp"
 
 namespace overfly::renderer {

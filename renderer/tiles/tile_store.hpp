@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "core/image.hpp"
+#include "core/camera/image.hpp"
 #include "core/result.hpp"
 #include "renderer/renderer.hpp"
 #include "terrain/tile_source.hpp"

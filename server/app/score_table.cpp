@@ -3,11 +3,11 @@
 #include <array>
 #include <cstdarg>
 #include <cstdio>
+#include <map>
+#include <optional>
 
 namespace overfly::app {
 namespace {
-
-using Json = nlohmann::json;
 
 [[gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...) {
   std::array<char, 400> line{};
@@ -21,64 +21,86 @@ using Json = nlohmann::json;
 }
 
 /// A number in a column; a dash if there is none.
-std::string figure(const Json& value, int width, int digits) {
-  return value.is_number() ? formatted("%*.*f", width, digits, value.get<double>())
-                           : formatted("%*s", width, "-");
+std::string figure(const std::optional<double>& value, int width, int digits) {
+  return value ? formatted("%*.*f", width, digits, *value) : formatted("%*s", width, "-");
+}
+
+std::optional<double> rmse_of(const std::optional<evaluation::ErrorStatistics>& errors) {
+  return errors ? std::optional<double>(errors->rmse) : std::nullopt;
 }
 
 /// The reason why an alignment has no rotation errors; empty if it has them.
-std::string degenerate_text(const Json& alignment) {
-  const Json& reason = alignment.at("degenerate");
-  if (!reason.is_string()) return "";
-  return "    degenerate: " + reason.get<std::string>() + "; no rotation error\n";
+std::string degenerate_text(const evaluation::AlignmentScore& alignment) {
+  if (!alignment.degenerate) return "";
+  return "    degenerate: " + *alignment.degenerate + "; no rotation error\n";
 }
 
-std::string outcome_text(const Json& score) {
-  std::string text = score.at("outcome").get<std::string>();
-  const Json& at = score.at("outcome_time_s");
-  if (at.is_number()) text += formatted(" at %.1f s", at.get<double>());
+std::string outcome_text(const evaluation::Score& score) {
+  std::string text = evaluation::to_string(score.outcome);
+  if (score.outcome_time_s) text += formatted(" at %.1f s", *score.outcome_time_s);
   return text;
 }
 
-std::string notes_of(const std::string& name, const Json& camera, const Json& texture) {
+/// @param name  of the camera, for people
+std::string notes_of(const std::string& name, const server::CameraMetrics& camera) {
   std::string notes;
-  if (texture.value("texture_limited", false)) {
+  if (camera.texture.limited) {
     notes += formatted(
         "warning: texture_limited: %s sees %.2f texels per pixel (median), below 0.5: the imagery, "
         "not the camera, limits the result\n",
         name.c_str(),
-        texture.at("texels_per_pixel_median").get<double>());
+        camera.texture.texels_per_pixel_median);
   }
-  if (camera.contains("late_tiles")) {
+  if (camera.late_tiles > 0) {
     notes += formatted(
         "warning: %s: %lld tiles were late and drawn at a coarser level, in %lld frames\n",
         name.c_str(),
-        camera.at("late_tiles").at("tiles").get<long long>(),
-        camera.at("late_tiles").at("frames").get<long long>());
+        static_cast<long long>(camera.late_tiles),
+        static_cast<long long>(camera.frames_with_late_tiles));
   }
-  const Json faults = camera.value("faults", Json::object());
-  for (const auto& [kind, frames] : faults.items()) {
-    notes += formatted(
-        "fault: %s of %s, %lld frames\n", kind.c_str(), name.c_str(), frames.get<long long>());
+  for (const auto& [kind, frames] : camera.faults) {
+    notes += formatted("fault: %s of %s, %lld frames\n",
+                       kind.c_str(),
+                       name.c_str(),
+                       static_cast<long long>(frames));
   }
   return notes;
+}
+
+/// The values by the names of their modes, in alphabetical order.
+template <typename Value>
+std::map<std::string, const Value*> by_name(
+    const std::map<evaluation::AlignmentMode, Value>& values) {
+  std::map<std::string, const Value*> named;
+  for (const auto& [mode, value] : values) named[evaluation::to_string(mode)] = &value;
+  return named;
+}
+
+/// The errors of one alignment in a line of the score table, or why there are none.
+std::string errors_text(const evaluation::Score& score, evaluation::AlignmentMode mode) {
+  const auto found = score.alignments.find(mode);
+  if (found == score.alignments.end()) {
+    const auto reason = score.unavailable.find(mode);
+    return "  X (" + (reason == score.unavailable.end() ? "not scored" : reason->second) + ")\n";
+  }
+  const evaluation::AlignmentScore& alignment = found->second;
+  return formatted("  %12.3f %12.3f ", alignment.position_m.rmse, alignment.position_rmse_hold_m) +
+         figure(rmse_of(alignment.rotation_deg), 12, 4) + "\n" + degenerate_text(alignment);
 }
 
 }  // namespace
 
-std::string camera_notes(const Json& metrics) {
-  const Json none = Json::object();
-  std::string notes = notes_of("the camera", metrics.at("camera"), metrics.value("texture", none));
-  const Json cameras = metrics.value("cameras", none);
-  for (const auto& [name, camera] : cameras.items()) {
-    notes += notes_of("camera " + name, camera, camera.value("texture", none));
+std::string camera_notes(const server::RunMetrics& metrics) {
+  std::string notes;
+  for (std::size_t i = 0; i < metrics.cameras.size(); ++i) {
+    const server::CameraMetrics& camera = metrics.cameras[i];
+    notes += notes_of(i == server::kMainCamera ? "the camera" : "camera " + camera.name, camera);
   }
   return notes;
 }
 
-std::string score_table(const Json& metrics, const std::string& mode) {
-  const Json& estimators = metrics.at("estimators");
-  if (estimators.empty()) return "no estimators\n";
+std::string score_table(const server::RunMetrics& metrics, evaluation::AlignmentMode mode) {
+  if (metrics.estimators.empty()) return "no estimators\n";
   std::string table = formatted("%-16s %-22s %9s %8s  %12s %12s %12s\n",
                                 "estimator",
                                 "outcome",
@@ -87,35 +109,26 @@ std::string score_table(const Json& metrics, const std::string& mode) {
                                 "position [m]",
                                 "held [m]",
                                 "rot. [deg]");
-  for (const auto& [name, score] : estimators.items()) {
+  for (const auto& [name, estimator] : metrics.estimators) {
     table += formatted("%-16s %-22s %7.1f %% %8lld",
                        name.c_str(),
-                       outcome_text(score).c_str(),
-                       100.0 * score.at("coverage").get<double>(),
-                       score.at("dropped_frames").get<long long>());
-    const Json& alignments = score.at("alignments");
-    if (alignments.contains(mode)) {
-      const Json& alignment = alignments.at(mode);
-      table += formatted("  %12.3f %12.3f ",
-                         alignment.at("position_rmse_m").get<double>(),
-                         alignment.at("position_rmse_hold_m").get<double>()) +
-               figure(alignment.at("rotation_rmse_deg"), 12, 4) + "\n" + degenerate_text(alignment);
-    } else {
-      table += "  X (" + score.at("unavailable").value(mode, "not scored") + ")\n";
-    }
+                       outcome_text(estimator.score).c_str(),
+                       100.0 * estimator.score.coverage,
+                       static_cast<long long>(estimator.dropped_frames)) +
+             errors_text(estimator.score, mode);
   }
-  return table + "RMSE, alignment " + mode + "\n";
+  return table + "RMSE, alignment " + evaluation::to_string(mode) + "\n";
 }
 
-std::string coverage_text(const Json& score) {
-  return formatted("coverage %.1f %%", 100.0 * score.at("coverage").get<double>());
+std::string coverage_text(const evaluation::Score& score) {
+  return formatted("coverage %.1f %%", 100.0 * score.coverage);
 }
 
-std::string outcome_line(const Json& score) {
+std::string outcome_line(const evaluation::Score& score) {
   return outcome_text(score) + ", " + coverage_text(score);
 }
 
-std::string alignment_table(const Json& alignments, const Json& unavailable) {
+std::string alignment_table(const evaluation::Score& score) {
   std::string table = formatted("  %-12s %12s %8s  %12s %12s %12s %14s\n",
                                 "alignment",
                                 "scale",
@@ -124,22 +137,20 @@ std::string alignment_table(const Json& alignments, const Json& unavailable) {
                                 "held [m]",
                                 "rot. [deg]",
                                 "euler n. [deg]");
-  for (const auto& [mode, alignment] : alignments.items()) {
+  for (const auto& [mode, alignment] : by_name(score.alignments)) {
     table += formatted("  %-12s %12.6g %8d  %12.3f %12.3f ",
                        mode.c_str(),
-                       alignment.at("scale").get<double>(),
-                       alignment.at("matched").get<int>(),
-                       alignment.at("position_rmse_m").get<double>(),
-                       alignment.at("position_rmse_hold_m").get<double>()) +
-             figure(alignment.at("rotation_rmse_deg"), 12, 4) + " " +
-             figure(alignment.at("rotation_euler_norm_rmse_deg"), 14, 4) + "\n" +
-             degenerate_text(alignment);
-    for (const Json& note : alignment.at("notes")) {
-      table += "    " + note.get<std::string>() + "\n";
-    }
+                       alignment->S_world_vo.scale,
+                       alignment->matched,
+                       alignment->position_m.rmse,
+                       alignment->position_rmse_hold_m) +
+             figure(rmse_of(alignment->rotation_deg), 12, 4) + " " +
+             figure(rmse_of(alignment->rotation_euler_norm_deg), 14, 4) + "\n" +
+             degenerate_text(*alignment);
+    for (const std::string& note : alignment->notes) table += "    " + note + "\n";
   }
-  for (const auto& [mode, reason] : unavailable.items()) {
-    table += formatted("  %-12s X: ", mode.c_str()) + reason.get<std::string>() + "\n";
+  for (const auto& [mode, reason] : by_name(score.unavailable)) {
+    table += formatted("  %-12s X: ", mode.c_str()) + *reason + "\n";
   }
   return table;
 }

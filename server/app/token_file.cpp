@@ -39,7 +39,7 @@ Error failure(const fs::path& file, const char* what) {
           "token file " + file.string() + ": " + what + ": " + std::strerror(errno)};
 }
 
-Error fault(const fs::path& file, const std::string& what) {
+Error invalid(const fs::path& file, const std::string& what) {
   return {ErrorCode::kInvalidArgument, "token file " + file.string() + ": " + what};
 }
 
@@ -72,7 +72,7 @@ Result<TokenFile> open_token_file(const fs::path& file) {
   if (!opened.is_open() || ::fstat(opened.get(), &status) != 0) {
     return failure(file, "cannot be opened");
   }
-  if (!S_ISREG(status.st_mode)) return fault(file, "must be a regular file");
+  if (!S_ISREG(status.st_mode)) return invalid(file, "must be a regular file");
   std::array<char, kReadBytes> bytes{};
   const ssize_t count = ::read(opened.get(), bytes.data(), bytes.size());
   if (count < 0) return failure(file, "cannot be read");
@@ -81,10 +81,10 @@ Result<TokenFile> open_token_file(const fs::path& file) {
   if (read.token.ends_with('\n')) read.token.pop_back();
   if (read.token.ends_with('\r')) read.token.pop_back();
   if (read.token.find('\n') != std::string::npos) {
-    return fault(file, "must be one line, the token");
+    return invalid(file, "must be one line, the token");
   }
   if (const Status valid = net::check_token(read.token); !valid) {
-    return fault(file, valid.error().message);
+    return invalid(file, valid.error().message);
   }
   if ((status.st_mode & (S_IRGRP | S_IROTH)) != 0) {
     read.warning = "token file " + file.string() + " can be read by others: chmod 600 it";

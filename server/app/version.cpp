@@ -5,7 +5,7 @@
 namespace overfly::app {
 
 std::string version_text() {
-  return "overfly " + engine::version() + " (commit " + engine::git_commit() + ")";
+  return "overfly " + server::version() + " (commit " + server::git_commit() + ")";
 }
 
 }  // namespace overfly::app

@@ -11,7 +11,7 @@
 #include "server/scenario/document/scenario_file.hpp"
 #include "terrain/synthesize.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 constexpr int kFewestPatches = 20;
@@ -198,4 +198,4 @@ Result<Scenario> camera_check_scenario(const std::filesystem::path& folder) {
   return resolve_scenario(nlohmann::json::parse(kBuiltinTest), {}, folder);
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -12,7 +12,7 @@
 #include "server/camera/renderer_factory.hpp"
 #include "server/scenario/scenario.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 struct CameraCheckOptions {
   int pairs = 4;          ///< pairs of successive frames, spread over the flight; in [1, 1000]
@@ -59,4 +59,4 @@ struct CameraCheckRow {
 /// Errors: as synthesize_world.
 [[nodiscard]] Result<Scenario> camera_check_scenario(const std::filesystem::path& folder);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

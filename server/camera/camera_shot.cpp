@@ -1,6 +1,6 @@
 #include "server/camera/camera_shot.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 Image grey_of(const Image& image) {
   if (image.channels == 1) return image;
@@ -13,4 +13,4 @@ Image grey_of(const Image& image) {
   return grey;
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "core/image.hpp"
-#include "core/truth_source.hpp"
+#include "core/camera/image.hpp"
+#include "core/motion/truth_source.hpp"
 #include "renderer/renderer.hpp"
 #include "sensor/sensor.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 struct CameraShot {
   std::size_t camera = 0;           ///< index into Scenario::cameras
@@ -20,11 +20,11 @@ struct CameraShot {
   renderer::CameraFrame drawn;
   Image image;      ///< as the camera delivers it, grey or RGB; the high 8 bits of deeper sensors
   Image16 image16;  ///< from sensors deeper than 8 bit; else empty
-  renderer::ExposureSetting setting;  ///< exposure 0 = a camera without a sensor model
-  double saturated_fraction = 0.0;    ///< of the pixels
-  std::int64_t stamp_ns = 0;          ///< as given to estimators; the true time is MadeFrame::t_ns
-  std::vector<std::string> faults;    ///< kinds of the faults that affect the frame
-  bool delivered = true;              ///< false: lost before it reached the estimators
+  sensor::ExposureSetting setting;  ///< exposure 0 = a camera without a sensor model
+  double saturated_fraction = 0.0;  ///< of the pixels
+  std::int64_t stamp_ns = 0;        ///< as given to estimators; the true time is MadeFrame::t_ns
+  std::vector<std::string> faults;  ///< kinds of the faults that affect the frame
+  bool delivered = true;            ///< false: lost before it reached the estimators
 };
 
 /// One instant, as seen by all cameras.
@@ -38,4 +38,4 @@ struct MadeFrame {
 /// The image as given to estimators: luma (ITU-R BT.601) of a colour image.
 [[nodiscard]] Image grey_of(const Image& image);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

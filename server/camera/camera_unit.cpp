@@ -7,7 +7,7 @@
 #include "core/time.hpp"
 #include "server/camera/lens_fault.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 /// Seed of one of a camera's random number streams.
@@ -17,7 +17,7 @@ std::uint64_t stream_seed(std::uint64_t seed, std::size_t camera, std::uint64_t 
 }
 
 /// The highest frequency of the mount's motion; 0 = it does not move.
-double fastest_hz(const renderer::VibrationModel& model) {
+double fastest_hz(const sensor::VibrationModel& model) {
   const auto any = [](const auto& values) {
     return std::any_of(values.begin(), values.end(), [](double v) { return v != 0.0; });
   };
@@ -48,12 +48,12 @@ Result<std::unique_ptr<CameraUnit>> CameraUnit::create(const CameraSpec& spec,
   const std::string what = "camera \"" + spec.name + "\"";
   std::unique_ptr<CameraUnit> unit(new CameraUnit(spec, stream_seed(seed, index, 0)));
   if (spec.sensor.enabled) {
-    auto sensor = renderer::Sensor::create(spec.sensor, spec.model, unit->seed_);
+    auto sensor = sensor::Sensor::create(spec.sensor, spec.model, unit->seed_);
     if (!sensor) return sensor.error().in(what + ": sensor");
     unit->sensor_ = std::move(*sensor);
   }
   if (spec.vibration.enabled) {
-    auto vibration = renderer::MountVibration::create(spec.vibration, stream_seed(seed, index, 1));
+    auto vibration = sensor::MountVibration::create(spec.vibration, stream_seed(seed, index, 1));
     if (!vibration) return vibration.error().in(what + ": vibration");
     unit->vibration_ = std::move(*vibration);
   }
@@ -62,7 +62,7 @@ Result<std::unique_ptr<CameraUnit>> CameraUnit::create(const CameraSpec& spec,
 }
 
 void CameraUnit::plan_window() {
-  const renderer::SensorModel& sensor = spec_.sensor;
+  const sensor::SensorModel& sensor = spec_.sensor;
   if (!sensor.enabled) return;
   double longest_s = sensor.readout_s;
   if (sensor.motion_blur) {
@@ -81,7 +81,7 @@ Pose CameraUnit::T_world_camera(const Pose& T_world_body, std::int64_t t_ns) con
   return vibration_ ? T_world_mount * vibration_->T_mount_camera(t_ns) : T_world_mount;
 }
 
-std::optional<renderer::ExposureSetting> CameraUnit::next_setting() const {
+std::optional<sensor::ExposureSetting> CameraUnit::next_setting() const {
   if (!sensor_) return std::nullopt;
   return sensor_->next_setting();
 }
@@ -89,7 +89,7 @@ std::optional<renderer::ExposureSetting> CameraUnit::next_setting() const {
 Result<renderer::CameraRequest> CameraUnit::request(
     const std::vector<AircraftState>& states,
     std::int64_t t_ns,
-    const std::optional<renderer::ExposureSetting>& setting) const {
+    const std::optional<sensor::ExposureSetting>& setting) const {
   std::vector<StampedPose> poses;
   poses.reserve(states.size());
   for (const AircraftState& state : states) {
@@ -111,7 +111,7 @@ Result<renderer::CameraRequest> CameraUnit::request(
   }
   request.t_ns = t_ns;
   if (spec_.sensor.enabled) {
-    const renderer::ExposureSetting used = setting.value_or(sensor_->next_setting());
+    const sensor::ExposureSetting used = setting.value_or(sensor_->next_setting());
     request.exposure_ns = spec_.sensor.motion_blur ? used.exposure_ns : 0;
     request.readout_ns = ns_from_s(spec_.sensor.readout_s);
   }
@@ -126,13 +126,13 @@ Status CameraUnit::develop(renderer::CameraFrame drawn,
                            const FrameFaults& faults,
                            std::int64_t frame,
                            CameraShot& shot,
-                           const std::optional<renderer::ExposureSetting>& setting) {
+                           const std::optional<sensor::ExposureSetting>& setting) {
   if (sensor_) {
     RadianceImage radiance = std::move(drawn.radiance);
-    for (const FaultSpec* fault : faults.on_lens) renderer::apply_fault(fault->image, radiance);
-    renderer::SensorImage made;
+    for (const FaultSpec* fault : faults.on_lens) sensor::apply_fault(fault->image, radiance);
+    sensor::SensorImage made;
     if (setting) {
-      Result<renderer::SensorImage> exposed = exposed_with(*setting, radiance, frame);
+      Result<sensor::SensorImage> exposed = exposed_with(*setting, radiance, frame);
       if (!exposed) return exposed.error();
       made = std::move(*exposed);
     } else {
@@ -162,16 +162,25 @@ Status CameraUnit::develop(renderer::CameraFrame drawn,
 
 /// Uses a copy of the sensor without auto-exposure, fixed at the setting; the noise is that of the
 /// frame.
-Result<renderer::SensorImage> CameraUnit::exposed_with(const renderer::ExposureSetting& setting,
-                                                       const RadianceImage& radiance,
-                                                       std::int64_t frame) const {
-  renderer::SensorModel model = spec_.sensor;
+Result<sensor::SensorImage> CameraUnit::exposed_with(const sensor::ExposureSetting& setting,
+                                                     const RadianceImage& radiance,
+                                                     std::int64_t frame) const {
+  sensor::SensorModel model = spec_.sensor;
   model.gain_dn_per_e = model.effective_gain_dn_per_e() * setting.gain;
   model.exposure_s = s_from_ns(setting.exposure_ns);
   model.auto_exposure.reset();
-  auto sensor = renderer::Sensor::create(model, spec_.model, seed_);
+  auto sensor = sensor::Sensor::create(model, spec_.model, seed_);
   if (!sensor) return sensor.error();
   return (*sensor)->expose(radiance, frame);
 }
 
-}  // namespace overfly::engine
+ShutterWindow ShutterWindow::of(const std::vector<std::unique_ptr<CameraUnit>>& cameras) {
+  ShutterWindow window;
+  for (const auto& camera : cameras) {
+    window.half_ns = std::max(window.half_ns, camera->half_window_ns());
+    window.raster_ns = std::min(window.raster_ns, camera->raster_ns());
+  }
+  return window;
+}
+
+}  // namespace overfly::server

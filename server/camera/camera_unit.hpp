@@ -6,13 +6,13 @@
 #include <optional>
 #include <vector>
 
+#include "core/motion/truth_source.hpp"
 #include "core/result.hpp"
-#include "core/truth_source.hpp"
 #include "server/camera/camera_shot.hpp"
 #include "server/camera/fault_schedule.hpp"
 #include "server/scenario/camera_spec.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Used by one thread.
 class CameraUnit {
@@ -36,9 +36,9 @@ class CameraUnit {
   [[nodiscard]] Result<renderer::CameraRequest> request(
       const std::vector<AircraftState>& states,
       std::int64_t t_ns,
-      const std::optional<renderer::ExposureSetting>& setting = {}) const;
+      const std::optional<sensor::ExposureSetting>& setting = {}) const;
   /// The next exposure; empty without a sensor model.
-  [[nodiscard]] std::optional<renderer::ExposureSetting> next_setting() const;
+  [[nodiscard]] std::optional<sensor::ExposureSetting> next_setting() const;
 
   /// Converts the rendered light into the camera's image: faults on the lens, sensor, frozen image.
   /// @param setting  forces the exposure of a frame that is taken out of order: auto-exposure then
@@ -47,26 +47,34 @@ class CameraUnit {
                  const FrameFaults& faults,
                  std::int64_t frame,
                  CameraShot& shot,
-                 const std::optional<renderer::ExposureSetting>& setting = {});
+                 const std::optional<sensor::ExposureSetting>& setting = {});
   /// Keeps the last image, for a camera that may freeze.
   void keep_last_image() { keeps_last_ = true; }
 
  private:
   CameraUnit(const CameraSpec& spec, std::uint64_t seed) : spec_(spec), seed_(seed) {}
   void plan_window();
-  [[nodiscard]] Result<renderer::SensorImage> exposed_with(const renderer::ExposureSetting& setting,
-                                                           const RadianceImage& radiance,
-                                                           std::int64_t frame) const;
+  [[nodiscard]] Result<sensor::SensorImage> exposed_with(const sensor::ExposureSetting& setting,
+                                                         const RadianceImage& radiance,
+                                                         std::int64_t frame) const;
 
   const CameraSpec& spec_;
   std::uint64_t seed_;
   std::int64_t half_window_ns_ = 0;
   std::int64_t raster_ns_ = 1'000'000;
-  std::unique_ptr<renderer::Sensor> sensor_;
-  std::optional<renderer::MountVibration> vibration_;
+  std::unique_ptr<sensor::Sensor> sensor_;
+  std::optional<sensor::MountVibration> vibration_;
   bool keeps_last_ = false;
   Image last_image_;
   Image16 last_image16_;
 };
 
-}  // namespace overfly::engine
+/// The truth that the shutters of several cameras need around a frame.
+struct ShutterWindow {
+  std::int64_t half_ns = 0;            ///< of the camera that needs the longest
+  std::int64_t raster_ns = 1'000'000;  ///< of the camera that needs the finest
+
+  [[nodiscard]] static ShutterWindow of(const std::vector<std::unique_ptr<CameraUnit>>& cameras);
+};
+
+}  // namespace overfly::server

@@ -7,7 +7,7 @@
 
 #include "core/time.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 /// A random 64-bit word from a seed and a number: the finaliser of splitmix64 (Steele, Lea, Flood
@@ -32,7 +32,7 @@ double normal(std::uint64_t seed, std::int64_t frame) {
          std::cos(2.0 * kPi * uniform(seed, number + 1));
 }
 
-std::string seconds_text(std::int64_t duration_ns) {
+std::string duration_text(std::int64_t duration_ns) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%g s", s_from_ns(duration_ns));
   return text.data();
@@ -105,10 +105,10 @@ std::vector<FaultNews::Line> FaultNews::at(std::int64_t t_ns) {
     std::string text = std::string(to_string(fault.kind)) + camera_text(scenario_, fault);
     text += now ? " begins" : " ends";
     const bool ends = fault.end_ns != FaultSpec().end_ns;
-    if (now) text += ends ? ", for " + seconds_text(fault.end_ns - fault.at_ns) : ", to the end";
+    if (now) text += ends ? ", for " + duration_text(fault.end_ns - fault.at_ns) : ", to the end";
     lines.push_back({now, std::move(text)});
   }
   return lines;
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

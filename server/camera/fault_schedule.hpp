@@ -8,7 +8,7 @@
 
 #include "server/scenario/scenario.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Effect of the faults on one frame of one camera.
 struct FrameFaults {
@@ -56,4 +56,4 @@ class FaultNews {
   std::vector<bool> in_force_;
 };
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -1,15 +1,13 @@
 #include "server/camera/frame_maker.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "core/cancel.hpp"
 #include "server/camera/truth.hpp"
 #include "server/worlds/world_cache.hpp"
 
-namespace overfly::engine {
-namespace {}  // namespace
+namespace overfly::server {
 
 FrameMaker::FrameMaker(const Scenario& scenario, const FrameMakerOptions& options)
     : scenario_(scenario),
@@ -51,13 +49,18 @@ Status FrameMaker::open_world() {
   if (!world) return world.error();
   opened_ = *world;
   world_ = bare_world(opened_);
-  tiles_ = std::make_shared<const WatchedTiles>(world_->tiles);
+  tiles_ = std::make_shared<const WatchedTiles>(world_->tiles, options_.cancel);
   return {};
 }
 
 Status FrameMaker::plan_flight() {
-  Result<std::unique_ptr<TruthSource>> truth = create_truth(scenario_, *world_, options_.cancel);
+  Result<std::unique_ptr<TruthSource>> truth =
+      options_.open_truth ? options_.open_truth(*world_)
+                          : create_truth(scenario_, *world_, options_.cancel);
   if (!truth) return truth.error();
+  if (options_.truth_samples != nullptr) {
+    truth = recorded_while_flown(std::move(*truth), *options_.truth_samples);
+  }
   if (Status read = check_reading(0); !read) return failed(read.error());
   duration_ns_ = (*truth)->duration_ns();
   truth_ = std::make_unique<TruthWindow>(std::move(*truth));
@@ -79,15 +82,13 @@ Status FrameMaker::open_renderer() {
 }
 
 Status FrameMaker::open_cameras() {
-  raster_ns_ = std::numeric_limits<std::int64_t>::max();
   for (std::size_t i = 0; i < scenario_.cameras.size(); ++i) {
     auto unit = CameraUnit::create(scenario_.cameras[i], i, scenario_.seed);
     if (!unit) return unit.error();
-    half_window_ns_ = std::max(half_window_ns_, (*unit)->half_window_ns());
-    raster_ns_ = std::min(raster_ns_, (*unit)->raster_ns());
     if (faults_.may_freeze(i)) (*unit)->keep_last_image();
     cameras_.push_back(std::move(*unit));
   }
+  window_ = ShutterWindow::of(cameras_);
   return {};
 }
 
@@ -105,12 +106,19 @@ Result<std::optional<MadeFrame>> FrameMaker::make(std::int64_t k) {
   MadeFrame made;
   made.frame = k;
   made.t_ns = frame_time_ns(k, scenario_.rate);
-  const auto around = stages_.measure(
-      "truth", [&] { return truth_->around(made.t_ns, half_window_ns_, raster_ns_); });
+  const auto around =
+      stages_.measure("truth", [&]() -> Result<std::optional<std::vector<AircraftState>>> {
+        auto states =
+            truth_->around(made.t_ns, window_.half_ns, window_.raster_ns, options_.cancel);
+        if (options_.truth_samples == nullptr || !states) return states;
+        if (Status written = options_.truth_samples->flush(); !written) return written.error();
+        return states;
+      });
   if (!around) return failed(around.error());
   if (!*around) return std::optional<MadeFrame>();
   const std::vector<AircraftState>& states = **around;
   made.state = states[states.size() / 2];
+  next_frame_ = k + 1;
   for (std::size_t i = 0; i < cameras_.size(); ++i) {
     Result<CameraShot> shot = take(i, k, states);
     if (!shot) return failed(shot.error().in("frame " + std::to_string(k)));
@@ -145,49 +153,27 @@ Result<CameraShot> FrameMaker::take(std::size_t camera,
   return shot;
 }
 
-Result<Trajectory> FrameMaker::rehearse(std::size_t camera) const {
-  // Needs a separate truth source, since a source never goes back in time.
-  const Result<std::unique_ptr<TruthSource>> truth = create_truth(scenario_, *world_);
-  if (!truth) return truth.error();
-  FaultSchedule faults(scenario_);
-  std::vector<StampedPose> poses;
-  for (std::int64_t k = 0; k < frames_total_; ++k) {
-    const std::int64_t t_ns = frame_time_ns(k, scenario_.rate);
-    const auto state = (*truth)->state_at(t_ns);
-    if (!state) return state.error();
-    if (!*state) break;
-    poses.push_back({faults.at(camera, k, t_ns).stamp_ns,
-                     cameras_[camera]->T_world_camera((*state)->T_world_body, t_ns)});
-  }
-  return Trajectory::from_poses(poses);
-}
-
-Result<renderer::CameraFrame> FrameMaker::draw_at_start(std::size_t camera) {
-  // Needs a separate truth source as well.
-  const Result<std::unique_ptr<TruthSource>> truth = create_truth(scenario_, *world_);
-  if (!truth) return truth.error();
-  const auto first = (*truth)->state_at(0);
-  if (!first) return first.error();
-  if (!*first) return Error{ErrorCode::kInvalidArgument, "flight: ends before its first frame"};
-  return renderer_->render_camera(scenario_.cameras[camera].model,
-                                  cameras_[camera]->T_world_camera((*first)->T_world_body, 0),
-                                  0,
-                                  renderer::PixelFormat::kGrey8);
-}
-
-Result<std::optional<double>> FrameMaker::depth_at_start(std::size_t camera) {
-  const Result<renderer::CameraFrame> frame = draw_at_start(camera);
-  if (!frame) return frame.error();
-  return frame->axis_depth_m;
+Status FrameMaker::record_last_period() {
+  if (options_.truth_samples == nullptr) return {};
+  const auto last = truth_->at(frame_time_ns(next_frame_, scenario_.rate), options_.cancel);
+  if (!last) return failed(last.error());
+  return options_.truth_samples->flush();
 }
 
 Status FrameMaker::fetch_first_view() {
   if (!duration_ns_) return {};
+  const auto first = truth_->at(0, options_.cancel);
+  if (!first) return failed(first.error());
+  if (!*first) return Error{ErrorCode::kInvalidArgument, "flight: ends before its first frame"};
   for (std::size_t camera = 0; camera < cameras_.size(); ++camera) {
-    const Result<renderer::CameraFrame> frame = draw_at_start(camera);
+    const auto frame =
+        renderer_->render_camera(scenario_.cameras[camera].model,
+                                 cameras_[camera]->T_world_camera((*first)->T_world_body, 0),
+                                 0,
+                                 renderer::PixelFormat::kGrey8);
     if (!frame) return failed(frame.error().in("camera " + scenario_.cameras[camera].name));
   }
   return {};
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

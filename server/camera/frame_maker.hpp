@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "core/result.hpp"
-#include "core/trajectory.hpp"
 #include "renderer/renderer.hpp"
 #include "server/camera/camera_shot.hpp"
 #include "server/camera/camera_unit.hpp"
@@ -19,11 +18,12 @@
 #include "server/camera/renderer_factory.hpp"
 #include "server/camera/truth_window.hpp"
 #include "server/camera/watched_tiles.hpp"
+#include "server/record/truth_samples.hpp"
 #include "server/scenario/scenario.hpp"
 #include "server/timing/stage_timer.hpp"
 #include "terrain/world.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 class WorldCache;
 struct OpenedWorld;
@@ -36,6 +36,9 @@ struct FrameMakerOptions {
   std::function<void(const std::string&)> notice;
   StageTimer* stages = nullptr;  ///< measures the time of each stage
   bool wait_for_tiles = true;    ///< see renderer::CameraRequest
+  /// Opens the flight over the opened world; create_truth if empty.
+  std::function<Result<std::unique_ptr<TruthSource>>(const terrain::World&)> open_truth;
+  TruthSampleFile* truth_samples = nullptr;  ///< where the truth is recorded; may be null
 };
 
 /// Used and destroyed on one thread.
@@ -66,11 +69,9 @@ class FrameMaker {
   /// read.
   [[nodiscard]] Result<std::optional<MadeFrame>> make(std::int64_t k);
 
-  /// T_world_camera of every frame of one camera, with the stamps given to estimators.
-  [[nodiscard]] Result<Trajectory> rehearse(std::size_t camera) const;
-  /// Depth of the ground along a camera's axis at t = 0 [m]; empty if the axis does not hit the
-  /// ground.
-  [[nodiscard]] Result<std::optional<double>> depth_at_start(std::size_t camera);
+  /// Records the truth of one more frame period after the last frame, as far as the flight goes on,
+  /// so that inertial data can be computed up to that frame.
+  Status record_last_period();
   /// Draws the first frame once and waits for its tiles, so that a real-time flight does not start
   /// while its tiles are still being read. Does nothing for a flight whose end is not known, since
   /// its first pose is not known either.
@@ -82,7 +83,6 @@ class FrameMaker {
   Status plan_flight();
   Status open_renderer();
   Status open_cameras();
-  [[nodiscard]] Result<renderer::CameraFrame> draw_at_start(std::size_t camera);
   [[nodiscard]] Result<CameraShot> take(std::size_t camera,
                                         std::int64_t k,
                                         const std::vector<AircraftState>& states);
@@ -103,11 +103,11 @@ class FrameMaker {
   std::unique_ptr<TruthWindow> truth_;
   std::optional<std::int64_t> duration_ns_;
   std::int64_t frames_total_ = 0;
+  std::int64_t next_frame_ = 0;  ///< the one after the last made frame
   std::unique_ptr<renderer::Renderer> renderer_;
   FaultSchedule faults_;
   std::vector<std::unique_ptr<CameraUnit>> cameras_;
-  std::int64_t half_window_ns_ = 0;  ///< of the camera that needs the longest
-  std::int64_t raster_ns_ = 0;       ///< of the camera that needs the finest
+  ShutterWindow window_;
 };
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

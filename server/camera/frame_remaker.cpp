@@ -4,32 +4,35 @@
 
 #include "server/camera/truth.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
-FrameRemaker::FrameRemaker(Scenario scenario, std::shared_ptr<const terrain::World> world)
-    : scenario_(std::move(scenario)), world_(std::move(world)) {}
+FrameRemaker::FrameRemaker(std::filesystem::path folder,
+                           Scenario scenario,
+                           std::shared_ptr<const terrain::World> world)
+    : folder_(std::move(folder)), scenario_(std::move(scenario)), world_(std::move(world)) {}
 
 Result<std::unique_ptr<FrameRemaker>> FrameRemaker::create(
-    Scenario scenario, std::shared_ptr<const terrain::World> world) {
-  std::unique_ptr<FrameRemaker> maker(new FrameRemaker(std::move(scenario), std::move(world)));
+    std::filesystem::path folder, Scenario scenario, std::shared_ptr<const terrain::World> world) {
+  std::unique_ptr<FrameRemaker> maker(
+      new FrameRemaker(std::move(folder), std::move(scenario), std::move(world)));
   for (std::size_t i = 0; i < maker->scenario_.cameras.size(); ++i) {
     auto unit = CameraUnit::create(maker->scenario_.cameras[i], i, maker->scenario_.seed);
     if (!unit) return unit.error();
     maker->cameras_.push_back(std::move(*unit));
   }
+  maker->window_ = ShutterWindow::of(maker->cameras_);
   return maker;
 }
 
-Result<std::optional<std::vector<AircraftState>>> FrameRemaker::states_around(
-    const CameraUnit& unit, std::int64_t t_ns) {
-  // A truth source never goes back in time: an earlier frame needs a new one.
+Result<std::optional<std::vector<AircraftState>>> FrameRemaker::states_around(std::int64_t t_ns) {
+  // A window never goes back in time: an earlier frame needs a new one.
   if (!truth_ || t_ns < asked_ns_) {
-    Result<std::unique_ptr<TruthSource>> source = create_truth(scenario_, *world_);
+    auto source = open_flown_truth(folder_, "", scenario_, *world_);
     if (!source) return source.error();
     truth_ = std::make_unique<TruthWindow>(std::move(*source));
   }
   asked_ns_ = t_ns;
-  return truth_->around(t_ns, unit.half_window_ns(), unit.raster_ns());
+  return truth_->around(t_ns, window_.half_ns, window_.raster_ns);
 }
 
 Result<Image> FrameRemaker::make(std::size_t camera,
@@ -39,13 +42,14 @@ Result<Image> FrameRemaker::make(std::size_t camera,
     return Error{ErrorCode::kNotFound, "camera " + std::to_string(camera) + ": no such camera"};
   }
   CameraUnit& unit = *cameras_[camera];
-  std::optional<renderer::ExposureSetting> setting;
-  if (row.exposure_ns > 0) setting = renderer::ExposureSetting{row.exposure_ns, row.gain};
-  const auto states = states_around(unit, row.t_ns);
+  std::optional<sensor::ExposureSetting> setting;
+  if (row.exposure_ns > 0) setting = sensor::ExposureSetting{row.exposure_ns, row.gain};
+  const auto states = states_around(row.t_ns);
   if (!states) return states.error();
   if (!*states) {
-    return Error{ErrorCode::kConflict,
-                 "frame " + std::to_string(row.frame) + ": the flight now ends before this frame"};
+    return Error{
+        ErrorCode::kConflict,
+        "frame " + std::to_string(row.frame) + ": the recorded flight ends before this frame"};
   }
   Result<renderer::CameraRequest> request = unit.request(**states, row.t_ns, setting);
   if (!request) return request.error();
@@ -58,4 +62,4 @@ Result<Image> FrameRemaker::make(std::size_t camera,
   return std::move(shot.image);
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -1,6 +1,7 @@
 // Renders a run's camera image again at any frame, for playback of images that were not recorded.
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <vector>
 
@@ -8,18 +9,21 @@
 #include "server/camera/camera_unit.hpp"
 #include "server/camera/fault_schedule.hpp"
 #include "server/camera/truth_window.hpp"
-#include "server/record/run_timeline.hpp"
+#include "server/record/rows.hpp"
 #include "server/scenario/scenario.hpp"
 #include "terrain/world.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// With the same renderer the image equals that of the run: shutter, vibration, lens faults,
 /// exposure and noise are those of the frame. Only a frozen camera gives the image that it would
 /// have taken. Used by one thread.
 class FrameRemaker {
  public:
-  static Result<std::unique_ptr<FrameRemaker>> create(Scenario scenario,
+  /// @param folder  of the run
+  /// Errors: as open_flown_truth and CameraUnit::create.
+  static Result<std::unique_ptr<FrameRemaker>> create(std::filesystem::path folder,
+                                                      Scenario scenario,
                                                       std::shared_ptr<const terrain::World> world);
 
   /// @param row  of the frame, from the run's record; its exposure is used
@@ -29,15 +33,18 @@ class FrameRemaker {
                                    renderer::Renderer& renderer);
 
  private:
-  FrameRemaker(Scenario scenario, std::shared_ptr<const terrain::World> world);
-  [[nodiscard]] Result<std::optional<std::vector<AircraftState>>> states_around(
-      const CameraUnit& unit, std::int64_t t_ns);
+  FrameRemaker(std::filesystem::path folder,
+               Scenario scenario,
+               std::shared_ptr<const terrain::World> world);
+  [[nodiscard]] Result<std::optional<std::vector<AircraftState>>> states_around(std::int64_t t_ns);
 
+  std::filesystem::path folder_;
   Scenario scenario_;
   std::shared_ptr<const terrain::World> world_;
   std::vector<std::unique_ptr<CameraUnit>> cameras_;
+  ShutterWindow window_;
   std::unique_ptr<TruthWindow> truth_;
   std::int64_t asked_ns_ = 0;  ///< latest time requested from the truth
 };
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

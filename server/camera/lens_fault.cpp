@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 constexpr float kFullScale = 255.0F;
@@ -35,10 +35,10 @@ Image with_lens_faults(const Image& image, const std::vector<const FaultSpec*>& 
       image.data.begin(), image.data.end(), radiance.data.begin(), [&](std::uint8_t code) {
         return linear[code];
       });
-  for (const FaultSpec* fault : faults) renderer::apply_fault(fault->image, radiance);
+  for (const FaultSpec* fault : faults) sensor::apply_fault(fault->image, radiance);
   Image changed(image.width_px, image.height_px, image.channels);
   std::transform(radiance.data.begin(), radiance.data.end(), changed.data.begin(), encoded);
   return changed;
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

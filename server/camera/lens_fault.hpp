@@ -3,14 +3,14 @@
 
 #include <vector>
 
-#include "core/image.hpp"
+#include "core/camera/image.hpp"
 #include "server/scenario/fault_spec.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Applies faults in linear light: decodes sRGB (IEC 61966-2-1) before and encodes it after. Pixels
 /// that no fault changes keep their exact value.
 [[nodiscard]] Image with_lens_faults(const Image& image,
                                      const std::vector<const FaultSpec*>& faults);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

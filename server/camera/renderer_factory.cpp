@@ -1,6 +1,6 @@
 #include "server/camera/renderer_factory.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 Result<std::unique_ptr<renderer::Renderer>> make_renderer(
     const Scenario& scenario,
@@ -17,4 +17,4 @@ Result<std::unique_ptr<renderer::Renderer>> make_renderer(
   return renderer::create_renderer(tiles, options);
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

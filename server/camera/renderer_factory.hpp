@@ -8,7 +8,7 @@
 #include "renderer/renderer.hpp"
 #include "server/scenario/scenario.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Creates a run's renderer; called on the run's thread.
 using RendererFactory = std::function<Result<std::unique_ptr<renderer::Renderer>>(
@@ -21,4 +21,4 @@ using RendererFactory = std::function<Result<std::unique_ptr<renderer::Renderer>
     const std::shared_ptr<const terrain::TileSource>& tiles,
     const RendererFactory& factory);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -3,7 +3,10 @@
 #include <Eigen/Geometry>
 #include <utility>
 
-namespace overfly::engine {
+#include "server/record/run_folder.hpp"
+#include "server/record/truth_samples.hpp"
+
+namespace overfly::server {
 namespace {
 
 /// Centre of the imagery in the world's east-north plane.
@@ -77,4 +80,13 @@ Result<std::unique_ptr<TruthSource>> create_truth(const Scenario& scenario,
   return truth;
 }
 
-}  // namespace overfly::engine
+Result<std::unique_ptr<TruthSource>> open_flown_truth(const std::filesystem::path& folder,
+                                                      const std::string& description,
+                                                      const Scenario& scenario,
+                                                      const terrain::World& world) {
+  auto flown = open_recorded_flight(truth_samples_file(folder), description);
+  if (!flown && flown.error().code == ErrorCode::kNotFound) return create_truth(scenario, world);
+  return flown;
+}
+
+}  // namespace overfly::server

@@ -2,14 +2,16 @@
 #pragma once
 
 #include <atomic>
+#include <filesystem>
 #include <memory>
+#include <string>
 
+#include "core/motion/truth_source.hpp"
 #include "core/result.hpp"
-#include "core/truth_source.hpp"
 #include "server/scenario/scenario.hpp"
 #include "terrain/world.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// A new truth source at t = 0; equal arguments give equal flights.
 /// A course starts at the world's runway, or else where it lies centred over the imagery.
@@ -20,4 +22,15 @@ namespace overfly::engine {
     const terrain::World& world,
     const std::atomic<bool>* cancel = nullptr);
 
-}  // namespace overfly::engine
+/// The flight of a recorded run, from its samples of the truth. A folder without samples, from an
+/// earlier version, gets the flight that its scenario describes.
+/// @param folder  of the run
+/// @param description  of the flight, as in its manifest
+/// Errors: as open_recorded_flight and create_truth.
+[[nodiscard]] Result<std::unique_ptr<TruthSource>> open_flown_truth(
+    const std::filesystem::path& folder,
+    const std::string& description,
+    const Scenario& scenario,
+    const terrain::World& world);
+
+}  // namespace overfly::server

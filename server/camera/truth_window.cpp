@@ -6,7 +6,7 @@
 
 #include "core/time.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 AircraftState between(const AircraftState& a, const AircraftState& b, std::int64_t t_ns) {
@@ -38,15 +38,17 @@ AircraftState extrapolated(const AircraftState& state, std::int64_t dt_ns) {
   return moved;
 }
 
-Result<std::optional<std::vector<AircraftState>>> TruthWindow::around(std::int64_t t_ns,
-                                                                      std::int64_t half_ns,
-                                                                      std::int64_t step_ns) {
+Result<std::optional<std::vector<AircraftState>>> TruthWindow::around(
+    std::int64_t t_ns,
+    std::int64_t half_ns,
+    std::int64_t step_ns,
+    const std::atomic<bool>* cancel) {
   const std::int64_t n = (half_ns + step_ns - 1) / step_ns;
   std::vector<AircraftState> states;
   states.reserve(static_cast<std::size_t>(2 * n + 1));
   for (std::int64_t j = -n; j <= n; ++j) {
     const std::int64_t at_ns = t_ns + j * step_ns;
-    auto state = at(std::max<std::int64_t>(at_ns, 0));
+    auto state = at(std::max<std::int64_t>(at_ns, 0), cancel);
     if (!state) return state.error();
     if (*state && at_ns < 0) *state = extrapolated(**state, at_ns);
     if (!*state && j > 0) *state = extrapolated(states.back(), step_ns);
@@ -57,10 +59,11 @@ Result<std::optional<std::vector<AircraftState>>> TruthWindow::around(std::int64
   return std::optional(std::move(states));
 }
 
-Result<std::optional<AircraftState>> TruthWindow::at(std::int64_t t_ns) {
+Result<std::optional<AircraftState>> TruthWindow::at(std::int64_t t_ns,
+                                                     const std::atomic<bool>* cancel) {
   if (!known_.empty() && t_ns <= known_.back().t_ns) return std::optional(remembered(t_ns));
   if (ended_ns_ && t_ns >= *ended_ns_) return std::optional<AircraftState>();
-  auto state = source_->state_at(t_ns);
+  auto state = source_->state_at(t_ns, cancel);
   if (!state) return state;
   if (*state) {
     (*state)->t_ns = t_ns;
@@ -85,4 +88,4 @@ void TruthWindow::forget_before(std::int64_t t_ns) {
   while (known_.size() > 1 && known_[1].t_ns <= t_ns) known_.pop_front();
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -1,16 +1,17 @@
 // The truth around each frame: where the aircraft was while the shutter was open.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <deque>
 #include <memory>
 #include <optional>
 #include <vector>
 
+#include "core/motion/truth_source.hpp"
 #include "core/result.hpp"
-#include "core/truth_source.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// The state dt_ns later, extrapolated with constant velocity and rate.
 [[nodiscard]] AircraftState extrapolated(const AircraftState& state, std::int64_t dt_ns);
@@ -26,14 +27,19 @@ class TruthWindow {
   /// t_ns. Before t = 0 and after the flight's end the motion is extrapolated. t_ns must not
   /// decrease from call to call. Empty if the flight has ended at t_ns.
   /// @param step_ns  > 0
+  /// @param cancel  as in TruthSource::state_at
   /// Errors: as TruthSource::state_at.
-  [[nodiscard]] Result<std::optional<std::vector<AircraftState>>> around(std::int64_t t_ns,
-                                                                         std::int64_t half_ns,
-                                                                         std::int64_t step_ns);
+  [[nodiscard]] Result<std::optional<std::vector<AircraftState>>> around(
+      std::int64_t t_ns,
+      std::int64_t half_ns,
+      std::int64_t step_ns,
+      const std::atomic<bool>* cancel = nullptr);
+  /// The state at one time, which must not precede the windows so far except by times in memory.
+  [[nodiscard]] Result<std::optional<AircraftState>> at(std::int64_t t_ns,
+                                                        const std::atomic<bool>* cancel = nullptr);
   [[nodiscard]] const TruthSource& source() const { return *source_; }
 
  private:
-  [[nodiscard]] Result<std::optional<AircraftState>> at(std::int64_t t_ns);
   [[nodiscard]] AircraftState remembered(std::int64_t t_ns) const;
   void forget_before(std::int64_t t_ns);
 
@@ -42,4 +48,4 @@ class TruthWindow {
   std::deque<AircraftState> known_;       ///< by time; the first one precedes the present window
 };
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

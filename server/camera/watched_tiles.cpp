@@ -1,9 +1,13 @@
 #include "server/camera/watched_tiles.hpp"
 
-namespace overfly::engine {
+#include "core/cancel.hpp"
 
-Result<terrain::Tile> WatchedTiles::tile(const terrain::TileId& id) const {
-  Result<terrain::Tile> read = TileDecorator::tile(id);
+namespace overfly::server {
+
+Result<terrain::Tile> WatchedTiles::read_tile(const terrain::TileId& id,
+                                              const terrain::Cancelled& cancelled) const {
+  Result<terrain::Tile> read =
+      base().tile(id, [&] { return is_cancelled(cancel_) || (cancelled && cancelled()); });
   const std::lock_guard lock(mutex_);
   if (read) {
     unread_.erase(id);
@@ -18,4 +22,4 @@ Status WatchedTiles::unread() const {
   return unread_.empty() ? Status() : Status(unread_.begin()->second);
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -2,7 +2,7 @@
 
 #include <array>
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 constexpr std::array<DatasetLayout, 6> kLayouts{DatasetLayout::kImages,
@@ -39,4 +39,4 @@ std::optional<DatasetLayout> dataset_layout_from(const std::string& text) {
   return std::nullopt;
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

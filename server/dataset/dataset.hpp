@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "core/camera_model.hpp"
-#include "core/pose.hpp"
+#include "core/camera/camera_model.hpp"
+#include "core/motion/pose.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 enum class DatasetLayout {
   kImages,   ///< a folder of images, times in a separate file
@@ -65,4 +65,4 @@ struct DatasetOptions {
   int sample_bits = 16;  ///< significant bits of 16-bit files, in [8, 16]
 };
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -4,11 +4,11 @@
 #include <system_error>
 #include <utility>
 
-#include "core/time_order.hpp"
+#include "core/motion/time_order.hpp"
 #include "server/dataset/dataset_reader.hpp"
 #include "server/dataset/grey_image.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -122,4 +122,4 @@ Status expect_as_many(const fs::path& list_file,
                    " images: the numbers must be equal"};
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

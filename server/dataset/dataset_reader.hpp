@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "core/text_fields.hpp"
+#include "core/text/text_fields.hpp"
 #include "server/dataset/dataset.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// A data set whose images are listed; a camera of size 0 x 0 px is not known yet.
 struct ListedDataset {
@@ -67,4 +67,4 @@ struct EurocSensor {
                                     const std::filesystem::path& folder,
                                     std::size_t images);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

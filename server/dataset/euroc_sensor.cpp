@@ -7,10 +7,10 @@
 #include <map>
 #include <string_view>
 
-#include "core/file_text.hpp"
+#include "core/outside/file_text.hpp"
 #include "server/dataset/dataset_reader.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -176,4 +176,4 @@ Result<EurocSensor> read_euroc_sensor(const fs::path& path) {
   return EurocSensor{camera, *mount};
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "core/file_text.hpp"
-#include "core/lower_case.hpp"
+#include "core/outside/file_text.hpp"
+#include "core/text/lower_case.hpp"
 #include "server/camera/camera_shot.hpp"
 #include "server/files/jpeg.hpp"
 #include "terrain/raster/image_file.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -106,4 +106,4 @@ bool is_image_name(const fs::path& file) {
   return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -3,13 +3,13 @@
 
 #include <filesystem>
 
-#include "core/image.hpp"
+#include "core/camera/image.hpp"
 #include "core/result.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Reads PNG, JPEG, PGM or PPM; the first bytes decide the format. Colour is converted to grey as
-/// for the engine's colour cameras. Alpha is dropped. Of 16-bit samples the upper 8 of
+/// for colour cameras. Alpha is dropped. Of 16-bit samples the upper 8 of
 /// `sample_bits` are kept.
 /// Errors: kNotFound; kUnreadable naming the file: another format, damaged, or a sample that
 /// exceeds `sample_bits`.
@@ -19,4 +19,4 @@ namespace overfly::engine {
 /// True for names that end in .png, .jpg, .jpeg, .pgm or .ppm.
 [[nodiscard]] bool is_image_name(const std::filesystem::path& file);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

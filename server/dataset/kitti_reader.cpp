@@ -3,7 +3,7 @@
 
 #include "server/dataset/dataset_reader.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -86,4 +86,4 @@ Result<ListedDataset> read_kitti(const DatasetOptions& options) {
   return listed;
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -6,7 +6,7 @@
 
 #include "server/files/whole_file.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 constexpr double kCellPerDepth = 0.005;
@@ -67,4 +67,4 @@ Status write_ply(const std::filesystem::path& file,
   return write_whole(file, text);
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "core/estimate.hpp"
+#include "core/motion/estimate.hpp"
 #include "core/result.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Accumulates map points over the frames. Estimators move points as they refine them and give them
 /// no ids. Of all points that fall into one cell of the grid, only the last is kept. A cell is 0.5
@@ -39,4 +39,4 @@ class MapCloud {
                                const std::vector<Eigen::Vector3f>& points,
                                const std::string& comment);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -4,10 +4,11 @@
 #include <system_error>
 #include <utility>
 
+#include "core/measure/crc32.hpp"
 #include "server/dataset/dataset_reader.hpp"
 #include "server/dataset/grey_image.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -140,4 +141,4 @@ Result<VoFrame> read_frame(const Dataset& dataset, std::size_t i) {
   return frame;
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

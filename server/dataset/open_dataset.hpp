@@ -6,7 +6,7 @@
 #include "server/dataset/dataset.hpp"
 #include "vo_bridges/vo_port.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Opens a data set and checks that every file exists; the content of the images is not checked.
 /// Sorts images that are not in order of time. Of images with the same time it keeps the first.
@@ -20,4 +20,4 @@ namespace overfly::engine {
 /// an image, is damaged, or differs in size from the calibration.
 [[nodiscard]] Result<VoFrame> read_frame(const Dataset& dataset, std::size_t i);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -5,7 +5,7 @@
 #include "server/dataset/dataset_reader.hpp"
 #include "server/dataset/grey_image.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -137,4 +137,4 @@ Result<ListedDataset> read_plain_folder(const DatasetOptions& options) {
   return listed;
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -7,7 +7,7 @@
 #include "server/files/whole_file.hpp"
 #include "server/record/run_rows.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -102,4 +102,4 @@ Result<ListedDataset> read_png_export(const DatasetOptions& options) {
   return listed;
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

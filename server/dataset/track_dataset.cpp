@@ -1,37 +1,23 @@
 #include "server/dataset/track_dataset.hpp"
 #include "server/dataset/open_dataset.hpp"
 
-#include <sys/resource.h>
-
 #include <algorithm>
-#include <ctime>
 #include <utility>
 
-#include "core/barrier.hpp"
 #include "core/cancel.hpp"
-#include "core/trajectory_io.hpp"
+#include "core/measure/process_memory.hpp"
+#include "core/measure/processor_time.hpp"
+#include "core/motion/trajectory_io.hpp"
+#include "server/estimators/estimator_driver.hpp"
 #include "server/files/jpeg.hpp"
 #include "server/files/number_text.hpp"
 #include "server/files/whole_file.hpp"
 #include "server/timing/run_clock.hpp"
-#include "vo_bridges/pose_intake.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
-
-double process_cpu_s() {
-  std::timespec used{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &used);
-  return static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
-}
-
-double process_peak_memory_mb() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024.0;
-}
 
 double ms_since(std::int64_t begin_ns) {
   return static_cast<double>(machine_clock().now_ns() - begin_ns) * 1e-6;
@@ -44,9 +30,7 @@ class Pass {
       : dataset_(dataset), port_(port), options_(options) {}
 
   Result<TrackedDataset> run() {
-    port_.set_debug(!options_.debug_folder.empty() || options_.map_points);
     if (Status status = prepare(); !status) return status.error();
-    const double cpu_to_get_ready_s = port_.resource_use().value_or(ResourceUse{}).cpu_s;
     for (std::size_t i = 0; i < dataset_.images.size() && !crashed_; ++i) {
       if (is_cancelled(options_.cancel)) {
         result_.cancelled = true;
@@ -64,13 +48,12 @@ class Pass {
     result_.parameters = port_.effective_parameters();
     // An estimator in this process is measured by the use of the process, which does nothing else
     // here.
-    const std::optional<ResourceUse> use = port_.resource_use();
+    const std::optional<ResourceUse> use = driver_.use();
     if (use && use->own_process) {
       result_.resources = *use;
-      result_.resources.cpu_s -= cpu_to_get_ready_s;
       result_.own_process = true;
     } else {
-      result_.resources.peak_memory_mb = process_peak_memory_mb();
+      result_.resources.peak_memory_mb = peak_memory_mb();
     }
     return std::move(result_);
   }
@@ -81,8 +64,7 @@ class Pass {
     Result<VoFrame> first = read_frame(dataset_, 0);
     if (!first) return first.error();
     first->image.reset();
-    const Status prepared = guarded([&] { return port_.prepare(*first); });
-    if (!prepared) failure_ = prepared.error();
+    driver_.prepare(*first);
     pass_on_log();
     return {};
   }
@@ -94,42 +76,26 @@ class Pass {
     result_.reading.ms.push_back(ms_since(read_ns));
     const double cpu_before_s = process_cpu_s();
     const std::int64_t track_ns = machine_clock().now_ns();
-    Result<VoEstimate> estimate =
-        failure_ ? Result<VoEstimate>(*failure_) : guarded([&] { return port_.track(*frame); });
+    const Result<VoEstimate> estimate = driver_.track(*frame, wants_debug_);
     result_.tracking.ms.push_back(ms_since(track_ns));
     result_.resources.cpu_s += process_cpu_s() - cpu_before_s;
-    if (estimate) {
-      estimate->sample.frame = frame->index;
-      estimate->sample.t_ns = frame->t_ns;
-      const Status usable = poses_.take(*estimate);
-      tell(poses_.take_notes());
-      if (!usable) estimate = usable.error();
-    }
-    EstimateRecord record;
-    record.sample.frame = frame->index;
-    record.sample.t_ns = frame->t_ns;
-    record.sample.state = TrackingState::kLost;
-    if (!estimate) {
-      if (estimate.error().code == ErrorCode::kCancelled) {
-        result_.cancelled = true;
-        return {};
-      }
-      if (estimate.error().code != ErrorCode::kInternal) {
-        return estimate.error().in(dataset_.images[i].listed_at);
-      }
-      crashed_ = true;
-      record.crash = estimate.error().message;
-      result_.records.push_back(std::move(record));
+    tell(driver_.take_notes());
+    if (estimate) return book(*frame, *estimate);
+    if (estimate.error().code == ErrorCode::kCancelled) {
+      result_.cancelled = true;
       return {};
     }
-    record.sample = estimate->sample;
-    record.counters = estimate->counters;
-    result_.records.push_back(std::move(record));
-    return book(*frame, *estimate);
+    if (estimate.error().code != ErrorCode::kInternal) {
+      return estimate.error().in(dataset_.images[i].listed_at);
+    }
+    crashed_ = true;
+    result_.records.push_back(lost_record(*frame));
+    result_.records.back().crash = estimate.error().message;
+    return {};
   }
 
-  /// Records everything of an answer except its pose.
   Status book(const VoFrame& frame, const VoEstimate& estimate) {
+    result_.records.push_back(record_of(estimate));
     const auto unanswered = estimate.counters.find("unanswered");
     if (unanswered != estimate.counters.end() && unanswered->second > 0.0) ++result_.unanswered;
     if (estimate.image_crc32 && estimate.image_crc32 != frame.image_crc32) {
@@ -155,11 +121,11 @@ class Pass {
 
   const Dataset& dataset_;
   VoPort& port_;
+  EstimatorDriver driver_{port_};
   const TrackOptions& options_;
+  const bool wants_debug_ = !options_.debug_folder.empty() || options_.map_points;
   TrackedDataset result_;
   bool crashed_ = false;
-  PoseIntake poses_;
-  std::optional<Error> failure_;  ///< of the preparation
 };
 
 }  // namespace
@@ -221,4 +187,4 @@ Status write_statuses(const fs::path& file, const TrackedDataset& tracked) {
   return write_whole(file, text);
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

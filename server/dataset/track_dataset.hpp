@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "core/estimate.hpp"
+#include "core/motion/estimate.hpp"
 #include "core/result.hpp"
 #include "server/dataset/dataset.hpp"
 #include "server/dataset/map_cloud.hpp"
@@ -18,7 +18,7 @@
 #include "server/timing/stage_timer.hpp"
 #include "vo_bridges/vo_port.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 struct TrackOptions {
   std::filesystem::path debug_folder;  ///< must exist; gets NNNNNN.jpg of each frame; empty = none
@@ -71,4 +71,4 @@ struct TrackedDataset {
 [[nodiscard]] Status write_statuses(const std::filesystem::path& file,
                                     const TrackedDataset& tracked);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

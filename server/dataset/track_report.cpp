@@ -6,9 +6,9 @@
 
 #include "core/time.hpp"
 #include "server/record/rows.hpp"
-#include "server/scoring/metrics.hpp"
+#include "server/scoring/run_metrics_json.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 using Json = nlohmann::json;
@@ -28,38 +28,10 @@ Json dataset_json(const Dataset& dataset) {
           {"notes", dataset.notes}};
 }
 
-Json states_json(const TrackedDataset& tracked) {
-  Json states = {{"INITIALISING", 0}, {"TRACKING", 0}, {"LOST", 0}};
-  for (const EstimateRecord& record : tracked.records) {
-    Json& count = states.at(to_string(record.sample.state));
-    count = count.get<int>() + 1;
-  }
-  return states;
-}
-
-/// Seconds from the first image to the first tracked one; null if no image was tracked.
-Json initialised_after_s(const TrackedDataset& tracked) {
-  for (const EstimateRecord& record : tracked.records) {
-    if (record.sample.state != TrackingState::kTracking) continue;
-    return s_from_ns(record.sample.t_ns - tracked.records.front().sample.t_ns);
-  }
-  return nullptr;
-}
-
-int maps_of(const TrackedDataset& tracked) {
-  std::set<int> maps;
-  for (const EstimateRecord& record : tracked.records) {
-    if (record.sample.state == TrackingState::kTracking) maps.insert(record.sample.map_id);
-  }
-  return static_cast<int>(maps.size());
-}
-
-Json resources_json(const TrackedDataset& tracked) {
-  const std::vector<double>& ms = tracked.tracking.ms;
-  const double wall_s = 1e-3 * std::accumulate(ms.begin(), ms.end(), 0.0);
-  return {{"of", tracked.own_process ? "the estimator's process" : "this process"},
+Json resources_json(const TrackedDataset& tracked, const TrackFigures& figures) {
+  return {{"of", figures.measured_process},
           {"cpu_s", tracked.resources.cpu_s},
-          {"cpu_percent", wall_s > 0.0 ? 100.0 * tracked.resources.cpu_s / wall_s : 0.0},
+          {"cpu_percent", figures.cpu_percent},
           {"peak_memory_mb", tracked.resources.peak_memory_mb}};
 }
 
@@ -138,30 +110,64 @@ evaluation::Score score_of(const Dataset& dataset,
   return score;
 }
 
+TrackFigures figures_of(const TrackedDataset& tracked) {
+  TrackFigures figures;
+  std::set<int> maps;
+  for (const EstimateRecord& record : tracked.records) {
+    switch (record.sample.state) {
+      case TrackingState::kInitialising:
+        ++figures.initialising_frames;
+        break;
+      case TrackingState::kLost:
+        ++figures.lost_frames;
+        break;
+      case TrackingState::kTracking:
+        ++figures.tracked_frames;
+        maps.insert(record.sample.map_id);
+        if (!figures.initialised_after_s) {
+          figures.initialised_after_s =
+              s_from_ns(record.sample.t_ns - tracked.records.front().sample.t_ns);
+        }
+        break;
+    }
+  }
+  figures.maps = static_cast<int>(maps.size());
+  figures.crash = crash_of(tracked);
+  const std::vector<double>& ms = tracked.tracking.ms;
+  const double wall_s = 1e-3 * std::accumulate(ms.begin(), ms.end(), 0.0);
+  if (wall_s > 0.0) figures.cpu_percent = 100.0 * tracked.resources.cpu_s / wall_s;
+  figures.measured_process = tracked.own_process ? "the estimator's process" : "this process";
+  return figures;
+}
+
 Json report_json(const Dataset& dataset,
                  const TrackedDataset& tracked,
                  const std::optional<evaluation::Score>& score) {
   Json stages = Json::object();
   for (const auto& [stage, durations] : tracked.stages) stages[stage] = durations.summary();
-  const std::optional<std::string> crash = crash_of(tracked);
+  const TrackFigures figures = figures_of(tracked);
   Json report = {{"dataset", dataset_json(dataset)},
                  {"warnings", dataset.warnings},
                  {"estimator", {{"type", tracked.type}, {"parameters", tracked.parameters}}},
                  {"frames", tracked.records.size()},
-                 {"complete", tracked.records.size() == dataset.images.size() && !crash},
-                 {"states", states_json(tracked)},
-                 {"initialised_after_s", initialised_after_s(tracked)},
-                 {"maps", maps_of(tracked)},
+                 {"complete", tracked.records.size() == dataset.images.size() && !figures.crash},
+                 {"states",
+                  {{"INITIALISING", figures.initialising_frames},
+                   {"TRACKING", figures.tracked_frames},
+                   {"LOST", figures.lost_frames}}},
+                 {"initialised_after_s",
+                  figures.initialised_after_s ? Json(*figures.initialised_after_s) : Json(nullptr)},
+                 {"maps", figures.maps},
                  {"unanswered", tracked.unanswered},
                  {"hash_mismatches", tracked.hash_mismatches},
-                 {"crash", crash ? Json(*crash) : Json(nullptr)},
+                 {"crash", figures.crash ? Json(*figures.crash) : Json(nullptr)},
                  {"timing",
                   {{"read", tracked.reading.summary()},
                    {"track", tracked.tracking.summary()},
                    {"stages", std::move(stages)}}},
-                 {"resources", resources_json(tracked)}};
+                 {"resources", resources_json(tracked, figures)}};
   if (score) report["score"] = json_from(*score);
   return report;
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -3,13 +3,15 @@
 
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
+#include <vector>
 
+#include "core/motion/trajectory_io.hpp"
 #include "core/result.hpp"
-#include "core/trajectory_io.hpp"
 #include "evaluation/evaluation.hpp"
 #include "server/dataset/track_dataset.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Converts the truth to camera poses. EuRoC truth holds body poses and is converted by the data
 /// set's mount; KITTI truth holds poses of image_0 and is converted by calib.txt. `notes` then
@@ -26,9 +28,23 @@ namespace overfly::engine {
                                          bool truth_has_times,
                                          std::optional<double> init_true_depth_m);
 
+/// Figures about an estimator's answers to a data set.
+struct TrackFigures {
+  int initialising_frames = 0;
+  int tracked_frames = 0;
+  int lost_frames = 0;
+  int maps = 0;  ///< in which it tracked
+  /// From the first image to the first tracked one; empty if no image was tracked.
+  std::optional<double> initialised_after_s;
+  std::optional<std::string> crash;  ///< why the estimator ended
+  double cpu_percent = 0.0;          ///< of one processor while it tracked
+  std::string measured_process;      ///< whose resources were measured, for people
+};
+[[nodiscard]] TrackFigures figures_of(const TrackedDataset& tracked);
+
 /// Data set, estimator, states, timing and resources; the score if there is one.
 [[nodiscard]] nlohmann::json report_json(const Dataset& dataset,
                                          const TrackedDataset& tracked,
                                          const std::optional<evaluation::Score>& score);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

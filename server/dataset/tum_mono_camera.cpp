@@ -5,7 +5,7 @@
 
 #include "server/dataset/dataset_reader.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 struct Lens {
@@ -102,4 +102,4 @@ Result<CameraModel> read_tum_mono_camera(const std::filesystem::path& path) {
   return camera;
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -7,7 +7,7 @@
 
 #include "server/dataset/dataset_reader.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -114,4 +114,4 @@ Result<ListedDataset> read_tum_rgbd(const DatasetOptions& options) {
   return listed;
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -4,7 +4,7 @@
 #include "vo_bridges/process/process_estimator.hpp"
 #include "vo_bridges/ros1/ros1_estimator.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 using Port = Result<std::unique_ptr<VoPort>>;
@@ -56,4 +56,4 @@ Port create_outside_estimator(const EstimatorSpec& spec, const EstimatorSetting&
   return create_ros1(spec, setting);
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -8,11 +8,11 @@
 #include "server/scenario/estimator_spec.hpp"
 #include "vo_bridges/vo_port.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// @pre is_outside_estimator(spec.type)
 /// Errors: as create_estimator.
 [[nodiscard]] Result<std::unique_ptr<VoPort>> create_outside_estimator(
     const EstimatorSpec& spec, const EstimatorSetting& setting);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

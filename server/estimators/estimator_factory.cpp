@@ -7,7 +7,7 @@
 #include "server/estimators/estimator_doors.hpp"
 #include "vo_bridges/toy/toy_estimators.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 using Port = Result<std::unique_ptr<VoPort>>;
@@ -38,11 +38,10 @@ Port create_feature(const EstimatorSpec& spec, const EstimatorSetting& setting) 
   return odometry::feature::create_feature_odometry(*parameters);
 }
 
-Result<ToyParameters> toy_parameters_from(const VoParameters& given, double scene_depth_m) {
+Result<ToyParameters> toy_parameters_from(const VoParameters& given) {
   const auto values = numbers_of(given);
   if (!values) return values.error();
   ToyParameters parameters;
-  parameters.scene_depth_m = scene_depth_m;
   for (const auto& [key, value] : *values) {
     if (key == "scale") {
       parameters.scale = value;
@@ -58,23 +57,18 @@ Result<ToyParameters> toy_parameters_from(const VoParameters& given, double scen
   return parameters;
 }
 
-Port create_toy(const EstimatorSpec& spec, const std::function<Result<ToyTruth>()>& truth) {
+Port create_toy(const EstimatorSpec& spec, const ToyTruthAt& truth) {
   if (!truth) {
     return Error{ErrorCode::kInvalidArgument,
                  spec.type + ": needs the truth, which is not available"};
   }
-  const Result<ToyTruth> known = truth();
-  if (!known) return known.error();
-  const Result<ToyParameters> parameters =
-      toy_parameters_from(spec.parameters, known->scene_depth_m);
+  const Result<ToyParameters> parameters = toy_parameters_from(spec.parameters);
   if (!parameters) return parameters.error();
-  return spec.type == "perfect" ? create_perfect_estimator(known->T_world_camera, *parameters)
-                                : create_drifting_estimator(known->T_world_camera, *parameters);
+  return spec.type == "perfect" ? create_perfect_estimator(truth, *parameters)
+                                : create_drifting_estimator(truth, *parameters);
 }
 
-Port create(const EstimatorSpec& spec,
-            const EstimatorSetting& setting,
-            const std::function<Result<ToyTruth>()>& truth) {
+Port create(const EstimatorSpec& spec, const EstimatorSetting& setting, const ToyTruthAt& truth) {
   if (spec.type == "feature") return create_feature(spec, setting);
   if (is_test_estimator(spec.type)) return create_toy(spec, truth);
   if (is_outside_estimator(spec.type)) return create_outside_estimator(spec, setting);
@@ -87,10 +81,10 @@ Port create(const EstimatorSpec& spec,
 
 Result<std::unique_ptr<VoPort>> create_estimator(const EstimatorSpec& spec,
                                                  const EstimatorSetting& setting,
-                                                 const std::function<Result<ToyTruth>()>& truth) {
+                                                 const ToyTruthAt& truth) {
   Port port = create(spec, setting, truth);
   if (!port) return port.error().in("estimator \"" + spec.name + "\"");
   return port;
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -1,22 +1,21 @@
 // Creates estimators: native ones and those behind doors to other processes.
 #pragma once
 
-#include <functional>
 #include <memory>
 
 #include "core/result.hpp"
 #include "server/estimators/estimator_setting.hpp"
 #include "server/scenario/estimator_spec.hpp"
+#include "vo_bridges/toy/toy_estimators.hpp"
 #include "vo_bridges/vo_port.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
-/// @param truth  called only for test estimators; may be empty if there is none
+/// @param truth  called only by test estimators; may be empty if there is none
 /// Errors: kInvalidArgument naming the estimator, its parameter, value and limit; kUnsupported for
 /// a door that is not built in; kNotFound, kIo, kInternal for an estimator that does not start.
-[[nodiscard]] Result<std::unique_ptr<VoPort>> create_estimator(
-    const EstimatorSpec& spec,
-    const EstimatorSetting& setting,
-    const std::function<Result<ToyTruth>()>& truth = {});
+[[nodiscard]] Result<std::unique_ptr<VoPort>> create_estimator(const EstimatorSpec& spec,
+                                                               const EstimatorSetting& setting,
+                                                               const ToyTruthAt& truth = {});
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -4,15 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "core/trajectory.hpp"
-
-namespace overfly::engine {
-
-/// The truth that only the test estimators get.
-struct ToyTruth {
-  Trajectory T_world_camera;   ///< of every frame
-  double scene_depth_m = 0.0;  ///< true depth at the first frame; 0 = not known
-};
+namespace overfly::server {
 
 /// Environment of an estimator, independent of where its frames come from.
 struct EstimatorSetting {
@@ -26,4 +18,4 @@ struct EstimatorSetting {
   const std::atomic<bool>* cancel = nullptr;
 };
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

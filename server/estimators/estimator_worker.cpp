@@ -4,12 +4,12 @@
 #include <cmath>
 #include <iterator>
 
-#include "core/barrier.hpp"
-#include "core/processor_time.hpp"
+#include "core/measure/crc32.hpp"
+#include "core/measure/processor_time.hpp"
 #include "core/time.hpp"
 #include "server/timing/cpu_affinity.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 EstimatorEvent drop_of(const VoFrame& frame) {
@@ -25,22 +25,13 @@ std::int64_t period_ns(double rate_hz) {
   return rate_hz > 0.0 ? std::llround(static_cast<double>(kNsPerS) / rate_hz) : 0;
 }
 
-/// Removes values that a run folder cannot hold: numbers that JSON cannot represent, data of
-/// another frame.
-void tidy(const VoFrame& frame, VoEstimate& estimate) {
-  estimate.sample.frame = frame.index;
-  estimate.sample.t_ns = frame.t_ns;
-  const auto is_odd = [](const auto& entry) { return !std::isfinite(entry.second); };
-  std::erase_if(estimate.counters, is_odd);
-  std::erase_if(estimate.timing_ms, is_odd);
-}
-
 }  // namespace
 
 EstimatorWorker::EstimatorWorker(std::unique_ptr<VoPort> port,
                                  EstimatorWorkerOptions options,
                                  RunClock& clock)
     : port_(std::move(port)),
+      driver_(*port_),
       options_(std::move(options)),
       clock_(clock),
       ready_ns_(clock.now_ns()),
@@ -101,16 +92,11 @@ void EstimatorWorker::rethrow_failure() {
 EstimatorUse EstimatorWorker::use() {
   EstimatorUse use;
   use.cpu_s = cpu_s_;
-  (void)contained(
-      [&] {
-        if (const auto own = port_->resource_use()) last_known_ = own;
-      },
-      [](const char*) {});
-  if (last_known_) {
-    use.cpu_s = std::max(0.0, last_known_->cpu_s - cpu_to_get_ready_s_);
-    use.peak_memory_mb = last_known_->peak_memory_mb;
-    use.measured = last_known_->own_process ? EstimatorUse::Measured::kProcess
-                                            : EstimatorUse::Measured::kOwnAccount;
+  if (const std::optional<ResourceUse> own = driver_.use()) {
+    use.cpu_s = own->cpu_s;
+    use.peak_memory_mb = own->peak_memory_mb;
+    use.measured =
+        own->own_process ? EstimatorUse::Measured::kProcess : EstimatorUse::Measured::kOwnAccount;
   }
   const double elapsed_s = s_from_ns(clock_.now_ns() - ready_ns_);
   if (elapsed_s > 0.0) use.cpu_percent = 100.0 * use.cpu_s / elapsed_s;
@@ -146,13 +132,7 @@ void EstimatorWorker::work() {
 void EstimatorWorker::make_ready(std::unique_lock<std::mutex>& lock) {
   const VoFrame first = *std::exchange(to_prepare_, std::nullopt);
   lock.unlock();
-  Status prepared = guarded([&] { return port_->prepare(first); });
-  const Status measured = guarded([&]() -> Status {
-    if (const auto use = port_->resource_use()) cpu_to_get_ready_s_ = use->cpu_s;
-    return {};
-  });
-  if (prepared && !measured) prepared = measured;
-  if (!prepared) failure_ = prepared.error();
+  driver_.prepare(first);
   ready_ns_ = clock_.now_ns();
   lock.lock();
 }
@@ -170,35 +150,26 @@ void EstimatorWorker::answer_waiting(std::unique_lock<std::mutex>& lock) {
 
 EstimatorEvent EstimatorWorker::answer(const Waiting& waiting) {
   EstimatorEvent event;
-  event.record.sample.frame = waiting.frame.index;
-  event.record.sample.t_ns = waiting.frame.t_ns;
-  event.record.sample.state = TrackingState::kLost;
+  event.record = lost_record(waiting.frame);
   if (crashed_) return event;
   Result<VoEstimate> estimate = track(waiting.frame);
   if (estimate) hold_back(waiting);
   event.latency_ms = static_cast<double>(clock_.now_ns() - waiting.handed_over_ns) * 1e-6;
   constexpr std::int64_t kAnswersPerUse = 16;
   if (!estimate || answers_++ % kAnswersPerUse == 0) event.use = use();
-  if (!estimate && estimate.error().code == ErrorCode::kCancelled) {
+  if (!estimate) {
     // The run was stopped, and the estimator with it during a frame; this is not an error of the
     // estimator.
-    return drop_of(waiting.frame);
-  }
-  if (estimate) {
-    tidy(waiting.frame, *estimate);
-    if (Status usable = judge(*estimate); !usable) estimate = usable.error();
-  }
-  if (!estimate) {
+    if (estimate.error().code == ErrorCode::kCancelled) return drop_of(waiting.frame);
     crashed_ = true;
     event.record.crash = estimate.error().message;
     return event;
   }
+  event.record = record_of(*estimate);
   event.record.image_crc32 = estimate->image_crc32;
   if (options_.in_process && !event.record.image_crc32) {
     event.record.image_crc32 = crc32_of(*waiting.frame.image);
   }
-  event.record.sample = estimate->sample;
-  event.record.counters = std::move(estimate->counters);
   event.debug_image = std::move(estimate->debug_image);
   event.map_points_vo = std::move(estimate->map_points_vo);
   event.timing_ms = std::move(estimate->timing_ms);
@@ -207,21 +178,12 @@ EstimatorEvent EstimatorWorker::answer(const Waiting& waiting) {
 
 Result<VoEstimate> EstimatorWorker::track(const VoFrame& frame) {
   const double before_s = thread_cpu_s();
-  Result<VoEstimate> estimate = guarded([&]() -> Result<VoEstimate> {
-    if (failure_) return *failure_;
-    choose_debug(frame.t_ns);
-    return port_->track(frame);
-  });
+  Result<VoEstimate> estimate = driver_.track(frame, takes_debug(frame.t_ns));
   cpu_s_ += thread_cpu_s() - before_s;
-  return estimate;
-}
-
-Status EstimatorWorker::judge(VoEstimate& estimate) {
-  Status usable = poses_.take(estimate);
-  std::vector<std::string> notes = poses_.take_notes();
+  std::vector<std::string> notes = driver_.take_notes();
   const std::lock_guard lock(mutex_);
   std::move(notes.begin(), notes.end(), std::back_inserter(notes_));
-  return usable;
+  return estimate;
 }
 
 std::vector<std::string> EstimatorWorker::take_log() {
@@ -240,10 +202,10 @@ void EstimatorWorker::hold_back(const Waiting& waiting) {
   clock_.sleep_until_ns(free_at_ns_);
 }
 
-void EstimatorWorker::choose_debug(std::int64_t t_ns) {
+bool EstimatorWorker::takes_debug(std::int64_t t_ns) {
   const bool wanted = debug_period_ns_ > 0 && t_ns >= next_debug_ns_;
-  port_->set_debug(wanted);
   while (wanted && next_debug_ns_ <= t_ns) next_debug_ns_ += debug_period_ns_;
+  return wanted;
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -14,12 +14,12 @@
 #include <vector>
 
 #include "core/result.hpp"
+#include "server/estimators/estimator_driver.hpp"
 #include "server/record/estimator_event.hpp"
 #include "server/timing/run_clock.hpp"
-#include "vo_bridges/pose_intake.hpp"
 #include "vo_bridges/vo_port.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 struct EstimatorWorkerOptions {
   double debug_hz = 0.0;  ///< rate of debug images, 0 = none
@@ -73,26 +73,21 @@ class EstimatorWorker {
   void rethrow_failure();
   [[nodiscard]] EstimatorEvent answer(const Waiting& waiting);
   [[nodiscard]] Result<VoEstimate> track(const VoFrame& frame);
-  /// Errors: kInternal after too many answers in a row without a usable pose.
-  [[nodiscard]] Status judge(VoEstimate& estimate);
   void hold_back(const Waiting& waiting);
-  void choose_debug(std::int64_t t_ns);
+  /// Whether a frame gets a debug image, by the rate of them.
+  [[nodiscard]] bool takes_debug(std::int64_t t_ns);
 
   std::unique_ptr<VoPort> port_;
+  EstimatorDriver driver_;
   const EstimatorWorkerOptions options_;
   RunClock& clock_;
   std::int64_t ready_ns_ = 0;
-  double cpu_to_get_ready_s_ = 0.0;  ///< of the estimator's process, until it was ready
-  /// Kept because an estimator that has ended reports none.
-  std::optional<ResourceUse> last_known_;
-  std::optional<Error> failure_;  ///< of the preparation
   std::int64_t debug_period_ns_ = 0;
   std::int64_t next_debug_ns_ = 0;
   std::int64_t free_at_ns_ = 0;  ///< for a throttled estimator
   double cpu_s_ = 0.0;           ///< of the worker's thread, inside the estimator
   std::int64_t answers_ = 0;
   bool crashed_ = false;
-  PoseIntake poses_;
 
   std::mutex mutex_;
   std::condition_variable changed_;
@@ -101,11 +96,11 @@ class EstimatorWorker {
   bool busy_ = false;
   bool stopping_ = false;
   std::exception_ptr thrown_;       ///< by this class's own code on the worker's thread
-  std::vector<std::string> notes_;  ///< by this class, about the answers
+  std::vector<std::string> notes_;  ///< about the answers
   std::vector<EstimatorEvent> events_;
   /// Drops after the frame in progress and before the waiting one.
   std::vector<EstimatorEvent> drops_;
   std::thread thread_;
 };
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

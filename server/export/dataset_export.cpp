@@ -6,15 +6,14 @@
 #include <utility>
 
 #include "flight/gravity.hpp"
-#include "server/camera/truth.hpp"
+#include "middleware/lcm/findings.hpp"
+#include "middleware/ros1/findings.hpp"
 #include "server/export/frame_sequence.hpp"
 #include "server/files/build_info.hpp"
 #include "server/files/whole_file.hpp"
 #include "server/timing/run_clock.hpp"
-#include "vo_bridges/lcm/lcm_estimator.hpp"
-#include "vo_bridges/ros1/ros1_estimator.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -34,8 +33,8 @@ Status measure_inertially(const ExportSource& source,
                           DatasetPlan& plan) {
   const Scenario& scenario = source.scenario;
   const terrain::World& world = frames.maker().world();
-  auto flight = create_truth(scenario, world);
-  auto again = create_truth(scenario, world);
+  auto flight = open_truth(source, world);
+  auto again = open_truth(source, world);
   if (!flight || !again) return flight ? again.error() : flight.error();
   const auto start = (*again)->state_at(0);
   if (!start) return start.error();
@@ -119,12 +118,12 @@ Status prepare_folder(const fs::path& folder) {
 }
 
 Status check_export(const ExportOptions& options) {
-  if (options.format == DatasetFormat::kLcm && !lcm_is_built_in()) {
+  if (options.format == DatasetFormat::kLcm && !lcm::is_built_in()) {
     return Error{ErrorCode::kUnsupported,
                  "format = lcm: this build does not speak LCM: install liblcm-dev and liblcm-bin, "
                  "and build again"};
   }
-  if (options.format == DatasetFormat::kRosbag && !ros1_is_built_in()) {
+  if (options.format == DatasetFormat::kRosbag && !ros1::is_built_in()) {
     return Error{
         ErrorCode::kUnsupported,
         "format = rosbag: this build writes no ROS bags: install librosbag-storage-dev, "
@@ -234,7 +233,7 @@ Result<ExportSummary> export_dataset(const ExportSource& source, const ExportOpt
   making.stages = &stages;
   FrameSpan span{options.from_s, options.to_s, options.cameras};
   if (takes_one_camera(options.format) && span.cameras.empty()) {
-    span.cameras = {source.scenario.cameras.front().name};
+    span.cameras = {source.scenario.main_camera().name};
   }
   const auto frames = FrameSequence::open(source, span, making);
   if (!frames) return frames.error();
@@ -253,4 +252,4 @@ Result<ExportSummary> export_dataset(const ExportSource& source, const ExportOpt
   return summary;
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

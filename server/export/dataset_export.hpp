@@ -16,7 +16,7 @@
 #include "server/export/flight_video.hpp"
 #include "server/export/truth_writer.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 struct ExportOptions {
   std::filesystem::path folder;  ///< created; must not exist, or be empty
@@ -29,7 +29,7 @@ struct ExportOptions {
   flight::ImuModel imu;            ///< for EuRoC
   std::optional<VideoLook> video;  ///< writes video.webm next to the images, of the first camera
 
-  RendererFactory renderer_factory;           ///< the engine's default if empty
+  RendererFactory renderer_factory;           ///< the server's default if empty
   const std::atomic<bool>* cancel = nullptr;  ///< stops after the current frame
   std::function<void(const std::string&)> notice;
   /// Called after each frame: frames done, frames in total.
@@ -53,4 +53,4 @@ struct ExportSummary {
 [[nodiscard]] Result<ExportSummary> export_dataset(const ExportSource& source,
                                                    const ExportOptions& options);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

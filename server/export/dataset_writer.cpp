@@ -2,7 +2,7 @@
 
 #include <system_error>
 
-namespace overfly::engine {
+namespace overfly::server {
 
 const char* to_string(DatasetFormat format) {
   switch (format) {
@@ -60,4 +60,4 @@ Status make_folder(const std::filesystem::path& folder) {
   return Error{ErrorCode::kIo, folder.string() + ": cannot be created: " + failure.message()};
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

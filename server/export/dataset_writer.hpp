@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "core/geodesy.hpp"
+#include "core/earth/geodesy.hpp"
 #include "core/result.hpp"
 #include "flight/imu.hpp"
 #include "server/camera/frame_maker.hpp"
 #include "server/scenario/scenario.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 enum class DatasetFormat { kTumMono, kEuroc, kKitti, kPng, kLcm, kRosbag };
 
@@ -63,4 +63,4 @@ class DatasetWriter {
 /// Creates a folder with its parents. Errors: kIo naming it.
 [[nodiscard]] Status make_folder(const std::filesystem::path& folder);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

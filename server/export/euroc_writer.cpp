@@ -6,7 +6,7 @@
 #include "server/files/png_file.hpp"
 #include "server/files/whole_file.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -158,4 +158,4 @@ Result<std::unique_ptr<DatasetWriter>> create_euroc_writer(const DatasetPlan& pl
   return std::unique_ptr<DatasetWriter>(std::move(writer));
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -2,12 +2,13 @@
 
 #include <utility>
 
+#include "server/camera/truth.hpp"
 #include "server/files/whole_file.hpp"
 #include "server/record/run_folder.hpp"
 #include "server/record/run_records.hpp"
 #include "server/scenario/document/scenario_file.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -17,35 +18,33 @@ using Json = nlohmann::json;
 /// manifest.
 constexpr std::int64_t kEpochUtcNs = 1'767'225'600 * kNsPerS;
 
-Error unusable_run(const fs::path& file, const std::string& fault) {
-  return {ErrorCode::kUnreadable, file.string() + ": " + fault};
-}
-
-Result<std::vector<std::pair<std::string, std::string>>> digests_of(const Json& manifest,
-                                                                    const fs::path& file) {
+/// File and digest of each data file of the world; none if the run ended before it was opened.
+std::vector<std::pair<std::string, std::string>> digests_of(const RunManifest& manifest) {
   std::vector<std::pair<std::string, std::string>> digests;
-  if (!manifest.contains("world"))
-    return unusable_run(file, "no field world: the run ended before its world was opened");
-  for (const Json& row : manifest["world"].value("data_hashes", Json::array())) {
-    digests.emplace_back(row.value("file", ""), row.value("digest", ""));
+  if (!manifest.world) return digests;
+  for (const RunManifest::WorldFile& file : manifest.world->data_hashes) {
+    digests.emplace_back(file.file, file.digest);
   }
   return digests;
 }
 
 Result<ExportSource> open_run(const fs::path& folder) {
-  const Result<Json> manifest = read_json(manifest_file(folder));
+  const Result<ReadManifest> manifest = read_run_manifest(folder);
   if (!manifest) return manifest.error();
+  if (Status status = manifest->check(ManifestPart::kWorld); !status) return status.error();
   Result<Json> document = read_json(scenario_file(folder));
   if (!document) return document.error();
   Result<Scenario> scenario = resolve_scenario(std::move(*document), {}, folder);
   if (!scenario) return scenario.error().in(scenario_file(folder).string());
-  Result<RunRecords> records = read_run_records(folder);
+  Result<RunRecords> records = read_run_records(folder, *manifest);
   if (!records) return records.error();
-  auto digests = digests_of(*manifest, manifest_file(folder));
-  if (!digests) return digests.error();
-  ExportSource source{std::move(*scenario),
-                      RecordedRun{folder, std::move(records->frames), std::move(*digests)},
-                      manifest->value("epoch_utc_ns", kEpochUtcNs)};
+  ExportSource source{
+      std::move(*scenario),
+      RecordedRun{folder,
+                  std::move(records->cameras[kMainCamera].frames),
+                  digests_of(manifest->values),
+                  manifest->values.flight ? manifest->values.flight->description : ""},
+      manifest->values.epoch_utc_ns.value_or(kEpochUtcNs)};
   if (source.run->frames.empty()) {
     return Error{ErrorCode::kNotFound, folder.string() + ": the run recorded no frames"};
   }
@@ -71,6 +70,12 @@ Result<ExportSource> open_export_source(const fs::path& path,
   return ExportSource{std::move(*scenario), std::nullopt, epoch_ns};
 }
 
+Result<std::unique_ptr<TruthSource>> open_truth(const ExportSource& source,
+                                                const terrain::World& world) {
+  if (!source.run) return create_truth(source.scenario, world);
+  return open_flown_truth(source.run->folder, source.run->flight, source.scenario, world);
+}
+
 Status check_world(const ExportSource& source, const terrain::World& world) {
   if (!source.run) return {};
   const auto conflict = [&](const std::string& what) {
@@ -92,15 +97,15 @@ Status check_world(const ExportSource& source, const terrain::World& world) {
   return {};
 }
 
-Status check_frame(const FrameRecord& recorded, const MadeFrame& made) {
+Status check_frame(const FrameRow& recorded, const MadeFrame& made) {
   // Poses are bit-identical on the same machine; another C library may round sines differently.
   constexpr double kCloseM = 1e-6;
   constexpr double kCloseRad = 1e-8;
-  const Pose& then = recorded.row.T_world_camera;
-  const Pose& now = made.shots.front().drawn.T_world_camera;
+  const Pose& then = recorded.T_world_camera;
+  const Pose& now = made.shots[kMainCamera].drawn.T_world_camera;
   const double away_m = (then.translation - now.translation).norm();
   const double away_rad = rotation_angle_rad(then.rotation, now.rotation);
-  if (away_m <= kCloseM && away_rad <= kCloseRad && recorded.row.t_ns == made.t_ns) return {};
+  if (away_m <= kCloseM && away_rad <= kCloseRad && recorded.t_ns == made.t_ns) return {};
   return Error{ErrorCode::kConflict,
                "frame " + std::to_string(made.frame) + ": rendered " + std::to_string(away_m) +
                    " m and " + std::to_string(deg_from_rad(away_rad)) +
@@ -108,4 +113,4 @@ Status check_frame(const FrameRecord& recorded, const MadeFrame& made) {
                    "differ from the run's"};
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

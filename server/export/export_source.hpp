@@ -12,13 +12,14 @@
 #include "server/record/run_rows.hpp"
 #include "server/scenario/scenario.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// The record of a run, against which rendered frames are checked.
 struct RecordedRun {
   std::filesystem::path folder;
-  std::vector<FrameRecord> frames;
+  std::vector<FrameRow> frames;
   std::vector<std::pair<std::string, std::string>> world_digests;  ///< file, digest
+  std::string flight;                                              ///< description
 };
 
 struct ExportSource {
@@ -34,11 +35,16 @@ struct ExportSource {
 [[nodiscard]] Result<ExportSource> open_export_source(const std::filesystem::path& path,
                                                       const std::vector<Override>& overrides = {});
 
+/// The flight of the source over its opened world: as recorded, or as the scenario describes it.
+/// Errors: as open_flown_truth and create_truth.
+[[nodiscard]] Result<std::unique_ptr<TruthSource>> open_truth(const ExportSource& source,
+                                                              const terrain::World& world);
+
 /// Checks that the world is the one used by the run.
 /// Errors: kConflict naming the file whose content differs.
 [[nodiscard]] Status check_world(const ExportSource& source, const terrain::World& world);
 /// Checks that a frame was rendered from the recorded pose of the camera.
 /// Errors: kConflict naming frame and distance.
-[[nodiscard]] Status check_frame(const FrameRecord& recorded, const MadeFrame& made);
+[[nodiscard]] Status check_frame(const FrameRow& recorded, const MadeFrame& made);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

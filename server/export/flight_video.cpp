@@ -4,7 +4,7 @@
 
 #include "core/time.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 const char* to_string(VideoView view) {
   if (view == VideoView::kCamera) return "camera";
@@ -78,4 +78,4 @@ Status FlightVideo::open(const Image& first, std::int64_t t_ns) {
   return {};
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

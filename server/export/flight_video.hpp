@@ -12,7 +12,7 @@
 #include "server/export/vp9_encoder.hpp"
 #include "server/export/webm_file.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 enum class VideoView { kCamera, kChase, kBoth };
 
@@ -57,4 +57,4 @@ class FlightVideo {
   std::int64_t last_ms_ = 0;
 };
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -5,7 +5,7 @@
 
 #include "server/record/rows.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 /// True if a frame depends on the preceding ones, so that none may be skipped.
@@ -26,7 +26,9 @@ Result<std::unique_ptr<FrameSequence>> FrameSequence::open(const ExportSource& s
                                                            const FrameMakerOptions& options) {
   std::unique_ptr<FrameSequence> sequence(new FrameSequence(source));
   if (Status status = sequence->choose_cameras(span.cameras); !status) return status.error();
-  auto maker = FrameMaker::open(source.scenario, options);
+  FrameMakerOptions making = options;
+  making.open_truth = [&source](const terrain::World& world) { return open_truth(source, world); };
+  auto maker = FrameMaker::open(source.scenario, making);
   if (!maker) return maker.error();
   sequence->maker_ = std::move(*maker);
   if (Status status = check_world(source, sequence->maker_->world()); !status) {
@@ -64,8 +66,8 @@ Status FrameSequence::choose_frames(const FrameSpan& span) {
     return t_ns >= from_ns && (!span.to_s || t_ns <= ns_from_s(*span.to_s));
   };
   if (source_.run) {
-    for (const FrameRecord& record : source_.run->frames) {
-      if (inside(record.row.frame)) frames_.push_back(record.row.frame);
+    for (const FrameRow& record : source_.run->frames) {
+      if (inside(record.frame)) frames_.push_back(record.frame);
     }
   } else {
     for (std::int64_t k = 0; k < maker_->frames_total(); ++k) {
@@ -80,14 +82,14 @@ Status FrameSequence::choose_frames(const FrameSpan& span) {
                    std::to_string(end_s) + "] s"};
 }
 
-const FrameRecord* FrameSequence::record_of(std::int64_t frame) const {
+const FrameRow* FrameSequence::record_of(std::int64_t frame) const {
   if (!source_.run) return nullptr;
   const auto& rows = source_.run->frames;
   const auto found = std::lower_bound(
-      rows.begin(), rows.end(), frame, [](const FrameRecord& record, std::int64_t wanted) {
-        return record.row.frame < wanted;
+      rows.begin(), rows.end(), frame, [](const FrameRow& record, std::int64_t wanted) {
+        return record.frame < wanted;
       });
-  return found != rows.end() && found->row.frame == frame ? &*found : nullptr;
+  return found != rows.end() && found->frame == frame ? &*found : nullptr;
 }
 
 /// Makes the frames on which the next one depends.
@@ -110,7 +112,7 @@ Result<std::optional<MadeFrame>> FrameSequence::next() {
   if (!next || !*next) return next;
   MadeFrame& made = **next;
   made_up_to_ = frame + 1;
-  if (const FrameRecord* record = record_of(frame); record != nullptr) {
+  if (const FrameRow* record = record_of(frame); record != nullptr) {
     if (Status status = check_frame(*record, made); !status) return status.error();
   }
   std::vector<CameraShot> shots;
@@ -119,4 +121,4 @@ Result<std::optional<MadeFrame>> FrameSequence::next() {
   return next;
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -12,7 +12,7 @@
 #include "server/export/export_source.hpp"
 #include "server/record/rows.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 struct FrameSpan {
   double from_s = 0.0;
@@ -45,7 +45,7 @@ class FrameSequence {
   Status choose_cameras(const std::vector<std::string>& names);
   Status choose_frames(const FrameSpan& span);
   Status catch_up(std::int64_t frame);
-  [[nodiscard]] const FrameRecord* record_of(std::int64_t frame) const;
+  [[nodiscard]] const FrameRow* record_of(std::int64_t frame) const;
 
   const ExportSource& source_;
   std::unique_ptr<FrameMaker> maker_;
@@ -56,4 +56,4 @@ class FrameSequence {
   std::int64_t made_up_to_ = 0;  ///< the maker has passed all frames before this one
 };
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -5,7 +5,7 @@
 #include "server/files/png_file.hpp"
 #include "server/files/whole_file.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 class KittiWriter final : public DatasetWriter {
@@ -78,4 +78,4 @@ Result<std::unique_ptr<DatasetWriter>> create_kitti_writer(const DatasetPlan& pl
   return std::unique_ptr<DatasetWriter>(std::move(writer));
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

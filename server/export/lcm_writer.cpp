@@ -2,18 +2,18 @@
 // (vo_bridges/lcm/README.md), and the true poses.
 #include <optional>
 
+#include "middleware/lcm/log_writer.hpp"
 #include "server/export/dataset_writer.hpp"
 #include "server/files/number_text.hpp"
-#include "vo_bridges/lcm/lcm_log_writer.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 constexpr std::int64_t kCalibrationPeriodNs = 1'000'000'000;
 
 class LcmWriter final : public DatasetWriter {
  public:
-  LcmWriter(const DatasetPlan& plan, std::unique_ptr<LcmLogWriter> log)
+  LcmWriter(const DatasetPlan& plan, std::unique_ptr<lcm::LogWriter> log)
       : cameras_(plan.cameras), log_(std::move(log)) {
     for (const CameraSpec& camera : cameras_) {
       // The first camera uses the door's own channels, so that its log can be played to an
@@ -60,7 +60,7 @@ class LcmWriter final : public DatasetWriter {
   }
 
   std::vector<CameraSpec> cameras_;
-  std::unique_ptr<LcmLogWriter> log_;
+  std::unique_ptr<lcm::LogWriter> log_;
   std::vector<std::string> prefixes_;  ///< channel prefixes, one for each camera
   std::optional<std::int64_t> next_calibration_ns_;
 };
@@ -68,9 +68,9 @@ class LcmWriter final : public DatasetWriter {
 }  // namespace
 
 Result<std::unique_ptr<DatasetWriter>> create_lcm_writer(const DatasetPlan& plan) {
-  auto log = LcmLogWriter::create(plan.folder / "flight.lcm", plan.epoch_utc_ns);
+  auto log = lcm::LogWriter::create(plan.folder / "flight.lcm", plan.epoch_utc_ns);
   if (!log) return log.error().in("lcm");
   return std::unique_ptr<DatasetWriter>(std::make_unique<LcmWriter>(plan, std::move(*log)));
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

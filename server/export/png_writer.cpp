@@ -6,7 +6,7 @@
 #include "server/files/whole_file.hpp"
 #include "server/record/run_rows.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 using Json = nlohmann::json;
@@ -111,4 +111,4 @@ Result<std::unique_ptr<DatasetWriter>> create_png_writer(const DatasetPlan& plan
   return std::unique_ptr<DatasetWriter>(std::move(writer));
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

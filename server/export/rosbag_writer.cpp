@@ -3,10 +3,10 @@
 #include <set>
 #include <system_error>
 
+#include "middleware/ros1/bag_writer.hpp"
 #include "server/export/dataset_writer.hpp"
-#include "vo_bridges/ros1/ros1_bag_writer.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -41,7 +41,7 @@ std::vector<CameraNames> topic_names(const std::vector<CameraSpec>& cameras) {
 
 class RosbagWriter final : public DatasetWriter {
  public:
-  RosbagWriter(const DatasetPlan& plan, std::unique_ptr<Ros1BagWriter> bag, fs::path unfinished)
+  RosbagWriter(const DatasetPlan& plan, std::unique_ptr<ros1::BagWriter> bag, fs::path unfinished)
       : plan_(plan),
         names_(topic_names(plan.cameras)),
         bag_(std::move(bag)),
@@ -85,7 +85,7 @@ class RosbagWriter final : public DatasetWriter {
 
   DatasetPlan plan_;
   std::vector<CameraNames> names_;
-  std::unique_ptr<Ros1BagWriter> bag_;
+  std::unique_ptr<ros1::BagWriter> bag_;
   fs::path unfinished_;  ///< name until it is complete, as used by rosbag
 };
 
@@ -98,10 +98,10 @@ Result<std::unique_ptr<DatasetWriter>> create_rosbag_writer(const DatasetPlan& p
                      ": a bag can hold only times after 1970"};
   }
   const fs::path unfinished = plan.folder / "flight.bag.active";
-  auto bag = Ros1BagWriter::create(unfinished);
+  auto bag = ros1::BagWriter::create(unfinished);
   if (!bag) return bag.error();
   return std::unique_ptr<DatasetWriter>(
       std::make_unique<RosbagWriter>(plan, std::move(*bag), unfinished));
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -11,7 +11,7 @@
 #include "server/files/whole_file.hpp"
 #include "terrain/raster/image_file.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 namespace fs = std::filesystem;
 
@@ -145,4 +145,4 @@ Status write_flow(const fs::path& file, const renderer::VectorImage& flow) {
   return write_whole(file, std::span<const std::uint8_t>(bytes));
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

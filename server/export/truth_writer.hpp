@@ -11,7 +11,7 @@
 #include "renderer/camera/truth_images.hpp"
 #include "server/camera/frame_maker.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 enum class TruthKind { kDepth, kRange, kNormal, kFlow, kWorld, kMask };
 
@@ -71,4 +71,4 @@ class TruthWriter {
 [[nodiscard]] Status write_flow(const std::filesystem::path& file,
                                 const renderer::VectorImage& flow);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/trajectory_io.hpp"
+#include "core/motion/trajectory_io.hpp"
 #include "sensor/photometric_calibration.hpp"
 #include "server/export/dataset_writer.hpp"
 #include "server/files/number_text.hpp"
 #include "server/files/png_file.hpp"
 #include "server/files/whole_file.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 /// Name and coefficients of a lens, as in the first line of camera.txt.
@@ -47,11 +47,11 @@ class TumMonoWriter final : public DatasetWriter {
     if (Status status = make_folder(folder_ / "images"); !status) return status;
     if (Status status = write_camera(); !status) return status;
     if (!camera_.sensor.enabled) return {};
-    if (Status status = renderer::write_pcalib(folder_ / "pcalib.txt", camera_.sensor); !status) {
+    if (Status status = sensor::write_pcalib(folder_ / "pcalib.txt", camera_.sensor); !status) {
       return status;
     }
     return write_png_file(folder_ / "vignette.png",
-                          renderer::vignette_map(camera_.sensor, camera_.model));
+                          sensor::vignette_map(camera_.sensor, camera_.model));
   }
 
   Result<std::vector<std::string>> add(const MadeFrame& frame) override {
@@ -119,4 +119,4 @@ Result<std::unique_ptr<DatasetWriter>> create_tum_mono_writer(const DatasetPlan&
   return std::unique_ptr<DatasetWriter>(std::move(writer));
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

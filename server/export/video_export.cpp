@@ -3,7 +3,7 @@
 #include "core/cancel.hpp"
 #include "server/export/frame_sequence.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 Status check_video_options(const VideoOptions& options) {
@@ -23,7 +23,7 @@ Result<VideoSummary> export_video(const ExportSource& source, const VideoOptions
   making.cancel = options.cancel;
   making.notice = options.notice;
   FrameSpan span{options.from_s, options.to_s, {options.camera}};
-  if (options.camera.empty()) span.cameras = {source.scenario.cameras.front().name};
+  if (options.camera.empty()) span.cameras = {source.scenario.main_camera().name};
   const auto frames = FrameSequence::open(source, span, making);
   if (!frames) return frames.error();
 
@@ -46,4 +46,4 @@ Result<VideoSummary> export_video(const ExportSource& source, const VideoOptions
   return summary;
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -12,7 +12,7 @@
 #include "server/export/export_source.hpp"
 #include "server/export/flight_video.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 struct VideoOptions {
   std::filesystem::path file;  ///< .webm; must not exist
@@ -38,4 +38,4 @@ struct VideoSummary {
 [[nodiscard]] Result<VideoSummary> export_video(const ExportSource& source,
                                                 const VideoOptions& options);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

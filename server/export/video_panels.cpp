@@ -4,7 +4,7 @@
 
 #include "renderer/viewpoint.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 Image panel_from(const Image& image, int factor) {
   const int width = image.width_px / factor / 2 * 2;
@@ -55,4 +55,4 @@ Result<Image> ChasePanel::draw(const Pose& T_world_body, int width_px, int heigh
   return renderer_.render_scene(view, content);
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -3,12 +3,12 @@
 
 #include <vector>
 
-#include "core/image.hpp"
+#include "core/camera/image.hpp"
 #include "core/result.hpp"
 #include "renderer/renderer.hpp"
 #include "server/camera/frame_maker.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// The image as RGB, downsampled by an integer factor (mean of the pixels); its sides are cropped
 /// to even numbers.
@@ -33,4 +33,4 @@ class ChasePanel {
   std::vector<Pose> flown_;  ///< T_world_body so far
 };
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

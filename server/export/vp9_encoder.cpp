@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 Error refused(const char* field, int value, const std::string& limit) {
@@ -171,4 +171,4 @@ Result<std::vector<VideoPacket>> Vp9Encoder::encode(const Image& rgb, std::int64
   return packets;
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

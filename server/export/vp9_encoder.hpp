@@ -5,10 +5,10 @@
 #include <memory>
 #include <vector>
 
-#include "core/image.hpp"
+#include "core/camera/image.hpp"
 #include "core/result.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 struct VideoSettings {
   int width_px = 0;   ///< even, in [16, 16384]
@@ -56,4 +56,4 @@ struct PlanarImage {
 /// ITU-R BT.709 in the narrow range (luma 16 to 235), chroma the mean of 2 x 2 pixels.
 [[nodiscard]] PlanarImage planar_from_rgb(const Image& rgb);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -9,7 +9,7 @@
 
 #include "server/files/build_info.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -241,4 +241,4 @@ Status WebmFile::finish(std::int64_t end_ms) {
   return {};
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

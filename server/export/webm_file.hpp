@@ -11,7 +11,7 @@
 #include "core/result.hpp"
 #include "server/export/vp9_encoder.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Writes packets as they come, and the seek index at the end. The file appears whole at `finish`,
 /// or not at all.
@@ -57,4 +57,4 @@ class WebmFile {
   std::vector<CuePoint> cues_;
 };
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -2,9 +2,9 @@
 
 #include "server/files/build_info_values.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 std::string version() { return kVersion; }
 std::string git_commit() { return kGitCommit; }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -3,10 +3,10 @@
 
 #include <string>
 
-namespace overfly::engine {
+namespace overfly::server {
 
 [[nodiscard]] std::string version();  ///< "0.1.0"
 /// Abbreviated commit of the source, with "-dirty" if files were changed; "unknown" outside git.
 [[nodiscard]] std::string git_commit();
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -5,7 +5,7 @@
 
 #include "server/files/plain_name.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 using Json = nlohmann::json;
@@ -25,13 +25,13 @@ std::string shown(const Json& value) {
 FileField::FileField(const Json& value, std::string path)
     : value_(&value), path_(std::move(path)) {}
 
-void FileField::fault(const std::string& must) const {
-  throw FieldFault((path_.empty() ? "the document" : path_) + " = " + shown(*value_) + ": must " +
-                   must);
+void FileField::reject(const std::string& must) const {
+  throw FieldViolation((path_.empty() ? "the document" : path_) + " = " + shown(*value_) +
+                       ": must " + must);
 }
 
 std::optional<FileField> FileField::find(const std::string& name) const {
-  if (!value_->is_object()) fault("be an object");
+  if (!value_->is_object()) reject("be an object");
   const auto found = value_->find(name);
   if (found == value_->end()) return std::nullopt;
   return FileField(*found, path_.empty() ? name : path_ + "." + name);
@@ -39,12 +39,12 @@ std::optional<FileField> FileField::find(const std::string& name) const {
 
 FileField FileField::at(const std::string& name) const {
   std::optional<FileField> found = find(name);
-  if (!found) throw FieldFault((path_.empty() ? name : path_ + "." + name) + ": is missing");
+  if (!found) throw FieldViolation((path_.empty() ? name : path_ + "." + name) + ": is missing");
   return *std::move(found);
 }
 
 std::vector<FileField> FileField::items() const {
-  if (!value_->is_array()) fault("be an array");
+  if (!value_->is_array()) reject("be an array");
   std::vector<FileField> items;
   items.reserve(value_->size());
   for (const Json& item : *value_) {
@@ -55,7 +55,7 @@ std::vector<FileField> FileField::items() const {
 
 std::vector<double> FileField::numbers(std::size_t count) const {
   if (!value_->is_array() || value_->size() != count) {
-    fault("be an array of " + std::to_string(count) + " numbers");
+    reject("be an array of " + std::to_string(count) + " numbers");
   }
   std::vector<double> numbers;
   numbers.reserve(count);
@@ -64,39 +64,39 @@ std::vector<double> FileField::numbers(std::size_t count) const {
 }
 
 std::string FileField::text() const {
-  if (!value_->is_string()) fault("be text");
+  if (!value_->is_string()) reject("be text");
   return value_->get<std::string>();
 }
 
 std::string FileField::plain_name() const {
   std::string name = text();
-  if (!is_plain_name(name)) fault("be a name of letters, digits, _, - and .");
+  if (!is_plain_name(name)) reject("be a name of letters, digits, _, - and .");
   return name;
 }
 
 bool FileField::boolean() const {
-  if (!value_->is_boolean()) fault("be true or false");
+  if (!value_->is_boolean()) reject("be true or false");
   return value_->get<bool>();
 }
 
 double FileField::number() const {
-  if (!value_->is_number()) fault("be a number");
+  if (!value_->is_number()) reject("be a number");
   const double number = value_->get<double>();
-  if (!std::isfinite(number)) fault("be finite");
+  if (!std::isfinite(number)) reject("be finite");
   return number;
 }
 
 std::int64_t FileField::integer(std::int64_t min, std::int64_t max) const {
   const std::string must =
       "be a whole number in [" + std::to_string(min) + ", " + std::to_string(max) + "]";
-  if (!value_->is_number_integer()) fault(must);
+  if (!value_->is_number_integer()) reject(must);
   if (value_->is_number_unsigned() &&
       value_->get<std::uint64_t>() > static_cast<std::uint64_t>(kLargestFileInteger)) {
-    fault(must);
+    reject(must);
   }
   const auto integer = value_->get<std::int64_t>();
-  if (integer < min || integer > max) fault(must);
+  if (integer < min || integer > max) reject(must);
   return integer;
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

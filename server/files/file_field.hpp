@@ -10,10 +10,10 @@
 
 #include "core/result.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Describes an invalid field: `frames = "many": must be a whole number in [0, 1000]`.
-class FieldFault : public std::runtime_error {
+class FieldViolation : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
@@ -22,7 +22,7 @@ class FieldFault : public std::runtime_error {
 /// enough that sums of a few of them do not overflow 64 bits.
 inline constexpr std::int64_t kLargestFileInteger = 1'000'000'000'000'000'000;
 
-/// One value of a document and its dotted path. A value that does not match throws FieldFault;
+/// One value of a document and its dotted path. A value that does not match throws FieldViolation;
 /// guarded_fields() converts that to an Error. The document must outlive it.
 class FileField {
  public:
@@ -46,8 +46,8 @@ class FileField {
                                      std::int64_t max = kLargestFileInteger) const;
   [[nodiscard]] bool is_null() const { return value_->is_null(); }
   [[nodiscard]] const nlohmann::json& value() const { return *value_; }
-  /// Throws the fault "path = value: must `must`".
-  [[noreturn]] void fault(const std::string& must) const;
+  /// Throws FieldViolation "path = value: must `must`".
+  [[noreturn]] void reject(const std::string& must) const;
 
  private:
   const nlohmann::json* value_;
@@ -59,9 +59,9 @@ template <typename Read>
 auto guarded_fields(const Read& read) -> Result<decltype(read())> {
   try {
     return read();
-  } catch (const FieldFault& fault) {
-    return Error{ErrorCode::kUnreadable, fault.what()};
+  } catch (const FieldViolation& violation) {
+    return Error{ErrorCode::kUnreadable, violation.what()};
   }
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

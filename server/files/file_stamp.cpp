@@ -3,7 +3,7 @@
 #include <fcntl.h>
 #include <sys/stat.h>
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 /// Times beyond 64 bits of nanoseconds wrap around: equal times stay equal.
@@ -33,4 +33,4 @@ bool FileStamp::settled(std::int64_t now_ns) const {
   return !exists || changed_ns < now_ns - kTickNs || changed_ns > now_ns + kTickNs;
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// File metadata from the system. Equal stamps of a settled file mean equal contents.
 struct FileStamp {
@@ -24,4 +24,4 @@ struct FileStamp {
   [[nodiscard]] bool operator==(const FileStamp&) const = default;
 };
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 struct HandleDeleter {
@@ -86,4 +86,4 @@ Result<Image> decode_jpeg(std::span<const std::uint8_t> bytes) {
   return image;
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -5,13 +5,13 @@
 #include <span>
 #include <vector>
 
-#include "core/image.hpp"
+#include "core/camera/image.hpp"
 #include "core/result.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// @param quality  in [1, 100]. Grey stays grey; RGB is stored 4:2:0.
 [[nodiscard]] Result<std::vector<std::uint8_t>> encode_jpeg(const Image& image, int quality);
 [[nodiscard]] Result<Image> decode_jpeg(std::span<const std::uint8_t> bytes);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

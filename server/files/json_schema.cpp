@@ -5,17 +5,17 @@
 
 #include "server/files/json_schema_values.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 using Json = nlohmann::json;
-using Faults = std::vector<SchemaFault>;
+using Violations = std::vector<SchemaViolation>;
 
 std::string joined(const std::string& path, const std::string& key) {
   return path.empty() ? key : path + "." + key;
 }
 
-SchemaFault missing(const std::string& path, const std::string& why = "must be given") {
+SchemaViolation missing(const std::string& path, const std::string& why = "must be given") {
   return {path, path + ": " + why};
 }
 
@@ -99,50 +99,51 @@ const Json& JsonSchema::resolved(const Json& node) const {
   return resolved(schema_.at(Json::json_pointer(ref.substr(1))));
 }
 
-Faults JsonSchema::faults(const Json& document) const {
-  Faults faults;
-  check(schema_, document, "", faults);
-  return faults;
+Violations JsonSchema::violations(const Json& document) const {
+  Violations violations;
+  check(schema_, document, "", violations);
+  return violations;
 }
 
 bool JsonSchema::matches(const Json& node, const Json& value) const {
-  Faults faults;
-  check(node, value, "", faults);
-  return faults.empty();
+  Violations violations;
+  check(node, value, "", violations);
+  return violations.empty();
 }
 
 void JsonSchema::check(const Json& unresolved,
                        const Json& value,
                        const std::string& path,
-                       Faults& faults) const {
+                       Violations& violations) const {
   const Json& node = resolved(unresolved);
   if (std::string limit = broken_limit(node, value); !limit.empty()) {
-    faults.push_back({path, label_of(path) + " = " + shown(value) + ": must be " + limit});
+    violations.push_back({path, label_of(path) + " = " + shown(value) + ": must be " + limit});
     return;
   }
-  if (value.is_object()) check_object(node, value, path, faults);
-  if (value.is_array()) check_array(node, value, path, faults);
-  if (node.contains("oneOf")) check_one_of(node, value, path, faults);
+  if (value.is_object()) check_object(node, value, path, violations);
+  if (value.is_array()) check_array(node, value, path, violations);
+  if (node.contains("oneOf")) check_one_of(node, value, path, violations);
 }
 
 void JsonSchema::check_object(const Json& node,
                               const Json& value,
                               const std::string& path,
-                              Faults& faults) const {
+                              Violations& violations) const {
   const Json& properties = keyword(node, "properties");
   for (const auto& [key, child] : properties.items()) {
-    if (value.contains(key)) check(child, value.at(key), joined(path, key), faults);
+    if (value.contains(key)) check(child, value.at(key), joined(path, key), violations);
   }
   for (const Json& key : keyword(node, "required")) {
     const std::string name = key.get<std::string>();
-    if (!value.contains(name)) faults.push_back(missing(joined(path, name)));
+    if (!value.contains(name)) violations.push_back(missing(joined(path, name)));
   }
   for (const auto& [given, wanted] : keyword(node, "dependentRequired").items()) {
     if (!value.contains(given)) continue;
     for (const Json& key : wanted) {
       const std::string name = key.get<std::string>();
       if (value.contains(name)) continue;
-      faults.push_back(missing(joined(path, name), "must be given with " + joined(path, given)));
+      violations.push_back(
+          missing(joined(path, name), "must be given with " + joined(path, given)));
     }
   }
   if (!node.contains("additionalProperties")) return;
@@ -151,12 +152,12 @@ void JsonSchema::check_object(const Json& node,
     if (properties.contains(key)) continue;
     const std::string where = joined(path, key);
     if (additional.is_object()) {
-      check(additional, child, where, faults);
+      check(additional, child, where, violations);
     } else if (additional == false) {
-      faults.push_back({where,
-                        where + " = " + shown(child) + ": no such field" +
-                            suggestion(key, properties) + " (known: " + names_of(properties) +
-                            ")"});
+      violations.push_back({where,
+                            where + " = " + shown(child) + ": no such field" +
+                                suggestion(key, properties) + " (known: " + names_of(properties) +
+                                ")"});
     }
   }
 }
@@ -164,10 +165,10 @@ void JsonSchema::check_object(const Json& node,
 void JsonSchema::check_array(const Json& node,
                              const Json& value,
                              const std::string& path,
-                             Faults& faults) const {
+                             Violations& violations) const {
   if (!node.contains("items")) return;
   for (std::size_t i = 0; i < value.size(); ++i) {
-    check(node.at("items"), value[i], joined(path, std::to_string(i)), faults);
+    check(node.at("items"), value[i], joined(path, std::to_string(i)), violations);
   }
 }
 
@@ -184,7 +185,7 @@ bool JsonSchema::looks_meant(const Json& branch, const Json& value) const {
 void JsonSchema::check_one_of(const Json& node,
                               const Json& value,
                               const std::string& path,
-                              Faults& faults) const {
+                              Violations& violations) const {
   const Json& branches = node.at("oneOf");
   const auto fits = std::count_if(
       branches.begin(), branches.end(), [&](const Json& branch) { return matches(branch, value); });
@@ -197,10 +198,10 @@ void JsonSchema::check_one_of(const Json& node,
     titles += (titles.empty() ? "" : ", ") + resolved(branch).value("title", "?");
   }
   if (fits == 0 && meant.size() == 1) {
-    check(*meant.front(), value, path, faults);
+    check(*meant.front(), value, path, violations);
     return;
   }
-  faults.push_back(
+  violations.push_back(
       {path, label_of(path) + " = " + shown(value) + ": must be exactly one of " + titles});
 }
 
@@ -226,4 +227,4 @@ void JsonSchema::apply_defaults(const Json& unresolved, Json& value) const {
   }
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

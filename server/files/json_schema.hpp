@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// One violation of the schema in a document.
-struct SchemaFault {
+struct SchemaViolation {
   std::string path;  ///< dotted: "estimators.0.name"; empty = the whole document
   std::string text;  ///< "estimators.0.name = 7: must be text"
 };
@@ -22,7 +22,7 @@ class JsonSchema {
   explicit JsonSchema(nlohmann::json schema) : schema_(std::move(schema)) {}
 
   /// Empty = valid.
-  [[nodiscard]] std::vector<SchemaFault> faults(const nlohmann::json& document) const;
+  [[nodiscard]] std::vector<SchemaViolation> violations(const nlohmann::json& document) const;
   /// Adds each absent property that has a `default`, also inside objects added this way.
   void apply_defaults(nlohmann::json& document) const;
   /// Keywords of the schema that are neither implemented here nor annotations; used to test the
@@ -34,19 +34,19 @@ class JsonSchema {
   void check(const nlohmann::json& node,
              const nlohmann::json& value,
              const std::string& path,
-             std::vector<SchemaFault>& faults) const;
+             std::vector<SchemaViolation>& violations) const;
   void check_object(const nlohmann::json& node,
                     const nlohmann::json& value,
                     const std::string& path,
-                    std::vector<SchemaFault>& faults) const;
+                    std::vector<SchemaViolation>& violations) const;
   void check_array(const nlohmann::json& node,
                    const nlohmann::json& value,
                    const std::string& path,
-                   std::vector<SchemaFault>& faults) const;
+                   std::vector<SchemaViolation>& violations) const;
   void check_one_of(const nlohmann::json& node,
                     const nlohmann::json& value,
                     const std::string& path,
-                    std::vector<SchemaFault>& faults) const;
+                    std::vector<SchemaViolation>& violations) const;
   [[nodiscard]] bool matches(const nlohmann::json& node, const nlohmann::json& value) const;
   [[nodiscard]] bool looks_meant(const nlohmann::json& branch, const nlohmann::json& value) const;
   void apply_defaults(const nlohmann::json& node, nlohmann::json& value) const;
@@ -54,4 +54,4 @@ class JsonSchema {
   nlohmann::json schema_;
 };
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

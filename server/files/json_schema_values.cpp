@@ -4,7 +4,7 @@
 #include <cmath>
 #include <regex>
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 using Json = nlohmann::json;
@@ -123,4 +123,4 @@ std::string shown(const Json& value) {
 
 std::string label_of(const std::string& path) { return path.empty() ? "the scenario" : path; }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// `type` is one of "object", "array", "string", "number", "integer", "boolean", "null".
 /// A number without a fractional part is an integer, also if written as 2.0.
@@ -19,4 +19,4 @@ namespace overfly::engine {
 /// A path as shown in a message.
 [[nodiscard]] std::string label_of(const std::string& path);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace overfly::engine {
+namespace overfly::server {
 
 bool is_plain_name(const std::string& name) {
   const auto allowed = [](char c) {
@@ -13,4 +13,4 @@ bool is_plain_name(const std::string& name) {
          std::all_of(name.begin(), name.end(), allowed);
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

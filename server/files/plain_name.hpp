@@ -3,10 +3,10 @@
 
 #include <string>
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// True for a name that is a single path component: letters, digits, `_`, `-`, `.`, not beginning
 /// with `.`; at most 200 characters.
 [[nodiscard]] bool is_plain_name(const std::string& name);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -10,7 +10,7 @@
 
 #include "server/files/whole_file.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -109,4 +109,4 @@ Status write_png_file(const std::filesystem::path& file, const Image16& image) {
   return write(file, image);
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/image.hpp"
+#include "core/camera/image.hpp"
 #include "core/result.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Encodes grey or RGB, 8 or 16 bit, lossless. Every row uses the "up" filter and the lowest
 /// compression level, which takes a twentieth of the processor time of libpng's level 6
@@ -22,4 +22,4 @@ namespace overfly::engine {
 [[nodiscard]] Status write_png_file(const std::filesystem::path& file, const Image& image);
 [[nodiscard]] Status write_png_file(const std::filesystem::path& file, const Image16& image);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "core/file_text.hpp"
-#include "core/outside_json.hpp"
+#include "core/outside/file_text.hpp"
+#include "core/outside/outside_json.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -75,34 +75,46 @@ Result<nlohmann::json> read_json(const fs::path& file, std::uint64_t max_bytes) 
   return parse_json(*text, file.string());
 }
 
-LineFile::LineFile(int descriptor, fs::path file)
+AppendFile::AppendFile(int descriptor, fs::path file)
     : descriptor_(descriptor), file_(std::move(file)) {}
 
-LineFile::LineFile(LineFile&& other) noexcept
+AppendFile::AppendFile(AppendFile&& other) noexcept
     : descriptor_(std::exchange(other.descriptor_, -1)), file_(std::move(other.file_)) {}
 
-LineFile& LineFile::operator=(LineFile&& other) noexcept {
+AppendFile& AppendFile::operator=(AppendFile&& other) noexcept {
   std::swap(descriptor_, other.descriptor_);
   std::swap(file_, other.file_);
   return *this;
 }
 
-LineFile::~LineFile() {
+AppendFile::~AppendFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
-Result<LineFile> LineFile::create(const fs::path& file) {
+Result<AppendFile> AppendFile::create(const fs::path& file) {
   const int descriptor =
       ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0644);
   if (descriptor < 0) return io_error(file, "create");
-  return LineFile(descriptor, file);
+  return AppendFile(descriptor, file);
+}
+
+Status AppendFile::append(std::span<const std::uint8_t> bytes) {
+  return append(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+}
+
+Status AppendFile::append(std::string_view text) {
+  if (!write_all(descriptor_, text.data(), text.size())) return io_error(file_, "append to");
+  return {};
+}
+
+Result<LineFile> LineFile::create(const fs::path& file) {
+  Result<AppendFile> created = AppendFile::create(file);
+  if (!created) return created.error();
+  return LineFile(std::move(*created));
 }
 
 Status LineFile::append(const nlohmann::json& line) {
-  const std::string text =
-      line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
-  if (!write_all(descriptor_, text.data(), text.size())) return io_error(file_, "append to");
-  return {};
+  return file_.append(line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
 Result<std::vector<nlohmann::json>> read_lines(const fs::path& file) {
@@ -122,4 +134,4 @@ Result<std::vector<nlohmann::json>> read_lines(const fs::path& file) {
   return lines;
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

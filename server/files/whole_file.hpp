@@ -8,11 +8,12 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/result.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Writes a temporary file next to the target and renames it. Errors: kIo naming the file and the
 /// system's reason.
@@ -33,26 +34,40 @@ inline constexpr std::uint64_t kMaxRowsBytes = std::uint64_t{1} << 30U;
 /// Parses text that was read from `origin`, as json_from_outside.
 [[nodiscard]] Result<nlohmann::json> parse_json(std::string_view text, const std::string& origin);
 
+/// A file that only grows. Each piece reaches the system in one write.
+class AppendFile {
+ public:
+  /// Creates the file; must not exist. Errors: kIo.
+  static Result<AppendFile> create(const std::filesystem::path& file);
+  ~AppendFile();
+  AppendFile(AppendFile&& other) noexcept;
+  AppendFile& operator=(AppendFile&& other) noexcept;
+
+  /// Errors: kIo naming the file.
+  Status append(std::span<const std::uint8_t> bytes);
+  Status append(std::string_view text);
+
+ private:
+  AppendFile(int descriptor, std::filesystem::path file);
+  int descriptor_ = -1;
+  std::filesystem::path file_;
+};
+
 /// A file with one JSON document a line. Each line reaches the system in one write, so a process
 /// that is killed leaves at most the last line truncated.
 class LineFile {
  public:
   /// Creates the file; must not exist. Errors: kIo.
   static Result<LineFile> create(const std::filesystem::path& file);
-  ~LineFile();
-  LineFile(LineFile&& other) noexcept;
-  LineFile& operator=(LineFile&& other) noexcept;
-
   Status append(const nlohmann::json& line);
 
  private:
-  LineFile(int descriptor, std::filesystem::path file);
-  int descriptor_ = -1;
-  std::filesystem::path file_;
+  explicit LineFile(AppendFile file) : file_(std::move(file)) {}
+  AppendFile file_;
 };
 
 /// Reads such a file. A last line without line feed is the remains of a kill and is skipped. An
 /// absent file has no lines. Errors: as read_file_text; kUnreadable naming file and line.
 [[nodiscard]] Result<std::vector<nlohmann::json>> read_lines(const std::filesystem::path& file);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

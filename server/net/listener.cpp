@@ -77,8 +77,8 @@ void Listener::accept() noexcept {
   if (starting_) return;
   starting_ = true;
   const auto begin = [this] { acceptor_.async_accept(OnAccept(shared_from_this())); };
-  const auto told = [this](const char* what) { report(what); };
-  while (!loop_.stopped() && !contained(begin, told)) std::this_thread::sleep_for(kAcceptPause);
+  const auto log = [this](const char* what) { report(what); };
+  while (!loop_.stopped() && !contained(begin, log)) std::this_thread::sleep_for(kAcceptPause);
   starting_ = false;
 }
 
@@ -90,9 +90,9 @@ void Listener::on_accept(const error_code& error, tcp::socket socket) {
     });
   };
   const auto serve = [&] { serve_http(std::move(socket), context_); };
-  const auto told = [this](const char* what) { report(what); };
-  if (error && contained(wait, told)) return;
-  if (!error) (void)contained(serve, told);
+  const auto log = [this](const char* what) { report(what); };
+  if (error && contained(wait, log)) return;
+  if (!error) (void)contained(serve, log);
   accept();
 }
 

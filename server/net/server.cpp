@@ -63,8 +63,8 @@ Server::~Server() {
 }
 
 Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options,
-                                              engine::RunManager& runs,
-                                              engine::ViewService& views) {
+                                              server::RunManager& runs,
+                                              server::ViewService& views) {
   if (const Status status = check_options(options); !status) return status.error();
   std::unique_ptr<Server> server(new Server());
   auto context = std::make_shared<ServerContext>(options, runs, views);
@@ -83,7 +83,7 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options,
   if (const Status started = server->impl_->workers.start(kWorkers); !started) {
     return started.error();
   }
-  const auto below_flights = [] { engine::lower_thread(engine::ThreadPriority::kBelowFlights); };
+  const auto below_flights = [] { server::lower_thread(server::ThreadPriority::kBelowFlights); };
   const Status started = server->impl_->connections.start(1, below_flights);
   if (!started) return started.error();
   return server;

@@ -19,8 +19,8 @@ class Server {
   /// kInternal if the system cannot start a thread; kInvalidArgument for an invalid address, token
   /// or allowed host, and for an empty token if other machines can reach the server.
   static Result<std::unique_ptr<Server>> start(const ServerOptions& options,
-                                               engine::RunManager& runs,
-                                               engine::ViewService& views);
+                                               server::RunManager& runs,
+                                               server::ViewService& views);
   ~Server();  ///< closes every viewer (close code 1001) and joins
 
   [[nodiscard]] std::uint16_t port() const;

@@ -42,8 +42,8 @@ class CallbackGate {
 
 struct ServerContext {
   ServerContext(const ServerOptions& server_options,
-                engine::RunManager& run_manager,
-                engine::ViewService& view_service)
+                server::RunManager& run_manager,
+                server::ViewService& view_service)
       : options(server_options),
         runs(run_manager),
         views(view_service),
@@ -64,7 +64,7 @@ struct ServerContext {
 
   /// Runs an action of another thread for a connection while there is an event loop. If it throws,
   /// it is retried for a while, because a client waits for the result. Never throws, since the
-  /// thread belongs to the engine.
+  /// thread belongs to the server.
   template <typename Action>
   void deliver(const Action& action) noexcept {
     constexpr int kTries = 100;
@@ -78,8 +78,8 @@ struct ServerContext {
   }
 
   const ServerOptions options;
-  engine::RunManager& runs;
-  engine::ViewService& views;
+  server::RunManager& runs;
+  server::ViewService& views;
   RestRouter router;
   StaticFiles files;
   const TokenGate token_gate;

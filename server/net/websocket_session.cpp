@@ -14,7 +14,7 @@
 #include "core/barrier.hpp"
 #include "server/net/http/json_text.hpp"
 #include "server/net/stream/viewer.hpp"
-#include "server/record/run_timeline.hpp"
+#include "server/timeline/run_timeline.hpp"
 #include "server/views/picture_request.hpp"
 
 namespace overfly::net {
@@ -50,7 +50,7 @@ struct Outgoing {
   }
 };
 
-using Timeline = Result<std::shared_ptr<engine::RunTimeline>>;
+using Timeline = Result<std::shared_ptr<server::RunTimeline>>;
 
 class WebSocketSession final : public ViewerPort,
                                public std::enable_shared_from_this<WebSocketSession> {
@@ -79,7 +79,7 @@ class WebSocketSession final : public ViewerPort,
   void send_picture(const PictureTicket& ticket,
                     const PictureHeader& header,
                     std::shared_ptr<const std::vector<std::uint8_t>> jpeg) override;
-  void draw(const PictureTicket& ticket, const engine::PictureRequest& request) override;
+  void draw(const PictureTicket& ticket, const server::PictureRequest& request) override;
   void open_run(const std::string& run_id) override;
   [[nodiscard]] std::optional<double> picture_limit_hz() const override {
     return context_->runs.picture_rate().limit_hz();
@@ -91,7 +91,7 @@ class WebSocketSession final : public ViewerPort,
   void read();
   void on_read(const error_code& error);
   void run_opened(Timeline timeline);
-  void picture_ready(const PictureTicket& ticket, const Result<engine::Picture>& picture);
+  void picture_ready(const PictureTicket& ticket, const Result<server::Picture>& picture);
   void enqueue(Outgoing message);
   void write();
   void on_written(const error_code& error);
@@ -234,9 +234,9 @@ void WebSocketSession::send_picture(const PictureTicket& ticket,
   enqueue(std::move(message));
 }
 
-void WebSocketSession::draw(const PictureTicket& ticket, const engine::PictureRequest& request) {
+void WebSocketSession::draw(const PictureTicket& ticket, const server::PictureRequest& request) {
   const auto done = [weak = weak_from_this(), context = context_, ticket](
-                        const Result<engine::Picture>& picture) {
+                        const Result<server::Picture>& picture) {
     context->deliver([&] {
       const auto self = weak.lock();
       if (!self) return;
@@ -250,7 +250,7 @@ void WebSocketSession::draw(const PictureTicket& ticket, const engine::PictureRe
 }
 
 void WebSocketSession::picture_ready(const PictureTicket& ticket,
-                                     const Result<engine::Picture>& picture) {
+                                     const Result<server::Picture>& picture) {
   if (closing_) return;
   viewer_.picture_ready(ticket, picture, monotonic_ns());
   schedule();

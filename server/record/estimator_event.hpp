@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "core/image.hpp"
+#include "core/camera/image.hpp"
 #include "server/record/estimator_status.hpp"
 #include "server/record/rows.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Result of one frame: an answer, or a drop (record.dropped).
 struct EstimatorEvent {
@@ -23,4 +23,4 @@ struct EstimatorEvent {
   std::optional<EstimatorUse> use;
 };
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

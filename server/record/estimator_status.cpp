@@ -3,7 +3,7 @@
 #include <array>
 #include <utility>
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 using Json = nlohmann::json;
@@ -74,4 +74,4 @@ Json json_from(const EstimatorStatus& status) {
           {"resources", status.use ? json_from(*status.use) : Json(nullptr)}};
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

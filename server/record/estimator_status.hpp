@@ -6,10 +6,10 @@
 #include <optional>
 #include <string>
 
-#include "core/estimate.hpp"
+#include "core/motion/estimate.hpp"
 #include "server/timing/latency_summary.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Resources that an estimator has used.
 struct EstimatorUse {
@@ -46,4 +46,4 @@ struct EstimatorStatus {
 /// As sent to clients (docs/PROTOCOL.md).
 [[nodiscard]] nlohmann::json json_from(const EstimatorStatus& status);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -1,6 +1,6 @@
 #include "server/record/estimator_tally.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 void tally(const EstimateRecord& record,
            std::optional<std::uint32_t> frame_crc32,
@@ -28,10 +28,10 @@ void tally(const EstimateRecord& record,
 EstimatorStatus tally_of(const RunRecords& records, const EstimatorRecords& estimator) {
   EstimatorStatus status;
   for (const EstimateRecord& record : estimator.records) {
-    const FrameRecord* frame = frame_record(records, estimator.camera, record.sample.frame);
-    tally(record, frame != nullptr ? frame->row.image_crc32 : std::nullopt, status);
+    const FrameRow* frame = frame_row(records.camera_of(estimator), record.sample.frame);
+    tally(record, frame != nullptr ? frame->image_crc32 : std::nullopt, status);
   }
   return status;
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -8,7 +8,7 @@
 #include "server/record/run_records.hpp"
 #include "server/record/run_rows.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Adds one record; records come in frame order.
 /// @param frame_crc32  of the image as sent; empty if not known
@@ -20,4 +20,4 @@ void tally(const EstimateRecord& record,
 [[nodiscard]] EstimatorStatus tally_of(const RunRecords& records,
                                        const EstimatorRecords& estimator);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

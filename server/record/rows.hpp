@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "core/estimate.hpp"
-#include "core/image.hpp"
-#include "core/pose.hpp"
+#include "core/camera/image.hpp"
+#include "core/motion/estimate.hpp"
+#include "core/motion/pose.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
-/// One camera frame's row.
+/// One camera frame's row; a line of frames.jsonl or cameras/NAME.jsonl.
 struct FrameRow {
   std::int64_t frame = 0;
   std::int64_t t_ns = 0;
@@ -31,9 +31,13 @@ struct FrameRow {
   std::vector<std::string> faults;   ///< kinds of the active faults
   /// Of the grey image as sent to estimators; empty if none was sent.
   std::optional<std::uint32_t> image_crc32;
+  std::optional<double> axis_depth_m;  ///< of the ground along the optical axis
+  /// The camera vibrates: the body's pose does not follow from the camera's and the mount.
+  bool shaken = false;
 };
 
-/// One estimator's answer to a frame, in its own frame and, once aligned, in the world.
+/// One estimator's answer to a frame as a viewer sees it: in the estimator's own frame and, once
+/// aligned, in the world. Derived from an EstimateRecord.
 struct EstimateRow {
   EstimateSample sample;
   std::optional<Pose> T_world_body;  ///< by `init_scale`; empty while not tracking
@@ -55,14 +59,6 @@ struct StampedImage {
   std::shared_ptr<const Image> image;
 };
 
-/// One line of frames.jsonl.
-struct FrameRecord {
-  FrameRow row;
-  std::optional<double> axis_depth_m;  ///< of the ground along the optical axis
-  /// The camera vibrates: the body's pose does not follow from the camera's and the mount.
-  bool shaken = false;
-};
-
 /// One line of estimates/NAME.jsonl: an answer, or a frame dropped because the estimator was busy.
 struct EstimateRecord {
   EstimateSample sample;
@@ -73,4 +69,4 @@ struct EstimateRecord {
   std::optional<std::uint32_t> image_crc32;
 };
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -5,8 +5,11 @@
 #include <cstdio>
 #include <ctime>
 #include <string>
+#include <utility>
 
-namespace overfly::engine {
+#include "server/record/run_info.hpp"
+
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -26,9 +29,8 @@ fs::path scenario_file(const fs::path& folder) { return folder / "scenario.json"
 fs::path created_file(const fs::path& folder) { return folder / "created.json"; }
 fs::path timings_file(const fs::path& folder) { return folder / "timings.json"; }
 fs::path metrics_file(const fs::path& folder) { return folder / "metrics.json"; }
-fs::path frames_file(const fs::path& folder) { return folder / "frames.jsonl"; }
 fs::path log_file(const fs::path& folder) { return folder / "log.jsonl"; }
-fs::path truth_file(const fs::path& folder) { return folder / "truth.tum"; }
+fs::path truth_samples_file(const fs::path& folder) { return folder / "truth_samples.bin"; }
 
 fs::path estimate_file(const fs::path& folder, const std::string& estimator) {
   return folder / "estimates" / (estimator + ".jsonl");
@@ -42,30 +44,33 @@ fs::path estimator_output_folder(const fs::path& folder, const std::string& esti
   return folder / "estimators" / estimator;
 }
 
-fs::path camera_frames_file(const fs::path& folder, const std::string& camera) {
-  return folder / "cameras" / (camera + ".jsonl");
-}
-
-fs::path camera_truth_file(const fs::path& folder, const std::string& camera) {
-  return folder / "cameras" / (camera + ".tum");
-}
-
-fs::path frame_image_file(const fs::path& folder, const std::string& camera, std::int64_t frame) {
-  return folder / "frames" / camera / numbered_jpg(frame);
-}
-
-fs::path deep_frame_file(const fs::path& folder, const std::string& camera, std::int64_t frame) {
-  return folder / "frames16" / camera / numbered(frame, ".png");
-}
-
-fs::path frame_image_file(const fs::path& folder, std::int64_t frame) {
-  return folder / "frames" / numbered_jpg(frame);
-}
-
 fs::path debug_image_file(const fs::path& folder,
                           const std::string& estimator,
                           std::int64_t frame) {
   return folder / "debug" / estimator / numbered_jpg(frame);
+}
+
+CameraFiles::CameraFiles(fs::path folder, std::size_t camera, const std::string& name)
+    : folder_(std::move(folder)), name_(camera == kMainCamera ? "" : name) {}
+
+CameraFiles CameraFiles::of_main_camera(fs::path folder) {
+  return {std::move(folder), kMainCamera, ""};
+}
+
+fs::path CameraFiles::rows() const {
+  return name_.empty() ? folder_ / "frames.jsonl" : folder_ / "cameras" / (name_ + ".jsonl");
+}
+
+fs::path CameraFiles::truth() const {
+  return name_.empty() ? folder_ / "truth.tum" : folder_ / "cameras" / (name_ + ".tum");
+}
+
+fs::path CameraFiles::image(std::int64_t frame) const {
+  return folder_ / "frames" / name_ / numbered_jpg(frame);
+}
+
+fs::path CameraFiles::deep_image(std::int64_t frame) const {
+  return folder_ / "frames16" / name_ / numbered(frame, ".png");
 }
 
 std::string utc_text(std::int64_t unix_ns) {
@@ -86,4 +91,4 @@ std::int64_t utc_now_ns() {
       .count();
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -1,11 +1,12 @@
 // A run's folder: names of its files.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <string>
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Version of the folder's format, recorded in the manifest.
 inline constexpr int kRunFormatVersion = 1;
@@ -15,9 +16,8 @@ inline constexpr int kRunFormatVersion = 1;
 [[nodiscard]] std::filesystem::path created_file(const std::filesystem::path& folder);
 [[nodiscard]] std::filesystem::path timings_file(const std::filesystem::path& folder);
 [[nodiscard]] std::filesystem::path metrics_file(const std::filesystem::path& folder);
-[[nodiscard]] std::filesystem::path frames_file(const std::filesystem::path& folder);
 [[nodiscard]] std::filesystem::path log_file(const std::filesystem::path& folder);
-[[nodiscard]] std::filesystem::path truth_file(const std::filesystem::path& folder);
+[[nodiscard]] std::filesystem::path truth_samples_file(const std::filesystem::path& folder);
 /// estimates/NAME.jsonl and estimates/NAME.tum
 [[nodiscard]] std::filesystem::path estimate_file(const std::filesystem::path& folder,
                                                   const std::string& estimator);
@@ -26,25 +26,34 @@ inline constexpr int kRunFormatVersion = 1;
 /// estimators/NAME: output of an estimator's process
 [[nodiscard]] std::filesystem::path estimator_output_folder(const std::filesystem::path& folder,
                                                             const std::string& estimator);
-/// cameras/NAME.jsonl and cameras/NAME.tum, for all cameras except the main one
-[[nodiscard]] std::filesystem::path camera_frames_file(const std::filesystem::path& folder,
-                                                       const std::string& camera);
-[[nodiscard]] std::filesystem::path camera_truth_file(const std::filesystem::path& folder,
-                                                      const std::string& camera);
-/// frames/NAME/NNNNNN.jpg; for the main camera (empty name) frames/NNNNNN.jpg
-[[nodiscard]] std::filesystem::path frame_image_file(const std::filesystem::path& folder,
-                                                     const std::string& camera,
-                                                     std::int64_t frame);
-/// frames16/NAME/NNNNNN.png, likewise, for sensors deeper than 8 bit
-[[nodiscard]] std::filesystem::path deep_frame_file(const std::filesystem::path& folder,
-                                                    const std::string& camera,
-                                                    std::int64_t frame);
-/// frames/NNNNNN.jpg and debug/NAME/NNNNNN.jpg
-[[nodiscard]] std::filesystem::path frame_image_file(const std::filesystem::path& folder,
-                                                     std::int64_t frame);
+/// debug/NAME/NNNNNN.jpg
 [[nodiscard]] std::filesystem::path debug_image_file(const std::filesystem::path& folder,
                                                      const std::string& estimator,
                                                      std::int64_t frame);
+
+/// The files of one camera of a run. Only this class knows that those of the main camera have no
+/// name in their paths.
+class CameraFiles {
+ public:
+  /// @param camera  index in the run's list of cameras
+  /// @param name  of that camera
+  CameraFiles(std::filesystem::path folder, std::size_t camera, const std::string& name);
+  static CameraFiles of_main_camera(std::filesystem::path folder);
+
+  /// cameras/NAME.jsonl; frames.jsonl for the main camera
+  [[nodiscard]] std::filesystem::path rows() const;
+  /// cameras/NAME.tum; truth.tum for the main camera
+  [[nodiscard]] std::filesystem::path truth() const;
+  /// frames/NAME/NNNNNN.jpg; frames/NNNNNN.jpg for the main camera
+  [[nodiscard]] std::filesystem::path image(std::int64_t frame) const;
+  /// frames16/NAME/NNNNNN.png; frames16/NNNNNN.png for the main camera. For sensors deeper than 8
+  /// bit.
+  [[nodiscard]] std::filesystem::path deep_image(std::int64_t frame) const;
+
+ private:
+  std::filesystem::path folder_;
+  std::string name_;  ///< empty for the main camera
+};
 
 /// The run's id.
 [[nodiscard]] std::string folder_name(const std::filesystem::path& folder);
@@ -53,4 +62,4 @@ inline constexpr int kRunFormatVersion = 1;
 [[nodiscard]] std::string utc_text(std::int64_t unix_ns);
 [[nodiscard]] std::int64_t utc_now_ns();
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -11,7 +11,7 @@
 
 #include "server/record/run_folder.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -64,4 +64,4 @@ void release_run(const fs::path& runs_folder, const std::string& id) {
   ::rmdir((runs_folder / id).c_str());
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

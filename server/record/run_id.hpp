@@ -7,7 +7,7 @@
 
 #include "core/result.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Creates an empty folder `YYYYMMDD-HHMMSS-SCENARIO-RRRRRR` for a run: UTC, and six random letters
 /// and digits (30 bits). Because the folder is created here, the id is unique even if other
@@ -23,4 +23,4 @@ namespace overfly::engine {
 /// Removes the folder of a run that was never flown; keeps it if it is not empty.
 void release_run(const std::filesystem::path& runs_folder, const std::string& id);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -1,6 +1,6 @@
 #include "server/record/run_info.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 const char* to_string(RunStatus status) {
   switch (status) {
@@ -22,4 +22,4 @@ const char* to_string(RunStatus status) {
   return "failed";
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -1,14 +1,15 @@
 // The fields of a run that are shown in a list of runs.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
 
-#include "core/camera_model.hpp"
-#include "core/pose.hpp"
+#include "core/camera/camera_model.hpp"
+#include "core/motion/pose.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 enum class RunStatus {
   kQueued,
@@ -48,6 +49,9 @@ struct RunInfo {
   std::string world_change;
 };
 
+/// Index of a run's main camera, in every list of its cameras.
+inline constexpr std::size_t kMainCamera = 0;
+
 /// One camera of a run.
 struct RunCamera {
   std::string name;
@@ -55,4 +59,4 @@ struct RunCamera {
   Pose T_body_camera{R_body_camera_nadir(), Eigen::Vector3d::Zero()};
 };
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -2,12 +2,11 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "core/result.hpp"
 #include "server/record/run_info.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Reads the manifest and created.json; counts the written frames if the run did not reach its end.
 /// A run that is marked as running but whose lock is free is reported as interrupted. An invalid
@@ -15,7 +14,4 @@ namespace overfly::engine {
 /// Errors: kNotFound if there is no manifest.
 [[nodiscard]] Result<RunInfo> read_run_info(const std::filesystem::path& folder);
 
-/// Writes the fields of a RunInfo that belong in a manifest.
-void put_run_info(const RunInfo& info, nlohmann::json& manifest);
-
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -8,7 +8,7 @@
 #include <cstring>
 #include <utility>
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -56,4 +56,4 @@ RunLock::~RunLock() {
   ::close(descriptor_);
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -4,7 +4,7 @@
 
 #include "core/result.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Marks a run folder as in use while both the object and the process live: the operating system
 /// releases the lock when the process is killed.
@@ -24,4 +24,4 @@ class RunLock {
   std::filesystem::path file_;
 };
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

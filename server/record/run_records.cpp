@@ -10,7 +10,7 @@
 #include "server/files/whole_file.hpp"
 #include "server/record/run_folder.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -29,66 +29,52 @@ Status for_each_row(const fs::path& file, const Read& read) {
   return {};
 }
 
-Pose read_manifest_pose(const FileField& field) {
-  const Result<Pose> pose = pose_from(field.value());
-  if (!pose) field.fault("be a pose (" + pose.error().message + ")");
-  return *pose;
+/// The cameras without frames; a run that failed before it had a camera keeps the default mount.
+void add_cameras(const RunManifest& manifest, RunRecords& records) {
+  if (!manifest.cameras.empty()) records.cameras.clear();
+  for (const RunManifest::Camera& camera : manifest.cameras) {
+    records.cameras.push_back({camera.name, camera.T_body_camera, {}});
+  }
 }
 
-/// Reads the cameras, and which camera each estimator used. A run that failed before it had a
-/// camera keeps the default mount.
-void read_recorded_cameras(const FileField& manifest, RunRecords& records) {
-  if (const auto camera = manifest.find("camera")) {
-    if (const auto mount = camera->find("T_body_camera")) {
-      records.T_body_camera = read_manifest_pose(*mount);
-    }
-  }
-  std::vector<std::string> names;
-  if (const auto cameras = manifest.find("cameras")) {
-    for (const FileField& camera : cameras->items()) {
-      names.push_back(camera.at("name").plain_name());
-      if (names.size() == 1) continue;
-      records.other_cameras.push_back(
-          {names.back(), read_manifest_pose(camera.at("T_body_camera")), {}});
-    }
-  }
-  for (const FileField& entry : manifest.at("estimators").items()) {
+/// The estimators without answers, each with its camera.
+void add_estimators(const RunManifest& manifest, RunRecords& records) {
+  for (const RunManifest::Estimator& entry : manifest.estimators) {
     EstimatorRecords estimator;
-    estimator.name = entry.at("name").plain_name();
-    estimator.type = entry.at("type").text();
-    const auto camera = entry.find("camera");
-    const auto named = std::find(names.begin(), names.end(), camera ? camera->text() : "");
-    if (named != names.end()) {
-      estimator.camera = static_cast<std::size_t>(named - names.begin());
+    estimator.name = entry.name;
+    estimator.type = entry.type;
+    const auto named = std::find_if(
+        records.cameras.begin(), records.cameras.end(), [&](const CameraRecords& camera) {
+          return camera.name == entry.camera;
+        });
+    if (named != records.cameras.end()) {
+      estimator.camera = static_cast<std::size_t>(named - records.cameras.begin());
     }
     records.estimators.push_back(std::move(estimator));
   }
 }
 
-Status read_frames(const fs::path& folder, RunRecords& records) {
-  return for_each_row(frames_file(folder), [&](const Json& line) -> Status {
-    const auto late = guarded_fields([&]() -> std::optional<evaluation::FlightFrame> {
-      const FileField row(line);
-      const auto flag = row.find("late");
-      if (!flag || !flag->boolean()) return std::nullopt;
-      return evaluation::FlightFrame{row.at("frame").integer(), row.at("t_ns").integer()};
-    });
-    if (!late) return late.error();
-    if (*late) {
-      records.late_frames.push_back(**late);
-      return {};
-    }
-    Result<FrameRecord> record = frame_record_from(line, records.T_body_camera);
-    if (!record) return record.error();
-    records.frames.push_back(std::move(*record));
-    return {};
+/// Frame and time of a row that records a late frame; empty for other rows.
+Result<std::optional<evaluation::FlightFrame>> late_frame_from(const Json& line) {
+  return guarded_fields([&]() -> std::optional<evaluation::FlightFrame> {
+    const FileField row(line);
+    const auto flag = row.find("late");
+    if (!flag || !flag->boolean()) return std::nullopt;
+    return evaluation::FlightFrame{row.at("frame").integer(), row.at("t_ns").integer()};
   });
 }
 
-Status read_camera_frames(const fs::path& folder, CameraRecords& camera) {
-  const fs::path file = camera_frames_file(folder, camera.name);
+Status read_camera_rows(const fs::path& file,
+                        CameraRecords& camera,
+                        std::vector<evaluation::FlightFrame>& late_frames) {
   return for_each_row(file, [&](const Json& line) -> Status {
-    Result<FrameRecord> record = frame_record_from(line, camera.T_body_camera);
+    const auto late = late_frame_from(line);
+    if (!late) return late.error();
+    if (*late) {
+      late_frames.push_back(**late);
+      return {};
+    }
+    Result<FrameRow> record = frame_row_from(line, camera.T_body_camera);
     if (!record) return record.error();
     camera.frames.push_back(std::move(*record));
     return {};
@@ -107,17 +93,23 @@ Status read_estimator_rows(const fs::path& folder, EstimatorRecords& estimator) 
 }  // namespace
 
 Result<RunRecords> read_run_records(const fs::path& folder) {
-  const Result<Json> manifest = read_json(manifest_file(folder));
+  const Result<ReadManifest> manifest = read_run_manifest(folder);
   if (!manifest) return manifest.error();
+  return read_run_records(folder, *manifest);
+}
+
+Result<RunRecords> read_run_records(const fs::path& folder, const ReadManifest& manifest) {
+  for (const ManifestPart part : {ManifestPart::kCameras, ManifestPart::kEstimators}) {
+    if (Status status = manifest.check(part); !status) return status.error();
+  }
   RunRecords records;
-  const auto read = guarded_fields([&] {
-    read_recorded_cameras(FileField(*manifest), records);
-    return true;
-  });
-  if (!read) return read.error().in(manifest_file(folder).string());
-  if (Status status = read_frames(folder, records); !status) return status.error();
-  for (CameraRecords& camera : records.other_cameras) {
-    if (Status status = read_camera_frames(folder, camera); !status) return status.error();
+  add_cameras(manifest.values, records);
+  add_estimators(manifest.values, records);
+  for (std::size_t i = 0; i < records.cameras.size(); ++i) {
+    CameraRecords& camera = records.cameras[i];
+    const Status status =
+        read_camera_rows(CameraFiles(folder, i, camera.name).rows(), camera, records.late_frames);
+    if (!status) return status.error();
   }
   for (EstimatorRecords& estimator : records.estimators) {
     if (Status status = read_estimator_rows(folder, estimator); !status) return status.error();
@@ -125,28 +117,29 @@ Result<RunRecords> read_run_records(const fs::path& folder) {
   return records;
 }
 
-Result<Trajectory> truth_of(const RunRecords& records, std::size_t camera) {
+Result<Trajectory> truth_of(const CameraRecords& camera) {
   std::vector<StampedPose> poses;
-  poses.reserve(records.frames_of(camera).size());
-  for (const FrameRecord& frame : records.frames_of(camera)) {
-    poses.push_back({frame.row.t_ns, frame.row.T_world_camera});
+  poses.reserve(camera.frames.size());
+  for (const FrameRow& frame : camera.frames) {
+    poses.push_back({frame.t_ns, frame.T_world_camera});
   }
   return Trajectory::from_poses(poses);
 }
 
-const FrameRecord* frame_record(const RunRecords& records, std::size_t camera, std::int64_t frame) {
-  const std::vector<FrameRecord>& frames = records.frames_of(camera);
+const FrameRow* frame_row(const CameraRecords& camera, std::int64_t frame) {
+  const std::vector<FrameRow>& frames = camera.frames;
   const auto found = std::lower_bound(
-      frames.begin(), frames.end(), frame, [](const FrameRecord& record, std::int64_t number) {
-        return record.row.frame < number;
+      frames.begin(), frames.end(), frame, [](const FrameRow& record, std::int64_t number) {
+        return record.frame < number;
       });
-  return found != frames.end() && found->row.frame == frame ? &*found : nullptr;
+  return found != frames.end() && found->frame == frame ? &*found : nullptr;
 }
 
-std::vector<evaluation::FlightFrame> flight_frames(const RunRecords& records, std::size_t camera) {
+std::vector<evaluation::FlightFrame> flight_frames(const RunRecords& records,
+                                                   const CameraRecords& camera) {
   std::vector<evaluation::FlightFrame> drawn;
-  for (const FrameRecord& frame : records.frames_of(camera)) {
-    drawn.push_back({frame.row.frame, frame.row.t_ns});
+  for (const FrameRow& frame : camera.frames) {
+    drawn.push_back({frame.frame, frame.t_ns});
   }
   const std::vector<evaluation::FlightFrame>& late = records.late_frames;
   std::vector<evaluation::FlightFrame> all;
@@ -184,10 +177,10 @@ std::optional<InitialFrame> initial_frame(const RunRecords& records,
       });
   const EstimateSample& sample = first.at(longest->first)->sample;
   InitialFrame initial{sample.frame, sample.map_id, std::nullopt, sample.scene_depth};
-  if (const FrameRecord* frame = frame_record(records, estimator.camera, sample.frame)) {
+  if (const FrameRow* frame = frame_row(records.camera_of(estimator), sample.frame)) {
     initial.true_depth_m = frame->axis_depth_m;
   }
   return initial;
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -6,57 +6,55 @@
 #include <string>
 #include <vector>
 
+#include "core/motion/trajectory.hpp"
 #include "core/result.hpp"
-#include "core/trajectory.hpp"
 #include "evaluation/evaluation.hpp"
+#include "server/record/run_info.hpp"
+#include "server/record/run_manifest.hpp"
 #include "server/record/run_rows.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 struct EstimatorRecords {
   std::string name;
   std::string type;
   std::vector<EstimateRecord> records;  ///< by frame, including drops
-  std::size_t camera = 0;               ///< index: 0 = the main one
+  std::size_t camera = kMainCamera;     ///< index in RunRecords::cameras
 };
 
-/// Records of a camera other than the main one.
 struct CameraRecords {
   std::string name;
   Pose T_body_camera{R_body_camera_nadir(), Eigen::Vector3d::Zero()};
-  std::vector<FrameRecord> frames;
+  std::vector<FrameRow> frames;
 };
 
 struct RunRecords {
-  Pose T_body_camera{R_body_camera_nadir(), Eigen::Vector3d::Zero()};
-  std::vector<FrameRecord> frames;
-  std::vector<CameraRecords> other_cameras;  ///< all except the main camera, which is above
+  std::vector<CameraRecords> cameras{1};  ///< never empty
   /// Frames that no camera drew because their time had passed.
   std::vector<evaluation::FlightFrame> late_frames;
   std::vector<EstimatorRecords> estimators;
 
-  /// By index; 0 = the main camera.
-  [[nodiscard]] const Pose& mount_of(std::size_t camera) const {
-    return camera == 0 ? T_body_camera : other_cameras.at(camera - 1).T_body_camera;
-  }
-  [[nodiscard]] const std::vector<FrameRecord>& frames_of(std::size_t camera) const {
-    return camera == 0 ? frames : other_cameras.at(camera - 1).frames;
+  [[nodiscard]] const CameraRecords& main_camera() const { return cameras.at(kMainCamera); }
+  /// The camera whose images an estimator gets.
+  [[nodiscard]] const CameraRecords& camera_of(const EstimatorRecords& estimator) const {
+    return cameras.at(estimator.camera);
   }
 };
 
 /// Reads the line files of a run folder; they stay readable after a kill.
-/// Errors: kNotFound without a manifest; kUnreadable naming file and row.
+/// Errors: kNotFound without a manifest; kUnreadable naming file and row, or the manifest's field.
 [[nodiscard]] Result<RunRecords> read_run_records(const std::filesystem::path& folder);
+/// @param manifest  of that folder
+[[nodiscard]] Result<RunRecords> read_run_records(const std::filesystem::path& folder,
+                                                  const ReadManifest& manifest);
 
 /// T_world_camera of every frame of a camera.
-[[nodiscard]] Result<Trajectory> truth_of(const RunRecords& records, std::size_t camera = 0);
+[[nodiscard]] Result<Trajectory> truth_of(const CameraRecords& camera);
 /// A camera's record of one frame; null when there is none.
-[[nodiscard]] const FrameRecord* frame_record(const RunRecords& records,
-                                              std::size_t camera,
-                                              std::int64_t frame);
+[[nodiscard]] const FrameRow* frame_row(const CameraRecords& camera, std::int64_t frame);
 /// Every frame of a camera in the flight, including those that were late or lost.
 [[nodiscard]] std::vector<evaluation::FlightFrame> flight_frames(const RunRecords& records,
-                                                                 std::size_t camera);
+                                                                 const CameraRecords& camera);
 /// The answers of one estimator without the drops.
 [[nodiscard]] EstimateTrack track_of(const EstimatorRecords& estimator);
 
@@ -71,4 +69,4 @@ struct InitialFrame {
 [[nodiscard]] std::optional<InitialFrame> initial_frame(const RunRecords& records,
                                                         const EstimatorRecords& estimator);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 using Json = nlohmann::json;
@@ -44,8 +44,7 @@ Json json_from(const CameraModel& camera) {
   return value;
 }
 
-Json json_from(const FrameRecord& record) {
-  const FrameRow& row = record.row;
+Json json_from(const FrameRow& row) {
   Json value = {{"frame", row.frame},
                 {"t_ns", row.t_ns},
                 {"T_world_camera", json_from(row.T_world_camera)},
@@ -54,8 +53,8 @@ Json json_from(const FrameRecord& record) {
                  {{"min", row.texels_per_pixel_min}, {"median", row.texels_per_pixel_median}}},
                 {"void_fraction", row.void_fraction}};
   if (row.image_crc32) value["image_crc32"] = hex_text(*row.image_crc32);
-  if (record.axis_depth_m) value["axis_depth_m"] = *record.axis_depth_m;
-  if (record.shaken) value["T_world_body"] = json_from(row.T_world_body);
+  if (row.axis_depth_m) value["axis_depth_m"] = *row.axis_depth_m;
+  if (row.shaken) value["T_world_body"] = json_from(row.T_world_body);
   if (row.exposure_ns != 0) value["gain"] = row.gain;
   if (row.saturated_fraction > 0.0) value["saturated_fraction"] = row.saturated_fraction;
   if (row.late_tiles != 0) value["late_tiles"] = row.late_tiles;
@@ -89,4 +88,4 @@ Json json_from(const LogRow& row) {
   return value;
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -3,18 +3,18 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/camera_model.hpp"
+#include "core/camera/camera_model.hpp"
 #include "core/result.hpp"
 #include "server/record/rows.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// {"p_m": [x, y, z], "q_xyzw": [x, y, z, w]}
 [[nodiscard]] nlohmann::json json_from(const Pose& T);
 [[nodiscard]] nlohmann::json json_from(const PinholeCamera& camera);
 /// With `distortion` {"model", "coefficients"}.
 [[nodiscard]] nlohmann::json json_from(const CameraModel& camera);
-[[nodiscard]] nlohmann::json json_from(const FrameRecord& record);
+[[nodiscard]] nlohmann::json json_from(const FrameRow& row);
 [[nodiscard]] nlohmann::json json_from(const EstimateRecord& record);
 [[nodiscard]] nlohmann::json json_from(const LogRow& row);
 
@@ -24,9 +24,9 @@ namespace overfly::engine {
 /// Without distortion if none is given.
 [[nodiscard]] Result<CameraModel> camera_model_from(const nlohmann::json& value);
 /// `T_body_camera` is used to compute the row's body pose.
-[[nodiscard]] Result<FrameRecord> frame_record_from(const nlohmann::json& value,
-                                                    const Pose& T_body_camera);
+[[nodiscard]] Result<FrameRow> frame_row_from(const nlohmann::json& value,
+                                              const Pose& T_body_camera);
 [[nodiscard]] Result<EstimateRecord> estimate_record_from(const nlohmann::json& value);
 [[nodiscard]] Result<LogRow> log_row_from(const nlohmann::json& value);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

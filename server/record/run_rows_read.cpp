@@ -7,7 +7,7 @@
 #include "server/files/file_field.hpp"
 #include "server/record/run_rows.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 using Json = nlohmann::json;
@@ -20,7 +20,7 @@ std::optional<std::uint32_t> crc32_or_none(const FileField& row) {
   std::uint32_t crc32 = 0;
   const auto read = std::from_chars(text.data(), text.data() + text.size(), crc32, 16);
   if (read.ec != std::errc() || read.ptr != text.data() + text.size()) {
-    field->fault("be a hexadecimal number of 32 bits");
+    field->reject("be a hexadecimal number of 32 bits");
   }
   return crc32;
 }
@@ -73,7 +73,7 @@ Distortion read_distortion(const FileField& lens) {
   Distortion distortion;
   const FileField name = lens.at("model");
   const auto model = distortion_model_from(name.text());
-  if (!model) name.fault("be a known lens model");
+  if (!model) name.reject("be a known lens model");
   distortion.model = *model;
   const std::vector<FileField> coefficients = lens.at("coefficients").items();
   for (std::size_t i = 0; i < coefficients.size() && i < distortion.k.size(); ++i) {
@@ -90,15 +90,14 @@ std::vector<std::string> read_faults(const FileField& row) {
   return faults;
 }
 
-FrameRecord read_frame(const FileField& value, const Pose& T_body_camera) {
-  FrameRecord record;
-  FrameRow& row = record.row;
+FrameRow read_frame(const FileField& value, const Pose& T_body_camera) {
+  FrameRow row;
   row.frame = value.at("frame").integer();
   row.t_ns = value.at("t_ns").integer();
   row.T_world_camera = read_pose(value.at("T_world_camera"));
   row.T_world_body = row.T_world_camera * T_body_camera.inverse();
   const auto shaken = value.find("T_world_body");
-  record.shaken = shaken.has_value();
+  row.shaken = shaken.has_value();
   if (shaken) row.T_world_body = read_pose(*shaken);
   row.exposure_ns = value.at("exposure_ns").integer();
   row.gain = number_or(value, "gain", 1.0);
@@ -113,8 +112,8 @@ FrameRecord read_frame(const FileField& value, const Pose& T_body_camera) {
   row.texels_per_pixel_median = texels.at("median").number();
   row.void_fraction = value.at("void_fraction").number();
   row.image_crc32 = crc32_or_none(value);
-  record.axis_depth_m = number_of_row(value, "axis_depth_m");
-  return record;
+  row.axis_depth_m = number_of_row(value, "axis_depth_m");
+  return row;
 }
 
 EstimateRecord read_estimate(const FileField& value) {
@@ -126,14 +125,14 @@ EstimateRecord read_estimate(const FileField& value) {
   if (record.dropped) return record;
   const FileField state = value.at("state");
   const auto known = tracking_state_from(state.text());
-  if (!known) state.fault("be a tracking state");
+  if (!known) state.reject("be a tracking state");
   record.sample.state = *known;
   record.sample.map_id = small_integer(
       value.at("map_id"), std::numeric_limits<int>::min(), std::numeric_limits<int>::max());
   if (const auto pose = value.find("T_vo_camera")) record.sample.T_vo_camera = read_pose(*pose);
   record.sample.scene_depth = number_of_row(value, "scene_depth");
   if (const auto counters = value.find("counters")) {
-    if (!counters->value().is_object()) counters->fault("be an object");
+    if (!counters->value().is_object()) counters->reject("be an object");
     for (const auto& [name, count] : counters->value().items()) {
       record.counters[name] = counters->at(name).number();
     }
@@ -162,7 +161,7 @@ Result<CameraModel> camera_model_from(const Json& value) {
   });
 }
 
-Result<FrameRecord> frame_record_from(const Json& value, const Pose& T_body_camera) {
+Result<FrameRow> frame_row_from(const Json& value, const Pose& T_body_camera) {
   return guarded_fields([&] { return read_frame(FileField(value), T_body_camera); });
 }
 
@@ -181,4 +180,4 @@ Result<LogRow> log_row_from(const Json& value) {
   });
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -4,35 +4,35 @@
 #include <utility>
 
 #include "core/cancel.hpp"
+#include "core/measure/crc32.hpp"
 #include "server/record/rows.hpp"
 #include "server/timing/picture_rate.hpp"
 #include "server/timing/thread_priority.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 Error stopped() { return {ErrorCode::kCancelled, "cancelled"}; }
 
-FrameRecord record_from(const MadeFrame& made, const CameraShot& shot, const CameraSpec& camera) {
-  FrameRecord record;
-  record.row.frame = made.frame;
-  record.row.t_ns = made.t_ns;
-  record.row.T_world_camera = shot.drawn.T_world_camera;
-  record.shaken = camera.vibration.enabled;
-  record.row.T_world_body = record.shaken
-                                ? made.state.T_world_body
+FrameRow row_from(const MadeFrame& made, const CameraShot& shot, const CameraSpec& camera) {
+  FrameRow row;
+  row.frame = made.frame;
+  row.t_ns = made.t_ns;
+  row.T_world_camera = shot.drawn.T_world_camera;
+  row.shaken = camera.vibration.enabled;
+  row.T_world_body = row.shaken ? made.state.T_world_body
                                 : shot.drawn.T_world_camera * camera.T_body_camera.inverse();
-  record.row.texels_per_pixel_median = shot.drawn.texels_per_pixel_median;
-  record.row.texels_per_pixel_min = shot.drawn.texels_per_pixel_min;
-  record.row.void_fraction = shot.drawn.void_fraction;
-  record.row.exposure_ns = shot.setting.exposure_ns;
-  record.row.gain = shot.setting.gain;
-  record.row.saturated_fraction = shot.saturated_fraction;
-  record.row.late_tiles = shot.drawn.late_tiles;
-  record.row.stamp_offset_ns = shot.stamp_ns - made.t_ns;
-  record.row.faults = shot.faults;
-  record.axis_depth_m = shot.drawn.axis_depth_m;
-  return record;
+  row.texels_per_pixel_median = shot.drawn.texels_per_pixel_median;
+  row.texels_per_pixel_min = shot.drawn.texels_per_pixel_min;
+  row.void_fraction = shot.drawn.void_fraction;
+  row.exposure_ns = shot.setting.exposure_ns;
+  row.gain = shot.setting.gain;
+  row.saturated_fraction = shot.saturated_fraction;
+  row.late_tiles = shot.drawn.late_tiles;
+  row.stamp_offset_ns = shot.stamp_ns - made.t_ns;
+  row.faults = shot.faults;
+  row.axis_depth_m = shot.drawn.axis_depth_m;
+  return row;
 }
 
 VoFrame vo_frame_from(const MadeFrame& made,
@@ -59,13 +59,14 @@ FlightRun::FlightRun(const Scenario& scenario, const RunOptions& options, RunRec
       clock_(options.clock != nullptr ? *options.clock : machine_clock()),
       stages_(clock_),
       begin_ns_(clock_.now_ns()),
-      fault_news_(scenario) {}
+      fault_news_(scenario),
+      truth_feeds_(scenario.cameras.size()) {}
 
 bool FlightRun::cancelled() const { return is_cancelled(options_.cancel); }
 
 std::int64_t FlightRun::end_ns() const {
-  const std::vector<FrameRecord>& frames = recorder_.records().frames;
-  return frames.empty() ? 0 : frames.back().row.t_ns;
+  const std::vector<FrameRow>& frames = recorder_.records().main_camera().frames;
+  return frames.empty() ? 0 : frames.back().t_ns;
 }
 
 nlohmann::json FlightRun::timings() const {
@@ -109,7 +110,8 @@ Status FlightRun::prepare_and_fly() {
     if (Status status = (this->*step)(); !status) return status;
   }
   loop_begin_ns_ = clock_.now_ns();
-  return scenario_.pacing == Pacing::kRealTime ? fly_real_time() : fly_lockstep();
+  const Status flown = scenario_.pacing == Pacing::kRealTime ? fly_real_time() : fly_lockstep();
+  return flown ? maker_->record_last_period() : flown;
 }
 
 Status FlightRun::fly_lockstep() {
@@ -192,23 +194,26 @@ Result<FlightRun::Flight> FlightRun::fly_frame(std::int64_t k, bool wait_for_est
 Status FlightRun::deliver(MadeFrame& made) {
   for (CameraShot& shot : made.shots) {
     const CameraSpec& camera = scenario_.cameras[shot.camera];
-    FrameRecord record = record_from(made, shot, camera);
-    late_tiles_ += record.row.late_tiles;
-    frames_with_late_tiles_ += record.row.late_tiles > 0 ? 1 : 0;
+    FrameRow row = row_from(made, shot, camera);
+    late_tiles_ += row.late_tiles;
+    frames_with_late_tiles_ += row.late_tiles > 0 ? 1 : 0;
     std::shared_ptr<const Image> image;
     if (shot.delivered) image = std::make_shared<const Image>(std::move(shot.image));
     const auto grey =
         image && image->channels != 1 ? std::make_shared<const Image>(grey_of(*image)) : image;
     // Computed once per frame, so that it applies to the image of every estimator.
-    if (grey) record.row.image_crc32 = stages_.measure("hash", [&] { return crc32_of(*grey); });
+    if (grey) row.image_crc32 = stages_.measure("hash", [&] { return crc32_of(*grey); });
+    if (const auto& feed = truth_feeds_[shot.camera]) {
+      feed->add(shot.stamp_ns, {row.T_world_camera, row.axis_depth_m});
+    }
     for (std::size_t i = 0; i < workers_.size() && grey; ++i) {
       if (scenario_.estimators[i].camera != shot.camera) continue;
       VoFrame frame = vo_frame_from(made, shot, camera, grey);
-      frame.image_crc32 = record.row.image_crc32;
+      frame.image_crc32 = row.image_crc32;
       workers_[i]->submit(std::move(frame));
     }
     Status recorded = stages_.measure(
-        "record", [&] { return recorder_.add_frame(record, image, shot.image16, shot.camera); });
+        "record", [&] { return recorder_.add_frame(row, image, shot.image16, shot.camera); });
     if (!recorded) return recorded;
   }
   return {};
@@ -233,4 +238,4 @@ Status FlightRun::record_events() {
   return {};
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

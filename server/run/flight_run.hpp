@@ -10,11 +10,12 @@
 #include "server/camera/frame_maker.hpp"
 #include "server/estimators/estimator_factory.hpp"
 #include "server/estimators/estimator_worker.hpp"
+#include "server/estimators/truth_feed.hpp"
 #include "server/run/run_options.hpp"
 #include "server/run/run_recorder.hpp"
 #include "server/timing/stage_timer.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 class FlightRun {
  public:
@@ -69,6 +70,8 @@ class FlightRun {
   std::int64_t late_tiles_ = 0;
   std::int64_t frames_with_late_tiles_ = 0;
   std::vector<std::unique_ptr<EstimatorWorker>> workers_;
+  /// By camera; null where no test estimator needs the truth.
+  std::vector<std::shared_ptr<TruthFeed>> truth_feeds_;
 };
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

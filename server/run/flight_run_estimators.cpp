@@ -5,11 +5,10 @@
 #include "server/run/flight_run.hpp"
 #include "server/timing/cpu_affinity.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
 using Port = Result<std::unique_ptr<VoPort>>;
 
 /// Replaces an estimator that did not start: its first frame reports the reason.
@@ -56,13 +55,12 @@ Port FlightRun::open_estimator(const EstimatorSpec& spec) {
   if (options_.notice && is_outside_estimator(spec.type)) {
     options_.notice("starting estimator " + spec.name);
   }
-  const auto truth = [&]() -> Result<ToyTruth> {
-    const Result<std::optional<double>> depth_m = maker_->depth_at_start(spec.camera);
-    if (!depth_m) return depth_m.error();
-    Result<Trajectory> trajectory = maker_->rehearse(spec.camera);
-    if (!trajectory) return trajectory.error();
-    return ToyTruth{std::move(*trajectory), depth_m->value_or(0.0)};
-  };
+  ToyTruthAt truth;
+  if (is_test_estimator(spec.type)) {
+    std::shared_ptr<TruthFeed>& feed = truth_feeds_[spec.camera];
+    if (!feed) feed = std::make_shared<TruthFeed>();
+    truth = [feed](std::int64_t stamp_ns) { return feed->at(stamp_ns); };
+  }
   const Result<fs::path> folder = output_folder(options_.folder, spec);
   if (!folder) return folder.error();
   const EstimatorSetting setting{scenario_.seed,
@@ -85,10 +83,9 @@ Status FlightRun::open_estimators() {
       if (cancelled()) return Error{ErrorCode::kCancelled, "cancelled"};
       const EstimatorSpec& spec = scenario_.estimators[i];
       Port port = open_estimator(spec);
-      Json& entry = recorder_.manifest()["estimators"][i];
       if (!port) {
         if (ends_the_run(port.error())) return port.error();
-        entry["start_error"] = port.error().message;
+        recorder_.manifest().estimators[i].start_error = port.error().message;
         port = std::unique_ptr<VoPort>(
             std::make_unique<AbsentEstimator>(spec.type, port.error().in("did not start")));
       }
@@ -119,7 +116,7 @@ void FlightRun::prepare_estimators() {
   clock_.leave();
   for (std::size_t i = 0; i < workers_.size(); ++i) {
     workers_[i]->wait_until_idle();
-    recorder_.manifest()["estimators"][i]["parameters"] = workers_[i]->effective_parameters();
+    recorder_.manifest().estimators[i].parameters = workers_[i]->effective_parameters();
   }
 }
 
@@ -136,24 +133,24 @@ Status FlightRun::close_estimators() {
 Status FlightRun::describe_use() {
   for (std::size_t i = 0; i < workers_.size(); ++i) {
     recorder_.set_use(i, workers_[i]->use());
-    Json& entry = recorder_.manifest()["estimators"][i];
-    const Json at_end = workers_[i]->effective_parameters();
-    const Json at_begin = entry.value("parameters", Json::object());
-    for (const auto& [name, value] : at_end.items()) {
-      const std::string was = at_begin.value(name, "");
+    RunManifest::Estimator& entry = recorder_.manifest().estimators[i];
+    const RunManifest::Parameters at_end = workers_[i]->effective_parameters();
+    const RunManifest::Parameters at_begin = entry.parameters.value_or(RunManifest::Parameters());
+    for (const auto& [name, value] : at_end) {
+      const auto known = at_begin.find(name);
+      const std::string was = known != at_begin.end() ? known->second : "";
       // An estimator may report some parameters only after it knows its camera: that is not a
       // change.
       if (was.empty() || was == value) continue;
       Status logged = recorder_.log(end_ns(),
                                     "warning",
                                     scenario_.estimators[i].name + ": parameter " + name + " is " +
-                                        value.get<std::string>() +
-                                        " at the end, but at the start it was " + was);
+                                        value + " at the end, but at the start it was " + was);
       if (!logged) return logged;
     }
-    entry["parameters_at_end"] = at_end;
+    entry.parameters_at_end = at_end;
   }
   return {};
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

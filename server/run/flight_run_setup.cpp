@@ -7,10 +7,8 @@
 #include "server/scenario/document/scenario_light.hpp"
 #include "server/worlds/scenario_world.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
-
-using Json = nlohmann::json;
 
 /// t = 0 of lockstep runs, so that equal runs have equal manifests: 2026-01-01T00:00:00Z.
 constexpr std::int64_t kLockstepEpochUtcNs = 1'767'225'600 * kNsPerS;
@@ -24,6 +22,7 @@ Status FlightRun::open_maker() {
   options.cancel = options_.cancel;
   options.notice = options_.notice;
   options.stages = &stages_;
+  options.truth_samples = &recorder_.truth_samples();
   options.wait_for_tiles = scenario_.pacing == Pacing::kLockstep;
   Result<std::unique_ptr<FrameMaker>> maker = FrameMaker::open(scenario_, options);
   if (!maker) return maker.error();
@@ -34,20 +33,18 @@ Status FlightRun::open_maker() {
   recorder_.set_length(duration_ns.value_or(0), duration_ns ? maker_->frames_total() : 0);
   if (Status status = recorder_.set_cameras(); !status) return status;
   const std::vector<std::string> doubts = maker_->flight_warnings();
-  recorder_.manifest()["flight"] = {{"description", maker_->flight_description()},
-                                    {"warnings", doubts}};
+  recorder_.manifest().flight = RunManifest::Flight{maker_->flight_description(), doubts};
   for (const std::string& warning : doubts) {
     if (Status status = recorder_.log(0, "warning", warning); !status) return status;
   }
   if (Status status = describe_world(); !status) return status;
   const renderer::RendererInfo info = maker_->renderer().info();
-  recorder_.manifest()["renderer"] = {{"backend", info.backend},
-                                      {"device", info.device},
-                                      {"gl_version", info.gl_version},
-                                      {"software", info.software}};
-  Json& renderer = recorder_.manifest()["renderer"];
-  if (!info.device_note.empty()) renderer["device_note"] = info.device_note;
-  if (!info.camera_note.empty()) renderer["camera_note"] = info.camera_note;
+  recorder_.manifest().renderer = RunManifest::Renderer{info.backend,
+                                                        info.device,
+                                                        info.gl_version,
+                                                        info.software,
+                                                        info.device_note,
+                                                        info.camera_note};
   std::string line = "rendered by " + info.backend + ": " + info.device;
   if (!info.camera_note.empty()) line += " (" + info.camera_note + ")";
   return recorder_.log(0, "info", line);
@@ -56,27 +53,22 @@ Status FlightRun::open_maker() {
 Status FlightRun::describe_world() {
   const terrain::World& world = maker_->world();
   recorder_.set_attribution(world.tiles->attribution());
-  Json hashes = Json::array();
-  for (const auto& [file, digest] : world.data_hashes) {
-    hashes.push_back({{"file", file}, {"digest", digest}});
-  }
   const Geodetic& origin = world.tiles->frame().origin();
-  recorder_.manifest()["world"] = {{"name", world.spec.name},
-                                   {"attribution", world.tiles->attribution()},
-                                   {"warnings", world.warnings},
-                                   {"data_hashes", std::move(hashes)},
-                                   {"origin",
-                                    {{"lat_deg", deg_from_rad(origin.lat_rad)},
-                                     {"lon_deg", deg_from_rad(origin.lon_rad)},
-                                     {"alt_ellipsoid_m", origin.alt_ellipsoid_m}}}};
+  RunManifest::World& described = recorder_.manifest().world.emplace();
+  described.name = world.spec.name;
+  described.attribution = world.tiles->attribution();
+  described.warnings = world.warnings;
+  described.origin = origin;
+  for (const auto& [file, digest] : world.data_hashes) {
+    described.data_hashes.push_back({file, digest});
+  }
   if (const auto& manifest = maker_->opened_world()->manifest) {
-    recorder_.manifest()["world"]["manifest"] = {{"file", manifest->file},
-                                                 {"digest", manifest->digest}};
+    described.manifest = RunManifest::WorldFile{manifest->file, manifest->digest};
   }
   const Result<WorldDress> dress = world_dress(scenario_, origin);
   if (!dress) return dress.error();
   for (const auto& [field, text] : *dress) {
-    recorder_.manifest()["world"][field] = text;
+    (field == "light" ? described.light : described.detail) = text;
     if (Status status = recorder_.log(0, "info", field + ": " + text); !status) return status;
   }
   for (const std::string& warning : world.warnings) {
@@ -87,9 +79,9 @@ Status FlightRun::describe_world() {
 
 Status FlightRun::describe() {
   const bool wall = scenario_.pacing == Pacing::kRealTime;
-  recorder_.manifest()["epoch_utc_ns"] =
+  recorder_.manifest().epoch_utc_ns =
       scenario_.epoch_utc_ns.value_or(wall ? utc_now_ns() : kLockstepEpochUtcNs);
   return recorder_.write_manifest();
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

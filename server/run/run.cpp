@@ -8,7 +8,7 @@
 
 #include "server/run/flight_run.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 namespace {
 
@@ -66,7 +66,7 @@ Result<RunResult> record_end(const Flown& flown, RunRecorder& recorder) {
   }
   const Status logged = recorder.log(
       flown.end_ns, error.empty() ? "info" : "error", error.empty() ? to_string(status) : error);
-  Result<nlohmann::json> metrics = recorder.finish(status, error, flown.timings);
+  Result<RunMetrics> metrics = recorder.finish(status, error, flown.timings);
   if (status == RunStatus::kFailed) return flown.status.error();
   if (!metrics) return metrics.error();
   if (!logged) return logged.error();
@@ -86,4 +86,4 @@ Result<RunResult> run_scenario(const Scenario& scenario, const RunOptions& optio
   return result;
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

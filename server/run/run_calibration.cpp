@@ -9,7 +9,7 @@
 #include "server/files/whole_file.hpp"
 #include "server/scenario/fault_spec.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -34,20 +34,18 @@ Status write_calibration(const fs::path& run_folder, const CameraSpec& camera) {
   std::error_code failure;
   fs::create_directories(folder, failure);
   if (failure) return Error{ErrorCode::kIo, folder.string() + ": " + failure.message()};
-  if (Status status = renderer::write_pcalib(folder / "pcalib.txt", camera.sensor); !status) {
+  if (Status status = sensor::write_pcalib(folder / "pcalib.txt", camera.sensor); !status) {
     return status;
   }
-  return write_png_file(folder / "vignette.png",
-                        renderer::vignette_map(camera.sensor, camera.model));
+  return write_png_file(folder / "vignette.png", sensor::vignette_map(camera.sensor, camera.model));
 }
 
 Status write_times(const fs::path& run_folder,
                    const CameraSpec& camera,
-                   const std::vector<FrameRecord>& frames) {
+                   const std::vector<FrameRow>& frames) {
   if (!camera.sensor.enabled) return {};
   std::string text;
-  for (const FrameRecord& frame : frames) {
-    const FrameRow& row = frame.row;
+  for (const FrameRow& row : frames) {
     if (got_lost(row)) continue;
     // Gain brightens like exposure, and the format has no field for it.
     text += padded(row.frame, kFrameDigits) + " " + seconds_text(row.t_ns + row.stamp_offset_ns) +
@@ -56,4 +54,4 @@ Status write_times(const fs::path& run_folder,
   return write_whole(calibration_folder(run_folder, camera.name) / "times.txt", text);
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -10,7 +10,7 @@
 #include "server/record/run_rows.hpp"
 #include "server/scenario/camera_spec.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// photometric/NAME, for a camera with a sensor model.
 [[nodiscard]] std::filesystem::path calibration_folder(const std::filesystem::path& run_folder,
@@ -26,6 +26,6 @@ namespace overfly::engine {
 /// Errors: kIo naming the file.
 [[nodiscard]] Status write_times(const std::filesystem::path& run_folder,
                                  const CameraSpec& camera,
-                                 const std::vector<FrameRecord>& frames);
+                                 const std::vector<FrameRow>& frames);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

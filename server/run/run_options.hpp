@@ -5,15 +5,15 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "core/result.hpp"
 #include "server/camera/renderer_factory.hpp"
-#include "server/record/run_timeline.hpp"
 #include "server/scenario/scenario.hpp"
+#include "server/scoring/run_metrics.hpp"
+#include "server/timeline/run_timeline.hpp"
 #include "vo_bridges/vo_port.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 class PictureRate;
 class RunClock;
@@ -50,7 +50,7 @@ struct RunOptions {
 
 struct RunResult {
   RunInfo info;
-  nlohmann::json metrics;  ///< as in metrics.json
+  RunMetrics metrics;
 };
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

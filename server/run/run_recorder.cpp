@@ -9,11 +9,12 @@
 #include "server/files/png_file.hpp"
 #include "server/record/run_info_file.hpp"
 #include "server/record/run_lock.hpp"
-#include "server/record/run_timeline.hpp"
+#include "server/record/run_manifest.hpp"
 #include "server/run/run_calibration.hpp"
 #include "server/scoring/metrics.hpp"
+#include "server/timeline/run_timeline.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -35,30 +36,31 @@ Status make_empty_folder(const fs::path& folder) {
   return {};
 }
 
-Json estimators_json(const Scenario& scenario) {
-  Json estimators = Json::array();
+std::vector<RunManifest::Estimator> listed_estimators(const Scenario& scenario) {
+  std::vector<RunManifest::Estimator> estimators;
   for (const EstimatorSpec& spec : scenario.estimators) {
-    estimators.push_back({{"name", spec.name},
-                          {"type", spec.type},
-                          {"camera", scenario.cameras[spec.camera].name},
-                          {"test_estimator", is_test_estimator(spec.type)}});
+    RunManifest::Estimator& estimator = estimators.emplace_back();
+    estimator.name = spec.name;
+    estimator.type = spec.type;
+    estimator.camera = scenario.cameras[spec.camera].name;
+    estimator.test_estimator = is_test_estimator(spec.type);
   }
   return estimators;
 }
 
-Json camera_json(const CameraSpec& spec, const FrameRate& rate) {
-  Json entry = json_from(spec.model);
-  entry["name"] = spec.name;
-  entry["rate_hz"] = rate.hz();
-  entry["T_body_camera"] = json_from(spec.T_body_camera);
-  entry["color"] = spec.rgb ? "rgb" : "grey";
-  entry["bits"] = spec.sensor.bits;
-  entry["sensor"] = spec.sensor.enabled;
-  if (!spec.sensor.enabled) return entry;
-  entry["readout_ns"] = ns_from_s(spec.sensor.readout_s);
-  entry["gain_dn_per_e"] = spec.sensor.effective_gain_dn_per_e();
-  entry["adc_bits"] = spec.sensor.effective_adc_bits();
-  return entry;
+RunManifest::Camera listed_camera(const CameraSpec& spec, const FrameRate& rate) {
+  RunManifest::Camera camera;
+  camera.name = spec.name;
+  camera.model = spec.model;
+  camera.rate_hz = rate.hz();
+  camera.T_body_camera = spec.T_body_camera;
+  camera.rgb = spec.rgb;
+  camera.bits = spec.sensor.bits;
+  if (!spec.sensor.enabled) return camera;
+  camera.sensor = RunManifest::Sensor{ns_from_s(spec.sensor.readout_s),
+                                      spec.sensor.effective_gain_dn_per_e(),
+                                      spec.sensor.effective_adc_bits()};
+  return camera;
 }
 
 Status write_jpeg(const fs::path& file, const Image& image, int quality) {
@@ -100,13 +102,10 @@ Result<std::unique_ptr<RunRecorder>> RunRecorder::create(const fs::path& folder,
     recorder->records_.estimators.push_back({spec.name, spec.type, {}, spec.camera});
   }
   info.cameras.clear();
+  recorder->records_.cameras.clear();
   for (const CameraSpec& camera : scenario.cameras) {
     info.cameras.push_back(camera.name);
-    if (info.cameras.size() == 1) {
-      recorder->records_.T_body_camera = camera.T_body_camera;
-    } else {
-      recorder->records_.other_cameras.push_back({camera.name, camera.T_body_camera, {}});
-    }
+    recorder->records_.cameras.push_back({camera.name, camera.T_body_camera, {}});
   }
   if (info.created_utc.empty()) info.created_utc = utc_text(utc_now_ns());
   if (!timeline) timeline = std::make_shared<RunTimeline>(info, info.estimators);
@@ -117,12 +116,10 @@ Result<std::unique_ptr<RunRecorder>> RunRecorder::create(const fs::path& folder,
 }
 
 Status RunRecorder::open_files() {
-  manifest_ = {{"format_version", kRunFormatVersion},
-               {"version", version()},
-               {"commit", git_commit()},
-               {"seed", scenario_.seed},
-               {"world", Json::object()},
-               {"estimators", estimators_json(scenario_)}};
+  manifest_.version = version();
+  manifest_.commit = git_commit();
+  manifest_.seed = scenario_.seed;
+  manifest_.estimators = listed_estimators(scenario_);
   // A manifest makes the folder a run, so the other files that a list of runs reads are written
   // before it.
   if (Status status = write_json(created_file(folder_), {{"created_utc", info_.created_utc}});
@@ -140,11 +137,14 @@ Status RunRecorder::open_files() {
   Result<LineFile> log = LineFile::create(log_file(folder_));
   if (!log) return log.error();
   log_lines_ = std::move(log).value();
+  Result<TruthSampleFile> samples = TruthSampleFile::create(truth_samples_file(folder_));
+  if (!samples) return samples.error();
+  truth_samples_ = std::move(samples).value();
   for (const std::string& name : info_.estimators) {
     Result<LineFile> lines = LineFile::create(estimate_file(folder_, name));
     if (!lines) return lines.error();
-    const std::size_t camera = records_.estimators[estimators_.size()].camera;
-    estimators_.push_back({std::move(lines).value(), LiveAlignment(records_.mount_of(camera))});
+    const CameraRecords& camera = records_.camera_of(records_.estimators[estimators_.size()]);
+    estimators_.push_back({std::move(lines).value(), LiveAlignment(camera.T_body_camera)});
     if (scenario_.record_debug_hz > 0.0) fs::create_directories(folder_ / "debug" / name, failure);
   }
   if (failure) return Error{ErrorCode::kIo, folder_.string() + ": " + failure.message()};
@@ -154,20 +154,17 @@ Status RunRecorder::open_files() {
 
 Status RunRecorder::open_camera_files() {
   std::error_code failure;
-  const bool several = info_.cameras.size() > 1;
-  if (several) fs::create_directories(folder_ / "cameras", failure);
   for (std::size_t i = 0; i < info_.cameras.size(); ++i) {
-    const std::string& name = info_.cameras[i];
-    const std::string of = i == 0 ? "" : name;
-    if (scenario_.record_frames) {
-      fs::create_directories(frame_image_file(folder_, of, 0).parent_path(), failure);
+    const CameraFiles files(folder_, i, info_.cameras[i]);
+    fs::create_directories(files.rows().parent_path(), failure);
+    if (!failure && scenario_.record_frames) {
+      fs::create_directories(files.image(0).parent_path(), failure);
       if (!failure && scenario_.cameras[i].sensor.bits > 8) {
-        fs::create_directories(deep_frame_file(folder_, of, 0).parent_path(), failure);
+        fs::create_directories(files.deep_image(0).parent_path(), failure);
       }
     }
     if (failure) return Error{ErrorCode::kIo, folder_.string() + ": " + failure.message()};
-    Result<LineFile> lines =
-        LineFile::create(i == 0 ? frames_file(folder_) : camera_frames_file(folder_, name));
+    Result<LineFile> lines = LineFile::create(files.rows());
     if (!lines) return lines.error();
     frame_lines_.push_back(std::move(lines).value());
   }
@@ -177,23 +174,17 @@ Status RunRecorder::open_camera_files() {
 Status RunRecorder::write_manifest() {
   put_run_info(info_, manifest_);
   timeline_->set_info(info_);
-  return write_json(manifest_file(folder_), manifest_);
+  return write_json(manifest_file(folder_), json_from(manifest_));
 }
 
 Status RunRecorder::set_cameras() {
   std::vector<RunCamera> cameras;
   cameras.reserve(scenario_.cameras.size());
-  Json entries = Json::array();
   for (const CameraSpec& spec : scenario_.cameras) {
     cameras.push_back({spec.name, spec.model, spec.T_body_camera});
-    entries.push_back(camera_json(spec, scenario_.rate));
+    manifest_.cameras.push_back(listed_camera(spec, scenario_.rate));
     if (Status status = write_calibration(folder_, spec); !status) return status;
   }
-  const CameraSpec& main = scenario_.cameras.front();
-  manifest_["camera"] = json_from(main.model.pinhole());
-  manifest_["camera"]["rate_hz"] = scenario_.rate.hz();
-  manifest_["camera"]["T_body_camera"] = json_from(main.T_body_camera);
-  manifest_["cameras"] = std::move(entries);
   timeline_->set_cameras(std::move(cameras));
   return {};
 }
@@ -207,22 +198,19 @@ void RunRecorder::set_attribution(const std::string& attribution) {
   info_.attribution = attribution;
 }
 
-Status RunRecorder::add_frame(const FrameRecord& record,
+Status RunRecorder::add_frame(const FrameRow& row,
                               const std::shared_ptr<const Image>& image,
                               const Image16& deep,
                               std::size_t camera) {
-  const std::int64_t frame = record.row.frame;
-  if (Status status = frame_lines_[camera].append(json_from(record)); !status) return status;
-  std::vector<FrameRecord>& frames =
-      camera == 0 ? records_.frames : records_.other_cameras[camera - 1].frames;
-  frames.push_back(record);
-  timeline_->append_frame(record.row, camera);
-  if (publish_images_ && image) timeline_->set_live_camera({frame, record.row.t_ns, image}, camera);
+  const std::int64_t frame = row.frame;
+  if (Status status = frame_lines_[camera].append(json_from(row)); !status) return status;
+  records_.cameras[camera].frames.push_back(row);
+  timeline_->append_frame(row, camera);
+  if (publish_images_ && image) timeline_->set_live_camera({frame, row.t_ns, image}, camera);
   if (scenario_.record_frames && image) {
     if (Status status = keep_image(frame, *image, deep, camera); !status) return status;
   }
-  if (camera != 0) return {};
-  ++info_.frames;
+  info_.frames = static_cast<std::int64_t>(records_.main_camera().frames.size());
   timeline_->set_info(info_);
   return {};
 }
@@ -231,17 +219,14 @@ Status RunRecorder::keep_image(std::int64_t frame,
                                const Image& image,
                                const Image16& deep,
                                std::size_t camera) {
-  const std::string of = camera == 0 ? "" : scenario_.cameras[camera].name;
-  if (Status status = write_jpeg(frame_image_file(folder_, of, frame), image, kFrameQuality);
-      !status) {
-    return status;
-  }
-  return deep.empty() ? Status() : write_png_file(deep_frame_file(folder_, of, frame), deep);
+  const CameraFiles files(folder_, camera, info_.cameras[camera]);
+  if (Status status = write_jpeg(files.image(frame), image, kFrameQuality); !status) return status;
+  return deep.empty() ? Status() : write_png_file(files.deep_image(frame), deep);
 }
 
 Status RunRecorder::add_late_frame(std::int64_t frame, std::int64_t t_ns) {
   records_.late_frames.push_back({frame, t_ns});
-  return frame_lines_.front().append({{"frame", frame}, {"t_ns", t_ns}, {"late", true}});
+  return frame_lines_.at(kMainCamera).append({{"frame", frame}, {"t_ns", t_ns}, {"late", true}});
 }
 
 Status RunRecorder::log(std::int64_t t_ns,
@@ -254,12 +239,12 @@ Status RunRecorder::log(std::int64_t t_ns,
   return log_lines_->append(json_from(row));
 }
 
-Result<Json> RunRecorder::finish(RunStatus status, const std::string& error, Json timings) {
+Result<RunMetrics> RunRecorder::finish(RunStatus status, const std::string& error, Json timings) {
   info_.status = status;
   info_.error = error;
-  Result<Json> metrics = write_derived(folder_, records_);
+  Result<RunMetrics> metrics = write_derived(folder_, records_);
   for (std::size_t i = 0; i < scenario_.cameras.size() && metrics; ++i) {
-    const Status kept = write_times(folder_, scenario_.cameras[i], records_.frames_of(i));
+    const Status kept = write_times(folder_, scenario_.cameras[i], records_.cameras[i].frames);
     if (!kept) metrics = kept.error();
   }
   info_.texture_limited = metrics && is_texture_limited(*metrics);
@@ -280,7 +265,7 @@ Result<Json> RunRecorder::finish(RunStatus status, const std::string& error, Jso
 
 Status RunRecorder::let_go() {
   put_run_info(info_, manifest_);
-  Status written = write_json(manifest_file(folder_), manifest_);
+  Status written = write_json(manifest_file(folder_), json_from(manifest_));
   // Before the end of the run is announced, since others may change the file from then on.
   timeline_->set_manifest_stamp(FileStamp::of(manifest_file(folder_)));
   // A client that learns of the run's end may delete it at once; the lock is therefore released
@@ -302,4 +287,4 @@ void RunRecorder::give_up(const Error& error) {
   }
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

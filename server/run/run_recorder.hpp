@@ -12,17 +12,20 @@
 #include "core/result.hpp"
 #include "server/files/whole_file.hpp"
 #include "server/record/estimator_event.hpp"
-#include "server/record/live_alignment.hpp"
 #include "server/record/run_folder.hpp"
 #include "server/record/run_info.hpp"
 #include "server/record/run_lock.hpp"
+#include "server/record/run_manifest.hpp"
 #include "server/record/run_records.hpp"
-#include "server/record/run_timeline.hpp"
+#include "server/record/truth_samples.hpp"
 #include "server/scenario/scenario.hpp"
+#include "server/scoring/run_metrics.hpp"
+#include "server/timeline/live_alignment.hpp"
+#include "server/timeline/run_timeline.hpp"
 #include "server/timing/latency_histogram.hpp"
 #include "server/timing/stage_timer.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Used only by the run's thread.
 class RunRecorder {
@@ -36,18 +39,20 @@ class RunRecorder {
                                                      bool publish_images);
 
   /// Contents of the manifest besides the run's info; written by write_manifest().
-  [[nodiscard]] nlohmann::json& manifest() { return manifest_; }
+  [[nodiscard]] RunManifest& manifest() { return manifest_; }
   Status write_manifest();
+  /// Takes the truth while the run flies.
+  [[nodiscard]] TruthSampleFile& truth_samples() { return *truth_samples_; }
 
   /// Adds the cameras to manifest and timeline, and stores their photometric calibration.
   Status set_cameras();
   void set_length(std::int64_t duration_ns, std::int64_t frames_total);
   void set_attribution(const std::string& attribution);
 
-  /// The main camera's (0) record first, then those of the others.
+  /// @param camera  index; of each frame the main camera's record comes first
   /// @param image  null if it was lost: then it is neither recorded nor shown
   /// @param deep  the same image from a sensor deeper than 8 bit, else empty
-  Status add_frame(const FrameRecord& record,
+  Status add_frame(const FrameRow& row,
                    const std::shared_ptr<const Image>& image,
                    const Image16& deep,
                    std::size_t camera);
@@ -67,7 +72,7 @@ class RunRecorder {
 
   /// Derives trajectories and metrics, writes timings and the final manifest, releases the folder.
   /// @param timings  wall-clock measurements, written with those of the estimators
-  Result<nlohmann::json> finish(RunStatus status, const std::string& error, nlohmann::json timings);
+  Result<RunMetrics> finish(RunStatus status, const std::string& error, nlohmann::json timings);
 
   /// Called after finish() failed: sets the manifest to "failed" and releases the folder. Does
   /// nothing if finish() succeeded.
@@ -111,11 +116,12 @@ class RunRecorder {
   bool publish_images_ = false;
   std::shared_ptr<RunTimeline> timeline_;
   RunInfo info_;
-  nlohmann::json manifest_ = nlohmann::json::object();
+  RunManifest manifest_;
   RunRecords records_;
   std::vector<LineFile> frame_lines_;  ///< by camera
   std::optional<LineFile> log_lines_;
+  std::optional<TruthSampleFile> truth_samples_;
   std::vector<EstimatorState> estimators_;
 };
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

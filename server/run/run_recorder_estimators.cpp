@@ -2,13 +2,13 @@
 #include <string_view>
 #include <utility>
 
+#include "core/measure/process_memory.hpp"
 #include "server/files/jpeg.hpp"
 #include "server/record/estimator_tally.hpp"
 #include "server/record/rows.hpp"
 #include "server/run/run_recorder.hpp"
-#include "server/timing/cpu_affinity.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -44,9 +44,9 @@ Status RunRecorder::add_event(std::size_t estimator, EstimatorEvent event) {
 
 void RunRecorder::tell_status(std::size_t estimator, const EstimatorEvent& event) {
   EstimatorState& state = estimators_[estimator];
-  const std::size_t camera = records_.estimators[estimator].camera;
-  const FrameRecord* frame = frame_record(records_, camera, event.record.sample.frame);
-  tally(event.record, frame != nullptr ? frame->row.image_crc32 : std::nullopt, state.status);
+  const CameraRecords& camera = records_.camera_of(records_.estimators[estimator]);
+  const FrameRow* frame = frame_row(camera, event.record.sample.frame);
+  tally(event.record, frame != nullptr ? frame->image_crc32 : std::nullopt, state.status);
   if (event.use) {
     state.status.use = event.use;
     state.status.latency = state.latency_so_far.summary();
@@ -85,10 +85,9 @@ Status RunRecorder::add_answer(std::size_t estimator, EstimatorEvent& event) {
   EstimateRow row;
   row.sample = event.record.sample;
   row.latency_ms = event.latency_ms;
-  const std::size_t camera = records_.estimators[estimator].camera;
-  if (const FrameRecord* frame = frame_record(records_, camera, row.sample.frame)) {
-    row.T_world_body =
-        state.alignment.add(row.sample, frame->row.T_world_camera, frame->axis_depth_m);
+  const CameraRecords& camera = records_.camera_of(records_.estimators[estimator]);
+  if (const FrameRow* frame = frame_row(camera, row.sample.frame)) {
+    row.T_world_body = state.alignment.add(row.sample, frame->T_world_camera, frame->axis_depth_m);
   }
   // An estimator that has ended returns an empty answer at once.
   const bool gone = !event.record.crash.empty() || !state.status.crash.empty();
@@ -146,7 +145,7 @@ Status RunRecorder::log_transition(std::size_t estimator, const EstimateRecord& 
 }
 
 Status RunRecorder::write_timings(Json timings) const {
-  timings["peak_memory_mb"] = own_peak_memory_mb();
+  timings["peak_memory_mb"] = peak_memory_mb();
   Json estimators = Json::object();
   for (std::size_t i = 0; i < estimators_.size(); ++i) {
     const EstimatorState& state = estimators_[i];
@@ -162,4 +161,4 @@ Status RunRecorder::write_timings(Json timings) const {
   return write_json(timings_file(folder_), timings);
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

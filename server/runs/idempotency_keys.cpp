@@ -1,6 +1,6 @@
 #include "server/runs/idempotency_keys.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 std::optional<std::string> IdempotencyKeys::run_of(const std::string& key, Time now) {
   drop_old(now);
@@ -37,4 +37,4 @@ void IdempotencyKeys::drop_old(Time now) {
   });
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -8,7 +8,7 @@
 #include <string>
 #include <unordered_map>
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Bounded in number and age; the least recently used key is evicted first. Not thread-safe.
 class IdempotencyKeys {
@@ -37,4 +37,4 @@ class IdempotencyKeys {
   std::unordered_map<std::string, std::list<Entry>::iterator> by_key_;
 };
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

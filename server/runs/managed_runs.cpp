@@ -8,10 +8,10 @@
 
 #include "server/record/run_id.hpp"
 #include "server/record/run_info.hpp"
-#include "server/record/run_timeline.hpp"
+#include "server/timeline/run_timeline.hpp"
 #include "server/worlds/world_change.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 RunInfo queued_info(const std::string& id, const Scenario& scenario) {
@@ -164,7 +164,7 @@ WorldCache::Shared ManagedRuns::flown_world(const std::string& id) const {
 bool ManagedRuns::cancel(const std::string& id) {
   const std::lock_guard lock(mutex_);
   const auto found = runs_.find(id);
-  if (found == runs_.end() || !engine::is_live(*found->second->timeline)) return false;
+  if (found == runs_.end() || !server::is_live(*found->second->timeline)) return false;
   const std::shared_ptr<ManagedRun> run = found->second;
   run->cancel = true;
   const auto waiting = std::find(queue_.begin(), queue_.end(), run);
@@ -182,7 +182,7 @@ bool ManagedRuns::cancel(const std::string& id) {
 bool ManagedRuns::is_live(const std::string& id) const {
   const std::lock_guard lock(mutex_);
   const auto run = runs_.find(id);
-  return run != runs_.end() && engine::is_live(*run->second->timeline);
+  return run != runs_.end() && server::is_live(*run->second->timeline);
 }
 
 void ManagedRuns::keep_unflown(std::shared_ptr<ManagedRun> run) {
@@ -225,4 +225,4 @@ void ManagedRuns::forget(const std::string& id) {
   std::erase_if(unflown_, [&](const auto& run) { return run->id == id; });
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -14,17 +14,17 @@
 
 #include "server/record/run_folder.hpp"
 #include "server/record/run_info.hpp"
-#include "server/record/run_timeline.hpp"
 #include "server/runs/idempotency_keys.hpp"
 #include "server/runs/run_index.hpp"
 #include "server/runs/run_manager_options.hpp"
 #include "server/runs/run_memory.hpp"
 #include "server/runs/timeline_shelf.hpp"
 #include "server/scenario/document/scenario_list.hpp"
+#include "server/timeline/run_timeline.hpp"
 #include "server/timing/picture_rate.hpp"
 #include "server/worlds/world_cache.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// A run requested from this process, until it is over.
 struct ManagedRun {
@@ -113,4 +113,4 @@ class ManagedRuns {
   std::vector<std::thread> threads_;
 };
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -6,12 +6,12 @@
 
 #include "server/record/run_id.hpp"
 #include "server/record/run_info.hpp"
-#include "server/record/run_timeline.hpp"
 #include "server/run/run.hpp"
 #include "server/run/run_options.hpp"
 #include "server/runs/managed_runs.hpp"
+#include "server/timeline/run_timeline.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 /// How often files of runs that are over are checked for their viewers.
@@ -46,14 +46,14 @@ Status ManagedRuns::start_threads() {
 
 bool ManagedRuns::next_fits() const {
   RunMemory together = queue_.front()->memory;
-  bool alone = true;
+  bool only_one = true;
   for (const auto& [id, run] : runs_) {
     if (!run->flies) continue;
-    alone = false;
+    only_one = false;
     together += run->memory;
   }
-  // That it fits alone was checked when it was requested.
-  return alone || budget_.holds(together);
+  // A run that does not fit without others was rejected when it was requested.
+  return only_one || budget_.holds(together);
 }
 
 void ManagedRuns::work() {
@@ -83,7 +83,7 @@ void ManagedRuns::drop(const std::shared_ptr<ManagedRun>& run, const char* reaso
   const std::lock_guard lock(mutex_);
   runs_.erase(run->id);
   try {
-    if (engine::is_live(*run->timeline)) set_status(*run->timeline, RunStatus::kFailed, reason);
+    if (server::is_live(*run->timeline)) set_status(*run->timeline, RunStatus::kFailed, reason);
   } catch (const std::exception&) {
     // Its folder shows it as interrupted.
   }
@@ -143,10 +143,10 @@ void ManagedRuns::fly(ManagedRun& run) {
   set_world(nullptr);
   // The run itself sets its final state in the timeline, unless it failed before it could create
   // its folder.
-  run.recorded = result.ok() || !engine::is_live(*run.timeline);
+  run.recorded = result.ok() || !server::is_live(*run.timeline);
   if (!run.recorded) {
     set_status(*run.timeline, RunStatus::kFailed, result.error().message);
   }
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

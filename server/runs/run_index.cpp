@@ -13,7 +13,7 @@
 #include "server/record/run_folder.hpp"
 #include "server/record/run_info_file.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 /// An open directory; the descriptor is -1 if it does not exist.
@@ -144,4 +144,4 @@ void RunIndex::set_world_change(const std::string& id, const std::string& change
   unsorted_ = true;
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -12,9 +12,9 @@
 
 #include "core/result.hpp"
 #include "server/files/file_stamp.hpp"
-#include "server/record/run_timeline.hpp"
+#include "server/timeline/run_timeline.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Newest first. The entries are shared and immutable.
 using RunList = std::vector<std::shared_ptr<const RunInfo>>;
@@ -60,4 +60,4 @@ class RunIndex {
   RunList sorted_;
 };
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -4,13 +4,13 @@
 
 #include "server/files/plain_name.hpp"
 #include "server/record/run_info.hpp"
-#include "server/record/run_timeline.hpp"
 #include "server/runs/managed_runs.hpp"
 #include "server/runs/run_removal.hpp"
 #include "server/scenario/document/estimator_reach.hpp"
 #include "server/scenario/document/scenario_file.hpp"
+#include "server/timeline/run_timeline.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -52,9 +52,9 @@ Result<RunInfo> RunManager::start(const std::string& scenario,
                                   const std::string& idempotency_key,
                                   StartReport* report) {
   StartReport unasked;
-  StartReport& told = report != nullptr ? *report : unasked;
+  StartReport& filled = report != nullptr ? *report : unasked;
   if (std::optional<RunInfo> earlier = impl_->started_by(idempotency_key)) {
-    told.repeated = true;
+    filled.repeated = true;
     return *earlier;
   }
   const Result<fs::path> file = scenario_path(impl_->options.scenarios_folder, scenario);
@@ -63,7 +63,7 @@ Result<RunInfo> RunManager::start(const std::string& scenario,
   if (!loaded) return loaded.error();
   loaded->sources = impl_->sources();
   if (Status status = check_scenario(*loaded); !status) return status.error();
-  return impl_->enqueue(std::move(*loaded), idempotency_key, told);
+  return impl_->enqueue(std::move(*loaded), idempotency_key, filled);
 }
 
 Status RunManager::check_overrides(const std::string& scenario,
@@ -161,4 +161,4 @@ const RendererFactory& RunManager::renderer_factory() const {
   return impl_->options.renderer_factory;
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -11,14 +11,14 @@
 #include <vector>
 
 #include "server/record/run_info.hpp"
-#include "server/record/run_timeline.hpp"
 #include "server/runs/run_index.hpp"
 #include "server/runs/run_manager_options.hpp"
 #include "server/scenario/document/scenario_list.hpp"
+#include "server/timeline/run_timeline.hpp"
 #include "server/timing/picture_rate.hpp"
 #include "terrain/world.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 class ManagedRuns;
 
@@ -77,4 +77,4 @@ class RunManager {
   std::unique_ptr<ManagedRuns> impl_;
 };
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -8,7 +8,7 @@
 
 #include "server/camera/renderer_factory.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 struct RunManagerOptions {
   std::filesystem::path runs_folder;  ///< created if absent
@@ -32,4 +32,4 @@ struct StartReport {
   enum class Refusal { kNone, kQueueFull, kMemory } refusal = Refusal::kNone;
 };
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -8,7 +8,7 @@
 #include <string>
 #include <tuple>
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -195,4 +195,4 @@ Status MemoryBudget::check(const Scenario& scenario) const {
                    bytes_text(limit_bytes_) + " (the rest is for maps and pictures)"};
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -6,7 +6,7 @@
 #include "core/result.hpp"
 #include "server/scenario/scenario.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Memory of one flight, or the total of several.
 struct RunMemory {
@@ -48,4 +48,4 @@ class MemoryBudget {
   bool views_;
 };
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

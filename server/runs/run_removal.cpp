@@ -14,7 +14,7 @@
 #include "server/record/run_id.hpp"
 #include "server/record/run_lock.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -70,4 +70,4 @@ void remove_leftovers(const fs::path& runs_folder) {
   }
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

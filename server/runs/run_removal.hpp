@@ -5,7 +5,7 @@
 
 #include "core/result.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Deletes a run's folder. It is renamed first, so that no one sees a part of it and only one of
 /// several simultaneous calls succeeds. Symbolic links are deleted, not followed.
@@ -17,4 +17,4 @@ namespace overfly::engine {
 /// empty folders of queued runs that were never flown (after a day).
 void remove_leftovers(const std::filesystem::path& runs_folder);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -1,11 +1,12 @@
 #include "server/runs/timeline_shelf.hpp"
 
 #include <algorithm>
+#include <utility>
 
-#include "server/files/whole_file.hpp"
 #include "server/record/run_folder.hpp"
+#include "server/scoring/run_metrics_json.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 namespace fs = std::filesystem;
 
@@ -24,10 +25,14 @@ bool TimelineShelf::is_fresh(Entry& entry) const {
   if (now.metrics == entry.metrics && entry.metrics_settled) return true;
   entry.metrics = now.metrics;
   entry.metrics_settled = now.metrics_settled;
-  const Result<nlohmann::json> metrics = read_json(metrics_file(runs_folder_ / entry.id));
+  Result<RunMetrics> metrics = read_run_metrics(runs_folder_ / entry.id);
   // A file that cannot be read is reported when the run is opened again.
-  if (!metrics || !metrics->is_object()) return false;
-  if (*metrics != entry.timeline->metrics()) entry.timeline->set_metrics(*metrics);
+  if (!metrics) return false;
+  const auto known = entry.timeline->metrics();
+  // Compared as they are sent: viewers are not notified of a file that was only touched.
+  if (!known || json_from(*known) != json_from(*metrics)) {
+    entry.timeline->set_metrics(std::move(*metrics));
+  }
   return true;
 }
 
@@ -79,4 +84,4 @@ void TimelineShelf::refresh() {
   std::erase_if(entries_, [&](Entry& entry) { return !is_fresh(entry); });
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

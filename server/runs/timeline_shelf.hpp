@@ -11,9 +11,9 @@
 
 #include "core/result.hpp"
 #include "server/files/file_stamp.hpp"
-#include "server/record/run_timeline.hpp"
+#include "server/timeline/run_timeline.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Thread-safe. Keeps the most recently used ones.
 class TimelineShelf {
@@ -49,4 +49,4 @@ class TimelineShelf {
   std::list<Entry> entries_;  ///< most recently used first
 };
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

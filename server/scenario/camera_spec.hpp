@@ -3,13 +3,13 @@
 
 #include <string>
 
-#include "core/camera_model.hpp"
-#include "core/pose.hpp"
+#include "core/camera/camera_model.hpp"
+#include "core/motion/pose.hpp"
 #include "renderer/renderer.hpp"
 #include "sensor/mount_vibration.hpp"
 #include "sensor/sensor.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 inline constexpr const char* kOnlyCameraName = "camera0";  ///< name of a scenario's single `camera`
 
@@ -18,11 +18,11 @@ struct CameraSpec {
   CameraModel model;
   /// The mount; vibration moves the camera about this pose.
   Pose T_body_camera{R_body_camera_nadir(), Eigen::Vector3d::Zero()};
-  bool rgb = false;              ///< colour images; estimators get their luma
-  renderer::SensorModel sensor;  ///< if not enabled, the image stays as rendered
-  renderer::VibrationModel vibration;
+  bool rgb = false;            ///< colour images; estimators get their luma
+  sensor::SensorModel sensor;  ///< if not enabled, the image stays as rendered
+  sensor::VibrationModel vibration;
   renderer::RenderQuality quality = renderer::RenderQuality::kTrilinear;
   renderer::Atmosphere atmosphere;
 };
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -1,6 +1,6 @@
 #include "server/scenario/estimator_spec.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 bool is_outside_estimator(const std::string& type) {
   return type == "process" || type == "lcm" || type == "ros1";
@@ -8,4 +8,4 @@ bool is_outside_estimator(const std::string& type) {
 
 bool is_test_estimator(const std::string& type) { return type == "perfect" || type == "drifting"; }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "vo_bridges/parameter.hpp"
-#include "vo_bridges/ros1/ros1_estimator.hpp"
+#include "vo_bridges/ros1/ros1_options.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 struct EstimatorSpec {
   std::string name;  ///< unique in the scenario; used in file names
@@ -48,4 +48,4 @@ struct EstimatorSpec {
 /// True for types that get the truth.
 [[nodiscard]] bool is_test_estimator(const std::string& type);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

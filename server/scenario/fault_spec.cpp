@@ -3,7 +3,7 @@
 #include <array>
 #include <utility>
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 constexpr std::array<std::pair<FaultKind, const char*>, 8> kNames = {
@@ -37,4 +37,4 @@ bool FaultSpec::on_lens() const {
          kind == FaultKind::kWaterDrop || kind == FaultKind::kBlackout;
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

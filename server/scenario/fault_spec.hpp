@@ -8,7 +8,7 @@
 
 #include "sensor/image_faults.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 enum class FaultKind {
   kDroppedFrames,    ///< images that never reach the estimators
@@ -35,7 +35,7 @@ struct FaultSpec {
   std::optional<double> probability;  ///< kDroppedFrames: per frame, instead of `every`
   double sigma_ns = 0.0;              ///< kStampJitter
   std::int64_t offset_ns = 0;         ///< kStampOffset
-  renderer::ImageFault image;         ///< for faults on the lens
+  sensor::ImageFault image;           ///< for faults on the lens
   std::uint64_t seed = 1;
 
   [[nodiscard]] bool in_force(std::size_t of_camera, std::int64_t t_ns) const {
@@ -45,4 +45,4 @@ struct FaultSpec {
   [[nodiscard]] bool on_lens() const;
 };
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -1,9 +1,9 @@
 #include "server/scenario/scenario.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 const char* to_string(Pacing pacing) {
   return pacing == Pacing::kRealTime ? "real_time" : "lockstep";
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -11,8 +11,8 @@
 #include <variant>
 #include <vector>
 
+#include "core/outside/source_policy.hpp"
 #include "core/result.hpp"
-#include "core/source_policy.hpp"
 #include "core/time.hpp"
 #include "flight/flight.hpp"
 #include "server/scenario/camera_spec.hpp"
@@ -22,7 +22,7 @@
 #include "terrain/decoration/light.hpp"
 #include "terrain/world.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 enum class Pacing {
   kLockstep,  ///< each frame waits for every estimator: nothing dropped, byte-identical results
@@ -65,11 +65,11 @@ struct Scenario {
   std::optional<std::int64_t> epoch_utc_ns;
 
   /// The built-in world with a seed, a world manifest, or layers listed in the scenario itself.
-  using BuiltinWorld = engine::BuiltinWorld;
+  using BuiltinWorld = server::BuiltinWorld;
   std::variant<BuiltinWorld, std::filesystem::path, terrain::WorldSpec> world;
 
   /// The course, or a pose file.
-  using LoggedFlight = engine::LoggedFlight;
+  using LoggedFlight = server::LoggedFlight;
   std::variant<flight::CourseParameters, LoggedFlight> flight;
   /// The course starts at the world's runway, which is known only when the world is open.
   bool start_at_runway = true;
@@ -78,8 +78,9 @@ struct Scenario {
   /// Stops the flight early [s].
   std::optional<double> duration_s;
 
-  /// At least one; the first is the main one, recorded in frames.jsonl.
+  /// At least one; the first is the main one.
   std::vector<CameraSpec> cameras{CameraSpec{}};
+  [[nodiscard]] const CameraSpec& main_camera() const { return cameras.front(); }
   FrameRate rate;  ///< of all cameras: they share their time stamps
   std::vector<FaultSpec> faults;
   std::vector<EstimatorSpec> estimators;
@@ -104,4 +105,4 @@ struct Override {
   nlohmann::json value;
 };
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

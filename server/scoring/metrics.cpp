@@ -1,34 +1,34 @@
 #include "server/scoring/metrics.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "core/motion/trajectory_io.hpp"
 #include "core/time.hpp"
-#include "core/trajectory_io.hpp"
 #include "server/files/whole_file.hpp"
 #include "server/record/estimator_tally.hpp"
 #include "server/record/run_folder.hpp"
 #include "server/scenario/estimator_spec.hpp"
 #include "server/scoring/camera_metrics.hpp"
+#include "server/scoring/run_metrics_json.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
 
-template <typename Value>
-Json or_null(const std::optional<Value>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
-
-Json flight_metrics(const RunRecords& records, const Trajectory& truth) {
-  const double duration_s =
-      records.frames.empty() ? 0.0 : s_from_ns(records.frames.back().row.t_ns);
-  return {{"duration_s", duration_s}, {"path_length_m", truth.path_length_m()}};
+FlightMetrics flight_metrics_from(const CameraRecords& main_camera) {
+  FlightMetrics flight;
+  if (main_camera.frames.empty()) return flight;
+  flight.duration_s = s_from_ns(main_camera.frames.back().t_ns);
+  if (const Result<Trajectory> truth = truth_of(main_camera)) {
+    flight.path_length_m = truth->path_length_m();
+  }
+  return flight;
 }
 
 std::vector<std::int64_t> dropped_frames(const EstimatorRecords& estimator) {
@@ -39,16 +39,17 @@ std::vector<std::int64_t> dropped_frames(const EstimatorRecords& estimator) {
   return dropped;
 }
 
-evaluation::Score score_of(const RunRecords& records,
-                           const Trajectory& truth,
-                           const EstimatorRecords& estimator) {
+evaluation::Score score_of(const RunRecords& records, const EstimatorRecords& estimator) {
   evaluation::Options options;
-  options.flight = flight_frames(records, estimator.camera);
-  options.T_body_camera = records.mount_of(estimator.camera);
+  const CameraRecords& camera = records.camera_of(estimator);
+  options.flight = flight_frames(records, camera);
+  options.T_body_camera = camera.T_body_camera;
   if (const auto initial = initial_frame(records, estimator)) {
     options.init_true_depth_m = initial->true_depth_m;
   }
-  evaluation::Score score = evaluation::score(truth, track_of(estimator), options);
+  const Result<Trajectory> truth = truth_of(camera);
+  evaluation::Score score =
+      evaluation::score(truth ? *truth : Trajectory(), track_of(estimator), options);
   for (const EstimateRecord& record : estimator.records) {
     if (record.crash.empty()) continue;
     score.outcome = evaluation::Outcome::kCrashed;
@@ -58,21 +59,37 @@ evaluation::Score score_of(const RunRecords& records,
   return score;
 }
 
+EstimatorMetrics estimator_metrics_from(const RunRecords& records,
+                                        const EstimatorRecords& estimator) {
+  EstimatorMetrics metrics;
+  metrics.type = estimator.type;
+  metrics.test_estimator = is_test_estimator(estimator.type);
+  metrics.score = score_of(records, estimator);
+  if (const auto initial = initial_frame(records, estimator)) metrics.map_id = initial->map_id;
+  const EstimatorStatus counts = tally_of(records, estimator);
+  metrics.answered = counts.answered;
+  metrics.unanswered = counts.unanswered;
+  metrics.hashes_compared = counts.hashes_compared;
+  metrics.hash_mismatches = counts.hash_mismatches;
+  if (!counts.crash.empty()) metrics.crash = counts.crash;
+  const std::vector<std::int64_t> dropped = dropped_frames(estimator);
+  metrics.dropped_frames = static_cast<std::int64_t>(dropped.size());
+  metrics.dropped_frame_ranges = ranges_of(dropped);
+  return metrics;
+}
+
 std::string number_text(double value) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.17g", value);
   return text.data();
 }
 
-Status write_trajectories(const fs::path& folder,
-                          const RunRecords& records,
-                          const Trajectory& truth) {
-  if (Status status = write_tum(truth_file(folder), truth); !status) return status;
-  for (std::size_t i = 0; i < records.other_cameras.size(); ++i) {
-    const Result<Trajectory> seen = truth_of(records, i + 1);
-    if (!seen) return seen.error();
-    const fs::path file = camera_truth_file(folder, records.other_cameras[i].name);
-    if (Status status = write_tum(file, *seen); !status) return status;
+Status write_trajectories(const fs::path& folder, const RunRecords& records) {
+  for (std::size_t i = 0; i < records.cameras.size(); ++i) {
+    const Result<Trajectory> truth = truth_of(records.cameras[i]);
+    if (!truth) return truth.error();
+    const fs::path file = CameraFiles(folder, i, records.cameras[i].name).truth();
+    if (Status status = write_tum(file, *truth); !status) return status;
   }
   for (const EstimatorRecords& estimator : records.estimators) {
     const auto initial = initial_frame(records, estimator);
@@ -99,115 +116,43 @@ Status write_trajectories(const fs::path& folder,
 
 }  // namespace
 
-Json json_from(const evaluation::AlignmentScore& score) {
-  Json relative = Json::array();
-  for (const evaluation::RelativeError& error : score.relative) {
-    relative.push_back({{"length_m", error.length_m},
-                        {"pairs", error.pairs},
-                        {"translation_percent", error.translation_percent},
-                        {"rotation_deg_per_100m", error.rotation_deg_per_100m}});
+RunMetrics metrics_from(const RunRecords& records) {
+  RunMetrics metrics;
+  metrics.cameras.clear();
+  for (const CameraRecords& camera : records.cameras) {
+    metrics.cameras.push_back(camera_metrics_from(camera));
   }
-  Json S_world_vo = json_from(Pose{score.S_world_vo.rotation, score.S_world_vo.translation});
-  S_world_vo["scale"] = score.S_world_vo.scale;
-  using Errors = evaluation::ErrorStatistics;
-  const auto rotation = [&](double Errors::*statistic) {
-    return score.rotation_deg ? Json((*score.rotation_deg).*statistic) : Json(nullptr);
-  };
-  return {
-      {"scale", score.S_world_vo.scale},
-      {"S_world_vo", std::move(S_world_vo)},
-      {"matched", score.matched},
-      {"position_rmse_m", score.position_m.rmse},
-      {"position_mean_m", score.position_m.mean},
-      {"position_median_m", score.position_m.median},
-      {"position_max_m", score.position_m.max},
-      {"position_rmse_hold_m", score.position_rmse_hold_m},
-      {"rotation_rmse_deg", rotation(&Errors::rmse)},
-      {"rotation_mean_deg", rotation(&Errors::mean)},
-      {"rotation_median_deg", rotation(&Errors::median)},
-      {"rotation_max_deg", rotation(&Errors::max)},
-      {"rotation_euler_norm_rmse_deg",
-       score.rotation_euler_norm_deg ? Json(score.rotation_euler_norm_deg->rmse) : Json(nullptr)},
-      {"degenerate", or_null(score.degenerate)},
-      {"relative", relative},
-      {"notes", score.notes}};
-}
-
-Json alignments_json(const evaluation::Score& score) {
-  Json alignments = Json::object();
-  for (const auto& [mode, alignment] : score.alignments) {
-    alignments[evaluation::to_string(mode)] = json_from(alignment);
-  }
-  return alignments;
-}
-
-Json unavailable_json(const evaluation::Score& score) {
-  Json unavailable = Json::object();
-  for (const auto& [mode, reason] : score.unavailable) {
-    unavailable[evaluation::to_string(mode)] = reason;
-  }
-  return unavailable;
-}
-
-Json json_from(const evaluation::Score& score) {
-  return {{"outcome", evaluation::to_string(score.outcome)},
-          {"outcome_time_s", or_null(score.outcome_time_s)},
-          {"reset_count", score.reset_count},
-          {"coverage", score.coverage},
-          {"initialised_at_s", or_null(score.initialised_at_s)},
-          {"frames", score.frames},
-          {"tracked_frames", score.tracked_frames},
-          {"alignments", alignments_json(score)},
-          {"unavailable", unavailable_json(score)}};
-}
-
-Json metrics_from(const RunRecords& records) {
-  const Result<Trajectory> truth = truth_of(records);
-  const Trajectory trajectory = truth ? *truth : Trajectory();
-  Json estimators = Json::object();
+  std::vector<std::int64_t> late;
+  for (const evaluation::FlightFrame& frame : records.late_frames) late.push_back(frame.frame);
+  metrics.late_frames = static_cast<std::int64_t>(late.size());
+  metrics.late_frame_ranges = ranges_of(late);
+  metrics.flight = flight_metrics_from(records.main_camera());
   for (const EstimatorRecords& estimator : records.estimators) {
-    const Result<Trajectory> seen = truth_of(records, estimator.camera);
-    Json entry = json_from(score_of(records, seen ? *seen : Trajectory(), estimator));
-    const std::vector<std::int64_t> dropped = dropped_frames(estimator);
-    const auto initial = initial_frame(records, estimator);
-    entry["map_id"] = initial ? Json(initial->map_id) : Json(nullptr);
-    entry["type"] = estimator.type;
-    entry["test_estimator"] = is_test_estimator(estimator.type);
-    const EstimatorStatus counts = tally_of(records, estimator);
-    entry["answered"] = counts.answered;
-    entry["crash"] = counts.crash.empty() ? Json(nullptr) : Json(counts.crash);
-    entry["unanswered"] = counts.unanswered;
-    entry["hashes_compared"] = counts.hashes_compared;
-    entry["hash_mismatches"] = counts.hash_mismatches;
-    entry["dropped_frames"] = dropped.size();
-    entry["dropped_frame_ranges"] = ranges_of(dropped);
-    estimators[estimator.name] = std::move(entry);
+    metrics.estimators[estimator.name] = estimator_metrics_from(records, estimator);
   }
-  Json metrics = {{"format_version", 1},
-                  {"camera", camera_metrics(records)},
-                  {"texture", texture_json(records.frames)},
-                  {"flight", flight_metrics(records, trajectory)},
-                  {"estimators", std::move(estimators)}};
-  if (!records.other_cameras.empty()) metrics["cameras"] = other_cameras_metrics(records);
   return metrics;
 }
 
-std::map<std::string, std::string> never_ran(const Json& metrics) {
+std::map<std::string, std::string> never_ran(const RunMetrics& metrics) {
   std::map<std::string, std::string> reasons;
-  for (const auto& [name, entry] : metrics.at("estimators").items()) {
-    if (entry.at("answered") > 0 || !entry.at("crash").is_string()) continue;
-    reasons[name] = entry.at("crash").get<std::string>();
+  for (const auto& [name, estimator] : metrics.estimators) {
+    if (estimator.answered == 0 && estimator.crash) reasons[name] = *estimator.crash;
   }
   return reasons;
 }
 
-Result<Json> write_derived(const fs::path& folder, const RunRecords& records) {
-  const Result<Trajectory> truth = truth_of(records);
-  if (!truth) return truth.error();
-  if (Status status = write_trajectories(folder, records, *truth); !status) return status.error();
-  Json metrics = metrics_from(records);
-  if (Status status = write_json(metrics_file(folder), metrics); !status) return status.error();
+bool is_texture_limited(const RunMetrics& metrics) {
+  return std::any_of(metrics.cameras.begin(),
+                     metrics.cameras.end(),
+                     [](const CameraMetrics& camera) { return camera.texture.limited; });
+}
+
+Result<RunMetrics> write_derived(const fs::path& folder, const RunRecords& records) {
+  if (Status status = write_trajectories(folder, records); !status) return status.error();
+  RunMetrics metrics = metrics_from(records);
+  const Status written = write_json(metrics_file(folder), json_from(metrics));
+  if (!written) return written.error();
   return metrics;
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -1,11 +1,9 @@
 #include "server/timing/cpu_affinity.hpp"
 
-#include <sys/resource.h>
 #include <cstddef>
-#include <ctime>
 #include <string>
 
-namespace overfly::engine {
+namespace overfly::server {
 
 Status bind_thread(const std::vector<int>& cpus) {
   if (cpus.empty()) return {};
@@ -28,11 +26,4 @@ AffinityGuard::~AffinityGuard() {
   if (known_) sched_setaffinity(0, sizeof(before_), &before_);
 }
 
-double own_peak_memory_mb() {
-  rusage use{};
-  if (getrusage(RUSAGE_SELF, &use) != 0) return 0.0;
-  constexpr double kMbPerKib = 1024e-6;
-  return kMbPerKib * static_cast<double>(use.ru_maxrss);
-}
-
-}  // namespace overfly::engine
+}  // namespace overfly::server

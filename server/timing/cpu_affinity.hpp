@@ -6,7 +6,7 @@
 
 #include "core/result.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Binds the calling thread. Does nothing if `cpus` is empty.
 /// Errors: kInvalidArgument if none of them is a processor of this machine.
@@ -25,7 +25,4 @@ class AffinityGuard {
   bool known_ = false;
 };
 
-/// Peak resident memory of this process so far [MB].
-[[nodiscard]] double own_peak_memory_mb();
-
-}  // namespace overfly::engine
+}  // namespace overfly::server

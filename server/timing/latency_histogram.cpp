@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 constexpr double kShortestMs = 1e-3;
@@ -34,12 +34,11 @@ void LatencyHistogram::add(double ms) {
 }
 
 double LatencyHistogram::quantile_ms(double share) const {
-  // Nearest rank, as in DurationList.
-  const auto rank =
-      static_cast<std::uint64_t>(std::llround(share * static_cast<double>(count_ - 1)));
+  // Nearest rank, as overfly::quantile.
+  const double rank = std::max(1.0, std::ceil(share * static_cast<double>(count_) - 1e-9));
   std::uint64_t below = 0;
   std::size_t at = 0;
-  while (below + counts_[at] <= rank) below += counts_[at++];
+  while (static_cast<double>(below + counts_[at]) < rank) below += counts_[at++];
   const double middle_ms =
       kShortestMs * std::pow(kGrowth, static_cast<double>(at)) * 0.5 * (1.0 + kGrowth);
   return std::min(middle_ms, max_ms_);
@@ -50,4 +49,4 @@ std::optional<LatencySummary> LatencyHistogram::summary() const {
   return LatencySummary{quantile_ms(0.5), quantile_ms(0.95), quantile_ms(0.99), max_ms_};
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

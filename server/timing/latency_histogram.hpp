@@ -7,7 +7,7 @@
 
 #include "server/timing/latency_summary.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Counts durations in classes whose bounds grow by 2 % from 1 us to 1000 s; values beyond these
 /// bounds count in the first or last class. A percentile is the middle of its class, at most 1 %
@@ -29,4 +29,4 @@ class LatencyHistogram {
   double max_ms_ = 0.0;
 };
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

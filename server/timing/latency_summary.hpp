@@ -1,6 +1,6 @@
 #pragma once
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Time from sending a frame to its answer.
 struct LatencySummary {
@@ -10,4 +10,4 @@ struct LatencySummary {
   double max_ms = 0.0;
 };
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

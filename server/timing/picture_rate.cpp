@@ -5,7 +5,7 @@
 
 #include "core/time.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 /// The last step means no limit.
@@ -95,4 +95,4 @@ std::optional<double> PictureRate::limit_hz() const {
   return kSteps_hz[step_];
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

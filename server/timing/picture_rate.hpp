@@ -5,7 +5,7 @@
 #include <mutex>
 #include <optional>
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Monitors the time to spare in the flights' frames and moves the limit in steps. The limit goes
 /// down if a frame was missed, or if more than half of the frames of a window had little time left.
@@ -53,4 +53,4 @@ class PictureRate {
   int windows_since_step_up_ = 0;
 };
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <thread>
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 class MachineClock final : public RunClock {
@@ -26,4 +26,4 @@ RunClock& machine_clock() {
   return clock;
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Nanoseconds since an arbitrary fixed instant. Thread-safe.
 ///
@@ -22,4 +22,4 @@ class RunClock {
 /// The machine's steady clock.
 [[nodiscard]] RunClock& machine_clock();
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -1,41 +1,30 @@
 #include "server/timing/stage_timer.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
-namespace overfly::engine {
-namespace {
+#include "core/measure/quantile.hpp"
 
-/// Nearest-rank quantile of sorted values.
-double quantile(const std::vector<double>& sorted, double share) {
-  const auto rank =
-      static_cast<std::size_t>(std::lround(share * static_cast<double>(sorted.size() - 1)));
-  return sorted[rank];
-}
-
-}  // namespace
+namespace overfly::server {
 
 nlohmann::json DurationList::summary() const {
   if (ms.empty()) return {{"count", 0}};
-  std::vector<double> sorted = ms;
-  std::sort(sorted.begin(), sorted.end());
-  const double total = std::accumulate(sorted.begin(), sorted.end(), 0.0);
-  return {{"count", sorted.size()},
+  const double total = std::accumulate(ms.begin(), ms.end(), 0.0);
+  return {{"count", ms.size()},
           {"total_ms", total},
-          {"mean_ms", total / static_cast<double>(sorted.size())},
-          {"median_ms", quantile(sorted, 0.5)},
-          {"p95_ms", quantile(sorted, 0.95)},
-          {"p99_ms", quantile(sorted, 0.99)},
-          {"max_ms", sorted.back()}};
+          {"mean_ms", total / static_cast<double>(ms.size())},
+          {"median_ms", quantile(ms, 0.5)},
+          {"p95_ms", quantile(ms, 0.95)},
+          {"p99_ms", quantile(ms, 0.99)},
+          {"max_ms", *std::max_element(ms.begin(), ms.end())}};
 }
 
 std::optional<LatencySummary> DurationList::latencies() const {
   if (ms.empty()) return std::nullopt;
-  std::vector<double> sorted = ms;
-  std::sort(sorted.begin(), sorted.end());
-  return LatencySummary{
-      quantile(sorted, 0.5), quantile(sorted, 0.95), quantile(sorted, 0.99), sorted.back()};
+  return LatencySummary{quantile(ms, 0.5),
+                        quantile(ms, 0.95),
+                        quantile(ms, 0.99),
+                        *std::max_element(ms.begin(), ms.end())};
 }
 
 nlohmann::json StageTimer::summary() const {
@@ -44,4 +33,4 @@ nlohmann::json StageTimer::summary() const {
   return summary;
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

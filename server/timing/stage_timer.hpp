@@ -11,7 +11,7 @@
 #include "server/timing/latency_summary.hpp"
 #include "server/timing/run_clock.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Durations of one stage.
 struct DurationList {
@@ -57,4 +57,4 @@ class StageTimer {
   std::map<std::string, DurationList> stages_;
 };
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -10,7 +10,7 @@
 #include <optional>
 #include <string>
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 constexpr int kNiceOfFlights = -10;
@@ -89,4 +89,4 @@ void draw_on_the_asking_thread() {
   (void)setenv("LP_NUM_THREADS", "0", kKeepIfSet);
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -1,7 +1,7 @@
 // Thread priorities: flights first, then the network, then pictures for viewers.
 #pragma once
 
-namespace overfly::engine {
+namespace overfly::server {
 
 enum class ThreadPriority {
   kBelowFlights,  ///< yields to flights, and still gets a fair share of a busy machine
@@ -35,4 +35,4 @@ class RaisedThread {
 /// overwritten.
 void draw_on_the_asking_thread();
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -9,7 +9,7 @@
 
 #include "core/result.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 enum class SceneMode { kChase, kOrbit, kTop };
 
@@ -48,4 +48,4 @@ struct Picture {
 
 using PictureDone = std::function<void(Result<Picture>)>;
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "core/file_text.hpp"
+#include "core/outside/file_text.hpp"
 #include "server/files/jpeg.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 constexpr std::size_t kMaxKept = 4;
@@ -94,4 +94,4 @@ Result<Picture> PictureEncoder::encode_file(const std::filesystem::path& file,
       {frame, t_ns, std::make_shared<const Image>(std::move(*image))}, quality, max_width_px);
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

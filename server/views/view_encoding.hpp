@@ -8,10 +8,10 @@
 #include <optional>
 #include <utility>
 
-#include "server/record/run_timeline.hpp"
+#include "server/timeline/run_timeline.hpp"
 #include "server/views/picture_request.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// The image, halved (each pixel the mean of four) until it is at most `max_width_px` wide.
 [[nodiscard]] std::shared_ptr<const Image> halved_to_fit(std::shared_ptr<const Image> image,
@@ -48,4 +48,4 @@ class PictureEncoder {
   std::list<Kept> kept_;
 };
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

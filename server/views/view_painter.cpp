@@ -8,13 +8,13 @@
 #include <system_error>
 #include <utility>
 
-#include "core/processor_time.hpp"
+#include "core/measure/processor_time.hpp"
 #include "server/record/rows.hpp"
 #include "server/record/run_folder.hpp"
-#include "server/record/run_timeline.hpp"
+#include "server/timeline/run_timeline.hpp"
 #include "server/views/view_scene.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -107,8 +107,7 @@ Result<Picture> ViewPainter::paint_camera(const PictureRequest& request,
   }
   const auto folder = runs_.folder(request.run_id);
   if (!folder) return folder.error();
-  const fs::path recorded = camera == 0 ? frame_image_file(*folder, row.frame)
-                                        : frame_image_file(*folder, request.camera, row.frame);
+  const fs::path recorded = CameraFiles(*folder, camera, request.camera).image(row.frame);
   std::error_code error;
   if (fs::is_regular_file(recorded, error)) {
     return encoder_.encode_file(
@@ -178,4 +177,4 @@ ViewRibbons& ViewPainter::ribbons_of(const std::shared_ptr<RunTimeline>& timelin
   return ribbons_.front();
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

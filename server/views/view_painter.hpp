@@ -8,13 +8,13 @@
 #include <string>
 
 #include "server/record/rows.hpp"
-#include "server/record/run_timeline.hpp"
+#include "server/timeline/run_timeline.hpp"
 #include "server/views/picture_request.hpp"
 #include "server/views/view_encoding.hpp"
 #include "server/views/view_renderers.hpp"
 #include "server/views/view_ribbons.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Used and destroyed on one thread.
 class ViewPainter {
@@ -48,4 +48,4 @@ class ViewPainter {
   std::list<ViewRibbons> ribbons_;  ///< of the runs and alignments viewed most recently
 };
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

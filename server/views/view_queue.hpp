@@ -9,7 +9,7 @@
 
 #include "server/views/picture_request.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Not thread-safe: the service guards it.
 class ViewQueue {
@@ -50,4 +50,4 @@ class ViewQueue {
   std::deque<Entry> entries_;
 };
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "server/camera/watched_tiles.hpp"
 #include "server/record/rows.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 /// Each keeps its tiles as textures: a viewer can switch between two worlds without reloading them.
@@ -46,7 +47,8 @@ Result<ViewRenderers::WorldView*> ViewRenderers::of_run(const std::string& run_i
     return &views_.front();
   }
   while (views_.size() >= kMaxRenderers) views_.pop_back();
-  auto renderer = make_renderer(**scenario, (*world)->tiles, runs_.renderer_factory());
+  auto tiles = std::make_shared<const WatchedTiles>((*world)->tiles, &stopping_);
+  auto renderer = make_renderer(**scenario, std::move(tiles), runs_.renderer_factory());
   if (!renderer) return renderer.error();
   views_.push_front({*world, choice, std::move(*renderer), run_id, "", nullptr});
   return &views_.front();
@@ -61,7 +63,9 @@ Result<Image> ViewRenderers::remake(const std::string& run_id,
   if (!found.frames || found.run_id != run_id) {
     const Result<const Scenario*> scenario = scenario_of(run_id);
     if (!scenario) return scenario.error();
-    auto frames = FrameRemaker::create(**scenario, found.world);
+    const auto folder = runs_.folder(run_id);
+    if (!folder) return folder.error();
+    auto frames = FrameRemaker::create(*folder, **scenario, found.world);
     if (!frames) return frames.error();
     found.frames = std::move(*frames);
     found.run_id = run_id;
@@ -69,4 +73,4 @@ Result<Image> ViewRenderers::remake(const std::string& run_id,
   return found.frames->make(camera, row, *found.renderer);
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

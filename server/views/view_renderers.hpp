@@ -13,7 +13,7 @@
 #include "server/record/rows.hpp"
 #include "server/runs/run_manager.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// One renderer per world; the least recently used one is evicted. Used and destroyed on one
 /// thread.
@@ -49,4 +49,4 @@ class ViewRenderers {
   std::list<WorldView> views_;  ///< most recently used first
 };
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

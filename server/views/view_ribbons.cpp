@@ -4,7 +4,7 @@
 #include <limits>
 #include <utility>
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 constexpr std::size_t kEveryRow = 3;
@@ -119,4 +119,4 @@ Eigen::Vector3d ViewRibbons::centre() const {
   return 0.5 * (box_min_ + box_max_);
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

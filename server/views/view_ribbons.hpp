@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "renderer/renderer.hpp"
-#include "server/record/run_timeline.hpp"
-#include "server/scoring/row_alignment.hpp"
+#include "server/timeline/row_alignment.hpp"
+#include "server/timeline/run_timeline.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Colour of the truth, and of estimator i, in [0, 1].
 inline constexpr std::array<float, 3> kTruthRgb = {0.90F, 0.15F, 0.15F};
@@ -64,4 +64,4 @@ class ViewRibbons {
   std::vector<Estimate> estimates_;
 };
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -2,7 +2,7 @@
 
 #include "renderer/viewpoint.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 constexpr double kFovY = 0.9;
@@ -65,9 +65,10 @@ renderer::SceneContent scene_content(const RunTimeline& timeline,
       content.points.insert(content.points.end(), points.begin(), points.end());
     }
   }
-  content.frustum = renderer::SceneContent::Frustum{timeline.camera(), row.T_world_camera, true};
+  const PinholeCamera camera = timeline.main_camera().model.pinhole();
+  content.frustum = renderer::SceneContent::Frustum{camera, row.T_world_camera, true};
   content.ribbons = ribbons.until(row.t_ns, row.T_world_body);
   return content;
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

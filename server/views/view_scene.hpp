@@ -1,13 +1,13 @@
 // The scene view of a run at an instant: its viewpoint and its contents.
 #pragma once
 
-#include "core/height_query.hpp"
+#include "core/earth/height_query.hpp"
 #include "renderer/renderer.hpp"
-#include "server/record/run_timeline.hpp"
+#include "server/timeline/run_timeline.hpp"
 #include "server/views/picture_request.hpp"
 #include "server/views/view_ribbons.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// The viewpoint.
 /// @param T_world_body  of the aircraft
@@ -24,4 +24,4 @@ namespace overfly::engine {
                                                    const FrameRow& row,
                                                    bool live);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -14,7 +14,7 @@
 #include "server/views/view_painter.hpp"
 #include "server/views/view_queue.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 /// If there is no memory for the answer, the client will ask again.
@@ -60,9 +60,9 @@ std::optional<ViewQueue::Entry> ViewService::Impl::next(bool beside_flight) {
     wake.wait(lock, [this] { return stopping || !queue.empty() || !replaced.empty(); });
     if (stopping || runs.picture_rate().flying() != beside_flight) return std::nullopt;
     if (replaced.empty()) return queue.pop();
-    const std::vector<PictureDone> told = std::exchange(replaced, {});
+    const std::vector<PictureDone> outdated = std::exchange(replaced, {});
     lock.unlock();
-    for (const PictureDone& done : told) {
+    for (const PictureDone& done : outdated) {
       answer(done, Error{ErrorCode::kCancelled, "a newer picture was requested"});
     }
     lock.lock();
@@ -127,4 +127,4 @@ void ViewService::forget(std::uint64_t client) {
   impl_->queue.forget(client);
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -10,7 +10,7 @@
 #include "server/runs/run_manager.hpp"
 #include "server/views/picture_request.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Thread-safe. Keeps one renderer per world in use; the least recently used one is evicted.
 class ViewService {
@@ -31,4 +31,4 @@ class ViewService {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

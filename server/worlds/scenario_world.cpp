@@ -6,7 +6,7 @@
 #include "terrain/files/file_digest.hpp"
 #include "terrain/synthesize.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 using Cancelled = std::function<bool()>;
@@ -81,4 +81,4 @@ std::string world_key(const Scenario& scenario) {
   return key;
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -11,7 +11,7 @@
 #include "terrain/world.hpp"
 #include "terrain/world/world_files.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 struct OpenedWorld {
   terrain::World world;
@@ -35,4 +35,4 @@ struct OpenedWorld {
 /// Equal for scenarios with the same world.
 [[nodiscard]] std::string world_key(const Scenario& scenario);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace overfly::engine {
+namespace overfly::server {
 
 WorldCache::Shared WorldCache::find(const std::string& key) {
   Shared opened;
@@ -46,4 +46,4 @@ Result<WorldCache::Shared> WorldCache::get(const Scenario& scenario,
   return Shared(world);
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -10,7 +10,7 @@
 #include "core/result.hpp"
 #include "server/worlds/scenario_world.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Thread-safe. A world is closed when its last user releases it, except the most recently
 /// requested one. If a world's files have changed since it was opened, its present users keep it
@@ -40,4 +40,4 @@ class WorldCache {
   return {opened, &opened->world};
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

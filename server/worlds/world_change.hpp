@@ -6,7 +6,7 @@
 
 #include "server/worlds/scenario_world.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Compares the digests of the opened world's files with those in the run's manifest. Files above
 /// 32 MiB are compared by samples.
@@ -14,4 +14,4 @@ namespace overfly::engine {
 [[nodiscard]] std::string world_change(const std::filesystem::path& run_folder,
                                        const OpenedWorld& opened);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -5,7 +5,7 @@
 
 #include "terrain/build/cache_builder.hpp"
 #include "terrain/cache/chunk_file.hpp"
-#include "terrain/cache/world_cache.hpp"
+#include "terrain/cache/world_disk_cache.hpp"
 #include "terrain/files/file_digest.hpp"
 #include "terrain/world/raster_world.hpp"
 
@@ -109,7 +109,7 @@ void remove_others(const fs::path& cache, const fs::path& kept) {
 Result<std::optional<BuildReport>> check_fresh(const WorldSpec& spec,
                                                const World& world,
                                                const BuildProgress& progress) {
-  const WorldCache::Found found = WorldCache::find(spec);
+  const WorldDiskCache::Found found = WorldDiskCache::find(spec);
   if (!found.cache) return std::optional<BuildReport>();
   const auto& tiles = dynamic_cast<const RasterWorld&>(*world.tiles);
   CacheBuilder builder(tiles, found.cache->folder());

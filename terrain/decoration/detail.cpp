@@ -34,15 +34,16 @@ class DetailedTiles final : public TileDecorator {
     return beyond ? TileCoverage::kNone : base().coverage(parent_of(id));
   }
 
-  [[nodiscard]] Result<Tile> tile(const TileId& id) const override {
-    if (id.level < 0) return base().tile(id);  // reports the error
-    if (id.level >= octaves_) return base().tile({id.level - octaves_, id.col, id.row});
-    auto parent = base().tile(parent_of(id));
+ private:
+  [[nodiscard]] Result<Tile> read_tile(const TileId& id,
+                                       const Cancelled& cancelled) const override {
+    if (id.level < 0) return base().tile(id, cancelled);  // reports the error
+    if (id.level >= octaves_) return base().tile({id.level - octaves_, id.col, id.row}, cancelled);
+    auto parent = base().tile(parent_of(id), cancelled);
     if (!parent) return parent;
     return synthesis_.tile(*parent, octaves_ - id.level, id.col, id.row);
   }
 
- private:
   static TileGrid finer(TileGrid grid, int octaves) {
     const int share = 1 << octaves;
     grid.texel_m /= share;

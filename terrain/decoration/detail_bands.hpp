@@ -7,7 +7,7 @@
 // where the image is smooth, whatever its slope.
 #pragma once
 
-#include "core/image.hpp"
+#include "core/camera/image.hpp"
 #include "terrain/raster/area_average.hpp"
 
 namespace overfly::terrain {

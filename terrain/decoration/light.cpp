@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "core/pose.hpp"
+#include "core/motion/pose.hpp"
 
 namespace overfly::terrain {
 namespace {

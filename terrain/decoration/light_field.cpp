@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/pose.hpp"
+#include "core/motion/pose.hpp"
 
 namespace overfly::terrain {
 namespace {

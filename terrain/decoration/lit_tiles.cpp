@@ -52,14 +52,15 @@ class LitTiles final : public TileDecorator {
   LitTiles(const std::shared_ptr<const TileSource>& base, const LightOptions& options)
       : TileDecorator(base), field_(base, options, light_spacing_m(*base)) {}
 
-  [[nodiscard]] Result<Tile> tile(const TileId& id) const override {
-    auto read = base().tile(id);
+ private:
+  [[nodiscard]] Result<Tile> read_tile(const TileId& id,
+                                       const Cancelled& cancelled) const override {
+    auto read = base().tile(id, cancelled);
     if (!read) return read;
     if (id.level >= 0) shine(id, *read);
     return read;
   }
 
- private:
   /// A texel's position between the nodes of one axis.
   struct Between {
     int node = 0;  ///< before the texel's centre, from the first

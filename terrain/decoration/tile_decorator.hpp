@@ -19,7 +19,6 @@ class TileDecorator : public TileSource {
   [[nodiscard]] TileCoverage coverage(const TileId& id) const override {
     return base_->coverage(id);
   }
-  [[nodiscard]] Result<Tile> tile(const TileId& id) const override { return base_->tile(id); }
   [[nodiscard]] Eigen::Vector3d world_from_map(double x_map_m, double y_map_m) const override {
     return base_->world_from_map(x_map_m, y_map_m);
   }
@@ -46,6 +45,11 @@ class TileDecorator : public TileSource {
   [[nodiscard]] const TileSource& base() const { return *base_; }
 
  private:
+  [[nodiscard]] Result<Tile> read_tile(const TileId& id,
+                                       const Cancelled& cancelled) const override {
+    return base_->tile(id, cancelled);
+  }
+
   std::shared_ptr<const TileSource> base_;
 };
 

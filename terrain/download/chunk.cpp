@@ -7,7 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "core/outside_json.hpp"
+#include "core/outside/outside_json.hpp"
 #include "terrain/place/map_plane.hpp"
 #include "terrain/raster/georeference.hpp"
 

@@ -7,10 +7,10 @@
 #include <thread>
 
 #include "core/barrier.hpp"
-#include "core/file_text.hpp"
-#include "core/outside_json.hpp"
-#include "core/percent.hpp"
-#include "core/pose.hpp"
+#include "core/motion/pose.hpp"
+#include "core/outside/file_text.hpp"
+#include "core/outside/outside_json.hpp"
+#include "core/text/percent.hpp"
 #include "terrain/download/layers.hpp"
 #include "terrain/download/merge.hpp"
 #include "terrain/world.hpp"

@@ -9,7 +9,7 @@
 #include <ctime>
 #include <memory>
 
-#include "core/lower_case.hpp"
+#include "core/text/lower_case.hpp"
 #include "terrain/raster/gdal_dataset.hpp"
 
 namespace overfly::terrain::download {

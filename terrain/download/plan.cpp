@@ -2,7 +2,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "core/pose.hpp"
+#include "core/motion/pose.hpp"
 #include "terrain/download/layers.hpp"
 
 namespace overfly::terrain {

@@ -3,8 +3,8 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "core/outside_json.hpp"
-#include "core/pose.hpp"
+#include "core/motion/pose.hpp"
+#include "core/outside/outside_json.hpp"
 #include "terrain/download/layers.hpp"
 #include "terrain/place/map_plane.hpp"
 

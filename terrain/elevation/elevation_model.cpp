@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <limits>
 
-#include "core/percent.hpp"
+#include "core/text/percent.hpp"
 
 namespace overfly::terrain {
 namespace {
@@ -82,7 +82,7 @@ PostReader merged_reader(Rasters rasters, const MapRect& area, double spacing_m)
       }
     }
     for (const RasterPtr& raster : rasters) {
-      if (auto fault = raster->fault()) return *fault;
+      if (auto error = raster->read_error()) return *error;
     }
     return posts;
   };
@@ -231,7 +231,7 @@ double ElevationModel::coarse_height_m(double x_map_m, double y_map_m, double sp
 
 Status ElevationModel::status() const {
   if (!parts_) return {};
-  if (auto fault = parts_->heights->fault()) return *fault;
+  if (auto error = parts_->heights->read_error()) return *error;
   return {};
 }
 

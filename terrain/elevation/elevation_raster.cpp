@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <limits>
 
-#include "core/pose.hpp"
+#include "core/motion/pose.hpp"
 #include "terrain/elevation/elevation_units.hpp"
 #include "terrain/place/datum_shift.hpp"
 #include "terrain/place/geoid.hpp"

@@ -50,9 +50,9 @@ class ElevationRaster {
 
   /// True within half a post of the window's posts.
   [[nodiscard]] bool covers(double x_map_m, double y_map_m) const;
-  /// NaN outside, where there is no data, and where the file cannot be read (see `fault`).
+  /// NaN outside, where there is no data, and where the file cannot be read (see `read_error`).
   [[nodiscard]] double height_m(double x_map_m, double y_map_m) const;
-  [[nodiscard]] std::optional<Error> fault() const { return posts_->fault(); }
+  [[nodiscard]] std::optional<Error> read_error() const { return posts_->read_error(); }
 
   /// True if `height_m` found values that do not occur on earth.
   [[nodiscard]] bool implausible_seen() const { return implausible_; }

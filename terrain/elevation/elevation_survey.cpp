@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "core/percent.hpp"
+#include "core/text/percent.hpp"
 #include "terrain/elevation/elevation_model.hpp"
 #include "terrain/elevation/steep_steps.hpp"
 

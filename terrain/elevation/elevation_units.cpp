@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/lower_case.hpp"
+#include "core/text/lower_case.hpp"
 
 namespace overfly::terrain {
 namespace {

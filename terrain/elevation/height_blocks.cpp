@@ -105,8 +105,8 @@ const HeightGrid& PagedHeights::near(int level, int column, int row) const {
   if (slot.key == key) return *slot.block;
   auto found = block(level, column, row);
   if (!found) {
-    const std::lock_guard lock(fault_mutex_);
-    if (!fault_) fault_ = found.error();
+    const std::lock_guard lock(error_mutex_);
+    if (!read_error_) read_error_ = found.error();
     return unreadable_;
   }
   // A loader may have used the same slot meanwhile, so it is accessed by index again.
@@ -114,9 +114,9 @@ const HeightGrid& PagedHeights::near(int level, int column, int row) const {
   return *slot.block;
 }
 
-std::optional<Error> PagedHeights::fault() const {
-  const std::lock_guard lock(fault_mutex_);
-  return fault_;
+std::optional<Error> PagedHeights::read_error() const {
+  const std::lock_guard lock(error_mutex_);
+  return read_error_;
 }
 
 double PagedHeights::bilinear(int level, double column, double row) const {

@@ -62,13 +62,13 @@ class PagedHeights {
   PagedHeights(int columns, int rows, std::shared_ptr<BlockCache> cache, Loader loader);
 
   /// Bilinear between the posts of a level (post centres at integers of that level); outside, the
-  /// edge's value. NaN if a contributing post is NaN or could not be read (see `fault`).
+  /// edge's value. NaN if a contributing post is NaN or could not be read (see `read_error`).
   [[nodiscard]] double bilinear(int level, double column, double row) const;
   /// The block itself. Errors: those of the loader.
   [[nodiscard]] Result<BlockPtr> block(int level, int column, int row) const;
 
   /// The first read error of a block, if there was one.
-  [[nodiscard]] std::optional<Error> fault() const;
+  [[nodiscard]] std::optional<Error> read_error() const;
 
   [[nodiscard]] int columns(int level) const;
   [[nodiscard]] int rows(int level) const;
@@ -85,8 +85,8 @@ class PagedHeights {
   std::shared_ptr<BlockCache> cache_;
   Loader loader_;
   HeightGrid unreadable_;
-  mutable std::mutex fault_mutex_;
-  mutable std::optional<Error> fault_;
+  mutable std::mutex error_mutex_;
+  mutable std::optional<Error> read_error_;
 };
 
 }  // namespace overfly::terrain

@@ -25,13 +25,22 @@ double HeightGrid::bilinear(double column, double row) const {
 
 namespace {
 
+/// As halve_into; NaN where `fine` has no data.
 HeightGrid halved(const HeightGrid& fine) {
   HeightGrid coarse;
   coarse.columns = (fine.columns + 1) / 2;
   coarse.rows = (fine.rows + 1) / 2;
-  coarse.heights_m.resize(static_cast<std::size_t>(coarse.columns) * coarse.rows);
-  for (int j = 0; j < coarse.rows; ++j) {
-    for (int i = 0; i < coarse.columns; ++i) {
+  coarse.heights_m.assign(static_cast<std::size_t>(coarse.columns) * coarse.rows,
+                          std::numeric_limits<float>::quiet_NaN());
+  halve_into(fine, 0, 0, coarse);
+  return coarse;
+}
+
+}  // namespace
+
+void halve_into(const HeightGrid& fine, int at_column, int at_row, HeightGrid& coarse) {
+  for (int j = 0; j < (fine.rows + 1) / 2; ++j) {
+    for (int i = 0; i < (fine.columns + 1) / 2; ++i) {
       double sum = 0.0;
       int count = 0;
       for (int v = 2 * j; v < std::min(2 * j + 2, fine.rows); ++v) {
@@ -41,14 +50,10 @@ HeightGrid halved(const HeightGrid& fine) {
           ++count;
         }
       }
-      coarse.at(i, j) =
-          count > 0 ? static_cast<float>(sum / count) : std::numeric_limits<float>::quiet_NaN();
+      if (count > 0) coarse.at(at_column + i, at_row + j) = static_cast<float>(sum / count);
     }
   }
-  return coarse;
 }
-
-}  // namespace
 
 std::size_t fill_voids(HeightGrid& grid) {
   const auto voids = static_cast<std::size_t>(std::count_if(

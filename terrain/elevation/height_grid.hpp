@@ -23,6 +23,11 @@ struct HeightGrid {
   [[nodiscard]] double bilinear(double column, double row) const;
 };
 
+/// Halves the resolution of `fine`: each coarse post is the mean of the up to 2 x 2 fine posts with
+/// data, and keeps its value if there are none. Writes to `coarse` from (at_column, at_row) on.
+/// @pre `coarse` has room for the result
+void halve_into(const HeightGrid& fine, int at_column, int at_row, HeightGrid& coarse);
+
 /// Fills posts without data from those around them, by interpolation between successively coarser
 /// averages (push-pull: Gortler et al., The Lumigraph, 1996, sec. 3.4).
 /// @return number of posts filled; all posts have data afterwards unless none had

@@ -12,25 +12,6 @@ namespace {
 /// Maximum number of posts of the levels kept in memory (16 MB with their coarser levels).
 constexpr double kKeptPosts = 3e6;
 
-/// Averages the four raw posts under one post of the next level, as far as they exist and have
-/// data.
-void halve_into(const HeightGrid& fine, int at_column, int at_row, HeightGrid& coarse) {
-  for (int j = 0; j < (fine.rows + 1) / 2; ++j) {
-    for (int i = 0; i < (fine.columns + 1) / 2; ++i) {
-      double sum = 0.0;
-      int count = 0;
-      for (int v = 2 * j; v < std::min(2 * j + 2, fine.rows); ++v) {
-        for (int u = 2 * i; u < std::min(2 * i + 2, fine.columns); ++u) {
-          if (std::isnan(fine.at(u, v))) continue;
-          sum += fine.at(u, v);
-          ++count;
-        }
-      }
-      if (count > 0) coarse.at(at_column + i, at_row + j) = static_cast<float>(sum / count);
-    }
-  }
-}
-
 int blocks(int posts) { return (posts + kBlockPosts - 1) / kBlockPosts; }
 
 }  // namespace
@@ -201,7 +182,7 @@ Result<HeightGrid> HeightPyramid::block(int level, int column, int row) const {
       height = static_cast<float>(filled_.bilinear(level + 1, 0.5 * x - 0.25, 0.5 * y - 0.25));
     }
   }
-  if (auto fault = filled_.fault()) return *fault;
+  if (auto error = filled_.read_error()) return *error;
   return result;
 }
 

@@ -121,10 +121,10 @@ void VoidPlateaus::judge_sides(const Row& row) {
 }
 
 void VoidPlateaus::judge_between(const Row& upper, const Row& lower) {
-  for (const auto& [of, beside] : {std::pair(&upper, &lower), std::pair(&lower, &upper)}) {
+  for (const auto& [of, adjacent] : {std::pair(&upper, &lower), std::pair(&lower, &upper)}) {
     for (const LabelledRun& run : of->runs) {
       const float value_m = of->height_m[static_cast<std::size_t>(run.run.first)];
-      for (int i = run.run.first; i <= run.run.last; ++i) judge(run.label, value_m, *beside, i);
+      for (int i = run.run.first; i <= run.run.last; ++i) judge(run.label, value_m, *adjacent, i);
     }
   }
 }

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <vector>
 
-#include "core/file_text.hpp"
+#include "core/outside/file_text.hpp"
 
 namespace overfly::terrain {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
-#include "core/lower_case.hpp"
+#include "core/text/lower_case.hpp"
 
 namespace overfly::terrain {
 namespace fs = std::filesystem;

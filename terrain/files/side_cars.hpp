@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/source_policy.hpp"
+#include "core/outside/source_policy.hpp"
 
 namespace overfly::terrain {
 

@@ -288,7 +288,7 @@ Result<Patch> ImageryRaster::read_averaged(
       *fine, x * step_x - first_x, step_x, y * step_y - first_y, step_y, width, height);
 }
 
-Result<ImageryRaster::Levels> ImageryRaster::make_levels() const {
+Result<ImageryRaster::Levels> ImageryRaster::make_levels(const Cancelled& cancelled) const {
   const int level = pyramid_->first_level;
   const Stored& source = source_for(level);
   Patch first = void_patch(ceil_div(width_px_, 1 << level), ceil_div(height_px_, 1 << level));
@@ -297,6 +297,7 @@ Result<ImageryRaster::Levels> ImageryRaster::make_levels() const {
   const int columns = std::max(1, 8192 / step);
   const int rows = std::max(1, 512 / step);
   for (int y = 0; y < first.rgb.height_px; y += rows) {
+    if (Status status = go_on(cancelled, file_); !status) return status.error();
     for (int x = 0; x < first.rgb.width_px; x += columns) {
       const int width = std::min(columns, first.rgb.width_px - x);
       const int height = std::min(rows, first.rgb.height_px - y);
@@ -324,11 +325,12 @@ Result<ImageryRaster::Levels> ImageryRaster::make_levels() const {
   return levels;
 }
 
-Result<std::shared_ptr<const ImageryRaster::Levels>> ImageryRaster::coarse_levels() const {
+Result<std::shared_ptr<const ImageryRaster::Levels>> ImageryRaster::coarse_levels(
+    const Cancelled& cancelled) const {
   const std::lock_guard lock(pyramid_->mutex);
   std::shared_ptr<const Levels> levels = pyramid_->levels.lock();
   if (!levels) {
-    auto made = make_levels();
+    auto made = make_levels(cancelled);
     if (!made) return made.error();
     levels = std::make_shared<const Levels>(std::move(*made));
     pyramid_->levels = levels;
@@ -337,13 +339,14 @@ Result<std::shared_ptr<const ImageryRaster::Levels>> ImageryRaster::coarse_level
   return levels;
 }
 
-Result<Patch> ImageryRaster::read(int level, int x, int y, int width, int height) const {
+Result<Patch> ImageryRaster::read(
+    int level, int x, int y, int width, int height, const Cancelled& cancelled) const {
   const Status prepared = prepare();
   if (!prepared) return prepared.error();
   const Stored& stored = source_for(level);
   if (stored.level == level && stored.exact()) return read_stored(stored, x, y, width, height);
   if (level < pyramid_->first_level) return read_averaged(stored, level, x, y, width, height);
-  auto levels = coarse_levels();
+  auto levels = coarse_levels(cancelled);
   if (!levels) return levels.error();
   const std::size_t index =
       std::min<std::size_t>(level - pyramid_->first_level, (*levels)->size() - 1);

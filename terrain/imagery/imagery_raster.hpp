@@ -35,9 +35,11 @@ class ImageryRaster {
   /// part for distant views; call after `prepare`.
   [[nodiscard]] std::vector<std::string> doubts() const;
 
-  /// Texels [x, x + width) x [y, y + height) of a level; void outside the file.
-  /// Errors: kIo with GDAL's reason.
-  [[nodiscard]] Result<Patch> read(int level, int x, int y, int width, int height) const;
+  /// Texels [x, x + width) x [y, y + height) of a level; void outside the file. The first read of a
+  /// level that is coarser than every stored one reads the whole file.
+  /// Errors: kIo with GDAL's reason; kCancelled.
+  [[nodiscard]] Result<Patch> read(
+      int level, int x, int y, int width, int height, const Cancelled& cancelled = {}) const;
 
   [[nodiscard]] int width_px() const { return width_px_; }
   [[nodiscard]] int height_px() const { return height_px_; }
@@ -84,8 +86,9 @@ class ImageryRaster {
   [[nodiscard]] Result<Patch> read_averaged(
       const Stored& stored, int level, int x, int y, int width, int height) const;
   [[nodiscard]] const Stored& source_for(int level) const;
-  [[nodiscard]] Result<std::shared_ptr<const Levels>> coarse_levels() const;
-  [[nodiscard]] Result<Levels> make_levels() const;
+  [[nodiscard]] Result<std::shared_ptr<const Levels>> coarse_levels(
+      const Cancelled& cancelled) const;
+  [[nodiscard]] Result<Levels> make_levels(const Cancelled& cancelled) const;
 
   std::filesystem::path file_;
   Georeference georeference_;

@@ -110,16 +110,17 @@ Eigen::Vector2d MappedImagery::pixel_from_map(double x_map_m, double y_map_m) co
           (grid_.top_y_m - y_map_m) / grid_.texel_m - pad_y_};
 }
 
-Result<Patch> MappedImagery::read(const TileId& id) const {
-  if (pixel_from_map_) return read_warped(id);
+Result<Patch> MappedImagery::read(const TileId& id, const Cancelled& cancelled) const {
+  if (pixel_from_map_) return read_warped(id, cancelled);
   return raster_->read(id.level,
                        id.col * kTileTexels - kTileBorder - (pad_x_ >> id.level),
                        id.row * kTileTexels - kTileBorder - (pad_y_ >> id.level),
                        kTileSide,
-                       kTileSide);
+                       kTileSide,
+                       cancelled);
 }
 
-Result<Patch> MappedImagery::read_warped(const TileId& id) const {
+Result<Patch> MappedImagery::read_warped(const TileId& id, const Cancelled& cancelled) const {
   const double texel_m = grid_.texel_m * (1 << id.level);
   const double left_x_m = grid_.left_x_m + (id.col * kTileTexels - kTileBorder) * texel_m;
   const double top_y_m = grid_.top_y_m - (id.row * kTileTexels - kTileBorder) * texel_m;
@@ -140,7 +141,7 @@ Result<Patch> MappedImagery::read_warped(const TileId& id) const {
       pixels.col(static_cast<Eigen::Index>(v) * kTileSide + u) = pixel;
     }
   }
-  return resample(*raster_, pixels, texel_px_, id.level, kTileSide, kTileSide);
+  return resample(*raster_, pixels, texel_px_, id.level, kTileSide, kTileSide, cancelled);
 }
 
 TileCoverage MappedImagery::coverage(const TileId& id) const {

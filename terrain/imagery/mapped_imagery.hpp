@@ -41,7 +41,7 @@ class MappedImagery {
                                                                   const TileGrid& grid);
 
   /// The tile's texels that this layer covers. Errors: kIo.
-  [[nodiscard]] Result<Patch> read(const TileId& id) const;
+  [[nodiscard]] Result<Patch> read(const TileId& id, const Cancelled& cancelled = {}) const;
   /// Coverage of a tile that is known without reading it.
   [[nodiscard]] TileCoverage coverage(const TileId& id) const;
   [[nodiscard]] bool has_imagery(double x_map_m, double y_map_m) const;
@@ -56,7 +56,7 @@ class MappedImagery {
   MappedImagery(std::shared_ptr<const ImageryRaster> raster, const TileGrid& grid)
       : raster_(std::move(raster)), grid_(grid) {}
   [[nodiscard]] Eigen::Vector2d pixel_from_map(double x_map_m, double y_map_m) const;
-  [[nodiscard]] Result<Patch> read_warped(const TileId& id) const;
+  [[nodiscard]] Result<Patch> read_warped(const TileId& id, const Cancelled& cancelled) const;
   Status read_validity(const Cancelled& cancelled);
 
   std::shared_ptr<const ImageryRaster> raster_;

@@ -104,7 +104,8 @@ Result<Patch> resample(const ImageryRaster& raster,
                        const Eigen::Vector2d& base_px,
                        int result_level,
                        int width,
-                       int height) {
+                       int height,
+                       const Cancelled& cancelled) {
   const Eigen::Vector2d size_px = base_px * std::pow(2.0, result_level);
   const int level = std::max(0, static_cast<int>(std::floor(std::log2(size_px.minCoeff() + 1e-9))));
   const double scale = std::pow(2.0, -level);
@@ -132,7 +133,7 @@ Result<Patch> resample(const ImageryRaster& raster,
   const int top = static_cast<int>(std::floor(low.y() * scale)) - kernel_y.taps();
   const int right = static_cast<int>(std::ceil(high.x() * scale)) + kernel_x.taps();
   const int bottom = static_cast<int>(std::ceil(high.y() * scale)) + kernel_y.taps();
-  auto source = raster.read(level, left, top, right - left, bottom - top);
+  auto source = raster.read(level, left, top, right - left, bottom - top, cancelled);
   if (!source) return source;
   for (Eigen::Index i = 0; i < pixels.cols(); ++i) {
     const double x = pixels(0, i) * scale - 0.5 - left;

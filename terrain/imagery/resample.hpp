@@ -13,12 +13,13 @@ namespace overfly::terrain {
 /// texel.
 /// @param base_px  size of a texel of the result's level 0 along the file's axes [file pixels]; the
 ///                 same for all tiles, so that neighbours and levels agree
-/// Errors: kIo.
+/// Errors: kIo; kCancelled.
 [[nodiscard]] Result<Patch> resample(const ImageryRaster& raster,
                                      const Eigen::Matrix2Xd& pixels,
                                      const Eigen::Vector2d& base_px,
                                      int result_level,
                                      int width,
-                                     int height);
+                                     int height,
+                                     const Cancelled& cancelled = {});
 
 }  // namespace overfly::terrain

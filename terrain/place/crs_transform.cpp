@@ -1,6 +1,6 @@
 #include "terrain/place/crs_transform.hpp"
 
-#include "core/pose.hpp"
+#include "core/motion/pose.hpp"
 #include "terrain/raster/gdal_messages.hpp"
 
 namespace overfly::terrain {

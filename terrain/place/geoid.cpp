@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "core/pose.hpp"
+#include "core/motion/pose.hpp"
 #include "terrain/place/geoid_table.hpp"
 #include "terrain/place/proj_handles.hpp"
 

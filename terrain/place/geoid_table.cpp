@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "core/pose.hpp"
+#include "core/motion/pose.hpp"
 
 namespace overfly::terrain {
 namespace {

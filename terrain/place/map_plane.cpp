@@ -1,6 +1,6 @@
 #include "terrain/place/map_plane.hpp"
 
-#include "core/pose.hpp"
+#include "core/motion/pose.hpp"
 
 namespace overfly::terrain {
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "core/geodesy.hpp"
+#include "core/earth/geodesy.hpp"
 #include "terrain/place/crs_transform.hpp"
 #include "terrain/place/full_turn.hpp"
 

@@ -7,7 +7,7 @@
 #include <sstream>
 #include <string_view>
 
-#include "core/lower_case.hpp"
+#include "core/text/lower_case.hpp"
 
 namespace overfly::terrain {
 namespace {

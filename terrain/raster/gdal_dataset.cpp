@@ -5,7 +5,7 @@
 #include <atomic>
 #include <chrono>
 
-#include "core/file_text.hpp"
+#include "core/outside/file_text.hpp"
 #include "terrain/files/outside_access.hpp"
 #include "terrain/files/regular_files.hpp"
 #include "terrain/files/side_cars.hpp"
@@ -35,8 +35,8 @@ Status check_overviews(GDALDataset& dataset, const fs::path& file) {
   const char* named = dataset.GetMetadataItem("OVERVIEW_FILE", "OVERVIEWS");
   if (named == nullptr) return {};
   std::string name = named;
-  const std::string beside = ":::BASE:::";  // GDAL's mark of the file's own folder
-  if (name.starts_with(beside)) name = name.substr(beside.size());
+  const std::string own_folder = ":::BASE:::";  // GDAL's prefix for the folder of the file
+  if (name.starts_with(own_folder)) name = name.substr(own_folder.size());
   if (name.find('/') == std::string::npos && name.find(':') == std::string::npos) return {};
   return Error{ErrorCode::kUnreadable, file.string() + ": names overviews outside its folder"};
 }

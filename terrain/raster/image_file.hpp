@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "core/image.hpp"
+#include "core/camera/image.hpp"
 #include "core/result.hpp"
 
 namespace overfly::terrain {

@@ -4,7 +4,7 @@
 
 #include <gdal_priv.h>
 
-#include "core/image.hpp"
+#include "core/camera/image.hpp"
 #include "terrain/cancelled.hpp"
 
 namespace overfly::terrain {

@@ -11,9 +11,9 @@
 #include <string_view>
 #include <utility>
 
-#include "core/file_text.hpp"
-#include "core/lower_case.hpp"
-#include "core/source_policy.hpp"
+#include "core/outside/file_text.hpp"
+#include "core/outside/source_policy.hpp"
+#include "core/text/lower_case.hpp"
 #include "terrain/files/side_cars.hpp"
 #include "terrain/raster/crs_text.hpp"
 #include "terrain/raster/gdal_messages.hpp"
@@ -131,7 +131,7 @@ class Description {
       return Error{ErrorCode::kNotFound, place.string() + ": no such file"}.in(file_.string() +
                                                                                ": is made of");
     }
-    if (Status beside = side_cars_.check(place, "SourceFilename", inside_); !beside) {
+    if (Status side_cars = side_cars_.check(place, "SourceFilename", inside_); !side_cars) {
       return refuse("a file next to one of its sources leads out of its folder: " +
                     text.substr(0, 200));
     }

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/image.hpp"
+#include "core/camera/image.hpp"
 #include "terrain/raster/gdal_dataset.hpp"
 #include "terrain/synthesis/site.hpp"
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <thread>
 
-#include "core/pose.hpp"
+#include "core/motion/pose.hpp"
 #include "terrain/place/map_plane.hpp"
 #include "terrain/synthesis/site.hpp"
 #include "terrain/synthesis/world_files.hpp"

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "core/percent.hpp"
-#include "core/pose.hpp"
+#include "core/motion/pose.hpp"
+#include "core/text/percent.hpp"
 #include "terrain/place/geoid.hpp"
 #include "terrain/world.hpp"
 #include "terrain/world/drape.hpp"

@@ -3,8 +3,8 @@
 #include <limits>
 #include <set>
 
-#include "core/pose.hpp"
-#include "terrain/cache/world_cache.hpp"
+#include "core/motion/pose.hpp"
+#include "terrain/cache/world_disk_cache.hpp"
 #include "terrain/cancelled.hpp"
 #include "terrain/files/file_digest.hpp"
 #include "terrain/files/side_cars.hpp"
@@ -61,7 +61,7 @@ Status prepare(const Rasters& rasters,
 Result<std::vector<MappedImagery>> map_imagery(const Rasters& rasters,
                                                const WorldLayout& layout,
                                                const Cancelled& cancelled,
-                                               const WorldCache* cache) {
+                                               const WorldDiskCache* cache) {
   std::vector<MappedImagery> layers;
   for (std::size_t i = 0; i < rasters.size(); ++i) {
     if (Status status = go_on(cancelled, rasters[i]->file()); !status) return status.error();
@@ -175,7 +175,7 @@ Status check_spec(const WorldSpec& spec, const WorldLayout& layout) {
   return {};
 }
 
-Status add_digests(World& world, const Cancelled& cancelled, const WorldCache* cache) {
+Status add_digests(World& world, const Cancelled& cancelled, const WorldDiskCache* cache) {
   const auto add = [&](const std::filesystem::path& file) -> Status {
     if (Status status = go_on(cancelled, file); !status) return status;
     if (cache != nullptr) {
@@ -204,11 +204,11 @@ Status add_digests(World& world, const Cancelled& cancelled, const WorldCache* c
 }
 
 /// Looks for a matching cache and records the result in the world.
-std::shared_ptr<const WorldCache> find_cache(const WorldSpec& spec,
-                                             const WorldLayout& layout,
-                                             const ElevationModel& elevation,
-                                             World& world) {
-  WorldCache::Found found = WorldCache::find(spec);
+std::shared_ptr<const WorldDiskCache> find_cache(const WorldSpec& spec,
+                                                 const WorldLayout& layout,
+                                                 const ElevationModel& elevation,
+                                                 World& world) {
+  WorldDiskCache::Found found = WorldDiskCache::find(spec);
   if (found.cache && found.cache->header().layout != world_fingerprint(layout.grid, elevation)) {
     found.cache = nullptr;
     found.stale = "PROJ or its grids now georeference these files differently";

@@ -97,7 +97,7 @@ TileCoverage RasterWorld::coverage(const TileId& id) const {
   return best;
 }
 
-Result<Tile> RasterWorld::tile(const TileId& id) const {
+Result<Tile> RasterWorld::read_tile(const TileId& id, const Cancelled& cancelled) const {
   if (id.level < 0 || id.level >= 24) {
     return Error{ErrorCode::kInvalidArgument,
                  "tile level = " + std::to_string(id.level) + ": must be in [0, 24)"};
@@ -107,7 +107,7 @@ Result<Tile> RasterWorld::tile(const TileId& id) const {
   if (cache_ && cache_->holds(id.level)) return cache_->tile(id);
   std::optional<Tile> result;
   for (const MappedImagery& layer : imagery_) {
-    auto read = layer.read(id);
+    auto read = layer.read(id, cancelled);
     if (!read) return read;
     if (!result) {
       result = std::move(*read);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "terrain/cache/world_cache.hpp"
+#include "terrain/cache/world_disk_cache.hpp"
 #include "terrain/elevation/elevation_model.hpp"
 #include "terrain/imagery/mapped_imagery.hpp"
 #include "terrain/place/map_plane.hpp"
@@ -50,7 +50,7 @@ class RasterWorld final : public TileSource {
               MapGeodesy geodesy,
               const LocalFrame& frame,
               std::string attribution,
-              std::shared_ptr<const WorldCache> cache)
+              std::shared_ptr<const WorldDiskCache> cache)
       : grid_(grid),
         imagery_(std::move(imagery)),
         elevation_(std::move(elevation)),
@@ -61,7 +61,6 @@ class RasterWorld final : public TileSource {
 
   [[nodiscard]] const TileGrid& grid() const override { return grid_; }
   [[nodiscard]] TileCoverage coverage(const TileId& id) const override;
-  [[nodiscard]] Result<Tile> tile(const TileId& id) const override;
   [[nodiscard]] Eigen::Vector3d world_from_map(double x_map_m, double y_map_m) const override;
   [[nodiscard]] Eigen::Vector3d coarse_world_from_map(double x_map_m,
                                                       double y_map_m,
@@ -78,13 +77,14 @@ class RasterWorld final : public TileSource {
   [[nodiscard]] const ElevationModel& elevation() const { return elevation_; }
 
  private:
+  [[nodiscard]] Result<Tile> read_tile(const TileId& id, const Cancelled& cancelled) const override;
   TileGrid grid_;
   std::vector<MappedImagery> imagery_;
   ElevationModel elevation_;
   MapGeodesy geodesy_;
   LocalFrame frame_;
   std::string attribution_;
-  std::shared_ptr<const WorldCache> cache_;  ///< null if tiles are read from the files
+  std::shared_ptr<const WorldDiskCache> cache_;  ///< null if tiles are read from the files
 };
 
 /// Grid and heights as text: equal for equal places of tiles and posts.

@@ -7,7 +7,7 @@ namespace overfly::terrain {
 namespace {
 
 /// Collects all errors, one a line, with the code of the most severe one: forbidden before absent.
-class Faults {
+class ErrorList {
  public:
   void add(const Status& status) {
     if (status) return;
@@ -30,24 +30,24 @@ void check_layers(const std::vector<Layer>& layers,
                   const SourcePolicy& sources,
                   const std::string& field,
                   SideCars& side_cars,
-                  Faults& faults) {
+                  ErrorList& errors) {
   for (std::size_t i = 0; i < layers.size(); ++i) {
     const std::string layer = field + "." + std::to_string(i);
     Status file = sources.check(layers[i].file, layer + ".file");
     if (file) file = side_cars.check(layers[i].file, layer + ".file", sources);
-    faults.add(file);
-    if (layers[i].crs) faults.add(check_crs_text(*layers[i].crs, layer + ".crs"));
+    errors.add(file);
+    if (layers[i].crs) errors.add(check_crs_text(*layers[i].crs, layer + ".crs"));
   }
 }
 
 }  // namespace
 
 Status check_world_sources(const WorldSpec& spec, const std::string& prefix) {
-  Faults faults;
+  ErrorList errors;
   SideCars side_cars;
-  check_layers(spec.imagery, spec.sources, prefix + "imagery", side_cars, faults);
-  check_layers(spec.elevation, spec.sources, prefix + "elevation", side_cars, faults);
-  return faults.status();
+  check_layers(spec.imagery, spec.sources, prefix + "imagery", side_cars, errors);
+  check_layers(spec.elevation, spec.sources, prefix + "elevation", side_cars, errors);
+  return errors.status();
 }
 
 }  // namespace overfly::terrain

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/geodesy.hpp"
+#include "core/earth/geodesy.hpp"
 #include "terrain/imagery/imagery_raster.hpp"
 #include "terrain/place/map_plane.hpp"
 #include "terrain/place/smooth_map.hpp"

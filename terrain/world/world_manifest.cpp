@@ -3,9 +3,9 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "core/file_text.hpp"
-#include "core/outside_json.hpp"
-#include "core/pose.hpp"
+#include "core/motion/pose.hpp"
+#include "core/outside/file_text.hpp"
+#include "core/outside/outside_json.hpp"
 #include "terrain/place/geoid.hpp"
 #include "terrain/world.hpp"
 

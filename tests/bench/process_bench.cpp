@@ -1,11 +1,13 @@
 // What the process door costs for one frame of 1280 x 960: handing it over, the CRC of both sides,
-// the answer back. The estimator answers at once. Beside it: copying the image once, and its CRC.
+// the answer. The estimator answers immediately. For comparison: one copy of the image, and its
+// CRC.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
 #include <memory>
 #include <vector>
 
+#include "core/measure/crc32.hpp"
 #include "core/time.hpp"
 #include "vo_bridges/process/process_estimator.hpp"
 

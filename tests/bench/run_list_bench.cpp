@@ -11,6 +11,7 @@
 
 #include "server/net/rest/rest_api.hpp"
 #include "server/record/run_folder.hpp"
+#include "server/record/run_manifest.hpp"
 #include "server/runs/run_manager.hpp"
 #include "tests/support/support.hpp"
 
@@ -25,36 +26,41 @@ constexpr int kRuns = 1000;
 std::string run_name(int i) { return "20260101-000000-course-" + std::to_string(100000 + i); }
 
 json manifest_of(int i) {
-  return {{"format_version", engine::kRunFormatVersion},
-          {"status", i % 10 == 0 ? "failed" : "completed"},
-          {"scenario", "course"},
-          {"title", "The course over the built-in airfield, number " + std::to_string(i)},
-          {"error", nullptr},
-          {"duration_ns", 25'000'000'000},
-          {"frames", 776},
-          {"frames_total", 776},
-          {"pacing", "lockstep"},
-          {"estimators", {{{"name", "feature"}, {"type", "feature"}, {"camera", "camera0"}}}},
-          {"cameras", {{{"name", "camera0"}}}},
-          {"world", {{"attribution", "Imagery of a place by those who took it"}}}};
+  server::RunManifest manifest;
+  manifest.status = i % 10 == 0 ? server::RunStatus::kFailed : server::RunStatus::kCompleted;
+  manifest.scenario = "course";
+  manifest.title = "The course over the built-in airfield, number " + std::to_string(i);
+  manifest.duration_ns = 25'000'000'000;
+  manifest.frames = 776;
+  manifest.frames_total = 776;
+  manifest.pacing = "lockstep";
+  server::RunManifest::Estimator& estimator = manifest.estimators.emplace_back();
+  estimator.name = "feature";
+  estimator.type = "feature";
+  estimator.camera = "camera0";
+  server::RunManifest::Camera& camera = manifest.cameras.emplace_back();
+  camera.name = "camera0";
+  camera.model = CameraModel(PinholeCamera{1280, 960, 700.0, 700.0, 639.5, 479.5});
+  manifest.world.emplace().attribution = "Imagery of a place by those who took it";
+  return server::json_from(manifest);
 }
 
 /// A manager over a folder of many runs, which live as long as the program.
-engine::RunManager& manager() {
+server::RunManager& manager() {
   static const testing::TemporaryFolder folder;
-  static const std::unique_ptr<engine::RunManager> runs = [] {
+  static const std::unique_ptr<server::RunManager> runs = [] {
     fs::create_directories(folder.path() / "scenarios");
     for (int i = 0; i < kRuns; ++i) {
       const fs::path run = folder.path() / "runs" / run_name(i);
       fs::create_directories(run);
-      testing::write_text(engine::created_file(run),
-                          json{{"created_utc", engine::utc_text(1'000'000'000LL * i)}}.dump(2));
-      testing::write_text(engine::manifest_file(run), manifest_of(i).dump(2));
+      testing::write_text(server::created_file(run),
+                          json{{"created_utc", server::utc_text(1'000'000'000LL * i)}}.dump(2));
+      testing::write_text(server::manifest_file(run), manifest_of(i).dump(2));
     }
-    engine::RunManagerOptions options;
+    server::RunManagerOptions options;
     options.runs_folder = folder.path() / "runs";
     options.scenarios_folder = folder.path() / "scenarios";
-    auto made = engine::RunManager::create(options);
+    auto made = server::RunManager::create(options);
     if (!made) {
       std::cerr << made.error().message << "\n";
       std::exit(1);

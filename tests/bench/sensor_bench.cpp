@@ -5,11 +5,11 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
-#include <ctime>
 #include <functional>
 #include <memory>
 #include <vector>
 
+#include "core/measure/processor_time.hpp"
 #include "renderer/probes/bench_probe.hpp"
 #include "sensor/image_faults.hpp"
 #include "sensor/mount_vibration.hpp"
@@ -17,8 +17,10 @@
 #include "tests/bench/median.hpp"
 #include "tests/renderer/procedural_ground.hpp"
 
-namespace overfly::renderer {
+namespace overfly::sensor {
 namespace {
+
+using renderer::PixelFormat;
 
 constexpr int kRounds = 80;
 
@@ -32,17 +34,13 @@ const RadianceImage& ground_light(PixelFormat format) {
     const auto tiles = overfly::testing::natural_ground();
     const Pose pose{R_world_body_from({0.1, 0.05, 0.7}) * R_body_camera_nadir(),
                     {20.0, 30.0, tiles->ground_up_m(20.0, 30.0) + 300.0}};
-    return create_raycast_renderer(tiles)->render_camera(pinhole(), pose, 0, of)->radiance;
+    return renderer::create_raycast_renderer(tiles)
+        ->render_camera(pinhole(), pose, 0, of)
+        ->radiance;
   };
   static const RadianceImage grey = drawn(PixelFormat::kGreyLinear);
   static const RadianceImage rgb = drawn(PixelFormat::kRgbLinear);
   return format == PixelFormat::kRgbLinear ? rgb : grey;
-}
-
-double process_cpu_s() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
 double cpu_s(const std::function<void()>& call) {
@@ -53,7 +51,7 @@ double cpu_s(const std::function<void()>& call) {
 
 /// Measures calls in turn with the quad.
 void call_per_quad(benchmark::State& state, const std::function<void(int round)>& call) {
-  const auto quad = QuadProbe::create();
+  const auto quad = renderer::QuadProbe::create();
   if (!quad.ok()) return state.SkipWithError(quad.error().message.c_str());
   for (int i = 0; i < 5; ++i) {
     (void)(*quad)->draw();
@@ -163,6 +161,6 @@ OVERFLY_FAULT(water_drop, ImageFault{ImageFaultKind::kWaterDrop, 0.5, 100.0, 0, 
 BENCHMARK(vibration)->Iterations(1)->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace overfly::renderer
+}  // namespace overfly::sensor
 
 BENCHMARK_MAIN();

@@ -17,7 +17,7 @@ using namespace overfly::terrain;
 
 enum Source { kSynthetic, kAutzenMasked, kGoletaDegrees };
 
-/// A manifest in a folder of its own; one cache beside it.
+/// A manifest in its own folder, with one cache.
 struct Bench {
   overfly::testing::TemporaryFolder folder;
   WorldSpec spec;

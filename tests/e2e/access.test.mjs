@@ -1,5 +1,5 @@
-// Who may come in: a browser without the token, with a wrong one, with the right one, and after the
-// server was started anew.
+// Access of a browser without the token, with a wrong one, with the right one, and after a restart of
+// the server.
 import assert from 'node:assert/strict';
 import { after, before, describe } from 'node:test';
 import { browserMissing, openBrowser } from './support/browser.mjs';
@@ -75,7 +75,7 @@ describe('the token', { skip, timeout: 120_000 }, () => {
     await untilOpen();
   });
 
-  step('says that the session is over after the server was started anew', async () => {
+  step('reports the end of the session after a restart of the server', async () => {
     await server.stop();
     server = await startServer({ runs: runs.folder, port: server.port });
     await dashboard.until(
@@ -90,7 +90,7 @@ describe('the token', { skip, timeout: 120_000 }, () => {
     await untilOpen();
   });
 
-  step('never met an error of its own', () => {
+  step('logged no error in the page', () => {
     assert.deepEqual(dashboard.complaints, []);
   });
 });

@@ -40,15 +40,15 @@ describe('a flight with two cameras and faults', { skip, timeout: 600_000 }, () 
 
   step('names what is wrong with a section while it is typed', async () => {
     await typeFaults(JSON.stringify([{ kind: 'blackout', at_s: 'two' }]));
-    const faults = dashboard.page.locator('.editor-faults');
-    await faults.filter({ hasText: 'at_s' }).waitFor();
+    const errors = dashboard.page.locator('.editor-errors');
+    await errors.filter({ hasText: 'at_s' }).waitFor();
     await dashboard.screenshot('scenario_editor');
     await dashboard.page.getByRole('button', { name: 'Done' }).click();
   });
 
   step('flies what was typed', async () => {
     await typeFaults(JSON.stringify(kFaults));
-    await dashboard.until(() => document.querySelector('.editor-faults').textContent === '');
+    await dashboard.until(() => document.querySelector('.editor-errors').textContent === '');
     await dashboard.page.getByRole('button', { name: 'Done' }).click();
     await dashboard.field('duration_s').fill(String(kFlight_s));
     run = await dashboard.launch();
@@ -95,7 +95,7 @@ describe('a flight with two cameras and faults', { skip, timeout: 600_000 }, () 
     await dashboard.untilPictureDiffers('debug', before);
   });
 
-  step('never met an error of its own', () => {
+  step('logged no error in the page', () => {
     assert.deepEqual(dashboard.complaints, []);
   });
 });

@@ -44,9 +44,9 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
   step("shows the server's limit at the field that breaks it", async () => {
     await dashboard.field('flight.course.airspeed_m_s').fill('999');
     await dashboard.page.getByRole('button', { name: 'Launch flight' }).click();
-    const fault = dashboard.page.locator('[data-fault="flight.course.airspeed_m_s"]');
-    await fault.waitFor({ state: 'visible' });
-    assert.match(await fault.innerText(), /must be/);
+    const error = dashboard.page.locator('[data-error-of="flight.course.airspeed_m_s"]');
+    await error.waitFor({ state: 'visible' });
+    assert.match(await error.innerText(), /must be/);
     assert.equal((await getJson(stage.server, '/runs')).runs.length, 0);
     await dashboard.field('flight.course.airspeed_m_s').fill('25');
   });
@@ -64,7 +64,7 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
     await dashboard.screenshot('live_1280x800');
   });
 
-  step('finishes the flight and tells its outcome', async () => {
+  step('finishes the flight and shows its outcome', async () => {
     await dashboard.untilStatus(run, 'completed', kFlightPatience_ms);
     await dashboard.until(() => document.querySelector('.errors .good, .errors .bad') !== null);
     const { frames } = await getJson(stage.server, `/runs/${run}`);
@@ -294,7 +294,7 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
     assert.deepEqual(left, [run]);
   });
 
-  step('never met an error of its own', () => {
+  step('logged no error in the page', () => {
     assert.deepEqual(dashboard.complaints, []);
   });
 });

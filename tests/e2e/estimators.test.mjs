@@ -57,7 +57,7 @@ describe('a flight with estimators behind doors', { skip, timeout: 600_000 }, ()
       .locator(`[data-status-of="${name}"] [data-column="${column}"]`)
       .innerText();
 
-  step('tells while it flies that an estimator is gone, and why', async () => {
+  step('shows during the flight that an estimator has ended, and why', async () => {
     run = await dashboard.launch();
     await dashboard.until(
       () => document.querySelector('[data-panel=plots] .tab[data-attention]') !== null,
@@ -71,7 +71,7 @@ describe('a flight with estimators behind doors', { skip, timeout: 600_000 }, ()
     assert.match(reason, /not\/there/);
   });
 
-  step('tells what the others drop, take and use', async () => {
+  step('shows dropped frames, latency and resource use of the others', async () => {
     await dashboard.untilStatus(run, 'completed', kFlightPatience_ms);
     await dashboard.until(
       () =>
@@ -90,7 +90,7 @@ describe('a flight with estimators behind doors', { skip, timeout: 600_000 }, ()
     await dashboard.screenshot('estimators_1280x800');
   });
 
-  step('shows every value beside the plots whole', async () => {
+  step('shows every value next to the plots completely', async () => {
     await dashboard.page.locator('[data-panel=plots] .tab[data-group=pose]').click();
     await dashboard.seekAt('.track .bar', 0.9);
     await dashboard.page.locator('[data-axis=x_m] .readout').first().waitFor();

@@ -44,6 +44,53 @@ TEST(Errors, EulerNormExceeds180DegreesWhereTheGeodesicAngleCannot) {
   EXPECT_NEAR(none.rotation_deg->rmse, deg_from_rad(rotation_angle_rad(a, b)), 1e-9);
 }
 
+/// Each pose's errors are kept, and the statistics are theirs.
+TEST(Errors, OfEachPoseAgreeWithTheStatistics) {
+  Trajectory truth;
+  Trajectory estimate;
+  for (int i = 0; i < 50; ++i) {
+    const double t = 0.2 * i;
+    const Pose T{R_world_body_from(degrees(3.0 * std::sin(t), 2.0, 5.0 * t)),
+                 {10.0 * t, t * t, 300.0 + 4.0 * std::sin(t)}};
+    ASSERT_TRUE(truth.append({i * kFrameNs, T}).ok());
+    const Pose drift{R_world_body_from(degrees(0.1 * t, 0.0, -0.2 * t)), {0.01 * t * t, -t, 0.0}};
+    ASSERT_TRUE(estimate.append({i * kFrameNs, T * drift}).ok());
+  }
+  EstimateTrack track = seen_from(estimate, {});
+  track.samples[7].state = TrackingState::kLost;
+  const Score scored = score(truth, track, {});
+  ASSERT_EQ(scored.matched_t_ns.size(), 49U);
+  EXPECT_EQ(scored.matched_t_ns[7], 8 * kFrameNs);
+  EXPECT_GE(scored.alignments.size(), 4U);
+  for (const auto& [mode, alignment] : scored.alignments) {
+    EXPECT_EQ(alignment.matched, 49);
+    ASSERT_EQ(alignment.position_errors_m.size(), 49U) << to_string(mode);
+    const ErrorStatistics position_m = statistics_of(alignment.position_errors_m);
+    EXPECT_EQ(position_m.rmse, alignment.position_m.rmse);
+    EXPECT_EQ(position_m.max, alignment.position_m.max);
+    ASSERT_FALSE(alignment.degenerate.has_value()) << to_string(mode);
+    ASSERT_EQ(alignment.rotation_errors_deg.size(), 49U) << to_string(mode);
+    const ErrorStatistics rotation_deg = statistics_of(alignment.rotation_errors_deg);
+    EXPECT_EQ(rotation_deg.rmse, alignment.rotation_deg->rmse);
+    EXPECT_EQ(rotation_deg.median, alignment.rotation_deg->median);
+  }
+  const std::vector<double>& none_m = scored.alignments.at(AlignmentMode::kNone).position_errors_m;
+  EXPECT_NEAR(none_m[10], std::hypot(0.01 * 2.2 * 2.2, 2.2), 1e-9) << "of frame 11, at 2.2 s";
+}
+
+TEST(Errors, OfRotationAreNotKeptOnAStraightPath) {
+  Trajectory truth;
+  for (int i = 0; i < 20; ++i) {
+    ASSERT_TRUE(
+        truth.append({i * kFrameNs, {Eigen::Quaterniond::Identity(), {1.0 * i, 0, 0}}}).ok());
+  }
+  const Score scored = score(truth, seen_from(truth, {}), {});
+  const AlignmentScore& se3 = scored.alignments.at(AlignmentMode::kSe3);
+  ASSERT_TRUE(se3.degenerate.has_value());
+  EXPECT_TRUE(se3.rotation_errors_deg.empty());
+  EXPECT_EQ(se3.position_errors_m.size(), 20U);
+}
+
 TEST(Errors, EulerDifferencesWrap) {
   EXPECT_NEAR(deg_from_rad(euler_norm_rad(R_world_body_from(degrees(0, 0, 179)),
                                           R_world_body_from(degrees(0, 0, -179)))),

@@ -21,7 +21,7 @@ class OutcomeTest : public ::testing::Test {
     for (int i = from; i < kFrames; ++i)
       track_.samples[static_cast<std::size_t>(i)].map_id = map_id;
   }
-  /// The estimator never gets these frames; the flight has them all the same.
+  /// The estimator never gets these frames; the flight still has them.
   void take_away(int from, int to) {
     std::erase_if(track_.samples, [&](const EstimateSample& sample) {
       return sample.frame >= from && sample.frame < to;
@@ -150,7 +150,7 @@ TEST_F(OutcomeTest, AnEstimatorThatHangsIsLostWhereItHung) {
 
 TEST_F(OutcomeTest, FramesMissedByOneThatWasLostAreNoTrackedOnes) {
   set(290, 300, TrackingState::kLost);
-  set(305, 325, TrackingState::kLost);  // with these alone 95 % are tracked
+  set(305, 325, TrackingState::kLost);  // without others, 95 % are tracked
   EXPECT_EQ(scored().outcome, Outcome::kCompleted);
   take_away(300, 305);
   EXPECT_EQ(scored().outcome, Outcome::kLost);
@@ -174,7 +174,7 @@ TEST_F(OutcomeTest, LostWhenTooMuchIsMissingThoughItTracksAtTheEnd) {
 TEST_F(OutcomeTest, ResetScoresThePieceWithTheMostFramesAndSaysSo) {
   set(200, 220, TrackingState::kInitialising);
   set_map(200, 1);
-  // The second piece has an origin, rotation and scale of its own.
+  // The second piece has its own origin, rotation and scale.
   const Similarity other{0.5, Eigen::Quaterniond(0.9, 0.1, 0.4, 0.1).normalized(), {1, 2, 3}};
   for (std::size_t i = 200; i < track_.samples.size(); ++i) {
     track_.samples[i].T_vo_camera = other * track_.samples[i].T_vo_camera;

@@ -1,5 +1,5 @@
 // Makes scenarios/autzen_tour.csv, and checks that the file is what it makes: a tour of 60 s at
-// 22 m/s, 200 m above the ground model of the Autzen photograph. To write the file anew:
+// 22 m/s, 200 m above the ground model of the Autzen photograph. To write the file again:
 //   OVERFLY_UPDATE_AUTZEN_TOUR=1 flight_tests --gtest_filter='AutzenTour.*'
 #include <gdal_priv.h>
 #include <gtest/gtest.h>

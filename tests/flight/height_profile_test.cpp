@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/pose.hpp"
+#include "core/motion/pose.hpp"
 #include "flight/flight.hpp"
 
 namespace overfly::flight {

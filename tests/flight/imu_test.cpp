@@ -37,7 +37,12 @@ TEST(NormalGravity, IsThatOfWgs84) {
 class SteadyFlight final : public TruthSource {
  public:
   explicit SteadyFlight(double turn_rate_rad_s = 0.0) : turn_(turn_rate_rad_s) {}
-  [[nodiscard]] Result<std::optional<AircraftState>> state_at(std::int64_t t_ns) override {
+  [[nodiscard]] std::optional<std::int64_t> duration_ns() const override { return std::nullopt; }
+  [[nodiscard]] std::string description() const override { return "steady"; }
+
+ private:
+  [[nodiscard]] Result<std::optional<AircraftState>> find_state(
+      std::int64_t t_ns, const std::atomic<bool>* /*cancel*/) override {
     constexpr double kSpeed = 25.0;
     const double yaw = turn_ * s_from_ns(t_ns);
     AircraftState state;
@@ -47,10 +52,7 @@ class SteadyFlight final : public TruthSource {
     state.v_body_world_m_s = kSpeed * Eigen::Vector3d(std::sin(yaw), std::cos(yaw), 0.0);
     return std::optional(state);
   }
-  [[nodiscard]] std::optional<std::int64_t> duration_ns() const override { return std::nullopt; }
-  [[nodiscard]] std::string description() const override { return "steady"; }
 
- private:
   double turn_;
 };
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/motion/trajectory_io.hpp"
 #include "core/time.hpp"
-#include "core/trajectory_io.hpp"
 #include "flight/flight.hpp"
 #include "tests/support/support.hpp"
 

@@ -6,13 +6,13 @@ Usage: accuracy.py BINARY RESULTS_FOLDER [--worlds mcmillan,builtin] [--airspeed
                    [--pacing lockstep|real_time] [--drop-every N] [--label TEXT]
                    [--set path=value]... [--table docs/ACCURACY.md]
 
-One flight at a time, in a process of low priority. Each leaves RESULTS_FOLDER/CELL.json, and what
-is there is not flown again: stop it at any time and call it again. --most ends it after N flights.
-Two at once may share the folder, each with cells of its own (--worlds, --seeds).
---table writes the table of everything that RESULTS_FOLDER holds; with --most 0 it flies nothing.
+Flies one cell at a time, in a process of low priority, and writes RESULTS_FOLDER/CELL.json. Cells
+that have a result are skipped, so the script can be stopped at any time and called again. --most ends
+it after N flights. Two processes may share the folder if they fly different cells (--worlds, --seeds).
+--table writes the table of all results in RESULTS_FOLDER; with --most 0 nothing is flown.
 
-The images have noise of 1.5 grey levels. A seed draws it and the estimator's random numbers, and is
-the seed of the built-in world. Seeds below 100 are for tuning, those above for reporting.
+The images have noise of 1.5 grey levels. A seed determines this noise, the estimator's random numbers
+and the built-in world. Seeds below 100 are for tuning, those above for reporting.
 """
 
 import argparse
@@ -48,14 +48,14 @@ def arguments():
     parser.add_argument("--most", type=int, default=1000000)
     parser.add_argument("--pacing", default="lockstep", choices=["lockstep", "real_time"])
     parser.add_argument("--drop-every", type=int, default=0, help="every n-th frame is dropped")
-    parser.add_argument("--label", default="", help="tells apart flights with other --set")
+    parser.add_argument("--label", default="", help="distinguishes flights with other --set")
     parser.add_argument("--set", action="append", default=[])
     parser.add_argument("--table", type=pathlib.Path)
     return parser.parse_args()
 
 
 def cells(args):
-    """Seeds outermost: a table that is cut short holds every cell before any cell twice."""
+    """The outermost loop is over seeds, so that an interrupted table has every cell before any twice."""
     for seed in args.seeds:
         for airspeed in args.airspeeds:
             for rate in args.rates:
@@ -84,7 +84,7 @@ def command_of(args, cell, folder):
             f"{course}airspeed_m_s={cell['airspeed_m_s']}",
             f"{course}roll_rate_max_deg_s={cell['rate_deg_s']}",
             f"{course}height_agl_m={cell['height_m']}"]
-    if args.pacing == "lockstep":  # of equal flights on every machine
+    if args.pacing == "lockstep":  # equal flights on every machine
         sets += ["renderer.camera=raycast", "renderer.threads=1"]
     if cell["world"] == "builtin":
         sets.append(f"world.builtin.seed={cell['seed']}")
@@ -98,9 +98,9 @@ def command_of(args, cell, folder):
 
 
 def fly_once(target, command_into, known):
-    """Flies `command_into(run folder)` and leaves what matters of its run in the file `target`.
+    """Flies `command_into(run folder)` and writes the essential results to the file `target`.
 
-    @param known  goes into the file too
+    @param known  added to the file
     """
     folder = target.parent / f"run_{target.stem}"
     shutil.rmtree(folder, ignore_errors=True)
@@ -136,7 +136,7 @@ def summary(result):
 
 
 def text_of(values, digits):
-    """Median and worst; the value where there is but one."""
+    """Median and worst; only the value if there is one."""
     known = [value for value in values if value is not None]
     if not known:
         return "-"
@@ -147,7 +147,7 @@ def text_of(values, digits):
 
 
 def within(cell, row):
-    """Whether a flight is within the limits: all of them at 150 to 400 m, the start at 100 m."""
+    """True if a flight is within the limits: all of them at 150 to 400 m, the start at 100 m."""
     if cell["height_m"] < 100:
         return None
     limit_s = 1.5 if cell["height_m"] >= 150 else 3.0
@@ -223,9 +223,9 @@ In real time, with all programs on the same two cores:
       --rates 45,65 --seeds 101,102,103 --pacing real_time [--label 'at 20 Hz' \\
       --set 'estimators=[{"name":"feature","type":"feature","throttle_hz":20}]'] --table docs/ACCURACY.md
 
-In these flights the backend is selected automatically. `dropped` frames arrived while the estimator was busy
-(at 20 Hz: throttled); `late` frames were not rendered because the next one was already due. Each flight has
-4092 frames.
+In these flights the backend is selected automatically. The lockstep columns repeat the values of the same cell
+in lockstep. `dropped` frames arrived while the estimator was busy (at 20 Hz: throttled); `late` frames were not
+rendered because the next one was already due. Each flight has 4092 frames.
 """
 
 

@@ -3,13 +3,13 @@
 
 Usage: short_flights.py BINARY RESULTS_FOLDER [--tables switches,height,darkness,mounts]
 
-  switches   each parameter of the native estimator that flight over land asks for, on and off
-  height     the height above ground that gives the scale, told and not
-  darkness   no light in the middle of a flight, straight on and through a turn
+  switches   each parameter of the native estimator for flight over land, on and off
+  height     the initial height above ground, which gives the scale, given and not given
+  darkness   no light in the middle of a flight, straight and in a turn
   mounts     cameras that do not look straight down
 
 10 to 14 s each, with the noise, renderer and pacing of accuracy.py. Each flight leaves
-RESULTS_FOLDER/NAME.json; what is there is not flown again.
+RESULTS_FOLDER/NAME.json; flights that have a result are skipped.
 """
 
 import argparse
@@ -24,7 +24,7 @@ from accuracy import NOISE, ROOT, SCENARIOS, fly_once
 
 @dataclass(frozen=True)
 class Flight:
-    """Over one world, with a first turn after 75 m unless it is straight on."""
+    """Over one world, with a first turn after 75 m unless it is straight."""
     name: str
     world: str
     rate_deg_s: int = 45
@@ -130,7 +130,7 @@ def switches(fly_one):
 
 
 def height(fly_one):
-    """SE3 has no scale: what it leaves is the error in metres as told."""
+    """SE3 fits no scale, so its residual includes the error of the given height."""
     yield ["`initial_height_m`", "world", *RESULT_COLUMNS, "SE3 m"]
     for world in ("mcmillan", "builtin"):
         for told_m in (0, 300):

@@ -1,7 +1,7 @@
 // Data sets of every layout: lists of images, calibrations, times; and their first image.
 //
-// The input is a folder. `options.txt` in it says how it is opened: layout, camera, unit of time,
-// each on a line of its own; an empty one is told by the files. `times.txt` of layout `images`.
+// The input is a folder. Its `options.txt` has layout, camera and unit of time, one on each line;
+// an empty line = detected from the files. `times.txt` of layout `images`.
 #include "server/dataset/dataset.hpp"
 #include "server/dataset/open_dataset.hpp"
 
@@ -12,7 +12,7 @@
 namespace {
 
 using namespace overfly;
-using namespace overfly::engine;
+using namespace overfly::server;
 
 DatasetOptions options_from(const std::filesystem::path& folder) {
   DatasetOptions options;
@@ -33,8 +33,8 @@ DatasetOptions options_from(const std::filesystem::path& folder) {
   return options;
 }
 
-/// Puts a small image where the examples of the corpus list one, so that text alone makes a whole
-/// data set.
+/// Puts a small image where the examples of the corpus list one, so that text files are enough for
+/// a complete data set.
 void add_images(const std::filesystem::path& folder) {
   namespace fs = std::filesystem;
   for (const char* name :

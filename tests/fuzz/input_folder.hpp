@@ -18,7 +18,7 @@ namespace overfly::fuzz {
 /// Takes the first line off `rest`, without its line feed.
 [[nodiscard]] std::string_view take_line(std::string_view* rest);
 
-/// Cuts an input into files. `=== PATH` on a line of its own begins one; of equal names the last
+/// Cuts an input into files. `=== PATH` on a separate line begins one; of equal names the last
 /// counts. Names that are not plain relative paths are left out, and all beyond the first 24.
 [[nodiscard]] std::map<std::string, std::string_view> files_in(std::string_view input);
 
@@ -32,7 +32,7 @@ class InputFolder {
 
   /// The folder, holding these files and nothing else.
   const std::filesystem::path& fill(const std::map<std::string, std::string_view>& files);
-  /// A file of this name with these bytes, alone in the folder.
+  /// A file of this name with these bytes, as the only one in the folder.
   std::filesystem::path file(const std::string& name, std::string_view bytes);
 
  private:

@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "tests/fuzz/input_folder.hpp"
-#include "vo_bridges/process/channel.hpp"
-#include "vo_bridges/process/messages.hpp"
+#include "vo_bridges/process/link/channel.hpp"
+#include "vo_bridges/process/link/messages.hpp"
 
 namespace overfly::process {
 namespace {

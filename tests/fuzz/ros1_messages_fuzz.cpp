@@ -5,8 +5,8 @@
 
 #include <vector>
 
+#include "middleware/ros1/messages.hpp"
 #include "tests/fuzz/input_folder.hpp"
-#include "vo_bridges/ros1/ros1_messages.hpp"
 
 namespace {
 

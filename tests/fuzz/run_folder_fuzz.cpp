@@ -7,15 +7,15 @@
 #include "server/record/rows.hpp"
 #include "server/record/run_folder.hpp"
 #include "server/record/run_info_file.hpp"
-#include "server/record/run_timeline.hpp"
 #include "server/scoring/metrics.hpp"
-#include "server/scoring/row_alignment.hpp"
+#include "server/timeline/row_alignment.hpp"
+#include "server/timeline/run_timeline.hpp"
 #include "tests/fuzz/input_folder.hpp"
 
 namespace {
 
 using namespace overfly;
-using namespace overfly::engine;
+using namespace overfly::server;
 
 /// What the server asks of a run that somebody looks at.
 void look_at(const RunTimeline& timeline) {

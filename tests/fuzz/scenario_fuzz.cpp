@@ -13,7 +13,7 @@
 namespace {
 
 using namespace overfly;
-using namespace overfly::engine;
+using namespace overfly::server;
 
 constexpr std::string_view kSet = "\n--set ";
 

@@ -1,7 +1,7 @@
 // Trajectory files (TUM, KITTI, EuRoC) and logs of flights (poses, geodetic CSV).
 //
-// The input is a folder: `poses.txt`, and `times.txt` beside it for KITTI.
-#include "core/trajectory_io.hpp"
+// The input is a folder: `poses.txt`, and for KITTI `times.txt`.
+#include "core/motion/trajectory_io.hpp"
 #include "flight/log_reader.hpp"
 #include "tests/fuzz/input_folder.hpp"
 

@@ -1,5 +1,5 @@
-"""What a hostile client meets: the real server with a small world of its own, a secret beside it,
-and a listener that nobody may call."""
+"""The real server with a small world, a secret next to its folders, and a listener that the server must
+not connect to."""
 
 import http.client
 import json
@@ -50,8 +50,8 @@ def write_geotiff(path, width_px, height_px, metres_per_pixel, east_m, north_m):
 
 
 def write_endless_geotiff(path, side_px):
-    """A picture of small tiles of which none was ever written: a file of many blocks to look at, and
-    of holes on the disk. The same keys and place as those of write_geotiff, as BigTIFF."""
+    """A BigTIFF of small tiles, none of them written: many blocks to examine in a sparse file. Keys and
+    place are those of write_geotiff."""
     tile_px = 16
     tiles = (-(-side_px // tile_px)) ** 2
     keys = struct.pack("<16H", 1, 1, 0, 3, 1024, 0, 1, 1, 1025, 0, 1, 1, 3072, 0, 1, 32610)
@@ -76,7 +76,7 @@ def write_endless_geotiff(path, side_px):
 
 
 class Listener:
-    """Accepts connections on loopback, answers HTTP, and remembers who called."""
+    """Accepts connections on loopback, answers HTTP, and records the requests."""
 
     def __init__(self):
         self.calls = []
@@ -118,7 +118,7 @@ class Answer:
 
 
 class Victim:
-    """The server under attack, on a free port of loopback, with folders of its own."""
+    """The server under attack, on a free port of loopback, with its own folders."""
 
     def __init__(self, program, arguments=(), folder=None):
         self.program = program
@@ -157,7 +157,7 @@ class Victim:
             "".join(f"{0.1 * k:.1f} {2.5 * k:.1f} 0 400 0 0 0 1\n" for k in range(60)))
         self.write_scenario("logged", {**common, "world": listed,
                                        "flight": {"log": {"file": "flight.tum"}}})
-        # Minutes of work to open, and 20 GB without a byte on the disk.
+        # Opening the first takes minutes; the second has 20 GB and uses no disk space.
         write_endless_geotiff(self.data / "endless.tif", 100_000)
         with open(self.data / "sparse.txt", "wb") as sparse:
             sparse.truncate(20 << 30)
@@ -184,13 +184,13 @@ class Victim:
                 break
         else:
             raise RuntimeError(f"the server did not start: {''.join(seen)}\n{self.log()}")
-        # What it says later must not block it.
+        # Later output must not block it.
         threading.Thread(target=self.process.stdout.read, daemon=True).start()
 
     def log(self):
         return (self.folder / "server.log").read_text(errors="replace")[-4000:]
 
-    # -- asking
+    # -- requests
 
     def connect(self, timeout_s=ANSWER_S):
         return socket.create_connection(("127.0.0.1", self.port), timeout=timeout_s)
@@ -203,7 +203,7 @@ class Victim:
         return headers
 
     def ask(self, method, path, body=None, headers=None, timeout_s=ANSWER_S):
-        """One request on a connection of its own. A body that is no bytes is sent as JSON."""
+        """One request on a new connection. A body that is not bytes is sent as JSON."""
         connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=timeout_s)
         try:
             sent = self.headers() if headers is None else headers
@@ -230,7 +230,7 @@ class Victim:
                         {"scenario": scenario, "overrides": overrides or {}}, **options)
 
     def ended(self, run_id, within_s=ANSWER_S):
-        """The run when it has ended; raises when it does not."""
+        """Waits for the end of the run and returns it; raises after the time limit."""
         end = time.monotonic() + within_s
         while True:
             run = self.get(f"/runs/{run_id}").json()
@@ -240,7 +240,7 @@ class Victim:
                 raise AssertionError(f"run {run_id} is {run['status']} after {within_s} s")
             time.sleep(0.05)
 
-    # -- its state
+    # -- state
 
     def alive(self):
         return self.process.poll() is None
@@ -250,11 +250,11 @@ class Victim:
         return int(re.search(r"VmRSS:\s+(\d+)", status).group(1)) / 1024
 
     def sanitized(self):
-        """Whether a sanitizer watches it, which needs memory of its own."""
+        """True if the program was built with the address sanitizer, which needs much memory."""
         return "/libasan." in pathlib.Path(f"/proc/{self.process.pid}/maps").read_text()
 
     def stop(self):
-        """Asks it to end. Returns whether it did in time."""
+        """Sends SIGTERM. Returns true if the server ended in time."""
         in_time = True
         if self.alive():
             self.process.send_signal(signal.SIGTERM)

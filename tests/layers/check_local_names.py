@@ -14,7 +14,7 @@ import re
 import subprocess
 import sys
 
-# Folders each of whose sub-folders is a target of its own without a CMakeLists.txt.
+# Folders each of whose sub-folders is a separate target without a CMakeLists.txt.
 TARGET_PER_FOLDER = ["tests/server"]
 # The program of a shader, in a raw string.
 SHADER_ENTRY = "main"

@@ -1,4 +1,4 @@
-// A short level flight in small images: the estimator's parts at work on it, one by one.
+// A short level flight in small images, for tests of single parts of the estimator.
 #pragma once
 
 #include "odometry/image/frame_image.hpp"

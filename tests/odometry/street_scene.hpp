@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/camera.hpp"
-#include "core/image.hpp"
-#include "core/pose.hpp"
+#include "core/camera/camera.hpp"
+#include "core/camera/image.hpp"
+#include "core/motion/pose.hpp"
 #include "tests/odometry/synthetic_flight.hpp"
 
 namespace overfly::odometry::testing {

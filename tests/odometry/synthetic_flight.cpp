@@ -75,7 +75,7 @@ SyntheticGround SyntheticGround::procedural(std::uint64_t seed,
   std::mt19937_64 rng(seed);
   const auto uniform = [&] { return static_cast<double>(rng() >> 11U) * 0x1.0p-53; };
   std::vector<float> grey(static_cast<std::size_t>(size_px) * size_px, 110.0F);
-  // Rectangles of every size from fields to stones, each with furrows of its own.
+  // Rectangles of every size from fields to stones, each with its own furrows.
   for (double side = size_px / 6.0; side > 2.5; side /= 1.5) {
     const int count = static_cast<int>(0.5 * size_px * size_px / (side * side));
     for (int i = 0; i < count; ++i) {

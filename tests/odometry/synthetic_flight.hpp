@@ -7,10 +7,10 @@
 #include <memory>
 #include <vector>
 
-#include "core/camera.hpp"
-#include "core/camera_model.hpp"
-#include "core/image.hpp"
-#include "core/pose.hpp"
+#include "core/camera/camera.hpp"
+#include "core/camera/camera_model.hpp"
+#include "core/camera/image.hpp"
+#include "core/motion/pose.hpp"
 
 namespace overfly::odometry::testing {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/camera.hpp"
+#include "core/camera/camera.hpp"
 
 namespace overfly::odometry {
 

@@ -4,8 +4,8 @@
 #include <array>
 #include <opencv2/core.hpp>
 
-#include "core/camera_model.hpp"
-#include "core/image.hpp"
+#include "core/camera/camera_model.hpp"
+#include "core/camera/image.hpp"
 
 namespace overfly::odometry::testing {
 

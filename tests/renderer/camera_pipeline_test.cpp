@@ -47,12 +47,12 @@ TEST_F(Pipeline, GivesTheSameBytesInOrder) {
   const auto renderer = create_egl_renderer(tiles_);
   ASSERT_TRUE(renderer.ok());
   for (const int in_flight : {1, 3}) {
-    const auto pipeline = CameraPipeline::create(tiles_, {}, in_flight);
+    auto pipeline = CameraPipeline::create(tiles_, {}, in_flight);
     ASSERT_TRUE(pipeline.ok()) << pipeline.error().message;
     constexpr int kFrames = 9;
     for (int i = 0; i < kFrames + in_flight; ++i) {
       if (i >= in_flight) {
-        const auto frame = (*pipeline)->finish();
+        const auto frame = pipeline->finish();
         ASSERT_TRUE(frame.ok()) << frame.error().message;
         const auto expected = (*renderer)->render_camera(request(i - in_flight));
         ASSERT_TRUE(expected.ok());
@@ -64,7 +64,7 @@ TEST_F(Pipeline, GivesTheSameBytesInOrder) {
         EXPECT_EQ(frame->texels_per_pixel_median, expected->texels_per_pixel_median);
       }
       if (i < kFrames) {
-        const Status begun = (*pipeline)->begin(request(i));
+        const Status begun = pipeline->begin(request(i));
         ASSERT_TRUE(begun.ok()) << begun.error().message;
       }
     }
@@ -72,12 +72,12 @@ TEST_F(Pipeline, GivesTheSameBytesInOrder) {
 }
 
 TEST_F(Pipeline, RefusesMoreThanFitAndLessThanOne) {
-  const auto pipeline = CameraPipeline::create(tiles_, {}, 1);
+  auto pipeline = CameraPipeline::create(tiles_, {}, 1);
   ASSERT_TRUE(pipeline.ok());
-  EXPECT_EQ((*pipeline)->finish().error().code, ErrorCode::kConflict);
-  ASSERT_TRUE((*pipeline)->begin(request(0)).ok());
-  EXPECT_EQ((*pipeline)->begin(request(1)).error().code, ErrorCode::kConflict);
-  EXPECT_TRUE((*pipeline)->finish().ok());
+  EXPECT_EQ(pipeline->finish().error().code, ErrorCode::kConflict);
+  ASSERT_TRUE(pipeline->begin(request(0)).ok());
+  EXPECT_EQ(pipeline->begin(request(1)).error().code, ErrorCode::kConflict);
+  EXPECT_TRUE(pipeline->finish().ok());
   EXPECT_EQ(CameraPipeline::create(tiles_, {}, 0).error().code, ErrorCode::kInvalidArgument);
 }
 

@@ -1,5 +1,5 @@
 // A checkerboard on the ground as GeoTIFFs, and where a camera must see its corners: computed
-// with GDAL, PROJ and OpenCV alone.
+// with GDAL, PROJ and OpenCV only.
 #pragma once
 
 #include <filesystem>
@@ -7,9 +7,9 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "core/camera.hpp"
-#include "core/geodesy.hpp"
-#include "core/pose.hpp"
+#include "core/camera/camera.hpp"
+#include "core/earth/geodesy.hpp"
+#include "core/motion/pose.hpp"
 
 namespace overfly::testing {
 

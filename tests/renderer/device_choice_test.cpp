@@ -23,24 +23,24 @@ std::vector<OfferedDevice> workstation() {
   return {{0, "0000:01:00.0", false}, {1, "", true}, {2, "0000:82:00.0", false}, {-1, "", false}};
 }
 
-Order order(const std::string& wish) {
-  return devices_to_try(DeviceWish::parse(wish).value(), workstation());
+Order order(const std::string& request) {
+  return devices_to_try(DeviceRequest::parse(request).value(), workstation());
 }
 
 TEST(DeviceChoice, ReadsIndexAddressAndSoftware) {
-  EXPECT_TRUE(DeviceWish::parse("").value().any());
-  EXPECT_EQ(DeviceWish::parse("12").value().index, 12);
-  EXPECT_EQ(DeviceWish::parse("0000:3B:00.1").value().pci_address, "0000:3b:00.1");
-  EXPECT_EQ(DeviceWish::parse("3b:00.0").value().pci_address, "0000:3b:00.0");
-  EXPECT_TRUE(DeviceWish::parse("software").value().software);
+  EXPECT_TRUE(DeviceRequest::parse("").value().any());
+  EXPECT_EQ(DeviceRequest::parse("12").value().index, 12);
+  EXPECT_EQ(DeviceRequest::parse("0000:3B:00.1").value().pci_address, "0000:3b:00.1");
+  EXPECT_EQ(DeviceRequest::parse("3b:00.0").value().pci_address, "0000:3b:00.0");
+  EXPECT_TRUE(DeviceRequest::parse("software").value().software);
 }
 
 TEST(DeviceChoice, RefusesWhatIsNoDevice) {
   for (const char* text : {"gpu", "-1", "0000:01:00", "1.5", "01:00.9", "Software", "0 "}) {
-    const auto wish = DeviceWish::parse(text);
-    ASSERT_FALSE(wish.ok()) << text;
-    EXPECT_EQ(wish.error().code, ErrorCode::kInvalidArgument);
-    EXPECT_NE(wish.error().message.find(quoted(text)), std::string::npos);
+    const auto request = DeviceRequest::parse(text);
+    ASSERT_FALSE(request.ok()) << text;
+    EXPECT_EQ(request.error().code, ErrorCode::kInvalidArgument);
+    EXPECT_NE(request.error().message.find(quoted(text)), std::string::npos);
   }
 }
 

@@ -1,6 +1,6 @@
 // Where the drawn ground lies: how far in the image each renderer shows a piece of ground from
-// where it is, over hills and tilted views. A picture is compared with the ground itself, which
-// tells more than a picture with a picture: a shift of a tenth of a pixel hides in any PSNR.
+// where it is, over hills and tilted views. A picture is compared with the ground itself and not
+// with another picture, because no PSNR shows a shift of a tenth of a pixel.
 #include <gtest/gtest.h>
 
 #include <cmath>

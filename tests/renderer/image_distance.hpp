@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "core/image.hpp"
+#include "core/camera/image.hpp"
 
 namespace overfly::testing {
 

@@ -95,7 +95,8 @@ TileCoverage ProceduralGround::coverage(const TileId& id) const {
   return cols == span && rows == span ? TileCoverage::kFull : TileCoverage::kPartial;
 }
 
-Result<terrain::Tile> ProceduralGround::tile(const TileId& id) const {
+Result<terrain::Tile> ProceduralGround::read_tile(const TileId& id,
+                                                  const terrain::Cancelled& /*cancelled*/) const {
   if (id.level == options_.failing_level) {
     return Error{ErrorCode::kIo, "painted.tif: the disk is gone"};
   }

@@ -38,7 +38,8 @@ class ProceduralGround final : public terrain::TileSource {
   [[nodiscard]] double ground_up_m(double east_m, double north_m) const override;
   [[nodiscard]] const terrain::TileGrid& grid() const override { return grid_; }
   [[nodiscard]] terrain::TileCoverage coverage(const terrain::TileId& id) const override;
-  [[nodiscard]] Result<terrain::Tile> tile(const terrain::TileId& id) const override;
+  [[nodiscard]] Result<terrain::Tile> read_tile(
+      const terrain::TileId& id, const terrain::Cancelled& /*cancelled*/) const override;
   [[nodiscard]] Eigen::Vector3d world_from_map(double x_map_m, double y_map_m) const override;
   [[nodiscard]] Eigen::Vector2d map_from_world(double east_m, double north_m) const override;
   [[nodiscard]] bool has_imagery(double x_map_m, double y_map_m) const override;

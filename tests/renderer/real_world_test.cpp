@@ -138,7 +138,7 @@ TEST(RealWorld, AutzenLooksTheSameInMetresAndInFeet) {
   const terrain::World a = opened(metres, posts);
   const Geodetic origin = a.tiles->frame().origin();
   const terrain::World b = opened(feet, posts, origin);
-  // The published picture has a world file, and no word of its coordinate system.
+  // The published picture has a world file but does not name its coordinate system.
   const terrain::World c = opened(jpeg, posts, origin, "EPSG:2994");
   for (const double height_m : {150.0, 300.0}) {
     const Pose pose = above(a, height_m);

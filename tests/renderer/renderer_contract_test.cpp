@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "core/pose.hpp"
+#include "core/motion/pose.hpp"
 #include "renderer/renderer.hpp"
 #include "tests/renderer/procedural_ground.hpp"
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# scripts/build configures no tests unless it is asked to, needs none of their packages, and leaves
-# a tree alone that scripts/test has configured. Configures a copy of this tree; builds nothing.
+# scripts/build configures tests only on request, needs none of their packages, and does not change a
+# tree that scripts/test has configured. Configures a copy of this tree; builds nothing.
 # Usage: build_test.sh SOURCE_DIR CMAKE
 set -euo pipefail
 source_dir=$(realpath "$1")

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <tuple>
 
-#include "core/pose.hpp"
+#include "core/motion/pose.hpp"
 #include "tests/sensor/flat_field.hpp"
 
-namespace overfly::renderer {
+namespace overfly::sensor {
 namespace {
 
 using testing::sensor_of;
@@ -149,4 +149,4 @@ TEST(AutoExposure, FixedExposureStaysFixed) {
 }
 
 }  // namespace
-}  // namespace overfly::renderer
+}  // namespace overfly::sensor

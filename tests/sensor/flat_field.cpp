@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/pose.hpp"
+#include "core/motion/pose.hpp"
 
 namespace overfly::testing {
 
@@ -18,20 +18,20 @@ RadianceImage flat_field(int width_px, int height_px, float radiance, int channe
   return {width_px, height_px, channels, radiance};
 }
 
-std::unique_ptr<renderer::Sensor> sensor_of(const renderer::SensorModel& model,
-                                            const CameraModel& camera,
-                                            std::uint64_t seed,
-                                            renderer::VectorUnits units) {
-  auto sensor = renderer::Sensor::create(model, camera, seed, units);
+std::unique_ptr<sensor::Sensor> sensor_of(const sensor::SensorModel& model,
+                                          const CameraModel& camera,
+                                          std::uint64_t seed,
+                                          sensor::VectorUnits units) {
+  auto sensor = sensor::Sensor::create(model, camera, seed, units);
   EXPECT_TRUE(sensor.ok()) << sensor.error().message;
   return std::move(*sensor);
 }
 
-renderer::SensorModel counting_sensor() {
-  renderer::SensorModel model;
+sensor::SensorModel counting_sensor() {
+  sensor::SensorModel model;
   model.enabled = true;
   model.bits = 16;
-  model.response = renderer::ResponseCurve::linear();
+  model.response = sensor::ResponseCurve::linear();
   model.exposure_s = 1e-3;
   model.electrons_per_s = 65535.0 / 1e-3;
   model.gain_dn_per_e = 1.0;

@@ -15,15 +15,15 @@ namespace overfly::testing {
                                        int channels = 1);
 
 /// Fails the test when the sensor cannot be made.
-[[nodiscard]] std::unique_ptr<renderer::Sensor> sensor_of(
-    const renderer::SensorModel& model,
+[[nodiscard]] std::unique_ptr<sensor::Sensor> sensor_of(
+    const sensor::SensorModel& model,
     const CameraModel& camera,
     std::uint64_t seed = 1,
-    renderer::VectorUnits units = renderer::VectorUnits::kBest);
+    sensor::VectorUnits units = sensor::VectorUnits::kBest);
 
 /// A sensor for measuring: 16 bit, linear, no stage; one number is one electron, and radiance 1
 /// leaves 65535 of them in a millisecond.
-[[nodiscard]] renderer::SensorModel counting_sensor();
+[[nodiscard]] sensor::SensorModel counting_sensor();
 
 struct Moments {
   double mean = 0.0;

@@ -5,10 +5,10 @@
 
 #include <cmath>
 
-#include "core/pose.hpp"
+#include "core/motion/pose.hpp"
 #include "tests/sensor/flat_field.hpp"
 
-namespace overfly::renderer {
+namespace overfly::sensor {
 namespace {
 
 using testing::flat_field;
@@ -147,4 +147,4 @@ TEST(ImageFaults, FaultsOutsideTheirLimitsAreNamed) {
 }
 
 }  // namespace
-}  // namespace overfly::renderer
+}  // namespace overfly::sensor

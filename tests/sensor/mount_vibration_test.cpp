@@ -9,7 +9,7 @@
 #include "core/time.hpp"
 #include "tests/sensor/flat_field.hpp"
 
-namespace overfly::renderer {
+namespace overfly::sensor {
 namespace {
 
 constexpr int kSamples = 256;     // of one segment
@@ -132,7 +132,7 @@ TEST(MountVibration, WelchsEstimateIsTheStatedSpectrum) {
       sum_of_ratios += seen / stated;
       ++bands;
     }
-    EXPECT_LT(worst, 0.15) << "the estimate itself must be good enough to tell";
+    EXPECT_LT(worst, 0.15) << "the estimate must be accurate enough for the comparison";
     // 0.15 / sqrt(25) = 0.03 at most.
     EXPECT_NEAR(sum_of_ratios / bands, 1.0, 0.06);
   }
@@ -237,4 +237,4 @@ TEST(MountVibration, NamesTheFieldThatIsOutOfItsLimits) {
 }
 
 }  // namespace
-}  // namespace overfly::renderer
+}  // namespace overfly::sensor

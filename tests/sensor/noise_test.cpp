@@ -8,7 +8,7 @@
 #include "sensor/noise_source.hpp"
 #include "tests/sensor/flat_field.hpp"
 
-namespace overfly::renderer {
+namespace overfly::sensor {
 namespace {
 
 using testing::correlation;
@@ -236,7 +236,7 @@ double chi_squared_deviation(const std::vector<int>& histogram, double mean) {
 }
 
 TEST(ShotNoise, FewElectronsFollowPoissonsDistribution) {
-  // float(mean / 65535) * 65535 is off by 1e-7: far below what 1.2 million counts can tell.
+  // float(mean / 65535) * 65535 is off by 1e-7: far below the resolution of 1.2 million counts.
   for (const double mean : {0.01, 0.3, 1.0, 4.0, 11.5, 23.9}) {
     EXPECT_LT(chi_squared_deviation(histogram_of_counts(mean), mean), 4.0) << mean;
   }
@@ -277,4 +277,4 @@ TEST(ShotNoise, NoLightLeavesNoElectron) {
 }
 
 }  // namespace
-}  // namespace overfly::renderer
+}  // namespace overfly::sensor

@@ -9,7 +9,7 @@
 #include "tests/sensor/flat_field.hpp"
 #include "tests/support/support.hpp"
 
-namespace overfly::renderer {
+namespace overfly::sensor {
 namespace {
 
 using testing::flat_field;
@@ -107,4 +107,4 @@ TEST(PhotometricCalibration, NamesTheFileThatCannotBeWritten) {
 }
 
 }  // namespace
-}  // namespace overfly::renderer
+}  // namespace overfly::sensor

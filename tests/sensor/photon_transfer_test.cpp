@@ -7,7 +7,7 @@
 
 #include "tests/sensor/flat_field.hpp"
 
-namespace overfly::renderer {
+namespace overfly::sensor {
 namespace {
 
 using testing::flat_field;
@@ -189,4 +189,4 @@ TEST(PhotonTransferOfChain, PatternsStayWithTheSensorAndFollowTheirModel) {
 }
 
 }  // namespace
-}  // namespace overfly::renderer
+}  // namespace overfly::sensor

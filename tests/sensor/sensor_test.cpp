@@ -4,11 +4,11 @@
 #include <cmath>
 #include <functional>
 
-#include "core/pose.hpp"
+#include "core/motion/pose.hpp"
 #include "sensor/defocus.hpp"
 #include "tests/sensor/flat_field.hpp"
 
-namespace overfly::renderer {
+namespace overfly::sensor {
 namespace {
 
 using testing::flat_field;
@@ -84,7 +84,7 @@ TEST(Sensor, QuantisesToTheNearestNumberOfEachDepth) {
     for (int x = 0; x < 700; ++x) {
       const double ideal = std::min(1.05 * x / 699.0, 1.0) * largest;
       const int number = bits == 8 ? made.image.at(x, 1) : made.image16.at(x, 1);
-      // Half a number, and what a float of that size cannot tell.
+      // Half a number, and the resolution of a float of that size.
       ASSERT_NEAR(number, ideal, 0.5 + 2e-7 * largest) << bits << " bit, x " << x;
       ASSERT_EQ(made.image.at(x, 1), number >> (bits - 8));
     }
@@ -301,4 +301,4 @@ TEST(Sensor, ModelsOutsideTheirLimitsAreNamed) {
 }
 
 }  // namespace
-}  // namespace overfly::renderer
+}  // namespace overfly::sensor

@@ -21,7 +21,7 @@ class TemporaryFolder {
 };
 
 /// A file of the shared recordings (`terrain/autzen/...`): $OVERFLY_DATA, else ../shared/data
-/// beside the source tree. Empty where it is missing: the test then skips with that reason.
+/// next to the source tree. Empty if it is missing: the test is then skipped with that reason.
 [[nodiscard]] std::optional<std::filesystem::path> shared_data(const std::string& relative);
 
 /// Path below the source tree.

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "core/image.hpp"
+#include "core/camera/image.hpp"
 #include "terrain/world.hpp"
 
 namespace overfly::testing {

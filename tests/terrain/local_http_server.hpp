@@ -23,7 +23,7 @@ struct HttpAnswer {
   std::string content_type = "application/octet-stream";
   std::string body;
   std::vector<std::string> headers;      ///< "Name: value"
-  std::optional<std::size_t> cut_after;  ///< send only so many bytes of the body, then hang up
+  std::optional<std::size_t> cut_after;  ///< send only this number of bytes of the body, then close
 };
 
 class LocalHttpServer {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <random>
 
-#include "core/pose.hpp"
+#include "core/motion/pose.hpp"
 #include "terrain/elevation/height_grid.hpp"
 #include "terrain/files/file_digest.hpp"
 #include "terrain/place/geoid.hpp"

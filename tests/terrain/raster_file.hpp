@@ -28,7 +28,7 @@ struct RasterFile {
 /// Throws std::runtime_error with GDAL's reason.
 void write_raster(const std::filesystem::path& file, const RasterFile& raster);
 
-/// Values of one band at whole pixels, read by GDAL alone.
+/// Values of one band at whole pixels, read only by GDAL.
 [[nodiscard]] std::vector<double> read_band(const std::filesystem::path& file, int band = 1);
 
 }  // namespace overfly::testing

@@ -12,7 +12,7 @@ namespace overfly {
 /// released on destruction. Thread-safe.
 class LcmClaim {
  public:
-  /// @param network  result of lcm_network_of for a URL
+  /// @param network  result of lcm::network_of for a URL
   /// Errors: kConflict naming prefix and network.
   [[nodiscard]] static Result<std::shared_ptr<LcmClaim>> take(const std::string& network,
                                                               const std::string& prefix);

@@ -3,8 +3,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "vo_bridges/lcm/lcm_messages.hpp"
-#include "vo_bridges/process/wire.hpp"
+#include "vo_bridges/estimator_text.hpp"
 
 namespace overfly {
 namespace {
@@ -13,12 +12,6 @@ namespace {
 constexpr std::size_t kMostLines = 1000;
 constexpr std::int64_t kMostRefusalsTold = 20;
 constexpr std::size_t kLongestLine = 2000;
-constexpr std::size_t kLongestName = 128;
-
-/// Makes a text suitable for a log or a JSON file.
-std::string clean(const std::string& text, std::size_t limit) {
-  return process::printable(text, limit);
-}
 
 }  // namespace
 
@@ -28,16 +21,17 @@ void LcmFarEnd::hear(const overfly_lcm::status_t& status) {
   parameters_.clear();
   for (const auto& [name, value] : status.parameters) {
     if (is_figure_name(name)) {
-      parameters_[name] = clean(value, kLongestLine);
+      parameters_[name] = printable(value, kLongestLine);
     } else if (++bad_names_ <= kMostRefusalsTold) {
-      add_line("parameter \"" + clean(name, kLongestName) + "\" ignored: its name must be 1 to " +
-               std::to_string(kLongestName) + " printable ASCII characters without spaces");
+      add_line("parameter \"" + printable(name, kNameLimitBytes) +
+               "\" ignored: its name must be 1 to " + std::to_string(kNameLimitBytes) +
+               " printable ASCII characters without spaces");
     }
   }
   if (!status.name.empty()) {
     std::string& estimator = parameters_["estimator"];
-    estimator = clean(status.name, kLongestName);
-    if (!status.version.empty()) estimator += ' ' + clean(status.version, kLongestName);
+    estimator = printable(status.name, kNameLimitBytes);
+    if (!status.version.empty()) estimator += ' ' + printable(status.version, kNameLimitBytes);
   }
   const bool finite = std::isfinite(status.cpu_s) && std::isfinite(status.peak_memory_mb);
   if (finite && status.cpu_s >= 0.0 && status.peak_memory_mb >= 0.0) {
@@ -69,7 +63,7 @@ void LcmFarEnd::say(const std::string& line) {
 
 void LcmFarEnd::add_line(const std::string& line) {
   const std::size_t end = line.find_last_not_of("\r\n") + 1;
-  log_.push_back(clean(line.substr(0, end), kLongestLine));
+  log_.push_back(printable(line.substr(0, end), kLongestLine));
   if (log_.size() > kMostLines) log_.pop_front();
 }
 

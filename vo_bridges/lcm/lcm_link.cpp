@@ -4,7 +4,7 @@
 #include <chrono>
 #include <utility>
 
-#include "vo_bridges/process/wire.hpp"
+#include "vo_bridges/estimator_text.hpp"
 
 namespace overfly {
 namespace {
@@ -28,7 +28,7 @@ std::int64_t new_session() {
 
 }  // namespace
 
-Result<std::unique_ptr<LcmLink>> LcmLink::open(std::shared_ptr<LcmNode> node,
+Result<std::unique_ptr<LcmLink>> LcmLink::open(std::shared_ptr<lcm::Node> node,
                                                const std::string& prefix,
                                                bool hears) {
   std::unique_ptr<LcmLink> link(new LcmLink(std::move(node), prefix));
@@ -42,7 +42,7 @@ LcmLink::~LcmLink() {
   if (session() != 0) {
     time_.ended = 1;
     // A failure cannot be reported any more.
-    static_cast<void>(publish_message(*node_, prefix_ + "TIME", time_));
+    static_cast<void>(lcm::publish_message(*node_, prefix_ + "TIME", time_));
   }
   node_->stop();
 }
@@ -73,12 +73,12 @@ void LcmLink::begin(overfly_lcm::calibration_t calibration) {
 }
 
 Status LcmLink::announce() {
-  return publish_message(*node_, prefix_ + "CALIBRATION", calibration_);
+  return lcm::publish_message(*node_, prefix_ + "CALIBRATION", calibration_);
 }
 
 Status LcmLink::send(const VoFrame& frame) {
-  overfly_lcm::image_t message =
-      image_message(*frame.image, frame.index, frame.t_ns, frame.exposure_ns, frame.image_crc32);
+  overfly_lcm::image_t message = lcm::image_message(
+      *frame.image, frame.index, frame.t_ns, frame.exposure_ns, frame.image_crc32);
   message.session = session();
   message.sequence = ++sequence_;
   message.debug_wanted = debug_wanted_ ? 1 : 0;
@@ -88,17 +88,18 @@ Status LcmLink::send(const VoFrame& frame) {
   time_.frame = frame.index;
   time_.sequence = message.sequence;
   time_.attempt = 0;
-  if (Status status = publish_message(*node_, prefix_ + "IMAGE", message); !status) return status;
+  if (Status status = lcm::publish_message(*node_, prefix_ + "IMAGE", message); !status)
+    return status;
   return ask_again();
 }
 
 Status LcmLink::ask_again() {
   ++time_.attempt;
-  return publish_message(*node_, prefix_ + "TIME", time_);
+  return lcm::publish_message(*node_, prefix_ + "TIME", time_);
 }
 
 void LcmLink::hear_pose(std::span<const std::uint8_t> bytes) {
-  const auto message = decode_message<overfly_lcm::pose_t>(bytes);
+  const auto message = lcm::decode_message<overfly_lcm::pose_t>(bytes);
   if (!message) return far_end_.refuse(prefix_ + "POSE", "not an overfly_lcm.pose_t");
   if (message->session != session()) {
     ++outdated_;
@@ -140,7 +141,7 @@ void LcmLink::limit_names(Names& names, std::map<std::string, double>& figures) 
       return false;
     }
     if (!std::exchange(sound ? names.limit_told : names.bad_told, true)) {
-      far_end_.say(names.what + (" \"" + process::printable(name, 80)) +
+      far_end_.say(names.what + (" \"" + printable(name, 80)) +
                    "\" ignored, as will be others like it: " +
                    (sound ? "a session has at most " + std::to_string(kMostNames) + " names"
                           : "names must be 1 to 128 printable ASCII characters without spaces"));
@@ -162,7 +163,7 @@ void LcmLink::attach_debug(VoEstimate& estimate) {
 }
 
 void LcmLink::hear_debug(std::span<const std::uint8_t> bytes) {
-  const auto message = decode_message<overfly_lcm::debug_t>(bytes);
+  const auto message = lcm::decode_message<overfly_lcm::debug_t>(bytes);
   if (!message) return far_end_.refuse(prefix_ + "DEBUG", "not an overfly_lcm.debug_t");
   if (message->session != session()) return;
   Result<DebugView> view = debug_view_from(*message, width_px_, height_px_);
@@ -172,7 +173,7 @@ void LcmLink::hear_debug(std::span<const std::uint8_t> bytes) {
 }
 
 void LcmLink::hear_status(std::span<const std::uint8_t> bytes) {
-  const auto message = decode_message<overfly_lcm::status_t>(bytes);
+  const auto message = lcm::decode_message<overfly_lcm::status_t>(bytes);
   if (!message) return far_end_.refuse(prefix_ + "STATUS", "not an overfly_lcm.status_t");
   far_end_.hear(*message);
 }

@@ -15,9 +15,10 @@
 #include <utility>
 
 #include "core/result.hpp"
+#include "middleware/lcm/messages.hpp"
+#include "middleware/lcm/node.hpp"
+#include "vo_bridges/lcm/lcm_answers.hpp"
 #include "vo_bridges/lcm/lcm_far_end.hpp"
-#include "vo_bridges/lcm/lcm_messages.hpp"
-#include "vo_bridges/lcm/lcm_node.hpp"
 #include "vo_bridges/stamped_answers.hpp"
 
 namespace overfly {
@@ -31,7 +32,7 @@ class LcmLink {
   /// @param prefix  prefix of every channel
   /// @param hears   whether messages can be received (not if a log is written)
   /// Errors: kIo.
-  static Result<std::unique_ptr<LcmLink>> open(std::shared_ptr<LcmNode> node,
+  static Result<std::unique_ptr<LcmLink>> open(std::shared_ptr<lcm::Node> node,
                                                const std::string& prefix,
                                                bool hears);
   /// Announces the end of the session.
@@ -59,7 +60,7 @@ class LcmLink {
   [[nodiscard]] std::int64_t outdated() const { return outdated_.load(); }
 
  private:
-  LcmLink(std::shared_ptr<LcmNode> node, std::string prefix)
+  LcmLink(std::shared_ptr<lcm::Node> node, std::string prefix)
       : node_(std::move(node)), prefix_(std::move(prefix)) {}
   Status subscribe();
   void hear_pose(std::span<const std::uint8_t> bytes);
@@ -76,7 +77,7 @@ class LcmLink {
   /// Removes figures with invalid names, and those with more names than the limit.
   void limit_names(Names& names, std::map<std::string, double>& figures);
 
-  std::shared_ptr<LcmNode> node_;
+  std::shared_ptr<lcm::Node> node_;
   const std::string prefix_;
   LcmFarEnd far_end_;
   StampedAnswers answers_;

@@ -6,7 +6,8 @@
 #include <string>
 #include <string_view>
 
-#include "vo_bridges/process/wire.hpp"
+#include "vo_bridges/estimator_text.hpp"
+#include "vo_bridges/process/link/wire.hpp"
 
 namespace overfly::process {
 

@@ -11,12 +11,13 @@
 
 #include "core/result.hpp"
 #include "vo_bridges/pose_intake.hpp"
-#include "vo_bridges/process/channel.hpp"
-#include "vo_bridges/process/child_process.hpp"
-#include "vo_bridges/process/frame_memory.hpp"
-#include "vo_bridges/process/listener.hpp"
-#include "vo_bridges/process/messages.hpp"
-#include "vo_bridges/process/process_estimator.hpp"
+#include "vo_bridges/process/child/child_process.hpp"
+#include "vo_bridges/process/link/channel.hpp"
+#include "vo_bridges/process/link/frame_memory.hpp"
+#include "vo_bridges/process/link/listener.hpp"
+#include "vo_bridges/process/link/messages.hpp"
+#include "vo_bridges/process/options.hpp"
+#include "vo_bridges/vo_port.hpp"
 
 namespace overfly::process {
 

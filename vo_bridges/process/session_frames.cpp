@@ -1,7 +1,8 @@
 // Handles the frames of a session.
 #include <utility>
 
-#include "vo_bridges/cancel.hpp"
+#include "core/cancellable_wait.hpp"
+#include "core/measure/crc32.hpp"
 #include "vo_bridges/process/session.hpp"
 
 namespace overfly::process {

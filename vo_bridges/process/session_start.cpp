@@ -3,9 +3,9 @@
 #include <cmath>
 #include <utility>
 
-#include "vo_bridges/cancel.hpp"
-#include "vo_bridges/process/process_usage.hpp"
+#include "core/cancellable_wait.hpp"
 #include "vo_bridges/process/session.hpp"
+#include "vo_bridges/process_usage.hpp"
 
 namespace overfly::process {
 

@@ -2,24 +2,12 @@
 // them would receive each other's images or answers.
 #pragma once
 
-#include <string>
 #include <vector>
 
-#include "vo_bridges/ros1/ros1_estimator.hpp"
+#include "middleware/ros1/own_topic.hpp"
+#include "vo_bridges/ros1/ros1_options.hpp"
 
 namespace overfly::ros1 {
-
-struct OwnTopic {
-  const char* option;  ///< option that names it
-  std::string name;
-  bool is_transform = false;  ///< "FRAME in FRAME on /tf": other transforms may share /tf
-};
-
-/// Removes the leading slash: "world" and "/world" name the same frame (tf2 uses no leading slash,
-/// tf did), and the same topic without a ROS_NAMESPACE.
-[[nodiscard]] inline std::string bare_name(const std::string& name) {
-  return name.starts_with('/') ? name.substr(1) : name;
-}
 
 /// What an estimator with these options needs exclusively; /clock is shared.
 [[nodiscard]] inline std::vector<OwnTopic> own_topics(const Ros1EstimatorOptions& options) {

@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <utility>
 
-#include "vo_bridges/cancel.hpp"
+#include "core/cancellable_wait.hpp"
 #include "vo_bridges/ros1/answer_patience.hpp"
 
 namespace overfly::ros1 {

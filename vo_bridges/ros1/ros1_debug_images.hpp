@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <mutex>
 
-#include "vo_bridges/ros1/ros1_types.hpp"
+#include "middleware/ros1/types.hpp"
 
 namespace overfly::ros1 {
 

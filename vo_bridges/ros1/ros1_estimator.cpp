@@ -2,13 +2,11 @@
 
 #include <utility>
 
-#include "vo_bridges/ros1/ros1_options.hpp"
+#include "vo_bridges/ros1/ros1_option_check.hpp"
 #include "vo_bridges/ros1/ros1_parameters.hpp"
 #include "vo_bridges/ros1/ros1_session.hpp"
 
 namespace overfly {
-
-bool ros1_is_built_in() { return true; }
 
 Result<std::unique_ptr<VoPort>> create_ros1_estimator(const Ros1EstimatorOptions& options) {
   using Clock = ros1::AnswerPatience::Clock;

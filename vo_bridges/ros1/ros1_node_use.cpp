@@ -8,7 +8,7 @@
 #include <set>
 #include <utility>
 
-#include "vo_bridges/process/process_usage.hpp"
+#include "vo_bridges/process_usage.hpp"
 
 namespace overfly::ros1 {
 namespace {
@@ -84,11 +84,11 @@ std::optional<int> NodeUse::find(std::chrono::nanoseconds timeout,
 void NodeUse::look(std::chrono::nanoseconds timeout, const std::atomic<bool>* cancel) {
   {
     const std::lock_guard lock(mutex_);
-    if (pid_ && process::usage_of(*pid_)) return;
+    if (pid_ && usage_of(*pid_)) return;
   }
   const std::optional<int> pid = find(timeout, cancel);
   if (!pid || *pid == getpid()) return;
-  const std::optional<ResourceUse> now = process::usage_of(*pid);
+  const std::optional<ResourceUse> now = usage_of(*pid);
   if (!now) return;
   const std::lock_guard lock(mutex_);
   if (pid_ == pid) return;  // another thread was faster
@@ -102,7 +102,7 @@ void NodeUse::look(std::chrono::nanoseconds timeout, const std::atomic<bool>* ca
 std::optional<ResourceUse> NodeUse::use() const {
   const std::lock_guard lock(mutex_);
   if (!pid_) return std::nullopt;
-  if (const auto now = process::usage_of(*pid_)) {
+  if (const auto now = usage_of(*pid_)) {
     last_ = {now->cpu_s - cpu_before_s_, now->peak_memory_mb};
   }
   return ResourceUse{earlier_.cpu_s + last_.cpu_s,

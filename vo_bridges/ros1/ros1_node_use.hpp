@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "vo_bridges/ros1/ros1_master.hpp"
+#include "middleware/ros1/master.hpp"
 #include "vo_bridges/vo_port.hpp"
 
 namespace overfly::ros1 {

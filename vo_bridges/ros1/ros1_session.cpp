@@ -5,9 +5,9 @@
 #include <thread>
 #include <utility>
 
-#include "vo_bridges/cancel.hpp"
-#include "vo_bridges/ros1/ros1_messages.hpp"
-#include "vo_bridges/ros1/ros1_options.hpp"
+#include "core/cancellable_wait.hpp"
+#include "middleware/ros1/messages.hpp"
+#include "vo_bridges/ros1/ros1_option_check.hpp"
 #include "vo_bridges/ros1/ros1_parameters.hpp"
 
 namespace overfly::ros1 {
@@ -251,7 +251,7 @@ void Session::add_debug_image(const VoFrame& frame, std::int64_t stamp_ns, VoEst
   if (image) {
     estimate.debug_image = std::move(*image);
   } else {
-    log_->add(image.error().message);
+    log_->add("debug image: " + image.error().message);
   }
 }
 

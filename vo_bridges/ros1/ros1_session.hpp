@@ -8,14 +8,14 @@
 #include <string>
 #include <vector>
 
+#include "middleware/ros1/line_log.hpp"
+#include "middleware/ros1/master_watch.hpp"
+#include "middleware/ros1/node.hpp"
 #include "vo_bridges/pose_intake.hpp"
 #include "vo_bridges/ros1/answer_patience.hpp"
 #include "vo_bridges/ros1/ros1_debug_images.hpp"
-#include "vo_bridges/ros1/ros1_log.hpp"
-#include "vo_bridges/ros1/ros1_node.hpp"
 #include "vo_bridges/ros1/ros1_node_use.hpp"
 #include "vo_bridges/ros1/ros1_topics.hpp"
-#include "vo_bridges/ros1/ros1_watch.hpp"
 #include "vo_bridges/stamped_answers.hpp"
 #include "vo_bridges/vo_port.hpp"
 

@@ -4,7 +4,8 @@
 
 #include <utility>
 
-#include "vo_bridges/ros1/ros1_messages.hpp"
+#include "middleware/ros1/messages.hpp"
+#include "vo_bridges/ros1/own_topics.hpp"
 
 namespace overfly::ros1 {
 namespace {
@@ -86,7 +87,11 @@ Status Topics::claim_all() {
                    std::string(topic.option) + " = " + topic.name + ": " + failure.what()};
     }
   }
-  if (Status status = node_.claim(topics); !status) return status;
+  if (const std::optional<OwnTopic> taken = node_.claim(topics)) {
+    return Error{ErrorCode::kConflict,
+                 std::string(taken->option) + " = " + taken->name +
+                     ": another estimator of this process uses it; each needs its own"};
+  }
   claimed_ = std::move(topics);
   return {};
 }
@@ -95,7 +100,7 @@ Status Topics::advertise_all() {
   Status status = advertise<CameraInfoMessage>(options_.camera_info_topic, infos_, true);
   if (status && options_.publish_clock) {
     const OwnTopic clock{"publish_clock", kClock};
-    has_clock_ = node_.claim({clock}).ok();
+    has_clock_ = !node_.claim({clock});
     if (has_clock_) {
       claimed_.push_back(clock);
       status = advertise<ClockMessage>(kClock, clock_);

@@ -14,10 +14,11 @@
 #include <string>
 #include <vector>
 
-#include "vo_bridges/ros1/ros1_estimator.hpp"
-#include "vo_bridges/ros1/ros1_node.hpp"
-#include "vo_bridges/ros1/ros1_types.hpp"
-#include "vo_bridges/ros1/ros1_watch.hpp"
+#include "middleware/ros1/master_watch.hpp"
+#include "middleware/ros1/node.hpp"
+#include "middleware/ros1/types.hpp"
+#include "vo_bridges/ros1/ros1_options.hpp"
+#include "vo_bridges/vo_port.hpp"
 
 namespace overfly::ros1 {
 

@@ -34,20 +34,19 @@ Image debug_image(const Image& grey) {
   return rgb;
 }
 
-/// Returns the truth. Loses track where the truth ends.
+/// Returns the truth. Loses track at an image without truth.
 class ToyEstimator final : public VoPort {
  public:
-  ToyEstimator(std::string type, Trajectory T_world_camera, const ToyParameters& parameters)
-      : type_(std::move(type)),
-        T_world_camera_(std::move(T_world_camera)),
-        parameters_(parameters) {}
+  ToyEstimator(std::string type, ToyTruthAt truth, const ToyParameters& parameters)
+      : type_(std::move(type)), truth_at_(std::move(truth)), parameters_(parameters) {}
 
   [[nodiscard]] std::string type() const override { return type_; }
 
   [[nodiscard]] std::map<std::string, std::string> effective_parameters() const override {
     return {{"scale", text_of(parameters_.scale)},
             {"drift", text_of(parameters_.drift)},
-            {"scene_depth_m", text_of(parameters_.scene_depth_m)}};
+            {"scene_depth_m",
+             parameters_.scene_depth_m ? text_of(*parameters_.scene_depth_m) : "true depth"}};
   }
 
   [[nodiscard]] Result<VoEstimate> track(const VoFrame& frame) override {
@@ -59,16 +58,15 @@ class ToyEstimator final : public VoPort {
     VoEstimate estimate;
     estimate.sample.frame = frame.index;
     estimate.sample.t_ns = frame.t_ns;
-    if (const std::optional<Pose> truth = T_world_camera_.at(frame.t_ns)) {
-      if (!T_vo_world_) T_vo_world_ = truth->inverse();
+    if (const std::optional<ToyTruth> truth = truth_at_(frame.t_ns)) {
+      if (!T_vo_world_) T_vo_world_ = truth->T_world_camera.inverse();
       estimate.sample.state = TrackingState::kTracking;
-      estimate.sample.T_vo_camera = *T_vo_world_ * *truth;
+      estimate.sample.T_vo_camera = *T_vo_world_ * truth->T_world_camera;
       // A step lengthened by a constant factor lengthens the whole path by it.
       const double stretch = parameters_.scale * (1.0 + parameters_.drift);
       estimate.sample.T_vo_camera.translation *= stretch;
-      if (parameters_.scene_depth_m > 0.0) {
-        estimate.sample.scene_depth = parameters_.scene_depth_m * parameters_.scale;
-      }
+      const double depth_m = parameters_.scene_depth_m.value_or(truth->scene_depth_m.value_or(0.0));
+      if (depth_m > 0.0) estimate.sample.scene_depth = depth_m * parameters_.scale;
     } else if (T_vo_world_) {
       estimate.sample.state = TrackingState::kLost;
     }
@@ -91,7 +89,7 @@ class ToyEstimator final : public VoPort {
 
  private:
   std::string type_;
-  Trajectory T_world_camera_;
+  ToyTruthAt truth_at_;
   ToyParameters parameters_;
   std::optional<VoFrame> previous_;
   std::optional<Pose> T_vo_world_;  // inverse of the first pose
@@ -99,7 +97,7 @@ class ToyEstimator final : public VoPort {
 };
 
 Result<std::unique_ptr<VoPort>> create(std::string type,
-                                       const Trajectory& T_world_camera,
+                                       ToyTruthAt truth,
                                        const ToyParameters& parameters) {
   const auto bad = [](const std::string& field, double value, const std::string& limit) {
     return Error{ErrorCode::kInvalidArgument,
@@ -111,29 +109,26 @@ Result<std::unique_ptr<VoPort>> create(std::string type,
   if (!(parameters.drift > -1.0 && parameters.drift <= 1.0)) {
     return bad("drift", parameters.drift, "in (-1, 1]");
   }
-  if (!(parameters.scene_depth_m >= 0.0) || !std::isfinite(parameters.scene_depth_m)) {
-    return bad("scene_depth_m", parameters.scene_depth_m, "0 or more and finite");
-  }
-  if (T_world_camera.empty()) {
-    return Error{ErrorCode::kInvalidArgument,
-                 "a toy estimator requires truth with at least one pose"};
+  const double depth_m = parameters.scene_depth_m.value_or(0.0);
+  if (!(depth_m >= 0.0) || !std::isfinite(depth_m)) {
+    return bad("scene_depth_m", depth_m, "0 or more and finite");
   }
   return std::unique_ptr<VoPort>(
-      std::make_unique<ToyEstimator>(std::move(type), T_world_camera, parameters));
+      std::make_unique<ToyEstimator>(std::move(type), std::move(truth), parameters));
 }
 
 }  // namespace
 
-Result<std::unique_ptr<VoPort>> create_perfect_estimator(const Trajectory& T_world_camera,
+Result<std::unique_ptr<VoPort>> create_perfect_estimator(ToyTruthAt truth,
                                                          const ToyParameters& parameters) {
   ToyParameters perfect = parameters;
   perfect.drift = 0.0;
-  return create("perfect", T_world_camera, perfect);
+  return create("perfect", std::move(truth), perfect);
 }
 
-Result<std::unique_ptr<VoPort>> create_drifting_estimator(const Trajectory& T_world_camera,
+Result<std::unique_ptr<VoPort>> create_drifting_estimator(ToyTruthAt truth,
                                                           const ToyParameters& parameters) {
-  return create("drifting", T_world_camera, parameters);
+  return create("drifting", std::move(truth), parameters);
 }
 
 }  // namespace overfly

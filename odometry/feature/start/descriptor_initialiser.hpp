@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/camera.hpp"
+#include "core/camera/camera.hpp"
 #include "odometry/feature/map.hpp"
 #include "odometry/feature/orb.hpp"
 #include "odometry/feature/start/descriptor_matcher.hpp"

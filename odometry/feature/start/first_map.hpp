@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/camera.hpp"
+#include "core/camera/camera.hpp"
 #include "odometry/adjustment/bundle.hpp"
 #include "odometry/feature/map.hpp"
 #include "odometry/feature/orb.hpp"

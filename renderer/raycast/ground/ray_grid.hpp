@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "core/camera_model.hpp"
+#include "core/camera/camera_model.hpp"
 
 namespace overfly::renderer::raycast {
 

@@ -40,8 +40,8 @@ struct BenchArguments {
   renderer::EnduranceOptions endurance;
 };
 
-Result<engine::Scenario> bench_scenario(double flight_s) {
-  return engine::resolve_scenario({{"format_version", 1},
+Result<server::Scenario> bench_scenario(double flight_s) {
+  return server::resolve_scenario({{"format_version", 1},
                                    {"name", "bench"},
                                    {"world", {{"builtin", {{"seed", 1}}}}},
                                    {"flight", {{"course", Json::object()}}},
@@ -53,10 +53,10 @@ Result<engine::Scenario> bench_scenario(double flight_s) {
 }
 
 /// Camera poses distributed over the course: level flight and turns.
-Result<std::vector<Pose>> course_poses(const engine::Scenario& scenario,
+Result<std::vector<Pose>> course_poses(const server::Scenario& scenario,
                                        const terrain::World& world,
                                        int count) {
-  const auto truth = engine::create_truth(scenario, world);
+  const auto truth = server::create_truth(scenario, world);
   if (!truth) return truth.error();
   const std::int64_t end_ns = (*truth)->duration_ns().value_or(0);
   std::vector<Pose> poses;
@@ -141,7 +141,7 @@ Result<Json> bench_encoding(const terrain::World& world, const Pose& T_world_cam
     std::size_t bytes = 0;
     const auto begin = std::chrono::steady_clock::now();
     for (int i = 0; i < times; ++i) {
-      const auto jpeg = engine::encode_jpeg(frame->image, 75);
+      const auto jpeg = server::encode_jpeg(frame->image, 75);
       if (!jpeg) return jpeg.error();
       bytes = jpeg->size();
     }
@@ -155,19 +155,19 @@ Result<Json> bench_encoding(const terrain::World& world, const Pose& T_world_cam
 }
 
 /// A lockstep flight with the native estimator, and the time spent in each stage.
-Result<Json> bench_flight(const engine::Scenario& scenario, engine::WorldCache& worlds) {
+Result<Json> bench_flight(const server::Scenario& scenario, server::WorldCache& worlds) {
   Result<BenchFolder> folder = BenchFolder::create();
   if (!folder) return folder.error();
-  engine::RunOptions options;
+  server::RunOptions options;
   options.folder = folder->path() / "run";
   options.worlds = &worlds;
   options.cancel = &catch_stop_signals();
-  const auto run = engine::run_scenario(scenario, options);
+  const auto run = server::run_scenario(scenario, options);
   if (!run) return run.error();
-  if (run->info.status == engine::RunStatus::kCancelled) {
+  if (run->info.status == server::RunStatus::kCancelled) {
     return Error{ErrorCode::kCancelled, "cancelled"};
   }
-  const auto timings = engine::read_json(engine::timings_file(options.folder));
+  const auto timings = server::read_json(server::timings_file(options.folder));
   if (!timings) return timings.error();
   const Json& estimator = timings->at("estimators").at("feature");
   return Json{{"flight_s", timings->at("flight_s")},
@@ -213,9 +213,9 @@ void print_table(const Json& result) {
 }
 
 Result<Json> measure(const BenchArguments& arguments, ProgressDisplay& display) {
-  const Result<engine::Scenario> scenario = bench_scenario(arguments.flight_s);
+  const Result<server::Scenario> scenario = bench_scenario(arguments.flight_s);
   if (!scenario) return scenario.error();
-  engine::WorldCache worlds;
+  server::WorldCache worlds;
   const auto opened = worlds.get(*scenario, [&](double share) {
     display.show(share, "making the built-in world");
     return !catch_stop_signals().load();

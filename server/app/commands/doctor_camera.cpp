@@ -38,7 +38,7 @@ class WorkFolder {
 };
 
 struct Findings {
-  std::vector<engine::CameraCheckRow> rows;
+  std::vector<server::CameraCheckRow> rows;
   /// Backends that do not work on this machine, with the reason.
   std::vector<std::string> left_out;
 
@@ -49,23 +49,23 @@ struct Findings {
 };
 
 Result<Findings> check_scenario_file(const DoctorCameraArguments& arguments,
-                                     const engine::CameraCheckOptions& options) {
-  const auto scenario = engine::load_scenario(arguments.scenario);
+                                     const server::CameraCheckOptions& options) {
+  const auto scenario = server::load_scenario(arguments.scenario);
   if (!scenario) return scenario.error();
-  auto rows = engine::check_camera(*scenario, options);
+  auto rows = server::check_camera(*scenario, options);
   if (!rows) return rows.error();
   return Findings{std::move(*rows), {}};
 }
 
 /// Runs every backend over the same terrain, so that a difference shows which one is wrong.
-Result<Findings> check_backends(const engine::CameraCheckOptions& options) {
+Result<Findings> check_backends(const server::CameraCheckOptions& options) {
   const WorkFolder work;
-  auto scenario = engine::camera_check_scenario(work.path());
+  auto scenario = server::camera_check_scenario(work.path());
   if (!scenario) return scenario.error();
   Findings findings;
   for (const char* backend : {"raycast", "egl"}) {
     scenario->renderer.camera = backend;
-    const auto rows = engine::check_camera(*scenario, options);
+    const auto rows = server::check_camera(*scenario, options);
     if (!rows && rows.error().code == ErrorCode::kUnsupported) {
       findings.left_out.push_back(std::string(backend) + ": " + rows.error().message);
     } else if (!rows) {
@@ -79,9 +79,9 @@ Result<Findings> check_backends(const engine::CameraCheckOptions& options) {
 
 nlohmann::json json_from(const Findings& findings, double limit_px) {
   nlohmann::json rows = nlohmann::json::array();
-  for (const engine::CameraCheckRow& row : findings.rows) {
+  for (const server::CameraCheckRow& row : findings.rows) {
     nlohmann::json pairs = nlohmann::json::array();
-    for (const engine::CameraCheckPair& pair : row.pairs) {
+    for (const server::CameraCheckPair& pair : row.pairs) {
       const renderer::Registration& residual = pair.residual;
       pairs.push_back({{"frame", pair.frame},
                        {"patches", residual.patches},
@@ -115,8 +115,8 @@ void print_camera_table(const Findings& findings, double limit_px) {
               "p95 px",
               "mean px",
               "grey");
-  for (const engine::CameraCheckRow& row : findings.rows) {
-    for (const engine::CameraCheckPair& pair : row.pairs) {
+  for (const server::CameraCheckRow& row : findings.rows) {
+    for (const server::CameraCheckPair& pair : row.pairs) {
       const renderer::Registration& r = pair.residual;
       std::printf("%-16s %-8s %7lld %8d %10.4f %8.4f %+.3f%+.3f %8.2f\n",
                   row.camera.c_str(),
@@ -144,7 +144,7 @@ void print_camera_table(const Findings& findings, double limit_px) {
 }  // namespace
 
 int check_cameras(const DoctorCameraArguments& arguments) {
-  engine::CameraCheckOptions options;
+  server::CameraCheckOptions options;
   options.pairs = arguments.pairs;
   options.limit_px = arguments.limit_px;
   options.cancel = &catch_stop_signals();

@@ -5,12 +5,12 @@
 #include <cstdlib>
 #include <system_error>
 
+#include "middleware/lcm/findings.hpp"
+#include "middleware/ros1/findings.hpp"
 #include "renderer/renderer.hpp"
 #include "server/app/install_paths.hpp"
 #include "server/scenario/document/scenario_list.hpp"
 #include "terrain/raster/installation.hpp"
-#include "vo_bridges/lcm/lcm_findings.hpp"
-#include "vo_bridges/ros1/ros1_findings.hpp"
 
 namespace overfly::app {
 namespace {
@@ -126,7 +126,7 @@ Check check_dashboard() {
 
 Check check_scenarios() {
   const fs::path folder = scenarios_folder();
-  const auto entries = engine::list_scenarios(folder);
+  const auto entries = server::list_scenarios(folder);
   if (entries.empty()) {
     return {"scenarios",
             CheckLevel::kWarning,
@@ -146,7 +146,7 @@ Check check_scenarios() {
 }
 
 Check check_lcm() {
-  const LcmFindings found = lcm_findings();
+  const lcm::Findings found = lcm::findings();
   return {"estimators on LCM",
           found.usable ? CheckLevel::kOk : CheckLevel::kWarning,
           found.finding,
@@ -154,7 +154,7 @@ Check check_lcm() {
 }
 
 Check check_ros1() {
-  const Ros1Findings found = ros1_findings();
+  const ros1::Findings found = ros1::findings();
   return {"estimators on ROS 1",
           found.works ? CheckLevel::kOk : CheckLevel::kWarning,
           found.finding,

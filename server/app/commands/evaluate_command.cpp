@@ -5,9 +5,10 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "core/trajectory_io.hpp"
+#include "core/motion/trajectory_io.hpp"
 #include "server/app/commands/commands.hpp"
 #include "server/app/exit_code.hpp"
 #include "server/app/score_table.hpp"
@@ -17,6 +18,7 @@
 #include "server/record/run_lock.hpp"
 #include "server/record/run_records.hpp"
 #include "server/scoring/metrics.hpp"
+#include "server/scoring/run_metrics_json.hpp"
 
 namespace overfly::app {
 namespace {
@@ -96,14 +98,13 @@ Result<EstimateTrack> track_from(const std::string& name, const TrajectoryFile& 
 }
 
 /// Keeps only the requested modes.
-void choose_modes(const std::vector<std::string>& wanted, Json& entry) {
-  for (const char* kind : {"alignments", "unavailable"}) {
-    Json chosen = Json::object();
-    for (const auto& [mode, value] : entry.at(kind).items()) {
-      if (std::find(wanted.begin(), wanted.end(), mode) != wanted.end()) chosen[mode] = value;
-    }
-    entry[kind] = std::move(chosen);
-  }
+void choose_modes(const std::vector<std::string>& wanted, evaluation::Score& score) {
+  const auto unwanted = [&](const auto& entry) {
+    const std::string mode = evaluation::to_string(entry.first);
+    return std::find(wanted.begin(), wanted.end(), mode) == wanted.end();
+  };
+  std::erase_if(score.alignments, unwanted);
+  std::erase_if(score.unavailable, unwanted);
 }
 
 void print_warnings(const std::vector<std::string>& warnings) {
@@ -119,9 +120,27 @@ Status check_listed(const std::string& name, const TrajectoryFile& file) {
                    "its poses cannot be matched by number; add times to both files"};
 }
 
-Result<Json> evaluate_file(const EvaluateArguments& arguments,
-                           const TrajectoryFile& truth,
-                           const std::string& name) {
+/// The score of one file by the requested modes.
+struct EvaluatedFile {
+  std::string name;
+  std::size_t poses = 0;
+  std::size_t matched = 0;
+  std::vector<std::string> warnings;
+  evaluation::Score score;
+};
+
+Json evaluated_file_json(const EvaluatedFile& file) {
+  return {{"file", file.name},
+          {"poses", file.poses},
+          {"matched", file.matched},
+          {"warnings", file.warnings},
+          {"alignments", server::alignments_json(file.score)},
+          {"unavailable", server::unavailable_json(file.score)}};
+}
+
+Result<EvaluatedFile> evaluate_file(const EvaluateArguments& arguments,
+                                    const TrajectoryFile& truth,
+                                    const std::string& name) {
   const Result<TrajectoryFile> file = read_trajectory(name);
   if (!file) return file.error();
   print_warnings(file->warnings);
@@ -137,15 +156,10 @@ Result<Json> evaluate_file(const EvaluateArguments& arguments,
   // Called first, because its error explains why nothing could be matched.
   const auto matches = evaluation::associate(truth.trajectory, *track, *options);
   if (!matches) return matches.error().in(name);
-  const evaluation::Score score = evaluation::score(truth.trajectory, *track, *options);
-  Json entry = {{"file", name},
-                {"poses", track->samples.size()},
-                {"matched", matches->size()},
-                {"warnings", file->warnings},
-                {"alignments", engine::alignments_json(score)},
-                {"unavailable", engine::unavailable_json(score)}};
-  choose_modes(arguments.alignments, entry);
-  return entry;
+  evaluation::Score score = evaluation::score(truth.trajectory, *track, *options);
+  choose_modes(arguments.alignments, score);
+  return EvaluatedFile{
+      name, track->samples.size(), matches->size(), file->warnings, std::move(score)};
 }
 
 int evaluate_files(const EvaluateArguments& arguments) {
@@ -155,14 +169,11 @@ int evaluate_files(const EvaluateArguments& arguments) {
   Json estimates = Json::array();
   bool scored = true;
   for (const std::string& name : arguments.estimates) {
-    Result<Json> entry = evaluate_file(arguments, *truth, name);
-    if (!entry) return report(entry.error());
-    if (!arguments.json) {
-      std::cout << name << "\n"
-                << alignment_table(entry->at("alignments"), entry->at("unavailable"));
-    }
-    scored = scored && !entry->at("alignments").empty();
-    estimates.push_back(std::move(*entry));
+    const Result<EvaluatedFile> file = evaluate_file(arguments, *truth, name);
+    if (!file) return report(file.error());
+    if (!arguments.json) std::cout << name << "\n" << alignment_table(file->score);
+    scored = scored && !file->score.alignments.empty();
+    estimates.push_back(evaluated_file_json(*file));
   }
   if (arguments.json) {
     const Json result = {{"truth", arguments.truth},
@@ -174,34 +185,39 @@ int evaluate_files(const EvaluateArguments& arguments) {
   return scored ? kExitOk : kExitFailure;
 }
 
-void print_run(const EvaluateArguments& arguments, const engine::RunInfo& info, Json metrics) {
-  metrics["status"] = engine::to_string(info.status);
-  if (!arguments.json && info.status != engine::RunStatus::kCompleted) {
-    std::cout << "the run is " << engine::to_string(info.status) << "\n";
+void print_run(const EvaluateArguments& arguments,
+               const server::RunInfo& info,
+               server::RunMetrics metrics) {
+  if (!arguments.json && info.status != server::RunStatus::kCompleted) {
+    std::cout << "the run is " << server::to_string(info.status) << "\n";
   }
-  for (auto& [name, entry] : metrics.at("estimators").items()) {
-    choose_modes(arguments.alignments, entry);
+  for (auto& [name, estimator] : metrics.estimators) {
+    choose_modes(arguments.alignments, estimator.score);
     if (arguments.json) continue;
-    std::cout << name << ": " << outcome_line(entry) << "\n"
-              << alignment_table(entry.at("alignments"), entry.at("unavailable"));
+    std::cout << name << ": " << outcome_line(estimator.score) << "\n"
+              << alignment_table(estimator.score);
   }
-  if (arguments.json) std::cout << metrics.dump(2) << "\n";
+  if (!arguments.json) return;
+  Json document = server::json_from(metrics);
+  document["status"] = server::to_string(info.status);
+  std::cout << document.dump(2) << "\n";
 }
 
 int evaluate_run(const EvaluateArguments& arguments) {
   // Read before the lock is taken: the lock would make an interrupted run appear to be running.
-  const Result<engine::RunInfo> info = engine::read_run_info(arguments.run);
+  const Result<server::RunInfo> info = server::read_run_info(arguments.run);
   if (!info) return report(info.error());
   if (!info->problem.empty()) std::cerr << "warning: " << info->problem << "\n";
   // The scores are printed even if nothing can be written.
-  const Result<engine::RunLock> lock = engine::RunLock::take(arguments.run);
+  const Result<server::RunLock> lock = server::RunLock::take(arguments.run);
   if (!lock && lock.error().code == ErrorCode::kConflict) return report(lock.error());
-  const Result<engine::RunRecords> records = engine::read_run_records(arguments.run);
+  const Result<server::RunRecords> records = server::read_run_records(arguments.run);
   if (!records) return report(records.error());
-  const Json metrics = engine::metrics_from(*records);
+  const server::RunMetrics metrics = server::metrics_from(*records);
   print_run(arguments, *info, metrics);
   if (!lock) return report(lock.error());
-  const Status written = engine::write_json(engine::metrics_file(arguments.run), metrics);
+  const Status written =
+      server::write_json(server::metrics_file(arguments.run), server::json_from(metrics));
   return written ? kExitOk : report(written.error());
 }
 

@@ -36,12 +36,12 @@ struct ExportArguments {
   bool quiet = false;
 };
 
-Result<engine::ExportSource> open_source(const ExportArguments& arguments) {
-  const auto overrides = engine::parse_overrides(arguments.sets);
+Result<server::ExportSource> open_source(const ExportArguments& arguments) {
+  const auto overrides = server::parse_overrides(arguments.sets);
   if (!overrides) return overrides.error();
-  auto source = engine::open_export_source(arguments.source, *overrides);
+  auto source = server::open_export_source(arguments.source, *overrides);
   if (!source) return source.error();
-  if (Status status = engine::check_scenario(source->scenario); !status) return status.error();
+  if (Status status = server::check_scenario(source->scenario); !status) return status.error();
   if (arguments.threads >= 0) source->scenario.renderer.threads = arguments.threads;
   return source;
 }
@@ -59,10 +59,10 @@ void set_common(const ExportArguments& arguments, ProgressDisplay& display, Opti
   };
 }
 
-int tell(const ExportArguments& arguments,
-         const nlohmann::json& summary,
-         const std::string& text,
-         bool cancelled) {
+int print_result(const ExportArguments& arguments,
+                 const nlohmann::json& summary,
+                 const std::string& text,
+                 bool cancelled) {
   if (arguments.json) {
     std::cout << summary.dump(2) << "\n";
   } else {
@@ -75,47 +75,47 @@ int tell(const ExportArguments& arguments,
   return kExitCancelled;
 }
 
-engine::VideoLook look_of(const ExportArguments& arguments) {
-  engine::VideoLook look;
-  look.view = engine::video_view_from(arguments.video).value_or(engine::VideoView::kBoth);
+server::VideoLook look_of(const ExportArguments& arguments) {
+  server::VideoLook look;
+  look.view = server::video_view_from(arguments.video).value_or(server::VideoView::kBoth);
   look.quality = arguments.video_quality;
   return look;
 }
 
-int export_as_video(const ExportArguments& arguments, const engine::ExportSource& source) {
-  engine::VideoOptions options;
+int export_as_video(const ExportArguments& arguments, const server::ExportSource& source) {
+  server::VideoOptions options;
   options.file = arguments.out;
   options.look = look_of(arguments);
   if (arguments.cameras.size() > 1 || !arguments.truth.empty()) {
     return report({ErrorCode::kInvalidArgument, "webm: takes one --camera and no --truth"});
   }
   if (!arguments.cameras.empty()) options.camera = arguments.cameras.front();
-  Result<engine::VideoSummary> summary = Error{};
+  Result<server::VideoSummary> summary = Error{};
   {
     ProgressDisplay display(arguments.quiet);
     set_common(arguments, display, options);
-    summary = engine::export_video(source, options);
+    summary = server::export_video(source, options);
   }
   if (!summary) return report(summary.error());
-  return tell(arguments,
-              {{"frames", summary->frames},
-               {"cancelled", summary->cancelled},
-               {"attribution", summary->attribution}},
-              arguments.out + ": " + std::to_string(summary->frames) + " frames\n",
-              summary->cancelled);
+  return print_result(arguments,
+                      {{"frames", summary->frames},
+                       {"cancelled", summary->cancelled},
+                       {"attribution", summary->attribution}},
+                      arguments.out + ": " + std::to_string(summary->frames) + " frames\n",
+                      summary->cancelled);
 }
 
 int export_as_dataset(const ExportArguments& arguments,
-                      engine::DatasetFormat format,
-                      const engine::ExportSource& source) {
-  engine::ExportOptions options;
+                      server::DatasetFormat format,
+                      const server::ExportSource& source) {
+  server::ExportOptions options;
   options.folder = arguments.out;
   options.format = format;
   options.cameras = arguments.cameras;
   options.imu = arguments.imu;
   if (!arguments.video.empty()) options.video = look_of(arguments);
   for (const std::string& name : arguments.truth) {
-    const auto kind = engine::truth_kind_from(name);
+    const auto kind = server::truth_kind_from(name);
     if (!kind) {
       return report(
           {ErrorCode::kInvalidArgument,
@@ -123,26 +123,26 @@ int export_as_dataset(const ExportArguments& arguments,
     }
     options.truth.insert(*kind);
   }
-  Result<engine::ExportSummary> summary = Error{};
+  Result<server::ExportSummary> summary = Error{};
   {
     ProgressDisplay display(arguments.quiet);
     set_common(arguments, display, options);
-    summary = engine::export_dataset(source, options);
+    summary = server::export_dataset(source, options);
   }
   if (!summary) return report(summary.error());
-  return tell(arguments,
-              {{"frames", summary->frames},
-               {"images", summary->images},
-               {"cancelled", summary->cancelled},
-               {"attribution", summary->attribution},
-               {"stages", summary->stages}},
-              arguments.out + ": " + std::to_string(summary->images) + " images of " +
-                  std::to_string(summary->frames) + " frames, " + arguments.format + "\n",
-              summary->cancelled);
+  return print_result(arguments,
+                      {{"frames", summary->frames},
+                       {"images", summary->images},
+                       {"cancelled", summary->cancelled},
+                       {"attribution", summary->attribution},
+                       {"stages", summary->stages}},
+                      arguments.out + ": " + std::to_string(summary->images) + " images of " +
+                          std::to_string(summary->frames) + " frames, " + arguments.format + "\n",
+                      summary->cancelled);
 }
 
 int export_source(const ExportArguments& arguments) {
-  const auto format = engine::dataset_format_from(arguments.format);
+  const auto format = server::dataset_format_from(arguments.format);
   if (!format && arguments.format != "webm") {
     return report({ErrorCode::kInvalidArgument,
                    "format = " + arguments.format +

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "core/percent.hpp"
+#include "core/text/percent.hpp"
 #include "renderer/renderer.hpp"
 #include "server/app/commands/commands.hpp"
 #include "server/app/commands/render_request.hpp"

@@ -2,7 +2,7 @@
 #include <iostream>
 #include <utility>
 
-#include "core/percent.hpp"
+#include "core/text/percent.hpp"
 #include "server/app/commands/render_request.hpp"
 #include "server/app/exit_code.hpp"
 #include "server/camera/frame_maker.hpp"
@@ -15,17 +15,17 @@ namespace overfly::app {
 namespace {
 
 /// The scenario with only the requested camera and without estimators.
-Result<engine::Scenario> load_to_render(const RenderArguments& arguments) {
-  const auto overrides = engine::parse_overrides(arguments.sets);
+Result<server::Scenario> load_to_render(const RenderArguments& arguments) {
+  const auto overrides = server::parse_overrides(arguments.sets);
   if (!overrides) return overrides.error();
-  Result<engine::Scenario> scenario = engine::load_scenario(arguments.scenario, *overrides);
+  Result<server::Scenario> scenario = server::load_scenario(arguments.scenario, *overrides);
   if (!scenario) return scenario.error();
   if (arguments.renderer != "auto") scenario->renderer.camera = arguments.renderer;
   return scenario;
 }
 
 Status write_shot(const RenderArguments& arguments,
-                  const engine::CameraShot& shot,
+                  const server::CameraShot& shot,
                   renderer::Renderer& renderer) {
   Status written = shot.image16.empty() ? terrain::write_png(arguments.out, shot.image)
                                         : terrain::write_png(arguments.out, shot.image16);
@@ -36,15 +36,15 @@ Status write_shot(const RenderArguments& arguments,
 }
 
 /// The camera at rest above a place, with its lens and sensor.
-Result<engine::CameraShot> shot_from_place(const RenderArguments& arguments,
+Result<server::CameraShot> shot_from_place(const RenderArguments& arguments,
                                            std::size_t camera,
-                                           const engine::Scenario& scenario,
-                                           engine::FrameMaker& maker) {
-  auto unit = engine::CameraUnit::create(scenario.cameras[camera], camera, scenario.seed);
+                                           const server::Scenario& scenario,
+                                           server::FrameMaker& maker) {
+  auto unit = server::CameraUnit::create(scenario.cameras[camera], camera, scenario.seed);
   if (!unit) return unit.error();
   AircraftState state;
   state.T_world_body = body_pose(arguments, *maker.world().tiles);
-  engine::CameraShot shot;
+  server::CameraShot shot;
   Result<renderer::CameraRequest> request = (*unit)->request({state}, 0);
   if (!request) return request.error();
   shot.request = std::move(*request);
@@ -56,10 +56,10 @@ Result<engine::CameraShot> shot_from_place(const RenderArguments& arguments,
   return shot;
 }
 
-Result<engine::CameraShot> take_shot(const RenderArguments& arguments,
+Result<server::CameraShot> take_shot(const RenderArguments& arguments,
                                      std::size_t camera,
-                                     const engine::Scenario& scenario,
-                                     engine::FrameMaker& maker) {
+                                     const server::Scenario& scenario,
+                                     server::FrameMaker& maker) {
   if (arguments.has_place()) return shot_from_place(arguments, camera, scenario, maker);
   if (arguments.frame >= maker.frames_total()) {
     return Error{ErrorCode::kInvalidArgument,
@@ -78,15 +78,15 @@ Result<engine::CameraShot> take_shot(const RenderArguments& arguments,
 }  // namespace
 
 int render_scenario(const RenderArguments& arguments) {
-  const Result<engine::Scenario> scenario = load_to_render(arguments);
+  const Result<server::Scenario> scenario = load_to_render(arguments);
   if (!scenario) return report(scenario.error());
   std::size_t camera = 0;
   if (!arguments.camera.empty()) {
-    const auto index = engine::camera_index(*scenario, arguments.camera, "--camera");
+    const auto index = server::camera_index(*scenario, arguments.camera, "--camera");
     if (!index) return report(index.error());
     camera = *index;
   }
-  const auto maker = engine::FrameMaker::open(*scenario);
+  const auto maker = server::FrameMaker::open(*scenario);
   if (!maker) return report(maker.error());
   for (const std::string& warning : (*maker)->world().warnings) {
     std::cerr << "warning: " << warning << "\n";

@@ -17,6 +17,7 @@
 #include "server/scenario/document/scenario_list.hpp"
 #include "server/scenario/document/scenario_override.hpp"
 #include "server/scoring/metrics.hpp"
+#include "server/scoring/run_metrics_json.hpp"
 
 namespace overfly::app {
 namespace {
@@ -30,19 +31,19 @@ struct RunArguments {
   bool quiet = false;
 };
 
-Result<engine::Scenario> load_to_fly(const RunArguments& arguments) {
-  auto overrides = engine::parse_overrides(arguments.sets);
+Result<server::Scenario> load_to_fly(const RunArguments& arguments) {
+  auto overrides = server::parse_overrides(arguments.sets);
   if (!overrides) return overrides.error();
   if (!arguments.renderer.empty()) overrides->push_back({"renderer.camera", arguments.renderer});
-  Result<engine::Scenario> scenario = engine::load_scenario(arguments.scenario, *overrides);
+  Result<server::Scenario> scenario = server::load_scenario(arguments.scenario, *overrides);
   if (!scenario) return scenario.error();
-  if (Status status = engine::check_scenario(*scenario); !status) return status.error();
-  const auto memory = engine::MemoryBudget::of_machine(false);
+  if (Status status = server::check_scenario(*scenario); !status) return status.error();
+  const auto memory = server::MemoryBudget::of_machine(false);
   if (Status status = memory.check(*scenario); !status) return status.error();
   return scenario;
 }
 
-void show_progress(ProgressDisplay& display, const engine::RunInfo& info) {
+void show_progress(ProgressDisplay& display, const server::RunInfo& info) {
   const std::string done = "frame " + std::to_string(info.frames);
   if (info.frames_total == 0) {
     display.show(0.0, done);
@@ -53,36 +54,36 @@ void show_progress(ProgressDisplay& display, const engine::RunInfo& info) {
 }
 
 /// Reports the estimators that never ran. @return a failure if none ran
-int exit_code_of_estimators(const nlohmann::json& metrics) {
-  const std::map<std::string, std::string> reasons = engine::never_ran(metrics);
+int exit_code_of_estimators(const server::RunMetrics& metrics) {
+  const std::map<std::string, std::string> reasons = server::never_ran(metrics);
   for (const auto& [name, reason] : reasons) {
     std::cerr << "error: estimator " << name << " never ran: " << reason << "\n";
   }
-  const bool none_ran = !reasons.empty() && reasons.size() == metrics.at("estimators").size();
+  const bool none_ran = !reasons.empty() && reasons.size() == metrics.estimators.size();
   return none_ran ? kExitFailure : kExitOk;
 }
 
 int run(const RunArguments& arguments) {
-  const Result<engine::Scenario> scenario = load_to_fly(arguments);
+  const Result<server::Scenario> scenario = load_to_fly(arguments);
   if (!scenario) return report(scenario.error());
-  Result<engine::RunResult> result = Error{};
+  Result<server::RunResult> result = Error{};
   {
     ProgressDisplay display(arguments.quiet);
-    engine::RunOptions options;
+    server::RunOptions options;
     options.folder = arguments.out;
     options.cancel = &catch_stop_signals();
     options.notice = [&](const std::string& text) { display.note(text); };
-    options.progress = [&](const engine::RunInfo& info) { show_progress(display, info); };
-    result = engine::run_scenario(*scenario, options);
+    options.progress = [&](const server::RunInfo& info) { show_progress(display, info); };
+    result = server::run_scenario(*scenario, options);
   }
   if (!result) return report(result.error());
   if (arguments.json) {
-    std::cout << result->metrics.dump(2) << "\n";
+    std::cout << server::json_from(result->metrics).dump(2) << "\n";
   } else {
-    std::cout << score_table(result->metrics, "init_scale") << camera_notes(result->metrics)
-              << "run folder: " << arguments.out << "\n";
+    std::cout << score_table(result->metrics, evaluation::AlignmentMode::kInitScale)
+              << camera_notes(result->metrics) << "run folder: " << arguments.out << "\n";
   }
-  if (result->info.status == engine::RunStatus::kCancelled) {
+  if (result->info.status == server::RunStatus::kCancelled) {
     std::cerr << "cancelled after frame " << result->info.frames << "\n";
     return kExitCancelled;
   }

@@ -17,8 +17,8 @@ namespace {
 
 int list(const std::string& folder) {
   const auto entries =
-      engine::list_scenarios(folder.empty() ? scenarios_folder() : std::filesystem::path(folder));
-  for (const engine::ScenarioEntry& entry : entries) {
+      server::list_scenarios(folder.empty() ? scenarios_folder() : std::filesystem::path(folder));
+  for (const server::ScenarioEntry& entry : entries) {
     std::cout << entry.name << ": " << entry.title << "\n";
     if (!entry.error.empty()) std::cout << "  cannot be flown here: " << entry.error << "\n";
   }
@@ -28,8 +28,8 @@ int list(const std::string& folder) {
 int validate(const std::vector<std::string>& files) {
   int exit_code = kExitOk;
   for (const std::string& file : files) {
-    const Result<engine::Scenario> scenario = engine::load_scenario(file);
-    Status status = scenario ? engine::check_scenario(*scenario) : Status{scenario.error()};
+    const Result<server::Scenario> scenario = server::load_scenario(file);
+    Status status = scenario ? server::check_scenario(*scenario) : Status{scenario.error()};
     if (status) {
       std::cout << file << ": valid\n";
     } else {
@@ -40,7 +40,7 @@ int validate(const std::vector<std::string>& files) {
 }
 
 int show(const std::string& file) {
-  const Result<engine::Scenario> scenario = engine::load_scenario(file);
+  const Result<server::Scenario> scenario = server::load_scenario(file);
   if (!scenario) return report(scenario.error());
   std::cout << scenario->resolved.dump(2) << "\n";
   return kExitOk;
@@ -68,7 +68,7 @@ void add_scenario_command(CLI::App& app, int& exit_code) {
 
   CLI::App* schema = command->add_subcommand("schema", "Print the JSON schema");
   schema->callback([&exit_code] {
-    std::cout << engine::scenario_schema_text();
+    std::cout << server::scenario_schema_text();
     exit_code = kExitOk;
   });
 }

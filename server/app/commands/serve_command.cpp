@@ -69,11 +69,11 @@ Result<std::string> token_of(const ServeArguments& arguments) {
 int serve(const ServeArguments& arguments) {
   (void)catch_stop_signals();
   terrain::turn_network_off();
-  engine::draw_on_the_asking_thread();
+  server::draw_on_the_asking_thread();
   spdlog::set_default_logger(spdlog::stderr_color_mt("overfly"));
   auto token = token_of(arguments);
   if (!token) return report(token.error());
-  engine::RunManagerOptions manager_options;
+  server::RunManagerOptions manager_options;
   manager_options.runs_folder = arguments.runs;
   manager_options.scenarios_folder =
       arguments.scenarios.empty() ? scenarios_folder() : fs::path(arguments.scenarios);
@@ -83,9 +83,9 @@ int serve(const ServeArguments& arguments) {
       static_cast<std::uint64_t>(arguments.memory_limit_mib * 1024.0 * 1024.0);
   manager_options.allow_commands = arguments.allow_commands;
   manager_options.data_folders.emplace(arguments.data.begin(), arguments.data.end());
-  const auto runs = engine::RunManager::create(manager_options);
+  const auto runs = server::RunManager::create(manager_options);
   if (!runs) return report(runs.error());
-  engine::ViewService views(**runs);
+  server::ViewService views(**runs);
 
   net::ServerOptions options;
   options.address = arguments.address;

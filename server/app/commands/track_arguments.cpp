@@ -50,7 +50,7 @@ Result<Json> scenario_entry(const std::string& text) {
     file = text.substr(0, colon);
     name = text.substr(colon + 1);
   }
-  const Result<engine::Scenario> scenario = engine::load_scenario(file);
+  const Result<server::Scenario> scenario = server::load_scenario(file);
   if (!scenario) return scenario.error();
   std::string known;
   for (const Json& entry : scenario->resolved.at("estimators")) {
@@ -142,15 +142,15 @@ Result<std::vector<std::string>> words_of(const std::string& text) {
   return bad_option("--command", text, std::string("without an open ") + quote);
 }
 
-Result<engine::DatasetOptions> dataset_options_from(const TrackArguments& arguments) {
-  engine::DatasetOptions options;
+Result<server::DatasetOptions> dataset_options_from(const TrackArguments& arguments) {
+  server::DatasetOptions options;
   options.folder = arguments.images;
   options.camera_name = arguments.camera_name;
   options.sample_bits = arguments.sample_bits;
-  if (!arguments.layout.empty()) options.layout = engine::dataset_layout_from(arguments.layout);
+  if (!arguments.layout.empty()) options.layout = server::dataset_layout_from(arguments.layout);
   if (!arguments.times.empty()) options.times = arguments.times;
-  if (arguments.time_unit == "s") options.time_unit = engine::TimeUnit::kSeconds;
-  if (arguments.time_unit == "ns") options.time_unit = engine::TimeUnit::kNanoseconds;
+  if (arguments.time_unit == "s") options.time_unit = server::TimeUnit::kSeconds;
+  if (arguments.time_unit == "ns") options.time_unit = server::TimeUnit::kNanoseconds;
   Distortion lens;
   if (!arguments.distortion.empty()) {
     const Result<Distortion> read = distortion_from_text(arguments.distortion);
@@ -168,7 +168,7 @@ Result<engine::DatasetOptions> dataset_options_from(const TrackArguments& argume
   return options;
 }
 
-Result<engine::EstimatorSpec> estimator_from(const TrackArguments& arguments) {
+Result<server::EstimatorSpec> estimator_from(const TrackArguments& arguments) {
   Result<Json> entry = base_entry(arguments);
   if (!entry) return entry.error();
   if (!arguments.command.empty()) {
@@ -178,17 +178,17 @@ Result<engine::EstimatorSpec> estimator_from(const TrackArguments& arguments) {
   }
   if (!arguments.listen.empty()) (*entry)["listen"] = arguments.listen;
   for (const std::string& text : arguments.parameters) {
-    const Result<engine::Override> parameter = engine::parse_override(text);
+    const Result<server::Override> parameter = server::parse_override(text);
     if (!parameter) return parameter.error().in("--parameter");
     // Names may contain dots, so this is not a path.
     (*entry)["parameters"][parameter->path] = parameter->value;
   }
   for (const std::string& text : arguments.sets) {
-    const Result<engine::Override> change = engine::parse_override(text);
+    const Result<server::Override> change = server::parse_override(text);
     if (!change) return change.error().in("--set");
-    if (Status status = engine::apply_override(*change, *entry); !status) return status.error();
+    if (Status status = server::apply_override(*change, *entry); !status) return status.error();
   }
-  return engine::estimator_from_json(std::move(*entry), fs::current_path());
+  return server::estimator_from_json(std::move(*entry), fs::current_path());
 }
 
 }  // namespace overfly::app

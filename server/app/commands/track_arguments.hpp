@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/camera_model.hpp"
+#include "core/camera/camera_model.hpp"
 #include "core/result.hpp"
 #include "server/dataset/dataset.hpp"
 #include "server/scenario/estimator_spec.hpp"
@@ -53,9 +53,9 @@ struct TrackArguments {
 [[nodiscard]] Result<std::vector<std::string>> words_of(const std::string& text);
 
 /// Errors: kInvalidArgument naming the option.
-[[nodiscard]] Result<engine::DatasetOptions> dataset_options_from(const TrackArguments& arguments);
+[[nodiscard]] Result<server::DatasetOptions> dataset_options_from(const TrackArguments& arguments);
 /// The named estimator, or that of a scenario, with the parameters and overrides applied.
 /// Errors: kInvalidArgument with field, value and limit; as load_scenario.
-[[nodiscard]] Result<engine::EstimatorSpec> estimator_from(const TrackArguments& arguments);
+[[nodiscard]] Result<server::EstimatorSpec> estimator_from(const TrackArguments& arguments);
 
 }  // namespace overfly::app

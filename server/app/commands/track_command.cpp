@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "core/trajectory_io.hpp"
+#include "core/motion/trajectory_io.hpp"
 #include "server/app/commands/commands.hpp"
 #include "server/app/commands/track_arguments.hpp"
 #include "server/app/commands/track_summary.hpp"
@@ -48,7 +48,7 @@ Status check_outputs(const TrackArguments& arguments) {
   return {};
 }
 
-Result<std::optional<Truth>> read_truth(const TrackArguments& arguments, engine::Dataset& dataset) {
+Result<std::optional<Truth>> read_truth(const TrackArguments& arguments, server::Dataset& dataset) {
   if (arguments.truth.empty()) return std::optional<Truth>();
   const Result<TrajectoryFile> file = read_trajectory(arguments.truth);
   if (!file) return file.error();
@@ -58,68 +58,69 @@ Result<std::optional<Truth>> read_truth(const TrackArguments& arguments, engine:
                      dataset.warnings.front()};
   }
   dataset.warnings.insert(dataset.warnings.end(), file->warnings.begin(), file->warnings.end());
-  const Result<Trajectory> camera = engine::camera_truth(dataset, *file, dataset.notes);
+  const Result<Trajectory> camera = server::camera_truth(dataset, *file, dataset.notes);
   if (!camera) return camera.error().in(arguments.truth);
   return std::optional<Truth>(Truth{*camera, file->has_times});
 }
 
 /// The truth for the perfect and drifting estimators.
-Result<engine::ToyTruth> toy_truth(const engine::Dataset& dataset,
-                                   const std::optional<Truth>& truth,
-                                   double scene_depth_m) {
+Result<ToyTruthAt> toy_truth(const server::Dataset& dataset,
+                             const std::optional<Truth>& truth,
+                             double scene_depth_m) {
   if (!truth || !truth->has_times) {
     return Error{ErrorCode::kInvalidArgument, "needs --truth with times, since it gets the truth"};
   }
-  engine::ToyTruth known;
-  known.scene_depth_m = scene_depth_m;
-  for (const engine::DatasetImage& image : dataset.images) {
-    const std::optional<Pose> pose = truth->T_world_camera.at(image.t_ns);
-    if (!pose) {
+  for (const server::DatasetImage& image : dataset.images) {
+    if (!truth->T_world_camera.at(image.t_ns)) {
       return Error{ErrorCode::kInvalidArgument,
                    image.listed_at + ": the truth has no pose at the image's time"};
     }
-    if (Status status = known.T_world_camera.append({image.t_ns, *pose}); !status) {
-      return status.error();
-    }
   }
-  return known;
+  return ToyTruthAt([T_world_camera = truth->T_world_camera,
+                     scene_depth_m](std::int64_t t_ns) -> std::optional<ToyTruth> {
+    const std::optional<Pose> pose = T_world_camera.at(t_ns);
+    if (!pose) return std::nullopt;
+    return ToyTruth{*pose, scene_depth_m};
+  });
 }
 
 Result<std::unique_ptr<VoPort>> create_port(const TrackArguments& arguments,
-                                            const engine::Dataset& dataset,
+                                            const server::Dataset& dataset,
                                             const std::optional<Truth>& truth,
                                             const std::atomic<bool>& stop) {
-  const Result<engine::EstimatorSpec> spec = estimator_from(arguments);
+  const Result<server::EstimatorSpec> spec = estimator_from(arguments);
   if (!spec) return spec.error();
-  engine::EstimatorSetting setting;
+  server::EstimatorSetting setting;
   setting.seed = arguments.seed;
   setting.cancel = &stop;
   if (!arguments.estimator_folder.empty()) {
     setting.output_folder = fs::absolute(arguments.estimator_folder);
   }
-  return engine::create_estimator(
-      *spec, setting, [&] { return toy_truth(dataset, truth, arguments.init_true_depth_m); });
+  if (!server::is_test_estimator(spec->type)) return server::create_estimator(*spec, setting);
+  const Result<ToyTruthAt> known = toy_truth(dataset, truth, arguments.init_true_depth_m);
+  if (!known) return known.error().in("estimator \"" + spec->name + "\"");
+  return server::create_estimator(*spec, setting, *known);
 }
 
-Status write_outputs(const TrackArguments& arguments, const engine::TrackedDataset& tracked) {
-  if (Status status = engine::write_track(arguments.out, tracked); !status) return status;
+Status write_outputs(const TrackArguments& arguments, const server::TrackedDataset& tracked) {
+  if (Status status = server::write_track(arguments.out, tracked); !status) return status;
   if (!arguments.statuses.empty()) {
-    if (Status status = engine::write_statuses(arguments.statuses, tracked); !status) {
+    if (Status status = server::write_statuses(arguments.statuses, tracked); !status) {
       return status;
     }
   }
   if (arguments.points.empty()) return {};
-  const int map_id = engine::scored_map(tracked).value_or(0);
-  return engine::write_ply(
+  const int map_id = server::scored_map(tracked).value_or(0);
+  return server::write_ply(
       arguments.points, tracked.map.points(map_id), "sparse map in the units of " + arguments.out);
 }
 
-Result<engine::TrackedDataset> track_shown(const TrackArguments& arguments,
-                                           const engine::Dataset& dataset,
+Result<server::TrackedDataset> track_shown(const TrackArguments& arguments,
+                                           const server::Dataset& dataset,
                                            const std::atomic<bool>& stop,
                                            VoPort& port) {
   ProgressDisplay display(arguments.quiet);
-  engine::TrackOptions options;
+  server::TrackOptions options;
   options.debug_folder = arguments.debug;
   options.map_points = !arguments.points.empty();
   options.cancel = &stop;
@@ -136,15 +137,15 @@ Result<engine::TrackedDataset> track_shown(const TrackArguments& arguments,
         static_cast<double>(done) / static_cast<double>(total),
         "frame " + std::to_string(done) + " of " + std::to_string(total) + ", " + to_string(state));
   };
-  return engine::track_dataset(dataset, port, options);
+  return server::track_dataset(dataset, port, options);
 }
 
 int track(const TrackArguments& arguments) {
   const std::atomic<bool>& stop = catch_stop_signals();
-  const Result<engine::DatasetOptions> options = dataset_options_from(arguments);
+  const Result<server::DatasetOptions> options = dataset_options_from(arguments);
   if (!options) return report(options.error());
   if (Status status = check_outputs(arguments); !status) return report(status.error());
-  Result<engine::Dataset> dataset = engine::open_dataset(*options);
+  Result<server::Dataset> dataset = server::open_dataset(*options);
   if (!dataset) return report(dataset.error());
   const Result<std::optional<Truth>> truth = read_truth(arguments, *dataset);
   if (!truth) return report(truth.error());
@@ -159,21 +160,21 @@ int track(const TrackArguments& arguments) {
   if (*truth) {
     std::optional<double> depth_m;
     if (arguments.init_true_depth_m > 0.0) depth_m = arguments.init_true_depth_m;
-    score = engine::score_of(
+    score = server::score_of(
         *dataset, *tracked, (*truth)->T_world_camera, (*truth)->has_times, depth_m);
   }
-  Json summary = engine::report_json(*dataset, *tracked, score);
-  summary["out"] = arguments.out;
   if (arguments.json) {
-    std::cout << summary.dump(2) << "\n";
+    Json report = server::report_json(*dataset, *tracked, score);
+    report["out"] = arguments.out;
+    std::cout << report.dump(2) << "\n";
   } else {
-    std::cout << track_summary(summary);
+    std::cout << track_summary(*dataset, *tracked, score, arguments.out);
   }
   if (tracked->cancelled) {
     std::cerr << "cancelled after frame " << tracked->records.size() << "\n";
     return kExitCancelled;
   }
-  if (const std::string reason = engine::never_ran(*tracked); !reason.empty()) {
+  if (const std::string reason = server::never_ran(*tracked); !reason.empty()) {
     return report({ErrorCode::kInternal, "the estimator never ran: " + reason});
   }
   return kExitOk;

@@ -4,11 +4,10 @@
 #include <cstdio>
 
 #include "server/app/score_table.hpp"
+#include "server/dataset/track_report.hpp"
 
 namespace overfly::app {
 namespace {
-
-using Json = nlohmann::json;
 
 std::string rounded(double value, int digits) {
   std::array<char, 48> text{};
@@ -16,73 +15,78 @@ std::string rounded(double value, int digits) {
   return text.data();
 }
 
-std::string number(const Json& value) { return std::to_string(value.get<std::int64_t>()); }
-
-std::string duration_text(const Json& durations) {
-  if (durations.at("count") == 0) return "-";
-  return rounded(durations.at("median_ms"), 1) + " ms median, " +
-         rounded(durations.at("p95_ms"), 1) + " ms p95, " + rounded(durations.at("max_ms"), 1) +
-         " ms at most";
+std::string duration_text(const server::DurationList& durations) {
+  const auto summary = durations.latencies();
+  if (!summary) return "-";
+  return rounded(summary->median_ms, 1) + " ms median, " + rounded(summary->p95_ms, 1) +
+         " ms p95, " + rounded(summary->max_ms, 1) + " ms at most";
 }
 
-std::string dataset_text(const Json& dataset) {
-  const Json& camera = dataset.at("camera");
-  std::string text = "data set: " + dataset.at("layout").get<std::string>() + ", " +
-                     number(dataset.at("images")) + " images of " + number(camera.at("width_px")) +
-                     " x " + number(camera.at("height_px")) + " px\n";
-  for (const Json& note : dataset.at("notes")) text += "note: " + note.get<std::string>() + "\n";
+std::string dataset_text(const server::Dataset& dataset) {
+  const PinholeCamera& camera = dataset.camera.pinhole();
+  std::string text = "data set: " + std::string(server::to_string(dataset.layout)) + ", " +
+                     std::to_string(dataset.images.size()) + " images of " +
+                     std::to_string(camera.width_px) + " x " + std::to_string(camera.height_px) +
+                     " px\n";
+  for (const std::string& note : dataset.notes) text += "note: " + note + "\n";
   return text;
 }
 
-std::string states_text(const Json& report) {
-  const Json& states = report.at("states");
-  std::string text = "estimator: " + report.at("estimator").at("type").get<std::string>() +
-                     "; TRACKING " + number(states.at("TRACKING")) + ", INITIALISING " +
-                     number(states.at("INITIALISING")) + ", LOST " + number(states.at("LOST")) +
-                     " of " + number(report.at("frames")) + " frames";
-  const auto never_given = report.at("dataset").at("images").get<std::int64_t>() -
-                           report.at("frames").get<std::int64_t>();
-  if (never_given > 0) text += ", " + std::to_string(never_given) + " not sent";
-  const Json& after_s = report.at("initialised_after_s");
-  if (after_s.is_number()) text += ", first pose after " + rounded(after_s, 2) + " s";
+/// A line if some frames are affected.
+std::string count_text(const std::string& name, std::int64_t frames) {
+  return frames > 0 ? name + ": " + std::to_string(frames) + " frames\n" : "";
+}
+
+std::string states_text(const server::Dataset& dataset,
+                        const server::TrackedDataset& tracked,
+                        const server::TrackFigures& figures) {
+  std::string text = "estimator: " + tracked.type + "; TRACKING " +
+                     std::to_string(figures.tracked_frames) + ", INITIALISING " +
+                     std::to_string(figures.initialising_frames) + ", LOST " +
+                     std::to_string(figures.lost_frames) + " of " +
+                     std::to_string(tracked.records.size()) + " frames";
+  if (dataset.images.size() > tracked.records.size()) {
+    text += ", " + std::to_string(dataset.images.size() - tracked.records.size()) + " not sent";
+  }
+  if (figures.initialised_after_s) {
+    text += ", first pose after " + rounded(*figures.initialised_after_s, 2) + " s";
+  }
   text += "\n";
-  if (report.at("maps") > 1) {
-    text += "resets: " + number(report.at("maps")) + " maps, the longest is written\n";
+  if (figures.maps > 1) {
+    text += "resets: " + std::to_string(figures.maps) + " maps, the longest is written\n";
   }
-  for (const char* count : {"unanswered", "hash_mismatches"}) {
-    if (report.at(count) > 0) {
-      text += std::string(count) + ": " + number(report.at(count)) + " frames\n";
-    }
-  }
-  const Json& crash = report.at("crash");
-  if (crash.is_string()) text += "CRASHED: " + crash.get<std::string>() + "\n";
+  text += count_text("unanswered", tracked.unanswered);
+  text += count_text("hash_mismatches", tracked.hash_mismatches);
+  if (figures.crash) text += "CRASHED: " + *figures.crash + "\n";
   return text;
 }
 
-std::string cost_text(const Json& report) {
-  const Json& timing = report.at("timing");
-  std::string text = "track: " + duration_text(timing.at("track")) + "\n";
-  for (const auto& [stage, durations] : timing.at("stages").items()) {
+std::string cost_text(const server::TrackedDataset& tracked, const server::TrackFigures& figures) {
+  std::string text = "track: " + duration_text(tracked.tracking) + "\n";
+  for (const auto& [stage, durations] : tracked.stages) {
     text += "  " + stage + ": " + duration_text(durations) + "\n";
   }
-  const Json& resources = report.at("resources");
-  return text + "memory: " + rounded(resources.at("peak_memory_mb"), 0) + " MB at most, CPU " +
-         rounded(resources.at("cpu_percent"), 0) + " % while tracking, of " +
-         resources.at("of").get<std::string>() + "\n";
+  return text + "memory: " + rounded(tracked.resources.peak_memory_mb, 0) + " MB at most, CPU " +
+         rounded(figures.cpu_percent, 0) + " % while tracking, of " + figures.measured_process +
+         "\n";
 }
 
-std::string score_text(const Json& score) {
+std::string score_text(const evaluation::Score& score) {
   // Without the time of the outcome: it is in the data set's time base, often seconds since 1970.
-  return "outcome: " + score.at("outcome").get<std::string>() + ", " + coverage_text(score) + "\n" +
-         alignment_table(score.at("alignments"), score.at("unavailable"));
+  return "outcome: " + std::string(evaluation::to_string(score.outcome)) + ", " +
+         coverage_text(score) + "\n" + alignment_table(score);
 }
 
 }  // namespace
 
-std::string track_summary(const Json& report) {
-  std::string text = dataset_text(report.at("dataset")) + states_text(report) + cost_text(report);
-  if (report.contains("score")) text += score_text(report.at("score"));
-  return text + "trajectory: " + report.at("out").get<std::string>() + "\n";
+std::string track_summary(const server::Dataset& dataset,
+                          const server::TrackedDataset& tracked,
+                          const std::optional<evaluation::Score>& score,
+                          const std::string& out) {
+  const server::TrackFigures figures = server::figures_of(tracked);
+  return dataset_text(dataset) + states_text(dataset, tracked, figures) +
+         cost_text(tracked, figures) + (score ? score_text(*score) : "") + "trajectory: " + out +
+         "\n";
 }
 
 }  // namespace overfly::app

@@ -1,12 +1,18 @@
-// The report of `overfly track` as text.
+// The result of `overfly track` as text.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+
+#include "evaluation/evaluation.hpp"
+#include "server/dataset/track_dataset.hpp"
 
 namespace overfly::app {
 
-/// @param report  from engine::report_json, with `out`, the trajectory's file
-[[nodiscard]] std::string track_summary(const nlohmann::json& report);
+/// @param out  the trajectory's file
+[[nodiscard]] std::string track_summary(const server::Dataset& dataset,
+                                        const server::TrackedDataset& tracked,
+                                        const std::optional<evaluation::Score>& score,
+                                        const std::string& out);
 
 }  // namespace overfly::app

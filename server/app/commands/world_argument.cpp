@@ -21,8 +21,8 @@ Result<terrain::World> open_builtin(const std::string& text) {
   if (const std::size_t colon = text.find(':'); colon != std::string::npos) {
     const std::string digits = text.substr(colon + 1);
     const char* end = digits.data() + digits.size();
-    const auto [stopped, fault] = std::from_chars(digits.data(), end, seed);
-    if (fault != std::errc() || stopped != end) {
+    const auto [stopped, error] = std::from_chars(digits.data(), end, seed);
+    if (error != std::errc() || stopped != end) {
       return Error{ErrorCode::kInvalidArgument,
                    "--world " + text + ": the seed must be a whole number"};
     }

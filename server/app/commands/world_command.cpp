@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "core/pose.hpp"
+#include "core/motion/pose.hpp"
 #include "server/app/commands/commands.hpp"
 #include "server/app/commands/world_argument.hpp"
 #include "server/app/exit_code.hpp"

@@ -29,17 +29,18 @@ int status_of(ErrorCode code) {
 }
 
 /// Every line "field = value: must be ..." of a message.
-json faults_of(const std::string& message) {
-  json faults = json::array();
+json field_errors_of(const std::string& message) {
+  json field_errors = json::array();
   std::istringstream lines(message);
   for (std::string line; std::getline(lines, line);) {
     const std::size_t equals = line.find(" = ");
     if (equals == std::string::npos || equals == 0) continue;
     const std::size_t begin = line.find_last_of(' ', equals - 1);
     const std::size_t from = begin == std::string::npos ? 0 : begin + 1;
-    faults.push_back({{"field", line.substr(from, equals - from)}, {"message", line.substr(from)}});
+    field_errors.push_back(
+        {{"field", line.substr(from, equals - from)}, {"message", line.substr(from)}});
   }
-  return faults;
+  return field_errors;
 }
 
 }  // namespace
@@ -56,8 +57,8 @@ HttpResponse json_response(int status, const json& body) {
 HttpResponse error_response(const Error& error) {
   json body = {{"code", to_string(error.code)}, {"message", error.message}};
   if (error.code == ErrorCode::kInvalidArgument) {
-    json faults = faults_of(error.message);
-    if (!faults.empty()) body["faults"] = std::move(faults);
+    json field_errors = field_errors_of(error.message);
+    if (!field_errors.empty()) body["faults"] = std::move(field_errors);
   }
   return json_response(status_of(error.code), {{"error", std::move(body)}});
 }

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/outside_json.hpp"
+#include "core/outside/outside_json.hpp"
 
 namespace overfly::net {
 namespace {
@@ -46,23 +46,23 @@ const nlohmann::json* JsonFields::find(const std::string& name) {
   return found == object_.end() ? nullptr : &*found;
 }
 
-void JsonFields::fault(const std::string& name, const std::string& message) {
-  if (!fault_) fault_ = Error{ErrorCode::kInvalidArgument, full_name(name) + message};
+void JsonFields::reject(const std::string& name, const std::string& message) {
+  if (!error_) error_ = Error{ErrorCode::kInvalidArgument, full_name(name) + message};
 }
 
-void JsonFields::fault_value(const std::string& name, const std::string& limit) {
-  fault(name, " = " + shown(object_.at(name)) + ": must be " + limit);
+void JsonFields::reject_value(const std::string& name, const std::string& limit) {
+  reject(name, " = " + shown(object_.at(name)) + ": must be " + limit);
 }
 
 void JsonFields::require(const std::string& name) {
-  if (!object_.contains(name)) fault(name, ": is required");
+  if (!object_.contains(name)) reject(name, ": is required");
 }
 
 std::optional<std::string> JsonFields::text(const std::string& name) {
   const nlohmann::json* value = find(name);
   if (value == nullptr) return std::nullopt;
   if (value->is_string()) return value->get<std::string>();
-  fault_value(name, "a string");
+  reject_value(name, "a string");
   return std::nullopt;
 }
 
@@ -74,9 +74,9 @@ std::optional<double> JsonFields::number(const std::string& name, double min, do
   if (value->is_number()) {
     const auto number = value->get<double>();
     if (number >= min && number <= max) return number;
-    fault_value(name, limit);
+    reject_value(name, limit);
   } else {
-    fault_value(name, "a number " + limit);
+    reject_value(name, "a number " + limit);
   }
   return std::nullopt;
 }
@@ -102,7 +102,7 @@ std::optional<std::int64_t> JsonFields::integer(const std::string& name,
     }
   }
   if (integer && *integer >= min && *integer <= max) return integer;
-  fault_value(name, "an integer in [" + std::to_string(min) + ", " + std::to_string(max) + "]");
+  reject_value(name, "an integer in [" + std::to_string(min) + ", " + std::to_string(max) + "]");
   return std::nullopt;
 }
 
@@ -110,29 +110,29 @@ std::optional<bool> JsonFields::boolean(const std::string& name) {
   const nlohmann::json* value = find(name);
   if (value == nullptr) return std::nullopt;
   if (value->is_boolean()) return value->get<bool>();
-  fault_value(name, "true or false");
+  reject_value(name, "true or false");
   return std::nullopt;
 }
 
 const nlohmann::json* JsonFields::object(const std::string& name) {
   const nlohmann::json* value = find(name);
   if (value == nullptr || value->is_object()) return value;
-  fault_value(name, "an object");
+  reject_value(name, "an object");
   return nullptr;
 }
 
 const nlohmann::json* JsonFields::array(const std::string& name) {
   const nlohmann::json* value = find(name);
   if (value == nullptr || value->is_array()) return value;
-  fault_value(name, "an array");
+  reject_value(name, "an array");
   return nullptr;
 }
 
 Status JsonFields::finish() {
   for (const auto& [name, value] : object_.items()) {
-    if (!known_.contains(name)) fault(name, ": is not a known field");
+    if (!known_.contains(name)) reject(name, ": is not a known field");
   }
-  if (fault_) return *fault_;
+  if (error_) return *error_;
   return {};
 }
 

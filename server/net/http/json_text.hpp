@@ -37,19 +37,19 @@ class JsonFields {
 
   /// Makes an absent field an error.
   void require(const std::string& name);
-  void fault(const std::string& name, const std::string& message);
+  void reject(const std::string& name, const std::string& message);
   /// Errors: kInvalidArgument "where.field = value: must be limit".
   [[nodiscard]] Status finish();
 
  private:
   const nlohmann::json* find(const std::string& name);
-  void fault_value(const std::string& name, const std::string& limit);
+  void reject_value(const std::string& name, const std::string& limit);
   [[nodiscard]] std::string full_name(const std::string& name) const;
 
   const nlohmann::json& object_;
   std::string where_;
   std::set<std::string> known_;
-  std::optional<Error> fault_;
+  std::optional<Error> error_;
 };
 
 }  // namespace overfly::net

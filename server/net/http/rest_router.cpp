@@ -97,9 +97,14 @@ void RestRouter::handle(const HttpRequest& request, const Respond& respond) cons
   };
   (void)contained([&] { find_and_handle(request, respond); },
                   [&](const char* what) {
+                    // First the log: the answer refers to it.
+                    (void)contained(
+                        [&] {
+                          if (report_)
+                            report_(request.method + " " + request.target + " failed: " + what);
+                        },
+                        [](const char*) {});
                     (void)contained(refuse, refuse_briefly);
-                    if (report_)
-                      report_(request.method + " " + request.target + " failed: " + what);
                   });
 }
 

@@ -5,7 +5,7 @@
 #include <system_error>
 #include <utility>
 
-#include "core/file_text.hpp"
+#include "core/outside/file_text.hpp"
 #include "server/net/http/error_response.hpp"
 #include "server/net/http/url.hpp"
 

@@ -10,12 +10,12 @@ namespace overfly::net {
 /// health, openapi.json
 void add_service_routes(RestRouter* router);
 /// scenarios, scenarios/{name}, scenario-schema
-void add_scenario_routes(RestRouter* router, engine::RunManager* runs);
+void add_scenario_routes(RestRouter* router, server::RunManager* runs);
 /// runs, runs/{id}, runs/{id}/cancel
-void add_run_routes(RestRouter* router, engine::RunManager* runs);
+void add_run_routes(RestRouter* router, server::RunManager* runs);
 /// runs/{id}/metrics, estimators, manifest, trajectories/{name}
-void add_result_routes(RestRouter* router, engine::RunManager* runs);
+void add_result_routes(RestRouter* router, server::RunManager* runs);
 /// runs/{id}/frames/{k}.jpg
-void add_frame_routes(RestRouter* router, engine::RunManager* runs, engine::ViewService* views);
+void add_frame_routes(RestRouter* router, server::RunManager* runs, server::ViewService* views);
 
 }  // namespace overfly::net

@@ -5,14 +5,14 @@
 #include "server/net/http/error_response.hpp"
 #include "server/net/rest/rest_api.hpp"
 #include "server/net/stream/playback_state.hpp"
-#include "server/record/run_timeline.hpp"
+#include "server/timeline/run_timeline.hpp"
 #include "server/views/picture_request.hpp"
 
 namespace overfly::net {
 namespace {
 
-using engine::Picture;
-using engine::PictureRequest;
+using server::Picture;
+using server::PictureRequest;
 
 /// First client number for single requests; lower numbers belong to WebSocket connections.
 constexpr std::uint64_t kFirstRequestClient = std::uint64_t{1} << 63U;
@@ -29,7 +29,7 @@ std::optional<std::int64_t> frame_of(const std::string& file_name) {
 }
 
 /// Stamp of exactly this frame.
-std::optional<std::int64_t> stamp_of(const engine::RunTimeline& timeline, std::int64_t frame) {
+std::optional<std::int64_t> stamp_of(const server::RunTimeline& timeline, std::int64_t frame) {
   const auto t_ns = time_of_frame(timeline, frame);
   const auto row = t_ns ? timeline.frame_at(*t_ns) : std::nullopt;
   return row && row->frame == frame ? t_ns : std::nullopt;
@@ -46,7 +46,7 @@ HttpResponse picture_response(const Result<Picture>& picture) {
 
 }  // namespace
 
-void add_frame_routes(RestRouter* router, engine::RunManager* runs, engine::ViewService* views) {
+void add_frame_routes(RestRouter* router, server::RunManager* runs, server::ViewService* views) {
   const auto next_client = std::make_shared<std::atomic<std::uint64_t>>(kFirstRequestClient);
   const auto handler = [runs, views, next_client](const RouteCall& call, const Respond& respond) {
     const std::string& id = call.path.at("id");

@@ -2,20 +2,21 @@
 #include <system_error>
 #include <utility>
 
-#include "core/file_text.hpp"
+#include "core/outside/file_text.hpp"
 #include "server/net/http/error_response.hpp"
 #include "server/net/rest/rest_api.hpp"
 #include "server/net/stream/row_encoder.hpp"
-#include "server/record/run_timeline.hpp"
-#include "server/scoring/row_alignment.hpp"
+#include "server/scoring/run_metrics_json.hpp"
+#include "server/timeline/row_alignment.hpp"
+#include "server/timeline/run_timeline.hpp"
 
 namespace overfly::net {
 namespace {
 
 namespace fs = std::filesystem;
-using engine::RunManager;
-using engine::RunTimeline;
 using nlohmann::json;
+using server::RunManager;
+using server::RunTimeline;
 
 constexpr const char* kTruth = "truth";
 
@@ -59,11 +60,9 @@ HttpResponse result_response(const fs::path& folder,
 HttpResponse metrics(RunManager* runs, const std::string& id) {
   const auto timeline = runs->timeline(id);
   if (!timeline) return error_response(timeline.error());
-  json scores = (*timeline)->metrics();
-  if (scores.empty()) {
-    return error_response({ErrorCode::kNotFound, "run " + id + " is not scored"});
-  }
-  return json_response(200, scores);
+  const auto scored = (*timeline)->metrics();
+  if (!scored) return error_response({ErrorCode::kNotFound, "run " + id + " is not scored"});
+  return json_response(200, server::json_from(*scored));
 }
 
 HttpResponse estimators(RunManager* runs, const std::string& id) {
@@ -86,7 +85,7 @@ Result<json> columns_of(const RunTimeline& timeline,
   const auto& names = timeline.estimators();
   const auto index =
       static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-  const auto placed = engine::RowAlignment::of(timeline, index, alignment);
+  const auto placed = server::RowAlignment::of(timeline, index, alignment);
   if (!placed) return placed.error();
   return estimate_columns(timeline.estimates(index, 0, timeline.estimate_count(index)), *placed);
 }
@@ -121,7 +120,7 @@ HttpResponse trajectory(RunManager* runs, const RouteCall& call) {
   }
   if (call.query_or("format", "tum") == "json") {
     return json_or_error(
-        columns_of(**timeline, name, call.query_or("alignment", engine::kRecordedAlignment)));
+        columns_of(**timeline, name, call.query_or("alignment", server::kRecordedAlignment)));
   }
   const auto folder = runs->folder(id);
   if (!folder) return error_response(folder.error());

@@ -13,14 +13,14 @@
 namespace overfly::net {
 namespace {
 
-using engine::RunManager;
 using nlohmann::json;
+using server::RunManager;
 
 constexpr std::size_t kMaxKeyBytes = 200;
 
 struct StartBody {
   std::string scenario;
-  std::vector<engine::Override> overrides;
+  std::vector<server::Override> overrides;
 };
 
 Result<StartBody> parse_start(const std::string& text) {
@@ -43,8 +43,8 @@ bool is_json(const HttpRequest& request) {
 }
 
 /// The response for a run that was refused for lack of room or because of an invalid request.
-HttpResponse start_refusal(const engine::StartReport& report, const Error& error) {
-  using Refusal = engine::StartReport::Refusal;
+HttpResponse start_refusal(const server::StartReport& report, const Error& error) {
+  using Refusal = server::StartReport::Refusal;
   if (report.refusal == Refusal::kQueueFull) {
     return error_response(429, "queue_full", error.message);
   }
@@ -68,7 +68,7 @@ HttpResponse start_run(RunManager* runs, const HttpRequest& request) {
   if (!start) return error_response(start.error());
   const Status reach = runs->check_overrides(start->scenario, start->overrides);
   if (!reach) return error_response(403, "forbidden", reach.error().message);
-  engine::StartReport report;
+  server::StartReport report;
   const auto info = runs->start(start->scenario, start->overrides, key, &report);
   if (!info) return start_refusal(report, info.error());
   HttpResponse response = json_response(report.repeated ? 200 : 201, run_json(*info));
@@ -80,9 +80,9 @@ HttpResponse start_run(RunManager* runs, const HttpRequest& request) {
 /// its text is cached. Thread-safe.
 class RunListText {
  public:
-  std::string of(const engine::RunList& runs) {
+  std::string of(const server::RunList& runs) {
     const std::lock_guard lock(mutex_);
-    std::unordered_map<std::shared_ptr<const engine::RunInfo>, std::string> kept;
+    std::unordered_map<std::shared_ptr<const server::RunInfo>, std::string> kept;
     kept.reserve(runs.size());
     std::string text = R"({"runs":[)";
     for (const auto& info : runs) {
@@ -98,7 +98,7 @@ class RunListText {
 
  private:
   std::mutex mutex_;
-  std::unordered_map<std::shared_ptr<const engine::RunInfo>, std::string> texts_;
+  std::unordered_map<std::shared_ptr<const server::RunInfo>, std::string> texts_;
 };
 
 HttpResponse list_runs(RunManager* runs, RunListText& texts) {

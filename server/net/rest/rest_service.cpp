@@ -19,7 +19,7 @@ HttpResponse json_text_response(const std::string& text) {
   return response;
 }
 
-json entry_json(const engine::ScenarioEntry& entry) {
+json entry_json(const server::ScenarioEntry& entry) {
   return {{"name", entry.name},
           {"title", entry.title},
           {"description", entry.description},
@@ -37,10 +37,10 @@ void add_service_routes(RestRouter* router) {
   });
 }
 
-void add_scenario_routes(RestRouter* router, engine::RunManager* runs) {
+void add_scenario_routes(RestRouter* router, server::RunManager* runs) {
   router->add("GET", "/api/v1/scenarios", [runs](const RouteCall&, const Respond& respond) {
     json list = json::array();
-    for (const engine::ScenarioEntry& entry : runs->scenarios()) list.push_back(entry_json(entry));
+    for (const server::ScenarioEntry& entry : runs->scenarios()) list.push_back(entry_json(entry));
     respond(json_response(200, {{"scenarios", std::move(list)}}));
   });
   router->add(
@@ -48,7 +48,7 @@ void add_scenario_routes(RestRouter* router, engine::RunManager* runs) {
         respond(json_or_error(runs->scenario(call.path.at("name"))));
       });
   router->add("GET", "/api/v1/scenario-schema", [](const RouteCall&, const Respond& respond) {
-    respond(json_text_response(engine::scenario_schema_text()));
+    respond(json_text_response(server::scenario_schema_text()));
   });
 }
 

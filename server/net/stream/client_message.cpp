@@ -3,7 +3,7 @@
 #include <functional>
 #include <utility>
 
-#include "core/pose.hpp"
+#include "core/motion/pose.hpp"
 #include "server/net/http/json_text.hpp"
 #include "server/net/stream/playback_cursor.hpp"
 
@@ -28,7 +28,7 @@ ClientCommand read_attach(JsonFields* fields) {
       command.resume[name] = static_cast<std::size_t>(count.value_or(0));
     }
     if (const Status status = counts.finish(); !status) {
-      fields->fault("resume", ": " + status.error().message);
+      fields->reject("resume", ": " + status.error().message);
     }
   }
   return command;
@@ -39,28 +39,28 @@ bool is_picture_stream(const std::string& name) {
   return name.starts_with("debug/") && name.size() > 6 && name.size() <= kMaxNameBytes;
 }
 
-Result<StreamWish> read_stream(const json& entry, const std::string& where) {
+Result<StreamRequest> read_stream(const json& entry, const std::string& where) {
   if (!entry.is_object()) {
     return Error{ErrorCode::kInvalidArgument, where + ": must be an object"};
   }
   JsonFields fields(entry, where);
-  StreamWish wish;
+  StreamRequest stream;
   fields.require("name");
-  wish.name = fields.text("name").value_or("");
-  if (!is_picture_stream(wish.name)) {
-    fields.fault("name", ": must be \"camera\", \"scene\" or \"debug/NAME\"");
+  stream.name = fields.text("name").value_or("");
+  if (!is_picture_stream(stream.name)) {
+    fields.reject("name", ": must be \"camera\", \"scene\" or \"debug/NAME\"");
   }
-  wish.camera = fields.text("camera").value_or("");
-  if (wish.camera.size() > kMaxNameBytes) fields.fault("camera", ": the name is too long");
-  if (!wish.camera.empty() && wish.name != "camera") {
-    fields.fault("camera", ": applies only to the stream \"camera\"");
+  stream.camera = fields.text("camera").value_or("");
+  if (stream.camera.size() > kMaxNameBytes) fields.reject("camera", ": the name is too long");
+  if (!stream.camera.empty() && stream.name != "camera") {
+    fields.reject("camera", ": applies only to the stream \"camera\"");
   }
-  wish.max_hz = fields.number("max_hz", 0.1, 120.0).value_or(wish.max_hz);
-  wish.quality = static_cast<int>(fields.integer("quality", 1, 100).value_or(wish.quality));
-  wish.max_width_px =
-      static_cast<int>(fields.integer("max_width_px", 16, 8192).value_or(wish.max_width_px));
+  stream.max_hz = fields.number("max_hz", 0.1, 120.0).value_or(stream.max_hz);
+  stream.quality = static_cast<int>(fields.integer("quality", 1, 100).value_or(stream.quality));
+  stream.max_width_px =
+      static_cast<int>(fields.integer("max_width_px", 16, 8192).value_or(stream.max_width_px));
   if (const Status status = fields.finish(); !status) return status.error();
-  return wish;
+  return stream;
 }
 
 ClientCommand read_subscribe(JsonFields* fields) {
@@ -69,32 +69,32 @@ ClientCommand read_subscribe(JsonFields* fields) {
   const json* streams = fields->array("streams");
   if (streams == nullptr) return command;
   if (streams->size() > kMaxStreams) {
-    fields->fault("streams", ": must have at most " + std::to_string(kMaxStreams) + " entries");
+    fields->reject("streams", ": must have at most " + std::to_string(kMaxStreams) + " entries");
     return command;
   }
   for (std::size_t i = 0; i < streams->size(); ++i) {
-    Result<StreamWish> wish = read_stream((*streams)[i], "streams." + std::to_string(i));
-    if (!wish) {
-      fields->fault("streams", ": " + wish.error().message);
+    Result<StreamRequest> stream = read_stream((*streams)[i], "streams." + std::to_string(i));
+    if (!stream) {
+      fields->reject("streams", ": " + stream.error().message);
       return command;
     }
-    for (const StreamWish& other : command.streams) {
-      if (other.name == wish->name && other.camera == wish->camera) {
-        fields->fault("streams", ": " + wish->name + " occurs twice");
+    for (const StreamRequest& other : command.streams) {
+      if (other.name == stream->name && other.camera == stream->camera) {
+        fields->reject("streams", ": " + stream->name + " occurs twice");
       }
     }
-    command.streams.push_back(std::move(*wish));
+    command.streams.push_back(std::move(*stream));
   }
   return command;
 }
 
-std::optional<engine::SceneMode> read_mode(JsonFields* fields) {
+std::optional<server::SceneMode> read_mode(JsonFields* fields) {
   const auto mode = fields->text("mode");
   if (!mode) return std::nullopt;
-  if (*mode == "chase") return engine::SceneMode::kChase;
-  if (*mode == "orbit") return engine::SceneMode::kOrbit;
-  if (*mode == "top") return engine::SceneMode::kTop;
-  fields->fault("mode", " = \"" + *mode + "\": must be \"chase\", \"orbit\" or \"top\"");
+  if (*mode == "chase") return server::SceneMode::kChase;
+  if (*mode == "orbit") return server::SceneMode::kOrbit;
+  if (*mode == "top") return server::SceneMode::kTop;
+  fields->reject("mode", " = \"" + *mode + "\": must be \"chase\", \"orbit\" or \"top\"");
   return std::nullopt;
 }
 
@@ -125,7 +125,7 @@ ClientCommand read_seek(JsonFields* fields) {
   command.t_ns = fields->integer("t_ns", -kMaxNs, kMaxNs);
   command.frame = fields->integer("frame", -kMaxFrame, kMaxFrame);
   if (command.t_ns.has_value() == command.frame.has_value()) {
-    fields->fault("t_ns", ": either t_ns or frame must be given");
+    fields->reject("t_ns", ": either t_ns or frame must be given");
   }
   return command;
 }

@@ -15,13 +15,13 @@
 namespace overfly::net {
 
 /// One requested picture stream.
-struct StreamWish {
+struct StreamRequest {
   std::string name;  ///< "camera", "scene" or "debug/NAME"
   double max_hz = 31.0;
   int quality = 75;
   int max_width_px = 1280;
   std::string camera = {};  ///< for the stream "camera"; empty = the run's first
-  bool operator==(const StreamWish&) const = default;
+  bool operator==(const StreamRequest&) const = default;
 };
 
 struct AttachCommand {
@@ -31,11 +31,11 @@ struct AttachCommand {
 };
 struct DetachCommand {};
 struct SubscribeCommand {
-  std::vector<StreamWish> streams;
+  std::vector<StreamRequest> streams;
 };
 /// Empty fields keep their present value.
 struct ViewCommand {
-  std::optional<engine::SceneMode> mode;
+  std::optional<server::SceneMode> mode;
   std::optional<double> azimuth_rad;
   std::optional<double> elevation_rad;
   std::optional<double> distance_m;

@@ -8,7 +8,7 @@
 namespace overfly::net {
 namespace {
 
-using engine::PictureRequest;
+using server::PictureRequest;
 
 constexpr const char* kDebugPrefix = "debug/";
 
@@ -20,23 +20,25 @@ PictureRequest::Kind kind_of(const std::string& name) {
 
 }  // namespace
 
-void PictureStreams::subscribe(const std::vector<StreamWish>& wishes) {
+void PictureStreams::subscribe(const std::vector<StreamRequest>& requests) {
   std::vector<Stream> before = std::move(streams_);
   streams_.clear();
-  const auto key_of = [](const StreamWish& wish) { return StreamKey(wish.name, wish.camera); };
-  for (const Stream& stream : before) sequences_[key_of(stream.wish)] = stream.sequence;
-  for (const StreamWish& wish : wishes) {
+  const auto key_of = [](const StreamRequest& requested) {
+    return StreamKey(requested.name, requested.camera);
+  };
+  for (const Stream& stream : before) sequences_[key_of(stream.request)] = stream.sequence;
+  for (const StreamRequest& requested : requests) {
     const auto kept = std::find_if(before.begin(), before.end(), [&](const Stream& stream) {
-      return key_of(stream.wish) == key_of(wish);
+      return key_of(stream.request) == key_of(requested);
     });
     Stream stream;
     if (kept != before.end()) stream = std::move(*kept);
     const auto [id, is_new] =
-        ids_.emplace(key_of(wish), static_cast<std::uint32_t>(ids_.size() + 1));
+        ids_.emplace(key_of(requested), static_cast<std::uint32_t>(ids_.size() + 1));
     stream.id = id->second;
-    stream.sequence = is_new ? 0 : sequences_[key_of(wish)];
-    stream.wish = wish;
-    stream.slot.set_max_hz(wish.max_hz);
+    stream.sequence = is_new ? 0 : sequences_[key_of(requested)];
+    stream.request = requested;
+    stream.slot.set_max_hz(requested.max_hz);
     stream.slot.set_limit_hz(limit_hz_);
     streams_.push_back(std::move(stream));
   }
@@ -69,11 +71,11 @@ bool PictureStreams::set_limit_hz(std::optional<double> limit_hz) {
 
 void PictureStreams::restart() {
   for (Stream& stream : streams_) {
-    stream.slot = PictureSlot(stream.wish.max_hz);
+    stream.slot = PictureSlot(stream.request.max_hz);
     stream.slot.set_limit_hz(limit_hz_);
     stream.ticket = 0;
     stream.sent_frame.reset();
-    stream.error_told.clear();
+    stream.error_sent.clear();
   }
 }
 
@@ -81,16 +83,16 @@ std::optional<PictureRequest> PictureStreams::request_of(const Stream& stream,
                                                          const Instant& instant) const {
   PictureRequest request;
   request.run_id = instant.run_id;
-  request.kind = kind_of(stream.wish.name);
+  request.kind = kind_of(stream.request.name);
   request.t_ns = instant.t_ns;
   request.live = instant.live;
   request.scene = scene_;
-  request.camera = stream.wish.camera;
-  request.quality = stream.wish.quality;
-  request.max_width_px = stream.wish.max_width_px;
+  request.camera = stream.request.camera;
+  request.quality = stream.request.quality;
+  request.max_width_px = stream.request.max_width_px;
   if (request.kind == PictureRequest::Kind::kDebug) {
     const auto& names = instant.timeline.estimators();
-    const std::string name = stream.wish.name.substr(std::string(kDebugPrefix).size());
+    const std::string name = stream.request.name.substr(std::string(kDebugPrefix).size());
     const auto found = std::find(names.begin(), names.end(), name);
     if (found == names.end()) return std::nullopt;
     request.estimator = static_cast<std::size_t>(found - names.begin());
@@ -121,7 +123,7 @@ PictureStreams::Stream* PictureStreams::find(const PictureTicket& ticket) {
 }
 
 void PictureStreams::ready(const PictureTicket& ticket,
-                           const Result<engine::Picture>& picture,
+                           const Result<server::Picture>& picture,
                            ViewerPort* port) {
   Stream* stream = find(ticket);
   if (stream == nullptr) return;
@@ -133,7 +135,7 @@ void PictureStreams::ready(const PictureTicket& ticket,
     stream->ticket = 0;
     return;
   }
-  stream->error_told.clear();
+  stream->error_sent.clear();
   stream->slot.answered_with(picture->frame);
   stream->sent_frame = picture->frame;
   stream->sent_change = stream->change;
@@ -154,10 +156,10 @@ void PictureStreams::tell_error(Stream* stream, const Error& error, ViewerPort* 
   // Not an error: there is nothing to show at this instant, and the panel stays empty until there
   // is.
   if (error.code == ErrorCode::kNotFound || error.code == ErrorCode::kCancelled) return;
-  if (stream->error_told == error.message) return;
-  stream->error_told = error.message;
+  if (stream->error_sent == error.message) return;
+  stream->error_sent = error.message;
   port->send_text(to_text({{"type", "error"},
-                           {"stream", stream->wish.name},
+                           {"stream", stream->request.name},
                            {"code", to_string(error.code)},
                            {"message", error.message}}));
 }
@@ -177,12 +179,12 @@ bool PictureStreams::waiting() const {
 nlohmann::json PictureStreams::streams_json() const {
   nlohmann::json list = nlohmann::json::array();
   for (const Stream& stream : streams_) {
-    const double max_hz = stream.wish.max_hz;
+    const double max_hz = stream.request.max_hz;
     nlohmann::json entry = {{"id", stream.id},
-                            {"name", stream.wish.name},
+                            {"name", stream.request.name},
                             {"max_hz", max_hz},
                             {"limit_hz", std::min(max_hz, limit_hz_.value_or(max_hz))}};
-    if (!stream.wish.camera.empty()) entry["camera"] = stream.wish.camera;
+    if (!stream.request.camera.empty()) entry["camera"] = stream.request.camera;
     list.push_back(std::move(entry));
   }
   return {{"type", "streams"}, {"streams", std::move(list)}};

@@ -14,7 +14,7 @@
 #include "server/net/stream/client_message.hpp"
 #include "server/net/stream/picture_slot.hpp"
 #include "server/net/stream/viewer_port.hpp"
-#include "server/record/run_timeline.hpp"
+#include "server/timeline/run_timeline.hpp"
 #include "server/views/view_service.hpp"
 
 namespace overfly::net {
@@ -23,7 +23,7 @@ class PictureStreams {
  public:
   /// The viewer's position.
   struct Instant {
-    const engine::RunTimeline& timeline;
+    const server::RunTimeline& timeline;
     std::string run_id;
     std::int64_t frame = 0;
     std::int64_t t_ns = 0;
@@ -31,7 +31,7 @@ class PictureStreams {
   };
 
   /// Replaces the set of streams. A stream that stays, or comes back later, keeps its number.
-  void subscribe(const std::vector<StreamWish>& wishes);
+  void subscribe(const std::vector<StreamRequest>& requests);
   void set_view(const ViewCommand& command);
   /// The alignment of the estimates in the scene.
   void set_alignment(const std::string& mode);
@@ -44,8 +44,8 @@ class PictureStreams {
 
   /// Requests every picture that is due.
   void pump(const Instant& instant, ViewerPort* port, std::int64_t now_ns);
-  /// Sends a picture that was drawn, or tells the client why it could not be.
-  void ready(const PictureTicket& ticket, const Result<engine::Picture>& picture, ViewerPort* port);
+  /// Sends a picture that was drawn, or reports to the client why it was not.
+  void ready(const PictureTicket& ticket, const Result<server::Picture>& picture, ViewerPort* port);
   void sent(const PictureTicket& ticket);
 
   /// True if a picture waits only for its time.
@@ -55,7 +55,7 @@ class PictureStreams {
 
  private:
   struct Stream {
-    StreamWish wish;
+    StreamRequest request;
     std::uint32_t id = 0;
     PictureSlot slot{1.0};
     std::uint32_t sequence = 0;
@@ -64,10 +64,10 @@ class PictureStreams {
     std::uint64_t change = 0;  ///< the change count at its request
     std::optional<std::int64_t> sent_frame;
     std::uint64_t sent_change = 0;
-    std::string error_told;
+    std::string error_sent;
   };
   Stream* find(const PictureTicket& ticket);
-  std::optional<engine::PictureRequest> request_of(const Stream& stream,
+  std::optional<server::PictureRequest> request_of(const Stream& stream,
                                                    const Instant& instant) const;
   static void tell_error(Stream* stream, const Error& error, ViewerPort* port);
 
@@ -75,7 +75,7 @@ class PictureStreams {
   using StreamKey = std::pair<std::string, std::string>;  ///< name and camera
   std::map<StreamKey, std::uint32_t> ids_;                ///< of all streams ever subscribed
   std::map<StreamKey, std::uint32_t> sequences_;          ///< of streams not subscribed now
-  engine::SceneSettings scene_;
+  server::SceneSettings scene_;
   std::optional<double> limit_hz_;
   std::uint64_t change_ = 0;
   std::uint64_t view_change_ = 0;

@@ -7,10 +7,10 @@
 namespace overfly::net {
 namespace {
 
-using engine::EstimateRow;
-using engine::FrameRow;
-using engine::RunTimeline;
 using nlohmann::json;
+using server::EstimateRow;
+using server::FrameRow;
+using server::RunTimeline;
 
 /// Number of recorded frames for which `before` holds. @pre it holds for the first ones only
 template <typename Before>
@@ -94,7 +94,7 @@ EstimatePlaces EstimatePlaces::of(const RunTimeline& timeline, const std::string
   EstimatePlaces places;
   places.mode = mode;
   for (std::size_t i = 0; i < timeline.estimators().size(); ++i) {
-    const auto place = engine::RowAlignment::of(timeline, i, mode);
+    const auto place = server::RowAlignment::of(timeline, i, mode);
     places.of_estimator.push_back(place ? std::optional(*place) : std::nullopt);
   }
   return places;

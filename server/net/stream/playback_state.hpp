@@ -8,35 +8,35 @@
 #include <vector>
 
 #include "server/net/stream/playback_cursor.hpp"
-#include "server/record/run_timeline.hpp"
-#include "server/scoring/row_alignment.hpp"
+#include "server/timeline/row_alignment.hpp"
+#include "server/timeline/run_timeline.hpp"
 
 namespace overfly::net {
 
 /// Alignments of the estimates, one for each estimator; empty if it has no such alignment.
 struct EstimatePlaces {
-  std::string mode = engine::kRecordedAlignment;
-  std::vector<std::optional<engine::RowAlignment>> of_estimator;
+  std::string mode = server::kRecordedAlignment;
+  std::vector<std::optional<server::RowAlignment>> of_estimator;
 
   /// @pre check_alignment succeeds for this mode
-  static EstimatePlaces of(const engine::RunTimeline& timeline, const std::string& mode);
+  static EstimatePlaces of(const server::RunTimeline& timeline, const std::string& mode);
 };
 
 /// The `playback` message: cursor, truth and estimates at its instant, interpolated between
 /// frames. Before the first frame `frame` is -1 and `truth` null.
-[[nodiscard]] nlohmann::json playback_json(const engine::RunTimeline& timeline,
+[[nodiscard]] nlohmann::json playback_json(const server::RunTimeline& timeline,
                                            const PlaybackCursor& cursor,
                                            const EstimatePlaces& places);
 
 /// Stamp of the last recorded frame; 0 before the first.
-[[nodiscard]] std::int64_t end_of(const engine::RunTimeline& timeline);
+[[nodiscard]] std::int64_t end_of(const server::RunTimeline& timeline);
 /// Stamp of frame `frame`, or of the nearest recorded one before it (else the first). Empty if
 /// nothing is recorded.
-[[nodiscard]] std::optional<std::int64_t> time_of_frame(const engine::RunTimeline& timeline,
+[[nodiscard]] std::optional<std::int64_t> time_of_frame(const server::RunTimeline& timeline,
                                                         std::int64_t frame);
 /// Stamp of the frame `steps` recorded frames after (before, if negative) the one at t, clamped to
 /// the recorded frames. Empty if nothing is recorded.
-[[nodiscard]] std::optional<std::int64_t> time_of_step(const engine::RunTimeline& timeline,
+[[nodiscard]] std::optional<std::int64_t> time_of_step(const server::RunTimeline& timeline,
                                                        std::int64_t t_ns,
                                                        std::int64_t steps);
 

@@ -58,7 +58,7 @@ json column(const Rows& rows, ValueOf value_of) {
 
 /// Adds a column unless all of its values are null: most runs have no sensor and no faults.
 template <typename ValueOf>
-void add_if_said(const std::vector<engine::FrameRow>& rows,
+void add_if_said(const std::vector<server::FrameRow>& rows,
                  const char* name,
                  ValueOf value_of,
                  json* columns) {
@@ -69,8 +69,8 @@ void add_if_said(const std::vector<engine::FrameRow>& rows,
 }
 
 /// Effects of sensor, tiles and faults on each frame.
-void add_image_columns(const std::vector<engine::FrameRow>& rows, json* columns) {
-  using Row = engine::FrameRow;
+void add_image_columns(const std::vector<server::FrameRow>& rows, json* columns) {
+  using Row = server::FrameRow;
   constexpr double kDigits = 1e6;
   const auto add = [&](const char* name, auto value_of) {
     add_if_said(rows, name, value_of, columns);
@@ -102,8 +102,8 @@ json pose_json(const Pose& T_world_body) {
   return pose;
 }
 
-json truth_columns(const std::vector<engine::FrameRow>& rows) {
-  using Row = engine::FrameRow;
+json truth_columns(const std::vector<server::FrameRow>& rows) {
+  using Row = server::FrameRow;
   constexpr double kDigits = 1e4;
   json columns = json::object();
   columns["frame"] = column(rows, [](const Row& row) { return row.frame; });
@@ -118,9 +118,9 @@ json truth_columns(const std::vector<engine::FrameRow>& rows) {
   return columns;
 }
 
-json estimate_columns(const std::vector<engine::EstimateRow>& rows,
-                      const engine::RowAlignment& alignment) {
-  using Row = engine::EstimateRow;
+json estimate_columns(const std::vector<server::EstimateRow>& rows,
+                      const server::RowAlignment& alignment) {
+  using Row = server::EstimateRow;
   json columns = json::object();
   columns["frame"] = column(rows, [](const Row& row) { return row.sample.frame; });
   columns["t_ns"] = column(rows, [](const Row& row) { return row.sample.t_ns; });
@@ -131,8 +131,8 @@ json estimate_columns(const std::vector<engine::EstimateRow>& rows,
   return columns;
 }
 
-json log_columns(const std::vector<engine::LogRow>& rows) {
-  using Row = engine::LogRow;
+json log_columns(const std::vector<server::LogRow>& rows) {
+  using Row = server::LogRow;
   json columns = json::object();
   columns["t_ns"] = column(rows, [](const Row& row) { return row.t_ns; });
   columns["level"] = column(rows, [](const Row& row) { return row.level; });
@@ -144,20 +144,20 @@ json log_columns(const std::vector<engine::LogRow>& rows) {
   return columns;
 }
 
-json estimator_statuses_json(const engine::RunTimeline& timeline) {
+json estimator_statuses_json(const server::RunTimeline& timeline) {
   json statuses = json::object();
-  const std::vector<engine::EstimatorStatus> all = timeline.statuses();
+  const std::vector<server::EstimatorStatus> all = timeline.statuses();
   for (std::size_t i = 0; i < all.size(); ++i) {
-    statuses[timeline.estimators()[i]] = engine::json_from(all[i]);
+    statuses[timeline.estimators()[i]] = server::json_from(all[i]);
   }
   return statuses;
 }
 
-json run_json(const engine::RunInfo& info) {
+json run_json(const server::RunInfo& info) {
   return {{"id", info.id},
           {"scenario", info.scenario},
           {"title", info.title},
-          {"status", engine::to_string(info.status)},
+          {"status", server::to_string(info.status)},
           {"created_utc", info.created_utc},
           {"error", info.error.empty() ? json(nullptr) : json(info.error)},
           {"problem", info.problem.empty() ? json(nullptr) : json(info.problem)},

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "core/pose.hpp"
-#include "server/record/run_timeline.hpp"
-#include "server/scoring/row_alignment.hpp"
+#include "core/motion/pose.hpp"
+#include "server/timeline/row_alignment.hpp"
+#include "server/timeline/run_timeline.hpp"
 
 namespace overfly::net {
 
@@ -17,15 +17,15 @@ namespace overfly::net {
 [[nodiscard]] nlohmann::json pose_json(const Pose& T_world_body);
 
 /// Columns of the stream `truth`, of `estimate/NAME`, and of `log`.
-[[nodiscard]] nlohmann::json truth_columns(const std::vector<engine::FrameRow>& rows);
+[[nodiscard]] nlohmann::json truth_columns(const std::vector<server::FrameRow>& rows);
 /// Poses of the estimates by `alignment`; by default as recorded.
-[[nodiscard]] nlohmann::json estimate_columns(const std::vector<engine::EstimateRow>& rows,
-                                              const engine::RowAlignment& alignment = {});
-[[nodiscard]] nlohmann::json log_columns(const std::vector<engine::LogRow>& rows);
+[[nodiscard]] nlohmann::json estimate_columns(const std::vector<server::EstimateRow>& rows,
+                                              const server::RowAlignment& alignment = {});
+[[nodiscard]] nlohmann::json log_columns(const std::vector<server::LogRow>& rows);
 
 /// {"NAME": status, ...} of a run's estimators, as in the message `estimators`.
-[[nodiscard]] nlohmann::json estimator_statuses_json(const engine::RunTimeline& timeline);
+[[nodiscard]] nlohmann::json estimator_statuses_json(const server::RunTimeline& timeline);
 
-[[nodiscard]] nlohmann::json run_json(const engine::RunInfo& info);
+[[nodiscard]] nlohmann::json run_json(const server::RunInfo& info);
 
 }  // namespace overfly::net

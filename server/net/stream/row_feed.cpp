@@ -7,7 +7,7 @@
 
 namespace overfly::net {
 
-RowFeed::RowFeed(std::shared_ptr<const engine::RunTimeline> timeline,
+RowFeed::RowFeed(std::shared_ptr<const server::RunTimeline> timeline,
                  const std::map<std::string, std::size_t>& resume)
     : timeline_(std::move(timeline)) {
   add("truth", Stream::Kind::kTruth, 0, resume);

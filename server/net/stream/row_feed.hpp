@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "server/record/run_timeline.hpp"
+#include "server/timeline/run_timeline.hpp"
 
 namespace overfly::net {
 
@@ -17,7 +17,7 @@ class RowFeed {
   static constexpr std::size_t kMaxRows = 2000;
 
   /// @param resume  number of rows that the viewer already has, by stream; others start at 0
-  RowFeed(std::shared_ptr<const engine::RunTimeline> timeline,
+  RowFeed(std::shared_ptr<const server::RunTimeline> timeline,
           const std::map<std::string, std::size_t>& resume);
 
   /// The next `rows` message; empty if all rows so far have been sent.
@@ -37,7 +37,7 @@ class RowFeed {
            const std::map<std::string, std::size_t>& resume);
   std::optional<std::string> next_of(Stream* stream);
 
-  std::shared_ptr<const engine::RunTimeline> timeline_;
+  std::shared_ptr<const server::RunTimeline> timeline_;
   std::vector<Stream> streams_;
 };
 

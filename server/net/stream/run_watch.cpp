@@ -4,11 +4,12 @@
 
 #include "server/net/http/json_text.hpp"
 #include "server/net/stream/row_encoder.hpp"
+#include "server/scoring/run_metrics_json.hpp"
 
 namespace overfly::net {
 namespace {
 
-using engine::RunStatus;
+using server::RunStatus;
 
 // Rates of docs/PROTOCOL.md.
 constexpr std::int64_t kRowsPeriodNs = 100'000'000;
@@ -28,16 +29,16 @@ bool is_due(const std::optional<std::int64_t>& last_ns, std::int64_t now_ns, std
 
 }  // namespace
 
-RunWatch::RunWatch(std::shared_ptr<const engine::RunTimeline> timeline,
+RunWatch::RunWatch(std::shared_ptr<const server::RunTimeline> timeline,
                    const std::map<std::string, std::size_t>& resume)
     : timeline_(std::move(timeline)),
       seat_(timeline_->audience()),
       feed_(timeline_, resume),
       cursor_(is_running(timeline_->info().status)),
-      places_(EstimatePlaces::of(*timeline_, engine::kRecordedAlignment)) {}
+      places_(EstimatePlaces::of(*timeline_, server::kRecordedAlignment)) {}
 
 Status RunWatch::align(const std::string& mode) {
-  if (Status status = engine::check_alignment(*timeline_, mode); !status) return status;
+  if (Status status = server::check_alignment(*timeline_, mode); !status) return status;
   places_ = EstimatePlaces::of(*timeline_, mode);
   playback_due_ = true;
   return {};
@@ -52,29 +53,29 @@ void RunWatch::refresh(std::int64_t now_ns) {
   cursor_.advance(now_ns);
 }
 
-void RunWatch::tell(ViewerPort* port, std::int64_t now_ns) {
-  tell_run(port, now_ns);
-  tell_rows(port, now_ns);
-  tell_estimators(port, now_ns);
-  tell_metrics(port);
-  tell_playback(port, now_ns);
+void RunWatch::send_due(ViewerPort* port, std::int64_t now_ns) {
+  send_run(port, now_ns);
+  send_rows(port, now_ns);
+  send_estimators(port, now_ns);
+  send_metrics(port);
+  send_playback(port, now_ns);
 }
 
-void RunWatch::tell_run(ViewerPort* port, std::int64_t now_ns) {
+void RunWatch::send_run(ViewerPort* port, std::int64_t now_ns) {
   const std::uint64_t revision = timeline_->revision();
   if (run_revision_ == revision) return;
-  const engine::RunInfo info = timeline_->info();
-  if (info.status == status_told_ && !is_due(run_at_ns_, now_ns, kRunPeriodNs)) return;
+  const server::RunInfo info = timeline_->info();
+  if (info.status == status_sent_ && !is_due(run_at_ns_, now_ns, kRunPeriodNs)) return;
   run_revision_ = revision;
   std::string text = to_text({{"type", "run"}, {"run", run_json(info)}});
-  if (text == run_told_) return;
+  if (text == run_sent_) return;
   run_at_ns_ = now_ns;
-  status_told_ = info.status;
-  run_told_ = text;
+  status_sent_ = info.status;
+  run_sent_ = text;
   port->send_text(std::move(text));
 }
 
-void RunWatch::tell_rows(ViewerPort* port, std::int64_t now_ns) {
+void RunWatch::send_rows(ViewerPort* port, std::int64_t now_ns) {
   const std::uint64_t revision = timeline_->revision();
   if (rows_revision_ == revision) return;
   if (!behind_ && !is_due(rows_at_ns_, now_ns, kRowsPeriodNs)) return;
@@ -91,43 +92,43 @@ void RunWatch::tell_rows(ViewerPort* port, std::int64_t now_ns) {
   }
 }
 
-void RunWatch::tell_estimators(ViewerPort* port, std::int64_t now_ns) {
+void RunWatch::send_estimators(ViewerPort* port, std::int64_t now_ns) {
   const std::uint64_t revision = timeline_->revision();
   if (estimators_revision_ == revision || timeline_->estimators().empty()) return;
   if (!is_due(estimators_at_ns_, now_ns, kRunPeriodNs)) return;
   estimators_revision_ = revision;
   std::string text =
       to_text({{"type", "estimators"}, {"estimators", estimator_statuses_json(*timeline_)}});
-  if (text == estimators_told_) return;
+  if (text == estimators_sent_) return;
   estimators_at_ns_ = now_ns;
-  estimators_told_ = text;
+  estimators_sent_ = text;
   port->send_text(std::move(text));
 }
 
-void RunWatch::tell_metrics(ViewerPort* port) {
+void RunWatch::send_metrics(ViewerPort* port) {
   const std::uint64_t revision = timeline_->revision();
   if (metrics_revision_ == revision) return;
   metrics_revision_ = revision;
-  const nlohmann::json metrics = timeline_->metrics();
-  if (metrics.empty()) return;
-  std::string text = to_text({{"type", "metrics"}, {"metrics", metrics}});
-  if (text == metrics_told_) return;
-  metrics_told_ = text;
+  const auto metrics = timeline_->metrics();
+  if (!metrics) return;
+  std::string text = to_text({{"type", "metrics"}, {"metrics", server::json_from(*metrics)}});
+  if (text == metrics_sent_) return;
+  metrics_sent_ = text;
   port->send_text(std::move(text));
 }
 
-void RunWatch::tell_playback(ViewerPort* port, std::int64_t now_ns) {
-  const Told now{
+void RunWatch::send_playback(ViewerPort* port, std::int64_t now_ns) {
+  const SentCursor now{
       cursor_.t_ns(), cursor_.playing(), cursor_.live(), cursor_.loop(), cursor_.speed()};
-  const bool moved = now != cursor_told_ && is_due(playback_at_ns_, now_ns, kPlaybackPeriodNs);
+  const bool moved = now != cursor_sent_ && is_due(playback_at_ns_, now_ns, kPlaybackPeriodNs);
   const bool grew =
-      cursor_.end_ns() != end_told_ns_ && is_due(playback_at_ns_, now_ns, kExtentPeriodNs);
+      cursor_.end_ns() != end_sent_ns_ && is_due(playback_at_ns_, now_ns, kExtentPeriodNs);
   if (!playback_due_ && !moved && !grew) return;
   // Skipped on a slow connection, because the next message contains the position too.
   if (!playback_due_ && port->unsent_bytes() > kRowsHighWaterBytes) return;
   playback_due_ = false;
-  cursor_told_ = now;
-  end_told_ns_ = cursor_.end_ns();
+  cursor_sent_ = now;
+  end_sent_ns_ = cursor_.end_ns();
   playback_at_ns_ = now_ns;
   port->send_text(to_text(playback_json(*timeline_, cursor_, places_)));
 }

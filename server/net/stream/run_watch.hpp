@@ -11,16 +11,16 @@
 #include "server/net/stream/playback_state.hpp"
 #include "server/net/stream/row_feed.hpp"
 #include "server/net/stream/viewer_port.hpp"
-#include "server/record/run_timeline.hpp"
+#include "server/timeline/run_timeline.hpp"
 
 namespace overfly::net {
 
 class RunWatch {
  public:
-  RunWatch(std::shared_ptr<const engine::RunTimeline> timeline,
+  RunWatch(std::shared_ptr<const server::RunTimeline> timeline,
            const std::map<std::string, std::size_t>& resume);
 
-  [[nodiscard]] const engine::RunTimeline& timeline() const { return *timeline_; }
+  [[nodiscard]] const server::RunTimeline& timeline() const { return *timeline_; }
   [[nodiscard]] PlaybackCursor& cursor() { return cursor_; }
   [[nodiscard]] const PlaybackCursor& cursor() const { return cursor_; }
 
@@ -28,31 +28,31 @@ class RunWatch {
   void refresh(std::int64_t now_ns);
   /// Sends the messages that are due: `run`, `rows`, `estimators`, `metrics` and `playback`. Rows
   /// wait while the connection has much unsent data; none is lost, because the run keeps them.
-  void tell(ViewerPort* port, std::int64_t now_ns);
-  /// Sets the alignment of the estimates. Errors: as engine::check_alignment.
+  void send_due(ViewerPort* port, std::int64_t now_ns);
+  /// Sets the alignment of the estimates. Errors: as server::check_alignment.
   Status align(const std::string& mode);
-  /// Makes the next tell() send `playback` regardless of its rate.
+  /// Makes the next send_due() send `playback` regardless of its rate.
   void cursor_commanded() { playback_due_ = true; }
   /// True while rows wait because of unsent data.
   [[nodiscard]] bool behind() const { return behind_; }
 
  private:
-  struct Told {
+  struct SentCursor {
     std::int64_t t_ns = -1;
     bool playing = false;
     bool live = false;
     bool loop = false;
     double speed = 0.0;
-    bool operator==(const Told&) const = default;
+    bool operator==(const SentCursor&) const = default;
   };
-  void tell_run(ViewerPort* port, std::int64_t now_ns);
-  void tell_rows(ViewerPort* port, std::int64_t now_ns);
-  void tell_estimators(ViewerPort* port, std::int64_t now_ns);
-  void tell_metrics(ViewerPort* port);
-  void tell_playback(ViewerPort* port, std::int64_t now_ns);
+  void send_run(ViewerPort* port, std::int64_t now_ns);
+  void send_rows(ViewerPort* port, std::int64_t now_ns);
+  void send_estimators(ViewerPort* port, std::int64_t now_ns);
+  void send_metrics(ViewerPort* port);
+  void send_playback(ViewerPort* port, std::int64_t now_ns);
 
-  std::shared_ptr<const engine::RunTimeline> timeline_;
-  engine::Audience::Seat seat_;
+  std::shared_ptr<const server::RunTimeline> timeline_;
+  server::Audience::Seat seat_;
   RowFeed feed_;
   PlaybackCursor cursor_;
   EstimatePlaces places_;
@@ -65,12 +65,12 @@ class RunWatch {
   std::optional<std::int64_t> run_at_ns_;
   std::optional<std::int64_t> estimators_at_ns_;
   std::optional<std::int64_t> playback_at_ns_;
-  engine::RunStatus status_told_ = engine::RunStatus::kQueued;
-  std::string run_told_;
-  std::string estimators_told_;
-  std::string metrics_told_;
-  Told cursor_told_;
-  std::int64_t end_told_ns_ = -1;
+  server::RunStatus status_sent_ = server::RunStatus::kQueued;
+  std::string run_sent_;
+  std::string estimators_sent_;
+  std::string metrics_sent_;
+  SentCursor cursor_sent_;
+  std::int64_t end_sent_ns_ = -1;
   bool playback_due_ = true;
   bool behind_ = false;
 };

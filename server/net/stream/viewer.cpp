@@ -107,7 +107,7 @@ void Viewer::carry_out(const std::string& text, std::int64_t now_ns) {
   tick(now_ns);
 }
 
-void Viewer::run_opened(Result<std::shared_ptr<engine::RunTimeline>> timeline,
+void Viewer::run_opened(Result<std::shared_ptr<server::RunTimeline>> timeline,
                         std::int64_t now_ns) {
   if (!opening_) return;
   const Opening opening = *std::exchange(opening_, std::nullopt);
@@ -122,9 +122,9 @@ void Viewer::run_opened(Result<std::shared_ptr<engine::RunTimeline>> timeline,
 }
 
 void Viewer::attach(const AttachCommand& command,
-                    std::shared_ptr<const engine::RunTimeline> timeline) {
+                    std::shared_ptr<const server::RunTimeline> timeline) {
   pictures_.restart();
-  pictures_.set_alignment(engine::kRecordedAlignment);
+  pictures_.set_alignment(server::kRecordedAlignment);
   run_id_ = command.run_id;
   watch_.emplace(std::move(timeline), command.resume);
   streams_due_ = true;
@@ -171,7 +171,7 @@ void Viewer::tick(std::int64_t now_ns) {
     streams_due_ = false;
     port_.send_text(to_text(pictures_.streams_json()));
   }
-  if (watch_) watch_->tell(&port_, now_ns);
+  if (watch_) watch_->send_due(&port_, now_ns);
   pump_pictures(now_ns);
 }
 
@@ -185,7 +185,7 @@ void Viewer::pump_pictures(std::int64_t now_ns) {
 }
 
 void Viewer::picture_ready(const PictureTicket& ticket,
-                           const Result<engine::Picture>& picture,
+                           const Result<server::Picture>& picture,
                            std::int64_t now_ns) {
   pictures_.ready(ticket, picture, &port_);
   tick(now_ns);

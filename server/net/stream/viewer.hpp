@@ -12,7 +12,7 @@
 #include "server/net/stream/picture_streams.hpp"
 #include "server/net/stream/run_watch.hpp"
 #include "server/net/stream/viewer_port.hpp"
-#include "server/record/run_timeline.hpp"
+#include "server/timeline/run_timeline.hpp"
 
 namespace overfly::net {
 
@@ -29,11 +29,11 @@ class Viewer {
   void handle(const std::string& text, std::int64_t now_ns);
   /// True if so many messages wait for a run to open that no more should be read.
   [[nodiscard]] bool full() const { return waiting_.size() >= kMaxWaiting; }
-  void run_opened(Result<std::shared_ptr<engine::RunTimeline>> timeline, std::int64_t now_ns);
+  void run_opened(Result<std::shared_ptr<server::RunTimeline>> timeline, std::int64_t now_ns);
   /// Sends the messages that are due.
   void tick(std::int64_t now_ns);
   void picture_ready(const PictureTicket& ticket,
-                     const Result<engine::Picture>& picture,
+                     const Result<server::Picture>& picture,
                      std::int64_t now_ns);
   void picture_sent(const PictureTicket& ticket, std::int64_t now_ns);
 
@@ -49,7 +49,7 @@ class Viewer {
     AttachCommand command;
   };
   void carry_out(const std::string& text, std::int64_t now_ns);
-  void attach(const AttachCommand& command, std::shared_ptr<const engine::RunTimeline> timeline);
+  void attach(const AttachCommand& command, std::shared_ptr<const server::RunTimeline> timeline);
   void detach();
   Status align(const AlignCommand& command);
   Status seek(const SeekCommand& command);

@@ -28,7 +28,7 @@ class ViewerPort {
                             const PictureHeader& header,
                             std::shared_ptr<const std::vector<std::uint8_t>> jpeg) = 0;
   /// Requests a picture; when it is ready, the connection calls Viewer::picture_ready.
-  virtual void draw(const PictureTicket& ticket, const engine::PictureRequest& request) = 0;
+  virtual void draw(const PictureTicket& ticket, const server::PictureRequest& request) = 0;
   /// Opens a run, which may require reading it from disk. The connection calls Viewer::run_opened
   /// when that is done, never before this returns.
   virtual void open_run(const std::string& run_id) = 0;

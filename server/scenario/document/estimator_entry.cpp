@@ -5,7 +5,7 @@
 
 #include "server/scenario/document/scenario_file.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 Result<EstimatorSpec> estimator_from_json(nlohmann::json entry, const std::filesystem::path& base) {
   nlohmann::json document = {{"format_version", 1},
@@ -17,4 +17,4 @@ Result<EstimatorSpec> estimator_from_json(nlohmann::json entry, const std::files
   return std::move(scenario->estimators.front());
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

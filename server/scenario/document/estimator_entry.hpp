@@ -6,7 +6,7 @@
 #include "core/result.hpp"
 #include "server/scenario/estimator_spec.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Reads one estimator object (an entry of `estimators`) outside a scenario; `camera` and
 /// `throttle_hz` have no meaning there and are errors.
@@ -15,4 +15,4 @@ namespace overfly::engine {
 [[nodiscard]] Result<EstimatorSpec> estimator_from_json(nlohmann::json entry,
                                                         const std::filesystem::path& base);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

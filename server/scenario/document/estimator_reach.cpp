@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 /// True if the field has its default value, or the value of some trusted estimator.
@@ -58,4 +58,4 @@ Status check_reach(const Scenario& scenario, const Scenario& trusted) {
   return {};
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

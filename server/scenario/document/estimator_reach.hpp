@@ -3,7 +3,7 @@
 #include "core/result.hpp"
 #include "server/scenario/scenario.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Rejects settings that only the machine's own scenarios may contain: an estimator whose command,
 /// addresses or parameters that may name files (text with a slash) differ from those of every
@@ -11,4 +11,4 @@ namespace overfly::engine {
 /// Errors: kInvalidArgument naming the field.
 [[nodiscard]] Status check_reach(const Scenario& scenario, const Scenario& trusted);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

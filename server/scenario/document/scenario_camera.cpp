@@ -7,7 +7,7 @@
 #include "core/time.hpp"
 #include "server/scenario/document/scenario_field.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 using Json = nlohmann::json;
@@ -114,7 +114,7 @@ Status read_sensor(const Json& camera,
   }
   const std::string place = path + ".sensor";
   if (Status s = check_period(camera.at("sensor"), place, rate); !s) return s;
-  Result<renderer::SensorModel> sensor = sensor_from(camera.at("sensor"), place);
+  Result<sensor::SensorModel> sensor = sensor_from(camera.at("sensor"), place);
   if (!sensor) return sensor.error();
   spec.sensor = *sensor;
   spec.sensor.bits = bits;
@@ -136,7 +136,7 @@ Result<CameraSpec> camera_spec_from(Json& camera, const std::string& path, const
   if (camera.contains("atmosphere")) spec.atmosphere = atmosphere_from(camera.at("atmosphere"));
   if (Status status = read_sensor(camera, path, rate, spec); !status) return status.error();
   if (camera.contains("vibration")) {
-    Result<renderer::VibrationModel> vibration =
+    Result<sensor::VibrationModel> vibration =
         vibration_from(camera.at("vibration"), path + ".vibration");
     if (!vibration) return vibration.error();
     spec.vibration = *vibration;
@@ -179,4 +179,4 @@ Status read_cameras(Json& document, Scenario& scenario) {
   return {};
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -7,7 +7,7 @@
 #include "core/result.hpp"
 #include "server/scenario/scenario.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Reads `camera` or `cameras`, and fills in the default field of view if none is given.
 /// @pre the document is valid and has its defaults
@@ -16,10 +16,10 @@ namespace overfly::engine {
 
 /// Parts of a camera's entry. `path` is the entry's location in the document, e.g.
 /// "cameras.1.sensor".
-[[nodiscard]] Result<renderer::SensorModel> sensor_from(const nlohmann::json& sensor,
-                                                        const std::string& path);
-[[nodiscard]] Result<renderer::VibrationModel> vibration_from(const nlohmann::json& vibration,
-                                                              const std::string& path);
+[[nodiscard]] Result<sensor::SensorModel> sensor_from(const nlohmann::json& sensor,
+                                                      const std::string& path);
+[[nodiscard]] Result<sensor::VibrationModel> vibration_from(const nlohmann::json& vibration,
+                                                            const std::string& path);
 [[nodiscard]] Result<Pose> mount_from(const nlohmann::json& mount, const std::string& path);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

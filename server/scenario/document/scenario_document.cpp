@@ -8,7 +8,7 @@
 #include "server/scenario/document/scenario_layers.hpp"
 #include "server/scenario/document/scenario_light.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -59,7 +59,7 @@ Status check_camera_poses(const Scenario& scenario) {
   const auto* log = std::get_if<LoggedFlight>(&scenario.flight);
   if (log == nullptr || !log->camera_poses) return {};
   const Pose nadir{R_body_camera_nadir(), Eigen::Vector3d::Zero()};
-  const Pose& mount = scenario.cameras.front().T_body_camera;
+  const Pose& mount = scenario.main_camera().T_body_camera;
   constexpr double kRounding = 1e-9;
   if (mount.translation.norm() < kRounding &&
       rotation_angle_rad(mount.rotation, nadir.rotation) < kRounding) {
@@ -109,4 +109,4 @@ Result<Scenario> scenario_from(Json document, const fs::path& base) {
   return scenario;
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

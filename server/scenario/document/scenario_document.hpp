@@ -7,7 +7,7 @@
 #include "core/result.hpp"
 #include "server/scenario/scenario.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// @param document  valid by the schema, with its defaults filled in
 /// @param base  absolute folder of the scenario file
@@ -16,4 +16,4 @@ namespace overfly::engine {
 [[nodiscard]] Result<Scenario> scenario_from(nlohmann::json document,
                                              const std::filesystem::path& base);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -5,14 +5,14 @@
 #include <set>
 #include <utility>
 
+#include "middleware/lcm/network.hpp"
 #include "server/scenario/document/scenario_faults.hpp"
 #include "server/scenario/document/scenario_field.hpp"
 #include "server/scenario/document/scenario_layers.hpp"
-#include "vo_bridges/lcm/lcm_estimator.hpp"
-#include "vo_bridges/lcm/lcm_network.hpp"
+#include "vo_bridges/lcm/lcm_options.hpp"
 #include "vo_bridges/ros1/own_topics.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -185,7 +185,7 @@ struct LcmChannels {
 
 LcmChannels lcm_channels(const EstimatorSpec& spec) {
   const LcmEstimatorOptions plain;
-  return {lcm_network_of(spec.lcm_url.empty() ? plain.url : spec.lcm_url),
+  return {lcm::network_of(spec.lcm_url.empty() ? plain.url : spec.lcm_url),
           spec.lcm_channel_prefix.empty() ? plain.channel_prefix : spec.lcm_channel_prefix};
 }
 
@@ -230,4 +230,4 @@ Status read_estimators(Json& document, const fs::path& base, Scenario& scenario)
   return {};
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -8,7 +8,7 @@
 #include "core/result.hpp"
 #include "server/scenario/scenario.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Reads `estimators`, and makes the programs in their commands absolute, in the document too.
 /// @pre the document is valid and has its defaults; cameras and pacing are read
@@ -18,4 +18,4 @@ namespace overfly::engine {
                                      const std::filesystem::path& base,
                                      Scenario& scenario);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -7,7 +7,7 @@
 #include "core/time.hpp"
 #include "server/scenario/document/scenario_field.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 using Json = nlohmann::json;
@@ -61,10 +61,10 @@ std::uint64_t fault_seed(std::uint64_t scenario_seed, std::size_t index) {
 }
 
 Status read_image_fault(const Json& entry, const std::string& path, FaultSpec& fault) {
-  renderer::ImageFault& image = fault.image;
+  sensor::ImageFault& image = fault.image;
   const std::string kind = entry.at("kind").get<std::string>();
-  image.kind = renderer::image_fault_kind_from(kind == "saturation_burst" ? "saturation" : kind)
-                   .value_or(renderer::ImageFaultKind::kBlackout);
+  image.kind = sensor::image_fault_kind_from(kind == "saturation_burst" ? "saturation" : kind)
+                   .value_or(sensor::ImageFaultKind::kBlackout);
   image.strength = entry.value("strength", image.strength);
   image.radius_px = entry.value("radius_px", image.radius_px);
   image.count = entry.value("count", image.count);
@@ -121,4 +121,4 @@ Status read_faults(const Json& document, Scenario& scenario) {
   return {};
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

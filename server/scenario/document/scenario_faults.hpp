@@ -6,7 +6,7 @@
 #include "core/result.hpp"
 #include "server/scenario/scenario.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Index of a camera by name.
 /// Errors: kInvalidArgument naming the field `path`, the value and the existing names.
@@ -18,4 +18,4 @@ namespace overfly::engine {
 /// Errors: kInvalidArgument with field, value and limit.
 [[nodiscard]] Status read_faults(const nlohmann::json& document, Scenario& scenario);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -6,7 +6,7 @@
 
 #include "core/result.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// "faults.0.every = 0: must be at least 1"
 [[nodiscard]] inline Error bad_field(const std::string& path,
@@ -15,4 +15,4 @@ namespace overfly::engine {
   return {ErrorCode::kInvalidArgument, path + " = " + value.dump() + ": must " + must};
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/outside_json.hpp"
+#include "core/outside/outside_json.hpp"
 #include "server/files/whole_file.hpp"
 #include "server/scenario/document/scenario_document.hpp"
 #include "server/scenario/document/scenario_override.hpp"
 #include "server/scenario/document/scenario_schema.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -57,11 +57,11 @@ Result<Scenario> resolve_scenario(Json document,
     return Error{ErrorCode::kInvalidArgument,
                  "the scenario is nested more than " + std::to_string(kMaxJsonDepth) + " deep"};
   }
-  std::string faults;
-  for (const auto& [path, text] : schema_faults(document)) {
-    faults += (faults.empty() ? "" : "\n") + text;
+  std::string messages;
+  for (const auto& [path, text] : schema_violations(document)) {
+    messages += (messages.empty() ? "" : "\n") + text;
   }
-  if (!faults.empty()) return Error{ErrorCode::kInvalidArgument, faults};
+  if (!messages.empty()) return Error{ErrorCode::kInvalidArgument, messages};
   put_name(document, "scenario");
   if (!document.contains("cameras")) document.emplace("camera", Json::object());
   apply_schema_defaults(document);
@@ -79,4 +79,4 @@ Result<Scenario> load_scenario(const fs::path& file, const std::vector<Override>
   return scenario;
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

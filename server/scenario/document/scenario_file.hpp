@@ -8,7 +8,7 @@
 #include "core/result.hpp"
 #include "server/scenario/scenario.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Reads, overrides, validates and resolves a scenario file. Relative paths in it are relative to
 /// its folder, or to its field `data`.
@@ -22,4 +22,4 @@ namespace overfly::engine {
                                                 const std::vector<Override>& overrides,
                                                 const std::filesystem::path& base);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

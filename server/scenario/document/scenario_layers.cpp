@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <utility>
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -92,4 +92,4 @@ void read_world(Json& document, const FileResolver& files, Scenario& scenario) {
   }
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

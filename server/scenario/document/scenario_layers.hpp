@@ -7,7 +7,7 @@
 
 #include "server/scenario/scenario.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// Resolves relative files. Files that are not searched for in `data` become absolute in the
 /// document too, so that a copy of it elsewhere refers to the same files.
@@ -28,4 +28,4 @@ class FileResolver {
 /// @pre the document is valid and has its defaults
 void read_world(nlohmann::json& document, const FileResolver& files, Scenario& scenario);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -6,11 +6,11 @@
 #include <string>
 #include <utility>
 
-#include "core/sun_position.hpp"
+#include "core/earth/sun_position.hpp"
 #include "core/time.hpp"
 #include "server/scenario/document/scenario_field.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 using Json = nlohmann::json;
@@ -133,4 +133,4 @@ Status dress_world(const Scenario& scenario, terrain::World& world) {
   return {};
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -10,7 +10,7 @@
 #include "server/scenario/scenario.hpp"
 #include "terrain/world.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// @pre the document is valid and has its defaults
 /// Errors: kInvalidArgument with field, value and limit.
@@ -26,4 +26,4 @@ using WorldDress = std::vector<std::pair<std::string, std::string>>;
 /// terrain::with_light and with_detail.
 [[nodiscard]] Status dress_world(const Scenario& scenario, terrain::World& world);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -6,7 +6,7 @@
 #include "server/files/whole_file.hpp"
 #include "server/scenario/document/scenario_file.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -87,26 +87,26 @@ Result<fs::path> scenario_path(const fs::path& folder, const std::string& name) 
 }
 
 Status check_scenario(const Scenario& scenario) {
-  std::optional<Error> fault;
-  if (Status status = check_world(scenario); !status) fault = status.error();
+  std::optional<Error> error;
+  if (Status status = check_world(scenario); !status) error = status.error();
   if (const auto* log = std::get_if<Scenario::LoggedFlight>(&scenario.flight)) {
     Status status = scenario.sources.check(log->file, "flight.log.file");
     // Poses in KITTI format take their times from that file.
     const fs::path times = log->file.parent_path() / "times.txt";
     if (status) status = scenario.sources.check_place(times, "flight.log.file (a file next to it)");
-    if (!status && fault) {
-      fault->message += "\n" + status.error().message;
-      if (status.error().code != ErrorCode::kNotFound) fault->code = status.error().code;
+    if (!status && error) {
+      error->message += "\n" + status.error().message;
+      if (status.error().code != ErrorCode::kNotFound) error->code = status.error().code;
     } else if (!status) {
-      fault = status.error();
+      error = status.error();
     }
   }
-  if (!fault) return {};
-  if (fault->code == ErrorCode::kNotFound && scenario.resolved.contains("data")) {
-    fault->message += "\n(data folder: " + scenario.resolved.value("data", "") +
+  if (!error) return {};
+  if (error->code == ErrorCode::kNotFound && scenario.resolved.contains("data")) {
+    error->message += "\n(data folder: " + scenario.resolved.value("data", "") +
                       "; set the environment variable OVERFLY_DATA to use another one)";
   }
-  return *fault;
+  return *error;
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

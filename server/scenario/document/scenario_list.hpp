@@ -8,7 +8,7 @@
 #include "core/result.hpp"
 #include "server/scenario/scenario.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 struct ScenarioEntry {
   std::string name;  ///< file name without .json
@@ -39,4 +39,4 @@ struct ScenarioEntry {
 /// line; kNotFound if files are absent and nothing else is wrong.
 [[nodiscard]] Status check_scenario(const Scenario& scenario);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/outside_json.hpp"
+#include "core/outside/outside_json.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 using Json = nlohmann::json;
@@ -31,8 +31,8 @@ std::vector<std::string> split(const std::string& path) {
 
 std::optional<std::size_t> index_from(const std::string& text) {
   std::size_t index = 0;
-  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), index);
-  if (fault != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
   return index;
 }
 
@@ -117,4 +117,4 @@ Status apply_override(const Override& change, Json& document) {
   return {};
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -8,7 +8,7 @@
 #include "core/result.hpp"
 #include "server/scenario/scenario.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 /// "path=VALUE": VALUE is parsed as JSON, else taken as a string. Errors: kInvalidArgument.
 [[nodiscard]] Result<Override> parse_override(const std::string& text);
@@ -21,4 +21,4 @@ namespace overfly::engine {
 /// Errors: kInvalidArgument naming the part of the path that does not fit the document.
 [[nodiscard]] Status apply_override(const Override& change, nlohmann::json& document);
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

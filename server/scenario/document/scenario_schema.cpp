@@ -2,7 +2,7 @@
 
 #include "server/files/json_schema.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 using Json = nlohmann::json;
@@ -14,14 +14,14 @@ const JsonSchema& schema() {
 
 }  // namespace
 
-std::vector<std::pair<std::string, std::string>> schema_faults(const Json& document) {
+std::vector<std::pair<std::string, std::string>> schema_violations(const Json& document) {
   std::vector<std::pair<std::string, std::string>> pairs;
-  for (SchemaFault& fault : schema().faults(document)) {
-    pairs.emplace_back(std::move(fault.path), std::move(fault.text));
+  for (SchemaViolation& violation : schema().violations(document)) {
+    pairs.emplace_back(std::move(violation.path), std::move(violation.text));
   }
   return pairs;
 }
 
 void apply_schema_defaults(Json& document) { schema().apply_defaults(document); }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -6,15 +6,15 @@
 #include "server/scenario/document/scenario_camera.hpp"
 #include "server/scenario/document/scenario_field.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 using Json = nlohmann::json;
 
-Result<renderer::ResponseCurve> response_from(const Json& response, const std::string& path) {
-  renderer::ResponseCurve curve;
+Result<sensor::ResponseCurve> response_from(const Json& response, const std::string& path) {
+  sensor::ResponseCurve curve;
   const std::string shape = response.at("shape").get<std::string>();
-  curve.shape = renderer::response_shape_from(shape).value_or(renderer::ResponseShape::kSrgb);
+  curve.shape = sensor::response_shape_from(shape).value_or(sensor::ResponseShape::kSrgb);
   const auto belongs = [&](const char* field, const char* to) -> Status {
     if (response.contains(field) == (shape == to)) return {};
     if (shape != to) {
@@ -30,8 +30,8 @@ Result<renderer::ResponseCurve> response_from(const Json& response, const std::s
   return curve;
 }
 
-renderer::AutoExposure auto_exposure_from(const Json& automatic) {
-  renderer::AutoExposure exposure;
+sensor::AutoExposure auto_exposure_from(const Json& automatic) {
+  sensor::AutoExposure exposure;
   exposure.target_mean = automatic.at("target_mean").get<double>();
   exposure.min_exposure_s = 1e-3 * automatic.at("min_exposure_ms").get<double>();
   exposure.max_exposure_s = 1e-3 * automatic.at("max_exposure_ms").get<double>();
@@ -76,12 +76,12 @@ Eigen::Quaterniond R_body_turned(const Json& mount) {
 
 }  // namespace
 
-Result<renderer::SensorModel> sensor_from(const Json& sensor, const std::string& path) {
-  renderer::SensorModel model;
+Result<sensor::SensorModel> sensor_from(const Json& sensor, const std::string& path) {
+  sensor::SensorModel model;
   model.enabled = true;
   model.defocus_sigma_px = sensor.at("defocus_sigma_px").get<double>();
   if (sensor.contains("vignette")) {
-    model.vignette = renderer::Vignette{scaled_xyz(sensor.at("vignette"), 1.0)};
+    model.vignette = sensor::Vignette{scaled_xyz(sensor.at("vignette"), 1.0)};
   }
   model.exposure_s = 1e-3 * sensor.at("exposure_ms").get<double>();
   model.readout_s = 1e-3 * sensor.at("readout_ms").get<double>();
@@ -96,7 +96,7 @@ Result<renderer::SensorModel> sensor_from(const Json& sensor, const std::string&
   model.black_level_dn = sensor.at("black_level_dn").get<double>();
   model.adc_bits = sensor.at("adc_bits").get<int>();
   if (sensor.contains("response")) {
-    Result<renderer::ResponseCurve> response =
+    Result<sensor::ResponseCurve> response =
         response_from(sensor.at("response"), path + ".response");
     if (!response) return response.error();
     model.response = std::move(*response);
@@ -107,8 +107,8 @@ Result<renderer::SensorModel> sensor_from(const Json& sensor, const std::string&
   return model;
 }
 
-Result<renderer::VibrationModel> vibration_from(const Json& vibration, const std::string& path) {
-  renderer::VibrationModel model;
+Result<sensor::VibrationModel> vibration_from(const Json& vibration, const std::string& path) {
+  sensor::VibrationModel model;
   model.enabled = true;
   model.engine_rpm = vibration.at("engine_rpm").get<double>();
   model.engine_rotation_rms_rad = scaled(vibration.at("engine_rotation_rms_mrad"), 1e-3);
@@ -147,4 +147,4 @@ Result<Pose> mount_from(const Json& mount, const std::string& path) {
   return T_body_camera;
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -71,11 +71,14 @@ Rgb grass_colour(const Slow& slow, const Texture& tex) {
 }
 
 /// A road's surface, blended into the ground next to it.
-Rgb road_colour(const Rgb& beside, const ParcelHit& hit, const Slow& slow, const Texture& tex) {
+Rgb road_colour(const Rgb& surroundings,
+                const ParcelHit& hit,
+                const Slow& slow,
+                const Texture& tex) {
   const float m = hit.road_m;
   const float ragged = 0.25F * tex.clods + 0.25F * tex.tufts;
   if (hit.road == Border::kRoad) {
-    Rgb colour = mix(beside, grass_colour(slow, tex), soft(m - 7.5F - ragged, 0.5F));
+    Rgb colour = mix(surroundings, grass_colour(slow, tex), soft(m - 7.5F - ragged, 0.5F));
     colour = mix(colour, {168, 158, 138}, soft(m - 4.6F - ragged, 0.4F));
     const float lane = std::abs(m - 1.8F);
     const float patch =
@@ -90,13 +93,13 @@ Rgb road_colour(const Rgb& beside, const ParcelHit& hit, const Slow& slow, const
     return mix(colour, {206, 190, 110}, (dash ? 0.85F : 0.0F) * soft(m - 0.09F));
   }
   if (hit.road == Border::kGravelRoad) {
-    Rgb colour = mix(beside, grass_colour(slow, tex), soft(m - 5.0F - ragged, 0.5F));
+    Rgb colour = mix(surroundings, grass_colour(slow, tex), soft(m - 5.0F - ragged, 0.5F));
     const float rut = soft(std::abs(m - 0.95F) - 0.4F, 0.3F);
     const Rgb gravel = Rgb{186, 174, 150} * (1.0F + 0.07F * tex.grain + 0.05F * tex.clods +
                                              0.06F * slow.patches + 0.06F * rut);
     return mix(colour, gravel, soft(m - 2.7F - 1.4F * ragged, 0.4F));
   }
-  Rgb colour = mix(beside, grass_colour(slow, tex), soft(m - 3.0F - 2.0F * ragged, 0.6F));
+  Rgb colour = mix(surroundings, grass_colour(slow, tex), soft(m - 3.0F - 2.0F * ragged, 0.6F));
   const float rut = soft(std::abs(m - 0.85F) - 0.33F - 0.2F * tex.tufts, 0.25F);
   return mix(colour, Rgb{178, 160, 126} * (1.0F + 0.08F * tex.grain), 0.85F * rut);
 }

@@ -1,7 +1,7 @@
 // Paints the landscape as seen vertically from above.
 #pragma once
 
-#include "core/image.hpp"
+#include "core/camera/image.hpp"
 #include "terrain/synthesis/landscape/landscape.hpp"
 
 namespace overfly::terrain::synthesis {

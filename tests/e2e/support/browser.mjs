@@ -1,4 +1,4 @@
-// A headless Chromium with a profile of its own.
+// A headless Chromium with a new profile.
 import { existsSync, mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import path from 'node:path';

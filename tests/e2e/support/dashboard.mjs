@@ -70,7 +70,7 @@ export class Dashboard {
     );
   }
 
-  /** Values beside the plots' titles that are not wholly to be seen. */
+  /** Values next to the plots' titles that are cut off. */
   cutValues() {
     return this.page.evaluate(() =>
       [...document.querySelectorAll('.plot-title .readout')]

@@ -1,4 +1,4 @@
-// The real server, started for a test on a free port with a run folder of its own.
+// The real server, started for a test on a free port with its own run folder.
 import { spawn } from 'node:child_process';
 import { existsSync, mkdirSync, mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -35,7 +35,7 @@ export function makeRunsFolder() {
 }
 
 /**
- * Resolves when the server has told its address: `address` as it was printed, for a browser; `url`
+ * Resolves when the server has printed its address: `address` as it was printed, for a browser; `url`
  * and `token` for programs.
  */
 export async function startServer({

@@ -41,7 +41,7 @@ std::vector<fs::path> corpus_of(const std::string& target) {
   for (const auto& entry : fs::directory_iterator(folder_of_fuzzing() / "corpus" / target)) {
     files.push_back(entry.path());
   }
-  // Folders are listed in an order of their own on every machine.
+  // The order of folder entries differs between machines.
   std::sort(files.begin(), files.end());
   return files;
 }
@@ -75,8 +75,8 @@ std::vector<std::string> words_of(const std::string& target) {
   return words;
 }
 
-/// The file with the input under way. It is written in place: a file system may put every file on
-/// its disk that is made anew.
+/// The file with the input under way. It is overwritten in place, because a file system may write
+/// every new file to the disk.
 class InputUnderWay {
  public:
   explicit InputUnderWay(fs::path path)
@@ -107,7 +107,7 @@ class InputUnderWay {
 };
 
 void run(const std::string& input) {
-  // A copy of its own, so that a sanitizer sees a read beyond its end.
+  // A copy, so that a sanitizer sees a read beyond its end.
   const std::vector<std::uint8_t> bytes(input.begin(), input.end());
   (void)LLVMFuzzerTestOneInput(bytes.data(), bytes.size());
 }

@@ -1,4 +1,4 @@
-// A focal length that the images contradict is told, and none that they agree with.
+// A warning is given for a focal length that the images contradict, and for no other.
 #include "odometry/feature/focal_check.hpp"
 
 #include <gtest/gtest.h>
@@ -66,9 +66,9 @@ int warnings(const std::vector<std::string>& log) {
 
 TEST(FocalCheck, WarnsOfAFocalLengthThatIsTenPercentOff) {
   for (const double relief_m : {0.0, 15.0}) {
-    for (const double told : {0.9, 1.1}) {
-      const std::vector<std::string> log = log_of({relief_m, told, {}});
-      EXPECT_EQ(warnings(log), 1) << relief_m << " m, " << told;
+    for (const double ratio : {0.9, 1.1}) {
+      const std::vector<std::string> log = log_of({relief_m, ratio, {}});
+      EXPECT_EQ(warnings(log), 1) << relief_m << " m, " << ratio;
     }
   }
 }

@@ -1,4 +1,5 @@
-// Short level flights over flat ground: the start, and what the estimator tells besides its pose.
+// Short level flights over flat ground: the initialisation, and what the estimator reports in
+// addition to its pose.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -113,10 +114,11 @@ TEST(FeatureOdometry, StartsOverAPlaneSeenObliquely) {
       const EstimateSample& sample = flight.estimates[i].sample;
       ASSERT_EQ(sample.state, TrackingState::kTracking) << i;
       const Pose truth = flight.T_world_camera[first].inverse() * flight.T_world_camera[i];
-      const Pose told = flight.estimates[first].sample.T_vo_camera.inverse() * sample.T_vo_camera;
-      EXPECT_LT(rotation_angle_rad(truth.rotation, told.rotation), rad_from_deg(0.3)) << i;
+      const Pose estimate =
+          flight.estimates[first].sample.T_vo_camera.inverse() * sample.T_vo_camera;
+      EXPECT_LT(rotation_angle_rad(truth.rotation, estimate.rotation), rad_from_deg(0.3)) << i;
       if (truth.translation.norm() < 5.0) continue;
-      EXPECT_GT(truth.translation.normalized().dot(told.translation.normalized()), 0.999) << i;
+      EXPECT_GT(truth.translation.normalized().dot(estimate.translation.normalized()), 0.999) << i;
     }
   }
 }

@@ -1,4 +1,4 @@
-// Mapping beside tracking does the same work as mapping before the answer.
+// Mapping on its own thread gives the same map as mapping before the answer.
 #include "odometry/feature/map_keeper.hpp"
 
 #include <gtest/gtest.h>
@@ -63,19 +63,19 @@ Followed follow(int threads) {
 
 TEST(MapKeeper, MapsTheSameBesideTrackingAsBeforeTheAnswer) {
   const Followed before = follow(1);
-  const Followed beside = follow(2);
+  const Followed on_thread = follow(2);
   ASSERT_GT(before.poses.size(), 10U);
   EXPECT_GT(before.keyframes, 3);
-  EXPECT_EQ(before.keyframes, beside.keyframes);
-  EXPECT_EQ(before.points, beside.points);
-  ASSERT_EQ(before.poses.size(), beside.poses.size());
+  EXPECT_EQ(before.keyframes, on_thread.keyframes);
+  EXPECT_EQ(before.points, on_thread.points);
+  ASSERT_EQ(before.poses.size(), on_thread.poses.size());
   for (std::size_t i = 0; i < before.poses.size(); ++i) {
-    EXPECT_EQ(before.poses[i].translation, beside.poses[i].translation) << i;
-    EXPECT_EQ(before.poses[i].rotation.coeffs(), beside.poses[i].rotation.coeffs()) << i;
+    EXPECT_EQ(before.poses[i].translation, on_thread.poses[i].translation) << i;
+    EXPECT_EQ(before.poses[i].rotation.coeffs(), on_thread.poses[i].rotation.coeffs()) << i;
   }
 }
 
-/// Follows nothing, but has a first map and a keyframe to work on beside.
+/// Tracks nothing, but has a first map and a keyframe to process.
 class MapKeeperAtWork : public ::testing::Test {
  protected:
   MapKeeperAtWork() {
@@ -133,7 +133,7 @@ TEST_F(MapKeeperAtWork, TellsTheTrackingThreadWhatItsThreadHasThrown) {
   keeper_.insert_keyframe(frames_[next], tracked, timing_ms_);
   keeper_.wait_until_idle();
   EXPECT_THROW(keeper_.refresh(), std::out_of_range);
-  // Told once; the thread is still there.
+  // The exception is reported once, and the thread still runs.
   keeper_.clear();
   EXPECT_GT(begin(), 0U);
   EXPECT_FALSE(keeper_.refresh().keyframes().empty());

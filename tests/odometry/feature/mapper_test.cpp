@@ -99,7 +99,7 @@ TEST_F(MapperOverGround, DropsPointsThatAreSeldomWhereTheyShouldBe) {
   const int young = (++point)->first;
   point->second.expected = 8;
   point->second.found = 0;
-  mapper_.mend(orb_, map_, timing_ms_);
+  mapper_.refine(orb_, map_, timing_ms_);
   EXPECT_EQ(map_.point(seldom), nullptr);
   EXPECT_NE(map_.point(often), nullptr);
   EXPECT_NE(map_.point(young), nullptr);

@@ -1,4 +1,4 @@
-// The first map under noise: how far its way is off beside its depth.
+// The first map under noise: the error of the distance travelled relative to the depth.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -43,9 +43,9 @@ Start start_of(double noise, std::uint64_t seed) {
     const EstimateSample sample = odometry->track(frame).value().sample;
     if (sample.state != TrackingState::kTracking) continue;
     // The first image is the origin: none was given up.
-    const double told = sample.T_vo_camera.translation.norm() / sample.scene_depth.value();
+    const double estimate = sample.T_vo_camera.translation.norm() / sample.scene_depth.value();
     const double truth = (poses[i].translation - poses[0].translation).norm() / kHeightM;
-    return {static_cast<double>(sample.t_ns) * 1e-9, std::abs(told / truth - 1.0)};
+    return {static_cast<double>(sample.t_ns) * 1e-9, std::abs(estimate / truth - 1.0)};
   }
   return {};
 }

@@ -1,4 +1,5 @@
-// Video that is no view straight down on land: forward driving, and specks before the lens.
+// Video that does not look straight down on land: forward driving, and particles in front of the
+// lens.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -51,25 +52,25 @@ struct Judgement {
 
 Judgement judge(const Video& video) {
   Judgement judgement;
-  std::vector<Eigen::Vector3d> told;
+  std::vector<Eigen::Vector3d> estimates;
   std::vector<Eigen::Vector3d> true_places;
   std::size_t first = 0;
   for (std::size_t i = 0; i < video.samples.size(); ++i) {
     const EstimateSample& sample = video.samples[i];
     if (sample.state != TrackingState::kTracking || sample.map_id != 0) continue;
-    if (told.empty()) first = i;
-    told.push_back(sample.T_vo_camera.translation);
+    if (estimates.empty()) first = i;
+    estimates.push_back(sample.T_vo_camera.translation);
     true_places.push_back(video.truth[i].translation);
   }
-  if (told.size() < 4) return judgement;
+  if (estimates.size() < 4) return judgement;
   judgement.start_s = static_cast<double>(first) / video.rate_hz;
   judgement.tracked_share =
-      static_cast<double>(told.size()) / static_cast<double>(video.samples.size() - first);
-  const auto count = static_cast<Eigen::Index>(told.size());
+      static_cast<double>(estimates.size()) / static_cast<double>(video.samples.size() - first);
+  const auto count = static_cast<Eigen::Index>(estimates.size());
   Eigen::Matrix3Xd from(3, count);
   Eigen::Matrix3Xd to(3, count);
   for (Eigen::Index i = 0; i < count; ++i) {
-    from.col(i) = told[static_cast<std::size_t>(i)];
+    from.col(i) = estimates[static_cast<std::size_t>(i)];
     to.col(i) = true_places[static_cast<std::size_t>(i)];
   }
   const Eigen::Matrix4d S = Eigen::umeyama(from, to);

@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include "renderer/probes/process_cost.hpp"
 #include "terrain/synthesize_strip.hpp"
 #include "terrain/world.hpp"
 #include "tests/renderer/procedural_ground.hpp"
@@ -112,16 +111,6 @@ TEST(EnduranceOptions, RefusesAFlightShorterThanItsWarmUp) {
   const auto flown = fly_endurance(overfly::testing::natural_ground(), options);
   ASSERT_FALSE(flown.ok());
   EXPECT_NE(flown.error().message.find("warm-up"), std::string::npos);
-}
-
-TEST(ProcessCost, QuantilesAreValuesThatOccur) {
-  EXPECT_EQ(quantile({}, 0.5), 0.0);
-  EXPECT_EQ(quantile({3.0, 1.0, 2.0}, 0.5), 2.0);
-  std::vector<double> thousand(1000);
-  for (int i = 0; i < 1000; ++i) thousand[i] = i + 1;
-  EXPECT_EQ(quantile(thousand, 0.999), 999.0);
-  EXPECT_EQ(quantile(thousand, 0.99), 990.0);
-  EXPECT_EQ(quantile(thousand, 1.0), 1000.0);
 }
 
 }  // namespace

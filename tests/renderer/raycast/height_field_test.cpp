@@ -55,7 +55,7 @@ TEST(HeightField, KeepsABoundedNumberOfTilesOverFiveKilometres) {
               most,
               in_view,
               unbounded.held_tiles());
-  // Squares that were looked at and lie out of view are held beside those in view.
+  // Squares that were examined and are out of view are held in addition to those in view.
   EXPECT_LE(most, kMaxTiles + 2 * in_view);
   EXPECT_GT(unbounded.held_tiles(), 2 * most);
 }

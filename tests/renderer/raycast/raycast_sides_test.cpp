@@ -14,7 +14,7 @@ using overfly::testing::ProceduralGround;
 TEST(RaycastSides, RaysAlongASquaresSideMeetTheGround) {
   ProceduralGround::Options options;
   options.paint = [](double, double) { return 100.0; };
-  // Flat where the camera looks; the hill makes slopes, so that no ray is found by descent alone.
+  // Flat where the camera looks; the hill makes slopes, so that descent is not enough for any ray.
   options.height_m = [](double east_m, double north_m) {
     return std::max(0.0, 30.0 - 0.5 * std::hypot(east_m - 800.0, north_m));
   };

@@ -19,7 +19,8 @@ class SlowTiles final : public terrain::TileSource {
  public:
   explicit SlowTiles(std::shared_ptr<const terrain::TileSource> tiles) : tiles_(std::move(tiles)) {}
 
-  [[nodiscard]] Result<terrain::Tile> tile(const terrain::TileId& id) const override {
+  [[nodiscard]] Result<terrain::Tile> read_tile(
+      const terrain::TileId& id, const terrain::Cancelled& /*cancelled*/) const override {
     std::this_thread::sleep_for(std::chrono::milliseconds(15));
     return tiles_->tile(id);
   }

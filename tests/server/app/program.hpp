@@ -18,7 +18,7 @@ struct Outcome {
 /// Runs the program to its end.
 [[nodiscard]] Outcome overfly_program(const std::vector<std::string>& arguments);
 
-/// The program at work; killed with the object.
+/// The running program; killed with the object.
 class RunningProgram {
  public:
   /// Standard output and error go to files in `folder`.

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "core/trajectory_io.hpp"
+#include "core/motion/trajectory_io.hpp"
 #include "tests/server/app/program.hpp"
 #include "tests/support/support.hpp"
 
@@ -240,13 +240,13 @@ TEST_F(TrackCommand, RunFailsWhenNoneOfItsEstimatorsRan) {
                             "--set",
                             "estimators=" + estimators.dump()});
   };
-  const Outcome alone = flown(Json::array({gone}), "alone");
-  EXPECT_EQ(alone.exit_code, 1);
-  EXPECT_THAT(alone.err, HasSubstr("error: estimator gone never ran: "));
-  EXPECT_THAT(alone.err, HasSubstr("no vocabulary at /nowhere"));
-  const Outcome beside = flown(Json::array({gone, perfect}), "beside");
-  EXPECT_EQ(beside.exit_code, 0);
-  EXPECT_THAT(beside.err, HasSubstr("estimator gone never ran"));
+  const Outcome only_one = flown(Json::array({gone}), "only_one");
+  EXPECT_EQ(only_one.exit_code, 1);
+  EXPECT_THAT(only_one.err, HasSubstr("error: estimator gone never ran: "));
+  EXPECT_THAT(only_one.err, HasSubstr("no vocabulary at /nowhere"));
+  const Outcome with_other = flown(Json::array({gone, perfect}), "with_other");
+  EXPECT_EQ(with_other.exit_code, 0);
+  EXPECT_THAT(with_other.err, HasSubstr("estimator gone never ran"));
 }
 
 TEST_F(TrackCommand, InterruptKeepsWhatWasTracked) {

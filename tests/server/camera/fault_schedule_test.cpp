@@ -6,9 +6,9 @@
 
 #include <cmath>
 
-#include "tests/server/support/engine_fixture.hpp"
+#include "tests/server/support/server_fixture.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 using ::testing::ElementsAre;
@@ -96,4 +96,4 @@ TEST(FaultNews, TellsBeginningAndEndOnce) {
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

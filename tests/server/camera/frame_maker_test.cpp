@@ -8,10 +8,11 @@
 
 #include "server/camera/frame_remaker.hpp"
 #include "server/record/rows.hpp"
+#include "server/record/run_folder.hpp"
 #include "server/worlds/world_cache.hpp"
-#include "tests/server/support/engine_fixture.hpp"
+#include "tests/server/support/server_fixture.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 using testing::small_scenario;
@@ -217,7 +218,12 @@ TEST(FrameMaker, FrozenCameraRepeatsItsLastImage) {
 TEST(FrameRemaker, MakesAnyFrameAgainBitByBit) {
   const Scenario scenario =
       small_scenario({kRealCamera, R"(faults=[{"kind":"dirt","at_s":0.5,"duration_s":0.3}])"});
-  const auto maker = open(scenario, raycast());
+  const overfly::testing::TemporaryFolder folder;
+  auto samples = TruthSampleFile::create(truth_samples_file(folder.path()));
+  ASSERT_TRUE(samples.ok()) << samples.error().message;
+  FrameMakerOptions options = raycast();
+  options.truth_samples = &*samples;
+  const auto maker = open(scenario, options);
   std::vector<CameraShot> shots;
   for (std::int64_t k = 0; k < 9; ++k) {
     shots.push_back(std::move(made(*maker, k).shots.front()));
@@ -225,7 +231,12 @@ TEST(FrameRemaker, MakesAnyFrameAgainBitByBit) {
   WorldCache worlds;
   const auto world = worlds.get(scenario, {});
   ASSERT_TRUE(world.ok());
-  const auto remaker = FrameRemaker::create(scenario, bare_world(*world));
+  // The flight is the recorded one, whatever the scenario would fly now.
+  const Scenario another =
+      small_scenario({kRealCamera,
+                      R"(faults=[{"kind":"dirt","at_s":0.5,"duration_s":0.3}])",
+                      "flight.course.airspeed_m_s=31"});
+  const auto remaker = FrameRemaker::create(folder.path(), another, bare_world(*world));
   ASSERT_TRUE(remaker.ok()) << remaker.error().message;
   for (const std::size_t k : {6U, 2U, 8U, 0U}) {
     FrameRow row;
@@ -237,7 +248,17 @@ TEST(FrameRemaker, MakesAnyFrameAgainBitByBit) {
     ASSERT_TRUE(image.ok()) << image.error().message;
     EXPECT_EQ(image->data, shots[k].image.data) << "frame " << k;
   }
+  // A folder of an earlier version has no samples: then the scenario flies.
+  const overfly::testing::TemporaryFolder old_folder;
+  const auto refly = FrameRemaker::create(old_folder.path(), scenario, bare_world(*world));
+  ASSERT_TRUE(refly.ok()) << refly.error().message;
+  FrameRow row;
+  row.frame = 5;
+  row.t_ns = frame_time_ns(5, scenario.rate);
+  row.exposure_ns = shots[5].setting.exposure_ns;
+  row.gain = shots[5].setting.gain;
+  EXPECT_EQ((*refly)->make(0, row, maker->renderer())->data, shots[5].image.data);
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

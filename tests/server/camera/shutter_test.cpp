@@ -8,9 +8,9 @@
 
 #include "server/camera/frame_maker.hpp"
 #include "tests/renderer/procedural_ground.hpp"
-#include "tests/server/support/engine_fixture.hpp"
+#include "tests/server/support/server_fixture.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 using overfly::testing::ProceduralGround;
@@ -164,7 +164,7 @@ TEST_P(Shutter, RollSkewsByRateReadoutAndFocalLengthMoreTowardsTheEdges) {
       R"({"width_px":400,"height_px":120,"fov_deg":84.872,"rate_hz":10,"bits":12,
           "sensor":{"readout_ms":30,"response":{"shape":"gamma","gamma":1}}})");
   const std::vector<double> places_m = {-75.0, -40.0, 0.0, 40.0, 75.0};
-  // Lines to the north stay upright in the image under roll, wherever they are.
+  // Lines to the north stay upright in the image under roll at every place.
   const Image16 rolled = image(scenario, [&](double east_m, double) {
     double value = 0.0;
     for (const double place_m : places_m) {
@@ -186,4 +186,4 @@ TEST_P(Shutter, RollSkewsByRateReadoutAndFocalLengthMoreTowardsTheEdges) {
 INSTANTIATE_TEST_SUITE_P(Renderers, Shutter, ::testing::Values("raycast", "egl"));
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

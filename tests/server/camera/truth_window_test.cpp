@@ -8,7 +8,7 @@
 
 #include "core/time.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
@@ -16,13 +16,6 @@ constexpr std::int64_t kMs = 1'000'000;
 /// 20 m/s east and 0.5 rad/s of yaw for 1 s. Fails a test that goes back in time.
 class Turning final : public TruthSource {
  public:
-  Result<std::optional<AircraftState>> state_at(std::int64_t t_ns) override {
-    EXPECT_GE(t_ns, last_ns_) << "asked for the past";
-    last_ns_ = t_ns;
-    ++asked_;
-    if (t_ns > kNsPerS) return std::optional<AircraftState>();
-    return std::optional(truth(t_ns));
-  }
   std::optional<std::int64_t> duration_ns() const override { return kNsPerS; }
   std::string description() const override { return "turning"; }
 
@@ -39,6 +32,15 @@ class Turning final : public TruthSource {
   static int asked_;
 
  private:
+  Result<std::optional<AircraftState>> find_state(std::int64_t t_ns,
+                                                  const std::atomic<bool>* /*cancel*/) override {
+    EXPECT_GE(t_ns, last_ns_) << "asked for the past";
+    last_ns_ = t_ns;
+    ++asked_;
+    if (t_ns > kNsPerS) return std::optional<AircraftState>();
+    return std::optional(truth(t_ns));
+  }
+
   std::int64_t last_ns_ = std::numeric_limits<std::int64_t>::min();
 };
 int Turning::asked_ = 0;
@@ -95,4 +97,4 @@ TEST(TruthWindow, SharesWhatOverlapsWithoutGoingBack) {
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -6,7 +6,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 
-namespace overfly::engine::testing {
+namespace overfly::server::testing {
 
 namespace fs = std::filesystem;
 using overfly::testing::write_text;
@@ -103,4 +103,4 @@ void write_kitti(const fs::path& folder) {
              "0.000000000000e+00 0.000000000000e+00 1.000000000000e+00 6.203223000000e-03\n");
 }
 
-}  // namespace overfly::engine::testing
+}  // namespace overfly::server::testing

@@ -8,7 +8,7 @@
 #include "server/dataset/dataset.hpp"
 #include "tests/support/support.hpp"
 
-namespace overfly::engine::testing {
+namespace overfly::server::testing {
 
 constexpr int kWidthPx = 16;
 constexpr int kHeightPx = 12;
@@ -34,4 +34,4 @@ void write_tum_mono(const std::filesystem::path& folder);
 void write_tum_rgbd(const std::filesystem::path& folder);
 void write_kitti(const std::filesystem::path& folder);
 
-}  // namespace overfly::engine::testing
+}  // namespace overfly::server::testing

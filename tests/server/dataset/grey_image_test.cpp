@@ -9,7 +9,7 @@
 
 #include "tests/server/dataset/dataset_fixture.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -137,4 +137,4 @@ TEST(ImageName, IsToldByItsEnding) {
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -8,7 +8,7 @@
 #include "server/dataset/open_dataset.hpp"
 #include "tests/server/dataset/dataset_fixture.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -240,4 +240,4 @@ TEST(Layouts, UnknownFoldersAreToldWhatIsKnown) {
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

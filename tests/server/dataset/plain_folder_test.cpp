@@ -2,10 +2,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/measure/crc32.hpp"
 #include "server/dataset/open_dataset.hpp"
 #include "tests/server/dataset/dataset_fixture.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -187,4 +188,4 @@ TEST_F(PlainFolder, SaysWhichImageHasAnotherSize) {
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

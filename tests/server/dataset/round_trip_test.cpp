@@ -11,9 +11,9 @@
 #include "server/run/run.hpp"
 #include "server/scenario/document/scenario_file.hpp"
 #include "terrain/synthesize.hpp"
-#include "tests/server/support/engine_fixture.hpp"
+#include "tests/server/support/server_fixture.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -125,4 +125,4 @@ INSTANTIATE_TEST_SUITE_P(Layouts,
                          });
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

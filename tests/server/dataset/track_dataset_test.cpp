@@ -1,5 +1,6 @@
 // Estimators over data sets: what is booked, how it ends, what is written.
 #include "server/dataset/track_dataset.hpp"
+#include "core/measure/crc32.hpp"
 #include "server/dataset/open_dataset.hpp"
 
 #include <gmock/gmock.h>
@@ -10,12 +11,12 @@
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 
-#include "core/trajectory_io.hpp"
+#include "core/motion/trajectory_io.hpp"
 #include "server/dataset/track_report.hpp"
 #include "server/files/whole_file.hpp"
 #include "tests/server/dataset/dataset_fixture.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -79,17 +80,17 @@ class TrackDataset : public ::testing::Test {
 };
 
 TEST_F(TrackDataset, BooksEveryFrameAndTellsHowFarItIs) {
-  std::vector<std::size_t> told;
+  std::vector<std::size_t> progress;
   std::size_t lines = 0;
   TrackOptions options;
   options.progress = [&](std::size_t done, std::size_t total, TrackingState state) {
-    told.push_back(done);
+    progress.push_back(done);
     EXPECT_EQ(total, 6U);
     EXPECT_EQ(state, TrackingState::kTracking);
   };
   options.log = [&](const std::string& line) { lines += line == "a line" ? 1 : 0; };
   const TrackedDataset result = tracked(well, options);
-  EXPECT_THAT(told, ElementsAre(1, 2, 3, 4, 5, 6));
+  EXPECT_THAT(progress, ElementsAre(1, 2, 3, 4, 5, 6));
   EXPECT_EQ(lines, 7U);  // one before the first
   EXPECT_EQ(result.reading.ms.size(), 6U);
   EXPECT_EQ(result.tracking.ms.size(), 6U);
@@ -275,8 +276,8 @@ TEST_F(TrackDataset, ScoresATruthOfTheBodyThroughTheMount) {
   EXPECT_LT(score.alignments.at(evaluation::AlignmentMode::kSe3).position_m.rmse, 1e-9);
 }
 
-TEST_F(TrackDataset, TakesEulerAnglesOfTheBodyThatTheMountTells) {
-  // The body pitches by 5 deg, in truth alone; its camera looks ahead.
+TEST_F(TrackDataset, ComputesEulerAnglesOfTheBodyFromTheMount) {
+  // The body pitches by 5 deg, only in the truth; its camera looks forward.
   Pose& mount = dataset_.T_body_camera.emplace();
   mount.rotation = R_body_camera_nadir() * Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitX());
   TrajectoryFile truth;
@@ -349,4 +350,4 @@ TEST_F(TrackDataset, MatchesATruthWithoutTimesByItsLines) {
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -9,7 +9,7 @@
 
 #include "tests/support/allocation_failure.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 using overfly::testing::AllocationFailure;
@@ -104,4 +104,4 @@ TEST(EstimatorWorker, TooLittleMemoryForAnAnswerIsToldToTheRunAndTheWorkerGoesOn
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -15,7 +15,7 @@
 #include "tests/server/support/manager_fixture.hpp"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define OVERFLY_THREADS_CAN_BE_REFUSED 0  // the sanitizer has a pthread_create of its own
+#define OVERFLY_THREADS_CAN_BE_REFUSED 0  // the sanitizer replaces pthread_create
 #else
 #define OVERFLY_THREADS_CAN_BE_REFUSED 1
 #endif
@@ -40,7 +40,7 @@ extern "C" int pthread_create(pthread_t* thread,
 }
 #endif
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 using overfly::testing::TemporaryFolder;
@@ -102,4 +102,4 @@ TEST_F(ThreadFailure, ManagerThatCannotStartItsThreadsSaysSo) {
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

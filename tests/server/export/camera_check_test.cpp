@@ -4,9 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/server/support/engine_fixture.hpp"
+#include "tests/server/support/server_fixture.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 using overfly::testing::TemporaryFolder;
@@ -125,4 +125,4 @@ TEST_F(CameraCheck, NamesBadOptionsAndFlightsTooShort) {
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -5,11 +5,11 @@
 #include <cstdio>
 #include <map>
 
-#include "core/trajectory_io.hpp"
+#include "core/motion/trajectory_io.hpp"
 #include "flight/gravity.hpp"
 #include "tests/server/export/export_fixture.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -215,4 +215,4 @@ TEST(Euroc, StatesAndExtrinsicsGiveTheCamerasPoses) {
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

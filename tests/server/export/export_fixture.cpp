@@ -8,7 +8,7 @@
 #include <sstream>
 #include <stdexcept>
 
-namespace overfly::engine::testing {
+namespace overfly::server::testing {
 namespace {
 
 template <typename T>
@@ -154,4 +154,4 @@ int different_samples(const cv::Mat& read, const Image16& image) {
   return count_different(read, image);
 }
 
-}  // namespace overfly::engine::testing
+}  // namespace overfly::server::testing

@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "core/image.hpp"
+#include "core/camera/image.hpp"
 #include "server/camera/frame_maker.hpp"
 #include "server/export/dataset_export.hpp"
-#include "tests/server/support/engine_fixture.hpp"
+#include "tests/server/support/server_fixture.hpp"
 
-namespace overfly::engine::testing {
+namespace overfly::server::testing {
 
 /// The ray-caster with one thread: real images without EGL.
 [[nodiscard]] RendererFactory raycast_factory();
@@ -40,4 +40,4 @@ ExportSummary exported(const ExportSource& source, const ExportOptions& options)
 [[nodiscard]] int different_samples(const cv::Mat& read, const Image& image);
 [[nodiscard]] int different_samples(const cv::Mat& read, const Image16& image);
 
-}  // namespace overfly::engine::testing
+}  // namespace overfly::server::testing

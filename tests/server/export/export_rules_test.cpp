@@ -11,7 +11,7 @@
 #include "terrain/raster/image_file.hpp"
 #include "tests/server/export/export_fixture.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -89,6 +89,54 @@ TEST(Export, ImagesOfARunAreThoseThatItRecorded) {
     ++compared;
   }
   EXPECT_EQ(compared, 21);
+}
+
+TEST(Export, ARunsFlightIsTheRecordedOne) {
+  const TemporaryFolder folder;
+  const fs::path run = flown(folder.path() / "run", {kLivelyCamera});
+  // As if this version flew the course in another way.
+  const fs::path file = run / "scenario.json";
+  auto document = read_json(file);
+  ASSERT_TRUE(document.ok());
+  (*document)["flight"]["course"]["airspeed_m_s"] = 31.0;
+  ASSERT_TRUE(write_json(file, *document).ok());
+  const ExportSource source = opened(run);
+  EXPECT_EQ(exported(source, export_options(folder.path() / "d", DatasetFormat::kPng)).frames, 21);
+}
+
+TEST(Export, InertialDataOfARunAreThoseOfItsFlight) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> turning = {
+      "duration_s=9", "flight.course.length_m=900", "epoch_utc_s=1700000000"};
+  const fs::path run = flown(folder.path() / "run", turning);
+  for (const auto& [name, source] :
+       {std::pair{"run", opened(run)}, std::pair{"scenario", small_source(turning)}}) {
+    ExportOptions options = export_options(folder.path() / name / "d", DatasetFormat::kEuroc);
+    options.renderer_factory = testing::noop_factory();
+    options.imu = flight::ImuModel::ideal(200.0);
+    options.from_s = 4.0;
+    exported(source, options);
+  }
+  const auto imu = [&](const char* name) {
+    return rows_of(folder.path() / name / "d" / "mav0" / "imu0" / "data.csv", ',');
+  };
+  const auto recorded = imu("run");
+  const auto exact = imu("scenario");
+  ASSERT_EQ(recorded.size(), exact.size());
+  ASSERT_GT(exact.size(), 900U);
+  double worst_rad_s = 0.0, worst_m_s2 = 0.0;
+  for (std::size_t i = 0; i < exact.size(); ++i) {
+    ASSERT_EQ(recorded[i][0], exact[i][0]) << i;
+    for (std::size_t column = 1; column < 7; ++column) {
+      double& worst = column < 4 ? worst_rad_s : worst_m_s2;
+      worst =
+          std::max(worst, std::abs(std::stod(recorded[i][column]) - std::stod(exact[i][column])));
+    }
+  }
+  std::printf("[ IMU      ] from samples: %.2g rad/s, %.2g m/s2 off\n", worst_rad_s, worst_m_s2);
+  // A hundredth of the default noise of one sample (2.4e-3 rad/s, 0.028 m/s2).
+  EXPECT_LT(worst_rad_s, 2.4e-5);
+  EXPECT_LT(worst_m_s2, 2.8e-4);
 }
 
 TEST(Export, EqualSourcesGiveEqualBytes) {
@@ -214,6 +262,8 @@ TEST(ExportSource, RefusesARunThatCannotBeMadeAgain) {
   const fs::path moved = folder.path() / "moved";
   fs::copy(run, moved, fs::copy_options::recursive);
   replace_in(moved / "scenario.json", R"("airspeed_m_s": 25)", R"("airspeed_m_s": 30)");
+  // A run of an earlier version: its flight is that of the scenario.
+  fs::remove(moved / "truth_samples.bin");
   expect_refused(opened(moved),
                  export_options(folder.path() / "d1", DatasetFormat::kPng),
                  ErrorCode::kConflict,
@@ -229,4 +279,4 @@ TEST(ExportSource, RefusesARunThatCannotBeMadeAgain) {
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -2,11 +2,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/trajectory_io.hpp"
+#include "core/motion/trajectory_io.hpp"
 #include "server/files/whole_file.hpp"
 #include "tests/server/export/export_fixture.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -32,7 +32,7 @@ TEST(Kitti, CountsTheImagesThatArrivedAndPutsTheFirstPoseAtTheOrigin) {
       exported(source, export_options(folder.path() / "00", DatasetFormat::kKitti));
   EXPECT_EQ(summary.frames, 21);
   EXPECT_EQ(summary.images, 19);
-  // Our own reader finds times.txt beside the poses.
+  // Our own reader finds times.txt next to the poses.
   const auto read = read_trajectory(folder.path() / "00" / "poses.txt");
   ASSERT_TRUE(read.ok()) << read.error().message;
   EXPECT_EQ(read->format, TrajectoryFormat::kKitti);
@@ -113,4 +113,4 @@ TEST(PlainPng, KeepsSixteenBitsAndTellsAllThatIsKnown) {
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -2,8 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/measure/crc32.hpp"
+#include "middleware/lcm/findings.hpp"
 #include "tests/server/export/export_fixture.hpp"
-#include "vo_bridges/lcm/lcm_estimator.hpp"
 #include "vo_bridges/vo_port.hpp"
 
 #ifdef OVERFLY_TESTS_LCM
@@ -14,7 +15,7 @@
 #include <overfly_lcm/truth_t.hpp>
 #endif
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 using overfly::testing::TemporaryFolder;
@@ -24,7 +25,7 @@ using ::testing::HasSubstr;
 using testing::small_source;
 
 TEST(LcmExport, IsRefusedWhereLcmIsNotBuiltIn) {
-  if (lcm_is_built_in()) GTEST_SKIP() << "LCM is built in";
+  if (lcm::is_built_in()) GTEST_SKIP() << "LCM is built in";
   const TemporaryFolder folder;
   const auto summary =
       export_dataset(small_source(), export_options(folder.path() / "d", DatasetFormat::kLcm));
@@ -61,9 +62,9 @@ struct Log {
 
 Log read_log(const std::filesystem::path& file) {
   Log log;
-  lcm::LogFile source(file.string(), "r");
+  ::lcm::LogFile source(file.string(), "r");
   EXPECT_TRUE(source.good());
-  while (const lcm::LogEvent* event = source.readNextEvent()) {
+  while (const ::lcm::LogEvent* event = source.readNextEvent()) {
     const auto* bytes = static_cast<const std::uint8_t*>(event->data);
     log.events.push_back({event->timestamp, event->channel, {bytes, bytes + event->datalen}});
   }
@@ -164,4 +165,4 @@ TEST(LcmExport, IsReadBackByLcm) { GTEST_SKIP() << "LCM is not built in"; }
 #endif
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

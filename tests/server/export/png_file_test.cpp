@@ -8,7 +8,7 @@
 
 #include "tests/support/support.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 using ::testing::HasSubstr;
@@ -77,4 +77,4 @@ TEST(PngFile, NamesWhatItCannotWrite) {
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -11,7 +11,7 @@
 #include <cstdio>
 #include <memory>
 
-namespace overfly::engine::testing {
+namespace overfly::server::testing {
 namespace {
 
 class Collector final : public webm::Callback {
@@ -167,4 +167,4 @@ double psnr_db(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_
   return 10.0 * std::log10(255.0 * 255.0 * static_cast<double>(a.size()) / std::max(sum, 1e-9));
 }
 
-}  // namespace overfly::engine::testing
+}  // namespace overfly::server::testing

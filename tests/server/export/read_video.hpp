@@ -8,7 +8,7 @@
 
 #include "server/export/vp9_encoder.hpp"
 
-namespace overfly::engine::testing {
+namespace overfly::server::testing {
 
 struct WebmContent {
   std::string doc_type;
@@ -41,4 +41,4 @@ struct WebmContent {
 [[nodiscard]] double psnr_db(const std::vector<std::uint8_t>& a,
                              const std::vector<std::uint8_t>& b);
 
-}  // namespace overfly::engine::testing
+}  // namespace overfly::server::testing

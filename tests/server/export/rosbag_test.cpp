@@ -4,17 +4,17 @@
 
 #include <map>
 
+#include "middleware/ros1/findings.hpp"
 #include "tests/server/export/export_fixture.hpp"
-#include "vo_bridges/ros1/ros1_estimator.hpp"
 
 #ifdef OVERFLY_TESTS_ROS1
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 
-#include "vo_bridges/ros1/ros1_messages.hpp"
+#include "middleware/ros1/messages.hpp"
 #endif
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 using overfly::testing::TemporaryFolder;
@@ -25,7 +25,7 @@ using ::testing::HasSubstr;
 using testing::small_source;
 
 TEST(RosbagExport, IsRefusedWhereRosIsNotBuiltIn) {
-  if (ros1_is_built_in()) GTEST_SKIP() << "ROS 1 is built in";
+  if (ros1::is_built_in()) GTEST_SKIP() << "ROS 1 is built in";
   const TemporaryFolder folder;
   const auto summary =
       export_dataset(small_source(), export_options(folder.path() / "d", DatasetFormat::kRosbag));
@@ -125,4 +125,4 @@ TEST(RosbagExport, IsTheSameBytesEachTime) {
 #endif
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

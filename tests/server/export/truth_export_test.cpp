@@ -9,7 +9,7 @@
 #include "server/export/truth_writer.hpp"
 #include "tests/server/export/export_fixture.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -220,4 +220,4 @@ TEST_F(TruthExport, IsNamedAsTheImagesAndLeftOutWithThem) {
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

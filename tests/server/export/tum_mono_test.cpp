@@ -5,11 +5,11 @@
 #include <cstdio>
 #include <sstream>
 
-#include "core/trajectory_io.hpp"
+#include "core/motion/trajectory_io.hpp"
 #include "sensor/photometric_calibration.hpp"
 #include "tests/server/export/export_fixture.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -121,7 +121,7 @@ TEST(TumMono, PhotometricFilesUndoTheSensorsChain) {
   cv::minMaxLoc(vignette, &least, &largest);
   EXPECT_EQ(largest, 65535.0);
   const CameraSpec& camera = source.scenario.cameras.front();
-  EXPECT_EQ(different_samples(vignette, renderer::vignette_map(camera.sensor, camera.model)), 0);
+  EXPECT_EQ(different_samples(vignette, sensor::vignette_map(camera.sensor, camera.model)), 0);
   EXPECT_LT(vignette.at<std::uint16_t>(119, 0), 0.8 * 65535.0);
 }
 
@@ -149,4 +149,4 @@ TEST(TumMono, WritesNoPhotometricFilesWithoutASensorAndNamesOtherLenses) {
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

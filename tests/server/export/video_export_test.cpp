@@ -1,4 +1,4 @@
-// Flights as videos: of the camera, of the aircraft from behind, alone and beside a data set.
+// Flights as videos of the camera and of the aircraft from behind, with and without a data set.
 #include "server/export/video_export.hpp"
 
 #include <gmock/gmock.h>
@@ -7,7 +7,7 @@
 #include "tests/server/export/export_fixture.hpp"
 #include "tests/server/export/read_video.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -59,7 +59,7 @@ TEST(VideoExport, PutsTheChaseViewBesideTheCamera) {
   EXPECT_EQ(webm.width_px, 160U);
   EXPECT_EQ(webm.height_px, 60U);
   ASSERT_EQ(webm.packets.size(), 4U);
-  // The camera sees ground alone; behind the aircraft there is also sky, which is blue.
+  // The camera sees only ground; behind the aircraft there is also sky, which is blue.
   const PlanarImage last = testing::decode_vp9(webm.packets).back();
   const auto mean_blue = [&](int from, int to) {
     int sum = 0;
@@ -113,4 +113,4 @@ TEST(VideoExport, NamesWhatIsInTheWay) {
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

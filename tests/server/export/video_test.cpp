@@ -12,7 +12,7 @@
 #include "tests/server/export/read_video.hpp"
 #include "tests/support/support.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -225,4 +225,4 @@ TEST(Video, SaysWhatItCannotTake) {
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

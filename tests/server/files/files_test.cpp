@@ -1,19 +1,13 @@
-// The engine's files and small parts: JPEG, whole files, lines, rows, live alignment.
+// JPEG, whole files, lines.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
-#include <cmath>
-
-#include "core/time.hpp"
-#include "evaluation/evaluation.hpp"
 #include "server/files/jpeg.hpp"
 #include "server/files/whole_file.hpp"
-#include "server/record/live_alignment.hpp"
-#include "server/record/run_rows.hpp"
 #include "tests/support/support.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 using overfly::testing::TemporaryFolder;
@@ -113,77 +107,5 @@ TEST(WholeFile, RefusesDeepJson) {
   EXPECT_THAT(read_lines(file).error().message, HasSubstr("row 2: is nested more than 64 deep"));
 }
 
-TEST(RunRows, ReadBackExactly) {
-  FrameRecord record;
-  record.row.frame = 7;
-  record.row.t_ns = 225806452;
-  record.row.T_world_camera.translation = {1.0 / 3.0, -2e-17, 1e8 / 7.0};
-  record.row.T_world_camera.rotation =
-      Eigen::Quaterniond(Eigen::AngleAxisd(0.3, Eigen::Vector3d(1, 2, 3).normalized()));
-  record.axis_depth_m = 1e3 / 9.0;
-  const auto read = frame_record_from(nlohmann::json::parse(json_from(record).dump()), Pose{});
-  ASSERT_TRUE(read.ok()) << read.error().message;
-  EXPECT_EQ(read->row.T_world_camera.matrix(), record.row.T_world_camera.matrix());
-  EXPECT_EQ(read->axis_depth_m, record.axis_depth_m);
-  EXPECT_EQ(read->row.t_ns, record.row.t_ns);
-  EXPECT_EQ(frame_record_from({{"frame", 1}}, Pose{}).error().code, ErrorCode::kUnreadable);
-}
-
-EstimateSample tracked(std::int64_t t_s, double x, std::optional<double> depth, int map_id = 0) {
-  EstimateSample sample;
-  sample.frame = t_s;
-  sample.t_ns = t_s * kNsPerS;
-  sample.state = TrackingState::kTracking;
-  sample.T_vo_camera.translation.x() = x;
-  sample.scene_depth = depth;
-  sample.map_id = map_id;
-  return sample;
-}
-
-Pose at_x(double x) { return {Eigen::Quaterniond::Identity(), {x, 0, 0}}; }
-
-TEST(LiveAlignment, AgreesWithTheEvaluationsInitScale) {
-  const Pose T_body_camera{R_body_camera_nadir(), Eigen::Vector3d::Zero()};
-  Pose first = at_x(100);
-  first.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()));
-  LiveAlignment alignment(T_body_camera);
-  std::vector<evaluation::MatchedPose> matches;
-  for (int i = 0; i < 3; ++i) {
-    Pose truth = first;
-    truth.translation += first.rotation * Eigen::Vector3d(30.0 * i, 0, 0);
-    const EstimateSample sample = tracked(i, 0.1 * i, 1.0);
-    matches.push_back({sample.t_ns, truth, sample.T_vo_camera, sample.scene_depth});
-    EXPECT_TRUE(alignment.add(sample, truth, 300.0).has_value());
-  }
-  evaluation::Options options;
-  options.init_true_depth_m = 300.0;
-  const auto S = evaluation::align(matches, evaluation::AlignmentMode::kInitScale, options);
-  ASSERT_TRUE(S.ok()) << S.error().message;
-  ASSERT_TRUE(alignment.S_world_vo().has_value());
-  EXPECT_NEAR(alignment.S_world_vo()->scale, S->scale, 1e-9);
-  EXPECT_LT((alignment.S_world_vo()->translation - S->translation).norm(), 1e-9);
-  EXPECT_LT(rotation_angle_rad(alignment.S_world_vo()->rotation, S->rotation), 1e-9);
-}
-
-TEST(LiveAlignment, TakesTheScaleFromFiveSecondsOfPathWithoutADepth) {
-  LiveAlignment alignment{Pose{}};
-  for (int t = 0; t < 5; ++t) {
-    EXPECT_FALSE(alignment.add(tracked(t, 0.5 * t, {}), at_x(10.0 * t), 300.0).has_value());
-  }
-  const auto placed = alignment.add(tracked(5, 2.5, {}), at_x(50.0), 300.0);
-  ASSERT_TRUE(placed.has_value());
-  EXPECT_NEAR(placed->translation.x(), 50.0, 1e-9);
-}
-
-TEST(LiveAlignment, StartsAnewWithANewMap) {
-  LiveAlignment alignment{Pose{}};
-  EXPECT_NEAR(alignment.add(tracked(0, 0, 1.0), at_x(0), 300.0)->translation.x(), 0.0, 1e-9);
-  const auto placed = alignment.add(tracked(9, 4.0, 2.0, 1), at_x(90), 200.0);
-  ASSERT_TRUE(placed.has_value());
-  EXPECT_NEAR(placed->translation.x(), 90.0, 1e-9);
-  EXPECT_NEAR(alignment.S_world_vo()->scale, 100.0, 1e-9);
-  EXPECT_EQ(alignment.init_true_depth_m(), 300.0);
-}
-
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -98,12 +98,12 @@ class ThrowingServer {
 };
 
 TEST(Barrier, TellsWhatEscapes) {
-  std::string told;
-  const auto tell = [&](const char* what) { told = what; };
-  EXPECT_TRUE(contained([] {}, tell));
-  EXPECT_EQ(told, "");
-  EXPECT_FALSE(contained([] { throw std::runtime_error("reason"); }, tell));
-  EXPECT_EQ(told, "reason");
+  std::string reported;
+  const auto report = [&](const char* what) { reported = what; };
+  EXPECT_TRUE(contained([] {}, report));
+  EXPECT_EQ(reported, "");
+  EXPECT_FALSE(contained([] { throw std::runtime_error("reason"); }, report));
+  EXPECT_EQ(reported, "reason");
   EXPECT_FALSE(contained([] { throw 7; }, [](const char*) { throw 8; }));
 }
 

@@ -5,7 +5,7 @@
 
 #include <random>
 
-#include "core/pose.hpp"
+#include "core/motion/pose.hpp"
 #include "server/views/picture_request.hpp"
 
 namespace overfly::net {
@@ -34,14 +34,14 @@ TEST(ClientMessage, ReadsSubscriptionsWithDefaults) {
   const auto subscribe = parse_as<SubscribeCommand>(
       R"({"type":"subscribe","streams":[{"name":"camera"},{"name":"debug/a","max_hz":5,"quality":60}]})");
   ASSERT_EQ(subscribe.streams.size(), 2U);
-  EXPECT_EQ(subscribe.streams[0], (StreamWish{"camera", 31.0, 75, 1280}));
-  EXPECT_EQ(subscribe.streams[1], (StreamWish{"debug/a", 5.0, 60, 1280}));
+  EXPECT_EQ(subscribe.streams[0], (StreamRequest{"camera", 31.0, 75, 1280}));
+  EXPECT_EQ(subscribe.streams[1], (StreamRequest{"debug/a", 5.0, 60, 1280}));
 }
 
 TEST(ClientMessage, TurnsDegreesOfAViewIntoRadians) {
   const auto view =
       parse_as<ViewCommand>(R"({"type":"view","mode":"orbit","azimuth_deg":180,"width_px":960})");
-  EXPECT_EQ(view.mode, engine::SceneMode::kOrbit);
+  EXPECT_EQ(view.mode, server::SceneMode::kOrbit);
   EXPECT_NEAR(*view.azimuth_rad, kPi, 1e-12);
   EXPECT_EQ(view.width_px, 960);
   EXPECT_FALSE(view.distance_m);

@@ -49,7 +49,7 @@ TEST(ConnectionTable, ClosesTheOldestStrangerForANewOne) {
   EXPECT_TRUE(table.closed.empty());
   table.add();
   EXPECT_EQ(table.closed, std::vector<int>{0});
-  // It was asked to end: it is let in no more, and is not asked twice.
+  // It was asked to end: it is not admitted again, and is not asked twice.
   EXPECT_FALSE(first.enter(Phase::kReceiving));
   table.add();
   EXPECT_EQ(table.closed, (std::vector<int>{0, 2}));
@@ -95,7 +95,7 @@ TEST(ConnectionTable, ViewersTakeNoPlaceOfRequests) {
   EXPECT_TRUE(table.closed.empty());
 }
 
-/// A connection on which bytes are sent by hand.
+/// A connection on which the test sends bytes.
 class RawConnection {
  public:
   explicit RawConnection(std::uint16_t port) : socket_(loop_) {

@@ -68,11 +68,11 @@ class RestApiTest : public ::testing::Test {
     if (!response.at("content").contains(plain)) {
       ADD_FAILURE() << pattern << " does not document " << plain;
     } else if (plain == "application/json") {
-      const engine::JsonSchema schema(
+      const server::JsonSchema schema(
           with_defs(response.at("content").at(plain).at("schema"), api_));
       EXPECT_TRUE(schema.unknown_keywords().empty());
-      for (const auto& fault : schema.faults(answer.json())) {
-        ADD_FAILURE() << method << " " << target << ": " << fault.text;
+      for (const auto& violation : schema.violations(answer.json())) {
+        ADD_FAILURE() << method << " " << target << ": " << violation.text;
       }
     }
     return answer;
@@ -94,7 +94,7 @@ TEST_F(RestApiTest, AnswersEveryRouteAsDocumented) {
   check("GET", "/api/v1/scenarios/{name}", "/api/v1/scenarios/none", 404);
   check("GET", "/api/v1/scenarios/{name}", "/api/v1/scenarios/broken", 400);
   const Answer schema = check("GET", "/api/v1/scenario-schema", "/api/v1/scenario-schema", 200);
-  EXPECT_EQ(schema.body, engine::scenario_schema_text());
+  EXPECT_EQ(schema.body, server::scenario_schema_text());
 
   const Answer started = check("POST", runs, runs, 201, TestServer::body_of("tiny"), kJson);
   const std::string id = started.json().at("id");
@@ -126,7 +126,7 @@ TEST_F(RestApiTest, AnswersEveryRouteAsDocumented) {
   check("GET", trajectories, run + "/trajectories/perfect?alignment=sim3", 400);
   const std::string frames = one + "/frames/{file}";
   const Answer frame = check("GET", frames, run + "/frames/17.jpg", 200);
-  const auto image = engine::decode_jpeg(
+  const auto image = server::decode_jpeg(
       {reinterpret_cast<const std::uint8_t*>(frame.body.data()), frame.body.size()});
   ASSERT_TRUE(image);
   EXPECT_EQ(image->width_px, 64);

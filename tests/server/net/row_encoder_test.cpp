@@ -24,7 +24,7 @@ TEST(RowEncoder, SaysPosesInMillimetresAndDegrees) {
 }
 
 TEST(RowEncoder, GivesEveryColumnOneValueARow) {
-  engine::FrameRow row;
+  server::FrameRow row;
   row.frame = 3;
   row.t_ns = 96'774'194;
   row.T_world_body = pose_of(0, 0, 90);
@@ -38,8 +38,8 @@ TEST(RowEncoder, GivesEveryColumnOneValueARow) {
 }
 
 TEST(RowEncoder, SaysWhatTheSensorAndTheFaultsDidWhereTheyDid) {
-  const engine::FrameRow plain;
-  engine::FrameRow row;
+  const server::FrameRow plain;
+  server::FrameRow row;
   row.exposure_ns = 2'000'000;
   row.gain = 1.5;
   row.late_tiles = 3;
@@ -56,9 +56,9 @@ TEST(RowEncoder, SaysWhatTheSensorAndTheFaultsDidWhereTheyDid) {
 }
 
 TEST(RowEncoder, LeavesPosesOutWhileNotTracking) {
-  engine::EstimateRow lost;
+  server::EstimateRow lost;
   lost.sample.state = TrackingState::kLost;
-  engine::EstimateRow tracked;
+  server::EstimateRow tracked;
   tracked.sample.state = TrackingState::kTracking;
   tracked.T_world_body = pose_of(1, 2, 3);
   const auto columns = estimate_columns({lost, tracked});
@@ -68,7 +68,7 @@ TEST(RowEncoder, LeavesPosesOutWhileNotTracking) {
 }
 
 TEST(RowEncoder, SaysNullForARunWithoutError) {
-  engine::RunInfo info;
+  server::RunInfo info;
   EXPECT_TRUE(run_json(info).at("error").is_null());
   info.error = "bad";
   EXPECT_EQ(run_json(info).at("error"), "bad");

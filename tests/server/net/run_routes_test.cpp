@@ -24,7 +24,7 @@ Answer launch(const TestServer& server, const json& body) {
 }
 
 TEST(RunRoutes, FullQueueIsToldApart) {
-  engine::RunManagerOptions options;
+  server::RunManagerOptions options;
   options.max_waiting_runs = 2;
   TestServer server(net::ServerOptions(), options);
   const std::string first = server.start("slow");
@@ -43,7 +43,7 @@ TEST(RunRoutes, FullQueueIsToldApart) {
 }
 
 TEST(RunRoutes, RunBeyondTheMemoryIsRefusedWithFieldValueAndLimit) {
-  engine::RunManagerOptions options;
+  server::RunManagerOptions options;
   options.memory_limit_bytes = std::uint64_t{512} << 20U;
   TestServer server(net::ServerOptions(), options);
   json cameras = json::array();
@@ -80,10 +80,10 @@ TEST(RunRoutes, DamagedRunIsListedWithItsProblem) {
   TestServer server;
   const std::string id = server.fly("tiny");
   const fs::path folder = server.folder() / "runs" / id;
-  json created = engine::read_json(engine::created_file(folder)).value();
+  json created = server::read_json(server::created_file(folder)).value();
   created["created_utc"] = nullptr;
-  ASSERT_TRUE(engine::write_json(engine::created_file(folder), created).ok());
-  fs::last_write_time(engine::manifest_file(folder), fs::file_time_type::clock::now());
+  ASSERT_TRUE(server::write_json(server::created_file(folder), created).ok());
+  fs::last_write_time(server::manifest_file(folder), fs::file_time_type::clock::now());
   const auto listed = [&] { return ask(server.port(), "GET", kRuns).json().at("runs").at(0); };
   json run = listed();
   // The thread that flew the run may hold what it knows of it for a moment longer.
@@ -93,25 +93,24 @@ TEST(RunRoutes, DamagedRunIsListedWithItsProblem) {
   }
   EXPECT_THAT(run.at("problem").get<std::string>(), HasSubstr("created.json: created_utc = null"));
   EXPECT_EQ(run.at("status"), "completed");
-  write_text(engine::manifest_file(folder), "{\"format_version\": ");
+  write_text(server::manifest_file(folder), "{\"format_version\": ");
   const json damaged = ask(server.port(), "GET", std::string(kRuns) + "/" + id).json();
   EXPECT_EQ(damaged.at("status"), "unreadable");
   EXPECT_EQ(ask(server.port(), "GET", "/api/v1/health").status, 200);
 }
 
-/// Metrics that `overfly evaluate` has written are served, and viewers are told.
-TEST(RunRoutes, NewMetricsAreServedAndTold) {
+/// Metrics that `overfly evaluate` has written are served, and viewers are notified.
+TEST(RunRoutes, NewMetricsAreServedAndSentToViewers) {
   TestServer server;
   const std::string id = server.fly("tiny");
   WebSocketClient viewer(server.port());
   viewer.send({{"type", "attach"}, {"run", id}});
   json metrics = viewer.wait_for("metrics").at("metrics");
-  metrics["note"] = "scored again";
+  metrics["flight"]["path_length_m"] = 1.5;
   const fs::path folder = server.folder() / "runs" / id;
-  ASSERT_TRUE(engine::write_json(engine::metrics_file(folder), metrics).ok());
-  EXPECT_EQ(viewer.wait_for("metrics").at("metrics").at("note"), "scored again");
-  EXPECT_EQ(ask(server.port(), "GET", std::string(kRuns) + "/" + id + "/metrics").json().at("note"),
-            "scored again");
+  ASSERT_TRUE(server::write_json(server::metrics_file(folder), metrics).ok());
+  EXPECT_EQ(viewer.wait_for("metrics").at("metrics"), metrics);
+  EXPECT_EQ(ask(server.port(), "GET", std::string(kRuns) + "/" + id + "/metrics").json(), metrics);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A client that does not read: it is let go, and nobody else notices.
+// A client that does not read is disconnected and does not affect others.
 #include <gtest/gtest.h>
 
 #include "tests/server/net/test_client.hpp"

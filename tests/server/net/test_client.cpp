@@ -156,10 +156,16 @@ bool WebSocketClient::read_one() {
 
 nlohmann::json WebSocketClient::wait_until(
     const std::function<bool(const nlohmann::json&)>& condition) {
-  for (;;) {
-    const std::size_t before = impl_->texts.size();
+  return wait_since(impl_->texts.size(), condition);
+}
+
+nlohmann::json WebSocketClient::wait_since(
+    std::size_t first, const std::function<bool(const nlohmann::json&)>& condition) {
+  for (std::size_t next = first;;) {
+    for (; next < impl_->texts.size(); ++next) {
+      if (condition(impl_->texts[next])) return impl_->texts[next];
+    }
     if (!read_one()) throw std::runtime_error("the connection ended");
-    if (impl_->texts.size() > before && condition(impl_->texts.back())) return impl_->texts.back();
   }
 }
 

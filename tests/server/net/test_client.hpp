@@ -25,7 +25,7 @@ using Headers = std::map<std::string, std::string>;
 
 inline const Headers kJson = {{"Content-Type", "application/json"}};
 
-/// One request on a connection of its own.
+/// One request on a new connection.
 [[nodiscard]] Answer ask(std::uint16_t port,
                          const std::string& method,
                          const std::string& target,
@@ -61,6 +61,9 @@ class WebSocketClient {
   nlohmann::json wait_for(const std::string& type);
   /// The next text message for which the condition holds.
   nlohmann::json wait_until(const std::function<bool(const nlohmann::json&)>& condition);
+  /// Likewise, from the message with index `first` of texts() on, which may have arrived already.
+  nlohmann::json wait_since(std::size_t first,
+                            const std::function<bool(const nlohmann::json&)>& condition);
   /// The answer (`ok` or `error`) to a message that is sent with a new `request` number.
   nlohmann::json command(nlohmann::json message);
   /// The next picture for which the condition holds.

@@ -43,7 +43,7 @@ TestServer::TestServer(const net::ServerLimits& limits, const std::string& token
         return options;
       }()) {}
 
-TestServer::TestServer(net::ServerOptions server_options, engine::RunManagerOptions options) {
+TestServer::TestServer(net::ServerOptions server_options, server::RunManagerOptions options) {
   const fs::path scenarios = folder() / "scenarios";
   const fs::path web = folder() / "web";
   const fs::path world_folder = folder() / "world";
@@ -68,10 +68,10 @@ TestServer::TestServer(net::ServerOptions server_options, engine::RunManagerOpti
       -> Result<std::unique_ptr<renderer::Renderer>> {
     return renderer::create_noop_renderer(std::move(tiles));
   };
-  auto runs = engine::RunManager::create(options);
+  auto runs = server::RunManager::create(options);
   require(runs.ok(), runs.ok() ? "" : runs.error().message);
   runs_ = std::move(*runs);
-  views_ = std::make_unique<engine::ViewService>(*runs_);
+  views_ = std::make_unique<server::ViewService>(*runs_);
   if (server_options.address != "127.0.0.1") server_options.token = std::string(32, 't');
   token_ = server_options.token;
   server_options.port = 0;
@@ -125,8 +125,8 @@ void TestServer::wait_for_end(const std::string& id) {
   require(timeline.ok(), "no timeline");
   std::uint64_t revision = (*timeline)->revision();
   for (;;) {
-    const engine::RunStatus status = (*timeline)->info().status;
-    if (status != engine::RunStatus::kQueued && status != engine::RunStatus::kRunning) return;
+    const server::RunStatus status = (*timeline)->info().status;
+    if (status != server::RunStatus::kQueued && status != server::RunStatus::kRunning) return;
     const std::uint64_t next = (*timeline)->wait_for_change(revision, 30'000);
     require(next != revision, "the run stands still for 30 s");
     revision = next;

@@ -24,11 +24,11 @@ class TestServer {
   explicit TestServer(const net::ServerLimits& limits = {}, const std::string& token = "");
   /// Takes all of the options but port, dashboard and log. Off loopback it has a token.
   /// @param runs  its folders and its renderer are the test's own
-  explicit TestServer(net::ServerOptions options, engine::RunManagerOptions runs = {});
+  explicit TestServer(net::ServerOptions options, server::RunManagerOptions runs = {});
 
   [[nodiscard]] std::uint16_t port() const { return server_->port(); }
-  [[nodiscard]] engine::RunManager& runs() { return *runs_; }
-  [[nodiscard]] engine::ViewService& views() { return *views_; }
+  [[nodiscard]] server::RunManager& runs() { return *runs_; }
+  [[nodiscard]] server::ViewService& views() { return *views_; }
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_.path(); }
   [[nodiscard]] static std::string body_of(const std::string& scenario) {
     return nlohmann::json{{"scenario", scenario}}.dump();
@@ -51,8 +51,8 @@ class TestServer {
   std::mutex log_mutex_;
   std::condition_variable logged_;
   std::vector<std::string> log_;
-  std::unique_ptr<engine::RunManager> runs_;
-  std::unique_ptr<engine::ViewService> views_;
+  std::unique_ptr<server::RunManager> runs_;
+  std::unique_ptr<server::ViewService> views_;
   std::string token_;
   std::unique_ptr<net::Server> server_;
 };

@@ -5,16 +5,16 @@
 #include <map>
 #include <mutex>
 
-#include "core/trajectory_io.hpp"
+#include "core/motion/trajectory_io.hpp"
 #include "server/files/whole_file.hpp"
 #include "server/record/rows.hpp"
 #include "server/record/run_folder.hpp"
 #include "server/record/run_info_file.hpp"
-#include "server/record/run_timeline.hpp"
 #include "server/run/run_options.hpp"
-#include "tests/server/support/engine_fixture.hpp"
+#include "server/timeline/run_timeline.hpp"
+#include "tests/server/support/server_fixture.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -110,12 +110,14 @@ TEST(CameraRun, RecordsEveryCameraAndScoresEachEstimatorAgainstItsOwn) {
   const auto run = run_scenario(scenario, options_for(folder.path() / "r"));
   ASSERT_TRUE(run.ok()) << run.error().message;
   for (const char* name : {"p", "q"}) {
-    const Json& score = run->metrics.at("estimators").at(name);
-    EXPECT_EQ(score.at("outcome"), "COMPLETED") << name;
-    EXPECT_LT(score.at("alignments").at("init_scale").at("position_rmse_m").get<double>(), 1e-6);
-    EXPECT_LT(score.at("alignments").at("init_scale").at("rotation_rmse_deg").get<double>(), 1e-6);
+    const EstimatorMetrics& score = run->metrics.estimators.at(name);
+    EXPECT_EQ(score.score.outcome, evaluation::Outcome::kCompleted) << name;
+    EXPECT_LT(score.score.alignments.at(evaluation::AlignmentMode::kInitScale).position_m.rmse,
+              1e-6);
+    EXPECT_LT(score.score.alignments.at(evaluation::AlignmentMode::kInitScale).rotation_deg->rmse,
+              1e-6);
   }
-  EXPECT_EQ(run->metrics.at("cameras").at("tilted").at("frames"), 21);
+  EXPECT_EQ(run->metrics.cameras.at(1).frames, 21);
   EXPECT_TRUE(fs::exists(folder.path() / "r/frames/000020.jpg"));
   EXPECT_TRUE(fs::exists(folder.path() / "r/frames/tilted/000020.jpg"));
 
@@ -177,7 +179,7 @@ TEST(CameraRun, FaultsAreInTheRecordInTheLogAndAtTheEstimator) {
   EXPECT_THAT(told, Contains("stamp_offset ends"));
   EXPECT_FALSE(fs::exists(folder.path() / "r/frames/000003.jpg")) << "it got lost";
   EXPECT_TRUE(fs::exists(folder.path() / "r/frames/000005.jpg"));
-  EXPECT_EQ((*opened)->metrics().at("camera").at("faults").at("dropped_frames"), 2);
+  EXPECT_EQ((*opened)->metrics()->cameras.at(kMainCamera).faults.at("dropped_frames"), 2);
 }
 
 TEST(CameraRun, WrongStampsShowAsErrorAlongTheTrack) {
@@ -187,10 +189,10 @@ TEST(CameraRun, WrongStampsShowAsErrorAlongTheTrack) {
                       R"(faults=[{"kind":"stamp_offset","at_s":1,"offset_ms":-40}])"});
   const auto run = run_scenario(scenario, options_for(folder.path() / "r"));
   ASSERT_TRUE(run.ok()) << run.error().message;
-  const Json& score = run->metrics.at("estimators").at("p");
+  const EstimatorMetrics& score = run->metrics.estimators.at("p");
   // Frames from 1 s on claim a time 40 ms too early: 1 m of way at 25 m/s.
   EXPECT_NEAR(
-      score.at("alignments").at("init_scale").at("position_max_m").get<double>(), 1.0, 0.01);
+      score.score.alignments.at(evaluation::AlignmentMode::kInitScale).position_m.max, 1.0, 0.01);
 }
 
 class CameraRunOn : public ::testing::TestWithParam<const char*> {};
@@ -274,13 +276,13 @@ TEST(CameraRun, CoarseImageryIsFlagged) {
       run_scenario(small_scenario({"duration_s=0.2"}), options_for(folder.path() / "a"));
   ASSERT_TRUE(fine.ok()) << fine.error().message;
   EXPECT_FALSE(fine->info.texture_limited);
-  EXPECT_FALSE(fine->metrics.at("texture").at("texture_limited").get<bool>());
+  EXPECT_FALSE(fine->metrics.cameras.at(kMainCamera).texture.limited);
   const auto coarse = run_scenario(
       small_scenario({"duration_s=0.2", "camera.width_px=1600", "camera.height_px=64"}),
       options_for(folder.path() / "b"));
   ASSERT_TRUE(coarse.ok()) << coarse.error().message;
   EXPECT_TRUE(coarse->info.texture_limited);
-  EXPECT_LT(coarse->metrics.at("texture").at("texels_per_pixel_median").get<double>(), 0.5);
+  EXPECT_LT(coarse->metrics.cameras.at(kMainCamera).texture.texels_per_pixel_median, 0.5);
   const auto info = read_run_info(folder.path() / "b");
   ASSERT_TRUE(info.ok());
   EXPECT_TRUE(info->texture_limited);
@@ -295,4 +297,4 @@ TEST(CameraRun, BadSensorIsNamedWithItsCamera) {
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -5,12 +5,12 @@
 #include <vector>
 
 #include "server/record/rows.hpp"
-#include "server/record/run_timeline.hpp"
 #include "server/run/run_options.hpp"
-#include "tests/server/support/engine_fixture.hpp"
+#include "server/timeline/run_timeline.hpp"
 #include "tests/server/support/jumping_clock.hpp"
+#include "tests/server/support/server_fixture.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 using Json = nlohmann::json;
@@ -64,7 +64,8 @@ RunResult flown(const std::string& pacing, const std::filesystem::path& folder) 
 TEST(LateTiles, AreCountedInRealTimeAfterTheFirstView) {
   const overfly::testing::TemporaryFolder folder;
   const RunResult run = flown("real_time", folder.path() / "r");
-  EXPECT_EQ(run.metrics.at("camera").at("late_tiles"), (Json{{"tiles", 20}, {"frames", 10}}));
+  EXPECT_EQ(run.metrics.cameras.at(kMainCamera).late_tiles, 20);
+  EXPECT_EQ(run.metrics.cameras.at(kMainCamera).frames_with_late_tiles, 10);
   const auto opened = RunTimeline::open(folder.path() / "r");
   ASSERT_TRUE(opened.ok()) << opened.error().message;
   for (const FrameRow& row : (*opened)->frames(0, 100)) {
@@ -75,9 +76,9 @@ TEST(LateTiles, AreCountedInRealTimeAfterTheFirstView) {
 TEST(LateTiles, AreWaitedForInLockstep) {
   const overfly::testing::TemporaryFolder folder;
   const RunResult run = flown("lockstep", folder.path() / "r");
-  EXPECT_EQ(run.metrics.at("camera").at("frames"), 11);
-  EXPECT_FALSE(run.metrics.at("camera").contains("late_tiles"));
+  EXPECT_EQ(run.metrics.cameras.at(kMainCamera).frames, 11);
+  EXPECT_EQ(run.metrics.cameras.at(kMainCamera).late_tiles, 0);
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

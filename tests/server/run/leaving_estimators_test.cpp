@@ -10,9 +10,9 @@
 #include "server/record/run_info_file.hpp"
 #include "server/record/run_lock.hpp"
 #include "server/run/run_options.hpp"
-#include "tests/server/support/engine_fixture.hpp"
+#include "tests/server/support/server_fixture.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -157,4 +157,4 @@ finally:
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -4,9 +4,9 @@
 #include "server/estimators/estimator_factory.hpp"
 #include "server/run/run_options.hpp"
 #include "tests/renderer/procedural_ground.hpp"
-#include "tests/server/support/engine_fixture.hpp"
+#include "tests/server/support/server_fixture.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 using nlohmann::json;
@@ -63,11 +63,10 @@ Flown flown_with_lens(const std::string& lens, bool blind = false) {
   };
   const auto run = run_scenario(scenario, options);
   if (!run) throw std::runtime_error(run.error().message);
-  const json& score = run->metrics.at("estimators").at("f");
-  Flown result{score.at("outcome")};
-  if (score.at("alignments").contains("sim3")) {
-    result.rmse_m = score.at("alignments").at("sim3").at("position_rmse_m");
-  }
+  const evaluation::Score& score = run->metrics.estimators.at("f").score;
+  Flown result{evaluation::to_string(score.outcome)};
+  const auto sim3 = score.alignments.find(evaluation::AlignmentMode::kSim3);
+  if (sim3 != score.alignments.end()) result.rmse_m = sim3->second.position_m.rmse;
   return result;
 }
 
@@ -88,4 +87,4 @@ TEST(LensRun, ALensThatIsNotToldSpoilsTheTrack) {
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

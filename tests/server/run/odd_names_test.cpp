@@ -2,14 +2,14 @@
 // exceptions.
 #include <gtest/gtest.h>
 
-#include "core/trajectory_io.hpp"
+#include "core/motion/trajectory_io.hpp"
 #include "server/export/export_source.hpp"
 #include "server/export/video_export.hpp"
 #include "server/record/run_folder.hpp"
 #include "server/run/run.hpp"
 #include "tests/server/support/manager_fixture.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -85,4 +85,4 @@ TEST_F(OddNames, OfTheTimesBesidePoses) {
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -11,10 +11,10 @@
 #include "server/run/run_options.hpp"
 #include "server/timing/picture_rate.hpp"
 #include "server/timing/run_clock.hpp"
-#include "tests/server/support/engine_fixture.hpp"
+#include "tests/server/support/server_fixture.hpp"
 #include "tests/server/support/simulated_clock.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 using overfly::testing::TemporaryFolder;
@@ -126,13 +126,13 @@ TEST_F(RealTime, BusyEstimatorGetsTheLatestFrameAndTheOthersAreListed) {
   ASSERT_TRUE(records.ok()) << records.error().message;
   EXPECT_THAT(frames_where(records->estimators[0], false), ElementsAre(0, 2, 4));
   EXPECT_THAT(frames_where(records->estimators[0], true), ElementsAre(1, 3));
-  const Json& score = run->metrics.at("estimators").at("slow");
-  EXPECT_EQ(score.at("dropped_frames"), 2);
-  EXPECT_EQ(score.at("frames"), 5);
-  EXPECT_EQ(score.at("coverage"), 0.6);
-  EXPECT_EQ(score.at("outcome"), "COMPLETED") << "busy, not lost";
-  EXPECT_EQ(score.at("dropped_frame_ranges"), Json::parse("[[1, 1], [3, 3]]"));
-  EXPECT_EQ(run->metrics.at("camera").at("late_frames"), 0);
+  const EstimatorMetrics& score = run->metrics.estimators.at("slow");
+  EXPECT_EQ(score.dropped_frames, 2);
+  EXPECT_EQ(score.score.frames, 5);
+  EXPECT_EQ(score.score.coverage, 0.6);
+  EXPECT_EQ(score.score.outcome, evaluation::Outcome::kCompleted) << "busy, not lost";
+  EXPECT_THAT(score.dropped_frame_ranges, ElementsAre(FrameRange{1, 1}, FrameRange{3, 3}));
+  EXPECT_EQ(run->metrics.late_frames, 0);
   EXPECT_EQ(run->info.frames, 5);
 }
 
@@ -146,8 +146,8 @@ TEST_F(RealTime, QuickEstimatorDropsNothing) {
                        {"pacing=real_time", R"(estimators=[{"name":"slow","type":"feature"}])"}),
                    options_);
   ASSERT_TRUE(run.ok()) << run.error().message;
-  EXPECT_EQ(run->metrics.at("estimators").at("slow").at("dropped_frames"), 0);
-  EXPECT_EQ(run->metrics.at("estimators").at("slow").at("frames"), 21);
+  EXPECT_EQ(run->metrics.estimators.at("slow").dropped_frames, 0);
+  EXPECT_EQ(run->metrics.estimators.at("slow").score.frames, 21);
 }
 
 TEST_F(RealTime, TheFlightBeginsWhenItsEstimatorsAreReady) {
@@ -165,7 +165,7 @@ TEST_F(RealTime, TheFlightBeginsWhenItsEstimatorsAreReady) {
       options_);
   ASSERT_TRUE(run.ok()) << run.error().message;
   for (const char* name : {"a", "b"}) {
-    EXPECT_EQ(run->metrics.at("estimators").at(name).at("dropped_frames"), 0) << name;
+    EXPECT_EQ(run->metrics.estimators.at(name).dropped_frames, 0) << name;
   }
   const Json manifest = read_json(manifest_file(options_.folder)).value();
   EXPECT_EQ(manifest.at("estimators").at(1).at("parameters").at("vocabulary"), "loaded");
@@ -188,16 +188,16 @@ TEST_F(RealTime, RendererThatFallsBehindSkipsFramesWhoseTimeHasPassed) {
   const auto records = read_run_records(options_.folder);
   ASSERT_TRUE(records.ok());
   std::vector<std::int64_t> drawn;
-  for (const FrameRecord& frame : records->frames) drawn.push_back(frame.row.frame);
+  for (const FrameRow& frame : records->main_camera().frames) drawn.push_back(frame.frame);
   EXPECT_THAT(drawn, ElementsAre(0, 2, 5, 7, 10));
   std::vector<std::int64_t> late;
   for (const evaluation::FlightFrame& frame : records->late_frames) late.push_back(frame.frame);
   EXPECT_THAT(late, ElementsAre(1, 3, 4, 6, 8, 9));
-  const Json& score = run->metrics.at("estimators").at("p");
-  EXPECT_EQ(score.at("frames"), 11);
-  EXPECT_DOUBLE_EQ(score.at("coverage").get<double>(), 5.0 / 11.0);
-  EXPECT_EQ(run->metrics.at("camera").at("late_frame_ranges"),
-            Json::parse("[[1, 1], [3, 4], [6, 6], [8, 9]]"));
+  const EstimatorMetrics& score = run->metrics.estimators.at("p");
+  EXPECT_EQ(score.score.frames, 11);
+  EXPECT_DOUBLE_EQ(score.score.coverage, 5.0 / 11.0);
+  EXPECT_THAT(run->metrics.late_frame_ranges,
+              ElementsAre(FrameRange{1, 1}, FrameRange{3, 4}, FrameRange{6, 6}, FrameRange{8, 9}));
 }
 
 TEST_F(RealTime, PicturesForViewersGiveWayToFramesThatComeLate) {
@@ -218,4 +218,4 @@ TEST_F(RealTime, PicturesForViewersGiveWayToFramesThatComeLate) {
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

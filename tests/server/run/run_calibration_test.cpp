@@ -7,14 +7,14 @@
 #include <cmath>
 #include <sstream>
 
-#include "core/file_text.hpp"
+#include "core/outside/file_text.hpp"
 #include "server/files/whole_file.hpp"
 #include "server/record/run_folder.hpp"
 #include "server/run/run_options.hpp"
 #include "terrain/raster/image_file.hpp"
-#include "tests/server/support/engine_fixture.hpp"
+#include "tests/server/support/server_fixture.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -88,4 +88,4 @@ TEST_F(RunCalibration, TimesMatchTheImagesThatArrived) {
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -16,7 +16,7 @@
 #include "tests/server/support/manager_fixture.hpp"
 #include "vo_bridges/vo_port.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -198,4 +198,4 @@ TEST_F(RunFailureOfManager, RunsWaitForEachOthersMemory) {
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -1,7 +1,7 @@
 // Whole runs over a small world: folders, determinism, scores, ends.
 #include "server/run/run.hpp"
 #include "server/record/run_info_file.hpp"
-#include "server/record/run_timeline.hpp"
+#include "server/timeline/run_timeline.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,12 +9,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/trajectory_io.hpp"
+#include "core/motion/trajectory_io.hpp"
 #include "server/files/whole_file.hpp"
 #include "server/record/run_folder.hpp"
-#include "tests/server/support/engine_fixture.hpp"
+#include "server/scoring/run_metrics_json.hpp"
+#include "tests/server/support/server_fixture.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -70,17 +71,18 @@ TEST(Run, PerfectEstimatorHasNoErrorAndDriftingOneTheClosedForm) {
   const auto run = run_scenario(small_scenario({kThreeTypes, "duration_s=20"}),
                                 options_for(folder.path() / "r"));
   ASSERT_TRUE(run.ok()) << run.error().message;
-  const auto& estimators = run->metrics.at("estimators");
-  EXPECT_EQ(estimators.at("p").at("outcome"), "COMPLETED");
-  EXPECT_EQ(estimators.at("p").at("coverage"), 1.0);
-  EXPECT_TRUE(estimators.at("p").at("test_estimator").get<bool>());
-  EXPECT_FALSE(estimators.at("f").at("test_estimator").get<bool>());
-  const auto& perfect = estimators.at("p").at("alignments").at("init_scale");
-  EXPECT_LT(perfect.at("position_rmse_m").get<double>(), 1e-6);
-  EXPECT_LT(perfect.at("rotation_rmse_deg").get<double>(), 1e-6);
+  const auto& estimators = run->metrics.estimators;
+  EXPECT_EQ(estimators.at("p").score.outcome, evaluation::Outcome::kCompleted);
+  EXPECT_EQ(estimators.at("p").score.coverage, 1.0);
+  EXPECT_TRUE(estimators.at("p").test_estimator);
+  EXPECT_FALSE(estimators.at("f").test_estimator);
+  const auto& perfect =
+      estimators.at("p").score.alignments.at(evaluation::AlignmentMode::kInitScale);
+  EXPECT_LT(perfect.position_m.rmse, 1e-6);
+  EXPECT_LT(perfect.rotation_deg->rmse, 1e-6);
 
   // Each step is 1 % too long, so the error at a pose is 1 % of its displacement from the start.
-  const auto truth = read_trajectory(truth_file(folder.path() / "r"));
+  const auto truth = read_trajectory(CameraFiles::of_main_camera(folder.path() / "r").truth());
   ASSERT_TRUE(truth.ok()) << truth.error().message;
   const auto& poses = truth->trajectory.poses();
   ASSERT_EQ(poses.size(), 201U);
@@ -89,9 +91,10 @@ TEST(Run, PerfectEstimatorHasNoErrorAndDriftingOneTheClosedForm) {
     sum += (stamped.pose.translation - poses.front().pose.translation).squaredNorm();
   }
   const double expected = 0.01 * std::sqrt(sum / static_cast<double>(poses.size()));
-  const auto& drifting = estimators.at("d").at("alignments").at("init_scale");
-  EXPECT_NEAR(drifting.at("position_rmse_m").get<double>(), expected, 1e-6);
-  EXPECT_LT(drifting.at("rotation_rmse_deg").get<double>(), 1e-6);
+  const auto& drifting =
+      estimators.at("d").score.alignments.at(evaluation::AlignmentMode::kInitScale);
+  EXPECT_NEAR(drifting.position_m.rmse, expected, 1e-6);
+  EXPECT_LT(drifting.rotation_deg->rmse, 1e-6);
 }
 
 TEST(Run, FolderHasEveryFileAndReadsBackAsTheLiveRunWas) {
@@ -105,7 +108,7 @@ TEST(Run, FolderHasEveryFileAndReadsBackAsTheLiveRunWas) {
   const auto opened = RunTimeline::open(options.folder);
   ASSERT_TRUE(opened.ok()) << opened.error().message;
   EXPECT_EQ((*opened)->info().status, RunStatus::kCompleted);
-  EXPECT_EQ((*opened)->metrics(), options.timeline->metrics());
+  EXPECT_EQ(json_from(*(*opened)->metrics()), json_from(*options.timeline->metrics()));
   EXPECT_EQ((*opened)->frame_count(), 21U);
   const auto live = options.timeline->frames(0, 100);
   const auto read = (*opened)->frames(0, 100);
@@ -166,7 +169,7 @@ TEST(Run, CancelLeavesACompleteFolderUpToTheLastFrame) {
   const auto run = run_scenario(small_scenario({kThreeTypes}), options);
   ASSERT_TRUE(run.ok()) << run.error().message;
   EXPECT_EQ(run->info.status, RunStatus::kCancelled);
-  EXPECT_EQ(run->metrics.at("camera").at("frames"), 5);
+  EXPECT_EQ(run->metrics.cameras.at(kMainCamera).frames, 5);
   const auto opened = RunTimeline::open(options.folder);
   ASSERT_TRUE(opened.ok());
   EXPECT_EQ((*opened)->info().status, RunStatus::kCancelled);
@@ -236,11 +239,11 @@ TEST(Run, CrashedEstimatorIsAnOutcomeNotAFailure) {
   const auto run =
       run_scenario(small_scenario({R"(estimators=[{"name":"m","type":"feature"}])"}), options);
   ASSERT_TRUE(run.ok()) << run.error().message;
-  const auto& score = run->metrics.at("estimators").at("m");
-  EXPECT_EQ(score.at("outcome"), "CRASHED");
-  EXPECT_NEAR(score.at("outcome_time_s").get<double>(), 0.2, 1e-9);
-  EXPECT_NEAR(score.at("coverage").get<double>(), 2.0 / 21.0, 1e-12);
+  const auto& score = run->metrics.estimators.at("m");
+  EXPECT_EQ(score.score.outcome, evaluation::Outcome::kCrashed);
+  EXPECT_NEAR(score.score.outcome_time_s.value_or(0.0), 0.2, 1e-9);
+  EXPECT_NEAR(score.score.coverage, 2.0 / 21.0, 1e-12);
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -9,10 +9,10 @@
 #include "server/record/run_records.hpp"
 #include "server/run/run_options.hpp"
 #include "server/worlds/world_cache.hpp"
-#include "tests/server/support/engine_fixture.hpp"
 #include "tests/server/support/jumping_clock.hpp"
+#include "tests/server/support/server_fixture.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -110,7 +110,7 @@ class VanishingData : public ::testing::TestWithParam<const char*> {
     EXPECT_THAT(info->error, HasSubstr(why));
     const auto records = read_run_records(folder_.path() / name);
     ASSERT_TRUE(records.ok()) << records.error().message;
-    EXPECT_EQ(records->frames.size(), frames);
+    EXPECT_EQ(records->main_camera().frames.size(), frames);
   }
 
   RunOptions options_;
@@ -155,7 +155,8 @@ TEST_P(VanishingData, FilesTakenAwayOrReplacedAreReadOnAsTheyWereOpened) {
   const auto before = read_run_records(options_.folder.parent_path() / "whole");
   const auto after = read_run_records(options_.folder);
   for (std::size_t i = 0; i < 21; ++i) {
-    EXPECT_EQ(after->frames[i].row.image_crc32, before->frames[i].row.image_crc32);
+    EXPECT_EQ(after->main_camera().frames[i].image_crc32,
+              before->main_camera().frames[i].image_crc32);
   }
 }
 
@@ -165,4 +166,4 @@ INSTANTIATE_TEST_SUITE_P(BothPacings,
                          [](const auto& pacing) { return std::string(pacing.param); });
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

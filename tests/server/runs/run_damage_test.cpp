@@ -11,13 +11,13 @@
 #include "server/files/whole_file.hpp"
 #include "server/record/run_folder.hpp"
 #include "server/record/run_info_file.hpp"
-#include "server/record/run_timeline.hpp"
 #include "server/run/run_options.hpp"
 #include "server/runs/run_manager.hpp"
-#include "server/scoring/row_alignment.hpp"
-#include "tests/server/support/engine_fixture.hpp"
+#include "server/timeline/row_alignment.hpp"
+#include "server/timeline/run_timeline.hpp"
+#include "tests/server/support/server_fixture.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -172,8 +172,8 @@ TEST_F(RunDamage, EveryFieldOfTheScenarioMayBeWrong) {
 }
 
 TEST_F(RunDamage, EveryFieldOfEveryRowMayBeWrong) {
-  for (const fs::path& file : {frames_file(run()),
-                               camera_frames_file(run(), "b"),
+  for (const fs::path& file : {CameraFiles::of_main_camera(run()).rows(),
+                               CameraFiles(run(), 1, "b").rows(),
                                estimate_file(run(), "p"),
                                log_file(run())}) {
     const std::string whole = overfly::testing::read_text(file);
@@ -191,7 +191,7 @@ TEST_F(RunDamage, EveryDocumentMayBeCutShortOrBeSomethingElse) {
                                scenario_file(run()),
                                timings_file(run()),
                                metrics_file(run()),
-                               frames_file(run()),
+                               CameraFiles::of_main_camera(run()).rows(),
                                estimate_file(run(), "p"),
                                log_file(run())}) {
     const std::string whole = overfly::testing::read_text(file);
@@ -273,4 +273,4 @@ TEST_F(RunDamage, RunWithoutReadableTimingsOrMetricsPlays) {
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

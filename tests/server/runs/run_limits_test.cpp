@@ -13,7 +13,7 @@
 #include "server/runs/idempotency_keys.hpp"
 #include "tests/server/support/manager_fixture.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -205,4 +205,4 @@ TEST_F(RunLimitsTest, KeyOfADeletedRunGivesAnother) {
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -9,9 +9,10 @@
 #include "server/record/run_folder.hpp"
 #include "server/record/run_info.hpp"
 #include "server/record/run_lock.hpp"
+#include "server/scoring/run_metrics_json.hpp"
 #include "tests/server/support/manager_fixture.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -75,7 +76,7 @@ TEST_F(RunListTest, ReadsNoFileThatGrowsWithTheFlight) {
   const auto runs = manager();
   const std::string id = fly(*runs);
   for (const fs::path& file : {timings_file(folder_of(id)),
-                               frames_file(folder_of(id)),
+                               CameraFiles::of_main_camera(folder_of(id)).rows(),
                                estimate_file(folder_of(id), "p"),
                                log_file(folder_of(id))}) {
     fs::remove(file);
@@ -93,10 +94,13 @@ TEST_F(RunListTest, CountsFramesOfAnInterruptedRunFromItsLastRow) {
   const auto runs = manager();
   const std::string id = fly(*runs);
   change_manifest(id, "status", "running");
-  const std::string rows = overfly::testing::read_text(frames_file(folder_of(id)));
-  fs::resize_file(frames_file(folder_of(id)), 0);
-  fs::resize_file(frames_file(folder_of(id)), std::uintmax_t{1} << 33U);  // holes alone
-  const int file = ::open(frames_file(folder_of(id)).c_str(), O_WRONLY | O_APPEND);
+  const std::string rows =
+      overfly::testing::read_text(CameraFiles::of_main_camera(folder_of(id)).rows());
+  fs::resize_file(CameraFiles::of_main_camera(folder_of(id)).rows(), 0);
+  fs::resize_file(CameraFiles::of_main_camera(folder_of(id)).rows(),
+                  std::uintmax_t{1} << 33U);  // holes alone
+  const int file =
+      ::open(CameraFiles::of_main_camera(folder_of(id)).rows().c_str(), O_WRONLY | O_APPEND);
   ASSERT_EQ(::write(file, ("\n" + rows).data(), rows.size() + 1),
             static_cast<ssize_t>(rows.size() + 1));
   ::close(file);
@@ -147,17 +151,19 @@ TEST_F(RunListTest, NewMetricsReachThoseWhoWatch) {
   const auto runs = manager();
   const std::string id = fly(*runs);
   const auto timeline = runs->timeline(id).value();
-  nlohmann::json metrics = timeline->metrics();
-  metrics["note"] = "scored again";
-  ASSERT_TRUE(write_json(metrics_file(folder_of(id)), metrics).ok());
+  RunMetrics metrics = *timeline->metrics();
+  metrics.flight.path_length_m = 1.5;
+  ASSERT_TRUE(write_json(metrics_file(folder_of(id)), json_from(metrics)).ok());
   // Nobody asks for the run: its watchers are told all the same.
   std::uint64_t seen = timeline->revision();
-  while (!timeline->metrics().contains("note")) seen = timeline->wait_for_change(seen, 1000);
-  metrics["note"] = "and again";
-  ASSERT_TRUE(write_json(metrics_file(folder_of(id)), metrics).ok());
+  while (timeline->metrics()->flight.path_length_m != 1.5) {
+    seen = timeline->wait_for_change(seen, 1000);
+  }
+  metrics.flight.path_length_m = 2.5;
+  ASSERT_TRUE(write_json(metrics_file(folder_of(id)), json_from(metrics)).ok());
   const auto asked = runs->timeline(id).value();
   EXPECT_EQ(asked, timeline) << "a watched run stays the same";
-  EXPECT_EQ(asked->metrics().at("note"), "and again");
+  EXPECT_EQ(asked->metrics()->flight.path_length_m, 2.5);
 }
 
 TEST_F(RunListTest, FolderPutInARunsPlaceIsReadAnew) {
@@ -176,4 +182,4 @@ TEST_F(RunListTest, FolderPutInARunsPlaceIsReadAnew) {
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

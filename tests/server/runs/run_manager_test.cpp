@@ -2,7 +2,7 @@
 #include "server/runs/run_manager.hpp"
 #include "server/record/run_info_file.hpp"
 #include "server/record/run_lock.hpp"
-#include "server/record/run_timeline.hpp"
+#include "server/timeline/run_timeline.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 #include "server/scenario/document/scenario_override.hpp"
 #include "tests/server/support/manager_fixture.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -179,8 +179,10 @@ TEST_F(RunManagerTest, RunLeftByAKilledProcessIsInterrupted) {
   overfly::testing::write_text(manifest_file(killed), manifest.dump());
   overfly::testing::write_text(killed / ".running", "");
   fs::remove(metrics_file(killed));
-  const std::string frames = overfly::testing::read_text(frames_file(killed));
-  overfly::testing::write_text(frames_file(killed), frames.substr(0, frames.size() - 40));
+  const std::string frames =
+      overfly::testing::read_text(CameraFiles::of_main_camera(killed).rows());
+  overfly::testing::write_text(CameraFiles::of_main_camera(killed).rows(),
+                               frames.substr(0, frames.size() - 40));
 
   const auto timeline = runs->timeline("killed");
   ASSERT_TRUE(timeline.ok()) << timeline.error().message;
@@ -245,4 +247,4 @@ TEST_F(RunManagerTest, ClientsMayUseTheCommandsOfScenarioFilesOnly) {
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

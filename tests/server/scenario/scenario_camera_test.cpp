@@ -4,11 +4,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/pose.hpp"
+#include "core/motion/pose.hpp"
 #include "server/scenario/document/scenario_file.hpp"
 #include "server/scenario/scenario.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 using Json = nlohmann::json;
@@ -28,7 +28,7 @@ Scenario scenario(const char* fields) {
   return read ? *read : Scenario{};
 }
 
-std::string fault(const char* fields) {
+std::string error_of_fields(const char* fields) {
   const Result<Scenario> read = resolved(fields);
   return read ? "none" : read.error().message;
 }
@@ -89,7 +89,7 @@ TEST(ScenarioCamera, ReadsTheSensorInUnitsForPeople) {
                "shot_noise": true, "read_noise_e": 7, "full_well_e": 11000,
                "response": {"shape": "gamma", "gamma": 2.2},
                "auto_exposure": {"max_exposure_ms": 8, "settle_frames": 6}}}})");
-  const renderer::SensorModel& sensor = read.cameras.front().sensor;
+  const sensor::SensorModel& sensor = read.cameras.front().sensor;
   EXPECT_TRUE(sensor.enabled);
   EXPECT_DOUBLE_EQ(sensor.exposure_s, 4e-3);
   EXPECT_DOUBLE_EQ(sensor.readout_s, 20e-3);
@@ -99,7 +99,7 @@ TEST(ScenarioCamera, ReadsTheSensorInUnitsForPeople) {
   ASSERT_TRUE(sensor.auto_exposure);
   EXPECT_DOUBLE_EQ(sensor.auto_exposure->max_exposure_s, 8e-3);
   EXPECT_EQ(sensor.auto_exposure->settle_frames, 6);
-  const renderer::VibrationModel& vibration = read.cameras.front().vibration;
+  const sensor::VibrationModel& vibration = read.cameras.front().vibration;
   EXPECT_TRUE(vibration.enabled);
   EXPECT_EQ(vibration.engine_rotation_rms_rad, (std::vector<double>{1e-3, 5e-4}));
   EXPECT_EQ(vibration.noise_translation_rms_m[2], 2e-3);
@@ -153,7 +153,8 @@ TEST(ScenarioCamera, SaysWhatOneFieldForbidsAnother) {
       {R"({"flight": {"log": {"file": "a.tum", "camera_poses": true}},
            "camera": {"mount": {"facing": "forward"}}})",
        "flight.log.camera_poses = true: the first camera must be mounted nadir"}};
-  for (const auto& [fields, text] : cases) EXPECT_THAT(fault(fields), HasSubstr(text)) << fields;
+  for (const auto& [fields, text] : cases)
+    EXPECT_THAT(error_of_fields(fields), HasSubstr(text)) << fields;
 }
 
 TEST(ScenarioCamera, SeveralAreKnownByTheirNames) {
@@ -191,4 +192,4 @@ TEST(ScenarioCamera, ACopyOfTheResolvedDocumentMeansTheSame) {
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

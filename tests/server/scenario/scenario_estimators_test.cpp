@@ -8,9 +8,9 @@
 #include "server/estimators/estimator_factory.hpp"
 #include "server/scenario/document/scenario_file.hpp"
 #include "tests/support/support.hpp"
-#include "vo_bridges/lcm/lcm_estimator.hpp"
+#include "vo_bridges/lcm/lcm_options.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 using ::testing::ElementsAre;
@@ -203,4 +203,4 @@ TEST(EstimatorFactory, NamesEstimatorParameterAndLimit) {
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -1,4 +1,4 @@
-// Mutated scenarios and the program's verdicts on them; engine/ajv asks another validator.
+// Mutated scenarios and the program's verdicts on them; scenario/ajv asks another validator.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 #include "server/scenario/scenario.hpp"
 #include "tests/support/support.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 using Json = nlohmann::json;
@@ -206,19 +206,20 @@ std::vector<Mutant> all_mutants() {
 }
 
 TEST(ScenarioMutations, SeedsAreValid) {
-  for (const Mutant& seed : seeds()) EXPECT_TRUE(schema_faults(seed.document).empty()) << seed.name;
+  for (const Mutant& seed : seeds())
+    EXPECT_TRUE(schema_violations(seed.document).empty()) << seed.name;
 }
 
 TEST(ScenarioMutations, EachHasAVerdictAndInvalidOnesNameAField) {
   Json verdicts = Json::array();
   int invalid = 0;
   for (const Mutant& mutant : all_mutants()) {
-    const auto faults = schema_faults(mutant.document);
+    const auto violations = schema_violations(mutant.document);
     verdicts.push_back(
-        {{"name", mutant.name}, {"document", mutant.document}, {"valid", faults.empty()}});
-    if (faults.empty()) continue;
+        {{"name", mutant.name}, {"document", mutant.document}, {"valid", violations.empty()}});
+    if (violations.empty()) continue;
     ++invalid;
-    for (const auto& [path, text] : faults) {
+    for (const auto& [path, text] : violations) {
       EXPECT_THAT(text, HasSubstr(path));
       EXPECT_THAT(text, AnyOf(HasSubstr(": must be "), HasSubstr(": no such field")))
           << mutant.name;
@@ -263,7 +264,7 @@ TEST(ScenarioMutations, BadNumberNamesFileFieldValueAndLimit) {
 /// What passes the schema either resolves or is refused for a reason that is not a bug.
 TEST(ScenarioMutations, ValidOnesResolveOrAreRefusedWithAReason) {
   for (const Mutant& mutant : all_mutants()) {
-    const bool valid = schema_faults(mutant.document).empty();
+    const bool valid = schema_violations(mutant.document).empty();
     const Result<Scenario> scenario = resolve_scenario(mutant.document, {}, "/tmp");
     if (!valid) {
       ASSERT_FALSE(scenario.ok()) << mutant.name;
@@ -281,4 +282,4 @@ TEST(ScenarioSchema, UsesOnlyKeywordsThatTheProgramUnderstands) {
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

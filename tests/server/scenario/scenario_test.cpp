@@ -11,7 +11,7 @@
 #include "server/scenario/scenario.hpp"
 #include "tests/support/support.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 using overfly::testing::TemporaryFolder;
@@ -30,7 +30,7 @@ std::vector<Override> overrides(const std::vector<std::string>& texts) {
   return changes;
 }
 
-std::string fault_of(const Json& document, const std::vector<std::string>& texts) {
+std::string error_of(const Json& document, const std::vector<std::string>& texts) {
   const Result<Scenario> scenario = resolve_scenario(document, overrides(texts), "/tmp");
   return scenario ? "" : scenario.error().message;
 }
@@ -51,12 +51,12 @@ TEST(Scenario, FillsInTheDefaultsOfThePaper) {
   EXPECT_EQ(scenario->resolved.at("flight").at("course").at("airspeed_m_s"), 25);
 }
 
-TEST(Scenario, SaysFieldValueAndLimitOfEveryFault) {
-  const std::string faults =
-      fault_of(course_document(), {"camera.fov_deg=190", "flight.course.airspeed_m_s=4", "sed=1"});
-  EXPECT_THAT(faults, HasSubstr("camera.fov_deg = 190: must be in (0, 180)"));
-  EXPECT_THAT(faults, HasSubstr("flight.course.airspeed_m_s = 4: must be in [5, 80]"));
-  EXPECT_THAT(faults, HasSubstr("sed = 1: no such field (known: $schema, camera,"));
+TEST(Scenario, SaysFieldValueAndLimitOfEveryError) {
+  const std::string errors =
+      error_of(course_document(), {"camera.fov_deg=190", "flight.course.airspeed_m_s=4", "sed=1"});
+  EXPECT_THAT(errors, HasSubstr("camera.fov_deg = 190: must be in (0, 180)"));
+  EXPECT_THAT(errors, HasSubstr("flight.course.airspeed_m_s = 4: must be in [5, 80]"));
+  EXPECT_THAT(errors, HasSubstr("sed = 1: no such field (known: $schema, camera,"));
 }
 
 TEST(Scenario, NamesTheVerticalDatumAsAManifestDoes) {
@@ -69,22 +69,22 @@ TEST(Scenario, NamesTheVerticalDatumAsAManifestDoes) {
             terrain::VerticalDatum::kEgm2008);
   // The name of before.
   document["world"]["elevation"][0] = {{"file", "b.tif"}, {"datum", "egm2008"}};
-  EXPECT_THAT(fault_of(document, {}),
+  EXPECT_THAT(error_of(document, {}),
               HasSubstr("world.elevation.0.datum = \"egm2008\": no such field; did you mean "
                         "vertical_datum? (known: "));
 }
 
 TEST(Scenario, SaysWhatTheSchemaCannotSay) {
-  EXPECT_THAT(fault_of(course_document(), {"flight.course.leg_length_m=3300"}),
+  EXPECT_THAT(error_of(course_document(), {"flight.course.leg_length_m=3300"}),
               HasSubstr("flight.course.leg_length_m = 3300: must be less than"));
   EXPECT_THAT(
-      fault_of(course_document(),
+      error_of(course_document(),
                {R"(estimators=[{"name":"a","type":"perfect"},{"name":"a","type":"perfect"}])"}),
       HasSubstr("estimators.1.name = \"a\": must be unique"));
   EXPECT_THAT(
-      fault_of(course_document(), {"camera.fx_px=700", "camera.fy_px=700", "camera.fov_deg=80"}),
+      error_of(course_document(), {"camera.fx_px=700", "camera.fy_px=700", "camera.fov_deg=80"}),
       HasSubstr("camera.fx_px = 700: must not be given with camera.fov_deg"));
-  EXPECT_THAT(fault_of(course_document(), {"camera.fx_px=700"}),
+  EXPECT_THAT(error_of(course_document(), {"camera.fx_px=700"}),
               HasSubstr("camera.fy_px: must be given with camera.fx_px"));
 }
 
@@ -126,7 +126,7 @@ Json nested(std::size_t depth) {
 }
 
 TEST(ScenarioOverride, LimitsThePathsPartsAndTheDepthThatTheyMake) {
-  const auto fault = [](const std::string& path, const Json& value) {
+  const auto error = [](const std::string& path, const Json& value) {
     Json document = course_document();
     document.erase("seed");
     const auto scenario = resolve_scenario(document, {{path, value}}, "/tmp");
@@ -134,13 +134,13 @@ TEST(ScenarioOverride, LimitsThePathsPartsAndTheDepthThatTheyMake) {
     EXPECT_EQ(scenario.error().code, ErrorCode::kInvalidArgument);
     return scenario.error().message;
   };
-  EXPECT_THAT(fault(path_of(64), 1), HasSubstr("seed = "));  // the schema's word
-  const std::string long_path = fault(path_of(100'000), 1);
+  EXPECT_THAT(error(path_of(64), 1), HasSubstr("seed = "));  // the schema's error
+  const std::string long_path = error(path_of(100'000), 1);
   EXPECT_THAT(long_path, HasSubstr("has 100000 parts: must have at most 64"));
   EXPECT_LT(long_path.size(), 200U);
-  EXPECT_THAT(fault("seed", nested(63)), HasSubstr("seed = "));
-  EXPECT_THAT(fault("seed", nested(64)), HasSubstr("nested more than 64 deep"));
-  EXPECT_THAT(fault(path_of(40), nested(40)), HasSubstr("nested more than 64 deep"));
+  EXPECT_THAT(error("seed", nested(63)), HasSubstr("seed = "));
+  EXPECT_THAT(error("seed", nested(64)), HasSubstr("nested more than 64 deep"));
+  EXPECT_THAT(error(path_of(40), nested(40)), HasSubstr("nested more than 64 deep"));
 }
 
 TEST(ScenarioOverride, ReachesArraysAndReplacesTheKindOfWorld) {
@@ -154,9 +154,9 @@ TEST(ScenarioOverride, ReachesArraysAndReplacesTheKindOfWorld) {
   ASSERT_TRUE(scenario.ok()) << scenario.error().message;
   EXPECT_EQ(text_of(scenario->estimators.at(0).parameters.at("drift")), "0.01");
   EXPECT_EQ(std::get<std::filesystem::path>(scenario->world), "/base/w.json");
-  EXPECT_THAT(fault_of(document, {"estimators.2.name=e"}), HasSubstr("must be a number in [0, 0]"));
-  EXPECT_THAT(fault_of(document, {"seed.x=1", "seed.y.z=2"}), HasSubstr("seed"));
-  EXPECT_THAT(fault_of(document, {"format_version.x=1"}), HasSubstr("not an object or array"));
+  EXPECT_THAT(error_of(document, {"estimators.2.name=e"}), HasSubstr("must be a number in [0, 0]"));
+  EXPECT_THAT(error_of(document, {"seed.x=1", "seed.y.z=2"}), HasSubstr("seed"));
+  EXPECT_THAT(error_of(document, {"format_version.x=1"}), HasSubstr("not an object or array"));
 }
 
 TEST(ScenarioOverride, WholeCamerasTakeTheCamerasPlaceAndBack) {
@@ -170,7 +170,7 @@ TEST(ScenarioOverride, WholeCamerasTakeTheCamerasPlaceAndBack) {
   ASSERT_TRUE(one.ok()) << one.error().message;
   ASSERT_EQ(one->cameras.size(), 1U);
   EXPECT_EQ(one->cameras[0].name, "c");
-  EXPECT_THAT(fault_of(document, {two, "camera.width_px=64"}),
+  EXPECT_THAT(error_of(document, {two, "camera.width_px=64"}),
               HasSubstr("must not be given with cameras"));
 }
 
@@ -239,4 +239,4 @@ TEST(ScenarioList, ShippedScenariosAreValid) {
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

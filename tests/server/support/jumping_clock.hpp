@@ -6,7 +6,7 @@
 
 #include "server/timing/run_clock.hpp"
 
-namespace overfly::engine::testing {
+namespace overfly::server::testing {
 
 /// Time passes only while somebody sleeps. For one thread.
 class JumpingClock final : public RunClock {
@@ -20,4 +20,4 @@ class JumpingClock final : public RunClock {
   std::int64_t now_ns_ = 0;
 };
 
-}  // namespace overfly::engine::testing
+}  // namespace overfly::server::testing

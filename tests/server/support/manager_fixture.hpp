@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "server/record/run_info.hpp"
-#include "server/record/run_timeline.hpp"
 #include "server/runs/run_manager.hpp"
-#include "tests/server/support/engine_fixture.hpp"
+#include "server/timeline/run_timeline.hpp"
+#include "tests/server/support/server_fixture.hpp"
 
-namespace overfly::engine::testing {
+namespace overfly::server::testing {
 
 class ManagerTest : public ::testing::Test {
  protected:
@@ -73,4 +73,4 @@ class ManagerTest : public ::testing::Test {
   overfly::testing::TemporaryFolder folder_;
 };
 
-}  // namespace overfly::engine::testing
+}  // namespace overfly::server::testing

@@ -8,9 +8,9 @@
 
 #include "server/timing/run_clock.hpp"
 
-namespace overfly::engine::testing {
+namespace overfly::server::testing {
 
-/// Moves on to the earliest wish whenever everyone who is at work sleeps.
+/// Advances to the earliest wake-up time when all registered threads sleep.
 class SimulatedClock final : public RunClock {
  public:
   std::int64_t now_ns() override {
@@ -37,7 +37,7 @@ class SimulatedClock final : public RunClock {
 
  private:
   void move_on() {
-    // Woken sleepers are at work again although they still stand in the list.
+    // Woken threads run again although they are still in the list.
     int asleep = 0;
     for (const auto& [t_ns, woken] : sleepers_) asleep += woken ? 0 : 1;
     if (asleep == 0 || asleep < at_work_) return;
@@ -57,4 +57,4 @@ class SimulatedClock final : public RunClock {
   std::multimap<std::int64_t, bool> sleepers_;
 };
 
-}  // namespace overfly::engine::testing
+}  // namespace overfly::server::testing

@@ -8,7 +8,7 @@
 
 #include "server/timing/stage_timer.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 /// Within 1 % of the exact percentiles, whatever the durations' spread.
@@ -23,11 +23,11 @@ TEST(LatencyHistogram, AgreesWithSortedDurations) {
       histogram.add(list.ms.back());
       if (i != 0 && i != 1 && i != 99 && i != 9999) continue;
       const LatencySummary exact = *list.latencies();
-      const LatencySummary told = *histogram.summary();
-      EXPECT_NEAR(told.median_ms, exact.median_ms, 0.0101 * exact.median_ms) << i;
-      EXPECT_NEAR(told.p95_ms, exact.p95_ms, 0.0101 * exact.p95_ms) << i;
-      EXPECT_NEAR(told.p99_ms, exact.p99_ms, 0.0101 * exact.p99_ms) << i;
-      EXPECT_EQ(told.max_ms, exact.max_ms);
+      const LatencySummary summary = *histogram.summary();
+      EXPECT_NEAR(summary.median_ms, exact.median_ms, 0.0101 * exact.median_ms) << i;
+      EXPECT_NEAR(summary.p95_ms, exact.p95_ms, 0.0101 * exact.p95_ms) << i;
+      EXPECT_NEAR(summary.p99_ms, exact.p99_ms, 0.0101 * exact.p99_ms) << i;
+      EXPECT_EQ(summary.max_ms, exact.max_ms);
     }
   }
 }
@@ -42,4 +42,4 @@ TEST(LatencyHistogram, TakesAnyNumber) {
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -1,4 +1,4 @@
-// Pictures for viewers beside flights in real time: how often, and on what threads.
+// Pictures for viewers during real-time flights: rate and threads.
 #include "server/timing/picture_rate.hpp"
 
 #include <gtest/gtest.h>
@@ -9,9 +9,9 @@
 #include "core/time.hpp"
 #include "server/runs/run_manager.hpp"
 #include "server/views/view_service.hpp"
-#include "tests/server/support/engine_fixture.hpp"
+#include "tests/server/support/server_fixture.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 constexpr std::int64_t kPeriodNs = 32'000'000;
@@ -118,4 +118,4 @@ TEST(ViewService, DrawsOnAProcessorThatNobodyElseWantsWhileAFlightIsInTheAir) {
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -8,7 +8,7 @@
 #include <string>
 #include <thread>
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 int nice_of_this_thread() { return getpriority(PRIO_PROCESS, static_cast<id_t>(gettid())); }
@@ -57,4 +57,4 @@ TEST(ThreadPriority, TheLastOfTwoFlightsRestoresTheSession) {
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

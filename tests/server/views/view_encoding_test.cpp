@@ -8,7 +8,7 @@
 #include "server/files/jpeg.hpp"
 #include "tests/support/support.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 std::shared_ptr<const Image> ramp(int width_px, int height_px, int channels) {
@@ -79,4 +79,4 @@ TEST(PictureEncoder, PassesARecordedPictureOnWhereItFits) {
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

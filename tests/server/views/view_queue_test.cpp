@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
-ViewQueue::Entry wish(std::uint64_t client, int stream, std::int64_t t_ns) {
+ViewQueue::Entry entry(std::uint64_t client, int stream, std::int64_t t_ns) {
   PictureRequest request;
   request.t_ns = t_ns;
   return {client, stream, request, [](const Result<Picture>&) {}};
@@ -14,9 +14,9 @@ ViewQueue::Entry wish(std::uint64_t client, int stream, std::int64_t t_ns) {
 
 TEST(ViewQueue, GivesTheNewestWishInTheOldPlace) {
   ViewQueue queue;
-  EXPECT_FALSE(queue.push(wish(1, 1, 10)));
-  EXPECT_FALSE(queue.push(wish(2, 1, 20)));
-  EXPECT_TRUE(queue.push(wish(1, 1, 30)));
+  EXPECT_FALSE(queue.push(entry(1, 1, 10)));
+  EXPECT_FALSE(queue.push(entry(2, 1, 20)));
+  EXPECT_TRUE(queue.push(entry(1, 1, 30)));
   const auto first = queue.pop();
   ASSERT_TRUE(first);
   EXPECT_EQ(first->client, 1U);
@@ -27,21 +27,21 @@ TEST(ViewQueue, GivesTheNewestWishInTheOldPlace) {
 
 TEST(ViewQueue, KeepsTheStreamsOfAClientApart) {
   ViewQueue queue;
-  EXPECT_FALSE(queue.push(wish(1, 1, 10)));
-  EXPECT_FALSE(queue.push(wish(1, 2, 10)));
+  EXPECT_FALSE(queue.push(entry(1, 1, 10)));
+  EXPECT_FALSE(queue.push(entry(1, 2, 10)));
   EXPECT_EQ(queue.pop()->stream, 1);
   EXPECT_EQ(queue.pop()->stream, 2);
 }
 
 TEST(ViewQueue, ForgetsAClientWhole) {
   ViewQueue queue;
-  EXPECT_FALSE(queue.push(wish(1, 1, 10)));
-  EXPECT_FALSE(queue.push(wish(1, 2, 10)));
-  EXPECT_FALSE(queue.push(wish(2, 1, 10)));
+  EXPECT_FALSE(queue.push(entry(1, 1, 10)));
+  EXPECT_FALSE(queue.push(entry(1, 2, 10)));
+  EXPECT_FALSE(queue.push(entry(2, 1, 10)));
   queue.forget(1);
   EXPECT_EQ(queue.pop()->client, 2U);
   EXPECT_TRUE(queue.empty());
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

@@ -1,11 +1,11 @@
 #include "server/views/view_ribbons.hpp"
 #include "server/record/rows.hpp"
 #include "server/record/run_info.hpp"
-#include "server/record/run_timeline.hpp"
+#include "server/timeline/run_timeline.hpp"
 
 #include <gtest/gtest.h>
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 Pose at(double north_m) { return {Eigen::Quaterniond::Identity(), {0.0, north_m, 100.0}}; }
@@ -82,4 +82,4 @@ TEST(ViewRibbons, BreaksAnEstimateWhereItIsLostOrStartsAgain) {
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

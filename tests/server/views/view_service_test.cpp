@@ -13,7 +13,7 @@
 #include "tests/server/support/manager_fixture.hpp"
 #include "tests/support/synthetic_world.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -130,18 +130,18 @@ TEST_F(ViewServiceTest, EndsWhileAWorldIsBeingOpened) {
   write_endless_geotiff(imagery());
   for (const auto kind : {PictureRequest::Kind::kScene, PictureRequest::Kind::kCamera}) {
     auto views = std::make_unique<ViewService>(*runs);
-    std::promise<Result<Picture>> told;
+    std::promise<Result<Picture>> answer;
     PictureRequest request;
     request.run_id = id;
     request.kind = kind;
-    views->request(1, 1, request, [&](Result<Picture> picture) { told.set_value(picture); });
+    views->request(1, 1, request, [&](Result<Picture> picture) { answer.set_value(picture); });
     while (!has_open(imagery())) std::this_thread::yield();
     views.reset();
-    const Result<Picture> picture = told.get_future().get();
+    const Result<Picture> picture = answer.get_future().get();
     ASSERT_FALSE(picture.ok());
     EXPECT_EQ(picture.error().code, ErrorCode::kCancelled) << picture.error().message;
   }
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

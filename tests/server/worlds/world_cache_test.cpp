@@ -12,10 +12,10 @@
 
 #include "server/files/whole_file.hpp"
 #include "server/record/run_folder.hpp"
-#include "tests/server/support/engine_fixture.hpp"
+#include "tests/server/support/server_fixture.hpp"
 #include "tests/support/synthetic_world.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -181,4 +181,4 @@ TEST_F(WorldCacheTest, ARunInFlightKeepsItsWorldBesideTheNewOne) {
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

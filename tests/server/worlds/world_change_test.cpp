@@ -8,7 +8,7 @@
 #include "tests/server/support/manager_fixture.hpp"
 #include "tests/support/synthetic_world.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
@@ -99,4 +99,4 @@ TEST_F(WorldChangeTest, IsUnknownWhereTheManifestDoesNotTell) {
 }
 
 }  // namespace
-}  // namespace overfly::engine
+}  // namespace overfly::server

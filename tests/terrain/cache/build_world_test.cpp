@@ -63,7 +63,7 @@ TEST_F(BuiltWorld, DoesOnlyTheRestAfterTheDiskWasFull) {
   fs::remove(largest);
   fs::remove(cache_ / "cache.json");
 
-  // Files larger than this cannot be written: what a full disk does, in this process alone.
+  // Files larger than this cannot be written: a full disk for this process only.
   rlimit before{};
   ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
   rlimit small = before;

@@ -1,4 +1,4 @@
-// A damaged cache is named or mended, and never shows another picture.
+// A damaged cache is reported or repaired, and never gives another picture.
 #include "tests/terrain/cache/built_world.hpp"
 
 namespace overfly::terrain {
@@ -43,7 +43,7 @@ TEST_F(BuiltWorld, NeverShowsADamagedPart) {
   for (const fs::path& file : {tile, heights, cache_ / "validity-0"}) {
     const std::string bytes = testing::read_text(file);
     ASSERT_GT(bytes.size(), 50U) << file;
-    // The magic word, the first piece's place, its check, the first piece.
+    // The magic number, the first piece's offset, its checksum, the first piece.
     const std::size_t first =
         static_cast<unsigned char>(bytes[12]) | static_cast<unsigned char>(bytes[13]) << 8;
     for (const std::size_t at : {std::size_t{0}, std::size_t{13}, std::size_t{25}, first + 9}) {
@@ -66,10 +66,10 @@ TEST_F(BuiltWorld, MendsWhatIsDamaged) {
   const fs::path heights = cache_ / "heights/0/x0y0.chunk";
   flip_byte(tile, fs::file_size(tile) / 2);
   fs::resize_file(heights, 0);
-  const BuildReport mended = build();
-  EXPECT_FALSE(mended.was_fresh);
-  EXPECT_EQ(mended.chunks_made, 2);
-  EXPECT_EQ(mended.chunks_kept, report_.chunks_made - 2);
+  const BuildReport repaired = build();
+  EXPECT_FALSE(repaired.was_fresh);
+  EXPECT_EQ(repaired.chunks_made, 2);
+  EXPECT_EQ(repaired.chunks_kept, report_.chunks_made - 2);
   flip_byte(cache_ / "validity-0", 40);
   EXPECT_EQ(build().chunks_made, 0);
   const World built = opened(spec_);

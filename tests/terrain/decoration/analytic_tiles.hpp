@@ -34,7 +34,8 @@ class AnalyticTiles final : public terrain::TileSource {
     return inside ? terrain::TileCoverage::kPartial : terrain::TileCoverage::kNone;
   }
   /// Of coarser levels the texel in the middle stands for all: enough where texels are constant.
-  [[nodiscard]] Result<terrain::Tile> tile(const terrain::TileId& id) const override {
+  [[nodiscard]] Result<terrain::Tile> read_tile(
+      const terrain::TileId& id, const terrain::Cancelled& /*cancelled*/) const override {
     terrain::Tile tile{Image(terrain::kTileSide, terrain::kTileSide, 3),
                        Image(terrain::kTileSide, terrain::kTileSide, 1)};
     const int last = grid_.cols * terrain::kTileTexels;

@@ -162,8 +162,9 @@ class ReducedTiles final : public TileDecorator {
   [[nodiscard]] TileCoverage coverage(const TileId& id) const override {
     return base().coverage({id.level + levels_, id.col, id.row});
   }
-  [[nodiscard]] Result<Tile> tile(const TileId& id) const override {
-    return base().tile({id.level + levels_, id.col, id.row});
+  [[nodiscard]] Result<Tile> read_tile(const TileId& id,
+                                       const Cancelled& cancelled) const override {
+    return base().tile({id.level + levels_, id.col, id.row}, cancelled);
   }
 
  private:

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "core/pose.hpp"
+#include "core/motion/pose.hpp"
 #include "terrain/world.hpp"
 #include "terrain/world/drape.hpp"
 #include "tests/support/support.hpp"

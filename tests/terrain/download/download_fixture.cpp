@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/pose.hpp"
+#include "core/motion/pose.hpp"
 #include "terrain/world.hpp"
 
 namespace overfly::testing {

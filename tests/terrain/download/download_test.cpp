@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "core/pose.hpp"
+#include "core/motion/pose.hpp"
 #include "terrain/world.hpp"
 #include "tests/terrain/download/download_fixture.hpp"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "core/pose.hpp"
+#include "core/motion/pose.hpp"
 #include "terrain/place/geoid.hpp"
 #include "terrain/world.hpp"
 #include "tests/support/support.hpp"

@@ -122,11 +122,11 @@ TEST(HeightPyramid, RemembersWhatWentWrong) {
   const HeightPyramid pyramid(600, 600, cache, [](int column, int, int, int) -> Result<RawPosts> {
     return Error{ErrorCode::kIo, "no posts at " + std::to_string(column)};
   });
-  EXPECT_FALSE(pyramid.filled().fault());
+  EXPECT_FALSE(pyramid.filled().read_error());
   EXPECT_TRUE(std::isnan(pyramid.filled().bilinear(0, 300.0, 5.0)));
-  ASSERT_TRUE(pyramid.filled().fault());
-  EXPECT_EQ(pyramid.filled().fault()->code, ErrorCode::kIo);
-  EXPECT_EQ(pyramid.filled().fault()->message, "no posts at 256");
+  ASSERT_TRUE(pyramid.filled().read_error());
+  EXPECT_EQ(pyramid.filled().read_error()->code, ErrorCode::kIo);
+  EXPECT_EQ(pyramid.filled().read_error()->message, "no posts at 256");
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "core/pose.hpp"
+#include "core/motion/pose.hpp"
 
 namespace overfly::testing {
 

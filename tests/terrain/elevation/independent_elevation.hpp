@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "core/geodesy.hpp"
+#include "core/earth/geodesy.hpp"
 
 namespace overfly::testing {
 

@@ -99,7 +99,7 @@ TEST_F(UndeclaredVoids, AlsoSinglePostsAndHolesAtTheEdge) {
   EXPECT_GT(world.tiles->height_range_m().x(), 265.0);
 }
 
-/// Below it are depths and heights in another unit: only jumps tell them apart.
+/// Below it are depths and heights in another unit: only jumps distinguish them.
 TEST_F(UndeclaredVoids, ValuesOfOtherUnitsAreSeenToo) {
   // 16-bit centimetres end at -327.68 m, 32-bit decimetres may have 999.9 m.
   const World centimetres = opened(
@@ -121,14 +121,14 @@ TEST_F(UndeclaredVoids, GroundThatHasTheseHeightsStaysAsItIs) {
     double low_m;
     double high_m;
   } grounds[] = {
-      {"a sea beside cliffs of 20 m", [](int x, int) { return x < 50 ? 0.0 : 20.0; }, 0.0, 20.0},
-      {"a sea beside cliffs of 200 m with one beach",
+      {"a sea next to cliffs of 20 m", [](int x, int) { return x < 50 ? 0.0 : 20.0; }, 0.0, 20.0},
+      {"a sea next to cliffs of 200 m with one beach",
        [](int x, int y) { return x < 50               ? 0.0
                                  : x == 50 && y == 30 ? 2.0
                                                       : 200.0; },
        0.0,
        200.0},
-      {"a sea alone", [](int, int) { return 0.0; }, 0.0, 0.0},
+      {"only sea", [](int, int) { return 0.0; }, 0.0, 0.0},
       {"a slope into the Dead Sea, in whole metres",
        [](int x, int) { return -432.0 + 6.0 * x; },
        -432.0,
@@ -221,7 +221,7 @@ VoidRuns voids_of(int columns, int rows, const std::function<float(int x, int y)
 }
 
 TEST(VoidPlateaus, ArmsThatMeetLaterAreOnePlateau) {
-  // A U of zeros in ground at 300 m; with `beach` one post of 5 m beside its left arm.
+  // A U of zeros in ground at 300 m; with `beach` one post of 5 m next to its left arm.
   const auto u_shape = [](int x, int y, bool beach) {
     const bool arm = (x == 10 || x == 30) && y >= 5 && y <= 40;
     if (arm || (y == 40 && x >= 10 && x <= 30)) return 0.0F;
@@ -250,7 +250,7 @@ TEST(SteepSteps, AreCountedAcrossBlocks) {
   steps.add(0, block);
   steps.add(2, high);   // two steps to the west
   steps.add(0, high);   // two steps to the north
-  steps.add(2, block);  // one step to the west, beside what is missing, and one to the north
+  steps.add(2, block);  // one step to the west, next to missing data, and one to the north
   EXPECT_EQ(steps.count(), 6.0);
   EXPECT_EQ(steps.largest_m(), 2000.0);
 }

@@ -1,5 +1,4 @@
-// No name, whoever gives it, makes GDAL call out, unpack, or read another place than the file's
-// own.
+// No file name makes GDAL use the network, unpack archives, or read outside the folder of the file.
 #include <cpl_http.h>
 #include <cpl_string.h>
 #include <cpl_vsi.h>

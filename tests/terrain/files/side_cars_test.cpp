@@ -1,4 +1,4 @@
-// Files beside a raster that GDAL looks for by itself: regular ones inside the data folders alone.
+// Files next to a raster that GDAL looks for: only regular ones inside the data folders are used.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -42,7 +42,7 @@ TEST_F(SideCarsTest, ThatAreNoFilesAreLeftOutWithAWarning) {
   const struct {
     const char* driver;
     const char* file;
-    std::vector<std::string> beside;
+    std::vector<std::string> side_cars;
     std::vector<std::string> options;
   } kinds[] = {
       {"GTiff",
@@ -67,12 +67,12 @@ TEST_F(SideCarsTest, ThatAreNoFilesAreLeftOutWithAWarning) {
     testing::write_raster(data(kind.file), raster);
     WorldSpec spec = over(data(kind.file));
     spec.imagery.back().crs = "EPSG:32616";
-    for (const std::string& name : kind.beside) {
+    for (const std::string& name : kind.side_cars) {
       if (!fs::exists(data(name))) make_fifo(name);
     }
     const auto world = open_world(spec);
     ASSERT_TRUE(world.ok()) << world.error().message;
-    for (const std::string& name : kind.beside) {
+    for (const std::string& name : kind.side_cars) {
       if (!fs::is_fifo(data(name))) continue;
       EXPECT_THAT(
           world->warnings,
@@ -130,7 +130,7 @@ TEST_F(SideCarsTest, OfAConfinedWorldLieInsideTheDataFolders) {
       fs::remove(data(name));
     }
   }
-  // Beside it are others, too.
+  // There are other files next to it.
   fs::create_symlink(root() / "secret.tif", data("ab.tif"));
   fs::create_symlink(root() / "secret.tif", data("b.ovr"));
   fs::create_directory(data("a.folder"));

@@ -8,7 +8,7 @@
 #include <memory>
 #include <random>
 
-#include "core/pose.hpp"
+#include "core/motion/pose.hpp"
 #include "terrain/build_world.hpp"
 #include "terrain/world.hpp"
 #include "tests/support/support.hpp"
@@ -46,7 +46,7 @@ double grey_at(const Place& place, double lat_deg, double east_deg) {
 
 double east_of_antimeridian_deg(double lon_deg) { return std::remainder(lon_deg - 180.0, 360.0); }
 
-/// PROJ alone.
+/// A reference that uses only PROJ.
 class Degrees {
  public:
   explicit Degrees(const std::string& crs) : context_(proj_context_create()) {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "core/pose.hpp"
+#include "core/motion/pose.hpp"
 #include "terrain/world.hpp"
 #include "tests/support/support.hpp"
 #include "tests/support/synthetic_world.hpp"

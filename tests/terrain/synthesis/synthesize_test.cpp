@@ -5,7 +5,7 @@
 #include <cmath>
 #include <thread>
 
-#include "core/pose.hpp"
+#include "core/motion/pose.hpp"
 #include "terrain/synthesis/landscape/painter.hpp"
 #include "terrain/world.hpp"
 #include "tests/support/support.hpp"

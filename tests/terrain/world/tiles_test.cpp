@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -182,6 +183,23 @@ TEST(Tiles, OfCoarserLevelsAreAreaAveragesWithoutShift) {
   }
 }
 
+TEST(Tiles, OfALargeImageWithoutOverviewsCanBeCancelled) {
+  TemporaryFolder folder;
+  testing::write_geotiff(folder.path() / "a.tif", textured(1345, 1111));
+  const World world = open_images({folder.path() / "a.tif"});
+  const TileId coarsest{world.tiles->grid().levels - 1, 0, 0};
+  int polls = 0;
+  const auto cancelled = world.tiles->tile(coarsest, [&] { return ++polls == 2; });
+  ASSERT_FALSE(cancelled.ok());
+  EXPECT_EQ(cancelled.error().code, ErrorCode::kCancelled);
+  EXPECT_THAT(cancelled.error().message, ::testing::HasSubstr("a.tif: reading it was cancelled"));
+  EXPECT_EQ(polls, 2);
+  // Other users of the world read on.
+  const Tile tile = read(world, coarsest.level, 0, 0);
+  const World another = open_images({folder.path() / "a.tif"});
+  EXPECT_EQ(tile.rgb.data, read(another, coarsest.level, 0, 0).rgb.data);
+}
+
 TEST(Tiles, OfRealImageryAreAreaAveragesWithoutShift) {
   for (const char* name : {"terrain/autzen/ortho_epsg2994_ft.tif",
                            "terrain/mcmillan/ortho_0.8m_utm10.tif",
@@ -273,8 +291,8 @@ TEST(Tiles, KeepTheFirstLayersTexelsWhenALaterOneReachesFartherWest) {
   EXPECT_NEAR(grid.left_x_m + col * grid.texel_m, first.left, 1e-6);
   const Tile tile = read(world, 0, 0, 0);
   EXPECT_EQ(tile.rgb.at(kTileBorder + col + 5, kTileBorder + row + 9), first.image.at(5, 9));
-  const World alone = open_images({folder.path() / "a.tif"});
-  (void)read(alone, 1, 0, 0);
+  const World single = open_images({folder.path() / "a.tif"});
+  (void)read(single, 1, 0, 0);
   expect_borders_agree(world, 0);
 }
 

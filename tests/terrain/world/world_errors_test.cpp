@@ -3,7 +3,7 @@
 
 #include <fstream>
 
-#include "core/pose.hpp"
+#include "core/motion/pose.hpp"
 #include "terrain/world.hpp"
 #include "tests/support/support.hpp"
 #include "tests/support/synthetic_world.hpp"
@@ -71,12 +71,12 @@ TEST_F(WorldErrors, ACrsSaidInTheManifestStandsInForAMissingOne) {
   WorldSpec spec = spec_of(photo);
   spec.elevation.push_back(elevation(corrupt));
   spec.elevation.back().crs = "EPSG:4326";
-  const auto mended = open_world(spec);
-  ASSERT_TRUE(mended) << mended.error().message;
+  const auto repaired = open_world(spec);
+  ASSERT_TRUE(repaired) << repaired.error().message;
   spec.elevation = {elevation(good)};
   const auto right = open_world(spec);
   ASSERT_TRUE(right) << right.error().message;
-  EXPECT_DOUBLE_EQ(mended->tiles->ground_up_m(123.0, -45.0),
+  EXPECT_DOUBLE_EQ(repaired->tiles->ground_up_m(123.0, -45.0),
                    right->tiles->ground_up_m(123.0, -45.0));
   spec.elevation.front() = elevation(corrupt);
   spec.elevation.front().crs = "EPSG:no";

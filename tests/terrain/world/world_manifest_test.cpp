@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "core/pose.hpp"
+#include "core/motion/pose.hpp"
 #include "terrain/world.hpp"
 #include "tests/support/support.hpp"
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/measure/crc32.hpp"
 #include "tests/vo_bridges/lcm/lcm_test_estimator.hpp"
 
 namespace overfly {

@@ -5,9 +5,11 @@
 #include <lcm/lcm-cpp.hpp>
 #include <thread>
 
+#include "core/measure/crc32.hpp"
+#include "middleware/lcm/log_writer.hpp"
 #include "tests/support/support.hpp"
 #include "tests/vo_bridges/lcm/lcm_test_estimator.hpp"
-#include "vo_bridges/lcm/lcm_messages.hpp"
+#include "vo_bridges/lcm/lcm_estimator.hpp"
 
 namespace overfly {
 namespace {
@@ -33,9 +35,9 @@ class LcmUdp : public ::testing::Test {
   LcmEstimatorOptions options_;
 };
 
-#define OVERFLY_RECEIVE_BUFFER_OR_SKIP()                            \
-  if (largest_receive_buffer_bytes() < kSmallestReceiveBufferBytes) \
-  GTEST_SKIP() << "net.core.rmem_max = " << largest_receive_buffer_bytes() << " is below 2 MiB"
+#define OVERFLY_RECEIVE_BUFFER_OR_SKIP()                                      \
+  if (lcm::largest_receive_buffer_bytes() < lcm::kSmallestReceiveBufferBytes) \
+  GTEST_SKIP() << "net.core.rmem_max = " << lcm::largest_receive_buffer_bytes() << " is below 2 MiB"
 
 TEST_F(LcmUdp, CarriesImagesOfFullSizeByteForByteInLockstep) {
   OVERFLY_RECEIVE_BUFFER_OR_SKIP();
@@ -112,9 +114,9 @@ struct ReadLog {
 
 ReadLog read_log(const std::filesystem::path& file) {
   ReadLog read;
-  lcm::LogFile log(file.string(), "r");
+  ::lcm::LogFile log(file.string(), "r");
   EXPECT_TRUE(log.good());
-  while (const lcm::LogEvent* event = log.readNextEvent()) {
+  while (const ::lcm::LogEvent* event = log.readNextEvent()) {
     read.channels.push_back(event->channel);
     if (event->channel != "OVERFLY_IMAGE") continue;
     read.images.emplace_back();
@@ -166,7 +168,7 @@ TEST_F(LcmFile, IsPlayedToAnEstimatorByLcm) {
   const auto frames = varied_frames(4);
   record(frames);
   const auto node =
-      LcmNode::open(parse_lcm_url("file://" + file_.string() + "?speed=0").value()).value();
+      lcm::Node::open(lcm::parse_url("file://" + file_.string() + "?speed=0").value()).value();
   testing::LcmTestEstimator estimator(node, "OVERFLY_", {});
   node->start();
   const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(10);
@@ -176,6 +178,32 @@ TEST_F(LcmFile, IsPlayedToAnEstimatorByLcm) {
   ASSERT_EQ(estimator.images().size(), 4U);
   EXPECT_EQ(estimator.images().back().data, frames.back().image->data);
   node->stop();
+}
+
+/// A log plays to an estimator that knows the door's channels alone.
+TEST(LcmLogWriter, WritesWhatTheDoorWouldHaveSaid) {
+  const testing::TemporaryFolder folder;
+  const auto file = folder.path() / "a.lcm";
+  const auto frames = varied_frames(5);
+  {
+    const auto writer = lcm::LogWriter::create(file, 0).value();
+    for (const VoFrame& frame : frames) {
+      ASSERT_TRUE(writer->write_calibration("OVERFLY_", "c", {frame.intrinsics}, frame.t_ns).ok());
+      ASSERT_TRUE(writer->write_image("OVERFLY_", {frame.index, frame.t_ns, 0, *frame.image}).ok());
+    }
+  }
+  const auto node =
+      lcm::Node::open(lcm::parse_url("file://" + file.string() + "?speed=0").value()).value();
+  testing::LcmTestEstimator estimator(node, "OVERFLY_", {});
+  node->start();
+  const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+  while (estimator.images().size() < frames.size() && std::chrono::steady_clock::now() < patience) {
+    std::this_thread::yield();
+  }
+  node->stop();
+  ASSERT_EQ(estimator.images().size(), frames.size());
+  EXPECT_EQ(estimator.images().back().data, frames.back().image->data);
+  EXPECT_EQ(estimator.sessions(), 1) << "a repeated calibration begins nothing anew";
 }
 
 TEST_F(LcmFile, IsOfOneEstimatorAtATime) {

@@ -8,8 +8,10 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/measure/crc32.hpp"
 #include "core/time.hpp"
-#include "vo_bridges/lcm/lcm_messages.hpp"
+#include "middleware/lcm/messages.hpp"
+#include "vo_bridges/lcm/lcm_estimator.hpp"
 
 namespace overfly::testing {
 
@@ -31,7 +33,7 @@ std::vector<VoFrame> varied_frames(int count, int width_px, int height_px) {
   return frames;
 }
 
-LcmTestEstimator::LcmTestEstimator(std::shared_ptr<LcmNode> node,
+LcmTestEstimator::LcmTestEstimator(std::shared_ptr<lcm::Node> node,
                                    std::string prefix,
                                    LcmBehaviour behaviour)
     : node_(std::move(node)), prefix_(std::move(prefix)), behaviour_(std::move(behaviour)) {
@@ -75,7 +77,7 @@ void LcmTestEstimator::publish_raw(const std::string& channel,
 }
 
 void LcmTestEstimator::hear_calibration(std::span<const std::uint8_t> bytes) {
-  const auto message = decode_message<overfly_lcm::calibration_t>(bytes);
+  const auto message = lcm::decode_message<overfly_lcm::calibration_t>(bytes);
   if (!message || calibrations_++ < behaviour_.calibrations_missed) return;
   if (!calibration_ || calibration_->session != message->session) {
     calibration_ = message;
@@ -87,7 +89,7 @@ void LcmTestEstimator::hear_calibration(std::span<const std::uint8_t> bytes) {
 }
 
 void LcmTestEstimator::hear_image(std::span<const std::uint8_t> bytes) {
-  const auto message = decode_message<overfly_lcm::image_t>(bytes);
+  const auto message = lcm::decode_message<overfly_lcm::image_t>(bytes);
   if (!message || !calibration_ || message->session != calibration_->session) return;
   if (behaviour_.loses_image && behaviour_.loses_image(*message)) return;
   images_.push_back(*message);
@@ -96,7 +98,7 @@ void LcmTestEstimator::hear_image(std::span<const std::uint8_t> bytes) {
 
 /// Repeats the answer when asked; says so when the image has not come.
 void LcmTestEstimator::hear_time(std::span<const std::uint8_t> bytes) {
-  const auto message = decode_message<overfly_lcm::sim_time_t>(bytes);
+  const auto message = lcm::decode_message<overfly_lcm::sim_time_t>(bytes);
   if (!message || !calibration_ || message->session != calibration_->session) return;
   if (message->ended != 0) {
     ended_ = true;
@@ -163,7 +165,7 @@ void LcmTestEstimator::publish_status(std::int64_t session) {
   status.nparameters = 1;
   status.lines = {"ready"};
   status.nlines = 1;
-  static_cast<void>(publish_message(*node_, prefix_ + "STATUS", status));
+  static_cast<void>(lcm::publish_message(*node_, prefix_ + "STATUS", status));
 }
 
 void LcmTestEstimator::publish_debug(const overfly_lcm::image_t& image) {
@@ -178,19 +180,19 @@ void LcmTestEstimator::publish_debug(const overfly_lcm::image_t& image) {
   debug.data.assign(static_cast<std::size_t>(debug.size), 77);
   debug.points = {{1.0F, 2.0F, 3.0F}};
   debug.npoints = 1;
-  static_cast<void>(publish_message(*node_, prefix_ + "DEBUG", debug));
+  static_cast<void>(lcm::publish_message(*node_, prefix_ + "DEBUG", debug));
 }
 
 void LcmTestEstimator::publish_pose(const overfly_lcm::pose_t& pose) {
   if (behaviour_.loses_pose && behaviour_.loses_pose(pose)) return;
   overfly_lcm::pose_t changed = pose;
   if (behaviour_.changes_pose) behaviour_.changes_pose(changed);
-  static_cast<void>(publish_message(*node_, prefix_ + "POSE", changed));
+  static_cast<void>(lcm::publish_message(*node_, prefix_ + "POSE", changed));
 }
 
 LcmPair make_memq_pair(LcmBehaviour behaviour, LcmEstimatorOptions options) {
   options.url = "memq://";
-  const auto node = LcmNode::open(parse_lcm_url(options.url).value()).value();
+  const auto node = lcm::Node::open(lcm::parse_url(options.url).value()).value();
   LcmPair pair;
   pair.far_end =
       std::make_shared<LcmTestEstimator>(node, options.channel_prefix, std::move(behaviour));
@@ -217,7 +219,7 @@ std::vector<VoEstimate> fly(VoPort& door, int count) {
 }
 
 std::string multicast_missing() {
-  const Status status = probe_multicast("239.255.76.67");
+  const Status status = lcm::probe_multicast("239.255.76.67");
   return status ? "" : status.error().message;
 }
 
@@ -229,7 +231,8 @@ LcmPair make_udp_pair(LcmBehaviour behaviour,
                       const LcmEstimatorOptions& options,
                       const std::string& far_url) {
   LcmPair pair;
-  const auto node = LcmNode::open(with_receive_buffer(parse_lcm_url(far_url).value())).value();
+  const auto node =
+      lcm::Node::open(lcm::with_receive_buffer(lcm::parse_url(far_url).value())).value();
   pair.far_end =
       std::make_shared<LcmTestEstimator>(node, options.channel_prefix, std::move(behaviour));
   node->start();

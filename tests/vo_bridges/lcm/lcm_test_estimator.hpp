@@ -34,7 +34,7 @@ struct LcmBehaviour {
 class LcmTestEstimator {
  public:
   /// Subscribes to a node that is not started yet.
-  LcmTestEstimator(std::shared_ptr<LcmNode> node, std::string prefix, LcmBehaviour behaviour);
+  LcmTestEstimator(std::shared_ptr<lcm::Node> node, std::string prefix, LcmBehaviour behaviour);
   /// Stops its node, whose handlers are its own.
   ~LcmTestEstimator();
   LcmTestEstimator(const LcmTestEstimator&) = delete;
@@ -57,7 +57,7 @@ class LcmTestEstimator {
   void publish_pose(const overfly_lcm::pose_t& pose);
 
   mutable std::mutex mutex_;
-  std::shared_ptr<LcmNode> node_;
+  std::shared_ptr<lcm::Node> node_;
   std::string prefix_;
   LcmBehaviour behaviour_;
   std::optional<overfly_lcm::calibration_t> calibration_;

@@ -1,5 +1,5 @@
 // What one frame may bring: all that the protocol allows, and not without end.
-#include "vo_bridges/process/channel.hpp"
+#include "vo_bridges/process/link/channel.hpp"
 
 #include <gmock/gmock.h>
 #include <sys/socket.h>

@@ -1,6 +1,7 @@
 // The two examples behind the process door do what every estimator must, and find the way.
 #include <gmock/gmock.h>
 
+#include "core/measure/crc32.hpp"
 #include "tests/support/support.hpp"
 #include "tests/vo_bridges/process/process_fixture.hpp"
 #include "tests/vo_bridges/vo_port_contract.hpp"

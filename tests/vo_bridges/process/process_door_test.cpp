@@ -10,6 +10,7 @@
 #include <chrono>
 #include <thread>
 
+#include "core/measure/crc32.hpp"
 #include "tests/support/support.hpp"
 #include "tests/vo_bridges/process/process_fixture.hpp"
 

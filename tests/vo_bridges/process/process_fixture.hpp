@@ -64,6 +64,15 @@ class ChildrenTest : public ::testing::Test {
     work();
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   }
+
+  /// The lines of its log since the last call that contain `part`.
+  static std::vector<std::string> lines_with(VoPort& estimator, const std::string& part) {
+    std::vector<std::string> lines;
+    for (const std::string& line : estimator.take_log()) {
+      if (line.find(part) != std::string::npos) lines.push_back(line);
+    }
+    return lines;
+  }
 };
 
 }  // namespace overfly::testing

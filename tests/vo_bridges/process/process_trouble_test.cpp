@@ -1,16 +1,7 @@
-// Estimators that fail: the server goes on, says what happened, and nothing is left of them.
+// Estimators that fail: the server continues and reports what happened.
 #include <gmock/gmock.h>
-#include <sys/wait.h>
 
-#include <array>
-#include <atomic>
-#include <cerrno>
-#include <chrono>
-#include <csignal>
-#include <functional>
 #include <map>
-#include <set>
-#include <thread>
 
 #include "tests/support/support.hpp"
 #include "tests/vo_bridges/process/process_fixture.hpp"
@@ -47,15 +38,6 @@ class ProcessTrouble : public ChildrenTest {
     }
     ADD_FAILURE() << "every frame was answered";
     return {};
-  }
-
-  /// Of the lines of its log those that hold `part`.
-  static std::vector<std::string> lines_with(VoPort& estimator, const std::string& part) {
-    std::vector<std::string> lines;
-    for (const std::string& line : estimator.take_log()) {
-      if (line.find(part) != std::string::npos) lines.push_back(line);
-    }
-    return lines;
   }
 };
 
@@ -238,167 +220,6 @@ TEST_F(ProcessTrouble, AStopHearsTheAnswerThatIsUnderWay) {
     }
   }
   EXPECT_EQ(testing::read_text(options.output_file), "") << "it was not cut off";
-}
-
-TEST_F(ProcessTrouble, FiguresThatAreNotFiniteAreLeftOutWithOneWarning) {
-  const auto estimator = started(scripted("nan_figures"));
-  for (const VoFrame& frame : ground_frames(3, 1.0, 1.0, 64, 48)) {
-    const Result<VoEstimate> estimate = estimator->track(frame);
-    ASSERT_TRUE(estimate.ok()) << estimate.error().message;
-    EXPECT_EQ(estimate->counters.count("parallax"), 0U);
-    EXPECT_EQ(estimate->timing_ms, (std::map<std::string, double>{{"match", 1.5}}));
-  }
-  EXPECT_EQ(lines_with(*estimator, "not finite"),
-            (std::vector<std::string>{"warning: counter parallax is not finite: this and later "
-                                      "such values are ignored"}));
-}
-
-TEST_F(ProcessTrouble, FiguresOfPythonThatAreNotFiniteAreLeftOutWithOneWarning) {
-  const testing::TemporaryFolder folder;
-  const std::filesystem::path file = folder.path() / "estimator.py";
-  testing::write_text(file,
-                      "import sys\n"
-                      "sys.path.insert(0, sys.argv[1])\n"
-                      "import overfly_vo\n"
-                      "class Odd(overfly_vo.Estimator):\n"
-                      "    def track(self, frame):\n"
-                      "        return overfly_vo.Answer(\n"
-                      "            counters={'a': float('nan'), 'b': 2},\n"
-                      "            timings_ms={'c': float('-inf'), 'd': 0.5})\n"
-                      "overfly_vo.run(Odd())\n");
-  ProcessEstimatorOptions options = scripted("good");
-  options.command = {
-      "python3", "-B", file.string(), testing::source_file("vo_bridges/client").string()};
-  const auto estimator = started(options);
-  for (const VoFrame& frame : ground_frames(3, 1.0, 1.0, 64, 48)) {
-    const Result<VoEstimate> estimate = estimator->track(frame);
-    ASSERT_TRUE(estimate.ok()) << estimate.error().message;
-    EXPECT_EQ(estimate->counters, (std::map<std::string, double>{{"b", 2.0}}));
-    EXPECT_EQ(estimate->timing_ms, (std::map<std::string, double>{{"d", 0.5}}));
-  }
-  EXPECT_THAT(lines_with(*estimator, "not finite"), ::testing::SizeIs(1));
-}
-
-TEST_F(ProcessTrouble, NamesWithoutEndAreCutWithOneWarningForEachKind) {
-  const auto estimator = started(scripted("many_names"));
-  std::set<std::string> counters;
-  std::set<std::string> timings;
-  for (const VoFrame& frame : ground_frames(6, 1.0, 1.0, 64, 48)) {
-    const Result<VoEstimate> estimate = estimator->track(frame);
-    ASSERT_TRUE(estimate.ok()) << estimate.error().message;
-    EXPECT_EQ(estimate->timing_ms.at("match"), 1.5) << "a name that was there goes on";
-    for (const auto& [name, value] : estimate->counters) counters.insert(name);
-    for (const auto& [name, value] : estimate->timing_ms) timings.insert(name);
-  }
-  EXPECT_EQ(counters.size(), 256U);
-  EXPECT_EQ(timings.size(), 256U);
-  EXPECT_EQ(estimator->effective_parameters().size(), 4096U);
-  EXPECT_THAT(lines_with(*estimator, "exceeds the limit"),
-              ::testing::UnorderedElementsAre(
-                  AllOf(HasSubstr("warning: counter c"), HasSubstr("limit of 256")),
-                  AllOf(HasSubstr("warning: timing_ms t"), HasSubstr("limit of 256")),
-                  AllOf(HasSubstr("warning: parameter p"), HasSubstr("limit of 4096"))));
-}
-
-TEST_F(ProcessTrouble, AChildThatDoesNotStopIsKilled) {
-  int pid = 0;
-  const double took_s = seconds_of([&] {
-    const auto estimator = started(scripted("stubborn"));
-    const auto frames = ground_frames(1, 1.0, 1.0, 64, 48);
-    pid = static_cast<int>(estimator->track(frames[0])->counters.at("pid"));
-  });
-  EXPECT_FALSE(alive(pid));
-  EXPECT_GT(took_s, 2.5) << "it was given time";
-  EXPECT_LT(took_s, 10.0);
-}
-
-TEST_F(ProcessTrouble, GrandchildrenDieWithTheChild) {
-  int grandchild = 0;
-  {
-    const auto estimator = started(scripted("grandchild"));
-    for (const VoFrame& frame : ground_frames(4, 1.0, 1.0, 64, 48)) {
-      grandchild = static_cast<int>(estimator->track(frame)->counters.at("child"));
-    }
-    ASSERT_GT(grandchild, 0);
-    EXPECT_TRUE(alive(grandchild));
-  }
-  EXPECT_TRUE(gone_soon(grandchild));
-}
-
-TEST_F(ProcessTrouble, GrandchildrenThatCutThemselvesLooseDieWithTheChild) {
-  const auto daemon_of = [](VoPort& estimator) {
-    int daemon = 0;
-    for (const VoFrame& frame : ground_frames(4, 1.0, 1.0, 64, 48)) {
-      daemon = static_cast<int>(estimator.track(frame)->counters.at("child"));
-    }
-    EXPECT_GT(daemon, 0);
-    EXPECT_TRUE(alive(daemon));
-    return daemon;
-  };
-  auto one = started(scripted("loose_grandchild"));
-  auto other = started(scripted("loose_grandchild"));
-  const int of_one = daemon_of(*one);
-  const int of_other = daemon_of(*other);
-  one.reset();
-  EXPECT_FALSE(alive(of_one));
-  EXPECT_TRUE(alive(of_other)) << "another estimator's";
-  other.reset();
-  EXPECT_FALSE(alive(of_other));
-}
-
-TEST_F(ProcessTrouble, TemporaryFilesGoIntoAFolderOfItsOwnAndAreRemoved) {
-  const testing::TemporaryFolder folder;
-  const std::filesystem::path file = folder.path() / "estimator.py";
-  testing::write_text(file,
-                      "import os, sys, tempfile\n"
-                      "sys.path.insert(0, sys.argv[1])\n"
-                      "import overfly_vo\n"
-                      "class Writer(overfly_vo.Estimator):\n"
-                      "    def track(self, frame):\n"
-                      "        os.makedirs(os.path.join(tempfile.gettempdir(), 'a', 'b'))\n"
-                      "        self.log(1, tempfile.gettempdir())\n"
-                      "        return overfly_vo.Answer()\n"
-                      "overfly_vo.run(Writer())\n");
-  ProcessEstimatorOptions options = scripted("good");
-  options.command = {
-      "python3", "-B", file.string(), testing::source_file("vo_bridges/client").string()};
-  const VoFrame frame = ground_frames(1, 1.0, 1.0, 64, 48)[0];
-  std::set<std::filesystem::path> folders;
-  {
-    const auto one = started(options);
-    const auto other = started(options);
-    for (VoPort* estimator : {one.get(), other.get()}) {
-      ASSERT_TRUE(estimator->track(frame).ok()) << "the name is not taken";
-      for (const std::string& line : lines_with(*estimator, "overfly-vo-")) folders.insert(line);
-    }
-    ASSERT_EQ(folders.size(), 2U);
-    for (const std::filesystem::path& its : folders) {
-      EXPECT_TRUE(std::filesystem::is_directory(its / "a" / "b")) << its;
-    }
-  }
-  for (const std::filesystem::path& its : folders) EXPECT_FALSE(std::filesystem::exists(its));
-}
-
-TEST_F(ProcessTrouble, AKilledServerLeavesNoOrphan) {
-  std::array<int, 2> told{};
-  ASSERT_EQ(::pipe(told.data()), 0);
-  const pid_t server = ::fork();
-  if (server == 0) {
-    const auto estimator = started(scripted("stubborn"));
-    const auto frames = ground_frames(1, 1.0, 1.0, 64, 48);
-    const int pid = static_cast<int>(estimator->track(frames[0])->counters.at("pid"));
-    [[maybe_unused]] const ssize_t written = ::write(told[1], &pid, sizeof(pid));
-    for (;;) ::pause();
-  }
-  int pid = 0;
-  ::close(told[1]);
-  ASSERT_EQ(::read(told[0], &pid, sizeof(pid)), static_cast<ssize_t>(sizeof(pid)));
-  ::close(told[0]);
-  EXPECT_TRUE(alive(pid));
-  ::kill(server, SIGKILL);
-  ::waitpid(server, nullptr, 0);
-  EXPECT_TRUE(gone_soon(pid));
-  ::waitpid(pid, nullptr, 0);  // ours now: earlier children made this process their subreaper
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <future>
 #include <thread>
 
-#include "vo_bridges/ros1/ros1_messages.hpp"
+#include "middleware/ros1/messages.hpp"
 
 namespace overfly::ros1 {
 namespace {

@@ -5,10 +5,11 @@
 #include <chrono>
 #include <utility>
 
+#include "core/measure/crc32.hpp"
 #include "tests/vo_bridges/ros1/ros_world.hpp"
 #include "vo_bridges/pose_intake.hpp"
-#include "vo_bridges/process/process_usage.hpp"
-#include "vo_bridges/ros1/ros1_options.hpp"
+#include "vo_bridges/process_usage.hpp"
+#include "vo_bridges/ros1/ros1_option_check.hpp"
 
 namespace overfly::testing {
 namespace {
@@ -151,10 +152,19 @@ TEST(Ros1Exchange, KeepsTimeFromOthersWhenToldSo) {
   options.vo_frame = "map_of_looker_on";
   const TestNode node(options);
   const auto port = created(options);
-  const std::vector<VoFrame> frames = grey_frames(3);
-  for (const VoFrame& frame : frames) expect_proof(tracked(*port, frame), frame);
-  EXPECT_TRUE(
-      node.says("tf map_of_looker_on -> camera x " + std::to_string(crc32_of(*frames[1].image))));
+  const std::vector<VoFrame> frames = grey_frames(600);
+  // The door does not wait for subscribers of /tf, so the node misses what is sent before it is
+  // connected.
+  auto frame = frames.begin();
+  const std::string transform = "tf map_of_looker_on -> camera x ";
+  ASSERT_TRUE(wait_for([&] {
+    if (frame == frames.end() - 1) return true;
+    expect_proof(tracked(*port, *frame), *frame);
+    ++frame;
+    return node.output().find(transform) != std::string::npos;
+  }));
+  expect_proof(tracked(*port, *frame), *frame);
+  EXPECT_TRUE(node.says(transform + std::to_string(crc32_of(*frame->image))));
   EXPECT_THAT(node.output(), ::testing::Not(HasSubstr("clock")));
 }
 
@@ -337,9 +347,9 @@ TEST(Ros1Exchange, TellsWhatTheNodesProcessUses) {
   const std::optional<ResourceUse> use = port->resource_use();
   ASSERT_TRUE(use);
   EXPECT_TRUE(use->own_process);
-  EXPECT_NEAR(use->peak_memory_mb, process::usage_of(node.pid())->peak_memory_mb, 1.0);
+  EXPECT_NEAR(use->peak_memory_mb, usage_of(node.pid())->peak_memory_mb, 1.0);
   EXPECT_GE(use->cpu_s, 0.0);
-  EXPECT_LE(use->cpu_s, process::usage_of(node.pid())->cpu_s);
+  EXPECT_LE(use->cpu_s, usage_of(node.pid())->cpu_s);
   node.kill();
   EXPECT_EQ(port->resource_use()->peak_memory_mb, use->peak_memory_mb) << "as it was";
 }

@@ -7,9 +7,9 @@
 #include <future>
 #include <thread>
 
+#include "middleware/ros1/findings.hpp"
+#include "middleware/ros1/master.hpp"
 #include "tests/vo_bridges/ros1/ros_world.hpp"
-#include "vo_bridges/ros1/ros1_findings.hpp"
-#include "vo_bridges/ros1/ros1_master.hpp"
 
 namespace overfly::testing {
 namespace {
@@ -250,12 +250,12 @@ TEST(Ros1Faults, EndsWhenMasterAndNodeAreGone) {
 TEST(Ros1Findings, SayWhatIsThere) {
   ROS_MASTER_OR_SKIP();
   setenv("ROS_MASTER_URI", RosMaster::instance().uri().c_str(), 1);
-  Ros1Findings findings = ros1_findings();
+  ros1::Findings findings = ros1::findings();
   EXPECT_TRUE(findings.built_in);
   EXPECT_TRUE(findings.works);
   EXPECT_THAT(findings.finding, HasSubstr("a master answers at " + RosMaster::instance().uri()));
   setenv("ROS_MASTER_URI", "elsewhere", 1);
-  findings = ros1_findings();
+  findings = ros1::findings();
   EXPECT_FALSE(findings.works);
   EXPECT_THAT(findings.finding, HasSubstr("ROS_MASTER_URI = 'elsewhere'"));
   unsetenv("ROS_MASTER_URI");

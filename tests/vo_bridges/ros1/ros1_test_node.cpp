@@ -19,9 +19,10 @@
 #include <string>
 #include <thread>
 
-#include "core/image.hpp"
-#include "vo_bridges/ros1/ros1_messages.hpp"
-#include "vo_bridges/ros1/ros1_types.hpp"
+#include "core/camera/image.hpp"
+#include "core/measure/crc32.hpp"
+#include "middleware/ros1/messages.hpp"
+#include "middleware/ros1/types.hpp"
 #include "vo_bridges/vo_port.hpp"
 
 namespace {

@@ -15,8 +15,8 @@
 #include <thread>
 
 #include "core/time.hpp"
-#include "vo_bridges/ros1/ros1_master.hpp"
-#include "vo_bridges/ros1/ros1_options.hpp"
+#include "middleware/ros1/master.hpp"
+#include "vo_bridges/ros1/ros1_option_check.hpp"
 
 namespace overfly::testing {
 namespace {

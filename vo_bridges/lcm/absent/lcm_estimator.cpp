@@ -3,8 +3,6 @@
 
 namespace overfly {
 
-bool lcm_is_built_in() { return false; }
-
 Result<std::unique_ptr<VoPort>> create_lcm_estimator(const LcmEstimatorOptions& /*options*/) {
   return Error{ErrorCode::kUnsupported,
                "this build has no LCM support: install liblcm-dev and liblcm-bin, and rebuild"};

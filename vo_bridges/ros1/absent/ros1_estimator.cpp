@@ -3,8 +3,6 @@
 
 namespace overfly {
 
-bool ros1_is_built_in() { return false; }
-
 Result<std::unique_ptr<VoPort>> create_ros1_estimator(const Ros1EstimatorOptions& /*options*/) {
   return Error{ErrorCode::kUnsupported,
                "this build has no ROS 1 support: install libroscpp-dev, libsensor-msgs-dev, "

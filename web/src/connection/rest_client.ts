@@ -1,6 +1,6 @@
 // The REST interface as typed calls.
-import type { Fault } from '../protocol/faults';
-import { readFaults } from '../protocol/faults';
+import type { FieldError } from '../protocol/field_errors';
+import { readFieldErrors } from '../protocol/field_errors';
 import type { Cell } from '../protocol/messages';
 import type { Json, JsonObject, Manifest, Run, ScenarioEntry } from '../protocol/rest_types';
 
@@ -12,7 +12,7 @@ export class RestError extends Error {
     readonly status: number,
     readonly code: string,
     message: string,
-    readonly faults: Fault[] = [],
+    readonly fieldErrors: FieldError[] = [],
   ) {
     super(message);
   }
@@ -115,7 +115,7 @@ async function errorOf(response: Response): Promise<RestError> {
   try {
     const { error } = (await response.json()) as ErrorDocument;
     const { code, message, faults } = error;
-    return new RestError(response.status, code, message, readFaults(faults));
+    return new RestError(response.status, code, message, readFieldErrors(faults));
   } catch {
     return new RestError(response.status, 'http', `HTTP ${response.status} ${response.statusText}`);
   }

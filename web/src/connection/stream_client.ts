@@ -46,7 +46,7 @@ export interface StreamListener {
   restore(): ClientMessage[];
   /** Rows already received of the attached run, from which the stream resumes. */
   resume(): Resume;
-  onFault(text: string): void;
+  onProtocolError(text: string): void;
 }
 
 export interface StreamClientOptions {
@@ -113,7 +113,7 @@ export class StreamClient {
     this.options.listener.onState({ status: 'locked' });
   }
 
-  /** The server answered but rejected this viewer; retries all the same. */
+  /** The server answered but rejected this viewer; retries nevertheless. */
   refused(reason: string): void {
     if (this.waiting === null) return;
     this.options.listener.onState({ ...this.waiting, reason });
@@ -160,7 +160,7 @@ export class StreamClient {
       else this.onBinary(data);
     } catch (error) {
       if (!(error instanceof ParseError)) throw error;
-      this.options.listener.onFault(error.message);
+      this.options.listener.onProtocolError(error.message);
     }
   }
 

@@ -44,7 +44,7 @@ export class Alignment {
     if (runId === null || metrics === null || mode === shownAlignment(state)) return;
     if (mode === kDefaultAlignment) {
       state.aligned = null;
-      this.tell(mode);
+      this.apply(mode);
       return;
     }
     const attempt = `${runId}/${mode}`;
@@ -60,10 +60,10 @@ export class Alignment {
     if (estimates.size === 0) return;
     this.tried.delete(attempt);
     now.aligned = { mode, estimates };
-    this.tell(mode);
+    this.apply(mode);
   }
 
-  private tell(mode: string): void {
+  private apply(mode: string): void {
     this.session.command({ type: 'align', mode });
     this.store.change('rows', 'metrics', 'scene');
   }

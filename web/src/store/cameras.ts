@@ -23,7 +23,7 @@ export class Cameras {
       this.store.state.cameras = cameras;
       this.store.change('cameras');
     } catch {
-      // Without a manifest the run has one unnamed camera, whose pictures arrive all the same.
+      // Without a manifest the run has one unnamed camera, whose pictures still arrive.
     }
   }
 }

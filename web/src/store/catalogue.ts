@@ -1,11 +1,11 @@
 // Scenarios and runs of the server: listed, launched, cancelled and deleted over REST.
 import type { RestClient } from '../connection/rest_client';
 import { RestError } from '../connection/rest_client';
-import type { Fault } from '../protocol/faults';
+import type { FieldError } from '../protocol/field_errors';
 import { isActive } from '../protocol/rest_types';
 import { overridesOf } from './launch_form';
 import type { Notices } from './notices';
-import { sectionFaults, sectionOverrides } from './scenario_schema';
+import { sectionErrors, sectionOverrides } from './scenario_schema';
 import type { Session } from './session';
 import type { Store } from './state';
 
@@ -65,11 +65,11 @@ export class Catalogue {
     state.scenarioName = name;
     state.scenarioDocument = null;
     state.scenarioEdits = new Map();
-    state.launchFaults = [];
+    state.launchErrors = [];
     this.store.change('launch');
     const entry = state.scenarios?.find((scenario) => scenario.name === name);
     if (entry !== undefined && entry.error !== null) {
-      state.launchFaults = [{ field: '', message: entry.error }];
+      state.launchErrors = [{ field: '', message: entry.error }];
       this.store.change('launch');
       return;
     }
@@ -77,7 +77,7 @@ export class Catalogue {
       const document = await this.rest.scenario(name);
       if (this.store.state.scenarioName === name) state.scenarioDocument = document;
     } catch (error) {
-      state.launchFaults = [{ field: '', message: textOf(error) }];
+      state.launchErrors = [{ field: '', message: textOf(error) }];
     }
     this.store.change('launch');
   }
@@ -87,14 +87,14 @@ export class Catalogue {
     const { state } = this.store;
     const { scenarioName, scenarioDocument } = state;
     if (scenarioName === null || scenarioDocument === null || state.launching) return;
-    const { overrides: fields, faults } = overridesOf(scenarioDocument, texts);
+    const { overrides: fields, errors } = overridesOf(scenarioDocument, texts);
     const { scenarioEdits, scenarioSchema } = state;
     for (const [section, text] of scenarioEdits) {
-      faults.push(...sectionFaults(scenarioSchema ?? {}, section, text));
+      errors.push(...sectionErrors(scenarioSchema ?? {}, section, text));
     }
-    state.launchFaults = faults;
+    state.launchErrors = errors;
     this.store.change('launch');
-    if (faults.length > 0) return;
+    if (errors.length > 0) return;
     state.launching = true;
     const overrides = { ...sectionOverrides(scenarioEdits), ...fields };
     try {
@@ -102,7 +102,7 @@ export class Catalogue {
       state.runs = [run, ...(state.runs ?? []).filter(({ id }) => id !== run.id)];
       this.session.selectRun(run.id);
     } catch (error) {
-      state.launchFaults = faultsOf(error);
+      state.launchErrors = fieldErrorsOf(error);
     }
     state.launching = false;
     this.store.change('launch', 'lists');
@@ -157,8 +157,8 @@ export class Catalogue {
   }
 }
 
-function faultsOf(error: unknown): Fault[] {
-  const known = error instanceof RestError ? error.faults : [];
+function fieldErrorsOf(error: unknown): FieldError[] {
+  const known = error instanceof RestError ? error.fieldErrors : [];
   return known.length > 0 ? known : [{ field: '', message: textOf(error) }];
 }
 

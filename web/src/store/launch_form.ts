@@ -1,5 +1,5 @@
 // The launcher's fields: read from a scenario document, converted to overrides.
-import type { Fault } from '../protocol/faults';
+import type { FieldError } from '../protocol/field_errors';
 import type { Json, JsonObject } from '../protocol/rest_types';
 
 export interface FieldSpec {
@@ -134,13 +134,13 @@ export function fieldText(document: JsonObject, field: FieldSpec): string {
 
 export interface Overrides {
   overrides: Record<string, Json>;
-  faults: Fault[];
+  errors: FieldError[];
 }
 
 /** Overrides only the values that differ from the document; limits are checked by the server. */
 export function overridesOf(document: JsonObject, texts: ReadonlyMap<string, string>): Overrides {
   const overrides: Record<string, Json> = {};
-  const faults: Fault[] = [];
+  const errors: FieldError[] = [];
   for (const field of fieldsOf(document)) {
     const text = (texts.get(field.path) ?? '').trim();
     if (text === fieldText(document, field)) continue;
@@ -151,18 +151,18 @@ export function overridesOf(document: JsonObject, texts: ReadonlyMap<string, str
     } else if (text !== '' && Number.isFinite(Number(text))) {
       overrides[field.path] = Number(text);
     } else {
-      faults.push({ field: field.path, message: 'must be a number' });
+      errors.push({ field: field.path, message: 'must be a number' });
     }
   }
-  return { overrides, faults };
+  return { overrides, errors };
 }
 
 /**
  * The field to which an error belongs: the one with the same path, or with a path that contains it.
  */
-export function fieldOfFault(fields: readonly FieldSpec[], fault: Fault): FieldSpec | null {
+export function fieldOfError(fields: readonly FieldSpec[], error: FieldError): FieldSpec | null {
   return (
-    fields.find(({ path }) => fault.field === path || fault.field.startsWith(`${path}.`)) ?? null
+    fields.find(({ path }) => error.field === path || error.field.startsWith(`${path}.`)) ?? null
   );
 }
 

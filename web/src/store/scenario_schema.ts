@@ -1,6 +1,6 @@
 // Checks a scenario's sections against the server's JSON schema while they are typed. Rules that
 // the schema cannot express are checked by the server at launch.
-import type { Fault } from '../protocol/faults';
+import type { FieldError } from '../protocol/field_errors';
 import type { Json, JsonObject } from '../protocol/rest_types';
 
 /** Top-level sections offered for editing as JSON, in the schema's order. */
@@ -40,7 +40,7 @@ export function sectionDescription(schema: JsonObject, section: string): string 
 }
 
 /** Errors in a section's text; empty text leaves the section as in the scenario. */
-export function sectionFaults(schema: JsonObject, section: string, text: string): Fault[] {
+export function sectionErrors(schema: JsonObject, section: string, text: string): FieldError[] {
   if (text.trim() === '') return [];
   let value: Json;
   try {
@@ -48,9 +48,9 @@ export function sectionFaults(schema: JsonObject, section: string, text: string)
   } catch (error) {
     return [{ field: section, message: `is not JSON: ${(error as Error).message}` }];
   }
-  const faults: Fault[] = [];
-  check(schema, sectionNode(schema, section), value, section, faults);
-  return faults;
+  const errors: FieldError[] = [];
+  check(schema, sectionNode(schema, section), value, section, errors);
+  return errors;
 }
 
 /** The edited sections as overrides. @pre they have no errors */
@@ -68,9 +68,9 @@ export function sectionText(document: JsonObject, section: string): string {
   return value === undefined ? '' : JSON.stringify(value, null, 2);
 }
 
-function check(root: JsonObject, raw: Json, value: Json, path: string, faults: Fault[]): void {
+function check(root: JsonObject, raw: Json, value: Json, path: string, errors: FieldError[]): void {
   const node = objectOf(resolved(root, raw));
-  const add = (message: string) => void faults.push({ field: path, message });
+  const add = (message: string) => void errors.push({ field: path, message });
   const type = node['type'];
   if (typeof type === 'string' && !hasType(value, type)) {
     add(`must be ${type === 'integer' ? 'an integer' : `of type ${type}`}`);
@@ -87,9 +87,9 @@ function check(root: JsonObject, raw: Json, value: Json, path: string, faults: F
       add(`must match ${pattern}`);
     }
   }
-  if (Array.isArray(value)) checkArray(root, node, value, path, faults);
+  if (Array.isArray(value)) checkArray(root, node, value, path, errors);
   else if (typeof value === 'object' && value !== null) {
-    checkObject(root, node, value, path, faults);
+    checkObject(root, node, value, path, errors);
   }
 }
 
@@ -108,9 +108,9 @@ function checkArray(
   node: JsonObject,
   value: Json[],
   path: string,
-  faults: Fault[],
+  errors: FieldError[],
 ): void {
-  const add = (message: string) => void faults.push({ field: path, message });
+  const add = (message: string) => void errors.push({ field: path, message });
   const { minItems, maxItems, items } = node;
   if (typeof minItems === 'number' && value.length < minItems) {
     add(`must have at least ${minItems} entries`);
@@ -119,7 +119,7 @@ function checkArray(
     add(`must have at most ${maxItems} entries`);
   }
   if (items !== undefined) {
-    value.forEach((entry, i) => check(root, items, entry, `${path}.${i}`, faults));
+    value.forEach((entry, i) => check(root, items, entry, `${path}.${i}`, errors));
   }
 }
 
@@ -128,20 +128,20 @@ function checkObject(
   node: JsonObject,
   value: JsonObject,
   path: string,
-  faults: Fault[],
+  errors: FieldError[],
 ): void {
   const properties = objectAt(node, 'properties');
   const { required } = node;
   for (const name of Array.isArray(required) ? required : []) {
     if (typeof name === 'string' && !(name in value)) {
-      faults.push({ field: `${path}.${name}`, message: 'is required' });
+      errors.push({ field: `${path}.${name}`, message: 'is required' });
     }
   }
   for (const [name, entry] of Object.entries(value)) {
     const property = properties[name];
-    if (property !== undefined) check(root, property, entry, `${path}.${name}`, faults);
+    if (property !== undefined) check(root, property, entry, `${path}.${name}`, errors);
     else if (node['additionalProperties'] === false) {
-      faults.push({ field: `${path}.${name}`, message: 'is not a known field' });
+      errors.push({ field: `${path}.${name}`, message: 'is not a known field' });
     }
   }
 }

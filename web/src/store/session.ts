@@ -134,7 +134,7 @@ export class Session implements StreamListener {
     this.decoder.push(name, picture);
   }
 
-  onFault(text: string): void {
+  onProtocolError(text: string): void {
     this.notices.error(`The server sent an invalid message: ${text}`);
   }
 

@@ -1,7 +1,7 @@
 // The whole state of the screen in one place, and notification of its changes.
 import type { ConnectionState } from '../connection/stream_client';
 import { picturesOf } from '../connection/stream_client';
-import type { Fault } from '../protocol/faults';
+import type { FieldError } from '../protocol/field_errors';
 import type { Playback, SceneMode, SceneView } from '../protocol/messages';
 import type {
   CameraInfo,
@@ -53,7 +53,7 @@ export interface State {
   /** Sections of the scenario edited as JSON: text by section name. */
   scenarioEdits: Map<string, string>;
   editorOpen: boolean;
-  launchFaults: Fault[];
+  launchErrors: FieldError[];
   launching: boolean;
   /** The watched run; `run` is null until the list or the stream has sent it. */
   runId: string | null;
@@ -92,7 +92,7 @@ export function initialState(): State {
     scenarioSchema: null,
     scenarioEdits: new Map(),
     editorOpen: false,
-    launchFaults: [],
+    launchErrors: [],
     launching: false,
     runId: null,
     run: null,

@@ -132,11 +132,11 @@ export class HeaderBar implements View {
 
   private countDown(what: string, delay_ms: number): void {
     const due_ms = performance.now() + delay_ms;
-    const tell = () => {
+    const show = () => {
       const left_s = Math.max(0, Math.ceil((due_ms - performance.now()) / 1000));
       setText(this.connection, `${what} · retry in ${left_s} s`);
     };
-    tell();
-    this.countdown = window.setInterval(tell, 500);
+    show();
+    this.countdown = window.setInterval(show, 500);
   }
 }

@@ -1,5 +1,5 @@
 // Selects a scenario, changes its main parameters, starts a run.
-import { fieldOfFault, fieldsOf, fieldText } from '../store/launch_form';
+import { fieldOfError, fieldsOf, fieldText } from '../store/launch_form';
 import type { FieldSpec } from '../store/launch_form';
 import type { Topic } from '../store/state';
 import { h, rebuild, setAttribute, setText } from './dom';
@@ -11,7 +11,7 @@ const kEditLabel = 'Edit JSON';
 interface Field {
   spec: FieldSpec;
   row: HTMLElement;
-  fault: HTMLElement;
+  error: HTMLElement;
   read: () => string;
 }
 
@@ -20,7 +20,7 @@ export class Launcher implements View {
   private readonly picker = h('select', { id: 'scenario', 'aria-label': 'Scenario' });
   private readonly description = h('p', { class: 'scenario-description' });
   private readonly fieldArea = h('div', { class: 'fields' });
-  private readonly faults = h('div', { class: 'form-faults', role: 'alert' });
+  private readonly errors = h('div', { class: 'form-errors', role: 'alert' });
   private readonly editor = h(
     'button',
     {
@@ -57,7 +57,7 @@ export class Launcher implements View {
       this.picker,
       this.description,
       this.fieldArea,
-      this.faults,
+      this.errors,
       h('div', { class: 'launch-buttons' }, this.button, this.editor),
     );
     this.editor.addEventListener('click', () => void context.catalogue.openEditor());
@@ -69,7 +69,7 @@ export class Launcher implements View {
     if (!changed.has('launch') && !changed.has('connection')) return;
     const { state } = this.context.store;
     if (state.scenarioDocument !== this.documentShown) this.buildFields();
-    this.updateFaults();
+    this.updateErrors();
     this.button.disabled =
       state.launching || state.scenarioDocument === null || state.connection.status !== 'open';
     const edits = [...state.scenarioEdits].filter(([, text]) => text.trim() !== '');
@@ -107,33 +107,33 @@ export class Launcher implements View {
       this.fields = [];
     } else {
       this.fields = fieldsOf(document).map((spec) => makeField(spec, fieldText(document, spec)));
-      this.fieldArea.replaceChildren(...this.fields.flatMap(({ row, fault }) => [row, fault]));
+      this.fieldArea.replaceChildren(...this.fields.flatMap(({ row, error }) => [row, error]));
     }
   }
 
-  private updateFaults(): void {
-    const { launchFaults } = this.context.store.state;
+  private updateErrors(): void {
+    const { launchErrors } = this.context.store.state;
     const specs = this.fields.map(({ spec }) => spec);
-    for (const { spec, row, fault } of this.fields) {
-      const own = launchFaults.filter((entry) => fieldOfFault(specs, entry) === spec);
-      setText(fault, own.map(({ message }) => message).join(' '));
-      fault.hidden = own.length === 0;
-      row.classList.toggle('faulty', own.length > 0);
+    for (const { spec, row, error } of this.fields) {
+      const own = launchErrors.filter((entry) => fieldOfError(specs, entry) === spec);
+      setText(error, own.map(({ message }) => message).join(' '));
+      error.hidden = own.length === 0;
+      row.classList.toggle('invalid', own.length > 0);
     }
-    const rest = launchFaults.filter((entry) => fieldOfFault(specs, entry) === null);
+    const rest = launchErrors.filter((entry) => fieldOfError(specs, entry) === null);
     setText(
-      this.faults,
+      this.errors,
       rest
         .map(({ field, message }) => (field === '' ? message : `${field}: ${message}`))
         .join('\n'),
     );
-    this.faults.hidden = rest.length === 0;
+    this.errors.hidden = rest.length === 0;
   }
 }
 
 function makeField(spec: FieldSpec, text: string): Field {
   const id = `field-${spec.path}`;
-  const fault = h('div', { class: 'field-fault', hidden: true, 'data-fault': spec.path });
+  const error = h('div', { class: 'field-error', hidden: true, 'data-error-of': spec.path });
   const { control, read } =
     spec.kind === 'estimators' ? estimatorControl(spec, text) : valueControl(spec, text, id);
   const label =
@@ -142,7 +142,7 @@ function makeField(spec: FieldSpec, text: string): Field {
       : h('label', { for: id }, spec.label);
   const row = h('div', { class: `field ${spec.kind}`, title: spec.hint }, label, control);
   if (spec.kind === 'number') row.append(h('span', { class: 'unit' }, spec.unit));
-  return { spec, row, fault, read };
+  return { spec, row, error, read };
 }
 
 function valueControl(spec: FieldSpec, text: string, id: string) {

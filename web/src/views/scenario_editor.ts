@@ -3,7 +3,7 @@ import type { JsonObject } from '../protocol/rest_types';
 import {
   fieldNotes,
   sectionDescription,
-  sectionFaults,
+  sectionErrors,
   sectionsOf,
   sectionText,
 } from '../store/scenario_schema';
@@ -20,7 +20,7 @@ export class ScenarioEditor implements View {
     spellcheck: 'false',
     'aria-label': 'Section as JSON',
   });
-  private readonly faults = h('div', { class: 'editor-faults', role: 'alert' });
+  private readonly errors = h('div', { class: 'editor-errors', role: 'alert' });
   private readonly notes = h('dl', { class: 'editor-notes' });
   private section = 'camera';
   private shown = '';
@@ -47,7 +47,7 @@ export class ScenarioEditor implements View {
         this.tabs,
         this.description,
         h('div', { class: 'editor-columns' }, this.text, this.notes),
-        this.faults,
+        this.errors,
         h(
           'div',
           { class: 'editor-buttons' },
@@ -70,7 +70,7 @@ export class ScenarioEditor implements View {
     }
     this.drawTabs(state, scenarioSchema);
     this.drawSection(state, scenarioSchema, scenarioDocument);
-    this.drawFaults(state, scenarioSchema);
+    this.drawErrors(state, scenarioSchema);
   }
 
   private drawTabs({ scenarioEdits }: State, schema: JsonObject): void {
@@ -112,10 +112,10 @@ export class ScenarioEditor implements View {
     );
   }
 
-  private drawFaults({ scenarioEdits }: State, schema: JsonObject): void {
-    const faults = sectionFaults(schema, this.section, scenarioEdits.get(this.section) ?? '');
-    setText(this.faults, faults.map(({ field, message }) => `${field}: ${message}`).join('\n'));
-    this.text.classList.toggle('faulty', faults.length > 0);
+  private drawErrors({ scenarioEdits }: State, schema: JsonObject): void {
+    const errors = sectionErrors(schema, this.section, scenarioEdits.get(this.section) ?? '');
+    setText(this.errors, errors.map(({ field, message }) => `${field}: ${message}`).join('\n'));
+    this.text.classList.toggle('invalid', errors.length > 0);
   }
 
   private edit(text: string): void {

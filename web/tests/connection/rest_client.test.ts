@@ -41,12 +41,12 @@ describe('RestClient', () => {
     });
   });
 
-  it('tells the status when the answer is no error document', async () => {
+  it('reports the status if the response is not an error document', async () => {
     const { client } = answering(502, '<html>');
     await expect(client.runs()).rejects.toMatchObject({ status: 502, code: 'http' });
   });
 
-  it('tells when the server does not take the token', async () => {
+  it('reports a rejected token', async () => {
     let locked = 0;
     const refused = { error: { code: 'unauthorized', message: 'token' } };
     const client = new RestClient(
@@ -67,7 +67,7 @@ describe('RestClient', () => {
     expect(calls[0]?.url).toBe('api/v1/stream');
   });
 
-  it('tells when nobody answers', async () => {
+  it('reports an unreachable server', async () => {
     const client = new RestClient('api/v1', () => Promise.reject(new TypeError('refused')));
     await expect(client.runs()).rejects.toMatchObject({ status: 0, code: 'unreachable' });
   });

@@ -10,7 +10,7 @@ class Listener implements StreamListener {
   states: ConnectionState[] = [];
   messages: ServerMessage[] = [];
   pictures: string[] = [];
-  faults: string[] = [];
+  protocolErrors: string[] = [];
   failed: string[] = [];
   rows: Resume = {};
   commands: ClientMessage[] = [];
@@ -18,7 +18,7 @@ class Listener implements StreamListener {
   onMessage = (message: ServerMessage) => this.messages.push(message);
   onAttachFailed = (run: string, message: string) => this.failed.push(`${run}: ${message}`);
   onPicture = (name: string) => this.pictures.push(name);
-  onFault = (text: string) => this.faults.push(text);
+  onProtocolError = (text: string) => this.protocolErrors.push(text);
   resume = () => this.rows;
   restore = () => this.commands;
 }
@@ -86,7 +86,7 @@ describe('StreamClient', () => {
     expect(timers.waiting.size).toBe(0);
   });
 
-  it('waits longer from attempt to attempt, and anew after a success', () => {
+  it('waits longer after each attempt, and starts again after a success', () => {
     client.connect();
     const delays: number[] = [];
     for (let i = 0; i < 6; i += 1) {
@@ -100,7 +100,7 @@ describe('StreamClient', () => {
     expect(timers.delays()).toEqual([500]);
   });
 
-  it('asks why it was not let in, once for each attempt that failed to open', () => {
+  it('asks for the reason of a rejection once for each attempt that failed to open', () => {
     client.connect();
     socket().lose();
     expect(asked).toBe(1);
@@ -110,7 +110,7 @@ describe('StreamClient', () => {
     expect(asked).toBe(1);
   });
 
-  it('tells why it was not let in and tries again all the same', () => {
+  it('reports why it was rejected and tries again', () => {
     client.connect();
     socket().lose();
     client.refused('64 viewers are connected');
@@ -154,7 +154,7 @@ describe('StreamClient', () => {
     expect(timers.waiting.size).toBe(0);
   });
 
-  it('comes back to the same run with the rows at hand and restores the cursor', () => {
+  it('reattaches to the same run with the rows that it has and restores the cursor', () => {
     attached();
     listener.rows = { truth: 10 };
     listener.commands = [{ type: 'seek', t_ns: 5 }];
@@ -184,7 +184,7 @@ describe('StreamClient', () => {
     expect(listener.messages).toMatchObject([{ type: 'playback', frame: 8 }]);
   });
 
-  it('tells when a run cannot be attached and does not try it again', () => {
+  it('reports a run that cannot be attached and does not try again', () => {
     client.connect();
     socket().hello();
     client.attach('gone');
@@ -205,11 +205,11 @@ describe('StreamClient', () => {
     expect(listener.pictures).toEqual(['camera']);
   });
 
-  it('survives what it cannot read and tells it', () => {
+  it('survives unreadable messages and reports them', () => {
     attached();
     socket().receive(new ArrayBuffer(3));
     socket().onmessage?.({ data: '{' } as MessageEvent);
-    expect(listener.faults.length).toBe(2);
+    expect(listener.protocolErrors.length).toBe(2);
     expect(socket().closed).toBe(false);
   });
 });

@@ -74,7 +74,7 @@ describe('Catalogue', () => {
     });
     await subject.readScenarios();
     await subject.selectScenario('course');
-    expect(store.state.launchFaults).toEqual([{ field: '', message: 'no data' }]);
+    expect(store.state.launchErrors).toEqual([{ field: '', message: 'no data' }]);
   });
 
   it('launches a run, lists it and watches it', async () => {
@@ -94,7 +94,7 @@ describe('Catalogue', () => {
     expect(store.state.launching).toBe(false);
   });
 
-  it("brings the server's faults to the form", async () => {
+  it("shows the server's field errors in the form", async () => {
     const message = 'seed = -1: must be at least 0';
     const { store, subject } = catalogue({
       ...reading,
@@ -110,11 +110,11 @@ describe('Catalogue', () => {
         ['pacing', 'lockstep'],
       ]),
     );
-    expect(store.state.launchFaults).toEqual([{ field: 'seed', message: 'must be at least 0' }]);
+    expect(store.state.launchErrors).toEqual([{ field: 'seed', message: 'must be at least 0' }]);
     expect(store.state.runId).toBeNull();
   });
 
-  it('tells when a run cannot be deleted', async () => {
+  it('reports a run that cannot be deleted', async () => {
     const { store, subject } = catalogue({
       'DELETE /runs/r1': () => [409, { error: { code: 'conflict', message: 'it still runs' } }],
       'GET /runs': () => [200, { runs: [sampleRun()] }],
@@ -149,7 +149,7 @@ describe('Catalogue', () => {
     await expect.poll(() => timers.waiting.size).toBe(1);
   });
 
-  it('keeps the list and tells when the server is gone', async () => {
+  it('keeps the list and reports that the server is unreachable', async () => {
     const { store, subject } = catalogue({});
     store.state.runs = [sampleRun()];
     await subject.readRuns();

@@ -40,7 +40,7 @@ describe('errorTable', () => {
     expect(coverage?.cells).toEqual(['0.0 %', '50.0 %']);
   });
 
-  it('shows the figures of the chosen alignment beside outcome and coverage', () => {
+  it('shows the figures of the chosen alignment next to outcome and coverage', () => {
     const table = errorTable(metrics, 'init_scale');
     expect(table.estimators).toEqual([
       { name: 'feature', outcome: 'LOST at 12.3 s', good: false },
@@ -85,7 +85,7 @@ describe('textureLimited', () => {
     expect(textureLimited(null, null)).toBe(false);
   });
 
-  it("believes the server's own word", () => {
+  it("uses the server's own value", () => {
     const texture = { texels_per_pixel_median: 0.49, texture_limited: false };
     expect(textureLimited(null, { ...metrics, texture })).toBe(false);
     expect(textureLimited(sampleRun({ texture_limited: true }), null)).toBe(true);

@@ -12,7 +12,7 @@ function cellOf(status: EstimatorStatus, column: string) {
 }
 
 describe('statusRows', () => {
-  it('has a row for each estimator of the run, in its order, heard of or not', () => {
+  it('has a row for each estimator of the run, in order, with or without a status', () => {
     const run = sampleRun({ estimators: ['b', 'a'] });
     const rows = statusRows(run, { a: sampleStatus() });
     expect(rows.map(({ name, state }) => [name, state])).toEqual([

@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import type { JsonObject } from '../../src/protocol/rest_types';
-import { fieldOfFault, fieldsOf, fieldText, overridesOf } from '../../src/store/launch_form';
+import { fieldOfError, fieldsOf, fieldText, overridesOf } from '../../src/store/launch_form';
 
 const course: JsonObject = {
   seed: 1,
@@ -20,7 +20,7 @@ function texts(document: JsonObject, changes: Record<string, string> = {}): Map<
 
 describe('the launcher', () => {
   it('overrides nothing when nothing was changed', () => {
-    expect(overridesOf(course, texts(course))).toEqual({ overrides: {}, faults: [] });
+    expect(overridesOf(course, texts(course))).toEqual({ overrides: {}, errors: [] });
   });
 
   it('overrides what was changed, as numbers', () => {
@@ -51,7 +51,7 @@ describe('the launcher', () => {
     });
   });
 
-  it('tells two estimators behind one kind of door apart', () => {
+  it('distinguishes two estimators of the same type', () => {
     const orb = { name: 'orb', type: 'process', command: ['orb'] };
     const svo = { name: 'svo', type: 'process', command: ['svo'] };
     const doors: JsonObject = { ...course, estimators: [orb, svo] };
@@ -61,9 +61,9 @@ describe('the launcher', () => {
     });
   });
 
-  it('finds fault with what is no number', () => {
-    const { faults } = overridesOf(course, texts(course, { seed: '', 'world.builtin.seed': 'x' }));
-    expect(faults.map(({ field }) => field)).toEqual(['seed', 'world.builtin.seed']);
+  it('rejects text that is not a number', () => {
+    const { errors } = overridesOf(course, texts(course, { seed: '', 'world.builtin.seed': 'x' }));
+    expect(errors.map(({ field }) => field)).toEqual(['seed', 'world.builtin.seed']);
   });
 
   it('shows only the fields that the scenario has', () => {
@@ -76,9 +76,9 @@ describe('the launcher', () => {
     ]);
   });
 
-  it('finds the field of a fault, also of one inside it', () => {
+  it('finds the field of an error, also of one inside it', () => {
     const fields = fieldsOf(course);
-    const field = (path: string) => fieldOfFault(fields, { field: path, message: '' })?.path;
+    const field = (path: string) => fieldOfError(fields, { field: path, message: '' })?.path;
     expect(field('seed')).toBe('seed');
     expect(field('estimators.0.type')).toBe('estimators');
     expect(field('camera.fov_deg')).toBeUndefined();

@@ -16,7 +16,7 @@ function message(frame: number): PictureMessage {
   };
 }
 
-/** Decodes when told to. */
+/** Decodes on request. */
 function decoder() {
   const waiting: { resolve: (bitmap: ImageBitmap) => void; reject: (reason: Error) => void }[] = [];
   const shown: number[] = [];

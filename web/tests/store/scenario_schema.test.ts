@@ -3,7 +3,7 @@ import schemaText from '../../../scenarios/scenario.schema.json?raw';
 import type { JsonObject } from '../../src/protocol/rest_types';
 import {
   fieldNotes,
-  sectionFaults,
+  sectionErrors,
   sectionOverrides,
   sectionsOf,
   sectionText,
@@ -33,7 +33,7 @@ const small: JsonObject = {
 };
 
 const texts = (section: string, value: unknown) =>
-  sectionFaults(small, section, typeof value === 'string' ? value : JSON.stringify(value)).map(
+  sectionErrors(small, section, typeof value === 'string' ? value : JSON.stringify(value)).map(
     ({ field, message }) => `${field}: ${message}`,
   );
 
@@ -59,7 +59,7 @@ describe('sections of a scenario', () => {
     expect(texts('lens', { k: 1.5 })).toEqual(['lens.k: must be an integer']);
   });
 
-  it('tell what is no JSON, and stay as they are where the text is empty', () => {
+  it('report text that is not JSON, and ignore empty text', () => {
     expect(texts('lens', '{"k": }')[0]).toMatch(/^lens: is not JSON/u);
     expect(texts('lens', '  ')).toEqual([]);
     const edits = new Map([
@@ -74,7 +74,7 @@ describe('sections of a scenario', () => {
     for (const section of sectionsOf(schema)) {
       const value = properties[section]?.['default'];
       if (value === undefined) continue;
-      expect(sectionFaults(schema, section, JSON.stringify(value))).toEqual([]);
+      expect(sectionErrors(schema, section, JSON.stringify(value))).toEqual([]);
     }
   });
 

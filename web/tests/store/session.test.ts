@@ -68,7 +68,7 @@ describe('Session', () => {
     expect(viewing.socket.types()).not.toContain('seek');
   });
 
-  it('keeps how the estimators fare until another run is watched', () => {
+  it('keeps the status of the estimators until another run is watched', () => {
     viewing.watch();
     const estimators = { feature: sampleStatus({ dropped: 7 }) };
     viewing.socket.receive({ type: 'estimators', estimators });
@@ -124,7 +124,7 @@ describe('Session', () => {
     expect([data.truth.length, metrics, playback, run]).toEqual([0, null, null, null]);
   });
 
-  it('tells once that the ground has changed since the run was flown', () => {
+  it('reports once that the terrain has changed since the run was flown', () => {
     viewing.watch();
     const texts = () => viewing.store.state.notices.map(({ text }) => text);
     expect(texts()).toEqual([]);
@@ -140,7 +140,7 @@ describe('Session', () => {
     expect(texts()).toEqual([world_change]);
   });
 
-  it('tells when a run cannot be shown', () => {
+  it('reports a run that cannot be shown', () => {
     viewing.session.selectRun('gone');
     const { request } = viewing.socket.last();
     viewing.socket.receive({ type: 'error', request, code: 'not_found', message: 'no such run' });

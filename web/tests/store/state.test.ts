@@ -14,7 +14,7 @@ describe('Store', () => {
     expect(listener).toHaveBeenCalledTimes(2);
   });
 
-  it('tells a listener of what changed before it came', () => {
+  it('notifies a new listener of earlier changes', () => {
     const store = new Store();
     store.change('run');
     const listener = vi.fn();

@@ -1,0 +1,14 @@
+// Checksum of images.
+#pragma once
+
+#include <cstdint>
+
+#include "core/camera/image.hpp"
+
+namespace overfly {
+
+/// CRC-32 of the image's bytes, row by row, as in zlib and PNG. Used to check that several
+/// estimators received the same frames.
+[[nodiscard]] std::uint32_t crc32_of(const Image& image);
+
+}  // namespace overfly

@@ -1,0 +1,51 @@
+// Reads TUM, KITTI and EuRoC ASL trajectory files and writes TUM files.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/motion/trajectory.hpp"
+#include "core/result.hpp"
+
+namespace overfly {
+
+enum class TrajectoryFormat { kTum, kKitti, kEuroc };
+
+/// The content of a trajectory file.
+struct TrajectoryFile {
+  Trajectory trajectory;
+  TrajectoryFormat format = TrajectoryFormat::kTum;
+  /// False for KITTI poses without a times file; each stamp is then the line number in seconds.
+  bool has_times = true;
+  std::size_t unknown_poses = 0;  ///< rows of a TUM file whose pose is `nan`: gaps
+  /// `# key value` comments of a TUM file, e.g. init_scene_depth.
+  std::map<std::string, std::string> comments;
+  /// Poses that were dropped or moved, see order_by_time. Empty if none.
+  std::vector<std::string> warnings;
+
+  /// Whether pose i is the i-th of the file, as needed for matching by index.
+  [[nodiscard]] bool as_listed() const { return warnings.empty() && unknown_poses == 0; }
+};
+
+/// Reads a trajectory and detects its format from the content.
+/// TUM: `t tx ty tz qx qy qz qw` [s, m], with seven `nan` where the pose is unknown.
+/// KITTI: 12 numbers, row-major 3 x 4; times from `times.txt` in the same folder if it exists and
+/// has as many lines.
+/// EuRoC: csv `t[ns], p_xyz, q_wxyz, ...`.
+/// Poses are sorted by time, and of several with the same time the first is kept; `warnings`
+/// reports how many were moved or dropped.
+/// @param cancel  stops reading; may be null
+/// Errors: as FieldFile::read; kUnreadable naming file, line, column and value.
+[[nodiscard]] Result<TrajectoryFile> read_trajectory(const std::filesystem::path& file,
+                                                     const std::atomic<bool>* cancel = nullptr);
+
+/// Writes a TUM file. Stamps are exact to the nanosecond, and numbers read back exactly. The file
+/// is written completely or not at all. Errors: kIo.
+[[nodiscard]] Status write_tum(const std::filesystem::path& file,
+                               const Trajectory& trajectory,
+                               const std::map<std::string, std::string>& comments = {});
+
+}  // namespace overfly

@@ -1,0 +1,59 @@
+// Interface to the flight's truth: a simulator, a log or a live autopilot.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/motion/pose.hpp"
+#include "core/result.hpp"
+
+namespace overfly {
+
+/// The aircraft at one instant.
+struct AircraftState {
+  std::int64_t t_ns = 0;
+  Pose T_world_body;  ///< body = forward-right-down
+  /// Velocity of body relative to world, expressed in world [m/s].
+  Eigen::Vector3d v_body_world_m_s = Eigen::Vector3d::Zero();
+  /// Angular rate of body relative to world, expressed in body [rad/s].
+  Eigen::Vector3d omega_body_rad_s = Eigen::Vector3d::Zero();
+  double airspeed_m_s = 0.0;
+};
+
+/// The state at a time between a and b: position and velocity by the cubic Hermite polynomial of
+/// both ends' positions and velocities, rotation by SLERP, the rest linear.
+/// @pre a.t_ns < b.t_ns
+[[nodiscard]] AircraftState interpolate(const AircraftState& a,
+                                        const AircraftState& b,
+                                        std::int64_t t_ns);
+
+/// A flight. Times of queries must not decrease; a live source may block until the state is known.
+class TruthSource {
+ public:
+  virtual ~TruthSource() = default;
+
+  /// The state at time t >= 0 from the start of the run; empty after the end of the flight.
+  /// @param cancel  ends a wait for the state; may be null
+  /// Errors: kCancelled; any failure of the source.
+  [[nodiscard]] Result<std::optional<AircraftState>> state_at(
+      std::int64_t t_ns, const std::atomic<bool>* cancel = nullptr) {
+    return find_state(t_ns, cancel);
+  }
+  /// Empty if the end of the flight is not known in advance.
+  [[nodiscard]] virtual std::optional<std::int64_t> duration_ns() const = 0;
+  /// One line for the manifest that describes the flight ("course: 25 m/s, 45 deg/s, 300 m").
+  [[nodiscard]] virtual std::string description() const = 0;
+  /// Lines of the flight's file that were dropped or moved. Empty if none.
+  [[nodiscard]] virtual std::vector<std::string> warnings() const { return {}; }
+
+ private:
+  /// As state_at.
+  [[nodiscard]] virtual Result<std::optional<AircraftState>> find_state(
+      std::int64_t t_ns, const std::atomic<bool>* cancel) = 0;
+};
+
+}  // namespace overfly

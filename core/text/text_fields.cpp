@@ -1,0 +1,190 @@
+#include "core/text/text_fields.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+#include "core/cancel.hpp"
+#include "core/outside/file_text.hpp"
+
+namespace overfly {
+namespace {
+
+constexpr std::string_view kBlank = " \t\r\f\v";
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(kBlank);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
+}
+
+std::vector<std::string_view> fields_of(std::string_view line) {
+  std::vector<std::string_view> fields;
+  if (line.find(',') != std::string_view::npos) {
+    std::size_t begin = 0;
+    for (std::size_t comma = line.find(','); comma != std::string_view::npos;
+         comma = line.find(',', begin)) {
+      fields.push_back(trimmed(line.substr(begin, comma - begin)));
+      begin = comma + 1;
+    }
+    fields.push_back(trimmed(line.substr(begin)));
+    return fields;
+  }
+  while (!(line = trimmed(line)).empty()) {
+    const std::size_t end = std::min(line.find_first_of(kBlank), line.size());
+    fields.push_back(line.substr(0, end));
+    line.remove_prefix(end);
+  }
+  return fields;
+}
+
+/// A decimal number as digits * 10^exponent.
+struct Decimal {
+  bool negative = false;
+  std::string digits;
+  int exponent = 0;
+};
+
+std::optional<Decimal> decimal_from(std::string_view text) {
+  Decimal decimal;
+  std::size_t i = 0;
+  if (i < text.size() && (text[i] == '+' || text[i] == '-')) decimal.negative = text[i++] == '-';
+  bool point_seen = false;
+  for (; i < text.size() && text[i] != 'e' && text[i] != 'E'; ++i) {
+    if (text[i] == '.' && !point_seen) {
+      point_seen = true;
+      continue;
+    }
+    if (text[i] < '0' || text[i] > '9') return std::nullopt;
+    decimal.digits += text[i];
+    if (point_seen) --decimal.exponent;
+  }
+  if (decimal.digits.empty()) return std::nullopt;
+  if (i == text.size()) return decimal;
+  std::string_view power = text.substr(i + 1);
+  if (power.size() > 1 && power[0] == '+' && power[1] != '-') power.remove_prefix(1);
+  int exponent = 0;
+  const auto [end, error] = std::from_chars(power.data(), power.data() + power.size(), exponent);
+  if (error != std::errc() || end != power.data() + power.size()) return std::nullopt;
+  if (std::abs(exponent) > 1000) return std::nullopt;
+  decimal.exponent += exponent;
+  return decimal;
+}
+
+/// The decimal times 10^9, rounded half away from zero; empty on overflow.
+std::optional<std::int64_t> ns_from_decimal(Decimal decimal) {
+  decimal.exponent += 9;
+  const std::size_t nonzero =
+      std::min(decimal.digits.find_first_not_of('0'), decimal.digits.size());
+  decimal.digits.erase(0, nonzero);
+  if (decimal.digits.empty()) return 0;
+  bool round_up = false;
+  if (decimal.exponent < 0) {
+    const auto drop = static_cast<std::size_t>(-decimal.exponent);
+    if (drop > decimal.digits.size()) return 0;
+    const std::size_t kept = decimal.digits.size() - drop;
+    round_up = decimal.digits[kept] >= '5';
+    decimal.digits.resize(kept);
+  } else {
+    if (decimal.digits.size() + static_cast<std::size_t>(decimal.exponent) > 19)
+      return std::nullopt;
+    decimal.digits.append(static_cast<std::size_t>(decimal.exponent), '0');
+  }
+  std::uint64_t size_ns = 0;
+  const char* const end = decimal.digits.data() + decimal.digits.size();
+  if (!decimal.digits.empty() &&
+      std::from_chars(decimal.digits.data(), end, size_ns).ec != std::errc()) {
+    return std::nullopt;
+  }
+  if (round_up) ++size_ns;
+  if (size_ns > static_cast<std::uint64_t>(INT64_MAX)) return std::nullopt;
+  const auto ns = static_cast<std::int64_t>(size_ns);
+  return decimal.negative ? -ns : ns;
+}
+
+}  // namespace
+
+Result<FieldFile> FieldFile::read(const std::filesystem::path& file,
+                                  const std::atomic<bool>* cancel) {
+  Result<std::string> text = read_file_text(file, kMaxBytes, cancel);
+  if (!text) return text.error();
+  FieldFile result;
+  result.file_ = file;
+  result.text_ = std::make_shared<const std::string>(std::move(*text));
+
+  std::string_view rest = *result.text_;
+  if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);  // UTF-8 byte order mark
+  for (int number = 1; !rest.empty(); ++number) {
+    const std::size_t end = std::min(rest.find('\n'), rest.size());
+    const std::string_view line = trimmed(rest.substr(0, end));
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+    if (is_cancelled(cancel)) {
+      return Error{ErrorCode::kCancelled, file.string() + ": reading was cancelled"};
+    }
+    if (line.empty()) continue;
+    if (!line.starts_with('#')) {
+      if (result.lines_.size() == kMaxLines) {
+        return Error{ErrorCode::kUnreadable,
+                     file.string() + ": must have at most " + std::to_string(kMaxLines) + " lines"};
+      }
+      result.lines_.push_back({number, line.find(',') != std::string_view::npos, fields_of(line)});
+      continue;
+    }
+    const std::string_view comment = trimmed(line.substr(1));
+    const std::size_t blank = comment.find_first_of(kBlank);
+    if (blank == std::string_view::npos) continue;
+    result.comments_[std::string(comment.substr(0, blank))] = trimmed(comment.substr(blank));
+  }
+  return result;
+}
+
+Error FieldFile::bad_field(const FieldLine& line,
+                           std::size_t column,
+                           const std::string& what) const {
+  return bad_line(line,
+                  "column " + std::to_string(column) + " = '" +
+                      std::string(line.fields.at(column - 1)) + "': " + what);
+}
+
+Error FieldFile::bad_line(const FieldLine& line, const std::string& what) const {
+  return {ErrorCode::kUnreadable, file_.string() + ":" + std::to_string(line.number) + ": " + what};
+}
+
+Status FieldFile::expect_fields(const FieldLine& line, std::size_t count) const {
+  if (line.fields.size() == count) return {};
+  return bad_line(
+      line, std::to_string(line.fields.size()) + " columns: must be " + std::to_string(count));
+}
+
+Result<double> FieldFile::number(const FieldLine& line, std::size_t column) const {
+  std::string_view text = line.fields.at(column - 1);
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (text.empty() || error != std::errc() || end != text.data() + text.size()) {
+    return bad_field(line, column, "must be a number");
+  }
+  if (!std::isfinite(value)) return bad_field(line, column, "must be finite");
+  return value;
+}
+
+Result<std::int64_t> FieldFile::time_s(const FieldLine& line, std::size_t column) const {
+  const std::optional<Decimal> decimal = decimal_from(line.fields.at(column - 1));
+  if (!decimal) return bad_field(line, column, "must be a time in seconds");
+  const std::optional<std::int64_t> t_ns = ns_from_decimal(*decimal);
+  if (!t_ns) return bad_field(line, column, "magnitude must be below 9.2e9 s");
+  return *t_ns;
+}
+
+Result<std::int64_t> FieldFile::time_ns(const FieldLine& line, std::size_t column) const {
+  const std::string_view text = line.fields.at(column - 1);
+  std::int64_t t_ns = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), t_ns);
+  if (text.empty() || error != std::errc() || end != text.data() + text.size()) {
+    return bad_field(line, column, "must be a whole number of nanoseconds");
+  }
+  return t_ns;
+}
+
+}  // namespace overfly

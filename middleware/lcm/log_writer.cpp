@@ -1,0 +1,114 @@
+#include "middleware/lcm/log_writer.hpp"
+
+#include <lcm/eventlog.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <overfly_lcm/sim_time_t.hpp>
+#include <overfly_lcm/truth_t.hpp>
+#include <utility>
+#include <vector>
+
+#include "middleware/lcm/messages.hpp"
+
+namespace overfly::lcm {
+namespace {
+
+constexpr std::int64_t kNsPerUs = 1000;
+
+class EventLogWriter final : public LogWriter {
+ public:
+  EventLogWriter(std::filesystem::path file, lcm_eventlog_t* log, std::int64_t epoch_utc_ns)
+      : file_(std::move(file)),
+        log_(log),
+        epoch_utc_us_(epoch_utc_ns / kNsPerUs),
+        // Differs from other runs and is not 0, like the sessions of the door.
+        session_(std::max<std::int64_t>(epoch_utc_us_, 1)) {}
+  ~EventLogWriter() override { lcm_eventlog_destroy(log_); }
+  EventLogWriter(const EventLogWriter&) = delete;
+  EventLogWriter& operator=(const EventLogWriter&) = delete;
+
+  Status write_calibration(const std::string& prefix,
+                           const std::string& camera,
+                           const CameraModel& model,
+                           std::int64_t stamp_ns) override {
+    overfly_lcm::calibration_t message =
+        calibration_message(camera, model.pinhole(), model.distortion(), {});
+    message.utime = stamp_ns / kNsPerUs;
+    message.session = session_;
+    return write(prefix + "CALIBRATION", stamp_ns, message);
+  }
+
+  Status write_image(const std::string& prefix, const LogImage& image) override {
+    overfly_lcm::image_t message =
+        image_message(image.image, image.frame, image.stamp_ns, image.exposure_ns, std::nullopt);
+    message.session = session_;
+    message.sequence = ++sequences_[prefix];
+    if (Status status = write(prefix + "IMAGE", image.stamp_ns, message); !status) return status;
+    overfly_lcm::sim_time_t time{};
+    time.utime = message.utime;
+    time.t_ns = image.stamp_ns;
+    time.session = session_;
+    time.frame = image.frame;
+    time.sequence = message.sequence;
+    time.attempt = 1;
+    return write(prefix + "TIME", image.stamp_ns, time);
+  }
+
+  Status write_truth(const std::string& prefix, const LogTruth& truth) override {
+    overfly_lcm::truth_t message{};
+    message.utime = truth.t_ns / kNsPerUs;
+    message.t_ns = truth.t_ns;
+    message.stamp_ns = truth.stamp_ns;
+    message.frame = truth.frame;
+    const Pose& T = truth.T_world_camera;
+    std::copy_n(T.translation.data(), 3, message.position);
+    std::copy_n(T.rotation.coeffs().data(), 4, message.orientation);
+    return write(prefix + "TRUTH", truth.stamp_ns, message);
+  }
+
+  Status finish() override {
+    if (std::fflush(log_->f) == 0 && std::ferror(log_->f) == 0) return {};
+    return failure();
+  }
+
+ private:
+  template <typename Message>
+  Status write(std::string channel, std::int64_t stamp_ns, const Message& message) {
+    bytes_.resize(static_cast<std::size_t>(message.getEncodedSize()));
+    if (message.encode(bytes_.data(), 0, static_cast<int>(bytes_.size())) < 0) {
+      return Error{ErrorCode::kInternal, "cannot encode the message of " + channel};
+    }
+    lcm_eventlog_event_t event{};
+    event.timestamp = epoch_utc_us_ + stamp_ns / kNsPerUs;
+    event.channellen = static_cast<std::int32_t>(channel.size());
+    event.datalen = static_cast<std::int32_t>(bytes_.size());
+    event.channel = channel.data();
+    event.data = bytes_.data();
+    if (lcm_eventlog_write_event(log_, &event) != 0) return failure();
+    return {};
+  }
+
+  [[nodiscard]] Error failure() const {
+    return {ErrorCode::kIo, file_.string() + ": cannot be written; is the disk full?"};
+  }
+
+  std::filesystem::path file_;
+  lcm_eventlog_t* log_;
+  std::int64_t epoch_utc_us_;
+  std::int64_t session_;
+  std::map<std::string, std::int64_t> sequences_;  ///< of images, by prefix
+  std::vector<std::uint8_t> bytes_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<LogWriter>> LogWriter::create(const std::filesystem::path& file,
+                                                     std::int64_t epoch_utc_ns) {
+  lcm_eventlog_t* const log = lcm_eventlog_create(file.c_str(), "w");
+  if (log == nullptr) return Error{ErrorCode::kIo, file.string() + ": cannot be created"};
+  return std::unique_ptr<LogWriter>(std::make_unique<EventLogWriter>(file, log, epoch_utc_ns));
+}
+
+}  // namespace overfly::lcm

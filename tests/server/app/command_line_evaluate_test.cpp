@@ -1,0 +1,119 @@
+// overfly evaluate of trajectory files.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/server/app/command_line_fixture.hpp"
+#include "tests/server/app/program.hpp"
+
+namespace overfly::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using Json = nlohmann::json;
+
+TEST_F(CommandLine, EvaluateScoresTrajectoryFilesAndRejectsInvalidOnes) {
+  std::string truth;
+  std::string estimate;
+  for (int i = 0; i < 20; ++i) {
+    const std::string t = std::to_string(i);
+    const std::string y = std::to_string(i % 5);
+    truth += t + " " + t + " " + y + " 0 0 0 0 1\n";
+    estimate +=
+        t + " " + std::to_string(2 * i) + " " + std::to_string(2 * (i % 5)) + " 0 0 0 0 1\n";
+  }
+  write_text(path("truth.tum"), truth);
+  write_text(path("estimate.tum"), estimate);
+  const Outcome scored = overfly_program({"evaluate",
+                                          "--truth",
+                                          path("truth.tum"),
+                                          "--estimate",
+                                          path("estimate.tum"),
+                                          "--alignment",
+                                          "sim3",
+                                          "--alignment",
+                                          "none",
+                                          "--json"});
+  ASSERT_EQ(scored.exit_code, 0) << scored.err;
+  const Json alignments = Json::parse(scored.out).at("estimates").at(0).at("alignments");
+  EXPECT_NEAR(alignments.at("sim3").at("scale").get<double>(), 0.5, 1e-9);
+  EXPECT_NEAR(alignments.at("sim3").at("position_rmse_m").get<double>(), 0.0, 1e-6);
+  EXPECT_GT(alignments.at("none").at("position_rmse_m").get<double>(), 1.0);
+  EXPECT_THAT(overfly_program({"evaluate",
+                               "--truth",
+                               path("truth.tum"),
+                               "--estimate",
+                               path("estimate.tum"),
+                               "--alignment",
+                               "all"})
+                  .out,
+              HasSubstr("sim3"));
+
+  EXPECT_EQ(overfly_program({"evaluate", "--truth", path("truth.tum")}).exit_code, 2);
+  EXPECT_EQ(overfly_program({"evaluate",
+                             "--truth",
+                             path("truth.tum"),
+                             "--estimate",
+                             path("estimate.tum"),
+                             "--alignment",
+                             "sim4"})
+                .exit_code,
+            2);
+  write_text(path("broken.tum"), "0 1 2 three 0 0 0 1\n");
+  const Outcome broken =
+      overfly_program({"evaluate", "--truth", path("truth.tum"), "--estimate", path("broken.tum")});
+  EXPECT_EQ(broken.exit_code, 2);
+  EXPECT_THAT(broken.err, HasSubstr("broken.tum"));
+}
+
+/// Trajectory files of other programs may repeat time stamps and be out of order.
+TEST_F(CommandLine, EvaluateSortsPosesByTimeAndReportsIt) {
+  const auto pose = [](int i, int x) {
+    return std::to_string(i) + " " + std::to_string(x) + " " + std::to_string(i % 5) +
+           " 0 0 0 0 1\n";
+  };
+  std::string truth;
+  std::string estimate;
+  for (int i = 0; i < 20; ++i) {
+    truth += pose(i, i);
+    if (i == 7) truth += pose(i, 900);  // the second pose of a time is ignored
+    estimate += pose(19 - i, 19 - i);
+  }
+  write_text(path("repeated.tum"), truth);
+  write_text(path("backwards.tum"), estimate);
+  const auto evaluate = [&](const std::string& association) {
+    return overfly_program({"evaluate",
+                            "--truth",
+                            path("repeated.tum"),
+                            "--estimate",
+                            path("backwards.tum"),
+                            "--alignment",
+                            "none",
+                            "--association",
+                            association,
+                            "--json"});
+  };
+  const Outcome scored = evaluate("interpolate");
+  ASSERT_EQ(scored.exit_code, 0) << scored.err;
+  const Json result = Json::parse(scored.out);
+  const Json& entry = result.at("estimates").at(0);
+  EXPECT_EQ(entry.at("matched"), 20);
+  EXPECT_EQ(entry.at("alignments").at("none").at("position_max_m"), 0.0);
+  const std::string repeated =
+      path("repeated.tum") + ": 1 poses (first in line 9) repeat the time of an earlier line";
+  const std::string moved =
+      path("backwards.tum") + ": 19 poses (first in line 2) are out of time order";
+  EXPECT_THAT(result.at("warnings").at(0).get<std::string>(), HasSubstr(repeated));
+  EXPECT_THAT(entry.at("warnings").at(0).get<std::string>(), HasSubstr(moved));
+  EXPECT_THAT(scored.err, HasSubstr("warning: " + repeated));
+  EXPECT_THAT(scored.err, HasSubstr("warning: " + moved));
+
+  const Outcome by_number = evaluate("index");
+  EXPECT_EQ(by_number.exit_code, 2);
+  EXPECT_THAT(by_number.err, HasSubstr("repeated.tum: contains unknown poses"));
+}
+
+}  // namespace
+}  // namespace overfly::testing

@@ -1,0 +1,73 @@
+#include "vo_bridges/process/link/messages.hpp"
+
+#include "vo_bridges/estimator_text.hpp"
+
+namespace overfly::process {
+
+namespace {
+
+std::string flag(bool value) { return value ? "true" : "false"; }
+
+}  // namespace
+
+std::string server_hello(bool lockstep, const VoParameters& wanted) {
+  std::string text = "protocol " + std::to_string(kProtocolVersion) + "\nserver overfly\nlockstep ";
+  text += flag(lockstep) + "\n";
+  for (const auto& [name, value] : wanted) {
+    text += "parameter " + name + " " + text_of(value) + "\n";
+  }
+  return message_of(MessageType::kHello, text);
+}
+
+std::string calibration_message(const VoFrame& frame, double rate_hz, const FrameSlots& slots) {
+  const PinholeCamera& pinhole = frame.intrinsics;
+  std::string text;
+  const auto line = [&](const std::string& key, const ParameterValue& value) {
+    text += key + " " + text_of(value) + "\n";
+  };
+  line("camera", printable(frame.camera_id));
+  line("width_px", static_cast<double>(pinhole.width_px));
+  line("height_px", static_cast<double>(pinhole.height_px));
+  line("fx_px", pinhole.fx_px);
+  line("fy_px", pinhole.fy_px);
+  line("cx_px", pinhole.cx_px);
+  line("cy_px", pinhole.cy_px);
+  line("distortion", std::string(to_string(frame.distortion.model)));
+  if (!frame.distortion.none()) {
+    std::string coefficients;
+    for (int i = 0; i < coefficient_count(frame.distortion.model); ++i) {
+      if (i > 0) coefficients += " ";
+      coefficients += text_of(frame.distortion.k.at(static_cast<std::size_t>(i)));
+    }
+    line("distortion_coefficients", coefficients);
+  }
+  line("rate_hz", rate_hz);
+  if (slots.count > 0) {
+    line("frame_slots", static_cast<double>(slots.count));
+    text += "frame_slot_bytes " + std::to_string(slots.bytes_each) + "\n";
+  }
+  return message_of(MessageType::kCalibration, text);
+}
+
+std::size_t frame_payload_bytes(const VoFrame& frame, bool in_shared_memory) {
+  return 48 + 56 * frame.imu.size() + (in_shared_memory ? 0 : frame.image->data.size());
+}
+
+std::string frame_message(const VoFrame& frame, const FrameSending& sending) {
+  ByteWriter writer;
+  writer.text(header_of(MessageType::kFrame, frame_payload_bytes(frame, sending.in_shared_memory)));
+  writer.i64(frame.index).i64(frame.t_ns).i64(frame.exposure_ns);
+  writer.u32(static_cast<std::uint32_t>(frame.image->width_px));
+  writer.u32(static_cast<std::uint32_t>(frame.image->height_px));
+  writer.u32(sending.crc32);
+  writer.u32((sending.debug_wanted ? 1U : 0U) | (sending.in_shared_memory ? 2U : 0U));
+  writer.u32(sending.slot).u32(static_cast<std::uint32_t>(frame.imu.size()));
+  for (const ImuSample& sample : frame.imu) {
+    writer.i64(sample.t_ns);
+    for (const double value : sample.acceleration_m_s2) writer.f64(value);
+    for (const double value : sample.angular_rate_rad_s) writer.f64(value);
+  }
+  return std::move(writer.bytes());
+}
+
+}  // namespace overfly::process
