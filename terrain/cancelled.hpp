@@ -17,7 +17,4 @@ using Cancelled = std::function<bool()>;
   return Error{ErrorCode::kCancelled, file.string() + ": reading it was cancelled"};
 }
 
-/// Number of a file's blocks examined, without reading them, between two polls.
-inline constexpr int kBlocksAtOnce = 4096;
-
 }  // namespace overfly::terrain

@@ -7,8 +7,10 @@
 
 #include "core/camera/image.hpp"
 #include "core/motion/truth_source.hpp"
+#include "core/result.hpp"
 #include "renderer/renderer.hpp"
 #include "sensor/sensor.hpp"
+#include "server/record/rows.hpp"
 
 namespace overfly::server {
 
@@ -34,6 +36,12 @@ struct MadeFrame {
   AircraftState state;
   std::vector<CameraShot> shots;  ///< in the order of Scenario::cameras
 };
+
+/// Checks time and camera pose of a frame that is rendered again against the run's record.
+/// Errors: kConflict if they differ by more than the rounding of another C library.
+[[nodiscard]] Status check_recorded_pose(const FrameRow& recorded,
+                                         std::int64_t t_ns,
+                                         const Pose& T_world_camera);
 
 /// The image as given to estimators: luma (ITU-R BT.601) of a colour image.
 [[nodiscard]] Image grey_of(const Image& image);

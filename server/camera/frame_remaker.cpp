@@ -53,6 +53,8 @@ Result<Image> FrameRemaker::make(std::size_t camera,
   }
   Result<renderer::CameraRequest> request = unit.request(**states, row.t_ns, setting);
   if (!request) return request.error();
+  Status same = check_recorded_pose(row, row.t_ns, request->T_world_camera.at(row.t_ns));
+  if (!same) return same.error();
   Result<renderer::CameraFrame> drawn = renderer.render_camera(*request);
   if (!drawn) return drawn.error();
   const FrameFaults faults = FaultSchedule(scenario_).at(camera, row.frame, row.t_ns);

@@ -27,7 +27,8 @@ class FrameRemaker {
                                                       std::shared_ptr<const terrain::World> world);
 
   /// @param row  of the frame, from the run's record; its exposure is used
-  /// Errors: as the truth's and the renderer's.
+  /// Errors: as the truth's and the renderer's; kConflict if the flight's camera was elsewhere than
+  /// the row says.
   [[nodiscard]] Result<Image> make(std::size_t camera,
                                    const FrameRow& row,
                                    renderer::Renderer& renderer);

@@ -97,20 +97,4 @@ Status check_world(const ExportSource& source, const terrain::World& world) {
   return {};
 }
 
-Status check_frame(const FrameRow& recorded, const MadeFrame& made) {
-  // Poses are bit-identical on the same machine; another C library may round sines differently.
-  constexpr double kCloseM = 1e-6;
-  constexpr double kCloseRad = 1e-8;
-  const Pose& then = recorded.T_world_camera;
-  const Pose& now = made.shots[kMainCamera].drawn.T_world_camera;
-  const double away_m = (then.translation - now.translation).norm();
-  const double away_rad = rotation_angle_rad(then.rotation, now.rotation);
-  if (away_m <= kCloseM && away_rad <= kCloseRad && recorded.t_ns == made.t_ns) return {};
-  return Error{ErrorCode::kConflict,
-               "frame " + std::to_string(made.frame) + ": rendered " + std::to_string(away_m) +
-                   " m and " + std::to_string(deg_from_rad(away_rad)) +
-                   "deg away from the recorded pose; the flight's files or this version "
-                   "differ from the run's"};
-}
-
 }  // namespace overfly::server

@@ -43,8 +43,5 @@ struct ExportSource {
 /// Checks that the world is the one used by the run.
 /// Errors: kConflict naming the file whose content differs.
 [[nodiscard]] Status check_world(const ExportSource& source, const terrain::World& world);
-/// Checks that a frame was rendered from the recorded pose of the camera.
-/// Errors: kConflict naming frame and distance.
-[[nodiscard]] Status check_frame(const FrameRow& recorded, const MadeFrame& made);
 
 }  // namespace overfly::server

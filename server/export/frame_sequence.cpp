@@ -113,7 +113,9 @@ Result<std::optional<MadeFrame>> FrameSequence::next() {
   MadeFrame& made = **next;
   made_up_to_ = frame + 1;
   if (const FrameRow* record = record_of(frame); record != nullptr) {
-    if (Status status = check_frame(*record, made); !status) return status.error();
+    const Pose& T_world_camera = made.shots[kMainCamera].drawn.T_world_camera;
+    Status status = check_recorded_pose(*record, made.t_ns, T_world_camera);
+    if (!status) return status.error();
   }
   std::vector<CameraShot> shots;
   for (const std::size_t camera : chosen_) shots.push_back(std::move(made.shots[camera]));

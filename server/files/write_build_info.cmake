@@ -13,8 +13,8 @@ file(CONFIGURE OUTPUT ${OUTPUT} CONTENT [[
 // Generated: the version and the commit of this build.
 #pragma once
 
-namespace overfly::engine {
+namespace overfly::server {
 inline constexpr const char* kVersion = "@VERSION@";
 inline constexpr const char* kGitCommit = "@commit@";
-}  // namespace overfly::engine
+}  // namespace overfly::server
 ]] @ONLY)

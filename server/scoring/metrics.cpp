@@ -1,13 +1,12 @@
 #include "server/scoring/metrics.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "core/motion/trajectory_io.hpp"
+#include "core/text/number_text.hpp"
 #include "core/time.hpp"
 #include "server/files/whole_file.hpp"
 #include "server/record/estimator_tally.hpp"
@@ -76,12 +75,6 @@ EstimatorMetrics estimator_metrics_from(const RunRecords& records,
   metrics.dropped_frames = static_cast<std::int64_t>(dropped.size());
   metrics.dropped_frame_ranges = ranges_of(dropped);
   return metrics;
-}
-
-std::string number_text(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.17g", value);
-  return text.data();
 }
 
 Status write_trajectories(const fs::path& folder, const RunRecords& records) {

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "terrain/files/side_cars.hpp"
+#include "terrain/raster/block_search.hpp"
 
 namespace overfly::terrain {
 namespace fs = std::filesystem;
@@ -16,30 +17,19 @@ Status check_blocks(GDALRasterBand& band,
                     const fs::path& file,
                     std::uintmax_t file_bytes,
                     const Cancelled& cancelled) {
-  int block_width = 0;
-  int block_height = 0;
-  band.GetBlockSize(&block_width, &block_height);
-  const int columns = (band.GetXSize() + block_width - 1) / block_width;
-  const int rows = (band.GetYSize() + block_height - 1) / block_height;
-  int seen = 0;
-  for (int y = 0; y < rows; ++y) {
-    for (int x = 0; x < columns; ++x) {
-      if (++seen % kBlocksAtOnce == 0) {
-        if (Status status = go_on(cancelled, file); !status) return status;
-      }
-      const std::string at = std::to_string(x) + "_" + std::to_string(y);
-      const char* offset = band.GetMetadataItem(("BLOCK_OFFSET_" + at).c_str(), "TIFF");
-      const char* size = band.GetMetadataItem(("BLOCK_SIZE_" + at).c_str(), "TIFF");
-      if (offset == nullptr || size == nullptr) continue;
-      const unsigned long long end = std::stoull(offset) + std::stoull(size);
-      if (end > file_bytes) {
-        return Error{ErrorCode::kUnreadable,
-                     file.string() + ": is truncated: block " + at + " ends at byte " +
-                         std::to_string(end) + ", the file has " + std::to_string(file_bytes)};
-      }
-    }
-  }
-  return {};
+  const auto is_beyond_the_end = [&](int x, int y) -> Result<bool> {
+    const std::string at = std::to_string(x) + "_" + std::to_string(y);
+    const char* offset = band.GetMetadataItem(("BLOCK_OFFSET_" + at).c_str(), "TIFF");
+    const char* size = band.GetMetadataItem(("BLOCK_SIZE_" + at).c_str(), "TIFF");
+    if (offset == nullptr || size == nullptr) return false;
+    const unsigned long long end = std::stoull(offset) + std::stoull(size);
+    if (end <= file_bytes) return false;
+    return Error{ErrorCode::kUnreadable,
+                 file.string() + ": is truncated: block " + at + " ends at byte " +
+                     std::to_string(end) + ", the file has " + std::to_string(file_bytes)};
+  };
+  const Result<bool> searched = any_block(band, file, cancelled, is_beyond_the_end);
+  return searched ? Status{} : Status{searched.error()};
 }
 
 Status check_tiff(GDALDataset& dataset, const fs::path& file, const Cancelled& cancelled) {

@@ -79,6 +79,39 @@ Status write_png_of(const fs::path& file, const ImageBuffer<T>& image, GDALDataT
   return copy_to(source.get(), "PNG", file, options.List());
 }
 
+/// Reads the whole file, samples of one pixel together.
+template <typename Sample>
+Result<ImageBuffer<Sample>> read_samples(GDALDataset& source, const fs::path& file) {
+  const GDALDataType type = sizeof(Sample) == 2 ? GDT_UInt16 : GDT_Byte;
+  if (source.GetRasterBand(1)->GetRasterDataType() != type) {
+    return Error{
+        ErrorCode::kUnreadable,
+        file.string() + ": samples are not " + std::to_string(8 * sizeof(Sample)) + " bit"};
+  }
+  ImageBuffer<Sample> image(
+      source.GetRasterXSize(), source.GetRasterYSize(), source.GetRasterCount() >= 3 ? 3 : 1);
+  const GSpacing sample_bytes = sizeof(Sample);
+  const GdalMessages messages;
+  if (source.RasterIO(GF_Read,
+                      0,
+                      0,
+                      image.width_px,
+                      image.height_px,
+                      image.data.data(),
+                      image.width_px,
+                      image.height_px,
+                      type,
+                      image.channels,
+                      nullptr,
+                      sample_bytes * image.channels,
+                      sample_bytes * image.channels * image.width_px,
+                      sample_bytes,
+                      nullptr) != CE_None) {
+    return Error{ErrorCode::kUnreadable, file.string() + ": " + messages.text()};
+  }
+  return image;
+}
+
 }  // namespace
 
 Status write_png(const fs::path& file, const Image& image) {
@@ -92,62 +125,17 @@ Status write_png(const fs::path& file, const Image16& image) {
 Result<Image16> read_png16(const fs::path& file) {
   auto dataset = open_raster(file);
   if (!dataset) return dataset.error();
-  GDALDataset& source = **dataset;
-  if (source.GetRasterBand(1)->GetRasterDataType() != GDT_UInt16) {
-    return Error{ErrorCode::kUnreadable, file.string() + ": samples are not 16 bit"};
-  }
-  Image16 image(
-      source.GetRasterXSize(), source.GetRasterYSize(), source.GetRasterCount() >= 3 ? 3 : 1);
-  const GdalMessages messages;
-  if (source.RasterIO(GF_Read,
-                      0,
-                      0,
-                      image.width_px,
-                      image.height_px,
-                      image.data.data(),
-                      image.width_px,
-                      image.height_px,
-                      GDT_UInt16,
-                      image.channels,
-                      nullptr,
-                      GSpacing{2} * image.channels,
-                      GSpacing{2} * image.channels * image.width_px,
-                      2,
-                      nullptr) != CE_None) {
-    return Error{ErrorCode::kUnreadable, file.string() + ": " + messages.text()};
-  }
-  return image;
+  return read_samples<std::uint16_t>(**dataset, file);
 }
 
 Result<Image> read_png(const fs::path& file) {
   auto dataset = open_raster(file);
   if (!dataset) return dataset.error();
-  GDALDataset& source = **dataset;
-  const GDALColorTable* palette = source.GetRasterBand(1)->GetColorTable();
-  const int bands = source.GetRasterCount() >= 3 ? 3 : 1;
-  if (source.GetRasterBand(1)->GetRasterDataType() != GDT_Byte) {
-    return Error{ErrorCode::kUnreadable, file.string() + ": samples are not 8 bit"};
-  }
-  Image image(source.GetRasterXSize(), source.GetRasterYSize(), bands);
-  const GdalMessages messages;
-  if (source.RasterIO(GF_Read,
-                      0,
-                      0,
-                      image.width_px,
-                      image.height_px,
-                      image.data.data(),
-                      image.width_px,
-                      image.height_px,
-                      GDT_Byte,
-                      bands,
-                      nullptr,
-                      bands,
-                      GSpacing{bands} * image.width_px,
-                      1,
-                      nullptr) != CE_None) {
-    return Error{ErrorCode::kUnreadable, file.string() + ": " + messages.text()};
-  }
-  if (bands == 3 || palette == nullptr) return image;
+  Result<Image> read = read_samples<std::uint8_t>(**dataset, file);
+  if (!read) return read;
+  const Image& image = *read;
+  const GDALColorTable* palette = (*dataset)->GetRasterBand(1)->GetColorTable();
+  if (image.channels == 3 || palette == nullptr) return read;
   Image coloured(image.width_px, image.height_px, 3);
   for (std::size_t i = 0; i < image.data.size(); ++i) {
     GDALColorEntry entry;

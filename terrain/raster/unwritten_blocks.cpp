@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <string>
 
+#include "terrain/raster/block_search.hpp"
+
 namespace overfly::terrain {
 namespace {
 
@@ -21,21 +23,9 @@ Result<bool> has_unwritten_blocks(GDALRasterBand& band,
   GDALDataset* dataset = band.GetDataset();
   GDALDriver* driver = dataset != nullptr ? dataset->GetDriver() : nullptr;
   if (driver == nullptr || std::string(driver->GetDescription()) != "GTiff") return false;
-  int block_width = 0;
-  int block_height = 0;
-  band.GetBlockSize(&block_width, &block_height);
-  const int columns = (band.GetXSize() + block_width - 1) / block_width;
-  const int rows = (band.GetYSize() + block_height - 1) / block_height;
-  int seen = 0;
-  for (int row = 0; row < rows; ++row) {
-    for (int column = 0; column < columns; ++column) {
-      if (++seen % kBlocksAtOnce == 0) {
-        if (Status status = go_on(cancelled, file); !status) return status.error();
-      }
-      if (!was_written(band, column, row)) return true;
-    }
-  }
-  return false;
+  return any_block(band, file, cancelled, [&](int column, int row) -> Result<bool> {
+    return !was_written(band, column, row);
+  });
 }
 
 void mask_unwritten_blocks(GDALRasterBand& band, int x, int y, Image& valid) {

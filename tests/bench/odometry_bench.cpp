@@ -15,6 +15,7 @@
 #include "odometry/feature/feature_odometry.hpp"
 #include "odometry/feature/orb.hpp"
 #include "tests/odometry/synthetic_flight.hpp"
+#include "tests/odometry/test_frame.hpp"
 
 namespace overfly::odometry {
 namespace {
@@ -29,12 +30,7 @@ std::vector<VoFrame> make_frames() {
   const std::vector<Pose> poses = testing::fly_s_turns(options);
   std::vector<VoFrame> frames;
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    VoFrame frame;
-    frame.index = static_cast<std::int64_t>(i);
-    frame.t_ns = frame_time_ns(frame.index, FrameRate{});
-    frame.intrinsics = camera;
-    frame.image = std::make_shared<const Image>(ground.render(camera, poses[i], 1.5, i + 1));
-    frames.push_back(std::move(frame));
+    frames.push_back(testing::test_frame(i, camera, ground.render(camera, poses[i], 1.5, i + 1)));
   }
   return frames;
 }

@@ -22,7 +22,7 @@
 namespace overfly::process {
 
 /// Rounded to one decimal: "0.3 s".
-[[nodiscard]] std::string seconds_text(double seconds);
+[[nodiscard]] std::string duration_text(double seconds);
 
 /// Not thread-safe, except for the three methods that say so. The first error ends the session: the
 /// child is killed, and every later call fails with the same error. A frame or camera that cannot

@@ -172,7 +172,7 @@ Result<std::optional<VoEstimate>> Session::track(const VoFrame& frame, bool debu
   if (silent_s < kTimeoutsToGiveUp * options_.answer_timeout_s) return std::optional<VoEstimate>{};
   return end({ErrorCode::kInternal,
               "the estimator hangs: frame " + std::to_string(under_way_->index) +
-                  " was not answered within " + seconds_text(silent_s)});
+                  " was not answered within " + duration_text(silent_s)});
 }
 
 Status Session::reset() {

@@ -21,7 +21,7 @@ constexpr milliseconds kDeathPatience(1000);
 
 }  // namespace
 
-std::string seconds_text(double seconds) {
+std::string duration_text(double seconds) {
   return text_of(ParameterValue(std::round(seconds * 10.0) / 10.0)) + " s";
 }
 
@@ -70,7 +70,7 @@ Status Session::connect(Listener listener, Clock::time_point deadline) {
   }
   return Error{ErrorCode::kInternal,
                "no estimator connected to " + listener.address() + " within " +
-                   seconds_text(options_.start_timeout_s)};
+                   duration_text(options_.start_timeout_s)};
 }
 
 Result<std::optional<Message>> Session::next(Clock::time_point deadline, milliseconds patience) {
@@ -91,7 +91,7 @@ Status Session::greet(Clock::time_point deadline) {
   if (!*message) {
     return Error{ErrorCode::kInternal,
                  "the estimator connected, but did not say hello within " +
-                     seconds_text(options_.start_timeout_s)};
+                     duration_text(options_.start_timeout_s)};
   }
   if ((*message)->type != MessageType::kHello) {
     return Error{
@@ -119,7 +119,7 @@ Status Session::wait_ready(MessageType done, Clock::time_point deadline) {
       const double waited_s = std::chrono::duration<double>(Clock::now() - begin).count();
       return Error{ErrorCode::kInternal,
                    "the estimator was not ready after " + name_of(done) + " within " +
-                       seconds_text(waited_s)};
+                       duration_text(waited_s)};
     }
     const Result<bool> noticed = take_notice(**message);
     if (!noticed) return noticed.error();

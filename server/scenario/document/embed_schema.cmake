@@ -4,12 +4,12 @@ file(CONFIGURE OUTPUT ${OUTPUT} CONTENT [==[
 // Generated from scenarios/scenario.schema.json.
 #include "server/scenario/document/scenario_schema.hpp"
 
-namespace overfly::engine {
+namespace overfly::server {
 
 const std::string& scenario_schema_text() {
   static const std::string text = R"schema(@text@)schema";
   return text;
 }
 
-}  // namespace overfly::engine
+}  // namespace overfly::server
 ]==] @ONLY)

@@ -9,6 +9,7 @@
 
 #include "core/time.hpp"
 #include "tests/odometry/synthetic_flight.hpp"
+#include "tests/odometry/test_frame.hpp"
 
 namespace overfly::odometry::feature {
 namespace {
@@ -261,12 +262,8 @@ TEST_P(FeatureOdometryOf, BeginsANewMapWhenTheOldOneIsLostForGood) {
   const std::vector<Pose> poses = testing::fly_s_turns(options);
   std::vector<EstimateSample> samples;
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    VoFrame frame;
-    frame.index = static_cast<std::int64_t>(i);
-    frame.t_ns = frame_time_ns(frame.index, FrameRate{});
-    frame.intrinsics = camera;
-    frame.image =
-        std::make_shared<const Image>((i < 70 ? here : there).render(camera, poses[i], 1.0, i + 1));
+    const VoFrame frame = testing::test_frame(
+        i, camera, (i < 70 ? here : there).render(camera, poses[i], 1.0, i + 1));
     samples.push_back(odometry->track(frame).value().sample);
   }
   EXPECT_EQ(samples[69].state, TrackingState::kTracking);

@@ -6,6 +6,7 @@
 #include "odometry/feature/orb.hpp"
 #include "odometry/image/rectifier.hpp"
 #include "tests/odometry/synthetic_flight.hpp"
+#include "tests/odometry/test_frame.hpp"
 #include "tests/odometry/test_lenses.hpp"
 
 namespace overfly::odometry::feature {
@@ -61,12 +62,9 @@ std::vector<VoEstimate> fly_lens(const SyntheticGround& ground, const CameraMode
   const std::vector<Pose> poses = testing::fly_s_turns(options);
   std::vector<VoEstimate> estimates;
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    VoFrame frame;
-    frame.index = static_cast<std::int64_t>(i);
-    frame.t_ns = frame_time_ns(frame.index, FrameRate{});
-    frame.intrinsics = camera.pinhole();
+    VoFrame frame =
+        testing::test_frame(i, camera.pinhole(), ground.render(camera, poses[i], 1.0, i + 1));
     frame.distortion = camera.distortion();
-    frame.image = std::make_shared<const Image>(ground.render(camera, poses[i], 1.0, i + 1));
     estimates.push_back(odometry->track(frame).value());
   }
   return estimates;

@@ -9,6 +9,7 @@
 #include "odometry/feature/feature_odometry.hpp"
 #include "odometry/geometry/lie.hpp"
 #include "tests/odometry/synthetic_flight.hpp"
+#include "tests/odometry/test_frame.hpp"
 
 namespace overfly::odometry::feature {
 namespace {
@@ -38,11 +39,8 @@ LevelFlight fly_level(VoPort& odometry, double duration_s, double tilt_rad = 0.0
   for (std::size_t i = 0; i < flight.T_world_camera.size(); ++i) {
     Pose& T_world_camera = flight.T_world_camera[i];
     T_world_camera.rotation = T_world_camera.rotation * exp_so3({tilt_rad, 0.0, 0.0});
-    VoFrame frame;
-    frame.index = static_cast<std::int64_t>(i);
-    frame.t_ns = frame_time_ns(frame.index, FrameRate{});
-    frame.intrinsics = camera;
-    frame.image = std::make_shared<const Image>(ground.render(camera, T_world_camera, 1.0, i + 1));
+    const VoFrame frame =
+        testing::test_frame(i, camera, ground.render(camera, T_world_camera, 1.0, i + 1));
     flight.estimates.push_back(odometry.track(frame).value());
   }
   return flight;

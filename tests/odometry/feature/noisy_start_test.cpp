@@ -7,6 +7,7 @@
 #include "core/time.hpp"
 #include "odometry/feature/feature_odometry.hpp"
 #include "tests/odometry/synthetic_flight.hpp"
+#include "tests/odometry/test_frame.hpp"
 
 namespace overfly::odometry::feature {
 namespace {
@@ -34,12 +35,8 @@ Start start_of(double noise, std::uint64_t seed) {
   const auto odometry = create_feature_odometry(parameters).value();
   const std::vector<Pose> poses = testing::fly_s_turns(options);
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    VoFrame frame;
-    frame.index = static_cast<std::int64_t>(i);
-    frame.t_ns = frame_time_ns(frame.index, FrameRate{});
-    frame.intrinsics = camera;
-    frame.image =
-        std::make_shared<const Image>(ground.render(camera, poses[i], noise, seed * 1000 + i + 1));
+    const VoFrame frame =
+        testing::test_frame(i, camera, ground.render(camera, poses[i], noise, seed * 1000 + i + 1));
     const EstimateSample sample = odometry->track(frame).value().sample;
     if (sample.state != TrackingState::kTracking) continue;
     // The first image is the origin: none was given up.

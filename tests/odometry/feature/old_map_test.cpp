@@ -8,6 +8,7 @@
 #include "core/time.hpp"
 #include "odometry/feature/feature_odometry.hpp"
 #include "tests/odometry/synthetic_flight.hpp"
+#include "tests/odometry/test_frame.hpp"
 
 namespace overfly::odometry::feature {
 namespace {
@@ -50,12 +51,8 @@ Return fly_away_and_back(const FeatureParameters& parameters) {
     const bool back = i >= kBackAt;
     const SyntheticGround& seen = i >= kLostAt && !back ? there : here;
     flight.T_world_camera.push_back(line[back ? kBackTo + i - kBackAt : i]);
-    VoFrame frame;
-    frame.index = static_cast<std::int64_t>(i);
-    frame.t_ns = frame_time_ns(frame.index, FrameRate{});
-    frame.intrinsics = camera;
-    frame.image = std::make_shared<const Image>(
-        seen.render(camera, flight.T_world_camera.back(), 1.0, i + 1));
+    const VoFrame frame = testing::test_frame(
+        i, camera, seen.render(camera, flight.T_world_camera.back(), 1.0, i + 1));
     flight.samples.push_back(odometry->track(frame).value().sample);
     for (const std::string& text : odometry->take_log()) flight.log.push_back(text);
   }

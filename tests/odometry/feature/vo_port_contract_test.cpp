@@ -1,4 +1,5 @@
 #include "tests/vo_bridges/vo_port_contract.hpp"
+#include "tests/odometry/test_frame.hpp"
 
 #include "odometry/feature/feature_odometry.hpp"
 #include "tests/odometry/synthetic_flight.hpp"
@@ -24,12 +25,8 @@ std::vector<VoFrame> frames() {
   const std::vector<Pose> poses = odometry::testing::fly_s_turns(options);
   std::vector<VoFrame> frames;
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    VoFrame frame;
-    frame.index = static_cast<std::int64_t>(i);
-    frame.t_ns = frame_time_ns(frame.index, FrameRate{});
-    frame.intrinsics = camera;
-    frame.image = std::make_shared<const Image>(ground.render(camera, poses[i], 1.0, i + 1));
-    frames.push_back(std::move(frame));
+    frames.push_back(
+        odometry::testing::test_frame(i, camera, ground.render(camera, poses[i], 1.0, i + 1)));
   }
   return frames;
 }

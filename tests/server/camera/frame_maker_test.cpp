@@ -238,13 +238,17 @@ TEST(FrameRemaker, MakesAnyFrameAgainBitByBit) {
                       "flight.course.airspeed_m_s=31"});
   const auto remaker = FrameRemaker::create(folder.path(), another, bare_world(*world));
   ASSERT_TRUE(remaker.ok()) << remaker.error().message;
-  for (const std::size_t k : {6U, 2U, 8U, 0U}) {
+  const auto row_of = [&](std::size_t k) {
     FrameRow row;
     row.frame = static_cast<std::int64_t>(k);
     row.t_ns = frame_time_ns(row.frame, scenario.rate);
+    row.T_world_camera = shots[k].drawn.T_world_camera;
     row.exposure_ns = shots[k].setting.exposure_ns;
     row.gain = shots[k].setting.gain;
-    const auto image = (*remaker)->make(0, row, maker->renderer());
+    return row;
+  };
+  for (const std::size_t k : {6U, 2U, 8U, 0U}) {
+    const auto image = (*remaker)->make(0, row_of(k), maker->renderer());
     ASSERT_TRUE(image.ok()) << image.error().message;
     EXPECT_EQ(image->data, shots[k].image.data) << "frame " << k;
   }
@@ -252,12 +256,14 @@ TEST(FrameRemaker, MakesAnyFrameAgainBitByBit) {
   const overfly::testing::TemporaryFolder old_folder;
   const auto refly = FrameRemaker::create(old_folder.path(), scenario, bare_world(*world));
   ASSERT_TRUE(refly.ok()) << refly.error().message;
-  FrameRow row;
-  row.frame = 5;
-  row.t_ns = frame_time_ns(5, scenario.rate);
-  row.exposure_ns = shots[5].setting.exposure_ns;
-  row.gain = shots[5].setting.gain;
-  EXPECT_EQ((*refly)->make(0, row, maker->renderer())->data, shots[5].image.data);
+  EXPECT_EQ((*refly)->make(0, row_of(5), maker->renderer())->data, shots[5].image.data);
+  // If that is another flight than the recorded one, its images are refused.
+  const auto elsewhere = FrameRemaker::create(old_folder.path(), another, bare_world(*world));
+  ASSERT_TRUE(elsewhere.ok()) << elsewhere.error().message;
+  const auto refused = (*elsewhere)->make(0, row_of(5), maker->renderer());
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().code, ErrorCode::kConflict);
+  EXPECT_THAT(refused.error().message, ::testing::HasSubstr("frame 5: rendered "));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/server/support/server_fixture.hpp"
+#include "tests/server/support/wrapped_renderer.hpp"
 
 namespace overfly::server {
 namespace {
@@ -13,10 +14,10 @@ using overfly::testing::TemporaryFolder;
 using ::testing::HasSubstr;
 
 /// Draws with the ray-caster, its pictures (not its depths) turned about the vertical image axis.
-class TurnedRenderer final : public renderer::Renderer {
+class TurnedRenderer final : public testing::WrappedRenderer {
  public:
   TurnedRenderer(std::unique_ptr<renderer::Renderer> inner, double turn_rad)
-      : inner_(std::move(inner)), turn_rad_(turn_rad) {}
+      : WrappedRenderer(std::move(inner)), turn_rad_(turn_rad) {}
   Result<renderer::CameraFrame> render_camera(const renderer::CameraRequest& request) override {
     // Every second picture: the same turn in both would not be seen between them.
     renderer::CameraRequest turned = request;
@@ -28,19 +29,10 @@ class TurnedRenderer final : public renderer::Renderer {
       }
       turned.T_world_camera = CameraMotion::from_poses(poses).value();
     }
-    return inner_->render_camera(turned);
+    return inner().render_camera(turned);
   }
-  Result<DepthImage> render_depth(const renderer::CameraRequest& request) override {
-    return inner_->render_depth(request);
-  }
-  Result<Image> render_scene(const renderer::SceneView& view,
-                             const renderer::SceneContent& content) override {
-    return inner_->render_scene(view, content);
-  }
-  renderer::RendererInfo info() const override { return inner_->info(); }
 
  private:
-  std::unique_ptr<renderer::Renderer> inner_;
   double turn_rad_;
   int drawn_ = 0;
 };

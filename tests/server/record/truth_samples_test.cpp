@@ -184,6 +184,32 @@ TEST(TruthSamples, DamagedSamplesAreNamed) {
   refused_at(3, 0, std::int64_t{0}, 2);      // time does not increase
   refused_at(1024, 0, std::int64_t{-5}, 2);  // nor from block to block
   refused_at(1030, 8, HUGE_VAL, 140);        // found when its block is read
+  refused_at(3, 2, -1e9, 2);                 // a position beyond any flight
+  refused_at(3, 11, 1e7, 2);                 // a speed beyond any flight
+  refused_at(0, 0, std::int64_t{-1}, 2);     // flights begin at 0
+  refused_at(3, 0, INT64_MAX, 2);            // sums of such times would overflow
+}
+
+TEST(TruthSamples, ADamagedBlockThatIsAddedLeavesWhatWasKnown) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "truth_samples.bin";
+  auto samples = TruthSampleFile::create(file);
+  ASSERT_TRUE(samples.ok());
+  const auto add = [&](std::int64_t from, std::int64_t to) {
+    for (std::int64_t k = from; k < to; ++k) samples->add(truth(k * 1'000'000));
+    ASSERT_TRUE(samples->flush().ok());
+  };
+  add(0, 1500);
+  const auto flight = opened(file);
+  add(1500, 5000);
+  put(file, 3072, 0, std::int64_t{5});  // the first sample of the fourth block
+  for (int attempt = 0; attempt < 3; ++attempt) {
+    const auto beyond = flight->state_at(4'500'000'000);
+    ASSERT_FALSE(beyond.ok());
+    EXPECT_THAT(beyond.error().message, HasSubstr("sample 3072: "));
+    expect_equal_bits(flight->state_at(1'499'000'000).value().value(), truth(1'499'000'000));
+    expect_equal_bits(flight->state_at(7'000'000).value().value(), truth(7'000'000));
+  }
 }
 
 TEST(TruthSamples, RefuseWhatIsNoFile) {

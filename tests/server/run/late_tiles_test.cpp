@@ -9,6 +9,7 @@
 #include "server/timeline/run_timeline.hpp"
 #include "tests/server/support/jumping_clock.hpp"
 #include "tests/server/support/server_fixture.hpp"
+#include "tests/server/support/wrapped_renderer.hpp"
 
 namespace overfly::server {
 namespace {
@@ -17,13 +18,12 @@ using Json = nlohmann::json;
 
 /// Two tiles are late at every image that does not wait for them, but for those within a metre of
 /// one that did.
-class Paging final : public renderer::Renderer {
+class Paging final : public testing::WrappedRenderer {
  public:
-  explicit Paging(std::unique_ptr<renderer::Renderer> inner) : inner_(std::move(inner)) {}
+  using WrappedRenderer::WrappedRenderer;
   using Renderer::render_camera;
-  using Renderer::render_depth;
   Result<renderer::CameraFrame> render_camera(const renderer::CameraRequest& request) override {
-    auto frame = inner_->render_camera(request);
+    auto frame = inner().render_camera(request);
     const Eigen::Vector3d place_m = request.T_world_camera.at(request.t_ns).translation;
     if (request.wait_for_tiles) fetched_m_.push_back(place_m);
     const bool there =
@@ -33,17 +33,8 @@ class Paging final : public renderer::Renderer {
     if (frame && !there) frame->late_tiles = 2;
     return frame;
   }
-  Result<DepthImage> render_depth(const renderer::CameraRequest& request) override {
-    return inner_->render_depth(request);
-  }
-  Result<Image> render_scene(const renderer::SceneView& view,
-                             const renderer::SceneContent& content) override {
-    return inner_->render_scene(view, content);
-  }
-  renderer::RendererInfo info() const override { return inner_->info(); }
 
  private:
-  std::unique_ptr<renderer::Renderer> inner_;
   std::vector<Eigen::Vector3d> fetched_m_;
 };
 

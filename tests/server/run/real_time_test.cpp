@@ -13,6 +13,7 @@
 #include "server/timing/run_clock.hpp"
 #include "tests/server/support/server_fixture.hpp"
 #include "tests/server/support/simulated_clock.hpp"
+#include "tests/server/support/wrapped_renderer.hpp"
 
 namespace overfly::server {
 namespace {
@@ -60,27 +61,17 @@ class SlowEstimator final : public VoPort {
 };
 
 /// A renderer whose every second image takes long.
-class SlowRenderer final : public renderer::Renderer {
+class SlowRenderer final : public testing::WrappedRenderer {
  public:
   SlowRenderer(std::unique_ptr<renderer::Renderer> inner, RunClock& clock, std::int64_t work_ns)
-      : inner_(std::move(inner)), clock_(clock), work_ns_(work_ns) {}
+      : WrappedRenderer(std::move(inner)), clock_(clock), work_ns_(work_ns) {}
   using Renderer::render_camera;
-  using Renderer::render_depth;
   Result<renderer::CameraFrame> render_camera(const renderer::CameraRequest& request) override {
     clock_.sleep_until_ns(clock_.now_ns() + work_ns_);
-    return inner_->render_camera(request);
+    return inner().render_camera(request);
   }
-  Result<DepthImage> render_depth(const renderer::CameraRequest& request) override {
-    return inner_->render_depth(request);
-  }
-  Result<Image> render_scene(const renderer::SceneView& view,
-                             const renderer::SceneContent& content) override {
-    return inner_->render_scene(view, content);
-  }
-  renderer::RendererInfo info() const override { return inner_->info(); }
 
  private:
-  std::unique_ptr<renderer::Renderer> inner_;
   RunClock& clock_;
   std::int64_t work_ns_;
 };

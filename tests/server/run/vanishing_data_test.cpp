@@ -11,6 +11,7 @@
 #include "server/worlds/world_cache.hpp"
 #include "tests/server/support/jumping_clock.hpp"
 #include "tests/server/support/server_fixture.hpp"
+#include "tests/server/support/wrapped_renderer.hpp"
 
 namespace overfly::server {
 namespace {
@@ -20,27 +21,18 @@ using overfly::testing::TemporaryFolder;
 using ::testing::HasSubstr;
 
 /// Reads the tile below the camera for every picture. One that does not wait goes without.
-class TileReader final : public renderer::Renderer {
+class TileReader final : public testing::WrappedRenderer {
  public:
   explicit TileReader(std::shared_ptr<const terrain::TileSource> tiles)
-      : tiles_(tiles), inner_(renderer::create_noop_renderer(std::move(tiles))) {}
+      : WrappedRenderer(renderer::create_noop_renderer(tiles)), tiles_(std::move(tiles)) {}
   using Renderer::render_camera;
-  using Renderer::render_depth;
   Result<renderer::CameraFrame> render_camera(const renderer::CameraRequest& request) override {
-    auto frame = inner_->render_camera(request);
+    auto frame = inner().render_camera(request);
     const auto tile = tiles_->tile({0, 0, 0});
     if (!tile && request.wait_for_tiles) return tile.error().in("tile 0/0/0");
     if (!tile && frame) frame->late_tiles = 1;
     return frame;
   }
-  Result<DepthImage> render_depth(const renderer::CameraRequest& request) override {
-    return inner_->render_depth(request);
-  }
-  Result<Image> render_scene(const renderer::SceneView& view,
-                             const renderer::SceneContent& content) override {
-    return inner_->render_scene(view, content);
-  }
-  renderer::RendererInfo info() const override { return inner_->info(); }
 
  private:
   std::shared_ptr<const terrain::TileSource> tiles_;
@@ -48,23 +40,14 @@ class TileReader final : public renderer::Renderer {
 };
 
 /// Says after a while that something is not there.
-class Forgetful final : public renderer::Renderer {
+class Forgetful final : public testing::WrappedRenderer {
  public:
-  explicit Forgetful(std::unique_ptr<renderer::Renderer> inner) : inner_(std::move(inner)) {}
+  using WrappedRenderer::WrappedRenderer;
   using Renderer::render_camera;
-  using Renderer::render_depth;
   Result<renderer::CameraFrame> render_camera(const renderer::CameraRequest& request) override {
     if (request.t_ns >= kNsPerS) return Error{ErrorCode::kNotFound, "dem.tif: no such file"};
-    return inner_->render_camera(request);
+    return inner().render_camera(request);
   }
-  Result<DepthImage> render_depth(const renderer::CameraRequest& request) override {
-    return inner_->render_depth(request);
-  }
-  Result<Image> render_scene(const renderer::SceneView& view,
-                             const renderer::SceneContent& content) override {
-    return inner_->render_scene(view, content);
-  }
-  renderer::RendererInfo info() const override { return inner_->info(); }
 
  private:
   std::unique_ptr<renderer::Renderer> inner_;

@@ -15,6 +15,7 @@ namespace {
 using ::testing::AllOf;
 using testing::ground_frames;
 using ::testing::HasSubstr;
+using testing::python_estimator;
 using testing::scripted;
 using testing::started;
 
@@ -35,20 +36,12 @@ TEST_F(ProcessFigures, FiguresThatAreNotFiniteAreLeftOutWithOneWarning) {
 
 TEST_F(ProcessFigures, FiguresOfPythonThatAreNotFiniteAreLeftOutWithOneWarning) {
   const testing::TemporaryFolder folder;
-  const std::filesystem::path file = folder.path() / "estimator.py";
-  testing::write_text(file,
-                      "import sys\n"
-                      "sys.path.insert(0, sys.argv[1])\n"
-                      "import overfly_vo\n"
-                      "class Odd(overfly_vo.Estimator):\n"
-                      "    def track(self, frame):\n"
-                      "        return overfly_vo.Answer(\n"
-                      "            counters={'a': float('nan'), 'b': 2},\n"
-                      "            timings_ms={'c': float('-inf'), 'd': 0.5})\n"
-                      "overfly_vo.run(Odd())\n");
-  ProcessEstimatorOptions options = scripted("good");
-  options.command = {
-      "python3", "-B", file.string(), testing::source_file("vo_bridges/client").string()};
+  const ProcessEstimatorOptions options = python_estimator(
+      "    def track(self, frame):\n"
+      "        return overfly_vo.Answer(\n"
+      "            counters={'a': float('nan'), 'b': 2},\n"
+      "            timings_ms={'c': float('-inf'), 'd': 0.5})\n",
+      folder.path());
   const auto estimator = started(options);
   for (const VoFrame& frame : ground_frames(3, 1.0, 1.0, 64, 48)) {
     const Result<VoEstimate> estimate = estimator->track(frame);

@@ -7,8 +7,23 @@
 #include <thread>
 
 #include "core/time.hpp"
+#include "tests/support/support.hpp"
 
 namespace overfly::testing {
+
+ProcessEstimatorOptions python_estimator(const std::string& methods,
+                                         const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "estimator.py";
+  write_text(file,
+             "import sys\n"
+             "sys.path.insert(0, sys.argv[1])\n"
+             "import overfly_vo\n"
+             "class Scripted(overfly_vo.Estimator):\n" +
+                 methods + "overfly_vo.run(Scripted())\n");
+  ProcessEstimatorOptions options = scripted("");
+  options.command = {"python3", "-B", file.string(), source_file("vo_bridges/client").string()};
+  return options;
+}
 
 Image ground_image(int width_px, int height_px, double moved_x_px, double moved_y_px) {
   Image image(width_px, height_px, 1);

@@ -6,6 +6,7 @@
 
 #include <cerrno>
 #include <chrono>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
@@ -24,6 +25,12 @@ inline ProcessEstimatorOptions scripted(const std::string& behaviour,
   options.answer_timeout_s = 20.0;
   return options;
 }
+
+/// An estimator in Python: a class of the client library with these methods.
+/// @param methods  lines, indented by four blanks
+/// @param folder   where its file is written
+[[nodiscard]] ProcessEstimatorOptions python_estimator(const std::string& methods,
+                                                       const std::filesystem::path& folder);
 
 /// The estimator, which must start.
 inline std::unique_ptr<VoPort> started(const ProcessEstimatorOptions& options) {

@@ -16,6 +16,7 @@ using testing::ChildrenTest;
 using testing::gone_soon;
 using testing::ground_frames;
 using ::testing::HasSubstr;
+using testing::python_estimator;
 using testing::scripted;
 using testing::started;
 
@@ -101,20 +102,12 @@ TEST_F(ProcessTrouble, ManyPosesThatAreNoneEndTheFlight) {
 
 TEST_F(ProcessTrouble, TheLastWordsAreItsOwnAndNotThoseAboutItsEnd) {
   const testing::TemporaryFolder folder;
-  const std::filesystem::path file = folder.path() / "estimator.py";
   // A lost connection would end it with a traceback of many lines.
-  testing::write_text(file,
-                      "import sys\n"
-                      "sys.path.insert(0, sys.argv[1])\n"
-                      "import overfly_vo\n"
-                      "class Odd(overfly_vo.Estimator):\n"
-                      "    def track(self, frame):\n"
-                      "        print('the map is empty', file=sys.stderr, flush=True)\n"
-                      "        return overfly_vo.Answer(state=7)\n"
-                      "overfly_vo.run(Odd())\n");
-  ProcessEstimatorOptions options = scripted("good");
-  options.command = {
-      "python3", "-B", file.string(), testing::source_file("vo_bridges/client").string()};
+  ProcessEstimatorOptions options = python_estimator(
+      "    def track(self, frame):\n"
+      "        print('the map is empty', file=sys.stderr, flush=True)\n"
+      "        return overfly_vo.Answer(state=7)\n",
+      folder.path());
   options.output_file = folder.path() / "output.log";
   const auto estimator = started(options);
   const Result<VoEstimate> answer = estimator->track(ground_frames(1, 1.0, 1.0, 64, 48)[0]);
