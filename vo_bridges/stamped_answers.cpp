@@ -102,13 +102,6 @@ bool StampedAnswers::stopped() const {
   return stopped_;
 }
 
-void StampedAnswers::forget() {
-  const std::lock_guard lock(mutex_);
-  frames_.clear();
-  newest_answered_ns_.reset();
-  changed_.notify_all();
-}
-
 AnswerCounts StampedAnswers::counts() const {
   const std::lock_guard lock(mutex_);
   return counts_;

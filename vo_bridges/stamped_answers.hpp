@@ -47,8 +47,6 @@ class StampedAnswers {
   /// Ends every current and future wait: one of the two ends has left.
   void stop();
   [[nodiscard]] bool stopped() const;
-  /// Drops all frames, for an estimator that restarts. The counts stay.
-  void forget();
   [[nodiscard]] AnswerCounts counts() const;
 
  private:

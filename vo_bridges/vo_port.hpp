@@ -84,10 +84,6 @@ class VoPort {
   /// frame that is not after the previous one; kInternal if the estimator has failed permanently
   /// (the run is CRASHED).
   [[nodiscard]] virtual Result<VoEstimate> track(const VoFrame& frame) = 0;
-  /// Resets to the state after construction; the set_debug setting stays. A run creates its
-  /// estimators and resets none: this sends what the wires define for a reset, RESET of the process
-  /// protocol (docs/VO_PROTOCOL.md) and `reset_topic` of ROS 1.
-  virtual void reset() = 0;
   /// Whether `track` produces debug images and map points, which cost time. Default: no.
   virtual void set_debug(bool wanted) = 0;
   /// Log lines of the estimator and output lines of its process since the last call, without line

@@ -11,7 +11,6 @@
 #include <rosgraph_msgs/Clock.h>
 #include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/Image.h>
-#include <std_msgs/Empty.h>
 #include <tf2_msgs/TFMessage.h>
 
 #include <cstdint>
@@ -63,7 +62,6 @@ void deserialize(ros::serialization::IStream& stream, std::vector<T, VectorAlloc
 
 using CameraInfoMessage = sensor_msgs::CameraInfo_<MessageAllocator>;
 using ClockMessage = rosgraph_msgs::Clock_<MessageAllocator>;
-using EmptyMessage = std_msgs::Empty_<MessageAllocator>;
 using ImageMessage = sensor_msgs::Image_<MessageAllocator>;
 using OdometryMessage = nav_msgs::Odometry_<MessageAllocator>;
 using PoseMessage = geometry_msgs::Pose_<MessageAllocator>;

@@ -80,18 +80,6 @@ std::map<std::string, std::string> FeatureOdometry::effective_parameters() const
   return texts_of(parameters_);
 }
 
-void FeatureOdometry::reset() {
-  if (parts_) {
-    parts_->keeper.clear();
-    account_->add_cpu_s(parts_->keeper.take_cpu_s());
-  }
-  FeatureOdometry fresh(parameters_);
-  fresh.debug_ = debug_;
-  fresh.account_ = std::move(account_);
-  fresh.log_ = std::move(log_);
-  *this = std::move(fresh);
-}
-
 FrameImage FeatureOdometry::image_of(const VoFrame& frame) const {
   FrameImage image{frame.index, frame.t_ns, build_pyramid(parts_->rectifier.rectify(frame.image))};
   if (parameters_.reject_saturated) image.pyramid.burnt = find_burnt(image.pyramid.level(0));
@@ -106,7 +94,7 @@ bool FeatureOdometry::frozen(const VoFrame& frame, bool repeated) const {
 }
 
 std::optional<ResourceUse> FeatureOdometry::resource_use() const {
-  return ResourceUse{account_->cpu_s(), account_->peak_memory_mb(), false};
+  return ResourceUse{account_.cpu_s(), account_.peak_memory_mb(), false};
 }
 
 Result<VoEstimate> FeatureOdometry::track(const VoFrame& frame) {
@@ -114,8 +102,8 @@ Result<VoEstimate> FeatureOdometry::track(const VoFrame& frame) {
   Result<VoEstimate> estimate = answer(frame);
   double used_s = thread_cpu_s() - before_s;
   if (parts_) used_s += parts_->keeper.take_cpu_s();
-  account_->add_cpu_s(used_s);
-  account_->note_memory_mb(map_memory_mb_);
+  account_.add_cpu_s(used_s);
+  account_.note_memory_mb(map_memory_mb_);
   return estimate;
 }
 
@@ -139,7 +127,7 @@ Result<VoEstimate> FeatureOdometry::answer(const VoFrame& frame) {
     }
     const bool repeated = previous_ && previous_->image->data == frame.image->data;
     parts_->keeper.refresh();
-    for (std::string& line : parts_->keeper.take_warnings()) log_->add(std::move(line));
+    for (std::string& line : parts_->keeper.take_warnings()) log_.add(std::move(line));
     if (rejoin_old_map(image, estimate, outcome)) {
       // The old map continues with this frame.
     } else if (state_ == TrackingState::kInitialising) {

@@ -34,8 +34,7 @@ class FeatureOdometry final : public VoPort {
   [[nodiscard]] std::string type() const override { return "feature"; }
   [[nodiscard]] std::map<std::string, std::string> effective_parameters() const override;
   [[nodiscard]] Result<VoEstimate> track(const VoFrame& frame) override;
-  void reset() override;
-  [[nodiscard]] std::vector<std::string> take_log() override { return log_->take(); }
+  [[nodiscard]] std::vector<std::string> take_log() override { return log_.take(); }
   void set_debug(bool wanted) override { debug_ = wanted; }
   /// CPU time of both threads, and the largest memory of the map: images, points, observations.
   /// With two threads it includes the tracking thread's partial copy.
@@ -84,8 +83,8 @@ class FeatureOdometry final : public VoPort {
   void report_pose(const Outcome& outcome, VoEstimate& estimate) const;
   void draw(const FrameImage& frame, const Outcome& outcome, VoEstimate& estimate) const;
 
-  std::unique_ptr<ResourceAccount> account_ = std::make_unique<ResourceAccount>();
-  std::unique_ptr<EstimatorLog> log_ = std::make_unique<EstimatorLog>();
+  ResourceAccount account_;
+  EstimatorLog log_;
   FeatureParameters parameters_;
   PinholeCamera camera_;
   OrbExtractor orb_;

@@ -87,7 +87,7 @@ bool FeatureOdometry::rejoin_old_map(const FrameImage& frame,
   std::ostringstream line;
   line << "recovered map " << old_map_->map_id;
   if (map_id_ != old_map_->map_id) line << ", which replaces map " << map_id_;
-  log_->add(line.str());
+  log_.add(line.str());
   parts_->keeper.adopt(std::move(old_map_->map));
   map_id_ = old_map_->map_id;
   m_per_unit_ = old_map_->m_per_unit;
@@ -111,7 +111,7 @@ void FeatureOdometry::find_scale() {
   if (known_height_m_ <= 0.0) return;
   const Keyframe& first = map().keyframes().begin()->second;
   if (!first.plane.holds) {
-    log_->add(
+    log_.add(
         "the height above ground is known, but no ground plane was found: units are not metres");
     return;
   }
@@ -121,7 +121,7 @@ void FeatureOdometry::find_scale() {
   std::ostringstream line;
   line << "map " << map_id_ << " is scaled by the height at which the previous map was lost, "
        << known_height_m_ << " m";
-  log_->add(line.str());
+  log_.add(line.str());
 }
 
 }  // namespace overfly::odometry::feature

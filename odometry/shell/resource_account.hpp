@@ -6,8 +6,7 @@
 
 namespace overfly::odometry {
 
-/// Totals since the estimator was created; `VoPort::reset` keeps them. One thread writes, others
-/// may read.
+/// Totals since the estimator was created. One thread writes, others may read.
 class ResourceAccount {
  public:
   void add_cpu_s(double cpu_s) { cpu_s_ = cpu_s_ + cpu_s; }

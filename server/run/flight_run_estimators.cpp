@@ -24,7 +24,6 @@ class AbsentEstimator final : public VoPort {
   [[nodiscard]] Result<VoEstimate> track(const VoFrame& /*frame*/) override {
     return Error{ErrorCode::kInternal, reason_.message};
   }
-  void reset() override {}
   void set_debug(bool /*wanted*/) override {}
 
  private:

@@ -114,29 +114,6 @@ TEST(StampedAnswers, EndsEveryWaitWhenStopped) {
   EXPECT_TRUE(answers.stopped());
 }
 
-TEST(StampedAnswers, EndsAWaitForAFrameThatIsForgotten) {
-  StampedAnswers answers;
-  answers.expect(100);
-  std::thread other([&] { answers.forget(); });
-  EXPECT_FALSE(answers.wait(100, hours(1)).has_value());
-  other.join();
-  EXPECT_FALSE(answers.deliver(100, answer_of(1)));
-  EXPECT_EQ(answers.counts().unknown, 1);
-}
-
-TEST(StampedAnswers, TakesTheSameStampsAgainAfterForgetting) {
-  StampedAnswers answers;
-  for (int pass = 0; pass < 2; ++pass) {
-    for (const std::int64_t t_ns : {100, 200}) {
-      answers.expect(t_ns);
-      answers.deliver(t_ns, answer_of(t_ns));
-      EXPECT_TRUE(answers.wait(t_ns, kAtOnce).has_value());
-    }
-    answers.forget();
-  }
-  EXPECT_EQ(answers.counts().out_of_order, 0);
-}
-
 TEST(StampedAnswers, RemembersABoundedNumberOfFrames) {
   StampedAnswers answers;
   for (std::int64_t t_ns = 0; t_ns < 5000; ++t_ns) answers.expect(t_ns);

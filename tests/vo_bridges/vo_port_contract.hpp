@@ -218,14 +218,6 @@ TEST_P(VoPortContract, AnswersTheSameEachTime) {
   }
 }
 
-TEST_P(VoPortContract, IsAsNewAfterAReset) {
-  const std::vector<VoEstimate> first = answers(*estimator_);
-  estimator_->reset();
-  const std::vector<VoEstimate> second = answers(*estimator_);
-  ASSERT_EQ(first.size(), second.size());
-  for (std::size_t i = 0; i < first.size(); ++i) expect_same(first[i], second[i]);
-}
-
 TEST_P(VoPortContract, MakesDebugImagesOnlyWhenAsked) {
   const VoEstimate quiet = answer(*estimator_, frames_[0]);
   EXPECT_FALSE(quiet.debug_image.has_value());

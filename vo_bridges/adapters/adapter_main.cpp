@@ -68,10 +68,6 @@ class Adapter : public overfly_vo::Estimator {
     return answer_from(system_->track(given));
   }
 
-  void reset() override {
-    if (system_ != nullptr) system_->reset();
-  }
-
  private:
   static overfly_vo::Answer answer_from(AdapterAnswer from) {
     overfly_vo::Answer answer;

@@ -67,8 +67,6 @@ class UpstreamSystem {
   /// names than were declared.
   virtual ParameterValues effective_parameters() = 0;
   virtual AdapterAnswer track(const AdapterFrame& frame) = 0;
-  /// Resets the system; map_id restarts at 0.
-  virtual void reset() = 0;
 };
 
 // Each adapter defines the following three functions.

@@ -113,11 +113,9 @@ class Estimator {
     if (!wanted.empty()) throw std::invalid_argument("unknown parameter " + wanted.begin()->first);
     return {};
   }
-  /// Called before the first frame. A later call gives another camera and implies reset().
+  /// Called before the first frame; again only if that frame is of another camera.
   virtual void calibrate(const Calibration& calibration) = 0;
   virtual Answer track(const Frame& frame) = 0;
-  /// Resets to the state after calibrate().
-  virtual void reset() = 0;
 
  protected:
   /// Adds a line to the run's log; may be called from any thread while run() runs.
@@ -152,7 +150,6 @@ enum Type : std::uint16_t {
   kMapPoints = 7,
   kParameters = 8,
   kLog = 9,
-  kReset = 10,
   kStop = 11
 };
 constexpr std::size_t kHeaderBytes = 12;
@@ -579,9 +576,6 @@ inline void serve(Estimator& estimator, Connection& connection) {
     } else if (message.type == kCalibration) {
       estimator.calibrate(calibration_from(message.payload, connection));
       ready(connection, kCalibration);
-    } else if (message.type == kReset) {
-      estimator.reset();
-      ready(connection, kReset);
     }
   }
 }

@@ -83,14 +83,11 @@ class Estimator:
         return {}
 
     def calibrate(self, calibration):
-        """Called before the first frame. A later call gives another camera and implies reset()."""
+        """Called before the first frame; again only if that frame is of another camera."""
 
     def track(self, frame):
         """Returns an Answer to the Frame."""
         raise NotImplementedError
-
-    def reset(self):
-        """Resets to the state after calibrate()."""
 
     def log(self, level, line):
         """Adds a line to the run's log."""
@@ -103,7 +100,7 @@ class Estimator:
 
 # Implementation.
 _HELLO, _READY, _CALIBRATION, _FRAME, _ANSWER, _DEBUG_IMAGE = 1, 2, 3, 4, 5, 6
-_MAP_POINTS, _PARAMETERS, _LOG, _RESET, _STOP = 7, 8, 9, 10, 11
+_MAP_POINTS, _PARAMETERS, _LOG, _STOP = 7, 8, 9, 11
 _HEADER = struct.Struct("<4sHHI")
 _FRAME_HEAD = struct.Struct("<qqqIIIIII")
 _IMU = struct.Struct("<q6d")
@@ -256,9 +253,6 @@ def _serve(estimator, connection):
         elif message_type == _CALIBRATION:
             estimator.calibrate(_calibration_from(payload, connection))
             connection.send(_READY, struct.pack("<I", _CALIBRATION))
-        elif message_type == _RESET:
-            estimator.reset()
-            connection.send(_READY, struct.pack("<I", _RESET))
 
 
 def run(estimator, address=None):

@@ -36,7 +36,6 @@ struct NadirOdometry final : Estimator {
   }
   std::string name() const override { return "nadir_odometry"; }
   void calibrate(const Calibration& camera) override { focal = camera.fx_px / 4; }
-  void reset() override { before.resize(0, 0); }
   Answer track(const Frame& frame) override {
     Image now = Image::Zero(frame.height_px / 4, frame.width_px / 4);
     for (long y = 0; y < 4 * now.rows(); ++y)

@@ -36,9 +36,6 @@ class ShiftOdometry(overfly_vo.Estimator):
 
     def calibrate(self, calibration):
         self.focal_px = calibration.fx_px
-        self.reset()
-
-    def reset(self):
         self.before, self.shift, self.position = None, (0.0, 0.0), (0.0, 0.0)
 
     def track(self, frame):

@@ -56,7 +56,6 @@ class LcmEstimator final : public VoPort {
   }
   [[nodiscard]] Status prepare(const VoFrame& first) override;
   [[nodiscard]] Result<VoEstimate> track(const VoFrame& frame) override;
-  void reset() override;
   void set_debug(bool wanted) override { link_->set_debug(wanted); }
   [[nodiscard]] std::vector<std::string> take_log() override { return link_->far_end().take_log(); }
   [[nodiscard]] std::optional<ResourceUse> resource_use() const override {
@@ -247,17 +246,6 @@ VoEstimate LcmEstimator::complete(Answer answer, const VoFrame& frame) {
     if (count > told) estimate.counters[name] = static_cast<double>(count - told);
   }
   return estimate;
-}
-
-void LcmEstimator::reset() {
-  previous_.reset();
-  gone_.reset();
-  in_session_ = false;
-  prepared_ = false;
-  silent_frames_ = 0;
-  had_pose_ = false;
-  map_id_ = 0;
-  poses_ = {};
 }
 
 }  // namespace

@@ -62,13 +62,10 @@ Status LcmLink::subscribe() {
 void LcmLink::begin(overfly_lcm::calibration_t calibration) {
   calibration_ = std::move(calibration);
   calibration_.session = new_session();
-  answers_.forget();
-  time_ = {};
   time_.utime = calibration_.utime;
   time_.session = calibration_.session;
   width_px_ = calibration_.width;
   height_px_ = calibration_.height;
-  sequence_ = 0;
   session_ = calibration_.session;
 }
 
@@ -101,13 +98,13 @@ Status LcmLink::ask_again() {
 void LcmLink::hear_pose(std::span<const std::uint8_t> bytes) {
   const auto message = lcm::decode_message<overfly_lcm::pose_t>(bytes);
   if (!message) return far_end_.refuse(prefix_ + "POSE", "not an overfly_lcm.pose_t");
-  if (message->session != session()) {
+  // Before the session begins, its number is 0.
+  if (message->session == 0 || message->session != session()) {
     ++outdated_;
     return;
   }
   // A second answer to the same image was requested and is not an error.
-  const std::pair answers_to(message->session, message->t_ns);
-  if (message->attempt > 1 && answers_to == answered_) return;
+  if (message->attempt > 1 && message->t_ns == answered_t_ns_) return;
   VoEstimate estimate;
   if (message->image_received == 0) {
     // Ignore a report about an image that was sent again in the meantime.
@@ -115,10 +112,6 @@ void LcmLink::hear_pose(std::span<const std::uint8_t> bytes) {
     estimate.counters[kImageLost] = 1.0;
   } else if (Result<VoEstimate> understood = estimate_from(*message); understood) {
     estimate = std::move(*understood);
-    if (std::exchange(names_session_, message->session) != message->session) {
-      counters_ = {counters_.what};
-      timings_ = {timings_.what};
-    }
     limit_names(counters_, estimate.counters);
     limit_names(timings_, estimate.timing_ms);
     if (message->debug_sent != 0) attach_debug(estimate);
@@ -127,7 +120,7 @@ void LcmLink::hear_pose(std::span<const std::uint8_t> bytes) {
     estimate.sample.state = TrackingState::kLost;
     estimate.pose_fault = understood.error().message;
   }
-  if (message->image_received != 0) answered_ = answers_to;
+  if (message->image_received != 0) answered_t_ns_ = message->t_ns;
   answers_.deliver(message->t_ns, std::move(estimate));
 }
 

@@ -1,4 +1,4 @@
-// Communication with one estimator over LCM: sessions, outgoing images, incoming answers.
+// Communication with one estimator over LCM: session, outgoing images, incoming answers.
 #pragma once
 
 #include <atomic>
@@ -40,7 +40,7 @@ class LcmLink {
   LcmLink(const LcmLink&) = delete;
   LcmLink& operator=(const LcmLink&) = delete;
 
-  /// Begins a session. The estimator discards the previous one.
+  /// Begins the session; call it once. The estimator discards the session of a previous run.
   void begin(overfly_lcm::calibration_t calibration);
   [[nodiscard]] std::int64_t session() const { return session_.load(); }
   /// Publishes the calibration. An estimator that receives it for the first time starts a new
@@ -56,7 +56,7 @@ class LcmLink {
   [[nodiscard]] StampedAnswers& answers() { return answers_; }
   [[nodiscard]] LcmFarEnd& far_end() { return far_end_; }
   [[nodiscard]] const LcmFarEnd& far_end() const { return far_end_; }
-  /// Number of answers that belong to previous sessions.
+  /// Number of answers that belong to other sessions.
   [[nodiscard]] std::int64_t outdated() const { return outdated_.load(); }
 
  private:
@@ -89,12 +89,10 @@ class LcmLink {
   std::atomic<int> height_px_ = 0;
   std::atomic<bool> debug_wanted_ = false;
   std::atomic<std::int64_t> outdated_ = 0;
-  /// Session of the last answer; used by the node's thread only.
-  std::int64_t names_session_ = 0;
   Names counters_{"counter"};
   Names timings_{"timing"};
-  /// Session and stamp of the last answered image; used by the node's thread only.
-  std::pair<std::int64_t, std::int64_t> answered_{0, 0};
+  /// Stamp of the last answered image; used by the node's thread only.
+  std::optional<std::int64_t> answered_t_ns_;
   /// Stamp of the last debug message; used by the node's thread only.
   std::int64_t debug_t_ns_ = -1;
   DebugView debug_;

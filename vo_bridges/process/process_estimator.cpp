@@ -41,14 +41,6 @@ class ProcessEstimator final : public VoPort {
     return std::move(**answer);
   }
 
-  void reset() override {
-    previous_.reset();
-    tracked_ = false;
-    map_id_ = 0;
-    // A failure ends the session; the next frame reports it.
-    static_cast<void>(session_->reset());
-  }
-
   void set_debug(bool wanted) override { debug_ = wanted; }
 
   [[nodiscard]] std::vector<std::string> take_log() override { return session_->take_log(); }

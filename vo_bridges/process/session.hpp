@@ -44,7 +44,6 @@ class Session {
   /// Sends the frame and waits for its answer; empty on timeout. The next call waits for the
   /// pending answer before it sends its frame.
   [[nodiscard]] Result<std::optional<VoEstimate>> track(const VoFrame& frame, bool debug_wanted);
-  [[nodiscard]] Status reset();
 
   /// Thread-safe.
   [[nodiscard]] std::map<std::string, std::string> parameters() const;
@@ -58,7 +57,7 @@ class Session {
   /// As Channel::next; returns kCancelled `patience` after a cancellation.
   [[nodiscard]] Result<std::optional<Message>> next(Clock::time_point deadline,
                                                     std::chrono::milliseconds patience = {});
-  /// Waits until READY confirms `done`; late messages about frames are ignored.
+  /// Waits until READY confirms `done`.
   [[nodiscard]] Status wait_ready(MessageType done, Clock::time_point deadline);
   /// Waits for the answer to the current frame; empty at the deadline.
   [[nodiscard]] Result<std::optional<VoEstimate>> wait_answer(Clock::time_point deadline);

@@ -175,15 +175,4 @@ Result<std::optional<VoEstimate>> Session::track(const VoFrame& frame, bool debu
                   " was not answered within " + duration_text(silent_s)});
 }
 
-Status Session::reset() {
-  if (ended_) return *ended_;
-  channel_->begin_counts();  // a debug image may still arrive
-  channel_->enqueue(message_of(MessageType::kReset));
-  Status ready = wait_ready(MessageType::kReset, after_s(options_.answer_timeout_s));
-  if (!ready) return end(ready.error());
-  under_way_.reset();
-  poses_ = {};
-  return {};
-}
-
 }  // namespace overfly::process

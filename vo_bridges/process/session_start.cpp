@@ -125,9 +125,6 @@ Status Session::wait_ready(MessageType done, Clock::time_point deadline) {
     if (!noticed) return noticed.error();
     if (*noticed) continue;
     const MessageType type = (*message)->type;
-    const bool of_a_frame = type == MessageType::kAnswer || type == MessageType::kDebugImage ||
-                            type == MessageType::kMapPoints;
-    if (of_a_frame && under_way_ && done == MessageType::kReset) continue;
     if (type != MessageType::kReady) {
       return Error{ErrorCode::kInternal,
                    "the estimator sent " + name_of(type) + " instead of READY for " +

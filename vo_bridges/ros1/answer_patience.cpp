@@ -39,12 +39,4 @@ void AnswerPatience::gave_up() {
   answers_ = false;
 }
 
-void AnswerPatience::forget() {
-  const std::lock_guard lock(mutex_);
-  sent_.clear();
-  previous_ns_.reset();
-  answers_ = true;
-  latency_ = std::chrono::nanoseconds(0);
-}
-
 }  // namespace overfly::ros1

@@ -30,8 +30,6 @@ class AnswerPatience {
   void answered(std::int64_t t_ns, Clock::time_point now);
   /// Call when a frame was not answered in time.
   void gave_up();
-  /// Resets the state for an estimator that restarts.
-  void forget();
 
  private:
   const bool lockstep_;

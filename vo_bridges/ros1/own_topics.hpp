@@ -18,7 +18,6 @@ namespace overfly::ros1 {
   if (!options.debug_image_topic.empty()) {
     own.push_back({"debug_image_topic", options.debug_image_topic});
   }
-  if (!options.reset_topic.empty()) own.push_back({"reset_topic", options.reset_topic});
   if (by_tf || options.publish_tf) {
     own.push_back(
         {"camera_frame",

@@ -33,10 +33,4 @@ ImageMessage::ConstPtr DebugImages::take(std::int64_t stamp_ns,
   return std::exchange(newest_, nullptr);
 }
 
-void DebugImages::forget() {
-  const std::lock_guard lock(mutex_);
-  newest_.reset();
-  comes_in_time_ = true;
-}
-
 }  // namespace overfly::ros1

@@ -24,8 +24,6 @@ class DebugImages {
   [[nodiscard]] ImageMessage::ConstPtr take(std::int64_t stamp_ns,
                                             std::chrono::nanoseconds patience,
                                             const std::atomic<bool>* cancel = nullptr);
-  /// Discards the images of earlier frames.
-  void forget();
 
  private:
   [[nodiscard]] bool has(std::int64_t stamp_ns) const;

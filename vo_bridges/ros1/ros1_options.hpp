@@ -20,7 +20,6 @@ struct Ros1EstimatorOptions {
   std::string pose_topic = "/vo/pose";  ///< not used with kTf
   Ros1PoseType pose_type = Ros1PoseType::kPoseStamped;
   std::string debug_image_topic;        ///< empty = none
-  std::string reset_topic;              ///< std_msgs/Empty at every reset; empty = none
   std::string camera_frame = "camera";  ///< frame_id of images; with kTf the pose's child
   std::string vo_frame = "world";       ///< with kTf the pose's parent
   /// True if the pose maps the VO frame to the camera (T_camera_vo), like ORB-SLAM2's Tcw.

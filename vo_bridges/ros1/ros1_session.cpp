@@ -38,8 +38,7 @@ Session::Session(Node& node, const Ros1EstimatorOptions& options)
     : node_(node),
       options_(options),
       patience_(options.lockstep, seconds(options.answer_timeout_s)),
-      offset_ns_(kSecondNs),
-      earliest_ns_(kSecondNs) {
+      offset_ns_(kSecondNs) {
   node_.add_log(log_);
 }
 
@@ -60,7 +59,7 @@ Result<std::int64_t> Session::stamp_of(const VoFrame& frame) {
                      " s of 0, as ROS counts seconds in 32 bits"};
   };
   if (frame.t_ns < -kEndOfTimeNs || frame.t_ns >= kEndOfTimeNs) return bad("stamp", frame.t_ns);
-  if (!previous_) offset_ns_ = std::max(offset_ns_, earliest_ns_ - frame.t_ns);
+  if (!previous_) offset_ns_ = std::max(offset_ns_, kSecondNs - frame.t_ns);
   const std::int64_t stamp_ns = frame.t_ns + offset_ns_;
   if (stamp_ns >= kEndOfTimeNs) return bad("stamp on ROS", stamp_ns);
   return stamp_ns;
@@ -252,22 +251,6 @@ void Session::add_debug_image(const VoFrame& frame, std::int64_t stamp_ns, VoEst
     estimate.debug_image = std::move(*image);
   } else {
     log_->add("debug image: " + image.error().message);
-  }
-}
-
-void Session::reset() {
-  // Later than any previous stamp, so that an old answer cannot match a new frame.
-  if (previous_) earliest_ns_ = previous_->t_ns + offset_ns_ + kSecondNs;
-  previous_.reset();
-  tracked_ = false;
-  poses_ = {};
-  answers_.forget();
-  patience_.forget();
-  debug_images_.forget();
-  if (options_.reset_topic.empty()) {
-    log_->add("no reset_topic: the estimator was not informed of a reset");
-  } else {
-    topics_->publish_reset();
   }
 }
 

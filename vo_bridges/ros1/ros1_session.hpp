@@ -33,7 +33,6 @@ class Session final : public VoPort {
   [[nodiscard]] std::map<std::string, std::string> effective_parameters() const override;
   [[nodiscard]] Status prepare(const VoFrame& first) override;
   [[nodiscard]] Result<VoEstimate> track(const VoFrame& frame) override;
-  void reset() override;
   void set_debug(bool wanted) override { debug_ = wanted; }
   [[nodiscard]] std::vector<std::string> take_log() override { return log_->take(); }
   [[nodiscard]] std::optional<ResourceUse> resource_use() const override {
@@ -58,8 +57,8 @@ class Session final : public VoPort {
   /// Errors: kCancelled.
   [[nodiscard]] Result<VoEstimate> exchange(const VoFrame& frame, std::int64_t stamp_ns);
   void add_debug_image(const VoFrame& frame, std::int64_t stamp_ns, VoEstimate& estimate);
-  /// ROS time of a frame. It never runs backwards, even after a reset, and is never 0, which means
-  /// "no time" in ROS. The first frame after a reset sets the offset.
+  /// ROS time of a frame. It never runs backwards and is never 0, which means "no time" in ROS. The
+  /// first frame sets the offset.
   /// Errors: kInvalidArgument naming stamp and limit.
   [[nodiscard]] Result<std::int64_t> stamp_of(const VoFrame& frame);
 
@@ -76,7 +75,6 @@ class Session final : public VoPort {
   bool ready_ = false;
   bool tracked_ = false;
   std::int64_t offset_ns_;
-  std::int64_t earliest_ns_;  ///< ROS time of the first frame
   std::optional<Clock::time_point> alone_since_;
   std::optional<Error> ended_;
   // Last, so that no callback runs while the other members are destroyed.

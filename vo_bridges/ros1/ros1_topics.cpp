@@ -30,7 +30,7 @@ Topics::Topics(Node& node,
 Topics::~Topics() {
   poses_.shutdown();
   debug_images_.shutdown();
-  for (ros::Publisher* publisher : {&images_, &infos_, &clock_, &resets_, &transforms_}) {
+  for (ros::Publisher* publisher : {&images_, &infos_, &clock_, &transforms_}) {
     publisher->shutdown();
   }
   spinner_.stop();
@@ -107,9 +107,6 @@ Status Topics::advertise_all() {
     } else {
       log_->add("another estimator of this process publishes /clock");
     }
-  }
-  if (status && !options_.reset_topic.empty()) {
-    status = advertise<EmptyMessage>(options_.reset_topic, resets_);
   }
   if (status && options_.publish_tf) {
     status = advertise<TransformsMessage>(kTransforms, transforms_);
@@ -204,10 +201,6 @@ void Topics::publish(const VoFrame& frame, std::int64_t stamp_ns) {
   image.header.stamp = time_from_ns(stamp_ns);
   image.header.frame_id = options_.camera_frame;
   images_.publish(image);
-}
-
-void Topics::publish_reset() {
-  if (resets_) resets_.publish(EmptyMessage());
 }
 
 void Topics::publish_estimate(const Pose& T_vo_camera, std::int64_t stamp_ns) {

@@ -45,7 +45,6 @@ class Topics {
   void publish_calibration(const VoFrame& frame, std::int64_t stamp_ns);
   /// Publishes time, calibration, then the image: a node that has the image has the others.
   void publish(const VoFrame& frame, std::int64_t stamp_ns);
-  void publish_reset();
   /// Does nothing without publish_tf.
   void publish_estimate(const Pose& T_vo_camera, std::int64_t stamp_ns);
 
@@ -85,7 +84,7 @@ class Topics {
   std::vector<TopicRegistration> registrations_;
   ros::CallbackQueue queue_;
   ros::NodeHandle handle_;
-  ros::Publisher images_, infos_, clock_, resets_, transforms_;
+  ros::Publisher images_, infos_, clock_, transforms_;
   ros::Subscriber poses_, debug_images_;
   ros::AsyncSpinner spinner_{1, &queue_};
 };

@@ -80,11 +80,6 @@ class ToyEstimator final : public VoPort {
     return estimate;
   }
 
-  void reset() override {
-    previous_.reset();
-    T_vo_world_.reset();
-  }
-
   void set_debug(bool wanted) override { debug_ = wanted; }
 
  private:

@@ -121,7 +121,6 @@ Ros1EstimatorOptions ros1_from(const Json& ros1) {
   options.pose_topic = ros1.at("pose_topic").get<std::string>();
   options.pose_type = pose_type_from(ros1.at("pose_type").get<std::string>());
   options.debug_image_topic = ros1.at("debug_image_topic").get<std::string>();
-  options.reset_topic = ros1.at("reset_topic").get<std::string>();
   options.camera_frame = ros1.at("camera_frame").get<std::string>();
   options.vo_frame = ros1.at("vo_frame").get<std::string>();
   options.pose_is_camera_from_world = ros1.at("pose_is_camera_from_world").get<bool>();

@@ -47,7 +47,6 @@ class ScriptedPort final : public VoPort {
     if (debug_) estimate.debug_image = Image(4, 3, 3, 200);
     return script_(frame, std::move(estimate));
   }
-  void reset() override {}
   void set_debug(bool wanted) override { debug_ = wanted; }
   [[nodiscard]] std::vector<std::string> take_log() override { return {"a line"}; }
 

@@ -25,7 +25,6 @@ struct ScriptedPort final : VoPort {
   std::map<std::string, std::string> effective_parameters() const override { return {}; }
   Status prepare(const VoFrame& /*first*/) override { return when_prepared(); }
   Result<VoEstimate> track(const VoFrame& /*frame*/) override { return when_tracked(); }
-  void reset() override {}
   void set_debug(bool wanted) override { debug = wanted; }
   std::optional<ResourceUse> resource_use() const override { return use; }
 };

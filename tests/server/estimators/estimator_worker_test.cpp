@@ -33,7 +33,6 @@ class Thrower final : public VoPort {
     estimate.counters["a counter with a long enough name to be allocated"] = 1.0;
     return estimate;
   }
-  void reset() override {}
   void set_debug(bool /*wanted*/) override { throw_at("set_debug"); }
   std::optional<ResourceUse> resource_use() const override {
     throw_at("resource_use");

@@ -66,7 +66,6 @@ class FrameNotes final : public VoPort {
     estimate.sample.t_ns = frame.t_ns;
     return estimate;
   }
-  void reset() override {}
   void set_debug(bool /*wanted*/) override {}
 
  private:

@@ -39,7 +39,6 @@ class Leaver final : public VoPort {
     estimate.debug_image = *frame.image;
     return estimate;
   }
-  void reset() override {}
   void set_debug(bool /*wanted*/) override {}
 
  private:
@@ -130,7 +129,6 @@ TEST_F(LeavingEstimators, ProcessesStillAtWorkAreEndedFirst) {
 class Leaver(overfly_vo.Estimator):
     name = 'leaver'
     def calibrate(self, calibration): pass
-    def reset(self): pass
     def track(self, frame):
         picture = (frame.width_px, frame.height_px, 1, frame.pixels)
         return overfly_vo.Answer(debug_image=picture if frame.debug_wanted else None)

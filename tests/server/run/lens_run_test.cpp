@@ -24,7 +24,6 @@ class LensBlind final : public VoPort {
     straight.distortion = {};
     return port_->track(straight);
   }
-  void reset() override { port_->reset(); }
   void set_debug(bool wanted) override { port_->set_debug(wanted); }
 
  private:

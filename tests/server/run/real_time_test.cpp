@@ -50,7 +50,6 @@ class SlowEstimator final : public VoPort {
     estimate.sample.T_vo_camera.translation.x() = static_cast<double>(frame.index);
     return estimate;
   }
-  void reset() override {}
   void set_debug(bool /*wanted*/) override {}
 
  private:

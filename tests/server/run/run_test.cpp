@@ -226,7 +226,6 @@ class Mortal final : public VoPort {
     estimate.sample.T_vo_camera.translation.x() = static_cast<double>(frame.index);
     return estimate;
   }
-  void reset() override {}
   void set_debug(bool /*wanted*/) override {}
 };
 

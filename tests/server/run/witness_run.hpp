@@ -89,7 +89,6 @@ class Witness final : public VoPort {
     }
     return estimate;
   }
-  void reset() override {}
   void set_debug(bool /*wanted*/) override {}
   std::vector<std::string> take_log() override {
     const std::lock_guard lock(mutex_);

@@ -76,7 +76,6 @@ TEST(ScenarioEstimators, DefaultsAreThoseOfTheDoors) {
   EXPECT_EQ(ros1.pose_topic, plain.pose_topic);
   EXPECT_EQ(ros1.pose_type, plain.pose_type);
   EXPECT_EQ(ros1.debug_image_topic, plain.debug_image_topic);
-  EXPECT_EQ(ros1.reset_topic, plain.reset_topic);
   EXPECT_EQ(ros1.camera_frame, plain.camera_frame);
   EXPECT_EQ(ros1.vo_frame, plain.vo_frame);
   EXPECT_EQ(ros1.pose_is_camera_from_world, plain.pose_is_camera_from_world);

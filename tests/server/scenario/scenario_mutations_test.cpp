@@ -88,7 +88,7 @@ Json doors_seed() {
       {"name": "ros", "type": "ros1", "ros1": {
         "master_uri": "http://127.0.0.1:11311", "node_name": "range", "image_topic": "/image",
         "camera_info_topic": "/info", "pose_topic": "/pose", "pose_type": "odometry",
-        "debug_image_topic": "/debug", "reset_topic": "/reset", "camera_frame": "cam",
+        "debug_image_topic": "/debug", "camera_frame": "cam",
         "vo_frame": "map", "pose_is_camera_from_world": true, "pose_in_body_axes": true,
         "publish_clock": false, "publish_tf": true, "parameter_namespace": "/svo",
         "queue_size": 2}}]})");

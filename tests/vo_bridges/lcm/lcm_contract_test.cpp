@@ -24,7 +24,6 @@ class PairPort final : public VoPort {
   [[nodiscard]] Result<VoEstimate> track(const VoFrame& frame) override {
     return pair_.door->track(frame);
   }
-  void reset() override { pair_.door->reset(); }
   void set_debug(bool wanted) override { pair_.door->set_debug(wanted); }
 
  private:

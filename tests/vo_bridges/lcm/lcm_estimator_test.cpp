@@ -154,9 +154,6 @@ TEST(LcmEstimator, IsPreparedBeforeTheFirstFrame) {
     EXPECT_FALSE(estimate->counters.contains("unanswered"));
   }
   EXPECT_EQ(pair.far_end->sessions(), 1) << "track begins no other";
-  pair.door->reset();
-  ASSERT_TRUE(pair.door->track(frames[0]).ok());
-  EXPECT_EQ(pair.far_end->sessions(), 2);
 }
 
 TEST(LcmEstimator, LosesNoFrameInRealTimeToALateStartWhenPrepared) {
@@ -203,15 +200,6 @@ TEST(LcmEstimator, CountsADebugImageThatDidNotCome) {
     EXPECT_FALSE(estimate.debug_image.has_value());
     EXPECT_THAT(estimate.counters, Contains(Pair("debug_lost", 1.0)));
   }
-}
-
-TEST(LcmEstimator, BeginsASessionAtEachReset) {
-  LcmPair pair = make_memq_pair();
-  fly(*pair.door, 3);
-  pair.door->reset();
-  const auto again = fly(*pair.door, 2);
-  EXPECT_EQ(again[0].sample.state, TrackingState::kInitialising);
-  EXPECT_EQ(pair.far_end->sessions(), 2);
 }
 
 struct BadOption {

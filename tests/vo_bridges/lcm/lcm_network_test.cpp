@@ -16,6 +16,7 @@ namespace {
 
 using ::testing::Contains;
 using ::testing::ElementsAre;
+using testing::fly;
 using testing::LcmPair;
 using ::testing::Pair;
 using testing::varied_frames;
@@ -79,6 +80,16 @@ TEST_F(LcmUdp, SaysThatTheSessionHasEnded) {
     std::this_thread::yield();
   }
   EXPECT_TRUE(pair.far_end->ended());
+}
+
+TEST_F(LcmUdp, BeginsAnotherSessionWithTheNextRun) {
+  LcmPair pair = testing::make_udp_pair({}, options_, options_.url);
+  fly(*pair.door, 3);
+  pair.door.reset();
+  pair.door = create_lcm_estimator(options_).value();
+  const auto again = fly(*pair.door, 2);
+  EXPECT_EQ(again[0].sample.state, TrackingState::kInitialising);
+  EXPECT_EQ(pair.far_end->sessions(), 2);
 }
 
 TEST_F(LcmUdp, KeepsTwoEstimatorsApartByTheirPrefixes) {

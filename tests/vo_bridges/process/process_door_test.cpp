@@ -149,16 +149,6 @@ TEST(ProcessDoor, FramesGoThroughTheSocketUpToTheSizeOfTheProtocol) {
   EXPECT_EQ(estimate->image_crc32, crc32_of(*frame.image));
 }
 
-TEST(ProcessDoor, TellsACameraThatChangedAfterAReset) {
-  const auto estimator = started(scripted("good"));
-  EXPECT_EQ(estimator->track(ground_frames(1, 1.0, 1.0)[0])->counters.at("calibrations"), 1.0);
-  estimator->reset();
-  const VoFrame larger = ground_frames(1, 1.0, 1.0, 320, 240)[0];
-  const VoEstimate estimate = estimator->track(larger).value();
-  EXPECT_EQ(estimate.counters.at("calibrations"), 2.0);
-  EXPECT_EQ(estimate.image_crc32, crc32_of(*larger.image));
-}
-
 TEST(ProcessDoor, WaitsForAnEstimatorThatSomebodyElseStarts) {
   const testing::TemporaryFolder folder;
   const std::string path = (folder.path() / "socket").string();

@@ -56,8 +56,8 @@ std::string f64(double value) { return std::move(ByteWriter().f64(value).bytes()
 std::string u32(std::uint32_t value) { return std::move(ByteWriter().u32(value).bytes()); }
 
 TEST(ProcessMessages, AreThoseOfTheDocument) {
-  EXPECT_EQ(message_of(MessageType::kReset), documented("reset"));
-  EXPECT_EQ(message_of(MessageType::kReady, u32(10)), documented("ready"));
+  EXPECT_EQ(message_of(MessageType::kStop), documented("stop"));
+  EXPECT_EQ(message_of(MessageType::kReady, u32(3)), documented("ready"));
   const VoFrame frame = small_frame();
   FrameSending sending;
   sending.crc32 = crc32_of(*frame.image);

@@ -175,30 +175,6 @@ TEST_F(ProcessTrouble, AHangingEstimatorIsGivenUpAfterThreeTimeouts) {
   EXPECT_FALSE(alive(pid));
 }
 
-TEST_F(ProcessTrouble, AHangInAResetIsToldWithTheNextFrame) {
-  ProcessEstimatorOptions options = scripted("hang_in_reset");
-  options.answer_timeout_s = 1.0;
-  const auto estimator = started(options);
-  const auto frames = ground_frames(2, 1.0, 1.0, 64, 48);
-  ASSERT_TRUE(estimator->track(frames[0]).ok());
-  estimator->reset();
-  EXPECT_THAT(estimator->track(frames[1]).error().message, HasSubstr("not ready after RESET"));
-}
-
-TEST_F(ProcessTrouble, AResetPassesOverTheAnswerThatIsUnderWay) {
-  ProcessEstimatorOptions options = scripted("late", "1.3");
-  options.answer_timeout_s = 1.0;
-  const auto estimator = started(options);
-  estimator->set_debug(true);  // the answer comes with an image
-  const auto frames = ground_frames(3, 1.0, 1.0, 64, 48);
-  for (const VoFrame& frame : frames) ASSERT_TRUE(estimator->track(frame).ok());
-  estimator->reset();  // while frame 2 is still being thought about
-  const VoEstimate estimate = estimator->track(frames[1]).value();
-  EXPECT_EQ(estimate.counters.count("unanswered"), 0U);
-  EXPECT_EQ(estimate.sample.frame, 1);
-  EXPECT_EQ(estimate.counters.at("calibrations"), 1.0) << "the same camera is not told again";
-}
-
 TEST_F(ProcessTrouble, AStopHearsTheAnswerThatIsUnderWay) {
   const testing::TemporaryFolder folder;
   ProcessEstimatorOptions options = scripted("late", "1.3");

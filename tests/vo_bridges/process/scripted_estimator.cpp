@@ -55,11 +55,6 @@ class Scripted final : public overfly_vo::Estimator {
     tell_parameters({{"read_back", "ORB 7"}});
   }
 
-  void reset() override {
-    frames_ = 0;
-    if (behaviour_ == "hang_in_reset") sleep_s(60.0);
-  }
-
   Answer track(const Frame& frame) override {
     if (frames_++ == 2) misbehave();
     Answer answer;

@@ -73,13 +73,5 @@ TEST(AnswerPatience, NeverExceedsTheLimit) {
   EXPECT_EQ(frames.next(), 60ms);
 }
 
-TEST(AnswerPatience, IsAsNewAfterForgetting) {
-  Frames frames{AnswerPatience(true, 2s)};
-  (void)frames.next();
-  frames.patience.gave_up();
-  frames.patience.forget();
-  EXPECT_EQ(frames.next(), 2s);
-}
-
 }  // namespace
 }  // namespace overfly::ros1

@@ -16,7 +16,6 @@ class WithNode final : public VoPort {
     Ros1EstimatorOptions options = fresh_options();
     options.pose_type = type;
     options.vo_frame = options.image_topic.substr(1, 3);
-    options.reset_topic = options.pose_topic + "/reset";
     options.answer_timeout_s = 20.0;  // of a busy machine
     node_ = std::make_unique<TestNode>(options);
     auto port = create_ros1_estimator(options);
@@ -32,7 +31,6 @@ class WithNode final : public VoPort {
   [[nodiscard]] Result<VoEstimate> track(const VoFrame& frame) override {
     return port_->track(frame);
   }
-  void reset() override { port_->reset(); }
   void set_debug(bool wanted) override { port_->set_debug(wanted); }
 
  private:

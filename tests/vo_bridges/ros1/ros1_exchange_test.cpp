@@ -111,8 +111,7 @@ TEST(Ros1Exchange, IsPreparedBeforeTheFirstFrame) {
 
 TEST(Ros1Exchange, KeepsTimeAboveZeroForStampsBeforeTheFlight) {
   ROS_MASTER_OR_SKIP();
-  Ros1EstimatorOptions options = fresh_options();
-  options.reset_topic = options.pose_topic + "/reset";
+  const Ros1EstimatorOptions options = fresh_options();
   const TestNode node(options);
   const auto port = created(options);
   std::vector<VoFrame> frames = grey_frames(3);
@@ -120,12 +119,17 @@ TEST(Ros1Exchange, KeepsTimeAboveZeroForStampsBeforeTheFlight) {
   for (const VoFrame& frame : frames) expect_proof(tracked(*port, frame), frame);
   EXPECT_TRUE(node.says("clock 1.000000000"));
   EXPECT_TRUE(node.says("clock 1.032258065"));
-  frames = grey_frames(1);
-  port->reset();
-  frames[0].t_ns = std::int64_t{4'000'000'000} * 1'000'000'000;  // a time since 1970
-  expect_proof(tracked(*port, frames[0]), frames[0]);
-  port->reset();
-  expect_proof(tracked(*port, frames[0]), frames[0]);
+}
+
+TEST(Ros1Exchange, TakesStampsSince1970) {
+  ROS_MASTER_OR_SKIP();
+  const Ros1EstimatorOptions options = fresh_options();
+  const TestNode node(options);
+  const auto port = created(options);
+  VoFrame frame = grey_frames(1).front();
+  frame.t_ns = std::int64_t{4'000'000'000} * 1'000'000'000;
+  expect_proof(tracked(*port, frame), frame);
+  EXPECT_TRUE(node.says("clock 4000000001.000000000"));
 }
 
 TEST(Ros1Exchange, RefusesStampsThatRosCannotSay) {
@@ -166,29 +170,6 @@ TEST(Ros1Exchange, KeepsTimeFromOthersWhenToldSo) {
   expect_proof(tracked(*port, *frame), *frame);
   EXPECT_TRUE(node.says(transform + std::to_string(crc32_of(*frame->image))));
   EXPECT_THAT(node.output(), ::testing::Not(HasSubstr("clock")));
-}
-
-TEST(Ros1Exchange, TellsTheNodeOfAResetAndLetsTimeGoOn) {
-  ROS_MASTER_OR_SKIP();
-  Ros1EstimatorOptions options = fresh_options();
-  options.reset_topic = options.pose_topic + "/reset";
-  const TestNode node(options);
-  const auto port = created(options);
-  const std::vector<VoFrame> frames = grey_frames(2);
-  tracked(*port, frames[0]);
-  port->reset();
-  EXPECT_TRUE(node.says("reset"));
-  expect_proof(tracked(*port, frames[0]), frames[0]);
-  EXPECT_TRUE(node.says("clock 2.000000000"));
-}
-
-TEST(Ros1Exchange, SaysThatNobodyWasToldOfAReset) {
-  ROS_MASTER_OR_SKIP();
-  const Ros1EstimatorOptions options = fresh_options();
-  const TestNode node(options);
-  const auto port = created(options);
-  port->reset();
-  EXPECT_THAT(port->take_log(), Contains(HasSubstr("no reset_topic")));
 }
 
 TEST(Ros1Exchange, TakesDebugImagesOfManyEncodingsAndSizes) {

@@ -133,15 +133,12 @@ TEST(Ros1Faults, RefusesATopicThatAnotherEstimatorHas) {
 
 TEST(Ros1Faults, RefusesWhatWouldMakeEstimatorsAnswerForEachOther) {
   ROS_MASTER_OR_SKIP();
-  Ros1EstimatorOptions first = fresh_options();
-  first.reset_topic = first.pose_topic + "/reset";
+  const Ros1EstimatorOptions first = fresh_options();
   const TestNode node(first);
   const auto port = created(first);
   using Options = Ros1EstimatorOptions;
-  for (const auto field : {&Options::camera_info_topic,
-                           &Options::pose_topic,
-                           &Options::debug_image_topic,
-                           &Options::reset_topic}) {
+  for (const auto field :
+       {&Options::camera_info_topic, &Options::pose_topic, &Options::debug_image_topic}) {
     Options second = fresh_options();
     second.*field = (first.*field).substr(1);  // the same one without its slash
     expect_error(create_ros1_estimator(second), ErrorCode::kConflict, first.*field);

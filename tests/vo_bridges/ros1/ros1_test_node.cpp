@@ -1,7 +1,7 @@
 // A ROS node that answers each image with a pose that proves what it received: x is the CRC-32 of
 // the image's bytes, y the focal length of the calibration; rotated by the first byte's value in
 // hundredths of a radian about x.
-//   ros1_test_node image=TOPIC info=TOPIC pose=TOPIC type=TYPE [debug=TOPIC] [reset=TOPIC]
+//   ros1_test_node image=TOPIC info=TOPIC pose=TOPIC type=TYPE [debug=TOPIC]
 //     [parent=FRAME child=FRAME] [invert=1] [body_axes=1] [delay_ms=N] [silent_until=N] [every=N]
 //     [wait_for_info=1] [stamp_off_s=N] [bad_pose=1] [debug_encoding=NAME] [debug_scale=N]
 #include <ros/callback_queue.h>
@@ -75,9 +75,6 @@ class Estimator {
     clocks_ = subscribe<ClockMessage>(
         "/clock", [](const auto& m) { std::printf("clock %.9f\n", m->clock.toSec()); });
     transforms_ = subscribe<TransformsMessage>("/tf", [](const auto& m) { on_tf(*m); });
-    if (!text("reset").empty()) {
-      resets_ = subscribe<EmptyMessage>(text("reset"), [](const auto&) { std::puts("reset"); });
-    }
     images_ = subscribe<ImageMessage>(text("image"), [this](const auto& m) { on_image(*m); });
   }
 
@@ -172,7 +169,7 @@ class Estimator {
 
   ros::NodeHandle node_;
   ros::Publisher poses_, debugs_;
-  ros::Subscriber images_, infos_, clocks_, transforms_, resets_;
+  ros::Subscriber images_, infos_, clocks_, transforms_;
   double fx_px_ = 0.0;
   int seen_ = 0;
 };

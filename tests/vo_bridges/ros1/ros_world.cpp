@@ -163,7 +163,6 @@ TestNode::TestNode(const Ros1EstimatorOptions& options, const std::vector<std::s
                                       "parent=" + options.vo_frame,
                                       "child=" + options.camera_frame,
                                       std::string("type=") + ros1::to_string(options.pose_type)};
-  if (!options.reset_topic.empty()) command.push_back("reset=" + options.reset_topic);
   command.insert(command.end(), arguments.begin(), arguments.end());
   process_ = std::make_unique<Child>(command, folder_.path() / "output");
 }

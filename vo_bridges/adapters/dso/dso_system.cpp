@@ -66,11 +66,6 @@ class DsoSystem : public UpstreamSystem {
     return answer;
   }
 
-  void reset() override {
-    start_over();
-    map_id_ = 0;
-  }
-
  private:
   void start_over() {
     system_.reset();

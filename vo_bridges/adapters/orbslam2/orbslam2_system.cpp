@@ -81,12 +81,6 @@ class OrbSlam2System : public UpstreamSystem {
     return answer;
   }
 
-  void reset() override {
-    system_->Reset();  // takes effect at the next image
-    map_id_ = 0;
-    posed_ = false;
-  }
-
  private:
   static std::string scale_factor_text(float value) {
     char text[32] = {};

@@ -161,12 +161,6 @@ class SvoSystem : public UpstreamSystem {
     return answer;
   }
 
-  void reset() override {
-    handler_->start();  // at the next image it discards its map
-    map_id_ = 0;
-    posed_ = false;
-  }
-
  private:
   /// A pose is valid only in the default stage: during relocalisation it is frozen.
   void set_state(AdapterAnswer* answer) {

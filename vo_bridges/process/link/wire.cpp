@@ -20,7 +20,7 @@ constexpr std::array<const char*, 12> kNames = {"message 0",
                                                 "MAP_POINTS",
                                                 "PARAMETERS",
                                                 "LOG",
-                                                "RESET",
+                                                "message 10",
                                                 "STOP"};
 
 }  // namespace

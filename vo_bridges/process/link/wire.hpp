@@ -31,7 +31,6 @@ enum class MessageType : std::uint16_t {
   kMapPoints = 7,
   kParameters = 8,
   kLog = 9,
-  kReset = 10,
   kStop = 11,
 };
 
