@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "odometry/feature/feature_odometry.hpp"
-#include "odometry/feature/map_keeper.hpp"
+#include "odometry/feature/map/map_keeper.hpp"
+#include "odometry/feature/map/relocaliser.hpp"
 #include "odometry/feature/orb.hpp"
-#include "odometry/feature/relocaliser.hpp"
 #include "odometry/feature/start/descriptor_initialiser.hpp"
 #include "odometry/feature/start/initialiser.hpp"
 #include "odometry/feature/tracker.hpp"

@@ -6,7 +6,7 @@
 
 #include "core/camera/camera.hpp"
 #include "odometry/adjustment/pose_optimiser.hpp"
-#include "odometry/feature/map.hpp"
+#include "odometry/feature/map/map.hpp"
 #include "odometry/image/patch_aligner.hpp"
 #include "odometry/image/pyramid.hpp"
 

@@ -13,8 +13,8 @@
 #include "core/result.hpp"
 #include "server/export/dataset_writer.hpp"
 #include "server/export/export_source.hpp"
-#include "server/export/flight_video.hpp"
 #include "server/export/truth_writer.hpp"
+#include "server/export/video/flight_video.hpp"
 
 namespace overfly::server {
 

@@ -10,7 +10,7 @@
 
 #include "core/result.hpp"
 #include "server/export/export_source.hpp"
-#include "server/export/flight_video.hpp"
+#include "server/export/video/flight_video.hpp"
 
 namespace overfly::server {
 

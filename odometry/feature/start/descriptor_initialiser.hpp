@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/camera/camera.hpp"
-#include "odometry/feature/map.hpp"
+#include "odometry/feature/map/map.hpp"
 #include "odometry/feature/orb.hpp"
 #include "odometry/feature/start/descriptor_matcher.hpp"
 #include "odometry/feature/start/first_map.hpp"

@@ -7,7 +7,7 @@
 
 #include "core/camera/camera.hpp"
 #include "odometry/adjustment/bundle.hpp"
-#include "odometry/feature/map.hpp"
+#include "odometry/feature/map/map.hpp"
 #include "odometry/feature/orb.hpp"
 #include "odometry/image/frame_image.hpp"
 

@@ -9,7 +9,7 @@
 #include "renderer/renderer.hpp"
 #include "server/app/commands/commands.hpp"
 #include "server/app/commands/render_request.hpp"
-#include "server/app/commands/world_argument.hpp"
+#include "server/app/commands/world/world_argument.hpp"
 #include "server/app/exit_code.hpp"
 #include "terrain/raster/image_file.hpp"
 

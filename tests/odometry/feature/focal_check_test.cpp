@@ -1,5 +1,5 @@
 // A warning is given for a focal length that the images contradict, and for no other.
-#include "odometry/feature/focal_check.hpp"
+#include "odometry/feature/map/focal_check.hpp"
 
 #include <gtest/gtest.h>
 

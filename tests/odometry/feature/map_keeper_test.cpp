@@ -1,5 +1,5 @@
 // Mapping on its own thread gives the same map as mapping before the answer.
-#include "odometry/feature/map_keeper.hpp"
+#include "odometry/feature/map/map_keeper.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "odometry/feature/mapper.hpp"
+#include "odometry/feature/map/mapper.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
-#include "odometry/feature/relocaliser.hpp"
+#include "odometry/feature/map/relocaliser.hpp"
 
 #include <gtest/gtest.h>
 
-#include "odometry/feature/map_keeper.hpp"
+#include "odometry/feature/map/map_keeper.hpp"
 #include "odometry/feature/start/initialiser.hpp"
 #include "tests/odometry/level_scene.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "server/export/vp9_encoder.hpp"
+#include "server/export/video/vp9_encoder.hpp"
 
 namespace overfly::server::testing {
 

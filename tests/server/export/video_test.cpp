@@ -6,9 +6,9 @@
 #include <cmath>
 #include <set>
 
-#include "server/export/video_panels.hpp"
-#include "server/export/vp9_encoder.hpp"
-#include "server/export/webm_file.hpp"
+#include "server/export/video/video_panels.hpp"
+#include "server/export/video/vp9_encoder.hpp"
+#include "server/export/video/webm_file.hpp"
 #include "tests/server/export/read_video.hpp"
 #include "tests/support/support.hpp"
 

@@ -20,8 +20,8 @@ using Json = nlohmann::json;
 /// one that did.
 class Paging final : public testing::WrappedRenderer {
  public:
-  using WrappedRenderer::WrappedRenderer;
   using Renderer::render_camera;
+  using WrappedRenderer::WrappedRenderer;
   Result<renderer::CameraFrame> render_camera(const renderer::CameraRequest& request) override {
     auto frame = inner().render_camera(request);
     const Eigen::Vector3d place_m = request.T_world_camera.at(request.t_ns).translation;

@@ -42,8 +42,8 @@ class TileReader final : public testing::WrappedRenderer {
 /// Says after a while that something is not there.
 class Forgetful final : public testing::WrappedRenderer {
  public:
-  using WrappedRenderer::WrappedRenderer;
   using Renderer::render_camera;
+  using WrappedRenderer::WrappedRenderer;
   Result<renderer::CameraFrame> render_camera(const renderer::CameraRequest& request) override {
     if (request.t_ns >= kNsPerS) return Error{ErrorCode::kNotFound, "dem.tif: no such file"};
     return inner().render_camera(request);

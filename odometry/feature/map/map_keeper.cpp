@@ -1,4 +1,4 @@
-#include "odometry/feature/map_keeper.hpp"
+#include "odometry/feature/map/map_keeper.hpp"
 
 #include <utility>
 

@@ -1,4 +1,4 @@
-#include "server/export/video_panels.hpp"
+#include "server/export/video/video_panels.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "server/app/commands/world_argument.hpp"
+#include "server/app/commands/world/world_argument.hpp"
 
 #include <charconv>
 #include <filesystem>

@@ -6,7 +6,7 @@
 
 #include "core/motion/pose.hpp"
 #include "server/app/commands/commands.hpp"
-#include "server/app/commands/world_argument.hpp"
+#include "server/app/commands/world/world_argument.hpp"
 #include "server/app/exit_code.hpp"
 #include "server/app/progress.hpp"
 #include "server/app/stop_signal.hpp"

@@ -1,4 +1,4 @@
-#include "odometry/feature/map.hpp"
+#include "odometry/feature/map/map.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "core/camera/camera.hpp"
-#include "odometry/feature/local_bundle.hpp"
-#include "odometry/feature/map.hpp"
+#include "odometry/feature/map/local_bundle.hpp"
+#include "odometry/feature/map/map.hpp"
 #include "odometry/feature/orb.hpp"
 #include "odometry/feature/tracker.hpp"
 #include "odometry/image/frame_image.hpp"

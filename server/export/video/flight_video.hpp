@@ -8,9 +8,9 @@
 
 #include "core/result.hpp"
 #include "server/camera/frame_maker.hpp"
-#include "server/export/video_panels.hpp"
-#include "server/export/vp9_encoder.hpp"
-#include "server/export/webm_file.hpp"
+#include "server/export/video/video_panels.hpp"
+#include "server/export/video/vp9_encoder.hpp"
+#include "server/export/video/webm_file.hpp"
 
 namespace overfly::server {
 

@@ -9,8 +9,8 @@
 
 #include "core/motion/trajectory_io.hpp"
 #include "server/app/commands/commands.hpp"
-#include "server/app/commands/track_arguments.hpp"
-#include "server/app/commands/track_summary.hpp"
+#include "server/app/commands/track/track_arguments.hpp"
+#include "server/app/commands/track/track_summary.hpp"
 #include "server/app/exit_code.hpp"
 #include "server/app/progress.hpp"
 #include "server/app/stop_signal.hpp"

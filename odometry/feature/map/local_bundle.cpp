@@ -1,4 +1,4 @@
-#include "odometry/feature/local_bundle.hpp"
+#include "odometry/feature/map/local_bundle.hpp"
 
 #include <algorithm>
 #include <map>

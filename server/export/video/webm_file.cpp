@@ -1,4 +1,4 @@
-#include "server/export/webm_file.hpp"
+#include "server/export/video/webm_file.hpp"
 
 #include <bit>
 #include <cerrno>

@@ -3,7 +3,7 @@
 
 #include "core/camera/camera.hpp"
 #include "odometry/adjustment/bundle.hpp"
-#include "odometry/feature/map.hpp"
+#include "odometry/feature/map/map.hpp"
 
 namespace overfly::odometry::feature {
 

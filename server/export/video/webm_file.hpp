@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/result.hpp"
-#include "server/export/vp9_encoder.hpp"
+#include "server/export/video/vp9_encoder.hpp"
 
 namespace overfly::server {
 

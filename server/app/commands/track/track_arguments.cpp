@@ -1,4 +1,4 @@
-#include "server/app/commands/track_arguments.hpp"
+#include "server/app/commands/track/track_arguments.hpp"
 
 #include <algorithm>
 #include <charconv>

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "core/camera/camera.hpp"
-#include "odometry/feature/map.hpp"
+#include "odometry/feature/map/map.hpp"
 #include "odometry/feature/orb.hpp"
 
 namespace overfly::odometry::feature {

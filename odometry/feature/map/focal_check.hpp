@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/camera/camera.hpp"
-#include "odometry/feature/map.hpp"
+#include "odometry/feature/map/map.hpp"
 
 namespace overfly::odometry::feature {
 

@@ -11,9 +11,9 @@
 #include <thread>
 #include <vector>
 
-#include "odometry/feature/focal_check.hpp"
-#include "odometry/feature/map.hpp"
-#include "odometry/feature/mapper.hpp"
+#include "odometry/feature/map/focal_check.hpp"
+#include "odometry/feature/map/map.hpp"
+#include "odometry/feature/map/mapper.hpp"
 #include "odometry/feature/orb.hpp"
 #include "odometry/feature/tracker.hpp"
 #include "odometry/image/frame_image.hpp"

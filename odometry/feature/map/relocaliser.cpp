@@ -1,4 +1,4 @@
-#include "odometry/feature/relocaliser.hpp"
+#include "odometry/feature/map/relocaliser.hpp"
 
 #include <algorithm>
 #include <array>

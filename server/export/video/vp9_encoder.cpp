@@ -1,4 +1,4 @@
-#include "server/export/vp9_encoder.hpp"
+#include "server/export/video/vp9_encoder.hpp"
 
 #include <vpx/vp8cx.h>
 #include <vpx/vpx_encoder.h>

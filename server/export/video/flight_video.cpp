@@ -1,4 +1,4 @@
-#include "server/export/flight_video.hpp"
+#include "server/export/video/flight_video.hpp"
 
 #include <utility>
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "odometry/feature/map.hpp"
+#include "odometry/feature/map/map.hpp"
 
 namespace overfly::odometry::feature {
 namespace {

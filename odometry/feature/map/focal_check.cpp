@@ -1,4 +1,4 @@
-#include "odometry/feature/focal_check.hpp"
+#include "odometry/feature/map/focal_check.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "odometry/feature/mapper.hpp"
+#include "odometry/feature/map/mapper.hpp"
 #include "odometry/feature/surface_patch.hpp"
 #include "odometry/geometry/triangulation.hpp"
 

@@ -1,4 +1,4 @@
-#include "server/app/commands/track_summary.hpp"
+#include "server/app/commands/track/track_summary.hpp"
 
 #include <array>
 #include <cstdio>
