@@ -14,7 +14,7 @@
 namespace overfly::app {
 namespace {
 
-/// The scenario with only the requested camera and without estimators.
+/// The scenario, with the renderer that was asked for.
 Result<server::Scenario> load_to_render(const RenderArguments& arguments) {
   const auto overrides = server::parse_overrides(arguments.sets);
   if (!overrides) return overrides.error();
