@@ -15,7 +15,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using Json = nlohmann::json;
 
-/// A manifest in which every field has a value of its own.
+/// A manifest in which no two fields have the same value.
 RunManifest full_manifest() {
   RunManifest manifest;
   manifest.status = RunStatus::kFailed;

@@ -38,7 +38,7 @@ constexpr const char* kTwoEstimators =
     R"(estimators=[{"name":"p","type":"perfect"},
                    {"name":"q","type":"perfect","camera":"tilted"}])";
 
-/// What an estimator was given.
+/// What an estimator received.
 struct Given {
   std::int64_t index = 0;
   std::int64_t t_ns = 0;
@@ -48,7 +48,7 @@ struct Given {
   DistortionModel lens = DistortionModel::kNone;
 };
 
-/// Notes what it is given, and tracks nothing.
+/// Records what it receives and tracks nothing.
 class FrameNotes final : public VoPort {
  public:
   explicit FrameNotes(std::vector<Given>& given) : given_(given) {}
@@ -72,7 +72,7 @@ class FrameNotes final : public VoPort {
   std::vector<Given>& given_;
 };
 
-/// Flies with a witness in each estimator's place.
+/// Flies with a witness instead of each estimator.
 std::map<std::string, std::vector<Given>> witnessed(const Scenario& scenario,
                                                     const fs::path& folder) {
   std::map<std::string, std::vector<Given>> given;
@@ -189,7 +189,7 @@ TEST(CameraRun, WrongStampsShowAsErrorAlongTheTrack) {
   const auto run = run_scenario(scenario, options_for(folder.path() / "r"));
   ASSERT_TRUE(run.ok()) << run.error().message;
   const EstimatorMetrics& score = run->metrics.estimators.at("p");
-  // Frames from 1 s on claim a time 40 ms too early: 1 m of way at 25 m/s.
+  // Frames from 1 s on have a stamp 40 ms too early: 1 m at 25 m/s.
   EXPECT_NEAR(
       score.score.alignments.at(evaluation::AlignmentMode::kInitScale).position_m.max, 1.0, 0.01);
 }

@@ -75,7 +75,7 @@ TEST(EstimatorRun, RealTimeGivesEachEstimatorItsOwnDropsAndTheSameImages) {
   }
 }
 
-/// The paper's ORB-SLAM2 processed 20 of 31 frames a second.
+/// The paper's ORB-SLAM2 processed 20 of 31 frames per second.
 TEST(EstimatorRun, ThrottledToTwentyOfThirtyOneHertzDropsTheRest) {
   SimulatedClock clock;
   WitnessRun flight;

@@ -1,4 +1,4 @@
-// Tiles that come late: never in lockstep, counted and reported in real time.
+// Late tiles: none in lockstep; counted and reported in real time.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,8 +16,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Two tiles are late at every image that does not wait for them, but for those within a metre of
-/// one that did.
+/// Two tiles are late in every image that does not wait for them, except within a metre of an image
+/// that did.
 class Paging final : public testing::WrappedRenderer {
  public:
   using Renderer::render_camera;

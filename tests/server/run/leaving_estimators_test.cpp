@@ -1,4 +1,4 @@
-// However a run ends, its estimators are gone before its folder is let go.
+// However a run ends, its estimators end before its folder is unlocked.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -21,7 +21,8 @@ using ::testing::Each;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
-/// Notes, when it leaves, whether its run still holds the folder. Draws a debug image of any frame.
+/// Records at its end whether its run still holds the folder's lock. Draws a debug image of any
+/// frame.
 class Leaver final : public VoPort {
  public:
   Leaver(fs::path folder, std::vector<bool>& held) : folder_(std::move(folder)), held_(held) {}
@@ -120,7 +121,7 @@ TEST_F(LeavingEstimators, WhenTheRunIsCancelled) {
 TEST_F(LeavingEstimators, ProcessesStillAtWorkAreEndedFirst) {
   const fs::path script = folder_.path() / "leaver.py";
   const std::string client = overfly::testing::source_file("vo_bridges/client").string();
-  // It leaves when the door closes, and tells what it then finds two folders up.
+  // It ends when the connection closes and reports what it then finds two folders up.
   overfly::testing::write_text(script,
                                "import fcntl, os, sys\n"
                                "sys.path.insert(0, '" +

@@ -30,7 +30,7 @@ class LensBlind final : public VoPort {
   std::unique_ptr<VoPort> port_;
 };
 
-/// Of the 125 m; 0.02 to 0.04 m were measured, 0.5 m with a lens that was not told.
+/// Over the 125 m; 0.02 to 0.04 m were measured, 0.5 m with a lens that the estimator did not know.
 constexpr double kLimitM = 0.12;
 
 struct Flown {
@@ -38,7 +38,7 @@ struct Flown {
   double rmse_m = 1e9;
 };
 
-/// Five seconds over natural ground with hills, 125 m of way.
+/// Five seconds over natural ground with hills: 125 m.
 Flown flown_with_lens(const std::string& lens, bool blind = false) {
   const overfly::testing::TemporaryFolder folder;
   std::vector<std::string> overrides = {

@@ -1,5 +1,4 @@
-// Names that the system refuses to look at (too long, links in a circle) are errors, not
-// exceptions.
+// Names that the system refuses (too long, circular links) are errors, not exceptions.
 #include <gtest/gtest.h>
 
 #include "core/motion/trajectory_io.hpp"

@@ -25,7 +25,7 @@ using Json = nlohmann::json;
 
 constexpr std::int64_t kMillisecond = 1'000'000;
 
-/// Answers after a fixed time by the clock, once it is ready.
+/// Answers a fixed time after it became ready, by the run's clock.
 class SlowEstimator final : public VoPort {
  public:
   SlowEstimator(RunClock& clock, std::int64_t work_ns, std::int64_t start_ns = 0)
@@ -59,7 +59,7 @@ class SlowEstimator final : public VoPort {
   bool ready_ = false;
 };
 
-/// A renderer whose every second image takes long.
+/// A renderer whose images take a fixed time.
 class SlowRenderer final : public testing::WrappedRenderer {
  public:
   SlowRenderer(std::unique_ptr<renderer::Renderer> inner, RunClock& clock, std::int64_t work_ns)
@@ -83,7 +83,7 @@ std::vector<std::int64_t> frames_where(const EstimatorRecords& estimator, bool d
   return frames;
 }
 
-/// A run in its own folder, of the empty renderer, under a simulated clock.
+/// A run in its own folder with the empty renderer and a simulated clock.
 class RealTime : public ::testing::Test {
  protected:
   RealTime() {

@@ -1,5 +1,5 @@
 // Runs that end by an exception: too little memory, a thread that cannot be started, a fault of a
-// library. Each ends failed with its reason, and the program goes on.
+// library. Each ends as failed with its reason, and the program continues.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -40,7 +40,7 @@ std::vector<Failure> failures() {
           {throw_other, "a library's fault"}};
 }
 
-/// What a run leaves that failed for this reason.
+/// Checks the folder of a run that failed for this reason.
 void expect_failed(const fs::path& folder, const std::string& told) {
   const auto info = read_run_info(folder);
   ASSERT_TRUE(info.ok()) << info.error().message;
@@ -174,19 +174,19 @@ TEST_F(RunFailureOfManager, RunThatNeedsTooMuchMemoryIsRefused) {
   EXPECT_EQ(wait_for_end(*runs, runs->start("small", {}).value().id).status, RunStatus::kCompleted);
 }
 
-/// Two that fit alone and not together fly one after the other, though two might fly at a time.
+/// Two runs that fit only one at a time fly one after the other, although two may fly at a time.
 TEST_F(RunFailureOfManager, RunsWaitForEachOthersMemory) {
   RunManagerOptions two = options();
   two.max_parallel_runs = 2;
   const Scenario scenario = testing::small_scenario();
-  // Half of the limit is for the caches, and of the rest the images of one run take most.
+  // Half of the limit is for the caches; the images of one run take most of the rest.
   two.memory_limit_bytes = 3 * memory_of(scenario).images_bytes;
   const auto runs = std::move(RunManager::create(two).value());
   const std::string first = runs->start("small", endless()).value().id;
   wait_for_first_frame(*runs->timeline(first).value());
   const std::string second = runs->start("small", {}).value().id;
-  // A worker is free: were there room it would have drawn a frame of the second before this many
-  // more of the first.
+  // A worker is free: with enough memory it would have drawn a frame of the second run before the
+  // first one has this many more.
   const auto timeline = runs->timeline(first).value();
   const std::size_t enough = timeline->frame_count() + 500;
   for (std::uint64_t seen = 0; timeline->frame_count() < enough;) {

@@ -1,4 +1,4 @@
-// Whole runs over a small world: folders, determinism, scores, ends.
+// Whole runs over a small world: folders, determinism, scores, how runs end.
 #include "server/run/run.hpp"
 #include "server/record/run_info_file.hpp"
 #include "server/timeline/run_timeline.hpp"
@@ -212,7 +212,7 @@ TEST(Run, BadEstimatorParameterIsNamed) {
   EXPECT_THAT(run.error().message, HasSubstr("estimator \"p\": scal: no such parameter"));
 }
 
-/// Answers twice, then is gone for good.
+/// Answers twice, then ends.
 class Mortal final : public VoPort {
  public:
   std::string type() const override { return "mortal"; }

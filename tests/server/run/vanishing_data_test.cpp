@@ -1,4 +1,4 @@
-// Files of the world that are damaged, taken away or replaced while a run flies over them.
+// Files of the world that are damaged, removed or replaced while a run flies over them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -20,7 +20,8 @@ namespace fs = std::filesystem;
 using overfly::testing::TemporaryFolder;
 using ::testing::HasSubstr;
 
-/// Reads the tile below the camera for every picture. One that does not wait goes without.
+/// Reads the tile below the camera for every image. An image that does not wait is drawn without
+/// it.
 class TileReader final : public testing::WrappedRenderer {
  public:
   explicit TileReader(std::shared_ptr<const terrain::TileSource> tiles)
@@ -39,7 +40,7 @@ class TileReader final : public testing::WrappedRenderer {
   std::unique_ptr<renderer::Renderer> inner_;
 };
 
-/// Says after a while that something is not there.
+/// Fails with kNotFound from 1 s on.
 class Forgetful final : public testing::WrappedRenderer {
  public:
   using Renderer::render_camera;
@@ -53,7 +54,7 @@ class Forgetful final : public testing::WrappedRenderer {
   std::unique_ptr<renderer::Renderer> inner_;
 };
 
-/// Runs over a copy of the small world that a test may damage, in either pacing.
+/// Runs over a copy of the small world that a test may damage, in either pacing mode.
 class VanishingData : public ::testing::TestWithParam<const char*> {
  protected:
   VanishingData() {
@@ -70,7 +71,7 @@ class VanishingData : public ::testing::TestWithParam<const char*> {
   [[nodiscard]] fs::path imagery() const { return world() / "imagery.tif"; }
   [[nodiscard]] fs::path elevation() const { return world() / "elevation.tif"; }
 
-  /// A run in its own folder; `meanwhile` happens once, after the fifth frame.
+  /// A run in its own folder; `meanwhile` is called once, after the fifth frame.
   Result<RunResult> flown(const std::string& name, const std::function<void()>& meanwhile = {}) {
     options_.folder = folder_.path() / name;
     options_.progress = [&, done = false](const RunInfo& info) mutable {
@@ -85,7 +86,7 @@ class VanishingData : public ::testing::TestWithParam<const char*> {
                                     "world.manifest=" + (world() / "world.json").string()});
   }
 
-  /// The run of that name ended as failed, and kept the frames that it had.
+  /// Checks that the run of that name ended as failed and kept its frames.
   void expect_failed(const std::string& name, std::size_t frames, const std::string& why) {
     const auto info = read_run_info(folder_.path() / name);
     ASSERT_TRUE(info.ok()) << info.error().message;

@@ -1,5 +1,5 @@
-// Run folders whose files were changed, damaged or cut short: listed with what is wrong, never
-// thrown about.
+// Run folders with changed, damaged or truncated files: they are listed with what is wrong, without
+// an exception.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -25,7 +25,8 @@ using overfly::testing::TemporaryFolder;
 using ::testing::HasSubstr;
 using Json = nlohmann::json;
 
-/// One run of two cameras and two estimators, flown once for all tests, and a manager over it.
+/// A run with two cameras and two estimators, flown once for all tests, and a manager that lists
+/// it.
 class RunDamage : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -53,14 +54,14 @@ class RunDamage : public ::testing::Test {
 
   static fs::path run() { return place_->path() / "runs" / "r"; }
 
-  /// The run as it is listed now; it always is.
+  /// The run as it is listed now; every test expects it in the list.
   RunInfo listed() const {
     const RunList runs = manager_->runs();
     EXPECT_EQ(runs.size(), 1U);
     return runs.empty() ? RunInfo() : *runs.front();
   }
 
-  /// Opens the run and reads what a viewer reads.
+  /// Opens the run and reads all that a viewer reads.
   void open_and_read() const {
     const auto timeline = RunTimeline::open(run());
     if (!timeline) {
@@ -78,7 +79,7 @@ class RunDamage : public ::testing::Test {
     (void)(*timeline)->frame_at(0);
   }
 
-  /// Puts `text` in the file's place for the time of `look`.
+  /// Replaces the file by `text` while `look` runs.
   static void with_text(const fs::path& file,
                         const std::string& text,
                         const std::function<void()>& look) {
@@ -97,7 +98,7 @@ class RunDamage : public ::testing::Test {
 
 TemporaryFolder* RunDamage::place_ = nullptr;
 
-/// Every value of a document, by its pointer; containers too.
+/// The JSON pointers of every value of a document, including arrays and objects.
 std::vector<Json::json_pointer> pointers_of(const Json& document) {
   std::vector<Json::json_pointer> pointers;
   const std::function<void(const Json&, const Json::json_pointer&)> add =
@@ -106,14 +107,14 @@ std::vector<Json::json_pointer> pointers_of(const Json& document) {
         if (value.is_object()) {
           for (const auto& [name, field] : value.items()) add(field, at / name);
         }
-        // Elements of an array are alike: the first stands for them.
+        // Elements of an array are alike: only the first is used.
         if (value.is_array() && !value.empty()) add(value.front(), at / 0);
       };
   add(document, Json::json_pointer());
   return pointers;
 }
 
-/// What may stand in a value's place.
+/// Values to replace another with.
 std::vector<Json> other_values() {
   return {nullptr,
           "../../../etc/passwd",
@@ -145,7 +146,7 @@ TEST_F(RunDamage, EveryFieldOfEveryDocumentMayBeWrong) {
     const Json document = read_json(file).value();
     int count = 0;
     const bool is_listed = file == manifest_file(run());
-    // Of the many figures few are read back.
+    // Only few of the many figures are read back.
     const std::vector<Json> values =
         is_listed ? other_values() : std::vector<Json>{nullptr, "../../../etc/passwd"};
     for (const Json& changed : mutations_of(document, values)) {
@@ -260,7 +261,7 @@ TEST_F(RunDamage, TimeOfCreationMayBeWrong) {
   }
 }
 
-/// A run is playable without what is derived or beside the matter; the problem is told.
+/// A run can be played without its derived files; the problem is reported.
 TEST_F(RunDamage, RunWithoutReadableTimingsOrMetricsPlays) {
   for (const fs::path& file : {timings_file(run()), metrics_file(run())}) {
     with_text(file, "[", [&] {

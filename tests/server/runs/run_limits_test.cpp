@@ -1,4 +1,4 @@
-// What many clients, or several servers, may do to one folder of runs: ids, queue, deletion, keys.
+// Many clients or several servers on one folder of runs: ids, queue, deletion, idempotency keys.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

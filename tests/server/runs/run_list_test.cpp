@@ -1,4 +1,4 @@
-// The list of runs: kept in memory, and always as the folder is.
+// The list of runs is kept in memory and always agrees with the folder.
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ using ::testing::IsEmpty;
 
 class RunListTest : public testing::ManagerTest {
  protected:
-  /// A copy of a run that is over, as another program leaves it, asked for at a time of its own.
+  /// A copy of a completed run, as another program leaves it, with its own creation time.
   void copy_run(const std::string& id, const std::string& to, const std::string& created_utc) {
     fs::copy(folder_of(id), folder_of(to), fs::copy_options::recursive);
     overfly::testing::write_text(created_file(folder_of(to)),
@@ -61,7 +61,7 @@ TEST_F(RunListTest, SharesWhatHasNotChanged) {
   const auto runs = manager();
   const std::string id = fly(*runs);
   copy_run(id, "older", "2020-01-01T00:00:00Z");
-  // Once the file system's clock has ticked, an unchanged stamp is proof enough.
+  // After a tick of the file system's clock, an unchanged stamp means an unchanged file.
   const auto listed = [&] { return runs->runs().back(); };
   auto before = listed();
   auto after = listed();
@@ -71,7 +71,7 @@ TEST_F(RunListTest, SharesWhatHasNotChanged) {
   EXPECT_NE(listed(), after);
 }
 
-/// Files that grow with the flight are not touched: a pipe would keep whoever opens it.
+/// Files that grow with the flight are not opened: opening a pipe would block.
 TEST_F(RunListTest, ReadsNoFileThatGrowsWithTheFlight) {
   const auto runs = manager();
   const std::string id = fly(*runs);
@@ -89,7 +89,7 @@ TEST_F(RunListTest, ReadsNoFileThatGrowsWithTheFlight) {
   EXPECT_EQ(again->run(id).value().status, RunStatus::kCompleted);
 }
 
-/// Of a run that was interrupted the last row tells how far it came, however many there are.
+/// The duration of an interrupted run is that of its last row, however many rows there are.
 TEST_F(RunListTest, CountsFramesOfAnInterruptedRunFromItsLastRow) {
   const auto runs = manager();
   const std::string id = fly(*runs);
@@ -129,7 +129,7 @@ TEST_F(RunListTest, TimeOfCreationStandsInAFileOfItsOwn) {
   EXPECT_EQ(read_json(created_file(folder_of(asked.id))).value().at("created_utc"),
             asked.created_utc);
   EXPECT_EQ(manager()->runs()[0]->created_utc, asked.created_utc);
-  // A folder of an earlier version: its scenario was written when it was made.
+  // A folder of an earlier version: the time of its scenario file is its creation time.
   fs::remove(created_file(folder_of(asked.id)));
   const std::string written = manager()->runs()[0]->created_utc;
   EXPECT_EQ(written.substr(0, 15), asked.created_utc.substr(0, 15));
@@ -154,7 +154,7 @@ TEST_F(RunListTest, NewMetricsReachThoseWhoWatch) {
   RunMetrics metrics = *timeline->metrics();
   metrics.flight.path_length_m = 1.5;
   ASSERT_TRUE(write_json(metrics_file(folder_of(id)), json_from(metrics)).ok());
-  // Nobody asks for the run: its watchers are told all the same.
+  // Watchers are notified although nobody asks for the run.
   std::uint64_t seen = timeline->revision();
   while (timeline->metrics()->flight.path_length_m != 1.5) {
     seen = timeline->wait_for_change(seen, 1000);

@@ -1,4 +1,4 @@
-// The runs of a server: started, queued, listed, cancelled, removed, found again.
+// The runs of a server: start, queue, list, cancel, removal, and what a restart finds.
 #include "server/runs/run_manager.hpp"
 #include "server/record/run_info_file.hpp"
 #include "server/record/run_lock.hpp"
@@ -29,7 +29,7 @@ class RunManagerTest : public testing::ManagerTest {
     return std::move(RunManager::create(trusting).value());
   }
 
-  /// Of a server: whose clients may name files inside of its data folders only.
+  /// As a server sets it: clients may only name files in the data folders.
   [[nodiscard]] std::unique_ptr<RunManager> confined_manager(
       std::vector<fs::path> data_folders) const {
     RunManagerOptions confined = options();
@@ -68,7 +68,7 @@ TEST_F(RunManagerTest, FliesOverFilesInsideOfItsDataFoldersOnly) {
   const auto started = runs->start("small", perfect());
   ASSERT_TRUE(started.ok()) << started.error().message;
   EXPECT_EQ(wait_for_end(*runs, started->id).status, RunStatus::kCompleted);
-  // A run's own files are no data, though whoever keeps the runs keeps them among the data.
+  // A run's own files are not data, even if the folder of runs is in a data folder.
   const auto among = confined_manager({root(), testing::small_world().parent_path()});
   const std::string planted = scenario_file(runs->folder(started->id).value()).string();
   EXPECT_THAT(among->start("small", {{"world.manifest", planted}}).error().message,
@@ -85,7 +85,7 @@ TEST_F(RunManagerTest, TakesTheFolderDataOfScenarioFilesForDeclared) {
   ASSERT_TRUE(started.ok()) << started.error().message;
   EXPECT_EQ(wait_for_end(*runs, started->id).status, RunStatus::kCompleted);
   EXPECT_TRUE(runs->scenario_of(started->id).ok());
-  // An override declares nothing; and what a run's copy says counts no more than an override.
+  // Neither an override nor the copy in a run folder may declare data folders.
   EXPECT_FALSE(runs->start("named", {{"data", "/etc"}, {"world.manifest", "passwd"}}).ok());
   fs::remove(root() / "scenarios" / "named.json");
   EXPECT_THAT(runs->start("small", {}).error().message, HasSubstr("data folders"));
@@ -171,7 +171,7 @@ TEST_F(RunManagerTest, RunLeftByAKilledProcessIsInterrupted) {
   const auto runs = manager();
   const std::string id = runs->start("small", perfect()).value().id;
   wait_for_end(*runs, id);
-  // What a kill leaves: "running" in the manifest, no lock held, a line cut short, nothing derived.
+  // After a kill: "running" in the manifest, no lock, a truncated line, no derived files.
   const fs::path killed = root() / "runs" / "killed";
   fs::copy(root() / "runs" / id, killed, fs::copy_options::recursive);
   auto manifest = read_json(manifest_file(killed)).value();
@@ -222,7 +222,7 @@ TEST_F(RunManagerTest, RefusesWhatItDoesNotKnow) {
   ASSERT_EQ(runs->scenarios().size(), 1U);
 }
 
-/// What a file on the server's disk says may be asked for again, and nothing beyond it.
+/// A run of a file on the server's disk may be repeated, but not with other names in it.
 TEST_F(RunManagerTest, ClientsMayUseTheCommandsOfScenarioFilesOnly) {
   nlohmann::json document = testing::small_document();
   document["estimators"] = nlohmann::json::parse(

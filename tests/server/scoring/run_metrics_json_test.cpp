@@ -17,7 +17,7 @@ using evaluation::AlignmentMode;
 using ::testing::HasSubstr;
 using Json = nlohmann::json;
 
-/// Metrics in which every field that is written has a value of its own.
+/// Metrics in which no two written fields have the same value.
 RunMetrics full_metrics() {
   RunMetrics metrics;
   CameraMetrics camera;

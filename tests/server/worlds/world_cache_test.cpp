@@ -37,7 +37,7 @@ class WorldCacheTest : public ::testing::Test {
   [[nodiscard]] fs::path manifest() const { return folder_.path() / "world.json"; }
   [[nodiscard]] fs::path elevation() const { return folder_.path() / "elevation.tif"; }
 
-  /// Flat ground; of equal size whatever the height.
+  /// Flat ground; the file's size does not depend on the height.
   void write_world(double ground_m) {
     overfly::testing::GeoTiff imagery;
     imagery.image = overfly::testing::textured_image(300, 300, 3);
@@ -75,7 +75,7 @@ class WorldCacheTest : public ::testing::Test {
     if (!world) throw std::runtime_error(world.error().message);
     return *world;
   }
-  /// What the run's manifest says of its world.
+  /// The world in the run's manifest.
   Json flown(const std::string& name, const std::function<void()>& meanwhile = {}) {
     RunOptions options;
     options.folder = folder_.path() / name;

@@ -1,4 +1,4 @@
-// A run that is looked at after its data files have changed: its info says which.
+// A run whose data files have changed since its flight: its info names them.
 #include "server/worlds/world_change.hpp"
 #include "server/record/run_info.hpp"
 
@@ -31,7 +31,7 @@ class WorldChangeTest : public testing::ManagerTest {
 
   [[nodiscard]] fs::path world() const { return root() / "world.json"; }
   [[nodiscard]] fs::path picture() const { return root() / "ortho.tif"; }
-  /// Written anew and put in the old one's place, as programs that make such files do.
+  /// Writes a new file and renames it over the old one, as programs that make such files do.
   void write_picture(unsigned seed) const {
     overfly::testing::GeoTiff tiff;
     tiff.image = overfly::testing::textured_image(300, 300, 1, seed);
@@ -41,14 +41,14 @@ class WorldChangeTest : public testing::ManagerTest {
     write_geotiff(root() / "new.tif", tiff);
     fs::rename(root() / "new.tif", picture());
   }
-  /// By a manager that is gone, with its thread and its world.
+  /// Flies with a manager that is destroyed afterwards, with its thread and its world.
   [[nodiscard]] std::string fly_mapped() const {
     const auto runs = manager();
     const std::string id = runs->start("mapped", perfect()).value().id;
     EXPECT_EQ(wait_for_end(*runs, id).status, RunStatus::kCompleted);
     return id;
   }
-  /// Of a run whose world is looked at now: in its info, its time line's and the list's.
+  /// The change that is reported in the run's info, by its time line and in the list.
   static std::string told(RunManager& runs, const std::string& id) {
     const auto world = runs.world_of(id);
     if (!world) return world.error().message;
