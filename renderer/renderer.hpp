@@ -156,9 +156,8 @@ class Renderer {
   virtual ~Renderer() = default;
 
   /// Draws the camera's image.
-  /// Errors: kInvalidArgument for an invalid camera, times below 0, or a pose that is not finite or
-  /// more than 1 m below the ground; kIo if a tile cannot be read; kUnsupported naming what this
-  /// renderer does not support.
+  /// Errors: kInvalidArgument for a request refused by check_camera_request, naming the field; kIo
+  /// if a tile cannot be read; kUnsupported naming what this renderer does not support.
   [[nodiscard]] virtual Result<CameraFrame> render_camera(const CameraRequest& request) = 0;
   /// Depth along the optical axis of the same image [m], each row at its mid exposure; +infinity
   /// for sky and for pixels without a ray.

@@ -19,9 +19,23 @@ Status check_size(int width_px, int height_px) {
   return {};
 }
 
+std::string text_of(const Eigen::Vector3d& v) {
+  std::string text(1, '(');
+  text += std::to_string(v.x()) + ", " + std::to_string(v.y()) + ", " + std::to_string(v.z());
+  return text += ')';
+}
+
+/// True if a component is outside [-limit, limit] or not a number.
+bool beyond(const Eigen::Vector3d& v, double limit) { return !(v.array().abs() <= limit).all(); }
+
 Status check_pose(const Pose& pose) {
   if (!pose.translation.allFinite() || !pose.rotation.coeffs().allFinite()) {
     return Error{ErrorCode::kInvalidArgument, "T_world_camera is not finite"};
+  }
+  if (beyond(pose.translation, kMaxPositionM)) {
+    return Error{ErrorCode::kInvalidArgument,
+                 "T_world_camera.translation = " + text_of(pose.translation) +
+                     " m: each component must be in [-1000000, 1000000]"};
   }
   const double norm = pose.rotation.norm();
   if (std::abs(norm - 1.0) > 1e-3) {
@@ -48,7 +62,19 @@ Status check_air(const Atmosphere& air) {
         ErrorCode::kInvalidArgument,
         "extinction_per_m = " + std::to_string(air.extinction_per_m) + ": must be in [0, 1]"};
   }
+  for (const float value : air.airlight_rgb) {
+    if (value >= 0.0F && value <= 1.0F) continue;
+    return Error{ErrorCode::kInvalidArgument,
+                 "airlight_rgb has the value " + std::to_string(value) + ": must be in [0, 1]"};
+  }
   return {};
+}
+
+Status check_velocity(const Eigen::Vector3d& velocity_m_s) {
+  if (!beyond(velocity_m_s, kMaxSpeedMPerS)) return {};
+  return Error{ErrorCode::kInvalidArgument,
+               "velocity_world_m_s = " + text_of(velocity_m_s) +
+                   ": each component must be in [-10000, 10000]"};
 }
 
 }  // namespace
@@ -66,6 +92,7 @@ Status check_camera_request(const terrain::TileSource& tiles, const CameraReques
   if (Status status = check_size(pinhole.width_px, pinhole.height_px); !status) return status;
   if (Status status = check_shutter(request); !status) return status;
   if (Status status = check_air(request.atmosphere); !status) return status;
+  if (Status status = check_velocity(request.velocity_world_m_s); !status) return status;
   for (const StampedPose& stamped : request.T_world_camera.poses()) {
     if (Status status = check_pose(stamped.pose); !status) return status;
   }

@@ -11,10 +11,14 @@ namespace overfly::renderer {
 
 inline constexpr int kMaxImageSidePx = 8192;
 inline constexpr double kMaxDepthBelowGroundM = 1.0;
+/// Limit of each component of a camera's position: beyond, indices of tiles overflow, and neither
+/// the tangent frame nor a map projection describes the ground.
+inline constexpr double kMaxPositionM = 1e6;
+inline constexpr double kMaxSpeedMPerS = 1e4;  ///< of each component of a camera's velocity
 
-/// Errors: kInvalidArgument for an invalid or too large camera, times below 0, an invalid
-/// atmosphere, a pose that is not finite, or an optical centre more than kMaxDepthBelowGroundM
-/// below the ground.
+/// Errors: kInvalidArgument for an invalid or too large camera, exposure or readout times outside
+/// [0, 1 s], an invalid atmosphere, a velocity beyond kMaxSpeedMPerS, a pose that is not finite or
+/// beyond kMaxPositionM, or an optical centre more than kMaxDepthBelowGroundM below the ground.
 [[nodiscard]] Status check_camera_request(const terrain::TileSource& tiles,
                                           const CameraRequest& request);
 
