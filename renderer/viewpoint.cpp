@@ -32,7 +32,9 @@ Pose orbit_viewpoint(const Eigen::Vector3d& target_world,
                                   std::sin(view.elevation_rad) * Eigen::Vector3d::UnitZ();
   Eigen::Vector3d eye = target_world + view.distance_m * outward;
   eye.z() = std::max(eye.z(), ground.ground_up_m(eye.x(), eye.y()) + view.min_above_m);
-  return look_at(eye, target_world, -level_direction(view.azimuth_rad));
+  // Straight down, the image's top lies ahead of the viewer; straight up, behind.
+  const double ahead = eye.z() >= target_world.z() ? -1.0 : 1.0;
+  return look_at(eye, target_world, ahead * level_direction(view.azimuth_rad));
 }
 
 Pose chase_viewpoint(const Pose& T_world_body, const Viewpoint& view, const HeightQuery& ground) {
