@@ -54,7 +54,9 @@ int exposure_instants(const CameraRequest& request, const HeightQuery& ground) {
   }
   streak_px *= static_cast<double>(request.exposure_ns) / static_cast<double>(all_ns);
   if (streak_px < kStillPx) return 1;
-  return std::clamp(static_cast<int>(std::ceil(kInstantsPerPx * streak_px)) + 1, 2, kMaxInstants);
+  // Limited before the conversion: a point next to the image plane moves by any number of pixels.
+  const double instants = std::min(std::ceil(kInstantsPerPx * streak_px) + 1.0, 1.0 * kMaxInstants);
+  return std::max(static_cast<int>(instants), 2);
 }
 
 int rows_of_one_pose(const CameraRequest& request, const HeightQuery& ground) {

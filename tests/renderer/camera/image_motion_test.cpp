@@ -1,0 +1,129 @@
+// Motion of the image during an exposure against closed forms and against more pixels.
+#include "renderer/camera/image_motion.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace overfly::renderer {
+namespace {
+
+constexpr double kMotionFocalPx = 200.0;
+const FlatGround kFlat(10.0);
+
+/// A centred camera with a pixel in its middle.
+CameraModel odd_camera() {
+  return PinholeCamera{321, 241, kMotionFocalPx, kMotionFocalPx, 160.0, 120.0};
+}
+
+Pose pose_over_flat(const RollPitchYaw& attitude, const Eigen::Vector3d& p) {
+  return {R_world_body_from(attitude) * R_body_camera_nadir(), p};
+}
+
+/// A request of 20 ms around 50 ms whose camera moves linearly from the first to the last pose.
+CameraRequest exposed_request(const Pose& from, const Pose& to) {
+  CameraRequest request;
+  request.camera = odd_camera();
+  request.T_world_camera = CameraMotion::from_poses({{40'000'000, from}, {60'000'000, to}}).value();
+  request.t_ns = 50'000'000;
+  request.exposure_ns = 20'000'000;
+  return request;
+}
+
+TEST(ImageMotion, OfLevelFlightIsFocalLengthTimesWayOverHeight) {
+  const Pose before = pose_over_flat({}, {0.0, 0.0, 110.0});
+  const Pose after = pose_over_flat({}, {3.0, -4.0, 110.0});
+  EXPECT_NEAR(
+      largest_motion_px(odd_camera(), before, after, kFlat), kMotionFocalPx * 5.0 / 100.0, 1e-9);
+}
+
+TEST(ImageMotion, OfATurnAboutTheAxisIsTheCornersChord) {
+  const Pose before = pose_over_flat({}, {0.0, 0.0, 110.0});
+  const Pose after = pose_over_flat({0.0, 0.0, 0.06}, {0.0, 0.0, 110.0});
+  const double corner_px = std::hypot(160.0, 120.0);
+  EXPECT_NEAR(largest_motion_px(odd_camera(), before, after, kFlat),
+              2.0 * corner_px * std::sin(0.03),
+              1e-9);
+}
+
+TEST(ImageMotion, IsThatOfThePixelsThatMoveMost) {
+  const CameraModel camera(odd_camera().pinhole(),
+                           {DistortionModel::kRadtan, {-0.2, 0.05, 1e-3, 0.0, 0.0}});
+  const Pose before = pose_over_flat({0.6, 0.2, 1.0}, {5.0, 6.0, 90.0});
+  const Pose after = pose_over_flat({0.62, 0.19, 1.03}, {6.0, 5.0, 91.0});
+  double dense_px = 0.0;
+  for (int y = 0; y < 241; y += 4) {
+    for (int x = 0; x < 321; x += 4) {
+      const Eigen::Vector3d ray = before.rotation * *camera.ray({x, y});
+      const double depth_m = ray.z() < 0.0 ? 80.0 / -ray.z() : 1e7;
+      const auto moved = camera.project(after.inverse() * (before.translation + depth_m * ray));
+      if (moved) dense_px = std::max(dense_px, (*moved - Eigen::Vector2d(x, y)).norm());
+    }
+  }
+  const double found_px = largest_motion_px(camera, before, after, kFlat);
+  EXPECT_LE(found_px, dense_px + 1e-3);
+  EXPECT_GE(found_px, 0.98 * dense_px);
+}
+
+TEST(ExposureInstants, AreTwoPerPixelOfTheStreak) {
+  const auto instants = [](double way_m) {
+    return exposure_instants(exposed_request(pose_over_flat({}, {0.0, 0.0, 110.0}),
+                                             pose_over_flat({}, {way_m, 0.0, 110.0})),
+                             kFlat);
+  };
+  // 2 px per metre.
+  EXPECT_EQ(instants(0.02), 1);
+  EXPECT_EQ(instants(0.03), 2);
+  EXPECT_EQ(instants(2.4), 11);   // 4.8 px
+  EXPECT_EQ(instants(10.2), 42);  // 20.4 px
+  EXPECT_EQ(instants(100.0), kMaxInstants);
+  CameraRequest still =
+      exposed_request(pose_over_flat({}, {0.0, 0.0, 110.0}), pose_over_flat({}, {9.0, 0.0, 110.0}));
+  still.exposure_ns = 0;
+  EXPECT_EQ(exposure_instants(still, kFlat), 1);
+}
+
+TEST(ExposureInstants, CountAVibrationThatReturns) {
+  // To and fro by 1.01 m, four times: no displacement at the end, 16.16 px of streak.
+  std::vector<StampedPose> poses;
+  for (int i = 0; i <= 8; ++i) {
+    const double east_m = i % 2 == 0 ? 0.0 : 1.01;
+    poses.push_back({40'000'000 + 2'500'000LL * i, pose_over_flat({}, {east_m, 0.0, 110.0})});
+  }
+  CameraRequest request = exposed_request(poses.front().pose, poses.back().pose);
+  request.T_world_camera = CameraMotion::from_poses(poses).value();
+  EXPECT_EQ(exposure_instants(request, kFlat), 34);
+}
+
+TEST(ExposureInstants, AreTheMostForStreaksOfAnyLength) {
+  // A quarter turn between two instants takes the axis almost parallel to the image plane: its
+  // pixel moves by 1e14 px.
+  std::vector<StampedPose> poses;
+  for (int i = 0; i <= 8; ++i) {
+    poses.push_back({40'000'000 + 2'500'000LL * i,
+                     pose_over_flat({i * (0.5 * kPi - 1e-12), 0.0, 0.0}, {0.0, 0.0, 110.0})});
+  }
+  CameraRequest request = exposed_request(poses.front().pose, poses.back().pose);
+  request.T_world_camera = CameraMotion::from_poses(poses).value();
+  EXPECT_EQ(exposure_instants(request, kFlat), kMaxInstants);
+}
+
+TEST(RowsOfOnePose, MoveLessThanATwentiethOfAPixel) {
+  const auto rows = [](double way_m, std::int64_t readout_ns) {
+    CameraRequest request = exposed_request(pose_over_flat({}, {0.0, 0.0, 110.0}),
+                                            pose_over_flat({}, {way_m, 0.0, 110.0}));
+    request.readout_ns = readout_ns;
+    return rows_of_one_pose(request, kFlat);
+  };
+  EXPECT_EQ(rows(5.0, 0), 241);
+  EXPECT_EQ(rows(0.0, 20'000'000), 241);
+  // 2 px per metre over 240 row steps: 0.1 px take 12 / way rows.
+  EXPECT_EQ(rows(0.98, 20'000'000), 12);
+  EXPECT_EQ(rows(5.0, 20'000'000), 2);
+  EXPECT_EQ(rows(5.0, 10'000'000), 4);
+  EXPECT_EQ(rows(500.0, 20'000'000), 1);
+  EXPECT_EQ(rows(0.049, 20'000'000), 241) << "the whole image moves by less than 0.1 px";
+}
+
+}  // namespace
+}  // namespace overfly::renderer
