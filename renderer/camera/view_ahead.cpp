@@ -64,7 +64,9 @@ struct ViewAhead::State {
       }
       busy = true;
       const std::vector<CameraRequest> requests = std::exchange(waiting, {});
+      const bool other_time = std::exchange(is_other_time, false);
       lock.unlock();
+      if (other_time) wanted = {};
       const double before_s = thread_cpu_s();
       try {
         look_ahead(requests);
@@ -79,9 +81,8 @@ struct ViewAhead::State {
 
   void look_ahead(const std::vector<CameraRequest>& requests) {
     std::vector<TileId> ids;
-    std::set<TileId> known;
     const auto add = [&](const TileId& id) {
-      if (known.insert(id).second) ids.push_back(id);
+      if (wanted.known.insert(id).second) ids.push_back(id);
     };
     for (int i = 1; i <= kViews; ++i) {
       for (const CameraRequest& request : requests) {
@@ -106,14 +107,23 @@ struct ViewAhead::State {
     }
     // The cameras of an aircraft normally share a format; otherwise the others' tiles are read on
     // demand.
-    tiles->prefetch(ids, requests.front().format);
+    wanted.ids.insert(wanted.ids.end(), ids.begin(), ids.end());
+    tiles->prefetch(wanted.ids, requests.front().format);
   }
 
   std::shared_ptr<TileStore> tiles;
   GroundPatches patches;
+  /// Tiles for all cameras of the latest time, those of the first camera first: a request for tiles
+  /// replaces the previous one. Used by the thread only.
+  struct Wanted {
+    std::vector<TileId> ids;
+    std::set<TileId> known;
+  };
+  Wanted wanted;
   std::mutex mutex;
   std::condition_variable changed;
   std::vector<CameraRequest> waiting;  // of the same time
+  bool is_other_time = false;          // than that of the requests before
   std::int64_t looked_at_ns = -kEveryNs;
   bool busy = true;
   bool stopping = false;
@@ -133,6 +143,7 @@ void ViewAhead::expect(const CameraRequest& request) {
   if (!same_time) {
     if (std::llabs(request.t_ns - state_->looked_at_ns) < kEveryNs) return;
     state_->waiting.clear();
+    state_->is_other_time = true;
     state_->looked_at_ns = request.t_ns;
   }
   state_->waiting.push_back(request);
