@@ -23,13 +23,19 @@ inline constexpr double kMinCellPx = 1.0;
 
 /// Approximate bounds of all origins and directions of a view's rays.
 struct ViewSweep {
+  /// Eigen's own default leaves vectors without a value.
+  inline static const std::array<Eigen::Vector3d, 4> kNoVectors{Eigen::Vector3d::Zero(),
+                                                                Eigen::Vector3d::Zero(),
+                                                                Eigen::Vector3d::Zero(),
+                                                                Eigen::Vector3d::Zero()};
+
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< world frame [m]
   double slack_m = 0.0;  ///< the rays begin within this distance of the position
   /// Inward normals of planes through the position that contain all rays (unit length); zero if
   /// there are none.
-  std::array<Eigen::Vector3d, 4> side_normals{};
+  std::array<Eigen::Vector3d, 4> side_normals = kNoVectors;
   /// Along the edges between the planes; zero length if there are none.
-  std::array<Eigen::Vector3d, 4> corners{};
+  std::array<Eigen::Vector3d, 4> corners = kNoVectors;
   bool bounded = false;     ///< whether corners are known
   double px_per_rad = 1.0;  ///< at the sharpest place of the image
 };

@@ -30,8 +30,13 @@ RayGrid::RayGrid(const CameraModel& camera)
       const Eigen::Vector2d right = ray(column + 1, row) - here;
       const Eigen::Vector2d down = ray(column, row + 1) - here;
       if (!right.allFinite() || !down.allFinite()) continue;
-      // A step in the image plane corresponds to an angle of at least step / (1 + r^2).
-      const double squeeze = 1.0 + here.squaredNorm();
+      // A step parallel to the image plane, seen at a distance of 1, is smaller by the length of
+      // the cell's longest ray.
+      double squeeze = 1.0;
+      for (int i = 0; i < 4; ++i) {
+        const Eigen::Vector2d& corner = ray(column + (i & 1), row + (i >> 1));
+        if (corner.allFinite()) squeeze = std::max(squeeze, 1.0 + corner.squaredNorm());
+      }
       const double width = left_px(column + 1) - left_px(column);
       const double height = top_px(row + 1) - top_px(row);
       px_per_rad_ = std::max({px_per_rad_,

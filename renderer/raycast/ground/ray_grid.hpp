@@ -32,7 +32,8 @@ class RayGrid {
   [[nodiscard]] const Eigen::Vector2d& ray(int column, int row) const {
     return rays_[static_cast<std::size_t>(row) * (columns_ + 1) + column];
   }
-  /// Pixels per radian at the sharpest place of the image.
+  /// Pixels per radian at the sharpest place of the image: the length in the image of a step
+  /// parallel to the image plane, divided by the ratio of the step to its distance.
   [[nodiscard]] double px_per_rad() const { return px_per_rad_; }
 
  private:
