@@ -17,7 +17,8 @@ struct GroundSquare {
 };
 
 /// The squares of one patch, as large as the limits allow at their place.
-/// @param corners  gets every point that becomes a corner by a division
+/// @param corners  gets every point of a side that becomes a corner by a division, and the corners
+///                 on the patch's rim
 [[nodiscard]] std::vector<GroundSquare> divide_into_squares(const GroundLeaf& leaf,
                                                             const MeshLimits& limits,
                                                             GroundCorners& corners);

@@ -17,7 +17,9 @@ class WorkerPool {
   WorkerPool& operator=(const WorkerPool&) = delete;
 
   /// Calls job(i) once for every i in [0, jobs), in any order and on any of the threads; returns
-  /// when all are done. @param job  must not throw
+  /// when all are done.
+  /// If a job throws, jobs that have not begun are omitted, and the first exception is thrown on
+  /// when the others are done.
   void run(int jobs, const std::function<void(int)>& job);
   [[nodiscard]] int threads() const;
 

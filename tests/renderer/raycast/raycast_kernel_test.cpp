@@ -1,6 +1,8 @@
 // The ray-caster's vector code gives the plain code's bits, and threads change no image.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <random>
 
 #include "renderer/raycast/paint/sample.hpp"
@@ -10,13 +12,13 @@
 namespace overfly::renderer::raycast {
 namespace {
 
-PackedTile noise_tile(PixelFormat format) {
+TilePixels noise_pixels(PixelFormat format) {
   std::mt19937 random(7);
   terrain::Tile tile{Image(terrain::kTileSide, terrain::kTileSide, 3),
                      Image(terrain::kTileSide, terrain::kTileSide, 1)};
   for (std::uint8_t& value : tile.rgb.data) value = static_cast<std::uint8_t>(random());
   for (std::uint8_t& value : tile.valid.data) value = 255;
-  return PackedTile::from(tile_pixels_from(tile, format));
+  return tile_pixels_from(tile, format);
 }
 
 /// A block somewhere in the tile, or partly beyond it, at any level of detail.
@@ -45,7 +47,7 @@ TEST(RaycastKernel, VectorCodeGivesThePlainCodesBits) {
                                    PixelFormat::kRgb8,
                                    PixelFormat::kGreyLinear,
                                    PixelFormat::kRgbLinear}) {
-    const PackedTile tile = noise_tile(format);
+    const PackedTile tile = PackedTile::from(noise_pixels(format));
     for (int i = 0; i < 3000; ++i) {
       const TexelBlock block = random_block(random);
       std::array<float, std::size_t{3} * kBlockPixels> plain{}, fast{};
@@ -57,6 +59,67 @@ TEST(RaycastKernel, VectorCodeGivesThePlainCodesBits) {
             const int at = plane * kBlockPixels + row * kBlockSide + column;
             ASSERT_EQ(plain[at], fast[at]) << "block " << i << ", level " << block.lod[0]
                                            << ", pixel " << column << ' ' << row;
+          }
+        }
+      }
+    }
+  }
+}
+
+/// A bilinear sample (OpenGL 4.5, section 8.14.3, clamped to the edge) in double precision.
+/// @param u, v  texels of mip 0
+template <typename T>
+double bilinear_sample(const ImageBuffer<T>& level, int channel, double u, double v) {
+  const double x =
+      std::clamp(u * level.width_px / terrain::kTileSide - 0.5, 0.0, level.width_px - 1.0);
+  const double y =
+      std::clamp(v * level.height_px / terrain::kTileSide - 0.5, 0.0, level.height_px - 1.0);
+  const int left = static_cast<int>(x), top = static_cast<int>(y);
+  const int right = std::min(left + 1, level.width_px - 1);
+  const int bottom = std::min(top + 1, level.height_px - 1);
+  const double a = x - left, b = y - top;
+  return (1 - b) * ((1 - a) * level.at(left, top, channel) + a * level.at(right, top, channel)) +
+         b * ((1 - a) * level.at(left, bottom, channel) + a * level.at(right, bottom, channel));
+}
+
+template <typename T>
+double trilinear_sample(
+    const std::vector<ImageBuffer<T>>& levels, int channel, double u, double v, double lod) {
+  const double clamped = std::clamp(lod, 0.0, kPackedMips - 1.0);
+  const int fine = static_cast<int>(clamped);
+  const int coarse = std::min(fine + 1, kPackedMips - 1);
+  const double between = clamped - fine;
+  return (1.0 - between) * bilinear_sample(levels[fine], channel, u, v) +
+         between * bilinear_sample(levels[coarse], channel, u, v);
+}
+
+TEST(RaycastKernel, PlainCodeSamplesTrilinearlyAndClampsAtTheEdge) {
+  std::mt19937 random(2);
+  for (const PixelFormat format : {PixelFormat::kGrey8, PixelFormat::kRgbLinear}) {
+    const TilePixels pixels = noise_pixels(format);
+    const PackedTile tile = PackedTile::from(pixels);
+    // Weights of 1/127 between rows of 8-bit noise; a float's place in texels of 16-bit noise.
+    const double tolerance = is_linear(format) ? 40.0 : 255.0 * 0.5 / 127.0 + 0.05;
+    for (int i = 0; i < 300; ++i) {
+      const TexelBlock block = random_block(random);
+      std::array<float, std::size_t{3} * kBlockPixels> plain{};
+      sample_plain(block, tile, plain.data());
+      for (int row = 0; row < block.rows; ++row) {
+        for (int column = 0; column < block.columns; ++column) {
+          const auto value = [&](const Bilinear4& f) {
+            return double{f[0]} + f[1] * column + (double{f[2]} + f[3] * column) * row;
+          };
+          const double depth = 1.0 / value(block.inverse_depth);
+          const double u = block.u0 + value(block.numerator_u) * depth;
+          const double v = block.v0 + value(block.numerator_v) * depth;
+          for (int plane = 0; plane < tile.planes; ++plane) {
+            const double lod = value(block.lod);
+            const double expected = is_linear(format)
+                                        ? trilinear_sample(pixels.linear_levels, plane, u, v, lod)
+                                        : trilinear_sample(pixels.levels, plane, u, v, lod);
+            ASSERT_NEAR(
+                plain[plane * kBlockPixels + row * kBlockSide + column], expected, tolerance)
+                << "block " << i << ", level " << lod << ", texel " << u << ' ' << v;
           }
         }
       }
