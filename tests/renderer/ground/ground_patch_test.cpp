@@ -130,8 +130,9 @@ TEST(GroundSquares, FillThePatchWithinTheLimits) {
   leaf.patch = patch.get();
   leaf.textured = true;
   for (int i = 0; i < 25; ++i) {
-    leaf.px_per_m_up[i] = 0.02F * static_cast<float>(i % 5 + i / 5);
-    leaf.px_per_map_m[i] = 0.1F + 0.05F * static_cast<float>(i % 5 + i / 5);
+    const auto near = static_cast<float>(i % 5 + i / 5);  // to the south-east
+    leaf.px_per_m_up[i] = 0.002F * near * near;
+    leaf.px_per_map_m[i] = 0.02F + 0.03F * near;
   }
   const MeshLimits limits;
   GroundCorners corners;

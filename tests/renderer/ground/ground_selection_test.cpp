@@ -39,16 +39,16 @@ const GroundLeaf* leaf_at(const std::vector<GroundLeaf>& leaves,
 TEST(GroundSelection, CoversWhatIsSeenOnceAndFinelyEnough) {
   const auto world = plain_world();
   GroundPatches patches(world);
-  const PinholeCamera camera{320, 240, 200.0, 200.0, 159.5, 119.5};
+  const PinholeCamera camera{640, 480, 400.0, 400.0, 319.5, 239.5};
   std::mt19937 random(17);
   for (const RollPitchYaw attitude :
        {RollPitchYaw{0.0, 0.0, 0.0}, {0.6, 0.1, 1.0}, {-0.2, 0.9, 2.0}, {0.0, 1.3, -1.0}}) {
-    for (const double height_m : {20.0, 200.0, 2000.0}) {
+    for (const double height_m : {20.0, 150.0, 1200.0}) {
       const Pose pose{R_world_body_from(attitude) * R_body_camera_nadir(), {40.0, 70.0, height_m}};
       const View view = View::from(camera, pose);
       const auto leaves = select_ground(patches, view, {}, [](const GroundPatch&) {});
       for (int trial = 0; trial < 300; ++trial) {
-        const Eigen::Vector2d pixel(random() % 320, random() % 240);
+        const Eigen::Vector2d pixel(random() % 640, random() % 480);
         const Eigen::Vector3d ray = camera.ray(pixel);
         const Eigen::Vector3d direction = pose.rotation * ray;
         const double depth_m = -height_m / direction.z();

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include "tests/renderer/procedural_ground.hpp"
@@ -15,7 +17,9 @@ using terrain::TileId;
 
 std::shared_ptr<overfly::testing::ProceduralGround> ramp_ground(int failing_level = -1) {
   overfly::testing::ProceduralGround::Options options;
-  options.paint = [](double east_m, double) { return 100.0 + 0.02 * east_m; };
+  options.paint = [](double east_m, double north_m) {
+    return 100.0 + 0.02 * east_m + 10.0 * std::sin(north_m);
+  };
   options.failing_level = failing_level;
   return std::make_shared<overfly::testing::ProceduralGround>(options);
 }
