@@ -44,5 +44,29 @@ TEST(RaycastSides, RaysAlongASquaresSideMeetTheGround) {
   }
 }
 
+TEST(RaycastSides, AViewWiderThanItsBoundsHasNoHoles) {
+  // Rays up to 88 deg from the axis, for which no planes around the view exist.
+  const CameraModel fisheye(PinholeCamera{300, 300, 138.0, 138.0, 149.5, 149.5},
+                            {DistortionModel::kEquidistant, {}});
+  ASSERT_TRUE(fisheye.validate());
+  ProceduralGround::Options options;
+  options.paint = [](double, double) { return 100.0; };
+  options.curved = false;
+  const auto renderer = create_raycast_renderer(std::make_shared<ProceduralGround>(options));
+  for (const double yaw_rad : {0.3, 2.0}) {
+    const Pose pose{R_world_body_from({0.0, 0.0, yaw_rad}) * R_body_camera_nadir(), {0, 0, 60.0}};
+    const auto depth =
+        renderer->render_depth(CameraRequest::still(fisheye, pose, 0, PixelFormat::kGrey8));
+    ASSERT_TRUE(depth.ok()) << depth.error().message;
+    for (int y = 0; y < 300; ++y) {
+      for (int x = 0; x < 300; ++x) {
+        // Up to 86 deg the ground is less than 1 km away.
+        if (std::hypot(x - 149.5, y - 149.5) / 138.0 > 1.5) continue;
+        ASSERT_NEAR(depth->at(x, y), 60.0, 0.1) << x << ' ' << y;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace overfly::renderer
