@@ -1,0 +1,104 @@
+// A flight log opened: its streams, its sources of truth, its events, and what is wrong with it.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/result.hpp"
+#include "flight/logs/log_sink.hpp"
+
+namespace overfly::flight::logs {
+
+enum class LogFormat { kTlog, kDataFlash, kUlog };
+/// "tlog", "dataflash", "ulog"
+[[nodiscard]] const char* to_string(LogFormat format);
+
+/// A stream and what one pass over the log tells about it.
+struct StreamInfo {
+  StreamDescription description;
+  std::uint64_t messages = 0;
+  /// Times of the first and last message of the boot with the most messages [ns]; empty if no
+  /// message has a time.
+  std::optional<std::int64_t> first_ns;
+  std::optional<std::int64_t> last_ns;
+  double rate_hz = 0.0;  ///< mean, over all intervals within a boot; 0: fewer than two messages
+  /// Intervals of more than 0.1 s and five times the mean interval before them (from the tenth on).
+  std::uint64_t gaps = 0;
+  std::int64_t longest_gap_ns = 0;
+  std::uint64_t backward = 0;  ///< messages with an earlier time than the one before
+
+  /// Of streams with positions or attitudes:
+  std::uint64_t positions = 0;
+  std::uint64_t attitudes = 0;
+  /// Samples left out: no fix, not finite, outside of their ranges.
+  std::uint64_t invalid = 0;
+  double reach_m = 0.0;  ///< largest horizontal distance from the first position
+  /// Steps between positions of more than 20 m and 150 m/s.
+  std::uint64_t jumps = 0;
+  double largest_jump_m = 0.0;
+  double lowest_m = 0.0;  ///< height above mean sea level, or above a local origin
+  double highest_m = 0.0;
+  bool georeferenced = false;  ///< positions are geodetic, or local with a known origin
+};
+
+/// The time from a start of a vehicle's clock to the next.
+struct BootInfo {
+  std::string vehicle;
+  std::int64_t first_ns = 0;
+  std::int64_t last_ns = 0;
+  std::uint64_t messages = 0;
+};
+
+/// What should be taken as the flight's truth.
+struct TruthChoice {
+  StreamId position = 0;
+  std::optional<StreamId> attitude;
+  std::string reason;
+};
+
+struct OpenedLog {
+  std::filesystem::path file;
+  LogFormat format = LogFormat::kTlog;
+  std::uint64_t size_bytes = 0;
+  std::vector<StreamInfo> streams;  ///< in the order in which they are met: by StreamId
+  std::vector<BootInfo> boots;
+  std::vector<LogEvent> events;  ///< the first kMaxEvents
+  std::optional<TruthChoice> truth;
+  /// The positions of the chosen truth stay within kGroundReachM of the first one.
+  bool on_ground = false;
+  std::vector<std::string> warnings;
+};
+
+inline constexpr std::size_t kMaxEvents = 10000;
+inline constexpr double kGroundReachM = 30.0;
+
+/// Detects the format by the first bytes of a file.
+/// Errors: as ReadableFile::open; kUnreadable for other formats.
+[[nodiscard]] Result<LogFormat> detect_format(const std::filesystem::path& file);
+
+/// Reads the whole log once and lists what it contains.
+/// Memory: independent of the size of the log. Damaged parts are skipped and reported in warnings.
+/// @param cancel  stops reading; may be null
+/// Errors: as detect_format; kIo; kCancelled.
+[[nodiscard]] Result<OpenedLog> open_log(const std::filesystem::path& file,
+                                         const std::atomic<bool>* cancel = nullptr);
+
+/// Reads a log once and passes all it contains to a sink.
+/// Errors: as open_log.
+[[nodiscard]] Status read_log_into(const std::filesystem::path& file, LogSink& sink);
+
+/// The streams to take as truth: the position source and the attitude source that goes with it.
+/// @param name  of the position source: its full name, or what follows the '/' in it if that is
+/// unique; of several instances without "[0]" the first. Attitudes of the same origin go with it.
+/// Empty: the best source and the best attitude, simulation before
+/// estimate before GPS, georeferenced before others; of equal ones the preferred stream. Errors:
+/// kInvalidArgument if there is no such source, listing those that there are; kUnreadable if the
+/// log has no positions.
+[[nodiscard]] Result<TruthChoice> choose_truth(const std::vector<StreamInfo>& streams,
+                                               const std::string& name);
+
+}  // namespace overfly::flight::logs

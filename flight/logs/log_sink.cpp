@@ -1,0 +1,70 @@
+#include "flight/logs/log_sink.hpp"
+
+#include <cmath>
+
+namespace overfly::flight::logs {
+namespace {
+
+/// Local positions beyond this are not those of a small aircraft.
+constexpr double kFarthestM = 1e7;
+
+bool is_plausible(PositionKind kind, const Eigen::Vector3d& value) {
+  if (!value.allFinite()) return false;
+  if (kind == PositionKind::kLocal) return value.cwiseAbs().maxCoeff() <= kFarthestM;
+  const bool fix = value.x() != 0.0 || value.y() != 0.0;
+  return fix && std::abs(value.x()) <= 90.0 && std::abs(value.y()) <= 180.0 &&
+         value.z() >= -1000.0 && value.z() <= 100000.0;
+}
+
+}  // namespace
+
+const char* to_string(SourceOrigin origin) {
+  switch (origin) {
+    case SourceOrigin::kSimulation:
+      return "simulation";
+    case SourceOrigin::kEstimate:
+      return "estimate";
+    case SourceOrigin::kGps:
+      return "gps";
+    case SourceOrigin::kNone:
+      break;
+  }
+  return "none";
+}
+
+const char* to_string(EventKind kind) {
+  switch (kind) {
+    case EventKind::kMode:
+      return "mode";
+    case EventKind::kArming:
+      return "arming";
+    case EventKind::kMission:
+      return "mission";
+    case EventKind::kCamera:
+      return "camera";
+    case EventKind::kText:
+      return "text";
+    case EventKind::kOther:
+      break;
+  }
+  return "other";
+}
+
+void LogSink::position(StreamId id, const LogTime& time, const Eigen::Vector3d& value) {
+  if (is_plausible(position_kind(id), value)) {
+    take_position(id, time, value);
+  } else {
+    take_invalid(id);
+  }
+}
+
+void LogSink::attitude(StreamId id, const LogTime& time, const Eigen::Quaterniond& R_ned_body) {
+  const double norm = R_ned_body.norm();
+  if (norm >= 0.9 && norm <= 1.1) {
+    take_attitude(id, time, R_ned_body.normalized());
+  } else {
+    take_invalid(id);
+  }
+}
+
+}  // namespace overfly::flight::logs

@@ -1,0 +1,110 @@
+#include <unistd.h>
+
+#include <fstream>
+#include <functional>
+#include <system_error>
+
+#include "core/earth/geodesy.hpp"
+#include "core/motion/pose.hpp"
+#include "core/text/number_text.hpp"
+#include "flight/logs/log_trajectory.hpp"
+#include "flight/logs/ned_attitude.hpp"
+
+namespace overfly::flight::logs {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Writes a file of lines completely or not at all, without holding it in memory.
+Status write_lines(const fs::path& file, const std::function<void(std::ofstream&)>& write) {
+  const fs::path unfinished = file.string() + ".part" + std::to_string(::getpid());
+  std::error_code error;
+  {
+    std::ofstream out(unfinished, std::ios::binary | std::ios::trunc);
+    write(out);
+    if (!out.flush()) error = std::make_error_code(std::errc::io_error);
+  }
+  if (!error) fs::rename(unfinished, file, error);
+  if (!error) return {};
+  std::error_code ignored;
+  fs::remove(unfinished, ignored);
+  return Error{ErrorCode::kIo, file.string() + ": cannot be written: " + error.message()};
+}
+
+Geodetic geodetic_of(const Eigen::Vector3d& position) {
+  return geodetic_from_deg(position.x(), position.y(), position.z());
+}
+
+std::string tum_row(std::int64_t t_ns, const Pose& pose) {
+  const Eigen::Vector3d& p = pose.translation;
+  const Eigen::Quaterniond& q = pose.rotation;
+  std::string row = seconds_text(t_ns);
+  for (const double value : {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()}) {
+    row += ' ' + number_text(value);
+  }
+  return row += '\n';
+}
+
+std::string sources_of(const LogTrajectory& trajectory) {
+  return "# position_source " + trajectory.position_source + "\n# attitude_source " +
+         trajectory.attitude_source + "\n";
+}
+
+}  // namespace
+
+Status write_log_tum(const fs::path& file, const LogTrajectory& trajectory) {
+  return write_lines(file, [&](std::ofstream& out) {
+    out << "# pose T_world_body: world east-north-up, body forward-right-down\n"
+        << sources_of(trajectory);
+    if (trajectory.poses.empty()) return;
+    const Eigen::Vector3d first = trajectory.poses.front().position;
+    if (!trajectory.georeferenced) {
+      for (const LogPose& pose : trajectory.poses) {
+        const Eigen::Vector3d ned_m = pose.position - first;
+        out << tum_row(pose.t_ns,
+                       {R_enu_ned() * pose.R_ned_body, {ned_m.y(), ned_m.x(), -ned_m.z()}});
+      }
+      return;
+    }
+    out << "# origin_lat_deg " << number_text(first.x()) << "\n# origin_lon_deg "
+        << number_text(first.y()) << "\n# origin_alt_msl_m " << number_text(first.z()) << "\n";
+    const LocalFrame frame(geodetic_of(first));
+    for (const LogPose& pose : trajectory.poses) {
+      const Geodetic point = geodetic_of(pose.position);
+      out << tum_row(pose.t_ns,
+                     {frame.R_world_enu_at(point) * R_enu_ned() * pose.R_ned_body,
+                      frame.world_from_geodetic(point)});
+    }
+  });
+}
+
+Status write_log_csv(const fs::path& file,
+                     const LogTrajectory& trajectory,
+                     std::optional<double> geoid_separation_m) {
+  if (!trajectory.georeferenced) {
+    return Error{ErrorCode::kInvalidArgument,
+                 file.string() + ": the positions of " + trajectory.position_source +
+                     " count from an origin that the log does not state: only a .tum file can "
+                     "hold them"};
+  }
+  const double separation_m = geoid_separation_m.value_or(0.0);
+  return write_lines(file, [&](std::ofstream& out) {
+    out << "t_s,lat_deg,lon_deg," << (geoid_separation_m ? "alt_ellipsoid_m" : "alt_msl_m")
+        << ",roll_deg,pitch_deg,yaw_deg\n";
+    for (const LogPose& pose : trajectory.poses) {
+      const RollPitchYaw angles = attitude_from(R_enu_ned() * pose.R_ned_body);
+      std::string row = seconds_text(pose.t_ns);
+      for (const double value : {pose.position.x(),
+                                 pose.position.y(),
+                                 pose.position.z() + separation_m,
+                                 deg_from_rad(angles.roll_rad),
+                                 deg_from_rad(angles.pitch_rad),
+                                 deg_from_rad(angles.yaw_rad)}) {
+        row += ',' + number_text(value);
+      }
+      out << row << '\n';
+    }
+  });
+}
+
+}  // namespace overfly::flight::logs

@@ -1,0 +1,222 @@
+#include <algorithm>
+#include <array>
+#include <set>
+#include <utility>
+
+#include "core/cancel.hpp"
+#include "core/outside/forward_reader.hpp"
+#include "flight/logs/dataflash/dataflash_reader.hpp"
+#include "flight/logs/flight_log.hpp"
+#include "flight/logs/stream_statistics.hpp"
+#include "flight/logs/tlog/tlog_reader.hpp"
+#include "flight/logs/ulog/ulog_reader.hpp"
+
+namespace overfly::flight::logs {
+namespace {
+
+/// Bytes that decide which format a file has.
+constexpr std::size_t kHeadBytes = 1024;
+/// Restarts beyond these are only counted.
+constexpr std::size_t kMaxBoots = 1000;
+
+struct FormatFacts {
+  LogFormat format;
+  const char* name;
+  bool (*detect)(std::span<const std::uint8_t> head);
+  Status (*read)(ForwardReader& file, LogSink& sink);
+};
+
+/// One line for each format. The first that recognises the first bytes of a file reads it.
+constexpr std::array kLogFormats = {
+    FormatFacts{LogFormat::kDataFlash, "dataflash", is_dataflash, read_dataflash},
+    FormatFacts{LogFormat::kUlog, "ulog", is_ulog, read_ulog},
+    FormatFacts{LogFormat::kTlog, "tlog", is_tlog, read_tlog},
+};
+
+Result<const FormatFacts*> format_of(ForwardReader& reader, const std::filesystem::path& file) {
+  const Result<std::span<const std::uint8_t>> bytes = reader.ahead(kHeadBytes);
+  if (!bytes) return bytes.error();
+  const std::span<const std::uint8_t> head = bytes->first(std::min(kHeadBytes, bytes->size()));
+  for (const FormatFacts& facts : kLogFormats) {
+    if (facts.detect(head)) return &facts;
+  }
+  return Error{ErrorCode::kUnreadable,
+               file.string() +
+                   ": is no flight log: a .tlog begins with a time stamp and a MAVLink frame, a "
+                   "DataFlash .bin with A3 95 80, a .ulg with 'ULog'"};
+}
+
+/// Gathers the figures of all streams.
+class OpeningSink final : public LogSink {
+ public:
+  OpeningSink(OpenedLog& log, const std::atomic<bool>* cancel) : log_(log), cancel_(cancel) {}
+
+  [[nodiscard]] bool stream(StreamId /*id*/, const StreamDescription& description) override {
+    StreamDescription unique = description;
+    for (int i = 2; !names_.insert(unique.name).second; ++i) {
+      unique.name = description.name + "#" + std::to_string(i);
+    }
+    streams_.emplace_back(std::move(unique));
+    boots_of_.push_back(0);
+    return description.position != PositionKind::kNone || description.attitude;
+  }
+  void message(StreamId id, const std::optional<LogTime>& time) override {
+    streams_[id].message(time);
+    if (time) count_boot(id, *time);
+  }
+  void local_origin(StreamId id, const LocalOrigin& /*origin*/) override {
+    streams_[id].georeferenced();
+  }
+  void event(LogEvent event) override {
+    if (log_.events.size() < kMaxEvents) {
+      log_.events.push_back(std::move(event));
+    } else {
+      ++left_out_events_;
+    }
+  }
+  void warning(const std::string& text) override { log_.warnings.push_back(text); }
+  [[nodiscard]] bool progress(std::uint64_t /*bytes*/) override { return !is_cancelled(cancel_); }
+
+  void finish();
+
+ private:
+  void take_position(StreamId id, const LogTime& time, const Eigen::Vector3d& value) override {
+    streams_[id].position(time, value);
+  }
+  void take_attitude(StreamId id,
+                     const LogTime& /*time*/,
+                     const Eigen::Quaterniond& /*R_ned_body*/) override {
+    streams_[id].attitude();
+  }
+  void take_invalid(StreamId id) override { streams_[id].invalid(); }
+  [[nodiscard]] PositionKind position_kind(StreamId id) const override {
+    return streams_[id].description().position;
+  }
+  void count_boot(StreamId id, const LogTime& time);
+
+  OpenedLog& log_;
+  const std::atomic<bool>* cancel_;
+  std::vector<StreamStatistics> streams_;
+  std::set<std::string> names_;
+  std::vector<std::size_t> boots_of_;  ///< of each stream, its present index in boots_
+  std::vector<std::pair<BootInfo, std::uint32_t>> boots_;  ///< with the number of the boot
+  std::uint64_t left_out_boots_ = 0;
+  std::uint64_t left_out_events_ = 0;
+};
+
+void OpeningSink::count_boot(StreamId id, const LogTime& time) {
+  const std::string& vehicle = streams_[id].description().vehicle;
+  std::size_t& index = boots_of_[id];
+  const auto fits = [&](std::size_t i) {
+    return i < boots_.size() && boots_[i].second == time.boot && boots_[i].first.vehicle == vehicle;
+  };
+  if (!fits(index)) {
+    index = 0;
+    while (index < boots_.size() && !fits(index)) ++index;
+    if (index == boots_.size()) {
+      if (index >= kMaxBoots) {
+        ++left_out_boots_;
+        return;
+      }
+      boots_.emplace_back(BootInfo{vehicle, time.t_ns, time.t_ns, 0}, time.boot);
+    }
+  }
+  BootInfo& boot = boots_[index].first;
+  boot.first_ns = std::min(boot.first_ns, time.t_ns);
+  boot.last_ns = std::max(boot.last_ns, time.t_ns);
+  ++boot.messages;
+}
+
+void OpeningSink::finish() {
+  std::uint64_t backward = 0;
+  std::uint64_t gaps = 0;
+  std::uint64_t jumps = 0;
+  double largest_jump_m = 0.0;
+  for (const StreamStatistics& statistics : streams_) {
+    log_.streams.push_back(statistics.info());
+    const StreamInfo& info = log_.streams.back();
+    backward += info.backward;
+    if (info.description.origin == SourceOrigin::kNone && !info.description.imu) continue;
+    gaps += info.gaps;
+    jumps += info.jumps;
+    largest_jump_m = std::max(largest_jump_m, info.largest_jump_m);
+  }
+  std::set<std::string> vehicles;
+  for (const auto& [boot, number] : boots_) {
+    log_.boots.push_back(boot);
+    if (!vehicles.insert(boot.vehicle).second && number == 1) {
+      log_.warnings.push_back(
+          "the clock" + (boot.vehicle.empty() ? "" : " of " + boot.vehicle) +
+          " starts again within the log: times are unique only within one of its " +
+          "runs, and a conversion uses the longest");
+    }
+  }
+  const auto warn = [&](std::uint64_t count, const std::string& text) {
+    if (count > 0) log_.warnings.push_back(std::to_string(count) + " " + text);
+  };
+  warn(backward, "messages have an earlier time than the one before them in their stream");
+  warn(gaps, "gaps in the sources: intervals of more than five times the mean");
+  warn(jumps,
+       "jumps of positions, the largest by " +
+           std::to_string(static_cast<std::int64_t>(largest_jump_m)) +
+           " m: steps that need more than 150 m/s");
+  warn(left_out_boots_, "messages belong to further restarts of a clock");
+  warn(left_out_events_, "events were left out");
+  if (const Result<TruthChoice> truth = choose_truth(log_.streams, "")) {
+    log_.truth = *truth;
+    const StreamInfo& source = log_.streams[truth->position];
+    log_.on_ground =
+        source.reach_m <= kGroundReachM && source.highest_m - source.lowest_m <= kGroundHeightM;
+  } else {
+    log_.warnings.push_back(truth.error().message);
+  }
+  if (log_.on_ground) {
+    log_.warnings.emplace_back(
+        "the aircraft stays on the ground: its positions lie within 30 m of the first one");
+  }
+}
+
+}  // namespace
+
+const char* to_string(LogFormat format) {
+  for (const FormatFacts& facts : kLogFormats) {
+    if (facts.format == format) return facts.name;
+  }
+  return "";
+}
+
+Result<LogFormat> detect_format(const std::filesystem::path& file) {
+  Result<ForwardReader> reader = ForwardReader::open(file);
+  if (!reader) return reader.error();
+  const Result<const FormatFacts*> facts = format_of(*reader, file);
+  if (!facts) return facts.error();
+  return (*facts)->format;
+}
+
+Status read_log_into(const std::filesystem::path& file, LogSink& sink) {
+  Result<ForwardReader> reader = ForwardReader::open(file);
+  if (!reader) return reader.error();
+  const Result<const FormatFacts*> facts = format_of(*reader, file);
+  if (!facts) return facts.error();
+  return (*facts)->read(*reader, sink);
+}
+
+Result<OpenedLog> open_log(const std::filesystem::path& file, const std::atomic<bool>* cancel) {
+  Result<ForwardReader> reader = ForwardReader::open(file);
+  if (!reader) return reader.error();
+  const Result<const FormatFacts*> facts = format_of(*reader, file);
+  if (!facts) return facts.error();
+  OpenedLog log;
+  log.file = file;
+  log.format = (*facts)->format;
+  log.size_bytes = reader->size_bytes();
+  OpeningSink sink(log, cancel);
+  if (Status status = (*facts)->read(*reader, sink); !status) {
+    return status.error().code == ErrorCode::kCancelled ? status.error().in(file.string())
+                                                        : status.error();
+  }
+  sink.finish();
+  return log;
+}
+
+}  // namespace overfly::flight::logs

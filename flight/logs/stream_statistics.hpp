@@ -1,0 +1,44 @@
+// Gathers the figures of one stream, message by message.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+
+#include "flight/logs/flight_log.hpp"
+
+namespace overfly::flight::logs {
+
+class StreamStatistics {
+ public:
+  explicit StreamStatistics(StreamDescription description);
+
+  [[nodiscard]] const StreamDescription& description() const { return info_.description; }
+  void message(const std::optional<LogTime>& time);
+  void position(const LogTime& time, const Eigen::Vector3d& value);
+  void attitude() { ++info_.attitudes; }
+  void invalid() { ++info_.invalid; }
+  void georeferenced() { info_.georeferenced = true; }
+
+  [[nodiscard]] StreamInfo info() const;
+
+ private:
+  struct Span {
+    std::int64_t first_ns = 0;
+    std::int64_t last_ns = 0;
+    std::uint64_t messages = 0;
+  };
+  void count_interval(std::int64_t interval_ns);
+
+  StreamInfo info_;
+  std::optional<LogTime> last_;
+  Span boot_;          ///< the boot that is being read
+  Span longest_boot_;  ///< the earlier boot with the most messages
+  std::uint64_t intervals_ = 0;
+  double interval_sum_s_ = 0.0;
+  std::optional<Eigen::Vector3d> first_position_;
+  LogTime position_time_;  ///< of last_position_
+  Eigen::Vector3d last_position_ = Eigen::Vector3d::Zero();
+};
+
+}  // namespace overfly::flight::logs

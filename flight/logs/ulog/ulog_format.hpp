@@ -1,0 +1,54 @@
+// Message formats that a ULog file declares. Private to ulog.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace overfly::flight::logs {
+
+/// The place of a number, or of an array of numbers, in the data of a message.
+struct UlogField {
+  std::string type;        ///< basic type: "uint64_t", "float", ...
+  std::size_t offset = 0;  ///< [bytes]
+  std::size_t count = 1;   ///< elements of an array
+};
+
+/// Value of element `i`; empty if the data end before it (ULog leaves out padding at the end).
+[[nodiscard]] std::optional<double> number_in(const UlogField& field,
+                                              std::span<const std::uint8_t> data,
+                                              std::size_t i = 0);
+
+/// The formats of a file. Types may contain types that are declared later.
+class UlogFormats {
+ public:
+  /// Takes the text of a format message: "name:type field;type[4] field;...".
+  /// @return false if it cannot be understood, or declares more than kMaxFormats
+  bool declare(std::string_view text);
+
+  /// The field of a message: "q", or "parts[1].x" of nested types.
+  /// @return empty if the message, the field or a type in front of it is not declared
+  [[nodiscard]] std::optional<UlogField> find(const std::string& message,
+                                              std::string_view path) const;
+  [[nodiscard]] bool has(const std::string& message) const { return formats_.contains(message); }
+
+  static constexpr std::size_t kMaxFormats = 4096;
+
+ private:
+  struct Member {
+    std::string type;
+    std::size_t count = 1;
+    std::string name;
+  };
+  [[nodiscard]] std::optional<std::size_t> size_of(const std::string& type, int depth) const;
+
+  std::map<std::string, std::vector<Member>, std::less<>> formats_;
+  mutable std::map<std::string, std::optional<std::size_t>, std::less<>> sizes_;
+};
+
+}  // namespace overfly::flight::logs

@@ -1,0 +1,314 @@
+// After the ULog file format, version 1 (PX4 developer guide, "ULog File Format").
+#include "flight/logs/ulog/ulog_reader.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "core/time.hpp"
+#include "flight/logs/boot_clock.hpp"
+#include "flight/logs/ulog/ulog_topics.hpp"
+
+namespace overfly::flight::logs {
+namespace {
+
+constexpr std::array<std::uint8_t, 7> kUlogMagic = {'U', 'L', 'o', 'g', 0x01, 0x12, 0x35};
+constexpr std::size_t kUlogHeaderBytes = 16;
+constexpr std::size_t kMessageHeaderBytes = 3;
+/// The longest message and the header of the next one.
+constexpr std::size_t kLongestBytes = kMessageHeaderBytes + 65535 + kMessageHeaderBytes;
+constexpr std::size_t kMaxTopics = 4096;
+constexpr std::string_view kKnownKinds = "BFIMPQARDLCSO";
+
+template <typename T>
+T value_at(std::span<const std::uint8_t> bytes, std::size_t offset) {
+  T value{};
+  if (offset + sizeof(T) <= bytes.size()) std::memcpy(&value, bytes.data() + offset, sizeof(T));
+  return value;
+}
+
+/// Printable ASCII; other bytes become '?'. Ends before the first zero.
+std::string text_from(std::span<const std::uint8_t> bytes) {
+  std::string text;
+  for (const std::uint8_t byte : bytes) {
+    if (byte == 0) break;
+    text += byte >= ' ' && byte <= '~' ? static_cast<char>(byte) : '?';
+  }
+  return text;
+}
+
+bool is_known_kind(std::uint8_t kind) {
+  return kKnownKinds.find(static_cast<char>(kind)) != std::string_view::npos;
+}
+
+class UlogPass {
+ public:
+  explicit UlogPass(LogSink& sink) : sink_(sink) {}
+
+  /// @param body  of a message, without its header
+  Status take(char kind, std::span<const std::uint8_t> body);
+  void skip(std::size_t bytes);
+  void cut_message() { ++cut_messages_; }
+  void unknown_kind() { ++unknown_kinds_; }
+  void report();
+  /// Offsets at which appended data begin, increasing.
+  [[nodiscard]] const std::vector<std::uint64_t>& appended() const { return appended_; }
+
+ private:
+  struct Topic {
+    TopicPlan plan;
+    StreamId id = 0;
+    bool wanted = false;
+    std::optional<LocalOrigin> origin;
+    std::optional<double> mode;
+    std::optional<double> arming;
+  };
+
+  Status take_flags(std::span<const std::uint8_t> body);
+  void take_subscription(std::span<const std::uint8_t> body);
+  void take_data(std::span<const std::uint8_t> body);
+  void take_status(Topic& topic, const LogTime& time, std::span<const std::uint8_t> data);
+  void take_text(std::span<const std::uint8_t> body, std::size_t time_at);
+
+  LogSink& sink_;
+  UlogFormats formats_;
+  std::unordered_map<std::uint16_t, Topic> topics_;  ///< by msg_id
+  StreamId stream_count_ = 0;
+  BootClock clock_;
+  std::vector<std::uint64_t> appended_;
+  std::uint64_t skipped_bytes_ = 0;
+  std::uint64_t damaged_places_ = 0;
+  bool in_step_ = true;
+  std::uint64_t cut_messages_ = 0;
+  std::uint64_t unknown_kinds_ = 0;
+  std::uint64_t bad_formats_ = 0;
+  std::uint64_t unsubscribed_ = 0;
+  std::uint64_t left_out_topics_ = 0;
+  std::uint64_t dropouts_ = 0;
+  std::uint64_t dropout_ms_ = 0;
+};
+
+Status UlogPass::take_flags(std::span<const std::uint8_t> body) {
+  constexpr std::uint8_t kDataAppended = 1;
+  for (std::size_t i = 0; i < 8; ++i) {
+    const auto flags = value_at<std::uint8_t>(body, 8 + i);
+    const std::uint8_t unknown = i == 0 ? flags & static_cast<std::uint8_t>(~kDataAppended) : flags;
+    if (unknown == 0) continue;
+    return Error{ErrorCode::kUnsupported,
+                 "incompat_flags[" + std::to_string(i) + "] = " + std::to_string(flags) +
+                     ": only flag 1 of the first byte (appended data) is understood"};
+  }
+  if ((value_at<std::uint8_t>(body, 8) & kDataAppended) == 0) return {};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto offset = value_at<std::uint64_t>(body, 16 + 8 * i);
+    if (offset > kUlogHeaderBytes) appended_.push_back(offset);
+  }
+  std::sort(appended_.begin(), appended_.end());
+  return {};
+}
+
+void UlogPass::take_subscription(std::span<const std::uint8_t> body) {
+  if (body.size() < 4) return;
+  const std::string name = text_from(body.subspan(3));
+  const auto msg_id = value_at<std::uint16_t>(body, 1);
+  if (stream_count_ >= kMaxTopics) {
+    ++left_out_topics_;
+    return;
+  }
+  if (!formats_.has(name)) ++bad_formats_;
+  Topic topic;
+  topic.plan = plan_of(formats_, name, body[0]);
+  topic.id = stream_count_++;
+  topic.wanted = sink_.stream(topic.id, topic.plan.description);
+  topics_[msg_id] = std::move(topic);
+}
+
+void UlogPass::take_data(std::span<const std::uint8_t> body) {
+  const auto found = topics_.find(value_at<std::uint16_t>(body, 0));
+  if (body.size() < 2 || found == topics_.end()) {
+    ++unsubscribed_;
+    return;
+  }
+  Topic& topic = found->second;
+  const std::span<const std::uint8_t> data = body.subspan(2);
+  std::optional<LogTime> time;
+  if (topic.plan.time && topic.plan.time->type == "uint64_t" &&
+      data.size() >= topic.plan.time->offset + sizeof(std::uint64_t)) {
+    const auto time_us = value_at<std::uint64_t>(data, topic.plan.time->offset);
+    constexpr std::uint64_t kMaxUs = std::uint64_t{1} << 52U;
+    time = clock_.take(time_us < kMaxUs ? static_cast<std::int64_t>(time_us) * 1000 : -1);
+  }
+  sink_.message(topic.id, time);
+  if (!time) return;
+  if (topic.plan.description.position == PositionKind::kLocal) {
+    const std::optional<LocalOrigin> origin = origin_in(topic.plan, data);
+    if (origin && origin != topic.origin) {
+      topic.origin = origin;
+      sink_.local_origin(topic.id, *origin);
+    }
+  }
+  if (topic.wanted) pass_samples(topic.plan, data, topic.id, *time, sink_);
+  take_status(topic, *time, data);
+}
+
+void UlogPass::take_status(Topic& topic, const LogTime& time, std::span<const std::uint8_t> data) {
+  if (topic.plan.mode) {
+    const std::optional<double> mode = number_in(*topic.plan.mode, data);
+    if (std::exchange(topic.mode, mode) != mode && mode) {
+      sink_.event({"", time, EventKind::kMode, "mode " + std::to_string(static_cast<int>(*mode))});
+    }
+  }
+  if (topic.plan.arming) {
+    constexpr double kArmed = 2.0;
+    const std::optional<double> arming = number_in(*topic.plan.arming, data);
+    const std::optional<double> before = std::exchange(topic.arming, arming);
+    if (arming && (!before || (*before == kArmed) != (*arming == kArmed))) {
+      sink_.event({"", time, EventKind::kArming, *arming == kArmed ? "armed" : "disarmed"});
+    }
+  }
+}
+
+void UlogPass::take_text(std::span<const std::uint8_t> body, std::size_t time_at) {
+  if (body.size() < time_at + 8) return;
+  const auto time_us = value_at<std::uint64_t>(body, time_at);
+  std::optional<LogTime> time = clock_.latest();
+  constexpr std::uint64_t kMaxUs = std::uint64_t{1} << 52U;
+  if (time && time_us < kMaxUs) time->t_ns = static_cast<std::int64_t>(time_us) * 1000;
+  sink_.event({"", time, EventKind::kText, text_from(body.subspan(time_at + 8))});
+}
+
+Status UlogPass::take(char kind, std::span<const std::uint8_t> body) {
+  in_step_ = true;
+  switch (kind) {
+    case 'B':
+      return take_flags(body);
+    case 'F':
+      if (!formats_.declare({reinterpret_cast<const char*>(body.data()), body.size()})) {
+        ++bad_formats_;
+      }
+      break;
+    case 'A':
+      take_subscription(body);
+      break;
+    case 'R':
+      topics_.erase(value_at<std::uint16_t>(body, 0));
+      break;
+    case 'D':
+      take_data(body);
+      break;
+    case 'L':
+      take_text(body, 1);
+      break;
+    case 'C':
+      take_text(body, 3);
+      break;
+    case 'O':
+      ++dropouts_;
+      dropout_ms_ += value_at<std::uint16_t>(body, 0);
+      break;
+    default:
+      break;
+  }
+  return {};
+}
+
+void UlogPass::skip(std::size_t bytes) {
+  skipped_bytes_ += bytes;
+  if (std::exchange(in_step_, false)) ++damaged_places_;
+}
+
+void UlogPass::report() {
+  const auto warn = [&](std::uint64_t count, const std::string& text) {
+    if (count > 0) sink_.warning(std::to_string(count) + " " + text);
+  };
+  warn(dropouts_, "dropouts of the logger, " + std::to_string(dropout_ms_) + " ms in all");
+  warn(skipped_bytes_,
+       "bytes in " + std::to_string(damaged_places_) +
+           " places belong to no message and were skipped");
+  warn(cut_messages_, "messages are cut off by the end of the file or by appended data");
+  warn(unknown_kinds_, "messages are of kinds that are not known");
+  warn(bad_formats_, "formats are missing or cannot be understood");
+  warn(unsubscribed_, "messages belong to no subscription");
+  warn(left_out_topics_,
+       "subscriptions were left out: only " + std::to_string(kMaxTopics) + " are read");
+  warn(clock_.implausible(), "stamps of messages are implausible and were not used");
+}
+
+/// What lies at a place of the file.
+struct Place {
+  enum class Kind { kMessage, kUnknownKind, kCut, kDamage } kind = Kind::kDamage;
+  std::size_t size = 0;
+};
+
+/// @param limit  bytes up to the end of the file or the next appended data
+Place look_at(std::span<const std::uint8_t> bytes, std::uint64_t limit) {
+  if (bytes.size() < kMessageHeaderBytes || limit < kMessageHeaderBytes) {
+    return {Place::Kind::kCut,
+            static_cast<std::size_t>(std::min<std::uint64_t>(limit, bytes.size()))};
+  }
+  const std::size_t size = kMessageHeaderBytes + value_at<std::uint16_t>(bytes, 0);
+  const bool known = is_known_kind(bytes[2]);
+  if (size > limit) {
+    if (!known) return {Place::Kind::kDamage, 1};
+    return {Place::Kind::kCut, static_cast<std::size_t>(limit)};
+  }
+  const std::span<const std::uint8_t> next = bytes.subspan(size);
+  const bool next_known =
+      size == limit || next.size() < kMessageHeaderBytes || is_known_kind(next[2]);
+  if (!next_known) return {Place::Kind::kDamage, 1};
+  return {known ? Place::Kind::kMessage : Place::Kind::kUnknownKind, size};
+}
+
+}  // namespace
+
+bool is_ulog(std::span<const std::uint8_t> head) {
+  return head.size() >= kUlogMagic.size() &&
+         std::equal(kUlogMagic.begin(), kUlogMagic.end(), head.begin());
+}
+
+Status read_ulog(ForwardReader& file, LogSink& sink) {
+  UlogPass pass(sink);
+  const Result<std::span<const std::uint8_t>> header = file.ahead(kUlogHeaderBytes);
+  if (!header) return header.error();
+  file.skip(std::min(kUlogHeaderBytes, header->size()));
+  std::uint64_t next_progress = 0;
+  while (true) {
+    const Result<std::span<const std::uint8_t>> bytes = file.ahead(kLongestBytes);
+    if (!bytes) return bytes.error();
+    if (bytes->empty()) break;
+    const std::uint64_t here = file.position();
+    std::uint64_t limit = file.size_bytes() - here;
+    for (const std::uint64_t offset : pass.appended()) {
+      if (offset > here) limit = std::min(limit, offset - here);
+    }
+    const Place place = look_at(*bytes, limit);
+    if (place.kind == Place::Kind::kMessage) {
+      const Status taken =
+          pass.take(static_cast<char>((*bytes)[2]),
+                    bytes->subspan(kMessageHeaderBytes, place.size - kMessageHeaderBytes));
+      if (!taken) return taken.error();
+    } else if (place.kind == Place::Kind::kCut) {
+      pass.cut_message();
+    } else if (place.kind == Place::Kind::kUnknownKind) {
+      pass.unknown_kind();
+    } else {
+      pass.skip(place.size);
+    }
+    file.skip(std::min(place.size, bytes->size()));
+    if (file.position() >= next_progress) {
+      next_progress = file.position() + ForwardReader::kBufferBytes;
+      if (!sink.progress(file.position())) {
+        return Error{ErrorCode::kCancelled, "reading was cancelled"};
+      }
+    }
+  }
+  pass.report();
+  return {};
+}
+
+}  // namespace overfly::flight::logs
