@@ -165,8 +165,7 @@ void OpeningSink::finish() {
   if (const Result<TruthChoice> truth = choose_truth(log_.streams, "")) {
     log_.truth = *truth;
     const StreamInfo& source = log_.streams[truth->position];
-    log_.on_ground =
-        source.reach_m <= kGroundReachM && source.highest_m - source.lowest_m <= kGroundHeightM;
+    log_.on_ground = source.reach_m <= kGroundReachM;
   } else {
     log_.warnings.push_back(truth.error().message);
   }
