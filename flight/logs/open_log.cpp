@@ -130,16 +130,18 @@ void OpeningSink::count_boot(StreamId id, const LogTime& time) {
 void OpeningSink::finish() {
   std::uint64_t backward = 0;
   std::uint64_t gaps = 0;
-  std::uint64_t jumps = 0;
-  double largest_jump_m = 0.0;
   for (const StreamStatistics& statistics : streams_) {
     log_.streams.push_back(statistics.info());
     const StreamInfo& info = log_.streams.back();
     backward += info.backward;
     if (info.description.origin == SourceOrigin::kNone && !info.description.imu) continue;
     gaps += info.gaps;
-    jumps += info.jumps;
-    largest_jump_m = std::max(largest_jump_m, info.largest_jump_m);
+    if (info.jumps > 0) {
+      log_.warnings.push_back(std::to_string(info.jumps) + " jumps of positions in " +
+                              info.description.name + ", the largest by " +
+                              std::to_string(static_cast<std::int64_t>(info.largest_jump_m)) +
+                              " m: steps of more than 150 m/s");
+    }
   }
   std::set<std::string> vehicles;
   for (const auto& [boot, number] : boots_) {
@@ -156,10 +158,6 @@ void OpeningSink::finish() {
   };
   warn(backward, "messages have an earlier time than the one before them in their stream");
   warn(gaps, "gaps in the sources: intervals of more than five times the mean");
-  warn(jumps,
-       "jumps of positions, the largest by " +
-           std::to_string(static_cast<std::int64_t>(largest_jump_m)) +
-           " m: steps that need more than 150 m/s");
   warn(left_out_boots_, "messages belong to further restarts of a clock");
   warn(left_out_events_, "events were left out");
   if (const Result<TruthChoice> truth = choose_truth(log_.streams, "")) {

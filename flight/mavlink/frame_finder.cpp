@@ -9,8 +9,6 @@ namespace {
 /// Limit for the ids that are not in the table; message sets define a few hundred.
 constexpr std::size_t kMaxUnlistedIds = 4096;
 
-bool is_start(std::uint8_t byte) { return byte == kStartOne || byte == kStartTwo; }
-
 }  // namespace
 
 bool FrameFinder::agrees_with_others(const FrameParts& parts) {
@@ -62,19 +60,11 @@ FrameFinder::Found FrameFinder::next(std::span<const std::uint8_t> bytes, bool l
       count_sequence(parts.frame);
       return {at + prefix_bytes_ + parts.size_bytes, parts.frame, bytes.subspan(at, prefix_bytes_)};
     }
-    std::size_t skipped = 1;
-    if (state == FrameState::kComplete && in_step_) {
-      // Another frame follows where this one ends, so only its content is damaged.
-      const std::size_t next_start = parts.size_bytes + prefix_bytes_;
-      if (next_start >= rest.size() && !last) return {at, std::nullopt, {}};
-      if (next_start < rest.size() && is_start(rest[next_start])) {
-        skipped = prefix_bytes_ + parts.size_bytes;
-      }
-      ++counts_.bad_checksums;
-    }
-    in_step_ = skipped > 1;
-    at += skipped;
-    counts_.skipped_bytes += skipped;
+    // Only one byte is skipped: a wrong length may span frames that are not damaged.
+    if (state == FrameState::kComplete && in_step_) ++counts_.bad_checksums;
+    in_step_ = false;
+    ++at;
+    ++counts_.skipped_bytes;
   }
   if (!last) return {at, std::nullopt, {}};
   counts_.skipped_bytes += bytes.size() - at;

@@ -53,9 +53,14 @@ class UlogPass {
   /// @param body  of a message, without its header
   Status take(char kind, std::span<const std::uint8_t> body);
   void skip(std::size_t bytes);
-  void cut_message() { ++cut_messages_; }
+  /// What follows a cut message is in step again.
+  void cut_message() {
+    ++cut_messages_;
+    in_step_ = true;
+  }
   void unknown_kind() { ++unknown_kinds_; }
   void report();
+  [[nodiscard]] bool in_step() const { return in_step_; }
   /// Offsets at which appended data begin, increasing.
   [[nodiscard]] const std::vector<std::uint64_t>& appended() const { return appended_; }
 
@@ -245,8 +250,10 @@ struct Place {
   std::size_t size = 0;
 };
 
-/// @param limit  bytes up to the end of the file or the next appended data
-Place look_at(std::span<const std::uint8_t> bytes, std::uint64_t limit) {
+/// @param limit    bytes up to the end of the file or the next appended data
+/// @param in_step  a message ended here: one that reaches beyond the limit is then believed to be
+/// cut
+Place look_at(std::span<const std::uint8_t> bytes, std::uint64_t limit, bool in_step) {
   if (bytes.size() < kMessageHeaderBytes || limit < kMessageHeaderBytes) {
     return {Place::Kind::kCut,
             static_cast<std::size_t>(std::min<std::uint64_t>(limit, bytes.size()))};
@@ -254,7 +261,7 @@ Place look_at(std::span<const std::uint8_t> bytes, std::uint64_t limit) {
   const std::size_t size = kMessageHeaderBytes + value_at<std::uint16_t>(bytes, 0);
   const bool known = is_known_kind(bytes[2]);
   if (size > limit) {
-    if (!known) return {Place::Kind::kDamage, 1};
+    if (!known || !in_step) return {Place::Kind::kDamage, 1};
     return {Place::Kind::kCut, static_cast<std::size_t>(limit)};
   }
   const std::span<const std::uint8_t> next = bytes.subspan(size);
@@ -286,7 +293,7 @@ Status read_ulog(ForwardReader& file, LogSink& sink) {
     for (const std::uint64_t offset : pass.appended()) {
       if (offset > here) limit = std::min(limit, offset - here);
     }
-    const Place place = look_at(*bytes, limit);
+    const Place place = look_at(*bytes, limit, pass.in_step());
     if (place.kind == Place::Kind::kMessage) {
       const Status taken =
           pass.take(static_cast<char>((*bytes)[2]),

@@ -25,10 +25,10 @@ constexpr TopicFacts kTopics[] = {
 constexpr std::string_view kImuTopics[] = {
     "sensor_combined", "sensor_accel", "sensor_gyro", "vehicle_imu"};
 
-bool find_position(TopicPlan& plan,
-                   const UlogFormats& formats,
-                   const std::string& topic,
-                   const std::array<const char*, 3>& names) {
+bool find_topic_position(TopicPlan& plan,
+                         const UlogFormats& formats,
+                         const std::string& topic,
+                         const std::array<const char*, 3>& names) {
   for (std::size_t i = 0; i < names.size(); ++i) {
     const std::optional<UlogField> field = formats.find(topic, names[i]);
     if (!field) return false;
@@ -37,14 +37,15 @@ bool find_position(TopicPlan& plan,
   return true;
 }
 
-void find_source(TopicPlan& plan, const UlogFormats& formats, const std::string& topic) {
+void find_topic_source(TopicPlan& plan, const UlogFormats& formats, const std::string& topic) {
   StreamDescription& description = plan.description;
-  if (find_position(plan, formats, topic, {"latitude_deg", "longitude_deg", "altitude_msl_m"})) {
+  if (find_topic_position(
+          plan, formats, topic, {"latitude_deg", "longitude_deg", "altitude_msl_m"})) {
     description.position = PositionKind::kGeodetic;
-  } else if (find_position(plan, formats, topic, {"lat", "lon", "alt"})) {
+  } else if (find_topic_position(plan, formats, topic, {"lat", "lon", "alt"})) {
     description.position = PositionKind::kGeodetic;
     if (plan.position[0].type == "int32_t") plan.position_scale = {1e-7, 1e-7, 1e-3};
-  } else if (find_position(plan, formats, topic, {"x", "y", "z"})) {
+  } else if (find_topic_position(plan, formats, topic, {"x", "y", "z"})) {
     description.position = PositionKind::kLocal;
     plan.valid = {formats.find(topic, "xy_valid"), formats.find(topic, "z_valid")};
     plan.origin = {formats.find(topic, "ref_lat"),
@@ -81,7 +82,7 @@ TopicPlan plan_of(const UlogFormats& formats, const std::string& topic, std::uin
   }
   for (const TopicFacts& facts : kTopics) {
     if (facts.name != topic) continue;
-    find_source(plan, formats, topic);
+    find_topic_source(plan, formats, topic);
     if (plan.description.position == PositionKind::kNone && !plan.description.attitude) break;
     plan.description.origin = facts.origin;
     plan.description.preference = 10 * facts.preference + instance;
