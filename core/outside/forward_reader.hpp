@@ -39,7 +39,9 @@ class ForwardReader {
 
  private:
   ForwardReader(ReadableFile file, std::uint64_t size)
-      : file_(std::move(file)), size_(size), buffer_(kBufferBytes) {}
+      : file_(std::move(file)),
+        size_(size),
+        buffer_(size < kBufferBytes ? static_cast<std::size_t>(size) : kBufferBytes) {}
 
   ReadableFile file_;
   std::uint64_t size_ = 0;

@@ -45,7 +45,7 @@ struct LogTrajectory {
 /// Of a clock that starts again within the log, the run with the most positions is used. Positions
 /// with a time that is not later than the one before, and those without an attitude on both sides
 /// within 1 s, are left out and counted.
-/// Memory: 72 bytes a pose and 40 an attitude.
+/// Memory: about 160 bytes a pose.
 /// Errors: as open_log and choose_truth; kUnreadable if the vehicle has no attitudes, or no pose is
 /// left.
 [[nodiscard]] Result<LogTrajectory> read_log_trajectory(const OpenedLog& log,

@@ -49,13 +49,14 @@ std::string content_of(const StreamInfo& stream) {
 
 std::string stream_line(const StreamInfo& stream, std::size_t name_width) {
   const bool timed = stream.first_ns.has_value();
+  const std::string content = content_of(stream);
   return "  " + padded(stream.description.name, name_width, false) +
          padded(std::to_string(stream.messages), 10, true) +
          padded(stream.rate_hz > 0.0 ? decimals(stream.rate_hz, 2) : "-", 10, true) +
          padded(timed ? decimals(s_from_ns(*stream.first_ns), 1) : "-", 11, true) +
          padded(timed ? decimals(s_from_ns(*stream.last_ns), 1) : "-", 11, true) +
-         padded(stream.gaps > 0 ? std::to_string(stream.gaps) : "-", 7, true) + "  " +
-         content_of(stream) + "\n";
+         padded(stream.gaps > 0 ? std::to_string(stream.gaps) : "-", 7, true) +
+         (content.empty() ? "" : "  " + content) + "\n";
 }
 
 std::string event_line(const LogEvent& event) {

@@ -1,7 +1,6 @@
 // Flight logs built by hand, byte by byte, for tests and benchmarks.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
@@ -18,9 +17,8 @@ using Bytes = std::vector<std::uint8_t>;
 
 template <typename T>
 void put(Bytes& bytes, T value) {
-  std::array<std::uint8_t, sizeof(T)> raw{};
-  std::memcpy(raw.data(), &value, sizeof value);
-  bytes.insert(bytes.end(), raw.begin(), raw.end());
+  bytes.resize(bytes.size() + sizeof value);
+  std::memcpy(bytes.data() + bytes.size() - sizeof value, &value, sizeof value);
 }
 
 /// Text, filled up with zeros to `length`.
@@ -86,7 +84,10 @@ inline Bytes format_record(std::uint8_t type,
                            std::string_view name,
                            std::string_view letters,
                            std::string_view labels) {
-  Bytes record = {0xA3, 0x95, 0x80, type, size};
+  Bytes record;
+  put_text(record, "\xA3\x95\x80", 3);
+  record.push_back(type);
+  record.push_back(size);
   put_text(record, name, 4);
   put_text(record, letters, 16);
   put_text(record, labels, 64);

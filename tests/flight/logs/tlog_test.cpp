@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "core/time.hpp"
 #include "flight/logs/log_trajectory.hpp"
 #include "tests/flight/logs/log_bytes.hpp"
