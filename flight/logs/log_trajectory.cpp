@@ -138,6 +138,7 @@ void join(const SampleSink& samples,
           const std::vector<LoggedAttitude>& attitudes,
           LogTrajectory& trajectory) {
   AttitudeCursor cursor(attitudes);
+  trajectory.poses.reserve(samples.positions.size());
   std::size_t out_of_order = 0;
   std::size_t without_attitude = 0;
   std::optional<std::int64_t> last_ns;

@@ -21,10 +21,11 @@ void put(Bytes& bytes, T value) {
   std::memcpy(bytes.data() + bytes.size() - sizeof value, &value, sizeof value);
 }
 
-/// Text, filled up with zeros to `length`.
+/// Text, filled up with zeros to `length`. @pre it is not longer
 inline void put_text(Bytes& bytes, std::string_view text, std::size_t length) {
-  bytes.insert(bytes.end(), text.begin(), text.end());
-  bytes.resize(bytes.size() + length - text.size(), 0);
+  const std::size_t start = bytes.size();
+  bytes.resize(start + length, 0);
+  std::memcpy(bytes.data() + start, text.data(), text.size());
 }
 
 inline void append(Bytes& bytes, const Bytes& more) {
@@ -99,7 +100,8 @@ inline Bytes record_header(std::uint8_t type) { return {0xA3, 0x95, type}; }
 // --- ULog ---
 
 inline Bytes ulog_header() {
-  Bytes bytes = {'U', 'L', 'o', 'g', 0x01, 0x12, 0x35, 1};
+  Bytes bytes;
+  put_text(bytes, "ULog\x01\x12\x35\x01", 8);
   put(bytes, std::uint64_t{1000});
   return bytes;
 }
@@ -117,9 +119,10 @@ inline Bytes ulog_text(char kind, std::string_view text) {
 }
 
 inline Bytes ulog_subscription(std::uint8_t instance, std::uint16_t id, std::string_view topic) {
-  Bytes body = {instance};
+  Bytes body;
+  put(body, instance);
   put(body, id);
-  body.insert(body.end(), topic.begin(), topic.end());
+  put_text(body, topic, topic.size());
   return ulog_message('A', body);
 }
 
