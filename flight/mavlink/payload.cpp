@@ -1,15 +1,12 @@
 #include "flight/mavlink/payload.hpp"
 
+#include "core/text/printable_text.hpp"
+
 namespace overfly::flight::mavlink {
 
 std::string PayloadReader::text(std::size_t offset, std::size_t length) const {
-  std::string found;
-  for (std::size_t i = offset; i < std::min(offset + length, payload_.size()); ++i) {
-    const auto byte = static_cast<char>(payload_[i]);
-    if (byte == '\0') break;
-    found += byte >= ' ' && byte <= '~' ? byte : '?';
-  }
-  return found;
+  if (offset >= payload_.size()) return {};
+  return printable_text(payload_.subspan(offset, std::min(length, payload_.size() - offset)));
 }
 
 }  // namespace overfly::flight::mavlink

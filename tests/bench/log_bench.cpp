@@ -174,7 +174,7 @@ void write_log(const std::filesystem::path& file,
 }
 
 template <typename Work>
-double seconds_of(const Work& work) {
+double elapsed_s(const Work& work) {
   const auto start = std::chrono::steady_clock::now();
   work();
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -182,7 +182,7 @@ double seconds_of(const Work& work) {
 
 /// Reads the file once without parsing, so that it is in the system's cache.
 double read_seconds(const std::filesystem::path& file) {
-  return seconds_of([&] {
+  return elapsed_s([&] {
     auto reader = ForwardReader::open(file);
     while (reader.ok()) {
       const auto bytes = reader->ahead(ForwardReader::kBufferBytes);
@@ -197,7 +197,7 @@ int measure_opening(const char* name, const std::filesystem::path& file) {
   (void)read_seconds(file);
   const double reading_s = read_seconds(file);
   Result<logs::OpenedLog> log = Error{};
-  const double opening_s = seconds_of([&] { log = logs::open_log(file); });
+  const double opening_s = elapsed_s([&] { log = logs::open_log(file); });
   if (!log.ok()) return 1;
   std::printf("%-9s %5.0f MB: reading alone %5.0f MB/s, opening %5.0f MB/s, %4.0f MB of memory\n",
               name,
@@ -213,7 +213,7 @@ int measure_converting(const char* name, const std::filesystem::path& file) {
   const auto log = logs::open_log(file);
   if (!log.ok()) return 1;
   std::size_t poses = 0;
-  const double converting_s = seconds_of([&] {
+  const double converting_s = elapsed_s([&] {
     const auto trajectory = logs::read_log_trajectory(*log, {});
     if (trajectory.ok()) poses = trajectory->poses.size();
   });

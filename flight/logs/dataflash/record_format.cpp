@@ -6,6 +6,8 @@
 #include <cstring>
 #include <limits>
 
+#include "core/text/printable_text.hpp"
+
 namespace overfly::flight::logs {
 namespace {
 
@@ -51,15 +53,6 @@ double half_float(std::uint16_t bits) {
   return (bits & 0x8000U) != 0 ? -value : value;
 }
 
-std::string printable(std::span<const std::uint8_t> bytes) {
-  std::string text;
-  for (const std::uint8_t byte : bytes) {
-    if (byte == 0) break;
-    text += byte >= ' ' && byte <= '~' ? static_cast<char>(byte) : '?';
-  }
-  return text;
-}
-
 /// The text before the next comma, which is taken off as well.
 std::string take_label(std::string& labels) {
   const std::size_t comma = std::min(labels.find(','), labels.size());
@@ -81,11 +74,11 @@ std::optional<RecordFormat> read_format(std::span<const std::uint8_t> record) {
   RecordFormat format;
   format.type = record[3];
   format.size_bytes = record[4];
-  format.name = printable(record.subspan(5, 4));
+  format.name = printable_text(record.subspan(5, 4));
   if (format.size_bytes < kRecordHeaderBytes || format.name.empty()) return std::nullopt;
   if (format.type == kFormatType && format.size_bytes != kFormatRecordBytes) return std::nullopt;
-  const std::string letters = printable(record.subspan(9, 16));
-  std::string labels = printable(record.subspan(25, 64));
+  const std::string letters = printable_text(record.subspan(9, 16));
+  std::string labels = printable_text(record.subspan(25, 64));
   std::size_t offset = kRecordHeaderBytes;
   for (const char letter : letters) {
     const LetterFacts* const facts = facts_of(letter);
@@ -145,7 +138,7 @@ double number_in(const RecordField& field, std::span<const std::uint8_t> record)
 }
 
 std::string text_in(const RecordField& field, std::span<const std::uint8_t> record) {
-  return printable(record.subspan(field.offset, field.size));
+  return printable_text(record.subspan(field.offset, field.size));
 }
 
 }  // namespace overfly::flight::logs

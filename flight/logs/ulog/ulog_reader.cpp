@@ -3,15 +3,14 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <string>
-#include <string_view>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
-#include "core/time.hpp"
+#include "core/text/printable_text.hpp"
 #include "flight/logs/boot_clock.hpp"
+#include "flight/logs/ulog/ulog_message.hpp"
 #include "flight/logs/ulog/ulog_topics.hpp"
 
 namespace overfly::flight::logs {
@@ -19,32 +18,9 @@ namespace {
 
 constexpr std::array<std::uint8_t, 7> kUlogMagic = {'U', 'L', 'o', 'g', 0x01, 0x12, 0x35};
 constexpr std::size_t kUlogHeaderBytes = 16;
-constexpr std::size_t kMessageHeaderBytes = 3;
 /// The longest message and the header of the next one.
-constexpr std::size_t kLongestBytes = kMessageHeaderBytes + 65535 + kMessageHeaderBytes;
+constexpr std::size_t kLongestBytes = kUlogMessageHeaderBytes + 65535 + kUlogMessageHeaderBytes;
 constexpr std::size_t kMaxTopics = 4096;
-constexpr std::string_view kKnownKinds = "BFIMPQARDLCSO";
-
-template <typename T>
-T value_at(std::span<const std::uint8_t> bytes, std::size_t offset) {
-  T value{};
-  if (offset + sizeof(T) <= bytes.size()) std::memcpy(&value, bytes.data() + offset, sizeof(T));
-  return value;
-}
-
-/// Printable ASCII; other bytes become '?'. Ends before the first zero.
-std::string text_from(std::span<const std::uint8_t> bytes) {
-  std::string text;
-  for (const std::uint8_t byte : bytes) {
-    if (byte == 0) break;
-    text += byte >= ' ' && byte <= '~' ? static_cast<char>(byte) : '?';
-  }
-  return text;
-}
-
-bool is_known_kind(std::uint8_t kind) {
-  return kKnownKinds.find(static_cast<char>(kind)) != std::string_view::npos;
-}
 
 class UlogPass {
  public:
@@ -101,16 +77,16 @@ class UlogPass {
 Status UlogPass::take_flags(std::span<const std::uint8_t> body) {
   constexpr std::uint8_t kDataAppended = 1;
   for (std::size_t i = 0; i < 8; ++i) {
-    const auto flags = value_at<std::uint8_t>(body, 8 + i);
+    const auto flags = ulog_value<std::uint8_t>(body, 8 + i);
     const std::uint8_t unknown = i == 0 ? flags & static_cast<std::uint8_t>(~kDataAppended) : flags;
     if (unknown == 0) continue;
     return Error{ErrorCode::kUnsupported,
                  "incompat_flags[" + std::to_string(i) + "] = " + std::to_string(flags) +
                      ": only flag 1 of the first byte (appended data) is understood"};
   }
-  if ((value_at<std::uint8_t>(body, 8) & kDataAppended) == 0) return {};
+  if ((ulog_value<std::uint8_t>(body, 8) & kDataAppended) == 0) return {};
   for (std::size_t i = 0; i < 3; ++i) {
-    const auto offset = value_at<std::uint64_t>(body, 16 + 8 * i);
+    const auto offset = ulog_value<std::uint64_t>(body, 16 + 8 * i);
     if (offset > kUlogHeaderBytes) appended_.push_back(offset);
   }
   std::sort(appended_.begin(), appended_.end());
@@ -119,8 +95,8 @@ Status UlogPass::take_flags(std::span<const std::uint8_t> body) {
 
 void UlogPass::take_subscription(std::span<const std::uint8_t> body) {
   if (body.size() < 4) return;
-  const std::string name = text_from(body.subspan(3));
-  const auto msg_id = value_at<std::uint16_t>(body, 1);
+  const std::string name = printable_text(body.subspan(3));
+  const auto msg_id = ulog_value<std::uint16_t>(body, 1);
   if (stream_count_ >= kMaxTopics) {
     ++left_out_topics_;
     return;
@@ -134,7 +110,7 @@ void UlogPass::take_subscription(std::span<const std::uint8_t> body) {
 }
 
 void UlogPass::take_data(std::span<const std::uint8_t> body) {
-  const auto found = topics_.find(value_at<std::uint16_t>(body, 0));
+  const auto found = topics_.find(ulog_value<std::uint16_t>(body, 0));
   if (body.size() < 2 || found == topics_.end()) {
     ++unsubscribed_;
     return;
@@ -144,7 +120,7 @@ void UlogPass::take_data(std::span<const std::uint8_t> body) {
   std::optional<LogTime> time;
   if (topic.plan.time && topic.plan.time->type == "uint64_t" &&
       data.size() >= topic.plan.time->offset + sizeof(std::uint64_t)) {
-    const auto time_us = value_at<std::uint64_t>(data, topic.plan.time->offset);
+    const auto time_us = ulog_value<std::uint64_t>(data, topic.plan.time->offset);
     constexpr std::uint64_t kMaxUs = std::uint64_t{1} << 52U;
     time = clock_.take(time_us < kMaxUs ? static_cast<std::int64_t>(time_us) * 1000 : -1);
   }
@@ -180,11 +156,11 @@ void UlogPass::take_status(Topic& topic, const LogTime& time, std::span<const st
 
 void UlogPass::take_text(std::span<const std::uint8_t> body, std::size_t time_at) {
   if (body.size() < time_at + 8) return;
-  const auto time_us = value_at<std::uint64_t>(body, time_at);
+  const auto time_us = ulog_value<std::uint64_t>(body, time_at);
   std::optional<LogTime> time = clock_.latest();
   constexpr std::uint64_t kMaxUs = std::uint64_t{1} << 52U;
   if (time && time_us < kMaxUs) time->t_ns = static_cast<std::int64_t>(time_us) * 1000;
-  sink_.event({"", time, EventKind::kText, text_from(body.subspan(time_at + 8))});
+  sink_.event({"", time, EventKind::kText, printable_text(body.subspan(time_at + 8))});
 }
 
 Status UlogPass::take(char kind, std::span<const std::uint8_t> body) {
@@ -201,7 +177,7 @@ Status UlogPass::take(char kind, std::span<const std::uint8_t> body) {
       take_subscription(body);
       break;
     case 'R':
-      topics_.erase(value_at<std::uint16_t>(body, 0));
+      topics_.erase(ulog_value<std::uint16_t>(body, 0));
       break;
     case 'D':
       take_data(body);
@@ -214,7 +190,7 @@ Status UlogPass::take(char kind, std::span<const std::uint8_t> body) {
       break;
     case 'O':
       ++dropouts_;
-      dropout_ms_ += value_at<std::uint16_t>(body, 0);
+      dropout_ms_ += ulog_value<std::uint16_t>(body, 0);
       break;
     default:
       break;
@@ -244,33 +220,6 @@ void UlogPass::report() {
   warn(clock_.implausible(), "stamps of messages are implausible and were not used");
 }
 
-/// What lies at a place of the file.
-struct Place {
-  enum class Kind { kMessage, kUnknownKind, kCut, kDamage } kind = Kind::kDamage;
-  std::size_t size = 0;
-};
-
-/// @param limit    bytes up to the end of the file or the next appended data
-/// @param in_step  a message ended here: one that reaches beyond the limit is then believed to be
-/// cut
-Place look_at(std::span<const std::uint8_t> bytes, std::uint64_t limit, bool in_step) {
-  if (bytes.size() < kMessageHeaderBytes || limit < kMessageHeaderBytes) {
-    return {Place::Kind::kCut,
-            static_cast<std::size_t>(std::min<std::uint64_t>(limit, bytes.size()))};
-  }
-  const std::size_t size = kMessageHeaderBytes + value_at<std::uint16_t>(bytes, 0);
-  const bool known = is_known_kind(bytes[2]);
-  if (size > limit) {
-    if (!known || !in_step) return {Place::Kind::kDamage, 1};
-    return {Place::Kind::kCut, static_cast<std::size_t>(limit)};
-  }
-  const std::span<const std::uint8_t> next = bytes.subspan(size);
-  const bool next_known =
-      size == limit || next.size() < kMessageHeaderBytes || is_known_kind(next[2]);
-  if (!next_known) return {Place::Kind::kDamage, 1};
-  return {known ? Place::Kind::kMessage : Place::Kind::kUnknownKind, size};
-}
-
 }  // namespace
 
 bool is_ulog(std::span<const std::uint8_t> head) {
@@ -293,15 +242,15 @@ Status read_ulog(ForwardReader& file, LogSink& sink) {
     for (const std::uint64_t offset : pass.appended()) {
       if (offset > here) limit = std::min(limit, offset - here);
     }
-    const Place place = look_at(*bytes, limit, pass.in_step());
-    if (place.kind == Place::Kind::kMessage) {
+    const UlogPlace place = look_at_message(*bytes, limit, pass.in_step());
+    if (place.kind == UlogPlace::Kind::kMessage) {
       const Status taken =
           pass.take(static_cast<char>((*bytes)[2]),
-                    bytes->subspan(kMessageHeaderBytes, place.size - kMessageHeaderBytes));
+                    bytes->subspan(kUlogMessageHeaderBytes, place.size - kUlogMessageHeaderBytes));
       if (!taken) return taken.error();
-    } else if (place.kind == Place::Kind::kCut) {
+    } else if (place.kind == UlogPlace::Kind::kCut) {
       pass.cut_message();
-    } else if (place.kind == Place::Kind::kUnknownKind) {
+    } else if (place.kind == UlogPlace::Kind::kUnknownKind) {
       pass.unknown_kind();
     } else {
       pass.skip(place.size);

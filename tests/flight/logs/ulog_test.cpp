@@ -60,7 +60,7 @@ Bytes definitions(std::uint8_t incompatible = 0, std::uint64_t appended = 0) {
   return bytes;
 }
 
-Bytes attitude(std::uint64_t time_us, double roll_rad) {
+Bytes attitude_message(std::uint64_t time_us, double roll_rad) {
   Bytes data;
   put(data, time_us);
   put(data, time_us);
@@ -101,7 +101,7 @@ Bytes flight(int count) {
   Bytes bytes;
   for (int i = 0; i < count; ++i) {
     const auto time_us = static_cast<std::uint64_t>(2'000'000 + 10'000 * i);
-    append(bytes, attitude(time_us, 0.01 * i));
+    append(bytes, attitude_message(time_us, 0.01 * i));
     append(bytes, local_position(time_us + 5'000, static_cast<float>(i)));
     if (i % 10 == 0) append(bytes, gps(time_us, i < 30 ? 2 : 3));
   }
@@ -195,7 +195,7 @@ TEST(Ulog, KeepsLocalPositionsWithoutAnOriginLocal) {
   Bytes bytes = definitions();
   for (int i = 0; i < 20; ++i) {
     const auto time_us = static_cast<std::uint64_t>(2'000'000 + 10'000 * i);
-    append(bytes, attitude(time_us, 0.0));
+    append(bytes, attitude_message(time_us, 0.0));
     append(bytes, local_position(time_us, static_cast<float>(i), false));
   }
   const overfly::testing::TemporaryFolder folder;
@@ -213,12 +213,12 @@ TEST(Ulog, KeepsLocalPositionsWithoutAnOriginLocal) {
 TEST(Ulog, ContinuesAtAppendedDataAfterACutMessage) {
   Bytes start = definitions(1, 0);
   append(start, flight(20));
-  Bytes cut = attitude(9'000'000, 0.0);
+  Bytes cut = attitude_message(9'000'000, 0.0);
   cut.resize(cut.size() - 9);
   append(start, cut);
   Bytes bytes = definitions(1, start.size());
   bytes.insert(bytes.end(), start.begin() + static_cast<std::ptrdiff_t>(bytes.size()), start.end());
-  append(bytes, attitude(3'000'000, 0.0));
+  append(bytes, attitude_message(3'000'000, 0.0));
   const overfly::testing::TemporaryFolder folder;
   const auto log = open_ulog(folder, bytes);
   ASSERT_TRUE(log.ok()) << log.error().message;
@@ -237,8 +237,8 @@ TEST(Ulog, RefusesAFileThatNeedsANewerReader) {
 
 TEST(Ulog, LeavesOutValuesThatAreNotNumbers) {
   Bytes bytes = definitions();
-  append(bytes, attitude(2'000'000, std::numeric_limits<double>::quiet_NaN()));
-  append(bytes, attitude(2'010'000, 0.0));
+  append(bytes, attitude_message(2'000'000, std::numeric_limits<double>::quiet_NaN()));
+  append(bytes, attitude_message(2'010'000, 0.0));
   append(bytes, local_position(2'010'000, std::numeric_limits<float>::infinity()));
   append(bytes, local_position(2'020'000, 1.0F));
   const overfly::testing::TemporaryFolder folder;
@@ -254,8 +254,8 @@ TEST(Ulog, FindsTheNextMessageAfterDamage) {
   Bytes bytes = definitions();
   append(bytes, flight(20));
   append(bytes, Bytes(50, 0xEE));
-  append(bytes, attitude(3'000'000, 0.0));
-  append(bytes, attitude(3'010'000, 0.0));
+  append(bytes, attitude_message(3'000'000, 0.0));
+  append(bytes, attitude_message(3'010'000, 0.0));
   const overfly::testing::TemporaryFolder folder;
   const auto log = open_ulog(folder, bytes);
   ASSERT_TRUE(log.ok()) << log.error().message;
