@@ -4,33 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <random>
 #include <string>
 
 #include "core/time.hpp"
+#include "flight/normal_noise.hpp"
 
 namespace overfly::flight {
 namespace {
-
-/// Normally distributed random numbers, identical for every standard library.
-class Noise {
- public:
-  explicit Noise(std::uint64_t seed) : generator_(seed) {}
-
-  /// Three numbers of variance 1 (Box and Muller 1958).
-  Eigen::Vector3d draw() {
-    Eigen::Vector3d numbers;
-    for (int i = 0; i < 3; ++i) {
-      const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
-      numbers(i) = radius * std::cos(2.0 * kPi * uniform());
-    }
-    return numbers;
-  }
-
- private:
-  double uniform() { return static_cast<double>(generator_() >> 11U) * 0x1.0p-53; }
-  std::mt19937_64 generator_;
-};
 
 /// The rotation vector of a unit quaternion [rad].
 Eigen::Vector3d log_of(const Eigen::Quaterniond& q) {
@@ -48,19 +28,25 @@ class ErrorModel {
   void apply(double interval_s, ImuReading& reading) {
     const double white = 1.0 / std::sqrt(interval_s);
     const double walk = std::sqrt(interval_s);
-    gyroscope_bias_ += model_.gyroscope_walk_rad_s2_sqrt_hz * walk * noise_.draw();
-    accelerometer_bias_ += model_.accelerometer_walk_m_s3_sqrt_hz * walk * noise_.draw();
+    gyroscope_bias_ += model_.gyroscope_walk_rad_s2_sqrt_hz * walk * draw();
+    accelerometer_bias_ += model_.accelerometer_walk_m_s3_sqrt_hz * walk * draw();
     reading.gyroscope_bias_rad_s = gyroscope_bias_;
     reading.accelerometer_bias_m_s2 = accelerometer_bias_;
     reading.angular_rate_rad_s +=
-        gyroscope_bias_ + model_.gyroscope_noise_rad_s_sqrt_hz * white * noise_.draw();
+        gyroscope_bias_ + model_.gyroscope_noise_rad_s_sqrt_hz * white * draw();
     reading.specific_force_m_s2 +=
-        accelerometer_bias_ + model_.accelerometer_noise_m_s2_sqrt_hz * white * noise_.draw();
+        accelerometer_bias_ + model_.accelerometer_noise_m_s2_sqrt_hz * white * draw();
   }
 
  private:
+  Eigen::Vector3d draw() {
+    Eigen::Vector3d numbers;
+    for (int i = 0; i < 3; ++i) numbers(i) = noise_.draw();
+    return numbers;
+  }
+
   ImuModel model_;
-  Noise noise_;
+  NormalNoise noise_;
   Eigen::Vector3d gyroscope_bias_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d accelerometer_bias_ = Eigen::Vector3d::Zero();
 };
