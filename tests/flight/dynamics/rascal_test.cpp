@@ -1,0 +1,156 @@
+// A recorded flight of another simulator's aircraft (a Rascal 110 with an autopilot, 290 s of
+// straight legs and turns without wind, 20 Hz): its motion must fit this room's conventions and
+// kinematics. The aircraft's own forces are not compared: its coefficients belong to that
+// simulator.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "core/earth/geodesy.hpp"
+#include "core/motion/pose.hpp"
+#include "flight/dynamics/aircraft.hpp"
+#include "flight/dynamics/environment.hpp"
+#include "flight/dynamics/rigid_body.hpp"
+#include "tests/flight/dynamics/airframes.hpp"
+#include "tests/support/support.hpp"
+
+namespace overfly::dynamics {
+namespace {
+
+constexpr double kMetrePerFoot = 0.3048;
+
+struct Row {
+  double t_s;
+  Geodetic place;
+  RollPitchYaw attitude;
+  BodyState state;  // position in the world frame of the first row
+  double airspeed_m_s, alpha_rad, beta_rad;
+};
+
+std::vector<Row> read_rows(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  std::string line;
+  std::getline(in, line);
+  std::vector<Row> rows;
+  std::optional<LocalFrame> frame;
+  while (std::getline(in, line)) {
+    std::array<double, 16> x{};
+    std::istringstream fields(line);
+    std::string field;
+    for (double& value : x) {
+      std::getline(fields, field, ',');
+      value = std::stod(field);
+    }
+    Row row{x[0],
+            geodetic_from_deg(x[1], x[2], x[3]),
+            {x[7], x[8], x[9]},
+            {},
+            x[13] * kMetrePerFoot,
+            x[14],
+            x[15]};
+    if (!frame) frame.emplace(row.place);
+    // Attitude and velocity are relative to the local horizon of each row.
+    const Eigen::Quaterniond R_world_local = frame->R_world_enu_at(row.place);
+    row.state.position_world_m = frame->world_from_geodetic(row.place);
+    row.state.R_world_body = R_world_local * R_world_body_from(row.attitude);
+    const Eigen::Vector3d v_local = kMetrePerFoot * Eigen::Vector3d(x[5], x[4], -x[6]);
+    row.state.v_body_m_s = row.state.R_world_body.conjugate() * (R_world_local * v_local);
+    row.state.omega_body_rad_s = {x[10], x[11], x[12]};
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+TEST(RecordedRascal, AirDataFollowFromVelocityAndAttitude) {
+  OVERFLY_DATA_OR_SKIP(file, "jsbsim/rascal_25ms_20hz.csv");
+  const auto rows = read_rows(file);
+  ASSERT_GT(rows.size(), 5000U);
+  AircraftSetup setup;
+  setup.airframe = testing::airframe("aerosonde");
+  double worst_speed = 0.0, worst_angle = 0.0;
+  for (const Row& row : rows) {
+    const AirData air = Aircraft::create(setup, row.state, {})->air_data();
+    worst_speed = std::max(worst_speed, std::abs(air.airspeed_m_s - row.airspeed_m_s));
+    worst_angle = std::max({worst_angle,
+                            std::abs(air.alpha_rad - row.alpha_rad),
+                            std::abs(air.beta_rad - row.beta_rad)});
+  }
+  RecordProperty("worst_speed_m_s", std::to_string(worst_speed));
+  RecordProperty("worst_angle_rad", std::to_string(worst_angle));
+  // Airspeed and angles are logged one step of that simulator (1/120 s?) apart from the velocity.
+  EXPECT_LT(worst_speed, 0.02);
+  EXPECT_LT(worst_angle, 2e-3);
+}
+
+TEST(RecordedRascal, IntegratedRatesGiveItsAttitudesAndPositions) {
+  OVERFLY_DATA_OR_SKIP(file, "jsbsim/rascal_25ms_20hz.csv");
+  const auto rows = read_rows(file);
+  // A body without resistance to turning: moments and forces prescribe the recorded rates and
+  // velocities, linear between the rows.
+  const RigidBody body(1.0, {1.0, 1.0, 1.0, 0.0}, 0.0);
+  constexpr std::size_t kWindow = 200;  // 10 s
+  double worst_angle = 0.0, worst_place_m = 0.0;
+  for (std::size_t start = 0; start + kWindow < rows.size(); start += kWindow) {
+    BodyState state = rows[start].state;
+    for (std::size_t i = start; i < start + kWindow; ++i) {
+      const BodyState& from = rows[i].state;
+      const BodyState& to = rows[i + 1].state;
+      const double dt_s = rows[i + 1].t_s - rows[i].t_s;
+      state.omega_body_rad_s = from.omega_body_rad_s;
+      state.v_body_m_s = from.v_body_m_s;
+      state = body.step(state, dt_s, [&](const BodyState& at, double /*fraction*/) {
+        return Wrench{
+            (to.v_body_m_s - from.v_body_m_s) / dt_s + at.omega_body_rad_s.cross(at.v_body_m_s),
+            (to.omega_body_rad_s - from.omega_body_rad_s) / dt_s};
+      });
+    }
+    const BodyState& end = rows[start + kWindow].state;
+    worst_angle = std::max(worst_angle, rotation_angle_rad(state.R_world_body, end.R_world_body));
+    worst_place_m = std::max(worst_place_m, (state.position_world_m - end.position_world_m).norm());
+  }
+  RecordProperty("worst_angle_rad", std::to_string(worst_angle));
+  RecordProperty("worst_place_m", std::to_string(worst_place_m));
+  EXPECT_LT(worst_angle, 5e-3);
+  EXPECT_LT(worst_place_m, 1.0);
+}
+
+TEST(RecordedRascal, TurnsAsCoordinatedTurnsDo) {
+  OVERFLY_DATA_OR_SKIP(file, "jsbsim/rascal_25ms_20hz.csv");
+  const auto rows = read_rows(file);
+  const double g = Environment::at(rows.front().place, 0.0).gravity_m_s2;
+  int steady = 0;
+  double worst = 0.0, sum = 0.0;
+  constexpr std::size_t kSecond = 20;
+  for (std::size_t i = kSecond; i + kSecond < rows.size(); ++i) {
+    const Row& row = rows[i];
+    const auto bank_change = [&](std::size_t j) {
+      return std::abs(rows[j].attitude.roll_rad - row.attitude.roll_rad);
+    };
+    if (std::abs(row.attitude.roll_rad) < 0.4 || bank_change(i - kSecond) > 0.02 ||
+        bank_change(i + kSecond) > 0.02) {
+      continue;
+    }
+    const double turn_rate =
+        wrap_pi(rows[i + kSecond].attitude.yaw_rad - rows[i - kSecond].attitude.yaw_rad) /
+        (rows[i + kSecond].t_s - rows[i - kSecond].t_s);
+    const double ratio = turn_rate * row.airspeed_m_s / (g * std::tan(row.attitude.roll_rad));
+    worst = std::max(worst, std::abs(ratio - 1.0));
+    sum += ratio;
+    ++steady;
+  }
+  ASSERT_GT(steady, 200);
+  RecordProperty("steady_rows", steady);
+  RecordProperty("worst_ratio_error", std::to_string(worst));
+  RecordProperty("mean_ratio", std::to_string(sum / steady));
+  EXPECT_LT(worst, 0.10);
+  EXPECT_NEAR(sum / steady, 1.0, 0.03);
+}
+
+}  // namespace
+}  // namespace overfly::dynamics
