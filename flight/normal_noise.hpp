@@ -2,6 +2,7 @@
 // its sub-rooms.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <random>
@@ -19,6 +20,12 @@ class NormalNoise {
   [[nodiscard]] double draw() {
     const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
     return radius * std::cos(2.0 * kPi * uniform());
+  }
+  /// Two numbers for the price of one: the first is what draw() would have returned.
+  [[nodiscard]] std::array<double, 2> draw_pair() {
+    const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
+    const double angle = 2.0 * kPi * uniform();
+    return {radius * std::cos(angle), radius * std::sin(angle)};
   }
 
  private:

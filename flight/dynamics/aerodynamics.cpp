@@ -96,31 +96,32 @@ PropellerState propeller(const Propulsion& propulsion,
                          double forward_m_s,
                          double throttle,
                          double density_kg_m3) {
-  constexpr double kTurn = 2.0 * kPi;
+  constexpr double kPerRad = 0.5 / kPi;  // turns
   const double d = propulsion.diameter_m;
   const double k = propulsion.motor_constant_v_s_rad;
+  const double conductance = 1.0 / propulsion.motor_resistance_ohm;
   const double square = forward_m_s * std::abs(forward_m_s);
   const double disc = density_kg_m3 * d * d;  // kg/m
-  // Torque of the propeller minus that of the motor, quadratic in the speed.
-  const double a = disc * d * d * d * propulsion.torque.zero / (kTurn * kTurn);
-  const double b = disc * d * d * propulsion.torque.linear * forward_m_s / kTurn +
-                   k * k / propulsion.motor_resistance_ohm;
-  const double c = disc * d * propulsion.torque.quadratic * square -
-                   k * (throttle * propulsion.battery_v / propulsion.motor_resistance_ohm -
-                        propulsion.no_load_current_a);
-  PropellerState state;
+  const PropellerCurve& torque = propulsion.torque;
+  const PropellerCurve& thrust = propulsion.thrust;
+  // Torque of the propeller minus that of the motor, quadratic in n D.
+  const double a = disc * d * torque.zero;
+  const double b = disc * d * torque.linear * forward_m_s + k * k * conductance / (kPerRad * d);
+  const double c =
+      disc * d * torque.quadratic * square -
+      k * (throttle * propulsion.battery_v * conductance - propulsion.no_load_current_a);
+  double tip = 0.0;  // n D, m/s
   if (c < 0.0) {
     const double root = std::sqrt(b * b - 4.0 * a * c);
-    state.speed_rad_s = b > 0.0 ? -2.0 * c / (b + root) : (root - b) / (2.0 * a);
+    tip = b > 0.0 ? -2.0 * c / (b + root) : (root - b) / (2.0 * a);
   }
-  const double tip = state.speed_rad_s * d / kTurn;  // n D
-  state.thrust_n =
-      disc * (propulsion.thrust.zero * tip * tip + propulsion.thrust.linear * tip * forward_m_s +
-              propulsion.thrust.quadratic * square);
+  PropellerState state;
+  state.speed_rad_s = tip / (kPerRad * d);
+  state.thrust_n = disc * (thrust.zero * tip * tip + thrust.linear * tip * forward_m_s +
+                           thrust.quadratic * square);
   state.torque_nm =
       disc * d *
-      (propulsion.torque.zero * tip * tip + propulsion.torque.linear * tip * forward_m_s +
-       propulsion.torque.quadratic * square);
+      (torque.zero * tip * tip + torque.linear * tip * forward_m_s + torque.quadratic * square);
   return state;
 }
 

@@ -100,9 +100,9 @@ int Aircraft::parts_of(double dt_s) const {
   // The Runge-Kutta method is stable for rates up to 2.8 per step, and accurate well below.
   constexpr double kRatePerPart = 0.5;
   constexpr double kPartsMax = 200.0;
-  const AirData air = air_data();
-  const double rate =
-      damping_m2_kg_ * air.density_kg_m3 * air.airspeed_m_s + state_.omega_body_rad_s.norm();
+  const double airspeed_m_s = (state_.R_world_body * state_.v_body_m_s - air_world_m_s_).norm();
+  const double density = setup_.environment.density_kg_m3(state_.position_world_m.z());
+  const double rate = damping_m2_kg_ * density * airspeed_m_s + state_.omega_body_rad_s.norm();
   return static_cast<int>(std::clamp(std::ceil(dt_s * rate / kRatePerPart), 1.0, kPartsMax));
 }
 

@@ -1,11 +1,7 @@
 // A fixed-wing airframe as values: mass, aerodynamic coefficients, propulsion, actuators.
 #pragma once
 
-#include <filesystem>
 #include <string>
-#include <string_view>
-
-#include "core/result.hpp"
 
 namespace overfly::dynamics {
 
@@ -112,14 +108,5 @@ struct Airframe {
 
   [[nodiscard]] double aspect_ratio() const { return wing.span_m * wing.span_m / wing.area_m2; }
 };
-
-/// Reads an airframe file (JSON; docs/AIRCRAFT.md lists its fields and limits).
-/// Errors: as read_file_text; kUnreadable for text that is not JSON; kInvalidArgument naming file,
-/// field, value and limit, for a missing or unknown field, and for values that contradict each
-/// other: an impossible inertia, or a propeller that drives an aircraft without power.
-[[nodiscard]] Result<Airframe> read_airframe(const std::filesystem::path& file);
-
-/// As read_airframe, from the text of a file. @param origin  names the source in messages
-[[nodiscard]] Result<Airframe> parse_airframe(std::string_view text, const std::string& origin);
 
 }  // namespace overfly::dynamics

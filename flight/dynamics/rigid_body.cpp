@@ -18,7 +18,7 @@ BodyMotion RigidBody::motion(const BodyState& state, const Wrench& wrench) const
   motion.velocity_world_m_s = R * v;
   // Gravity along -up: minus the third row of R.
   motion.acceleration_body_m_s2 =
-      wrench.force_n / mass_kg_ - gravity_m_s2_ * R.row(2).transpose() - omega.cross(v);
+      wrench.force_n * (1.0 / mass_kg_) - gravity_m_s2_ * R.row(2).transpose() - omega.cross(v);
   motion.angular_acceleration_rad_s2 = J_inverse_ * (wrench.moment_nm - omega.cross(J_ * omega));
   const Eigen::Quaterniond rate(0.0, 0.5 * omega.x(), 0.5 * omega.y(), 0.5 * omega.z());
   motion.rotation_1_s = (state.R_world_body * rate).coeffs();

@@ -43,9 +43,10 @@ TurbulenceScales low_scales(std::size_t level, double height_ft) {
   const double base = 0.177 + 0.000823 * height_ft;
   TurbulenceScales scales;
   scales.length_w_m = kMPerFt * height_ft;
-  scales.length_u_m = kMPerFt * height_ft / std::pow(base, 1.2);
+  const double root = std::pow(base, 0.4);
+  scales.length_u_m = kMPerFt * height_ft / (root * root * root);
   scales.sigma_w_m_s = 0.1 * kMSPerKn * kWind20FtKn[level];
-  scales.sigma_u_m_s = scales.sigma_w_m_s / std::pow(base, 0.4);
+  scales.sigma_u_m_s = scales.sigma_w_m_s / root;
   return scales;
 }
 
@@ -53,6 +54,13 @@ TurbulenceScales high_scales(std::size_t level, double height_ft) {
   const double sigma_m_s = kMPerFt * high_sigma_ft_s(level, height_ft);
   return {1750.0 * kMPerFt, 1750.0 * kMPerFt, sigma_m_s, sigma_m_s};
 }
+
+/// 1 / n; the series of the integrals below has no more terms.
+constexpr auto kInverse = [] {
+  std::array<double, 28> inverse{};
+  for (std::size_t n = 1; n < inverse.size(); ++n) inverse[n] = 1.0 / static_cast<double>(n);
+  return inverse;
+}();
 
 /// Integrals of x^k exp(-2 x) from 0 to d, k = 0, 1, 2.
 struct DecayIntegrals {
@@ -69,19 +77,20 @@ DecayIntegrals decay_integrals(double d) {
   // The closed forms cancel for small d: sum of d^(n + k + 1) (-2)^n / n! / (n + k + 1).
   DecayIntegrals sum{0.0, 0.0, 0.0};
   double term = d;
-  for (int n = 0; n < 24 && std::abs(term) > 1e-18 * d; ++n) {
-    sum.k0 += term / (n + 1);
-    sum.k1 += d * term / (n + 2);
-    sum.k2 += d * d * term / (n + 3);
-    term *= -2.0 * d / (n + 1);
+  for (std::size_t n = 0; n + 3 < kInverse.size() && std::abs(term) > 1e-18 * d; ++n) {
+    sum.k0 += term * kInverse[n + 1];
+    sum.k1 += term * kInverse[n + 2];
+    sum.k2 += term * kInverse[n + 3];
+    term *= -2.0 * d * kInverse[n + 1];
   }
+  sum.k1 *= d;
+  sum.k2 *= d * d;
   return sum;
 }
 
-/// Advances a first-order process of variance 1 by a number of its time constants.
-void advance_first_order(double& value, double lags, double noise) {
-  const double kept = std::exp(-lags);
-  value = kept * value + std::sqrt(-std::expm1(-2.0 * lags)) * noise;
+/// Advances a first-order process of variance 1. @param change  exp(-d) - 1 of its d time constants
+void advance_first_order(double& value, double change, double noise) {
+  value += change * value + std::sqrt(-change * (2.0 + change)) * noise;
 }
 
 }  // namespace
@@ -110,12 +119,12 @@ double Turbulence::Transverse::value() const {
   return root3 * first + (1.0 - root3) * second;
 }
 
-/// @param lags  step over time constant, d. The states move by exp(-d) [1 0; d 1]; the noise of the
+/// @param lags  step over time constant, d
+/// @param kept  exp(-d)
+/// The states move by exp(-d) [1 0; d 1]; the noise of the
 /// step has the covariance of the integrals of exp(-2 x) [1 x; x x^2].
-void Turbulence::advance_transverse(Transverse& process, double lags) {
-  const double kept = std::exp(-lags);
-  const double first_noise = noise_.draw();
-  const double second_noise = noise_.draw();
+void Turbulence::advance_transverse(Transverse& process, double lags, double kept) {
+  const auto [first_noise, second_noise] = noise_.draw_pair();
   process.second = kept * (process.second + lags * process.first);
   process.first *= kept;
   if (lags <= 0.0) return;
@@ -129,13 +138,15 @@ void Turbulence::advance_transverse(Transverse& process, double lags) {
 
 Turbulence::Turbulence(TurbulenceLevel level, double span_m, std::uint64_t seed)
     : level_(level), span_m_(span_m), noise_(seed) {
-  along_ = noise_.draw();
-  roll_ = noise_.draw();
+  const auto [along, roll] = noise_.draw_pair();
+  along_ = along;
+  roll_ = roll;
   // Stationary covariance [1/2 1/4; 1/4 1/4].
   for (Transverse* process : {&side_, &down_}) {
     const double root = std::sqrt(0.125);
-    process->first = 2.0 * root * noise_.draw();
-    process->second = 0.5 * process->first + root * noise_.draw();
+    const auto [first, second] = noise_.draw_pair();
+    process->first = 2.0 * root * first;
+    process->second = 0.5 * process->first + root * second;
   }
 }
 
@@ -161,15 +172,19 @@ void Turbulence::advance(double airspeed_m_s, double height_agl_m, double dt_s) 
     lagged_side_m_s_ = gust_.velocity_m_s.y();
     lagged_down_m_s_ = gust_.velocity_m_s.z();
   }
+  const double lags_u = way_m / scales.length_u_m;
+  const double lags_w = way_m / scales.length_w_m;
+  const double change_u = std::expm1(-lags_u);
+  const double change_pitch = std::expm1(-way_m / pitch_length_m);
+  const double change_yaw = std::expm1(-way_m / yaw_length_m);
   // While the gust of the last step was met, the lags moved towards it.
-  lagged_down_m_s_ +=
-      (gust_.velocity_m_s.z() - lagged_down_m_s_) * -std::expm1(-way_m / pitch_length_m);
-  lagged_side_m_s_ +=
-      (gust_.velocity_m_s.y() - lagged_side_m_s_) * -std::expm1(-way_m / yaw_length_m);
-  advance_first_order(along_, way_m / scales.length_u_m, noise_.draw());
-  advance_first_order(roll_, way_m / pitch_length_m, noise_.draw());
-  advance_transverse(side_, way_m / scales.length_u_m);
-  advance_transverse(down_, way_m / scales.length_w_m);
+  lagged_down_m_s_ += (lagged_down_m_s_ - gust_.velocity_m_s.z()) * change_pitch;
+  lagged_side_m_s_ += (lagged_side_m_s_ - gust_.velocity_m_s.y()) * change_yaw;
+  const auto [along_noise, roll_noise] = noise_.draw_pair();
+  advance_first_order(along_, change_u, along_noise);
+  advance_first_order(roll_, change_pitch, roll_noise);
+  advance_transverse(side_, lags_u, 1.0 + change_u);
+  advance_transverse(down_, lags_w, std::exp(-lags_w));
   set_velocities(scales);
   // s / (V + length s) of a gust is its difference to the lag, over the length.
   gust_.rate_rad_s.y() = -(gust_.velocity_m_s.z() - lagged_down_m_s_) / pitch_length_m;

@@ -61,7 +61,7 @@ class Turbulence {
     [[nodiscard]] double value() const;
   };
 
-  void advance_transverse(Transverse& process, double lags);
+  void advance_transverse(Transverse& process, double lags, double kept);
   void set_velocities(const TurbulenceScales& scales);
 
   TurbulenceLevel level_;

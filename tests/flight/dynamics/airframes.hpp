@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "flight/dynamics/airframe.hpp"
+#include "flight/dynamics/airframe_file.hpp"
 #include "tests/support/support.hpp"
 
 namespace overfly::dynamics::testing {

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <fstream>
 #include <optional>
 #include <sstream>
@@ -83,9 +84,9 @@ TEST(RecordedRascal, AirDataFollowFromVelocityAndAttitude) {
   }
   RecordProperty("worst_speed_m_s", std::to_string(worst_speed));
   RecordProperty("worst_angle_rad", std::to_string(worst_angle));
-  // Airspeed and angles are logged one step of that simulator (1/120 s?) apart from the velocity.
-  EXPECT_LT(worst_speed, 0.02);
-  EXPECT_LT(worst_angle, 2e-3);
+  // The file has seven digits.
+  EXPECT_LT(worst_speed, 1e-5);
+  EXPECT_LT(worst_angle, 3e-6);
 }
 
 TEST(RecordedRascal, IntegratedRatesGiveItsAttitudesAndPositions) {
@@ -116,40 +117,67 @@ TEST(RecordedRascal, IntegratedRatesGiveItsAttitudesAndPositions) {
   }
   RecordProperty("worst_angle_rad", std::to_string(worst_angle));
   RecordProperty("worst_place_m", std::to_string(worst_place_m));
-  EXPECT_LT(worst_angle, 5e-3);
-  EXPECT_LT(worst_place_m, 1.0);
+  // Rates and velocities are not linear within 50 ms while the bank changes.
+  EXPECT_LT(worst_angle, 2e-3);
+  EXPECT_LT(worst_place_m, 0.2);
 }
 
-TEST(RecordedRascal, TurnsAsCoordinatedTurnsDo) {
+TEST(RecordedRascal, TurnsByBankAndSideForce) {
   OVERFLY_DATA_OR_SKIP(file, "jsbsim/rascal_25ms_20hz.csv");
   const auto rows = read_rows(file);
   const double g = Environment::at(rows.front().place, 0.0).gravity_m_s2;
-  int steady = 0;
-  double worst = 0.0, sum = 0.0;
+  int steady = 0, left = 0;
+  double least = 1e9, most = -1e9, worst_rate = 0.0, least_turn = 1e9, most_turn = -1e9;
   constexpr std::size_t kSecond = 20;
   for (std::size_t i = kSecond; i + kSecond < rows.size(); ++i) {
     const Row& row = rows[i];
-    const auto bank_change = [&](std::size_t j) {
-      return std::abs(rows[j].attitude.roll_rad - row.attitude.roll_rad);
+    const double roll = row.attitude.roll_rad;
+    const auto steady_at = [&](std::size_t j) {
+      return std::abs(rows[j].attitude.roll_rad - roll) < 0.02;
     };
-    if (std::abs(row.attitude.roll_rad) < 0.4 || bank_change(i - kSecond) > 0.02 ||
-        bank_change(i + kSecond) > 0.02) {
-      continue;
-    }
-    const double turn_rate =
-        wrap_pi(rows[i + kSecond].attitude.yaw_rad - rows[i - kSecond].attitude.yaw_rad) /
-        (rows[i + kSecond].t_s - rows[i - kSecond].t_s);
-    const double ratio = turn_rate * row.airspeed_m_s / (g * std::tan(row.attitude.roll_rad));
-    worst = std::max(worst, std::abs(ratio - 1.0));
-    sum += ratio;
+    if (std::abs(roll) < 0.4 || !steady_at(i - kSecond) || !steady_at(i + kSecond)) continue;
     ++steady;
+    if (roll < 0.0) ++left;
+    const double turn_rate = wrap_pi(rows[i + 1].attitude.yaw_rad - rows[i - 1].attitude.yaw_rad) /
+                             (rows[i + 1].t_s - rows[i - 1].t_s);
+    const Eigen::Vector3d& omega = row.state.omega_body_rad_s;
+    const Eigen::Vector3d& v = row.state.v_body_m_s;
+    // Beard & McLain, eq. 3.3.
+    const double by_rates = (omega.y() * std::sin(roll) + omega.z() * std::cos(roll)) /
+                            std::cos(row.attitude.pitch_rad);
+    worst_rate = std::max(worst_rate, std::abs(turn_rate / by_rates - 1.0));
+    const double turn = turn_rate * row.airspeed_m_s / (g * std::tan(roll));
+    least_turn = std::min(least_turn, turn);
+    most_turn = std::max(most_turn, turn);
+    // The equation of motion of v: what gravity and rotation leave is the air's side force.
+    const double v_rate = (rows[i + 1].state.v_body_m_s.y() - rows[i - 1].state.v_body_m_s.y()) /
+                          (rows[i + 1].t_s - rows[i - 1].t_s);
+    const double side_force = v_rate + omega.z() * v.x() - omega.x() * v.z() -
+                              g * std::sin(roll) * std::cos(row.attitude.pitch_rad);
+    least = std::min(least, side_force / row.beta_rad);
+    most = std::max(most, side_force / row.beta_rad);
   }
-  ASSERT_GT(steady, 200);
-  RecordProperty("steady_rows", steady);
-  RecordProperty("worst_ratio_error", std::to_string(worst));
-  RecordProperty("mean_ratio", std::to_string(sum / steady));
-  EXPECT_LT(worst, 0.10);
-  EXPECT_NEAR(sum / steady, 1.0, 0.03);
+  std::printf(
+      "[ RASCAL   ] %d rows of steady turns: turn rate over g tan(bank) / V %.3f to %.3f, side "
+      "force "
+      "over sideslip %.1f to %.1f m/s^2, turn rate by p, q, r within %.4f\n",
+      steady,
+      least_turn,
+      most_turn,
+      least,
+      most,
+      worst_rate);
+  ASSERT_GT(steady, 100);
+  EXPECT_GT(left, 0);
+  EXPECT_LT(worst_rate, 0.01);
+  // The turns are not quite coordinated: sideslips of 0.5 deg to the right and 0.8 deg to the left
+  // carry up to an eighth of the turn. If they do, one derivative of the side force explains every
+  // row; with C_Y_beta = -0.9 (the Aerosonde: -0.98), 25 m/s and 60 N/m^2 of wing loading it is
+  // -57.
+  EXPECT_GT(least_turn, 0.87);
+  EXPECT_LT(most_turn, 1.0);
+  EXPECT_GT(least, -61.0);
+  EXPECT_LT(most, -55.0);
 }
 
 }  // namespace

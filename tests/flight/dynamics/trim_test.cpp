@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 
 #include "core/motion/pose.hpp"
 #include "flight/dynamics/aerodynamics.hpp"
@@ -105,6 +106,59 @@ TEST(Trim, FollowsFromAThrottle) {
   TrimRequest by_climb = level(20.0);
   by_climb.climb_rad = climb->climb_rad;
   EXPECT_NEAR(trim(airframe, place, by_climb)->controls.throttle, 1.0, 1e-9);
+}
+
+TEST(Trim, GivesTheLimitsOfEachAirframe) {
+  const Environment place;
+  for (const char* name : testing::kAirframes) {
+    const Airframe airframe = testing::airframe(name);
+    const double stall = stall_speed_m_s(airframe, place, 0.0);
+    const auto at_power = [&](double v, double throttle) {
+      TrimRequest request = level(v);
+      request.throttle = throttle;
+      return trim(airframe, place, request);
+    };
+    double slowest = 1e9, fastest = 0.0, steepest = -1.0, flattest = 1.0;
+    for (double v = 0.9 * stall; v < 5.0 * stall; v += 0.1) {
+      if (trim(airframe, place, level(v)).ok()) slowest = std::min(slowest, v);
+      const auto full = at_power(v, 1.0);
+      if (full.ok() && full->climb_rad >= 0.0) fastest = v;
+      if (full.ok()) steepest = std::max(steepest, v * std::sin(full->climb_rad));
+      const auto idle = at_power(v, 0.0);
+      if (idle.ok()) flattest = std::min(flattest, -std::tan(idle->climb_rad));
+    }
+    const auto cruise = trim(airframe, place, level(testing::cruise_m_s(name)));
+    std::printf(
+        "[ LIMITS   ] %s: stall %.2f m/s, level flight from %.1f to %.1f m/s, climb %.1f m/s, "
+        "glide 1 : %.1f; "
+        "at "
+        "%.0f m/s angle of attack %.2f deg, elevator %.2f deg, throttle %.3f\n",
+        name,
+        stall,
+        slowest,
+        fastest,
+        steepest,
+        1.0 / flattest,
+        testing::cruise_m_s(name),
+        deg_from_rad(cruise->alpha_rad),
+        deg_from_rad(cruise->controls.elevator_rad),
+        cruise->controls.throttle);
+    // The elevator's and the thrust's share of the lift moves the slowest flight by a few percent.
+    // The Aerosonde's elevator cannot hold the angle of attack of its stall at all.
+    const auto slower = trim(airframe, place, level(slowest - 0.2));
+    ASSERT_FALSE(slower.ok()) << name;
+    if (std::string(name) == "aerosonde") {
+      EXPECT_THAT(slower.error().message, HasSubstr("needs elevator -"));
+    } else {
+      EXPECT_LT(std::abs(slowest / stall - 1.0), 0.06) << name;
+      EXPECT_THAT(slower.error().message, HasSubstr("too slow"));
+    }
+    EXPECT_TRUE(trim(airframe, place, level(fastest)).ok()) << name;
+    EXPECT_FALSE(trim(airframe, place, level(fastest + 0.2)).ok()) << name;
+    EXPECT_GT(fastest, 2.0 * stall) << name;
+    EXPECT_GT(1.0 / flattest, 5.0) << name;
+    EXPECT_LT(1.0 / flattest, 20.0) << name;
+  }
 }
 
 TEST(Trim, SaysWhyAFlightIsImpossible) {

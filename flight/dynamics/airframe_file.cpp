@@ -1,6 +1,6 @@
-#include "flight/dynamics/airframe.hpp"
+#include "flight/dynamics/airframe_file.hpp"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -11,6 +11,8 @@
 #include "core/outside/file_text.hpp"
 #include "core/outside/outside_json.hpp"
 #include "core/text/number_text.hpp"
+#include "flight/dynamics/aerodynamics.hpp"
+#include "flight/dynamics/environment.hpp"
 
 namespace overfly::dynamics {
 namespace {
@@ -112,13 +114,22 @@ class FieldReader {
   std::set<std::string> asked_;
 };
 
+/// "FIELD = VALUE: must be at least LIMIT (REASON)".
+std::string below(const std::string& path, double value, double limit, const std::string& reason) {
+  return path + " = " + number_text(value) + ": must be at least " + number_text(limit) + " (" +
+         reason + ")";
+}
+
 void read_mass(FieldReader& reader, Airframe& airframe) {
   reader.number("mass_kg", airframe.mass_kg, 0.05, 2000.0);
+  reader.number("wing.area_m2", airframe.wing.area_m2, 0.01, 200.0);
+  reader.number("wing.span_m", airframe.wing.span_m, 0.1, 50.0);
+  reader.number("wing.chord_m", airframe.wing.chord_m, 0.02, 10.0);
   Inertia& inertia = airframe.inertia;
-  reader.number("inertia_kg_m2.xx", inertia.xx, 1e-5, 1e5);
-  reader.number("inertia_kg_m2.yy", inertia.yy, 1e-5, 1e5);
-  reader.number("inertia_kg_m2.zz", inertia.zz, 1e-5, 1e5);
-  reader.number("inertia_kg_m2.xz", inertia.xz, -1e5, 1e5);
+  reader.number("inertia_kg_m2.xx", inertia.xx, 1e-6, 1e6);
+  reader.number("inertia_kg_m2.yy", inertia.yy, 1e-6, 1e6);
+  reader.number("inertia_kg_m2.zz", inertia.zz, 1e-6, 1e6);
+  reader.number("inertia_kg_m2.xz", inertia.xz, -1e6, 1e6);
   // The principal moments of a body are positive, and none exceeds the sum of the other two. Those
   // of x and z are m +- d.
   const double m = 0.5 * (inertia.xx + inertia.zz);
@@ -126,12 +137,27 @@ void read_mass(FieldReader& reader, Airframe& airframe) {
   reader.require(m - d > 0.0 && 2.0 * m >= inertia.yy && inertia.yy >= 2.0 * d,
                  "inertia_kg_m2: no body has these moments (one principal moment exceeds the sum "
                  "of the other two, or is not positive)");
+  // Lighter or more slender than any aircraft: motions too fast for the integrator.
+  const double least_mass = 0.5 * airframe.wing.area_m2;
+  reader.require(airframe.mass_kg >= least_mass,
+                 below("mass_kg", airframe.mass_kg, least_mass, "0.5 kg per m^2 of wing"));
+  const double roll_arm = 0.05 * airframe.wing.span_m;
+  const double pitch_arm = std::max(0.02 * airframe.wing.span_m, 0.2 * airframe.wing.chord_m);
+  const double least_roll = airframe.mass_kg * roll_arm * roll_arm;
+  const double least_pitch = airframe.mass_kg * pitch_arm * pitch_arm;
+  reader.require(m - d >= least_roll,
+                 below("inertia_kg_m2: least moment about x and z",
+                       m - d,
+                       least_roll,
+                       "a radius of gyration of 5 % of the span"));
+  reader.require(inertia.yy >= least_pitch,
+                 below("inertia_kg_m2.yy",
+                       inertia.yy,
+                       least_pitch,
+                       "a radius of gyration of 2 % of the span and 20 % of the chord"));
 }
 
 void read_aerodynamics(FieldReader& reader, Airframe& airframe) {
-  reader.number("wing.area_m2", airframe.wing.area_m2, 0.01, 200.0);
-  reader.number("wing.span_m", airframe.wing.span_m, 0.1, 50.0);
-  reader.number("wing.chord_m", airframe.wing.chord_m, 0.02, 10.0);
   reader.number("lift.zero", airframe.lift.zero, -1.0, 2.0);
   reader.number("lift.alpha", airframe.lift.alpha, 0.5, 7.0);
   reader.number("lift.pitch_rate", airframe.lift.pitch_rate, -20.0, 50.0);
@@ -143,21 +169,22 @@ void read_aerodynamics(FieldReader& reader, Airframe& airframe) {
   reader.number("stall.sharpness", airframe.stall.sharpness, 5.0, 500.0);
   reader.number("pitch.zero", airframe.pitch.zero, -1.0, 1.0);
   reader.number("pitch.alpha", airframe.pitch.alpha, -20.0, 5.0);
-  reader.number("pitch.pitch_rate", airframe.pitch.pitch_rate, -200.0, 0.0);
+  reader.number("pitch.pitch_rate", airframe.pitch.pitch_rate, -100.0, -0.1);
   reader.number("pitch.elevator", airframe.pitch.elevator, -10.0, -0.001);
   for (const auto& [name, group] :
        {std::pair<std::string, LateralCoefficients*>{"side", &airframe.side},
         {"roll", &airframe.roll},
         {"yaw", &airframe.yaw}}) {
-    reader.number(name + ".beta", group->beta, -5.0, name == "side" ? 0.0 : 5.0);
-    reader.number(name + ".roll_rate", group->roll_rate, -5.0, name == "roll" ? 0.0 : 5.0);
-    reader.number(name + ".yaw_rate", group->yaw_rate, -5.0, name == "yaw" ? 0.0 : 5.0);
-    reader.number(name + ".aileron", group->aileron, name == "roll" ? 0.001 : -5.0, 5.0);
-    reader.number(name + ".rudder", group->rudder, -5.0, name == "yaw" ? -0.0001 : 5.0);
+    reader.number(name + ".beta", group->beta, -2.0, name == "side" ? 0.0 : 2.0);
+    reader.number(name + ".roll_rate", group->roll_rate, -2.0, name == "roll" ? -0.01 : 2.0);
+    reader.number(name + ".yaw_rate", group->yaw_rate, -2.0, name == "yaw" ? -0.001 : 2.0);
+    reader.number(name + ".aileron", group->aileron, name == "roll" ? 0.001 : -2.0, 2.0);
+    reader.number(name + ".rudder", group->rudder, -2.0, name == "yaw" ? -0.0001 : 2.0);
   }
 }
 
-void read_propulsion(FieldReader& reader, Propulsion& propulsion) {
+void read_propulsion(FieldReader& reader, Airframe& airframe) {
+  Propulsion& propulsion = airframe.propulsion;
   reader.number("propulsion.diameter_m", propulsion.diameter_m, 0.02, 5.0);
   reader.number("propulsion.thrust.zero", propulsion.thrust.zero, 0.001, 1.0);
   reader.number("propulsion.thrust.linear", propulsion.thrust.linear, -2.0, 2.0);
@@ -179,6 +206,18 @@ void read_propulsion(FieldReader& reader, Propulsion& propulsion) {
                  "propulsion: the thrust coefficient is positive at the advance ratio " +
                      number_text(free_ratio) +
                      ", where the torque is zero: the propeller would drive without power");
+  const double tip_m_s =
+      propulsion.battery_v / propulsion.motor_constant_v_s_rad * 0.5 * propulsion.diameter_m;
+  reader.require(tip_m_s <= 340.0,
+                 "propulsion: the propeller's tips move at " + number_text(tip_m_s) +
+                     " m/s without load: must be at most 340");
+  const double static_n = propeller(propulsion, 0.0, 1.0, 1.225).thrust_n;
+  const double most_n = 20.0 * kStandardGravityMS2 * airframe.mass_kg;
+  reader.require(static_n <= most_n && t.zero >= q.zero,
+                 "propulsion: static thrust of " + number_text(static_n) + " N, coefficients " +
+                     number_text(t.zero) + " and " + number_text(q.zero) +
+                     " of thrust and torque: must be at most " + number_text(most_n) +
+                     " N (20 times the weight), with more thrust than torque");
 }
 
 void read_surface(FieldReader& reader, const std::string& name, SurfaceLimits& surface) {
@@ -201,7 +240,7 @@ Result<Airframe> parse_airframe(std::string_view text, const std::string& origin
   reader.text("source", airframe.source);
   read_mass(reader, airframe);
   read_aerodynamics(reader, airframe);
-  read_propulsion(reader, airframe.propulsion);
+  read_propulsion(reader, airframe);
   read_surface(reader, "elevator", airframe.elevator);
   read_surface(reader, "aileron", airframe.aileron);
   read_surface(reader, "rudder", airframe.rudder);

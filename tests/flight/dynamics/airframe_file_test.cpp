@@ -1,5 +1,5 @@
 // Airframe files: what they hold, and the messages about faulty ones.
-#include "flight/dynamics/airframe.hpp"
+#include "flight/dynamics/airframe_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -74,6 +74,12 @@ TEST(AirframeFile, FaultsNameFileFieldValueAndLimit) {
             "plane.json: \"wing.winglets\" is not a field of an airframe");
   EXPECT_THAT(complaint("/inertia_kg_m2/xz", 5.0), HasSubstr("inertia_kg_m2: no body has"));
   EXPECT_THAT(complaint("/inertia_kg_m2/yy", 9.0), HasSubstr("inertia_kg_m2: no body has"));
+  EXPECT_EQ(complaint("/wing/area_m2", 40),
+            "plane.json: mass_kg = 11: must be at least 20 (0.5 kg per m^2 of wing)");
+  EXPECT_THAT(complaint("/wing/span_m", 8.0), HasSubstr("least moment about x and z = 0.8"));
+  EXPECT_THAT(complaint("/wing/chord_m", 3.0), HasSubstr("inertia_kg_m2.yy = 1.135: must be at"));
+  EXPECT_THAT(complaint("/propulsion/battery_v", 100), HasSubstr("tips move at 385."));
+  EXPECT_THAT(complaint("/propulsion/torque/zero", 0.1), HasSubstr("more thrust than torque"));
   EXPECT_THAT(complaint("/propulsion/thrust/zero", 0.2), HasSubstr("drive without power"));
   EXPECT_EQ(complaint("/mass_kg", 12.0), "");
 }
