@@ -1,6 +1,10 @@
 // Compiles only while no third-party type leaks out of its room: the public headers of all rooms
 // are included, and none of the libraries' own macros may be visible after that.
 #include "evaluation/evaluation.hpp"
+#include "flight/dynamics/aircraft.hpp"
+#include "flight/dynamics/airframe_file.hpp"
+#include "flight/dynamics/flight_speed.hpp"
+#include "flight/dynamics/modes.hpp"
 #include "flight/flight.hpp"
 #include "odometry/feature/feature_odometry.hpp"
 #include "renderer/renderer.hpp"
