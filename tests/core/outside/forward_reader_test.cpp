@@ -30,7 +30,9 @@ TEST(ForwardReader, ReadsAFileLargerThanItsBuffer) {
     const auto bytes = reader->ahead(1000);
     ASSERT_TRUE(bytes.ok());
     if (bytes->empty()) break;
-    if (read.size() + 1000 <= text.size()) EXPECT_GE(bytes->size(), 1000U);
+    if (read.size() + 1000 <= text.size()) {
+      EXPECT_GE(bytes->size(), 1000U);
+    }
     const std::size_t taken = std::min<std::size_t>(bytes->size(), 777);
     read.append(reinterpret_cast<const char*>(bytes->data()), taken);
     reader->skip(taken);
