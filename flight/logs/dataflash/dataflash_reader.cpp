@@ -77,6 +77,7 @@ class DataflashPass {
   std::uint64_t skipped_bytes_ = 0;
   std::uint64_t damaged_places_ = 0;
   std::uint64_t left_out_records_ = 0;
+  bool is_ardu_plane_ = false;  ///< by the first text of its logs
   bool in_step_ = true;
 };
 
@@ -155,7 +156,9 @@ void DataflashPass::take(std::span<const std::uint8_t> record) {
   sink_.message(stream->id, time);
   if (time) take_samples(kind, *stream, *time, record);
   if (kind.plan.event) {
-    sink_.event({"", time, *kind.plan.event, event_text(kind.plan, record)});
+    std::string text = event_text(kind.plan, record, is_ardu_plane_);
+    is_ardu_plane_ = is_ardu_plane_ || text.starts_with("ArduPlane");
+    sink_.event({"", time, *kind.plan.event, std::move(text)});
   }
   if (kind.origin) take_origin(kind.plan, record);
   if (kind.declares) {

@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include "core/motion/pose.hpp"
+#include "flight/logs/mode_names.hpp"
 #include "flight/logs/ned_attitude.hpp"
 
 namespace overfly::flight::logs {
@@ -144,11 +145,15 @@ Eigen::Quaterniond attitude_in(const RecordPlan& plan, std::span<const std::uint
   return R_ned_body_from({angles.x(), angles.y(), angles.z()});
 }
 
-std::string event_text(const RecordPlan& plan, std::span<const std::uint8_t> record) {
+std::string event_text(const RecordPlan& plan,
+                       std::span<const std::uint8_t> record,
+                       bool is_ardu_plane) {
   const RecordFormat& format = plan.format;
   switch (*plan.event) {
-    case EventKind::kMode:
-      return "mode " + integer_text(format, "Mode", record);
+    case EventKind::kMode: {
+      const RecordField* const mode = format.field("Mode");
+      return mode == nullptr ? "mode" : mode_text(integer_in(*mode, record), is_ardu_plane);
+    }
     case EventKind::kArming: {
       const RecordField* const state = format.field("ArmState");
       return state != nullptr && integer_in(*state, record) != 0 ? "armed" : "disarmed";

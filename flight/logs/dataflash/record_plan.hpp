@@ -38,6 +38,9 @@ struct RecordPlan {
 [[nodiscard]] Eigen::Quaterniond attitude_in(const RecordPlan& plan,
                                              std::span<const std::uint8_t> record);
 /// The text of an event's record.
-[[nodiscard]] std::string event_text(const RecordPlan& plan, std::span<const std::uint8_t> record);
+/// @param is_ardu_plane  whose modes have names
+[[nodiscard]] std::string event_text(const RecordPlan& plan,
+                                     std::span<const std::uint8_t> record,
+                                     bool is_ardu_plane);
 
 }  // namespace overfly::flight::logs

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "flight/logs/boot_clock.hpp"
+#include "flight/logs/mode_names.hpp"
 #include "flight/logs/tlog/tlog_streams.hpp"
 #include "flight/mavlink/frame_finder.hpp"
 #include "flight/mavlink/messages.hpp"
@@ -27,6 +28,12 @@ std::uint64_t stamp_us(std::span<const std::uint8_t> prefix) {
   std::uint64_t value = 0;
   for (const std::uint8_t byte : prefix) value = (value << 8U) | byte;
   return value;
+}
+
+/// A fixed-wing aircraft (MAV_TYPE 1) or one that takes off vertically (19 to 25) with ArduPilot.
+bool is_ardu_plane(const mavlink::Heartbeat& heartbeat) {
+  const std::uint8_t type = heartbeat.vehicle_type;
+  return heartbeat.autopilot == 3 && (type == 1 || (type >= 19 && type <= 25));
 }
 
 /// A component of a system, with a clock of its own.
@@ -133,7 +140,7 @@ void TlogPass::take_events(const Frame& frame, Sender& sender) {
       if (now.autopilot == kNoAutopilot) return;
       const std::optional<mavlink::Heartbeat> before = std::exchange(sender.heartbeat, now);
       if (!before || before->custom_mode != now.custom_mode) {
-        event(sender, EventKind::kMode, "mode " + std::to_string(now.custom_mode));
+        event(sender, EventKind::kMode, mode_text(now.custom_mode, is_ardu_plane(now)));
       }
       if (!before || before->armed() != now.armed()) {
         event(sender, EventKind::kArming, now.armed() ? "armed" : "disarmed");

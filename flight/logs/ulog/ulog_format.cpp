@@ -101,6 +101,8 @@ bool UlogFormats::declare(std::string_view text) {
     std::string_view type = item.substr(0, space);
     const std::optional<std::size_t> count = take_index(type, 1);
     if (!count || type.empty()) return false;
+    if (members.size() >= kMaxMembers || members_ >= kMaxMembersOfAll) return false;
+    ++members_;
     members.push_back({std::string(type), *count, std::string(item.substr(space + 1))});
   }
   formats_[std::string(text.substr(0, colon))] = std::move(members);

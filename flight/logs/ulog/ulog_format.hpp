@@ -28,7 +28,7 @@ struct UlogField {
 class UlogFormats {
  public:
   /// Takes the text of a format message: "name:type field;type[4] field;...".
-  /// @return false if it cannot be understood, or declares more than kMaxFormats
+  /// @return false if it cannot be understood, or exceeds one of the limits below
   bool declare(std::string_view text);
 
   /// The field of a message: "q", or "parts[1].x" of nested types.
@@ -37,7 +37,10 @@ class UlogFormats {
                                               std::string_view path) const;
   [[nodiscard]] bool has(const std::string& message) const { return formats_.contains(message); }
 
+  /// PX4 declares about 200 formats with up to 100 members.
   static constexpr std::size_t kMaxFormats = 4096;
+  static constexpr std::size_t kMaxMembers = 1024;
+  static constexpr std::size_t kMaxMembersOfAll = 100'000;
 
  private:
   struct Member {
@@ -48,6 +51,7 @@ class UlogFormats {
   [[nodiscard]] std::optional<std::size_t> size_of(const std::string& type, int depth) const;
 
   std::map<std::string, std::vector<Member>, std::less<>> formats_;
+  std::size_t members_ = 0;  ///< declared so far
   mutable std::map<std::string, std::optional<std::size_t>, std::less<>> sizes_;
 };
 

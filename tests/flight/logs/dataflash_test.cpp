@@ -149,6 +149,32 @@ TEST(Dataflash, JoinsPositionsWithInterpolatedAttitudes) {
             1e-6);
 }
 
+TEST(Dataflash, NamesTheModesOfAPlane) {
+  Bytes bytes = declarations();
+  append(bytes, format_record(4, 75, "MSG", "QZ", "TimeUS,Message"));
+  append(bytes, format_record(5, 14, "MODE", "QMBB", "TimeUS,Mode,ModeNum,Rsn"));
+  const auto mode = [](std::uint8_t number) {
+    Bytes record = record_header(5);
+    put(record, std::uint64_t{2'000'000});
+    for (const std::uint8_t value : {number, number, std::uint8_t{1}}) record.push_back(value);
+    return record;
+  };
+  append(bytes, mode(10));
+  Bytes text = record_header(4);
+  put(text, std::uint64_t{2'000'000});
+  put_text(text, "ArduPlane V4.6.0-dev", 64);
+  append(bytes, text);
+  for (const int number : {10, 9, 200}) append(bytes, mode(static_cast<std::uint8_t>(number)));
+  const overfly::testing::TemporaryFolder folder;
+  const auto log = open_bytes(folder, bytes);
+  ASSERT_TRUE(log.ok()) << log.error().message;
+  std::vector<std::string> texts;
+  for (const LogEvent& event : log->events) texts.push_back(event.text);
+  EXPECT_THAT(texts,
+              ::testing::ElementsAre(
+                  "mode 10", "ArduPlane V4.6.0-dev", "mode 10 (AUTO)", "mode 9", "mode 200"));
+}
+
 TEST(Dataflash, SplitsStreamsByTheInstanceThatFmtuNames) {
   Bytes bytes = declarations();
   append(bytes, format_record(5, 44, "FMTU", "QBNN", "TimeUS,FmtType,UnitIds,MultIds"));

@@ -186,10 +186,13 @@ TEST_F(TlogTest, ListsModesArmingAndTexts) {
     ASSERT_TRUE(event.time);
     EXPECT_EQ(event.time->t_ns, kNsPerS);
   }
-  EXPECT_THAT(
-      texts,
-      ::testing::ElementsAre(
-          "mode 0", "disarmed", "mode 10", "armed", "Ready to fly", "reached mission item 7"));
+  EXPECT_THAT(texts,
+              ::testing::ElementsAre("mode 0 (MANUAL)",
+                                     "disarmed",
+                                     "mode 10 (AUTO)",
+                                     "armed",
+                                     "Ready to fly",
+                                     "reached mission item 7"));
   EXPECT_FALSE(log->truth);
   EXPECT_THAT(log->warnings, Contains(HasSubstr("no valid positions")));
 }

@@ -140,6 +140,9 @@ TEST(UlogFormats, RejectsWhatItCannotUnderstand) {
                            "a:[3] x;"}) {
     EXPECT_FALSE(formats.declare(text)) << text;
   }
+  std::string wide = "wide:";
+  for (int i = 0; i < 1025; ++i) wide += "bool b" + std::to_string(i) + ";";
+  EXPECT_FALSE(formats.declare(wide));
   EXPECT_TRUE(formats.declare("loop:loop next;float x;"));
   EXPECT_FALSE(formats.find("loop", "x"));
   EXPECT_TRUE(formats.declare("large:float[60000] a;float x;"));
