@@ -1,0 +1,124 @@
+// overfly log: what it prints of a flight log, and the files it writes.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/motion/trajectory_io.hpp"
+#include "tests/flight/logs/log_bytes.hpp"
+#include "tests/server/app/program.hpp"
+#include "tests/support/support.hpp"
+
+namespace overfly::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using Json = nlohmann::json;
+
+/// A DataFlash log of 2 s at 25 Hz: to the north at 25 m/s, in AUTO.
+flight::testing::Bytes northward_log() {
+  using namespace flight::testing;
+  Bytes bytes = format_record(0x80, 89, "FMT", "BBnNZ", "Type,Length,Name,Format,Columns");
+  append(bytes, format_record(2, 29, "SIM", "QLLfccc", "TimeUS,Lat,Lng,Alt,Roll,Pitch,Yaw"));
+  append(bytes, format_record(3, 14, "MODE", "QMBB", "TimeUS,Mode,ModeNum,Rsn"));
+  Bytes mode = record_header(3);
+  put(mode, std::uint64_t{1'000'000});
+  for (const int value : {10, 10, 1}) mode.push_back(static_cast<std::uint8_t>(value));
+  append(bytes, mode);
+  for (int i = 0; i < 50; ++i) {
+    Bytes record = record_header(2);
+    put(record, static_cast<std::uint64_t>(1'000'000 + 40'000 * i));
+    put(record, 470000000 + 90 * i);
+    put(record, std::int32_t{80000000});
+    put(record, 500.0F);
+    for (const std::int16_t angle : {1000, 0, 0}) put(record, angle);
+    append(bytes, record);
+  }
+  return bytes;
+}
+
+class LogCommand : public ::testing::Test {
+ protected:
+  void SetUp() override { flight::testing::write_bytes(path("flight.bin"), northward_log()); }
+  [[nodiscard]] std::string path(const std::string& name) const {
+    return (folder_.path() / name).string();
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(LogCommand, InfoListsStreamsTruthAndEvents) {
+  const Outcome text = overfly_program({"log", "info", path("flight.bin")});
+  EXPECT_EQ(text.exit_code, 0) << text.err;
+  EXPECT_THAT(text.out, HasSubstr("dataflash, "));
+  EXPECT_THAT(text.out, HasSubstr("position, attitude (simulation)"));
+  EXPECT_THAT(text.out, HasSubstr("mode 10"));
+  EXPECT_THAT(text.out, HasSubstr("truth: SIM: the simulator's own state"));
+  const Outcome json = overfly_program({"log", "info", path("flight.bin"), "--json"});
+  ASSERT_EQ(json.exit_code, 0) << json.err;
+  const Json log = Json::parse(json.out);
+  EXPECT_EQ(log.at("format"), "dataflash");
+  EXPECT_EQ(log.at("truth").at("attitude"), "SIM");
+  EXPECT_EQ(log.at("on_ground"), false);
+  const Json& sim = log.at("streams").at(2);
+  EXPECT_EQ(sim.at("name"), "SIM");
+  EXPECT_EQ(sim.at("messages"), 50);
+  EXPECT_NEAR(sim.at("rate_hz").get<double>(), 25.0, 1e-9);
+  EXPECT_EQ(log.at("events").at(0).at("kind"), "mode");
+  EXPECT_EQ(log.at("clock_runs").size(), 1U);
+}
+
+TEST_F(LogCommand, ConvertWritesTumAndCsv) {
+  const Outcome tum =
+      overfly_program({"log", "convert", path("flight.bin"), "--out", path("flight.tum")});
+  ASSERT_EQ(tum.exit_code, 0) << tum.err;
+  EXPECT_THAT(tum.out, HasSubstr("50 poses of SIM"));
+  const auto poses = read_trajectory(path("flight.tum"));
+  ASSERT_TRUE(poses.ok()) << poses.error().message;
+  EXPECT_EQ(poses->trajectory.size(), 50U);
+  EXPECT_NEAR(poses->trajectory.path_length_m(), 49.0, 0.5);
+  const Outcome csv = overfly_program({"log",
+                                       "convert",
+                                       path("flight.bin"),
+                                       "--from",
+                                       "1.5",
+                                       "--to",
+                                       "2.0",
+                                       "--geoid-separation-m",
+                                       "48",
+                                       "--out",
+                                       path("flight.csv")});
+  ASSERT_EQ(csv.exit_code, 0) << csv.err;
+  EXPECT_THAT(read_text(path("flight.csv")),
+              HasSubstr("alt_ellipsoid_m,roll_deg,pitch_deg,yaw_deg\n1.520000000,47.00011"));
+}
+
+TEST_F(LogCommand, RejectsWhatItCannotDo) {
+  const auto rejected = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"log", "convert", path("flight.bin")});
+    const Outcome outcome = overfly_program(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
+    return outcome.err;
+  };
+  EXPECT_THAT(rejected({"--out", path("a.txt")}), HasSubstr("must end with .tum or .csv"));
+  EXPECT_THAT(rejected({"--out", path("absent/a.tum")}), HasSubstr("does not exist"));
+  EXPECT_THAT(rejected({"--out", path("a.tum"), "--source", "GPS"}),
+              HasSubstr("source GPS: must be one of the sources with positions: SIM"));
+  EXPECT_THAT(rejected({"--out", path("a.tum"), "--from", "nan"}), HasSubstr("--from nan"));
+  EXPECT_THAT(rejected({"--out", path("a.tum"), "--from", "5", "--to", "4"}),
+              HasSubstr("must not be after"));
+  EXPECT_THAT(rejected({"--out", path("a.csv"), "--geoid-separation-m", "500"}),
+              HasSubstr("must be in [-120, 120]"));
+  EXPECT_THAT(rejected({"--out", path("a.tum"), "--geoid-separation-m", "5"}),
+              HasSubstr("only used for a .csv file"));
+  EXPECT_THAT(rejected({"--out", path("a.tum"), "--from", "500"}),
+              HasSubstr("no valid positions in the time asked for"));
+  write_text(path("text"), "hello");
+  const Outcome text = overfly_program({"log", "info", path("text")});
+  EXPECT_EQ(text.exit_code, 2);
+  EXPECT_THAT(text.err, HasSubstr("is no flight log"));
+}
+
+}  // namespace
+}  // namespace overfly::testing
