@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <tuple>
 
 #include "core/text/number_text.hpp"
 #include "flight/dynamics/aerodynamics.hpp"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "core/measure/processor_time.hpp"
 #include "core/motion/pose.hpp"

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <tuple>
 
 #include "core/motion/pose.hpp"
 #include "core/text/number_text.hpp"

@@ -48,6 +48,7 @@ class Turbulence {
   /// @param span_m  wing span b > 0
   Turbulence(TurbulenceLevel level, double span_m, std::uint64_t seed);
 
+  /// Zero before the first advance.
   [[nodiscard]] const Gust& gust() const { return gust_; }
   /// Moves on by airspeed_m_s * dt_s through the field.
   /// @pre both >= 0

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <string>
 
 #include "core/motion/pose.hpp"
 #include "flight/dynamics/aircraft.hpp"

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <complex>
 #include <functional>
+#include <tuple>
 #include <vector>
 
 #include "core/motion/pose.hpp"
