@@ -14,7 +14,7 @@ using flight::logs::OpenedLog;
 using flight::logs::PositionKind;
 using flight::logs::SourceOrigin;
 using flight::logs::StreamInfo;
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 /// Events that the text shows; --json has all.
 constexpr std::size_t kShownEvents = 40;
@@ -64,17 +64,17 @@ std::string event_line(const LogEvent& event) {
          "  " + (event.vehicle.empty() ? "" : event.vehicle + " ") + event.text + "\n";
 }
 
-Json stream_json(const StreamInfo& stream) {
-  Json json{{"name", stream.description.name},
-            {"vehicle", stream.description.vehicle},
-            {"messages", stream.messages},
-            {"rate_hz", stream.rate_hz},
-            {"first_s", nullptr},
-            {"last_s", nullptr},
-            {"gaps", stream.gaps},
-            {"longest_gap_s", s_from_ns(stream.longest_gap_ns)},
-            {"backward", stream.backward},
-            {"imu", stream.description.imu}};
+OrderedJson stream_json(const StreamInfo& stream) {
+  OrderedJson json{{"name", stream.description.name},
+                   {"vehicle", stream.description.vehicle},
+                   {"messages", stream.messages},
+                   {"rate_hz", stream.rate_hz},
+                   {"first_s", nullptr},
+                   {"last_s", nullptr},
+                   {"gaps", stream.gaps},
+                   {"longest_gap_s", s_from_ns(stream.longest_gap_ns)},
+                   {"backward", stream.backward},
+                   {"imu", stream.description.imu}};
   if (stream.first_ns) {
     json["first_s"] = s_from_ns(*stream.first_ns);
     json["last_s"] = s_from_ns(*stream.last_ns);
@@ -131,16 +131,16 @@ std::string log_info_text(const OpenedLog& log) {
   return text + ": " + log.truth->reason + "\n";
 }
 
-Json log_info_json(const OpenedLog& log) {
-  Json json{{"file", log.file.string()},
-            {"format", to_string(log.format)},
-            {"size_bytes", log.size_bytes},
-            {"truth", nullptr},
-            {"on_ground", log.on_ground},
-            {"streams", Json::array()},
-            {"clock_runs", Json::array()},
-            {"events", Json::array()},
-            {"warnings", log.warnings}};
+OrderedJson log_info_json(const OpenedLog& log) {
+  OrderedJson json{{"file", log.file.string()},
+                   {"format", to_string(log.format)},
+                   {"size_bytes", log.size_bytes},
+                   {"truth", nullptr},
+                   {"on_ground", log.on_ground},
+                   {"streams", OrderedJson::array()},
+                   {"clock_runs", OrderedJson::array()},
+                   {"events", OrderedJson::array()},
+                   {"warnings", log.warnings}};
   for (const StreamInfo& stream : log.streams) json["streams"].push_back(stream_json(stream));
   for (const BootInfo& boot : log.boots) {
     json["clock_runs"].push_back({{"vehicle", boot.vehicle},
@@ -149,7 +149,7 @@ Json log_info_json(const OpenedLog& log) {
                                   {"messages", boot.messages}});
   }
   for (const LogEvent& event : log.events) {
-    Json entry{{"t_s", nullptr}, {"kind", to_string(event.kind)}, {"text", event.text}};
+    OrderedJson entry{{"t_s", nullptr}, {"kind", to_string(event.kind)}, {"text", event.text}};
     if (event.time) entry["t_s"] = s_from_ns(event.time->t_ns);
     if (!event.vehicle.empty()) entry["vehicle"] = event.vehicle;
     json["events"].push_back(std::move(entry));
