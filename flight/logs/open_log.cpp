@@ -42,7 +42,7 @@ Result<const FormatFacts*> format_of(ForwardReader& reader, const std::filesyste
   }
   return Error{ErrorCode::kUnreadable,
                file.string() +
-                   ": is no flight log: a .tlog begins with a time stamp and a MAVLink frame, a "
+                   ": is not a flight log: a .tlog begins with a time stamp and a MAVLink frame, a "
                    "DataFlash .bin with A3 95 80, a .ulg with 'ULog'"};
 }
 

@@ -213,7 +213,7 @@ TEST(OpenLog, NamesWhatIsNoLog) {
   const auto text = open_log(folder.path() / "a.txt");
   ASSERT_FALSE(text.ok());
   EXPECT_EQ(text.error().code, ErrorCode::kUnreadable);
-  EXPECT_THAT(text.error().message, HasSubstr("a.txt: is no flight log"));
+  EXPECT_THAT(text.error().message, HasSubstr("a.txt: is not a flight log"));
   EXPECT_FALSE(open_log("/dev/zero").ok());
 }
 

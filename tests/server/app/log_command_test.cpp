@@ -117,7 +117,7 @@ TEST_F(LogCommand, RejectsWhatItCannotDo) {
   write_text(path("text"), "hello");
   const Outcome text = overfly_program({"log", "info", path("text")});
   EXPECT_EQ(text.exit_code, 2);
-  EXPECT_THAT(text.err, HasSubstr("is no flight log"));
+  EXPECT_THAT(text.err, HasSubstr("is not a flight log"));
 }
 
 }  // namespace
