@@ -28,8 +28,8 @@ struct FormatFacts {
 
 /// One line for each format. The first that recognises the first bytes of a file reads it.
 constexpr std::array kLogFormats = {
-    FormatFacts{LogFormat::kDataFlash, "dataflash", is_dataflash, read_dataflash},
     FormatFacts{LogFormat::kUlog, "ulog", is_ulog, read_ulog},
+    FormatFacts{LogFormat::kDataFlash, "dataflash", is_dataflash, read_dataflash},
     FormatFacts{LogFormat::kTlog, "tlog", is_tlog, read_tlog},
 };
 
@@ -40,10 +40,11 @@ Result<const FormatFacts*> format_of(ForwardReader& reader, const std::filesyste
   for (const FormatFacts& facts : kLogFormats) {
     if (facts.detect(head)) return &facts;
   }
-  return Error{ErrorCode::kUnreadable,
-               file.string() +
-                   ": is not a flight log: a .tlog begins with a time stamp and a MAVLink frame, a "
-                   "DataFlash .bin with A3 95 80, a .ulg with 'ULog'"};
+  return Error{
+      ErrorCode::kUnreadable,
+      file.string() +
+          ": is not a flight log: its first 1024 bytes have neither a time stamp with a MAVLink "
+          "frame (.tlog) nor a FMT record (DataFlash .bin) nor 'ULog' at the start (.ulg)"};
 }
 
 /// Gathers the figures of all streams.

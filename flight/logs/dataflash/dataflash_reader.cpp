@@ -238,8 +238,13 @@ void DataflashPass::report() {
 }  // namespace
 
 bool is_dataflash(std::span<const std::uint8_t> head) {
-  return head.size() >= kFormatRecordBytes && head[0] == kRecordStart1 &&
-         head[1] == kRecordStart2 && head[2] == kFormatType;
+  for (; head.size() >= kFormatRecordBytes; head = head.subspan(1)) {
+    if (head[0] == kRecordStart1 && head[1] == kRecordStart2 && head[2] == kFormatType) {
+      const std::optional<RecordFormat> format = read_format(head.first(kFormatRecordBytes));
+      if (format && !format->fields.empty()) return true;
+    }
+  }
+  return false;
 }
 
 Status read_dataflash(ForwardReader& file, LogSink& sink) {

@@ -10,7 +10,7 @@
 
 namespace overfly::flight::logs {
 
-/// Whether the first bytes of a file are those of a DataFlash log: it begins with a FMT record.
+/// Whether the first bytes of a file are those of a DataFlash log: among them is a FMT record.
 [[nodiscard]] bool is_dataflash(std::span<const std::uint8_t> head);
 
 /// Reads a DataFlash log once, from start to end.

@@ -190,9 +190,17 @@ void TlogPass::report(const mavlink::FrameCounts& counts) {
 }  // namespace
 
 bool is_tlog(std::span<const std::uint8_t> head) {
+  // From 2000 to 2100: bytes that only look like a frame have another stamp in front of them.
+  constexpr std::uint64_t kEarliestUs = 946'684'800'000'000;
+  constexpr std::uint64_t kLatestUs = 4'102'444'800'000'000;
   mavlink::FrameFinder finder(kStampBytes);
-  const mavlink::FrameFinder::Found found = finder.next(head, true);
-  return found.frame && finder.counts().skipped_bytes == 0;
+  while (true) {
+    const mavlink::FrameFinder::Found found = finder.next(head, true);
+    if (!found.frame) return false;
+    const std::uint64_t received_us = stamp_us(found.prefix);
+    if (received_us >= kEarliestUs && received_us <= kLatestUs) return true;
+    head = head.subspan(found.consumed_bytes);
+  }
 }
 
 Status read_tlog(ForwardReader& file, LogSink& sink) {

@@ -7,8 +7,8 @@
 
 namespace overfly::flight::logs {
 
-/// Whether the first bytes of a file are those of a .tlog: a time stamp of 8 bytes, big-endian
-/// microseconds since 1970, and a MAVLink frame with a right checksum.
+/// Whether the first bytes of a file are those of a .tlog: among them is a time stamp of 8 bytes,
+/// big-endian microseconds since 1970, and a MAVLink frame with a right checksum.
 [[nodiscard]] bool is_tlog(std::span<const std::uint8_t> head);
 
 /// Reads a .tlog once, from start to end.

@@ -217,6 +217,27 @@ TEST(OpenLog, NamesWhatIsNoLog) {
   EXPECT_FALSE(open_log("/dev/zero").ok());
 }
 
+TEST(OpenLog, RecognisesAFormatBehindDamage) {
+  const overfly::testing::TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "a";
+  for (const Format& format : {Format{"tlog", small_tlog}, Format{"dataflash", small_dataflash}}) {
+    Bytes bytes(300, 0x5A);
+    append(bytes, format.bytes());
+    testing::write_bytes(file, bytes);
+    const auto log = open_log(file);
+    ASSERT_TRUE(log.ok()) << log.error().message;
+    EXPECT_STREQ(to_string(log->format), format.name);
+    EXPECT_THAT(log->warnings, ::testing::Contains(HasSubstr("300 bytes")));
+  }
+  // MAVLink without the time stamps of a .tlog
+  Bytes link;
+  for (std::uint8_t i = 0; i < 20; ++i) {
+    append(link, testing::frame_bytes(30, testing::attitude_payload(i, 0.1F, 0, 0), i));
+  }
+  testing::write_bytes(file, link);
+  EXPECT_THAT(open_log(file).error().message, HasSubstr("is not a flight log"));
+}
+
 TEST(OpenLog, StopsWhenCancelled) {
   const overfly::testing::TemporaryFolder folder;
   testing::write_bytes(folder.path() / "a.tlog", small_tlog());
