@@ -16,7 +16,7 @@ inline constexpr double kStandardGravityMS2 = 9.80665;
 [[nodiscard]] double standard_density_kg_m3(double alt_msl_m);
 
 /// Gravity is one vector for a whole flight: constant along -up of the world frame. Over 1 km of
-/// height it changes by 3e-5 of itself, and a constant field keeps the energy of a flight exact.
+/// height it changes by 3e-4 of itself, and a constant field keeps the energy of a flight exact.
 struct Environment {
   double gravity_m_s2 = kStandardGravityMS2;
   double alt_msl_at_origin_m = 0.0;  ///< height of the world frame's origin above sea level
