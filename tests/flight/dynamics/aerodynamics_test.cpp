@@ -130,6 +130,9 @@ TEST(Aerodynamics, EdgesOfTheModelAreFinite) {
   // At rest only the propeller acts.
   const auto rest = air_wrench(a, {0, 0, 0}, {1.0, 1.0, 1.0}, full, kDensity);
   EXPECT_GT(rest.force_n.x(), 5.0);
+  // Its reaction rolls to the left: it turns clockwise seen from behind.
+  EXPECT_EQ(rest.moment_nm.x(), -propeller(a.propulsion, 0.0, 1.0, kDensity).torque_nm);
+  EXPECT_LT(rest.moment_nm.x(), 0.0);
   EXPECT_EQ(rest.force_n.y(), 0.0);
   EXPECT_EQ(rest.force_n.z(), 0.0);
 }

@@ -246,6 +246,51 @@ TEST(Aircraft, IsAFunctionOfItsInput) {
   EXPECT_NE(a.state().position_world_m, c.state().position_world_m);
 }
 
+TEST(Aircraft, OneStepIsThatOfItsParts) {
+  AircraftSetup setup = setup_of("piper_cub_third");
+  setup.wind_world_m_s = {2.0, -1.0, 0.3};
+  setup.turbulence = TurbulenceLevel::kSevere;
+  setup.turbulence_seed = 5;
+  setup.environment.alt_msl_at_origin_m = 1500.0;
+  setup.environment.ground_up_m = 100.0;
+  BodyState start;
+  start.position_world_m = {0.0, 0.0, 250.0};
+  start.R_world_body = R_world_body_from({0.3, 0.1, rad_from_deg(70.0)});
+  start.v_body_m_s = {24.0, 1.0, 1.5};
+  start.omega_body_rad_s = {0.2, -0.1, 0.3};
+  const Controls positions{0.05, -0.1, 0.02, 0.5};
+  const Controls commands{-0.2, 0.2, -0.1, 0.9};
+  const double dt_s = 0.005;
+  Aircraft aircraft = Aircraft::create(setup, start, positions).value();
+  aircraft.step(commands, dt_s);
+
+  // The same gusts, met along the horizontal airspeed 150 m above the ground.
+  Turbulence air(TurbulenceLevel::kSevere, setup.airframe.wing.span_m, 5);
+  const Eigen::Vector3d through = start.R_world_body * start.v_body_m_s - setup.wind_world_m_s;
+  air.advance(through.norm(), 150.0, 0.0);
+  air.advance(through.norm(), 150.0, dt_s);
+  const double heading = std::atan2(through.x(), through.y());
+  const Eigen::Vector3d& gust = air.gust().velocity_m_s;
+  const Eigen::Vector3d air_world =
+      setup.wind_world_m_s + gust.x() * Eigen::Vector3d(std::sin(heading), std::cos(heading), 0.0) +
+      gust.y() * Eigen::Vector3d(std::cos(heading), -std::sin(heading), 0.0) -
+      gust.z() * Eigen::Vector3d::UnitZ();
+  EXPECT_LT((aircraft.air_velocity_world_m_s() - air_world).norm(), 1e-12);
+  const RigidBody body(setup.airframe.mass_kg, setup.airframe.inertia, kStandardGravityMS2);
+  const BodyState expected = body.step(start, dt_s, [&](const BodyState& at, double fraction) {
+    return air_wrench(setup.airframe,
+                      at.v_body_m_s - at.R_world_body.conjugate() * air_world,
+                      at.omega_body_rad_s - air.gust().rate_rad_s,
+                      advance(positions, commands, setup.airframe, fraction * dt_s),
+                      standard_density_kg_m3(1500.0 + at.position_world_m.z()));
+  });
+  EXPECT_LT((aircraft.state().position_world_m - expected.position_world_m).norm(), 1e-12);
+  EXPECT_LT((aircraft.state().v_body_m_s - expected.v_body_m_s).norm(), 1e-12);
+  EXPECT_LT((aircraft.state().omega_body_rad_s - expected.omega_body_rad_s).norm(), 1e-12);
+  EXPECT_GT(air.gust().rate_rad_s.norm(), 1e-3);
+  EXPECT_GT(gust.norm(), 0.5);
+}
+
 TEST(Aircraft, TurbulenceShakesTheAirAroundTheSteadyWind) {
   AircraftSetup setup = setup_of("piper_cub_third");
   setup.wind_world_m_s = {4.0, 1.0, 0.0};
