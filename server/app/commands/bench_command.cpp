@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "renderer/probes/bench_probe.hpp"
+#include "server/app/commands/bench_dynamics.hpp"
 #include "server/app/commands/bench_fly.hpp"
 #include "server/app/commands/bench_folder.hpp"
 #include "server/app/commands/commands.hpp"
@@ -210,6 +211,10 @@ void print_table(const Json& result) {
                 << stage.at("total_ms").get<double>() / 1000.0 << " s in all\n";
     }
   }
+  const Json& dynamics = result.at("dynamics");
+  std::cout << "flight model, " << std::setprecision(0) << dynamics.at("rate_hz").get<double>()
+            << " Hz    " << std::setw(8) << dynamics.at("times_real_time").get<double>()
+            << " times real time on one core\n";
 }
 
 Result<Json> measure(const BenchArguments& arguments, ProgressDisplay& display) {
@@ -235,10 +240,14 @@ Result<Json> measure(const BenchArguments& arguments, ProgressDisplay& display) 
   display.note("flying ...");
   Result<Json> flight = bench_flight(*scenario, worlds);
   if (!flight) return flight.error();
+  display.note("stepping the flight model ...");
+  Result<Json> dynamics = bench_dynamics();
+  if (!dynamics) return dynamics.error();
   return Json{{"drawing", std::move(*drawing)},
               {"rates", std::move(*rates)},
               {"encoding", std::move(*encoding)},
-              {"flight", std::move(*flight)}};
+              {"flight", std::move(*flight)},
+              {"dynamics", std::move(*dynamics)}};
 }
 
 int bench(BenchArguments& arguments) {

@@ -125,6 +125,7 @@ TEST_F(CommandLine, BenchReportsTheCostOfBothRenderers) {
     ASSERT_TRUE(drawing.contains(ratio)) << ratio;
     EXPECT_GT(drawing.at(ratio).get<double>(), 0.0) << ratio;
   }
+  EXPECT_GT(Json::parse(done.out).at("dynamics").at("times_real_time").get<double>(), 1.0);
 }
 
 }  // namespace
