@@ -9,7 +9,7 @@ namespace {
 double advance_one(double position, double command, const SurfaceLimits& limits, double dt_s) {
   if (std::isnan(command)) return position;
   const double error = std::clamp(command, limits.min_rad, limits.max_rad) - position;
-  // Far from the command the rate is at its limit, until the lag alone is slower than it.
+  // Far from the command the rate is at its limit, until the rate of the lag is lower.
   const double near = limits.rate_rad_s * limits.lag_s;
   const double limited_s = std::max(0.0, (std::abs(error) - near) / limits.rate_rad_s);
   if (dt_s <= limited_s) return position + std::copysign(limits.rate_rad_s * dt_s, error);

@@ -17,7 +17,7 @@ enum class LogFormat { kTlog, kDataFlash, kUlog };
 /// "tlog", "dataflash", "ulog"
 [[nodiscard]] const char* to_string(LogFormat format);
 
-/// A stream and what one pass over the log tells about it.
+/// A stream and its figures, which one pass over the log determines.
 struct StreamInfo {
   StreamDescription description;
   std::uint64_t messages = 0;

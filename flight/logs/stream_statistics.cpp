@@ -15,7 +15,8 @@ constexpr double kGapRatio = 5.0;
 constexpr std::uint64_t kIntervalsForGap = 10;
 constexpr double kJumpM = 20.0;
 constexpr double kJumpSpeedMS = 150.0;
-/// Metres per degree of latitude on a sphere: enough to tell a flight from standing.
+/// Metres per degree of latitude on a sphere: enough to distinguish a flight from an aircraft at
+/// rest.
 constexpr double kMPerDeg = 111195.0;
 
 double distance_m(PositionKind kind, const Eigen::Vector3d& from, const Eigen::Vector3d& to) {

@@ -79,7 +79,7 @@ class Pass {
     const Result<VoEstimate> estimate = driver_.track(*frame, wants_debug_);
     result_.tracking.ms.push_back(ms_since(track_ns));
     result_.resources.cpu_s += process_cpu_s() - cpu_before_s;
-    tell(driver_.take_notes());
+    report_lines(driver_.take_notes());
     if (estimate) return book(*frame, *estimate);
     if (estimate.error().code == ErrorCode::kCancelled) {
       result_.cancelled = true;
@@ -111,9 +111,9 @@ class Pass {
                        std::span<const std::uint8_t>(*bytes));
   }
 
-  void pass_on_log() { tell(port_.take_log()); }
+  void pass_on_log() { report_lines(port_.take_log()); }
 
-  void tell(const std::vector<std::string>& lines) {
+  void report_lines(const std::vector<std::string>& lines) {
     for (const std::string& line : lines) {
       if (options_.log) options_.log(line);
     }

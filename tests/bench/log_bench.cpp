@@ -199,7 +199,7 @@ int measure_opening(const char* name, const std::filesystem::path& file) {
   Result<logs::OpenedLog> log = Error{};
   const double opening_s = elapsed_s([&] { log = logs::open_log(file); });
   if (!log.ok()) return 1;
-  std::printf("%-9s %5.0f MB: reading alone %5.0f MB/s, opening %5.0f MB/s, %4.0f MB of memory\n",
+  std::printf("%-9s %5.0f MB: only reading %5.0f MB/s, opening %5.0f MB/s, %4.0f MB of memory\n",
               name,
               megabytes,
               megabytes / reading_s,

@@ -69,8 +69,13 @@ Status check_convert(const LogArguments& arguments) {
                  "--from " + std::to_string(*arguments.from_s) + ": must not be after --to " +
                      std::to_string(*arguments.to_s)};
   }
-  const fs::path folder = fs::path(arguments.out).parent_path();
   std::error_code failure;
+  // The format follows from the content, so that a log may have any name.
+  if (fs::equivalent(arguments.file, arguments.out, failure)) {
+    return Error{ErrorCode::kInvalidArgument,
+                 "--out " + arguments.out + ": is the log itself, which would be lost"};
+  }
+  const fs::path folder = fs::path(arguments.out).parent_path();
   if (folder.empty() || fs::is_directory(folder, failure)) return {};
   return Error{ErrorCode::kNotFound,
                "--out " + arguments.out + ": folder " + folder.string() + " does not exist"};

@@ -1,4 +1,4 @@
-// Recorded logs beside the repository: what is found in them, and one flight seen by two formats.
+// Recorded logs next to the repository: what they contain, and one flight recorded in two formats.
 #include <gtest/gtest.h>
 
 #include <algorithm>

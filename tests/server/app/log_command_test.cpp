@@ -114,6 +114,11 @@ TEST_F(LogCommand, RejectsWhatItCannotDo) {
               HasSubstr("only used for a .csv file"));
   EXPECT_THAT(rejected({"--out", path("a.tum"), "--from", "500"}),
               HasSubstr("no valid positions in the time asked for"));
+  // A log may be called so, and a link to it may stand in another folder.
+  const std::string log = read_text(path("flight.bin"));
+  std::filesystem::create_symlink("flight.bin", path("link.csv"));
+  EXPECT_THAT(rejected({"--out", path("link.csv")}), HasSubstr("link.csv: is the log itself"));
+  EXPECT_EQ(read_text(path("flight.bin")), log);
   write_text(path("text"), "hello");
   const Outcome text = overfly_program({"log", "info", path("text")});
   EXPECT_EQ(text.exit_code, 2);

@@ -98,7 +98,7 @@ TEST_F(RunListTest, CountsFramesOfAnInterruptedRunFromItsLastRow) {
       overfly::testing::read_text(CameraFiles::of_main_camera(folder_of(id)).rows());
   fs::resize_file(CameraFiles::of_main_camera(folder_of(id)).rows(), 0);
   fs::resize_file(CameraFiles::of_main_camera(folder_of(id)).rows(),
-                  std::uintmax_t{1} << 33U);  // holes alone
+                  std::uintmax_t{1} << 33U);  // only holes
   const int file =
       ::open(CameraFiles::of_main_camera(folder_of(id)).rows().c_str(), O_WRONLY | O_APPEND);
   ASSERT_EQ(::write(file, ("\n" + rows).data(), rows.size() + 1),

@@ -191,7 +191,7 @@ TEST_F(LcmFile, IsPlayedToAnEstimatorByLcm) {
   node->stop();
 }
 
-/// A log plays to an estimator that knows the door's channels alone.
+/// A log is played to an estimator that only knows the channels.
 TEST(LcmLogWriter, WritesWhatTheDoorWouldHaveSaid) {
   const testing::TemporaryFolder folder;
   const auto file = folder.path() / "a.lcm";
@@ -214,7 +214,7 @@ TEST(LcmLogWriter, WritesWhatTheDoorWouldHaveSaid) {
   node->stop();
   ASSERT_EQ(estimator.images().size(), frames.size());
   EXPECT_EQ(estimator.images().back().data, frames.back().image->data);
-  EXPECT_EQ(estimator.sessions(), 1) << "a repeated calibration begins nothing anew";
+  EXPECT_EQ(estimator.sessions(), 1) << "a repeated calibration starts no session";
 }
 
 TEST_F(LcmFile, IsOfOneEstimatorAtATime) {
