@@ -30,7 +30,7 @@ struct AircraftSetup {
   Environment environment;
   /// Velocity of the air relative to world, expressed in world [m/s].
   Eigen::Vector3d wind_world_m_s = Eigen::Vector3d::Zero();
-  std::optional<TurbulenceLevel> turbulence;
+  std::optional<TurbulenceLevel> turbulence = {};
   std::uint64_t turbulence_seed = 0;
 };
 

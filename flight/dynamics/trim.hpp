@@ -17,9 +17,9 @@ struct TrimRequest {
   double climb_rad = 0.0;     ///< angle of the path, (-pi/3, pi/3)
   double bank_rad = 0.0;      ///< (-1.4, 1.4); right wing down and right turn > 0
   /// Of the turn, instead of the bank, |r| >= 1 m; to the right > 0.
-  std::optional<double> radius_m;
+  std::optional<double> radius_m = {};
   /// Throttle in [0, 1], instead of climb_rad: the climb or descent follows from it.
-  std::optional<double> throttle;
+  std::optional<double> throttle = {};
   double up_m = 0.0;  ///< world; the density is that of this height
 };
 

@@ -74,6 +74,7 @@ MAY_INCLUDE = {
     "flight/logs/tlog": ["core/", "flight/logs", "flight/mavlink"],
     "flight/logs/dataflash": ["core/", "flight/logs"],
     "flight/logs/ulog": ["core/", "flight/logs"],
+    "flight/autopilot": ["core/", "flight", "flight/dynamics"],
     "flight/dynamics": ["core/", "flight/gravity.hpp", "flight/normal_noise.hpp"],
     "middleware/lcm": ["core/"],
     "middleware/lcm/absent": ["core/", "middleware/lcm"],

@@ -1,0 +1,45 @@
+#include "flight/autopilot/autopilot.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "flight/dynamics/trim.hpp"
+
+namespace overfly::autopilot {
+
+Autopilot::Autopilot(const Parameters& parameters,
+                     const dynamics::Airframe& airframe,
+                     Mission mission,
+                     GroundHeight ground)
+    : stall_speed_m_s_(dynamics::stall_speed_m_s(airframe, {}, 0.0)),
+      pilot_(parameters, std::move(mission), std::move(ground)),
+      energy_(parameters, airframe),
+      attitude_(parameters, airframe) {}
+
+void Autopilot::start(const FlightState& state, const dynamics::Controls& positions) {
+  pilot_.start(state);
+  energy_.start_from(positions.throttle, state.attitude.pitch_rad);
+  attitude_.start_from(positions);
+}
+
+/// A turn of bank phi stalls at the stall speed over sqrt(cos phi).
+double Autopilot::safe_roll_rad(double roll_rad, const FlightState& state) const {
+  const double ratio = kTurnOverStall * stall_speed_m_s_ / std::max(state.airspeed_m_s, 1.0);
+  const double limit = std::max(rad_from_deg(10.0), std::acos(std::min(1.0, ratio * ratio)));
+  return std::clamp(roll_rad, -limit, limit);
+}
+
+dynamics::Controls Autopilot::update(const FlightState& state) {
+  constexpr double kStepS = 1.0 / kControlRateHz;
+  demand_ = pilot_.update(state, kStepS);
+  const EnergyControl::Output energy = energy_.update(demand_.energy, state, kStepS);
+  dynamics::Controls commands = attitude_.update(
+      {safe_roll_rad(demand_.roll_rad, state), demand_.pitch_rad.value_or(energy.pitch_rad)},
+      state,
+      kStepS);
+  commands.throttle = demand_.throttle.value_or(energy.throttle);
+  return commands;
+}
+
+}  // namespace overfly::autopilot

@@ -1,0 +1,268 @@
+// Whole missions: lines, circles, wind, turbulence, take-off, landing, terrain, bad input.
+#include "flight/autopilot/mission_flight.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "tests/flight/autopilot/flights.hpp"
+
+namespace overfly::autopilot {
+namespace {
+
+using testing::fly;
+using ::testing::HasSubstr;
+using testing::item_of;
+using testing::setup_of;
+using testing::t_s;
+using testing::waypoint;
+
+constexpr const char* kNames[] = {"foam_trainer", "piper_cub_third"};
+
+TEST(MissionFlight, HoldsHeightAndTrackOverASquareInWind) {
+  for (const char* name : kNames) {
+    MissionSetup setup = setup_of(name);
+    const double wind = 0.3 * setup.parameters.airspeed_cruise;
+    setup.wind_world_m_s = {wind, 0.0, 0.0};
+    setup.mission.items = {waypoint(0, 1500, 300),
+                           waypoint(1500, 1500, 300),
+                           waypoint(1500, 0, 300),
+                           waypoint(0, 0, 300)};
+    double off_m = 0.0;
+    double square = 0.0;
+    double begun_s = 0.0;
+    std::size_t item = 0;
+    int count = 0;
+    const MissionFlight flight = fly(setup, [&](const MissionFlight& at) {
+      const double height = at.aircraft().state().position_world_m.z() - 300.0;
+      square += height * height;
+      ++count;
+      const MissionPilot& pilot = at.autopilot().pilot();
+      if (pilot.item() != item) {
+        item = pilot.item();
+        begun_s = t_s(at);
+      }
+      // Captured: three periods of the guidance after the turn.
+      if (t_s(at) > begun_s + 3.0 * setup.parameters.navl1_period) {
+        off_m = std::max(off_m, std::abs(pilot.cross_track_m()));
+      }
+      return true;
+    });
+    EXPECT_EQ(flight.end(), FlightEnd::kMissionDone) << name;
+    EXPECT_LT(off_m, 5.0) << name;
+    EXPECT_LT(std::sqrt(square / count), 3.0) << name;
+    // All four sides: 6 km over ground.
+    EXPECT_GT(t_s(flight), 5500.0 / (1.3 * setup.parameters.airspeed_cruise)) << name;
+  }
+}
+
+TEST(MissionFlight, StaysInTheAirForAnHourOfModerateTurbulence) {
+  for (const char* name : kNames) {
+    MissionSetup setup = setup_of(name);
+    setup.turbulence = dynamics::TurbulenceLevel::kModerate;
+    setup.duration_max_s = 3600.0;
+    setup.mission.items = {item_of(MissionCommand::kLoiter, waypoint(0, 200, 300))};
+    double lowest = 1e9;
+    double highest = 0.0;
+    const MissionFlight flight = fly(setup, [&](const MissionFlight& at) {
+      lowest = std::min(lowest, at.aircraft().state().position_world_m.z());
+      highest = std::max(highest, at.aircraft().state().position_world_m.z());
+      return true;
+    });
+    EXPECT_EQ(flight.end(), FlightEnd::kTimeLimit) << name;
+    EXPECT_DOUBLE_EQ(t_s(flight), 3600.0);
+    EXPECT_GT(lowest, 250.0) << name;
+    EXPECT_LT(highest, 350.0) << name;
+  }
+}
+
+TEST(MissionFlight, LoitersForTurnsAndForTime) {
+  MissionSetup setup = setup_of("piper_cub_third");
+  MissionItem turns = item_of(MissionCommand::kLoiter, waypoint(300, 500, 300));
+  turns.turns = 3.0;
+  turns.radius_m = -150.0;
+  MissionItem timed = item_of(MissionCommand::kLoiter, waypoint(300, 500, 300));
+  timed.radius_m = -150.0;
+  timed.time_s = 40.0;
+  setup.mission.items = {turns, timed, waypoint(300, 2000, 300)};
+  std::vector<double> begun_s(4, 0.0);
+  double off_m = 0.0;
+  const MissionFlight flight = fly(setup, [&](const MissionFlight& at) {
+    const std::size_t item = at.autopilot().pilot().item();
+    if (item < begun_s.size() && begun_s[item] == 0.0) begun_s[item] = t_s(at);
+    if (item == 1) off_m = std::max(off_m, std::abs(at.autopilot().pilot().cross_track_m()));
+    return true;
+  });
+  ASSERT_EQ(flight.end(), FlightEnd::kMissionDone);
+  const double period_s = 2.0 * kPi * 150.0 / 25.0;
+  EXPECT_GT(begun_s[1], 3.0 * period_s);
+  EXPECT_LT(begun_s[1], 3.0 * period_s + 35.0);  // on the way there
+  EXPECT_NEAR(begun_s[2] - begun_s[1], 40.0, 0.1);
+  EXPECT_LT(off_m, 3.0);
+}
+
+TEST(MissionFlight, TakesOffReturnsAndLands) {
+  for (const char* name : kNames) {
+    MissionSetup setup = setup_of(name);
+    setup.start_world_m.reset();
+    setup.wind_world_m_s = {0.0, -2.0, 0.0};
+    const double v = setup.parameters.airspeed_cruise;
+    setup.mission.items = {item_of(MissionCommand::kTakeOff, waypoint(0, 300, 60)),
+                           waypoint(0, 60 * v, 80),
+                           waypoint(40 * v, 60 * v, 80),
+                           waypoint(40 * v, 0, 40),
+                           item_of(MissionCommand::kLand, waypoint(0, 0, 0))};
+    double lowest_after_climb = 1e9;
+    double sink_m_s = 0.0;
+    const MissionFlight flight = fly(setup, [&](const MissionFlight& at) {
+      const FlightState state = flight_state(at.aircraft());
+      if (at.autopilot().pilot().phase() == FlightPhase::kEnRoute) {
+        lowest_after_climb = std::min(lowest_after_climb, state.position_world_m.z());
+      }
+      sink_m_s = -state.v_world_m_s.z();
+      return true;
+    });
+    EXPECT_EQ(flight.end(), FlightEnd::kLanded) << name << " " << t_s(flight);
+    EXPECT_GT(lowest_after_climb, 35.0) << name;
+    EXPECT_LT(sink_m_s, 1.5) << name;
+    const Eigen::Vector3d& at = flight.aircraft().state().position_world_m;
+    EXPECT_LT(at.head<2>().norm(), 8.0 * v) << name << " " << at.transpose();
+  }
+}
+
+TEST(MissionFlight, ReturnsHomeAndCirclesThere) {
+  MissionSetup setup = setup_of("foam_trainer");
+  setup.mission.home_world_m = {100.0, -50.0, 0.0};
+  setup.mission.items = {waypoint(0, 600, 300), item_of(MissionCommand::kReturn)};
+  setup.duration_max_s = 400.0;
+  const MissionFlight flight = fly(setup, [](const MissionFlight&) { return true; });
+  const FlightState state = flight_state(flight.aircraft());
+  EXPECT_EQ(flight.autopilot().pilot().phase(), FlightPhase::kReturn);
+  EXPECT_NEAR((state.position_world_m.head<2>() - Eigen::Vector2d(100, -50)).norm(),
+              setup.parameters.wp_loiter_rad,
+              3.0);
+  EXPECT_NEAR(state.position_world_m.z(), setup.parameters.rtl_altitude, 2.0);
+}
+
+class LongHills final : public HeightQuery {
+ public:
+  [[nodiscard]] double ground_up_m(double /*east_m*/, double north_m) const override {
+    return 30.0 * std::sin(north_m / 1200.0 * 2.0 * kPi);
+  }
+};
+
+TEST(MissionFlight, FollowsTheTerrainWhereAsked) {
+  MissionSetup setup = setup_of("piper_cub_third");
+  setup.start_world_m = Eigen::Vector3d(0, 0, 150.0);
+  MissionItem end = waypoint(0, 4800, 150);
+  end.above_ground = true;
+  setup.mission.items = {end};
+  const auto hills = std::make_shared<LongHills>();
+  double square = 0.0;
+  int count = 0;
+  double worst = 0.0;
+  fly(
+      setup,
+      [&](const MissionFlight& at) {
+        const Eigen::Vector3d& p = at.aircraft().state().position_world_m;
+        const double off = p.z() - hills->ground_up_m(p.x(), p.y()) - 150.0;
+        square += off * off;
+        ++count;
+        worst = std::max(worst, std::abs(off));
+        return true;
+      },
+      hills);
+  EXPECT_LT(std::sqrt(square / count), 3.0);
+  EXPECT_LT(worst, 7.0);
+}
+
+TEST(MissionFlight, EndsWhereItHitsTheGround) {
+  MissionSetup setup = setup_of("piper_cub_third");
+  setup.start_world_m = Eigen::Vector3d(0, 0, 20.0);
+  setup.mission.items = {waypoint(0, 2000, 20)};
+  const auto hills = std::make_shared<LongHills>();
+  const MissionFlight flight = fly(
+      setup, [](const MissionFlight&) { return true; }, hills);
+  EXPECT_EQ(flight.end(), FlightEnd::kHitGround);
+  const auto truth = fly_mission(setup, hills).value();
+  ASSERT_EQ(truth->warnings().size(), 1u);
+  EXPECT_THAT(truth->warnings().front(), HasSubstr("hit the ground"));
+  EXPECT_EQ(truth->duration_ns(), flight.t_ns());
+}
+
+TEST(MissionFlight, IsASourceOfTruthThatRepeats) {
+  MissionSetup setup = setup_of("foam_trainer");
+  setup.turbulence = dynamics::TurbulenceLevel::kSevere;
+  setup.mission.items = {waypoint(0, 300, 300), waypoint(200, 300, 310)};
+  const auto ground = std::make_shared<FlatGround>(0.0);
+  const auto one = fly_mission(setup, ground).value();
+  const auto two = fly_mission(setup, ground).value();
+  ASSERT_TRUE(one->duration_ns().has_value());
+  EXPECT_EQ(one->duration_ns(), two->duration_ns());
+  EXPECT_THAT(one->description(), HasSubstr("severe turbulence"));
+  std::optional<AircraftState> last;
+  for (std::int64_t t = 0; t <= *one->duration_ns(); t += 7'300'000) {
+    const auto a = one->state_at(t).value();
+    const auto b = two->state_at(t).value();
+    ASSERT_TRUE(a && b);
+    ASSERT_EQ(a->t_ns, t);
+    ASSERT_EQ(a->T_world_body.translation, b->T_world_body.translation);
+    if (last) {
+      // Positions and velocities belong together.
+      const Eigen::Vector3d mean = 0.5 * (a->v_body_world_m_s + last->v_body_world_m_s);
+      const Eigen::Vector3d moved = a->T_world_body.translation - last->T_world_body.translation;
+      ASSERT_LT((moved - mean * 7.3e-3).norm(), 2e-3);
+    }
+    last = a;
+  }
+  EXPECT_FALSE(one->state_at(*one->duration_ns() + 1).value().has_value());
+  setup.seed = 8;
+  const auto other = fly_mission(setup, ground).value();
+  const auto again = fly_mission(setup, ground).value();
+  setup.seed = 7;
+  const auto first = fly_mission(setup, ground).value();
+  const auto position = [](TruthSource& truth) {
+    return truth.state_at(5'000'000'000).value()->T_world_body.translation;
+  };
+  const Eigen::Vector3d with_8 = position(*other);
+  EXPECT_EQ(with_8, position(*again));
+  EXPECT_NE(with_8, position(*first));
+}
+
+TEST(MissionFlight, RejectsWhatItCannotFly) {
+  const auto ground = std::make_shared<FlatGround>(0.0);
+  const auto message = [&](const MissionSetup& setup) {
+    const auto flight = fly_mission(setup, ground);
+    return flight ? std::string("accepted") : flight.error().message;
+  };
+  MissionSetup setup = setup_of("foam_trainer");
+  EXPECT_THAT(message(setup), HasSubstr("0 items"));
+  setup.mission.items = {waypoint(0, std::numeric_limits<double>::quiet_NaN(), 300)};
+  EXPECT_THAT(message(setup), HasSubstr("mission item 1: north_m"));
+  setup.mission.items = {waypoint(0, 100, 300), item_of(MissionCommand::kTakeOff)};
+  EXPECT_THAT(message(setup), HasSubstr("mission item 2: a take-off must be the first"));
+  setup.mission.items = {item_of(MissionCommand::kLand), waypoint(0, 100, 300)};
+  EXPECT_THAT(message(setup), HasSubstr("mission item 1: a landing must be the last"));
+  setup.mission.items = {waypoint(0, 100, 300)};
+  setup.parameters.airspeed_cruise = 7.0;
+  EXPECT_THAT(message(setup), HasSubstr("AIRSPEED_CRUISE = 7"));
+  setup = setup_of("foam_trainer");
+  setup.mission.items = {waypoint(0, 100, 300)};
+  setup.duration_max_s = 1e9;
+  EXPECT_THAT(message(setup), HasSubstr("duration_max_s"));
+  EXPECT_THAT(fly_mission(setup, nullptr).error().message, HasSubstr("ground"));
+}
+
+TEST(MissionFlight, CanBeCancelled) {
+  MissionSetup setup = setup_of("foam_trainer");
+  setup.mission.items = {item_of(MissionCommand::kLoiter, waypoint(0, 0, 300))};
+  const std::atomic<bool> cancel = true;
+  EXPECT_EQ(fly_mission(setup, std::make_shared<FlatGround>(0.0), &cancel).error().code,
+            ErrorCode::kCancelled);
+}
+
+}  // namespace
+}  // namespace overfly::autopilot
