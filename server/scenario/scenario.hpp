@@ -14,6 +14,7 @@
 #include "core/outside/source_policy.hpp"
 #include "core/result.hpp"
 #include "core/time.hpp"
+#include "flight/dynamics/turbulence.hpp"
 #include "flight/flight.hpp"
 #include "server/scenario/camera_spec.hpp"
 #include "server/scenario/estimator_spec.hpp"
@@ -48,6 +49,17 @@ struct BuiltinWorld {
   std::uint64_t seed = 1;
 };
 
+/// An airframe that flies the course, instead of coordinated turns.
+struct CourseDynamics {
+  std::string airframe;                 ///< one of builtin_airframes(), or empty: the file
+  std::filesystem::path airframe_file;  ///< an airframe file
+  double wind_from_rad = 0.0;           ///< clockwise from north
+  double wind_m_s = 0.0;
+  std::optional<dynamics::TurbulenceLevel> turbulence;
+  bool terrain_following = true;
+  std::map<std::string, double> autopilot;  ///< parameters by their names
+};
+
 struct LoggedFlight {
   std::filesystem::path file;
   bool camera_poses = false;
@@ -71,6 +83,8 @@ struct Scenario {
   /// The course, or a pose file.
   using LoggedFlight = server::LoggedFlight;
   std::variant<flight::CourseParameters, LoggedFlight> flight;
+  /// Empty: coordinated turns.
+  std::optional<CourseDynamics> course_dynamics;
   /// The course starts at the world's runway, which is known only when the world is open.
   bool start_at_runway = true;
   /// Of the course's first leg; if not given, that of the runway, or else south.

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "server/scenario/document/scenario_camera.hpp"
+#include "server/scenario/document/scenario_course.hpp"
 #include "server/scenario/document/scenario_estimators.hpp"
 #include "server/scenario/document/scenario_faults.hpp"
 #include "server/scenario/document/scenario_layers.hpp"
@@ -14,17 +15,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-flight::CourseParameters course_from(const Json& course) {
-  flight::CourseParameters parameters;
-  parameters.airspeed_m_s = course.at("airspeed_m_s").get<double>();
-  parameters.roll_rate_max_rad_s = rad_from_deg(course.at("roll_rate_max_deg_s").get<double>());
-  parameters.height_agl_m = course.at("height_agl_m").get<double>();
-  parameters.bank_max_rad = rad_from_deg(course.at("bank_max_deg").get<double>());
-  parameters.length_m = course.at("length_m").get<double>();
-  parameters.leg_length_m = course.at("leg_length_m").get<double>();
-  return parameters;
-}
-
 Status read_flight(Json& document, const FileResolver& files, Scenario& scenario) {
   Json& flight = document.at("flight");
   if (flight.contains("log")) {
@@ -33,25 +23,7 @@ Status read_flight(Json& document, const FileResolver& files, Scenario& scenario
         Scenario::LoggedFlight{files.resolve(log.at("file")), log.at("camera_poses").get<bool>()};
     return {};
   }
-  const Json& course = flight.at("course");
-  flight::CourseParameters parameters = course_from(course);
-  if (!(parameters.leg_length_m < parameters.length_m)) {
-    return Error{
-        ErrorCode::kInvalidArgument,
-        "flight.course.leg_length_m = " + course.at("leg_length_m").dump() +
-            ": must be less than flight.course.length_m = " + course.at("length_m").dump()};
-  }
-  const Json& start = course.at("start");
-  scenario.start_at_runway = !start.is_object();
-  if (start.is_object()) {
-    parameters.start_east_m = start.at("east_m").get<double>();
-    parameters.start_north_m = start.at("north_m").get<double>();
-  }
-  if (course.contains("heading_deg")) {
-    scenario.course_heading_rad = rad_from_deg(course.at("heading_deg").get<double>());
-  }
-  scenario.flight = parameters;
-  return {};
+  return read_course(flight.at("course"), files, scenario);
 }
 
 /// Logged camera poses are converted to body poses by a nadir mount.

@@ -89,6 +89,10 @@ Result<fs::path> scenario_path(const fs::path& folder, const std::string& name) 
 Status check_scenario(const Scenario& scenario) {
   std::optional<Error> error;
   if (Status status = check_world(scenario); !status) error = status.error();
+  if (const auto& dynamics = scenario.course_dynamics; dynamics && dynamics->airframe.empty()) {
+    Status status = scenario.sources.check(dynamics->airframe_file, "flight.course.dynamics");
+    if (!status && !error) error = status.error();
+  }
   if (const auto* log = std::get_if<Scenario::LoggedFlight>(&scenario.flight)) {
     Status status = scenario.sources.check(log->file, "flight.log.file");
     // Poses in KITTI format take their times from that file.

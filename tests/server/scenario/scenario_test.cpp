@@ -59,6 +59,43 @@ TEST(Scenario, SaysFieldValueAndLimitOfEveryError) {
   EXPECT_THAT(errors, HasSubstr("sed = 1: no such field (known: $schema, camera,"));
 }
 
+TEST(Scenario, LetsAnAirframeFlyTheCourse) {
+  const Result<Scenario> scenario =
+      resolve_scenario(course_document(),
+                       overrides({"flight.course.dynamics=piper_cub_third",
+                                  "flight.course.wind={\"from_deg\": 180, \"speed_m_s\": 4}",
+                                  "flight.course.turbulence=moderate",
+                                  "flight.course.terrain_following=false",
+                                  "flight.course.autopilot={\"RLL2SRV_TCONST\": 0.5}"}),
+                       "/tmp");
+  ASSERT_TRUE(scenario.ok()) << scenario.error().message;
+  ASSERT_TRUE(scenario->course_dynamics.has_value());
+  EXPECT_EQ(scenario->course_dynamics->airframe, "piper_cub_third");
+  EXPECT_NEAR(scenario->course_dynamics->wind_from_rad, kPi, 1e-12);
+  EXPECT_EQ(scenario->course_dynamics->wind_m_s, 4.0);
+  EXPECT_EQ(scenario->course_dynamics->turbulence, dynamics::TurbulenceLevel::kModerate);
+  EXPECT_FALSE(scenario->course_dynamics->terrain_following);
+  EXPECT_EQ(scenario->course_dynamics->autopilot.at("RLL2SRV_TCONST"), 0.5);
+  const Result<Scenario> file = resolve_scenario(
+      course_document(), overrides({"flight.course.dynamics=./mine.json"}), "/tmp/scenarios");
+  ASSERT_TRUE(file.ok()) << file.error().message;
+  EXPECT_EQ(file->course_dynamics->airframe_file, "/tmp/scenarios/mine.json");
+  EXPECT_THAT(check_scenario(*file).error().message, HasSubstr("flight.course.dynamics"));
+  EXPECT_FALSE(resolve_scenario(course_document(), {}, "/tmp")->course_dynamics.has_value());
+}
+
+TEST(Scenario, RejectsWindAndTurbulenceWithoutAnAirframe) {
+  EXPECT_THAT(error_of(course_document(), {"flight.course.dynamics=spitfire"}),
+              HasSubstr("flight.course.dynamics = \"spitfire\": must be one of coordinated, "
+                        "aerosonde, foam_trainer, piper_cub_third, or an airframe file (.json)"));
+  for (const char* field : {"flight.course.wind={\"speed_m_s\": 4}",
+                            "flight.course.turbulence=light",
+                            "flight.course.terrain_following=false",
+                            "flight.course.autopilot={\"RLL2SRV_TCONST\": 0.5}"}) {
+    EXPECT_THAT(error_of(course_document(), {field}), HasSubstr("needs an airframe")) << field;
+  }
+}
+
 TEST(Scenario, NamesTheVerticalDatumAsAManifestDoes) {
   Json document = course_document();
   document["world"] = {{"imagery", {{{"file", "a.tif"}}}},
