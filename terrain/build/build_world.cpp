@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "core/measure/sha256.hpp"
 #include "terrain/build/cache_builder.hpp"
 #include "terrain/cache/chunk_file.hpp"
 #include "terrain/cache/world_disk_cache.hpp"

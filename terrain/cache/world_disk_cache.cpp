@@ -4,10 +4,10 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "core/measure/sha256.hpp"
 #include "core/outside/file_text.hpp"
 #include "core/outside/outside_json.hpp"
 #include "terrain/cache/chunk_file.hpp"
-#include "terrain/files/file_digest.hpp"
 #include "terrain/floor_div.hpp"
 
 namespace overfly::terrain {

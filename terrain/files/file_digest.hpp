@@ -1,17 +1,12 @@
 // Inside terrain only: digests of data files, for the record of a run.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
-#include <span>
 #include <string>
 
 #include "core/result.hpp"
 
 namespace overfly::terrain {
-
-/// SHA-256 (FIPS 180-4) as 64 hexadecimal digits.
-[[nodiscard]] std::string sha256_hex(std::span<const std::uint8_t> bytes);
 
 /// "sha256:..." of the whole file up to 32 MiB. For larger files "sha256-sampled:..." of the size
 /// and of 32 evenly spaced MiB, so that opening a large world stays fast.

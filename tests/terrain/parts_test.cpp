@@ -124,18 +124,12 @@ TEST(HeightGrid, FillsVoidsBetweenTheirNeighboursOnly) {
   EXPECT_TRUE(std::isnan(empty.at(0, 0)));
 }
 
-TEST(FileDigest, EqualsThePublishedExamples) {
-  // FIPS 180-4's examples.
-  const std::string abc = "abc";
-  const auto bytes = [](const std::string& text) {
-    return std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
-  };
-  EXPECT_EQ(sha256_hex(bytes(abc)),
-            "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
-  EXPECT_EQ(sha256_hex({}), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+TEST(FileDigest, EqualsThePublishedExample) {
+  // FIPS 180-4's example.
   TemporaryFolder folder;
-  testing::write_text(folder.path() / "abc", abc);
-  EXPECT_EQ(*file_digest(folder.path() / "abc"), "sha256:" + sha256_hex(bytes(abc)));
+  testing::write_text(folder.path() / "abc", "abc");
+  EXPECT_EQ(*file_digest(folder.path() / "abc"),
+            "sha256:ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
   EXPECT_FALSE(file_digest(folder.path() / "none"));
 }
 

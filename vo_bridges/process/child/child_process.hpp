@@ -11,10 +11,10 @@
 #include <thread>
 #include <vector>
 
+#include "core/outside/file_descriptor.hpp"
 #include "core/result.hpp"
 #include "vo_bridges/process/child/child_command.hpp"
 #include "vo_bridges/process/child/child_output.hpp"
-#include "vo_bridges/process/child/file_descriptor.hpp"
 #include "vo_bridges/process/child/private_folder.hpp"
 #include "vo_bridges/process/child/process_family.hpp"
 #include "vo_bridges/vo_port.hpp"

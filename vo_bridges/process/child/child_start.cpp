@@ -17,7 +17,7 @@
 #include <system_error>
 #include <vector>
 
-#include "vo_bridges/process/child/file_descriptor.hpp"
+#include "core/outside/file_descriptor.hpp"
 
 namespace overfly::process {
 

@@ -9,8 +9,8 @@
 #include <string>
 
 #include "core/camera/image.hpp"
+#include "core/outside/file_descriptor.hpp"
 #include "core/result.hpp"
-#include "vo_bridges/process/child/file_descriptor.hpp"
 #include "vo_bridges/process/link/wire.hpp"
 
 namespace overfly::process {

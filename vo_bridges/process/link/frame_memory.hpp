@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "core/camera/image.hpp"
-#include "vo_bridges/process/child/file_descriptor.hpp"
+#include "core/outside/file_descriptor.hpp"
 
 namespace overfly::process {
 

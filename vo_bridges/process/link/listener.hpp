@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
+#include "core/outside/file_descriptor.hpp"
 #include "core/result.hpp"
-#include "vo_bridges/process/child/file_descriptor.hpp"
 #include "vo_bridges/process/child/private_folder.hpp"
 
 namespace overfly::process {

@@ -5,7 +5,7 @@
 
 #include <utility>
 
-namespace overfly::process {
+namespace overfly {
 
 class FileDescriptor {
  public:
@@ -32,4 +32,4 @@ class FileDescriptor {
   int number_ = -1;
 };
 
-}  // namespace overfly::process
+}  // namespace overfly
