@@ -12,7 +12,6 @@ namespace {
 constexpr std::size_t kHeaderOneBytes = 6;
 constexpr std::size_t kHeaderTwoBytes = 10;
 constexpr std::size_t kChecksumBytes = 2;
-constexpr std::size_t kSignatureBytes = 13;
 constexpr std::uint8_t kSignedFlag = 0x01;
 constexpr std::uint32_t kMaxIdOne = 0xFF;
 constexpr std::uint32_t kMaxIdTwo = 0xFFFFFF;
@@ -53,6 +52,8 @@ Result<std::vector<std::uint8_t>> encode_frame(const Frame& frame) {
   if (facts == nullptr) return rejected("is not in the table of messages");
   const bool first = frame.version == Version::kOne;
   if (frame.message_id > (first ? kMaxIdOne : kMaxIdTwo)) return rejected("needs MAVLink 2");
+  if (first && frame.is_signed) return rejected("a signature needs MAVLink 2");
+  const std::uint8_t flags = frame.is_signed ? kSignedFlag : 0;
   const std::size_t longest = first ? facts->base_bytes : facts->full_bytes;
   if (frame.payload.size() > longest) {
     return rejected("has a payload of " + std::to_string(frame.payload.size()) +
@@ -75,7 +76,7 @@ Result<std::vector<std::uint8_t>> encode_frame(const Frame& frame) {
                                                                       id(0)}
                                           : std::vector<std::uint8_t>{kStartTwo,
                                                                       size,
-                                                                      0,
+                                                                      flags,
                                                                       0,
                                                                       frame.sequence,
                                                                       frame.system,

@@ -17,6 +17,7 @@ inline constexpr std::uint8_t kStartOne = 0xFE;
 inline constexpr std::uint8_t kStartTwo = 0xFD;
 /// Bytes of the longest frame: header 10, payload 255, checksum 2, signature 13.
 inline constexpr std::size_t kMaxFrameBytes = 280;
+inline constexpr std::size_t kSignatureBytes = 13;
 
 struct Frame {
   Version version = Version::kTwo;
@@ -24,7 +25,7 @@ struct Frame {
   std::uint8_t system = 0;
   std::uint8_t component = 0;
   std::uint32_t message_id = 0;
-  bool is_signed = false;  ///< the signature is not verified
+  bool is_signed = false;  ///< a signature follows the checksum; see link/signing.hpp
   /// As sent: MAVLink 2 leaves out zeros at the end. Points into the bytes that were parsed.
   std::span<const std::uint8_t> payload;
 };
@@ -47,9 +48,10 @@ enum class FrameState {
 /// Takes apart the frame at the start of `bytes`.
 [[nodiscard]] FrameState take_apart(std::span<const std::uint8_t> bytes, FrameParts& parts);
 
-/// The bytes of a frame. Zeros at the end of the payload are left out in version 2.
-/// Errors: kInvalidArgument if the message is not in the table, its id does not fit into the
-/// version, or the payload is longer than the message.
+/// The bytes of a frame, without the signature of a signed one. Zeros at the end of the payload are
+/// left out in version 2.
+/// Errors: kInvalidArgument if the message is not in the table, its id or a signature does not fit
+/// into the version, or the payload is longer than the message.
 [[nodiscard]] Result<std::vector<std::uint8_t>> encode_frame(const Frame& frame);
 
 }  // namespace overfly::flight::mavlink

@@ -39,12 +39,10 @@ bool FrameFinder::checksum_is_right(const FrameParts& parts) {
 
 void FrameFinder::count_sequence(const Frame& frame) {
   const auto sender = static_cast<std::uint16_t>((unsigned{frame.system} << 8U) | frame.component);
-  const auto [last, first_of_sender] = senders_.try_emplace(sender, frame.sequence);
-  if (first_of_sender) return;
-  const auto missing = static_cast<std::uint8_t>(frame.sequence - last->second - 1);
-  if (missing >= 128) return;
-  counts_.lost_messages += missing;
-  last->second = frame.sequence;
+  SequenceCounter& counter = senders_[sender];
+  counts_.lost_messages -= counter.lost();
+  counter.take(frame.sequence);
+  counts_.lost_messages += counter.lost();
 }
 
 FrameFinder::Found FrameFinder::next(std::span<const std::uint8_t> bytes, bool last) {
@@ -53,12 +51,15 @@ FrameFinder::Found FrameFinder::next(std::span<const std::uint8_t> bytes, bool l
   while (at + prefix_bytes_ < bytes.size()) {
     const std::span<const std::uint8_t> rest = bytes.subspan(at + prefix_bytes_);
     const FrameState state = take_apart(rest, parts);
-    if (state == FrameState::kIncomplete && !last) return {at, std::nullopt, {}};
+    if (state == FrameState::kIncomplete && !last) return {at, std::nullopt, {}, {}};
     if (state == FrameState::kComplete && checksum_is_right(parts)) {
       in_step_ = true;
       ++counts_.frames;
       count_sequence(parts.frame);
-      return {at + prefix_bytes_ + parts.size_bytes, parts.frame, bytes.subspan(at, prefix_bytes_)};
+      return {at + prefix_bytes_ + parts.size_bytes,
+              parts.frame,
+              bytes.subspan(at, prefix_bytes_),
+              rest.first(parts.size_bytes)};
     }
     // Only one byte is skipped: a wrong length may span frames that are not damaged.
     if (state == FrameState::kComplete && in_step_) ++counts_.bad_checksums;
@@ -66,9 +67,9 @@ FrameFinder::Found FrameFinder::next(std::span<const std::uint8_t> bytes, bool l
     ++at;
     ++counts_.skipped_bytes;
   }
-  if (!last) return {at, std::nullopt, {}};
+  if (!last) return {at, std::nullopt, {}, {}};
   counts_.skipped_bytes += bytes.size() - at;
-  return {bytes.size(), std::nullopt, {}};
+  return {bytes.size(), std::nullopt, {}, {}};
 }
 
 }  // namespace overfly::flight::mavlink

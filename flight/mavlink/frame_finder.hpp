@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "flight/mavlink/frame.hpp"
+#include "flight/mavlink/sequence_counter.hpp"
 
 namespace overfly::flight::mavlink {
 
@@ -17,8 +18,7 @@ struct FrameCounts {
   std::uint64_t frames = 0;
   std::uint64_t bad_checksums = 0;  ///< frames left out because their checksum is wrong
   std::uint64_t skipped_bytes = 0;  ///< that belong to no valid frame
-  /// Messages that are missing according to the sequence numbers. A gap of 128 or more is counted
-  /// as a message out of order, not as a loss.
+  /// Messages that are missing according to the sequence numbers, of all senders together.
   std::uint64_t lost_messages = 0;
 };
 
@@ -36,6 +36,7 @@ class FrameFinder {
     std::size_t consumed_bytes = 0;  ///< including skipped bytes, the prefix and the frame
     std::optional<Frame> frame;      ///< empty: more bytes are needed, or none are left
     std::span<const std::uint8_t> prefix;
+    std::span<const std::uint8_t> bytes;  ///< of the frame, with its signature
   };
   /// The next frame in `bytes`, which begin where the previous call stopped consuming.
   /// @param last  no more bytes follow: an incomplete frame at the end is skipped
@@ -57,8 +58,8 @@ class FrameFinder {
   std::size_t prefix_bytes_ = 0;
   bool in_step_ = true;  ///< the last frame ended where the next one is expected
   FrameCounts counts_;
-  std::unordered_map<std::uint32_t, Extra> extras_;          ///< of messages not in the table
-  std::unordered_map<std::uint16_t, std::uint8_t> senders_;  ///< last sequence of each
+  std::unordered_map<std::uint32_t, Extra> extras_;  ///< of messages not in the table
+  std::unordered_map<std::uint16_t, SequenceCounter> senders_;
 };
 
 }  // namespace overfly::flight::mavlink

@@ -12,10 +12,15 @@
 
 namespace overfly::flight::mavlink {
 
-/// Ids of the messages below.
+/// Ids of the messages that are decoded or sent.
 enum class MessageId : std::uint32_t {
   kHeartbeat = 0,
+  kSysStatus = 1,
   kSystemTime = 2,
+  kParamRequestRead = 20,
+  kParamRequestList = 21,
+  kParamValue = 22,
+  kParamSet = 23,
   kGpsRawInt = 24,
   kScaledImu = 26,
   kRawImu = 27,
@@ -23,12 +28,24 @@ enum class MessageId : std::uint32_t {
   kAttitudeQuaternion = 31,
   kLocalPositionNed = 32,
   kGlobalPositionInt = 33,
+  kMissionItem = 39,
+  kMissionRequest = 40,
+  kMissionSetCurrent = 41,
   kMissionCurrent = 42,
+  kMissionRequestList = 43,
+  kMissionCount = 44,
   kMissionItemReached = 46,
+  kMissionAck = 47,
   kGpsGlobalOrigin = 49,
+  kMissionRequestInt = 51,
+  kRequestDataStream = 66,
+  kMissionItemInt = 73,
   kVfrHud = 74,
+  kCommandLong = 76,
+  kCommandAck = 77,
   kHighresImu = 105,
   kSimState = 108,
+  kTimesync = 111,
   kCameraTrigger = 112,
   kHilStateQuaternion = 115,
   kScaledImu2 = 116,
@@ -36,6 +53,7 @@ enum class MessageId : std::uint32_t {
   kSimstate = 164,
   kAhrs2 = 178,
   kCameraFeedback = 180,
+  kExtendedSysState = 245,
   kStatusText = 253,
   kAirspeed = 295,
 };
@@ -57,6 +75,12 @@ struct Heartbeat {
   std::uint8_t autopilot = 0;     ///< MAV_AUTOPILOT
   std::uint8_t base_mode = 0;
   [[nodiscard]] bool armed() const { return (base_mode & 0x80U) != 0; }
+  /// Of an autopilot: ground stations, gimbals and cameras send 8 (MAV_AUTOPILOT_INVALID).
+  [[nodiscard]] bool is_autopilot() const { return autopilot != 8; }
+  /// A fixed-wing aircraft (MAV_TYPE 1) or one that takes off vertically (19 to 25) with ArduPilot.
+  [[nodiscard]] bool is_ardu_plane() const {
+    return autopilot == 3 && (vehicle_type == 1 || (vehicle_type >= 19 && vehicle_type <= 25));
+  }
 };
 [[nodiscard]] Heartbeat decode_heartbeat(const Frame& frame);
 

@@ -9,7 +9,9 @@
 #include <cstring>
 #include <span>
 #include <string>
+#include <string_view>
 #include <type_traits>
+#include <vector>
 
 namespace overfly::flight::mavlink {
 
@@ -38,6 +40,30 @@ class PayloadReader {
 
  private:
   std::span<const std::uint8_t> payload_;
+};
+
+/// Builds a payload at the offsets of its definition; all other bytes are zero.
+class PayloadWriter {
+ public:
+  /// @param size  of the payload with its extension fields
+  explicit PayloadWriter(std::size_t size) : bytes_(size) {}
+
+  /// @pre the value lies within the payload
+  template <typename T>
+  PayloadWriter& put(std::size_t offset, T value) {
+    static_assert(std::is_arithmetic_v<T>);
+    std::memcpy(bytes_.data() + offset, &value, sizeof value);
+    return *this;
+  }
+  /// Text that ends after `length` bytes, or before at its first zero.
+  PayloadWriter& put_text(std::size_t offset, std::string_view text, std::size_t length) {
+    std::memcpy(bytes_.data() + offset, text.data(), std::min(text.size(), length));
+    return *this;
+  }
+  [[nodiscard]] const std::vector<std::uint8_t>& bytes() const { return bytes_; }
+
+ private:
+  std::vector<std::uint8_t> bytes_;
 };
 
 }  // namespace overfly::flight::mavlink

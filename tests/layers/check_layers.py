@@ -70,6 +70,7 @@ MAY_INCLUDE = {
     "sensor": ["core/"],
     "flight": ["core/"],
     "flight/mavlink": ["core/"],
+    "flight/mavlink/link": ["core/", "flight/mavlink"],
     "flight/logs": ["core/", "flight/logs/tlog", "flight/logs/dataflash", "flight/logs/ulog"],
     "flight/logs/tlog": ["core/", "flight/logs", "flight/mavlink"],
     "flight/logs/dataflash": ["core/", "flight/logs"],

@@ -30,12 +30,6 @@ std::uint64_t stamp_us(std::span<const std::uint8_t> prefix) {
   return value;
 }
 
-/// A fixed-wing aircraft (MAV_TYPE 1) or one that takes off vertically (19 to 25) with ArduPilot.
-bool is_ardu_plane(const mavlink::Heartbeat& heartbeat) {
-  const std::uint8_t type = heartbeat.vehicle_type;
-  return heartbeat.autopilot == 3 && (type == 1 || (type >= 19 && type <= 25));
-}
-
 /// A component of a system, with a clock of its own.
 struct Sender {
   std::string name;
@@ -136,11 +130,10 @@ void TlogPass::take_events(const Frame& frame, Sender& sender) {
   switch (static_cast<MessageId>(frame.message_id)) {
     case MessageId::kHeartbeat: {
       const mavlink::Heartbeat now = mavlink::decode_heartbeat(frame);
-      constexpr std::uint8_t kNoAutopilot = 8;  // ground stations, gimbals, cameras
-      if (now.autopilot == kNoAutopilot) return;
+      if (!now.is_autopilot()) return;
       const std::optional<mavlink::Heartbeat> before = std::exchange(sender.heartbeat, now);
       if (!before || before->custom_mode != now.custom_mode) {
-        event(sender, EventKind::kMode, mode_text(now.custom_mode, is_ardu_plane(now)));
+        event(sender, EventKind::kMode, mode_text(now.custom_mode, now.is_ardu_plane()));
       }
       if (!before || before->armed() != now.armed()) {
         event(sender, EventKind::kArming, now.armed() ? "armed" : "disarmed");
