@@ -71,6 +71,8 @@ MAY_INCLUDE = {
     "flight": ["core/"],
     "flight/mavlink": ["core/"],
     "flight/mavlink/link": ["core/", "flight/mavlink"],
+    "flight/mavlink/vehicle": ["core/", "flight/mavlink", "flight/mavlink/link",
+                               "flight/logs/mode_names.hpp"],
     "flight/logs": ["core/", "flight/logs/tlog", "flight/logs/dataflash", "flight/logs/ulog"],
     "flight/logs/tlog": ["core/", "flight/logs", "flight/mavlink"],
     "flight/logs/dataflash": ["core/", "flight/logs"],

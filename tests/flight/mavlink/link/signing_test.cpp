@@ -71,15 +71,15 @@ TEST(SignatureCheck, RefusesForgeriesAndOldRecordings) {
 }
 
 TEST(SigningKey, IsReadFromHexadecimalDigits) {
-  testing::TemporaryFolder folder;
+  overfly::testing::TemporaryFolder folder;
   const auto file = folder.path() / "key";
-  testing::write_text(file, hex_text(counting_key()) + "\n");
+  overfly::testing::write_text(file, hex_text(counting_key()) + "\n");
   const Result<SigningKey> key = read_signing_key(file);
   ASSERT_TRUE(key.ok()) << key.error().message;
   EXPECT_EQ(*key, counting_key());
   for (const std::string& text :
        {std::string(63, 'a'), std::string(65, 'a'), std::string("secret")}) {
-    testing::write_text(file, text);
+    overfly::testing::write_text(file, text);
     const Result<SigningKey> bad = read_signing_key(file);
     ASSERT_FALSE(bad.ok());
     EXPECT_THAT(bad.error().message, HasSubstr("64 hexadecimal digits"));

@@ -1,0 +1,44 @@
+// Missions: files, and upload to and download from a vehicle.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "flight/mavlink/vehicle/exchange.hpp"
+
+namespace overfly::flight::mavlink {
+
+struct MissionItem {
+  std::uint8_t frame = 3;      ///< MAV_FRAME: 0 global, 3 global with height above home
+  std::uint16_t command = 16;  ///< MAV_CMD
+  bool current = false;
+  bool autocontinue = true;
+  std::array<float, 4> parameters{};  ///< NaN: the vehicle's default
+  /// Latitude and longitude [deg] in global frames, x and y [m] in local frames, plain numbers in
+  /// frame 2 (MAV_FRAME_MISSION).
+  double x = 0.0;
+  double y = 0.0;
+  float z = 0.0F;  ///< height [m], or the seventh parameter
+  friend bool operator==(const MissionItem&, const MissionItem&) = default;
+};
+
+/// Of a mission file; autopilots store some hundred to a few thousand.
+inline constexpr std::size_t kMaxMissionItems = 5000;
+
+/// Reads a mission file of a ground station: "QGC WPL 110", then in each line index, current,
+/// frame, command, four parameters, latitude, longitude, height and autocontinue. Item 0 is the
+/// home position.
+/// Errors: as FieldFile::read; kUnreadable naming file, line, column, value and limit.
+[[nodiscard]] Result<std::vector<MissionItem>> read_mission_file(const std::filesystem::path& file);
+
+/// Replaces the vehicle's mission. Positions are sent in steps of 1e-7 deg.
+/// Errors: as ask(); kInvalidArgument for an empty mission or more than kMaxMissionItems; kConflict
+/// if the vehicle rejects the mission, with its reason.
+[[nodiscard]] Status upload_mission(Exchange& exchange, const std::vector<MissionItem>& items);
+
+/// Errors: as ask(); kConflict if the vehicle states an error or more than kMaxMissionItems.
+[[nodiscard]] Result<std::vector<MissionItem>> download_mission(Exchange& exchange);
+
+}  // namespace overfly::flight::mavlink

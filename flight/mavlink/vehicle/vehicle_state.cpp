@@ -1,0 +1,77 @@
+#include "flight/mavlink/vehicle/vehicle_state.hpp"
+
+#include <cmath>
+
+#include "core/time.hpp"
+#include "flight/logs/mode_names.hpp"
+#include "flight/mavlink/payload.hpp"
+
+namespace overfly::flight::mavlink {
+namespace {
+
+constexpr std::int64_t kClockBackNs = 2 * kNsPerS;
+
+void take_heartbeat(const Frame& frame, VehicleState& state) {
+  state.heartbeat = decode_heartbeat(frame);
+  state.mode = logs::mode_text(state.heartbeat->custom_mode, state.heartbeat->is_ardu_plane());
+}
+
+void take_battery(const Frame& frame, VehicleState& state) {
+  const PayloadReader payload(frame.payload);
+  const auto millivolts = payload.at<std::uint16_t>(14);
+  const auto percent = payload.at<std::int8_t>(30);
+  // 65535 and -1 stand for unknown.
+  state.battery_v.reset();
+  state.battery_percent.reset();
+  if (millivolts != 0xFFFF) state.battery_v = millivolts * 1e-3;
+  if (percent >= 0) state.battery_percent = percent;
+}
+
+void take_attitude_angles(const Frame& frame, VehicleState& state) {
+  const RollPitchYaw angles = decode_attitude(frame).angles;
+  if (std::isfinite(angles.roll_rad) && std::isfinite(angles.pitch_rad) &&
+      std::isfinite(angles.yaw_rad)) {
+    state.attitude = angles;
+  }
+}
+
+}  // namespace
+
+void take_message(const Frame& frame, VehicleState& state) {
+  ++state.messages;
+  if (const std::optional<std::int64_t> boot_ns = boot_time_ns(frame)) {
+    if (state.boot_ns && *boot_ns < *state.boot_ns - kClockBackNs) ++state.restarts;
+    state.boot_ns = boot_ns;
+  }
+  switch (static_cast<MessageId>(frame.message_id)) {
+    case MessageId::kHeartbeat:
+      return take_heartbeat(frame, state);
+    case MessageId::kSysStatus:
+      return take_battery(frame, state);
+    case MessageId::kGpsRawInt:
+      state.gps = decode_gps_raw(frame);
+      return;
+    case MessageId::kGlobalPositionInt:
+      state.position = decode_global_position(frame).position;
+      return;
+    case MessageId::kAttitude:
+      return take_attitude_angles(frame, state);
+    case MessageId::kVfrHud:
+      state.flight = decode_vfr_hud(frame);
+      return;
+    case MessageId::kMissionCurrent:
+      state.mission_item = decode_mission_sequence(frame);
+      return;
+    case MessageId::kExtendedSysState:
+      state.landed_state = PayloadReader(frame.payload).at<std::uint8_t>(1);
+      return;
+    case MessageId::kStatusText:
+      state.texts.push_back(decode_status_text(frame));
+      if (state.texts.size() > kMaxStatusTexts) state.texts.pop_front();
+      return;
+    default:
+      return;
+  }
+}
+
+}  // namespace overfly::flight::mavlink

@@ -1,0 +1,45 @@
+// What a vehicle says about itself, for a viewer.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+
+#include "core/motion/pose.hpp"
+#include "flight/mavlink/messages.hpp"
+
+namespace overfly::flight::mavlink {
+
+inline constexpr std::size_t kMaxStatusTexts = 20;
+
+/// The latest value of each kind; empty: never received.
+struct VehicleState {
+  std::uint8_t system = 0;
+  std::uint8_t component = 0;
+  std::optional<Heartbeat> heartbeat;
+  std::string mode;                     ///< "mode 10 (AUTO)"
+  std::optional<std::int64_t> boot_ns;  ///< latest time of the vehicle's clock in a message
+  std::optional<double> battery_v;
+  std::optional<int> battery_percent;
+  std::optional<GpsRaw> gps;
+  std::optional<GlobalPosition> position;  ///< of the vehicle's estimator
+  std::optional<RollPitchYaw> attitude;    ///< of the vehicle's estimator
+  std::optional<VfrHud> flight;            ///< speeds
+  std::optional<std::uint16_t> mission_item;
+  /// MAV_LANDED_STATE: 1 on the ground, 2 in the air, 3 taking off, 4 landing.
+  std::optional<std::uint8_t> landed_state;
+  std::deque<StatusText> texts;  ///< the latest kMaxStatusTexts
+
+  // Of the link, by sequence numbers:
+  std::uint64_t messages = 0;
+  std::uint64_t lost_messages = 0;
+  std::uint64_t restarts = 0;  ///< times that the vehicle's clock went back by more than 2 s
+
+  [[nodiscard]] bool armed() const { return heartbeat && heartbeat->armed(); }
+};
+
+/// Updates a state from a message of its vehicle.
+void take_message(const Frame& frame, VehicleState& state);
+
+}  // namespace overfly::flight::mavlink
