@@ -138,13 +138,16 @@ SimulatedState decode_sim_state(const Frame& frame) {
   }
   state.R_ned_body = quaternion_at(payload, 0);
   state.velocity_ned_m_s = floats_at(payload, 72);
+  state.rate_rad_s = floats_at(payload, 40);
   return state;
 }
 
 SimulatedState decode_hil_state_quaternion(const Frame& frame) {
   const PayloadReader payload(frame.payload);
-  return {
-      integer_position_at(payload, 36), quaternion_at(payload, 8), shorts_at(payload, 48, 0.01)};
+  return {integer_position_at(payload, 36),
+          quaternion_at(payload, 8),
+          shorts_at(payload, 48, 0.01),
+          floats_at(payload, 24)};
 }
 
 Attitude decode_simstate(const Frame& frame) {

@@ -130,6 +130,7 @@ struct SimulatedState {
   GlobalPosition position;
   Eigen::Quaterniond R_ned_body = Eigen::Quaterniond::Identity();  ///< as sent, not normalised
   Eigen::Vector3d velocity_ned_m_s = Eigen::Vector3d::Zero();
+  Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();  ///< about the body's axes
 };
 /// SIM_STATE. Without its extension fields the position is that of the float fields, which resolve
 /// about 1 m: ArduPilot sends 1e-7 deg in them, others degrees.

@@ -21,8 +21,8 @@
 namespace overfly::flight {
 namespace {
 
-using testing::read_text;
-using testing::source_file;
+using overfly::testing::read_text;
+using overfly::testing::source_file;
 
 constexpr double kTourSpeedMS = 22.0;
 constexpr double kTourDurationS = 60.0;
@@ -184,7 +184,7 @@ TEST(AutzenTour, IsTheFileThatThisTestMakes) {
   ASSERT_TRUE(model.open());
   const std::string made = make_csv(model);
   const auto file = source_file("scenarios/autzen_tour.csv");
-  if (std::getenv("OVERFLY_UPDATE_AUTZEN_TOUR") != nullptr) testing::write_text(file, made);
+  if (std::getenv("OVERFLY_UPDATE_AUTZEN_TOUR") != nullptr) overfly::testing::write_text(file, made);
   std::istringstream made_rows(made);
   std::istringstream kept_rows(read_text(file));
   std::string made_row;

@@ -15,8 +15,8 @@ namespace {
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using testing::TemporaryFolder;
-using testing::write_text;
+using overfly::testing::TemporaryFolder;
+using overfly::testing::write_text;
 
 constexpr const char* kHeader = "t_s,lat_deg,lon_deg,alt_ellipsoid_m,roll_deg,pitch_deg,yaw_deg\n";
 

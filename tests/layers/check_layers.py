@@ -78,6 +78,8 @@ MAY_INCLUDE = {
     "flight/logs/dataflash": ["core/", "flight/logs"],
     "flight/logs/ulog": ["core/", "flight/logs"],
     "flight/autopilot": ["core/", "flight", "flight/dynamics"],
+    "flight/live": ["core/", "flight/mavlink", "flight/mavlink/link", "flight/mavlink/vehicle",
+                    "flight/logs", "flight/logs/tlog"],
     "flight/dynamics": ["core/", "flight/gravity.hpp", "flight/normal_noise.hpp"],
     "middleware/lcm": ["core/"],
     "middleware/lcm/absent": ["core/", "middleware/lcm"],

@@ -123,7 +123,7 @@ RecordKind::Stream* DataflashPass::stream_of(RecordKind& kind,
   if (stream_count_ >= kMaxRecordStreams) return nullptr;
   StreamDescription description = kind.plan.description;
   if (format.instance) {
-    description.name += "[" + std::to_string(instance) + "]";
+    description.name.append("[").append(std::to_string(instance)).append("]");
     description.preference = 10 * description.preference + static_cast<int>(instance);
   } else {
     description.preference *= 10;

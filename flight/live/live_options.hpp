@@ -1,0 +1,39 @@
+// Options of a live flight.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+
+#include "core/time.hpp"
+
+namespace overfly::flight::live {
+
+/// What is taken as truth.
+enum class TruthPreference {
+  kBest,        ///< the simulator's state if the vehicle sends it, the estimate otherwise
+  kSimulation,  ///< SIM_STATE or HIL_STATE_QUATERNION
+  kEstimate,    ///< what the autopilot believes
+};
+
+/// Conditions that end the flight, besides a restart of the vehicle.
+struct StopConditions {
+  bool on_disarm = false;          ///< when the vehicle is disarmed after it was armed
+  bool on_landing = false;         ///< when it reports to be on the ground after it was in the air
+  std::int32_t mission_item = -1;  ///< when this item becomes the current one; negative: never
+  std::int64_t duration_ns = 0;    ///< after this time of the vehicle's clock; 0: never
+};
+
+struct LiveTruthOptions {
+  TruthPreference truth = TruthPreference::kBest;
+  /// Height of the geoid above the ellipsoid at the place: vehicles send heights above sea level.
+  double geoid_separation_m = 0.0;
+  /// Longer gaps between samples are interpolated as well, but reported [vehicle's clock].
+  std::int64_t gap_limit_ns = kNsPerS / 2;
+  /// Time of the vehicle's clock for which kBest waits for the simulator's state.
+  std::int64_t simulation_wait_ns = 2 * kNsPerS;
+  /// A wait for a sample ends with an error after this time without one.
+  std::chrono::milliseconds patience{10000};
+  StopConditions stop;
+};
+
+}  // namespace overfly::flight::live

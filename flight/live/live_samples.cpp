@@ -1,0 +1,166 @@
+#include "flight/live/live_samples.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "flight/mavlink/messages.hpp"
+
+namespace overfly::flight::live {
+namespace {
+
+using mavlink::MessageId;
+
+MessageId id_of(const mavlink::Frame& frame) { return static_cast<MessageId>(frame.message_id); }
+
+std::optional<Eigen::Vector3d> velocity_of(const mavlink::Frame& frame) {
+  switch (id_of(frame)) {
+    case MessageId::kSimState:
+      return mavlink::decode_sim_state(frame).velocity_ned_m_s;
+    case MessageId::kHilStateQuaternion:
+      return mavlink::decode_hil_state_quaternion(frame).velocity_ned_m_s;
+    case MessageId::kGlobalPositionInt:
+      return mavlink::decode_global_position(frame).velocity_ned_m_s;
+    case MessageId::kLocalPositionNed:
+      return mavlink::decode_local_position(frame).velocity_ned_m_s;
+    default:
+      return std::nullopt;
+  }
+}
+
+std::optional<Eigen::Vector3d> rate_of(const mavlink::Frame& frame) {
+  switch (id_of(frame)) {
+    case MessageId::kSimState:
+      return mavlink::decode_sim_state(frame).rate_rad_s;
+    case MessageId::kHilStateQuaternion:
+      return mavlink::decode_hil_state_quaternion(frame).rate_rad_s;
+    case MessageId::kAttitude:
+      return mavlink::decode_attitude(frame).rate_rad_s;
+    case MessageId::kAttitudeQuaternion:
+      return mavlink::decode_attitude_quaternion(frame).rate_rad_s;
+    default:
+      return std::nullopt;
+  }
+}
+
+/// Velocities of sensors gone wrong would throw an interpolated aircraft across the country.
+bool is_within(const std::optional<Eigen::Vector3d>& value, double limit) {
+  return value && value->allFinite() && value->norm() <= limit;
+}
+
+/// Puts a sample at its place. Nothing happens if its time is known.
+template <typename Sample>
+void insert_by_time(std::deque<Sample>& samples, const Sample& sample) {
+  if (samples.empty() || samples.back().t_ns < sample.t_ns) {
+    samples.push_back(sample);
+    return;
+  }
+  const auto at = std::lower_bound(
+      samples.begin(), samples.end(), sample.t_ns, [](const Sample& each, std::int64_t t_ns) {
+        return each.t_ns < t_ns;
+      });
+  if (at->t_ns != sample.t_ns) samples.insert(at, sample);
+}
+
+template <typename Sample>
+void forget(std::deque<Sample>& samples, std::int64_t t_ns) {
+  while (samples.size() > 1 && samples[1].t_ns <= t_ns) samples.pop_front();
+}
+
+}  // namespace
+
+void LiveSamples::take(const mavlink::Frame& frame) {
+  if (restarted_) return;
+  frame_ = &frame;
+  streams_of_frames_.take(frame);
+  frame_ = nullptr;
+}
+
+bool LiveSamples::stream(logs::StreamId id, const logs::StreamDescription& description) {
+  streams_.push_back({description, {}, {}, std::nullopt, 0});
+  const bool sample = description.position != logs::PositionKind::kNone || description.attitude;
+  return sample && (!position_ || id == *position_ || id == *attitude_);
+}
+
+void LiveSamples::message(logs::StreamId /*id*/, const std::optional<logs::LogTime>& time) {
+  if (id_of(*frame_) == MessageId::kVfrHud) {
+    const double airspeed_m_s = mavlink::decode_vfr_hud(*frame_).airspeed_m_s;
+    if (airspeed_m_s >= 0.0 && airspeed_m_s <= 1000.0) airspeed_m_s_ = airspeed_m_s;
+  }
+  if (!time) return;
+  if (!boot_) boot_ = time->boot;
+  if (time->boot != *boot_) {
+    restarted_ = true;
+    return;
+  }
+  latest_ns_ = std::max(latest_ns_.value_or(time->t_ns), time->t_ns);
+}
+
+void LiveSamples::local_origin(logs::StreamId id, const logs::LocalOrigin& origin) {
+  if (id < streams_.size()) streams_[id].origin = origin;
+}
+
+logs::PositionKind LiveSamples::position_kind(logs::StreamId id) const {
+  return id < streams_.size() ? streams_[id].description.position : logs::PositionKind::kNone;
+}
+
+void LiveSamples::take_position(logs::StreamId id,
+                                const logs::LogTime& time,
+                                const Eigen::Vector3d& value) {
+  if (restarted_ || (position_ && id != *position_)) return;
+  LiveStream& stream = streams_[id];
+  LivePosition sample{time.t_ns, value, Eigen::Vector3d::Zero(), false, airspeed_m_s_};
+  if (stream.description.position == logs::PositionKind::kLocal) {
+    if (!stream.origin) {
+      ++stream.without_origin;
+      return;
+    }
+    sample.geodetic = logs::geodetic_from_local(*stream.origin, value);
+  }
+  const std::optional<Eigen::Vector3d> velocity = velocity_of(*frame_);
+  constexpr double kMaxSpeedMS = 1000.0;
+  if (is_within(velocity, kMaxSpeedMS)) {
+    sample.v_ned_m_s = *velocity;
+    sample.has_velocity = true;
+  }
+  if (stream.positions.size() >= kMaxLiveSamples) {
+    full_ = true;
+    return;
+  }
+  insert_by_time(stream.positions, sample);
+}
+
+void LiveSamples::take_attitude(logs::StreamId id,
+                                const logs::LogTime& time,
+                                const Eigen::Quaterniond& R_ned_body) {
+  if (restarted_ || (attitude_ && id != *attitude_)) return;
+  LiveAttitude sample{time.t_ns, R_ned_body.normalized(), Eigen::Vector3d::Zero(), false};
+  const std::optional<Eigen::Vector3d> rate = rate_of(*frame_);
+  constexpr double kMaxRateRadS = 100.0;
+  if (is_within(rate, kMaxRateRadS)) {
+    sample.rate_rad_s = *rate;
+    sample.has_rate = true;
+  }
+  std::deque<LiveAttitude>& attitudes = streams_[id].attitudes;
+  if (attitudes.size() >= kMaxLiveSamples) {
+    full_ = true;
+    return;
+  }
+  insert_by_time(attitudes, sample);
+}
+
+void LiveSamples::keep_only(logs::StreamId position, logs::StreamId attitude) {
+  position_ = position;
+  attitude_ = attitude;
+  for (std::size_t i = 0; i < streams_.size(); ++i) {
+    if (i != position) streams_[i].positions.clear();
+    if (i != attitude) streams_[i].attitudes.clear();
+  }
+}
+
+void LiveSamples::forget_before(std::int64_t t_ns) {
+  if (!position_) return;
+  forget(streams_[*position_].positions, t_ns);
+  forget(streams_[*attitude_].attitudes, t_ns);
+}
+
+}  // namespace overfly::flight::live

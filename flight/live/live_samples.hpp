@@ -1,0 +1,98 @@
+// Samples of a live vehicle by its own clock, until a flight has used them.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "flight/logs/log_sink.hpp"
+#include "flight/logs/tlog/frame_streams.hpp"
+#include "flight/mavlink/frame.hpp"
+
+namespace overfly::flight::live {
+
+/// Samples of one kind that are kept: 80 minutes at 100 Hz.
+inline constexpr std::size_t kMaxLiveSamples = 500'000;
+
+struct LivePosition {
+  std::int64_t t_ns = 0;      ///< the vehicle's clock
+  Eigen::Vector3d geodetic;   ///< latitude, longitude [deg], height above mean sea level [m]
+  Eigen::Vector3d v_ned_m_s;  ///< zero if the message has none
+  bool has_velocity = false;
+  double airspeed_m_s = -1.0;  ///< the latest at that time; negative: unknown
+};
+
+struct LiveAttitude {
+  std::int64_t t_ns = 0;
+  Eigen::Quaterniond R_ned_body;  ///< unit
+  Eigen::Vector3d rate_rad_s;     ///< about the body's axes
+  bool has_rate = false;
+};
+
+/// The positions and attitudes of one kind of message.
+struct LiveStream {
+  logs::StreamDescription description;
+  std::deque<LivePosition> positions;  ///< times strictly increasing
+  std::deque<LiveAttitude> attitudes;
+  std::optional<logs::LocalOrigin> origin;  ///< of local positions
+  std::uint64_t without_origin = 0;         ///< local positions left out
+};
+
+/// Collects the samples of one vehicle by the same rules as a recording of it. Messages that come
+/// late are put in order; times that are known already are left out. Not thread-safe.
+class LiveSamples final : private logs::LogSink {
+ public:
+  LiveSamples() : streams_of_frames_(*this) {}
+  LiveSamples(const LiveSamples&) = delete;
+  LiveSamples& operator=(const LiveSamples&) = delete;
+
+  /// Takes a message. Ignored after the vehicle's clock has started again.
+  void take(const mavlink::Frame& frame);
+
+  [[nodiscard]] const std::deque<LiveStream>& streams() const { return streams_; }
+  /// Keeps samples of these streams only.
+  void keep_only(logs::StreamId position, logs::StreamId attitude);
+  /// Drops samples that are not needed from `t_ns` on.
+  void forget_before(std::int64_t t_ns);
+
+  /// The latest time of the vehicle's clock; empty before the first.
+  [[nodiscard]] std::optional<std::int64_t> latest_ns() const { return latest_ns_; }
+  [[nodiscard]] bool restarted() const { return restarted_; }
+  /// A stream has reached kMaxLiveSamples.
+  [[nodiscard]] bool full() const { return full_; }
+  [[nodiscard]] std::uint64_t invalid() const { return invalid_; }
+
+ private:
+  [[nodiscard]] bool stream(logs::StreamId id, const logs::StreamDescription& description) override;
+  void message(logs::StreamId id, const std::optional<logs::LogTime>& time) override;
+  void local_origin(logs::StreamId id, const logs::LocalOrigin& origin) override;
+  void event(logs::LogEvent /*event*/) override {}
+  void warning(const std::string& /*text*/) override {}
+  [[nodiscard]] bool progress(std::uint64_t /*bytes*/) override { return true; }
+  void take_position(logs::StreamId id,
+                     const logs::LogTime& time,
+                     const Eigen::Vector3d& value) override;
+  void take_attitude(logs::StreamId id,
+                     const logs::LogTime& time,
+                     const Eigen::Quaterniond& R_ned_body) override;
+  void take_invalid(logs::StreamId /*id*/) override { ++invalid_; }
+  [[nodiscard]] logs::PositionKind position_kind(logs::StreamId id) const override;
+
+  logs::FrameStreams streams_of_frames_;
+  const mavlink::Frame* frame_ = nullptr;  ///< being taken
+  std::deque<LiveStream> streams_;         ///< by StreamId
+  std::optional<logs::StreamId> position_;
+  std::optional<logs::StreamId> attitude_;
+  std::optional<std::uint32_t> boot_;
+  std::optional<std::int64_t> latest_ns_;
+  double airspeed_m_s_ = -1.0;
+  bool restarted_ = false;
+  bool full_ = false;
+  std::uint64_t invalid_ = 0;
+};
+
+}  // namespace overfly::flight::live

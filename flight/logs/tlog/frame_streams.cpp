@@ -1,0 +1,125 @@
+#include "flight/logs/tlog/frame_streams.hpp"
+
+#include <utility>
+
+#include "flight/logs/mode_names.hpp"
+#include "flight/logs/tlog/tlog_streams.hpp"
+#include "flight/mavlink/payload.hpp"
+
+namespace overfly::flight::logs {
+namespace {
+
+/// A logged flight has some hundred streams; damaged bytes could make up to 2^32.
+constexpr std::size_t kMaxStreams = 2048;
+
+}  // namespace
+
+using mavlink::Frame;
+using mavlink::MessageId;
+
+FrameStreams::Sender& FrameStreams::sender_of(const Frame& frame) {
+  Sender& sender = senders_[(std::uint32_t{frame.system} << 8U) | frame.component];
+  if (sender.name.empty()) sender.name = sender_name(frame);
+  return sender;
+}
+
+FrameStreams::Stream* FrameStreams::stream_of(const Frame& frame, Sender& sender) {
+  const std::uint64_t key = (std::uint64_t{frame.message_id} << 16U) |
+                            (std::uint64_t{frame.system} << 8U) | frame.component;
+  const auto known = streams_.find(key);
+  if (known != streams_.end()) return &known->second;
+  if (streams_.size() >= kMaxStreams) return nullptr;
+  const StreamDescription description = describe_stream(frame);
+  const auto id = static_cast<StreamId>(streams_.size());
+  Stream& stream = streams_[key];
+  stream = {id, sink_.stream(id, description)};
+  if (description.position == PositionKind::kLocal) {
+    sender.local_stream = id;
+    if (sender.origin) sink_.local_origin(id, *sender.origin);
+  }
+  return &stream;
+}
+
+void FrameStreams::take(const Frame& frame) {
+  Sender& sender = sender_of(frame);
+  Stream* const stream = stream_of(frame, sender);
+  if (stream == nullptr) {
+    ++left_out_messages_;
+    return;
+  }
+  const std::optional<std::int64_t> boot_ns = mavlink::boot_time_ns(frame);
+  const std::optional<LogTime> time = boot_ns ? sender.clock.take(*boot_ns) : sender.clock.latest();
+  sink_.message(stream->id, time);
+  if (stream->wanted && time) pass_samples(frame, stream->id, *time, sink_);
+  take_origin(frame, sender);
+  take_events(frame, sender);
+}
+
+void FrameStreams::take_origin(const Frame& frame, Sender& sender) {
+  if (static_cast<MessageId>(frame.message_id) != MessageId::kGpsGlobalOrigin) return;
+  const mavlink::GlobalPosition position = mavlink::decode_gps_global_origin(frame);
+  if (position.lat_deg == 0.0 && position.lon_deg == 0.0) return;
+  const bool px4 = sender.heartbeat && sender.heartbeat->autopilot == 12;
+  sender.origin = LocalOrigin{position.lat_deg,
+                              position.lon_deg,
+                              position.alt_msl_m,
+                              px4 ? LocalGrid::kPx4 : LocalGrid::kArduPilot};
+  if (sender.local_stream) sink_.local_origin(*sender.local_stream, *sender.origin);
+}
+
+void FrameStreams::event(const Sender& sender, EventKind kind, std::string text) {
+  sink_.event({sender.name, sender.clock.latest(), kind, std::move(text)});
+}
+
+void FrameStreams::take_events(const Frame& frame, Sender& sender) {
+  const mavlink::PayloadReader payload(frame.payload);
+  switch (static_cast<MessageId>(frame.message_id)) {
+    case MessageId::kHeartbeat: {
+      const mavlink::Heartbeat now = mavlink::decode_heartbeat(frame);
+      if (!now.is_autopilot()) return;
+      const std::optional<mavlink::Heartbeat> before = std::exchange(sender.heartbeat, now);
+      if (!before || before->custom_mode != now.custom_mode) {
+        event(sender, EventKind::kMode, mode_text(now.custom_mode, now.is_ardu_plane()));
+      }
+      if (!before || before->armed() != now.armed()) {
+        event(sender, EventKind::kArming, now.armed() ? "armed" : "disarmed");
+      }
+      return;
+    }
+    case MessageId::kStatusText:
+      return event(sender, EventKind::kText, mavlink::decode_status_text(frame).text);
+    case MessageId::kMissionCurrent: {
+      const std::uint16_t item = mavlink::decode_mission_sequence(frame);
+      if (std::exchange(sender.mission_item, item) != item) {
+        event(sender, EventKind::kMission, "to mission item " + std::to_string(item));
+      }
+      return;
+    }
+    case MessageId::kMissionItemReached:
+      return event(
+          sender,
+          EventKind::kMission,
+          "reached mission item " + std::to_string(mavlink::decode_mission_sequence(frame)));
+    case MessageId::kCameraTrigger:
+      return event(
+          sender, EventKind::kCamera, "trigger " + std::to_string(payload.at<std::uint32_t>(8)));
+    case MessageId::kCameraFeedback:
+      return event(
+          sender, EventKind::kCamera, "image " + std::to_string(payload.at<std::uint16_t>(40)));
+    default:
+      return;
+  }
+}
+
+void FrameStreams::report() {
+  const auto warn = [&](std::uint64_t count, const std::string& text) {
+    if (count > 0) sink_.warning(std::to_string(count) + " " + text);
+  };
+  warn(left_out_messages_,
+       "messages were left out: only " + std::to_string(kMaxStreams) + " streams are read");
+  std::uint64_t implausible = 0;
+  for (const auto& [key, sender] : senders_) implausible += sender.clock.implausible();
+  warn(implausible, "stamps of messages are implausible and were not used");
+}
+
+}  // namespace overfly::flight::logs
