@@ -194,6 +194,7 @@ Result<LogTrajectory> read_log_trajectory(const OpenedLog& log,
   LogTrajectory trajectory;
   trajectory.position_source = source.description.name;
   trajectory.attitude_source = log.streams[*truth->attitude].description.name;
+  trajectory.height = source.description.height;
   trajectory.georeferenced =
       source.description.position == PositionKind::kGeodetic || !samples.origins().empty();
   const std::uint32_t boot = main_boot(samples.positions, trajectory.warnings);

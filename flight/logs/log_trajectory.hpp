@@ -25,8 +25,8 @@ struct TrajectoryRequest {
 /// A pose of the aircraft by the vehicle's clock.
 struct LogPose {
   std::int64_t t_ns = 0;
-  /// Latitude, longitude [deg] and height above mean sea level [m], or north, east, down [m] from
-  /// an unknown origin.
+  /// Latitude, longitude [deg] and height above the trajectory's datum [m], or north, east, down
+  /// [m] from an unknown origin.
   Eigen::Vector3d position;
   Eigen::Quaterniond R_ned_body;  ///< body forward-right-down relative to north-east-down
 };
@@ -34,6 +34,7 @@ struct LogPose {
 struct LogTrajectory {
   std::vector<LogPose> poses;  ///< times strictly increasing
   bool georeferenced = false;
+  HeightDatum height = HeightDatum::kMeanSeaLevel;  ///< of georeferenced positions
   std::string position_source;
   std::string attitude_source;
   /// What was left out, with counts.
@@ -60,10 +61,12 @@ struct LogTrajectory {
                                    const LogTrajectory& trajectory);
 
 /// Writes a CSV file with the columns t_s, lat_deg, lon_deg, alt_msl_m, roll_deg, pitch_deg,
-/// yaw_deg.
-/// @param geoid_separation_m  height of the geoid above the ellipsoid at the place: if given, the
-/// column alt_ellipsoid_m = alt_msl_m + geoid_separation_m replaces alt_msl_m, as scenarios fly it
-/// Errors: kInvalidArgument if the positions are not georeferenced; kIo.
+/// yaw_deg. The column alt_ellipsoid_m, as scenarios fly it, replaces alt_msl_m if the heights are
+/// those, or if the separation is given.
+/// @param geoid_separation_m  height of the geoid above the ellipsoid at the place, which is added
+/// to heights above mean sea level
+/// Errors: kInvalidArgument if the positions are not georeferenced, or if a separation is given for
+/// heights above the ellipsoid; kIo.
 [[nodiscard]] Status write_log_csv(const std::filesystem::path& file,
                                    const LogTrajectory& trajectory,
                                    std::optional<double> geoid_separation_m = std::nullopt);

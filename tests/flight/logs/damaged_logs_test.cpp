@@ -9,6 +9,7 @@
 #include "flight/logs/flight_log.hpp"
 #include "flight/logs/log_trajectory.hpp"
 #include "tests/flight/logs/log_bytes.hpp"
+#include "tests/flight/logs/ros_bytes.hpp"
 #include "tests/support/support.hpp"
 
 namespace overfly::flight::logs {
@@ -85,6 +86,26 @@ Bytes small_ulog() {
     put(position, 500.0F);
     append(bytes, testing::ulog_data(2, position));
   }
+  return bytes;
+}
+
+/// Its chunk is not compressed: a changed byte then seldom makes the whole of it unreadable.
+Bytes small_mcap() {
+  using testing::Wire;
+  Bytes records = testing::mcap_schema(1, "geometry_msgs/msg/PoseStamped");
+  append(records, testing::mcap_channel(1, 1, "/pose", "cdr"));
+  for (int i = 0; i < 2 * kPairs; ++i) {
+    const std::int64_t t_ns = 1'000'000'000 + std::int64_t{100'000'000} * i;
+    append(records,
+           testing::mcap_message(
+               1,
+               1000,
+               testing::pose_stamped(
+                   Wire::kCdrLittle, t_ns, {1.0 * i, 2.0, 3.0}, Eigen::Quaterniond::Identity())));
+  }
+  Bytes bytes = testing::mcap_start("ros2");
+  append(bytes, testing::mcap_chunk(records, records.size(), 0, ""));
+  append(bytes, testing::mcap_end());
   return bytes;
 }
 
@@ -168,7 +189,8 @@ INSTANTIATE_TEST_SUITE_P(AllFormats,
                          DamagedLogs,
                          ::testing::Values(Format{"tlog", small_tlog},
                                            Format{"dataflash", small_dataflash},
-                                           Format{"ulog", small_ulog}),
+                                           Format{"ulog", small_ulog},
+                                           Format{"mcap", small_mcap}),
                          [](const auto& parameter) { return std::string(parameter.param.name); });
 
 TEST(HostileLogs, CannotMakeAnyNumberOfStreams) {
