@@ -8,6 +8,7 @@
 #include "flight/logs/dataflash/dataflash_reader.hpp"
 #include "flight/logs/flight_log.hpp"
 #include "flight/logs/mcap/mcap_reader.hpp"
+#include "flight/logs/rosbag/rosbag_reader.hpp"
 #include "flight/logs/stream_statistics.hpp"
 #include "flight/logs/tlog/tlog_reader.hpp"
 #include "flight/logs/ulog/ulog_reader.hpp"
@@ -30,6 +31,7 @@ struct FormatFacts {
 /// One line for each format. The first that recognises the first bytes of a file reads it.
 constexpr std::array kLogFormats = {
     FormatFacts{LogFormat::kMcap, "mcap", is_mcap, read_mcap},
+    FormatFacts{LogFormat::kRosbag, "rosbag", is_rosbag, read_rosbag},
     FormatFacts{LogFormat::kUlog, "ulog", is_ulog, read_ulog},
     FormatFacts{LogFormat::kDataFlash, "dataflash", is_dataflash, read_dataflash},
     FormatFacts{LogFormat::kTlog, "tlog", is_tlog, read_tlog},
@@ -46,8 +48,8 @@ Result<const FormatFacts*> format_of(ForwardReader& reader, const std::filesyste
       ErrorCode::kUnreadable,
       file.string() +
           ": is not a flight log: its first 1024 bytes have neither a time stamp with a MAVLink "
-          "frame (.tlog) nor a FMT record (DataFlash .bin) nor 'ULog' (.ulg) or 'MCAP' (.mcap) at "
-          "the start"};
+          "frame (.tlog) nor a FMT record (DataFlash .bin) nor 'ULog' (.ulg), 'MCAP' (.mcap) or "
+          "'#ROSBAG V2.0' (.bag) at the start"};
 }
 
 /// Gathers the figures of all streams.

@@ -109,6 +109,23 @@ Bytes small_mcap() {
   return bytes;
 }
 
+Bytes small_rosbag() {
+  using testing::Wire;
+  Bytes records = testing::bag_connection(0, "/pose", "geometry_msgs/PoseStamped");
+  for (int i = 0; i < 2 * kPairs; ++i) {
+    const std::int64_t t_ns = 1'000'000'000 + std::int64_t{100'000'000} * i;
+    append(records,
+           testing::bag_message(
+               0,
+               t_ns,
+               testing::pose_stamped(
+                   Wire::kRos1, t_ns, {1.0 * i, 2.0, 3.0}, Eigen::Quaterniond::Identity())));
+  }
+  Bytes bytes = testing::bag_start(1);
+  append(bytes, testing::bag_chunk("none", static_cast<std::uint32_t>(records.size()), records));
+  return bytes;
+}
+
 struct Format {
   const char* name;
   Bytes (*bytes)();
@@ -190,7 +207,8 @@ INSTANTIATE_TEST_SUITE_P(AllFormats,
                          ::testing::Values(Format{"tlog", small_tlog},
                                            Format{"dataflash", small_dataflash},
                                            Format{"ulog", small_ulog},
-                                           Format{"mcap", small_mcap}),
+                                           Format{"mcap", small_mcap},
+                                           Format{"rosbag", small_rosbag}),
                          [](const auto& parameter) { return std::string(parameter.param.name); });
 
 TEST(HostileLogs, CannotMakeAnyNumberOfStreams) {
