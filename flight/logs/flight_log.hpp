@@ -13,8 +13,8 @@
 
 namespace overfly::flight::logs {
 
-enum class LogFormat { kTlog, kDataFlash, kUlog, kMcap, kRosbag };
-/// "tlog", "dataflash", "ulog", "mcap", "rosbag"
+enum class LogFormat { kTlog, kDataFlash, kUlog, kMcap, kRosbag, kLcm };
+/// "tlog", "dataflash", "ulog", "mcap", "rosbag", "lcm"
 [[nodiscard]] const char* to_string(LogFormat format);
 
 /// A stream and its figures, which one pass over the log determines.

@@ -7,6 +7,7 @@
 #include "core/outside/forward_reader.hpp"
 #include "flight/logs/dataflash/dataflash_reader.hpp"
 #include "flight/logs/flight_log.hpp"
+#include "flight/logs/lcm/lcm_log_reader.hpp"
 #include "flight/logs/mcap/mcap_reader.hpp"
 #include "flight/logs/rosbag/rosbag_reader.hpp"
 #include "flight/logs/stream_statistics.hpp"
@@ -32,6 +33,7 @@ struct FormatFacts {
 constexpr std::array kLogFormats = {
     FormatFacts{LogFormat::kMcap, "mcap", is_mcap, read_mcap},
     FormatFacts{LogFormat::kRosbag, "rosbag", is_rosbag, read_rosbag},
+    FormatFacts{LogFormat::kLcm, "lcm", is_lcm_log, read_lcm_log},
     FormatFacts{LogFormat::kUlog, "ulog", is_ulog, read_ulog},
     FormatFacts{LogFormat::kDataFlash, "dataflash", is_dataflash, read_dataflash},
     FormatFacts{LogFormat::kTlog, "tlog", is_tlog, read_tlog},
@@ -49,7 +51,7 @@ Result<const FormatFacts*> format_of(ForwardReader& reader, const std::filesyste
       file.string() +
           ": is not a flight log: its first 1024 bytes have neither a time stamp with a MAVLink "
           "frame (.tlog) nor a FMT record (DataFlash .bin) nor 'ULog' (.ulg), 'MCAP' (.mcap) or "
-          "'#ROSBAG V2.0' (.bag) at the start"};
+          "'#ROSBAG V2.0' (.bag) or an event of LCM at the start"};
 }
 
 /// Gathers the figures of all streams.

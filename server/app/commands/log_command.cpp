@@ -113,7 +113,7 @@ int convert_log(const LogArguments& arguments) {
 
 void add_log_command(CLI::App& app, int& exit_code) {
   CLI::App* const log =
-      app.add_subcommand("log", "Flight logs: .tlog, DataFlash .bin, .ulg, .mcap, .bag");
+      app.add_subcommand("log", "Flight logs: .tlog, DataFlash .bin, .ulg, .mcap, .bag, LCM event logs");
   log->require_subcommand(1);
   const auto arguments = std::make_shared<LogArguments>();
   CLI::App* const info =

@@ -126,6 +126,20 @@ Bytes small_rosbag() {
   return bytes;
 }
 
+Bytes small_lcm() {
+  Bytes bytes;
+  for (int i = 0; i < 2 * kPairs; ++i) {
+    append(bytes,
+           testing::lcm_event(i,
+                              1'700'000'000'000'000,
+                              "TRUTH",
+                              testing::lcm_truth(std::int64_t{100'000'000} * i,
+                                                 {1.0 * i, 2.0, 3.0},
+                                                 Eigen::Quaterniond::Identity())));
+  }
+  return bytes;
+}
+
 struct Format {
   const char* name;
   Bytes (*bytes)();
@@ -208,7 +222,8 @@ INSTANTIATE_TEST_SUITE_P(AllFormats,
                                            Format{"dataflash", small_dataflash},
                                            Format{"ulog", small_ulog},
                                            Format{"mcap", small_mcap},
-                                           Format{"rosbag", small_rosbag}),
+                                           Format{"rosbag", small_rosbag},
+                                           Format{"lcm", small_lcm}),
                          [](const auto& parameter) { return std::string(parameter.param.name); });
 
 TEST(HostileLogs, CannotMakeAnyNumberOfStreams) {
