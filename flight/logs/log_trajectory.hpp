@@ -1,8 +1,6 @@
 // The flight of a log as poses: positions joined with attitudes, and written to files.
 #pragma once
 
-#include <Eigen/Core>
-#include <Eigen/Geometry>
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
@@ -12,6 +10,7 @@
 
 #include "core/result.hpp"
 #include "flight/logs/flight_log.hpp"
+#include "flight/logs/log_pose.hpp"
 
 namespace overfly::flight::logs {
 
@@ -20,15 +19,6 @@ struct TrajectoryRequest {
   /// Limits by the vehicle's clock [ns]; the whole flight without them.
   std::optional<std::int64_t> from_ns;
   std::optional<std::int64_t> to_ns;
-};
-
-/// A pose of the aircraft by the vehicle's clock.
-struct LogPose {
-  std::int64_t t_ns = 0;
-  /// Latitude, longitude [deg] and height above the trajectory's datum [m], or north, east, down
-  /// [m] from an unknown origin.
-  Eigen::Vector3d position;
-  Eigen::Quaterniond R_ned_body;  ///< body forward-right-down relative to north-east-down
 };
 
 struct LogTrajectory {
@@ -46,7 +36,7 @@ struct LogTrajectory {
 /// Of a clock that starts again within the log, the run with the most positions is used. Positions
 /// with a time that is not later than the one before, and those without an attitude on both sides
 /// within 1 s, are left out and counted.
-/// Memory: about 160 bytes a pose.
+/// Memory: 64 bytes a pose.
 /// Errors: as open_log and choose_truth; kUnreadable if the vehicle has no attitudes, or no pose is
 /// left.
 [[nodiscard]] Result<LogTrajectory> read_log_trajectory(const OpenedLog& log,
