@@ -13,8 +13,8 @@
 
 namespace overfly::flight::logs {
 
-enum class LogFormat { kTlog, kDataFlash, kUlog };
-/// "tlog", "dataflash", "ulog"
+enum class LogFormat { kTlog, kDataFlash, kUlog, kMcap, kRosbag, kLcm };
+/// "tlog", "dataflash", "ulog", "mcap", "rosbag", "lcm"
 [[nodiscard]] const char* to_string(LogFormat format);
 
 /// A stream and its figures, which one pass over the log determines.
@@ -40,7 +40,7 @@ struct StreamInfo {
   /// Steps between positions of more than 20 m and 150 m/s.
   std::uint64_t jumps = 0;
   double largest_jump_m = 0.0;
-  double lowest_m = 0.0;  ///< height above mean sea level, or above a local origin
+  double lowest_m = 0.0;  ///< height above the stream's datum, or above a local origin
   double highest_m = 0.0;
   bool georeferenced = false;  ///< positions are geodetic, or local with a known origin
 };

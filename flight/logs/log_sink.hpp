@@ -25,8 +25,14 @@ enum class SourceOrigin {
 
 enum class PositionKind {
   kNone,
-  kGeodetic,  ///< latitude, longitude [deg], height above mean sea level [m]
+  kGeodetic,  ///< latitude, longitude [deg], height [m] above the stream's HeightDatum
   kLocal,     ///< north, east, down from the stream's origin [m]
+};
+
+/// What the heights of geodetic positions count from.
+enum class HeightDatum {
+  kMeanSeaLevel,
+  kEllipsoid,  ///< of WGS84
 };
 
 /// The messages of one kind from one sender.
@@ -34,6 +40,7 @@ struct StreamDescription {
   std::string name;     ///< unique in the log: "XKF1[0]", "1.1/ATTITUDE"
   std::string vehicle;  ///< the sender whose clock stamps the stream; "" if the log has only one
   PositionKind position = PositionKind::kNone;
+  HeightDatum height = HeightDatum::kMeanSeaLevel;
   bool attitude = false;
   bool imu = false;
   SourceOrigin origin = SourceOrigin::kNone;

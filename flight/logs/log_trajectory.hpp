@@ -1,8 +1,6 @@
 // The flight of a log as poses: positions joined with attitudes, and written to files.
 #pragma once
 
-#include <Eigen/Core>
-#include <Eigen/Geometry>
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
@@ -12,6 +10,7 @@
 
 #include "core/result.hpp"
 #include "flight/logs/flight_log.hpp"
+#include "flight/logs/log_pose.hpp"
 
 namespace overfly::flight::logs {
 
@@ -22,18 +21,10 @@ struct TrajectoryRequest {
   std::optional<std::int64_t> to_ns;
 };
 
-/// A pose of the aircraft by the vehicle's clock.
-struct LogPose {
-  std::int64_t t_ns = 0;
-  /// Latitude, longitude [deg] and height above mean sea level [m], or north, east, down [m] from
-  /// an unknown origin.
-  Eigen::Vector3d position;
-  Eigen::Quaterniond R_ned_body;  ///< body forward-right-down relative to north-east-down
-};
-
 struct LogTrajectory {
   std::vector<LogPose> poses;  ///< times strictly increasing
   bool georeferenced = false;
+  HeightDatum height = HeightDatum::kMeanSeaLevel;  ///< of georeferenced positions
   std::string position_source;
   std::string attitude_source;
   /// What was left out, with counts.
@@ -45,7 +36,7 @@ struct LogTrajectory {
 /// Of a clock that starts again within the log, the run with the most positions is used. Positions
 /// with a time that is not later than the one before, and those without an attitude on both sides
 /// within 1 s, are left out and counted.
-/// Memory: about 160 bytes a pose.
+/// Memory: 64 bytes a pose.
 /// Errors: as open_log and choose_truth; kUnreadable if the vehicle has no attitudes, or no pose is
 /// left.
 [[nodiscard]] Result<LogTrajectory> read_log_trajectory(const OpenedLog& log,
@@ -60,10 +51,12 @@ struct LogTrajectory {
                                    const LogTrajectory& trajectory);
 
 /// Writes a CSV file with the columns t_s, lat_deg, lon_deg, alt_msl_m, roll_deg, pitch_deg,
-/// yaw_deg.
-/// @param geoid_separation_m  height of the geoid above the ellipsoid at the place: if given, the
-/// column alt_ellipsoid_m = alt_msl_m + geoid_separation_m replaces alt_msl_m, as scenarios fly it
-/// Errors: kInvalidArgument if the positions are not georeferenced; kIo.
+/// yaw_deg. The column alt_ellipsoid_m, as scenarios fly it, replaces alt_msl_m if the heights are
+/// those, or if the separation is given.
+/// @param geoid_separation_m  height of the geoid above the ellipsoid at the place, which is added
+/// to heights above mean sea level
+/// Errors: kInvalidArgument if the positions are not georeferenced, or if a separation is given for
+/// heights above the ellipsoid; kIo.
 [[nodiscard]] Status write_log_csv(const std::filesystem::path& file,
                                    const LogTrajectory& trajectory,
                                    std::optional<double> geoid_separation_m = std::nullopt);

@@ -45,6 +45,10 @@ std::string tum_row(std::int64_t t_ns, const Pose& pose) {
   return row += '\n';
 }
 
+const char* height_column(HeightDatum datum) {
+  return datum == HeightDatum::kEllipsoid ? "alt_ellipsoid_m" : "alt_msl_m";
+}
+
 std::string sources_of(const LogTrajectory& trajectory) {
   return "# position_source " + trajectory.position_source + "\n# attitude_source " +
          trajectory.attitude_source + "\n";
@@ -67,7 +71,8 @@ Status write_log_tum(const fs::path& file, const LogTrajectory& trajectory) {
       return;
     }
     out << "# origin_lat_deg " << number_text(first.x()) << "\n# origin_lon_deg "
-        << number_text(first.y()) << "\n# origin_alt_msl_m " << number_text(first.z()) << "\n";
+        << number_text(first.y()) << "\n# origin_" << height_column(trajectory.height) << " "
+        << number_text(first.z()) << "\n";
     const LocalFrame frame(geodetic_of(first));
     for (const LogPose& pose : trajectory.poses) {
       const Geodetic point = geodetic_of(pose.position);
@@ -87,10 +92,15 @@ Status write_log_csv(const fs::path& file,
                      " count from an origin that the log does not state: only a .tum file can "
                      "hold them"};
   }
+  if (geoid_separation_m && trajectory.height == HeightDatum::kEllipsoid) {
+    return Error{ErrorCode::kInvalidArgument,
+                 file.string() + ": the heights of " + trajectory.position_source +
+                     " are above the ellipsoid already: no geoid separation must be given"};
+  }
   const double separation_m = geoid_separation_m.value_or(0.0);
+  const HeightDatum height = geoid_separation_m ? HeightDatum::kEllipsoid : trajectory.height;
   return write_lines(file, [&](std::ofstream& out) {
-    out << "t_s,lat_deg,lon_deg," << (geoid_separation_m ? "alt_ellipsoid_m" : "alt_msl_m")
-        << ",roll_deg,pitch_deg,yaw_deg\n";
+    out << "t_s,lat_deg,lon_deg," << height_column(height) << ",roll_deg,pitch_deg,yaw_deg\n";
     for (const LogPose& pose : trajectory.poses) {
       const RollPitchYaw angles = attitude_from(R_enu_ned() * pose.R_ned_body);
       std::string row = seconds_text(pose.t_ns);

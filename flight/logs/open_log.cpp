@@ -7,6 +7,9 @@
 #include "core/outside/forward_reader.hpp"
 #include "flight/logs/dataflash/dataflash_reader.hpp"
 #include "flight/logs/flight_log.hpp"
+#include "flight/logs/lcm/lcm_log_reader.hpp"
+#include "flight/logs/mcap/mcap_reader.hpp"
+#include "flight/logs/rosbag/rosbag_reader.hpp"
 #include "flight/logs/stream_statistics.hpp"
 #include "flight/logs/tlog/tlog_reader.hpp"
 #include "flight/logs/ulog/ulog_reader.hpp"
@@ -28,6 +31,9 @@ struct FormatFacts {
 
 /// One line for each format. The first that recognises the first bytes of a file reads it.
 constexpr std::array kLogFormats = {
+    FormatFacts{LogFormat::kMcap, "mcap", is_mcap, read_mcap},
+    FormatFacts{LogFormat::kRosbag, "rosbag", is_rosbag, read_rosbag},
+    FormatFacts{LogFormat::kLcm, "lcm", is_lcm_log, read_lcm_log},
     FormatFacts{LogFormat::kUlog, "ulog", is_ulog, read_ulog},
     FormatFacts{LogFormat::kDataFlash, "dataflash", is_dataflash, read_dataflash},
     FormatFacts{LogFormat::kTlog, "tlog", is_tlog, read_tlog},
@@ -44,7 +50,8 @@ Result<const FormatFacts*> format_of(ForwardReader& reader, const std::filesyste
       ErrorCode::kUnreadable,
       file.string() +
           ": is not a flight log: its first 1024 bytes have neither a time stamp with a MAVLink "
-          "frame (.tlog) nor a FMT record (DataFlash .bin) nor 'ULog' at the start (.ulg)"};
+          "frame (.tlog) nor a FMT record (DataFlash .bin) nor 'ULog' (.ulg), 'MCAP' (.mcap) or "
+          "'#ROSBAG V2.0' (.bag) or an event of LCM at the start"};
 }
 
 /// Gathers the figures of all streams.
@@ -210,8 +217,9 @@ Result<OpenedLog> open_log(const std::filesystem::path& file, const std::atomic<
   log.size_bytes = reader->size_bytes();
   OpeningSink sink(log, cancel);
   if (Status status = (*facts)->read(*reader, sink); !status) {
-    return status.error().code == ErrorCode::kCancelled ? status.error().in(file.string())
-                                                        : status.error();
+    // Errors of reading name the file already.
+    return status.error().code == ErrorCode::kIo ? status.error()
+                                                 : status.error().in(file.string());
   }
   sink.finish();
   return log;

@@ -1,4 +1,4 @@
-// Flight logs: .tlog, DataFlash and ULog, opened and converted.
+// Flight logs of all formats, opened and converted.
 #include "flight/logs/log_trajectory.hpp"
 #include "tests/fuzz/input_folder.hpp"
 

@@ -1,4 +1,5 @@
-// overfly bench: measures the cost of rendering, encoding and tracking on this machine.
+// overfly bench: measures the cost of rendering, encoding, tracking and reading logs on this
+// machine.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
@@ -15,6 +16,7 @@
 #include "server/app/commands/bench_dynamics.hpp"
 #include "server/app/commands/bench_fly.hpp"
 #include "server/app/commands/bench_folder.hpp"
+#include "server/app/commands/bench_logs.hpp"
 #include "server/app/commands/commands.hpp"
 #include "server/app/exit_code.hpp"
 #include "server/app/progress.hpp"
@@ -215,6 +217,10 @@ void print_table(const Json& result) {
   std::cout << "flight model, " << std::setprecision(0) << dynamics.at("rate_hz").get<double>()
             << " Hz    " << std::setw(8) << dynamics.at("times_real_time").get<double>()
             << " times real time on one core\n";
+  for (const auto& [name, mb_per_s] : result.at("logs").items()) {
+    std::cout << "opening a log, " << std::left << std::setw(24) << name << std::right
+              << std::setw(8) << mb_per_s.get<double>() << "\n";
+  }
 }
 
 Result<Json> measure(const BenchArguments& arguments, ProgressDisplay& display) {
@@ -243,11 +249,15 @@ Result<Json> measure(const BenchArguments& arguments, ProgressDisplay& display) 
   display.note("stepping the flight model ...");
   Result<Json> dynamics = bench_dynamics();
   if (!dynamics) return dynamics.error();
+  display.note("reading flight logs ...");
+  Result<Json> logs = bench_logs();
+  if (!logs) return logs.error();
   return Json{{"drawing", std::move(*drawing)},
               {"rates", std::move(*rates)},
               {"encoding", std::move(*encoding)},
               {"flight", std::move(*flight)},
-              {"dynamics", std::move(*dynamics)}};
+              {"dynamics", std::move(*dynamics)},
+              {"logs", std::move(*logs)}};
 }
 
 int bench(BenchArguments& arguments) {

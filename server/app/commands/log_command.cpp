@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "core/text/number_text.hpp"
 #include "core/time.hpp"
 #include "flight/logs/log_trajectory.hpp"
 #include "server/app/commands/commands.hpp"
@@ -21,7 +22,8 @@ namespace {
 namespace fs = std::filesystem;
 namespace logs = flight::logs;
 
-constexpr double kLatestS = 1e9;
+/// Times of ROS count from 1970.
+constexpr double kLatestS = 9e9;
 /// The geoid lies between 107 m below and 86 m above WGS84.
 constexpr double kGeoidMaxM = 120.0;
 
@@ -56,7 +58,7 @@ Status check_convert(const LogArguments& arguments) {
     // Written so that not-a-number is rejected as well.
     if (limit && !(*limit >= 0.0 && *limit <= kLatestS)) {
       return Error{ErrorCode::kInvalidArgument,
-                   option + std::to_string(*limit) + ": must be in [0, 1e9] s"};
+                   option + std::to_string(*limit) + ": must be in [0, 9e9] s"};
     }
   }
   if (arguments.geoid_separation_m && !(std::abs(*arguments.geoid_separation_m) <= kGeoidMaxM)) {
@@ -102,7 +104,7 @@ int convert_log(const LogArguments& arguments) {
   const auto& poses = trajectory->poses;
   std::cout << arguments.out << ": " << poses.size() << " poses of " << trajectory->position_source
             << " with the attitude of " << trajectory->attitude_source << ", "
-            << s_from_ns(poses.front().t_ns) << " to " << s_from_ns(poses.back().t_ns)
+            << seconds_text(poses.front().t_ns) << " to " << seconds_text(poses.back().t_ns)
             << " s of the vehicle's clock\n";
   return kExitOk;
 }
@@ -110,7 +112,8 @@ int convert_log(const LogArguments& arguments) {
 }  // namespace
 
 void add_log_command(CLI::App& app, int& exit_code) {
-  CLI::App* const log = app.add_subcommand("log", "Flight logs: .tlog, DataFlash .bin, .ulg");
+  CLI::App* const log =
+      app.add_subcommand("log", "Flight logs: .tlog, DataFlash .bin, .ulg, .mcap, .bag, LCM event logs");
   log->require_subcommand(1);
   const auto arguments = std::make_shared<LogArguments>();
   CLI::App* const info =

@@ -9,6 +9,7 @@ namespace overfly::app {
 namespace {
 
 using flight::logs::BootInfo;
+using flight::logs::HeightDatum;
 using flight::logs::LogEvent;
 using flight::logs::OpenedLog;
 using flight::logs::PositionKind;
@@ -53,14 +54,14 @@ std::string stream_line(const StreamInfo& stream, std::size_t name_width) {
   return "  " + padded(stream.description.name, name_width, false) +
          padded(std::to_string(stream.messages), 10, true) +
          padded(stream.rate_hz > 0.0 ? decimals(stream.rate_hz, 2) : "-", 10, true) +
-         padded(timed ? decimals(s_from_ns(*stream.first_ns), 1) : "-", 11, true) +
-         padded(timed ? decimals(s_from_ns(*stream.last_ns), 1) : "-", 11, true) +
+         padded(timed ? decimals(s_from_ns(*stream.first_ns), 1) : "-", 14, true) +
+         padded(timed ? decimals(s_from_ns(*stream.last_ns), 1) : "-", 14, true) +
          padded(stream.gaps > 0 ? std::to_string(stream.gaps) : "-", 7, true) +
          (content.empty() ? "" : "  " + content) + "\n";
 }
 
 std::string event_line(const LogEvent& event) {
-  return "  " + padded(event.time ? decimals(s_from_ns(event.time->t_ns), 3) : "-", 12, true) +
+  return "  " + padded(event.time ? decimals(s_from_ns(event.time->t_ns), 3) : "-", 14, true) +
          "  " + (event.vehicle.empty() ? "" : event.vehicle + " ") + event.text + "\n";
 }
 
@@ -88,8 +89,12 @@ OrderedJson stream_json(const StreamInfo& stream) {
   json["georeferenced"] = stream.georeferenced;
   json["reach_m"] = stream.reach_m;
   const bool local = stream.description.position == PositionKind::kLocal;
-  json[local ? "lowest_above_origin_m" : "lowest_alt_msl_m"] = stream.lowest_m;
-  json[local ? "highest_above_origin_m" : "highest_alt_msl_m"] = stream.highest_m;
+  const std::string height = local ? "above_origin_m"
+                             : stream.description.height == HeightDatum::kEllipsoid
+                                 ? "alt_ellipsoid_m"
+                                 : "alt_msl_m";
+  json["lowest_" + height] = stream.lowest_m;
+  json["highest_" + height] = stream.highest_m;
   json["jumps"] = stream.jumps;
   json["largest_jump_m"] = stream.largest_jump_m;
   return json;
@@ -110,7 +115,7 @@ std::string log_info_text(const OpenedLog& log) {
     width = std::max(width, stream.description.name.size());
   }
   text += "  " + padded("stream", width, false) + padded("messages", 10, true) +
-          padded("Hz", 10, true) + padded("from s", 11, true) + padded("to s", 11, true) +
+          padded("Hz", 10, true) + padded("from s", 14, true) + padded("to s", 14, true) +
           padded("gaps", 7, true) + "  contents\n";
   for (const StreamInfo& stream : log.streams) text += stream_line(stream, width);
   if (!log.events.empty()) text += "events:\n";

@@ -9,6 +9,7 @@
 #include "flight/logs/flight_log.hpp"
 #include "flight/logs/log_trajectory.hpp"
 #include "tests/flight/logs/log_bytes.hpp"
+#include "tests/flight/logs/ros_bytes.hpp"
 #include "tests/support/support.hpp"
 
 namespace overfly::flight::logs {
@@ -84,6 +85,57 @@ Bytes small_ulog() {
     put(position, 8.0);
     put(position, 500.0F);
     append(bytes, testing::ulog_data(2, position));
+  }
+  return bytes;
+}
+
+/// Its chunk is not compressed: a changed byte then seldom makes the whole of it unreadable.
+Bytes small_mcap() {
+  using testing::Wire;
+  Bytes records = testing::mcap_schema(1, "geometry_msgs/msg/PoseStamped");
+  append(records, testing::mcap_channel(1, 1, "/pose", "cdr"));
+  for (int i = 0; i < 2 * kPairs; ++i) {
+    const std::int64_t t_ns = 1'000'000'000 + std::int64_t{100'000'000} * i;
+    append(records,
+           testing::mcap_message(
+               1,
+               1000,
+               testing::pose_stamped(
+                   Wire::kCdrLittle, t_ns, {1.0 * i, 2.0, 3.0}, Eigen::Quaterniond::Identity())));
+  }
+  Bytes bytes = testing::mcap_start("ros2");
+  append(bytes, testing::mcap_chunk(records, records.size(), 0, ""));
+  append(bytes, testing::mcap_end());
+  return bytes;
+}
+
+Bytes small_rosbag() {
+  using testing::Wire;
+  Bytes records = testing::bag_connection(0, "/pose", "geometry_msgs/PoseStamped");
+  for (int i = 0; i < 2 * kPairs; ++i) {
+    const std::int64_t t_ns = 1'000'000'000 + std::int64_t{100'000'000} * i;
+    append(records,
+           testing::bag_message(
+               0,
+               t_ns,
+               testing::pose_stamped(
+                   Wire::kRos1, t_ns, {1.0 * i, 2.0, 3.0}, Eigen::Quaterniond::Identity())));
+  }
+  Bytes bytes = testing::bag_start(1);
+  append(bytes, testing::bag_chunk("none", static_cast<std::uint32_t>(records.size()), records));
+  return bytes;
+}
+
+Bytes small_lcm() {
+  Bytes bytes;
+  for (int i = 0; i < 2 * kPairs; ++i) {
+    append(bytes,
+           testing::lcm_event(i,
+                              1'700'000'000'000'000,
+                              "TRUTH",
+                              testing::lcm_truth(std::int64_t{100'000'000} * i,
+                                                 {1.0 * i, 2.0, 3.0},
+                                                 Eigen::Quaterniond::Identity())));
   }
   return bytes;
 }
@@ -168,7 +220,10 @@ INSTANTIATE_TEST_SUITE_P(AllFormats,
                          DamagedLogs,
                          ::testing::Values(Format{"tlog", small_tlog},
                                            Format{"dataflash", small_dataflash},
-                                           Format{"ulog", small_ulog}),
+                                           Format{"ulog", small_ulog},
+                                           Format{"mcap", small_mcap},
+                                           Format{"rosbag", small_rosbag},
+                                           Format{"lcm", small_lcm}),
                          [](const auto& parameter) { return std::string(parameter.param.name); });
 
 TEST(HostileLogs, CannotMakeAnyNumberOfStreams) {

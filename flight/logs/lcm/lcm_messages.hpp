@@ -1,0 +1,54 @@
+// Overfly's LCM messages as bytes. Private to lcm.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "flight/logs/log_sink.hpp"
+
+namespace overfly::flight::logs {
+
+/// Fingerprints of the types in middleware/lcm/types whose second field is t_ns, as lcm-gen
+/// computes them.
+enum class LcmType : std::uint64_t {
+  kTruth = 0x5287a249b16a09ba,
+  kImage = 0xf4937b0d814172f8,
+  kPose = 0x8e3c3a4ab34b4e3a,
+  kSimTime = 0xe90c6fc4d87af431,
+  kDebug = 0x856bca71191b3891,
+  kOther = 0,
+};
+
+/// A number at an offset, big-endian; 0 if the bytes end before it.
+template <typename T>
+[[nodiscard]] T big_endian_at(std::span<const std::uint8_t> bytes, std::size_t offset) {
+  static_assert(std::endian::native == std::endian::little, "the bytes are reversed");
+  std::uint8_t raw[sizeof(T)] = {};
+  if (offset + sizeof(T) <= bytes.size()) {
+    for (std::size_t i = 0; i < sizeof(T); ++i) raw[i] = bytes[offset + sizeof(T) - 1 - i];
+  }
+  T value{};
+  std::memcpy(&value, raw, sizeof value);
+  return value;
+}
+
+/// The type of a message, by its first 8 bytes.
+[[nodiscard]] LcmType lcm_type_of(std::span<const std::uint8_t> message);
+
+[[nodiscard]] StreamDescription describe_channel(std::string_view channel, LcmType type);
+
+/// Field t_ns; empty if the message ends before it. @pre not kOther
+[[nodiscard]] std::optional<std::int64_t> lcm_time_ns(std::span<const std::uint8_t> message);
+
+/// Passes the position and attitude of a truth_t on. @return false if the message ends early
+bool pass_truth(std::span<const std::uint8_t> message,
+                StreamId id,
+                const LogTime& time,
+                LogSink& sink);
+
+}  // namespace overfly::flight::logs

@@ -1,0 +1,25 @@
+// Reads MCAP files (.mcap) with messages of ROS 1 and ROS 2.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "core/outside/forward_reader.hpp"
+#include "core/result.hpp"
+#include "flight/logs/log_sink.hpp"
+
+namespace overfly::flight::logs {
+
+/// Whether the first bytes of a file are those of an MCAP file of version 0.
+[[nodiscard]] bool is_mcap(std::span<const std::uint8_t> head);
+
+/// Reads an MCAP file once, from start to the end of its data.
+///
+/// A stream is a topic. Read are the message encodings `ros1` and `cdr`, chunks without compression
+/// and those with `lz4` and `zstd`; channels of other encodings are listed. A recording that was
+/// cut off is read up to the last whole message, also within its last chunk. Chunks with a wrong
+/// checksum are left out. What was left out is reported in warnings.
+/// Errors: kIo; kCancelled if the sink stops.
+[[nodiscard]] Status read_mcap(ForwardReader& file, LogSink& sink);
+
+}  // namespace overfly::flight::logs

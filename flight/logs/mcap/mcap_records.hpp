@@ -1,0 +1,71 @@
+// The records of MCAP files as values. Private to mcap.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace overfly::flight::logs {
+
+/// Numbers of the kinds of records ("MCAP File Format Specification", "Records").
+enum class McapOpcode : std::uint8_t {
+  kHeader = 0x01,
+  kFooter = 0x02,
+  kSchema = 0x03,
+  kChannel = 0x04,
+  kMessage = 0x05,
+  kChunk = 0x06,
+  kChunkIndex = 0x08,
+  kStatistics = 0x0B,
+  kDataEnd = 0x0F,
+};
+
+inline constexpr std::string_view kMcapMagic("\x89MCAP0\r\n", 8);
+/// Kind (1 byte) and length (8 bytes) in front of each record.
+inline constexpr std::size_t kMcapRecordHeaderBytes = 9;
+
+struct McapRecord {
+  McapOpcode opcode{};
+  std::uint64_t length = 0;  ///< of the content
+};
+/// @pre at least kMcapRecordHeaderBytes
+[[nodiscard]] McapRecord mcap_record_at(std::span<const std::uint8_t> bytes);
+
+// Each is empty if the content ends early.
+
+struct McapSchema {
+  std::uint16_t id = 0;
+  std::string name;
+};
+[[nodiscard]] std::optional<McapSchema> mcap_schema_in(std::span<const std::uint8_t> content);
+
+struct McapChannel {
+  std::uint16_t id = 0;
+  std::uint16_t schema_id = 0;  ///< 0: no schema
+  std::string topic;
+  std::string message_encoding;
+};
+[[nodiscard]] std::optional<McapChannel> mcap_channel_in(std::span<const std::uint8_t> content);
+
+struct McapMessage {
+  std::uint16_t channel_id = 0;
+  std::uint64_t log_time_ns = 0;
+  std::span<const std::uint8_t> data;
+};
+[[nodiscard]] std::optional<McapMessage> mcap_message_in(std::span<const std::uint8_t> content);
+
+/// A chunk's fields in front of its stored bytes.
+struct McapChunk {
+  std::uint64_t uncompressed_bytes = 0;
+  std::uint32_t uncompressed_crc = 0;  ///< 0: none
+  std::string compression;
+  std::uint64_t stored_bytes = 0;
+  std::size_t header_bytes = 0;  ///< length of these fields
+};
+[[nodiscard]] std::optional<McapChunk> mcap_chunk_in(std::span<const std::uint8_t> content);
+/// No chunk has longer fields: the name of a compression is short.
+inline constexpr std::size_t kMcapChunkHeaderBytes = 4096;
+
+}  // namespace overfly::flight::logs

@@ -1,0 +1,152 @@
+// After the definitions of common_msgs (ROS 1) and common_interfaces (ROS 2), and REP-103.
+#include "flight/logs/ros/ros_messages.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <string>
+
+#include "core/time.hpp"
+#include "flight/logs/ned_attitude.hpp"
+
+namespace overfly::flight::logs {
+namespace {
+
+struct RosTypeFacts {
+  std::string_view package;
+  std::string_view name;
+  RosType type;
+  PositionKind position;
+  bool attitude;
+  int preference;
+};
+
+constexpr RosTypeFacts kRosTypes[] = {
+    {"nav_msgs", "Odometry", RosType::kOdometry, PositionKind::kLocal, true, 0},
+    {"geometry_msgs", "PoseStamped", RosType::kPoseStamped, PositionKind::kLocal, true, 1},
+    {"sensor_msgs", "NavSatFix", RosType::kNavSatFix, PositionKind::kGeodetic, false, 0},
+    {"sensor_msgs", "Imu", RosType::kImu, PositionKind::kNone, true, 2},
+    {"sensor_msgs", "Image", RosType::kImage, PositionKind::kNone, false, 0},
+    {"sensor_msgs", "CompressedImage", RosType::kCompressedImage, PositionKind::kNone, false, 0},
+};
+
+struct RosHeader {
+  std::int64_t stamp_ns = 0;
+  std::string_view frame_id;
+};
+
+RosHeader take_header(RosCursor& message) {
+  RosHeader header;
+  if (message.encoding() == RosEncoding::kRos1) {
+    (void)message.number<std::uint32_t>();  // seq
+    header.stamp_ns = std::int64_t{message.number<std::uint32_t>()} * kNsPerS;
+  } else {
+    header.stamp_ns = std::int64_t{message.number<std::int32_t>()} * kNsPerS;
+  }
+  header.stamp_ns += message.number<std::uint32_t>();
+  header.frame_id = message.text();
+  return header;
+}
+
+Eigen::Vector3d take_vector(RosCursor& message) {
+  Eigen::Vector3d value;
+  for (double& component : value) component = message.number<double>();
+  return value;
+}
+
+Eigen::Quaterniond take_quaternion(RosCursor& message) {
+  Eigen::Vector4d xyzw;
+  for (double& component : xyzw) component = message.number<double>();
+  return Eigen::Quaterniond(xyzw);
+}
+
+Eigen::Vector3d ned_position(std::string_view world, const Eigen::Vector3d& p) {
+  if (world.ends_with("ned")) return p;
+  return {p.y(), p.x(), -p.z()};
+}
+
+Eigen::Quaterniond ned_attitude(std::string_view world,
+                                std::string_view body,
+                                const Eigen::Quaterniond& R_world_body) {
+  // Both changes of axes are half turns, which are their own inverses.
+  const Eigen::Quaterniond R_flu_frd(0.0, 1.0, 0.0, 0.0);
+  Eigen::Quaterniond R = R_world_body;
+  if (!body.ends_with("frd")) R = R * R_flu_frd;
+  if (!world.ends_with("ned")) R = R_enu_ned() * R;
+  return R;
+}
+
+void take_pose(RosCursor& message,
+               std::string_view world,
+               std::string_view body,
+               RosSample& sample) {
+  sample.position = ned_position(world, take_vector(message));
+  sample.R_ned_body = ned_attitude(world, body, take_quaternion(message));
+}
+
+void take_fix(RosCursor& message, RosSample& sample) {
+  const auto status = message.number<std::int8_t>();
+  (void)message.number<std::uint16_t>();  // service
+  sample.position = take_vector(message);
+  sample.invalid = status < 0;
+}
+
+void take_imu(RosCursor& message, std::string_view body, RosSample& sample) {
+  const Eigen::Quaterniond R_world_body = take_quaternion(message);
+  const bool known = message.number<double>() != -1.0;
+  if (known) sample.R_ned_body = ned_attitude("", body, R_world_body);
+}
+
+}  // namespace
+
+RosType ros_type_named(std::string_view name) {
+  for (const RosTypeFacts& facts : kRosTypes) {
+    if (!name.starts_with(facts.package) || !name.ends_with(facts.name)) continue;
+    const std::size_t ends = facts.package.size() + facts.name.size();
+    if (name.size() <= ends) continue;
+    const std::string_view middle = name.substr(facts.package.size(), name.size() - ends);
+    if (middle == "/" || middle == "/msg/") return facts.type;
+  }
+  return RosType::kOther;
+}
+
+StreamDescription describe_topic(std::string_view topic, RosType type) {
+  StreamDescription description;
+  description.name = topic;
+  description.imu = type == RosType::kImu;
+  for (const RosTypeFacts& facts : kRosTypes) {
+    if (facts.type != type) continue;
+    description.position = facts.position;
+    description.attitude = facts.attitude;
+    description.preference = facts.preference;
+  }
+  if (description.position == PositionKind::kNone && !description.attitude) return description;
+  if (type == RosType::kNavSatFix) description.height = HeightDatum::kEllipsoid;
+  std::string lower(topic);
+  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) {
+    return static_cast<char>(std::tolower(c));
+  });
+  if (lower.find("truth") != std::string::npos) {
+    description.origin = SourceOrigin::kSimulation;
+  } else {
+    description.origin = type == RosType::kNavSatFix ? SourceOrigin::kGps : SourceOrigin::kEstimate;
+  }
+  return description;
+}
+
+std::optional<RosSample> decode_ros(RosType type, RosCursor message) {
+  if (type == RosType::kOther) return std::nullopt;
+  const RosHeader header = take_header(message);
+  RosSample sample;
+  sample.stamp_ns = header.stamp_ns;
+  if (type == RosType::kPoseStamped) take_pose(message, header.frame_id, "", sample);
+  if (type == RosType::kOdometry) {
+    const std::string_view child_frame_id = message.text();
+    take_pose(message, header.frame_id, child_frame_id, sample);
+  }
+  if (type == RosType::kNavSatFix) take_fix(message, sample);
+  if (type == RosType::kImu) take_imu(message, header.frame_id, sample);
+  if (!message.ok()) return std::nullopt;
+  return sample;
+}
+
+}  // namespace overfly::flight::logs

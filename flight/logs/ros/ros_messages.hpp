@@ -1,0 +1,54 @@
+// The ROS messages that describe a flight, ROS 1 and ROS 2.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "flight/logs/log_sink.hpp"
+#include "flight/logs/ros/ros_cursor.hpp"
+
+namespace overfly::flight::logs {
+
+enum class RosType {
+  kPoseStamped,      ///< geometry_msgs/PoseStamped
+  kOdometry,         ///< nav_msgs/Odometry
+  kNavSatFix,        ///< sensor_msgs/NavSatFix
+  kImu,              ///< sensor_msgs/Imu
+  kImage,            ///< sensor_msgs/Image
+  kCompressedImage,  ///< sensor_msgs/CompressedImage
+  kOther,
+};
+
+/// The type of a name: "geometry_msgs/PoseStamped" (ROS 1), "geometry_msgs/msg/PoseStamped" (ROS
+/// 2).
+[[nodiscard]] RosType ros_type_named(std::string_view name);
+
+/// How the topic of a type contributes to a flight; the name is that of the topic.
+///
+/// A topic with "truth" in its name is a simulator's or a tracking system's state, NavSatFix is
+/// GPS, all others are estimates.
+[[nodiscard]] StreamDescription describe_topic(std::string_view topic, RosType type);
+
+/// What a message says of the flight.
+struct RosSample {
+  std::int64_t stamp_ns = 0;  ///< header.stamp
+  /// North, east, down [m]; or of NavSatFix latitude, longitude [deg], height above the ellipsoid
+  /// [m].
+  std::optional<Eigen::Vector3d> position;
+  std::optional<Eigen::Quaterniond> R_ned_body;  ///< not normalised
+  bool invalid = false;                          ///< the sender marks the sample as invalid: no fix
+};
+
+/// Reads the header, and the position and attitude of types that have them.
+///
+/// Frames are those of REP-103: a world east-north-up, a body forward-left-up. A frame_id that ends
+/// with "ned" is a world north-east-down, a frame of the body that ends with "frd" is
+/// forward-right-down; the body's frame is child_frame_id of Odometry and frame_id of Imu.
+/// An Imu without orientation (orientation_covariance[0] = -1) gives neither.
+/// @return empty if the message ends early, or the type is kOther
+[[nodiscard]] std::optional<RosSample> decode_ros(RosType type, RosCursor message);
+
+}  // namespace overfly::flight::logs

@@ -1,0 +1,131 @@
+#include "flight/logs/ros/ros_topics.hpp"
+
+#include <array>
+#include <cstdio>
+#include <limits>
+
+#include "core/text/printable_text.hpp"
+
+namespace overfly::flight::logs {
+namespace {
+
+/// A recording has some hundred topics.
+constexpr std::size_t kMaxRosTopics = 4096;
+constexpr std::size_t kCdrHeaderBytes = 4;
+constexpr unsigned kCdrBigEndian = 0;
+constexpr unsigned kCdrLittleEndian = 1;
+
+/// Names of the representation identifiers of DDS-XTypes 1.3, table 60, and DDSI-RTPS 2.5, 10.5.
+const char* representation_name(unsigned representation) {
+  switch (representation) {
+    case 0x0002:
+    case 0x0003:
+      return " (PL_CDR)";
+    case 0x0006:
+    case 0x0007:
+    case 0x0010:
+    case 0x0011:
+      return " (CDR2)";
+    case 0x0008:
+    case 0x0009:
+    case 0x0014:
+    case 0x0015:
+      return " (D_CDR2)";
+    case 0x000a:
+    case 0x000b:
+    case 0x0012:
+    case 0x0013:
+      return " (PL_CDR2)";
+    default:
+      return "";
+  }
+}
+
+std::string topic_text(const std::string& name) {
+  return printable_text({reinterpret_cast<const std::uint8_t*>(name.data()), name.size()});
+}
+
+}  // namespace
+
+std::optional<RosTopics::Topic> RosTopics::add(const std::string& name,
+                                               std::string_view type,
+                                               RosEncoding encoding) {
+  const auto [known, added] =
+      topics_.try_emplace({name, {std::string(type), encoding}}, streams_.size());
+  if (!added) return known->second;
+  if (streams_.size() >= kMaxRosTopics) {
+    topics_.erase(known);
+    ++left_out_topics_;
+    return std::nullopt;
+  }
+  Stream stream;
+  stream.encoding = encoding;
+  if (encoding != RosEncoding::kOther) stream.type = ros_type_named(type);
+  StreamDescription description = describe_topic(topic_text(name), stream.type);
+  if (stream.type == RosType::kOther) description.vehicle = "recording";
+  stream.wanted = sink_.stream(static_cast<StreamId>(streams_.size()), description);
+  streams_.push_back(std::move(stream));
+  return known->second;
+}
+
+std::optional<RosSample> RosTopics::decode(const Stream& stream,
+                                           std::span<const std::uint8_t> data) {
+  bool big_endian = false;
+  if (stream.encoding == RosEncoding::kCdr) {
+    if (data.size() < kCdrHeaderBytes) {
+      ++short_messages_;
+      return std::nullopt;
+    }
+    const unsigned representation = data[0] * 256U + data[1];
+    if (representation != kCdrBigEndian && representation != kCdrLittleEndian) {
+      ++refused_[representation];
+      return std::nullopt;
+    }
+    big_endian = representation == kCdrBigEndian;
+    data = data.subspan(kCdrHeaderBytes);
+  }
+  const std::optional<RosSample> sample =
+      decode_ros(stream.type, RosCursor(data, stream.encoding, big_endian));
+  if (!sample) ++short_messages_;
+  return sample;
+}
+
+void RosTopics::take(Topic topic, std::span<const std::uint8_t> data, std::uint64_t recorded_ns) {
+  Stream& stream = streams_[topic];
+  const auto id = static_cast<StreamId>(topic);
+  if (stream.type == RosType::kOther) {
+    constexpr auto kMost = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
+    const auto t_ns = recorded_ns <= kMost ? static_cast<std::int64_t>(recorded_ns) : -1;
+    return sink_.message(id, stream.clock.take(t_ns));
+  }
+  const std::optional<RosSample> sample = decode(stream, data);
+  const std::optional<LogTime> time =
+      sample ? stream.clock.take(sample->stamp_ns) : std::optional<LogTime>();
+  sink_.message(id, time);
+  if (!stream.wanted || !time) return;
+  if (sample->invalid) return sink_.no_sample(id);
+  if (sample->position) sink_.position(id, *time, *sample->position);
+  if (sample->R_ned_body) sink_.attitude(id, *time, *sample->R_ned_body);
+}
+
+void RosTopics::report() {
+  const auto warn = [&](std::uint64_t count, const std::string& text) {
+    if (count > 0) sink_.warning(std::to_string(count) + " " + text);
+  };
+  for (const auto& [representation, count] : refused_) {
+    std::array<char, 8> hex{};
+    std::snprintf(hex.data(), hex.size(), "0x%04x", representation);
+    warn(count,
+         "messages have the CDR representation " + std::string(hex.data()) +
+             representation_name(representation) +
+             ", which is not read: only plain CDR (0x0000, 0x0001) is");
+  }
+  warn(short_messages_, "messages are shorter than their type and were left out");
+  warn(left_out_topics_,
+       "declarations of topics were left out: only " + std::to_string(kMaxRosTopics) + " are read");
+  std::uint64_t implausible = 0;
+  for (const Stream& stream : streams_) implausible += stream.clock.implausible();
+  warn(implausible, "stamps of messages are implausible and were not used");
+}
+
+}  // namespace overfly::flight::logs

@@ -1,0 +1,62 @@
+// The topics of a recording of ROS messages as streams of a flight log.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "flight/logs/boot_clock.hpp"
+#include "flight/logs/log_sink.hpp"
+#include "flight/logs/ros/ros_messages.hpp"
+
+namespace overfly::flight::logs {
+
+/// Passes the messages of topics to a sink.
+///
+/// A stream is a topic. Messages of the types in RosType have the time of their header; all others
+/// are listed with the time at which they were recorded. Each topic has a BootClock of its own,
+/// because the clocks of sensors may differ.
+class RosTopics {
+ public:
+  using Topic = std::size_t;
+
+  explicit RosTopics(LogSink& sink) : sink_(sink) {}
+
+  /// The topic of this name, type and encoding: a new one, or one that was added before.
+  /// @return empty if there are too many
+  [[nodiscard]] std::optional<Topic> add(const std::string& name,
+                                         std::string_view type,
+                                         RosEncoding encoding);
+  /// @param data         serialised message; of images the start is enough
+  /// @param recorded_ns  time of recording
+  void take(Topic topic, std::span<const std::uint8_t> data, std::uint64_t recorded_ns);
+  /// Reports what was left out.
+  void report();
+
+  /// No message of a known type needs more bytes than this, if its frames have sensible names.
+  static constexpr std::size_t kMessageBytes = std::size_t{1} << 16U;
+
+ private:
+  struct Stream {
+    RosType type = RosType::kOther;
+    RosEncoding encoding = RosEncoding::kOther;
+    bool wanted = false;
+    BootClock clock;
+  };
+  using Key = std::pair<std::string, std::pair<std::string, RosEncoding>>;
+
+  std::optional<RosSample> decode(const Stream& stream, std::span<const std::uint8_t> data);
+
+  LogSink& sink_;
+  std::vector<Stream> streams_;  ///< by StreamId
+  std::map<Key, Topic> topics_;
+  std::uint64_t left_out_topics_ = 0;
+  std::uint64_t short_messages_ = 0;
+  std::map<unsigned, std::uint64_t> refused_;  ///< messages, by CDR representation
+};
+
+}  // namespace overfly::flight::logs
