@@ -76,6 +76,7 @@ MAY_INCLUDE = {
     "flight/logs/dataflash": ["core/", "flight/logs"],
     "flight/logs/ulog": ["core/", "flight/logs"],
     "flight/logs/csv": ["core/", "flight/logs"],
+    "flight/smoothing": ["core/"],
     "flight/dynamics": ["core/", "flight/gravity.hpp", "flight/normal_noise.hpp"],
     "middleware/lcm": ["core/"],
     "middleware/lcm/absent": ["core/", "middleware/lcm"],
@@ -163,7 +164,7 @@ THIRD_PARTY = [
     # OpenCV's C headers have the names that upstream systems of its second version use.
     (r"opencv2/\w+/\w+_c\.h$", ["vo_bridges/adapters"], False),
     (r"opencv2/(?!\w+/\w+_c\.h$)", ["odometry"], False),
-    (r"ceres/", ["odometry"], False),
+    (r"ceres/", ["odometry", "flight/smoothing"], False),
     (r"boost/", ["server/net"], False),
     (r"openssl/", ["server/net"], False),
     (r"(turbojpeg|jpeglib)\.h$", ["server/files"], False),
