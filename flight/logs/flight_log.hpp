@@ -8,13 +8,14 @@
 #include <string>
 #include <vector>
 
+#include "core/outside/source_policy.hpp"
 #include "core/result.hpp"
 #include "flight/logs/log_sink.hpp"
 
 namespace overfly::flight::logs {
 
-enum class LogFormat { kTlog, kDataFlash, kUlog, kMcap, kRosbag, kLcm };
-/// "tlog", "dataflash", "ulog", "mcap", "rosbag", "lcm"
+enum class LogFormat { kTlog, kDataFlash, kUlog, kMcap, kRosbag, kLcm, kCsv };
+/// "tlog", "dataflash", "ulog", "mcap", "rosbag", "lcm", "csv"
 [[nodiscard]] const char* to_string(LogFormat format);
 
 /// A stream and its figures, which one pass over the log determines.
@@ -62,8 +63,9 @@ struct TruthChoice {
 
 struct OpenedLog {
   std::filesystem::path file;
+  SourcePolicy sources;  ///< which files the log may name
   LogFormat format = LogFormat::kTlog;
-  std::uint64_t size_bytes = 0;
+  std::uint64_t size_bytes = 0;     ///< of all its files
   std::vector<StreamInfo> streams;  ///< in the order in which they are met: by StreamId
   std::vector<BootInfo> boots;
   std::vector<LogEvent> events;  ///< the first kMaxEvents
@@ -80,16 +82,26 @@ inline constexpr double kGroundReachM = 30.0;
 /// Errors: as ReadableFile::open; kUnreadable for other formats.
 [[nodiscard]] Result<LogFormat> detect_format(const std::filesystem::path& file);
 
+/// The files of a log: the file itself, and the pieces that a mapping of CSV files names.
+/// Errors: as detect_format and read_csv_mapping.
+[[nodiscard]] Result<std::vector<std::filesystem::path>> files_of_log(
+    const std::filesystem::path& file);
+
 /// Reads the whole log once and lists what it contains.
 /// Memory: independent of the size of the log. Damaged parts are skipped and reported in warnings.
-/// @param cancel  stops reading; may be null
-/// Errors: as detect_format; kIo; kCancelled.
+/// @param cancel   stops reading; may be null
+/// @param sources  which other files the log may name: a mapping of CSV files does
+/// Errors: as detect_format and read_csv_log; kIo; kCancelled.
 [[nodiscard]] Result<OpenedLog> open_log(const std::filesystem::path& file,
-                                         const std::atomic<bool>* cancel = nullptr);
+                                         const std::atomic<bool>* cancel = nullptr,
+                                         const SourcePolicy& sources = {});
 
 /// Reads a log once and passes all it contains to a sink.
+/// @param sources  as open_log()
 /// Errors: as open_log.
-[[nodiscard]] Status read_log_into(const std::filesystem::path& file, LogSink& sink);
+[[nodiscard]] Status read_log_into(const std::filesystem::path& file,
+                                   LogSink& sink,
+                                   const SourcePolicy& sources = {});
 
 /// The streams to take as truth: the position source and the attitude source that goes with it.
 /// @param name  of the position source: its full name, or what follows the '/' in it if that is

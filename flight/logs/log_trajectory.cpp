@@ -75,7 +75,7 @@ Result<LogTrajectory> read_log_trajectory(const OpenedLog& log,
   };
   if (!truth->attitude) return failed("no attitudes of the same vehicle are in the log");
   SampleSink samples(log, *truth, request, cancel);
-  if (Status status = read_log_into(log.file, samples); !status) return status.error();
+  if (Status status = read_log_into(log.file, samples, log.sources); !status) return status.error();
   if (samples.poses.positions() == 0) return failed("no valid positions in the time asked for");
 
   LogTrajectory trajectory;

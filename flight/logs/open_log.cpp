@@ -5,6 +5,7 @@
 
 #include "core/cancel.hpp"
 #include "core/outside/forward_reader.hpp"
+#include "flight/logs/csv/csv_reader.hpp"
 #include "flight/logs/dataflash/dataflash_reader.hpp"
 #include "flight/logs/flight_log.hpp"
 #include "flight/logs/lcm/lcm_log_reader.hpp"
@@ -26,7 +27,7 @@ struct FormatFacts {
   LogFormat format;
   const char* name;
   bool (*detect)(std::span<const std::uint8_t> head);
-  Status (*read)(ForwardReader& file, LogSink& sink);
+  Status (*read)(ForwardReader& file, LogSink& sink);  ///< null: read_csv_log, by the file's name
 };
 
 /// One line for each format. The first that recognises the first bytes of a file reads it.
@@ -37,6 +38,7 @@ constexpr std::array kLogFormats = {
     FormatFacts{LogFormat::kUlog, "ulog", is_ulog, read_ulog},
     FormatFacts{LogFormat::kDataFlash, "dataflash", is_dataflash, read_dataflash},
     FormatFacts{LogFormat::kTlog, "tlog", is_tlog, read_tlog},
+    FormatFacts{LogFormat::kCsv, "csv", is_csv_mapping, nullptr},
 };
 
 Result<const FormatFacts*> format_of(ForwardReader& reader, const std::filesystem::path& file) {
@@ -50,8 +52,17 @@ Result<const FormatFacts*> format_of(ForwardReader& reader, const std::filesyste
       ErrorCode::kUnreadable,
       file.string() +
           ": is not a flight log: its first 1024 bytes have neither a time stamp with a MAVLink "
-          "frame (.tlog) nor a FMT record (DataFlash .bin) nor 'ULog' (.ulg), 'MCAP' (.mcap) or "
-          "'#ROSBAG V2.0' (.bag) or an event of LCM at the start"};
+          "frame (.tlog) nor a FMT record (DataFlash .bin) nor 'ULog' (.ulg), 'MCAP' (.mcap), "
+          "'#ROSBAG V2.0' (.bag), an event of LCM nor "
+          "'csv_mapping_version' (mapping of CSV files) at the start"};
+}
+
+Status read_with(const FormatFacts& facts,
+                 const std::filesystem::path& file,
+                 ForwardReader& reader,
+                 const SourcePolicy& sources,
+                 LogSink& sink) {
+  return facts.read != nullptr ? facts.read(reader, sink) : read_csv_log(file, sources, sink);
 }
 
 /// Gathers the figures of all streams.
@@ -83,7 +94,10 @@ class OpeningSink final : public LogSink {
     }
   }
   void warning(const std::string& text) override { log_.warnings.push_back(text); }
-  [[nodiscard]] bool progress(std::uint64_t /*bytes*/) override { return !is_cancelled(cancel_); }
+  [[nodiscard]] bool progress(std::uint64_t bytes) override {
+    log_.size_bytes = std::max(log_.size_bytes, bytes);
+    return !is_cancelled(cancel_);
+  }
 
   void finish();
 
@@ -198,28 +212,46 @@ Result<LogFormat> detect_format(const std::filesystem::path& file) {
   return (*facts)->format;
 }
 
-Status read_log_into(const std::filesystem::path& file, LogSink& sink) {
+Result<std::vector<std::filesystem::path>> files_of_log(const std::filesystem::path& file) {
+  const Result<LogFormat> format = detect_format(file);
+  if (!format) return format.error();
+  std::vector<std::filesystem::path> files{file};
+  if (*format != LogFormat::kCsv) return files;
+  const Result<std::vector<CsvPiece>> pieces = read_csv_mapping(file);
+  if (!pieces) return pieces.error();
+  for (const CsvPiece& piece : *pieces) files.push_back(piece.file);
+  return files;
+}
+
+Status read_log_into(const std::filesystem::path& file,
+                     LogSink& sink,
+                     const SourcePolicy& sources) {
   Result<ForwardReader> reader = ForwardReader::open(file);
   if (!reader) return reader.error();
   const Result<const FormatFacts*> facts = format_of(*reader, file);
   if (!facts) return facts.error();
-  return (*facts)->read(*reader, sink);
+  return read_with(**facts, file, *reader, sources, sink);
 }
 
-Result<OpenedLog> open_log(const std::filesystem::path& file, const std::atomic<bool>* cancel) {
+Result<OpenedLog> open_log(const std::filesystem::path& file,
+                           const std::atomic<bool>* cancel,
+                           const SourcePolicy& sources) {
   Result<ForwardReader> reader = ForwardReader::open(file);
   if (!reader) return reader.error();
   const Result<const FormatFacts*> facts = format_of(*reader, file);
   if (!facts) return facts.error();
   OpenedLog log;
   log.file = file;
+  log.sources = sources;
   log.format = (*facts)->format;
   log.size_bytes = reader->size_bytes();
   OpeningSink sink(log, cancel);
-  if (Status status = (*facts)->read(*reader, sink); !status) {
-    // Errors of reading name the file already.
-    return status.error().code == ErrorCode::kIo ? status.error()
-                                                 : status.error().in(file.string());
+  if (Status status = read_with(**facts, file, *reader, sources, sink); !status) {
+    // Errors of reading name the file already, and those of CSV files theirs.
+    const ErrorCode code = status.error().code;
+    const bool named =
+        code == ErrorCode::kIo || ((*facts)->read == nullptr && code != ErrorCode::kCancelled);
+    return named ? status.error() : status.error().in(file.string());
   }
   sink.finish();
   return log;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "core/text/number_text.hpp"
 #include "core/time.hpp"
@@ -71,9 +72,12 @@ Status check_convert(const LogArguments& arguments) {
                  "--from " + std::to_string(*arguments.from_s) + ": must not be after --to " +
                      std::to_string(*arguments.to_s)};
   }
+  const Result<std::vector<fs::path>> files = logs::files_of_log(arguments.file);
+  if (!files) return files.error();
   std::error_code failure;
   // The format follows from the content, so that a log may have any name.
-  if (fs::equivalent(arguments.file, arguments.out, failure)) {
+  for (const fs::path& file : *files) {
+    if (!fs::equivalent(file, arguments.out, failure)) continue;
     return Error{ErrorCode::kInvalidArgument,
                  "--out " + arguments.out + ": is the log itself, which would be lost"};
   }
@@ -112,8 +116,8 @@ int convert_log(const LogArguments& arguments) {
 }  // namespace
 
 void add_log_command(CLI::App& app, int& exit_code) {
-  CLI::App* const log =
-      app.add_subcommand("log", "Flight logs: .tlog, DataFlash .bin, .ulg, .mcap, .bag, LCM event logs");
+  CLI::App* const log = app.add_subcommand(
+      "log", "Flight logs: .tlog, DataFlash .bin, .ulg, .mcap, .bag, LCM event logs, CSV");
   log->require_subcommand(1);
   const auto arguments = std::make_shared<LogArguments>();
   CLI::App* const info =

@@ -1,0 +1,341 @@
+#include "flight/logs/csv/csv_mapping.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include "core/motion/pose.hpp"
+#include "core/outside/file_text.hpp"
+#include "core/outside/outside_json.hpp"
+#include "core/time.hpp"
+
+namespace overfly::flight::logs {
+namespace {
+
+using MappingJson = nlohmann::ordered_json;
+
+constexpr std::uint64_t kMaxMappingBytes = 1U << 20U;
+constexpr std::size_t kMaxColumnNameBytes = 200;
+constexpr std::size_t kMaxPathBytes = 4096;
+constexpr std::string_view kVersionKey = "\"csv_mapping_version\"";
+
+enum class Dimension { kDegrees, kRadians, kLength, kNumber };
+
+struct QuantityFacts {
+  const char* name;
+  Dimension dimension;
+};
+
+constexpr std::array<QuantityFacts, kCsvQuantities> kQuantities{{{"lat", Dimension::kDegrees},
+                                                                 {"lon", Dimension::kDegrees},
+                                                                 {"alt_msl", Dimension::kLength},
+                                                                 {"roll", Dimension::kRadians},
+                                                                 {"pitch", Dimension::kRadians},
+                                                                 {"yaw", Dimension::kRadians},
+                                                                 {"qw", Dimension::kNumber},
+                                                                 {"qx", Dimension::kNumber},
+                                                                 {"qy", Dimension::kNumber},
+                                                                 {"qz", Dimension::kNumber}}};
+
+struct Unit {
+  const char* name;
+  double factor;  ///< to degrees or metres
+};
+
+constexpr std::array<Unit, 4> kAngleUnits{
+    {{"deg", 1.0}, {"rad", 180.0 / kPi}, {"cdeg", 0.01}, {"1e-7deg", 1e-7}}};
+constexpr std::array<Unit, 4> kLengthUnits{
+    {{"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}, {"ft", 0.3048}}};
+constexpr std::array<std::pair<const char*, std::int64_t>, 4> kTimeUnits{
+    {{"s", kNsPerS}, {"ms", 1'000'000}, {"us", 1'000}, {"ns", 1}}};
+
+/// An object of the mapping with its path in messages ("pieces.0.time").
+class MappingObject {
+ public:
+  MappingObject(const MappingJson& json, std::string file, std::string path)
+      : json_(json), file_(std::move(file)), path_(std::move(path)) {}
+
+  [[nodiscard]] Error fault(const std::string& member, const std::string& what) const {
+    std::string text = path_.empty() ? member : member.empty() ? path_ : path_ + "." + member;
+    if (json_.is_object() && json_.contains(member)) text += " = " + shown(json_.at(member));
+    return {ErrorCode::kInvalidArgument, file_ + ": " + text + ": " + what};
+  }
+  /// Errors: for anything but an object, and for members that are not in `known`.
+  [[nodiscard]] Status expect_members(const std::vector<std::string>& known) const {
+    if (!json_.is_object()) return fault("", "must be an object");
+    for (const auto& [member, value] : json_.items()) {
+      if (std::find(known.begin(), known.end(), member) != known.end()) continue;
+      std::string names;
+      for (const std::string& name : known) names += (names.empty() ? "" : ", ") + name;
+      return fault(member, "is unknown: must be one of " + names);
+    }
+    return {};
+  }
+  [[nodiscard]] bool has(const std::string& member) const { return json_.contains(member); }
+  [[nodiscard]] Result<MappingObject> object(const std::string& member) const {
+    if (!has(member)) return fault(member, "is missing");
+    return MappingObject(json_.at(member), file_, path_.empty() ? member : path_ + "." + member);
+  }
+  [[nodiscard]] Result<std::string> text(const std::string& member, std::size_t max_bytes) const {
+    const bool is_text = has(member) && json_.at(member).is_string();
+    const std::string text = is_text ? json_.at(member).get<std::string>() : std::string();
+    const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20; };
+    if (text.empty() || text.size() > max_bytes ||
+        std::any_of(text.begin(), text.end(), is_control)) {
+      return fault(member,
+                   "must be a text of 1 to " + std::to_string(max_bytes) +
+                       " bytes without control characters");
+    }
+    return text;
+  }
+  /// A finite number with a magnitude of at most `limit`.
+  [[nodiscard]] Result<double> number(const std::string& member, double limit) const {
+    const bool is_number = has(member) && json_.at(member).is_number();
+    const double value = is_number ? json_.at(member).get<double>() : std::nan("");
+    if (!(std::abs(value) <= limit)) {
+      return fault(member,
+                   "must be a number in [-" + MappingJson(limit).dump() + ", " +
+                       MappingJson(limit).dump() + "]");
+    }
+    return value;
+  }
+
+ private:
+  static std::string shown(const MappingJson& value) {
+    std::string text = value.dump(-1, ' ', true, MappingJson::error_handler_t::replace);
+    return text.size() > 60 ? text.substr(0, 57) + "..." : text;
+  }
+
+  const MappingJson& json_;
+  std::string file_;
+  std::string path_;
+};
+
+template <typename Units>
+std::string names_of_units(const Units& units) {
+  std::string names;
+  for (const auto& unit : units) {
+    if constexpr (requires { unit.name; }) {
+      names += (names.empty() ? "" : ", ") + std::string(unit.name);
+    } else {
+      names += (names.empty() ? "" : ", ") + std::string(unit.first);
+    }
+  }
+  return names;
+}
+
+Result<double> unit_factor(const MappingObject& column, Dimension dimension) {
+  if (dimension == Dimension::kNumber) {
+    if (column.has("unit")) return column.fault("unit", "a part of a quaternion has no unit");
+    return 1.0;
+  }
+  const Result<std::string> name = column.text("unit", kMaxColumnNameBytes);
+  if (!name) return name.error();
+  const auto& units = dimension == Dimension::kLength ? kLengthUnits : kAngleUnits;
+  for (const Unit& unit : units) {
+    if (unit.name != *name) continue;
+    return dimension == Dimension::kRadians ? rad_from_deg(unit.factor) : unit.factor;
+  }
+  return column.fault("unit", "must be one of " + names_of_units(units));
+}
+
+Result<CsvColumn> column_from(const MappingObject& object, Dimension dimension) {
+  if (Status status = object.expect_members({"column", "unit", "scale"}); !status) {
+    return status.error();
+  }
+  const Result<std::string> name = object.text("column", kMaxColumnNameBytes);
+  if (!name) return name.error();
+  const Result<double> factor = unit_factor(object, dimension);
+  if (!factor) return factor.error();
+  CsvColumn column{*name, *factor};
+  if (!object.has("scale")) return column;
+  const Result<double> scale = object.number("scale", 1e12);
+  if (!scale) return scale.error();
+  if (*scale == 0.0) return object.fault("scale", "must not be 0");
+  column.factor *= *scale;
+  return column;
+}
+
+Status take_columns(const MappingObject& piece, CsvPiece& result) {
+  const Result<MappingObject> columns = piece.object("columns");
+  if (!columns) return columns.error();
+  std::vector<std::string> names;
+  for (const QuantityFacts& facts : kQuantities) names.emplace_back(facts.name);
+  if (Status status = columns->expect_members(names); !status) return status;
+  for (std::size_t i = 0; i < kCsvQuantities; ++i) {
+    if (!columns->has(names[i])) continue;
+    const Result<MappingObject> object = columns->object(names[i]);
+    if (!object) return object.error();
+    Result<CsvColumn> column = column_from(*object, kQuantities[i].dimension);
+    if (!column) return column.error();
+    result.columns[i] = std::move(*column);
+  }
+  // The first of each group stands for the group from here on.
+  for (const auto& [first, count] : {std::pair{0, 3}, std::pair{3, 3}, std::pair{6, 4}}) {
+    for (int i = first + 1; i < first + count; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      if (result.columns[at].has_value() ==
+          result.columns[static_cast<std::size_t>(first)].has_value())
+        continue;
+      return columns->fault(
+          "",
+          std::string("needs all or none of ") + (first == 0   ? "lat, lon, alt_msl"
+                                                  : first == 3 ? "roll, pitch, yaw"
+                                                               : "qw, qx, qy, qz"));
+    }
+  }
+  if (result.has_angles() && result.has_quaternion()) {
+    return columns->fault("", "must have either roll, pitch, yaw or qw, qx, qy, qz");
+  }
+  return {};
+}
+
+Status take_time(const MappingObject& piece, CsvPiece& result) {
+  const Result<MappingObject> time = piece.object("time");
+  if (!time) return time.error();
+  if (Status status = time->expect_members({"column", "unit", "offset_s"}); !status) return status;
+  const Result<std::string> column = time->text("column", kMaxColumnNameBytes);
+  if (!column) return column.error();
+  result.time_column = *column;
+  const Result<std::string> unit = time->text("unit", kMaxColumnNameBytes);
+  if (!unit) return unit.error();
+  const auto known = std::find_if(kTimeUnits.begin(), kTimeUnits.end(), [&](const auto& entry) {
+    return entry.first == *unit;
+  });
+  if (known == kTimeUnits.end()) {
+    return time->fault("unit", "must be one of " + names_of_units(kTimeUnits));
+  }
+  result.time_unit_ns = known->second;
+  if (!time->has("offset_s")) return {};
+  const Result<double> offset_s = time->number("offset_s", 4e9);
+  if (!offset_s) return offset_s.error();
+  result.time_offset_ns = ns_from_s(*offset_s);
+  return {};
+}
+
+Status take_origin(const MappingObject& piece, CsvPiece& result) {
+  const bool source = result.has_position() || result.has_angles() || result.has_quaternion();
+  if (!source) {
+    if (piece.has("origin")) {
+      return piece.fault("origin", "is only for pieces with a position or an attitude");
+    }
+    return {};
+  }
+  const Result<std::string> name = piece.text("origin", kMaxColumnNameBytes);
+  if (!name) return name.error();
+  for (const SourceOrigin origin :
+       {SourceOrigin::kSimulation, SourceOrigin::kEstimate, SourceOrigin::kGps}) {
+    if (*name != to_string(origin)) continue;
+    result.origin = origin;
+    return {};
+  }
+  return piece.fault("origin", "must be one of simulation, estimate, gps");
+}
+
+Status take_valid(const MappingObject& piece, CsvPiece& result) {
+  if (!piece.has("valid")) return {};
+  const Result<MappingObject> valid = piece.object("valid");
+  if (!valid) return valid.error();
+  if (Status status = valid->expect_members({"column", "at_least"}); !status) return status;
+  const Result<std::string> column = valid->text("column", kMaxColumnNameBytes);
+  if (!column) return column.error();
+  const Result<double> at_least = valid->number("at_least", 1e12);
+  if (!at_least) return at_least.error();
+  result.valid_column = *column;
+  result.valid_at_least = *at_least;
+  return {};
+}
+
+/// Where the pieces lie: as a scenario, a mapping may name a data folder, which OVERFLY_DATA
+/// replaces.
+struct PieceFolders {
+  std::filesystem::path mapping;
+  std::filesystem::path data;
+
+  [[nodiscard]] std::filesystem::path find(const std::string& file) const {
+    const bool beside = file.starts_with("./") || file.starts_with("../");
+    return ((beside ? mapping : data) / file).lexically_normal();
+  }
+};
+
+Result<PieceFolders> folders_from(const MappingObject& mapping, const std::filesystem::path& file) {
+  const std::filesystem::path folder = file.parent_path();
+  if (!mapping.has("data")) return PieceFolders{folder, folder};
+  const Result<std::string> data = mapping.text("data", kMaxPathBytes);
+  if (!data) return data.error();
+  const char* const replaced = std::getenv("OVERFLY_DATA");
+  if (replaced != nullptr && *replaced != '\0') return PieceFolders{folder, replaced};
+  return PieceFolders{folder, folder / *data};
+}
+
+Result<CsvPiece> piece_from(const MappingObject& object, const PieceFolders& folders) {
+  if (Status status = object.expect_members({"name", "file", "origin", "time", "valid", "columns"});
+      !status) {
+    return status.error();
+  }
+  CsvPiece piece;
+  const Result<std::string> name = object.text("name", kMaxColumnNameBytes);
+  if (!name) return name.error();
+  piece.name = *name;
+  const Result<std::string> file = object.text("file", kMaxPathBytes);
+  if (!file) return file.error();
+  piece.file = folders.find(*file);
+  if (Status status = take_columns(object, piece); !status) return status.error();
+  for (const auto take : {take_time, take_origin, take_valid}) {
+    if (Status status = take(object, piece); !status) return status.error();
+  }
+  return piece;
+}
+
+}  // namespace
+
+const char* to_string(CsvQuantity quantity) {
+  return kQuantities[static_cast<std::size_t>(quantity)].name;
+}
+
+bool is_csv_mapping(std::span<const std::uint8_t> head) {
+  const std::string_view text(reinterpret_cast<const char*>(head.data()), head.size());
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  return first != std::string_view::npos && text[first] == '{' &&
+         text.find(kVersionKey) != std::string_view::npos;
+}
+
+Result<std::vector<CsvPiece>> read_csv_mapping(const std::filesystem::path& file) {
+  const Result<std::string> text = read_file_text(file, kMaxMappingBytes);
+  if (!text) return text.error();
+  const Result<MappingJson> json = json_from_outside<MappingJson>(*text, file.string());
+  if (!json) return json.error();
+  const MappingObject mapping(*json, file.string(), "");
+  if (Status status =
+          mapping.expect_members({"csv_mapping_version", "description", "data", "pieces"});
+      !status) {
+    return status.error();
+  }
+  if (!mapping.has("csv_mapping_version") || json->at("csv_mapping_version") != 1) {
+    return mapping.fault("csv_mapping_version", "must be 1");
+  }
+  if (!mapping.has("pieces") || !json->at("pieces").is_array() || json->at("pieces").empty() ||
+      json->at("pieces").size() > kMaxCsvPieces) {
+    return mapping.fault("pieces",
+                         "must be a list of 1 to " + std::to_string(kMaxCsvPieces) + " objects");
+  }
+  const Result<PieceFolders> folders = folders_from(mapping, file);
+  if (!folders) return folders.error();
+  std::vector<CsvPiece> pieces;
+  std::set<std::string> names;
+  for (const MappingJson& entry : json->at("pieces")) {
+    const std::string path = "pieces." + std::to_string(pieces.size());
+    const MappingObject object(entry, file.string(), path);
+    Result<CsvPiece> piece = piece_from(object, *folders);
+    if (!piece) return piece.error();
+    if (!names.insert(piece->name).second) return object.fault("name", "another piece has it");
+    pieces.push_back(std::move(*piece));
+  }
+  return pieces;
+}
+
+}  // namespace overfly::flight::logs
