@@ -14,6 +14,8 @@ export interface FieldSpec {
   needs?: string;
   /** May be empty. */
   optional?: boolean;
+  /** What an empty field means, shown in it. */
+  empty?: string;
   hint: string;
 }
 
@@ -57,6 +59,56 @@ export const kFields: readonly FieldSpec[] = [
     hint: 'Largest bank angle',
   },
   {
+    path: `${kCourse}.dynamics`,
+    label: 'Aircraft',
+    unit: '',
+    kind: 'choice',
+    needs: `${kCourse}.dynamics`,
+    hint: 'Coordinated turns in still air, or an airframe with six degrees of freedom and its autopilot',
+    choices: [
+      { value: 'coordinated', label: 'Coordinated turns' },
+      { value: 'foam_trainer', label: 'Foam trainer (8 to 19 m/s)' },
+      { value: 'piper_cub_third', label: '1/3 Piper Cub (10 to 37 m/s)' },
+      { value: 'aerosonde', label: 'Aerosonde (16 to 32 m/s)' },
+    ],
+  },
+  {
+    path: `${kCourse}.turbulence`,
+    label: 'Turbulence',
+    unit: '',
+    kind: 'choice',
+    needs: `${kCourse}.turbulence`,
+    hint: 'Dryden turbulence of MIL-F-8785C; needs an airframe',
+    choices: [
+      { value: 'none', label: 'None' },
+      { value: 'light', label: 'Light' },
+      { value: 'moderate', label: 'Moderate' },
+      { value: 'severe', label: 'Severe' },
+    ],
+  },
+  {
+    path: `${kCourse}.wind.speed_m_s`,
+    label: 'Wind',
+    unit: 'm/s',
+    kind: 'number',
+    step: 1,
+    needs: kCourse,
+    optional: true,
+    empty: 'calm',
+    hint: 'Steady wind; needs an airframe',
+  },
+  {
+    path: `${kCourse}.wind.from_deg`,
+    label: 'Wind from',
+    unit: 'deg',
+    kind: 'number',
+    step: 10,
+    needs: kCourse,
+    optional: true,
+    empty: '270',
+    hint: 'Clockwise from north: 270 is wind from the west',
+  },
+  {
     path: 'seed',
     label: 'Seed',
     unit: '',
@@ -80,6 +132,7 @@ export const kFields: readonly FieldSpec[] = [
     kind: 'number',
     step: 5,
     optional: true,
+    empty: 'all',
     hint: 'Ends the flight early; empty = the whole flight',
   },
   {

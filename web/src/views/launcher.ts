@@ -147,10 +147,12 @@ function makeField(spec: FieldSpec, text: string): Field {
 
 function valueControl(spec: FieldSpec, text: string, id: string) {
   if (spec.kind === 'choice') {
+    const choices = [...(spec.choices ?? [])];
+    if (!choices.some(({ value }) => value === text)) choices.push({ value: text, label: text });
     const select = h(
       'select',
       { id },
-      ...(spec.choices ?? []).map(({ value, label }) => h('option', { value }, label)),
+      ...choices.map(({ value, label }) => h('option', { value }, label)),
     );
     select.value = text;
     return { control: select, read: () => select.value };
@@ -160,7 +162,7 @@ function valueControl(spec: FieldSpec, text: string, id: string) {
     type: 'number',
     step: 'any',
     value: text,
-    placeholder: spec.optional === true ? 'all' : '',
+    placeholder: spec.empty ?? '',
     autocomplete: 'off',
   });
   return { control: input, read: () => (input.validity.badInput ? 'not a number' : input.value) };

@@ -39,6 +39,27 @@ describe('the launcher', () => {
     });
   });
 
+  it('lets an airframe fly the course in wind and turbulence', () => {
+    const flown: JsonObject = {
+      ...course,
+      flight: { course: { airspeed_m_s: 25, dynamics: 'coordinated', turbulence: 'none' } },
+    };
+    const { overrides, errors } = overridesOf(
+      flown,
+      texts(flown, {
+        'flight.course.dynamics': 'piper_cub_third',
+        'flight.course.turbulence': 'light',
+        'flight.course.wind.speed_m_s': '5',
+      }),
+    );
+    expect(errors).toEqual([]);
+    expect(overrides).toEqual({
+      'flight.course.dynamics': 'piper_cub_third',
+      'flight.course.turbulence': 'light',
+      'flight.course.wind.speed_m_s': 5,
+    });
+  });
+
   it('turns estimators off, and keeps the parameters of those that stay', () => {
     expect(overridesOf(course, texts(course, { estimators: '' })).overrides).toEqual({
       estimators: [],
