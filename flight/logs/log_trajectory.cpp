@@ -1,10 +1,7 @@
 #include "flight/logs/log_trajectory.hpp"
 
-#include <algorithm>
-#include <map>
 #include <utility>
 
-#include "core/cancel.hpp"
 #include "core/time.hpp"
 
 namespace overfly::flight::logs {
@@ -13,112 +10,18 @@ namespace {
 /// An attitude further away than this says nothing about a position.
 constexpr std::int64_t kMaxAttitudeStepNs = kNsPerS;
 
-struct LoggedPosition {
-  LogTime time;
-  std::uint32_t origin = 0;  ///< of a local position: 1 + index of its origin; 0: none yet
-  Eigen::Vector3d value;
-};
-
-struct LoggedAttitude {
-  std::int64_t t_ns = 0;
-  Eigen::Quaternionf R_ned_body;
-};
-
-/// Keeps the samples of two streams.
-class SampleSink final : public LogSink {
- public:
-  SampleSink(const OpenedLog& log,
-             const TruthChoice& truth,
-             const TrajectoryRequest& request,
-             const std::atomic<bool>* cancel)
-      : log_(log), truth_(truth), request_(request), cancel_(cancel) {}
-
-  [[nodiscard]] bool stream(StreamId id, const StreamDescription& /*description*/) override {
-    return id == truth_.position || id == truth_.attitude;
-  }
-  void message(StreamId /*id*/, const std::optional<LogTime>& /*time*/) override {}
-  void local_origin(StreamId id, const LocalOrigin& origin) override {
-    if (id != truth_.position || (!origins_.empty() && origins_.back() == origin)) return;
-    origins_.push_back(origin);
-  }
-  void event(LogEvent /*event*/) override {}
-  void warning(const std::string& /*text*/) override {}
-  [[nodiscard]] bool progress(std::uint64_t /*bytes*/) override { return !is_cancelled(cancel_); }
-
-  std::vector<LoggedPosition> positions;
-  std::map<std::uint32_t, std::vector<LoggedAttitude>> attitudes;  ///< by boot
-  [[nodiscard]] const std::vector<LocalOrigin>& origins() const { return origins_; }
-
- private:
-  [[nodiscard]] bool is_asked_for(std::int64_t t_ns, std::int64_t margin_ns) const {
-    return (!request_.from_ns || t_ns >= *request_.from_ns - margin_ns) &&
-           (!request_.to_ns || t_ns <= *request_.to_ns + margin_ns);
-  }
-  void take_position(StreamId id, const LogTime& time, const Eigen::Vector3d& value) override {
-    if (id != truth_.position || !is_asked_for(time.t_ns, 0)) return;
-    positions.push_back({time, static_cast<std::uint32_t>(origins_.size()), value});
-  }
-  void take_attitude(StreamId id,
-                     const LogTime& time,
-                     const Eigen::Quaterniond& R_ned_body) override {
-    if (id != truth_.attitude || !is_asked_for(time.t_ns, kMaxAttitudeStepNs)) return;
-    attitudes[time.boot].push_back({time.t_ns, R_ned_body.cast<float>()});
-  }
-  void take_invalid(StreamId /*id*/) override {}
-  [[nodiscard]] PositionKind position_kind(StreamId id) const override {
-    // The pass that opened the log met more streams only if the file has grown since.
-    return id < log_.streams.size() ? log_.streams[id].description.position : PositionKind::kNone;
-  }
-
-  const OpenedLog& log_;
-  const TruthChoice& truth_;
-  const TrajectoryRequest& request_;
-  const std::atomic<bool>* cancel_;
-  std::vector<LocalOrigin> origins_;
-};
-
-/// The boot with the most positions; the others are reported.
-std::uint32_t main_boot(const std::vector<LoggedPosition>& positions,
-                        std::vector<std::string>& warnings) {
-  std::map<std::uint32_t, std::size_t> counts;
-  for (const LoggedPosition& position : positions) ++counts[position.time.boot];
-  const auto most =
-      std::max_element(counts.begin(), counts.end(), [](const auto& a, const auto& b) {
-        return a.second < b.second;
-      });
-  if (counts.size() > 1) {
-    warnings.push_back(std::to_string(positions.size() - most->second) + " positions of " +
-                       std::to_string(counts.size() - 1) +
-                       " other runs of the clock were left out: it starts again within the log");
-  }
-  return most->first;
-}
-
-/// Sorts by time, keeping the order of equal ones, and removes all but the first of equal ones.
-std::size_t order_attitudes(std::vector<LoggedAttitude>& attitudes) {
-  std::stable_sort(attitudes.begin(), attitudes.end(), [](const auto& a, const auto& b) {
-    return a.t_ns < b.t_ns;
-  });
-  const std::size_t count = attitudes.size();
-  attitudes.erase(std::unique(attitudes.begin(),
-                              attitudes.end(),
-                              [](const auto& a, const auto& b) { return a.t_ns == b.t_ns; }),
-                  attitudes.end());
-  return count - attitudes.size();
-}
-
 /// Interpolates attitudes at increasing times.
 class AttitudeCursor {
  public:
-  explicit AttitudeCursor(const std::vector<LoggedAttitude>& attitudes) : attitudes_(attitudes) {}
+  explicit AttitudeCursor(const std::vector<LogAttitude>& attitudes) : attitudes_(attitudes) {}
 
   std::optional<Eigen::Quaterniond> at(std::int64_t t_ns) {
     while (next_ < attitudes_.size() && attitudes_[next_].t_ns < t_ns) ++next_;
     if (next_ == attitudes_.size()) return std::nullopt;
-    const LoggedAttitude& after = attitudes_[next_];
+    const LogAttitude& after = attitudes_[next_];
     if (after.t_ns == t_ns) return after.R_ned_body.cast<double>().normalized();
     if (next_ == 0) return std::nullopt;
-    const LoggedAttitude& before = attitudes_[next_ - 1];
+    const LogAttitude& before = attitudes_[next_ - 1];
     if (after.t_ns - t_ns > kMaxAttitudeStepNs || t_ns - before.t_ns > kMaxAttitudeStepNs) {
       return std::nullopt;
     }
@@ -129,83 +32,38 @@ class AttitudeCursor {
   }
 
  private:
-  const std::vector<LoggedAttitude>& attitudes_;
+  const std::vector<LogAttitude>& attitudes_;
   std::size_t next_ = 0;
 };
-
-void join(const SampleSink& samples,
-          std::uint32_t boot,
-          const std::vector<LoggedAttitude>& attitudes,
-          LogTrajectory& trajectory) {
-  AttitudeCursor cursor(attitudes);
-  trajectory.poses.reserve(samples.positions.size());
-  std::size_t out_of_order = 0;
-  std::size_t without_attitude = 0;
-  std::optional<std::int64_t> last_ns;
-  for (const LoggedPosition& position : samples.positions) {
-    if (position.time.boot != boot) continue;
-    const std::int64_t t_ns = position.time.t_ns;
-    if (last_ns && t_ns <= *last_ns) {
-      ++out_of_order;
-      continue;
-    }
-    last_ns = t_ns;
-    const std::optional<Eigen::Quaterniond> attitude = cursor.at(t_ns);
-    if (!attitude) {
-      ++without_attitude;
-      continue;
-    }
-    Eigen::Vector3d value = position.value;
-    if (!samples.origins().empty()) {
-      // Positions before the first origin count from it as well.
-      value = geodetic_from_local(samples.origins()[std::max(position.origin, 1U) - 1], value);
-    }
-    trajectory.poses.push_back({t_ns, value, *attitude});
-  }
-  const auto warn = [&](std::size_t count, const std::string& text) {
-    if (count > 0) trajectory.warnings.push_back(std::to_string(count) + " " + text);
-  };
-  warn(out_of_order, "positions were left out: not later than the one before");
-  warn(without_attitude, "positions were left out: no attitude on both sides within 1 s");
-  if (samples.origins().size() > 1) {
-    trajectory.warnings.push_back("the origin of the local positions changes " +
-                                  std::to_string(samples.origins().size() - 1) + " times");
-  }
-}
 
 }  // namespace
 
 Result<LogTrajectory> read_log_trajectory(const OpenedLog& log,
                                           const TrajectoryRequest& request,
                                           const std::atomic<bool>* cancel) {
-  const Result<TruthChoice> truth = choose_truth(log.streams, request.source);
-  if (!truth) return truth.error().in(log.file.string());
-  const StreamInfo& source = log.streams[truth->position];
-  const auto failed = [&](const std::string& what) {
-    return Error{ErrorCode::kUnreadable,
-                 log.file.string() + ": " + source.description.name + ": " + what};
-  };
-  if (!truth->attitude) return failed("no attitudes of the same vehicle are in the log");
-  SampleSink samples(log, *truth, request, cancel);
-  samples.positions.reserve(source.positions);
-  if (Status status = read_log_into(log.file, samples, log.sources); !status) return status.error();
-  if (samples.positions.empty()) return failed("no valid positions in the time asked for");
-
+  Result<LogSamples> samples = read_log_samples(log, request, cancel);
+  if (!samples) return samples.error();
   LogTrajectory trajectory;
-  trajectory.position_source = source.description.name;
-  trajectory.attitude_source = log.streams[*truth->attitude].description.name;
-  trajectory.georeferenced =
-      source.description.position == PositionKind::kGeodetic || !samples.origins().empty();
-  const std::uint32_t boot = main_boot(samples.positions, trajectory.warnings);
-  std::vector<LoggedAttitude>& attitudes = samples.attitudes[boot];
-  if (const std::size_t doubled = order_attitudes(attitudes); doubled > 0) {
-    trajectory.warnings.push_back(std::to_string(doubled) +
-                                  " attitudes were left out: a time that another one has");
+  trajectory.georeferenced = samples->georeferenced;
+  trajectory.position_source = std::move(samples->position_source);
+  trajectory.attitude_source = std::move(samples->attitude_source);
+  trajectory.warnings = std::move(samples->warnings);
+  trajectory.poses.reserve(samples->positions.size());
+  AttitudeCursor cursor(samples->attitudes);
+  for (const LogPosition& position : samples->positions) {
+    const std::optional<Eigen::Quaterniond> attitude = cursor.at(position.t_ns);
+    if (attitude) trajectory.poses.push_back({position.t_ns, position.value, *attitude});
   }
-  join(samples, boot, attitudes, trajectory);
   if (trajectory.poses.empty()) {
-    return failed("no position has an attitude of " + trajectory.attitude_source +
-                  " on both sides within 1 s");
+    return Error{ErrorCode::kUnreadable,
+                 log.file.string() + ": " + trajectory.position_source +
+                     ": no position has an attitude of " + trajectory.attitude_source +
+                     " on both sides within 1 s"};
+  }
+  const std::size_t without_attitude = samples->positions.size() - trajectory.poses.size();
+  if (without_attitude > 0) {
+    trajectory.warnings.push_back(std::to_string(without_attitude) +
+                                  " positions were left out: no attitude on both sides within 1 s");
   }
   return trajectory;
 }

@@ -12,15 +12,9 @@
 
 #include "core/result.hpp"
 #include "flight/logs/flight_log.hpp"
+#include "flight/logs/log_samples.hpp"
 
 namespace overfly::flight::logs {
-
-struct TrajectoryRequest {
-  std::string source;  ///< as choose_truth()
-  /// Limits by the vehicle's clock [ns]; the whole flight without them.
-  std::optional<std::int64_t> from_ns;
-  std::optional<std::int64_t> to_ns;
-};
 
 /// A pose of the aircraft by the vehicle's clock.
 struct LogPose {
@@ -42,12 +36,9 @@ struct LogTrajectory {
 
 /// Reads the positions of a log, and the attitudes interpolated (SLERP) at their times.
 ///
-/// Of a clock that starts again within the log, the run with the most positions is used. Positions
-/// with a time that is not later than the one before, and those without an attitude on both sides
-/// within 1 s, are left out and counted.
+/// Positions without an attitude on both sides within 1 s are left out and counted.
 /// Memory: about 160 bytes a pose.
-/// Errors: as open_log and choose_truth; kUnreadable if the vehicle has no attitudes, or no pose is
-/// left.
+/// Errors: as read_log_samples; kUnreadable if no pose is left.
 [[nodiscard]] Result<LogTrajectory> read_log_trajectory(const OpenedLog& log,
                                                         const TrajectoryRequest& request,
                                                         const std::atomic<bool>* cancel = nullptr);

@@ -77,6 +77,7 @@ MAY_INCLUDE = {
     "flight/logs/ulog": ["core/", "flight/logs"],
     "flight/logs/csv": ["core/", "flight/logs"],
     "flight/smoothing": ["core/"],
+    "flight/replay": ["core/", "flight/pose_flight.hpp", "flight/logs", "flight/smoothing"],
     "flight/dynamics": ["core/", "flight/gravity.hpp", "flight/normal_noise.hpp"],
     "middleware/lcm": ["core/"],
     "middleware/lcm/absent": ["core/", "middleware/lcm"],
