@@ -7,6 +7,7 @@
 #include "core/time.hpp"
 #include "flight/flight.hpp"
 #include "flight/log_reader.hpp"
+#include "flight/pose_flight.hpp"
 
 namespace overfly::flight {
 namespace {
@@ -26,9 +27,9 @@ Eigen::Vector3d parabola_velocity(double t_s,
 
 class LogFlight final : public TruthSource {
  public:
-  LogFlight(FlightLog log, std::string description)
-      : trajectory_(std::move(log.T_world_body)),
-        warnings_(std::move(log.warnings)),
+  LogFlight(Trajectory T_world_body, std::vector<std::string> warnings, std::string description)
+      : trajectory_(std::move(T_world_body)),
+        warnings_(std::move(warnings)),
         description_(std::move(description)) {
     const std::size_t count = trajectory_.size();
     for (std::size_t i = 0; i < count; ++i) velocities_m_s_.push_back(velocity_of(i));
@@ -105,6 +106,13 @@ class LogFlight final : public TruthSource {
 
 }  // namespace
 
+std::unique_ptr<TruthSource> fly_poses(Trajectory T_world_body,
+                                       std::vector<std::string> warnings,
+                                       std::string description) {
+  return std::make_unique<LogFlight>(
+      std::move(T_world_body), std::move(warnings), std::move(description));
+}
+
 Result<std::unique_ptr<TruthSource>> fly_log(const std::filesystem::path& file,
                                              const LocalFrame& frame,
                                              bool camera_poses,
@@ -116,8 +124,8 @@ Result<std::unique_ptr<TruthSource>> fly_log(const std::filesystem::path& file,
                  file.string() + ": " + std::to_string(log->T_world_body.size()) +
                      " poses: a flight needs at least 2"};
   }
-  return std::unique_ptr<TruthSource>(
-      std::make_unique<LogFlight>(std::move(log).value(), "log: " + file.filename().string()));
+  return fly_poses(
+      std::move(log->T_world_body), std::move(log->warnings), "log: " + file.filename().string());
 }
 
 }  // namespace overfly::flight

@@ -42,24 +42,39 @@ class Planner {
         geodetic_from_deg(home.x, home.y, frame_.origin().alt_ellipsoid_m));
     const Eigen::Vector2d placed = home_m.value_or(file_home.head<2>());
     offset_m_ = placed - file_home.head<2>();
-    plan.mission.home_world_m = {placed.x(), placed.y(), ground.ground_up_m(placed.x(), placed.y())};
+    plan.mission.home_world_m = {
+        placed.x(), placed.y(), ground.ground_up_m(placed.x(), placed.y())};
   }
 
   Status add(std::size_t index, const Item& from) {
     MissionItem item;
     switch (from.command) {
-      case kNavWaypoint: item.accept_radius_m = finite_or_zero(from.parameters[1]); break;
-      case kNavLoiterTurns: item.turns = finite_or_zero(from.parameters[0]); [[fallthrough]];
-      case kNavLoiterUnlimited: item.command = MissionCommand::kLoiter; break;
+      case kNavWaypoint:
+        item.accept_radius_m = finite_or_zero(from.parameters[1]);
+        break;
+      case kNavLoiterTurns:
+        item.turns = finite_or_zero(from.parameters[0]);
+        [[fallthrough]];
+      case kNavLoiterUnlimited:
+        item.command = MissionCommand::kLoiter;
+        break;
       case kNavLoiterTime:
         item.command = MissionCommand::kLoiter;
         item.time_s = finite_or_zero(from.parameters[0]);
         break;
-      case kNavReturn: item.command = MissionCommand::kReturn; break;
-      case kNavLand: item.command = MissionCommand::kLand; break;
-      case kNavTakeOff: item.command = MissionCommand::kTakeOff; break;
-      case kDoChangeSpeed: return add_speed(index, from);
-      default: return leave_out(index, from);
+      case kNavReturn:
+        item.command = MissionCommand::kReturn;
+        break;
+      case kNavLand:
+        item.command = MissionCommand::kLand;
+        break;
+      case kNavTakeOff:
+        item.command = MissionCommand::kTakeOff;
+        break;
+      case kDoChangeSpeed:
+        return add_speed(index, from);
+      default:
+        return leave_out(index, from);
     }
     if (item.command == MissionCommand::kLoiter) {
       item.radius_m = finite_or_zero(from.parameters[2]);
@@ -100,9 +115,9 @@ class Planner {
   Status place(std::size_t index, const Item& from, MissionItem& item) const {
     const bool take_off = item.command == MissionCommand::kTakeOff;
     if (!(std::abs(from.x) <= 90.0 && std::abs(from.y) <= 180.0)) {
-      return item_error(index,
-                        "position " + number_text(from.x) + ", " + number_text(from.y) +
-                            " deg: is out of range");
+      return item_error(
+          index,
+          "position " + number_text(from.x) + ", " + number_text(from.y) + " deg: is out of range");
     }
     // Ground stations write 0, 0 where a command needs no position: the place of the item before.
     if (from.x == 0.0 && from.y == 0.0) {
@@ -116,18 +131,22 @@ class Planner {
     }
     switch (from.frame) {
       case 0:
-      case 5: item.height_m = from.z - home_.z + plan.mission.home_world_m.z(); return {};
+      case 5:
+        item.height_m = from.z - home_.z + plan.mission.home_world_m.z();
+        return {};
       case 3:
-      case 6: item.height_m = from.z + plan.mission.home_world_m.z(); return {};
+      case 6:
+        item.height_m = from.z + plan.mission.home_world_m.z();
+        return {};
       case 10:
       case 11:
         item.height_m = from.z;
         item.above_ground = true;
         return {};
       default:
-        return item_error(index,
-                          "frame " + std::to_string(from.frame) +
-                              ": must be 0, 3, 5, 6, 10 or 11 (global)");
+        return item_error(
+            index,
+            "frame " + std::to_string(from.frame) + ": must be 0, 3, 5, 6, 10 or 11 (global)");
     }
   }
 

@@ -9,12 +9,12 @@ namespace overfly::flight::logs {
 namespace {
 
 /// Passes the samples of two streams to a joiner.
-class SampleSink final : public LogSink {
+class JoiningSink final : public LogSink {
  public:
-  SampleSink(const OpenedLog& log,
-             const TruthChoice& truth,
-             const TrajectoryRequest& request,
-             const std::atomic<bool>* cancel)
+  JoiningSink(const OpenedLog& log,
+              const TruthChoice& truth,
+              const TrajectoryRequest& request,
+              const std::atomic<bool>* cancel)
       : poses(log.streams[truth.position].positions),
         log_(log),
         truth_(truth),
@@ -46,8 +46,10 @@ class SampleSink final : public LogSink {
   void take_attitude(StreamId id,
                      const LogTime& time,
                      const Eigen::Quaterniond& R_ned_body) override {
-    if (id != truth_.attitude || !is_asked_for(time.t_ns, kMaxAttitudeStepNs)) return;
-    poses.attitude(time, R_ned_body);
+    LogTime moved = time;
+    moved.t_ns += request_.attitude_offset_ns;
+    if (id != truth_.attitude || !is_asked_for(moved.t_ns, kMaxAttitudeStepNs)) return;
+    poses.attitude(moved, R_ned_body);
   }
   void take_invalid(StreamId /*id*/) override {}
   [[nodiscard]] PositionKind position_kind(StreamId id) const override {
@@ -74,7 +76,7 @@ Result<LogTrajectory> read_log_trajectory(const OpenedLog& log,
                  log.file.string() + ": " + source.description.name + ": " + what};
   };
   if (!truth->attitude) return failed("no attitudes of the same vehicle are in the log");
-  SampleSink samples(log, *truth, request, cancel);
+  JoiningSink samples(log, *truth, request, cancel);
   if (Status status = read_log_into(log.file, samples, log.sources); !status) return status.error();
   if (samples.poses.positions() == 0) return failed("no valid positions in the time asked for");
 

@@ -11,15 +11,9 @@
 #include "core/result.hpp"
 #include "flight/logs/flight_log.hpp"
 #include "flight/logs/log_pose.hpp"
+#include "flight/logs/log_samples.hpp"
 
 namespace overfly::flight::logs {
-
-struct TrajectoryRequest {
-  std::string source;  ///< as choose_truth()
-  /// Limits by the vehicle's clock [ns]; the whole flight without them.
-  std::optional<std::int64_t> from_ns;
-  std::optional<std::int64_t> to_ns;
-};
 
 struct LogTrajectory {
   std::vector<LogPose> poses;  ///< times strictly increasing

@@ -1,12 +1,9 @@
-#include <unistd.h>
-
 #include <fstream>
-#include <functional>
-#include <system_error>
 
 #include "core/earth/geodesy.hpp"
 #include "core/motion/pose.hpp"
 #include "core/text/number_text.hpp"
+#include "flight/logs/line_file.hpp"
 #include "flight/logs/log_trajectory.hpp"
 #include "flight/logs/ned_attitude.hpp"
 
@@ -14,22 +11,6 @@ namespace overfly::flight::logs {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Writes a file of lines completely or not at all, without holding it in memory.
-Status write_lines(const fs::path& file, const std::function<void(std::ofstream&)>& write) {
-  const fs::path unfinished = file.string() + ".part" + std::to_string(::getpid());
-  std::error_code error;
-  {
-    std::ofstream out(unfinished, std::ios::binary | std::ios::trunc);
-    write(out);
-    if (!out.flush()) error = std::make_error_code(std::errc::io_error);
-  }
-  if (!error) fs::rename(unfinished, file, error);
-  if (!error) return {};
-  std::error_code ignored;
-  fs::remove(unfinished, ignored);
-  return Error{ErrorCode::kIo, file.string() + ": cannot be written: " + error.message()};
-}
 
 Geodetic geodetic_of(const Eigen::Vector3d& position) {
   return geodetic_from_deg(position.x(), position.y(), position.z());

@@ -7,6 +7,7 @@
 #include "flight/autopilot/course_flight.hpp"
 #include "flight/dynamics/airframe_file.hpp"
 #include "flight/dynamics/builtin_airframes.hpp"
+#include "flight/replay/logged_flight.hpp"
 #include "server/record/run_folder.hpp"
 #include "server/record/truth_samples.hpp"
 
@@ -102,13 +103,41 @@ Result<std::unique_ptr<TruthSource>> fly_airframe(const flight::CourseParameters
                                cancel);
 }
 
+Result<std::unique_ptr<TruthSource>> open_log_flight(const Scenario& scenario,
+                                                     const LoggedFlight& log,
+                                                     const terrain::World& world,
+                                                     const std::atomic<bool>* cancel) {
+  if (!flight::is_flight_log(log.file)) {
+    if (log.log_fields.empty()) {
+      return flight::fly_log(log.file, world.tiles->frame(), log.camera_poses, cancel);
+    }
+    return Error{ErrorCode::kInvalidArgument,
+                 "flight.log." + log.log_fields.front() + ": applies to flight logs, and " +
+                     log.file.string() + " is a pose file"};
+  }
+  if (log.camera_poses) {
+    return Error{ErrorCode::kInvalidArgument,
+                 "flight.log.camera_poses = true: applies to pose files, and " + log.file.string() +
+                     " is a flight log"};
+  }
+  flight::LogFlightOptions options = log.log;
+  if (log.rebase_to_imagery) {
+    const Eigen::Vector2d centre = imagery_centre(scenario, world);
+    options.rebase->at = flight::PlaceInWorld{centre.x(), centre.y()};
+  }
+  auto flown = flight::fly_flight_log(
+      log.file, options, world.tiles->frame(), *world.tiles, scenario.sources, cancel);
+  if (!flown) return flown.error().in("flight.log");
+  return flown;
+}
+
 }  // namespace
 
 Result<std::unique_ptr<TruthSource>> create_truth(const Scenario& scenario,
                                                   const terrain::World& world,
                                                   const std::atomic<bool>* cancel) {
   if (const auto* log = std::get_if<LoggedFlight>(&scenario.flight)) {
-    return flight::fly_log(log->file, world.tiles->frame(), log->camera_poses, cancel);
+    return open_log_flight(scenario, *log, world, cancel);
   }
   auto course = std::get<flight::CourseParameters>(scenario.flight);
   if (Status status = place_start(scenario, world, course); !status) {

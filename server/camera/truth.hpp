@@ -15,8 +15,10 @@ namespace overfly::server {
 
 /// A new truth source at t = 0; equal arguments give equal flights.
 /// A course starts at the world's runway, or else where it lies centred over the imagery.
-/// @param cancel  cancels reading a pose file, and the first flight of an airframe; may be null
-/// Errors: as flight::fly_course, autopilot::fly_course and flight::fly_log, prefixed with the scenario's field.
+/// @param cancel  cancels reading and smoothing a log, and the first flight of an airframe; may be
+/// null
+/// Errors: as flight::fly_course, autopilot::fly_course, flight::fly_log and
+/// flight::fly_flight_log, prefixed with the scenario's field.
 [[nodiscard]] Result<std::unique_ptr<TruthSource>> create_truth(
     const Scenario& scenario,
     const terrain::World& world,

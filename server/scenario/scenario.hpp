@@ -16,6 +16,7 @@
 #include "core/time.hpp"
 #include "flight/dynamics/turbulence.hpp"
 #include "flight/flight.hpp"
+#include "flight/replay/logged_flight.hpp"
 #include "server/scenario/camera_spec.hpp"
 #include "server/scenario/estimator_spec.hpp"
 #include "server/scenario/fault_spec.hpp"
@@ -60,9 +61,15 @@ struct CourseDynamics {
   std::map<std::string, double> autopilot;  ///< parameters by their names
 };
 
+/// A pose file or a flight log, which the file's content decides.
 struct LoggedFlight {
   std::filesystem::path file;
-  bool camera_poses = false;
+  bool camera_poses = false;  ///< pose files only
+  flight::LogFlightOptions log;
+  /// The fields of `log` that were given, for messages: they do not apply to pose files.
+  std::vector<std::string> log_fields;
+  /// The anchor of log.rebase is the centre of the world's imagery.
+  bool rebase_to_imagery = false;
 };
 
 [[nodiscard]] const char* to_string(Pacing pacing);  ///< "lockstep", "real_time"
@@ -80,7 +87,7 @@ struct Scenario {
   using BuiltinWorld = server::BuiltinWorld;
   std::variant<BuiltinWorld, std::filesystem::path, terrain::WorldSpec> world;
 
-  /// The course, or a pose file.
+  /// The course, or a pose file or flight log.
   using LoggedFlight = server::LoggedFlight;
   std::variant<flight::CourseParameters, LoggedFlight> flight;
   /// Empty: coordinated turns.

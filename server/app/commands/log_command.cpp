@@ -1,19 +1,17 @@
-// overfly log: lists what a flight log contains, and converts its flight to a trajectory file.
+// overfly log: lists what a flight log contains, and writes its flight as a trajectory file.
 #include <CLI/CLI.hpp>
-#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <optional>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "core/text/number_text.hpp"
 #include "core/time.hpp"
 #include "flight/logs/log_trajectory.hpp"
 #include "server/app/commands/commands.hpp"
 #include "server/app/commands/log_info.hpp"
+#include "server/app/commands/log_output.hpp"
+#include "server/app/commands/log_smooth.hpp"
 #include "server/app/exit_code.hpp"
 #include "server/app/stop_signal.hpp"
 
@@ -23,75 +21,19 @@ namespace {
 namespace fs = std::filesystem;
 namespace logs = flight::logs;
 
-/// Times of ROS count from 1970.
-constexpr double kLatestS = 9e9;
-/// The geoid lies between 107 m below and 86 m above WGS84.
-constexpr double kGeoidMaxM = 120.0;
-
-struct LogArguments {
-  std::string file;
-  bool json = false;
-  std::string source;
-  std::string out;
-  std::optional<double> from_s;
-  std::optional<double> to_s;
-  std::optional<double> geoid_separation_m;
-};
-
-int print_log(const LogArguments& arguments) {
-  const Result<logs::OpenedLog> log = logs::open_log(arguments.file, &catch_stop_signals());
+int print_log(const std::string& file, bool as_json) {
+  const Result<logs::OpenedLog> log = logs::open_log(file, &catch_stop_signals());
   if (!log) return report(log.error());
-  std::cout << (arguments.json ? log_info_json(*log).dump(2) + "\n" : log_info_text(*log));
+  std::cout << (as_json ? log_info_json(*log).dump(2) + "\n" : log_info_text(*log));
   return kExitOk;
 }
 
-Status check_convert(const LogArguments& arguments) {
-  const std::string extension = fs::path(arguments.out).extension().string();
-  if (extension != ".tum" && extension != ".csv") {
-    return Error{ErrorCode::kInvalidArgument,
-                 "--out " + arguments.out + ": must end with .tum or .csv"};
-  }
-  if (arguments.geoid_separation_m && extension != ".csv") {
-    return Error{ErrorCode::kInvalidArgument, "--geoid-separation-m: is only used for a .csv file"};
-  }
-  for (const auto& [option, limit] :
-       {std::pair{"--from ", arguments.from_s}, std::pair{"--to ", arguments.to_s}}) {
-    // Written so that not-a-number is rejected as well.
-    if (limit && !(*limit >= 0.0 && *limit <= kLatestS)) {
-      return Error{ErrorCode::kInvalidArgument,
-                   option + std::to_string(*limit) + ": must be in [0, 9e9] s"};
-    }
-  }
-  if (arguments.geoid_separation_m && !(std::abs(*arguments.geoid_separation_m) <= kGeoidMaxM)) {
-    return Error{ErrorCode::kInvalidArgument,
-                 "--geoid-separation-m " + std::to_string(*arguments.geoid_separation_m) +
-                     ": must be in [-120, 120]"};
-  }
-  if (arguments.from_s && arguments.to_s && *arguments.from_s > *arguments.to_s) {
-    return Error{ErrorCode::kInvalidArgument,
-                 "--from " + std::to_string(*arguments.from_s) + ": must not be after --to " +
-                     std::to_string(*arguments.to_s)};
-  }
-  const Result<std::vector<fs::path>> files = logs::files_of_log(arguments.file);
-  if (!files) return files.error();
-  std::error_code failure;
-  // The format follows from the content, so that a log may have any name.
-  for (const fs::path& file : *files) {
-    if (!fs::equivalent(file, arguments.out, failure)) continue;
-    return Error{ErrorCode::kInvalidArgument,
-                 "--out " + arguments.out + ": is the log itself, which would be lost"};
-  }
-  const fs::path folder = fs::path(arguments.out).parent_path();
-  if (folder.empty() || fs::is_directory(folder, failure)) return {};
-  return Error{ErrorCode::kNotFound,
-               "--out " + arguments.out + ": folder " + folder.string() + " does not exist"};
-}
-
-int convert_log(const LogArguments& arguments) {
-  if (Status status = check_convert(arguments); !status) return report(status.error());
+int convert_log(const LogFlightArguments& arguments) {
+  if (Status status = check_log_flight(arguments); !status) return report(status.error());
   const Result<logs::OpenedLog> log = logs::open_log(arguments.file, &catch_stop_signals());
   if (!log) return report(log.error());
-  logs::TrajectoryRequest request{arguments.source, {}, {}};
+  logs::TrajectoryRequest request;
+  request.source = arguments.source;
   if (arguments.from_s) request.from_ns = ns_from_s(*arguments.from_s);
   if (arguments.to_s) request.to_ns = ns_from_s(*arguments.to_s);
   const Result<logs::LogTrajectory> trajectory =
@@ -119,13 +61,18 @@ void add_log_command(CLI::App& app, int& exit_code) {
   CLI::App* const log = app.add_subcommand(
       "log", "Flight logs: .tlog, DataFlash .bin, .ulg, .mcap, .bag, LCM event logs, CSV");
   log->require_subcommand(1);
-  const auto arguments = std::make_shared<LogArguments>();
+  struct InfoArguments {
+    std::string file;
+    bool json = false;
+  };
+  const auto asked = std::make_shared<InfoArguments>();
   CLI::App* const info =
       log->add_subcommand("info", "List streams, sources of truth, events and damage");
-  info->add_option("FILE", arguments->file, "Flight log")->required();
-  info->add_flag("--json", arguments->json, "Print JSON");
-  info->callback([arguments, &exit_code] { exit_code = print_log(*arguments); });
+  info->add_option("FILE", asked->file, "Flight log")->required();
+  info->add_flag("--json", asked->json, "Print JSON");
+  info->callback([asked, &exit_code] { exit_code = print_log(asked->file, asked->json); });
 
+  const auto arguments = std::make_shared<LogFlightArguments>();
   CLI::App* const convert = log->add_subcommand("convert", "Write the flight as a trajectory file");
   convert->add_option("FILE", arguments->file, "Flight log")->required();
   convert->add_option("--source",
@@ -144,6 +91,7 @@ void add_log_command(CLI::App& app, int& exit_code) {
                       "Height of the geoid above the ellipsoid at the place, for a .csv file with "
                       "heights above the ellipsoid, which scenarios can fly");
   convert->callback([arguments, &exit_code] { exit_code = convert_log(*arguments); });
+  add_log_smooth(*log, exit_code);
 }
 
 }  // namespace overfly::app

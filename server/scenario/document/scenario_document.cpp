@@ -6,6 +6,7 @@
 #include "server/scenario/document/scenario_course.hpp"
 #include "server/scenario/document/scenario_estimators.hpp"
 #include "server/scenario/document/scenario_faults.hpp"
+#include "server/scenario/document/scenario_flight.hpp"
 #include "server/scenario/document/scenario_layers.hpp"
 #include "server/scenario/document/scenario_light.hpp"
 
@@ -18,9 +19,9 @@ using Json = nlohmann::json;
 Status read_flight(Json& document, const FileResolver& files, Scenario& scenario) {
   Json& flight = document.at("flight");
   if (flight.contains("log")) {
-    Json& log = flight.at("log");
-    scenario.flight =
-        Scenario::LoggedFlight{files.resolve(log.at("file")), log.at("camera_poses").get<bool>()};
+    Result<LoggedFlight> log = logged_flight_from(flight.at("log"), files);
+    if (!log) return log.error();
+    scenario.flight = std::move(*log);
     return {};
   }
   return read_course(flight.at("course"), files, scenario);

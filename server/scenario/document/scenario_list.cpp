@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "flight/logs/flight_log.hpp"
 #include "server/files/plain_name.hpp"
 #include "server/files/whole_file.hpp"
 #include "server/scenario/document/scenario_file.hpp"
@@ -39,6 +40,25 @@ Status check_world(const Scenario& scenario) {
     terrain::WorldSpec spec = *layers;
     spec.sources = scenario.sources;
     return terrain::check_world_sources(spec, "world.");
+  }
+  return {};
+}
+
+/// Checks a pose file or flight log, and the files that a log names.
+Status check_log(const Scenario& scenario, const LoggedFlight& log) {
+  const SourcePolicy& sources = scenario.sources;
+  if (Status status = sources.check(log.file, "flight.log.file"); !status) return status;
+  if (!flight::is_flight_log(log.file)) {
+    // Poses in KITTI format take their times from that file.
+    const fs::path times = log.file.parent_path() / "times.txt";
+    return sources.check_place(times, "flight.log.file (a file next to it)");
+  }
+  const Result<std::vector<fs::path>> files = flight::logs::files_of_log(log.file);
+  if (!files) return files.error();
+  for (const fs::path& file : *files) {
+    if (Status status = sources.check(file, "flight.log.file (a file that it names)"); !status) {
+      return status;
+    }
   }
   return {};
 }
@@ -94,10 +114,7 @@ Status check_scenario(const Scenario& scenario) {
     if (!status && !error) error = status.error();
   }
   if (const auto* log = std::get_if<Scenario::LoggedFlight>(&scenario.flight)) {
-    Status status = scenario.sources.check(log->file, "flight.log.file");
-    // Poses in KITTI format take their times from that file.
-    const fs::path times = log->file.parent_path() / "times.txt";
-    if (status) status = scenario.sources.check_place(times, "flight.log.file (a file next to it)");
+    const Status status = check_log(scenario, *log);
     if (!status && error) {
       error->message += "\n" + status.error().message;
       if (status.error().code != ErrorCode::kNotFound) error->code = status.error().code;

@@ -111,9 +111,9 @@ TEST(MissionItems, RejectWhatCannotBeFlown) {
 }
 
 TEST(MissionItems, FlyTheMissionThatArduPlaneFlew) {
-  const std::string file = overfly::testing::data_file("sitl/plane25_mission.waypoints");
-  if (file.empty()) GTEST_SKIP() << "no shared data";
-  const auto items = flight::mavlink::read_mission_file(file).value();
+  const auto file = overfly::testing::shared_data("sitl/plane25_mission.waypoints");
+  if (!file) GTEST_SKIP() << "no shared data";
+  const auto items = flight::mavlink::read_mission_file(*file).value();
   const LocalFrame frame(geodetic_from_deg(items.front().x, items.front().y, 584.0));
   const auto ground = std::make_shared<FlatGround>(0.0);
   PlannedMission planned = plan_mission(items, frame, *ground, {}).value();

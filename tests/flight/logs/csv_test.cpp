@@ -47,7 +47,7 @@ class CsvLog : public ::testing::Test {
     write("att.csv", "yaw,roll,pitch,s\n9000,-10,0.1,0.9\n9000,-10,0.1,1.5\n9100,-10,0.1,2.5\n");
   }
   void write(const std::string& name, const std::string& text) {
-    testing::write_text(folder_.path() / name, text);
+    overfly::testing::write_text(folder_.path() / name, text);
   }
   [[nodiscard]] Result<OpenedLog> open() { return open_log(folder_.path() / "log.json"); }
   [[nodiscard]] std::string error_of(const std::string& mapping) {
@@ -56,7 +56,7 @@ class CsvLog : public ::testing::Test {
     return log ? "" : log.error().message;
   }
 
-  testing::TemporaryFolder folder_;
+  overfly::testing::TemporaryFolder folder_;
 };
 
 TEST_F(CsvLog, JoinsPiecesWithTheirUnitsAndClocks) {
@@ -189,7 +189,7 @@ TEST_F(CsvLog, ReadsOnlyFilesThatThePolicyAllows) {
 
 TEST_F(CsvLog, SurvivesEveryCutOfItsFiles) {
   for (const std::string name : {"log.json", "gps.csv", "att.csv"}) {
-    const std::string whole = testing::read_text(folder_.path() / name);
+    const std::string whole = overfly::testing::read_text(folder_.path() / name);
     for (std::size_t size = 0; size < whole.size(); ++size) {
       write(name, whole.substr(0, size));
       const Result<OpenedLog> log = open();
@@ -203,7 +203,7 @@ TEST_F(CsvLog, SurvivesEveryCutOfItsFiles) {
 TEST(RecordedCsvLog, HasTheFlightOfTheSkywalker) {
   OVERFLY_DATA_OR_SKIP(gps, "flight_logs/skywalker_x8/TestLog2_GPS.csv");
   const Result<OpenedLog> log =
-      open_log(testing::source_file("scenarios/flight_logs/skywalker_x8.mapping.json"));
+      open_log(overfly::testing::source_file("scenarios/flight_logs/skywalker_x8.mapping.json"));
   ASSERT_TRUE(log.ok()) << log.error().message;
   ASSERT_EQ(log->streams.size(), 3U);
   EXPECT_GT(log->size_bytes, std::filesystem::file_size(gps));

@@ -125,5 +125,81 @@ TEST_F(LogCommand, RejectsWhatItCannotDo) {
   EXPECT_THAT(text.err, HasSubstr("is not a flight log"));
 }
 
+/// A mapping of a climb to the north at 25 m/s for 20 s with one erratic position.
+void write_csv_log(const std::filesystem::path& folder) {
+  std::string rows = "t,lat,lon,alt,roll,pitch,yaw\n";
+  for (int i = 0; i <= 200; ++i) {
+    rows += std::to_string(100 * i) + ',' +
+            std::to_string(470000000 + 225 * i + (i == 100 ? 9000 : 0)) + ",80000000," +
+            std::to_string(500 + i) + ",0,0,0\n";
+  }
+  write_text(folder / "rows.csv", rows);
+  write_text(folder / "log.json", R"({"csv_mapping_version": 1, "pieces": [
+    {"name": "GPS", "file": "rows.csv", "origin": "gps",
+     "time": {"column": "t", "unit": "ms", "offset_s": 5},
+     "columns": {"lat": {"column": "lat", "unit": "1e-7deg"},
+                 "lon": {"column": "lon", "unit": "1e-7deg"},
+                 "alt_msl": {"column": "alt", "unit": "m", "scale": 0.1},
+                 "roll": {"column": "roll", "unit": "deg"},
+                 "pitch": {"column": "pitch", "unit": "deg"},
+                 "yaw": {"column": "yaw", "unit": "deg"}}}]})");
+}
+
+TEST_F(LogCommand, SmoothWritesPosesResidualsAndAReport) {
+  write_csv_log(std::filesystem::path(path("log.json")).parent_path());
+  const std::string mapping = path("log.json");
+  const Outcome info = overfly_program({"log", "info", mapping, "--json"});
+  ASSERT_EQ(info.exit_code, 0) << info.err;
+  EXPECT_EQ(Json::parse(info.out).at("format"), "csv");
+  const Outcome text = overfly_program({"log",
+                                        "smooth",
+                                        mapping,
+                                        "--out",
+                                        path("smooth.tum"),
+                                        "--rate-hz",
+                                        "100",
+                                        "--residuals",
+                                        path("residuals.csv")});
+  ASSERT_EQ(text.exit_code, 0) << text.err;
+  EXPECT_THAT(text.out, HasSubstr("200 used (0 shifted), 1 left out"));
+  EXPECT_THAT(text.out, HasSubstr("1 jumps:\n  1 positions left out at "));
+  EXPECT_THAT(read_text(path("residuals.csv")), HasSubstr(",position,0,0,"));
+  const auto poses = read_trajectory(path("smooth.tum"));
+  ASSERT_TRUE(poses.ok()) << poses.error().message;
+  const Outcome json = overfly_program({"log",
+                                        "smooth",
+                                        mapping,
+                                        "--out",
+                                        path("smooth.csv"),
+                                        "--geoid-separation-m",
+                                        "48",
+                                        "--json"});
+  ASSERT_EQ(json.exit_code, 0) << json.err;
+  const Json report = Json::parse(json.out);
+  EXPECT_EQ(report.at("positions").at("left_out"), 1);
+  EXPECT_EQ(report.at("jumps").at(0).at("kind"), "position_outliers");
+  EXPECT_NEAR(report.at("jumps").at(0).at("size_m").get<double>(), 100.0, 1.0);
+  EXPECT_THAT(read_text(path("smooth.csv")), HasSubstr("alt_ellipsoid_m"));
+}
+
+TEST_F(LogCommand, SmoothRejectsWhatItCannotDo) {
+  write_csv_log(std::filesystem::path(path("log.json")).parent_path());
+  const auto rejected = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"log", "smooth", path("log.json")});
+    const Outcome outcome = overfly_program(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
+    return outcome.err;
+  };
+  EXPECT_THAT(rejected({"--out", path("a.tum"), "--time-offset-s", "soon"}),
+              HasSubstr("must be a number or auto"));
+  EXPECT_THAT(rejected({"--out", path("a.tum"), "--time-offset-s", "5"}),
+              HasSubstr("time_offset_s = 5: must be in [-2, 2]"));
+  EXPECT_THAT(rejected({"--out", path("a.tum"), "--rate-hz", "0"}),
+              HasSubstr("must be in (0, 1000]"));
+  EXPECT_THAT(rejected({"--out", path("rows.csv")}), HasSubstr("is the log itself"));
+  EXPECT_THAT(rejected({"--out", path("a.tum"), "--residuals", path("rows.csv")}),
+              HasSubstr("is the log itself"));
+}
+
 }  // namespace
 }  // namespace overfly::testing

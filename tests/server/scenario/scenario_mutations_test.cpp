@@ -118,11 +118,27 @@ std::vector<Mutant> seeds() {
     "flight": {"log": {"file": "flight.csv", "camera_poses": false}},
     "camera": {"fov_deg": 84.872, "fov_axis": "horizontal"},
     "estimators": [{"name": "p", "type": "perfect"}, {"name": "d", "type": "drifting"}]})");
+  Json logged = Json::parse(R"({
+    "format_version": 1, "world": {"manifest": "world.json"},
+    "flight": {"log": {
+      "file": "flight.bin", "source": "GPS", "from_s": 10, "to_s": 60.5, "time_offset_s": 0.25,
+      "geoid_separation_m": -33,
+      "smooth": {"jump_m": 3, "jump_deg": 5, "jerk_psd_m2_s5": 10, "angular_psd_rad2_s3": 0.1,
+                 "board": {"roll_deg": 1, "pitch_deg": -2, "yaw_deg": 90}},
+      "rebase": {"point": "start", "east_m": 100, "north_m": -50, "lowest_agl_m": 120,
+                 "turn_deg": -45}}}})");
+  Json moved = Json::parse(R"({
+    "format_version": 1, "world": {"manifest": "world.json"},
+    "flight": {"log": {
+      "file": "flight.bin", "time_offset_s": "auto", "smooth": {},
+      "rebase": {"lat_deg": 35.7, "lon_deg": -120.7, "lowest_agl_m": 120}}}})");
   Json builtin = Json::parse(R"({
     "format_version": 1, "world": {"builtin": {"seed": 7}},
     "flight": {"course": {"start": "runway"}}})");
   return {{"course", course},
           {"log", log},
+          {"logged", logged},
+          {"moved", moved},
           {"builtin", builtin},
           {"cameras", cameras_seed()},
           {"camera", camera_seed()},

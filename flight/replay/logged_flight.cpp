@@ -1,0 +1,216 @@
+#include "flight/replay/logged_flight.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "core/motion/trajectory.hpp"
+#include "core/time.hpp"
+#include "flight/logs/log_trajectory.hpp"
+#include "flight/logs/ned_attitude.hpp"
+#include "flight/pose_flight.hpp"
+#include "flight/replay/smooth_log.hpp"
+
+namespace overfly::flight {
+namespace {
+
+/// A rebase looks at the flight this often.
+constexpr double kPlacementStepS = 0.2;
+constexpr std::size_t kMaxListedJumps = 20;
+
+/// A flight whose states a smooth motion gives.
+class SmoothedFlight final : public TruthSource {
+ public:
+  SmoothedFlight(SmoothedLog log,
+                 const Pose& T_world_log,
+                 std::vector<std::string> warnings,
+                 std::string description)
+      : log_(std::move(log)),
+        T_world_log_(T_world_log),
+        warnings_(std::move(warnings)),
+        description_(std::move(description)) {}
+
+  [[nodiscard]] std::optional<std::int64_t> duration_ns() const override {
+    return log_.end_ns() - log_.begin_ns();
+  }
+  [[nodiscard]] std::string description() const override { return description_; }
+  [[nodiscard]] std::vector<std::string> warnings() const override { return warnings_; }
+
+ private:
+  [[nodiscard]] Result<std::optional<AircraftState>> find_state(
+      std::int64_t t_ns, const std::atomic<bool>* /*cancel*/) override {
+    const std::int64_t last_ns = *duration_ns();
+    if (t_ns < 0) {
+      return Error{ErrorCode::kInvalidArgument,
+                   "t_ns = " + std::to_string(t_ns) + ": the flight spans [0, " +
+                       std::to_string(last_ns) + "] ns"};
+    }
+    if (t_ns > last_ns) return std::optional<AircraftState>();
+    const smoothing::MotionState motion =
+        log_.smoothed.motion.at(s_from_ns(log_.begin_ns() - log_.epoch_ns + t_ns));
+    AircraftState state;
+    state.t_ns = t_ns;
+    state.T_world_body = T_world_log_ * log_.pose(motion);
+    state.v_body_world_m_s = T_world_log_.rotation * motion.v_world_m_s;
+    // The horizon turns with the earth's curvature by 0.0002 deg/s at 25 m/s: neglected.
+    state.omega_body_rad_s = motion.omega_body_rad_s;
+    state.airspeed_m_s = motion.v_world_m_s.norm();  // the log's wind is not known
+    return std::optional(state);
+  }
+
+  SmoothedLog log_;
+  Pose T_world_log_;
+  std::vector<std::string> warnings_;
+  std::string description_;
+};
+
+/// T_world_log of a log at its own place: both are rigid frames of the same earth.
+Pose own_place(const LocalFrame& log, const LocalFrame& world) {
+  return {world.R_world_enu_at(log.origin()), world.world_from_geodetic(log.origin())};
+}
+
+/// @param path_log  positions of the flight in the log's frame, not empty
+Pose moved_place(const Rebase& rebase,
+                 const std::vector<Eigen::Vector3d>& path_log,
+                 const LocalFrame& world,
+                 const HeightQuery& ground) {
+  Eigen::Vector2d reference = path_log.front().head<2>();
+  if (rebase.point == Rebase::Point::kCentre) {
+    Eigen::AlignedBox2d box;
+    for (const Eigen::Vector3d& p : path_log) box.extend(p.head<2>().eval());
+    reference = box.center();
+  }
+  Eigen::Vector2d anchor;
+  if (const auto* place = std::get_if<PlaceInWorld>(&rebase.at)) {
+    anchor = {place->east_m, place->north_m};
+  } else {
+    const auto& point = std::get<PlaceOnEarth>(rebase.at);
+    anchor =
+        world.world_from_geodetic({point.lat_rad, point.lon_rad, world.origin().alt_ellipsoid_m})
+            .head<2>();
+  }
+  Pose T_world_log;
+  T_world_log.rotation = Eigen::AngleAxisd(-rebase.turn_rad, Eigen::Vector3d::UnitZ());
+  const Eigen::Vector3d turned =
+      T_world_log.rotation * Eigen::Vector3d(reference.x(), reference.y(), 0.0);
+  T_world_log.translation = {anchor.x() - turned.x(), anchor.y() - turned.y(), 0.0};
+  double lowest_m = std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector3d& p_log : path_log) {
+    const Eigen::Vector3d p = T_world_log * p_log;
+    lowest_m = std::min(lowest_m, p.z() - ground.ground_up_m(p.x(), p.y()));
+  }
+  T_world_log.translation.z() = rebase.lowest_agl_m - lowest_m;
+  return T_world_log;
+}
+
+Pose place_of(const LogFlightOptions& options,
+              const std::vector<Eigen::Vector3d>& path_log,
+              const LocalFrame& log,
+              const LocalFrame& world,
+              const HeightQuery& ground) {
+  return options.rebase ? moved_place(*options.rebase, path_log, world, ground)
+                        : own_place(log, world);
+}
+
+std::vector<std::string> jump_warnings(const SmoothedLog& log) {
+  std::vector<std::string> warnings;
+  for (const smoothing::Jump& jump : log.smoothed.jumps) {
+    if (warnings.size() == kMaxListedJumps) {
+      warnings.push_back(std::to_string(log.smoothed.jumps.size() - kMaxListedJumps) +
+                         " more jumps: see `overfly log smooth`");
+      break;
+    }
+    warnings.push_back(jump_text(log, jump));
+  }
+  return warnings;
+}
+
+Result<std::unique_ptr<TruthSource>> fly_smoothed(const logs::OpenedLog& opened,
+                                                  const logs::TrajectoryRequest& request,
+                                                  const LogFlightOptions& options,
+                                                  const LocalFrame& frame,
+                                                  const HeightQuery& ground,
+                                                  const std::atomic<bool>* cancel) {
+  Result<SmoothedLog> log =
+      smooth_log(opened, request, *options.smooth, options.geoid_separation_m, cancel);
+  if (!log) return log.error();
+  std::vector<Eigen::Vector3d> path;
+  const smoothing::SmoothMotion& motion = log->smoothed.motion;
+  for (double t_s = motion.begin_s; t_s <= motion.end_s; t_s += kPlacementStepS) {
+    path.push_back(motion.position.position_m(t_s));
+  }
+  path.push_back(motion.position.position_m(motion.end_s));
+  const Pose T_world_log = place_of(options, path, log->frame, frame, ground);
+  std::vector<std::string> warnings = opened.warnings;
+  warnings.insert(warnings.end(), log->warnings.begin(), log->warnings.end());
+  for (std::string& text : jump_warnings(*log)) warnings.push_back(std::move(text));
+  std::string description = "log: " + opened.file.filename().string() + ", " +
+                            log->position_source + " with the attitude of " + log->attitude_source +
+                            ", smoothed" + (options.rebase ? ", moved" : "");
+  return std::unique_ptr<TruthSource>(std::make_unique<SmoothedFlight>(
+      std::move(*log), T_world_log, std::move(warnings), std::move(description)));
+}
+
+}  // namespace
+
+bool is_flight_log(const std::filesystem::path& file) { return logs::detect_format(file).ok(); }
+
+Result<std::unique_ptr<TruthSource>> fly_flight_log(const std::filesystem::path& file,
+                                                    const LogFlightOptions& options,
+                                                    const LocalFrame& frame,
+                                                    const HeightQuery& ground,
+                                                    const SourcePolicy& sources,
+                                                    const std::atomic<bool>* cancel) {
+  const Result<logs::OpenedLog> opened = logs::open_log(file, cancel, sources);
+  if (!opened) return opened.error();
+  logs::TrajectoryRequest request;
+  request.source = options.source;
+  if (options.from_s) request.from_ns = ns_from_s(*options.from_s);
+  if (options.to_s) request.to_ns = ns_from_s(*options.to_s);
+  if (options.smooth) return fly_smoothed(*opened, request, options, frame, ground, cancel);
+
+  request.attitude_offset_ns = ns_from_s(options.time_offset_s);
+  Result<logs::LogTrajectory> log = logs::read_log_trajectory(*opened, request, cancel);
+  if (!log) return log.error();
+  if (!log->georeferenced) {
+    return Error{ErrorCode::kUnsupported,
+                 file.string() + ": the positions of " + log->position_source +
+                     " count from an origin that the log does not state: they cannot be flown"};
+  }
+  if (log->poses.size() < 2) {
+    return Error{ErrorCode::kUnreadable, file.string() + ": 1 pose: a flight needs at least 2"};
+  }
+  const Result<double> separation =
+      logs::separation_of(log->height, log->position_source, options.geoid_separation_m);
+  if (!separation) return separation.error().in(file.string());
+  const auto geodetic = [&](const logs::LogPose& pose) {
+    return geodetic_from_deg(pose.position.x(), pose.position.y(), pose.position.z() + *separation);
+  };
+  const LocalFrame log_frame(geodetic(log->poses.front()));
+  std::vector<Pose> poses;
+  std::vector<Eigen::Vector3d> path;
+  for (const logs::LogPose& pose : log->poses) {
+    const Geodetic point = geodetic(pose);
+    poses.push_back({log_frame.R_world_enu_at(point) * logs::R_enu_ned() * pose.R_ned_body,
+                     log_frame.world_from_geodetic(point)});
+    path.push_back(poses.back().translation);
+  }
+  const Pose T_world_log = place_of(options, path, log_frame, frame, ground);
+  Trajectory trajectory;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (Status status = trajectory.append({log->poses[i].t_ns, T_world_log * poses[i]}); !status) {
+      return status.error().in(file.string());
+    }
+  }
+  std::vector<std::string> warnings = opened->warnings;
+  warnings.insert(warnings.end(), log->warnings.begin(), log->warnings.end());
+  return fly_poses(std::move(trajectory),
+                   std::move(warnings),
+                   "log: " + file.filename().string() + ", " + log->position_source +
+                       " with the attitude of " + log->attitude_source +
+                       (options.rebase ? ", moved" : ""));
+}
+
+}  // namespace overfly::flight

@@ -1,0 +1,143 @@
+// Flight logs flown over a world: at their own place, and moved to another.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/time.hpp"
+#include "flight/replay/logged_flight.hpp"
+#include "tests/flight/replay/csv_flight.hpp"
+
+namespace overfly::flight {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// Ground that rises to the east by 10 m in 100 m.
+class Slope final : public HeightQuery {
+ public:
+  [[nodiscard]] double ground_up_m(double east_m, double /*north_m*/) const override {
+    return 0.1 * east_m;
+  }
+};
+
+std::unique_ptr<TruthSource> flown_log(const testing::CsvFlight& log,
+                                       const LogFlightOptions& options,
+                                       const LocalFrame& world) {
+  auto flight = fly_flight_log(log.mapping(), options, world, Slope(), {});
+  EXPECT_TRUE(flight.ok()) << (flight ? "" : flight.error().message);
+  return std::move(flight).value();
+}
+
+AircraftState state_of(TruthSource& flight, double t_s) {
+  return **flight.state_at(ns_from_s(t_s));
+}
+
+class LoggedFlights : public ::testing::TestWithParam<bool> {
+ protected:
+  LoggedFlights() {
+    if (GetParam()) options_.smooth.emplace();
+  }
+  testing::CsvFlight log_;
+  LogFlightOptions options_;
+};
+INSTANTIATE_TEST_SUITE_P(SmoothedAndNot, LoggedFlights, ::testing::Bool());
+
+TEST_P(LoggedFlights, LieAtTheirOwnPlaceOnTheEarth) {
+  options_.geoid_separation_m = 48.0;
+  // A world whose origin is 8 km away.
+  const LocalFrame world(geodetic_from_deg(47.05, 8.08, 400.0));
+  const auto flight = flown_log(log_, options_, world);
+  EXPECT_NEAR(s_from_ns(*flight->duration_ns()), 90.0, 1e-6);
+  for (const double t_s : {0.0, 12.34, 45.0, 89.9}) {
+    const AircraftState state = state_of(*flight, t_s);
+    const testing::CsvFlight::Row row = log_.row(100.0 + t_s);
+    const Geodetic place = geodetic_from_deg(row.lat_deg, row.lon_deg, row.alt_msl_m + 48.0);
+    EXPECT_LT((state.T_world_body.translation - world.world_from_geodetic(place)).norm(), 0.02);
+    const Eigen::Quaterniond R_world_body =
+        world.R_world_enu_at(place) * R_world_body_from(row.angles);
+    EXPECT_LT(rotation_angle_rad(state.T_world_body.rotation, R_world_body), 2e-3);
+    EXPECT_NEAR(state.v_body_world_m_s.x(), 20.0, 0.1);
+  }
+  EXPECT_FALSE(flight->state_at(ns_from_s(90.01))->has_value());
+  EXPECT_FALSE(flight->state_at(-1).ok());
+}
+
+TEST_P(LoggedFlights, AreMovedAndTurned) {
+  Rebase rebase;
+  rebase.point = Rebase::Point::kStart;
+  rebase.at = PlaceInWorld{-500.0, 700.0};
+  rebase.lowest_agl_m = 120.0;
+  rebase.turn_rad = rad_from_deg(90.0);  // the flight to the east goes south
+  options_.rebase = rebase;
+  const LocalFrame world(geodetic_from_deg(-35.0, 120.0, 10.0));
+  const auto flight = flown_log(log_, options_, world);
+  const AircraftState start = state_of(*flight, 0.0);
+  EXPECT_NEAR(start.T_world_body.translation.x(), -500.0, 0.05);
+  EXPECT_NEAR(start.T_world_body.translation.y(), 700.0, 0.05);
+  const AircraftState later = state_of(*flight, 60.0);
+  EXPECT_NEAR(later.T_world_body.translation.y(), 700.0 - 1200.0, 0.5);
+  EXPECT_NEAR(later.v_body_world_m_s.y(), -20.0, 0.1);
+  const double yaw_rad = attitude_from(later.T_world_body.rotation).yaw_rad;
+  EXPECT_NEAR(wrap_pi(yaw_rad - log_.row(160.0).angles.yaw_rad - rad_from_deg(90.0)), 0.0, 2e-3);
+  double lowest_m = 1e9;
+  for (double t_s = 0.0; t_s < 89.9; t_s += 0.1) {
+    const Eigen::Vector3d p = state_of(*flight, t_s).T_world_body.translation;
+    lowest_m = std::min(lowest_m, p.z() - Slope().ground_up_m(p.x(), p.y()));
+  }
+  EXPECT_NEAR(lowest_m, 120.0, 0.1);
+}
+
+TEST_P(LoggedFlights, AreCentredOnAPlaceOfTheEarth) {
+  Rebase rebase;
+  const LocalFrame world(geodetic_from_deg(35.7, -120.7, 250.0));
+  rebase.at = PlaceOnEarth{rad_from_deg(35.701), rad_from_deg(-120.7)};
+  options_.rebase = rebase;
+  options_.from_s = 110.0;
+  options_.to_s = 150.0;
+  const auto flight = flown_log(log_, options_, world);
+  EXPECT_NEAR(s_from_ns(*flight->duration_ns()), 40.0, 1e-6);
+  const double middle_east_m = 0.5 * (state_of(*flight, 0.0).T_world_body.translation.x() +
+                                      state_of(*flight, 39.99).T_world_body.translation.x());
+  EXPECT_NEAR(middle_east_m, 0.0, 0.5);
+}
+
+TEST_P(LoggedFlights, ReadOnlyFilesThatThePolicyAllows) {
+  const auto flight = fly_flight_log(log_.mapping(),
+                                     options_,
+                                     LocalFrame(geodetic_from_deg(0, 0, 0)),
+                                     Slope(),
+                                     SourcePolicy::inside({"/nonexistent"}));
+  ASSERT_FALSE(flight.ok());
+  EXPECT_THAT(flight.error().message, HasSubstr("pieces.0.file"));
+}
+
+TEST(LoggedFlight, ShiftsTheTimesOfAttitudes) {
+  const testing::CsvFlight log;
+  LogFlightOptions options;
+  options.time_offset_s = 0.5;
+  // The first position with attitudes on both sides is that of 100.6 s.
+  const auto flight = flown_log(log, options, log.frame());
+  const double roll_rad = attitude_from(state_of(*flight, 32.4).T_world_body.rotation).roll_rad;
+  EXPECT_NEAR(roll_rad, log.row(132.5).angles.roll_rad, 2e-3);
+}
+
+TEST(LoggedFlight, ReportsJumpsAsWarnings) {
+  const testing::CsvFlight log(true);
+  LogFlightOptions options;
+  options.smooth.emplace();
+  const auto flight = flown_log(log, options, log.frame());
+  EXPECT_THAT(flight->warnings(),
+              ::testing::Contains(HasSubstr("1 positions left out at 150.000 s")));
+  EXPECT_EQ(flight->description(), "log: log.json, GPS with the attitude of ATT, smoothed");
+}
+
+TEST(LoggedFlight, IsTakenFromFilesThatAreLogs) {
+  const testing::CsvFlight log;
+  EXPECT_TRUE(is_flight_log(log.mapping()));
+  EXPECT_FALSE(is_flight_log(log.mapping().parent_path() / "gps.csv"));
+  EXPECT_FALSE(is_flight_log("/nonexistent"));
+}
+
+}  // namespace
+}  // namespace overfly::flight
