@@ -52,10 +52,10 @@ TEST(SmoothLog, WritesAResidualForEachSample) {
   ASSERT_EQ(log->smoothed.jumps.size(), 1U);
   EXPECT_THAT(jump_text(*log, log->smoothed.jumps[0]),
               HasSubstr("1 positions left out at 150.000 s: up to 111."));
-  const testing::TemporaryFolder folder;
+  const overfly::testing::TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "residuals.csv";
   ASSERT_TRUE(write_residuals(file, *log).ok());
-  const std::string text = testing::read_text(file);
+  const std::string text = overfly::testing::read_text(file);
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1 + 451 + 1801);
   EXPECT_THAT(text, HasSubstr("\n150.000000000,position,0,0,"));
   EXPECT_THAT(text, HasSubstr("\n150.000000000,attitude,1,0,,,,"));
@@ -89,7 +89,7 @@ TEST(RecordedSmoothLog, SmoothsTheSkywalker) {
   smoothing::SmoothingOptions options;
   options.time_offset_s.reset();
   const auto log =
-      smooth_file(testing::source_file("scenarios/flight_logs/skywalker_x8.mapping.json"), options);
+      smooth_file(overfly::testing::source_file("scenarios/flight_logs/skywalker_x8.mapping.json"), options);
   ASSERT_TRUE(log.ok()) << log.error().message;
   const smoothing::SmoothedMotion& smoothed = log->smoothed;
   // A receiver's own filter leaves little noise at 5 Hz. The four positions are those of its first
