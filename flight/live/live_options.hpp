@@ -20,7 +20,6 @@ struct StopConditions {
   bool on_disarm = false;          ///< when the vehicle is disarmed after it was armed
   bool on_landing = false;         ///< when it reports to be on the ground after it was in the air
   std::int32_t mission_item = -1;  ///< when this item becomes the current one; negative: never
-  std::int64_t duration_ns = 0;    ///< after this time of the vehicle's clock; 0: never
 };
 
 struct LiveTruthOptions {

@@ -92,10 +92,6 @@ void LiveTruth::Impl::take(const mavlink::Frame& message) {
         end("the vehicle's clock started again: the vehicle was restarted");
       } else if (const std::string reason = stop.take(message); !reason.empty()) {
         end(reason);
-      } else if (options.stop.duration_ns > 0 &&
-                 known_until_ns() - start_ns >= options.stop.duration_ns) {
-        end_reason = "the duration has passed";
-        end_ns = start_ns + options.stop.duration_ns;
       }
     }
   }

@@ -7,6 +7,7 @@
 #include "flight/autopilot/course_flight.hpp"
 #include "flight/dynamics/airframe_file.hpp"
 #include "flight/dynamics/builtin_airframes.hpp"
+#include "flight/live/fly_live.hpp"
 #include "flight/replay/logged_flight.hpp"
 #include "server/record/run_folder.hpp"
 #include "server/record/truth_samples.hpp"
@@ -139,6 +140,11 @@ Result<std::unique_ptr<TruthSource>> create_truth(const Scenario& scenario,
   if (const auto* log = std::get_if<LoggedFlight>(&scenario.flight)) {
     return open_log_flight(scenario, *log, world, cancel);
   }
+  if (const auto* live = std::get_if<flight::live::LiveFlight>(&scenario.flight)) {
+    auto flown = flight::live::fly_live(*live, world.tiles->frame(), cancel);
+    if (!flown) return flown.error().in("flight.mavlink");
+    return flown;
+  }
   auto course = std::get<flight::CourseParameters>(scenario.flight);
   if (Status status = place_start(scenario, world, course); !status) {
     return status.error().in("flight.course");
@@ -155,7 +161,10 @@ Result<std::unique_ptr<TruthSource>> open_flown_truth(const std::filesystem::pat
                                                       const Scenario& scenario,
                                                       const terrain::World& world) {
   auto flown = open_recorded_flight(truth_samples_file(folder), description);
-  if (!flown && flown.error().code == ErrorCode::kNotFound) return create_truth(scenario, world);
+  const bool live = std::holds_alternative<flight::live::LiveFlight>(scenario.flight);
+  if (!flown && flown.error().code == ErrorCode::kNotFound && !live) {
+    return create_truth(scenario, world);
+  }
   return flown;
 }
 

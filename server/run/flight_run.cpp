@@ -1,7 +1,10 @@
 #include "server/run/flight_run.hpp"
 
+#include <algorithm>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "core/cancel.hpp"
 #include "core/measure/crc32.hpp"
@@ -98,8 +101,21 @@ Status FlightRun::fly() {
     }
   } const leaving{*this};
   const Status flown = prepare_and_fly();
+  const Status described = describe_end();
   const Status closed = close_estimators();
-  return flown ? closed : flown;
+  if (!flown) return flown;
+  return closed ? described : closed;
+}
+
+Status FlightRun::describe_end() {
+  if (!maker_ || !recorder_.manifest().flight) return {};
+  std::vector<std::string>& known = recorder_.manifest().flight->warnings;
+  for (const std::string& warning : maker_->flight_warnings()) {
+    if (std::find(known.begin(), known.end(), warning) != known.end()) continue;
+    known.push_back(warning);
+    if (Status status = recorder_.log(end_ns(), "warning", warning); !status) return status;
+  }
+  return {};
 }
 
 Status FlightRun::prepare_and_fly() {

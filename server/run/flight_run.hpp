@@ -42,6 +42,9 @@ class FlightRun {
   Status close_estimators();
   Status describe_use();
 
+  /// Records what the flight has to report after it: gaps of a live vehicle, why it ended.
+  Status describe_end();
+
   Status fly_lockstep();
   Status fly_real_time();
   /// @param start_ns  start of the flight on the run's clock

@@ -63,6 +63,9 @@ Result<RunInfo> RunManager::start(const std::string& scenario,
   if (!loaded) return loaded.error();
   loaded->sources = impl_->sources();
   if (Status status = check_scenario(*loaded); !status) return status.error();
+  if (Status status = check_link(*loaded, impl_->options.allowed_links); !status) {
+    return status.error();
+  }
   return impl_->enqueue(std::move(*loaded), idempotency_key, filled);
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "server/camera/renderer_factory.hpp"
@@ -20,6 +21,8 @@ struct RunManagerOptions {
   std::uint64_t memory_limit_bytes = 0;
   /// Overrides may name programs to start and network addresses.
   bool allow_commands = false;
+  /// Links to live vehicles that may be opened, as LinkAddress::text.
+  std::vector<std::string> allowed_links;
   /// Folders whose files scenarios may name, in addition to `declared_folders(scenarios_folder)`;
   /// never the runs folder. Without a value any regular file may be named.
   std::optional<std::vector<std::filesystem::path>> data_folders;

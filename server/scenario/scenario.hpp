@@ -16,6 +16,7 @@
 #include "core/time.hpp"
 #include "flight/dynamics/turbulence.hpp"
 #include "flight/flight.hpp"
+#include "flight/live/fly_live.hpp"
 #include "flight/replay/logged_flight.hpp"
 #include "server/scenario/camera_spec.hpp"
 #include "server/scenario/estimator_spec.hpp"
@@ -87,9 +88,9 @@ struct Scenario {
   using BuiltinWorld = server::BuiltinWorld;
   std::variant<BuiltinWorld, std::filesystem::path, terrain::WorldSpec> world;
 
-  /// The course, or a pose file or flight log.
+  /// The course, or a pose file or flight log, or a live vehicle.
   using LoggedFlight = server::LoggedFlight;
-  std::variant<flight::CourseParameters, LoggedFlight> flight;
+  std::variant<flight::CourseParameters, LoggedFlight, flight::live::LiveFlight> flight;
   /// Empty: coordinated turns.
   std::optional<CourseDynamics> course_dynamics;
   /// The course starts at the world's runway, which is known only when the world is open.

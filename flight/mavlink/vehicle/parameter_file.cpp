@@ -13,10 +13,7 @@ Result<std::vector<Parameter>> read_parameter_file(const std::filesystem::path& 
     if (Status status = fields->expect_fields(line, 2); !status) return status.error();
     Parameter parameter;
     parameter.name = line.fields[0];
-    const bool printable = std::all_of(parameter.name.begin(), parameter.name.end(), [](char c) {
-      return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
-    });
-    if (parameter.name.empty() || parameter.name.size() > kMaxParameterName || !printable) {
+    if (!is_parameter_name(parameter.name)) {
       return fields->bad_field(
           line, 1, "must be 1 to 16 letters, digits or underscores: the name of a parameter");
     }

@@ -1,5 +1,6 @@
 #include "flight/mavlink/vehicle/parameters.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -146,11 +147,19 @@ Status request_missing(Exchange& exchange, const Collected& collected) {
 
 }  // namespace
 
+bool is_parameter_name(std::string_view name) {
+  return !name.empty() && name.size() <= kMaxParameterName &&
+         std::all_of(name.begin(), name.end(), [](char c) {
+           return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') ||
+                  c == '_';
+         });
+}
+
 Result<Parameter> read_parameter(Exchange& exchange, const std::string& name) {
-  if (name.empty() || name.size() > kMaxParameterName) {
+  if (!is_parameter_name(name)) {
     return Error{ErrorCode::kInvalidArgument,
                  "parameter '" + name.substr(0, 64) + "': the name must have 1 to " +
-                     std::to_string(kMaxParameterName) + " characters"};
+                     std::to_string(kMaxParameterName) + " characters: letters, digits, '_'"};
   }
   const std::string what = "reading parameter " + name;
   const Result<HeldMessage> message = ask(

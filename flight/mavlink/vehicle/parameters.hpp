@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "flight/mavlink/vehicle/exchange.hpp"
@@ -12,13 +13,16 @@ namespace overfly::flight::mavlink {
 
 inline constexpr std::size_t kMaxParameterName = 16;
 
+/// 1 to 16 letters, digits or underscores.
+[[nodiscard]] bool is_parameter_name(std::string_view name);
+
 struct Parameter {
   std::string name;
   double value = 0.0;
   std::uint8_t type = 9;  ///< MAV_PARAM_TYPE: 1 to 8 integers of 8 to 64 bits, 9 float
 };
 
-/// Reads one parameter. Errors: kInvalidArgument for a name of more than 16 characters; kNotFound
+/// Reads one parameter. Errors: kInvalidArgument for text that is no name; kNotFound
 /// if the vehicle does not answer: autopilots ignore names that they do not have.
 [[nodiscard]] Result<Parameter> read_parameter(Exchange& exchange, const std::string& name);
 

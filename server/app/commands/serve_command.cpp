@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "flight/mavlink/link/link_address.hpp"
 #include "server/app/commands/commands.hpp"
 #include "server/app/exit_code.hpp"
 #include "server/app/install_paths.hpp"
@@ -42,6 +43,8 @@ struct ServeArguments {
   double memory_limit_mib = 0.0;
   /// Overrides may name programs to start and network addresses.
   bool allow_commands = false;
+  /// Links to live vehicles that scenarios may open.
+  std::vector<std::string> links;
 };
 
 void log_line(const std::string& level, const std::string& text) {
@@ -82,6 +85,11 @@ int serve(const ServeArguments& arguments) {
   manager_options.memory_limit_bytes =
       static_cast<std::uint64_t>(arguments.memory_limit_mib * 1024.0 * 1024.0);
   manager_options.allow_commands = arguments.allow_commands;
+  for (const std::string& text : arguments.links) {
+    const auto link = flight::mavlink::parse_link_address(text, "--allow-link");
+    if (!link) return report(link.error());
+    manager_options.allowed_links.push_back(link->text());
+  }
   manager_options.data_folders.emplace(arguments.data.begin(), arguments.data.end());
   const auto runs = server::RunManager::create(manager_options);
   if (!runs) return report(runs.error());
@@ -154,6 +162,10 @@ void add_serve_command(CLI::App& app, int& exit_code) {
       "--allow-commands",
       arguments->allow_commands,
       "Let clients, not only scenario files, set programs and addresses of estimators");
+  command->add_option("--allow-link",
+                      arguments->links,
+                      "Link to a live vehicle that scenarios may open, e.g. "
+                      "udp-listen:127.0.0.1:14550; repeatable");
   command->callback([arguments, &exit_code] { exit_code = serve(*arguments); });
 }
 

@@ -40,7 +40,28 @@ Error out_of_reach(std::size_t estimator, const std::string& field) {
 
 }  // namespace
 
+Status check_link(const Scenario& scenario, const std::vector<std::string>& allowed) {
+  const auto* live = std::get_if<flight::live::LiveFlight>(&scenario.flight);
+  if (live == nullptr) return {};
+  const std::string link = live->link.text();
+  if (std::find(allowed.begin(), allowed.end(), link) != allowed.end()) return {};
+  return Error{
+      ErrorCode::kInvalidArgument,
+      "flight.mavlink.link = " + link + ": the server was not started with --allow-link " + link};
+}
+
 Status check_reach(const Scenario& scenario, const Scenario& trusted) {
+  const auto live_of = [](const Scenario& each) {
+    const auto flight = each.resolved.find("flight");
+    return flight != each.resolved.end() ? flight->value("mavlink", nlohmann::json())
+                                         : nlohmann::json();
+  };
+  const nlohmann::json wanted = live_of(scenario);
+  if (!wanted.is_null() && wanted != live_of(trusted)) {
+    return Error{ErrorCode::kInvalidArgument,
+                 "flight.mavlink: must be as in the scenario's file; clients may set it only if "
+                 "the server was started with --allow-commands"};
+  }
   for (std::size_t i = 0; i < scenario.estimators.size(); ++i) {
     const EstimatorSpec& spec = scenario.estimators[i];
     const char* field = nullptr;

@@ -9,6 +9,7 @@
 #include "server/scenario/document/scenario_flight.hpp"
 #include "server/scenario/document/scenario_layers.hpp"
 #include "server/scenario/document/scenario_light.hpp"
+#include "server/scenario/document/scenario_live.hpp"
 
 namespace overfly::server {
 namespace {
@@ -22,6 +23,12 @@ Status read_flight(Json& document, const FileResolver& files, Scenario& scenario
     Result<LoggedFlight> log = logged_flight_from(flight.at("log"), files);
     if (!log) return log.error();
     scenario.flight = std::move(*log);
+    return {};
+  }
+  if (flight.contains("mavlink")) {
+    Result<flight::live::LiveFlight> live = read_live_flight(flight.at("mavlink"), files);
+    if (!live) return live.error();
+    scenario.flight = std::move(*live);
     return {};
   }
   return read_course(flight.at("course"), files, scenario);

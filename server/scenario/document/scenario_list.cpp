@@ -106,8 +106,25 @@ Result<fs::path> scenario_path(const fs::path& folder, const std::string& name) 
   return file;
 }
 
+namespace {
+
+/// The files that a live flight names.
+Status check_live_files(const Scenario& scenario) {
+  const auto* live = std::get_if<flight::live::LiveFlight>(&scenario.flight);
+  if (live == nullptr) return {};
+  if (live->mission_file) {
+    Status status = scenario.sources.check(*live->mission_file, "flight.mavlink.mission_file");
+    if (!status) return status;
+  }
+  if (!live->signing_key_file) return {};
+  return scenario.sources.check(*live->signing_key_file, "flight.mavlink.signing_key_file");
+}
+
+}  // namespace
+
 Status check_scenario(const Scenario& scenario) {
   std::optional<Error> error;
+  if (Status status = check_live_files(scenario); !status) return status.error();
   if (Status status = check_world(scenario); !status) error = status.error();
   if (const auto& dynamics = scenario.course_dynamics; dynamics && dynamics->airframe.empty()) {
     Status status = scenario.sources.check(dynamics->airframe_file, "flight.course.dynamics");

@@ -260,14 +260,6 @@ TEST(LiveTruth, EndsByItsStopConditions) {
   EXPECT_THAT(disarmed.truth->warnings().back(), HasSubstr("the vehicle was disarmed"));
 
   options = {};
-  options.stop.duration_ns = kNsPerS;
-  OpenedTruth timed(options);
-  ASSERT_NE(timed.truth, nullptr);
-  timed.fly_until(timed.last_ms + 2000);
-  EXPECT_TRUE(timed.truth->state_at(kNsPerS)->has_value());
-  EXPECT_FALSE(timed.truth->state_at(kNsPerS + 1)->has_value());
-
-  options = {};
   options.stop.mission_item = 7;
   OpenedTruth mission(options);
   ASSERT_NE(mission.truth, nullptr);

@@ -1,0 +1,116 @@
+#include "flight/live/fly_live.hpp"
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "flight/live/live_truth.hpp"
+#include "flight/mavlink/link/signing.hpp"
+#include "flight/mavlink/vehicle/commands.hpp"
+#include "flight/mavlink/vehicle/message_rates.hpp"
+#include "flight/mavlink/vehicle/mission.hpp"
+#include "flight/mavlink/vehicle/parameters.hpp"
+#include "flight/mavlink/vehicle/vehicle.hpp"
+
+namespace overfly::flight::live {
+namespace {
+
+using mavlink::MessageId;
+
+constexpr std::chrono::seconds kArmingLimit{60};
+/// Of messages that only tell when the flight ends, and of speeds.
+constexpr double kSlowRateHz = 5.0;
+
+Status request_rates(mavlink::Exchange& exchange, const LiveFlight& flight) {
+  if (flight.rate_hz <= 0.0) return {};
+  std::vector<std::pair<MessageId, double>> rates = {{MessageId::kAttitude, flight.rate_hz},
+                                                     {MessageId::kVfrHud, kSlowRateHz},
+                                                     {MessageId::kMissionCurrent, kSlowRateHz}};
+  if (flight.truth.truth != TruthPreference::kEstimate) {
+    rates.emplace_back(MessageId::kSimState, flight.rate_hz);
+  }
+  if (flight.truth.truth != TruthPreference::kSimulation) {
+    rates.emplace_back(MessageId::kGlobalPositionInt, flight.rate_hz);
+  }
+  if (flight.truth.stop.on_landing) {
+    rates.emplace_back(MessageId::kExtendedSysState, kSlowRateHz);
+  }
+  for (const auto& [message, rate_hz] : rates) {
+    // A message that the vehicle does not have is missed later, if it is needed.
+    const auto requested = mavlink::request_message_rate(exchange, message, rate_hz);
+    if (!requested) return requested.error();
+  }
+  return {};
+}
+
+/// Whether the vehicle's mission is the one that was sent. Item 0 is the home position, which
+/// ArduPilot keeps for itself; positions are rounded to 1e-7 deg.
+bool is_same_mission(const std::vector<mavlink::MissionItem>& sent,
+                     const std::vector<mavlink::MissionItem>& stored) {
+  if (sent.size() != stored.size()) return false;
+  for (std::size_t i = 1; i < sent.size(); ++i) {
+    if (sent[i].command != stored[i].command || std::abs(sent[i].x - stored[i].x) > 1e-6 ||
+        std::abs(sent[i].y - stored[i].y) > 1e-6) {
+      return false;
+    }
+  }
+  return true;
+}
+
+Status set_mission(mavlink::Exchange& exchange, const std::filesystem::path& file) {
+  const auto mission = mavlink::read_mission_file(file);
+  if (!mission) return mission.error();
+  if (Status status = mavlink::upload_mission(exchange, *mission); !status) return status;
+  const auto stored = mavlink::download_mission(exchange);
+  if (!stored) return stored.error();
+  if (is_same_mission(*mission, *stored)) return {};
+  return Error{ErrorCode::kConflict,
+               file.string() + ": " + exchange.target().name() +
+                   " has not stored the mission as it was sent"};
+}
+
+Status prepare(mavlink::Exchange& exchange, const LiveFlight& flight) {
+  if (Status status = request_rates(exchange, flight); !status) return status;
+  for (const auto& [name, value] : flight.parameters) {
+    if (Status status = mavlink::set_parameter(exchange, name, value); !status) return status;
+  }
+  if (flight.mission_file) {
+    if (Status status = set_mission(exchange, *flight.mission_file); !status) return status;
+  }
+  if (!flight.arm_and_start) return {};
+  if (Status status = mavlink::arm(exchange, kArmingLimit); !status) return status;
+  return mavlink::start_mission(exchange);
+}
+
+}  // namespace
+
+Result<std::unique_ptr<TruthSource>> fly_live(const LiveFlight& flight,
+                                              const LocalFrame& frame,
+                                              const std::atomic<bool>* cancel) {
+  mavlink::VehicleOptions options;
+  options.system = flight.system;
+  options.link.read_only = flight.read_only;
+  if (flight.signing_key_file) {
+    const auto key = mavlink::read_signing_key(*flight.signing_key_file);
+    if (!key) return key.error();
+    options.link.key = *key;
+    options.link.sign = true;
+  }
+  Result<std::unique_ptr<mavlink::Vehicle>> opened = mavlink::Vehicle::open(flight.link, options);
+  if (!opened) return opened.error();
+  const std::shared_ptr<mavlink::Vehicle> vehicle = std::move(*opened);
+  if (Status heard = vehicle->wait_until_heard(flight.truth.patience, cancel); !heard) {
+    return heard.error();
+  }
+  if (!flight.read_only) {
+    const std::unique_ptr<mavlink::Exchange> exchange = vehicle->converse(cancel);
+    if (Status status = prepare(*exchange, flight); !status) {
+      return status.error().in(flight.link.text());
+    }
+  }
+  Result<std::unique_ptr<LiveTruth>> truth = LiveTruth::open(vehicle, frame, flight.truth, cancel);
+  if (!truth) return truth.error();
+  return std::unique_ptr<TruthSource>(std::move(*truth));
+}
+
+}  // namespace overfly::flight::live

@@ -1,0 +1,76 @@
+#include "server/scenario/document/scenario_live.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <string>
+
+#include "core/time.hpp"
+#include "flight/mavlink/vehicle/parameters.hpp"
+
+namespace overfly::server {
+namespace {
+
+using Json = nlohmann::json;
+using flight::live::LiveFlight;
+using flight::live::TruthPreference;
+
+TruthPreference preference_from(const std::string& name) {
+  if (name == "simulation") return TruthPreference::kSimulation;
+  if (name == "estimate") return TruthPreference::kEstimate;
+  return TruthPreference::kBest;
+}
+
+/// A read-only link cannot ask for anything.
+Status check_read_only(const LiveFlight& flight) {
+  const char* field = nullptr;
+  if (!flight.parameters.empty()) field = "parameters";
+  if (flight.mission_file) field = "mission_file";
+  if (flight.arm_and_start) field = "arm_and_start";
+  if (!flight.read_only || field == nullptr) return {};
+  return Error{ErrorCode::kInvalidArgument,
+               std::string("flight.mavlink.") + field +
+                   ": must not be given with read_only = true, which sends nothing"};
+}
+
+}  // namespace
+
+Result<LiveFlight> read_live_flight(Json& mavlink, const FileResolver& files) {
+  LiveFlight flight;
+  const Result<flight::mavlink::LinkAddress> link = flight::mavlink::parse_link_address(
+      mavlink.at("link").get<std::string>(), "flight.mavlink.link");
+  if (!link) return link.error();
+  flight.link = *link;
+  flight.read_only = mavlink.at("read_only").get<bool>();
+  flight.system = mavlink.at("system").get<std::uint8_t>();
+  if (mavlink.contains("signing_key_file")) {
+    flight.signing_key_file = files.resolve(mavlink.at("signing_key_file"));
+  }
+  flight.rate_hz = mavlink.at("rate_hz").get<double>();
+  for (const auto& [name, value] : mavlink.at("parameters").items()) {
+    if (!flight::mavlink::is_parameter_name(name)) {
+      return Error{ErrorCode::kInvalidArgument,
+                   "flight.mavlink.parameters: a name must be 1 to 16 letters, digits or "
+                   "underscores"};
+    }
+    flight.parameters[name] = value.get<double>();
+  }
+  if (mavlink.contains("mission_file")) {
+    flight.mission_file = files.resolve(mavlink.at("mission_file"));
+  }
+  flight.arm_and_start = mavlink.at("arm_and_start").get<bool>();
+  flight.truth.truth = preference_from(mavlink.at("truth").get<std::string>());
+  flight.truth.geoid_separation_m = mavlink.at("geoid_separation_m").get<double>();
+  flight.truth.gap_limit_ns = ns_from_s(mavlink.at("gap_limit_s").get<double>());
+  flight.truth.patience =
+      std::chrono::milliseconds(std::llround(1e3 * mavlink.at("patience_s").get<double>()));
+  const Json& stop = mavlink.at("stop");
+  flight.truth.stop.on_disarm = stop.at("on_disarm").get<bool>();
+  flight.truth.stop.on_landing = stop.at("on_landing").get<bool>();
+  if (stop.contains("mission_item")) {
+    flight.truth.stop.mission_item = stop.at("mission_item").get<std::int32_t>();
+  }
+  if (Status status = check_read_only(flight); !status) return status.error();
+  return flight;
+}
+
+}  // namespace overfly::server

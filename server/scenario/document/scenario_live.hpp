@@ -1,0 +1,17 @@
+// Flights of live vehicles in scenario documents.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "core/result.hpp"
+#include "flight/live/fly_live.hpp"
+#include "server/scenario/document/scenario_layers.hpp"
+
+namespace overfly::server {
+
+/// Reads `flight.mavlink`. @pre it is valid and has its defaults
+/// Errors: kInvalidArgument naming the field, its value and its limit.
+[[nodiscard]] Result<flight::live::LiveFlight> read_live_flight(nlohmann::json& mavlink,
+                                                                const FileResolver& files);
+
+}  // namespace overfly::server

@@ -1,0 +1,196 @@
+// Runs that fly a live vehicle: its messages come over the loopback interface.
+#include <arpa/inet.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+
+#include <atomic>
+#include <chrono>
+#include <thread>
+
+#include "core/outside/file_descriptor.hpp"
+#include "flight/mavlink/frame.hpp"
+#include "flight/mavlink/payload.hpp"
+#include "server/camera/truth.hpp"
+#include "server/record/run_info_file.hpp"
+#include "server/run/run.hpp"
+#include "server/scenario/document/estimator_reach.hpp"
+#include "server/scenario/document/scenario_file.hpp"
+#include "tests/server/support/server_fixture.hpp"
+
+namespace overfly::server {
+namespace {
+
+using flight::mavlink::PayloadWriter;
+using overfly::testing::TemporaryFolder;
+using ::testing::HasSubstr;
+using testing::noop_factory;
+using testing::options_for;
+using testing::small_scenario;
+
+/// Sends heartbeats, attitudes and positions at 50 Hz of its own clock, which runs about 20 times
+/// as fast as the machine's, to the first connection, then disarms.
+class StreamingVehicle {
+ public:
+  explicit StreamingVehicle(double seconds) : seconds_(seconds) {
+    listener_ = FileDescriptor(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+    sockaddr_in name{};
+    name.sin_family = AF_INET;
+    name.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof name;
+    auto* const address = reinterpret_cast<sockaddr*>(&name);
+    EXPECT_EQ(::bind(listener_.get(), address, size), 0);
+    EXPECT_EQ(::listen(listener_.get(), 1), 0);
+    ::getsockname(listener_.get(), address, &size);
+    port_ = ntohs(name.sin_port);
+    thread_ = std::thread([this] { run(); });
+  }
+  ~StreamingVehicle() {
+    ::shutdown(listener_.get(), SHUT_RDWR);
+    thread_.join();
+  }
+  [[nodiscard]] std::string link() const { return "tcp:127.0.0.1:" + std::to_string(port_); }
+
+ private:
+  void run() {
+    FileDescriptor peer(::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC));
+    const auto end_ms = static_cast<std::uint32_t>(5000 + 1000 * seconds_);
+    for (std::uint32_t ms = 5000; ms <= end_ms; ms += 20) {
+      if (!send(peer, 0, heartbeat(true)) || !send(peer, 30, attitude_at(ms)) ||
+          !send(peer, 33, position_at(ms))) {
+        return;
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    (void)send(peer, 0, heartbeat(false));
+    char byte = 0;
+    (void)!::recv(peer.get(), &byte, 1, 0);  // until the run has ended
+  }
+  static std::vector<std::uint8_t> heartbeat(bool armed) {
+    return PayloadWriter(9)
+        .put(4, std::uint8_t{1})
+        .put(5, std::uint8_t{3})
+        .put(6, static_cast<std::uint8_t>(armed ? 0x81 : 0x01))
+        .bytes();
+  }
+  static std::vector<std::uint8_t> attitude_at(std::uint32_t ms) {
+    return PayloadWriter(28).put(0, ms).put(12, 1.5F).bytes();
+  }
+  /// At rest 300 m above sea level at the built-in world's place, or wherever it is.
+  static std::vector<std::uint8_t> position_at(std::uint32_t ms) {
+    return PayloadWriter(28)
+        .put(0, ms)
+        .put(4, std::int32_t{392345678})
+        .put(8, std::int32_t{-861234567})
+        .put(12, std::int32_t{300000})
+        .bytes();
+  }
+  bool send(const FileDescriptor& peer, std::uint32_t id, std::vector<std::uint8_t> payload) {
+    const auto bytes = flight::mavlink::encode_frame(
+        {flight::mavlink::Version::kTwo, sequence_++, 1, 1, id, false, payload});
+    return ::send(peer.get(), bytes->data(), bytes->size(), MSG_NOSIGNAL) ==
+           static_cast<ssize_t>(bytes->size());
+  }
+
+  double seconds_;
+  FileDescriptor listener_;
+  std::uint16_t port_ = 0;
+  std::uint8_t sequence_ = 0;
+  std::thread thread_;
+};
+
+Scenario live_scenario(const StreamingVehicle& vehicle, const std::string& estimators = "[]") {
+  return small_scenario({"flight.mavlink.link=" + vehicle.link(),
+                         "flight.mavlink.read_only=true",
+                         "estimators=" + estimators});
+}
+
+TEST(LiveRun, FliesAVehicleUntilItIsDisarmed) {
+  const StreamingVehicle vehicle(10.0);
+  const TemporaryFolder folder;
+  Scenario scenario = live_scenario(vehicle, R"([{"name":"p","type":"perfect"}])");
+  scenario.duration_s.reset();
+  const auto run = run_scenario(scenario, options_for(folder.path() / "r"));
+  ASSERT_TRUE(run.ok()) << run.error().message;
+  // Time 0 is when the run begins to listen, some time after the vehicle began to send.
+  EXPECT_GT(run->info.frames, 30);
+  EXPECT_LE(run->info.frames, 101);
+  const std::string manifest = overfly::testing::read_text(folder.path() / "r" / "manifest.json");
+  EXPECT_THAT(manifest,
+              HasSubstr("live vehicle 1.1 on " + vehicle.link() +
+                        ": the estimate (1.1/GLOBAL_POSITION_INT, 1.1/ATTITUDE)"));
+  EXPECT_THAT(manifest, HasSubstr(" s: the vehicle was disarmed"));
+}
+
+TEST(LiveRun, EndsWhenItsScenarioSays) {
+  const StreamingVehicle vehicle(20.0);
+  const TemporaryFolder folder;
+  const auto run = run_scenario(live_scenario(vehicle), options_for(folder.path() / "r"));
+  ASSERT_TRUE(run.ok()) << run.error().message;
+  EXPECT_EQ(run->info.frames, 21);  // duration_s = 2
+}
+
+TEST(LiveRun, FailsWithTheFieldWhenNobodyAnswers) {
+  const TemporaryFolder folder;
+  const Scenario scenario =
+      small_scenario({"flight.mavlink.link=tcp:127.0.0.1:1", "flight.mavlink.patience_s=0.2"});
+  const auto run = run_scenario(scenario, options_for(folder.path() / "r"));
+  ASSERT_FALSE(run.ok());
+  EXPECT_THAT(run.error().message,
+              HasSubstr("flight.mavlink: tcp:127.0.0.1:1: no heartbeat of an autopilot within"));
+}
+
+TEST(LiveRun, IsNeverFlownAgain) {
+  const TemporaryFolder empty;
+  const Scenario scenario = small_scenario({"flight.mavlink.link=tcp:127.0.0.1:1"});
+  const auto world = terrain::World();
+  const auto again = open_flown_truth(empty.path(), "", scenario, world);
+  ASSERT_FALSE(again.ok());
+  EXPECT_EQ(again.error().code, ErrorCode::kNotFound);
+}
+
+TEST(LiveScenario, NamesTheFieldsThatAreWrong) {
+  const auto message_of = [](std::vector<std::string> overrides) {
+    overrides.insert(overrides.begin(), "flight.mavlink.link=tcp:127.0.0.1:5760");
+    try {
+      (void)small_scenario(overrides);
+    } catch (const std::runtime_error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(message_of({}), "");
+  EXPECT_EQ(message_of({"flight.mavlink.parameters.SIM_SPEEDUP=5"}), "");
+  EXPECT_THAT(message_of({"flight.mavlink.link=tcp:example.org:1"}),
+              HasSubstr("flight.mavlink.link = 'tcp:example.org:1': the host must be"));
+  EXPECT_THAT(message_of({"flight.mavlink.rate_hz=2000"}),
+              HasSubstr("flight.mavlink.rate_hz = 2000"));
+  EXPECT_THAT(message_of({"flight.mavlink.read_only=true", "flight.mavlink.arm_and_start=true"}),
+              HasSubstr("flight.mavlink.arm_and_start: must not be given with read_only"));
+  EXPECT_THAT(message_of({R"(flight.mavlink.parameters={"a name":1})"}),
+              HasSubstr("letters, digits or underscores"));
+  EXPECT_THAT(message_of({"flight.mavlink.sistem=1"}), HasSubstr("no such field"));
+}
+
+TEST(LiveScenario, ConnectsOnlyWhereTheOperatorAllows) {
+  const Scenario course = small_scenario();
+  const Scenario live = small_scenario({"flight.mavlink.link=udp-listen:localhost:14550"});
+  EXPECT_TRUE(check_link(course, {}).ok());
+  EXPECT_THAT(check_link(live, {}).error().message,
+              HasSubstr("flight.mavlink.link = udp-listen:127.0.0.1:14550: the server was not "
+                        "started with --allow-link udp-listen:127.0.0.1:14550"));
+  EXPECT_TRUE(check_link(live, {"udp-listen:127.0.0.1:14550"}).ok());
+  EXPECT_FALSE(check_link(live, {"udp-listen:127.0.0.1:14551"}).ok());
+
+  // What the scenario's file does may be done, nothing else.
+  EXPECT_TRUE(check_reach(live, live).ok());
+  EXPECT_THAT(check_reach(live, course).error().message,
+              HasSubstr("flight.mavlink: must be as in the scenario's file"));
+  const Scenario arming = small_scenario(
+      {"flight.mavlink.link=udp-listen:localhost:14550", "flight.mavlink.arm_and_start=true"});
+  EXPECT_FALSE(check_reach(arming, live).ok());
+  EXPECT_TRUE(check_reach(course, live).ok());
+}
+
+}  // namespace
+}  // namespace overfly::server
