@@ -110,7 +110,7 @@ LiveFlight flight_to(const TcpVehicle& vehicle) {
   return flight;
 }
 
-const LocalFrame kFrame(geodetic_from_deg(10.0, 20.0, 0.0));
+const LocalFrame kLiveFrame(geodetic_from_deg(10.0, 20.0, 0.0));
 
 TEST(FlyLive, PreparesArmsAndStartsTheVehicle) {
   overfly::testing::TemporaryFolder folder;
@@ -127,7 +127,7 @@ TEST(FlyLive, PreparesArmsAndStartsTheVehicle) {
   flight.parameters["AIRSPEED_CRUISE"] = 25.0;
   flight.mission_file = mission;
   flight.arm_and_start = true;
-  const auto truth = fly_live(flight, kFrame, nullptr);
+  const auto truth = fly_live(flight, kLiveFrame, nullptr);
   ASSERT_TRUE(truth.ok()) << truth.error().message;
   const auto state = (*truth)->state_at(kNsPerS / 2);
   ASSERT_TRUE(state.ok()) << state.error().message;
@@ -153,7 +153,7 @@ TEST(FlyLive, SendsNothingOnAReadOnlyLink) {
   vehicle.start();
   LiveFlight flight = flight_to(vehicle);
   flight.read_only = true;
-  const auto truth = fly_live(flight, kFrame, nullptr);
+  const auto truth = fly_live(flight, kLiveFrame, nullptr);
   ASSERT_TRUE(truth.ok()) << truth.error().message;
   EXPECT_TRUE((*truth)->state_at(kNsPerS / 2).ok());
   vehicle.stop();
@@ -165,7 +165,7 @@ TEST(FlyLive, SaysWhatTheVehicleRefuses) {
   vehicle.start();
   LiveFlight flight = flight_to(vehicle);
   flight.parameters["NO_SUCH"] = 1.0;
-  const auto truth = fly_live(flight, kFrame, nullptr);
+  const auto truth = fly_live(flight, kLiveFrame, nullptr);
   ASSERT_FALSE(truth.ok());
   EXPECT_THAT(truth.error().message, HasSubstr(flight.link.text() + ": reading parameter NO_SUCH"));
   EXPECT_EQ(truth.error().code, ErrorCode::kNotFound);

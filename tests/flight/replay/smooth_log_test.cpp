@@ -88,8 +88,8 @@ TEST(RecordedSmoothLog, SmoothsTheSkywalker) {
   EXPECT_FALSE(gps.empty());
   smoothing::SmoothingOptions options;
   options.time_offset_s.reset();
-  const auto log =
-      smooth_file(overfly::testing::source_file("scenarios/flight_logs/skywalker_x8.mapping.json"), options);
+  const auto log = smooth_file(
+      overfly::testing::source_file("scenarios/flight_logs/skywalker_x8.mapping.json"), options);
   ASSERT_TRUE(log.ok()) << log.error().message;
   const smoothing::SmoothedMotion& smoothed = log->smoothed;
   // A receiver's own filter leaves little noise at 5 Hz. The four positions are those of its first
