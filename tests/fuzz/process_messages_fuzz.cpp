@@ -56,7 +56,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) std::abort();
   if (::send(ends[1], data, size, MSG_DONTWAIT) != static_cast<ssize_t>(size)) std::abort();
   ::close(ends[1]);
-  Channel channel{FileDescriptor(ends[0])};
+  Channel channel{overfly::FileDescriptor(ends[0])};
   static const overfly::VoFrame frame = frame_under_way();
   FigureIntake figures;
   channel.begin_frame(64 * 48);
