@@ -13,7 +13,7 @@ enum class MissionCommand {
   kTakeOff,   ///< climb straight ahead to the position's height
   kWaypoint,  ///< fly to the position along the line from the item before it
   kLoiter,    ///< circle around the position, for `turns`, for `time_s`, or until the end
-  kReturn,    ///< fly home at RTL_ALTITUDE and circle there until the end
+  kReturn,    ///< fly home at RTL_ALTITUDE and circle there as in kLoiter
   kLand,      ///< descend along the line to the position, and touch down
   kSetSpeed,  ///< change the airspeed, at once
 };

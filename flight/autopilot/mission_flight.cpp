@@ -21,6 +21,12 @@ double smoothing_m(double airspeed_m_s) { return std::max(40.0, 1.6 * airspeed_m
 Status check_setup(const MissionSetup& setup) {
   if (Status status = check(setup.parameters); !status) return status;
   if (Status status = check(setup.mission); !status) return status;
+  if (const double wind = setup.wind_world_m_s.head<2>().norm();
+      !(wind < setup.parameters.airspeed_cruise)) {
+    return Error{ErrorCode::kInvalidArgument,
+                 "wind.speed_m_s = " + number_text(wind) + ": must be below the airspeed of " +
+                     number_text(setup.parameters.airspeed_cruise) + " m/s"};
+  }
   if (!(setup.duration_max_s > 0.0 && setup.duration_max_s <= kFlightMaxS)) {
     return Error{ErrorCode::kInvalidArgument,
                  "duration_max_s = " + number_text(setup.duration_max_s) + ": must be in (0, " +
@@ -94,8 +100,9 @@ class MissionTruth final : public TruthSource {
     return text;
   }
   [[nodiscard]] std::vector<std::string> warnings() const override {
-    if (warning_.empty()) return {};
-    return {warning_};
+    std::vector<std::string> all = flight_.setup().warnings;
+    if (!warning_.empty()) all.push_back(warning_);
+    return all;
   }
 
  private:

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/earth/height_query.hpp"
 #include "core/motion/truth_source.hpp"
@@ -36,7 +37,8 @@ struct MissionSetup {
   double heading_rad = 0.0;  ///< of the start, clockwise from north
   /// Ends the flight early [s], in (0, kFlightMaxS].
   double duration_max_s = kFlightMaxS;
-  std::string title = "mission";  ///< first words of the description
+  std::string title = "mission";      ///< first words of the description
+  std::vector<std::string> warnings;  ///< of what was left out of the mission, for the run
 };
 
 enum class FlightEnd {

@@ -171,6 +171,12 @@ Result<PlannedMission> plan_mission(const std::vector<Item>& items,
     if (Status status = planner.add(i, items[i]); !status) return status.error();
   }
   PlannedMission plan = std::move(planner.plan);
+  if (!plan.mission.items.empty()) {
+    MissionItem& last = plan.mission.items.back();
+    const bool circles =
+        last.command == MissionCommand::kLoiter || last.command == MissionCommand::kReturn;
+    if (circles && !last.turns && !last.time_s) last.turns = 1.0;
+  }
   if (Status status = check(plan.mission); !status) return status.error();
   const Eigen::Vector2d home = plan.mission.home_world_m.head<2>();
   for (const MissionItem& item : plan.mission.items) {

@@ -88,8 +88,6 @@ void MissionPilot::begin_item(const FlightState& state) {
       item.position_m = mission_.home_world_m.head<2>();
       item.height_m = mission_.home_world_m.z() + parameters_.rtl_altitude;
       item.above_ground = false;
-      item.turns.reset();
-      item.time_s.reset();
       break;
     default:
       phase_ = FlightPhase::kEnRoute;
@@ -144,6 +142,7 @@ bool MissionPilot::reached(const FlightState& state) const {
                                 : left.norm() <= parameters_.wp_radius;
     }
     case MissionCommand::kLoiter:
+    case MissionCommand::kReturn:
       if (item.turns) return circled_rad_ >= *item.turns * 2.0 * kPi;
       return item.time_s && captured_ && circling_s_ >= *item.time_s;
     default:

@@ -1,14 +1,11 @@
 #include "server/camera/truth.hpp"
 
 #include <Eigen/Geometry>
-#include <cmath>
 #include <utility>
 
-#include "flight/autopilot/course_flight.hpp"
-#include "flight/dynamics/airframe_file.hpp"
-#include "flight/dynamics/builtin_airframes.hpp"
 #include "flight/live/fly_live.hpp"
 #include "flight/replay/logged_flight.hpp"
+#include "server/camera/airframe_flight.hpp"
 #include "server/record/run_folder.hpp"
 #include "server/record/truth_samples.hpp"
 
@@ -69,41 +66,6 @@ Status place_start(const Scenario& scenario,
   return {};
 }
 
-Result<dynamics::Airframe> airframe_of(const CourseDynamics& wanted) {
-  if (wanted.airframe.empty()) return dynamics::read_airframe(wanted.airframe_file);
-  for (const dynamics::BuiltinAirframe& known : dynamics::builtin_airframes()) {
-    if (known.name == wanted.airframe) return dynamics::parse_airframe(known.text, wanted.airframe);
-  }
-  return Error{ErrorCode::kNotFound, "\"" + wanted.airframe + "\": no such airframe"};
-}
-
-/// The density of the air follows from the height above the ellipsoid in place of sea level: they
-/// differ by up to 100 m, which is 1 % of the density.
-Result<std::unique_ptr<TruthSource>> fly_airframe(const flight::CourseParameters& course,
-                                                  const CourseDynamics& wanted,
-                                                  std::uint64_t seed,
-                                                  const terrain::World& world,
-                                                  const std::atomic<bool>* cancel) {
-  Result<dynamics::Airframe> airframe = airframe_of(wanted);
-  if (!airframe) return airframe.error().in("dynamics");
-  autopilot::CourseAircraft aircraft;
-  aircraft.airframe = std::move(airframe).value();
-  // Wind from the west blows to the east.
-  aircraft.wind_world_m_s =
-      -wanted.wind_m_s *
-      Eigen::Vector3d(std::sin(wanted.wind_from_rad), std::cos(wanted.wind_from_rad), 0.0);
-  aircraft.turbulence = wanted.turbulence;
-  aircraft.follow_ground = wanted.terrain_following;
-  aircraft.parameters = wanted.autopilot;
-  const Geodetic& origin = world.tiles->frame().origin();
-  return autopilot::fly_course(course,
-                               aircraft,
-                               dynamics::Environment::at(origin, origin.alt_ellipsoid_m),
-                               world.tiles,
-                               seed,
-                               cancel);
-}
-
 Result<std::unique_ptr<TruthSource>> open_log_flight(const Scenario& scenario,
                                                      const LoggedFlight& log,
                                                      const terrain::World& world,
@@ -145,13 +107,19 @@ Result<std::unique_ptr<TruthSource>> create_truth(const Scenario& scenario,
     if (!flown) return flown.error().in("flight.mavlink");
     return flown;
   }
+  if (const auto* mission = std::get_if<MissionFile>(&scenario.flight)) {
+    auto flown = fly_mission_file(*mission, scenario.seed, scenario.duration_s, world, cancel);
+    if (!flown) return flown.error().in("flight.mission");
+    return flown;
+  }
   auto course = std::get<flight::CourseParameters>(scenario.flight);
   if (Status status = place_start(scenario, world, course); !status) {
     return status.error().in("flight.course");
   }
-  auto truth = scenario.course_dynamics
-                   ? fly_airframe(course, *scenario.course_dynamics, scenario.seed, world, cancel)
-                   : flight::fly_course(course, world.tiles);
+  auto truth =
+      scenario.course_dynamics
+          ? fly_course_with(course, *scenario.course_dynamics, scenario.seed, world, cancel)
+          : flight::fly_course(course, world.tiles);
   if (!truth) return truth.error().in("flight.course");
   return truth;
 }

@@ -51,15 +51,30 @@ struct BuiltinWorld {
   std::uint64_t seed = 1;
 };
 
-/// An airframe that flies the course, instead of coordinated turns.
-struct CourseDynamics {
-  std::string airframe;                 ///< one of builtin_airframes(), or empty: the file
-  std::filesystem::path airframe_file;  ///< an airframe file
-  double wind_from_rad = 0.0;           ///< clockwise from north
+/// An airframe and the air that it flies in.
+struct AirframeChoice {
+  std::string name;            ///< one of builtin_airframes(), or empty: the file
+  std::filesystem::path file;  ///< an airframe file
+  double wind_from_rad = 0.0;  ///< clockwise from north
   double wind_m_s = 0.0;
   std::optional<dynamics::TurbulenceLevel> turbulence;
-  bool terrain_following = true;
   std::map<std::string, double> autopilot;  ///< parameters by their names
+};
+
+/// Who flies the course, instead of coordinated turns.
+struct CourseDynamics {
+  AirframeChoice airframe;
+  bool terrain_following = true;
+};
+
+/// A mission file, flown by an airframe.
+struct MissionFile {
+  std::filesystem::path file;
+  AirframeChoice airframe;
+  double airspeed_m_s = 25.0;
+  bool home_at_runway = false;
+  /// Where the mission's home lies in the world frame (east, north); else as the file says.
+  std::optional<Eigen::Vector2d> home_m;
 };
 
 /// A pose file or a flight log, which the file's content decides.
@@ -88,9 +103,10 @@ struct Scenario {
   using BuiltinWorld = server::BuiltinWorld;
   std::variant<BuiltinWorld, std::filesystem::path, terrain::WorldSpec> world;
 
-  /// The course, or a pose file or flight log, or a live vehicle.
+  /// The course, a pose file or flight log, a live vehicle, or a mission.
   using LoggedFlight = server::LoggedFlight;
-  std::variant<flight::CourseParameters, LoggedFlight, flight::live::LiveFlight> flight;
+  std::variant<flight::CourseParameters, LoggedFlight, flight::live::LiveFlight, MissionFile>
+      flight;
   /// Empty: coordinated turns.
   std::optional<CourseDynamics> course_dynamics;
   /// The course starts at the world's runway, which is known only when the world is open.

@@ -1,10 +1,9 @@
 #include "server/scenario/document/scenario_course.hpp"
 
-#include <algorithm>
 #include <string>
 #include <utility>
 
-#include "flight/dynamics/builtin_airframes.hpp"
+#include "server/scenario/document/scenario_airframe.hpp"
 
 namespace overfly::server {
 namespace {
@@ -22,13 +21,6 @@ flight::CourseParameters course_from(const Json& course) {
   parameters.length_m = course.at("length_m").get<double>();
   parameters.leg_length_m = course.at("leg_length_m").get<double>();
   return parameters;
-}
-
-std::optional<dynamics::TurbulenceLevel> turbulence_from(const std::string& text) {
-  if (text == "light") return dynamics::TurbulenceLevel::kLight;
-  if (text == "moderate") return dynamics::TurbulenceLevel::kModerate;
-  if (text == "severe") return dynamics::TurbulenceLevel::kSevere;
-  return std::nullopt;
 }
 
 /// What coordinated turns cannot have.
@@ -49,35 +41,13 @@ Status check_coordinated(const Json& course) {
   return {};
 }
 
-/// A name that ends with .json is a file; any other must be a built-in airframe.
 Status read_dynamics(Json& course, const FileResolver& files, Scenario& scenario) {
-  const auto name = course.at("dynamics").get<std::string>();
-  if (name == kCoordinated) return check_coordinated(course);
-  CourseDynamics dynamics;
-  const auto known = dynamics::builtin_airframes();
-  if (name.ends_with(".json")) {
-    dynamics.airframe_file = files.resolve(course.at("dynamics"));
-  } else if (std::any_of(known.begin(), known.end(), [&](const auto& airframe) {
-               return airframe.name == name;
-             })) {
-    dynamics.airframe = name;
-  } else {
-    std::string names = kCoordinated;
-    for (const auto& airframe : known) names += ", " + std::string(airframe.name);
-    return Error{ErrorCode::kInvalidArgument,
-                 "flight.course.dynamics = " + course.at("dynamics").dump() + ": must be one of " +
-                     names + ", or an airframe file (.json)"};
-  }
-  if (course.contains("wind")) {
-    dynamics.wind_from_rad = rad_from_deg(course.at("wind").at("from_deg").get<double>());
-    dynamics.wind_m_s = course.at("wind").at("speed_m_s").get<double>();
-  }
-  dynamics.turbulence = turbulence_from(course.at("turbulence").get<std::string>());
-  dynamics.terrain_following = course.at("terrain_following").get<bool>();
-  if (course.contains("autopilot")) {
-    dynamics.autopilot = course.at("autopilot").get<std::map<std::string, double>>();
-  }
-  scenario.course_dynamics = std::move(dynamics);
+  if (course.at("dynamics") == kCoordinated) return check_coordinated(course);
+  Result<AirframeChoice> airframe =
+      read_airframe_choice(course, "dynamics", "flight.course", files);
+  if (!airframe) return airframe.error();
+  scenario.course_dynamics =
+      CourseDynamics{std::move(*airframe), course.at("terrain_following").get<bool>()};
   return {};
 }
 
@@ -102,6 +72,23 @@ Status read_course(Json& course, const FileResolver& files, Scenario& scenario) 
   }
   scenario.flight = parameters;
   return read_dynamics(course, files, scenario);
+}
+
+Result<MissionFile> read_mission(Json& mission, const FileResolver& files) {
+  MissionFile flight;
+  Result<AirframeChoice> airframe =
+      read_airframe_choice(mission, "airframe", "flight.mission", files);
+  if (!airframe) return airframe.error();
+  flight.airframe = std::move(*airframe);
+  flight.file = files.resolve(mission.at("file"));
+  flight.airspeed_m_s = mission.at("airspeed_m_s").get<double>();
+  const Json& home = mission.at("home");
+  flight.home_at_runway = home == "runway";
+  if (home.is_object()) {
+    flight.home_m =
+        Eigen::Vector2d(home.at("east_m").get<double>(), home.at("north_m").get<double>());
+  }
+  return flight;
 }
 
 }  // namespace overfly::server

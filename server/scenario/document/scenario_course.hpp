@@ -1,4 +1,4 @@
-// Reads `flight.course` of a scenario document.
+// Reads `flight.course` and `flight.mission` of a scenario document.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -15,5 +15,9 @@ namespace overfly::server {
 [[nodiscard]] Status read_course(nlohmann::json& course,
                                  const FileResolver& files,
                                  Scenario& scenario);
+
+/// @param mission  as above; the paths of mission and airframe files are resolved
+/// Errors: as read_airframe_choice.
+[[nodiscard]] Result<MissionFile> read_mission(nlohmann::json& mission, const FileResolver& files);
 
 }  // namespace overfly::server

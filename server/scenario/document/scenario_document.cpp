@@ -31,6 +31,12 @@ Status read_flight(Json& document, const FileResolver& files, Scenario& scenario
     scenario.flight = std::move(*live);
     return {};
   }
+  if (flight.contains("mission")) {
+    Result<MissionFile> mission = read_mission(flight.at("mission"), files);
+    if (!mission) return mission.error();
+    scenario.flight = std::move(*mission);
+    return {};
+  }
   return read_course(flight.at("course"), files, scenario);
 }
 

@@ -120,16 +120,27 @@ Status check_live_files(const Scenario& scenario) {
   return scenario.sources.check(*live->signing_key_file, "flight.mavlink.signing_key_file");
 }
 
+/// The files of a mission, and of an airframe that flies it or the course.
+Status check_mission_files(const Scenario& scenario) {
+  if (const auto& flown = scenario.course_dynamics; flown && flown->airframe.name.empty()) {
+    return scenario.sources.check(flown->airframe.file, "flight.course.dynamics");
+  }
+  const auto* mission = std::get_if<MissionFile>(&scenario.flight);
+  if (mission == nullptr) return {};
+  if (Status status = scenario.sources.check(mission->file, "flight.mission.file"); !status) {
+    return status;
+  }
+  if (!mission->airframe.name.empty()) return {};
+  return scenario.sources.check(mission->airframe.file, "flight.mission.airframe");
+}
+
 }  // namespace
 
 Status check_scenario(const Scenario& scenario) {
   std::optional<Error> error;
   if (Status status = check_live_files(scenario); !status) return status.error();
   if (Status status = check_world(scenario); !status) error = status.error();
-  if (const auto& dynamics = scenario.course_dynamics; dynamics && dynamics->airframe.empty()) {
-    Status status = scenario.sources.check(dynamics->airframe_file, "flight.course.dynamics");
-    if (!status && !error) error = status.error();
-  }
+  if (Status status = check_mission_files(scenario); !status && !error) error = status.error();
   if (const auto* log = std::get_if<Scenario::LoggedFlight>(&scenario.flight)) {
     const Status status = check_log(scenario, *log);
     if (!status && error) {

@@ -253,6 +253,9 @@ TEST(MissionFlight, RejectsWhatItCannotFly) {
   setup.mission.items = {waypoint(0, 100, 300)};
   setup.duration_max_s = 1e9;
   EXPECT_THAT(message(setup), HasSubstr("duration_max_s"));
+  setup.duration_max_s = 10.0;
+  setup.wind_world_m_s = {8.0, 7.0, 0.0};
+  EXPECT_THAT(message(setup), HasSubstr("wind.speed_m_s = 10.6"));
   EXPECT_THAT(fly_mission(setup, nullptr).error().message, HasSubstr("ground"));
 }
 

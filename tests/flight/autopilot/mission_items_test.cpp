@@ -90,6 +90,7 @@ TEST(MissionItems, ReadTheParametersOfCommands) {
   EXPECT_EQ(items[3].time_s, 30.0);
   EXPECT_EQ(items[3].radius_m, 0.0);
   EXPECT_EQ(items[4].command, MissionCommand::kReturn);
+  EXPECT_EQ(items[4].turns, 1.0);
   ASSERT_THAT(planned.warnings, SizeIs(1));
   EXPECT_THAT(planned.warnings[0], HasSubstr("item 4: command 203 was left out"));
 }
@@ -121,7 +122,6 @@ TEST(MissionItems, FlyTheMissionThatArduPlaneFlew) {
   setup.start_world_m.reset();
   setup.heading_rad = planned.heading_rad;
   setup.mission = planned.mission;
-  setup.duration_max_s = 600.0;
   double highest = 0.0;
   double reached_s = 0.0;
   double fastest = 0.0;
@@ -134,8 +134,8 @@ TEST(MissionItems, FlyTheMissionThatArduPlaneFlew) {
     }
     return true;
   });
-  // It ends with a return, which circles at home until the time limit.
-  EXPECT_EQ(flight.end(), FlightEnd::kTimeLimit);
+  // It ends with a return: one circle at home.
+  EXPECT_EQ(flight.end(), FlightEnd::kMissionDone);
   EXPECT_GT(reached_s, 300.0);
   EXPECT_LT(reached_s, 520.0);
   EXPECT_NEAR(highest, 300.0, 5.0);

@@ -70,18 +70,38 @@ TEST(Scenario, LetsAnAirframeFlyTheCourse) {
                        "/tmp");
   ASSERT_TRUE(scenario.ok()) << scenario.error().message;
   ASSERT_TRUE(scenario->course_dynamics.has_value());
-  EXPECT_EQ(scenario->course_dynamics->airframe, "piper_cub_third");
-  EXPECT_NEAR(scenario->course_dynamics->wind_from_rad, kPi, 1e-12);
-  EXPECT_EQ(scenario->course_dynamics->wind_m_s, 4.0);
-  EXPECT_EQ(scenario->course_dynamics->turbulence, dynamics::TurbulenceLevel::kModerate);
+  EXPECT_EQ(scenario->course_dynamics->airframe.name, "piper_cub_third");
+  EXPECT_NEAR(scenario->course_dynamics->airframe.wind_from_rad, kPi, 1e-12);
+  EXPECT_EQ(scenario->course_dynamics->airframe.wind_m_s, 4.0);
+  EXPECT_EQ(scenario->course_dynamics->airframe.turbulence, dynamics::TurbulenceLevel::kModerate);
   EXPECT_FALSE(scenario->course_dynamics->terrain_following);
-  EXPECT_EQ(scenario->course_dynamics->autopilot.at("RLL2SRV_TCONST"), 0.5);
+  EXPECT_EQ(scenario->course_dynamics->airframe.autopilot.at("RLL2SRV_TCONST"), 0.5);
   const Result<Scenario> file = resolve_scenario(
       course_document(), overrides({"flight.course.dynamics=./mine.json"}), "/tmp/scenarios");
   ASSERT_TRUE(file.ok()) << file.error().message;
-  EXPECT_EQ(file->course_dynamics->airframe_file, "/tmp/scenarios/mine.json");
+  EXPECT_EQ(file->course_dynamics->airframe.file, "/tmp/scenarios/mine.json");
   EXPECT_THAT(check_scenario(*file).error().message, HasSubstr("flight.course.dynamics"));
   EXPECT_FALSE(resolve_scenario(course_document(), {}, "/tmp")->course_dynamics.has_value());
+}
+
+TEST(Scenario, FliesAMissionFile) {
+  const Result<Scenario> scenario =
+      resolve_scenario(course_document(),
+                       overrides({"flight.mission.file=./plan.waypoints",
+                                  "flight.mission.airframe=foam_trainer",
+                                  "flight.mission.airspeed_m_s=11",
+                                  "flight.mission.home={\"east_m\": 5, \"north_m\": -6}"}),
+                       "/tmp/scenarios");
+  ASSERT_TRUE(scenario.ok()) << scenario.error().message;
+  const auto& mission = std::get<MissionFile>(scenario->flight);
+  EXPECT_EQ(mission.file, "/tmp/scenarios/plan.waypoints");
+  EXPECT_EQ(mission.airframe.name, "foam_trainer");
+  EXPECT_EQ(mission.airspeed_m_s, 11.0);
+  EXPECT_EQ(mission.home_m, Eigen::Vector2d(5.0, -6.0));
+  EXPECT_THAT(check_scenario(*scenario).error().message, HasSubstr("flight.mission.file"));
+  EXPECT_THAT(error_of(course_document(),
+                       {"flight.mission.file=./plan.waypoints", "flight.mission.airframe=x"}),
+              HasSubstr("flight.mission.airframe = \"x\": must be one of aerosonde, "));
 }
 
 TEST(Scenario, RejectsWindAndTurbulenceWithoutAnAirframe) {
