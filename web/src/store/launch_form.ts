@@ -64,12 +64,12 @@ export const kFields: readonly FieldSpec[] = [
     unit: '',
     kind: 'choice',
     needs: `${kCourse}.dynamics`,
-    hint: 'Coordinated turns in still air, or an airframe with six degrees of freedom and its autopilot',
+    hint: 'Coordinated turns in still air, or an airframe with its autopilot: foam trainer 8 to 19, Cub 10 to 37, Aerosonde 16 to 32 m/s',
     choices: [
-      { value: 'coordinated', label: 'Coordinated turns' },
-      { value: 'foam_trainer', label: 'Foam trainer (8 to 19 m/s)' },
-      { value: 'piper_cub_third', label: '1/3 Piper Cub (10 to 37 m/s)' },
-      { value: 'aerosonde', label: 'Aerosonde (16 to 32 m/s)' },
+      { value: 'coordinated', label: 'Coordinated' },
+      { value: 'foam_trainer', label: 'Foam trainer' },
+      { value: 'piper_cub_third', label: 'Piper Cub, 1/3' },
+      { value: 'aerosonde', label: 'Aerosonde' },
     ],
   },
   {
