@@ -75,6 +75,26 @@ TEST_F(RunManagerTest, FliesOverFilesInsideOfItsDataFoldersOnly) {
               HasSubstr(planted + outside));
 }
 
+TEST_F(RunManagerTest, OpensOnlyTheLinksThatTheOperatorAllows) {
+  nlohmann::json document = testing::small_document();
+  document["flight"] = {{"mavlink", {{"link", "tcp:127.0.0.1:1"}, {"patience_s", 0.1}}}};
+  overfly::testing::write_text(root() / "scenarios" / "live.json", document.dump());
+  EXPECT_THAT(manager()->start("live", {}).error().message,
+              HasSubstr("the server was not started with --allow-link tcp:127.0.0.1:1"));
+  RunManagerOptions allowing = options();
+  allowing.allowed_links = {"tcp:127.0.0.1:1"};
+  const auto runs = std::move(RunManager::create(allowing).value());
+  const auto started = runs->start("live", {});
+  ASSERT_TRUE(started.ok()) << started.error().message;
+  EXPECT_EQ(wait_for_end(*runs, started->id).status, RunStatus::kFailed);  // nobody listens
+  // Another link, or what the vehicle has to do, only as in the scenario's file.
+  EXPECT_TRUE(runs->check_overrides("live", {{"duration_s", 1}}).ok());
+  EXPECT_THAT(
+      runs->check_overrides("live", {{"flight.mavlink.arm_and_start", true}}).error().message,
+      HasSubstr("flight.mavlink: must be as in the scenario's file"));
+  EXPECT_FALSE(runs->check_overrides("small", {{"flight.mavlink.link", "tcp:127.0.0.1:1"}}).ok());
+}
+
 TEST_F(RunManagerTest, TakesTheFolderDataOfScenarioFilesForDeclared) {
   nlohmann::json document = testing::small_document();
   document["world"] = {{"manifest", testing::small_world().filename().string()}};
