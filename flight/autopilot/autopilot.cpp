@@ -17,8 +17,10 @@ Autopilot::Autopilot(const Parameters& parameters,
       energy_(parameters, airframe),
       attitude_(parameters, airframe) {}
 
-void Autopilot::start(const FlightState& state, const dynamics::Controls& positions) {
-  pilot_.start(state);
+void Autopilot::start(const FlightState& state,
+                      const dynamics::Controls& positions,
+                      std::size_t item) {
+  pilot_.start(state, item);
   energy_.start_from(positions.throttle, state.attitude.pitch_rad);
   attitude_.start_from(positions);
 }

@@ -19,8 +19,9 @@ class Autopilot {
             Mission mission,
             GroundHeight ground);
 
-  /// Takes over in a steady flight with these controls.
-  void start(const FlightState& state, const dynamics::Controls& positions);
+  /// Takes over in flight, with the mission's item of this index and these positions of the
+  /// controls.
+  void start(const FlightState& state, const dynamics::Controls& positions, std::size_t item = 0);
   /// The commands of the next 1 / kControlRateHz seconds.
   [[nodiscard]] dynamics::Controls update(const FlightState& state);
 

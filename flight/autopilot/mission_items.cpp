@@ -48,6 +48,7 @@ class Planner {
 
   Status add(std::size_t index, const Item& from) {
     MissionItem item;
+    item.number = static_cast<std::uint16_t>(index);
     switch (from.command) {
       case kNavWaypoint:
         item.accept_radius_m = finite_or_zero(from.parameters[1]);
@@ -95,6 +96,7 @@ class Planner {
       return leave_out(index, from);
     }
     MissionItem item;
+    item.number = static_cast<std::uint16_t>(index);
     item.command = MissionCommand::kSetSpeed;
     item.airspeed_m_s = from.parameters[1];
     plan.mission.items.push_back(item);

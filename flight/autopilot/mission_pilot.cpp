@@ -43,8 +43,8 @@ double MissionPilot::up_of(const MissionItem& item, const Eigen::Vector2d& at_m)
   return item.above_ground ? ground_(at_m) + item.height_m : item.height_m;
 }
 
-void MissionPilot::start(const FlightState& state) {
-  index_ = 0;
+void MissionPilot::start(const FlightState& state, std::size_t item) {
+  index_ = item;
   heading_rad_ = state.attitude.yaw_rad;
   begin_item(state);
 }

@@ -32,8 +32,8 @@ class MissionPilot {
   /// @param ground  heights above ground count from it
   MissionPilot(const Parameters& parameters, Mission mission, GroundHeight ground);
 
-  /// The first item starts at the present position.
-  void start(const FlightState& state);
+  /// The first item, with the index `item`, starts at the present position.
+  void start(const FlightState& state, std::size_t item = 0);
   [[nodiscard]] FlightDemand update(const FlightState& state, double dt_s);
 
   [[nodiscard]] FlightPhase phase() const { return phase_; }

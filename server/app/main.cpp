@@ -21,6 +21,7 @@ int main(int argc, char** argv) {
   add_scenario_command(app, exit_code);
   add_export_command(app, exit_code);
   add_log_command(app, exit_code);
+  add_vehicle_command(app, exit_code);
   add_bench_command(app, exit_code);
   add_doctor_command(app, exit_code);
   try {

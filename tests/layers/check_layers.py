@@ -75,6 +75,8 @@ MAY_INCLUDE = {
                                "flight/logs/mode_names.hpp"],
     "flight/autopilot": ["core/", "flight", "flight/dynamics",
                          "flight/mavlink/vehicle/mission.hpp"],
+    "flight/vehicle": ["core/", "flight/autopilot", "flight/dynamics", "flight/mavlink",
+                       "flight/mavlink/link", "flight/mavlink/vehicle/mission.hpp"],
     "flight/live": ["core/", "flight/mavlink", "flight/mavlink/link", "flight/mavlink/vehicle",
                     "flight/logs", "flight/logs/tlog"],
     "flight/logs": ["core/", "flight/logs/tlog", "flight/logs/dataflash", "flight/logs/ulog",

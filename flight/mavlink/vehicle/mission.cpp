@@ -69,47 +69,6 @@ std::string mission_result_text(std::uint8_t type) {
   return type < kTexts.size() ? kTexts[type] : "result " + std::to_string(type);
 }
 
-PayloadWriter encode_item(const Exchange& exchange, const MissionItem& item, std::size_t index) {
-  PayloadWriter payload(38);
-  for (std::size_t i = 0; i < item.parameters.size(); ++i) {
-    payload.put(4 * i, item.parameters[i]);
-  }
-  const double scale = scale_of(item.frame);
-  return payload.put(16, scaled(item.x, scale))
-      .put(20, scaled(item.y, scale))
-      .put(24, item.z)
-      .put(28, static_cast<std::uint16_t>(index))
-      .put(30, item.command)
-      .put(32, exchange.target().system)
-      .put(33, exchange.target().component)
-      .put(34, item.frame)
-      .put(35, static_cast<std::uint8_t>(item.current ? 1 : 0))
-      .put(36, static_cast<std::uint8_t>(item.autocontinue ? 1 : 0));
-}
-
-/// MISSION_ITEM_INT or MISSION_ITEM, which differ in x and y.
-MissionItem decode_item(const HeldMessage& message) {
-  const PayloadReader payload = message.reader();
-  MissionItem item;
-  item.frame = plain_frame(payload.at<std::uint8_t>(34));
-  item.command = payload.at<std::uint16_t>(30);
-  item.current = payload.at<std::uint8_t>(35) != 0;
-  item.autocontinue = payload.at<std::uint8_t>(36) != 0;
-  for (std::size_t i = 0; i < item.parameters.size(); ++i) {
-    item.parameters[i] = payload.at<float>(4 * i);
-  }
-  if (message.is(MessageId::kMissionItem)) {
-    item.x = payload.at<float>(16);
-    item.y = payload.at<float>(20);
-  } else {
-    const double scale = scale_of(item.frame);
-    item.x = payload.at<std::int32_t>(16) / scale;
-    item.y = payload.at<std::int32_t>(20) / scale;
-  }
-  item.z = payload.at<float>(24);
-  return item;
-}
-
 /// Type of a mission: 0 is the flight plan, others are fences and rally points.
 std::uint8_t type_at(const HeldMessage& message, std::size_t offset) {
   return message.reader().at<std::uint8_t>(offset);
@@ -137,6 +96,43 @@ Error rejection(const Exchange& exchange, const std::string& what, const HeldMes
 
 }  // namespace
 
+PayloadWriter encode_mission_item(const MissionItem& item,
+                                  std::size_t index,
+                                  std::uint8_t system,
+                                  std::uint8_t component) {
+  PayloadWriter payload(38);
+  for (std::size_t i = 0; i < item.parameters.size(); ++i) {
+    payload.put(4 * i, item.parameters[i]);
+  }
+  const double scale = scale_of(item.frame);
+  return payload.put(16, scaled(item.x, scale))
+      .put(20, scaled(item.y, scale))
+      .put(24, item.z)
+      .put(28, static_cast<std::uint16_t>(index))
+      .put(30, item.command)
+      .put(32, system)
+      .put(33, component)
+      .put(34, item.frame)
+      .put(35, static_cast<std::uint8_t>(item.current ? 1 : 0))
+      .put(36, static_cast<std::uint8_t>(item.autocontinue ? 1 : 0));
+}
+
+MissionItem decode_mission_item(const PayloadReader& payload, bool integers) {
+  MissionItem item;
+  item.frame = plain_frame(payload.at<std::uint8_t>(34));
+  item.command = payload.at<std::uint16_t>(30);
+  item.current = payload.at<std::uint8_t>(35) != 0;
+  item.autocontinue = payload.at<std::uint8_t>(36) != 0;
+  for (std::size_t i = 0; i < item.parameters.size(); ++i) {
+    item.parameters[i] = payload.at<float>(4 * i);
+  }
+  const double scale = scale_of(item.frame);
+  item.x = integers ? payload.at<std::int32_t>(16) / scale : payload.at<float>(16);
+  item.y = integers ? payload.at<std::int32_t>(20) / scale : payload.at<float>(20);
+  item.z = payload.at<float>(24);
+  return item;
+}
+
 Status upload_mission(Exchange& exchange, const std::vector<MissionItem>& items) {
   const std::string what = "uploading the mission";
   if (items.empty() || items.size() > kMaxMissionItems) {
@@ -156,8 +152,10 @@ Status upload_mission(Exchange& exchange, const std::vector<MissionItem>& items)
         kMissionPatience,
         [&](int /*attempt*/) {
           if (!asked) return exchange.send(MessageId::kMissionCount, count);
-          return exchange.send(MessageId::kMissionItemInt,
-                               encode_item(exchange, items[*asked], *asked));
+          return exchange.send(
+              MessageId::kMissionItemInt,
+              encode_mission_item(
+                  items[*asked], *asked, exchange.target().system, exchange.target().component));
         },
         [](const HeldMessage& each) { return is_request(each) || is_mission_ack(each); });
     if (!message) return message.error();
@@ -219,7 +217,7 @@ Result<std::vector<MissionItem>> download_mission(Exchange& exchange) {
         },
         [&](const HeldMessage& each) { return is_item(each, i); });
     if (!item) return item.error();
-    mission.push_back(decode_item(*item));
+    mission.push_back(decode_mission_item(item->reader(), !item->is(MessageId::kMissionItem)));
   }
   // Ends the conversation; the vehicle does not answer.
   if (Status status = exchange.send(MessageId::kMissionAck, to_vehicle(PayloadWriter(8), 0));

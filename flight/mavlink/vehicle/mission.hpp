@@ -33,6 +33,14 @@ inline constexpr std::size_t kMaxMissionItems = 5000;
 /// Errors: as FieldFile::read; kUnreadable naming file, line, column, value and limit.
 [[nodiscard]] Result<std::vector<MissionItem>> read_mission_file(const std::filesystem::path& file);
 
+/// MISSION_ITEM_INT of an item, to a system and component.
+[[nodiscard]] PayloadWriter encode_mission_item(const MissionItem& item,
+                                                std::size_t index,
+                                                std::uint8_t system,
+                                                std::uint8_t component);
+/// The item of MISSION_ITEM_INT, or of MISSION_ITEM if x and y are not `integers`.
+[[nodiscard]] MissionItem decode_mission_item(const PayloadReader& payload, bool integers);
+
 /// Replaces the vehicle's mission. Positions are sent in steps of 1e-7 deg.
 /// Errors: as ask(); kInvalidArgument for an empty mission or more than kMaxMissionItems; kConflict
 /// if the vehicle rejects the mission, with its reason.

@@ -19,6 +19,7 @@ void add_world_build_command(CLI::App& world, int& exit_code);
 void add_world_download_command(CLI::App& world, int& exit_code);
 void add_scenario_command(CLI::App& app, int& exit_code);
 void add_log_command(CLI::App& app, int& exit_code);
+void add_vehicle_command(CLI::App& app, int& exit_code);
 void add_bench_command(CLI::App& app, int& exit_code);
 void add_export_command(CLI::App& app, int& exit_code);
 void add_doctor_command(CLI::App& app, int& exit_code);

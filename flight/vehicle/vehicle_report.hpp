@@ -1,0 +1,39 @@
+// What a simulated vehicle tells about itself, as MAVLink messages.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "core/earth/geodesy.hpp"
+#include "flight/autopilot/flight_state.hpp"
+#include "flight/mavlink/messages.hpp"
+#include "flight/mavlink/payload.hpp"
+
+namespace overfly::vehicle {
+
+/// Modes of ArduPlane that the vehicle has (custom_mode).
+enum class Mode : std::uint32_t {
+  kManual = 0,
+  kAuto = 10,
+  kReturn = 11,
+  kLoiter = 12,
+  kGuided = 15
+};
+
+struct VehicleReport {
+  std::int64_t boot_ns = 0;  ///< the vehicle's clock
+  Mode mode = Mode::kManual;
+  bool armed = false;
+  bool in_air = false;
+  autopilot::FlightState state;
+  LocalFrame frame{Geodetic{}};  ///< origin = home; heights count as above mean sea level
+  double throttle = 0.0;
+  std::uint16_t mission_item = 0;
+  std::uint16_t mission_items = 0;
+};
+
+/// The payload of a message that describes the vehicle; empty for one that it does not send.
+[[nodiscard]] std::optional<flight::mavlink::PayloadWriter> payload_of(
+    flight::mavlink::MessageId id, const VehicleReport& report);
+
+}  // namespace overfly::vehicle
