@@ -51,6 +51,12 @@ double opening(double jump, double uncertainty, Gate gate) {
   return gate == Gate::kReturn ? std::min(open, kReturnJumps * jump) : open;
 }
 
+/// A step over so long a gap that nothing is known of it is none.
+TrackStep known(TrackStep step) {
+  if (step.size.allFinite() && std::isfinite(step.sigma)) return step;
+  return {Eigen::Vector3d::Zero(), 0.0, true};
+}
+
 }  // namespace
 
 void PositionTrack::start(const PositionSample& sample) {
@@ -129,7 +135,7 @@ TrackStep PositionTrack::step(const PositionTrack& before, const PositionTrack& 
   step.sigma = std::sqrt(std::max(1.0 / horizontal[0], 1.0 / vertical[0]));
   step.continues =
       step.size.norm() <= std::max(before.limits_.position_jump_m, kGateSigmas * step.sigma);
-  return step;
+  return known(step);
 }
 
 void AttitudeTrack::start(const AttitudeSample& sample) {
@@ -203,7 +209,7 @@ TrackStep AttitudeTrack::step(const AttitudeTrack& before, const AttitudeTrack& 
   step.sigma = std::sqrt(1.0 / weights[0]);
   step.continues = std::hypot(turn.x(), turn.y(), step.size.z()) <=
                    before.gate_rad(step.sigma * step.sigma, Gate::kNext);
-  return step;
+  return known(step);
 }
 
 }  // namespace overfly::flight::smoothing

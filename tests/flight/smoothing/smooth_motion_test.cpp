@@ -217,6 +217,46 @@ TEST(SmoothMotion, IsAFunctionOfItsInput) {
             0);
 }
 
+/// Gaps up to half an hour, rates from 0.5 Hz to 1 kHz, positions up to 10^7 m apart, any attitude.
+Recording hostile_recording(std::uint64_t seed) {
+  NormalNoise noise(seed);
+  Recording recording;
+  const double spread_m = std::pow(10.0, static_cast<double>(seed % 8));
+  const double turn_rad = std::pow(10.0, -static_cast<double>(seed % 4));
+  double t_s = 0.0;
+  for (int i = 0; i < 150; ++i) {
+    t_s += std::abs(noise.draw()) < 0.02 ? 1000.0 : 0.001 + 0.2 * std::abs(noise.draw());
+    const Eigen::Vector3d p(noise.draw(), noise.draw(), noise.draw());
+    const bool jumps = i % 7 == 0;
+    recording.positions.push_back({t_s, (jumps ? spread_m : 1e-3 * spread_m) * p});
+    recording.attitudes.push_back(
+        {t_s, rotation_from_vector(turn_rad * Eigen::Vector3d(p.y(), p.z(), jumps ? 3.0 : 0.1))});
+  }
+  return recording;
+}
+
+TEST(SmoothMotion, IsFiniteForAnySamplesThatItAccepts) {
+  int accepted = 0;
+  for (std::uint64_t seed = 1; seed <= 24; ++seed) {
+    const Recording recording = hostile_recording(seed);
+    const auto result = smooth_motion(recording.positions, recording.attitudes, {});
+    if (!result) {
+      EXPECT_EQ(result.error().code, ErrorCode::kUnreadable) << result.error().message;
+      continue;
+    }
+    ++accepted;
+    const SmoothMotion& motion = result->motion;
+    const double step_s = (motion.end_s - motion.begin_s) / 500.0;
+    for (int i = 0; i <= 500; ++i) {
+      const MotionState state = motion.at(motion.begin_s + i * step_s);
+      ASSERT_TRUE(state.p_world_m.allFinite() && state.v_world_m_s.allFinite()) << seed;
+      ASSERT_TRUE(state.R_ned_body.coeffs().allFinite()) << seed;
+      ASSERT_TRUE(state.omega_body_rad_s.allFinite()) << seed;
+    }
+  }
+  EXPECT_GE(accepted, 3);
+}
+
 TEST(SmoothMotion, RejectsWhatIsNoFlight) {
   const Recording recording = testing::record({});
   const auto error_of = [](const Recording& samples, const SmoothingOptions& options = {}) {
