@@ -39,26 +39,33 @@ Status check_setup(const MissionSetup& setup) {
   return {};
 }
 
-Result<dynamics::Aircraft> launch(const MissionSetup& setup) {
-  const Parameters& p = setup.parameters;
-  const Eigen::Vector3d position = setup.start_world_m.value_or(
-      setup.mission.home_world_m + Eigen::Vector3d(0, 0, kLaunchHeightM));
-  double airspeed = p.airspeed_cruise;
-  if (!setup.start_world_m) {
-    airspeed = std::min(airspeed,
-                        kLaunchOverStall * dynamics::stall_speed_m_s(
-                                               setup.airframe, setup.environment, position.z()));
-  }
-  const Result<dynamics::Trim> level = dynamics::trim(
-      setup.airframe, setup.environment, {.airspeed_m_s = airspeed, .up_m = position.z()});
+/// An aircraft in level flight.
+Result<dynamics::Aircraft> in_flight(const dynamics::AircraftSetup& aircraft,
+                                     double airspeed_m_s,
+                                     const Eigen::Vector3d& position_world_m,
+                                     double heading_rad) {
+  const Result<dynamics::Trim> level =
+      dynamics::trim(aircraft.airframe,
+                     aircraft.environment,
+                     {.airspeed_m_s = airspeed_m_s, .up_m = position_world_m.z()});
   if (!level) return level.error();
-  return dynamics::Aircraft::create({.airframe = setup.airframe,
-                                     .environment = setup.environment,
-                                     .wind_world_m_s = setup.wind_world_m_s,
-                                     .turbulence = setup.turbulence,
-                                     .turbulence_seed = setup.seed},
-                                    level->state(position, setup.heading_rad, setup.wind_world_m_s),
-                                    level->controls);
+  return dynamics::Aircraft::create(
+      aircraft,
+      level->state(position_world_m, heading_rad, aircraft.wind_world_m_s),
+      level->controls);
+}
+
+Result<dynamics::Aircraft> start_of_flight(const MissionSetup& setup) {
+  const dynamics::AircraftSetup aircraft{.airframe = setup.airframe,
+                                         .environment = setup.environment,
+                                         .wind_world_m_s = setup.wind_world_m_s,
+                                         .turbulence = setup.turbulence,
+                                         .turbulence_seed = setup.seed};
+  if (!setup.start_world_m) {
+    return launch(aircraft, setup.parameters, setup.mission.home_world_m, setup.heading_rad);
+  }
+  return in_flight(
+      aircraft, setup.parameters.airspeed_cruise, *setup.start_world_m, setup.heading_rad);
 }
 
 std::string end_warning(const MissionFlight& flight) {
@@ -129,6 +136,19 @@ class MissionTruth final : public TruthSource {
 
 }  // namespace
 
+Result<dynamics::Aircraft> launch(const dynamics::AircraftSetup& aircraft,
+                                  const Parameters& parameters,
+                                  const Eigen::Vector3d& place_world_m,
+                                  double heading_rad) {
+  const Eigen::Vector3d position = place_world_m + Eigen::Vector3d(0.0, 0.0, kLaunchHeightM);
+  const double stall =
+      dynamics::stall_speed_m_s(aircraft.airframe, aircraft.environment, position.z());
+  return in_flight(aircraft,
+                   std::min(parameters.airspeed_cruise, kLaunchOverStall * stall),
+                   position,
+                   heading_rad);
+}
+
 MissionFlight::MissionFlight(std::shared_ptr<const MissionSetup> setup,
                              std::shared_ptr<const HeightQuery> ground,
                              std::shared_ptr<SmoothGround> smooth,
@@ -151,7 +171,7 @@ Result<MissionFlight> MissionFlight::create(const MissionSetup& setup,
     return Error{ErrorCode::kInvalidArgument, "a mission requires a ground (height query)"};
   }
   if (Status status = check_setup(setup); !status) return status.error();
-  Result<dynamics::Aircraft> aircraft = launch(setup);
+  Result<dynamics::Aircraft> aircraft = start_of_flight(setup);
   if (!aircraft) return aircraft.error();
   auto smooth =
       std::make_shared<SmoothGround>(ground, smoothing_m(setup.parameters.airspeed_cruise));

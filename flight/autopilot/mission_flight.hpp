@@ -48,6 +48,14 @@ enum class FlightEnd {
   kTimeLimit,
 };
 
+/// An aircraft at the moment of its launch: 1.5 m above a place on the ground, level, at
+/// kLaunchOverStall times its stall speed, or at AIRSPEED_CRUISE if that is less.
+/// Errors: as dynamics::trim and Aircraft::create.
+[[nodiscard]] Result<dynamics::Aircraft> launch(const dynamics::AircraftSetup& aircraft,
+                                                const Parameters& parameters,
+                                                const Eigen::Vector3d& place_world_m,
+                                                double heading_rad);
+
 /// The simulation: aircraft and autopilot step by step. Equal setups give equal flights.
 class MissionFlight {
  public:

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/motion/pose.hpp"
-#include "flight/dynamics/trim.hpp"
+#include "flight/autopilot/mission_flight.hpp"
 
 namespace overfly::vehicle {
 namespace {
@@ -16,7 +16,12 @@ using flight::mavlink::PayloadReader;
 using flight::mavlink::PayloadWriter;
 
 /// MAV_RESULT.
-enum : std::uint8_t { kAccepted = 0, kDenied = 2, kUnsupported = 3, kFailed = 4 };
+enum : std::uint8_t {
+  kResultAccepted = 0,
+  kResultDenied = 2,
+  kResultUnsupported = 3,
+  kResultFailed = 4
+};
 /// MAV_CMD.
 enum : std::uint16_t {
   kNavLoiterUnlimited = 17,
@@ -33,7 +38,6 @@ enum : std::uint16_t {
 /// MAV_SEVERITY.
 enum : std::uint8_t { kCritical = 2, kWarning = 4, kInfo = 6 };
 
-constexpr double kLaunchHeightM = 1.5;
 constexpr std::uint8_t kReal32 = 9;  // MAV_PARAM_TYPE
 constexpr std::int64_t kShortestIntervalNs = 10'000'000;
 
@@ -200,7 +204,7 @@ std::uint8_t SimulatedVehicle::run(std::uint16_t command,
       return change_mode(
           static_cast<Mode>(static_cast<std::uint32_t>(std::clamp(parameter(2), 0.0, 1e6))), send);
     case kMissionStart:
-      if (!armed_) return kDenied;
+      if (!armed_) return kResultDenied;
       return change_mode(Mode::kAuto, send);
     case kNavReturn:
       return change_mode(Mode::kReturn, send);
@@ -219,12 +223,12 @@ std::uint8_t SimulatedVehicle::run(std::uint16_t command,
                                : static_cast<MessageId>(static_cast<std::uint32_t>(
                                      std::clamp(parameter(1), 0.0, 1e7)));
       const auto wanted = payload_of(id, report());
-      if (!wanted) return kUnsupported;
+      if (!wanted) return kResultUnsupported;
       send(id, *wanted, system);
-      return kAccepted;
+      return kResultAccepted;
     }
     default:
-      return kUnsupported;
+      return kResultUnsupported;
   }
 }
 
@@ -232,10 +236,10 @@ std::uint8_t SimulatedVehicle::set_interval(const Frame& frame) {
   const PayloadReader payload(frame.payload);
   const double number = payload.at<float>(0);
   const double interval_us = payload.at<float>(4);
-  if (!(number >= 0.0 && number < 1e7) || !std::isfinite(interval_us)) return kDenied;
+  if (!(number >= 0.0 && number < 1e7) || !std::isfinite(interval_us)) return kResultDenied;
   const auto id = static_cast<MessageId>(static_cast<std::uint32_t>(number));
   const auto known = due_.find(id);
-  if (known == due_.end()) return kUnsupported;
+  if (known == due_.end()) return kResultUnsupported;
   if (interval_us < 0.0) {
     known->second.interval_ns = 0;
   } else if (interval_us == 0.0) {
@@ -247,23 +251,23 @@ std::uint8_t SimulatedVehicle::set_interval(const Frame& frame) {
         std::max(kShortestIntervalNs, static_cast<std::int64_t>(1e3 * std::min(interval_us, 1e9)));
   }
   known->second.next_ns = now_ns_;
-  return kAccepted;
+  return kResultAccepted;
 }
 
 std::uint8_t SimulatedVehicle::arm(bool wanted, bool forced, const Send& send) {
   if (!wanted) {
     if (aircraft_ && !forced) {
       say("Disarm: in flight", kWarning, send);
-      return kFailed;
+      return kResultFailed;
     }
     armed_ = false;
     aircraft_.reset();
     autopilot_.reset();
     if (!aircraft_) parked_m_.z() = 0.0;
-    return kAccepted;
+    return kResultAccepted;
   }
   armed_ = true;
-  return kAccepted;
+  return kResultAccepted;
 }
 
 std::uint8_t SimulatedVehicle::change_mode(Mode mode, const Send& send) {
@@ -272,14 +276,14 @@ std::uint8_t SimulatedVehicle::change_mode(Mode mode, const Send& send) {
       if (!armed_) {
         // As on the ground with ArduPlane: the mission starts with the motor.
         mode_ = mode;
-        return kAccepted;
+        return kResultAccepted;
       }
       if (Status status = fly_mission(aircraft_ ? resume_item_ : 0); !status) {
         say(status.error().message, kWarning, send);
-        return kFailed;
+        return kResultFailed;
       }
       mode_ = mode;
-      return kAccepted;
+      return kResultAccepted;
     case Mode::kReturn:
     case Mode::kLoiter:
     case Mode::kGuided: {
@@ -291,26 +295,26 @@ std::uint8_t SimulatedVehicle::change_mode(Mode mode, const Send& send) {
       } else {
         mode_ = mode;
       }
-      return kAccepted;
+      return kResultAccepted;
     }
     case Mode::kManual:
       if (aircraft_) {
         say("MANUAL: there is no pilot", kWarning, send);
-        return kFailed;
+        return kResultFailed;
       }
       mode_ = mode;
-      return kAccepted;
+      return kResultAccepted;
   }
   say("Mode " + std::to_string(static_cast<std::uint32_t>(mode)) + " is not supported",
       kWarning,
       send);
-  return kUnsupported;
+  return kResultUnsupported;
 }
 
 std::uint8_t SimulatedVehicle::reposition(const Frame& frame, const Send& send) {
   const PayloadReader payload(frame.payload);
   // Only COMMAND_INT has positions of full resolution.
-  if (static_cast<MessageId>(frame.message_id) != MessageId::kCommandInt) return kUnsupported;
+  if (static_cast<MessageId>(frame.message_id) != MessageId::kCommandInt) return kResultUnsupported;
   const double lat_deg = 1e-7 * payload.at<std::int32_t>(16);
   const double lon_deg = 1e-7 * payload.at<std::int32_t>(20);
   const double height = payload.at<float>(24);
@@ -318,16 +322,17 @@ std::uint8_t SimulatedVehicle::reposition(const Frame& frame, const Send& send) 
   const bool above_home = kind == 3 || kind == 6;
   if (!aircraft_ || !(std::abs(lat_deg) <= 90.0) || !(std::abs(lon_deg) <= 180.0) ||
       !std::isfinite(height) || !(above_home || kind == 0 || kind == 5)) {
-    return kDenied;
+    return kResultDenied;
   }
   Eigen::Vector3d place =
       frame_.world_from_geodetic(geodetic_from_deg(lat_deg, lon_deg, setup_.home.alt_ellipsoid_m));
   place.z() = above_home ? height : height - setup_.home.alt_ellipsoid_m;
   constexpr double kFarM = 1e5;
-  if (!(place.head<2>().norm() < kFarM && place.z() > 10.0 && place.z() < 1e4)) return kDenied;
-  if (change_mode(Mode::kGuided, send) != kAccepted) return kFailed;
+  if (!(place.head<2>().norm() < kFarM && place.z() > 10.0 && place.z() < 1e4))
+    return kResultDenied;
+  if (change_mode(Mode::kGuided, send) != kResultAccepted) return kResultFailed;
   circle(place);
-  return kAccepted;
+  return kResultAccepted;
 }
 
 void SimulatedVehicle::send_parameter(std::size_t index,
@@ -412,21 +417,15 @@ Status SimulatedVehicle::fly_mission(std::size_t item) {
   }
   const dynamics::Environment environment =
       dynamics::Environment::at(setup_.home, setup_.home.alt_ellipsoid_m);
-  const Eigen::Vector3d start = parked_m_ + Eigen::Vector3d(0.0, 0.0, kLaunchHeightM);
-  const double airspeed =
-      std::min(parameters_.airspeed_cruise,
-               1.15 * dynamics::stall_speed_m_s(setup_.airframe, environment, start.z()));
-  const Result<dynamics::Trim> level =
-      dynamics::trim(setup_.airframe, environment, {.airspeed_m_s = airspeed, .up_m = start.z()});
-  if (!level) return level.error();
   Result<dynamics::Aircraft> aircraft =
-      dynamics::Aircraft::create({.airframe = setup_.airframe,
-                                  .environment = environment,
-                                  .wind_world_m_s = setup_.wind_world_m_s,
-                                  .turbulence = setup_.turbulence,
-                                  .turbulence_seed = setup_.seed + flights_},
-                                 level->state(start, parked_heading_rad_, setup_.wind_world_m_s),
-                                 level->controls);
+      autopilot::launch({.airframe = setup_.airframe,
+                         .environment = environment,
+                         .wind_world_m_s = setup_.wind_world_m_s,
+                         .turbulence = setup_.turbulence,
+                         .turbulence_seed = setup_.seed + flights_},
+                        parameters_,
+                        parked_m_,
+                        parked_heading_rad_);
   if (!aircraft) return aircraft.error();
   aircraft_ = std::move(*aircraft);
   ++flights_;
