@@ -15,6 +15,7 @@
 #include "flight/mavlink/vehicle/parameters.hpp"
 #include "flight/vehicle/serve_vehicle.hpp"
 #include "tests/flight/dynamics/airframes.hpp"
+#include "tests/flight/mavlink/peer/peer_script.hpp"
 
 namespace overfly::vehicle {
 namespace {
@@ -275,22 +276,40 @@ TEST(SimulatedVehicle, IgnoresMessagesToOthersAndNonsense) {
   EXPECT_TRUE(exchange.vehicle->report().state.position_world_m.allFinite());
 }
 
-TEST(ServeVehicle, IsFlownAsTruthOverTcp) {
-  auto vehicle = SimulatedVehicle::create(cub_at_home()).value();
-  std::atomic<bool> stop = false;
-  std::atomic<int> port = 0;
-  const auto address =
-      flight::mavlink::parse_link_address("tcp-listen:127.0.0.1:0", "link").value();
+/// A vehicle that flies 20 times as fast as the wall clock, on a port of the loopback interface.
+class ServedVehicle {
+ public:
+  ServedVehicle() {
+    const auto address =
+        flight::mavlink::parse_link_address("tcp-listen:127.0.0.1:0", "link").value();
+    thread_ = std::thread([this, address] {
+      served = serve_vehicle(
+          *vehicle_, address, 20.0, stop_, [this](const auto& opened) { port_ = opened.port; });
+    });
+    while (port_ == 0) std::this_thread::yield();
+  }
+  ~ServedVehicle() { stop(); }
+
+  void stop() {
+    stop_ = true;
+    if (thread_.joinable()) thread_.join();
+  }
+  [[nodiscard]] std::string port() const { return std::to_string(port_.load()); }
+
   Status served;
-  std::thread server([&] {
-    served = serve_vehicle(
-        *vehicle, address, 20.0, stop, [&](const auto& opened) { port = opened.port; });
-  });
-  while (port == 0) std::this_thread::yield();
+
+ private:
+  std::unique_ptr<SimulatedVehicle> vehicle_ = SimulatedVehicle::create(cub_at_home()).value();
+  std::atomic<bool> stop_ = false;
+  std::atomic<int> port_ = 0;
+  std::thread thread_;
+};
+
+TEST(ServeVehicle, IsFlownAsTruthOverTcp) {
+  ServedVehicle vehicle;
   flight::live::LiveFlight flight;
   flight.link =
-      flight::mavlink::parse_link_address("tcp:127.0.0.1:" + std::to_string(port.load()), "link")
-          .value();
+      flight::mavlink::parse_link_address("tcp:127.0.0.1:" + vehicle.port(), "link").value();
   flight.mission_file =
       overfly::testing::source_file("scenarios/missions/airfield_pattern.waypoints");
   flight.parameters = {{"RLL2SRV_RMAX", 50.0}};
@@ -309,9 +328,23 @@ TEST(ServeVehicle, IsFlownAsTruthOverTcp) {
     EXPECT_GT(highest, 30.0);
     EXPECT_LT(highest, 155.0);
   }
-  stop = true;
-  server.join();
-  EXPECT_TRUE(served.ok());
+  vehicle.stop();
+  EXPECT_TRUE(vehicle.served.ok());
+}
+
+TEST(ServeVehicle, IsPlannedStartedAndWatchedByAnIndependentGroundStation) {
+  ServedVehicle vehicle;
+  const std::vector<std::string> lines =
+      flight::testing::lines_of_script("ground_station.cjs", vehicle.port());
+  if (lines.empty()) GTEST_SKIP() << flight::testing::kPeerNotInstalled;
+  EXPECT_THAT(lines,
+              ElementsAre("heartbeat type=1 autopilot=3",
+                          HasSubstr("roll_rate=true"),
+                          "mission ack=0",
+                          "command 400 result=0",
+                          "command 300 result=0",
+                          ::testing::StartsWith("climbed lat=3934"),
+                          "mode=10 armed=true"));
 }
 
 }  // namespace

@@ -2,9 +2,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdio>
-#include <filesystem>
-
 #include "core/measure/sha256.hpp"
 #include "flight/mavlink/frame_finder.hpp"
 #include "flight/mavlink/link/signing.hpp"
@@ -12,6 +9,7 @@
 #include "flight/mavlink/vehicle/commands.hpp"
 #include "flight/mavlink/vehicle/mission.hpp"
 #include "flight/mavlink/vehicle/parameters.hpp"
+#include "tests/flight/mavlink/peer/peer_script.hpp"
 #include "tests/flight/mavlink/vehicle/fake_vehicle.hpp"
 #include "tests/support/support.hpp"
 
@@ -25,25 +23,8 @@ using ::testing::StartsWith;
 
 /// The lines that the peer prints; empty if it is not installed.
 std::vector<std::string> ask_peer(const std::string& arguments) {
-  const std::filesystem::path script =
-      overfly::testing::source_file("tests/flight/mavlink/peer/peer.cjs");
-  if (!std::filesystem::exists(script.parent_path() / "node_modules" / "node-mavlink")) return {};
-  std::FILE* const pipe = ::popen(("node '" + script.string() + "' " + arguments).c_str(), "r");
-  if (pipe == nullptr) return {};
-  std::string text;
-  for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) text += static_cast<char>(c);
-  ::pclose(pipe);
-  std::vector<std::string> lines;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find('\n', at), text.size());
-    lines.push_back(text.substr(at, end - at));
-    at = end + 1;
-  }
-  return lines;
+  return testing::lines_of_script("peer.cjs", arguments);
 }
-
-constexpr const char* kNotInstalled =
-    "node-mavlink is not installed: npm ci --prefix tests/flight/mavlink/peer";
 
 SigningKey peer_key() {
   SigningKey key{};
@@ -97,7 +78,7 @@ TEST(MavlinkPeer, ReadsWhatIsSent) {
   ASSERT_TRUE(upload_mission(exchange, items).ok());
   const std::vector<std::string> lines =
       ask_peer("read " + hex_text(peer_key()) + " " + exchange.frames);
-  if (lines.empty()) GTEST_SKIP() << kNotInstalled;
+  if (lines.empty()) GTEST_SKIP() << testing::kPeerNotInstalled;
   EXPECT_EQ(lines.size(), 6U);
   EXPECT_THAT(lines, ::testing::Each(::testing::Not(HasSubstr("forged"))));
   EXPECT_THAT(lines[0],
@@ -127,7 +108,7 @@ TEST(MavlinkPeer, ReadsWhatIsSent) {
 
 TEST(MavlinkPeer, IsRead) {
   const std::vector<std::string> lines = ask_peer("write " + hex_text(peer_key()));
-  if (lines.empty()) GTEST_SKIP() << kNotInstalled;
+  if (lines.empty()) GTEST_SKIP() << testing::kPeerNotInstalled;
   ASSERT_EQ(lines.size(), 4U);
   std::vector<std::uint8_t> bytes;
   for (const std::string& line : lines) {
