@@ -79,6 +79,8 @@ std::string end_warning(const MissionFlight& flight) {
       return "the aircraft hit the ground" + when + " (mission item " +
              std::to_string(pilot.item() + 1) + ", " + name_of(pilot.phase()) + ")";
     case FlightEnd::kTimeLimit:
+      // A shorter flight was asked for.
+      if (flight.setup().duration_max_s < kFlightMaxS) return {};
       return "the time limit ended the flight" + when + " in mission item " +
              std::to_string(pilot.item() + 1) + " of " +
              std::to_string(flight.setup().mission.items.size());

@@ -19,8 +19,9 @@ struct VehicleArguments {
   std::string link = "tcp-listen:127.0.0.1:5760";
   std::string airframe = "piper_cub_third";
   double airspeed_m_s = 25.0;
-  std::string home = "39.35,-86.03,200";
-  double heading_deg = 180.0;
+  /// The runway of the built-in world with seed 1.
+  std::string home = "39.355375,-86.030728,227.7";
+  double heading_deg = 174.0;
   double speed_up = 1.0;
   double wind_m_s = 0.0;
   double wind_from_deg = 270.0;

@@ -35,7 +35,7 @@ VehicleSetup cub_at_home() {
   VehicleSetup setup;
   setup.airframe = dynamics::testing::airframe("piper_cub_third");
   setup.airspeed_m_s = 20.0;
-  setup.home = geodetic_from_deg(39.35, -86.03, 200.0);
+  setup.home = geodetic_from_deg(39.355375, -86.030728, 227.7);
   setup.heading_rad = kPi;
   setup.seed = 3;
   return setup;
@@ -343,7 +343,7 @@ TEST(ServeVehicle, IsPlannedStartedAndWatchedByAnIndependentGroundStation) {
                           "mission ack=0",
                           "command 400 result=0",
                           "command 300 result=0",
-                          ::testing::StartsWith("climbed lat=3934"),
+                          ::testing::StartsWith("climbed lat=393"),
                           "mode=10 armed=true"));
 }
 

@@ -24,9 +24,9 @@ const tell = (message) => send(socket, message, protocol);
 const fill = (message, fields) => Object.assign(message, { targetSystem: 1, targetComponent: 1 }, fields);
 
 const mission = [
-  { command: 16, frame: 0, x: 393500000, y: -860300000, z: 200 },
-  { command: 22, frame: 3, x: 393473000, y: -860300000, z: 60, param1: 15 },
-  { command: 16, frame: 3, x: 393409900, y: -860300000, z: 120 },
+  { command: 16, frame: 0, x: 393553750, y: -860307280, z: 227.7 },
+  { command: 22, frame: 3, x: 393526750, y: -860307280, z: 60, param1: 15 },
+  { command: 16, frame: 3, x: 393463650, y: -860307280, z: 120 },
   { command: 20, frame: 3, x: 0, y: 0, z: 0 },
 ];
 const parameters = new Set();
