@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/result.hpp"
+#include "flight/logs/index/log_index.hpp"
 #include "flight/logs/log_sink.hpp"
 
 namespace overfly::flight::logs {
@@ -64,6 +65,8 @@ struct OpenedLog {
   std::filesystem::path file;
   LogFormat format = LogFormat::kTlog;
   std::uint64_t size_bytes = 0;
+  LogSlice slice;                   ///< all figures are of this part of the log
+  std::vector<FileRange> parts;     ///< what must be read for the slice; empty: the whole file
   std::vector<StreamInfo> streams;  ///< in the order in which they are met: by StreamId
   std::vector<BootInfo> boots;
   std::vector<LogEvent> events;  ///< the first kMaxEvents
@@ -80,16 +83,24 @@ inline constexpr double kGroundReachM = 30.0;
 /// Errors: as ReadableFile::open; kUnreadable for other formats.
 [[nodiscard]] Result<LogFormat> detect_format(const std::filesystem::path& file);
 
-/// Reads the whole log once and lists what it contains.
+/// Reads a log once and lists what it contains.
+///
+/// Of a large log (kIndexedLogBytes) an index is saved the first time. A slice is then read without
+/// the rest of the log; damage is only reported where the whole log is read.
 /// Memory: independent of the size of the log. Damaged parts are skipped and reported in warnings.
 /// @param cancel  stops reading; may be null
+/// @param slice   only messages of this time are counted
 /// Errors: as detect_format; kIo; kCancelled.
 [[nodiscard]] Result<OpenedLog> open_log(const std::filesystem::path& file,
-                                         const std::atomic<bool>* cancel = nullptr);
+                                         const std::atomic<bool>* cancel = nullptr,
+                                         const LogSlice& slice = {});
 
 /// Reads a log once and passes all it contains to a sink.
+/// @param parts  of OpenedLog: only these are read
 /// Errors: as open_log.
-[[nodiscard]] Status read_log_into(const std::filesystem::path& file, LogSink& sink);
+[[nodiscard]] Status read_log_into(const std::filesystem::path& file,
+                                   LogSink& sink,
+                                   const std::vector<FileRange>& parts = {});
 
 /// The streams to take as truth: the position source and the attitude source that goes with it.
 /// @param name  of the position source: its full name, or what follows the '/' in it if that is

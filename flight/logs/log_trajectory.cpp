@@ -67,7 +67,12 @@ Result<LogTrajectory> read_log_trajectory(const OpenedLog& log,
                                           const TrajectoryRequest& request,
                                           const std::atomic<bool>* cancel) {
   const Result<TruthChoice> truth = choose_truth(log.streams, request.source);
-  if (!truth) return truth.error().in(log.file.string());
+  if (!truth) {
+    const bool empty = truth.error().code == ErrorCode::kUnreadable && !log.slice.is_whole();
+    if (!empty) return truth.error().in(log.file.string());
+    return Error{ErrorCode::kUnreadable,
+                 log.file.string() + ": no valid positions in the time asked for"};
+  }
   const StreamInfo& source = log.streams[truth->position];
   const auto failed = [&](const std::string& what) {
     return Error{ErrorCode::kUnreadable,
@@ -75,7 +80,7 @@ Result<LogTrajectory> read_log_trajectory(const OpenedLog& log,
   };
   if (!truth->attitude) return failed("no attitudes of the same vehicle are in the log");
   SampleSink samples(log, *truth, request, cancel);
-  if (Status status = read_log_into(log.file, samples); !status) return status.error();
+  if (Status status = read_log_into(log.file, samples, log.parts); !status) return status.error();
   if (samples.poses.positions() == 0) return failed("no valid positions in the time asked for");
 
   LogTrajectory trajectory;

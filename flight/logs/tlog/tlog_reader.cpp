@@ -120,10 +120,12 @@ void TlogPass::take_origin(const Frame& frame, Sender& sender) {
   const mavlink::GlobalPosition position = mavlink::decode_gps_global_origin(frame);
   if (position.lat_deg == 0.0 && position.lon_deg == 0.0) return;
   const bool px4 = sender.heartbeat && sender.heartbeat->autopilot == 12;
-  sender.origin = LocalOrigin{position.lat_deg,
-                              position.lon_deg,
-                              position.alt_msl_m,
-                              px4 ? LocalGrid::kPx4 : LocalGrid::kArduPilot};
+  const LocalOrigin origin{position.lat_deg,
+                           position.lon_deg,
+                           position.alt_msl_m,
+                           px4 ? LocalGrid::kPx4 : LocalGrid::kArduPilot};
+  if (sender.origin != origin) sink_.declaration();
+  sender.origin = origin;
   if (sender.local_stream) sink_.local_origin(*sender.local_stream, *sender.origin);
 }
 
@@ -139,6 +141,7 @@ void TlogPass::take_events(const Frame& frame, Sender& sender) {
       constexpr std::uint8_t kNoAutopilot = 8;  // ground stations, gimbals, cameras
       if (now.autopilot == kNoAutopilot) return;
       const std::optional<mavlink::Heartbeat> before = std::exchange(sender.heartbeat, now);
+      if (!before || before->autopilot != now.autopilot) sink_.declaration();
       if (!before || before->custom_mode != now.custom_mode) {
         event(sender, EventKind::kMode, mode_text(now.custom_mode, is_ardu_plane(now)));
       }

@@ -37,8 +37,35 @@ struct LogArguments {
   std::optional<double> geoid_separation_m;
 };
 
+Status check_times(const LogArguments& arguments) {
+  for (const auto& [option, limit] :
+       {std::pair{"--from ", arguments.from_s}, std::pair{"--to ", arguments.to_s}}) {
+    // Written so that not-a-number is rejected as well.
+    if (limit && !(*limit >= 0.0 && *limit <= kLatestS)) {
+      return Error{ErrorCode::kInvalidArgument,
+                   option + std::to_string(*limit) + ": must be in [0, 9e9] s"};
+    }
+  }
+  if (arguments.from_s && arguments.to_s && *arguments.from_s > *arguments.to_s) {
+    return Error{ErrorCode::kInvalidArgument,
+                 "--from " + std::to_string(*arguments.from_s) + ": must not be after --to " +
+                     std::to_string(*arguments.to_s)};
+  }
+  return {};
+}
+
+/// @pre check_times()
+logs::LogSlice slice_of(const LogArguments& arguments) {
+  logs::LogSlice slice;
+  if (arguments.from_s) slice.from_ns = ns_from_s(*arguments.from_s);
+  if (arguments.to_s) slice.to_ns = ns_from_s(*arguments.to_s);
+  return slice;
+}
+
 int print_log(const LogArguments& arguments) {
-  const Result<logs::OpenedLog> log = logs::open_log(arguments.file, &catch_stop_signals());
+  if (Status status = check_times(arguments); !status) return report(status.error());
+  const Result<logs::OpenedLog> log =
+      logs::open_log(arguments.file, &catch_stop_signals(), slice_of(arguments));
   if (!log) return report(log.error());
   std::cout << (arguments.json ? log_info_json(*log).dump(2) + "\n" : log_info_text(*log));
   return kExitOk;
@@ -53,23 +80,11 @@ Status check_convert(const LogArguments& arguments) {
   if (arguments.geoid_separation_m && extension != ".csv") {
     return Error{ErrorCode::kInvalidArgument, "--geoid-separation-m: is only used for a .csv file"};
   }
-  for (const auto& [option, limit] :
-       {std::pair{"--from ", arguments.from_s}, std::pair{"--to ", arguments.to_s}}) {
-    // Written so that not-a-number is rejected as well.
-    if (limit && !(*limit >= 0.0 && *limit <= kLatestS)) {
-      return Error{ErrorCode::kInvalidArgument,
-                   option + std::to_string(*limit) + ": must be in [0, 9e9] s"};
-    }
-  }
+  if (Status status = check_times(arguments); !status) return status;
   if (arguments.geoid_separation_m && !(std::abs(*arguments.geoid_separation_m) <= kGeoidMaxM)) {
     return Error{ErrorCode::kInvalidArgument,
                  "--geoid-separation-m " + std::to_string(*arguments.geoid_separation_m) +
                      ": must be in [-120, 120]"};
-  }
-  if (arguments.from_s && arguments.to_s && *arguments.from_s > *arguments.to_s) {
-    return Error{ErrorCode::kInvalidArgument,
-                 "--from " + std::to_string(*arguments.from_s) + ": must not be after --to " +
-                     std::to_string(*arguments.to_s)};
   }
   std::error_code failure;
   // The format follows from the content, so that a log may have any name.
@@ -85,11 +100,10 @@ Status check_convert(const LogArguments& arguments) {
 
 int convert_log(const LogArguments& arguments) {
   if (Status status = check_convert(arguments); !status) return report(status.error());
-  const Result<logs::OpenedLog> log = logs::open_log(arguments.file, &catch_stop_signals());
+  const logs::LogSlice slice = slice_of(arguments);
+  const Result<logs::OpenedLog> log = logs::open_log(arguments.file, &catch_stop_signals(), slice);
   if (!log) return report(log.error());
-  logs::TrajectoryRequest request{arguments.source, {}, {}};
-  if (arguments.from_s) request.from_ns = ns_from_s(*arguments.from_s);
-  if (arguments.to_s) request.to_ns = ns_from_s(*arguments.to_s);
+  const logs::TrajectoryRequest request{arguments.source, slice.from_ns, slice.to_ns};
   const Result<logs::LogTrajectory> trajectory =
       logs::read_log_trajectory(*log, request, &catch_stop_signals());
   if (!trajectory) return report(trajectory.error());
@@ -109,17 +123,23 @@ int convert_log(const LogArguments& arguments) {
   return kExitOk;
 }
 
+void add_time_options(CLI::App& command, LogArguments& arguments) {
+  command.add_option("--from", arguments.from_s, "First time by the vehicle's clock [s]");
+  command.add_option("--to", arguments.to_s, "Last time by the vehicle's clock [s]");
+}
+
 }  // namespace
 
 void add_log_command(CLI::App& app, int& exit_code) {
-  CLI::App* const log =
-      app.add_subcommand("log", "Flight logs: .tlog, DataFlash .bin, .ulg, .mcap, .bag, LCM event logs");
+  CLI::App* const log = app.add_subcommand(
+      "log", "Flight logs: .tlog, DataFlash .bin, .ulg, .mcap, .bag, LCM event logs");
   log->require_subcommand(1);
   const auto arguments = std::make_shared<LogArguments>();
   CLI::App* const info =
       log->add_subcommand("info", "List streams, sources of truth, events and damage");
   info->add_option("FILE", arguments->file, "Flight log")->required();
   info->add_flag("--json", arguments->json, "Print JSON");
+  add_time_options(*info, *arguments);
   info->callback([arguments, &exit_code] { exit_code = print_log(*arguments); });
 
   CLI::App* const convert = log->add_subcommand("convert", "Write the flight as a trajectory file");
@@ -133,8 +153,7 @@ void add_log_command(CLI::App& app, int& exit_code) {
                    arguments->out,
                    "File.tum: poses T_world_body; file.csv: latitude, longitude, height, angles")
       ->required();
-  convert->add_option("--from", arguments->from_s, "First time by the vehicle's clock [s]");
-  convert->add_option("--to", arguments->to_s, "Last time by the vehicle's clock [s]");
+  add_time_options(*convert, *arguments);
   convert->add_option("--geoid-separation-m",
                       arguments->geoid_separation_m,
                       "Height of the geoid above the ellipsoid at the place, for a .csv file with "
