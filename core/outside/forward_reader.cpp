@@ -21,16 +21,49 @@ Result<std::span<const std::uint8_t>> ForwardReader::ahead(std::size_t wanted) {
     end_ -= begin_;
     begin_ = 0;
     while (end_ < buffer_.size() && read_ < size_) {
-      const std::size_t most = std::min<std::uint64_t>(buffer_.size() - end_, size_ - read_);
+      const std::uint64_t offset = parts_[part_].begin + part_read_;
+      const std::uint64_t left = parts_[part_].end - offset;
+      const std::size_t most = std::min<std::uint64_t>(buffer_.size() - end_, left);
       const Result<std::size_t> got =
-          file_.read_some(read_, std::span(buffer_).subspan(end_, most));
+          file_.read_some(offset, std::span(buffer_).subspan(end_, most));
       if (!got) return got.error();
       if (*got == 0) size_ = read_;  // The file was shortened.
       end_ += *got;
       read_ += *got;
+      part_read_ += *got;
+      if (part_read_ == parts_[part_].end - parts_[part_].begin && part_ + 1 < parts_.size()) {
+        ++part_;
+        part_read_ = 0;
+      }
     }
   }
   return std::span<const std::uint8_t>(buffer_).subspan(begin_, end_ - begin_);
+}
+
+void ForwardReader::only(std::vector<FileRange> parts) {
+  const std::uint64_t end_of_file = parts_.back().end;
+  size_ = 0;
+  parts_.clear();
+  for (FileRange part : parts) {
+    part.end = std::min(part.end, end_of_file);
+    if (part.begin >= part.end) continue;
+    size_ += part.end - part.begin;
+    parts_.push_back(part);
+  }
+  if (parts_.empty()) parts_.push_back({end_of_file, end_of_file});
+  part_ = 0;
+  part_read_ = read_ = 0;
+  begin_ = end_ = 0;
+}
+
+std::uint64_t ForwardReader::file_offset() const {
+  std::uint64_t left = position();
+  for (const FileRange& part : parts_) {
+    const std::uint64_t bytes = part.end - part.begin;
+    if (left < bytes) return part.begin + left;
+    left -= bytes;
+  }
+  return parts_.back().end;
 }
 
 }  // namespace overfly

@@ -13,6 +13,12 @@
 
 namespace overfly {
 
+/// Bytes of a file, from `begin` up to `end`, which is not part of it.
+struct FileRange {
+  std::uint64_t begin = 0;
+  std::uint64_t end = 0;
+};
+
 /// A regular file of any size, read once from start to end in bounded memory.
 ///
 /// The file is read with pread into a buffer, not mapped: a mapped file that another program
@@ -32,8 +38,15 @@ class ForwardReader {
   /// Moves the position forward. @pre at most as many bytes as ahead() last returned
   void skip(std::size_t bytes) { begin_ += bytes; }
 
+  /// Starts again, with these parts of the file as if they were one file: positions and sizes then
+  /// count their bytes. Bytes behind the end of the file are left out.
+  /// @pre in increasing order, without overlaps
+  void only(std::vector<FileRange> parts);
+
   /// Offset of the next byte from the start of the file.
   [[nodiscard]] std::uint64_t position() const { return read_ - (end_ - begin_); }
+  /// Offset of the next byte in the file, also where only parts of it are read.
+  [[nodiscard]] std::uint64_t file_offset() const;
   /// The size when the file was opened.
   [[nodiscard]] std::uint64_t size_bytes() const { return size_; }
 
@@ -41,11 +54,15 @@ class ForwardReader {
   ForwardReader(ReadableFile file, std::uint64_t size)
       : file_(std::move(file)),
         size_(size),
+        parts_{{0, size}},
         buffer_(size < kBufferBytes ? static_cast<std::size_t>(size) : kBufferBytes) {}
 
   ReadableFile file_;
-  std::uint64_t size_ = 0;
-  std::uint64_t read_ = 0;  ///< offset of the first byte that was not read yet
+  std::uint64_t size_ = 0;  ///< of all parts
+  std::vector<FileRange> parts_;
+  std::size_t part_ = 0;         ///< the one that is being read
+  std::uint64_t part_read_ = 0;  ///< bytes of that part
+  std::uint64_t read_ = 0;       ///< offset of the first byte that was not read yet
   std::vector<std::uint8_t> buffer_;
   std::size_t begin_ = 0;  ///< of the unread bytes in buffer_
   std::size_t end_ = 0;

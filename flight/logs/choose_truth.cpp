@@ -75,13 +75,19 @@ std::string reason_for(const std::vector<StreamInfo>& streams, StreamId position
   const bool georeferenced = streams[position].georeferenced;
   const std::string place =
       georeferenced ? "" : ", in metres from an origin that the log does not state";
+  const bool others = std::any_of(streams.begin(), streams.end(), [](const StreamInfo& stream) {
+    return has_positions(stream) && stream.description.origin != SourceOrigin::kGps;
+  });
   switch (origin) {
     case SourceOrigin::kSimulation:
       return "the simulator's own state, without the errors of an estimator" + place;
     case SourceOrigin::kEstimate:
       return "the autopilot's estimate: the log has no state of a simulator" + place;
     default:
-      return "unfiltered GPS: the log has neither a simulator's state nor an estimate" + place;
+      return others ? "unfiltered GPS: all other positions count from an origin that the log does "
+                      "not state"
+                    : "unfiltered GPS: the log has neither a simulator's state nor an estimate" +
+                          place;
   }
 }
 
@@ -105,6 +111,16 @@ Result<TruthChoice> choose_truth(const std::vector<StreamInfo>& streams, const s
   }
   choice.attitude = attitude_for(streams, choice.position, !name.empty());
   return choice;
+}
+
+Result<TruthChoice> choose_truth(const OpenedLog& log, const std::string& name) {
+  Result<TruthChoice> choice = choose_truth(log.streams, name);
+  if (choice) return choice;
+  if (choice.error().code == ErrorCode::kUnreadable && !log.slice.is_whole()) {
+    return Error{ErrorCode::kUnreadable,
+                 log.file.string() + ": no valid positions in the time asked for"};
+  }
+  return choice.error().in(log.file.string());
 }
 
 }  // namespace overfly::flight::logs

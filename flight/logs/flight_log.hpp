@@ -10,6 +10,7 @@
 
 #include "core/outside/source_policy.hpp"
 #include "core/result.hpp"
+#include "flight/logs/index/log_index.hpp"
 #include "flight/logs/log_sink.hpp"
 
 namespace overfly::flight::logs {
@@ -66,6 +67,8 @@ struct OpenedLog {
   SourcePolicy sources;  ///< which files the log may name
   LogFormat format = LogFormat::kTlog;
   std::uint64_t size_bytes = 0;     ///< of all its files
+  LogSlice slice;                   ///< all figures are of this part of the log
+  std::vector<FileRange> parts;     ///< what must be read for the slice; empty: the whole log
   std::vector<StreamInfo> streams;  ///< in the order in which they are met: by StreamId
   std::vector<BootInfo> boots;
   std::vector<LogEvent> events;  ///< the first kMaxEvents
@@ -87,21 +90,26 @@ inline constexpr double kGroundReachM = 30.0;
 [[nodiscard]] Result<std::vector<std::filesystem::path>> files_of_log(
     const std::filesystem::path& file);
 
-/// Reads the whole log once and lists what it contains.
+struct OpenOptions {
+  SourcePolicy sources{};  ///< which other files the log may name: a mapping of CSV files does
+  LogSlice slice{};        ///< only messages of this time are counted
+};
+
+/// Reads a log once and lists what it contains.
+///
+/// Of a large log (kIndexedLogBytes) an index is saved the first time. A slice is then read without
+/// the rest of the log; damage is only reported where the whole log is read. CSV files are always
+/// read completely.
 /// Memory: independent of the size of the log. Damaged parts are skipped and reported in warnings.
-/// @param cancel   stops reading; may be null
-/// @param sources  which other files the log may name: a mapping of CSV files does
+/// @param cancel  stops reading; may be null
 /// Errors: as detect_format and read_csv_log; kIo; kCancelled.
 [[nodiscard]] Result<OpenedLog> open_log(const std::filesystem::path& file,
                                          const std::atomic<bool>* cancel = nullptr,
-                                         const SourcePolicy& sources = {});
+                                         const OpenOptions& options = {});
 
-/// Reads a log once and passes all it contains to a sink.
-/// @param sources  as open_log()
-/// Errors: as open_log.
-[[nodiscard]] Status read_log_into(const std::filesystem::path& file,
-                                   LogSink& sink,
-                                   const SourcePolicy& sources = {});
+/// Reads what an opened log's slice needs once more, and passes all that to a sink: also messages
+/// outside of the slice. Errors: as open_log.
+[[nodiscard]] Status read_log_into(const OpenedLog& log, LogSink& sink);
 
 /// The streams to take as truth: the position source and the attitude source that goes with it.
 /// @param name  of the position source: its full name, or what follows the '/' in it if that is
@@ -112,5 +120,7 @@ inline constexpr double kGroundReachM = 30.0;
 /// log has no positions.
 [[nodiscard]] Result<TruthChoice> choose_truth(const std::vector<StreamInfo>& streams,
                                                const std::string& name);
+/// As above. Errors name the log's file; of a slice without positions they say so.
+[[nodiscard]] Result<TruthChoice> choose_truth(const OpenedLog& log, const std::string& name);
 
 }  // namespace overfly::flight::logs

@@ -136,8 +136,8 @@ void take_positions(const SampleSink& sink, std::uint32_t boot, LogSamples& samp
 Result<LogSamples> read_log_samples(const OpenedLog& log,
                                     const TrajectoryRequest& request,
                                     const std::atomic<bool>* cancel) {
-  const Result<TruthChoice> truth = choose_truth(log.streams, request.source);
-  if (!truth) return truth.error().in(log.file.string());
+  const Result<TruthChoice> truth = choose_truth(log, request.source);
+  if (!truth) return truth.error();
   const StreamInfo& source = log.streams[truth->position];
   const auto failed = [&](const std::string& what) {
     return Error{ErrorCode::kUnreadable,
@@ -146,7 +146,7 @@ Result<LogSamples> read_log_samples(const OpenedLog& log,
   if (!truth->attitude) return failed("no attitudes of the same vehicle are in the log");
   SampleSink sink(log, *truth, request, cancel);
   sink.positions.reserve(source.positions);
-  if (Status status = read_log_into(log.file, sink, log.sources); !status) return status.error();
+  if (Status status = read_log_into(log, sink); !status) return status.error();
   if (sink.positions.empty()) return failed("no valid positions in the time asked for");
 
   LogSamples samples;

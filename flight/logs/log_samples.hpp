@@ -16,7 +16,7 @@ namespace overfly::flight::logs {
 
 struct TrajectoryRequest {
   std::string source;  ///< as choose_truth()
-  /// Limits by the vehicle's clock [ns]; the whole flight without them.
+  /// Limits by the vehicle's clock [ns], within the slice of the log; all of it without them.
   std::optional<std::int64_t> from_ns;
   std::optional<std::int64_t> to_ns;
   /// Added to the times of attitudes [ns].

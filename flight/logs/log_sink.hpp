@@ -85,6 +85,8 @@ class LogSink {
   void no_sample(StreamId id) { take_invalid(id); }
   /// Where a stream's local positions count from, until the next origin of that stream.
   virtual void local_origin(StreamId id, const LocalOrigin& origin) = 0;
+  /// Something was read that is needed to understand what follows: a format, a name, a state.
+  virtual void declaration() {}
   virtual void event(LogEvent event) = 0;
   /// Something that was left out, or looks wrong: a sentence with a count.
   virtual void warning(const std::string& text) = 0;

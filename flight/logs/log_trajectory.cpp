@@ -68,8 +68,8 @@ class JoiningSink final : public LogSink {
 Result<LogTrajectory> read_log_trajectory(const OpenedLog& log,
                                           const TrajectoryRequest& request,
                                           const std::atomic<bool>* cancel) {
-  const Result<TruthChoice> truth = choose_truth(log.streams, request.source);
-  if (!truth) return truth.error().in(log.file.string());
+  const Result<TruthChoice> truth = choose_truth(log, request.source);
+  if (!truth) return truth.error();
   const StreamInfo& source = log.streams[truth->position];
   const auto failed = [&](const std::string& what) {
     return Error{ErrorCode::kUnreadable,
@@ -77,7 +77,7 @@ Result<LogTrajectory> read_log_trajectory(const OpenedLog& log,
   };
   if (!truth->attitude) return failed("no attitudes of the same vehicle are in the log");
   JoiningSink samples(log, *truth, request, cancel);
-  if (Status status = read_log_into(log.file, samples, log.sources); !status) return status.error();
+  if (Status status = read_log_into(log, samples); !status) return status.error();
   if (samples.poses.positions() == 0) return failed("no valid positions in the time asked for");
 
   LogTrajectory trajectory;

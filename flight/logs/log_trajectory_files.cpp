@@ -1,11 +1,9 @@
-#include <fstream>
-
 #include "core/earth/geodesy.hpp"
 #include "core/motion/pose.hpp"
 #include "core/text/number_text.hpp"
-#include "flight/logs/line_file.hpp"
 #include "flight/logs/log_trajectory.hpp"
 #include "flight/logs/ned_attitude.hpp"
+#include "flight/logs/whole_file.hpp"
 
 namespace overfly::flight::logs {
 namespace {
@@ -38,7 +36,7 @@ std::string sources_of(const LogTrajectory& trajectory) {
 }  // namespace
 
 Status write_log_tum(const fs::path& file, const LogTrajectory& trajectory) {
-  return write_lines(file, [&](std::ofstream& out) {
+  return write_whole_file(file, [&](std::ofstream& out) {
     out << "# pose T_world_body: world east-north-up, body forward-right-down\n"
         << sources_of(trajectory);
     if (trajectory.poses.empty()) return;
@@ -80,7 +78,7 @@ Status write_log_csv(const fs::path& file,
   }
   const double separation_m = geoid_separation_m.value_or(0.0);
   const HeightDatum height = geoid_separation_m ? HeightDatum::kEllipsoid : trajectory.height;
-  return write_lines(file, [&](std::ofstream& out) {
+  return write_whole_file(file, [&](std::ofstream& out) {
     out << "t_s,lat_deg,lon_deg," << height_column(height) << ",roll_deg,pitch_deg,yaw_deg\n";
     for (const LogPose& pose : trajectory.poses) {
       const RollPitchYaw angles = attitude_from(R_enu_ned() * pose.R_ned_body);

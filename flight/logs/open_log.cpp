@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -57,20 +58,13 @@ Result<const FormatFacts*> format_of(ForwardReader& reader, const std::filesyste
           "'csv_mapping_version' (mapping of CSV files) at the start"};
 }
 
-Status read_with(const FormatFacts& facts,
-                 const std::filesystem::path& file,
-                 ForwardReader& reader,
-                 const SourcePolicy& sources,
-                 LogSink& sink) {
-  return facts.read != nullptr ? facts.read(reader, sink) : read_csv_log(file, sources, sink);
-}
-
 /// Gathers the figures of all streams.
 class OpeningSink final : public LogSink {
  public:
   OpeningSink(OpenedLog& log, const std::atomic<bool>* cancel) : log_(log), cancel_(cancel) {}
 
   [[nodiscard]] bool stream(StreamId /*id*/, const StreamDescription& description) override {
+    index_.declaration();
     StreamDescription unique = description;
     for (int i = 2; !names_.insert(unique.name).second; ++i) {
       unique.name = description.name + "#" + std::to_string(i);
@@ -80,37 +74,54 @@ class OpeningSink final : public LogSink {
     return description.position != PositionKind::kNone || description.attitude;
   }
   void message(StreamId id, const std::optional<LogTime>& time) override {
+    const StreamDescription& description = streams_[id].description();
+    if (time && (description.origin != SourceOrigin::kNone || description.imu)) index_.time(*time);
+    counted_ = log_.slice.is_whole() || (time && log_.slice.contains(time->t_ns));
+    if (!counted_) return;
     streams_[id].message(time);
     if (time) count_boot(id, *time);
   }
-  void local_origin(StreamId id, const LocalOrigin& /*origin*/) override {
+  void local_origin(StreamId id, const LocalOrigin& origin) override {
+    const auto [known, first] = origins_.try_emplace(id, origin);
+    if (first || known->second != origin) index_.declaration();
+    known->second = origin;
     streams_[id].georeferenced();
   }
+  void declaration() override { index_.declaration(); }
   void event(LogEvent event) override {
+    const bool inside = event.time && log_.slice.contains(event.time->t_ns);
+    if (!log_.slice.is_whole() && !inside) return;
     if (log_.events.size() < kMaxEvents) {
       log_.events.push_back(std::move(event));
     } else {
       ++left_out_events_;
     }
   }
-  void warning(const std::string& text) override { log_.warnings.push_back(text); }
+  void warning(const std::string& text) override {
+    // Where parts are left out, everything that counts what is missing is wrong.
+    if (log_.parts.empty()) log_.warnings.push_back(text);
+  }
   [[nodiscard]] bool progress(std::uint64_t bytes) override {
     log_.size_bytes = std::max(log_.size_bytes, bytes);
+    index_.end_block(bytes);
     return !is_cancelled(cancel_);
   }
 
   void finish();
+  [[nodiscard]] std::optional<LogIndex> index() { return index_.finish(log_.size_bytes); }
 
  private:
   void take_position(StreamId id, const LogTime& time, const Eigen::Vector3d& value) override {
-    streams_[id].position(time, value);
+    if (counted_) streams_[id].position(time, value);
   }
   void take_attitude(StreamId id,
                      const LogTime& /*time*/,
                      const Eigen::Quaterniond& /*R_ned_body*/) override {
-    streams_[id].attitude();
+    if (counted_) streams_[id].attitude();
   }
-  void take_invalid(StreamId id) override { streams_[id].invalid(); }
+  void take_invalid(StreamId id) override {
+    if (counted_) streams_[id].invalid();
+  }
   [[nodiscard]] PositionKind position_kind(StreamId id) const override {
     return streams_[id].description().position;
   }
@@ -118,6 +129,9 @@ class OpeningSink final : public LogSink {
 
   OpenedLog& log_;
   const std::atomic<bool>* cancel_;
+  bool counted_ = false;  ///< the present message is in the slice
+  LogIndexBuilder index_;
+  std::map<StreamId, LocalOrigin> origins_;
   std::vector<StreamStatistics> streams_;
   std::set<std::string> names_;
   std::vector<std::size_t> boots_of_;  ///< of each stream, its present index in boots_
@@ -187,7 +201,8 @@ void OpeningSink::finish() {
     const StreamInfo& source = log_.streams[truth->position];
     log_.on_ground = source.reach_m <= kGroundReachM;
   } else {
-    log_.warnings.push_back(truth.error().message);
+    log_.warnings.push_back(log_.slice.is_whole() ? truth.error().message
+                                                  : "no valid positions in the time asked for");
   }
   if (log_.on_ground) {
     log_.warnings.emplace_back(
@@ -223,37 +238,50 @@ Result<std::vector<std::filesystem::path>> files_of_log(const std::filesystem::p
   return files;
 }
 
-Status read_log_into(const std::filesystem::path& file,
-                     LogSink& sink,
-                     const SourcePolicy& sources) {
-  Result<ForwardReader> reader = ForwardReader::open(file);
+Status read_log_into(const OpenedLog& log, LogSink& sink) {
+  Result<ForwardReader> reader = ForwardReader::open(log.file);
   if (!reader) return reader.error();
-  const Result<const FormatFacts*> facts = format_of(*reader, file);
+  const Result<const FormatFacts*> facts = format_of(*reader, log.file);
   if (!facts) return facts.error();
-  return read_with(**facts, file, *reader, sources, sink);
+  const bool is_csv = (*facts)->read == nullptr;
+  if (!log.parts.empty()) reader->only(log.parts);
+  Status status =
+      is_csv ? read_csv_log(log.file, log.sources, sink) : (*facts)->read(*reader, sink);
+  if (status) return status;
+  // Errors of reading name the file already, and those of CSV files theirs.
+  const ErrorCode code = status.error().code;
+  const bool named = code == ErrorCode::kIo || (is_csv && code != ErrorCode::kCancelled);
+  return named ? status : status.error().in(log.file.string());
 }
 
 Result<OpenedLog> open_log(const std::filesystem::path& file,
                            const std::atomic<bool>* cancel,
-                           const SourcePolicy& sources) {
-  Result<ForwardReader> reader = ForwardReader::open(file);
-  if (!reader) return reader.error();
-  const Result<const FormatFacts*> facts = format_of(*reader, file);
-  if (!facts) return facts.error();
+                           const OpenOptions& options) {
+  const Result<LogFormat> format = detect_format(file);
+  if (!format) return format.error();
+  const std::optional<LogIdentity> identity = identify_log(file);
+  if (!identity) return Error{ErrorCode::kIo, file.string() + ": cannot be read"};
   OpenedLog log;
   log.file = file;
-  log.sources = sources;
-  log.format = (*facts)->format;
-  log.size_bytes = reader->size_bytes();
-  OpeningSink sink(log, cancel);
-  if (Status status = read_with(**facts, file, *reader, sources, sink); !status) {
-    // Errors of reading name the file already, and those of CSV files theirs.
-    const ErrorCode code = status.error().code;
-    const bool named =
-        code == ErrorCode::kIo || ((*facts)->read == nullptr && code != ErrorCode::kCancelled);
-    return named ? status.error() : status.error().in(file.string());
+  log.sources = options.sources;
+  log.format = *format;
+  log.size_bytes = identity->size_bytes;
+  log.slice = options.slice;
+  const bool indexed = log.format != LogFormat::kCsv && log.size_bytes >= kIndexedLogBytes;
+  if (indexed && !log.slice.is_whole()) {
+    if (const auto index = load_log_index(file, *identity)) {
+      log.parts = parts_for(*index, log.slice);
+    }
   }
+  OpeningSink sink(log, cancel);
+  if (Status status = read_log_into(log, sink); !status) return status.error();
   sink.finish();
+  if (!indexed || !log.parts.empty()) return log;
+  // A log that was written to in the meantime gets its index another time.
+  if (const auto index = sink.index(); index && identify_log(file) == identity) {
+    save_log_index(file, *identity, *index);
+    if (!log.slice.is_whole()) log.parts = parts_for(*index, log.slice);
+  }
   return log;
 }
 

@@ -163,12 +163,13 @@ Result<std::unique_ptr<TruthSource>> fly_flight_log(const std::filesystem::path&
                                                     const HeightQuery& ground,
                                                     const SourcePolicy& sources,
                                                     const std::atomic<bool>* cancel) {
-  const Result<logs::OpenedLog> opened = logs::open_log(file, cancel, sources);
+  logs::LogSlice slice;
+  if (options.from_s) slice.from_ns = ns_from_s(*options.from_s);
+  if (options.to_s) slice.to_ns = ns_from_s(*options.to_s);
+  const Result<logs::OpenedLog> opened =
+      logs::open_log(file, cancel, {.sources = sources, .slice = slice});
   if (!opened) return opened.error();
-  logs::TrajectoryRequest request;
-  request.source = options.source;
-  if (options.from_s) request.from_ns = ns_from_s(*options.from_s);
-  if (options.to_s) request.to_ns = ns_from_s(*options.to_s);
+  logs::TrajectoryRequest request{options.source, slice.from_ns, slice.to_ns};
   if (options.smooth) return fly_smoothed(*opened, request, options, frame, ground, cancel);
 
   request.attitude_offset_ns = ns_from_s(options.time_offset_s);

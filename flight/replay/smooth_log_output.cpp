@@ -4,7 +4,7 @@
 
 #include "core/text/number_text.hpp"
 #include "core/time.hpp"
-#include "flight/logs/line_file.hpp"
+#include "flight/logs/whole_file.hpp"
 #include "flight/replay/smooth_log.hpp"
 
 namespace overfly::flight {
@@ -57,7 +57,7 @@ Result<logs::LogTrajectory> sampled_trajectory(const SmoothedLog& log, double ra
 }
 
 Status write_residuals(const std::filesystem::path& file, const SmoothedLog& log) {
-  return logs::write_lines(file, [&](std::ofstream& out) {
+  return logs::write_whole_file(file, [&](std::ofstream& out) {
     out << "t_s,kind,used,shifted,east_m,north_m,up_m,x_deg,y_deg,z_deg\n";
     const auto write = [&](const smoothing::FitReport& report, bool position) {
       for (const smoothing::SampleResidual& row : report.residuals) {

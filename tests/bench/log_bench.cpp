@@ -11,6 +11,7 @@
 
 #include "core/measure/process_memory.hpp"
 #include "core/outside/forward_reader.hpp"
+#include "core/time.hpp"
 #include "flight/logs/log_trajectory.hpp"
 #include "flight/logs/probes/probe_log.hpp"
 
@@ -69,6 +70,28 @@ int measure_converting(const char* name, const std::filesystem::path& file) {
   return poses > 0 ? 0 : 1;
 }
 
+/// One minute in the middle of the log, which has an index since it was opened.
+int measure_slice(const char* name, const std::filesystem::path& file) {
+  const auto whole = logs::open_log(file);
+  if (!whole.ok() || !whole->truth) return 1;
+  const logs::StreamInfo& source = whole->streams[whole->truth->position];
+  const std::int64_t middle_ns = (*source.first_ns + *source.last_ns) / 2;
+  const logs::LogSlice slice{middle_ns - 30 * kNsPerS, middle_ns + 30 * kNsPerS};
+  std::size_t poses = 0;
+  const double slice_s = elapsed_s([&] {
+    const auto log = logs::open_log(file, nullptr, {.slice = slice});
+    if (!log.ok()) return;
+    const auto trajectory = logs::read_log_trajectory(*log, {"", slice.from_ns, slice.to_ns});
+    if (trajectory.ok()) poses = trajectory->poses.size();
+  });
+  std::printf("%-9s converting one minute of %.0f: %.3f s to %zu poses\n",
+              name,
+              s_from_ns(*source.last_ns - *source.first_ns) / 60.0,
+              slice_s,
+              poses);
+  return poses > 0 ? 0 : 1;
+}
+
 /// Runs a measurement in a process of its own, because peak memory never falls.
 int apart(int (*measure)(const char*, const std::filesystem::path&),
           const char* name,
@@ -100,7 +123,9 @@ int main(int count, char** arguments) {
     if (!logs::write_probe_log(file, format, size_bytes).ok()) ++failures;
     failures += apart(measure_opening, name, file);
     failures += apart(measure_converting, name, file);
+    failures += apart(measure_slice, name, file);
     std::filesystem::remove(file);
+    std::filesystem::remove(file.string() + ".overfly-index");
   }
   return failures == 0 ? 0 : 1;
 }

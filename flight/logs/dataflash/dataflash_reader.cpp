@@ -157,13 +157,19 @@ void DataflashPass::take(std::span<const std::uint8_t> record) {
   if (time) take_samples(kind, *stream, *time, record);
   if (kind.plan.event) {
     std::string text = event_text(kind.plan, record, is_ardu_plane_);
-    is_ardu_plane_ = is_ardu_plane_ || text.starts_with("ArduPlane");
+    if (!is_ardu_plane_ && text.starts_with("ArduPlane")) {
+      is_ardu_plane_ = true;
+      sink_.declaration();
+    }
     sink_.event({"", time, *kind.plan.event, std::move(text)});
   }
   if (kind.origin) take_origin(kind.plan, record);
   if (kind.declares) {
     const FormatTable::Change change = table_.take(kind.plan.format, record);
-    if (change.any) update_kind(change.type);
+    if (change.any) {
+      update_kind(change.type);
+      sink_.declaration();
+    }
   }
 }
 

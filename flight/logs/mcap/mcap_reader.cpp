@@ -79,6 +79,7 @@ void McapPass::take_channel(const McapChannel& channel) {
   const std::string type = schema == schemas_.end() ? "" : schema->second;
   // A channel with the same number must be identical: the first one counts.
   if (channels_.contains(channel.id)) return;
+  sink_.declaration();
   channels_[channel.id] = topics_.add(channel.topic, type, encoding);
 }
 
@@ -96,7 +97,9 @@ void McapPass::take(McapOpcode opcode, std::span<const std::uint8_t> content) {
   if (opcode == McapOpcode::kSchema) {
     std::optional<McapSchema> schema = mcap_schema_in(content);
     ok = schema && schema->name.size() <= kMaxNameBytes;
-    if (ok && schema->id != 0) schemas_.try_emplace(schema->id, std::move(schema->name));
+    if (ok && schema->id != 0 && schemas_.try_emplace(schema->id, std::move(schema->name)).second) {
+      sink_.declaration();
+    }
   } else if (opcode == McapOpcode::kChannel) {
     const std::optional<McapChannel> channel = mcap_channel_in(content);
     ok = channel && channel->topic.size() <= kMaxNameBytes;

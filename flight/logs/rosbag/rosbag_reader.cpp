@@ -73,6 +73,7 @@ void RosbagPass::take_connection(const BagRecord& record, std::span<const std::u
   }
   // The index at the end of the bag repeats the connections.
   if (connections_.contains(*id)) return;
+  sink_.declaration();
   connections_[*id] = topics_.add(std::string(topic), type, RosEncoding::kRos1);
 }
 

@@ -60,10 +60,12 @@ void FrameStreams::take_origin(const Frame& frame, Sender& sender) {
   const mavlink::GlobalPosition position = mavlink::decode_gps_global_origin(frame);
   if (position.lat_deg == 0.0 && position.lon_deg == 0.0) return;
   const bool px4 = sender.heartbeat && sender.heartbeat->autopilot == 12;
-  sender.origin = LocalOrigin{position.lat_deg,
-                              position.lon_deg,
-                              position.alt_msl_m,
-                              px4 ? LocalGrid::kPx4 : LocalGrid::kArduPilot};
+  const LocalOrigin origin{position.lat_deg,
+                           position.lon_deg,
+                           position.alt_msl_m,
+                           px4 ? LocalGrid::kPx4 : LocalGrid::kArduPilot};
+  if (sender.origin != origin) sink_.declaration();
+  sender.origin = origin;
   if (sender.local_stream) sink_.local_origin(*sender.local_stream, *sender.origin);
 }
 
@@ -78,6 +80,7 @@ void FrameStreams::take_events(const Frame& frame, Sender& sender) {
       const mavlink::Heartbeat now = mavlink::decode_heartbeat(frame);
       if (!now.is_autopilot()) return;
       const std::optional<mavlink::Heartbeat> before = std::exchange(sender.heartbeat, now);
+      if (!before || before->autopilot != now.autopilot) sink_.declaration();
       if (!before || before->custom_mode != now.custom_mode) {
         event(sender, EventKind::kMode, mode_text(now.custom_mode, now.is_ardu_plane()));
       }

@@ -169,6 +169,7 @@ Status UlogPass::take(char kind, std::span<const std::uint8_t> body) {
     case 'B':
       return take_flags(body);
     case 'F':
+      sink_.declaration();
       if (!formats_.declare({reinterpret_cast<const char*>(body.data()), body.size()})) {
         ++bad_formats_;
       }
@@ -177,6 +178,7 @@ Status UlogPass::take(char kind, std::span<const std::uint8_t> body) {
       take_subscription(body);
       break;
     case 'R':
+      sink_.declaration();
       topics_.erase(ulog_value<std::uint16_t>(body, 0));
       break;
     case 'D':
@@ -237,8 +239,8 @@ Status read_ulog(ForwardReader& file, LogSink& sink) {
     const Result<std::span<const std::uint8_t>> bytes = file.ahead(kLongestBytes);
     if (!bytes) return bytes.error();
     if (bytes->empty()) break;
-    const std::uint64_t here = file.position();
-    std::uint64_t limit = file.size_bytes() - here;
+    std::uint64_t limit = file.size_bytes() - file.position();
+    const std::uint64_t here = pass.appended().empty() ? 0 : file.file_offset();
     for (const std::uint64_t offset : pass.appended()) {
       if (offset > here) limit = std::min(limit, offset - here);
     }

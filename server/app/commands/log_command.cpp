@@ -6,7 +6,6 @@
 #include <string>
 
 #include "core/text/number_text.hpp"
-#include "core/time.hpp"
 #include "flight/logs/log_trajectory.hpp"
 #include "server/app/commands/commands.hpp"
 #include "server/app/commands/log_info.hpp"
@@ -21,21 +20,28 @@ namespace {
 namespace fs = std::filesystem;
 namespace logs = flight::logs;
 
-int print_log(const std::string& file, bool as_json) {
-  const Result<logs::OpenedLog> log = logs::open_log(file, &catch_stop_signals());
+struct InfoArguments {
+  std::string file;
+  bool json = false;
+  LogTimes times;
+};
+
+int print_log(const InfoArguments& arguments) {
+  if (Status status = arguments.times.check(); !status) return report(status.error());
+  const Result<logs::OpenedLog> log =
+      logs::open_log(arguments.file, &catch_stop_signals(), {.slice = arguments.times.slice()});
   if (!log) return report(log.error());
-  std::cout << (as_json ? log_info_json(*log).dump(2) + "\n" : log_info_text(*log));
+  std::cout << (arguments.json ? log_info_json(*log).dump(2) + "\n" : log_info_text(*log));
   return kExitOk;
 }
 
 int convert_log(const LogFlightArguments& arguments) {
   if (Status status = check_log_flight(arguments); !status) return report(status.error());
-  const Result<logs::OpenedLog> log = logs::open_log(arguments.file, &catch_stop_signals());
+  const logs::LogSlice slice = arguments.times.slice();
+  const Result<logs::OpenedLog> log =
+      logs::open_log(arguments.file, &catch_stop_signals(), {.slice = slice});
   if (!log) return report(log.error());
-  logs::TrajectoryRequest request;
-  request.source = arguments.source;
-  if (arguments.from_s) request.from_ns = ns_from_s(*arguments.from_s);
-  if (arguments.to_s) request.to_ns = ns_from_s(*arguments.to_s);
+  const logs::TrajectoryRequest request{arguments.source, slice.from_ns, slice.to_ns};
   const Result<logs::LogTrajectory> trajectory =
       logs::read_log_trajectory(*log, request, &catch_stop_signals());
   if (!trajectory) return report(trajectory.error());
@@ -61,16 +67,13 @@ void add_log_command(CLI::App& app, int& exit_code) {
   CLI::App* const log = app.add_subcommand(
       "log", "Flight logs: .tlog, DataFlash .bin, .ulg, .mcap, .bag, LCM event logs, CSV");
   log->require_subcommand(1);
-  struct InfoArguments {
-    std::string file;
-    bool json = false;
-  };
   const auto asked = std::make_shared<InfoArguments>();
   CLI::App* const info =
       log->add_subcommand("info", "List streams, sources of truth, events and damage");
   info->add_option("FILE", asked->file, "Flight log")->required();
   info->add_flag("--json", asked->json, "Print JSON");
-  info->callback([asked, &exit_code] { exit_code = print_log(asked->file, asked->json); });
+  asked->times.add_to(*info);
+  info->callback([asked, &exit_code] { exit_code = print_log(*asked); });
 
   const auto arguments = std::make_shared<LogFlightArguments>();
   CLI::App* const convert = log->add_subcommand("convert", "Write the flight as a trajectory file");
@@ -84,8 +87,7 @@ void add_log_command(CLI::App& app, int& exit_code) {
                    arguments->out,
                    "File.tum: poses T_world_body; file.csv: latitude, longitude, height, angles")
       ->required();
-  convert->add_option("--from", arguments->from_s, "First time by the vehicle's clock [s]");
-  convert->add_option("--to", arguments->to_s, "Last time by the vehicle's clock [s]");
+  arguments->times.add_to(*convert);
   convert->add_option("--geoid-separation-m",
                       arguments->geoid_separation_m,
                       "Height of the geoid above the ellipsoid at the place, for a .csv file with "

@@ -117,7 +117,10 @@ std::string log_info_text(const OpenedLog& log) {
   text += "  " + padded("stream", width, false) + padded("messages", 10, true) +
           padded("Hz", 10, true) + padded("from s", 14, true) + padded("to s", 14, true) +
           padded("gaps", 7, true) + "  contents\n";
-  for (const StreamInfo& stream : log.streams) text += stream_line(stream, width);
+  for (const StreamInfo& stream : log.streams) {
+    // Streams outside of the slice are not listed.
+    if (stream.messages > 0 || log.slice.is_whole()) text += stream_line(stream, width);
+  }
   if (!log.events.empty()) text += "events:\n";
   for (std::size_t i = 0; i < std::min(kShownEvents, log.events.size()); ++i) {
     text += event_line(log.events[i]);
@@ -146,7 +149,9 @@ OrderedJson log_info_json(const OpenedLog& log) {
                    {"clock_runs", OrderedJson::array()},
                    {"events", OrderedJson::array()},
                    {"warnings", log.warnings}};
-  for (const StreamInfo& stream : log.streams) json["streams"].push_back(stream_json(stream));
+  for (const StreamInfo& stream : log.streams) {
+    if (stream.messages > 0 || log.slice.is_whole()) json["streams"].push_back(stream_json(stream));
+  }
   for (const BootInfo& boot : log.boots) {
     json["clock_runs"].push_back({{"vehicle", boot.vehicle},
                                   {"first_s", s_from_ns(boot.first_ns)},

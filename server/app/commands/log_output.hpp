@@ -5,16 +5,33 @@
 #include <string>
 
 #include "core/result.hpp"
+#include "flight/logs/flight_log.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace overfly::app {
+
+/// Limits by the vehicle's clock.
+struct LogTimes {
+  std::optional<double> from_s;
+  std::optional<double> to_s;
+
+  /// Adds --from and --to.
+  void add_to(CLI::App& command);
+  /// Errors: kInvalidArgument naming option, value and limit.
+  [[nodiscard]] Status check() const;
+  /// @pre check()
+  [[nodiscard]] flight::logs::LogSlice slice() const;
+};
 
 /// Options that `log convert` and `log smooth` have in common.
 struct LogFlightArguments {
   std::string file;
   std::string source;
   std::string out;
-  std::optional<double> from_s;
-  std::optional<double> to_s;
+  LogTimes times;
   std::optional<double> geoid_separation_m;
 };
 

@@ -134,13 +134,12 @@ Result<flight::SmoothedLog> smooth(const SmoothArguments& arguments) {
   smoothing::SmoothingOptions options;
   options.time_offset_s = *offset_s;
   if (Status status = options.validate(); !status) return status.error();
-  const Result<logs::OpenedLog> log = logs::open_log(arguments.flight.file, &catch_stop_signals());
+  const logs::LogSlice slice = arguments.flight.times.slice();
+  const Result<logs::OpenedLog> log =
+      logs::open_log(arguments.flight.file, &catch_stop_signals(), {.slice = slice});
   if (!log) return log.error();
   for (const std::string& warning : log->warnings) std::cerr << "warning: " << warning << "\n";
-  logs::TrajectoryRequest request;
-  request.source = arguments.flight.source;
-  if (arguments.flight.from_s) request.from_ns = ns_from_s(*arguments.flight.from_s);
-  if (arguments.flight.to_s) request.to_ns = ns_from_s(*arguments.flight.to_s);
+  const logs::TrajectoryRequest request{arguments.flight.source, slice.from_ns, slice.to_ns};
   return flight::smooth_log(*log,
                             request,
                             options,
@@ -196,8 +195,7 @@ void add_log_smooth(CLI::App& log, int& exit_code) {
                    flight.out,
                    "File.tum: poses T_world_body; file.csv: latitude, longitude, height, angles")
       ->required();
-  smooth_command->add_option("--from", flight.from_s, "First time by the vehicle's clock [s]");
-  smooth_command->add_option("--to", flight.to_s, "Last time by the vehicle's clock [s]");
+  flight.times.add_to(*smooth_command);
   smooth_command->add_option("--geoid-separation-m",
                              flight.geoid_separation_m,
                              "Height of the geoid above the ellipsoid at the place, for a .csv "

@@ -40,6 +40,34 @@ TEST(ForwardReader, ReadsAFileLargerThanItsBuffer) {
   EXPECT_EQ(read, text);
 }
 
+TEST(ForwardReader, ReadsPartsAsOneFile) {
+  const testing::TemporaryFolder folder;
+  const std::size_t block = ForwardReader::kBufferBytes;
+  const std::string text = long_text(4 * block);
+  testing::write_text(folder.path() / "a", text);
+  Result<ForwardReader> reader = ForwardReader::open(folder.path() / "a");
+  ASSERT_TRUE(reader.ok());
+  ASSERT_TRUE(reader->ahead(1000).ok());
+  reader->skip(1000);
+  // The last part reaches behind the end of the file, and one is empty.
+  reader->only({{10, 30}, {100, 100}, {block, 3 * block + 5}, {4 * block - 7, 9 * block}});
+  const std::string expected =
+      text.substr(10, 20) + text.substr(block, 2 * block + 5) + text.substr(4 * block - 7);
+  EXPECT_EQ(reader->size_bytes(), expected.size());
+  std::string read;
+  while (true) {
+    EXPECT_EQ(reader->position(), read.size());
+    const auto bytes = reader->ahead(1000);
+    ASSERT_TRUE(bytes.ok());
+    if (bytes->empty()) break;
+    EXPECT_EQ(static_cast<char>(bytes->front()), text[reader->file_offset()]);
+    const std::size_t taken = std::min<std::size_t>(bytes->size(), 777);
+    read.append(reinterpret_cast<const char*>(bytes->data()), taken);
+    reader->skip(taken);
+  }
+  EXPECT_EQ(read, expected);
+}
+
 TEST(ForwardReader, EndsEarlyWhereTheFileWasShortened) {
   const testing::TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "a";

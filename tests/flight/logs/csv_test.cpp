@@ -83,6 +83,31 @@ TEST_F(CsvLog, JoinsPiecesWithTheirUnitsAndClocks) {
   EXPECT_NEAR(deg_from_rad(second.yaw_rad), 90.5, 1e-3);
 }
 
+TEST_F(CsvLog, CountsTheRowsOfASlice) {
+  const std::filesystem::path file = folder_.path() / "log.json";
+  const LogSlice slice{1'200'000'000, 2'200'000'000};
+  const Result<OpenedLog> log = open_log(file, nullptr, {.slice = slice});
+  ASSERT_TRUE(log.ok()) << log.error().message;
+  EXPECT_TRUE(log->parts.empty());
+  EXPECT_EQ(log->size_bytes, open()->size_bytes);
+  ASSERT_EQ(log->streams.size(), 2U);
+  EXPECT_EQ(log->streams[0].positions, 1U);
+  EXPECT_EQ(log->streams[0].first_ns, 2'000'000'000);
+  EXPECT_EQ(log->streams[1].attitudes, 1U);
+  EXPECT_EQ(log->streams[1].first_ns, 1'500'000'000);
+  // The attitudes around the position are read, also the one behind the slice.
+  const auto trajectory = read_log_trajectory(*log, {"", slice.from_ns, slice.to_ns});
+  ASSERT_TRUE(trajectory.ok()) << trajectory.error().message;
+  ASSERT_EQ(trajectory->poses.size(), 1U);
+  EXPECT_EQ(trajectory->poses[0].t_ns, 2'000'000'000);
+
+  const auto empty = open_log(file, nullptr, {.slice = {9'000'000'000, {}}});
+  ASSERT_TRUE(empty.ok()) << empty.error().message;
+  EXPECT_THAT(empty->warnings, Contains("no valid positions in the time asked for"));
+  EXPECT_THAT(read_log_samples(*empty, {}).error().message,
+              HasSubstr("log.json: no valid positions in the time asked for"));
+}
+
 TEST_F(CsvLog, ReadsQuaternionsWindowsLinesAndQuotes) {
   write("att.csv", "\xEF\xBB\xBF\"w\", x ,y,z,s\r\n0.5,0.5,0.5,0.5,+1\r\n\r\n0.5,0.5,0.5,0.5,2.5");
   write("log.json",
@@ -179,7 +204,7 @@ TEST_F(CsvLog, ReadsOnlyFilesThatThePolicyAllows) {
   write("data/log.json", changed(kMapping, "gps.csv", "../gps.csv"));
   write("data/att.csv", "yaw,roll,pitch,s\n");
   const SourcePolicy policy = SourcePolicy::inside({inside});
-  const Result<OpenedLog> log = open_log(inside / "log.json", nullptr, policy);
+  const Result<OpenedLog> log = open_log(inside / "log.json", nullptr, {.sources = policy});
   ASSERT_FALSE(log.ok());
   EXPECT_EQ(log.error().code, ErrorCode::kInvalidArgument);
   EXPECT_THAT(log.error().message, HasSubstr("pieces.0.file"));

@@ -143,6 +143,7 @@ TEST_P(McapWires, ReadsAFlight) {
   EXPECT_TRUE(stream_named(*log, "/imu/data").description.imu);
   EXPECT_EQ(stream_named(*log, "/chatter").first_ns, kStartNs + 1'000'000);
   EXPECT_EQ(log->truth->position, 2U);  // the georeferenced one
+  EXPECT_THAT(log->truth->reason, HasSubstr("all other positions count from an origin"));
 
   const auto trajectory = read_log_trajectory(*log, {"/truth/pose", {}, {}});
   ASSERT_TRUE(trajectory.ok()) << trajectory.error().message;

@@ -3,15 +3,22 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 
 #include "core/time.hpp"
+#include "flight/logs/flight_log.hpp"
+#include "flight/logs/probes/probe_log.hpp"
 #include "flight/replay/logged_flight.hpp"
 #include "tests/flight/replay/csv_flight.hpp"
+#include "tests/support/support.hpp"
 
 namespace overfly::flight {
 namespace {
 
+using ::testing::Contains;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 /// Ground that rises to the east by 10 m in 100 m.
 class Slope final : public HeightQuery {
@@ -120,6 +127,47 @@ TEST(LoggedFlight, ShiftsTheTimesOfAttitudes) {
   const auto flight = flown_log(log, options, log.frame());
   const double roll_rad = attitude_from(state_of(*flight, 32.4).T_world_body.rotation).roll_rad;
   EXPECT_NEAR(roll_rad, log.row(132.5).angles.roll_rad, 2e-3);
+}
+
+TEST(LoggedFlight, ReadsOnlyASliceOfALargeLog) {
+  const overfly::testing::TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "flight.bin";
+  const auto format = logs::LogFormat::kDataFlash;
+  ASSERT_TRUE(logs::write_probe_log(file, format, logs::kIndexedLogBytes).ok());
+  {
+    std::fstream damaged(file, std::ios::binary | std::ios::in | std::ios::out);
+    damaged.seekp(5'000'000);
+    damaged << std::string(300, '\0');
+  }
+  const auto log = logs::open_log(file);
+  ASSERT_TRUE(log.ok() && log->truth.has_value());
+  const std::filesystem::path index = file.string() + ".overfly-index";
+  ASSERT_TRUE(std::filesystem::exists(index));
+  LogFlightOptions options;
+  options.to_s = s_from_ns(*log->streams[log->truth->position].last_ns) - 1.0;
+  options.from_s = *options.to_s - 5.0;
+  const LocalFrame world(geodetic_from_deg(47.0, 8.0, 400.0));
+  for (const bool smooth : {false, true}) {
+    if (smooth) options.smooth.emplace();
+    const auto sliced = fly_flight_log(file, options, world, Slope(), {});
+    ASSERT_TRUE(sliced.ok()) << sliced.error().message;
+    const std::string kept = overfly::testing::read_text(index);
+    std::filesystem::remove(index);
+    const auto whole = fly_flight_log(file, options, world, Slope(), {});
+    ASSERT_TRUE(whole.ok()) << whole.error().message;
+    EXPECT_EQ(overfly::testing::read_text(index), kept);
+    // The damage in front of the slice is only met where the whole log is read.
+    EXPECT_THAT((*whole)->warnings(), Contains(HasSubstr("skipped")));
+    EXPECT_THAT((*sliced)->warnings(), Not(Contains(HasSubstr("skipped"))));
+    EXPECT_EQ((*sliced)->duration_ns(), (*whole)->duration_ns());
+    EXPECT_GT((*sliced)->duration_ns(), 4 * kNsPerS);
+    for (const double t_s : {0.0, 1.234, 4.0}) {
+      const Pose a = state_of(**sliced, t_s).T_world_body;
+      const Pose b = state_of(**whole, t_s).T_world_body;
+      EXPECT_EQ(a.translation, b.translation);
+      EXPECT_EQ(a.rotation.coeffs(), b.rotation.coeffs());
+    }
+  }
 }
 
 TEST(LoggedFlight, ReportsJumpsAsWarnings) {

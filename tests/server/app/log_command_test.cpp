@@ -69,6 +69,21 @@ TEST_F(LogCommand, InfoListsStreamsTruthAndEvents) {
   EXPECT_EQ(log.at("clock_runs").size(), 1U);
 }
 
+TEST_F(LogCommand, InfoOfASliceCountsItsMessages) {
+  const Outcome json =
+      overfly_program({"log", "info", path("flight.bin"), "--from", "1.5", "--to", "2", "--json"});
+  ASSERT_EQ(json.exit_code, 0) << json.err;
+  const Json log = Json::parse(json.out);
+  ASSERT_EQ(log.at("streams").size(), 1U);
+  const Json& sim = log.at("streams").at(0);
+  EXPECT_EQ(sim.at("messages"), 13);
+  EXPECT_EQ(sim.at("first_s"), 1.52);
+  EXPECT_TRUE(log.at("events").empty());
+  const Outcome wrong = overfly_program({"log", "info", path("flight.bin"), "--from", "-1"});
+  EXPECT_NE(wrong.exit_code, 0);
+  EXPECT_THAT(wrong.err, HasSubstr("must be in [0, 9e9] s"));
+}
+
 TEST_F(LogCommand, ConvertWritesTumAndCsv) {
   const Outcome tum =
       overfly_program({"log", "convert", path("flight.bin"), "--out", path("flight.tum")});

@@ -1,13 +1,14 @@
-#include "flight/logs/line_file.hpp"
+#include "flight/logs/whole_file.hpp"
 
 #include <unistd.h>
 
+#include <string>
 #include <system_error>
 
 namespace overfly::flight::logs {
 
-Status write_lines(const std::filesystem::path& file,
-                   const std::function<void(std::ofstream&)>& write) {
+Status write_whole_file(const std::filesystem::path& file,
+                        const std::function<void(std::ofstream&)>& write) {
   const std::filesystem::path unfinished = file.string() + ".part" + std::to_string(::getpid());
   std::error_code error;
   {
