@@ -184,7 +184,8 @@ TEST(AutzenTour, IsTheFileThatThisTestMakes) {
   ASSERT_TRUE(model.open());
   const std::string made = make_csv(model);
   const auto file = source_file("scenarios/autzen_tour.csv");
-  if (std::getenv("OVERFLY_UPDATE_AUTZEN_TOUR") != nullptr) overfly::testing::write_text(file, made);
+  if (std::getenv("OVERFLY_UPDATE_AUTZEN_TOUR") != nullptr)
+    overfly::testing::write_text(file, made);
   std::istringstream made_rows(made);
   std::istringstream kept_rows(read_text(file));
   std::string made_row;

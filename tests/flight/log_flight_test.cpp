@@ -12,11 +12,11 @@
 namespace overfly::flight {
 namespace {
 
+using overfly::testing::TemporaryFolder;
+using overfly::testing::write_text;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using overfly::testing::TemporaryFolder;
-using overfly::testing::write_text;
 
 constexpr const char* kHeader = "t_s,lat_deg,lon_deg,alt_ellipsoid_m,roll_deg,pitch_deg,yaw_deg\n";
 

@@ -2,14 +2,14 @@
 
 #include <utility>
 
+#include "server/scenario/document/flight/scenario_course.hpp"
+#include "server/scenario/document/flight/scenario_flight.hpp"
+#include "server/scenario/document/flight/scenario_live.hpp"
 #include "server/scenario/document/scenario_camera.hpp"
-#include "server/scenario/document/scenario_course.hpp"
 #include "server/scenario/document/scenario_estimators.hpp"
 #include "server/scenario/document/scenario_faults.hpp"
-#include "server/scenario/document/scenario_flight.hpp"
 #include "server/scenario/document/scenario_layers.hpp"
 #include "server/scenario/document/scenario_light.hpp"
-#include "server/scenario/document/scenario_live.hpp"
 
 namespace overfly::server {
 namespace {

@@ -1,4 +1,4 @@
-#include "server/app/commands/log_smooth.hpp"
+#include "server/app/commands/log/log_smooth.hpp"
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -9,7 +9,7 @@
 
 #include "core/time.hpp"
 #include "flight/replay/smooth_log.hpp"
-#include "server/app/commands/log_output.hpp"
+#include "server/app/commands/log/log_output.hpp"
 #include "server/app/exit_code.hpp"
 #include "server/app/stop_signal.hpp"
 

@@ -1,4 +1,4 @@
-#include "server/scenario/document/scenario_live.hpp"
+#include "server/scenario/document/flight/scenario_live.hpp"
 
 #include <chrono>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "server/scenario/document/scenario_flight.hpp"
+#include "server/scenario/document/flight/scenario_flight.hpp"
 
 #include <utility>
 

@@ -1,9 +1,9 @@
-#include "server/scenario/document/scenario_course.hpp"
+#include "server/scenario/document/flight/scenario_course.hpp"
 
 #include <string>
 #include <utility>
 
-#include "server/scenario/document/scenario_airframe.hpp"
+#include "server/scenario/document/flight/scenario_airframe.hpp"
 
 namespace overfly::server {
 namespace {

@@ -8,9 +8,9 @@
 #include "core/text/number_text.hpp"
 #include "flight/logs/log_trajectory.hpp"
 #include "server/app/commands/commands.hpp"
-#include "server/app/commands/log_info.hpp"
-#include "server/app/commands/log_output.hpp"
-#include "server/app/commands/log_smooth.hpp"
+#include "server/app/commands/log/log_info.hpp"
+#include "server/app/commands/log/log_output.hpp"
+#include "server/app/commands/log/log_smooth.hpp"
 #include "server/app/exit_code.hpp"
 #include "server/app/stop_signal.hpp"
 

@@ -1,4 +1,4 @@
-#include "server/scenario/document/scenario_airframe.hpp"
+#include "server/scenario/document/flight/scenario_airframe.hpp"
 
 #include <algorithm>
 

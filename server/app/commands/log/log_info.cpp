@@ -1,4 +1,4 @@
-#include "server/app/commands/log_info.hpp"
+#include "server/app/commands/log/log_info.hpp"
 
 #include <algorithm>
 #include <cstdio>

@@ -1,4 +1,4 @@
-#include "server/app/commands/log_output.hpp"
+#include "server/app/commands/log/log_output.hpp"
 
 #include <CLI/CLI.hpp>
 #include <cmath>
