@@ -29,6 +29,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCENARIOS = {"mcmillan": "mcmillan_course.json", "builtin": "course.json"}
 NOISE = {"full_well_e": 10200, "gain_dn_per_e": 0.025, "read_noise_e": 60,
          "response": {"shape": "srgb"}}
+KEPT_FROM = "## What real motion costs"
 LIMITS = {"mcmillan": 0.25, "builtin": 0.5}  # of the Sim3 position RMSE [m]
 
 
@@ -229,6 +230,14 @@ rendered because the next one was already due. Each flight has 4092 frames.
 """
 
 
+def text_kept(table):
+    """What the file says after the tables, which other commands measured."""
+    if not table.exists():
+        return ""
+    _, found, rest = table.read_text().partition(KEPT_FROM)
+    return "\n" + found + rest if found else ""
+
+
 def write_table(args):
     results = [json.loads(file.read_text()) for file in sorted(args.results.glob("*.json"))]
     count = len({(r["world"], r["airspeed_m_s"], r["rate_deg_s"], r["height_m"]) for r in results
@@ -236,7 +245,7 @@ def write_table(args):
     lines = [HEADER, f"{count} of 96 cells (48 over each of two worlds) in lockstep, "
              f"{len(results)} flights in all."]
     lines += table_lines(results)
-    args.table.write_text("\n".join(lines) + "\n")
+    args.table.write_text("\n".join(lines) + "\n" + text_kept(args.table))
     print(f"{args.table}: {len(results)} flights")
 
 
