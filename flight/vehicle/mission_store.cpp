@@ -38,7 +38,9 @@ void MissionStore::acknowledge(std::uint8_t system,
        system);
 }
 
-bool MissionStore::take(const Frame& frame, std::int64_t now_ns, const Send& send) {
+std::optional<Status> MissionStore::take(const Frame& frame,
+                                         std::int64_t now_ns,
+                                         const Send& send) {
   const PayloadReader payload(frame.payload);
   const auto for_us = [&](std::size_t at) {
     const auto target = payload.at<std::uint8_t>(at);
@@ -47,14 +49,13 @@ bool MissionStore::take(const Frame& frame, std::int64_t now_ns, const Send& sen
   switch (static_cast<MessageId>(frame.message_id)) {
     case MessageId::kMissionCount:
       if (for_us(2)) begin_upload(frame, now_ns, send);
-      return true;
+      return Status{};
     case MessageId::kMissionItemInt:
     case MessageId::kMissionItem:
-      if (for_us(32)) take_item(frame, now_ns, send);
-      return true;
+      return for_us(32) ? take_item(frame, now_ns, send) : Status{};
     case MessageId::kMissionRequestList: {
       const auto type = payload.at<std::uint8_t>(2);
-      if (!for_us(0)) return true;
+      if (!for_us(0)) return Status{};
       send(MessageId::kMissionCount,
            PayloadWriter(9)
                .put(0, static_cast<std::uint16_t>(type == 0 ? items_.size() : 0))
@@ -62,34 +63,34 @@ bool MissionStore::take(const Frame& frame, std::int64_t now_ns, const Send& sen
                .put(3, frame.component)
                .put(4, type),
            frame.system);
-      return true;
+      return Status{};
     }
     case MessageId::kMissionRequest:
     case MessageId::kMissionRequestInt: {
       const auto index = payload.at<std::uint16_t>(0);
-      if (!for_us(2)) return true;
+      if (!for_us(2)) return Status{};
       if (payload.at<std::uint8_t>(4) != 0 || index >= items_.size()) {
         acknowledge(
             frame.system, frame.component, kInvalidSequence, payload.at<std::uint8_t>(4), send);
-        return true;
+        return Status{};
       }
       send(MessageId::kMissionItemInt,
            encode_mission_item(items_[index], index, frame.system, frame.component),
            frame.system);
-      return true;
+      return Status{};
     }
     case MessageId::kMissionClearAll: {
       const auto type = payload.at<std::uint8_t>(2);
-      if (!for_us(0)) return true;
+      if (!for_us(0)) return Status{};
       constexpr std::uint8_t kAll = 255;
       if (type == 0 || type == kAll) items_.clear();
       acknowledge(frame.system, frame.component, kAccepted, type, send);
-      return true;
+      return Status{};
     }
     case MessageId::kMissionAck:
-      return true;
+      return Status{};
     default:
-      return false;
+      return std::nullopt;
   }
 }
 
@@ -121,20 +122,26 @@ void MissionStore::ask_for_next(std::int64_t now_ns, const Send& send) {
        upload_->from_system);
 }
 
-void MissionStore::take_item(const Frame& frame, std::int64_t now_ns, const Send& send) {
+Status MissionStore::take_item(const Frame& frame, std::int64_t now_ns, const Send& send) {
   const PayloadReader payload(frame.payload);
   const bool integers = static_cast<MessageId>(frame.message_id) == MessageId::kMissionItemInt;
-  if (!upload_ || frame.system != upload_->from_system || payload.at<std::uint8_t>(37) != 0) return;
+  if (!upload_ || frame.system != upload_->from_system || payload.at<std::uint8_t>(37) != 0) {
+    return {};
+  }
   // Late copies of earlier items are normal on a bad link.
-  if (payload.at<std::uint16_t>(28) != upload_->items.size()) return;
+  if (payload.at<std::uint16_t>(28) != upload_->items.size()) return {};
   upload_->items.push_back(flight::mavlink::decode_mission_item(payload, integers));
   upload_->attempts = 0;
-  if (upload_->items.size() < upload_->count) return ask_for_next(now_ns, send);
+  if (upload_->items.size() < upload_->count) {
+    ask_for_next(now_ns, send);
+    return {};
+  }
   Items received = std::move(upload_->items);
   upload_.reset();
-  const bool accepted = accept_(received).ok();
+  Status accepted = accept_(received);
   if (accepted) items_ = std::move(received);
   acknowledge(frame.system, frame.component, accepted ? kAccepted : kError, 0, send);
+  return accepted;
 }
 
 void MissionStore::step(std::int64_t now_ns, const Send& send) {

@@ -3,18 +3,15 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "core/result.hpp"
 #include "flight/mavlink/frame.hpp"
 #include "flight/mavlink/vehicle/mission.hpp"
+#include "flight/vehicle/send.hpp"
 
 namespace overfly::vehicle {
-
-/// Sends a message to a system; 0: to all.
-using Send = std::function<void(flight::mavlink::MessageId id,
-                                const flight::mavlink::PayloadWriter& payload,
-                                std::uint8_t system)>;
 
 /// Holds one flight plan. An upload replaces it when its last item has come and `accept` has no
 /// objection; items that do not come are asked for again each second, five times. Fences and rally
@@ -26,8 +23,11 @@ class MissionStore {
 
   MissionStore(std::uint8_t system, Accept accept);
 
-  /// Takes the messages of the protocol. @return false for other messages
-  bool take(const flight::mavlink::Frame& frame, std::int64_t now_ns, const Send& send);
+  /// Takes the messages of the protocol. @return empty for other messages; the objection of
+  /// `accept` if it has just refused a mission
+  [[nodiscard]] std::optional<Status> take(const flight::mavlink::Frame& frame,
+                                           std::int64_t now_ns,
+                                           const Send& send);
   /// Asks again for an item that has not come.
   void step(std::int64_t now_ns, const Send& send);
 
@@ -44,7 +44,9 @@ class MissionStore {
   };
 
   void begin_upload(const flight::mavlink::Frame& frame, std::int64_t now_ns, const Send& send);
-  void take_item(const flight::mavlink::Frame& frame, std::int64_t now_ns, const Send& send);
+  [[nodiscard]] Status take_item(const flight::mavlink::Frame& frame,
+                                 std::int64_t now_ns,
+                                 const Send& send);
   void ask_for_next(std::int64_t now_ns, const Send& send);
   void acknowledge(std::uint8_t system,
                    std::uint8_t component,

@@ -1,7 +1,6 @@
 #include "flight/vehicle/simulated_vehicle.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
@@ -35,30 +34,10 @@ enum : std::uint16_t {
   kRequestMessage = 512,
   kRequestCapabilities = 520,
 };
-/// MAV_SEVERITY.
-enum : std::uint8_t { kCritical = 2, kWarning = 4, kInfo = 6 };
-
-constexpr std::uint8_t kReal32 = 9;  // MAV_PARAM_TYPE
-constexpr std::int64_t kShortestIntervalNs = 10'000'000;
-
-constexpr std::int64_t interval_of(double rate_hz) {
-  return static_cast<std::int64_t>(1e9 / rate_hz);
+/// A whole number that a client sends as a float; 0 for anything else.
+std::uint32_t number_from_float(double value) {
+  return value >= 0.0 && value < 1e7 ? static_cast<std::uint32_t>(value) : 0U;
 }
-
-/// Rates of a vehicle that nobody has asked for others [Hz].
-constexpr std::array kDefaultRates{
-    std::pair{MessageId::kHeartbeat, 1.0},
-    std::pair{MessageId::kSysStatus, 1.0},
-    std::pair{MessageId::kGpsRawInt, 5.0},
-    std::pair{MessageId::kAttitude, 10.0},
-    std::pair{MessageId::kGlobalPositionInt, 10.0},
-    std::pair{MessageId::kLocalPositionNed, 4.0},
-    std::pair{MessageId::kVfrHud, 4.0},
-    std::pair{MessageId::kMissionCurrent, 1.0},
-    std::pair{MessageId::kExtendedSysState, 1.0},
-    std::pair{MessageId::kSimState, 10.0},
-    std::pair{MessageId::kAttitudeQuaternion, 0.0},
-};
 
 }  // namespace
 
@@ -75,15 +54,11 @@ Result<std::unique_ptr<SimulatedVehicle>> SimulatedVehicle::create(const Vehicle
 SimulatedVehicle::SimulatedVehicle(const VehicleSetup& setup,
                                    const autopilot::Parameters& parameters)
     : setup_(setup),
-      parameters_(parameters),
+      parameters_(setup.system, parameters),
       frame_(setup.home),
       missions_(setup.system,
                 [this](const MissionStore::Items& items) { return check_mission(items); }),
-      parked_heading_rad_(setup.heading_rad) {
-  for (const auto& [id, rate_hz] : kDefaultRates) {
-    due_[id].interval_ns = rate_hz > 0.0 ? interval_of(rate_hz) : 0;
-  }
-}
+      parked_heading_rad_(setup.heading_rad) {}
 
 Status SimulatedVehicle::check_mission(const MissionStore::Items& items) const {
   const auto planned = autopilot::plan_mission(items, frame_, ground_, std::nullopt);
@@ -116,12 +91,29 @@ VehicleReport SimulatedVehicle::report() const {
   return report;
 }
 
-void SimulatedVehicle::say(const std::string& text, std::uint8_t severity, const Send& send) const {
-  send(MessageId::kStatusText, PayloadWriter(54).put(0, severity).put_text(1, text, 50), 0);
+void SimulatedVehicle::say(const std::string& text, Severity severity, const Send& send) {
+  text_number_ = text_number_ == 0xFFFF ? 1 : static_cast<std::uint16_t>(text_number_ + 1);
+  send_text(text, severity, text_number_, send);
 }
 
 void SimulatedVehicle::take(const Frame& frame, const Send& send) {
-  if (missions_.take(frame, now_ns_, send)) return;
+  if (const std::optional<Status> mission = missions_.take(frame, now_ns_, send)) {
+    if (!*mission) say(mission->error().message, Severity::kWarning, send);
+    return;
+  }
+  std::string refusal;
+  switch (parameters_.take(frame, send, refusal)) {
+    case ParameterStore::Outcome::kNotMine:
+      break;
+    case ParameterStore::Outcome::kAnswered:
+      return;
+    case ParameterStore::Outcome::kChanged:
+      // The loops take the new values over where they are.
+      if (aircraft_) follow(flown_, autopilot_->pilot().item());
+      return;
+    case ParameterStore::Outcome::kRefused:
+      return say(refusal, Severity::kWarning, send);
+  }
   const PayloadReader payload(frame.payload);
   const auto for_us = [&](std::size_t at) {
     const auto target = payload.at<std::uint8_t>(at);
@@ -135,15 +127,6 @@ void SimulatedVehicle::take(const Frame& frame, const Send& send) {
     case MessageId::kSetMode:
       if (for_us(4)) (void)change_mode(static_cast<Mode>(payload.at<std::uint32_t>(0)), send);
       return;
-    case MessageId::kParamRequestList:
-      if (for_us(0)) take_parameter_message(frame, send);
-      return;
-    case MessageId::kParamRequestRead:
-      if (for_us(2)) take_parameter_message(frame, send);
-      return;
-    case MessageId::kParamSet:
-      if (for_us(4)) take_parameter_message(frame, send);
-      return;
     case MessageId::kMissionSetCurrent: {
       const auto number = payload.at<std::uint16_t>(0);
       const auto item = std::find_if(flown_.items.begin(),
@@ -154,12 +137,10 @@ void SimulatedVehicle::take(const Frame& frame, const Send& send) {
       return;
     }
     case MessageId::kRequestDataStream: {
-      const auto rate_hz = payload.at<std::uint16_t>(0);
-      if (!for_us(2)) return;
-      const bool on = payload.at<std::uint8_t>(5) != 0 && rate_hz > 0;
-      for (auto& [id, due] : due_) {
-        if (id == MessageId::kHeartbeat) continue;
-        due.interval_ns = on ? std::max(kShortestIntervalNs, interval_of(rate_hz)) : 0;
+      const bool on = payload.at<std::uint8_t>(5) != 0;
+      if (for_us(2)) {
+        schedule_.set_stream(
+            payload.at<std::uint8_t>(4), on ? payload.at<std::uint16_t>(0) : 0, now_ns_);
       }
       return;
     }
@@ -201,8 +182,7 @@ std::uint8_t SimulatedVehicle::run(std::uint16_t command,
     case kArmDisarm:
       return arm(parameter(1) == 1.0, parameter(2) == kForce, send);
     case kDoSetMode:
-      return change_mode(
-          static_cast<Mode>(static_cast<std::uint32_t>(std::clamp(parameter(2), 0.0, 1e6))), send);
+      return change_mode(static_cast<Mode>(number_from_float(parameter(2))), send);
     case kMissionStart:
       if (!armed_) return kResultDenied;
       return change_mode(Mode::kAuto, send);
@@ -213,15 +193,15 @@ std::uint8_t SimulatedVehicle::run(std::uint16_t command,
     case kDoReposition:
       return reposition(frame, send);
     case kSetMessageInterval:
-      return set_interval(frame);
+      return schedule_.set_interval(parameter(1), parameter(2), now_ns_) ? kResultAccepted
+                                                                         : kResultUnsupported;
     case kGetHomePosition:
     case kRequestCapabilities:
     case kRequestMessage: {
       const MessageId id = command == kGetHomePosition ? MessageId::kHomePosition
                            : command == kRequestCapabilities
                                ? MessageId::kAutopilotVersion
-                               : static_cast<MessageId>(static_cast<std::uint32_t>(
-                                     std::clamp(parameter(1), 0.0, 1e7)));
+                               : static_cast<MessageId>(number_from_float(parameter(1)));
       const auto wanted = payload_of(id, report());
       if (!wanted) return kResultUnsupported;
       send(id, *wanted, system);
@@ -232,41 +212,16 @@ std::uint8_t SimulatedVehicle::run(std::uint16_t command,
   }
 }
 
-std::uint8_t SimulatedVehicle::set_interval(const Frame& frame) {
-  const PayloadReader payload(frame.payload);
-  const double number = payload.at<float>(0);
-  const double interval_us = payload.at<float>(4);
-  if (!(number >= 0.0 && number < 1e7) || !std::isfinite(interval_us)) return kResultDenied;
-  const auto id = static_cast<MessageId>(static_cast<std::uint32_t>(number));
-  const auto known = due_.find(id);
-  if (known == due_.end()) return kResultUnsupported;
-  if (interval_us < 0.0) {
-    known->second.interval_ns = 0;
-  } else if (interval_us == 0.0) {
-    for (const auto& [each, rate_hz] : kDefaultRates) {
-      if (each == id) known->second.interval_ns = rate_hz > 0.0 ? interval_of(rate_hz) : 0;
-    }
-  } else {
-    known->second.interval_ns =
-        std::max(kShortestIntervalNs, static_cast<std::int64_t>(1e3 * std::min(interval_us, 1e9)));
-  }
-  known->second.next_ns = now_ns_;
-  return kResultAccepted;
-}
-
 std::uint8_t SimulatedVehicle::arm(bool wanted, bool forced, const Send& send) {
-  if (!wanted) {
-    if (aircraft_ && !forced) {
-      say("Disarm: in flight", kWarning, send);
-      return kResultFailed;
-    }
-    armed_ = false;
-    aircraft_.reset();
-    autopilot_.reset();
-    if (!aircraft_) parked_m_.z() = 0.0;
+  if (wanted || !aircraft_) {
+    armed_ = wanted;
     return kResultAccepted;
   }
-  armed_ = true;
+  if (!forced) {
+    say("Disarm: in flight", Severity::kWarning, send);
+    return kResultFailed;
+  }
+  park("Disarmed in flight: crashed below", Severity::kCritical, send);
   return kResultAccepted;
 }
 
@@ -279,7 +234,7 @@ std::uint8_t SimulatedVehicle::change_mode(Mode mode, const Send& send) {
         return kResultAccepted;
       }
       if (Status status = fly_mission(aircraft_ ? resume_item_ : 0); !status) {
-        say(status.error().message, kWarning, send);
+        say(status.error().message, Severity::kWarning, send);
         return kResultFailed;
       }
       mode_ = mode;
@@ -291,7 +246,8 @@ std::uint8_t SimulatedVehicle::change_mode(Mode mode, const Send& send) {
         if (mode_ == Mode::kAuto) resume_item_ = autopilot_->pilot().item();
         const Eigen::Vector3d at = aircraft_->state().position_world_m;
         mode_ = mode;
-        circle(mode == Mode::kReturn ? Eigen::Vector3d(0.0, 0.0, parameters_.rtl_altitude) : at);
+        circle(mode == Mode::kReturn ? Eigen::Vector3d(0.0, 0.0, parameters_.values().rtl_altitude)
+                                     : at);
       } else {
         mode_ = mode;
       }
@@ -299,14 +255,14 @@ std::uint8_t SimulatedVehicle::change_mode(Mode mode, const Send& send) {
     }
     case Mode::kManual:
       if (aircraft_) {
-        say("MANUAL: there is no pilot", kWarning, send);
+        say("MANUAL: there is no pilot", Severity::kWarning, send);
         return kResultFailed;
       }
       mode_ = mode;
       return kResultAccepted;
   }
   say("Mode " + std::to_string(static_cast<std::uint32_t>(mode)) + " is not supported",
-      kWarning,
+      Severity::kWarning,
       send);
   return kResultUnsupported;
 }
@@ -335,63 +291,10 @@ std::uint8_t SimulatedVehicle::reposition(const Frame& frame, const Send& send) 
   return kResultAccepted;
 }
 
-void SimulatedVehicle::send_parameter(std::size_t index,
-                                      std::uint8_t system,
-                                      const Send& send) const {
-  const auto table = autopilot::parameter_table();
-  send(MessageId::kParamValue,
-       PayloadWriter(25)
-           .put(0, static_cast<float>(parameters_.*table[index].value))
-           .put(4, static_cast<std::uint16_t>(table.size()))
-           .put(6, static_cast<std::uint16_t>(index))
-           .put_text(8, table[index].name, 16)
-           .put(24, kReal32),
-       system);
-}
-
-void SimulatedVehicle::take_parameter_message(const Frame& frame, const Send& send) {
-  const PayloadReader payload(frame.payload);
-  const auto table = autopilot::parameter_table();
-  const auto index_of = [&](const std::string& name) {
-    return static_cast<std::size_t>(
-        std::find_if(
-            table.begin(), table.end(), [&](const auto& each) { return name == each.name; }) -
-        table.begin());
-  };
-  switch (static_cast<MessageId>(frame.message_id)) {
-    case MessageId::kParamRequestList:
-      for (std::size_t i = 0; i < table.size(); ++i) send_parameter(i, frame.system, send);
-      return;
-    case MessageId::kParamRequestRead: {
-      const auto asked = payload.at<std::int16_t>(0);
-      const std::size_t index =
-          asked >= 0 ? static_cast<std::size_t>(asked) : index_of(payload.text(4, 16));
-      if (index < table.size()) send_parameter(index, frame.system, send);
-      return;
-    }
-    default: {
-      const std::string name = payload.text(6, 16);
-      const std::size_t index = index_of(name);
-      if (index >= table.size()) return;
-      autopilot::Parameters changed = parameters_;
-      Status status = autopilot::set_parameter(changed, name, payload.at<float>(0));
-      if (status) status = autopilot::check(changed);
-      if (status) {
-        parameters_ = changed;
-        // The loops take the new values over where they are.
-        if (aircraft_) follow(flown_, autopilot_->pilot().item());
-      } else {
-        say(status.error().message, kWarning, send);
-      }
-      return send_parameter(index, frame.system, send);
-    }
-  }
-}
-
 void SimulatedVehicle::follow(autopilot::Mission mission, std::size_t item) {
   flown_ = std::move(mission);
   autopilot_.emplace(
-      parameters_, setup_.airframe, flown_, [](const Eigen::Vector2d&) { return 0.0; });
+      parameters_.values(), setup_.airframe, flown_, [](const Eigen::Vector2d&) { return 0.0; });
   autopilot_->start(autopilot::flight_state(*aircraft_), aircraft_->positions(), item);
 }
 
@@ -409,7 +312,8 @@ Status SimulatedVehicle::fly_mission(std::size_t item) {
       autopilot::plan_mission(missions_.items(), frame_, ground_, std::nullopt);
   if (!planned) return planned.error();
   if (aircraft_) {
-    follow(std::move(planned->mission), std::min(item, planned->mission.items.size() - 1));
+    const std::size_t last = planned->mission.items.size() - 1;
+    follow(std::move(planned->mission), std::min(item, last));
     return {};
   }
   if (planned->mission.items.front().command != autopilot::MissionCommand::kTakeOff) {
@@ -423,7 +327,7 @@ Status SimulatedVehicle::fly_mission(std::size_t item) {
                          .wind_world_m_s = setup_.wind_world_m_s,
                          .turbulence = setup_.turbulence,
                          .turbulence_seed = setup_.seed + flights_},
-                        parameters_,
+                        parameters_.values(),
                         parked_m_,
                         parked_heading_rad_);
   if (!aircraft) return aircraft.error();
@@ -434,25 +338,29 @@ Status SimulatedVehicle::fly_mission(std::size_t item) {
   return {};
 }
 
+/// The flight has ended: the aircraft stands, disarmed, on the ground below where it was.
+void SimulatedVehicle::park(const std::string& text, Severity severity, const Send& send) {
+  const autopilot::FlightState state = autopilot::flight_state(*aircraft_);
+  parked_m_ = {state.position_world_m.x(), state.position_world_m.y(), 0.0};
+  parked_heading_rad_ = state.attitude.yaw_rad;
+  aircraft_.reset();
+  autopilot_.reset();
+  resume_item_ = 0;
+  armed_ = false;
+  mode_ = Mode::kManual;
+  say(text, severity, send);
+}
+
 /// Contact with the ground, or the end of the mission.
 void SimulatedVehicle::finish_flight(const Send& send) {
   const autopilot::FlightPhase phase = autopilot_->pilot().phase();
   if (aircraft_->state().position_world_m.z() <= 0.0) {
-    const bool landed = phase == autopilot::FlightPhase::kFlare;
-    const autopilot::FlightState state = autopilot::flight_state(*aircraft_);
-    parked_m_ = {state.position_world_m.x(), state.position_world_m.y(), 0.0};
-    parked_heading_rad_ = state.attitude.yaw_rad;
-    aircraft_.reset();
-    autopilot_.reset();
-    resume_item_ = 0;
-    armed_ = false;
-    mode_ = Mode::kManual;
-    say(landed ? "Landed" : "Crashed: hit the ground", landed ? kInfo : kCritical, send);
-    return;
+    if (phase == autopilot::FlightPhase::kFlare) return park("Landed", Severity::kInfo, send);
+    return park("Crashed: hit the ground", Severity::kCritical, send);
   }
   if (phase == autopilot::FlightPhase::kDone && mode_ == Mode::kAuto) {
-    say("Mission complete, changing mode to RTL", kInfo, send);
-    (void)change_mode(Mode::kReturn, send);
+    say("Mission complete, changing mode to RTL", Severity::kInfo, send);
+    (void)change_mode(Mode::kReturn, send);  // in flight it is always accepted
   }
 }
 
@@ -460,7 +368,7 @@ void SimulatedVehicle::step(const Send& send) {
   now_ns_ += kStepNs;
   if (armed_ && !aircraft_ && mode_ == Mode::kAuto) {
     if (Status status = fly_mission(0); !status) {
-      say(status.error().message, kWarning, send);
+      say(status.error().message, Severity::kWarning, send);
       mode_ = Mode::kManual;
     }
   }
@@ -477,12 +385,9 @@ void SimulatedVehicle::step(const Send& send) {
   }
   missions_.step(now_ns_, send);
   const VehicleReport now = report();
-  for (auto& [id, due] : due_) {
-    if (due.interval_ns == 0 || now_ns_ < due.next_ns) continue;
-    // Late by less than a step: the rate holds over time.
-    due.next_ns = std::max(due.next_ns + due.interval_ns, now_ns_ + due.interval_ns / 2);
+  schedule_.step(now_ns_, [&](MessageId id) {
     if (const auto payload = payload_of(id, now)) send(id, *payload, 0);
-  }
+  });
 }
 
 }  // namespace overfly::vehicle

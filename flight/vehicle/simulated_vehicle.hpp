@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,7 +10,10 @@
 #include "core/result.hpp"
 #include "flight/autopilot/autopilot.hpp"
 #include "flight/autopilot/mission_items.hpp"
+#include "flight/vehicle/message_schedule.hpp"
 #include "flight/vehicle/mission_store.hpp"
+#include "flight/vehicle/parameter_store.hpp"
+#include "flight/vehicle/send.hpp"
 #include "flight/vehicle/vehicle_report.hpp"
 
 namespace overfly::vehicle {
@@ -33,8 +35,8 @@ struct VehicleSetup {
 ///
 /// The aircraft stands at home until it is armed and a mission that begins with a take-off starts.
 /// It lands where its mission lands, disarms there, and takes off again from there. After the last
-/// item of another mission it returns. Contact with the ground elsewhere is a crash: it disarms and
-/// says so.
+/// item of another mission it returns. Contact with the ground elsewhere, and a forced disarm in
+/// flight, is a crash: it disarms, stands on the ground below, and says so.
 ///
 /// Time is the vehicle's own and moves with step(). Equal messages at equal times give equal
 /// flights.
@@ -59,11 +61,6 @@ class SimulatedVehicle {
   using MessageId = flight::mavlink::MessageId;
   using Frame = flight::mavlink::Frame;
 
-  struct Due {
-    std::int64_t interval_ns = 0;  ///< 0: not sent
-    std::int64_t next_ns = 0;
-  };
-
   SimulatedVehicle(const VehicleSetup& setup, const autopilot::Parameters& parameters);
   void take_command(const Frame& frame, const Send& send);
   [[nodiscard]] std::uint8_t run(std::uint16_t command,
@@ -72,10 +69,7 @@ class SimulatedVehicle {
                                  const Send& send);
   [[nodiscard]] std::uint8_t arm(bool wanted, bool forced, const Send& send);
   [[nodiscard]] std::uint8_t change_mode(Mode mode, const Send& send);
-  [[nodiscard]] std::uint8_t set_interval(const Frame& frame);
   [[nodiscard]] std::uint8_t reposition(const Frame& frame, const Send& send);
-  void take_parameter_message(const Frame& frame, const Send& send);
-  void send_parameter(std::size_t index, std::uint8_t system, const Send& send) const;
   [[nodiscard]] Status check_mission(const MissionStore::Items& items) const;
   /// Starts the flight by the mission from an item, from the ground or in flight.
   [[nodiscard]] Status fly_mission(std::size_t item);
@@ -83,10 +77,11 @@ class SimulatedVehicle {
   void circle(const Eigen::Vector3d& centre_m);
   void follow(autopilot::Mission mission, std::size_t item);
   void finish_flight(const Send& send);
-  void say(const std::string& text, std::uint8_t severity, const Send& send) const;
+  void park(const std::string& text, Severity severity, const Send& send);
+  void say(const std::string& text, Severity severity, const Send& send);
 
   VehicleSetup setup_;
-  autopilot::Parameters parameters_;
+  ParameterStore parameters_;
   LocalFrame frame_;
   FlatGround ground_{0.0};
   MissionStore missions_;
@@ -100,7 +95,8 @@ class SimulatedVehicle {
   autopilot::Mission flown_;
   std::size_t resume_item_ = 0;
   std::uint64_t flights_ = 0;
-  std::map<MessageId, Due> due_;
+  MessageSchedule schedule_;
+  std::uint16_t text_number_ = 0;
 };
 
 }  // namespace overfly::vehicle

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cmath>
 #include <deque>
 #include <thread>
 
@@ -137,6 +138,15 @@ TEST(SimulatedVehicle, KeepsAMissionAndRefusesOneThatItCannotFly) {
   const Status refused = flight::mavlink::upload_mission(exchange, odd);
   ASSERT_FALSE(refused.ok());
   EXPECT_THAT(refused.error().message, HasSubstr("error"));
+  // The vehicle says why.
+  exchange.pass(MessageId::kMissionCount,
+                PayloadWriter(9).put(0, std::uint16_t{2}).put(2, std::uint8_t{1}).bytes());
+  for (std::size_t i = 0; i < 2; ++i) {
+    exchange.pass(MessageId::kMissionItemInt,
+                  flight::mavlink::encode_mission_item(odd[i + 1], i, 1, 1).bytes());
+  }
+  exchange.collect();
+  EXPECT_THAT(exchange.texts, Contains(HasSubstr("mission item 1: command 94")));
   EXPECT_EQ(flight::mavlink::download_mission(exchange)->size(), items.size());
   // Fences and rally points: none, and none are taken.
   exchange.inbox.clear();
@@ -243,6 +253,78 @@ TEST(SimulatedVehicle, SendsAtTheRatesAskedFor) {
   EXPECT_EQ(exchange.counts[MessageId::kVfrHud], 0);
   EXPECT_NEAR(exchange.counts[MessageId::kHeartbeat], 10, 1);
   EXPECT_EQ(exchange.counts[MessageId::kParamValue], 0);
+}
+
+TEST(SimulatedVehicle, ChangesTheRatesOfOneStreamOnly) {
+  DirectExchange exchange;
+  const auto ask = [&](std::uint8_t stream, std::uint16_t rate_hz, std::uint8_t on) {
+    exchange.pass(
+        MessageId::kRequestDataStream,
+        PayloadWriter(6).put(0, rate_hz).put(2, std::uint8_t{1}).put(4, stream).put(5, on).bytes());
+  };
+  ask(6, 20, 1);
+  ask(11, 4, 0);
+  exchange.fly(10.0, [](const VehicleReport&) { return false; });
+  EXPECT_NEAR(exchange.counts[MessageId::kGlobalPositionInt], 200, 2);
+  EXPECT_NEAR(exchange.counts[MessageId::kAttitude], 100, 2);  // another stream: as before
+  EXPECT_EQ(exchange.counts[MessageId::kVfrHud], 0);
+  EXPECT_NEAR(exchange.counts[MessageId::kHeartbeat], 10, 1);
+}
+
+TEST(SimulatedVehicle, RefusesNumbersThatAreNone) {
+  DirectExchange exchange;
+  for (const float odd : {std::nanf(""), HUGE_VALF, -1.0F, 1e30F}) {
+    for (const std::uint16_t id : {std::uint16_t{176}, std::uint16_t{511}, std::uint16_t{512}}) {
+      exchange.inbox.clear();
+      PayloadWriter command(33);
+      command.put(0, odd).put(4, odd).put(28, id).put(30, std::uint8_t{1});
+      exchange.pass(MessageId::kCommandLong, command.bytes());
+      ASSERT_FALSE(exchange.inbox.empty());
+      const HeldMessage& answer = exchange.inbox.back();
+      ASSERT_TRUE(answer.is(MessageId::kCommandAck) || answer.is(MessageId::kHeartbeat));
+      // Message 0 and mode 0 exist: what is no number counts as 0 there.
+      if (id == 511) {
+        EXPECT_NE(answer.reader().at<std::uint8_t>(2), 0);
+      }
+    }
+  }
+  // The longest interval is bounded, not undefined.
+  PayloadWriter command(33);
+  command.put(0, 30.0F).put(4, 1e30F).put(28, std::uint16_t{511}).put(30, std::uint8_t{1});
+  exchange.pass(MessageId::kCommandLong, command.bytes());
+  exchange.inbox.clear();
+  exchange.fly(5.0, [](const VehicleReport&) { return false; });
+  EXPECT_LE(exchange.counts[MessageId::kAttitude], 1);
+}
+
+TEST(SimulatedVehicle, CrashesWhereItIsDisarmedByForce) {
+  DirectExchange exchange;
+  ASSERT_TRUE(flight::mavlink::upload_mission(exchange, pattern()).ok());
+  ASSERT_TRUE(flight::mavlink::arm(exchange, std::chrono::seconds(5)).ok());
+  ASSERT_TRUE(flight::mavlink::start_mission(exchange).ok());
+  exchange.fly(40.0, [](const VehicleReport&) { return false; });
+  const Eigen::Vector3d above = exchange.vehicle->report().state.position_world_m;
+  ASSERT_GT(above.head<2>().norm(), 100.0);
+  PayloadWriter command(33);
+  command.put(0, 0.0F).put(4, 21196.0F).put(28, std::uint16_t{400}).put(30, std::uint8_t{1});
+  exchange.pass(MessageId::kCommandLong, command.bytes());
+  const VehicleReport end = exchange.vehicle->report();
+  EXPECT_FALSE(end.armed || end.in_air);
+  EXPECT_EQ(end.state.position_world_m, Eigen::Vector3d(above.x(), above.y(), 0.0));
+}
+
+TEST(SimulatedVehicle, ContinuesAShorterMissionAtItsLastItem) {
+  DirectExchange exchange;
+  ASSERT_TRUE(flight::mavlink::upload_mission(exchange, pattern()).ok());
+  ASSERT_TRUE(flight::mavlink::arm(exchange, std::chrono::seconds(5)).ok());
+  ASSERT_TRUE(flight::mavlink::start_mission(exchange).ok());
+  exchange.fly(300.0, [](const VehicleReport& at) { return at.mission_item == 4; });
+  ASSERT_TRUE(flight::mavlink::change_mode(exchange, 12).ok());
+  auto shorter = pattern();
+  shorter.resize(3);
+  ASSERT_TRUE(flight::mavlink::upload_mission(exchange, shorter).ok());
+  ASSERT_TRUE(flight::mavlink::change_mode(exchange, 10).ok());
+  EXPECT_EQ(exchange.vehicle->report().mission_item, 2);
 }
 
 TEST(SimulatedVehicle, AnswersWhatTimeItIs) {
