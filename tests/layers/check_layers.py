@@ -41,6 +41,7 @@ MAY_INCLUDE = {
     "core/text": ["core", "core/outside"],
     "core/motion": ["core", "core/text"],
     "core/earth": ["core", "core/motion"],
+    "core/sensors": ["core", "core/earth"],
     "core/camera": ["core", "core/motion"],
     "core/measure": ["core", "core/camera"],
     "terrain": ["core/"],

@@ -152,7 +152,7 @@ Result<std::optional<VoEstimate>> Session::track(const VoFrame& frame, bool debu
       bytes > kFrameLimitBytes) {
     return Error{ErrorCode::kInvalidArgument,
                  "frame " + std::to_string(frame.index) + ": with " +
-                     std::to_string(frame.imu.size()) + " inertial samples FRAME has " +
+                     std::to_string(frame.sensors.imu.size()) + " inertial samples FRAME has " +
                      std::to_string(bytes) + " bytes: must be at most " +
                      std::to_string(kFrameLimitBytes)};
   }

@@ -49,7 +49,7 @@ TEST(ProcessDoor, TellsWhatTheEstimatorAnswers) {
   estimator->set_debug(true);
   std::vector<VoFrame> frames = ground_frames(2, 1.0, 1.0);
   frames[1].exposure_ns = 2'000'000;
-  frames[1].imu = {{frames[0].t_ns, {0.0, 0.0, -9.81}, {0.0, 0.0, 0.5}},
+  frames[1].sensors.imu = {{frames[0].t_ns, {0.0, 0.0, -9.81}, {0.0, 0.0, 0.5}},
                    {frames[1].t_ns, {0.0, 0.0, -9.81}, {0.0, 0.0, 0.25}}};
   EXPECT_EQ(estimator->track(frames[0])->sample.state, TrackingState::kInitialising);
   const VoEstimate estimate = estimator->track(frames[1]).value();
@@ -137,13 +137,13 @@ TEST(ProcessDoor, FramesGoThroughTheSocketUpToTheSizeOfTheProtocol) {
                         "most 67108864"));
   frame.intrinsics.width_px = 8192;
   frame.image = std::make_shared<const Image>(8192, 8192, 1);
-  frame.imu.resize(1'300'000);
+  frame.sensors.imu.resize(1'300'000);
   const Result<VoEstimate> too_long = estimator->track(frame);
   ASSERT_FALSE(too_long.ok());
   EXPECT_THAT(too_long.error().message,
               HasSubstr("with 1300000 inertial samples FRAME has 139908912 bytes: must be at most "
                         "68157440"));
-  frame.imu.clear();
+  frame.sensors.imu.clear();
   const Result<VoEstimate> estimate = estimator->track(frame);
   ASSERT_TRUE(estimate.ok()) << estimate.error().message;
   EXPECT_EQ(estimate->image_crc32, crc32_of(*frame.image));

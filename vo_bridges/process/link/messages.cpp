@@ -50,7 +50,7 @@ std::string calibration_message(const VoFrame& frame, double rate_hz, const Fram
 }
 
 std::size_t frame_payload_bytes(const VoFrame& frame, bool in_shared_memory) {
-  return 48 + 56 * frame.imu.size() + (in_shared_memory ? 0 : frame.image->data.size());
+  return 48 + 56 * frame.sensors.imu.size() + (in_shared_memory ? 0 : frame.image->data.size());
 }
 
 std::string frame_message(const VoFrame& frame, const FrameSending& sending) {
@@ -61,8 +61,8 @@ std::string frame_message(const VoFrame& frame, const FrameSending& sending) {
   writer.u32(static_cast<std::uint32_t>(frame.image->height_px));
   writer.u32(sending.crc32);
   writer.u32((sending.debug_wanted ? 1U : 0U) | (sending.in_shared_memory ? 2U : 0U));
-  writer.u32(sending.slot).u32(static_cast<std::uint32_t>(frame.imu.size()));
-  for (const ImuSample& sample : frame.imu) {
+  writer.u32(sending.slot).u32(static_cast<std::uint32_t>(frame.sensors.imu.size()));
+  for (const ImuSample& sample : frame.sensors.imu) {
     writer.i64(sample.t_ns);
     for (const double value : sample.acceleration_m_s2) writer.f64(value);
     for (const double value : sample.angular_rate_rad_s) writer.f64(value);
