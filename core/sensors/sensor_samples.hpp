@@ -78,5 +78,7 @@ struct SensorSamples {
 
 /// Moves the samples behind those already there.
 void append(SensorSamples& to, SensorSamples&& from);
+/// Removes the samples measured before a time.
+void drop_before(SensorSamples& samples, std::int64_t t_ns);
 
 }  // namespace overfly

@@ -96,6 +96,7 @@ MAY_INCLUDE = {
     "flight/smoothing": ["core/"],
     "flight/replay": ["core/", "flight/pose_flight.hpp", "flight/logs", "flight/smoothing"],
     "flight/dynamics": ["core/", "flight/gravity.hpp", "flight/normal_noise.hpp"],
+    "flight/sensors": ["core/", "flight/normal_noise.hpp", "flight/dynamics/environment.hpp"],
     "middleware/lcm": ["core/"],
     "middleware/lcm/absent": ["core/", "middleware/lcm"],
     "middleware/ros1": ["core/"],
