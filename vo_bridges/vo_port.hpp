@@ -19,6 +19,9 @@
 
 namespace overfly {
 
+/// Samples of sensors that wait for a frame are kept for this time.
+inline constexpr std::int64_t kOldestSampleNs = 10'000'000'000;
+
 /// One image for an estimator. The image is shared and never modified after its creation.
 struct VoFrame {
   std::string camera_id = "camera0";

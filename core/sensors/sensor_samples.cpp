@@ -1,6 +1,7 @@
 #include "core/sensors/sensor_samples.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace overfly {
@@ -15,14 +16,6 @@ void append_samples(std::vector<Sample>& to, std::vector<Sample>& from) {
   }
 }
 
-template <typename Sample>
-void drop_samples_before(std::vector<Sample>& samples, std::int64_t t_ns) {
-  const auto kept = std::find_if(samples.begin(), samples.end(), [&](const Sample& sample) {
-    return sample.t_ns >= t_ns;
-  });
-  samples.erase(samples.begin(), kept);
-}
-
 }  // namespace
 
 void append(SensorSamples& to, SensorSamples&& from) {
@@ -34,13 +27,28 @@ void append(SensorSamples& to, SensorSamples&& from) {
   append_samples(to.range, from.range);
 }
 
-void drop_before(SensorSamples& samples, std::int64_t t_ns) {
-  drop_samples_before(samples.imu, t_ns);
-  drop_samples_before(samples.barometer, t_ns);
-  drop_samples_before(samples.gps, t_ns);
-  drop_samples_before(samples.airspeed, t_ns);
-  drop_samples_before(samples.magnetometer, t_ns);
-  drop_samples_before(samples.range, t_ns);
+void drop_older_than(SensorSamples& samples, std::int64_t age_ns) {
+  std::int64_t newest_ns = std::numeric_limits<std::int64_t>::min();
+  const auto see = [&](const auto& list) {
+    if (!list.empty()) newest_ns = std::max(newest_ns, list.back().t_ns);
+  };
+  const auto drop = [&](auto& list) {
+    const auto kept = std::find_if(list.begin(), list.end(), [&](const auto& sample) {
+      return sample.t_ns >= newest_ns - age_ns;
+    });
+    list.erase(list.begin(), kept);
+  };
+  const auto with_each = [&](const auto& visit) {
+    visit(samples.imu);
+    visit(samples.barometer);
+    visit(samples.gps);
+    visit(samples.airspeed);
+    visit(samples.magnetometer);
+    visit(samples.range);
+  };
+  if (samples.empty()) return;
+  with_each(see);
+  with_each(drop);
 }
 
 }  // namespace overfly

@@ -78,7 +78,7 @@ struct SensorSamples {
 
 /// Moves the samples behind those already there.
 void append(SensorSamples& to, SensorSamples&& from);
-/// Removes the samples measured before a time.
-void drop_before(SensorSamples& samples, std::int64_t t_ns);
+/// Removes the samples that were measured more than `age_ns` before the newest one.
+void drop_older_than(SensorSamples& samples, std::int64_t age_ns);
 
 }  // namespace overfly

@@ -1,5 +1,6 @@
 #include "vo_bridges/process/link/messages.hpp"
 
+#include "core/motion/pose.hpp"
 #include "vo_bridges/estimator_text.hpp"
 
 namespace overfly::process {
@@ -68,6 +69,42 @@ std::string frame_message(const VoFrame& frame, const FrameSending& sending) {
     for (const double value : sample.angular_rate_rad_s) writer.f64(value);
   }
   return std::move(writer.bytes());
+}
+
+std::string sensors_message(const VoFrame& frame) {
+  const SensorSamples& samples = frame.sensors;
+  ByteWriter writer;
+  writer.i64(frame.index);
+  std::size_t count = 0;
+  for (const std::size_t size : {samples.barometer.size(),
+                                 samples.gps.size(),
+                                 samples.airspeed.size(),
+                                 samples.magnetometer.size(),
+                                 samples.range.size()}) {
+    writer.u32(static_cast<std::uint32_t>(size));
+    count += size;
+  }
+  if (count == 0) return {};
+  writer.u32(0);
+  for (const BarometerSample& s : samples.barometer) {
+    writer.i64(s.t_ns).f64(s.pressure_pa).f64(s.temperature_k);
+  }
+  for (const GpsSample& s : samples.gps) {
+    writer.i64(s.t_ns).i64(s.delivered_ns).u32(s.fix == GpsFixType::k3d ? 3 : 0).u32(0);
+    writer.f64(deg_from_rad(s.place.lat_rad)).f64(deg_from_rad(s.place.lon_rad));
+    writer.f64(s.place.alt_ellipsoid_m);
+    for (const double value : s.velocity_ned_m_s) writer.f64(value);
+    writer.f64(s.horizontal_accuracy_m).f64(s.vertical_accuracy_m).f64(s.speed_accuracy_m_s);
+  }
+  for (const AirspeedSample& s : samples.airspeed) {
+    writer.i64(s.t_ns).f64(s.differential_pressure_pa).f64(s.indicated_airspeed_m_s);
+  }
+  for (const MagnetometerSample& s : samples.magnetometer) {
+    writer.i64(s.t_ns);
+    for (const double value : s.field_ut) writer.f64(value);
+  }
+  for (const RangeSample& s : samples.range) writer.i64(s.t_ns).f64(s.range_m);
+  return message_of(MessageType::kSensors, writer.bytes());
 }
 
 }  // namespace overfly::process
