@@ -11,6 +11,7 @@
 #include "flight/live/stop_watch.hpp"
 #include "flight/live/truth_streams.hpp"
 #include "flight/logs/ned_attitude.hpp"
+#include "flight/mavlink/messages.hpp"
 
 namespace overfly::flight::live {
 namespace {
@@ -46,7 +47,9 @@ struct LiveTruth::Impl {
   LiveSamples samples;
   StopWatch stop;
   std::optional<TruthStreams> streams;
-  std::int64_t start_ns = 0;
+  bool started = false;
+  std::int64_t start_ns =
+      0;  ///< once the streams are chosen: moves on until the flight has started
   Clock::time_point last_sample;
   std::string end_reason;              ///< empty while the flight goes on
   std::optional<std::int64_t> end_ns;  ///< of the vehicle's clock
@@ -57,11 +60,16 @@ struct LiveTruth::Impl {
   std::string opened_as;                ///< description
 
   Impl(std::shared_ptr<mavlink::Vehicle> of, const LocalFrame& in, const LiveTruthOptions& with)
-      : vehicle(std::move(of)), frame(in), options(with), stop(with.stop) {}
+      : vehicle(std::move(of)),
+        frame(in),
+        options(with),
+        stop(with.stop),
+        started(with.start.mission_item < 0) {}
 
   void take(const mavlink::Frame& message);
   [[nodiscard]] std::int64_t known_until_ns() const;
   bool choose();
+  void await_start(const mavlink::Frame& message);
   void end(const std::string& reason);
   [[nodiscard]] AircraftState state_of(const LivePosition& position) const;
   [[nodiscard]] AircraftState at(std::int64_t vehicle_ns);
@@ -93,6 +101,7 @@ void LiveTruth::Impl::take(const mavlink::Frame& message) {
       } else if (const std::string reason = stop.take(message); !reason.empty()) {
         end(reason);
       }
+      if (!started && !end_ns) await_start(message);
     }
   }
   news.notify_all();
@@ -133,6 +142,14 @@ bool LiveTruth::Impl::choose() {
   samples.keep_only(chosen->position, chosen->attitude);
   samples.forget_before(start_ns);
   return true;
+}
+
+/// Forgets the flight so far until its start condition holds.
+void LiveTruth::Impl::await_start(const mavlink::Frame& message) {
+  start_ns = known_until_ns();
+  samples.forget_before(start_ns);
+  started = message.message_id == static_cast<std::uint32_t>(mavlink::MessageId::kMissionCurrent) &&
+            mavlink::decode_mission_sequence(message) >= options.start.mission_item;
 }
 
 /// Waits until `ready` returns true or the flight ends.
@@ -254,9 +271,14 @@ Result<std::unique_ptr<LiveTruth>> LiveTruth::open(std::shared_ptr<mavlink::Vehi
   Impl& impl = *truth->impl_;
   impl.vehicle->set_listener([&impl](const mavlink::Frame& message) { impl.take(message); });
   const std::string what = impl.vehicle->address().text() + ": waiting for the flight's start";
-  if (Status status = impl.wait(what, cancel, [&impl] { return impl.streams.has_value(); });
-      !status) {
-    return status.error();
+  const auto started = [&impl] { return impl.streams.has_value() && impl.started; };
+  if (Status status = impl.wait(what, cancel, started); !status) return status.error();
+  const std::lock_guard lock(impl.mutex);
+  if (!impl.started) {
+    return Error{ErrorCode::kIo,
+                 impl.vehicle->address().text() +
+                     ": the flight ended before the mission came to item " +
+                     std::to_string(options.start.mission_item) + ": " + impl.end_reason};
   }
   return truth;
 }
