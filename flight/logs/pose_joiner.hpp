@@ -61,7 +61,7 @@ class PoseJoiner final : public TruthSampleSink {
   void join(Run& run, std::int64_t until_ns);
   void add_pose(Run& run, const Position& position, const Eigen::Quaterniond& R_ned_body);
 
-  std::size_t expected_ = 0;  ///< number of positions for which memory is reserved
+  std::size_t expected_ = 0;   ///< number of positions for which memory is reserved
   std::size_t positions_ = 0;  ///< in all runs
   std::map<std::uint32_t, Run> runs_;
   std::vector<LocalOrigin> origins_;
