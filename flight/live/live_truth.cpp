@@ -55,6 +55,14 @@ struct LiveTruth::Impl {
   std::int64_t longest_gap_at_ns = 0;   ///< from the start
   std::int64_t last_gap_begin_ns = -1;  ///< counted already
   std::string opened_as;                ///< description
+  std::shared_ptr<EstimateReceiver> receiver;
+  /// When the states up to a time of the vehicle's clock became known.
+  struct Arrival {
+    std::int64_t known_until_ns = 0;
+    Clock::time_point at;
+  };
+  std::deque<Arrival> arrivals;
+  std::optional<Clock::time_point> heard;  ///< the latest state
 
   Impl(std::shared_ptr<mavlink::Vehicle> of, const LocalFrame& in, const LiveTruthOptions& with)
       : vehicle(std::move(of)), frame(in), options(with), stop(with.stop) {}
@@ -87,7 +95,11 @@ void LiveTruth::Impl::take(const mavlink::Frame& message) {
     samples.take(message);
     if (!streams && choose()) last_sample = Clock::now();
     if (streams) {
-      if (known_until_ns() > before_ns) last_sample = Clock::now();
+      if (known_until_ns() > before_ns) {
+        last_sample = Clock::now();
+        arrivals.push_back({known_until_ns(), last_sample});
+        if (arrivals.size() > kMaxLiveSamples) arrivals.pop_front();
+      }
       if (samples.restarted()) {
         end("the vehicle's clock started again: the vehicle was restarted");
       } else if (const std::string reason = stop.take(message); !reason.empty()) {
@@ -221,6 +233,9 @@ void LiveTruth::Impl::set_attitude(std::int64_t vehicle_ns, AircraftState& state
 /// @pre start_ns <= vehicle_ns <= known_until_ns()
 AircraftState LiveTruth::Impl::at(std::int64_t vehicle_ns) {
   samples.forget_before(vehicle_ns);
+  while (!arrivals.empty() && arrivals.front().known_until_ns < vehicle_ns) arrivals.pop_front();
+  heard.reset();
+  if (!arrivals.empty()) heard = arrivals.front().at;
   const auto after = not_before(positions(), vehicle_ns);
   AircraftState state;
   if (after->t_ns == vehicle_ns) {
@@ -286,6 +301,19 @@ std::vector<std::string> LiveTruth::warnings() const {
 }
 
 std::int64_t LiveTruth::start_ns() const { return impl_->start_ns; }
+
+void LiveTruth::send_estimates_by(std::shared_ptr<EstimateReceiver> receiver) {
+  impl_->receiver = std::move(receiver);
+}
+
+std::shared_ptr<EstimateReceiver> LiveTruth::estimate_receiver() const { return impl_->receiver; }
+
+std::optional<std::int64_t> LiveTruth::heard_ns() const {
+  const std::lock_guard lock(impl_->mutex);
+  if (!impl_->heard) return std::nullopt;
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(impl_->heard->time_since_epoch())
+      .count();
+}
 
 Result<std::optional<AircraftState>> LiveTruth::find_state(std::int64_t t_ns,
                                                            const std::atomic<bool>* cancel) {

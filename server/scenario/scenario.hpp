@@ -107,6 +107,8 @@ struct Scenario {
   using LoggedFlight = server::LoggedFlight;
   std::variant<flight::CourseParameters, LoggedFlight, flight::live::LiveFlight, MissionFile>
       flight;
+  /// Index of the estimator whose answers are sent to the live vehicle.
+  std::optional<std::size_t> feedback_estimator;
   /// Empty: coordinated turns.
   std::optional<CourseDynamics> course_dynamics;
   /// The course starts at the world's runway, which is known only when the world is open.

@@ -77,7 +77,8 @@ Status read_all(Json& document, const fs::path& base, Scenario& scenario) {
   if (Status status = read_faults(document, scenario); !status) return status;
   read_renderer(document, scenario);
   if (Status status = read_light_and_detail(document, scenario); !status) return status;
-  return read_estimators(document, base, scenario);
+  if (Status status = read_estimators(document, base, scenario); !status) return status;
+  return find_feedback_estimator(document, scenario);
 }
 
 }  // namespace
