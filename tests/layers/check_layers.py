@@ -83,6 +83,8 @@ MAY_INCLUDE = {
     "flight/live": ["core/", "flight/mavlink", "flight/mavlink/link", "flight/mavlink/vehicle",
                     "flight/mavlink/feedback",
                     "flight/logs", "flight/logs/tlog"],
+    "flight/ros": ["core/", "flight/live", "flight/logs", "flight/logs/ros",
+                   "middleware/ros1/topic_listener.hpp"],
     "flight/logs": ["core/", "flight/logs/tlog", "flight/logs/dataflash", "flight/logs/ulog",
                     "flight/logs/mcap", "flight/logs/rosbag", "flight/logs/lcm",
                     "flight/logs/csv", "flight/logs/index"],

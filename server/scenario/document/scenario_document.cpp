@@ -5,6 +5,7 @@
 #include "server/scenario/document/flight/scenario_course.hpp"
 #include "server/scenario/document/flight/scenario_flight.hpp"
 #include "server/scenario/document/flight/scenario_live.hpp"
+#include "server/scenario/document/flight/scenario_ros.hpp"
 #include "server/scenario/document/scenario_camera.hpp"
 #include "server/scenario/document/scenario_estimators.hpp"
 #include "server/scenario/document/scenario_faults.hpp"
@@ -29,6 +30,12 @@ Status read_flight(Json& document, const FileResolver& files, Scenario& scenario
     Result<flight::live::LiveFlight> live = read_live_flight(flight.at("mavlink"), files);
     if (!live) return live.error();
     scenario.flight = std::move(*live);
+    return {};
+  }
+  if (flight.contains("ros")) {
+    Result<flight::ros_live::RosFlight> ros = read_ros_flight(flight.at("ros"));
+    if (!ros) return ros.error();
+    scenario.flight = std::move(*ros);
     return {};
   }
   if (flight.contains("mission")) {
