@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "flight/live/live_truth.hpp"
+#include "flight/mavlink/feedback/feedback_sender.hpp"
+#include "flight/mavlink/feedback/prepare_feedback.hpp"
 #include "flight/mavlink/link/signing.hpp"
 #include "flight/mavlink/vehicle/commands.hpp"
 #include "flight/mavlink/vehicle/message_rates.hpp"
@@ -31,8 +33,13 @@ Status request_rates(mavlink::Exchange& exchange, const LiveFlight& flight) {
   if (flight.truth.truth != TruthPreference::kEstimate) {
     rates.emplace_back(MessageId::kSimState, flight.rate_hz);
   }
-  if (flight.truth.truth != TruthPreference::kSimulation) {
+  // The vehicle's own height goes with estimates without one.
+  const bool own_height = flight.feedback && !flight.feedback->send_height;
+  if (flight.truth.truth != TruthPreference::kSimulation || own_height) {
     rates.emplace_back(MessageId::kGlobalPositionInt, flight.rate_hz);
+  }
+  if (flight.feedback && flight.feedback->message == mavlink::FeedbackMessage::kGpsInput) {
+    rates.emplace_back(MessageId::kSystemTime, 1.0);
   }
   if (flight.truth.stop.on_landing) {
     rates.emplace_back(MessageId::kExtendedSysState, kSlowRateHz);
@@ -74,13 +81,21 @@ Status set_mission(mavlink::Exchange& exchange, const std::filesystem::path& fil
                    " has not stored the mission as it was sent"};
 }
 
-Status prepare(mavlink::Exchange& exchange, const LiveFlight& flight) {
+Status prepare(mavlink::Exchange& exchange, const LiveFlight& flight, const LocalFrame& frame) {
   if (Status status = request_rates(exchange, flight); !status) return status;
   for (const auto& [name, value] : flight.parameters) {
     if (Status status = mavlink::set_parameter(exchange, name, value); !status) return status;
   }
   if (flight.mission_file) {
     if (Status status = set_mission(exchange, *flight.mission_file); !status) return status;
+  }
+  if (flight.feedback) {
+    const Geodetic& origin = frame.origin();
+    const mavlink::GlobalPosition msl{deg_from_rad(origin.lat_rad),
+                                      deg_from_rad(origin.lon_rad),
+                                      origin.alt_ellipsoid_m - flight.truth.geoid_separation_m};
+    Status status = mavlink::prepare_feedback(exchange, *flight.feedback, msl);
+    if (!status) return status;
   }
   if (!flight.arm_and_start) return {};
   if (Status status = mavlink::arm(exchange, kArmingLimit); !status) return status;
@@ -109,12 +124,16 @@ Result<std::unique_ptr<TruthSource>> fly_live(const LiveFlight& flight,
   }
   if (!flight.read_only) {
     const std::unique_ptr<mavlink::Exchange> exchange = vehicle->converse(cancel);
-    if (Status status = prepare(*exchange, flight); !status) {
+    if (Status status = prepare(*exchange, flight, frame); !status) {
       return status.error().in(flight.link.text());
     }
   }
   Result<std::unique_ptr<LiveTruth>> truth = LiveTruth::open(vehicle, frame, flight.truth, cancel);
   if (!truth) return truth.error();
+  if (flight.feedback) {
+    (*truth)->send_estimates_by(std::make_shared<mavlink::FeedbackSender>(
+        vehicle, *flight.feedback, frame, flight.truth.geoid_separation_m, (*truth)->start_ns()));
+  }
   return std::unique_ptr<TruthSource>(std::move(*truth));
 }
 

@@ -43,6 +43,11 @@ class LiveTruth final : public TruthSource {
   /// Gaps so far, and why the flight has ended.
   [[nodiscard]] std::vector<std::string> warnings() const override;
 
+  /// Sends estimates to the vehicle by this from now on.
+  void send_estimates_by(std::shared_ptr<EstimateReceiver> receiver);
+  [[nodiscard]] std::shared_ptr<EstimateReceiver> estimate_receiver() const override;
+  [[nodiscard]] std::optional<std::int64_t> heard_ns() const override;
+
   /// The vehicle's clock at t = 0 [ns].
   [[nodiscard]] std::int64_t start_ns() const;
 
