@@ -52,8 +52,8 @@ Status measure_inertially(const ExportSource& source,
                                          keep_going);
   if (!readings) return readings.error();
   for (const flight::ImuReading& reading : *readings) {
-    if (reading.t_ns < begin_ns) continue;
-    const auto state = (*again)->state_at(reading.t_ns);
+    if (reading.sample.t_ns < begin_ns) continue;
+    const auto state = (*again)->state_at(reading.sample.t_ns);
     if (!state) return state.error();
     if (!*state) break;
     plan.imu.push_back(reading);

@@ -10,7 +10,7 @@
 
 #include "core/earth/geodesy.hpp"
 #include "core/result.hpp"
-#include "flight/imu.hpp"
+#include "flight/sensors/imu.hpp"
 #include "server/camera/frame_maker.hpp"
 #include "server/scenario/scenario.hpp"
 
