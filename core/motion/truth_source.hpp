@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/motion/estimate_receiver.hpp"
 #include "core/motion/pose.hpp"
 #include "core/result.hpp"
 
@@ -49,6 +50,13 @@ class TruthSource {
   [[nodiscard]] virtual std::string description() const = 0;
   /// Lines of the flight's file that were dropped or moved. Empty if none.
   [[nodiscard]] virtual std::vector<std::string> warnings() const { return {}; }
+  /// Takes estimates back to the vehicle that flies; null if it wants none.
+  [[nodiscard]] virtual std::shared_ptr<EstimateReceiver> estimate_receiver() const {
+    return nullptr;
+  }
+  /// Of a live source: when the message arrived with which the latest state became known [ns of the
+  /// machine's steady clock].
+  [[nodiscard]] virtual std::optional<std::int64_t> heard_ns() const { return std::nullopt; }
 
  private:
   /// As state_at.

@@ -66,6 +66,12 @@ class FrameMaker {
     return truth_->source().warnings();
   }
 
+  /// See TruthSource.
+  [[nodiscard]] std::shared_ptr<EstimateReceiver> estimate_receiver() const {
+    return truth_->source().estimate_receiver();
+  }
+  [[nodiscard]] std::optional<std::int64_t> heard_ns() const { return truth_->source().heard_ns(); }
+
   /// Frame k as seen by every camera; empty after the end of a flight of unknown length. k must
   /// increase from call to call.
   /// Errors: as the truth's and the renderer's; kIo naming a file of the world that could not be

@@ -5,6 +5,7 @@
 
 #include "flight/live/fly_live.hpp"
 #include "flight/replay/logged_flight.hpp"
+#include "flight/ros/ros_truth.hpp"
 #include "server/camera/airframe_flight.hpp"
 #include "server/record/run_folder.hpp"
 #include "server/record/truth_samples.hpp"
@@ -107,6 +108,11 @@ Result<std::unique_ptr<TruthSource>> create_truth(const Scenario& scenario,
     if (!flown) return flown.error().in("flight.mavlink");
     return flown;
   }
+  if (const auto* ros = std::get_if<flight::ros_live::RosFlight>(&scenario.flight)) {
+    auto flown = flight::ros_live::fly_ros(*ros, world.tiles->frame(), cancel);
+    if (!flown) return flown.error().in("flight.ros");
+    return flown;
+  }
   if (const auto* mission = std::get_if<MissionFile>(&scenario.flight)) {
     auto flown = fly_mission_file(*mission, scenario.seed, scenario.duration_s, world, cancel);
     if (!flown) return flown.error().in("flight.mission");
@@ -129,8 +135,7 @@ Result<std::unique_ptr<TruthSource>> open_flown_truth(const std::filesystem::pat
                                                       const Scenario& scenario,
                                                       const terrain::World& world) {
   auto flown = open_recorded_flight(truth_samples_file(folder), description);
-  const bool live = std::holds_alternative<flight::live::LiveFlight>(scenario.flight);
-  if (!flown && flown.error().code == ErrorCode::kNotFound && !live) {
+  if (!flown && flown.error().code == ErrorCode::kNotFound && !scenario.is_live()) {
     return create_truth(scenario, world);
   }
   return flown;

@@ -148,6 +148,7 @@ void EstimatorWorker::answer_waiting(std::unique_lock<std::mutex>& lock) {
   drops_.clear();
   lock.unlock();
   EstimatorEvent event = answer(taken);
+  if (options_.answered && !event.record.dropped) options_.answered(event.record);
   lock.lock();
   events_.push_back(std::move(event));
 }

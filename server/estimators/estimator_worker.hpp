@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <exception>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -29,6 +30,8 @@ struct EstimatorWorkerOptions {
   /// The estimator reads the image in this process: its CRC is computed after the estimator
   /// returns.
   bool in_process = true;
+  /// Called with each answer at once, on the worker's thread; may be empty.
+  std::function<void(const EstimateRecord&)> answered;
 };
 
 /// A slot for one frame in front of an estimator. A frame that still waits in the slot when the

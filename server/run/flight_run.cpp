@@ -77,14 +77,16 @@ nlohmann::json FlightRun::timings() const {
   // Excludes the set-up: making or opening the world is not part of a frame's cost.
   const double loop_s = loop_begin_ns_ == 0 ? 0.0 : s_from_ns(now_ns - loop_begin_ns_);
   const double flight_s = s_from_ns(end_ns());
-  return {{"finished_utc", utc_text(utc_now_ns())},
-          {"wall_s", s_from_ns(now_ns - begin_ns_)},
-          {"loop_wall_s", loop_s},
-          {"flight_s", flight_s},
-          {"flight_s_per_wall_s", loop_s > 0.0 ? flight_s / loop_s : 0.0},
-          {"late_tiles", late_tiles_},
-          {"frames_with_late_tiles", frames_with_late_tiles_},
-          {"stages", stages_.summary()}};
+  nlohmann::json timings = {{"finished_utc", utc_text(utc_now_ns())},
+                            {"wall_s", s_from_ns(now_ns - begin_ns_)},
+                            {"loop_wall_s", loop_s},
+                            {"flight_s", flight_s},
+                            {"flight_s_per_wall_s", loop_s > 0.0 ? flight_s / loop_s : 0.0},
+                            {"late_tiles", late_tiles_},
+                            {"frames_with_late_tiles", frames_with_late_tiles_},
+                            {"stages", stages_.summary()}};
+  if (!message_to_frame_.ms.empty()) timings["message_to_frame"] = message_to_frame_.summary();
+  return timings;
 }
 
 Status FlightRun::fly() {
@@ -195,6 +197,10 @@ Result<FlightRun::Flight> FlightRun::fly_frame(std::int64_t k, bool wait_for_est
   auto made = maker_->make(k);
   if (!made) return made.error();
   if (!*made) return Flight::kEnded;
+  if (const std::optional<std::int64_t> heard_ns = maker_->heard_ns()) {
+    message_to_frame_.ms.push_back(static_cast<double>(machine_clock().now_ns() - *heard_ns) *
+                                   1e-6);
+  }
 
   // The estimators worked on the previous frame while this one was drawn.
   if (wait_for_estimators) {
@@ -238,6 +244,9 @@ Status FlightRun::deliver(MadeFrame& made) {
         image && image->channels != 1 ? std::make_shared<const Image>(grey_of(*image)) : image;
     // Computed once per frame, so that it applies to the image of every estimator.
     if (grey) row.image_crc32 = stages_.measure("hash", [&] { return crc32_of(*grey); });
+    if (feedback_ && scenario_.estimators[*scenario_.feedback_estimator].camera == shot.camera) {
+      feedback_->add_frame(row);
+    }
     if (const auto& feed = truth_feeds_[shot.camera]) {
       feed->add(shot.stamp_ns, {row.T_world_camera, row.axis_depth_m});
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "server/estimators/estimator_factory.hpp"
 #include "server/estimators/estimator_worker.hpp"
 #include "server/estimators/truth_feed.hpp"
+#include "server/run/estimate_feedback.hpp"
 #include "server/run/run_options.hpp"
 #include "server/run/run_recorder.hpp"
 #include "server/timing/stage_timer.hpp"
@@ -36,6 +38,8 @@ class FlightRun {
   Status open_estimators();
   void prepare_estimators();
   [[nodiscard]] Result<std::unique_ptr<VoPort>> open_estimator(const EstimatorSpec& spec);
+  /// Sends the answers of an estimator to the vehicle. @return what is called with each answer
+  std::function<void(const EstimateRecord&)> open_feedback(const EstimatorSpec& spec);
   Status describe();
   /// Unix time of t = 0, if it is now.
   [[nodiscard]] std::int64_t epoch_utc_ns() const;
@@ -74,6 +78,9 @@ class FlightRun {
 
   std::unique_ptr<FrameMaker> maker_;
   FaultNews fault_news_;
+  /// Takes answers to a live vehicle; null without. Outlives the workers, which call it.
+  std::unique_ptr<EstimateFeedback> feedback_;
+  DurationList message_to_frame_;  ///< of a live vehicle
   std::int64_t late_tiles_ = 0;
   std::int64_t frames_with_late_tiles_ = 0;
   std::vector<std::unique_ptr<EstimatorWorker>> workers_;

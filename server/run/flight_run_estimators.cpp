@@ -77,6 +77,14 @@ Port FlightRun::open_estimator(const EstimatorSpec& spec) {
   return create_estimator(spec, setting, truth);
 }
 
+std::function<void(const EstimateRecord&)> FlightRun::open_feedback(const EstimatorSpec& spec) {
+  std::shared_ptr<EstimateReceiver> receiver = maker_->estimate_receiver();
+  if (!receiver) return {};
+  feedback_ = std::make_unique<EstimateFeedback>(std::move(receiver),
+                                                 scenario_.cameras[spec.camera].T_body_camera);
+  return [this](const EstimateRecord& record) { feedback_->take(record); };
+}
+
 Status FlightRun::open_estimators() {
   return stages_.measure("open_estimators", [&]() -> Status {
     for (std::size_t i = 0; i < scenario_.estimators.size(); ++i) {
@@ -94,6 +102,7 @@ Status FlightRun::open_estimators() {
       worker.throttle_hz = spec.throttle_hz;
       worker.in_process = !is_outside_estimator(spec.type);
       if (worker.in_process) worker.cpus = spec.cpus;
+      if (scenario_.feedback_estimator == i) worker.answered = open_feedback(spec);
       workers_.push_back(
           std::make_unique<EstimatorWorker>(std::move(*port), std::move(worker), clock_));
     }
@@ -126,6 +135,10 @@ Status FlightRun::close_estimators() {
     return 0;
   });
   const Status recorded = record_events();
+  if (feedback_) {
+    Status logged = recorder_.log(end_ns(), "info", feedback_->report());
+    if (!logged) return logged;
+  }
   const Status described = describe_use();
   return recorded ? described : recorded;
 }

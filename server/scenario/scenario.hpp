@@ -18,6 +18,7 @@
 #include "flight/flight.hpp"
 #include "flight/live/fly_live.hpp"
 #include "flight/replay/logged_flight.hpp"
+#include "flight/ros/ros_flight.hpp"
 #include "flight/sensors/sensor_models.hpp"
 #include "server/scenario/camera_spec.hpp"
 #include "server/scenario/estimator_spec.hpp"
@@ -104,10 +105,21 @@ struct Scenario {
   using BuiltinWorld = server::BuiltinWorld;
   std::variant<BuiltinWorld, std::filesystem::path, terrain::WorldSpec> world;
 
-  /// The course, a pose file or flight log, a live vehicle, or a mission.
+  /// The course, a pose file or flight log, a live vehicle by MAVLink or ROS, or a mission.
   using LoggedFlight = server::LoggedFlight;
-  std::variant<flight::CourseParameters, LoggedFlight, flight::live::LiveFlight, MissionFile>
+  std::variant<flight::CourseParameters,
+               LoggedFlight,
+               flight::live::LiveFlight,
+               flight::ros_live::RosFlight,
+               MissionFile>
       flight;
+  /// Nobody can fly it again.
+  [[nodiscard]] bool is_live() const {
+    return std::holds_alternative<flight::live::LiveFlight>(flight) ||
+           std::holds_alternative<flight::ros_live::RosFlight>(flight);
+  }
+  /// Index of the estimator whose answers are sent to the live vehicle.
+  std::optional<std::size_t> feedback_estimator;
   /// Empty: coordinated turns.
   std::optional<CourseDynamics> course_dynamics;
   /// The course starts at the world's runway, which is known only when the world is open.

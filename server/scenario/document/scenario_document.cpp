@@ -5,6 +5,7 @@
 #include "server/scenario/document/flight/scenario_course.hpp"
 #include "server/scenario/document/flight/scenario_flight.hpp"
 #include "server/scenario/document/flight/scenario_live.hpp"
+#include "server/scenario/document/flight/scenario_ros.hpp"
 #include "server/scenario/document/flight/scenario_sensors.hpp"
 #include "server/scenario/document/scenario_camera.hpp"
 #include "server/scenario/document/scenario_estimators.hpp"
@@ -30,6 +31,12 @@ Status read_flight(Json& document, const FileResolver& files, Scenario& scenario
     Result<flight::live::LiveFlight> live = read_live_flight(flight.at("mavlink"), files);
     if (!live) return live.error();
     scenario.flight = std::move(*live);
+    return {};
+  }
+  if (flight.contains("ros")) {
+    Result<flight::ros_live::RosFlight> ros = read_ros_flight(flight.at("ros"));
+    if (!ros) return ros.error();
+    scenario.flight = std::move(*ros);
     return {};
   }
   if (flight.contains("mission")) {
@@ -79,7 +86,8 @@ Status read_all(Json& document, const fs::path& base, Scenario& scenario) {
   if (Status status = read_faults(document, scenario); !status) return status;
   read_renderer(document, scenario);
   if (Status status = read_light_and_detail(document, scenario); !status) return status;
-  return read_estimators(document, base, scenario);
+  if (Status status = read_estimators(document, base, scenario); !status) return status;
+  return find_feedback_estimator(document, scenario);
 }
 
 }  // namespace
