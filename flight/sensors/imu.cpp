@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 namespace overfly::flight {
 namespace {
@@ -78,6 +79,32 @@ std::optional<ImuReading> Imu::take_end(const AircraftState& state) {
   const bool middle_reached = step_ % 2 == 1;
   if (!middle_reached || state.t_ns <= from_.t_ns) return std::nullopt;
   return take(state);
+}
+
+Result<std::vector<ImuReading>> with_biases(const std::vector<ImuSample>& samples,
+                                            const ImuModel& model,
+                                            std::uint64_t seed) {
+  if (Status status = model.validate(); !status) return status.error();
+  const FrameRate half_steps = half_steps_of(model);
+  ImuErrors errors(model, seed);
+  std::vector<ImuReading> readings;
+  std::int64_t from_ns = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const auto k = static_cast<std::int64_t>(i);
+    const std::int64_t expected_ns = frame_time_ns(2 * k, half_steps);
+    if (samples[i].t_ns != expected_ns) {
+      return Error{ErrorCode::kUnreadable,
+                   "sample " + std::to_string(k) + ": t_ns = " + std::to_string(samples[i].t_ns) +
+                       ": must be " + std::to_string(expected_ns)};
+    }
+    const std::int64_t to_ns = frame_time_ns(2 * k + 1, half_steps);
+    ImuReading reading;
+    errors.apply(s_from_ns(to_ns - from_ns), reading);
+    reading.sample = samples[i];
+    readings.push_back(reading);
+    from_ns = to_ns;
+  }
+  return readings;
 }
 
 Result<std::vector<ImuReading>> synthesize_imu(TruthSource& flight,

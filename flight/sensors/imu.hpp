@@ -75,6 +75,13 @@ class Imu {
   AircraftState middle_;
 };
 
+/// The biases that samples of such an IMU contain.
+/// @param samples  from the first of a flight on
+/// Errors: kUnreadable naming the sample whose time is not that of the model.
+[[nodiscard]] Result<std::vector<ImuReading>> with_biases(const std::vector<ImuSample>& samples,
+                                                          const ImuModel& model,
+                                                          std::uint64_t seed);
+
 /// Measures a flight to its end or `end_ns`, whichever is first. The last sample uses only the half
 /// of its interval that was flown.
 /// @param flight        a truth source that has not been queried for a later time

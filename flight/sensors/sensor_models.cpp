@@ -8,22 +8,22 @@
 namespace overfly::flight {
 namespace {
 
-struct Limit {
+struct SensorLimit {
   const char* field;
   double value;
   double min;
   double max;
 };
 
-Limit rate_limit(double value, double max_hz = 1000.0) {
+SensorLimit rate_limit(double value, double max_hz = 1000.0) {
   constexpr double kMinHz = 1e-3;
   return {"rate_hz", value, kMinHz, max_hz};
 }
-Limit error_limit(const char* field, double value) { return {field, value, 0.0, 1e5}; }
-Limit drift_time_limit(double value) { return {"drift_time_s", value, 0.1, 1e6}; }
+SensorLimit error_limit(const char* field, double value) { return {field, value, 0.0, 1e5}; }
+SensorLimit drift_time_limit(double value) { return {"drift_time_s", value, 0.1, 1e6}; }
 
-Status check(const char* sensor, std::initializer_list<Limit> limits) {
-  for (const Limit& limit : limits) {
+Status check_sensor(const char* sensor, std::initializer_list<SensorLimit> limits) {
+  for (const SensorLimit& limit : limits) {
     // False for a value that is not a number.
     if (limit.value >= limit.min && limit.value <= limit.max) continue;
     return Error{ErrorCode::kInvalidArgument,
@@ -40,12 +40,13 @@ ImuModel ImuModel::ideal(double rate_hz) { return {rate_hz, 0.0, 0.0, 0.0, 0.0};
 
 Status ImuModel::validate() const {
   constexpr double kMaxHz = 10000.0;
-  return check("imu",
-               {rate_limit(rate_hz, kMaxHz),
-                {"gyroscope_noise_rad_s_sqrt_hz", gyroscope_noise_rad_s_sqrt_hz, 0.0, 1e3},
-                {"gyroscope_walk_rad_s2_sqrt_hz", gyroscope_walk_rad_s2_sqrt_hz, 0.0, 1e3},
-                {"accelerometer_noise_m_s2_sqrt_hz", accelerometer_noise_m_s2_sqrt_hz, 0.0, 1e3},
-                {"accelerometer_walk_m_s3_sqrt_hz", accelerometer_walk_m_s3_sqrt_hz, 0.0, 1e3}});
+  return check_sensor(
+      "imu",
+      {rate_limit(rate_hz, kMaxHz),
+       {"gyroscope_noise_rad_s_sqrt_hz", gyroscope_noise_rad_s_sqrt_hz, 0.0, 1e3},
+       {"gyroscope_walk_rad_s2_sqrt_hz", gyroscope_walk_rad_s2_sqrt_hz, 0.0, 1e3},
+       {"accelerometer_noise_m_s2_sqrt_hz", accelerometer_noise_m_s2_sqrt_hz, 0.0, 1e3},
+       {"accelerometer_walk_m_s3_sqrt_hz", accelerometer_walk_m_s3_sqrt_hz, 0.0, 1e3}});
 }
 
 Status SensorModels::validate() const {
@@ -53,48 +54,48 @@ Status SensorModels::validate() const {
   if (imu) status = imu->validate();
   if (status && barometer) {
     const BarometerModel& m = *barometer;
-    status = check("barometer",
-                   {rate_limit(m.rate_hz),
-                    error_limit("noise_pa", m.noise_pa),
-                    error_limit("drift_pa", m.drift_pa),
-                    error_limit("temperature_noise_k", m.temperature_noise_k),
-                    error_limit("temperature_drift_k", m.temperature_drift_k),
-                    drift_time_limit(m.drift_time_s)});
+    status = check_sensor("barometer",
+                          {rate_limit(m.rate_hz),
+                           error_limit("noise_pa", m.noise_pa),
+                           error_limit("drift_pa", m.drift_pa),
+                           error_limit("temperature_noise_k", m.temperature_noise_k),
+                           error_limit("temperature_drift_k", m.temperature_drift_k),
+                           drift_time_limit(m.drift_time_s)});
   }
   if (status && gps) {
     const GpsModel& m = *gps;
-    status = check("gps",
-                   {rate_limit(m.rate_hz),
-                    {"delay_s", m.delay_s, 0.0, 10.0},
-                    error_limit("horizontal_drift_m", m.horizontal_drift_m),
-                    error_limit("vertical_drift_m", m.vertical_drift_m),
-                    drift_time_limit(m.drift_time_s),
-                    error_limit("horizontal_noise_m", m.horizontal_noise_m),
-                    error_limit("vertical_noise_m", m.vertical_noise_m),
-                    error_limit("velocity_noise_m_s", m.velocity_noise_m_s)});
+    status = check_sensor("gps",
+                          {rate_limit(m.rate_hz),
+                           {"delay_s", m.delay_s, 0.0, 10.0},
+                           error_limit("horizontal_drift_m", m.horizontal_drift_m),
+                           error_limit("vertical_drift_m", m.vertical_drift_m),
+                           drift_time_limit(m.drift_time_s),
+                           error_limit("horizontal_noise_m", m.horizontal_noise_m),
+                           error_limit("vertical_noise_m", m.vertical_noise_m),
+                           error_limit("velocity_noise_m_s", m.velocity_noise_m_s)});
   }
   if (status && airspeed) {
     const AirspeedModel& m = *airspeed;
-    status = check("airspeed",
-                   {rate_limit(m.rate_hz),
-                    error_limit("noise_pa", m.noise_pa),
-                    error_limit("drift_pa", m.drift_pa),
-                    drift_time_limit(m.drift_time_s)});
+    status = check_sensor("airspeed",
+                          {rate_limit(m.rate_hz),
+                           error_limit("noise_pa", m.noise_pa),
+                           error_limit("drift_pa", m.drift_pa),
+                           drift_time_limit(m.drift_time_s)});
   }
   if (status && magnetometer) {
     const MagnetometerModel& m = *magnetometer;
-    status = check("magnetometer",
-                   {rate_limit(m.rate_hz),
-                    error_limit("noise_ut", m.noise_ut),
-                    error_limit("bias_ut", m.bias_ut)});
+    status = check_sensor("magnetometer",
+                          {rate_limit(m.rate_hz),
+                           error_limit("noise_ut", m.noise_ut),
+                           error_limit("bias_ut", m.bias_ut)});
   }
   if (status && range) {
     const RangeModel& m = *range;
-    status = check("range",
-                   {rate_limit(m.rate_hz),
-                    error_limit("noise_m", m.noise_m),
-                    {"max_m", m.max_m, 0.1, 1e5},
-                    {"min_m", m.min_m, 0.0, 0.999 * m.max_m}});
+    status = check_sensor("range",
+                          {rate_limit(m.rate_hz),
+                           error_limit("noise_m", m.noise_m),
+                           {"max_m", m.max_m, 0.1, 1e5},
+                           {"min_m", m.min_m, 0.0, 0.999 * m.max_m}});
   }
   return status;
 }

@@ -26,6 +26,12 @@ class SensedFlight final : public TruthSource {
   }
   [[nodiscard]] std::string description() const override { return flight_->description(); }
   [[nodiscard]] std::vector<std::string> warnings() const override { return flight_->warnings(); }
+  [[nodiscard]] std::shared_ptr<EstimateReceiver> estimate_receiver() const override {
+    return flight_->estimate_receiver();
+  }
+  [[nodiscard]] std::optional<std::int64_t> heard_ns() const override {
+    return flight_->heard_ns();
+  }
 
  private:
   [[nodiscard]] Result<std::optional<AircraftState>> find_state(

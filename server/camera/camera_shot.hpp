@@ -8,6 +8,7 @@
 #include "core/camera/image.hpp"
 #include "core/motion/truth_source.hpp"
 #include "core/result.hpp"
+#include "core/sensors/sensor_samples.hpp"
 #include "renderer/renderer.hpp"
 #include "sensor/sensor.hpp"
 #include "server/record/rows.hpp"
@@ -29,12 +30,14 @@ struct CameraShot {
   bool delivered = true;            ///< false: lost before it reached the estimators
 };
 
-/// One instant, as seen by all cameras.
+/// One instant, as seen by all cameras and measured by the other sensors.
 struct MadeFrame {
   std::int64_t frame = 0;
   std::int64_t t_ns = 0;
   AircraftState state;
   std::vector<CameraShot> shots;  ///< in the order of Scenario::cameras
+  /// Of the other sensors: what has become available since the previous made frame.
+  SensorSamples sensors;
 };
 
 /// Checks time and camera pose of a frame that is rendered again against the run's record.

@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "core/cancel.hpp"
+#include "server/camera/flight_sensors.hpp"
 #include "server/camera/truth.hpp"
 #include "server/worlds/world_cache.hpp"
 
@@ -63,6 +64,10 @@ Status FrameMaker::plan_flight() {
       options_.open_truth ? options_.open_truth(*world_)
                           : create_truth(scenario_, *world_, options_.cancel);
   if (!truth) return truth.error();
+  if (options_.sensing_from_utc_ns) {
+    sensors_ = create_sensors(scenario_, *world_, *options_.sensing_from_utc_ns);
+    if (sensors_) truth = flight::sensed_while_flown(std::move(*truth), *sensors_);
+  }
   if (options_.truth_samples != nullptr) {
     truth = recorded_while_flown(std::move(*truth), *options_.truth_samples);
   }
@@ -123,6 +128,7 @@ Result<std::optional<MadeFrame>> FrameMaker::make(std::int64_t k) {
   if (!*around) return std::optional<MadeFrame>();
   const std::vector<AircraftState>& states = **around;
   made.state = states[states.size() / 2];
+  if (sensors_) made.sensors = sensors_->take_until(made.t_ns);
   next_frame_ = k + 1;
   for (std::size_t i = 0; i < cameras_.size(); ++i) {
     Result<CameraShot> shot = take(i, k, states);
@@ -158,11 +164,13 @@ Result<CameraShot> FrameMaker::take(std::size_t camera,
   return shot;
 }
 
-Status FrameMaker::record_last_period() {
-  if (options_.truth_samples == nullptr) return {};
-  const auto last = truth_->at(frame_time_ns(next_frame_, scenario_.rate), options_.cancel);
+Result<SensorSamples> FrameMaker::record_last_period() {
+  if (options_.truth_samples == nullptr) return SensorSamples();
+  const std::int64_t end_ns = frame_time_ns(next_frame_, scenario_.rate);
+  const auto last = truth_->at(end_ns, options_.cancel);
   if (!last) return failed(last.error());
-  return options_.truth_samples->flush();
+  if (Status written = options_.truth_samples->flush(); !written) return written.error();
+  return sensors_ ? sensors_->take_until(end_ns) : SensorSamples();
 }
 
 Status FrameMaker::fetch_first_view() {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/result.hpp"
+#include "flight/sensors/sensor_suite.hpp"
 #include "renderer/renderer.hpp"
 #include "server/camera/camera_shot.hpp"
 #include "server/camera/camera_unit.hpp"
@@ -39,6 +40,8 @@ struct FrameMakerOptions {
   /// Opens the flight over the opened world; create_truth if empty.
   std::function<Result<std::unique_ptr<TruthSource>>(const terrain::World&)> open_truth;
   TruthSampleFile* truth_samples = nullptr;  ///< where the truth is recorded; may be null
+  /// Date of the flight at t = 0. If given, the scenario's other sensors measure.
+  std::optional<std::int64_t> sensing_from_utc_ns;
 };
 
 /// Used and destroyed on one thread.
@@ -76,8 +79,9 @@ class FrameMaker {
   [[nodiscard]] Result<std::optional<MadeFrame>> make(std::int64_t k);
 
   /// Records the truth of one more frame period after the last frame, as far as the flight goes on,
-  /// so that inertial data can be computed up to that frame.
-  Status record_last_period();
+  /// so that inertial data can be computed up to that frame. Returns the samples of the other
+  /// sensors in that period.
+  Result<SensorSamples> record_last_period();
   /// Draws the first frame once and waits for its tiles, so that a real-time flight does not start
   /// while its tiles are still being read. Does nothing for a flight whose end is not known, since
   /// its first pose is not known either.
@@ -104,8 +108,9 @@ class FrameMaker {
   std::unique_ptr<StageTimer> own_stages_;
   StageTimer& stages_;
   std::shared_ptr<const OpenedWorld> opened_;
-  std::shared_ptr<const terrain::World> world_;  ///< the world of opened_
-  std::shared_ptr<const WatchedTiles> tiles_;    ///< the tiles of the world
+  std::shared_ptr<const terrain::World> world_;   ///< the world of opened_
+  std::shared_ptr<const WatchedTiles> tiles_;     ///< the tiles of the world
+  std::unique_ptr<flight::SensorSuite> sensors_;  ///< null without sensors
   std::unique_ptr<TruthWindow> truth_;
   std::optional<std::int64_t> duration_ns_;
   std::int64_t frames_total_ = 0;

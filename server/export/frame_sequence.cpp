@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "server/record/rows.hpp"
+#include "server/record/run_info.hpp"
 
 namespace overfly::server {
 namespace {

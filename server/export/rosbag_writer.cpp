@@ -48,6 +48,8 @@ class RosbagWriter final : public DatasetWriter {
         unfinished_(std::move(unfinished)) {}
 
   Result<std::vector<std::string>> add(const MadeFrame& frame) override {
+    Status sampled = bag_->add_samples(frame.sensors, plan_.epoch_utc_ns);
+    if (!sampled) return sampled.error();
     std::vector<std::string> names(frame.shots.size());
     for (std::size_t i = 0; i < frame.shots.size(); ++i) {
       const CameraShot& shot = frame.shots[i];

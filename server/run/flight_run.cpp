@@ -129,7 +129,12 @@ Status FlightRun::prepare_and_fly() {
   }
   loop_begin_ns_ = clock_.now_ns();
   const Status flown = scenario_.pacing == Pacing::kRealTime ? fly_real_time() : fly_lockstep();
-  return flown ? maker_->record_last_period() : flown;
+  return flown ? record_last_period() : flown;
+}
+
+Status FlightRun::record_last_period() {
+  const Result<SensorSamples> last = maker_->record_last_period();
+  return last ? recorder_.add_sensor_samples(*last) : last.error();
 }
 
 Status FlightRun::fly_lockstep() {
@@ -213,7 +218,21 @@ Result<FlightRun::Flight> FlightRun::fly_frame(std::int64_t k, bool wait_for_est
   return Flight::kGoesOn;
 }
 
+Status FlightRun::take_sensor_samples(MadeFrame& made) {
+  if (Status recorded = recorder_.add_sensor_samples(made.sensors); !recorded) return recorded;
+  unsent_samples_.resize(workers_.size());
+  for (SensorSamples& unsent : unsent_samples_) {
+    append(unsent, SensorSamples(made.sensors));
+    drop_older_than(unsent, kOldestSampleNs);
+  }
+  return {};
+}
+
 Status FlightRun::deliver(MadeFrame& made) {
+  if (!made.sensors.empty()) {
+    const Status sensed = stages_.measure("sensors", [&] { return take_sensor_samples(made); });
+    if (!sensed) return sensed;
+  }
   for (CameraShot& shot : made.shots) {
     const CameraSpec& camera = scenario_.cameras[shot.camera];
     FrameRow row = row_from(made, shot, camera);
@@ -235,6 +254,7 @@ Status FlightRun::deliver(MadeFrame& made) {
       if (scenario_.estimators[i].camera != shot.camera) continue;
       VoFrame frame = vo_frame_from(made, shot, camera, grey);
       frame.image_crc32 = row.image_crc32;
+      if (i < unsent_samples_.size()) frame.sensors = std::exchange(unsent_samples_[i], {});
       workers_[i]->submit(std::move(frame));
     }
     Status recorded = stages_.measure(

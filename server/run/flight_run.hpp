@@ -41,6 +41,8 @@ class FlightRun {
   /// Sends the answers of an estimator to the vehicle. @return what is called with each answer
   std::function<void(const EstimateRecord&)> open_feedback(const EstimatorSpec& spec);
   Status describe();
+  /// Unix time of t = 0, if it is now.
+  [[nodiscard]] std::int64_t epoch_utc_ns() const;
   /// Records the estimators' remaining answers, their resource use and their parameters; also after
   /// an error.
   Status close_estimators();
@@ -60,6 +62,8 @@ class FlightRun {
   Result<Flight> fly_frame(std::int64_t k, bool wait_for_estimators);
   /// Gives each estimator its camera's image, and records all cameras.
   Status deliver(MadeFrame& made);
+  Status take_sensor_samples(MadeFrame& made);
+  Status record_last_period();
   Status record_events();
   Status tell_faults(std::int64_t t_ns);
   [[nodiscard]] bool cancelled() const;
@@ -80,6 +84,8 @@ class FlightRun {
   std::int64_t late_tiles_ = 0;
   std::int64_t frames_with_late_tiles_ = 0;
   std::vector<std::unique_ptr<EstimatorWorker>> workers_;
+  /// By estimator: samples of sensors that wait for its next frame.
+  std::vector<SensorSamples> unsent_samples_;
   /// By camera; null where no test estimator needs the truth.
   std::vector<std::shared_ptr<TruthFeed>> truth_feeds_;
 };

@@ -23,6 +23,7 @@ Status FlightRun::open_maker() {
   options.notice = options_.notice;
   options.stages = &stages_;
   options.truth_samples = &recorder_.truth_samples();
+  options.sensing_from_utc_ns = epoch_utc_ns();
   options.wait_for_tiles = scenario_.pacing == Pacing::kLockstep;
   Result<std::unique_ptr<FrameMaker>> maker = FrameMaker::open(scenario_, options);
   if (!maker) return maker.error();
@@ -77,10 +78,13 @@ Status FlightRun::describe_world() {
   return {};
 }
 
-Status FlightRun::describe() {
+std::int64_t FlightRun::epoch_utc_ns() const {
   const bool wall = scenario_.pacing == Pacing::kRealTime;
-  recorder_.manifest().epoch_utc_ns =
-      scenario_.epoch_utc_ns.value_or(wall ? utc_now_ns() : kLockstepEpochUtcNs);
+  return scenario_.epoch_utc_ns.value_or(wall ? utc_now_ns() : kLockstepEpochUtcNs);
+}
+
+Status FlightRun::describe() {
+  recorder_.manifest().epoch_utc_ns = epoch_utc_ns();
   return recorder_.write_manifest();
 }
 

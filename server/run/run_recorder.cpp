@@ -72,7 +72,10 @@ Status write_jpeg(const fs::path& file, const Image& image, int quality) {
 }  // namespace
 
 RunRecorder::RunRecorder(fs::path folder, RunLock lock, const Scenario& scenario)
-    : folder_(std::move(folder)), lock_(std::move(lock)), scenario_(scenario) {}
+    : folder_(std::move(folder)),
+      lock_(std::move(lock)),
+      scenario_(scenario),
+      sensor_files_(folder_) {}
 
 Result<std::unique_ptr<RunRecorder>> RunRecorder::create(const fs::path& folder,
                                                          const Scenario& scenario,

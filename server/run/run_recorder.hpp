@@ -17,6 +17,7 @@
 #include "server/record/run_lock.hpp"
 #include "server/record/run_manifest.hpp"
 #include "server/record/run_records.hpp"
+#include "server/record/sensor_files.hpp"
 #include "server/record/truth_samples.hpp"
 #include "server/scenario/scenario.hpp"
 #include "server/scoring/run_metrics.hpp"
@@ -56,6 +57,8 @@ class RunRecorder {
                    const std::shared_ptr<const Image>& image,
                    const Image16& deep,
                    std::size_t camera);
+  /// Samples of the aircraft's other sensors, in the order of their times.
+  Status add_sensor_samples(const SensorSamples& samples) { return sensor_files_.add(samples); }
   Status add_late_frame(std::int64_t frame, std::int64_t t_ns);
   Status add_event(std::size_t estimator, EstimatorEvent event);
   /// Log lines of an estimator; beyond a limit further lines are dropped.
@@ -121,6 +124,7 @@ class RunRecorder {
   std::vector<LineFile> frame_lines_;  ///< by camera
   std::optional<LineFile> log_lines_;
   std::optional<TruthSampleFile> truth_samples_;
+  SensorFilesWriter sensor_files_;
   std::vector<EstimatorState> estimators_;
 };
 

@@ -19,6 +19,7 @@
 #include "flight/live/fly_live.hpp"
 #include "flight/replay/logged_flight.hpp"
 #include "flight/ros/ros_flight.hpp"
+#include "flight/sensors/sensor_models.hpp"
 #include "server/scenario/camera_spec.hpp"
 #include "server/scenario/estimator_spec.hpp"
 #include "server/scenario/fault_spec.hpp"
@@ -131,7 +132,8 @@ struct Scenario {
   /// At least one; the first is the main one.
   std::vector<CameraSpec> cameras{CameraSpec{}};
   [[nodiscard]] const CameraSpec& main_camera() const { return cameras.front(); }
-  FrameRate rate;  ///< of all cameras: they share their time stamps
+  FrameRate rate;                ///< of all cameras: they share their time stamps
+  flight::SensorModels sensors;  ///< besides the cameras
   std::vector<FaultSpec> faults;
   std::vector<EstimatorSpec> estimators;
   RendererChoice renderer;

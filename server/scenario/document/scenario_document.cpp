@@ -6,6 +6,7 @@
 #include "server/scenario/document/flight/scenario_flight.hpp"
 #include "server/scenario/document/flight/scenario_live.hpp"
 #include "server/scenario/document/flight/scenario_ros.hpp"
+#include "server/scenario/document/flight/scenario_sensors.hpp"
 #include "server/scenario/document/scenario_camera.hpp"
 #include "server/scenario/document/scenario_estimators.hpp"
 #include "server/scenario/document/scenario_faults.hpp"
@@ -81,6 +82,7 @@ Status read_all(Json& document, const fs::path& base, Scenario& scenario) {
   if (Status status = read_flight(document, files, scenario); !status) return status;
   if (Status status = read_cameras(document, scenario); !status) return status;
   if (Status status = check_camera_poses(scenario); !status) return status;
+  if (Status status = read_sensors(document, scenario); !status) return status;
   if (Status status = read_faults(document, scenario); !status) return status;
   read_renderer(document, scenario);
   if (Status status = read_light_and_detail(document, scenario); !status) return status;

@@ -14,7 +14,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr std::int64_t kMs = 1'000'000;
+constexpr std::int64_t kMillisecondNs = 1'000'000;
 
 /// North at 20 m/s for some seconds; fails a test that goes back in time.
 class StraightFlight final : public TruthSource {
@@ -59,29 +59,29 @@ SensorModels all_models() {
 TEST(SensorSuite, SamplesComeWhenTheyAreAvailable) {
   SensorSuite suite(options_with(all_models()));
   const auto flight = sensed_while_flown(std::make_unique<StraightFlight>(10.0), suite);
-  ASSERT_TRUE(flight->state_at(300 * kMs).value());
+  ASSERT_TRUE(flight->state_at(300 * kMillisecondNs).value());
 
-  const SensorSamples first = suite.take_until(100 * kMs);
+  const SensorSamples first = suite.take_until(100 * kMillisecondNs);
   // Every 5 ms from 0; the sample of 100 ms ends at 102.5 ms.
   ASSERT_EQ(first.imu.size(), 20U);
   EXPECT_EQ(first.imu.front().t_ns, 0);
-  EXPECT_EQ(first.imu.back().t_ns, 95 * kMs);
+  EXPECT_EQ(first.imu.back().t_ns, 95 * kMillisecondNs);
   ASSERT_EQ(first.barometer.size(), 3U);
-  EXPECT_EQ(first.barometer.back().t_ns, 80 * kMs);
+  EXPECT_EQ(first.barometer.back().t_ns, 80 * kMillisecondNs);
   ASSERT_EQ(first.gps.size(), 1U);
   EXPECT_EQ(first.gps[0].t_ns, 0);
-  EXPECT_EQ(first.gps[0].delivered_ns, 100 * kMs);
+  EXPECT_EQ(first.gps[0].delivered_ns, 100 * kMillisecondNs);
   EXPECT_EQ(first.airspeed.size(), 3U);
   EXPECT_EQ(first.magnetometer.size(), 6U);
   ASSERT_EQ(first.range.size(), 3U);
   EXPECT_NEAR(first.range[2].range_m, 50.0, 0.3);
-  EXPECT_TRUE(suite.take_until(100 * kMs).empty());
+  EXPECT_TRUE(suite.take_until(100 * kMillisecondNs).empty());
 
-  const SensorSamples second = suite.take_until(300 * kMs);
-  EXPECT_EQ(second.imu.front().t_ns, 100 * kMs);
-  EXPECT_EQ(second.imu.back().t_ns, 295 * kMs);
+  const SensorSamples second = suite.take_until(300 * kMillisecondNs);
+  EXPECT_EQ(second.imu.front().t_ns, 100 * kMillisecondNs);
+  EXPECT_EQ(second.imu.back().t_ns, 295 * kMillisecondNs);
   ASSERT_EQ(second.gps.size(), 1U);
-  EXPECT_EQ(second.gps[0].t_ns, 200 * kMs);
+  EXPECT_EQ(second.gps[0].t_ns, 200 * kMillisecondNs);
 }
 
 TEST(SensorSuite, EndsWithTheFlight) {
@@ -89,8 +89,8 @@ TEST(SensorSuite, EndsWithTheFlight) {
   const auto flight = sensed_while_flown(std::make_unique<StraightFlight>(0.1), suite);
   EXPECT_FALSE(flight->state_at(kNsPerS).value());
   const SensorSamples samples = suite.take_until(kNsPerS);
-  EXPECT_EQ(samples.imu.back().t_ns, 95 * kMs);
-  EXPECT_EQ(samples.range.back().t_ns, 100 * kMs);
+  EXPECT_EQ(samples.imu.back().t_ns, 95 * kMillisecondNs);
+  EXPECT_EQ(samples.range.back().t_ns, 100 * kMillisecondNs);
 }
 
 TEST(SensorSuite, OneSensorDoesNotChangeAnother) {
@@ -102,7 +102,7 @@ TEST(SensorSuite, OneSensorDoesNotChangeAnother) {
   const auto a = sensed_while_flown(std::make_unique<StraightFlight>(5.0), alone);
   const auto b = sensed_while_flown(std::make_unique<StraightFlight>(5.0), fitted);
   // The suites are driven in steps of different lengths.
-  for (int i = 0; i <= 50; ++i) ASSERT_TRUE(a->state_at(i * 100 * kMs).value());
+  for (int i = 0; i <= 50; ++i) ASSERT_TRUE(a->state_at(i * 100 * kMillisecondNs).value());
   ASSERT_TRUE(b->state_at(5 * kNsPerS).value());
   const SensorSamples few_samples = alone.take_until(5 * kNsPerS);
   const SensorSamples all_samples = fitted.take_until(5 * kNsPerS);

@@ -32,14 +32,14 @@ AircraftState state_at(double up_m, const Eigen::Quaterniond& R_world_body) {
   return state;
 }
 
-double mean_of(const std::vector<double>& values) {
+double mean_value(const std::vector<double>& values) {
   double sum = 0.0;
   for (const double value : values) sum += value;
   return sum / static_cast<double>(values.size());
 }
 
 /// Autocovariance at a lag, about the mean 0.
-double covariance(const std::vector<double>& values, std::size_t lag) {
+double autocovariance(const std::vector<double>& values, std::size_t lag) {
   double sum = 0.0;
   for (std::size_t i = lag; i < values.size(); ++i) sum += values[i] * values[i - lag];
   return sum / static_cast<double>(values.size() - lag);
@@ -77,10 +77,10 @@ TEST(BarometerSensor, HasTheNoiseAndTheDriftItWasAskedFor) {
     error.push_back(barometer.measure(state, place).pressure_pa - 101325.0);
   }
   // Without correlation the white part would be missing from every lag but 0.
-  const double drift = covariance(error, 1) / std::exp(-0.04 / 5.0);
+  const double drift = autocovariance(error, 1) / std::exp(-0.04 / 5.0);
   EXPECT_NEAR(std::sqrt(drift) / model.drift_pa, 1.0, 0.05);
-  EXPECT_NEAR(std::sqrt(covariance(error, 0) - drift) / model.noise_pa, 1.0, 0.2);
-  EXPECT_NEAR(covariance(error, 125) / drift, std::exp(-1.0), 0.05);
+  EXPECT_NEAR(std::sqrt(autocovariance(error, 0) - drift) / model.noise_pa, 1.0, 0.2);
+  EXPECT_NEAR(autocovariance(error, 125) / drift, std::exp(-1.0), 0.05);
 }
 
 TEST(AirspeedSensorTest, HasTheDynamicPressureOfTheAirspeed) {
@@ -139,11 +139,11 @@ TEST(GpsSensor, HasTheErrorsOfItsModel) {
   for (int axis = 0; axis < 3; ++axis) {
     const double drift_m = axis < 2 ? 4.7 : 9.2;
     const double noise_m = axis < 2 ? 0.4 : 0.7;
-    const double drift = covariance(errors[axis], 1) / std::exp(-0.2 / 20.0);
+    const double drift = autocovariance(errors[axis], 1) / std::exp(-0.2 / 20.0);
     EXPECT_NEAR(std::sqrt(drift) / drift_m, 1.0, 0.05) << axis;
-    EXPECT_NEAR(std::sqrt(covariance(errors[axis], 0) - drift) / noise_m, 1.0, 0.2) << axis;
-    EXPECT_NEAR(covariance(errors[axis], 100) / drift, std::exp(-1.0), 0.06) << axis;
-    EXPECT_NEAR(mean_of(errors[axis]), 0.0, 4.0 * drift_m * std::sqrt(2.0 / 4000.0)) << axis;
+    EXPECT_NEAR(std::sqrt(autocovariance(errors[axis], 0) - drift) / noise_m, 1.0, 0.2) << axis;
+    EXPECT_NEAR(autocovariance(errors[axis], 100) / drift, std::exp(-1.0), 0.06) << axis;
+    EXPECT_NEAR(mean_value(errors[axis]), 0.0, 4.0 * drift_m * std::sqrt(2.0 / 4000.0)) << axis;
   }
 }
 
@@ -223,8 +223,8 @@ TEST(MagnetometerSensor, HasOneBiasForAFlight) {
     bias_x.push_back(sum / 100.0);
     for (int i = 0; i < 100; ++i) noise_x[noise_x.size() - 100 + i] -= bias_x.back();
   }
-  EXPECT_NEAR(std::sqrt(covariance(bias_x, 0)) / model.bias_ut, 1.0, 0.1);
-  EXPECT_NEAR(std::sqrt(covariance(noise_x, 0)) / model.noise_ut, 1.0, 0.05);
+  EXPECT_NEAR(std::sqrt(autocovariance(bias_x, 0)) / model.bias_ut, 1.0, 0.1);
+  EXPECT_NEAR(std::sqrt(autocovariance(noise_x, 0)) / model.noise_ut, 1.0, 0.05);
 }
 
 TEST(RangeSensor, MeasuresAlongTheTiltedBeam) {
@@ -253,9 +253,9 @@ TEST(RangeSensor, MeasuresAlongTheTiltedBeam) {
 }
 
 /// A plane through the origin that rises to the east.
-class Slope final : public HeightQuery {
+class RisingPlane final : public HeightQuery {
  public:
-  explicit Slope(double rise) : rise_(rise) {}
+  explicit RisingPlane(double rise) : rise_(rise) {}
   [[nodiscard]] double ground_up_m(double east_m, double /*north_m*/) const override {
     return rise_ * east_m;
   }
@@ -265,7 +265,7 @@ class Slope final : public HeightQuery {
 };
 
 TEST(RangeSensor, FindsTheNearestGroundOfASlope) {
-  const Slope slope(0.5);
+  const RisingPlane slope(0.5);
   for (const double east : {-0.9, -0.3, 0.0, 0.4, 0.8}) {
     const Eigen::Vector3d beam = Eigen::Vector3d(east, 0.1, -0.6).normalized();
     // 100 + s z = 0.5 s x
