@@ -20,8 +20,10 @@ namespace {
 using mavlink::MessageId;
 
 constexpr std::chrono::seconds kArmingLimit{60};
-/// Of messages that only tell when the flight ends, and of speeds.
+/// Of messages that are read for the begin and the end of the flight, and of speeds.
 constexpr double kSlowRateHz = 5.0;
+/// A mission's height that differs by more is another one.
+constexpr double kHeightRoundingM = 0.02;
 
 Status request_rates(mavlink::Exchange& exchange, const LiveFlight& flight) {
   if (flight.rate_hz <= 0.0) return {};
@@ -51,7 +53,7 @@ Status request_rates(mavlink::Exchange& exchange, const LiveFlight& flight) {
 }
 
 /// Whether the vehicle's mission is the one that was sent. Item 0 is the home position, which
-/// ArduPilot keeps for itself; positions are rounded to 1e-7 deg.
+/// ArduPilot keeps for itself; it rounds positions to 1e-7 deg and heights to 0.01 m.
 bool is_same_mission(const std::vector<mavlink::MissionItem>& sent,
                      const std::vector<mavlink::MissionItem>& stored) {
   if (sent.size() != stored.size()) return false;
@@ -60,6 +62,9 @@ bool is_same_mission(const std::vector<mavlink::MissionItem>& sent,
         std::abs(sent[i].y - stored[i].y) > 1e-6) {
       return false;
     }
+    // Vehicles need not keep the height of an item without a place.
+    const bool has_place = sent[i].x != 0.0 || sent[i].y != 0.0;
+    if (has_place && std::abs(sent[i].z - stored[i].z) > kHeightRoundingM) return false;
   }
   return true;
 }

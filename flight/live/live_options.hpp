@@ -15,6 +15,12 @@ enum class TruthPreference {
   kEstimate,    ///< what the autopilot believes
 };
 
+/// When the flight begins. Without a condition: with the first position and attitude.
+struct StartCondition {
+  /// When this item of the mission, or one after it, is the current one; negative: no condition.
+  std::int32_t mission_item = -1;
+};
+
 /// Conditions that end the flight, besides a restart of the vehicle.
 struct StopConditions {
   bool on_disarm = false;          ///< when the vehicle is disarmed after it was armed
@@ -32,6 +38,7 @@ struct LiveTruthOptions {
   std::int64_t simulation_wait_ns = 2 * kNsPerS;
   /// A wait for a sample ends with an error after this time without one.
   std::chrono::milliseconds patience{10000};
+  StartCondition start;
   StopConditions stop;
 };
 

@@ -10,6 +10,7 @@
 #include "flight/live/live_motion.hpp"
 #include "flight/live/stop_watch.hpp"
 #include "flight/live/truth_streams.hpp"
+#include "flight/mavlink/messages.hpp"
 
 namespace overfly::flight::live {
 namespace {
@@ -27,6 +28,8 @@ struct LiveTruth::Impl {
   LiveSamples samples;
   StopWatch stop;
   std::optional<TruthStreams> streams;
+  bool started = false;
+  /// Once the streams are chosen; moves on until the flight has started.
   std::int64_t start_ns = 0;
   Clock::time_point last_sample;
   std::string end_reason;              ///< empty while the flight goes on
@@ -46,11 +49,13 @@ struct LiveTruth::Impl {
       : vehicle(std::move(of)),
         options(with),
         stop(with.stop),
+        started(with.start.mission_item < 0),
         motion(in, with.geoid_separation_m, with.gap_limit_ns) {}
 
   void take(const mavlink::Frame& message);
   [[nodiscard]] std::int64_t known_until_ns() const;
   bool choose();
+  void await_start(const mavlink::Frame& message);
   void end(const std::string& reason);
   [[nodiscard]] AircraftState at(std::int64_t vehicle_ns);
   template <typename Ready>
@@ -82,6 +87,7 @@ void LiveTruth::Impl::take(const mavlink::Frame& message) {
       } else if (const std::string reason = stop.take(message); !reason.empty()) {
         end(reason);
       }
+      if (!started && !end_ns) await_start(message);
     }
   }
   news.notify_all();
@@ -122,6 +128,14 @@ bool LiveTruth::Impl::choose() {
   samples.keep_only(chosen->position, chosen->attitude);
   samples.forget_before(start_ns);
   return true;
+}
+
+/// Forgets the flight so far until its start condition holds.
+void LiveTruth::Impl::await_start(const mavlink::Frame& message) {
+  start_ns = known_until_ns();
+  samples.forget_before(start_ns);
+  started = message.message_id == static_cast<std::uint32_t>(mavlink::MessageId::kMissionCurrent) &&
+            mavlink::decode_mission_sequence(message) >= options.start.mission_item;
 }
 
 /// Waits until `ready` returns true or the flight ends.
@@ -179,9 +193,14 @@ Result<std::unique_ptr<LiveTruth>> LiveTruth::open(std::shared_ptr<mavlink::Vehi
   Impl& impl = *truth->impl_;
   impl.vehicle->set_listener([&impl](const mavlink::Frame& message) { impl.take(message); });
   const std::string what = impl.vehicle->address().text() + ": waiting for the flight's start";
-  if (Status status = impl.wait(what, cancel, [&impl] { return impl.streams.has_value(); });
-      !status) {
-    return status.error();
+  const auto started = [&impl] { return impl.streams.has_value() && impl.started; };
+  if (Status status = impl.wait(what, cancel, started); !status) return status.error();
+  const std::lock_guard lock(impl.mutex);
+  if (!impl.started) {
+    return Error{ErrorCode::kIo,
+                 impl.vehicle->address().text() +
+                     ": the flight ended before the mission came to item " +
+                     std::to_string(options.start.mission_item) + ": " + impl.end_reason};
   }
   return truth;
 }

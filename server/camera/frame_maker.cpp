@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <variant>
 
 #include "core/cancel.hpp"
 #include "server/camera/truth.hpp"
@@ -54,6 +55,10 @@ Status FrameMaker::open_world() {
 }
 
 Status FrameMaker::plan_flight() {
+  const auto* live = std::get_if<flight::live::LiveFlight>(&scenario_.flight);
+  if (live != nullptr && !options_.open_truth && options_.notice) {
+    options_.notice("waiting for the flight of the vehicle on " + live->link.text());
+  }
   Result<std::unique_ptr<TruthSource>> truth =
       options_.open_truth ? options_.open_truth(*world_)
                           : create_truth(scenario_, *world_, options_.cancel);

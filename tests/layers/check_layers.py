@@ -99,7 +99,7 @@ MAY_INCLUDE = {
     "flight/logs/probes": ["core/", "flight/logs", "flight/mavlink"],
     "flight/logs/csv": ["core/", "flight/logs"],
     "flight/smoothing": ["core/"],
-    "flight/replay": ["core/", "flight/pose_flight.hpp", "flight/logs", "flight/smoothing"],
+    "flight/replay": ["core/", "flight/pose_flight.hpp", "flight/known_flight.hpp", "flight/logs", "flight/smoothing"],
     "flight/dynamics": ["core/", "flight/gravity.hpp", "flight/normal_noise.hpp"],
     "middleware/lcm": ["core/"],
     "middleware/lcm/absent": ["core/", "middleware/lcm"],

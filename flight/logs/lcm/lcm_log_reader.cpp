@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/text/number_text.hpp"
 #include "core/text/printable_text.hpp"
 #include "flight/logs/boot_clock.hpp"
 #include "flight/logs/lcm/lcm_messages.hpp"
@@ -139,8 +140,8 @@ void LcmPass::report() {
     if (count > 0) sink_.warning(std::to_string(count) + " " + text);
   };
   warn(skipped_bytes_,
-       "bytes in " + std::to_string(damaged_places_) +
-           " places belong to no complete event and were skipped");
+       "bytes in " + counted(damaged_places_, "place") +
+           " belong to no complete event and were skipped");
   warn(short_messages_, "messages are shorter than their type and were left out");
   warn(left_out_events_,
        "events were left out: only " + std::to_string(kMaxChannels) + " channels are read");

@@ -268,6 +268,51 @@ TEST(LiveTruth, EndsByItsStopConditions) {
   EXPECT_THAT(mission.truth->warnings().back(), HasSubstr("the mission has come to item 7"));
 }
 
+TEST(LiveTruth, BeginsWithAnItemOfTheMission) {
+  const auto vehicle = listening_vehicle("udp-listen:127.0.0.1:0");
+  MadeVehicle made(vehicle->address().port);
+  made.heartbeat();
+  LiveTruthOptions options;
+  options.simulation_wait_ns = kNsPerS / 10;
+  options.start.mission_item = 5;
+  options.stop.mission_item = 9;
+  /// The mission comes to the items of a list, one every 2 s of the vehicle's clock, from 12 s on.
+  const auto open = [&](std::vector<std::uint16_t> items) {
+    std::atomic<bool> opened{false};
+    std::thread flying([&] {
+      for (std::uint32_t ms = 10000; !opened && ms < 60000; ms += 20) {
+        made.state(ms);
+        const std::size_t item = ms / 2000 - 6;
+        if (ms >= 12000 && ms % 2000 == 0 && item < items.size()) {
+          made.send(frame_bytes(42, PayloadWriter(18).put(0, items[item]).bytes(), 0));
+        }
+        std::this_thread::sleep_for(milliseconds(1));
+      }
+    });
+    auto truth = LiveTruth::open(vehicle, frame_at_start(), options, nullptr);
+    opened = true;
+    flying.join();
+    return truth;
+  };
+  for (const std::vector<std::uint16_t>& items :
+       {std::vector<std::uint16_t>{1, 4, 5}, std::vector<std::uint16_t>{1, 4, 6}}) {
+    const auto truth = open(items);
+    ASSERT_TRUE(truth.ok()) << truth.error().message;
+    EXPECT_EQ((*truth)->start_ns(), 16 * kNsPerS);
+    const auto first = (*truth)->state_at(0);
+    ASSERT_TRUE(first.ok() && *first);
+    const Eigen::Vector3d expected = frame_at_start().world_from_geodetic(
+        geodetic_from_deg(1e-7 * MadeVehicle::lat_at(16000), kLon0, 600.0));
+    EXPECT_LT(((*first)->T_world_body.translation - expected).norm(), 0.02);
+  }
+  const auto never = open({1, 9});
+  ASSERT_FALSE(never.ok());
+  EXPECT_THAT(
+      never.error().message,
+      HasSubstr("the flight ended before the mission came to item 5: the mission has come to "
+                "item 9"));
+}
+
 TEST(LiveTruth, SaysWhatIsMissing) {
   LiveTruthOptions options;
   options.patience = milliseconds(100);

@@ -96,6 +96,10 @@ Result<LiveFlight> read_live_flight(Json& mavlink, const FileResolver& files) {
   flight.truth.gap_limit_ns = ns_from_s(mavlink.at("gap_limit_s").get<double>());
   flight.truth.patience =
       std::chrono::milliseconds(std::llround(1e3 * mavlink.at("patience_s").get<double>()));
+  const Json& start = mavlink.at("start");
+  if (start.contains("mission_item")) {
+    flight.truth.start.mission_item = start.at("mission_item").get<std::int32_t>();
+  }
   const Json& stop = mavlink.at("stop");
   flight.truth.stop.on_disarm = stop.at("on_disarm").get<bool>();
   flight.truth.stop.on_landing = stop.at("on_landing").get<bool>();
