@@ -47,7 +47,7 @@ def main():
     latency = timings["message_to_frame"]
     camera = manifest["camera"]
     print(f"{manifest['renderer']['backend']}, {manifest['renderer']['device']}, "
-          f"{camera['width']}x{camera['height']}, {manifest['pacing']}: "
+          f"{camera['width_px']}x{camera['height_px']}, {manifest['pacing']}: "
           f"{latency['count']} frames of {1000.0 / camera['rate_hz']:.1f} ms; message to frame "
           f"median {latency['median_ms']:.1f} ms, p95 {latency['p95_ms']:.1f} ms, "
           f"p99 {latency['p99_ms']:.1f} ms, longest {latency['max_ms']:.1f} ms")
