@@ -160,6 +160,7 @@ Result<DatasetPlan> make_plan(const ExportSource& source,
   plan.last_frame = frames.last_frame();
   plan.epoch_utc_ns = source.epoch_utc_ns;
   plan.imu_model = options.imu;
+  if (source.run) plan.estimates = source.run->estimates;
   if (options.format != DatasetFormat::kEuroc) return plan;
   const auto keep_going = [&] { return keeps_going(options); };
   if (Status status = measure_inertially(source, frames, keep_going, plan); !status) {
