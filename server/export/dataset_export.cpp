@@ -23,8 +23,6 @@ bool takes_one_camera(DatasetFormat format) {
   return format == DatasetFormat::kTumMono || format == DatasetFormat::kKitti;
 }
 
-std::int64_t frame_period_ns(const FrameRate& rate) { return frame_time_ns(1, rate); }
-
 /// IMU samples from one frame before the first to one frame after the last, and the states at their
 /// times.
 Status measure_inertially(const ExportSource& source,
@@ -41,9 +39,9 @@ Status measure_inertially(const ExportSource& source,
   if (!*start) return {};
   const Geodetic place =
       world.tiles->frame().geodetic_from_world((*start)->T_world_body.translation);
-  const std::int64_t margin_ns = frame_period_ns(scenario.rate);
-  const std::int64_t begin_ns = frame_time_ns(frames.first_frame(), scenario.rate) - margin_ns;
-  const std::int64_t end_ns = frame_time_ns(frames.last_frame(), scenario.rate) + margin_ns;
+  const std::int64_t margin_ns = frame_time_ns(1, scenario.rate);
+  const std::int64_t begin_ns = frames.maker().frame_ns(frames.first_frame()) - margin_ns;
+  const std::int64_t end_ns = frames.maker().frame_ns(frames.last_frame()) + margin_ns;
   auto readings = flight::synthesize_imu(**flight,
                                          end_ns,
                                          plan.imu_model,

@@ -60,6 +60,8 @@ class FlightRun {
   Result<Flight> fly_frame(std::int64_t k, bool wait_for_estimators);
   /// Gives each estimator its camera's image, and records all cameras.
   Status deliver(MadeFrame& made);
+  /// Compares the recorded image of a frame with the rendered one, and reports a lost one.
+  Status judge_recorded_image(const MadeFrame& made);
   Status record_events();
   Status tell_faults(std::int64_t t_ns);
   [[nodiscard]] bool cancelled() const;
@@ -79,6 +81,7 @@ class FlightRun {
   DurationList message_to_frame_;  ///< of a live vehicle
   std::int64_t late_tiles_ = 0;
   std::int64_t frames_with_late_tiles_ = 0;
+  int problems_told_ = 0;  ///< lost images in the log
   std::vector<std::unique_ptr<EstimatorWorker>> workers_;
   /// By camera; null where no test estimator needs the truth.
   std::vector<std::shared_ptr<TruthFeed>> truth_feeds_;
