@@ -15,6 +15,9 @@
 
 namespace overfly::server {
 
+/// In CameraShot::faults: the recorded image of the frame is missing or cannot be decoded.
+inline constexpr const char* kUnreadableImage = "unreadable_image";
+
 struct CameraShot {
   std::size_t camera = 0;           ///< index into Scenario::cameras
   std::string name;                 ///< the camera's name
@@ -28,6 +31,8 @@ struct CameraShot {
   std::int64_t stamp_ns = 0;        ///< as given to estimators; the true time is MadeFrame::t_ns
   std::vector<std::string> faults;  ///< kinds of the faults that affect the frame
   bool delivered = true;            ///< false: lost before it reached the estimators
+  std::int64_t source_image = -1;   ///< of a recorded image: its number in the source
+  std::string problem;              ///< why a recorded image is lost
 };
 
 /// One instant, as seen by all cameras and measured by the other sensors.

@@ -19,6 +19,7 @@
 #include "server/camera/renderer_factory.hpp"
 #include "server/camera/truth_window.hpp"
 #include "server/camera/watched_tiles.hpp"
+#include "server/imagery/flight_images.hpp"
 #include "server/record/truth_samples.hpp"
 #include "server/scenario/scenario.hpp"
 #include "server/timing/stage_timer.hpp"
@@ -42,6 +43,8 @@ struct FrameMakerOptions {
   TruthSampleFile* truth_samples = nullptr;  ///< where the truth is recorded; may be null
   /// Date of the flight at t = 0. If given, the scenario's other sensors measure.
   std::optional<std::int64_t> sensing_from_utc_ns;
+  /// Where the messages of a live vehicle are recorded; empty: nowhere.
+  std::filesystem::path vehicle_log;
 };
 
 /// Used and destroyed on one thread.
@@ -56,6 +59,8 @@ class FrameMaker {
 
   /// Number of frames of the flight; for a flight of unknown length, that of one day.
   [[nodiscard]] std::int64_t frames_total() const { return frames_total_; }
+  /// Time of frame k: by the cameras' rate, or that of the k-th recorded image.
+  [[nodiscard]] std::int64_t frame_ns(std::int64_t k) const;
   /// Empty for a flight whose end is not known in advance.
   [[nodiscard]] std::optional<std::int64_t> duration_ns() const { return duration_ns_; }
   [[nodiscard]] const terrain::World& world() const { return *world_; }
@@ -65,6 +70,8 @@ class FrameMaker {
   [[nodiscard]] std::vector<std::string> flight_warnings() const {
     return truth_->source().warnings();
   }
+  /// Of the recorded images.
+  [[nodiscard]] std::vector<std::string> image_warnings() const;
 
   /// See TruthSource.
   [[nodiscard]] std::shared_ptr<EstimateReceiver> estimate_receiver() const {
@@ -91,11 +98,18 @@ class FrameMaker {
   FrameMaker(const Scenario& scenario, const FrameMakerOptions& options);
   Status open_world();
   Status plan_flight();
+  Status open_images();
   Status open_renderer();
   Status open_cameras();
   [[nodiscard]] Result<CameraShot> take(std::size_t camera,
                                         std::int64_t k,
                                         const std::vector<AircraftState>& states);
+  /// The recorded image of frame k.
+  /// @param rendered  the shots so far, by camera
+  [[nodiscard]] Result<CameraShot> fetch(std::size_t camera,
+                                         std::int64_t k,
+                                         const std::vector<AircraftState>& states,
+                                         const std::vector<CameraShot>& rendered);
   /// Checks for read errors, because height queries cannot report them and a frame does not wait
   /// for a tile that cannot be read.
   /// @param late_tiles  tiles that a frame was drawn without
@@ -113,6 +127,7 @@ class FrameMaker {
   std::unique_ptr<flight::SensorSuite> sensors_;  ///< null without sensors
   std::unique_ptr<TruthWindow> truth_;
   std::optional<std::int64_t> duration_ns_;
+  std::unique_ptr<FlightImages> images_;  ///< null if all images are rendered
   std::int64_t frames_total_ = 0;
   std::int64_t next_frame_ = 0;  ///< the one after the last made frame
   std::unique_ptr<renderer::Renderer> renderer_;

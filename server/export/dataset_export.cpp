@@ -120,6 +120,7 @@ Result<DatasetPlan> make_plan(const ExportSource& source,
   plan.rate = source.scenario.rate;
   plan.last_frame = frames.last_frame();
   plan.epoch_utc_ns = source.epoch_utc_ns;
+  if (source.run) plan.estimates = source.run->estimates;
   if (options.format != DatasetFormat::kEuroc) return plan;
   const auto keep_going = [&] { return keeps_going(options); };
   Status measured = add_inertial_data(source, options.imu, frames, keep_going, plan);

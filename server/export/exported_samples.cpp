@@ -76,8 +76,8 @@ Status add_inertial_data(const ExportSource& source,
   plan.imu_model = fitted ? *fitted : wanted.value_or(flight::ImuModel());
   const terrain::World& world = frames.maker().world();
   const std::int64_t margin_ns = frame_time_ns(1, scenario.rate);
-  const std::int64_t begin_ns = frame_time_ns(frames.first_frame(), scenario.rate) - margin_ns;
-  const std::int64_t end_ns = frame_time_ns(frames.last_frame(), scenario.rate) + margin_ns;
+  const std::int64_t begin_ns = frames.maker().frame_ns(frames.first_frame()) - margin_ns;
+  const std::int64_t end_ns = frames.maker().frame_ns(frames.last_frame()) + margin_ns;
   Readings readings = std::vector<flight::ImuReading>();
   if (fitted && source.run) {
     readings = recorded_readings(*source.run, *fitted, scenario.seed, end_ns);

@@ -64,6 +64,8 @@ class FlightRun {
   Status deliver(MadeFrame& made);
   Status take_sensor_samples(MadeFrame& made);
   Status record_last_period();
+  /// Compares the recorded image of a frame with the rendered one, and reports a lost one.
+  Status judge_recorded_image(const MadeFrame& made);
   Status record_events();
   Status tell_faults(std::int64_t t_ns);
   [[nodiscard]] bool cancelled() const;
@@ -83,6 +85,7 @@ class FlightRun {
   DurationList message_to_frame_;  ///< of a live vehicle
   std::int64_t late_tiles_ = 0;
   std::int64_t frames_with_late_tiles_ = 0;
+  int problems_told_ = 0;  ///< lost images in the log
   std::vector<std::unique_ptr<EstimatorWorker>> workers_;
   /// By estimator: samples of sensors that wait for its next frame.
   std::vector<SensorSamples> unsent_samples_;

@@ -148,7 +148,7 @@ int export_source(const ExportArguments& arguments) {
   if (!format && arguments.format != "webm") {
     return report({ErrorCode::kInvalidArgument,
                    "format = " + arguments.format +
-                       ": must be one of tum-mono, euroc, kitti, png, lcm, rosbag, webm"});
+                       ": must be one of tum-mono, euroc, kitti, png, lcm, rosbag, mcap, webm"});
   }
   const auto source = open_source(arguments);
   if (!source) return report(source.error());
@@ -198,7 +198,7 @@ void add_export_command(CLI::App& app, int& exit_code) {
   command
       ->add_option("--format",
                    arguments->format,
-                   "tum-mono, euroc, kitti, png, lcm, rosbag, or webm for only a video")
+                   "tum-mono, euroc, kitti, png, lcm, rosbag, mcap, or webm for only a video")
       ->required();
   command->add_option("--out", arguments->out, "Folder to create; for webm the file")->required();
   command
