@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -28,6 +29,13 @@ using OfEachSensor = std::tuple<Part<ImuSample>,
                                 Part<MagnetometerSample>,
                                 Part<RangeSample>>;
 
+/// Whole numbers without an exponent, for readers that take them as integers.
+inline std::string row_value_text(double value) {
+  constexpr double kExactBelow = 1e15;
+  const bool whole = std::abs(value) < kExactBelow && value == std::trunc(value) && value != 0.0;
+  return whole ? std::to_string(static_cast<std::int64_t>(value)) : number_text(value);
+}
+
 template <typename Sample>
 class RowWriter {
  public:
@@ -46,7 +54,7 @@ class RowWriter {
     }
     for (const Sample& sample : added) {
       text += std::to_string(sample.t_ns);
-      for (const double value : Row::values(sample)) text += ',' + number_text(value);
+      for (const double value : Row::values(sample)) text += ',' + row_value_text(value);
       text += '\n';
     }
     return file_->append(text);

@@ -82,6 +82,16 @@ TEST(SensorFiles, EverySampleComesBackWhenItIsAvailable) {
   EXPECT_TRUE(reader.until(2 * kNsPerS).value().empty());
 }
 
+TEST(SensorFiles, WholeNumbersHaveNoExponent) {
+  const TemporaryFolder folder;
+  SensorSamples samples = samples_at(0);
+  samples.gps[0].delivered_ns = 100'000'000;
+  SensorFilesWriter writer(folder.path());
+  ASSERT_TRUE(writer.add(samples));
+  const std::string text = overfly::testing::read_text(sensors_folder(folder.path()) / "gps.csv");
+  EXPECT_THAT(text, HasSubstr("\n0,100000000,3,"));
+}
+
 TEST(SensorFiles, NoFixHasNoPlace) {
   const TemporaryFolder folder;
   GpsSample none;
