@@ -63,7 +63,8 @@ class FrameMaker {
     return truth_->source().warnings();
   }
 
-  /// See TruthSource.
+  /// These three: see TruthSource.
+  void begin_flight() { truth_->source().begin(); }
   [[nodiscard]] std::shared_ptr<EstimateReceiver> estimate_receiver() const {
     return truth_->source().estimate_receiver();
   }
