@@ -35,6 +35,10 @@ class LogFlight final : public KnownFlight {
     for (std::size_t i = 0; i < count; ++i) velocities_m_s_.push_back(velocity_of(i));
   }
 
+  [[nodiscard]] std::optional<std::int64_t> log_start_ns() const override {
+    return trajectory_.begin_ns();
+  }
+
  private:
   [[nodiscard]] std::int64_t end_ns() const override {
     return trajectory_.end_ns() - trajectory_.begin_ns();

@@ -48,6 +48,8 @@ class TruthSource {
   [[nodiscard]] virtual std::optional<std::int64_t> duration_ns() const = 0;
   /// One line for the manifest that describes the flight ("course: 25 m/s, 45 deg/s, 300 m").
   [[nodiscard]] virtual std::string description() const = 0;
+  /// t = 0 by the clock of the log or file that is flown [ns]; empty if it has none.
+  [[nodiscard]] virtual std::optional<std::int64_t> log_start_ns() const { return std::nullopt; }
   /// Lines of the flight's file that were dropped or moved. Empty if none.
   [[nodiscard]] virtual std::vector<std::string> warnings() const { return {}; }
   /// Called before the first state is asked for, once a flight in real time is ready: a live flight

@@ -106,8 +106,16 @@ Status prepare(mavlink::Exchange& exchange, const LiveFlight& flight, const Loca
 
 Result<std::unique_ptr<TruthSource>> fly_live(const LiveFlight& flight,
                                               const LocalFrame& frame,
-                                              const std::atomic<bool>* cancel) {
+                                              const std::atomic<bool>* cancel,
+                                              const LiveRecording& recording) {
   mavlink::VehicleOptions options;
+  LiveTruthOptions truth_options = flight.truth;
+  if (!recording.tlog.empty()) {
+    auto recorder = mavlink::FrameRecorder::create(recording.tlog);
+    if (!recorder) return recorder.error();
+    options.link.recorder = *recorder;
+    truth_options.recorder = std::move(*recorder);
+  }
   options.system = flight.system;
   options.link.read_only = flight.read_only;
   if (flight.signing_key_file) {
@@ -128,7 +136,7 @@ Result<std::unique_ptr<TruthSource>> fly_live(const LiveFlight& flight,
       return status.error().in(flight.link.text());
     }
   }
-  Result<std::unique_ptr<LiveTruth>> truth = LiveTruth::open(vehicle, frame, flight.truth, cancel);
+  Result<std::unique_ptr<LiveTruth>> truth = LiveTruth::open(vehicle, frame, truth_options, cancel);
   if (!truth) return truth.error();
   if (flight.feedback) {
     (*truth)->send_estimates_by(std::make_shared<mavlink::FeedbackSender>(

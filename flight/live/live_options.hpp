@@ -3,8 +3,13 @@
 
 #include <chrono>
 #include <cstdint>
+#include <memory>
 
 #include "core/time.hpp"
+
+namespace overfly::flight::mavlink {
+class FrameRecorder;
+}
 
 namespace overfly::flight::live {
 
@@ -40,6 +45,8 @@ struct LiveTruthOptions {
   std::chrono::milliseconds patience{10000};
   StartCondition start;
   StopConditions stop;
+  /// Records the link's messages; its problem is a warning of the flight. May be null.
+  std::shared_ptr<mavlink::FrameRecorder> recorder = nullptr;
 };
 
 }  // namespace overfly::flight::live

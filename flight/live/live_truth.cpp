@@ -10,6 +10,7 @@
 #include "flight/live/live_motion.hpp"
 #include "flight/live/stop_watch.hpp"
 #include "flight/live/truth_streams.hpp"
+#include "flight/mavlink/link/frame_recorder.hpp"
 #include "flight/mavlink/messages.hpp"
 
 namespace overfly::flight::live {
@@ -209,7 +210,8 @@ std::string LiveTruth::description() const {
   const mavlink::VehicleState state = impl_->vehicle->state();
   const std::lock_guard lock(impl_->mutex);
   return "live vehicle " + std::to_string(state.system) + "." + std::to_string(state.component) +
-         " on " + impl_->vehicle->address().text() + ": " + impl_->opened_as;
+         " on " + impl_->vehicle->address().text() + ": " + impl_->opened_as + " from " +
+         seconds_shown(impl_->start_ns) + " of its clock";
 }
 
 std::vector<std::string> LiveTruth::warnings() const {
@@ -219,6 +221,10 @@ std::vector<std::string> LiveTruth::warnings() const {
   if (impl_->end_ns) {
     warnings.push_back("the flight ended at " + seconds_shown(*impl_->end_ns - impl_->start_ns) +
                        ": " + impl_->end_reason);
+  }
+  if (impl_->options.recorder) {
+    const std::string problem = impl_->options.recorder->problem();
+    if (!problem.empty()) warnings.push_back(problem);
   }
   return warnings;
 }

@@ -10,6 +10,7 @@
 #include "flight/logs/csv/csv_reader.hpp"
 #include "flight/logs/dataflash/dataflash_reader.hpp"
 #include "flight/logs/flight_log.hpp"
+#include "flight/logs/lcm/lcm_events.hpp"
 #include "flight/logs/lcm/lcm_log_reader.hpp"
 #include "flight/logs/mcap/mcap_reader.hpp"
 #include "flight/logs/rosbag/rosbag_reader.hpp"

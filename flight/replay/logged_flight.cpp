@@ -32,6 +32,10 @@ class SmoothedFlight final : public KnownFlight {
         log_(std::move(log)),
         T_world_log_(T_world_log) {}
 
+  [[nodiscard]] std::optional<std::int64_t> log_start_ns() const override {
+    return log_.begin_ns();
+  }
+
  private:
   [[nodiscard]] std::int64_t end_ns() const override { return log_.end_ns() - log_.begin_ns(); }
   [[nodiscard]] AircraftState state(std::int64_t t_ns) const override {

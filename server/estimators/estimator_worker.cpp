@@ -65,6 +65,10 @@ void EstimatorWorker::submit(VoFrame frame) {
     const std::lock_guard lock(mutex_);
     if (waiting_) {
       drops_.push_back(drop_of(waiting_->frame));
+      SensorSamples samples = std::move(waiting_->frame.sensors);
+      append(samples, std::move(frame.sensors));
+      drop_older_than(samples, kOldestSampleNs);
+      frame.sensors = std::move(samples);
     } else if (!busy_) {
       clock_.enter();
     }

@@ -35,7 +35,8 @@ struct EstimatorWorkerOptions {
 };
 
 /// A slot for one frame in front of an estimator. A frame that still waits in the slot when the
-/// next one arrives is dropped. If frames are handed over only when idle(), none is lost.
+/// next one arrives is dropped; its samples of sensors go with the next one. If frames are handed
+/// over only when idle(), none is lost.
 class EstimatorWorker {
  public:
   EstimatorWorker(std::unique_ptr<VoPort> port, EstimatorWorkerOptions options, RunClock& clock);

@@ -1,5 +1,6 @@
 #include "server/net/http_session.hpp"
 
+#include <atomic>
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core.hpp>
@@ -14,6 +15,7 @@
 #include "core/barrier.hpp"
 #include "server/net/admission.hpp"
 #include "server/net/http/error_response.hpp"
+#include "server/net/upload_receiver.hpp"
 #include "server/net/websocket_session.hpp"
 
 namespace overfly::net {
@@ -60,12 +62,14 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession> {
   void read();
   void on_header(const error_code& error);
   void read_body();
+  void receive_body();
   void on_body(const error_code& error);
   void refuse(const error_code& error);
   void dispatch();
   [[nodiscard]] HttpResponse stream_without_upgrade() const;
   void upgrade();
   void ask_router();
+  void watch_client();
   void answer(std::uint64_t number, HttpResponse response);
   void write(HttpResponse response);
   void on_written(const error_code& error, bool keep_alive);
@@ -90,7 +94,10 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession> {
   std::vector<char> drained_;
   std::size_t drained_bytes_ = 0;
   std::uint64_t request_number_ = 0;  ///< an answer with another number comes too late
-  bool admitted_ = false;             ///< a request of this connection had the token
+  /// Of the request that the router is answering: nobody waits any more.
+  std::shared_ptr<std::atomic<bool>> abandoned_;
+  bool body_complete_ = false;  ///< of a body that was not read by parser_
+  bool admitted_ = false;       ///< a request of this connection had the token
   bool failed_ = false;
   bool head_ = false;
   bool keep_alive_ = false;
@@ -155,7 +162,32 @@ void HttpSession::on_header(const error_code& error) {
     return;
   }
   admitted_ = true;
-  read_body();
+  if (context_->router.is_upload(request_)) {
+    receive_body();
+  } else {
+    read_body();
+  }
+}
+
+void HttpSession::receive_body() {
+  UploadConnection connection{
+      stream_,
+      buffer_,
+      *parser_,
+      std::move(request_),
+      [self = shared_from_this()](std::optional<HttpResponse> response, bool complete) {
+        self->attempt([&] {
+          self->body_complete_ = complete;
+          self->keep_alive_ = self->keep_alive_ && complete;
+          if (response) {
+            self->write(std::move(*response));
+          } else {
+            self->close();
+          }
+        });
+      }};
+  receive_upload(context_, std::move(connection));
+  parser_.reset();
 }
 
 void HttpSession::upgrade() {
@@ -257,14 +289,36 @@ void HttpSession::ask_router() {
     context_->router.handle(request_, respond);
     return;
   }
+  abandoned_ = std::make_shared<std::atomic<bool>>(false);
+  request_.abandoned = abandoned_;
+  watch_client();
   context_->offload([context = context_, respond, asked = std::move(request_)] {
     context->router.handle(asked, respond);
   });
 }
 
+/// Notices that the client closes the connection while the router works on its answer.
+void HttpSession::watch_client() {
+  stream_.socket().async_wait(
+      tcp::socket::wait_read,
+      [weak = weak_from_this(), number = request_number_](const error_code&) {
+        const auto self = weak.lock();
+        if (!self || self->request_number_ != number) return;
+        error_code error;
+        char next = 0;
+        self->stream_.socket().non_blocking(true, error);
+        const std::size_t there = self->stream_.socket().receive(
+            asio::buffer(&next, 1), tcp::socket::message_peek, error);
+        // The next request may be there already: then nothing is noticed.
+        const bool gone = there == 0 && error != asio::error::would_block;
+        if (gone && self->abandoned_) *self->abandoned_ = true;
+      });
+}
+
 void HttpSession::answer(std::uint64_t number, HttpResponse response) {
   if (number != request_number_) return;
   ++request_number_;
+  if (abandoned_) *abandoned_ = true;
   answer_limit_.cancel();
   write(std::move(response));
 }
@@ -304,7 +358,7 @@ void HttpSession::on_written(const error_code& error, bool keep_alive) {
     return;
   }
   close();
-  if (parser_ && parser_->is_done()) return;
+  if (parser_ ? parser_->is_done() : body_complete_) return;
   drained_.resize(kDrainStepBytes);
   stream_.expires_after(kDrainLimit);
   drain();
@@ -347,6 +401,7 @@ void HttpSession::fail(const char* what) {
 /// Closes at once, in any phase.
 void HttpSession::end() {
   ++request_number_;
+  if (abandoned_) *abandoned_ = true;
   answer_limit_.cancel();
   stream_.close();
 }

@@ -57,6 +57,7 @@ Server::~Server() {
   if (impl_->context) {
     impl_->context->sessions.close_all(kFarewell);
     impl_->context->gate.close();
+    impl_->context->readers.stop();
   }
   impl_->workers.stop();
   impl_->connections.stop();
@@ -73,6 +74,13 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options,
   add_run_routes(&context->router, &runs);
   add_result_routes(&context->router, &runs);
   add_frame_routes(&context->router, &runs, &views);
+  add_log_routes(
+      &context->router,
+      {&context->logs,
+       [raw = context.get()](std::function<void()> work, const ReadingThreads::Cancel& cancel) {
+         return raw->readers.take(std::move(work), cancel);
+       },
+       [raw = context.get()](const std::string& what) { raw->log("error", what); }});
   context->offload = [workers = &server->impl_->workers](std::function<void()> work) {
     boost::asio::post(workers->loop(), std::move(work));
   };
@@ -84,6 +92,9 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options,
     return started.error();
   }
   const auto below_flights = [] { server::lower_thread(server::ThreadPriority::kBelowFlights); };
+  if (const Status started = context->readers.start(below_flights); !started) {
+    return started.error();
+  }
   const Status started = server->impl_->connections.start(1, below_flights);
   if (!started) return started.error();
   return server;

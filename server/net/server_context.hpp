@@ -10,10 +10,12 @@
 #include <thread>
 
 #include "core/barrier.hpp"
+#include "server/logs/log_library.hpp"
 #include "server/net/http/allowed_hosts.hpp"
 #include "server/net/http/rest_router.hpp"
 #include "server/net/http/static_files.hpp"
 #include "server/net/http/token_gate.hpp"
+#include "server/net/reading_threads.hpp"
 #include "server/net/server_options.hpp"
 #include "server/net/session_registry.hpp"
 #include "server/runs/run_manager.hpp"
@@ -51,6 +53,13 @@ struct ServerContext {
         files(server_options.web_folder),
         token_gate(server_options.token),
         allowed_hosts(server_options.allowed_hosts),
+        logs(
+            [this] {
+              server::DataFolders data = runs.data_folders();
+              return server::LogFolders{{}, std::move(data.folders), std::move(data.sources)};
+            },
+            server_options.uploads_folder,
+            server_options.limits.uploads),
         connections(server_options.limits.connections) {}
 
   /// Never throws, since it is called from exception handlers.
@@ -88,6 +97,9 @@ struct ServerContext {
   SessionRegistry sessions;
   /// Runs slow work (reading a run from disk) on a thread that serves no connection.
   std::function<void(std::function<void()>)> offload;
+  server::LogLibrary logs;
+  /// Reads flight logs, which can take minutes, without keeping other requests waiting.
+  ReadingThreads readers{[this](const std::string& what) { log("error", what); }};
   std::atomic<std::uint64_t> next_client{1};  ///< next client number for the view service
   ConnectionTable connections;
 };

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "server/logs/log_uploads.hpp"
 #include "server/net/connection_table.hpp"
 
 namespace overfly::net {
@@ -21,6 +22,7 @@ struct ServerLimits {
   std::int64_t header_ms = 10'000;     ///< time for a new connection's first request header
   std::int64_t idle_ms = 30'000;       ///< connections without traffic (WebSockets are pinged)
   ConnectionLimits connections;
+  server::UploadLimits uploads;  ///< of flight logs
   /// Kernel send buffer of a WebSocket. Small, because pictures that wait in it become outdated.
   int send_buffer_bytes = 256 << 10;
 };
@@ -33,6 +35,9 @@ struct ServerOptions {
   /// Host names and addresses that clients may use, in addition to those of AllowedHosts.
   std::vector<std::string> allowed_hosts;
   std::filesystem::path web_folder;  ///< built dashboard; empty = REST and WebSocket only
+  /// Where uploaded flight logs are kept; empty = no uploads. Scenarios may name its files only if
+  /// it is one of the run manager's data folders.
+  std::filesystem::path uploads_folder;
   ServerLimits limits;
   /// Called with each log line: (level, text).
   std::function<void(const std::string&, const std::string&)> log;

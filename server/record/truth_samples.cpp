@@ -84,6 +84,9 @@ class RecordedWhileFlown final : public TruthSource {
     return flight_->duration_ns();
   }
   [[nodiscard]] std::string description() const override { return flight_->description(); }
+  [[nodiscard]] std::optional<std::int64_t> log_start_ns() const override {
+    return flight_->log_start_ns();
+  }
   [[nodiscard]] std::vector<std::string> warnings() const override { return flight_->warnings(); }
   void begin() override { flight_->begin(); }
   [[nodiscard]] std::shared_ptr<EstimateReceiver> estimate_receiver() const override {

@@ -41,6 +41,8 @@ class FlightRun {
   /// Sends the answers of an estimator to the vehicle. @return what is called with each answer
   std::function<void(const EstimateRecord&)> open_feedback(const EstimatorSpec& spec);
   Status describe();
+  /// Unix time of t = 0, if it is now.
+  [[nodiscard]] std::int64_t epoch_utc_ns() const;
   /// Records the estimators' remaining answers, their resource use and their parameters; also after
   /// an error.
   Status close_estimators();
@@ -60,6 +62,10 @@ class FlightRun {
   Result<Flight> fly_frame(std::int64_t k, bool wait_for_estimators);
   /// Gives each estimator its camera's image, and records all cameras.
   Status deliver(MadeFrame& made);
+  Status take_sensor_samples(MadeFrame& made);
+  Status record_last_period();
+  /// Compares the recorded image of a frame with the rendered one, and reports a lost one.
+  Status judge_recorded_image(const MadeFrame& made);
   Status record_events();
   Status tell_faults(std::int64_t t_ns);
   [[nodiscard]] bool cancelled() const;
@@ -79,7 +85,10 @@ class FlightRun {
   DurationList message_to_frame_;  ///< of a live vehicle
   std::int64_t late_tiles_ = 0;
   std::int64_t frames_with_late_tiles_ = 0;
+  int problems_told_ = 0;  ///< lost images in the log
   std::vector<std::unique_ptr<EstimatorWorker>> workers_;
+  /// By estimator: samples of sensors that wait for its next frame.
+  std::vector<SensorSamples> unsent_samples_;
   /// By camera; null where no test estimator needs the truth.
   std::vector<std::shared_ptr<TruthFeed>> truth_feeds_;
 };

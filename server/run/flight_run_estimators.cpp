@@ -66,7 +66,8 @@ Port FlightRun::open_estimator(const EstimatorSpec& spec) {
                                  scenario_.pacing == Pacing::kLockstep,
                                  *folder,
                                  scenario_.rate.hz(),
-                                 options_.cancel};
+                                 options_.cancel,
+                                 !scenario_.sensors.none()};
   if (is_outside_estimator(spec.type)) return create_estimator(spec, setting, truth);
   // Also binds the threads that a native estimator starts at once.
   const AffinityGuard guard;

@@ -57,9 +57,17 @@ ManagedRuns::~ManagedRuns() {
 
 SourcePolicy ManagedRuns::sources() const {
   if (!options.data_folders) return {};
-  std::vector<std::filesystem::path> folders = declared_folders(options.scenarios_folder);
-  folders.insert(folders.end(), options.data_folders->begin(), options.data_folders->end());
-  return SourcePolicy::inside(std::move(folders), {options.runs_folder});
+  return data_folders().sources;
+}
+
+DataFolders ManagedRuns::data_folders() const {
+  DataFolders data;
+  data.folders = declared_folders(options.scenarios_folder);
+  if (!options.data_folders) return data;
+  data.folders.insert(
+      data.folders.end(), options.data_folders->begin(), options.data_folders->end());
+  data.sources = SourcePolicy::inside(data.folders, {options.runs_folder});
+  return data;
 }
 
 Result<RunInfo> ManagedRuns::enqueue(Scenario scenario,

@@ -55,6 +55,7 @@ class ManagedRuns {
 
   /// Sources that scenarios may name now: the declared folders follow the scenario files.
   [[nodiscard]] SourcePolicy sources() const;
+  [[nodiscard]] DataFolders data_folders() const;
   /// Errors: as RunManager::start, for a valid scenario.
   Result<RunInfo> enqueue(Scenario scenario,
                           const std::string& idempotency_key,

@@ -92,6 +92,8 @@ Result<Json> RunManager::scenario(const std::string& name) const {
   return loaded->resolved;
 }
 
+DataFolders RunManager::data_folders() const { return impl_->data_folders(); }
+
 RunList RunManager::runs() const { return impl_->list(); }
 
 Result<RunInfo> RunManager::run(const std::string& id) const {

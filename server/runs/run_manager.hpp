@@ -34,6 +34,9 @@ class RunManager {
   /// The resolved document. Errors: kNotFound, kInvalidArgument.
   [[nodiscard]] Result<nlohmann::json> scenario(const std::string& name) const;
 
+  /// What scenarios may name now.
+  [[nodiscard]] DataFolders data_folders() const;
+
   /// Starts (or queues) a run of a scenario with overrides. The same idempotency key returns the
   /// same run for a day.
   /// Errors: kNotFound; kInvalidArgument with the invalid fields; kConflict if the queue is full;

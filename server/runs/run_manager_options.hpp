@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/outside/source_policy.hpp"
 #include "server/camera/renderer_factory.hpp"
 
 namespace overfly::server {
@@ -26,6 +27,12 @@ struct RunManagerOptions {
   /// Folders whose files scenarios may name, in addition to `declared_folders(scenarios_folder)`;
   /// never the runs folder. Without a value any regular file may be named.
   std::optional<std::vector<std::filesystem::path>> data_folders;
+};
+
+/// Folders whose files scenarios may name, and which files of the machine these are.
+struct DataFolders {
+  std::vector<std::filesystem::path> folders;
+  SourcePolicy sources;
 };
 
 /// The result of a request for a run, in addition to its error.

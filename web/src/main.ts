@@ -7,11 +7,14 @@ import './styles/plots.css';
 import './styles/side.css';
 import './styles/timeline.css';
 import './styles/estimators.css';
+import './styles/logs.css';
 import { RestClient } from './connection/rest_client';
 import { StreamClient } from './connection/stream_client';
+import { uploadByBrowser } from './connection/upload';
 import { Alignment } from './store/alignment';
 import { Cameras } from './store/cameras';
 import { Catalogue } from './store/catalogue';
+import { LogBrowser } from './store/logs/log_browser';
 import { Notices } from './store/notices';
 import { Player } from './store/player';
 import { SceneControl } from './store/scene_control';
@@ -53,8 +56,20 @@ const catalogue = new Catalogue(store, rest, session, notices, later, newKey);
 
 const alignment = new Alignment(store, rest, session, notices);
 const cameras = new Cameras(store, rest);
+const logs = new LogBrowser(store, rest, session, uploadByBrowser, newKey);
 
-const context = { store, session, player, scene, catalogue, alignment, cameras, notices, client };
+const context = {
+  store,
+  session,
+  player,
+  scene,
+  catalogue,
+  alignment,
+  cameras,
+  logs,
+  notices,
+  client,
+};
 scene.setMode(store.state.sceneMode);
 showScreen(context, document.body);
 followAddress(context);

@@ -40,6 +40,8 @@ struct ServeArguments {
   std::vector<std::string> data = {"worlds"};
   int parallel_runs = 1;
   std::size_t max_waiting_runs = 100;  ///< further runs are refused
+  std::string uploads = "uploads";
+  double upload_quota_mib = 4096.0;
   double memory_limit_mib = 0.0;
   /// Overrides may name programs to start and network addresses.
   bool allow_commands = false;
@@ -91,6 +93,7 @@ int serve(const ServeArguments& arguments) {
     manager_options.allowed_links.push_back(link->text());
   }
   manager_options.data_folders.emplace(arguments.data.begin(), arguments.data.end());
+  manager_options.data_folders->emplace_back(arguments.uploads);
   const auto runs = server::RunManager::create(manager_options);
   if (!runs) return report(runs.error());
   server::ViewService views(**runs);
@@ -101,6 +104,9 @@ int serve(const ServeArguments& arguments) {
   options.token = std::move(*token);
   options.allowed_hosts = arguments.allowed_hosts;
   options.web_folder = arguments.web.empty() ? web_folder() : fs::path(arguments.web);
+  options.uploads_folder = arguments.uploads;
+  options.limits.uploads.quota_bytes =
+      static_cast<std::uint64_t>(arguments.upload_quota_mib * 1024.0 * 1024.0);
   options.log = log_line;
   const auto server = net::Server::start(options, **runs, views);
   if (!server) return report(server.error());
@@ -130,6 +136,14 @@ void add_serve_command(CLI::App& app, int& exit_code) {
           "Folder whose files scenarios may name (repeatable), in addition to the folder of "
           "the scenario files and the folders `data` in them")
       ->allow_extra_args(false)
+      ->capture_default_str();
+  command->add_option("--uploads", arguments->uploads, "Folder of uploaded flight logs")
+      ->capture_default_str();
+  command
+      ->add_option("--upload-quota",
+                   arguments->upload_quota_mib,
+                   "MiB that uploaded flight logs may take together; 0 = no uploads")
+      ->check(CLI::Range(0.0, 1e9))
       ->capture_default_str();
   command->add_option("--web", arguments->web, "Folder of the built dashboard");
   CLI::Option* token_file = command->add_option(

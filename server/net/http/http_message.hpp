@@ -1,8 +1,10 @@
 // HTTP requests and responses as plain values, independent of a library.
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,6 +16,8 @@ struct HttpRequest {
   std::string target;                          ///< as sent: path and query, percent-encoded
   std::map<std::string, std::string> headers;  ///< names in lower case
   std::string body;
+  /// Set when nobody waits for the answer any more; null if that is not watched.
+  std::shared_ptr<std::atomic<bool>> abandoned{};
 
   /// Empty when the header is absent.
   [[nodiscard]] std::string header(const std::string& lower_case_name) const {

@@ -70,6 +70,7 @@ void RestRouter::add(const std::string& method,
                      pattern,
                      url ? url->segments : std::vector<std::string>{},
                      std::move(handler),
+                     {},
                      std::move(known_query)});
 }
 
@@ -83,6 +84,49 @@ bool RestRouter::is_quick(const HttpRequest& request) const {
   return std::any_of(routes_.begin(), routes_.end(), [&](const Route& route) {
     return route.quick && route.pattern == path;
   });
+}
+
+void RestRouter::add_upload(const std::string& pattern,
+                            Receiver receiver,
+                            std::vector<std::string> known_query) {
+  add("POST", pattern, {}, std::move(known_query));
+  routes_.back().receiver = std::move(receiver);
+}
+
+bool RestRouter::is_upload(const HttpRequest& request) const {
+  const std::string path = request.target.substr(0, request.target.find('?'));
+  return std::any_of(routes_.begin(), routes_.end(), [&](const Route& route) {
+    return route.receiver && route.method == request.method && route.pattern == path;
+  });
+}
+
+void RestRouter::receive(const HttpRequest& request,
+                         std::optional<std::uint64_t> size_bytes,
+                         std::unique_ptr<BodySink>* sink,
+                         std::optional<HttpResponse>* answer) const noexcept {
+  const auto begin = [&] {
+    const auto url = parse_target(request.target);
+    if (!url) {
+      *answer = error_response({ErrorCode::kInvalidArgument, "the request's path is malformed"});
+      return;
+    }
+    for (const Route& route : routes_) {
+      if (!route.receiver || !match(route.segments, url->segments)) continue;
+      if (const Status status = check_query(url->query, route.query); !status) {
+        *answer = error_response(status.error());
+        return;
+      }
+      *sink = route.receiver({request, {}, url->query}, size_bytes, answer);
+      return;
+    }
+  };
+  (void)contained(begin, [&](const char* what) {
+    if (report_) report_(request.method + " " + request.target + " failed: " + what);
+  });
+  if (*sink || *answer) return;
+  HttpResponse response;
+  response.status = 500;
+  *answer = std::move(response);
 }
 
 void RestRouter::handle(const HttpRequest& request, const Respond& respond) const noexcept {

@@ -1,13 +1,17 @@
 // Finds the handler of a REST request by method and path.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/result.hpp"
+#include "server/net/http/body_sink.hpp"
 #include "server/net/http/http_message.hpp"
 #include "server/net/http/url.hpp"
 
@@ -26,12 +30,18 @@ struct RouteCall {
 class RestRouter {
  public:
   using Handler = std::function<void(const RouteCall&, Respond)>;
+  /// Begins to receive a body; `size_bytes` if it is known in advance. Without a sink the answer
+  /// says why it is refused.
+  using Receiver = std::function<std::unique_ptr<BodySink>(const RouteCall&,
+                                                           std::optional<std::uint64_t> size_bytes,
+                                                           std::optional<HttpResponse>* answer)>;
 
   struct Route {
     std::string method;
     std::string pattern;  ///< "/api/v1/runs/{id}"
     std::vector<std::string> segments;
     Handler handler;
+    Receiver receiver;               ///< instead of a handler
     std::vector<std::string> query;  ///< accepted parameters
     bool quick = false;              ///< does not block: no disk, no other thread
   };
@@ -47,6 +57,16 @@ class RestRouter {
   /// As add, for a GET that does not block and need not wait behind those that do.
   void add_quick(const std::string& pattern, Handler handler);
   [[nodiscard]] bool is_quick(const HttpRequest& request) const;
+  /// A POST whose body is received piece by piece.
+  void add_upload(const std::string& pattern,
+                  Receiver receiver,
+                  std::vector<std::string> known_query = {});
+  [[nodiscard]] bool is_upload(const HttpRequest& request) const;
+  /// Begins to receive the body of such a request: either `sink` or `answer` is set.
+  void receive(const HttpRequest& request,
+               std::optional<std::uint64_t> size_bytes,
+               std::unique_ptr<BodySink>* sink,
+               std::optional<HttpResponse>* answer) const noexcept;
 
   /// Answers 404 for an unknown path, 405 with `Allow` for another method of a known path, and 400
   /// naming a query parameter that the route does not accept. HEAD is served by GET's handler; the

@@ -6,6 +6,7 @@
 #include "server/scenario/document/flight/scenario_flight.hpp"
 #include "server/scenario/document/flight/scenario_live.hpp"
 #include "server/scenario/document/flight/scenario_ros.hpp"
+#include "server/scenario/document/flight/scenario_sensors.hpp"
 #include "server/scenario/document/scenario_camera.hpp"
 #include "server/scenario/document/scenario_estimators.hpp"
 #include "server/scenario/document/scenario_faults.hpp"
@@ -24,6 +25,10 @@ Status read_flight(Json& document, const FileResolver& files, Scenario& scenario
     Result<LoggedFlight> log = logged_flight_from(flight.at("log"), files);
     if (!log) return log.error();
     scenario.flight = std::move(*log);
+    return {};
+  }
+  if (flight.contains("run")) {
+    scenario.flight = RunFlight{files.resolve(flight.at("run").at("folder"))};
     return {};
   }
   if (flight.contains("mavlink")) {
@@ -63,6 +68,13 @@ Status check_camera_poses(const Scenario& scenario) {
                "body's origin"};
 }
 
+/// Faults are scheduled by the frames of a regular rate, which recorded images do not have.
+Status check_faults_of_real_images(const Scenario& scenario) {
+  if (scenario.faults.empty() || scenario.recorded_camera() == nullptr) return {};
+  return Error{ErrorCode::kInvalidArgument,
+               "faults: must be empty if a camera has recorded images"};
+}
+
 Status read_all(Json& document, const fs::path& base, Scenario& scenario) {
   const FileResolver files(document, base);
   scenario.name = document.at("name").get<std::string>();
@@ -79,9 +91,11 @@ Status read_all(Json& document, const fs::path& base, Scenario& scenario) {
   scenario.record_debug_hz = document.at("recording").at("debug_hz").get<double>();
   read_world(document, files, scenario);
   if (Status status = read_flight(document, files, scenario); !status) return status;
-  if (Status status = read_cameras(document, scenario); !status) return status;
+  if (Status status = read_cameras(document, files, scenario); !status) return status;
   if (Status status = check_camera_poses(scenario); !status) return status;
+  if (Status status = read_sensors(document, scenario); !status) return status;
   if (Status status = read_faults(document, scenario); !status) return status;
+  if (Status status = check_faults_of_real_images(scenario); !status) return status;
   read_renderer(document, scenario);
   if (Status status = read_light_and_detail(document, scenario); !status) return status;
   if (Status status = read_estimators(document, base, scenario); !status) return status;

@@ -43,10 +43,15 @@ export async function startServer({
   port = 0,
   tokenFile = null,
   scenarios = path.join(kRoot, 'scenarios'),
+  data = [],
+  links = [],
 }) {
   const args = ['serve', '--port', String(port), '--runs', runs];
   if (tokenFile !== null) args.push('--token-file', tokenFile);
   args.push('--scenarios', scenarios, '--web', kWeb);
+  args.push('--uploads', path.join(path.dirname(runs), 'uploads'));
+  for (const folder of data) args.push('--data', folder);
+  for (const link of links) args.push('--allow-link', link);
   const child = spawn(kProgram, args, { cwd: kRoot, stdio: ['ignore', 'pipe', 'pipe'] });
   let output = '';
   const exited = new Promise((resolve) => child.on('exit', resolve));

@@ -12,7 +12,7 @@ export function makeStep(dashboard) {
       }
       broken = true;
       try {
-        await body();
+        await body(t);
       } catch (error) {
         await dashboard()?.screenshot('failed');
         throw error;

@@ -12,6 +12,7 @@
 #include "server/scenario/document/scenario_file.hpp"
 #include "server/scenario/document/scenario_schema.hpp"
 #include "server/scenario/scenario.hpp"
+#include "tests/server/net/northward_log.hpp"
 #include "tests/server/net/test_client.hpp"
 #include "tests/server/net/test_server.hpp"
 
@@ -141,6 +142,24 @@ TEST_F(RestApiTest, AnswersEveryRouteAsDocumented) {
   for (const char* rest : {"", "/metrics", "/manifest", "/estimators"}) {
     check("GET", one + rest, run + rest, 404);
   }
+
+  const std::string logs = "/api/v1/logs";
+  const std::string log = logs + "/{name}";
+  const std::string upload = logs + "/uploads%2Fa.bin";
+  EXPECT_TRUE(check("GET", logs, logs, 200).json().at("logs").empty());
+  const Answer taken = check("POST", logs, logs + "?name=a.bin", 201, northward_log());
+  EXPECT_EQ(taken.headers.at("location"), upload);
+  EXPECT_EQ(check("GET", logs, logs, 200).json().at("logs").at(0), taken.json());
+  EXPECT_EQ(check("GET", log, upload, 200).json().at("truth").at("position"), "SIM");
+  check("GET", log, upload + "?from_s=x", 400);
+  check("GET", log, logs + "/none", 404);
+  const std::string series = log + "/series";
+  const Answer drawn = check("GET", series, upload + "/series?from_s=1.5&to_s=2&points=100", 200);
+  EXPECT_EQ(drawn.json().at("positions").at("t_s").size(), 13U);
+  check("GET", series, upload + "/series?points=7", 400);
+  check("GET", series, logs + "/none/series", 404);
+  check("DELETE", log, upload, 204);
+  check("DELETE", log, upload, 404);
 
   // Nothing is documented that was not asked for above.
   for (const auto& [path, operations] : api_.at("paths").items()) {

@@ -47,7 +47,9 @@ TestServer::TestServer(net::ServerOptions server_options, server::RunManagerOpti
   const fs::path scenarios = folder() / "scenarios";
   const fs::path web = folder() / "web";
   const fs::path world_folder = folder() / "world";
-  for (const fs::path& path : {scenarios, web, world_folder}) fs::create_directories(path);
+  const fs::path logs = folder() / "logs";
+  const fs::path uploads = folder() / "uploads";
+  for (const fs::path& path : {scenarios, web, world_folder, logs}) fs::create_directories(path);
   SyntheticWorldOptions small;
   small.size_m = 200.0;
   small.relief_m = 0.0;
@@ -63,7 +65,8 @@ TestServer::TestServer(net::ServerOptions server_options, server::RunManagerOpti
 
   options.runs_folder = folder() / "runs";
   options.scenarios_folder = scenarios;
-  options.data_folders = {world_folder};
+  options.data_folders = {world_folder, logs, uploads};
+  server_options.uploads_folder = uploads;
   options.renderer_factory = [](std::shared_ptr<const terrain::TileSource> tiles)
       -> Result<std::unique_ptr<renderer::Renderer>> {
     return renderer::create_noop_renderer(std::move(tiles));

@@ -17,7 +17,8 @@
 namespace overfly::testing {
 
 /// Scenarios: "tiny" (2 s in lockstep, estimator "perfect", frames recorded), "slow" (60 s in
-/// real time, the same estimator) and "broken" (a field at fault).
+/// real time, the same estimator) and "broken" (a field at fault). Flight logs: folder() / "logs",
+/// empty, and uploads in folder() / "uploads".
 class TestServer {
  public:
   /// @param token  that clients must show; empty = none

@@ -1,8 +1,11 @@
 // The REST interface as typed calls.
 import type { FieldError } from '../protocol/field_errors';
 import { readFieldErrors } from '../protocol/field_errors';
+import type { LogEntry, LogInfo, LogList, LogSeries } from '../protocol/log_types';
 import type { Cell } from '../protocol/messages';
 import type { Json, JsonObject, Manifest, Run, ScenarioEntry } from '../protocol/rest_types';
+
+import type { Upload } from './upload';
 
 const kUnauthorized = 401;
 
@@ -70,6 +73,41 @@ export class RestClient {
     await this.call('DELETE', `/runs/${encodeURIComponent(id)}`);
   }
 
+  async logs(): Promise<LogList> {
+    return (await this.call('GET', '/logs')) as LogList;
+  }
+
+  /** The server stops reading when `signal` aborts. */
+  async log(name: string, signal: AbortSignal): Promise<LogInfo> {
+    const place = `/logs/${encodeURIComponent(name)}`;
+    return (await this.call('GET', place, undefined, {}, signal)) as LogInfo;
+  }
+
+  /** @param source  stream of the positions; empty = the recommended truth */
+  async logSeries(name: string, source: string, signal: AbortSignal): Promise<LogSeries> {
+    const query = source === '' ? '' : `?source=${encodeURIComponent(source)}`;
+    const place = `/logs/${encodeURIComponent(name)}/series${query}`;
+    return (await this.call('GET', place, undefined, {}, signal)) as LogSeries;
+  }
+
+  async deleteLog(name: string): Promise<void> {
+    await this.call('DELETE', `/logs/${encodeURIComponent(name)}`);
+  }
+
+  async uploadLog(
+    upload: Upload,
+    name: string,
+    file: Blob,
+    onProgress: (share: number) => void,
+    signal: AbortSignal,
+  ): Promise<LogEntry> {
+    const url = `${this.base}/logs?name=${encodeURIComponent(name)}`;
+    const { status, text } = await upload(url, file, onProgress, signal);
+    if (status === kUnauthorized) this.onLocked();
+    if (status !== 201) throw await errorOf(new Response(text, { status }));
+    return JSON.parse(text) as LogEntry;
+  }
+
   /**
    * The reason why the server refuses the stream, because a browser does not report why a WebSocket
    * failed to open.
@@ -89,8 +127,9 @@ export class RestClient {
     path: string,
     body?: unknown,
     headers: Record<string, string> = {},
+    signal: AbortSignal | null = null,
   ): Promise<unknown> {
-    const init: RequestInit = { method, headers: { ...headers } };
+    const init: RequestInit = { method, headers: { ...headers }, signal };
     if (body !== undefined) {
       init.body = JSON.stringify(body);
       init.headers = { ...headers, 'Content-Type': 'application/json' };

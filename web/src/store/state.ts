@@ -12,6 +12,8 @@ import type {
   ScenarioEntry,
 } from '../protocol/rest_types';
 import { kDefaultAlignment } from './error_table';
+import type { LogPage } from './logs/log_browser';
+import { initialLogPage } from './logs/log_browser';
 import type { PictureRate } from './picture_rates';
 import type { EstimateRows } from './run_data';
 import { RunData } from './run_data';
@@ -79,6 +81,7 @@ export interface State {
   sceneOrbits: Record<SceneMode, SceneOrbit>;
   notices: Notice[];
   helpOpen: boolean;
+  logPage: LogPage;
 }
 
 export function initialState(): State {
@@ -115,6 +118,7 @@ export function initialState(): State {
     },
     notices: [],
     helpOpen: false,
+    logPage: initialLogPage(),
   };
 }
 
@@ -150,7 +154,8 @@ export type Topic =
   | 'scene'
   | 'cameras'
   | 'notices'
-  | 'help';
+  | 'help'
+  | 'logs';
 
 export class Store {
   readonly state = initialState();

@@ -62,6 +62,19 @@ export class Launcher implements View {
     );
     this.editor.addEventListener('click', () => void context.catalogue.openEditor());
     panel.body.append(form);
+    panel.tools.append(
+      h(
+        'button',
+        {
+          class: 'tab',
+          type: 'button',
+          'data-role': 'open-logs',
+          title: 'Flight logs: look at them, upload them, fly them',
+          onclick: () => void this.context.logs.open(),
+        },
+        'Fly a log',
+      ),
+    );
   }
 
   update(changed: ReadonlySet<Topic>): void {

@@ -6,6 +6,7 @@ import { HeaderBar } from './header_bar';
 import { HelpOverlay } from './help_overlay';
 import { Launcher } from './launcher';
 import { LogPanel } from './log_panel';
+import { LogPageView } from './logs/log_page';
 import { NoticesView } from './notices_view';
 import { DebugPanel } from './picture_panel';
 import { PlotsPanel } from './plots_panel';
@@ -31,6 +32,7 @@ const kEverything = new Set([
   'cameras',
   'notices',
   'help',
+  'logs',
 ] as const);
 
 /** Builds the screen and redraws changed parts, at most once per frame. */
@@ -40,7 +42,12 @@ export function showScreen(context: Context, place: HTMLElement): void {
   const centre = [new ScenePanel(context), new PlotsPanel(context)];
   const right = [new CameraPanel(context), new DebugPanel(context), new ErrorPanel(context)];
   const timeline = new Timeline(context);
-  const above = [new NoticesView(context), new HelpOverlay(context), new ScenarioEditor(context)];
+  const above = [
+    new LogPageView(context),
+    new NoticesView(context),
+    new HelpOverlay(context),
+    new ScenarioEditor(context),
+  ];
   const views: View[] = [header, ...left, ...centre, ...right, timeline, ...above];
   const column = (name: string, parts: View[]) =>
     h('div', { class: `column ${name}` }, ...parts.map(({ root }) => root));

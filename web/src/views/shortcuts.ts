@@ -139,6 +139,7 @@ function toggleHelp(store: Context['store']): void {
 function restoreScreen(store: Context['store']): void {
   store.state.helpOpen = false;
   store.state.editorOpen = false;
-  store.change('help');
+  store.state.logPage.open = false;
+  store.change('help', 'logs');
   document.querySelector('.panel.expanded')?.classList.remove('expanded');
 }

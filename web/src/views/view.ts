@@ -6,6 +6,7 @@ import type { Player } from '../store/player';
 import type { SceneControl } from '../store/scene_control';
 import type { Session } from '../store/session';
 import type { Catalogue } from '../store/catalogue';
+import type { LogBrowser } from '../store/logs/log_browser';
 import type { Notices } from '../store/notices';
 import type { StreamClient } from '../connection/stream_client';
 
@@ -24,6 +25,7 @@ export interface Context {
   catalogue: Catalogue;
   alignment: Alignment;
   cameras: Cameras;
+  logs: LogBrowser;
   notices: Notices;
   client: StreamClient;
 }

@@ -71,4 +71,25 @@ describe('RestClient', () => {
     const client = new RestClient('api/v1', () => Promise.reject(new TypeError('refused')));
     await expect(client.runs()).rejects.toMatchObject({ status: 0, code: 'unreachable' });
   });
+
+  it('uploads a log and passes on why it was refused', async () => {
+    const { client } = answering(200, {});
+    const urls: string[] = [];
+    const send = (status: number, body: unknown) =>
+      client.uploadLog(
+        (url, _file, onProgress) => {
+          urls.push(url);
+          onProgress(1);
+          return Promise.resolve({ status, text: JSON.stringify(body) });
+        },
+        'a b.bin',
+        new Blob(['x']),
+        () => {},
+        new AbortController().signal,
+      );
+    expect(await send(201, { name: 'uploads/a_b.bin' })).toEqual({ name: 'uploads/a_b.bin' });
+    expect(urls).toEqual(['api/v1/logs?name=a%20b.bin']);
+    const full = { error: { code: 'quota_exceeded', message: 'no room' } };
+    await expect(send(507, full)).rejects.toMatchObject({ status: 507, message: 'no room' });
+  });
 });

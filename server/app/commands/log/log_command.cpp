@@ -8,11 +8,11 @@
 #include "core/text/number_text.hpp"
 #include "flight/logs/log_trajectory.hpp"
 #include "server/app/commands/commands.hpp"
-#include "server/app/commands/log/log_info.hpp"
 #include "server/app/commands/log/log_output.hpp"
 #include "server/app/commands/log/log_smooth.hpp"
 #include "server/app/exit_code.hpp"
 #include "server/app/stop_signal.hpp"
+#include "server/logs/log_info.hpp"
 
 namespace overfly::app {
 namespace {
@@ -31,7 +31,8 @@ int print_log(const InfoArguments& arguments) {
   const Result<logs::OpenedLog> log =
       logs::open_log(arguments.file, &catch_stop_signals(), {.slice = arguments.times.slice()});
   if (!log) return report(log.error());
-  std::cout << (arguments.json ? log_info_json(*log).dump(2) + "\n" : log_info_text(*log));
+  std::cout << (arguments.json ? server::log_info_json(*log).dump(2) + "\n"
+                               : server::log_info_text(*log));
   return kExitOk;
 }
 

@@ -1,11 +1,11 @@
-#include "server/app/commands/log/log_info.hpp"
+#include "server/logs/log_info.hpp"
 
 #include <algorithm>
 #include <cstdio>
 
 #include "core/time.hpp"
 
-namespace overfly::app {
+namespace overfly::server {
 namespace {
 
 using flight::logs::BootInfo;
@@ -173,4 +173,4 @@ OrderedJson log_info_json(const OpenedLog& log) {
   return json;
 }
 
-}  // namespace overfly::app
+}  // namespace overfly::server

@@ -1,0 +1,74 @@
+// The flight logs of a server: listed, described, drawn as series, uploaded and deleted.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "core/result.hpp"
+#include "flight/logs/flight_log.hpp"
+#include "flight/logs/series/log_series.hpp"
+#include "server/logs/log_places.hpp"
+#include "server/logs/log_uploads.hpp"
+#include "server/logs/recent_values.hpp"
+
+namespace overfly::server {
+
+/// Limits of a client's request for series.
+inline constexpr std::size_t kMinSeriesPoints = 100;
+inline constexpr std::size_t kMaxSeriesPoints = 30'000;
+
+struct SeriesRequest {
+  std::string source;  ///< as flight::logs::choose_truth
+  flight::logs::LogSlice slice;
+  std::size_t max_points = 6000;  ///< of each table, in [kMinSeriesPoints, kMaxSeriesPoints]
+};
+
+/// Thread-safe. What was read of a log is kept as long as its files do not change.
+class LogLibrary {
+ public:
+  /// @param folders  where logs lie now, without uploads
+  LogLibrary(std::function<LogFolders()> folders,
+             const std::filesystem::path& uploads_folder,
+             const UploadLimits& limits);
+
+  /// The answer of GET logs (docs/PROTOCOL.md).
+  [[nodiscard]] nlohmann::json list();
+  /// As `overfly log info --json`. Reads the whole log, or the slice.
+  /// Errors: kNotFound; as flight::logs::open_log.
+  [[nodiscard]] Result<nlohmann::json> info(const std::string& name,
+                                            const flight::logs::LogSlice& slice,
+                                            const std::atomic<bool>* cancel);
+  /// Track, heights, speeds and attitudes with their extremes.
+  /// Errors: kNotFound; as flight::logs::read_log_series.
+  [[nodiscard]] Result<nlohmann::json> series(const std::string& name,
+                                              const SeriesRequest& request,
+                                              const std::atomic<bool>* cancel);
+  [[nodiscard]] const LogUploads& uploads() const { return uploads_; }
+  /// The entry of an upload that has just been finished.
+  [[nodiscard]] nlohmann::json entry_of(const std::filesystem::path& upload) const;
+  /// Deletes an upload. Errors: kNotFound; kInvalidArgument if it was not uploaded.
+  [[nodiscard]] Status remove(const std::string& name);
+
+ private:
+  using Opened = std::shared_ptr<const flight::logs::OpenedLog>;
+  [[nodiscard]] LogFolders folders() const;
+  [[nodiscard]] Result<Opened> open(const std::filesystem::path& file,
+                                    const flight::logs::LogSlice& slice,
+                                    const SourcePolicy& sources,
+                                    const std::atomic<bool>* cancel,
+                                    std::string& key);
+
+  std::function<LogFolders()> folders_;
+  LogUploads uploads_;
+  LogPlaces places_;
+  RecentValues<flight::logs::OpenedLog> opened_{8};
+  RecentValues<nlohmann::json> series_{16};
+};
+
+}  // namespace overfly::server

@@ -1,0 +1,73 @@
+// The flight logs that clients of a server may read, by name.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "core/outside/source_policy.hpp"
+#include "core/result.hpp"
+#include "server/files/file_stamp.hpp"
+
+namespace overfly::server {
+
+/// Where logs lie.
+struct LogFolders {
+  std::filesystem::path uploads;               ///< empty = there are no uploads
+  std::vector<std::filesystem::path> folders;  ///< data folders
+  SourcePolicy sources;                        ///< which files may be read
+};
+
+struct LogEntry {
+  std::string name;  ///< a label of its folder, "/", and its path in it: "data/sitl/plane25.BIN"
+  std::filesystem::path file;
+  std::string format;  ///< as flight::logs::to_string
+  std::uint64_t size_bytes = 0;
+  bool uploaded = false;
+};
+
+struct LogList {
+  std::vector<LogEntry> logs;  ///< uploads first, then by name
+  bool complete = true;        ///< false: the folders hold too many files to look at all
+};
+
+/// Label of the folder of uploads in names.
+inline constexpr const char* kUploadsLabel = "uploads";
+/// Limits of a list: entries of folders that are looked at, depth of folders, logs.
+inline constexpr std::size_t kMaxVisitedFiles = 20'000;
+inline constexpr int kMaxLogDepth = 6;
+inline constexpr std::size_t kMaxLogs = 2'000;
+
+/// Whether a file name has an extension of flight logs: .tlog, .bin, .ulg, .mcap, .bag, .active,
+/// .lcm, .log, in lower or upper case.
+[[nodiscard]] bool has_log_extension(const std::string& name);
+/// "tlog, .bin, ..." for messages.
+[[nodiscard]] std::string log_extensions_text();
+
+/// Finds logs. Remembers the formats of files that have not changed. Thread-safe.
+class LogPlaces {
+ public:
+  /// All logs: files with an extension of logs, and mappings of CSV files (.json), whose first
+  /// bytes have a known format. Hidden files and folders, and links to folders, are left out.
+  [[nodiscard]] LogList list(const LogFolders& folders);
+  /// The file of a name, checked by `folders.sources`.
+  /// Errors: kNotFound for every name that is no log's, whether the file exists or not.
+  [[nodiscard]] static Result<std::filesystem::path> find(const LogFolders& folders,
+                                                          const std::string& name);
+
+ private:
+  struct Known {
+    FileStamp stamp;
+    std::string format;  ///< empty: not a log
+  };
+  [[nodiscard]] std::string format_of(const std::filesystem::path& file, const FileStamp& stamp);
+
+  std::mutex mutex_;
+  std::map<std::filesystem::path, Known> known_;
+};
+
+}  // namespace overfly::server

@@ -1,0 +1,129 @@
+#include "server/net/upload_receiver.hpp"
+
+#include <boost/asio/post.hpp>
+#include <boost/asio/write.hpp>
+#include <boost/beast/http/buffer_body.hpp>
+#include <boost/beast/http/error.hpp>
+#include <boost/beast/http/read.hpp>
+#include <chrono>
+#include <limits>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/text/lower_case.hpp"
+
+namespace overfly::net {
+namespace {
+
+namespace asio = boost::asio;
+namespace http = boost::beast::http;
+using boost::beast::error_code;
+
+constexpr std::size_t kPieceBytes = std::size_t{256} << 10U;
+
+class UploadReceiver final : public std::enable_shared_from_this<UploadReceiver> {
+ public:
+  UploadReceiver(std::shared_ptr<ServerContext> context, UploadConnection connection)
+      : context_(std::move(context)),
+        stream_(connection.stream),
+        buffer_(connection.buffer),
+        parser_(std::move(connection.parser)),
+        request_(std::move(connection.request)),
+        done_(std::move(connection.done)) {}
+
+  void start() {
+    std::optional<std::uint64_t> size;
+    if (const auto length = parser_.content_length()) size = *length;
+    parser_.body_limit(std::numeric_limits<std::uint64_t>::max());
+    on_worker([self = shared_from_this(), size] {
+      self->context_->router.receive(self->request_, size, &self->sink_, &self->answer_);
+      self->on_stream([self] {
+        if (self->sink_) {
+          self->piece_.resize(kPieceBytes);
+          self->invite();
+        } else {
+          self->done_(std::move(self->answer_), self->parser_.is_done());
+        }
+      });
+    });
+  }
+
+ private:
+  void on_worker(std::function<void()> work) {
+    stream_.expires_never();
+    context_->offload(std::move(work));
+  }
+  void on_stream(std::function<void()> action) {
+    context_->deliver([&] { asio::post(stream_.get_executor(), action); });
+  }
+  /// Clients that ask first whether the body is welcome wait for this (RFC 9110, section 10.1.1).
+  void invite() {
+    if (lower_case(request_.header("expect")) != "100-continue") {
+      read();
+      return;
+    }
+    static constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
+    stream_.expires_after(std::chrono::milliseconds(context_->options.limits.idle_ms));
+    asio::async_write(stream_,
+                      asio::buffer(kContinue),
+                      [self = shared_from_this()](const error_code& error, std::size_t) {
+                        if (error) {
+                          self->done_(std::nullopt, false);
+                        } else {
+                          self->read();
+                        }
+                      });
+  }
+  void read() {
+    parser_.get().body().data = piece_.data();
+    parser_.get().body().size = piece_.size();
+    parser_.get().body().more = true;
+    stream_.expires_after(std::chrono::milliseconds(context_->options.limits.idle_ms));
+    http::async_read(stream_,
+                     buffer_,
+                     parser_,
+                     [self = shared_from_this()](const error_code& error, std::size_t) {
+                       self->on_piece(error);
+                     });
+  }
+  void on_piece(const error_code& error) {
+    if (error && error != http::error::need_buffer) {
+      done_(std::nullopt, false);
+      return;
+    }
+    const std::size_t bytes = piece_.size() - parser_.get().body().size;
+    on_worker([self = shared_from_this(), bytes] {
+      self->answer_ = self->sink_->write({self->piece_.data(), bytes});
+      const bool complete = self->parser_.is_done();
+      if (!self->answer_ && complete) self->answer_ = self->sink_->finish();
+      // What was refused is removed before the client knows.
+      if (self->answer_) self->sink_.reset();
+      self->on_stream([self, complete] {
+        if (self->answer_) {
+          self->done_(std::move(self->answer_), complete);
+        } else {
+          self->read();
+        }
+      });
+    });
+  }
+
+  std::shared_ptr<ServerContext> context_;
+  boost::beast::tcp_stream& stream_;
+  boost::beast::flat_buffer& buffer_;
+  http::request_parser<http::buffer_body> parser_;
+  HttpRequest request_;
+  std::function<void(std::optional<HttpResponse>, bool)> done_;
+  std::unique_ptr<BodySink> sink_;
+  std::optional<HttpResponse> answer_;
+  std::vector<std::uint8_t> piece_;
+};
+
+}  // namespace
+
+void receive_upload(std::shared_ptr<ServerContext> context, UploadConnection connection) {
+  std::make_shared<UploadReceiver>(std::move(context), std::move(connection))->start();
+}
+
+}  // namespace overfly::net

@@ -1,0 +1,228 @@
+// The page of flight logs: listed, uploaded, looked at, flown.
+import type { RestClient } from '../../connection/rest_client';
+import { RestError } from '../../connection/rest_client';
+import type { Upload } from '../../connection/upload';
+import type { FieldError } from '../../protocol/field_errors';
+import type { LogInfo, LogList, LogSeries } from '../../protocol/log_types';
+import type { Session } from '../session';
+import type { Store } from '../state';
+import type { LogFlight } from './log_flight';
+import { flyableSources, logOverrides, newLogFlight } from './log_flight';
+
+export interface UploadProgress {
+  name: string;
+  share: number;
+}
+
+export interface LogPage {
+  open: boolean;
+  list: LogList | null;
+  /** Name of the chosen log. */
+  chosen: string | null;
+  /** null while the server reads the log. */
+  info: LogInfo | null;
+  series: LogSeries | null;
+  /** Why the chosen log, or its series, cannot be shown. */
+  error: string | null;
+  listError: string | null;
+  upload: UploadProgress | null;
+  uploadError: string | null;
+  flight: LogFlight;
+  flightErrors: FieldError[];
+  starting: boolean;
+}
+
+export function initialLogPage(): LogPage {
+  return {
+    open: false,
+    list: null,
+    chosen: null,
+    info: null,
+    series: null,
+    error: null,
+    listError: null,
+    upload: null,
+    uploadError: null,
+    flight: newLogFlight(''),
+    flightErrors: [],
+    starting: false,
+  };
+}
+
+export class LogBrowser {
+  private reading = new AbortController();
+  private sending: AbortController | null = null;
+
+  constructor(
+    private readonly store: Store,
+    private readonly rest: RestClient,
+    private readonly session: Session,
+    private readonly upload: Upload,
+    private readonly newKey: () => string,
+  ) {}
+
+  async open(): Promise<void> {
+    const { page } = this;
+    page.open = true;
+    const { scenarioName, scenarios } = this.store.state;
+    const flyable = scenarios?.filter(({ error }) => error === null) ?? [];
+    if (page.flight.scenario === '') {
+      page.flight.scenario = scenarioName ?? flyable[0]?.name ?? '';
+    }
+    this.changed();
+    await this.readList();
+  }
+
+  close(): void {
+    this.page.open = false;
+    this.changed();
+  }
+
+  async readList(): Promise<void> {
+    try {
+      this.page.list = await this.rest.logs();
+      this.page.listError = null;
+    } catch (error) {
+      this.page.listError = textOf(error);
+    }
+    this.changed();
+  }
+
+  async choose(name: string): Promise<void> {
+    const { page } = this;
+    page.chosen = name;
+    page.info = null;
+    page.flight = { ...newLogFlight(page.flight.scenario), estimators: page.flight.estimators };
+    page.flightErrors = [];
+    await this.read(async (signal) => {
+      page.info = await this.rest.log(name, signal);
+      const best = page.info.truth?.position ?? '';
+      // Positions of an unknown place cannot be flown.
+      if (!flyableSources(page.info).includes(best)) page.flight.smooth = false;
+      this.changed();
+      page.series = await this.rest.logSeries(name, '', signal);
+    });
+  }
+
+  async chooseSource(source: string): Promise<void> {
+    const { page } = this;
+    const name = page.chosen;
+    if (name === null) return;
+    page.flight.source = source;
+    await this.read(async (signal) => {
+      page.series = await this.rest.logSeries(name, source, signal);
+    });
+  }
+
+  /** Changes the form. */
+  set(changes: Partial<LogFlight>): void {
+    Object.assign(this.page.flight, changes);
+    this.page.flightErrors = [];
+    this.changed();
+  }
+
+  async send(file: File): Promise<void> {
+    const { page } = this;
+    if (page.upload !== null) return;
+    page.uploadError = null;
+    page.upload = { name: file.name, share: 0 };
+    this.changed();
+    this.sending = new AbortController();
+    const progress = (share: number) => {
+      page.upload = { name: file.name, share };
+      this.changed();
+    };
+    try {
+      const name = file.name.replaceAll(/[^\w.-]/g, '_');
+      const entry = await this.rest.uploadLog(
+        this.upload,
+        name,
+        file,
+        progress,
+        this.sending.signal,
+      );
+      page.upload = null;
+      await this.readList();
+      await this.choose(entry.name);
+    } catch (error) {
+      page.uploadError = `${file.name}: ${textOf(error)}`;
+    }
+    page.upload = null;
+    this.changed();
+  }
+
+  cancelUpload(): void {
+    this.sending?.abort();
+  }
+
+  async remove(name: string): Promise<void> {
+    try {
+      await this.rest.deleteLog(name);
+      if (this.page.chosen === name) {
+        this.page.chosen = null;
+        this.page.info = null;
+        this.page.series = null;
+        this.page.flight = newLogFlight(this.page.flight.scenario);
+      }
+    } catch (error) {
+      this.page.listError = textOf(error);
+    }
+    await this.readList();
+  }
+
+  async fly(): Promise<void> {
+    const { page } = this;
+    const entry = page.list?.logs.find(({ name }) => name === page.chosen);
+    if (entry === undefined || page.starting) return;
+    page.starting = true;
+    page.flightErrors = [];
+    this.changed();
+    try {
+      const document = await this.rest.scenario(page.flight.scenario);
+      const { overrides, errors } = logOverrides(page.flight, entry.file, document);
+      page.flightErrors = errors;
+      if (errors.length === 0) {
+        const run = await this.rest.startRun(page.flight.scenario, overrides, this.newKey());
+        const { state } = this.store;
+        state.runs = [run, ...(state.runs ?? []).filter(({ id }) => id !== run.id)];
+        page.open = false;
+        this.session.selectRun(run.id);
+        this.store.change('lists');
+      }
+    } catch (error) {
+      const known = error instanceof RestError ? error.fieldErrors : [];
+      page.flightErrors = known.length > 0 ? known : [{ field: '', message: textOf(error) }];
+    }
+    page.starting = false;
+    this.changed();
+  }
+
+  /** A new reading ends the one before, here and on the server. */
+  private async read(action: (signal: AbortSignal) => Promise<void>): Promise<void> {
+    this.reading.abort();
+    const reading = new AbortController();
+    this.reading = reading;
+    this.page.series = null;
+    this.page.error = null;
+    this.changed();
+    try {
+      await action(reading.signal);
+    } catch (error) {
+      if (reading.signal.aborted) return;
+      this.page.error = textOf(error);
+    }
+    if (!reading.signal.aborted) this.changed();
+  }
+
+  private get page(): LogPage {
+    return this.store.state.logPage;
+  }
+
+  private changed(): void {
+    this.store.change('logs');
+  }
+}
+
+function textOf(error: unknown): string {
+  return error instanceof Error ? error.message : String(error);
+}

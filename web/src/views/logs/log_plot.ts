@@ -1,0 +1,177 @@
+// One curve of a log over the vehicle's time, with the flight modes behind it. A drag selects a
+// slice.
+import uPlot from 'uplot';
+import type { Band, Mark } from '../../store/logs/log_bands';
+import { bandHue } from '../../store/logs/log_bands';
+import { formatNumber } from '../../store/format';
+import { h, setText } from '../dom';
+import { paddedRange } from '../plot_range';
+
+export interface LogPlotOptions {
+  key: string;
+  label: string;
+  unit: string;
+  digits: number;
+  least: number;
+  timeLabels: boolean;
+  colour: string;
+  /** An angle that wraps: points, because a line would cross the plot. */
+  dots: boolean;
+  onHover: (t_s: number | null) => void;
+  onSlice: (from_s: number, to_s: number) => void;
+}
+
+const kText = '#8a94a6';
+const kFont = '10px system-ui, sans-serif';
+const kSyncKey = 'overfly-log-plots';
+const kLeastSlice_px = 4;
+
+export interface LogPlotData {
+  t_s: number[];
+  values: (number | null)[];
+  span_s: readonly [number, number];
+  bands: readonly Band[];
+  marks: readonly Mark[];
+}
+
+export class LogPlot {
+  readonly root: HTMLElement;
+  private readonly area = h('div', { class: 'plot-area' });
+  private readonly readout = h('span', { class: 'readout' });
+  private readonly plot: uPlot;
+  private data: LogPlotData = { t_s: [], values: [], span_s: [0, 1], bands: [], marks: [] };
+  private slice: readonly [number, number] | null = null;
+
+  constructor(private readonly options: LogPlotOptions) {
+    this.readout.style.color = options.colour;
+    const title = h(
+      'div',
+      { class: 'plot-title' },
+      h('b', {}, options.label),
+      h('span', { class: 'unit' }, options.unit),
+      h('span', { class: 'readouts' }, this.readout),
+    );
+    this.root = h('div', { class: 'plot', 'data-log-plot': options.key }, title, this.area);
+    this.plot = new uPlot(this.uplotOptions(), [[], []], this.area);
+    new ResizeObserver(() => this.fit()).observe(this.area);
+  }
+
+  show(data: LogPlotData): void {
+    this.data = data;
+    this.plot.setData([data.t_s, data.values], true);
+    setText(this.readout, '');
+  }
+
+  showSlice(slice: readonly [number, number] | null): void {
+    this.slice = slice;
+    this.plot.redraw(false);
+  }
+
+  private fit(): void {
+    const { clientWidth, clientHeight } = this.area;
+    if (clientWidth < 20 || clientHeight < 20) return;
+    this.plot.setSize({ width: clientWidth, height: clientHeight });
+  }
+
+  private uplotOptions(): uPlot.Options {
+    const { timeLabels, least, colour, dots } = this.options;
+    const axis = {
+      stroke: kText,
+      font: kFont,
+      grid: { stroke: 'rgba(140, 155, 180, 0.11)', width: 1 },
+      ticks: { show: false },
+    };
+    return {
+      width: 200,
+      height: 60,
+      padding: [8, 12, timeLabels ? 0 : 6, 0],
+      legend: { show: false },
+      cursor: {
+        y: false,
+        points: { show: false },
+        drag: { x: true, y: false, setScale: false },
+        sync: { key: kSyncKey, setSeries: false },
+      },
+      scales: {
+        x: { time: false, range: () => [...this.data.span_s] },
+        y: { range: (_, low, high) => paddedRange(low, high, least) },
+      },
+      axes: [
+        timeLabels
+          ? { ...axis, size: 20, gap: 2, space: 50 }
+          : { ...axis, size: 0, values: () => [], space: 50 },
+        { ...axis, size: 46, gap: 3, space: 18 },
+      ],
+      series: [
+        {},
+        {
+          stroke: colour,
+          width: dots ? 0 : 1.25,
+          pxAlign: 0,
+          points: { show: dots, size: 2, fill: colour, width: 0 },
+        },
+      ],
+      hooks: {
+        drawClear: [(plot: uPlot) => this.drawBands(plot)],
+        draw: [(plot: uPlot) => this.drawSlice(plot)],
+        setCursor: [(plot: uPlot) => this.hover(plot)],
+        setSelect: [(plot: uPlot) => this.select(plot)],
+      },
+    };
+  }
+
+  private hover(plot: uPlot): void {
+    const { idx, left } = plot.cursor;
+    const value = idx === null || idx === undefined ? null : this.data.values[idx];
+    setText(
+      this.readout,
+      value === null || value === undefined ? '' : formatNumber(value, this.options.digits),
+    );
+    // Of the synchronised plots only the one under the mouse reports.
+    if (!plot.over.matches(':hover')) return;
+    this.options.onHover(left === undefined || left < 0 ? null : plot.posToVal(left, 'x'));
+  }
+
+  private select(plot: uPlot): void {
+    const { left, width } = plot.select;
+    if (width < kLeastSlice_px || !plot.over.matches(':hover, :active')) return;
+    const from_s = plot.posToVal(left, 'x');
+    const to_s = plot.posToVal(left + width, 'x');
+    plot.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
+    this.options.onSlice(from_s, to_s);
+  }
+
+  private drawBands(plot: uPlot): void {
+    const { ctx, bbox } = plot;
+    const x = (t_s: number) =>
+      Math.min(bbox.left + bbox.width, Math.max(bbox.left, plot.valToPos(t_s, 'x', true)));
+    ctx.save();
+    for (const { begin_s, end_s, text } of this.data.bands) {
+      ctx.fillStyle = `hsla(${bandHue(text)}, 60%, 55%, 0.13)`;
+      ctx.fillRect(x(begin_s), bbox.top, x(end_s) - x(begin_s), bbox.height);
+    }
+    ctx.strokeStyle = 'rgba(234, 183, 102, 0.45)';
+    ctx.beginPath();
+    for (const { t_s, kind } of this.data.marks) {
+      if (kind === 'text') continue;
+      ctx.moveTo(x(t_s), bbox.top);
+      ctx.lineTo(x(t_s), bbox.top + bbox.height);
+    }
+    ctx.stroke();
+    ctx.restore();
+  }
+
+  /** Shades what lies outside of the slice. */
+  private drawSlice(plot: uPlot): void {
+    if (this.slice === null) return;
+    const { ctx, bbox } = plot;
+    const clamp = (x: number) => Math.min(bbox.left + bbox.width, Math.max(bbox.left, x));
+    const from = clamp(plot.valToPos(this.slice[0], 'x', true));
+    const to = clamp(plot.valToPos(this.slice[1], 'x', true));
+    ctx.save();
+    ctx.fillStyle = 'rgba(11, 15, 21, 0.66)';
+    ctx.fillRect(bbox.left, bbox.top, from - bbox.left, bbox.height);
+    ctx.fillRect(to, bbox.top, bbox.left + bbox.width - to, bbox.height);
+    ctx.restore();
+  }
+}
