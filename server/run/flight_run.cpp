@@ -170,6 +170,9 @@ Status FlightRun::fly_real_time() {
     InTheAir& operator=(const InTheAir&) = delete;
   } const in_the_air(clock_, pictures);
   maker_->begin_flight();
+  // A live flight tells at which time of the vehicle's clock it begins.
+  if (auto& flight = recorder_.manifest().flight)
+    flight->description = maker_->flight_description();
   std::int64_t start_ns = clock_.now_ns();
   // A live flight's first state came a moment ago: the camera must not be late by that.
   const std::optional<std::int64_t> heard_ns = maker_->heard_ns();
