@@ -52,6 +52,9 @@ class TruthSource {
   [[nodiscard]] virtual std::optional<std::int64_t> log_start_ns() const { return std::nullopt; }
   /// Lines of the flight's file that were dropped or moved. Empty if none.
   [[nodiscard]] virtual std::vector<std::string> warnings() const { return {}; }
+  /// Called before the first state is asked for, once a flight in real time is ready: a live flight
+  /// then begins with the latest state instead of the one with which it was opened.
+  virtual void begin() {}
   /// Takes estimates back to the vehicle that flies; null if it wants none.
   [[nodiscard]] virtual std::shared_ptr<EstimateReceiver> estimate_receiver() const {
     return nullptr;

@@ -37,7 +37,7 @@ struct LiveTruth::Impl {
   std::optional<std::int64_t> end_ns;  ///< of the vehicle's clock
   LiveMotion motion;
   std::string opened_as;  ///< description
-  std::shared_ptr<EstimateReceiver> receiver;
+  std::shared_ptr<mavlink::FeedbackSender> sender;
   /// When the states up to a time of the vehicle's clock became known.
   struct Arrival {
     std::int64_t known_until_ns = 0;
@@ -231,11 +231,20 @@ std::vector<std::string> LiveTruth::warnings() const {
 
 std::int64_t LiveTruth::start_ns() const { return impl_->start_ns; }
 
-void LiveTruth::send_estimates_by(std::shared_ptr<EstimateReceiver> receiver) {
-  impl_->receiver = std::move(receiver);
+void LiveTruth::send_estimates_by(std::shared_ptr<mavlink::FeedbackSender> sender) {
+  impl_->sender = std::move(sender);
 }
 
-std::shared_ptr<EstimateReceiver> LiveTruth::estimate_receiver() const { return impl_->receiver; }
+std::shared_ptr<EstimateReceiver> LiveTruth::estimate_receiver() const { return impl_->sender; }
+
+void LiveTruth::begin() {
+  const std::lock_guard lock(impl_->mutex);
+  if (impl_->end_ns) return;
+  impl_->start_ns = impl_->known_until_ns();
+  impl_->samples.forget_before(impl_->start_ns);
+  impl_->heard = impl_->last_sample;
+  if (impl_->sender) impl_->sender->start_at(impl_->start_ns);
+}
 
 std::optional<std::int64_t> LiveTruth::heard_ns() const {
   const std::lock_guard lock(impl_->mutex);

@@ -12,6 +12,7 @@
 #include "core/motion/truth_source.hpp"
 #include "core/result.hpp"
 #include "flight/live/live_options.hpp"
+#include "flight/mavlink/feedback/feedback_sender.hpp"
 #include "flight/mavlink/vehicle/vehicle.hpp"
 
 namespace overfly::flight::live {
@@ -44,7 +45,8 @@ class LiveTruth final : public TruthSource {
   [[nodiscard]] std::vector<std::string> warnings() const override;
 
   /// Sends estimates to the vehicle by this from now on.
-  void send_estimates_by(std::shared_ptr<EstimateReceiver> receiver);
+  void send_estimates_by(std::shared_ptr<mavlink::FeedbackSender> sender);
+  void begin() override;
   [[nodiscard]] std::shared_ptr<EstimateReceiver> estimate_receiver() const override;
   [[nodiscard]] std::optional<std::int64_t> heard_ns() const override;
 

@@ -81,6 +81,13 @@ class RosTruth final : public TruthSource {
     }
     return warnings;
   }
+  void begin() override {
+    const std::lock_guard lock(mutex_);
+    if (end_ns_) return;
+    start_ns_ = known_until_ns();
+    samples_.forget_before(start_ns_);
+    heard_ = last_sample_;
+  }
   [[nodiscard]] std::optional<std::int64_t> heard_ns() const override {
     const std::lock_guard lock(mutex_);
     if (!heard_) return std::nullopt;

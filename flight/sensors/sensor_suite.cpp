@@ -26,6 +26,7 @@ class SensedFlight final : public TruthSource {
   }
   [[nodiscard]] std::string description() const override { return flight_->description(); }
   [[nodiscard]] std::vector<std::string> warnings() const override { return flight_->warnings(); }
+  void begin() override { flight_->begin(); }
   [[nodiscard]] std::shared_ptr<EstimateReceiver> estimate_receiver() const override {
     return flight_->estimate_receiver();
   }

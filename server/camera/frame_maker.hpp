@@ -73,7 +73,8 @@ class FrameMaker {
   /// Of the recorded images.
   [[nodiscard]] std::vector<std::string> image_warnings() const;
 
-  /// See TruthSource.
+  /// These three: see TruthSource.
+  void begin_flight() { truth_->source().begin(); }
   [[nodiscard]] std::shared_ptr<EstimateReceiver> estimate_receiver() const {
     return truth_->source().estimate_receiver();
   }

@@ -88,6 +88,7 @@ class RecordedWhileFlown final : public TruthSource {
     return flight_->log_start_ns();
   }
   [[nodiscard]] std::vector<std::string> warnings() const override { return flight_->warnings(); }
+  void begin() override { flight_->begin(); }
   [[nodiscard]] std::shared_ptr<EstimateReceiver> estimate_receiver() const override {
     return flight_->estimate_receiver();
   }

@@ -169,7 +169,15 @@ Status FlightRun::fly_real_time() {
     InTheAir(const InTheAir&) = delete;
     InTheAir& operator=(const InTheAir&) = delete;
   } const in_the_air(clock_, pictures);
-  return keep_pace(clock_.now_ns(), pictures);
+  maker_->begin_flight();
+  // A live flight tells at which time of the vehicle's clock it begins.
+  if (auto& flight = recorder_.manifest().flight)
+    flight->description = maker_->flight_description();
+  std::int64_t start_ns = clock_.now_ns();
+  // A live flight's first state came a moment ago: the camera must not be late by that.
+  const std::optional<std::int64_t> heard_ns = maker_->heard_ns();
+  if (heard_ns && &clock_ == &machine_clock()) start_ns = std::min(start_ns, *heard_ns);
+  return keep_pace(start_ns, pictures);
 }
 
 Status FlightRun::keep_pace(std::int64_t start_ns, PictureRate& pictures) {

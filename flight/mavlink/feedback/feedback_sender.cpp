@@ -51,6 +51,11 @@ FeedbackSender::~FeedbackSender() {
   thread_.join();
 }
 
+void FeedbackSender::start_at(std::int64_t start_ns) {
+  const std::lock_guard lock(mutex_);
+  start_ns_ = start_ns;
+}
+
 void FeedbackSender::take(const PlacedEstimate& estimate) {
   {
     const std::lock_guard lock(mutex_);

@@ -44,6 +44,8 @@ class FeedbackSender final : public EstimateReceiver {
   FeedbackSender(const FeedbackSender&) = delete;
   FeedbackSender& operator=(const FeedbackSender&) = delete;
 
+  /// Replaces start_ns, before the first estimate.
+  void start_at(std::int64_t start_ns);
   void take(const PlacedEstimate& estimate) override;
   /// "sent 930 ODOMETRY to vehicle 1.1, ...".
   [[nodiscard]] std::string report() const override;
@@ -57,9 +59,9 @@ class FeedbackSender final : public EstimateReceiver {
   const FeedbackOptions options_;
   const LocalFrame frame_;
   const double geoid_separation_m_;
-  const std::int64_t start_ns_;
 
   mutable std::mutex mutex_;
+  std::int64_t start_ns_;
   std::condition_variable news_;
   FeedbackTrack track_;
   FeedbackQueue queue_;

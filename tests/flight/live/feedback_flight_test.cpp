@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "flight/live/fly_live.hpp"
+#include "flight/live/live_truth.hpp"
 #include "flight/mavlink/link/frame_link.hpp"
 #include "flight/mavlink/payload.hpp"
 #include "flight/vehicle/simulated_vehicle.hpp"
@@ -134,6 +135,36 @@ TEST(FeedbackFlight, ReachesTheVehicleWithTheCapturesTime) {
   EXPECT_THAT(receiver->report(),
               HasSubstr("sent " + std::to_string(received.size()) + " ODOMETRY to vehicle 1.1"));
   EXPECT_THAT(receiver->report(), HasSubstr("1 resets"));
+}
+
+TEST(FeedbackFlight, BeginsWhenARealTimeFlightIsReady) {
+  ListeningVehicle vehicle;
+  LiveFlight flight;
+  flight.link = *mavlink::parse_link_address(vehicle.address(), "link");
+  flight.feedback = mavlink::FeedbackOptions{};
+  flight.feedback->send_height = true;
+  flight.rate_hz = 50.0;
+  const auto truth = fly_live(flight, LocalFrame(geodetic_from_deg(10.0, 20.0, 100.0)), nullptr);
+  ASSERT_TRUE(truth.ok()) << truth.error().message;
+  auto& live = dynamic_cast<LiveTruth&>(**truth);
+  const std::int64_t opened_ns = live.start_ns();
+  // The set-up of a camera takes some time of the vehicle's clock.
+  for (int i = 0; i < 2000 && live.start_ns() < opened_ns + kNsPerS / 2; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    live.begin();
+  }
+  ASSERT_GE(live.start_ns(), opened_ns + kNsPerS / 2);
+  EXPECT_TRUE(live.heard_ns());
+  const auto state = live.state_at(0);
+  ASSERT_TRUE(state.ok() && *state);
+  live.estimate_receiver()->take({0, 0, (*state)->T_world_body});
+  for (int i = 0; i < 2000 && vehicle.received().empty(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  const auto received = vehicle.received();
+  ASSERT_FALSE(received.empty()) << live.estimate_receiver()->report();
+  EXPECT_EQ(mavlink::PayloadReader(received.front().payload).at<std::uint64_t>(0),
+            static_cast<std::uint64_t>(live.start_ns() / 1000));
 }
 
 }  // namespace

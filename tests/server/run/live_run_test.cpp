@@ -210,6 +210,19 @@ TEST(LiveRun, ChecksTheFeedbackOfItsScenario) {
               HasSubstr("flight.mavlink.feedback: must not be given with read_only = true"));
 }
 
+TEST(LiveRun, FliesInRealTime) {
+  const StreamingVehicle vehicle(4.0, 20);
+  const TemporaryFolder folder;
+  Scenario scenario = live_scenario(vehicle);
+  scenario.pacing = Pacing::kRealTime;
+  scenario.duration_s.reset();
+  const auto run = run_scenario(scenario, options_for(folder.path() / "r"));
+  ASSERT_TRUE(run.ok()) << run.error().message;
+  EXPECT_GT(run->info.frames, 0);
+  EXPECT_THAT(overfly::testing::read_text(folder.path() / "r" / "timings.json"),
+              HasSubstr("message_to_frame"));
+}
+
 TEST(LiveRun, EndsWhenItsScenarioSays) {
   const StreamingVehicle vehicle(20.0);
   const TemporaryFolder folder;
