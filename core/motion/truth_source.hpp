@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/motion/flight_event.hpp"
 #include "core/motion/pose.hpp"
 #include "core/result.hpp"
 
@@ -49,6 +50,13 @@ class TruthSource {
   [[nodiscard]] virtual std::string description() const = 0;
   /// Lines of the flight's file that were dropped or moved. Empty if none.
   [[nodiscard]] virtual std::vector<std::string> warnings() const { return {}; }
+  /// Events up to `t_ns` that were not taken before, by time. @param t_ns  must not decrease
+  [[nodiscard]] virtual std::vector<FlightEvent> take_events(std::int64_t /*t_ns*/) { return {}; }
+  /// What a live vehicle says of itself, twice a second of the flight; empty in between, and of
+  /// other flights.
+  [[nodiscard]] virtual std::optional<VehicleStatus> take_status(std::int64_t /*t_ns*/) {
+    return std::nullopt;
+  }
 
  private:
   /// As state_at.

@@ -41,6 +41,9 @@ class LiveTruth final : public TruthSource {
   [[nodiscard]] std::string description() const override;
   /// Gaps so far, and why the flight has ended.
   [[nodiscard]] std::vector<std::string> warnings() const override;
+  /// Modes, mission items, arming and texts of the vehicle.
+  [[nodiscard]] std::vector<FlightEvent> take_events(std::int64_t t_ns) override;
+  [[nodiscard]] std::optional<VehicleStatus> take_status(std::int64_t t_ns) override;
 
   /// The vehicle's clock at t = 0 [ns].
   [[nodiscard]] std::int64_t start_ns() const;

@@ -62,6 +62,13 @@ class FrameMaker {
   [[nodiscard]] std::vector<std::string> flight_warnings() const {
     return truth_->source().warnings();
   }
+  /// As TruthSource::take_events and take_status.
+  [[nodiscard]] std::vector<FlightEvent> take_flight_events(std::int64_t t_ns) {
+    return truth_->source().take_events(t_ns);
+  }
+  [[nodiscard]] std::optional<VehicleStatus> take_vehicle_status(std::int64_t t_ns) {
+    return truth_->source().take_status(t_ns);
+  }
 
   /// Frame k as seen by every camera; empty after the end of a flight of unknown length. k must
   /// increase from call to call.

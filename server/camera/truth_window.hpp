@@ -38,6 +38,7 @@ class TruthWindow {
   [[nodiscard]] Result<std::optional<AircraftState>> at(std::int64_t t_ns,
                                                         const std::atomic<bool>* cancel = nullptr);
   [[nodiscard]] const TruthSource& source() const { return *source_; }
+  [[nodiscard]] TruthSource& source() { return *source_; }
 
  private:
   [[nodiscard]] AircraftState remembered(std::int64_t t_ns) const;

@@ -85,6 +85,12 @@ class RecordedWhileFlown final : public TruthSource {
   }
   [[nodiscard]] std::string description() const override { return flight_->description(); }
   [[nodiscard]] std::vector<std::string> warnings() const override { return flight_->warnings(); }
+  [[nodiscard]] std::vector<FlightEvent> take_events(std::int64_t t_ns) override {
+    return flight_->take_events(t_ns);
+  }
+  [[nodiscard]] std::optional<VehicleStatus> take_status(std::int64_t t_ns) override {
+    return flight_->take_status(t_ns);
+  }
 
  private:
   [[nodiscard]] Result<std::optional<AircraftState>> find_state(

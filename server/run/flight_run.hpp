@@ -57,6 +57,8 @@ class FlightRun {
   /// Gives each estimator its camera's image, and records all cameras.
   Status deliver(MadeFrame& made);
   Status record_events();
+  /// Records the events of the flight and the state of a live vehicle.
+  Status tell_flight(std::int64_t t_ns);
   Status tell_faults(std::int64_t t_ns);
   [[nodiscard]] bool cancelled() const;
 

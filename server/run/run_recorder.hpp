@@ -70,6 +70,8 @@ class RunRecorder {
              const std::string& kind = "",
              const std::string& source = "");
 
+  Status add_vehicle_status(const VehicleStatus& status);
+
   /// Derives trajectories and metrics, writes timings and the final manifest, releases the folder.
   /// @param timings  wall-clock measurements, written with those of the estimators
   Result<RunMetrics> finish(RunStatus status, const std::string& error, nlohmann::json timings);
@@ -120,6 +122,7 @@ class RunRecorder {
   RunRecords records_;
   std::vector<LineFile> frame_lines_;  ///< by camera
   std::optional<LineFile> log_lines_;
+  std::optional<LineFile> vehicle_lines_;  ///< created with the first line
   std::optional<TruthSampleFile> truth_samples_;
   std::vector<EstimatorState> estimators_;
 };
