@@ -9,6 +9,7 @@
 #include "flight/flight.hpp"
 #include "flight/ground_track.hpp"
 #include "flight/height_profile.hpp"
+#include "flight/known_flight.hpp"
 
 namespace overfly::flight {
 namespace {
@@ -59,10 +60,15 @@ Status validate(const CourseParameters& p) {
   return {};
 }
 
-class Course final : public TruthSource {
+class Course final : public KnownFlight {
  public:
   Course(GroundTrack track, HeightProfile height, const CourseParameters& parameters)
-      : track_(std::move(track)), height_(std::move(height)), parameters_(parameters) {
+      : KnownFlight("course: " + short_text(parameters.airspeed_m_s) + " m/s, " +
+                    short_text(deg_from_rad(parameters.roll_rate_max_rad_s)) + " deg/s, " +
+                    short_text(parameters.height_agl_m) + " m above the ground"),
+        track_(std::move(track)),
+        height_(std::move(height)),
+        parameters_(parameters) {
     // The flight ends when the distance flown, including climbs, reaches the course's length.
     constexpr double kStepS = 0.01;
     double flown_m = 0.0;
@@ -74,35 +80,18 @@ class Course final : public TruthSource {
       speed = next;
     }
     t_s += std::max(0.0, parameters.length_m - flown_m) / speed_at(t_s);
-    duration_ns_ = ns_from_s(std::min(t_s, track_.duration_s()));
-  }
-
-  [[nodiscard]] std::optional<std::int64_t> duration_ns() const override { return duration_ns_; }
-
-  [[nodiscard]] std::string description() const override {
-    return "course: " + short_text(parameters_.airspeed_m_s) + " m/s, " +
-           short_text(deg_from_rad(parameters_.roll_rate_max_rad_s)) + " deg/s, " +
-           short_text(parameters_.height_agl_m) + " m above the ground";
+    end_ns_ = ns_from_s(std::min(t_s, track_.duration_s()));
   }
 
  private:
-  [[nodiscard]] Result<std::optional<AircraftState>> find_state(
-      std::int64_t t_ns, const std::atomic<bool>* /*cancel*/) override {
-    if (t_ns < 0) {
-      return Error{ErrorCode::kInvalidArgument,
-                   "t_ns = " + std::to_string(t_ns) + ": the flight spans [0, " +
-                       std::to_string(duration_ns_) + "] ns"};
-    }
-    if (t_ns > duration_ns_) return std::optional<AircraftState>();
-    return std::optional(state(t_ns));
-  }
+  [[nodiscard]] std::int64_t end_ns() const override { return end_ns_; }
 
   [[nodiscard]] double speed_at(double t_s) const {
     return std::hypot(parameters_.airspeed_m_s, height_.at(t_s).climb_m_s);
   }
 
   /// The body's x axis points along the velocity; the bank is a rotation about it.
-  [[nodiscard]] AircraftState state(std::int64_t t_ns) const {
+  [[nodiscard]] AircraftState state(std::int64_t t_ns) const override {
     const double t_s = s_from_ns(t_ns);
     const GroundSample ground = track_.at(t_s);
     const HeightSample height = height_.at(t_s);
@@ -134,7 +123,7 @@ class Course final : public TruthSource {
   GroundTrack track_;
   HeightProfile height_;
   CourseParameters parameters_;
-  std::int64_t duration_ns_ = 0;
+  std::int64_t end_ns_ = 0;
 };
 
 /// Checks that the smoothed height keeps its clearance over rough ground.

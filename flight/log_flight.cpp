@@ -6,6 +6,7 @@
 
 #include "core/time.hpp"
 #include "flight/flight.hpp"
+#include "flight/known_flight.hpp"
 #include "flight/log_reader.hpp"
 #include "flight/pose_flight.hpp"
 
@@ -25,32 +26,24 @@ Eigen::Vector3d parabola_velocity(double t_s,
          pc * ((2 * t_s - ta - tb) / ((tc - ta) * (tc - tb)));
 }
 
-class LogFlight final : public TruthSource {
+class LogFlight final : public KnownFlight {
  public:
   LogFlight(Trajectory T_world_body, std::vector<std::string> warnings, std::string description)
-      : trajectory_(std::move(T_world_body)),
-        warnings_(std::move(warnings)),
-        description_(std::move(description)) {
+      : KnownFlight(std::move(description), std::move(warnings)),
+        trajectory_(std::move(T_world_body)) {
     const std::size_t count = trajectory_.size();
     for (std::size_t i = 0; i < count; ++i) velocities_m_s_.push_back(velocity_of(i));
   }
 
-  [[nodiscard]] std::optional<std::int64_t> duration_ns() const override {
-    return trajectory_.end_ns() - trajectory_.begin_ns();
+  [[nodiscard]] std::optional<std::int64_t> log_start_ns() const override {
+    return trajectory_.begin_ns();
   }
-  [[nodiscard]] std::string description() const override { return description_; }
-  [[nodiscard]] std::vector<std::string> warnings() const override { return warnings_; }
 
  private:
-  [[nodiscard]] Result<std::optional<AircraftState>> find_state(
-      std::int64_t t_ns, const std::atomic<bool>* /*cancel*/) override {
-    const std::int64_t last_ns = *duration_ns();
-    if (t_ns < 0) {
-      return Error{ErrorCode::kInvalidArgument,
-                   "t_ns = " + std::to_string(t_ns) + ": the flight spans [0, " +
-                       std::to_string(last_ns) + "] ns"};
-    }
-    if (t_ns > last_ns) return std::optional<AircraftState>();
+  [[nodiscard]] std::int64_t end_ns() const override {
+    return trajectory_.end_ns() - trajectory_.begin_ns();
+  }
+  [[nodiscard]] AircraftState state(std::int64_t t_ns) const override {
     const std::vector<StampedPose>& poses = trajectory_.poses();
     const std::int64_t file_ns = t_ns + trajectory_.begin_ns();
     const auto after = std::upper_bound(
@@ -58,7 +51,7 @@ class LogFlight final : public TruthSource {
           return t < stamped.t_ns;
         });
     const auto pose = static_cast<std::size_t>(after - poses.begin()) - 1;
-    return std::optional(between(pose, t_ns));
+    return between(pose, t_ns);
   }
 
   [[nodiscard]] std::pair<double, Eigen::Vector3d> point(std::size_t i) const {
@@ -99,9 +92,7 @@ class LogFlight final : public TruthSource {
   }
 
   Trajectory trajectory_;
-  std::vector<std::string> warnings_;
   std::vector<Eigen::Vector3d> velocities_m_s_;
-  std::string description_;
 };
 
 }  // namespace

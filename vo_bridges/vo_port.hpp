@@ -15,15 +15,12 @@
 #include "core/camera/image.hpp"
 #include "core/motion/estimate.hpp"
 #include "core/result.hpp"
+#include "core/sensors/sensor_samples.hpp"
 
 namespace overfly {
 
-/// One inertial sample, body axes (forward-right-down).
-struct ImuSample {
-  std::int64_t t_ns = 0;
-  Eigen::Vector3d acceleration_m_s2 = Eigen::Vector3d::Zero();  ///< specific force
-  Eigen::Vector3d angular_rate_rad_s = Eigen::Vector3d::Zero();
-};
+/// Samples of sensors that wait for a frame are kept for this time.
+inline constexpr std::int64_t kOldestSampleNs = 10'000'000'000;
 
 /// One image for an estimator. The image is shared and never modified after its creation.
 struct VoFrame {
@@ -33,8 +30,10 @@ struct VoFrame {
   std::int64_t exposure_ns = 0;        ///< 0 = unknown
   std::shared_ptr<const Image> image;  ///< 8-bit grey
   PinholeCamera intrinsics;
-  Distortion distortion;       ///< lens distortion of the image; none = pinhole
-  std::vector<ImuSample> imu;  ///< since the previous frame; empty without an IMU
+  Distortion distortion;  ///< lens distortion of the image; none = pinhole
+  /// Of the aircraft's other sensors since the previous frame; empty without them. The time of
+  /// delivery is not after t_ns, unless a fault has changed this frame's stamp.
+  SensorSamples sensors;
   /// crc32_of(*image), if known. An estimator outside this process must have received the same
   /// value.
   std::optional<std::uint32_t> image_crc32;

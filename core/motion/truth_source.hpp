@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/motion/estimate_receiver.hpp"
 #include "core/motion/flight_event.hpp"
 #include "core/motion/pose.hpp"
 #include "core/result.hpp"
@@ -48,6 +49,8 @@ class TruthSource {
   [[nodiscard]] virtual std::optional<std::int64_t> duration_ns() const = 0;
   /// One line for the manifest that describes the flight ("course: 25 m/s, 45 deg/s, 300 m").
   [[nodiscard]] virtual std::string description() const = 0;
+  /// t = 0 by the clock of the log or file that is flown [ns]; empty if it has none.
+  [[nodiscard]] virtual std::optional<std::int64_t> log_start_ns() const { return std::nullopt; }
   /// Lines of the flight's file that were dropped or moved. Empty if none.
   [[nodiscard]] virtual std::vector<std::string> warnings() const { return {}; }
   /// Events up to `t_ns` that were not taken before, by time. @param t_ns  must not decrease
@@ -57,6 +60,13 @@ class TruthSource {
   [[nodiscard]] virtual std::optional<VehicleStatus> take_status(std::int64_t /*t_ns*/) {
     return std::nullopt;
   }
+  /// Takes estimates back to the vehicle that flies; null if it wants none.
+  [[nodiscard]] virtual std::shared_ptr<EstimateReceiver> estimate_receiver() const {
+    return nullptr;
+  }
+  /// Of a live source: when the message arrived with which the latest state became known [ns of the
+  /// machine's steady clock].
+  [[nodiscard]] virtual std::optional<std::int64_t> heard_ns() const { return std::nullopt; }
 
  private:
   /// As state_at.

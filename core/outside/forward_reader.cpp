@@ -41,16 +41,15 @@ Result<std::span<const std::uint8_t>> ForwardReader::ahead(std::size_t wanted) {
 }
 
 void ForwardReader::only(std::vector<FileRange> parts) {
-  const std::uint64_t end_of_file = parts_.back().end;
   size_ = 0;
   parts_.clear();
   for (FileRange part : parts) {
-    part.end = std::min(part.end, end_of_file);
+    part.end = std::min(part.end, file_end_);
     if (part.begin >= part.end) continue;
     size_ += part.end - part.begin;
     parts_.push_back(part);
   }
-  if (parts_.empty()) parts_.push_back({end_of_file, end_of_file});
+  if (parts_.empty()) parts_.push_back({file_end_, file_end_});
   part_ = 0;
   part_read_ = read_ = 0;
   begin_ = end_ = 0;

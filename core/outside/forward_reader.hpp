@@ -39,7 +39,7 @@ class ForwardReader {
   void skip(std::size_t bytes) { begin_ += bytes; }
 
   /// Starts again, with these parts of the file as if they were one file: positions and sizes then
-  /// count their bytes. Bytes behind the end of the file are left out.
+  /// count their bytes. Bytes behind the end of the file are left out. May be repeated.
   /// @pre in increasing order, without overlaps
   void only(std::vector<FileRange> parts);
 
@@ -53,12 +53,14 @@ class ForwardReader {
  private:
   ForwardReader(ReadableFile file, std::uint64_t size)
       : file_(std::move(file)),
+        file_end_(size),
         size_(size),
         parts_{{0, size}},
         buffer_(size < kBufferBytes ? static_cast<std::size_t>(size) : kBufferBytes) {}
 
   ReadableFile file_;
-  std::uint64_t size_ = 0;  ///< of all parts
+  std::uint64_t file_end_ = 0;  ///< the file's size when it was opened
+  std::uint64_t size_ = 0;      ///< of all parts
   std::vector<FileRange> parts_;
   std::size_t part_ = 0;         ///< the one that is being read
   std::uint64_t part_read_ = 0;  ///< bytes of that part

@@ -26,4 +26,8 @@ std::string seconds_text(std::int64_t t_ns) {
   return text += fraction;
 }
 
+std::string counted(std::uint64_t count, const std::string& noun) {
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
 }  // namespace overfly

@@ -8,11 +8,18 @@ namespace overfly::dynamics {
 /// Standard gravity [m/s^2] (CGPM 1901).
 inline constexpr double kStandardGravityMS2 = 9.80665;
 
-/// Density of the standard atmosphere [kg/m^3].
-///
+/// Air of the standard atmosphere at a height.
+struct StandardAir {
+  double temperature_k = 0.0;
+  double pressure_pa = 0.0;
+  double density_kg_m3 = 0.0;
+};
+
 /// Method: U.S. Standard Atmosphere 1976, eq. 18 (geopotential height), 23, 33 and 42: the
-/// troposphere to 11 km and the isothermal layer to 20 km. Outside [-5, 20] km the value of the
+/// troposphere to 11 km and the isothermal layer to 20 km. Outside [-5, 20] km the values of the
 /// nearer end.
+[[nodiscard]] StandardAir standard_air(double alt_msl_m);
+/// Density of the standard atmosphere [kg/m^3], as standard_air.
 [[nodiscard]] double standard_density_kg_m3(double alt_msl_m);
 
 /// Gravity is one vector for a whole flight: constant along -up of the world frame. Over 1 km of

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "flight/live/live_truth.hpp"
+#include "flight/mavlink/feedback/feedback_sender.hpp"
+#include "flight/mavlink/feedback/prepare_feedback.hpp"
 #include "flight/mavlink/link/signing.hpp"
 #include "flight/mavlink/vehicle/commands.hpp"
 #include "flight/mavlink/vehicle/message_rates.hpp"
@@ -18,8 +20,10 @@ namespace {
 using mavlink::MessageId;
 
 constexpr std::chrono::seconds kArmingLimit{60};
-/// Of messages that only tell when the flight ends, and of speeds.
+/// Of messages that are read for the begin and the end of the flight, and of speeds.
 constexpr double kSlowRateHz = 5.0;
+/// A mission's height that differs by more is another one.
+constexpr double kHeightRoundingM = 0.02;
 
 Status request_rates(mavlink::Exchange& exchange, const LiveFlight& flight) {
   if (flight.rate_hz <= 0.0) return {};
@@ -29,8 +33,13 @@ Status request_rates(mavlink::Exchange& exchange, const LiveFlight& flight) {
   if (flight.truth.truth != TruthPreference::kEstimate) {
     rates.emplace_back(MessageId::kSimState, flight.rate_hz);
   }
-  if (flight.truth.truth != TruthPreference::kSimulation) {
+  // The vehicle's own height goes with estimates without one.
+  const bool own_height = flight.feedback && !flight.feedback->send_height;
+  if (flight.truth.truth != TruthPreference::kSimulation || own_height) {
     rates.emplace_back(MessageId::kGlobalPositionInt, flight.rate_hz);
+  }
+  if (flight.feedback && flight.feedback->message == mavlink::FeedbackMessage::kGpsInput) {
+    rates.emplace_back(MessageId::kSystemTime, 1.0);
   }
   if (flight.truth.stop.on_landing) {
     rates.emplace_back(MessageId::kExtendedSysState, kSlowRateHz);
@@ -44,7 +53,7 @@ Status request_rates(mavlink::Exchange& exchange, const LiveFlight& flight) {
 }
 
 /// Whether the vehicle's mission is the one that was sent. Item 0 is the home position, which
-/// ArduPilot keeps for itself; positions are rounded to 1e-7 deg.
+/// ArduPilot keeps for itself; it rounds positions to 1e-7 deg and heights to 0.01 m.
 bool is_same_mission(const std::vector<mavlink::MissionItem>& sent,
                      const std::vector<mavlink::MissionItem>& stored) {
   if (sent.size() != stored.size()) return false;
@@ -53,6 +62,9 @@ bool is_same_mission(const std::vector<mavlink::MissionItem>& sent,
         std::abs(sent[i].y - stored[i].y) > 1e-6) {
       return false;
     }
+    // Vehicles need not keep the height of an item without a place.
+    const bool has_place = sent[i].x != 0.0 || sent[i].y != 0.0;
+    if (has_place && std::abs(sent[i].z - stored[i].z) > kHeightRoundingM) return false;
   }
   return true;
 }
@@ -69,13 +81,21 @@ Status set_mission(mavlink::Exchange& exchange, const std::filesystem::path& fil
                    " has not stored the mission as it was sent"};
 }
 
-Status prepare(mavlink::Exchange& exchange, const LiveFlight& flight) {
+Status prepare(mavlink::Exchange& exchange, const LiveFlight& flight, const LocalFrame& frame) {
   if (Status status = request_rates(exchange, flight); !status) return status;
   for (const auto& [name, value] : flight.parameters) {
     if (Status status = mavlink::set_parameter(exchange, name, value); !status) return status;
   }
   if (flight.mission_file) {
     if (Status status = set_mission(exchange, *flight.mission_file); !status) return status;
+  }
+  if (flight.feedback) {
+    const Geodetic& origin = frame.origin();
+    const mavlink::GlobalPosition msl{deg_from_rad(origin.lat_rad),
+                                      deg_from_rad(origin.lon_rad),
+                                      origin.alt_ellipsoid_m - flight.truth.geoid_separation_m};
+    Status status = mavlink::prepare_feedback(exchange, *flight.feedback, msl);
+    if (!status) return status;
   }
   if (!flight.arm_and_start) return {};
   if (Status status = mavlink::arm(exchange, kArmingLimit); !status) return status;
@@ -86,8 +106,16 @@ Status prepare(mavlink::Exchange& exchange, const LiveFlight& flight) {
 
 Result<std::unique_ptr<TruthSource>> fly_live(const LiveFlight& flight,
                                               const LocalFrame& frame,
-                                              const std::atomic<bool>* cancel) {
+                                              const std::atomic<bool>* cancel,
+                                              const LiveRecording& recording) {
   mavlink::VehicleOptions options;
+  LiveTruthOptions truth_options = flight.truth;
+  if (!recording.tlog.empty()) {
+    auto recorder = mavlink::FrameRecorder::create(recording.tlog);
+    if (!recorder) return recorder.error();
+    options.link.recorder = *recorder;
+    truth_options.recorder = std::move(*recorder);
+  }
   options.system = flight.system;
   options.link.read_only = flight.read_only;
   if (flight.signing_key_file) {
@@ -104,12 +132,16 @@ Result<std::unique_ptr<TruthSource>> fly_live(const LiveFlight& flight,
   }
   if (!flight.read_only) {
     const std::unique_ptr<mavlink::Exchange> exchange = vehicle->converse(cancel);
-    if (Status status = prepare(*exchange, flight); !status) {
+    if (Status status = prepare(*exchange, flight, frame); !status) {
       return status.error().in(flight.link.text());
     }
   }
-  Result<std::unique_ptr<LiveTruth>> truth = LiveTruth::open(vehicle, frame, flight.truth, cancel);
+  Result<std::unique_ptr<LiveTruth>> truth = LiveTruth::open(vehicle, frame, truth_options, cancel);
   if (!truth) return truth.error();
+  if (flight.feedback) {
+    (*truth)->send_estimates_by(std::make_shared<mavlink::FeedbackSender>(
+        vehicle, *flight.feedback, frame, flight.truth.geoid_separation_m, (*truth)->start_ns()));
+  }
   return std::unique_ptr<TruthSource>(std::move(*truth));
 }
 

@@ -13,6 +13,7 @@
 #include "core/motion/truth_source.hpp"
 #include "core/result.hpp"
 #include "flight/live/live_options.hpp"
+#include "flight/mavlink/feedback/feedback_options.hpp"
 #include "flight/mavlink/link/link_address.hpp"
 
 namespace overfly::flight::live {
@@ -29,18 +30,26 @@ struct LiveFlight {
   std::map<std::string, double> parameters;           ///< set in the order of their names
   std::optional<std::filesystem::path> mission_file;  ///< replaces the vehicle's mission
   bool arm_and_start = false;                         ///< arms, and starts the mission
+  std::optional<mavlink::FeedbackOptions> feedback;   ///< estimates are sent to the vehicle
   LiveTruthOptions truth;
+};
+
+/// Where the messages of a vehicle are recorded; empty: nowhere.
+struct LiveRecording {
+  std::filesystem::path tlog;  ///< must not exist
 };
 
 /// Connects to a vehicle, prepares it, and flies what it reports: see LiveTruth.
 /// A vehicle must send its first heartbeat within the patience of LiveTruthOptions; arming is tried
 /// for a minute.
 /// @param cancel  ends every wait; may be null
-/// Errors: as Vehicle::open, request_message_rate, set_parameter, read_mission_file,
-/// upload_mission, arm, start_mission and LiveTruth::open; kConflict if the vehicle has not stored
-/// the mission as it was sent.
+/// @param recording  gets all messages of the link, from its opening to the end of the flight
+/// Errors: as FrameRecorder::create, Vehicle::open, request_message_rate, set_parameter,
+/// read_mission_file, upload_mission, arm, start_mission, prepare_feedback and LiveTruth::open;
+/// kConflict if the vehicle has not stored the mission as it was sent.
 [[nodiscard]] Result<std::unique_ptr<TruthSource>> fly_live(const LiveFlight& flight,
                                                             const LocalFrame& frame,
-                                                            const std::atomic<bool>* cancel);
+                                                            const std::atomic<bool>* cancel,
+                                                            const LiveRecording& recording = {});
 
 }  // namespace overfly::flight::live

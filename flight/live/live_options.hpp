@@ -3,8 +3,13 @@
 
 #include <chrono>
 #include <cstdint>
+#include <memory>
 
 #include "core/time.hpp"
+
+namespace overfly::flight::mavlink {
+class FrameRecorder;
+}
 
 namespace overfly::flight::live {
 
@@ -13,6 +18,12 @@ enum class TruthPreference {
   kBest,        ///< the simulator's state if the vehicle sends it, the estimate otherwise
   kSimulation,  ///< SIM_STATE or HIL_STATE_QUATERNION
   kEstimate,    ///< what the autopilot believes
+};
+
+/// When the flight begins. Without a condition: with the first position and attitude.
+struct StartCondition {
+  /// When this item of the mission, or one after it, is the current one; negative: no condition.
+  std::int32_t mission_item = -1;
 };
 
 /// Conditions that end the flight, besides a restart of the vehicle.
@@ -32,7 +43,10 @@ struct LiveTruthOptions {
   std::int64_t simulation_wait_ns = 2 * kNsPerS;
   /// A wait for a sample ends with an error after this time without one.
   std::chrono::milliseconds patience{10000};
+  StartCondition start;
   StopConditions stop;
+  /// Records the link's messages; its problem is a warning of the flight. May be null.
+  std::shared_ptr<mavlink::FrameRecorder> recorder = nullptr;
 };
 
 }  // namespace overfly::flight::live

@@ -2,16 +2,17 @@
 
 #include <algorithm>
 #include <condition_variable>
-#include <cstdio>
 #include <map>
 #include <mutex>
 #include <utility>
 
 #include "core/cancellable_wait.hpp"
 #include "core/text/number_text.hpp"
+#include "flight/live/live_motion.hpp"
 #include "flight/live/stop_watch.hpp"
 #include "flight/live/truth_streams.hpp"
-#include "flight/logs/ned_attitude.hpp"
+#include "flight/mavlink/link/frame_recorder.hpp"
+#include "flight/mavlink/messages.hpp"
 
 namespace overfly::flight::live {
 namespace {
@@ -20,28 +21,10 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::int64_t kStatusPeriodNs = kNsPerS / 2;
 
-std::string seconds_shown(std::int64_t t_ns) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.3f s", s_from_ns(t_ns));
-  return text;
-}
-
-/// Of samples around a time: the first one not before it. @pre there is one, and it is not the
-/// first of all unless its time is t_ns
-template <typename Sample>
-typename std::deque<Sample>::const_iterator not_before(const std::deque<Sample>& samples,
-                                                       std::int64_t t_ns) {
-  return std::lower_bound(
-      samples.begin(), samples.end(), t_ns, [](const Sample& sample, std::int64_t t) {
-        return sample.t_ns < t;
-      });
-}
-
 }  // namespace
 
 struct LiveTruth::Impl {
   std::shared_ptr<mavlink::Vehicle> vehicle;
-  LocalFrame frame;
   LiveTruthOptions options;
 
   mutable std::mutex mutex;
@@ -49,31 +32,39 @@ struct LiveTruth::Impl {
   LiveSamples samples;
   StopWatch stop;
   std::optional<TruthStreams> streams;
+  bool started = false;
+  /// Once the streams are chosen; moves on until the flight has started.
   std::int64_t start_ns = 0;
   Clock::time_point last_sample;
   std::string end_reason;              ///< empty while the flight goes on
   std::optional<std::int64_t> end_ns;  ///< of the vehicle's clock
-  std::uint64_t gaps = 0;
-  std::int64_t longest_gap_ns = 0;
-  std::int64_t longest_gap_at_ns = 0;   ///< from the start
-  std::int64_t last_gap_begin_ns = -1;  ///< counted already
-  std::string opened_as;                ///< description
-  std::int64_t next_status_ns = 0;      ///< from the start
-  std::int64_t counted_ns = 0;          ///< the vehicle's clock at the last status
-  std::uint64_t counted_messages = 0;   ///< until then
+  LiveMotion motion;
+  std::string opened_as;  ///< description
+  std::shared_ptr<EstimateReceiver> receiver;
+  /// When the states up to a time of the vehicle's clock became known.
+  struct Arrival {
+    std::int64_t known_until_ns = 0;
+    Clock::time_point at;
+  };
+  std::deque<Arrival> arrivals;
+  std::optional<Clock::time_point> heard;  ///< the latest state
+  std::int64_t next_status_ns = 0;         ///< from the start
+  std::int64_t counted_ns = 0;             ///< the vehicle's clock at the last status
+  std::uint64_t counted_messages = 0;      ///< until then
 
   Impl(std::shared_ptr<mavlink::Vehicle> of, const LocalFrame& in, const LiveTruthOptions& with)
-      : vehicle(std::move(of)), frame(in), options(with), stop(with.stop) {}
+      : vehicle(std::move(of)),
+        options(with),
+        stop(with.stop),
+        started(with.start.mission_item < 0),
+        motion(in, with.geoid_separation_m, with.gap_limit_ns) {}
 
   void take(const mavlink::Frame& message);
   [[nodiscard]] std::int64_t known_until_ns() const;
   bool choose();
+  void await_start(const mavlink::Frame& message);
   void end(const std::string& reason);
-  [[nodiscard]] AircraftState state_of(const LivePosition& position) const;
   [[nodiscard]] AircraftState at(std::int64_t vehicle_ns);
-  void set_attitude(std::int64_t vehicle_ns, AircraftState& state);
-  void note_gap(std::int64_t begin_ns, std::int64_t end_of_gap_ns);
-  [[nodiscard]] Geodetic point_of(const Eigen::Vector3d& geodetic) const;
   template <typename Ready>
   Status wait(const std::string& what, const std::atomic<bool>* cancel, const Ready& ready);
 
@@ -93,12 +84,17 @@ void LiveTruth::Impl::take(const mavlink::Frame& message) {
     samples.take(message);
     if (!streams && choose()) last_sample = Clock::now();
     if (streams) {
-      if (known_until_ns() > before_ns) last_sample = Clock::now();
+      if (known_until_ns() > before_ns) {
+        last_sample = Clock::now();
+        arrivals.push_back({known_until_ns(), last_sample});
+        if (arrivals.size() > kMaxLiveSamples) arrivals.pop_front();
+      }
       if (samples.restarted()) {
         end("the vehicle's clock started again: the vehicle was restarted");
       } else if (const std::string reason = stop.take(message); !reason.empty()) {
         end(reason);
       }
+      if (!started && !end_ns) await_start(message);
     }
   }
   news.notify_all();
@@ -141,6 +137,14 @@ bool LiveTruth::Impl::choose() {
   return true;
 }
 
+/// Forgets the flight so far until its start condition holds.
+void LiveTruth::Impl::await_start(const mavlink::Frame& message) {
+  start_ns = known_until_ns();
+  samples.forget_before(start_ns);
+  started = message.message_id == static_cast<std::uint32_t>(mavlink::MessageId::kMissionCurrent) &&
+            mavlink::decode_mission_sequence(message) >= options.start.mission_item;
+}
+
 /// Waits until `ready` returns true or the flight ends.
 template <typename Ready>
 Status LiveTruth::Impl::wait(const std::string& what,
@@ -171,78 +175,14 @@ Status LiveTruth::Impl::wait(const std::string& what,
   return {};
 }
 
-Geodetic LiveTruth::Impl::point_of(const Eigen::Vector3d& geodetic) const {
-  return geodetic_from_deg(geodetic.x(), geodetic.y(), geodetic.z() + options.geoid_separation_m);
-}
-
-/// Position and velocity of a sample in the world frame.
-AircraftState LiveTruth::Impl::state_of(const LivePosition& position) const {
-  const Geodetic point = point_of(position.geodetic);
-  AircraftState state;
-  state.t_ns = position.t_ns;
-  state.T_world_body.translation = frame.world_from_geodetic(point);
-  state.v_body_world_m_s = frame.R_world_enu_at(point) * (logs::R_enu_ned() * position.v_ned_m_s);
-  state.airspeed_m_s =
-      position.airspeed_m_s >= 0.0 ? position.airspeed_m_s : state.v_body_world_m_s.norm();
-  return state;
-}
-
-void LiveTruth::Impl::note_gap(std::int64_t begin_ns, std::int64_t end_of_gap_ns) {
-  const std::int64_t gap_ns = end_of_gap_ns - begin_ns;
-  if (gap_ns <= options.gap_limit_ns || begin_ns <= last_gap_begin_ns) return;
-  last_gap_begin_ns = begin_ns;
-  ++gaps;
-  if (gap_ns <= longest_gap_ns) return;
-  longest_gap_ns = gap_ns;
-  longest_gap_at_ns = begin_ns - start_ns;
-}
-
-void LiveTruth::Impl::set_attitude(std::int64_t vehicle_ns, AircraftState& state) {
-  const auto after = not_before(attitudes(), vehicle_ns);
-  const LiveAttitude& b = *after;
-  const LiveAttitude& a = b.t_ns == vehicle_ns ? b : *std::prev(after);
-  Eigen::Quaterniond R_ned_body = b.R_ned_body;
-  Eigen::Vector3d rate_rad_s = b.rate_rad_s;
-  if (a.t_ns != b.t_ns) {
-    // Of one stream the gap of the positions is the same.
-    if (streams->attitude != streams->position) note_gap(a.t_ns, b.t_ns);
-    const double dt_s = s_from_ns(b.t_ns - a.t_ns);
-    const double part = s_from_ns(vehicle_ns - a.t_ns) / dt_s;
-    R_ned_body = a.R_ned_body.slerp(part, b.R_ned_body);
-    if (a.has_rate && b.has_rate) {
-      rate_rad_s = (1.0 - part) * a.rate_rad_s + part * b.rate_rad_s;
-    } else {
-      Eigen::Quaterniond step = a.R_ned_body.conjugate() * b.R_ned_body;
-      if (step.w() < 0.0) step.coeffs() = -step.coeffs();
-      const Eigen::AngleAxisd turn(step);
-      rate_rad_s = turn.axis() * (turn.angle() / dt_s);
-    }
-  }
-  const Geodetic point = frame.geodetic_from_world(state.T_world_body.translation);
-  state.T_world_body.rotation =
-      (frame.R_world_enu_at(point) * logs::R_enu_ned() * R_ned_body).normalized();
-  state.omega_body_rad_s = rate_rad_s;
-}
-
 /// @pre start_ns <= vehicle_ns <= known_until_ns()
 AircraftState LiveTruth::Impl::at(std::int64_t vehicle_ns) {
   samples.forget_before(vehicle_ns);
-  const auto after = not_before(positions(), vehicle_ns);
-  AircraftState state;
-  if (after->t_ns == vehicle_ns) {
-    state = state_of(*after);
-  } else {
-    const auto before = std::prev(after);
-    note_gap(before->t_ns, after->t_ns);
-    AircraftState a = state_of(*before);
-    AircraftState b = state_of(*after);
-    if (!before->has_velocity || !after->has_velocity) {
-      a.v_body_world_m_s = b.v_body_world_m_s =
-          (b.T_world_body.translation - a.T_world_body.translation) / s_from_ns(b.t_ns - a.t_ns);
-    }
-    state = interpolate(a, b, vehicle_ns);
-  }
-  set_attitude(vehicle_ns, state);
+  while (!arrivals.empty() && arrivals.front().known_until_ns < vehicle_ns) arrivals.pop_front();
+  heard.reset();
+  if (!arrivals.empty()) heard = arrivals.front().at;
+  AircraftState state =
+      motion.at(positions(), attitudes(), streams->attitude == streams->position, vehicle_ns);
   state.t_ns = vehicle_ns - start_ns;
   return state;
 }
@@ -260,9 +200,14 @@ Result<std::unique_ptr<LiveTruth>> LiveTruth::open(std::shared_ptr<mavlink::Vehi
   Impl& impl = *truth->impl_;
   impl.vehicle->set_listener([&impl](const mavlink::Frame& message) { impl.take(message); });
   const std::string what = impl.vehicle->address().text() + ": waiting for the flight's start";
-  if (Status status = impl.wait(what, cancel, [&impl] { return impl.streams.has_value(); });
-      !status) {
-    return status.error();
+  const auto started = [&impl] { return impl.streams.has_value() && impl.started; };
+  if (Status status = impl.wait(what, cancel, started); !status) return status.error();
+  const std::lock_guard lock(impl.mutex);
+  if (!impl.started) {
+    return Error{ErrorCode::kIo,
+                 impl.vehicle->address().text() +
+                     ": the flight ended before the mission came to item " +
+                     std::to_string(options.start.mission_item) + ": " + impl.end_reason};
   }
   return truth;
 }
@@ -271,22 +216,21 @@ std::string LiveTruth::description() const {
   const mavlink::VehicleState state = impl_->vehicle->state();
   const std::lock_guard lock(impl_->mutex);
   return "live vehicle " + std::to_string(state.system) + "." + std::to_string(state.component) +
-         " on " + impl_->vehicle->address().text() + ": " + impl_->opened_as;
+         " on " + impl_->vehicle->address().text() + ": " + impl_->opened_as + " from " +
+         seconds_shown(impl_->start_ns) + " of its clock";
 }
 
 std::vector<std::string> LiveTruth::warnings() const {
   const std::lock_guard lock(impl_->mutex);
   std::vector<std::string> warnings;
-  if (impl_->gaps > 0) {
-    warnings.push_back(std::to_string(impl_->gaps) + " gaps between samples are longer than " +
-                       seconds_shown(impl_->options.gap_limit_ns) +
-                       " and were interpolated; the longest one, at " +
-                       seconds_shown(impl_->longest_gap_at_ns) + ", is " +
-                       seconds_shown(impl_->longest_gap_ns) + " long");
-  }
+  if (const auto gaps = impl_->motion.gaps_text(impl_->start_ns)) warnings.push_back(*gaps);
   if (impl_->end_ns) {
     warnings.push_back("the flight ended at " + seconds_shown(*impl_->end_ns - impl_->start_ns) +
                        ": " + impl_->end_reason);
+  }
+  if (impl_->options.recorder) {
+    const std::string problem = impl_->options.recorder->problem();
+    if (!problem.empty()) warnings.push_back(problem);
   }
   return warnings;
 }
@@ -345,12 +289,25 @@ std::optional<VehicleStatus> LiveTruth::take_status(std::int64_t t_ns) {
     status.round_trip_ms = static_cast<double>(clock->round_trip_ns) * 1e-6;
   }
   const std::lock_guard lock(impl.mutex);
-  status.gaps = impl.gaps;
+  status.gaps = impl.motion.gap_count();
   impl.next_status_ns = (t_ns / kStatusPeriodNs + 1) * kStatusPeriodNs;
   return status;
 }
 
 std::int64_t LiveTruth::start_ns() const { return impl_->start_ns; }
+
+void LiveTruth::send_estimates_by(std::shared_ptr<EstimateReceiver> receiver) {
+  impl_->receiver = std::move(receiver);
+}
+
+std::shared_ptr<EstimateReceiver> LiveTruth::estimate_receiver() const { return impl_->receiver; }
+
+std::optional<std::int64_t> LiveTruth::heard_ns() const {
+  const std::lock_guard lock(impl_->mutex);
+  if (!impl_->heard) return std::nullopt;
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(impl_->heard->time_since_epoch())
+      .count();
+}
 
 Result<std::optional<AircraftState>> LiveTruth::find_state(std::int64_t t_ns,
                                                            const std::atomic<bool>* cancel) {

@@ -17,9 +17,9 @@
 namespace overfly::flight::live {
 
 /// Flies what a vehicle reports. Time is the vehicle's clock and counts from the first instant with
-/// a position and an attitude, so that simulations at any speed-up give the same flight; the time
-/// of arrival is not used. Positions are interpolated by cubic Hermite polynomials of the reported
-/// velocities, attitudes by SLERP.
+/// a position and an attitude, or from the start condition, so that simulations at any speed-up
+/// give the same flight; the time of arrival is not used. Positions are interpolated by cubic
+/// Hermite polynomials of the reported velocities, attitudes by SLERP.
 ///
 /// state_at() waits until the vehicle's clock has passed the time. The flight ends at the last
 /// sample when the vehicle restarts or a stop condition holds; warnings() says why. It fails
@@ -29,7 +29,8 @@ class LiveTruth final : public TruthSource {
   /// Listens to the vehicle and waits for the flight's start. No other listener may be set until
   /// the object goes.
   /// @param cancel  ends the wait; may be null
-  /// Errors: kIo after `patience`, with what is missing; kCancelled.
+  /// Errors: kIo after `patience`, with what is missing, and if the flight ends before its start
+  /// condition holds; kCancelled.
   static Result<std::unique_ptr<LiveTruth>> open(std::shared_ptr<mavlink::Vehicle> vehicle,
                                                  const LocalFrame& frame,
                                                  const LiveTruthOptions& options,
@@ -44,6 +45,11 @@ class LiveTruth final : public TruthSource {
   /// Modes, mission items, arming and texts of the vehicle.
   [[nodiscard]] std::vector<FlightEvent> take_events(std::int64_t t_ns) override;
   [[nodiscard]] std::optional<VehicleStatus> take_status(std::int64_t t_ns) override;
+
+  /// Sends estimates to the vehicle by this from now on.
+  void send_estimates_by(std::shared_ptr<EstimateReceiver> receiver);
+  [[nodiscard]] std::shared_ptr<EstimateReceiver> estimate_receiver() const override;
+  [[nodiscard]] std::optional<std::int64_t> heard_ns() const override;
 
   /// The vehicle's clock at t = 0 [ns].
   [[nodiscard]] std::int64_t start_ns() const;

@@ -29,6 +29,11 @@ struct LocalOrigin {
 [[nodiscard]] Eigen::Vector3d geodetic_from_local(const LocalOrigin& origin,
                                                   const Eigen::Vector3d& ned_m);
 
+/// The inverse: north, east, down [m] from the origin to a point (latitude, longitude [deg], height
+/// above mean sea level [m]).
+[[nodiscard]] Eigen::Vector3d local_from_geodetic(const LocalOrigin& origin,
+                                                  const Eigen::Vector3d& geodetic);
+
 /// The origin from which `ned_m` leads to the point (latitude, longitude [deg], height [m]).
 [[nodiscard]] LocalOrigin origin_of_local(LocalGrid grid,
                                           const Eigen::Vector3d& geodetic,

@@ -4,15 +4,8 @@
 #include <map>
 #include <utility>
 
-#include "core/cancel.hpp"
-#include "core/text/number_text.hpp"
-#include "core/time.hpp"
-
 namespace overfly::flight::logs {
 namespace {
-
-/// Attitudes this much before and after the positions are needed to interpolate.
-constexpr std::int64_t kAttitudeMarginNs = kNsPerS;
 
 struct LoggedPosition {
   LogTime time;
@@ -20,58 +13,23 @@ struct LoggedPosition {
   Eigen::Vector3d value;
 };
 
-/// Keeps the samples of two streams.
-class SampleSink final : public LogSink {
+/// Keeps all samples.
+class SampleKeeper final : public TruthSampleSink {
  public:
-  SampleSink(const OpenedLog& log,
-             const TruthChoice& truth,
-             const TrajectoryRequest& request,
-             const std::atomic<bool>* cancel)
-      : log_(log), truth_(truth), request_(request), cancel_(cancel) {}
-
-  [[nodiscard]] bool stream(StreamId id, const StreamDescription& /*description*/) override {
-    return id == truth_.position || id == truth_.attitude;
+  void expect(std::size_t count) override { positions.reserve(count); }
+  void local_origin(const LocalOrigin& origin) override {
+    if (origins.empty() || !(origins.back() == origin)) origins.push_back(origin);
   }
-  void message(StreamId /*id*/, const std::optional<LogTime>& /*time*/) override {}
-  void local_origin(StreamId id, const LocalOrigin& origin) override {
-    if (id != truth_.position || (!origins_.empty() && origins_.back() == origin)) return;
-    origins_.push_back(origin);
+  void position(const LogTime& time, const Eigen::Vector3d& value) override {
+    positions.push_back({time, static_cast<std::uint32_t>(origins.size()), value});
   }
-  void event(LogEvent /*event*/) override {}
-  void warning(const std::string& /*text*/) override {}
-  [[nodiscard]] bool progress(std::uint64_t /*bytes*/) override { return !is_cancelled(cancel_); }
+  void attitude(const LogTime& time, const Eigen::Quaterniond& R_ned_body) override {
+    attitudes[time.boot].push_back({time.t_ns, R_ned_body.cast<float>()});
+  }
 
   std::vector<LoggedPosition> positions;
   std::map<std::uint32_t, std::vector<LogAttitude>> attitudes;  ///< by boot
-  [[nodiscard]] const std::vector<LocalOrigin>& origins() const { return origins_; }
-
- private:
-  [[nodiscard]] bool is_asked_for(std::int64_t t_ns, std::int64_t margin_ns) const {
-    return (!request_.from_ns || t_ns >= *request_.from_ns - margin_ns) &&
-           (!request_.to_ns || t_ns <= *request_.to_ns + margin_ns);
-  }
-  void take_position(StreamId id, const LogTime& time, const Eigen::Vector3d& value) override {
-    if (id != truth_.position || !is_asked_for(time.t_ns, 0)) return;
-    positions.push_back({time, static_cast<std::uint32_t>(origins_.size()), value});
-  }
-  void take_attitude(StreamId id,
-                     const LogTime& time,
-                     const Eigen::Quaterniond& R_ned_body) override {
-    const std::int64_t t_ns = time.t_ns + request_.attitude_offset_ns;
-    if (id != truth_.attitude || !is_asked_for(t_ns, kAttitudeMarginNs)) return;
-    attitudes[time.boot].push_back({t_ns, R_ned_body.cast<float>()});
-  }
-  void take_invalid(StreamId /*id*/) override {}
-  [[nodiscard]] PositionKind position_kind(StreamId id) const override {
-    // The pass that opened the log met more streams only if the file has grown since.
-    return id < log_.streams.size() ? log_.streams[id].description.position : PositionKind::kNone;
-  }
-
-  const OpenedLog& log_;
-  const TruthChoice& truth_;
-  const TrajectoryRequest& request_;
-  const std::atomic<bool>* cancel_;
-  std::vector<LocalOrigin> origins_;
+  std::vector<LocalOrigin> origins;
 };
 
 /// The boot with the most positions; the others are reported.
@@ -105,9 +63,9 @@ std::size_t sort_attitudes(std::vector<LogAttitude>& attitudes) {
 }
 
 /// Positions of a boot with increasing times, as latitude and longitude where the origin is known.
-void take_positions(const SampleSink& sink, std::uint32_t boot, LogSamples& samples) {
+void take_positions(const SampleKeeper& kept, std::uint32_t boot, LogSamples& samples) {
   std::size_t out_of_order = 0;
-  for (const LoggedPosition& position : sink.positions) {
+  for (const LoggedPosition& position : kept.positions) {
     if (position.time.boot != boot) continue;
     const std::int64_t t_ns = position.time.t_ns;
     if (!samples.positions.empty() && t_ns <= samples.positions.back().t_ns) {
@@ -115,9 +73,9 @@ void take_positions(const SampleSink& sink, std::uint32_t boot, LogSamples& samp
       continue;
     }
     Eigen::Vector3d value = position.value;
-    if (!sink.origins().empty()) {
+    if (!kept.origins.empty()) {
       // Positions before the first origin count from it as well.
-      value = geodetic_from_local(sink.origins()[std::max(position.origin, 1U) - 1], value);
+      value = geodetic_from_local(kept.origins[std::max(position.origin, 1U) - 1], value);
     }
     samples.positions.push_back({t_ns, value});
   }
@@ -125,9 +83,9 @@ void take_positions(const SampleSink& sink, std::uint32_t boot, LogSamples& samp
     samples.warnings.push_back(std::to_string(out_of_order) +
                                " positions were left out: not later than the one before");
   }
-  if (sink.origins().size() > 1) {
+  if (kept.origins.size() > 1) {
     samples.warnings.push_back("the origin of the local positions changes " +
-                               std::to_string(sink.origins().size() - 1) + " times");
+                               std::to_string(kept.origins.size() - 1) + " times");
   }
 }
 
@@ -136,43 +94,18 @@ void take_positions(const SampleSink& sink, std::uint32_t boot, LogSamples& samp
 Result<LogSamples> read_log_samples(const OpenedLog& log,
                                     const TrajectoryRequest& request,
                                     const std::atomic<bool>* cancel) {
-  const Result<TruthChoice> truth = choose_truth(log, request.source);
+  SampleKeeper kept;
+  Result<LoggedTruth> truth = read_truth_samples(log, request, kept, cancel);
   if (!truth) return truth.error();
-  const StreamInfo& source = log.streams[truth->position];
-  const auto failed = [&](const std::string& what) {
-    return Error{ErrorCode::kUnreadable,
-                 log.file.string() + ": " + source.description.name + ": " + what};
-  };
-  if (!truth->attitude) return failed("no attitudes of the same vehicle are in the log");
-  SampleSink sink(log, *truth, request, cancel);
-  sink.positions.reserve(source.positions);
-  if (Status status = read_log_into(log, sink); !status) return status.error();
-  if (sink.positions.empty()) return failed("no valid positions in the time asked for");
-
-  LogSamples samples;
-  samples.position_source = source.description.name;
-  samples.attitude_source = log.streams[*truth->attitude].description.name;
-  samples.height = source.description.height;
-  samples.georeferenced =
-      source.description.position == PositionKind::kGeodetic || !sink.origins().empty();
-  const std::uint32_t boot = main_boot(sink.positions, samples.warnings);
-  samples.attitudes = std::move(sink.attitudes[boot]);
+  LogSamples samples{std::move(*truth), {}, {}};
+  const std::uint32_t boot = main_boot(kept.positions, samples.warnings);
+  samples.attitudes = std::move(kept.attitudes[boot]);
   if (const std::size_t doubled = sort_attitudes(samples.attitudes); doubled > 0) {
     samples.warnings.push_back(std::to_string(doubled) +
                                " attitudes were left out: a time that another one has");
   }
-  take_positions(sink, boot, samples);
+  take_positions(kept, boot, samples);
   return samples;
-}
-
-Result<double> separation_of(HeightDatum height,
-                             const std::string& source,
-                             double geoid_separation_m) {
-  if (height == HeightDatum::kMeanSeaLevel) return geoid_separation_m;
-  if (geoid_separation_m == 0.0) return 0.0;
-  return Error{ErrorCode::kInvalidArgument,
-               "geoid_separation_m = " + number_text(geoid_separation_m) + ": the heights of " +
-                   source + " are above the ellipsoid already"};
 }
 
 }  // namespace overfly::flight::logs

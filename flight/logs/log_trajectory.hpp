@@ -2,7 +2,6 @@
 #pragma once
 
 #include <atomic>
-#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -11,18 +10,12 @@
 #include "core/result.hpp"
 #include "flight/logs/flight_log.hpp"
 #include "flight/logs/log_pose.hpp"
-#include "flight/logs/log_samples.hpp"
+#include "flight/logs/logged_truth.hpp"
 
 namespace overfly::flight::logs {
 
-struct LogTrajectory {
+struct LogTrajectory : LoggedTruth {
   std::vector<LogPose> poses;  ///< times strictly increasing
-  bool georeferenced = false;
-  HeightDatum height = HeightDatum::kMeanSeaLevel;  ///< of georeferenced positions
-  std::string position_source;
-  std::string attitude_source;
-  /// What was left out, with counts.
-  std::vector<std::string> warnings;
 };
 
 /// Reads the positions of a log, and the attitudes interpolated (SLERP) at their times.
@@ -31,8 +24,7 @@ struct LogTrajectory {
 /// with a time that is not later than the one before, and those without an attitude on both sides
 /// within 1 s, are left out and counted.
 /// Memory: 64 bytes a pose.
-/// Errors: as open_log and choose_truth; kUnreadable if the vehicle has no attitudes, or no pose is
-/// left.
+/// Errors: as read_truth_samples; kUnreadable if no pose is left.
 [[nodiscard]] Result<LogTrajectory> read_log_trajectory(const OpenedLog& log,
                                                         const TrajectoryRequest& request,
                                                         const std::atomic<bool>* cancel = nullptr);

@@ -6,9 +6,11 @@
 
 #include "core/cancel.hpp"
 #include "core/outside/forward_reader.hpp"
+#include "core/text/number_text.hpp"
 #include "flight/logs/csv/csv_reader.hpp"
 #include "flight/logs/dataflash/dataflash_reader.hpp"
 #include "flight/logs/flight_log.hpp"
+#include "flight/logs/lcm/lcm_events.hpp"
 #include "flight/logs/lcm/lcm_log_reader.hpp"
 #include "flight/logs/mcap/mcap_reader.hpp"
 #include "flight/logs/rosbag/rosbag_reader.hpp"
@@ -186,7 +188,7 @@ void OpeningSink::finish() {
     if (info.description.origin == SourceOrigin::kNone && !info.description.imu) continue;
     gaps += info.gaps;
     if (info.jumps > 0) {
-      log_.warnings.push_back(std::to_string(info.jumps) + " jumps of positions in " +
+      log_.warnings.push_back(counted(info.jumps, "jump") + " of positions in " +
                               info.description.name + ", the largest by " +
                               std::to_string(static_cast<std::int64_t>(info.largest_jump_m)) +
                               " m: steps of more than 150 m/s");

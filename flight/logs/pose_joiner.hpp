@@ -12,34 +12,23 @@
 
 #include "flight/logs/local_grid.hpp"
 #include "flight/logs/log_pose.hpp"
-#include "flight/logs/log_sink.hpp"
+#include "flight/logs/logged_truth.hpp"
 
 namespace overfly::flight::logs {
-
-/// An attitude further away than this says nothing about a position.
-inline constexpr std::int64_t kMaxAttitudeStepNs = 1'000'000'000;
 
 /// Keeps the poses, and of the samples only those whose poses cannot be told yet: attitudes may
 /// come up to 2 s out of order (BootClock).
 ///
 /// A run of the clock is a boot; samples of different runs are not joined.
-class PoseJoiner {
+class PoseJoiner final : public TruthSampleSink {
  public:
-  /// @param expected  number of positions for which memory is reserved
-  explicit PoseJoiner(std::size_t expected) : expected_(expected) {}
-
-  void position(const LogTime& time, const Eigen::Vector3d& value);
-  void attitude(const LogTime& time, const Eigen::Quaterniond& R_ned_body);
-  /// Where local positions count from, until the next origin. Positions before the first one count
-  /// from it as well.
-  void local_origin(const LocalOrigin& origin);
-
-  /// Number of positions in all runs.
-  [[nodiscard]] std::size_t positions() const { return positions_; }
-  [[nodiscard]] bool has_origin() const { return !origins_.empty(); }
+  void expect(std::size_t positions) override { expected_ = positions; }
+  void local_origin(const LocalOrigin& origin) override;
+  void position(const LogTime& time, const Eigen::Vector3d& value) override;
+  void attitude(const LogTime& time, const Eigen::Quaterniond& R_ned_body) override;
 
   /// The poses of the run with the most positions, and what was left out.
-  /// @pre positions() > 0; nothing follows
+  /// @pre there was a position; nothing follows
   [[nodiscard]] std::vector<LogPose> take_poses(std::vector<std::string>& warnings);
 
  private:
@@ -72,8 +61,8 @@ class PoseJoiner {
   void join(Run& run, std::int64_t until_ns);
   void add_pose(Run& run, const Position& position, const Eigen::Quaterniond& R_ned_body);
 
-  std::size_t expected_;
-  std::size_t positions_ = 0;
+  std::size_t expected_ = 0;   ///< number of positions for which memory is reserved
+  std::size_t positions_ = 0;  ///< in all runs
   std::map<std::uint32_t, Run> runs_;
   std::vector<LocalOrigin> origins_;
 };

@@ -38,6 +38,7 @@ enum class MessageId : std::uint32_t {
   kMissionClearAll = 45,
   kMissionItemReached = 46,
   kMissionAck = 47,
+  kSetGpsGlobalOrigin = 48,
   kGpsGlobalOrigin = 49,
   kMissionRequestInt = 51,
   kRequestDataStream = 66,
@@ -46,6 +47,7 @@ enum class MessageId : std::uint32_t {
   kCommandInt = 75,
   kCommandLong = 76,
   kCommandAck = 77,
+  kVisionPositionEstimate = 102,
   kHighresImu = 105,
   kSimState = 108,
   kTimesync = 111,
@@ -57,10 +59,12 @@ enum class MessageId : std::uint32_t {
   kSimstate = 164,
   kAhrs2 = 178,
   kCameraFeedback = 180,
+  kGpsInput = 232,
   kHomePosition = 242,
   kExtendedSysState = 245,
   kStatusText = 253,
   kAirspeed = 295,
+  kOdometry = 331,
 };
 
 /// Time since the sender's start [ns] as the message states it; empty for messages without one.

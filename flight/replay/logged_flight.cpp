@@ -8,6 +8,7 @@
 
 #include "core/motion/trajectory.hpp"
 #include "core/time.hpp"
+#include "flight/known_flight.hpp"
 #include "flight/logs/log_trajectory.hpp"
 #include "flight/logs/ned_attitude.hpp"
 #include "flight/pose_flight.hpp"
@@ -22,33 +23,23 @@ constexpr double kPlacementStepS = 0.2;
 constexpr std::size_t kMaxListedJumps = 20;
 
 /// A flight whose states a smooth motion gives.
-class SmoothedFlight final : public TruthSource {
+class SmoothedFlight final : public KnownFlight {
  public:
   SmoothedFlight(SmoothedLog log,
                  const Pose& T_world_log,
                  std::vector<std::string> warnings,
                  std::string description)
-      : log_(std::move(log)),
-        T_world_log_(T_world_log),
-        warnings_(std::move(warnings)),
-        description_(std::move(description)) {}
+      : KnownFlight(std::move(description), std::move(warnings)),
+        log_(std::move(log)),
+        T_world_log_(T_world_log) {}
 
-  [[nodiscard]] std::optional<std::int64_t> duration_ns() const override {
-    return log_.end_ns() - log_.begin_ns();
+  [[nodiscard]] std::optional<std::int64_t> log_start_ns() const override {
+    return log_.begin_ns();
   }
-  [[nodiscard]] std::string description() const override { return description_; }
-  [[nodiscard]] std::vector<std::string> warnings() const override { return warnings_; }
 
  private:
-  [[nodiscard]] Result<std::optional<AircraftState>> find_state(
-      std::int64_t t_ns, const std::atomic<bool>* /*cancel*/) override {
-    const std::int64_t last_ns = *duration_ns();
-    if (t_ns < 0) {
-      return Error{ErrorCode::kInvalidArgument,
-                   "t_ns = " + std::to_string(t_ns) + ": the flight spans [0, " +
-                       std::to_string(last_ns) + "] ns"};
-    }
-    if (t_ns > last_ns) return std::optional<AircraftState>();
+  [[nodiscard]] std::int64_t end_ns() const override { return log_.end_ns() - log_.begin_ns(); }
+  [[nodiscard]] AircraftState state(std::int64_t t_ns) const override {
     const smoothing::MotionState motion =
         log_.smoothed.motion.at(s_from_ns(log_.begin_ns() - log_.epoch_ns + t_ns));
     AircraftState state;
@@ -58,13 +49,11 @@ class SmoothedFlight final : public TruthSource {
     // The horizon turns with the earth's curvature by 0.0002 deg/s at 25 m/s: neglected.
     state.omega_body_rad_s = motion.omega_body_rad_s;
     state.airspeed_m_s = motion.v_world_m_s.norm();  // the log's wind is not known
-    return std::optional(state);
+    return state;
   }
 
   SmoothedLog log_;
   Pose T_world_log_;
-  std::vector<std::string> warnings_;
-  std::string description_;
 };
 
 /// T_world_log of a log at its own place: both are rigid frames of the same earth.

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/time.hpp"
+#include "flight/logs/log_samples.hpp"
 #include "flight/logs/ned_attitude.hpp"
 
 namespace overfly::flight {

@@ -12,6 +12,7 @@
 #include "core/result.hpp"
 #include "flight/logs/flight_log.hpp"
 #include "flight/logs/log_trajectory.hpp"
+#include "flight/logs/logged_truth.hpp"
 #include "flight/smoothing/smooth_motion.hpp"
 
 namespace overfly::flight {

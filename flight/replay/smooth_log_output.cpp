@@ -79,14 +79,13 @@ std::string jump_text(const SmoothedLog& log, const smoothing::Jump& jump) {
   const std::string at = " at " + fixed_text(s_from_ns(vehicle_ns(log, jump.t_s)), 3) + " s";
   const std::string metres = fixed_text(jump.size, 1) + " m";
   const std::string degrees = fixed_text(deg_from_rad(jump.size), 1) + " deg";
-  const std::string samples = std::to_string(jump.samples);
   switch (jump.kind) {
     case smoothing::JumpKind::kPositionOutliers:
-      return samples + " positions left out" + at + ": up to " + metres + " off";
+      return counted(jump.samples, "position") + " left out" + at + ": up to " + metres + " off";
     case smoothing::JumpKind::kPositionStep:
       return "step of the positions by " + metres + at;
     case smoothing::JumpKind::kAttitudeOutliers:
-      return samples + " attitudes left out" + at + ": up to " + degrees + " off";
+      return counted(jump.samples, "attitude") + " left out" + at + ": up to " + degrees + " off";
     case smoothing::JumpKind::kYawStep:
       break;
   }

@@ -144,6 +144,11 @@ void SimulatedVehicle::take(const Frame& frame, const Send& send) {
       }
       return;
     }
+    case MessageId::kVisionPositionEstimate:
+    case MessageId::kOdometry:
+    case MessageId::kGpsInput:
+      ++received_estimates_;
+      return;
     case MessageId::kTimesync:
       // A request has no time of its own.
       if (payload.at<std::int64_t>(0) != 0 || !for_us(16)) return;

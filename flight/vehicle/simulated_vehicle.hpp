@@ -56,6 +56,8 @@ class SimulatedVehicle {
 
   [[nodiscard]] VehicleReport report() const;
   [[nodiscard]] const VehicleSetup& setup() const { return setup_; }
+  /// VISION_POSITION_ESTIMATE, ODOMETRY and GPS_INPUT so far: they do not change the flight.
+  [[nodiscard]] std::uint64_t received_estimates() const { return received_estimates_; }
 
  private:
   using MessageId = flight::mavlink::MessageId;
@@ -97,6 +99,7 @@ class SimulatedVehicle {
   std::uint64_t flights_ = 0;
   MessageSchedule schedule_;
   std::uint16_t text_number_ = 0;
+  std::uint64_t received_estimates_ = 0;
 };
 
 }  // namespace overfly::vehicle

@@ -183,6 +183,14 @@ PayloadWriter home_position(const VehicleReport& report) {
       .put(24, 1.0F);
 }
 
+PayloadWriter global_origin(const VehicleReport& report) {
+  const Geodetic& home = report.frame.origin();
+  return PayloadWriter(20)
+      .put(0, field<std::int32_t>(1e7 * deg_from_rad(home.lat_rad)))
+      .put(4, field<std::int32_t>(1e7 * deg_from_rad(home.lon_rad)))
+      .put(8, field<std::int32_t>(1e3 * home.alt_ellipsoid_m));
+}
+
 PayloadWriter autopilot_version() {
   // MISSION_FLOAT, PARAM_FLOAT, MISSION_INT, COMMAND_INT, MAVLINK2 (MAV_PROTOCOL_CAPABILITY).
   constexpr std::uint64_t kCapabilities = 1U | 2U | 4U | 8U | 8192U;
@@ -213,6 +221,8 @@ std::optional<PayloadWriter> payload_of(MessageId id, const VehicleReport& repor
       return simulated_state(report);
     case MessageId::kHomePosition:
       return home_position(report);
+    case MessageId::kGpsGlobalOrigin:
+      return global_origin(report);
     case MessageId::kAutopilotVersion:
       return autopilot_version();
     case MessageId::kMissionCurrent:

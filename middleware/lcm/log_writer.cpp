@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "middleware/lcm/messages.hpp"
+#include "middleware/lcm/sensor_messages.hpp"
 
 namespace overfly::lcm {
 namespace {
@@ -68,6 +69,17 @@ class EventLogWriter final : public LogWriter {
     return write(prefix + "TRUTH", truth.stamp_ns, message);
   }
 
+  Status write_samples(const std::string& prefix, const SensorSamples& samples) override {
+    return with_each_message(samples, [&](const char* name, auto message) {
+      const std::string channel = prefix + name;
+      message.session = session_;
+      message.sequence = ++sequences_[channel];
+      std::int64_t available_ns = message.t_ns;
+      if constexpr (requires { message.delivered_ns; }) available_ns = message.delivered_ns;
+      return write(channel, available_ns, message);
+    });
+  }
+
   Status finish() override {
     if (std::fflush(log_->f) == 0 && std::ferror(log_->f) == 0) return {};
     return failure();
@@ -98,7 +110,7 @@ class EventLogWriter final : public LogWriter {
   lcm_eventlog_t* log_;
   std::int64_t epoch_utc_us_;
   std::int64_t session_;
-  std::map<std::string, std::int64_t> sequences_;  ///< of images, by prefix
+  std::map<std::string, std::int64_t> sequences_;  ///< of images by prefix, of samples by channel
   std::vector<std::uint8_t> bytes_;
 };
 

@@ -1,4 +1,5 @@
-// Writes LCM event logs with a camera's images, calibration, times and true poses: the messages
+// Writes LCM event logs with a camera's images, calibration, times and true poses, and with samples
+// of the aircraft's other sensors: the messages
 // that an estimator on LCM would have received, and the truth.
 #pragma once
 
@@ -11,6 +12,7 @@
 #include "core/camera/image.hpp"
 #include "core/motion/pose.hpp"
 #include "core/result.hpp"
+#include "core/sensors/sensor_samples.hpp"
 
 namespace overfly::lcm {
 
@@ -49,6 +51,10 @@ class LogWriter {
   [[nodiscard]] virtual Status write_image(const std::string& prefix, const LogImage& image) = 0;
   /// Writes PREFIX_TRUTH.
   [[nodiscard]] virtual Status write_truth(const std::string& prefix, const LogTruth& truth) = 0;
+  /// Writes the samples of the aircraft's sensors to PREFIX_IMU, PREFIX_GPS and so on. Each event
+  /// has the time at which the sample was available.
+  [[nodiscard]] virtual Status write_samples(const std::string& prefix,
+                                             const SensorSamples& samples) = 0;
   /// Flushes the log. Errors: kIo naming the file.
   [[nodiscard]] virtual Status finish() = 0;
 };

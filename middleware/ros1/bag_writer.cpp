@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "middleware/ros1/messages.hpp"
+#include "middleware/ros1/sensor_messages.hpp"
 #include "middleware/ros1/types.hpp"
 
 namespace overfly::ros1 {
@@ -53,6 +54,16 @@ class BagFile final : public BagWriter {
     message.transforms[0].child_frame_id = child_frame;
     message.transforms[0].transform = transform_message_from(T_parent_child);
     return guarded([&] { bag_.write("/tf", stamp, message); });
+  }
+
+  Status add_samples(const SensorSamples& samples, std::int64_t epoch_utc_ns) override {
+    return with_each_message(
+        samples,
+        [&](const char* topic, std::int64_t measured_ns, std::int64_t available_ns, auto message) {
+          message.header.stamp = time_from_ns(epoch_utc_ns + measured_ns);
+          const ros::Time time = time_from_ns(epoch_utc_ns + available_ns);
+          return guarded([&] { bag_.write(topic, time, message); });
+        });
   }
 
   Status close() override {

@@ -1,4 +1,4 @@
-// Writes images, calibration and truth to a ROS 1 bag (format 2.0).
+// Writes images, calibration, truth and samples of sensors to a ROS 1 bag (format 2.0).
 #pragma once
 
 #include <cstdint>
@@ -10,11 +10,12 @@
 #include "core/camera/image.hpp"
 #include "core/motion/pose.hpp"
 #include "core/result.hpp"
+#include "core/sensors/sensor_samples.hpp"
 
 namespace overfly::ros1 {
 
 /// Writes messages in call order. Stamps are Unix times in [0, 2^32 s); each is also the message's
-/// time in the bag.
+/// time in the bag, except that samples of sensors have the time at which they were available.
 class BagWriter {
  public:
   /// Errors: kUnsupported if ROS 1 is not built in; kIo naming the file.
@@ -41,6 +42,10 @@ class BagWriter {
                                              const std::string& child_frame,
                                              std::int64_t stamp_ns,
                                              const Pose& T_parent_child) = 0;
+  /// On the topics of sensor_messages.hpp.
+  /// @param epoch_utc_ns  Unix time of t = 0
+  [[nodiscard]] virtual Status add_samples(const SensorSamples& samples,
+                                           std::int64_t epoch_utc_ns) = 0;
   /// Writes the index; nothing may be added afterwards. Errors: kIo naming the file.
   [[nodiscard]] virtual Status close() = 0;
 };

@@ -6,11 +6,18 @@
 #include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/PoseWithCovarianceStamped.h>
 #include <geometry_msgs/Transform.h>
+#include <geometry_msgs/TwistStamped.h>
 #include <nav_msgs/Odometry.h>
 #include <ros/serialization.h>
 #include <rosgraph_msgs/Clock.h>
 #include <sensor_msgs/CameraInfo.h>
+#include <sensor_msgs/FluidPressure.h>
 #include <sensor_msgs/Image.h>
+#include <sensor_msgs/Imu.h>
+#include <sensor_msgs/MagneticField.h>
+#include <sensor_msgs/NavSatFix.h>
+#include <sensor_msgs/Range.h>
+#include <sensor_msgs/Temperature.h>
 #include <tf2_msgs/TFMessage.h>
 
 #include <cstdint>
@@ -62,14 +69,21 @@ void deserialize(ros::serialization::IStream& stream, std::vector<T, VectorAlloc
 
 using CameraInfoMessage = sensor_msgs::CameraInfo_<MessageAllocator>;
 using ClockMessage = rosgraph_msgs::Clock_<MessageAllocator>;
+using FluidPressureMessage = sensor_msgs::FluidPressure_<MessageAllocator>;
 using ImageMessage = sensor_msgs::Image_<MessageAllocator>;
+using ImuMessage = sensor_msgs::Imu_<MessageAllocator>;
+using MagneticFieldMessage = sensor_msgs::MagneticField_<MessageAllocator>;
+using NavSatFixMessage = sensor_msgs::NavSatFix_<MessageAllocator>;
 using OdometryMessage = nav_msgs::Odometry_<MessageAllocator>;
 using PoseMessage = geometry_msgs::Pose_<MessageAllocator>;
 using PoseStampedMessage = geometry_msgs::PoseStamped_<MessageAllocator>;
 using PoseWithCovarianceStampedMessage =
     geometry_msgs::PoseWithCovarianceStamped_<MessageAllocator>;
+using RangeMessage = sensor_msgs::Range_<MessageAllocator>;
+using TemperatureMessage = sensor_msgs::Temperature_<MessageAllocator>;
 using TransformMessage = geometry_msgs::Transform_<MessageAllocator>;
 using TransformsMessage = tf2_msgs::TFMessage_<MessageAllocator>;
 using TransformStampedMessage = geometry_msgs::TransformStamped_<MessageAllocator>;
+using TwistStampedMessage = geometry_msgs::TwistStamped_<MessageAllocator>;
 
 }  // namespace overfly::ros1

@@ -16,12 +16,14 @@ int main(int argc, char** argv) {
   add_serve_command(app, exit_code);
   add_track_command(app, exit_code);
   add_evaluate_command(app, exit_code);
+  add_agreement_command(app, exit_code);
   add_render_command(app, exit_code);
   add_world_command(app, exit_code);
   add_scenario_command(app, exit_code);
   add_export_command(app, exit_code);
   add_log_command(app, exit_code);
   add_vehicle_command(app, exit_code);
+  add_play_command(app, exit_code);
   add_bench_command(app, exit_code);
   add_doctor_command(app, exit_code);
   try {

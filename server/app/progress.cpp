@@ -37,6 +37,21 @@ void ProgressDisplay::show(double share, const std::string& text) {
   open_line_ = true;
 }
 
+void ProgressDisplay::show_so_far(const std::string& text) {
+  if (quiet_) return;
+  const auto now = std::chrono::steady_clock::now();
+  // A line every ten seconds keeps a log short.
+  const auto period = terminal_ ? std::chrono::milliseconds(100) : std::chrono::milliseconds(10000);
+  if (now - last_shown_ < period) return;
+  last_shown_ = now;
+  if (!terminal_) {
+    std::cerr << text << "\n";
+    return;
+  }
+  std::cerr << "\r" << text << "\033[K" << std::flush;
+  open_line_ = true;
+}
+
 void ProgressDisplay::note(const std::string& text) {
   if (!quiet_) warn(text);
 }

@@ -17,6 +17,8 @@ class ProgressDisplay {
   /// @param share  done, in [0, 1]
   /// @param text  shown after the bar: "frame 120 of 3911, tracking"
   void show(double share, const std::string& text);
+  /// For work whose end is not known. @param text  "frame 120"
+  void show_so_far(const std::string& text);
   /// Prints a permanent line.
   void note(const std::string& text);
   /// Prints a permanent line, also in quiet mode.
@@ -27,7 +29,7 @@ class ProgressDisplay {
   bool terminal_;
   bool open_line_ = false;
   int last_tenth_ = -1;
-  std::chrono::steady_clock::time_point last_shown_;
+  std::chrono::steady_clock::time_point last_shown_{};
 };
 
 }  // namespace overfly::app

@@ -8,11 +8,15 @@
 #include "core/camera/image.hpp"
 #include "core/motion/truth_source.hpp"
 #include "core/result.hpp"
+#include "core/sensors/sensor_samples.hpp"
 #include "renderer/renderer.hpp"
 #include "sensor/sensor.hpp"
 #include "server/record/rows.hpp"
 
 namespace overfly::server {
+
+/// In CameraShot::faults: the recorded image of the frame is missing or cannot be decoded.
+inline constexpr const char* kUnreadableImage = "unreadable_image";
 
 struct CameraShot {
   std::size_t camera = 0;           ///< index into Scenario::cameras
@@ -27,14 +31,18 @@ struct CameraShot {
   std::int64_t stamp_ns = 0;        ///< as given to estimators; the true time is MadeFrame::t_ns
   std::vector<std::string> faults;  ///< kinds of the faults that affect the frame
   bool delivered = true;            ///< false: lost before it reached the estimators
+  std::int64_t source_image = -1;   ///< of a recorded image: its number in the source
+  std::string problem;              ///< why a recorded image is lost
 };
 
-/// One instant, as seen by all cameras.
+/// One instant, as seen by all cameras and measured by the other sensors.
 struct MadeFrame {
   std::int64_t frame = 0;
   std::int64_t t_ns = 0;
   AircraftState state;
   std::vector<CameraShot> shots;  ///< in the order of Scenario::cameras
+  /// Of the other sensors: what has become available since the previous made frame.
+  SensorSamples sensors;
 };
 
 /// Checks time and camera pose of a frame that is rendered again against the run's record.

@@ -39,6 +39,7 @@ std::string duration_text(std::int64_t duration_ns) {
 }
 
 std::string camera_text(const Scenario& scenario, const FaultSpec& fault) {
+  if (fault.kind == FaultKind::kGpsOutage) return "";
   if (fault.camera) return " of " + scenario.cameras[*fault.camera].name;
   return scenario.cameras.size() > 1 ? " of all cameras" : "";
 }
@@ -52,7 +53,7 @@ FrameFaults FaultSchedule::at(std::size_t camera, std::int64_t frame, std::int64
   FrameFaults result;
   result.stamp_ns = t_ns;
   for (const FaultSpec& fault : scenario_.faults) {
-    if (!fault.in_force(camera, t_ns)) continue;
+    if (!fault.in_force(camera, t_ns) || fault.kind == FaultKind::kGpsOutage) continue;
     if (fault.on_lens()) {
       result.on_lens.push_back(&fault);
     } else if (fault.kind == FaultKind::kDroppedFrames) {

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <utility>
+#include <variant>
 
 #include "core/cancel.hpp"
+#include "server/camera/flight_sensors.hpp"
 #include "server/camera/truth.hpp"
 #include "server/worlds/world_cache.hpp"
 
@@ -23,6 +25,7 @@ Result<std::unique_ptr<FrameMaker>> FrameMaker::open(const Scenario& scenario,
   std::unique_ptr<FrameMaker> maker(new FrameMaker(scenario, options));
   const std::pair<const char*, Step> steps[] = {{"open_world", &FrameMaker::open_world},
                                                 {"plan_flight", &FrameMaker::plan_flight},
+                                                {"open_images", &FrameMaker::open_images},
                                                 {"open_renderer", &FrameMaker::open_renderer},
                                                 {"open_cameras", &FrameMaker::open_cameras}};
   for (const auto& step : steps) {
@@ -54,10 +57,18 @@ Status FrameMaker::open_world() {
 }
 
 Status FrameMaker::plan_flight() {
+  const auto* live = std::get_if<flight::live::LiveFlight>(&scenario_.flight);
+  if (live != nullptr && !options_.open_truth && options_.notice) {
+    options_.notice("waiting for the flight of the vehicle on " + live->link.text());
+  }
   Result<std::unique_ptr<TruthSource>> truth =
       options_.open_truth ? options_.open_truth(*world_)
-                          : create_truth(scenario_, *world_, options_.cancel);
+                          : create_truth(scenario_, *world_, options_.cancel, options_.vehicle_log);
   if (!truth) return truth.error();
+  if (options_.sensing_from_utc_ns) {
+    sensors_ = create_sensors(scenario_, *world_, *options_.sensing_from_utc_ns);
+    if (sensors_) truth = flight::sensed_while_flown(std::move(*truth), *sensors_);
+  }
   if (options_.truth_samples != nullptr) {
     truth = recorded_while_flown(std::move(*truth), *options_.truth_samples);
   }
@@ -71,6 +82,31 @@ Status FrameMaker::plan_flight() {
   constexpr std::int64_t kDayNs = 86400 * kNsPerS;
   frames_total_ = frame_count(duration_ns_.value_or(kDayNs), scenario_.rate);
   return {};
+}
+
+Status FrameMaker::open_images() {
+  const CameraSpec* const camera = scenario_.recorded_camera();
+  if (camera == nullptr) return {};
+  if (!duration_ns_) {
+    return Error{ErrorCode::kInvalidArgument,
+                 "camera \"" + camera->name + "\": images: the length of the flight is not known"};
+  }
+  const FlightStart start{scenario_.epoch_utc_ns, truth_->source().log_start_ns(), *duration_ns_};
+  auto images = FlightImages::open(*camera, start, scenario_.sources, options_.cancel);
+  if (!images) return images.error();
+  images_ = std::move(*images);
+  frames_total_ = images_->count();
+  return {};
+}
+
+std::int64_t FrameMaker::frame_ns(std::int64_t k) const {
+  if (!images_) return frame_time_ns(k, scenario_.rate);
+  if (k < frames_total_) return images_->t_ns(k);
+  return images_->t_ns(frames_total_ - 1) + frame_time_ns(k + 1 - frames_total_, scenario_.rate);
+}
+
+std::vector<std::string> FrameMaker::image_warnings() const {
+  return images_ ? images_->warnings() : std::vector<std::string>();
 }
 
 Status FrameMaker::open_renderer() {
@@ -105,7 +141,7 @@ Error FrameMaker::failed(const Error& error) {
 Result<std::optional<MadeFrame>> FrameMaker::make(std::int64_t k) {
   MadeFrame made;
   made.frame = k;
-  made.t_ns = frame_time_ns(k, scenario_.rate);
+  made.t_ns = frame_ns(k);
   const auto around =
       stages_.measure("truth", [&]() -> Result<std::optional<std::vector<AircraftState>>> {
         auto states =
@@ -118,11 +154,17 @@ Result<std::optional<MadeFrame>> FrameMaker::make(std::int64_t k) {
   if (!*around) return std::optional<MadeFrame>();
   const std::vector<AircraftState>& states = **around;
   made.state = states[states.size() / 2];
+  if (sensors_) made.sensors = sensors_->take_until(made.t_ns);
   next_frame_ = k + 1;
-  for (std::size_t i = 0; i < cameras_.size(); ++i) {
-    Result<CameraShot> shot = take(i, k, states);
-    if (!shot) return failed(shot.error().in("frame " + std::to_string(k)));
-    made.shots.push_back(std::move(*shot));
+  made.shots.resize(cameras_.size());
+  // A recorded camera takes what is known of its view from the camera that it is compared with.
+  for (const bool recorded : {false, true}) {
+    for (std::size_t i = 0; i < cameras_.size(); ++i) {
+      if (scenario_.cameras[i].images.has_value() != recorded) continue;
+      Result<CameraShot> shot = recorded ? fetch(i, k, states, made.shots) : take(i, k, states);
+      if (!shot) return failed(shot.error().in("frame " + std::to_string(k)));
+      made.shots[i] = std::move(*shot);
+    }
   }
   return std::optional(std::move(made));
 }
@@ -153,11 +195,50 @@ Result<CameraShot> FrameMaker::take(std::size_t camera,
   return shot;
 }
 
-Status FrameMaker::record_last_period() {
-  if (options_.truth_samples == nullptr) return {};
-  const auto last = truth_->at(frame_time_ns(next_frame_, scenario_.rate), options_.cancel);
+Result<CameraShot> FrameMaker::fetch(std::size_t camera,
+                                     std::int64_t k,
+                                     const std::vector<AircraftState>& states,
+                                     const std::vector<CameraShot>& rendered) {
+  const std::int64_t t_ns = states[states.size() / 2].t_ns;
+  const std::optional<std::size_t> other = scenario_.cameras[camera].images->compare_with;
+  CameraShot shot;
+  if (other) {
+    shot.drawn.texels_per_pixel_min = rendered[*other].drawn.texels_per_pixel_min;
+    shot.drawn.texels_per_pixel_median = rendered[*other].drawn.texels_per_pixel_median;
+    shot.drawn.void_fraction = rendered[*other].drawn.void_fraction;
+    shot.drawn.axis_depth_m = rendered[*other].drawn.axis_depth_m;
+    shot.drawn.camera = scenario_.cameras[camera].model;
+    shot.drawn.t_ns = t_ns;
+    Result<renderer::CameraRequest> request = cameras_[camera]->request(states, t_ns);
+    if (!request) return request.error();
+    shot.request = std::move(*request);
+    shot.drawn.T_world_camera = shot.request.T_world_camera.at(t_ns);
+  } else {
+    Result<CameraShot> taken = take(camera, k, states);
+    if (!taken) return taken;
+    shot = std::move(*taken);
+  }
+  shot.camera = camera;
+  shot.name = scenario_.cameras[camera].name;
+  shot.stamp_ns = t_ns;
+  shot.source_image = images_->source_index(k);
+  Result<Image> image = stages_.measure("read_image", [&] { return images_->read(k); });
+  shot.delivered = image.ok();
+  shot.image = image ? std::move(*image) : Image();
+  if (!image) {
+    shot.problem = image.error().message;
+    shot.faults.emplace_back(kUnreadableImage);
+  }
+  return shot;
+}
+
+Result<SensorSamples> FrameMaker::record_last_period() {
+  if (options_.truth_samples == nullptr) return SensorSamples();
+  const std::int64_t end_ns = frame_ns(next_frame_);
+  const auto last = truth_->at(end_ns, options_.cancel);
   if (!last) return failed(last.error());
-  return options_.truth_samples->flush();
+  if (Status written = options_.truth_samples->flush(); !written) return written.error();
+  return sensors_ ? sensors_->take_until(end_ns) : SensorSamples();
 }
 
 Status FrameMaker::fetch_first_view() {

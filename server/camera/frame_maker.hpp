@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/result.hpp"
+#include "flight/sensors/sensor_suite.hpp"
 #include "renderer/renderer.hpp"
 #include "server/camera/camera_shot.hpp"
 #include "server/camera/camera_unit.hpp"
@@ -18,6 +19,7 @@
 #include "server/camera/renderer_factory.hpp"
 #include "server/camera/truth_window.hpp"
 #include "server/camera/watched_tiles.hpp"
+#include "server/imagery/flight_images.hpp"
 #include "server/record/truth_samples.hpp"
 #include "server/scenario/scenario.hpp"
 #include "server/timing/stage_timer.hpp"
@@ -39,6 +41,10 @@ struct FrameMakerOptions {
   /// Opens the flight over the opened world; create_truth if empty.
   std::function<Result<std::unique_ptr<TruthSource>>(const terrain::World&)> open_truth;
   TruthSampleFile* truth_samples = nullptr;  ///< where the truth is recorded; may be null
+  /// Date of the flight at t = 0. If given, the scenario's other sensors measure.
+  std::optional<std::int64_t> sensing_from_utc_ns;
+  /// Where the messages of a live vehicle are recorded; empty: nowhere.
+  std::filesystem::path vehicle_log;
 };
 
 /// Used and destroyed on one thread.
@@ -53,6 +59,8 @@ class FrameMaker {
 
   /// Number of frames of the flight; for a flight of unknown length, that of one day.
   [[nodiscard]] std::int64_t frames_total() const { return frames_total_; }
+  /// Time of frame k: by the cameras' rate, or that of the k-th recorded image.
+  [[nodiscard]] std::int64_t frame_ns(std::int64_t k) const;
   /// Empty for a flight whose end is not known in advance.
   [[nodiscard]] std::optional<std::int64_t> duration_ns() const { return duration_ns_; }
   [[nodiscard]] const terrain::World& world() const { return *world_; }
@@ -69,6 +77,14 @@ class FrameMaker {
   [[nodiscard]] std::optional<VehicleStatus> take_vehicle_status(std::int64_t t_ns) {
     return truth_->source().take_status(t_ns);
   }
+  /// Of the recorded images.
+  [[nodiscard]] std::vector<std::string> image_warnings() const;
+
+  /// See TruthSource.
+  [[nodiscard]] std::shared_ptr<EstimateReceiver> estimate_receiver() const {
+    return truth_->source().estimate_receiver();
+  }
+  [[nodiscard]] std::optional<std::int64_t> heard_ns() const { return truth_->source().heard_ns(); }
 
   /// Frame k as seen by every camera; empty after the end of a flight of unknown length. k must
   /// increase from call to call.
@@ -77,8 +93,9 @@ class FrameMaker {
   [[nodiscard]] Result<std::optional<MadeFrame>> make(std::int64_t k);
 
   /// Records the truth of one more frame period after the last frame, as far as the flight goes on,
-  /// so that inertial data can be computed up to that frame.
-  Status record_last_period();
+  /// so that inertial data can be computed up to that frame. Returns the samples of the other
+  /// sensors in that period.
+  Result<SensorSamples> record_last_period();
   /// Draws the first frame once and waits for its tiles, so that a real-time flight does not start
   /// while its tiles are still being read. Does nothing for a flight whose end is not known, since
   /// its first pose is not known either.
@@ -88,11 +105,18 @@ class FrameMaker {
   FrameMaker(const Scenario& scenario, const FrameMakerOptions& options);
   Status open_world();
   Status plan_flight();
+  Status open_images();
   Status open_renderer();
   Status open_cameras();
   [[nodiscard]] Result<CameraShot> take(std::size_t camera,
                                         std::int64_t k,
                                         const std::vector<AircraftState>& states);
+  /// The recorded image of frame k.
+  /// @param rendered  the shots so far, by camera
+  [[nodiscard]] Result<CameraShot> fetch(std::size_t camera,
+                                         std::int64_t k,
+                                         const std::vector<AircraftState>& states,
+                                         const std::vector<CameraShot>& rendered);
   /// Checks for read errors, because height queries cannot report them and a frame does not wait
   /// for a tile that cannot be read.
   /// @param late_tiles  tiles that a frame was drawn without
@@ -105,10 +129,12 @@ class FrameMaker {
   std::unique_ptr<StageTimer> own_stages_;
   StageTimer& stages_;
   std::shared_ptr<const OpenedWorld> opened_;
-  std::shared_ptr<const terrain::World> world_;  ///< the world of opened_
-  std::shared_ptr<const WatchedTiles> tiles_;    ///< the tiles of the world
+  std::shared_ptr<const terrain::World> world_;   ///< the world of opened_
+  std::shared_ptr<const WatchedTiles> tiles_;     ///< the tiles of the world
+  std::unique_ptr<flight::SensorSuite> sensors_;  ///< null without sensors
   std::unique_ptr<TruthWindow> truth_;
   std::optional<std::int64_t> duration_ns_;
+  std::unique_ptr<FlightImages> images_;  ///< null if all images are rendered
   std::int64_t frames_total_ = 0;
   std::int64_t next_frame_ = 0;  ///< the one after the last made frame
   std::unique_ptr<renderer::Renderer> renderer_;

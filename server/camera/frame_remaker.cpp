@@ -35,12 +35,28 @@ Result<std::optional<std::vector<AircraftState>>> FrameRemaker::states_around(st
   return truth_->around(t_ns, window_.half_ns, window_.raster_ns);
 }
 
+Result<Image> FrameRemaker::read_again(const CameraSpec& camera, const FrameRow& row) {
+  if (!recorded_) {
+    auto source = open_image_source(camera, scenario_.sources, nullptr);
+    if (!source) return source.error();
+    recorded_ = std::move(*source);
+  }
+  if (row.source_image < 0 ||
+      row.source_image >= static_cast<std::int64_t>(recorded_->stamps_ns().size())) {
+    return Error{ErrorCode::kConflict,
+                 camera.images->source.string() + ": no longer has the image of frame " +
+                     std::to_string(row.frame)};
+  }
+  return recorded_->read(static_cast<std::size_t>(row.source_image));
+}
+
 Result<Image> FrameRemaker::make(std::size_t camera,
                                  const FrameRow& row,
                                  renderer::Renderer& renderer) {
   if (camera >= cameras_.size()) {
     return Error{ErrorCode::kNotFound, "camera " + std::to_string(camera) + ": no such camera"};
   }
+  if (scenario_.cameras[camera].images) return read_again(scenario_.cameras[camera], row);
   CameraUnit& unit = *cameras_[camera];
   std::optional<sensor::ExposureSetting> setting;
   if (row.exposure_ns > 0) setting = sensor::ExposureSetting{row.exposure_ns, row.gain};

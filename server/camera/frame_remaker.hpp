@@ -1,4 +1,5 @@
-// Renders a run's camera image again at any frame, for playback of images that were not recorded.
+// Makes a run's camera image again at any frame, for playback of images that were not recorded:
+// rendered images by rendering, real ones by reading their source.
 #pragma once
 
 #include <filesystem>
@@ -9,6 +10,7 @@
 #include "server/camera/camera_unit.hpp"
 #include "server/camera/fault_schedule.hpp"
 #include "server/camera/truth_window.hpp"
+#include "server/imagery/image_source.hpp"
 #include "server/record/rows.hpp"
 #include "server/scenario/scenario.hpp"
 #include "terrain/world.hpp"
@@ -37,6 +39,8 @@ class FrameRemaker {
   FrameRemaker(std::filesystem::path folder,
                Scenario scenario,
                std::shared_ptr<const terrain::World> world);
+  /// The recorded image of a row.
+  [[nodiscard]] Result<Image> read_again(const CameraSpec& camera, const FrameRow& row);
   [[nodiscard]] Result<std::optional<std::vector<AircraftState>>> states_around(std::int64_t t_ns);
 
   std::filesystem::path folder_;
@@ -45,7 +49,8 @@ class FrameRemaker {
   std::vector<std::unique_ptr<CameraUnit>> cameras_;
   ShutterWindow window_;
   std::unique_ptr<TruthWindow> truth_;
-  std::int64_t asked_ns_ = 0;  ///< latest time requested from the truth
+  std::unique_ptr<ImageSource> recorded_;  ///< opened when it is needed
+  std::int64_t asked_ns_ = 0;              ///< latest time requested from the truth
 };
 
 }  // namespace overfly::server

@@ -1,12 +1,15 @@
 #include "server/camera/truth.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <utility>
 
 #include "flight/live/fly_live.hpp"
 #include "flight/replay/logged_flight.hpp"
+#include "flight/ros/ros_truth.hpp"
 #include "server/camera/airframe_flight.hpp"
 #include "server/record/run_folder.hpp"
+#include "server/record/run_manifest.hpp"
 #include "server/record/truth_samples.hpp"
 
 namespace overfly::server {
@@ -94,17 +97,81 @@ Result<std::unique_ptr<TruthSource>> open_log_flight(const Scenario& scenario,
   return flown;
 }
 
+/// A recorded flight of the length that was flown: the record goes one frame further.
+class FlownAgain final : public TruthSource {
+ public:
+  FlownAgain(std::unique_ptr<TruthSource> record, std::int64_t flown_ns)
+      : record_(std::move(record)), flown_ns_(flown_ns) {}
+
+  [[nodiscard]] std::optional<std::int64_t> duration_ns() const override {
+    const std::optional<std::int64_t> recorded_ns = record_->duration_ns();
+    return flown_ns_ > 0 && recorded_ns ? std::min(flown_ns_, *recorded_ns) : recorded_ns;
+  }
+  [[nodiscard]] std::string description() const override { return record_->description(); }
+  [[nodiscard]] std::vector<std::string> warnings() const override { return record_->warnings(); }
+
+ private:
+  [[nodiscard]] Result<std::optional<AircraftState>> find_state(
+      std::int64_t t_ns, const std::atomic<bool>* cancel) override {
+    return record_->state_at(t_ns, cancel);
+  }
+
+  std::unique_ptr<TruthSource> record_;
+  std::int64_t flown_ns_;  ///< 0: not known
+};
+
+/// The truth that another run recorded counts from the origin of that run's world.
+Result<std::unique_ptr<TruthSource>> open_run_flight(const RunFlight& run,
+                                                     const terrain::World& world) {
+  const Result<ReadManifest> manifest = read_run_manifest(run.folder);
+  if (!manifest) return manifest.error();
+  if (Status status = manifest->check(ManifestPart::kWorld); !status) return status.error();
+  if (!manifest->values.world || !manifest->values.world->origin) {
+    return Error{ErrorCode::kConflict, run.folder.string() + ": the run ended before its flight"};
+  }
+  const Geodetic then = *manifest->values.world->origin;
+  const Geodetic& now = world.tiles->frame().origin();
+  // The manifest has all digits of the numbers.
+  if (then.lat_rad != now.lat_rad || then.lon_rad != now.lon_rad ||
+      then.alt_ellipsoid_m != now.alt_ellipsoid_m) {
+    const Eigen::Vector3d apart = world.tiles->frame().world_from_geodetic(then);
+    constexpr double kSamePlaceM = 1e-6;
+    if (apart.norm() > kSamePlaceM) {
+      return Error{ErrorCode::kConflict,
+                   run.folder.string() + ": the world of that run has its origin " +
+                       std::to_string(apart.norm()) + " m away from this one's: must be the same"};
+    }
+  }
+  const std::string flown = manifest->values.flight ? manifest->values.flight->description : "";
+  auto record = open_recorded_flight(truth_samples_file(run.folder),
+                                     "run " + folder_name(run.folder) + ": " + flown);
+  if (!record) return record.error();
+  return std::unique_ptr<TruthSource>(
+      std::make_unique<FlownAgain>(std::move(*record), manifest->values.duration_ns));
+}
+
 }  // namespace
 
 Result<std::unique_ptr<TruthSource>> create_truth(const Scenario& scenario,
                                                   const terrain::World& world,
-                                                  const std::atomic<bool>* cancel) {
+                                                  const std::atomic<bool>* cancel,
+                                                  const std::filesystem::path& vehicle_log) {
   if (const auto* log = std::get_if<LoggedFlight>(&scenario.flight)) {
     return open_log_flight(scenario, *log, world, cancel);
   }
   if (const auto* live = std::get_if<flight::live::LiveFlight>(&scenario.flight)) {
-    auto flown = flight::live::fly_live(*live, world.tiles->frame(), cancel);
+    auto flown = flight::live::fly_live(*live, world.tiles->frame(), cancel, {vehicle_log});
     if (!flown) return flown.error().in("flight.mavlink");
+    return flown;
+  }
+  if (const auto* run = std::get_if<RunFlight>(&scenario.flight)) {
+    auto flown = open_run_flight(*run, world);
+    if (!flown) return flown.error().in("flight.run");
+    return flown;
+  }
+  if (const auto* ros = std::get_if<flight::ros_live::RosFlight>(&scenario.flight)) {
+    auto flown = flight::ros_live::fly_ros(*ros, world.tiles->frame(), cancel);
+    if (!flown) return flown.error().in("flight.ros");
     return flown;
   }
   if (const auto* mission = std::get_if<MissionFile>(&scenario.flight)) {
@@ -129,8 +196,7 @@ Result<std::unique_ptr<TruthSource>> open_flown_truth(const std::filesystem::pat
                                                       const Scenario& scenario,
                                                       const terrain::World& world) {
   auto flown = open_recorded_flight(truth_samples_file(folder), description);
-  const bool live = std::holds_alternative<flight::live::LiveFlight>(scenario.flight);
-  if (!flown && flown.error().code == ErrorCode::kNotFound && !live) {
+  if (!flown && flown.error().code == ErrorCode::kNotFound && !scenario.is_live()) {
     return create_truth(scenario, world);
   }
   return flown;

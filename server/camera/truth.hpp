@@ -17,12 +17,14 @@ namespace overfly::server {
 /// A course starts at the world's runway, or else where it lies centred over the imagery.
 /// @param cancel  cancels reading and smoothing a log, and the first flight of an airframe; may be
 /// null
+/// @param vehicle_log  where the messages of a live vehicle are recorded; empty: nowhere
 /// Errors: as flight::fly_course, autopilot::fly_course, flight::fly_log and
 /// flight::fly_flight_log, prefixed with the scenario's field.
 [[nodiscard]] Result<std::unique_ptr<TruthSource>> create_truth(
     const Scenario& scenario,
     const terrain::World& world,
-    const std::atomic<bool>* cancel = nullptr);
+    const std::atomic<bool>* cancel = nullptr,
+    const std::filesystem::path& vehicle_log = {});
 
 /// The flight of a recorded run, from its samples of the truth. A folder without samples, from an
 /// earlier version, gets the flight that its scenario describes.

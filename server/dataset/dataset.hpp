@@ -63,6 +63,9 @@ struct DatasetOptions {
   /// Replaces the data set's calibration; a size of 0 x 0 px is taken from the first image.
   std::optional<CameraModel> camera;
   int sample_bits = 16;  ///< significant bits of 16-bit files, in [8, 16]
+  /// Neither looks whether the listed files exist nor reads the first one. `camera` must be given,
+  /// with its size.
+  bool list_only = false;
 };
 
 }  // namespace overfly::server

@@ -51,13 +51,8 @@ Status append_image(const fs::path& list_file,
                     const FieldLine& line,
                     DatasetImage image,
                     std::vector<DatasetImage>& images) {
-  std::error_code ignored;
   image.line = line.number;
   image.listed_at = list_file.string() + ":" + std::to_string(line.number);
-  if (!fs::exists(image.file, ignored)) {
-    return Error{ErrorCode::kNotFound,
-                 image.listed_at + ": " + image.file.string() + ": no such file"};
-  }
   images.push_back(std::move(image));
   return {};
 }

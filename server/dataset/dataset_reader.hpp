@@ -42,7 +42,7 @@ struct EurocSensor {
 /// from both.
 [[nodiscard]] Result<CameraModel> read_tum_mono_camera(const std::filesystem::path& file);
 
-/// Appends an image; its file must exist. Errors: kNotFound naming the line of `list_file`.
+/// Appends an image. Whether its file exists is checked later.
 [[nodiscard]] Status append_image(const std::filesystem::path& list_file,
                                   const FieldLine& line,
                                   DatasetImage image,

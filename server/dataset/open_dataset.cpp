@@ -82,6 +82,7 @@ Result<CameraModel> choose_camera(const DatasetOptions& options, const ListedDat
                      " contains no calibration: the camera must be given"};
   }
   const CameraModel& known = options.camera ? *options.camera : *listed.camera;
+  if (options.list_only) return known;
   PinholeCamera pinhole = known.pinhole();
   const DatasetImage& first = listed.dataset.images.front();
   const Result<Image> image = read_grey_image(first.file, options.sample_bits);
@@ -93,6 +94,16 @@ Result<CameraModel> choose_camera(const DatasetOptions& options, const ListedDat
   const CameraModel camera(pinhole, known.distortion());
   if (Status status = camera.validate(); !status) return status.error().in("camera");
   return camera;
+}
+
+Status check_files_exist(const std::vector<DatasetImage>& images) {
+  for (const DatasetImage& image : images) {
+    std::error_code ignored;
+    if (fs::exists(image.file, ignored)) continue;
+    return Error{ErrorCode::kNotFound,
+                 image.listed_at + ": " + image.file.string() + ": no such file"};
+  }
+  return {};
 }
 
 }  // namespace
@@ -110,6 +121,9 @@ Result<Dataset> open_dataset(const DatasetOptions& options) {
   dataset.sample_bits = options.sample_bits;
   if (dataset.images.empty()) {
     return Error{ErrorCode::kUnreadable, options.folder.string() + ": lists no images"};
+  }
+  if (!options.list_only) {
+    if (Status status = check_files_exist(dataset.images); !status) return status.error();
   }
   if (Status status = order_images(dataset); !status) return status.error();
   const Result<CameraModel> camera = choose_camera(options, *listed);

@@ -42,6 +42,7 @@ Port create_ros1(const EstimatorSpec& spec, const EstimatorSetting& setting) {
   Ros1EstimatorOptions options = spec.ros1;
   options.parameters = spec.parameters;
   options.lockstep = setting.lockstep;
+  options.publish_sensors = setting.sensors;
   options.start_timeout_s = spec.start_timeout_s.value_or(options.start_timeout_s);
   options.answer_timeout_s = spec.answer_timeout_s.value_or(options.answer_timeout_s);
   options.cancel = setting.cancel;

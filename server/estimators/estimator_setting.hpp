@@ -16,6 +16,7 @@ struct EstimatorSetting {
   double rate_hz = 0.0;  ///< frame rate of the camera; 0 = not known
   /// When it becomes true, the estimator stops waiting; null = never.
   const std::atomic<bool>* cancel = nullptr;
+  bool sensors = false;  ///< its frames have samples of other sensors
 };
 
 }  // namespace overfly::server

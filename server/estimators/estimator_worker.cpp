@@ -65,6 +65,10 @@ void EstimatorWorker::submit(VoFrame frame) {
     const std::lock_guard lock(mutex_);
     if (waiting_) {
       drops_.push_back(drop_of(waiting_->frame));
+      SensorSamples samples = std::move(waiting_->frame.sensors);
+      append(samples, std::move(frame.sensors));
+      drop_older_than(samples, kOldestSampleNs);
+      frame.sensors = std::move(samples);
     } else if (!busy_) {
       clock_.enter();
     }
@@ -144,6 +148,7 @@ void EstimatorWorker::answer_waiting(std::unique_lock<std::mutex>& lock) {
   drops_.clear();
   lock.unlock();
   EstimatorEvent event = answer(taken);
+  if (options_.answered && !event.record.dropped) options_.answered(event.record);
   lock.lock();
   events_.push_back(std::move(event));
 }

@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <exception>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -29,10 +30,13 @@ struct EstimatorWorkerOptions {
   /// The estimator reads the image in this process: its CRC is computed after the estimator
   /// returns.
   bool in_process = true;
+  /// Called with each answer at once, on the worker's thread; may be empty.
+  std::function<void(const EstimateRecord&)> answered;
 };
 
 /// A slot for one frame in front of an estimator. A frame that still waits in the slot when the
-/// next one arrives is dropped. If frames are handed over only when idle(), none is lost.
+/// next one arrives is dropped; its samples of sensors go with the next one. If frames are handed
+/// over only when idle(), none is lost.
 class EstimatorWorker {
  public:
   EstimatorWorker(std::unique_ptr<VoPort> port, EstimatorWorkerOptions options, RunClock& clock);

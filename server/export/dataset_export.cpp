@@ -5,9 +5,9 @@
 #include <system_error>
 #include <utility>
 
-#include "flight/gravity.hpp"
 #include "middleware/lcm/findings.hpp"
 #include "middleware/ros1/findings.hpp"
+#include "server/export/exported_samples.hpp"
 #include "server/export/frame_sequence.hpp"
 #include "server/files/build_info.hpp"
 #include "server/files/whole_file.hpp"
@@ -21,45 +21,6 @@ using Json = nlohmann::json;
 
 bool takes_one_camera(DatasetFormat format) {
   return format == DatasetFormat::kTumMono || format == DatasetFormat::kKitti;
-}
-
-std::int64_t frame_period_ns(const FrameRate& rate) { return frame_time_ns(1, rate); }
-
-/// IMU samples from one frame before the first to one frame after the last, and the states at their
-/// times.
-Status measure_inertially(const ExportSource& source,
-                          FrameSequence& frames,
-                          const std::function<bool()>& keep_going,
-                          DatasetPlan& plan) {
-  const Scenario& scenario = source.scenario;
-  const terrain::World& world = frames.maker().world();
-  auto flight = open_truth(source, world);
-  auto again = open_truth(source, world);
-  if (!flight || !again) return flight ? again.error() : flight.error();
-  const auto start = (*again)->state_at(0);
-  if (!start) return start.error();
-  if (!*start) return {};
-  const Geodetic place =
-      world.tiles->frame().geodetic_from_world((*start)->T_world_body.translation);
-  const std::int64_t margin_ns = frame_period_ns(scenario.rate);
-  const std::int64_t begin_ns = frame_time_ns(frames.first_frame(), scenario.rate) - margin_ns;
-  const std::int64_t end_ns = frame_time_ns(frames.last_frame(), scenario.rate) + margin_ns;
-  auto readings = flight::synthesize_imu(**flight,
-                                         end_ns,
-                                         plan.imu_model,
-                                         flight::normal_gravity_m_s2(place),
-                                         scenario.seed,
-                                         keep_going);
-  if (!readings) return readings.error();
-  for (const flight::ImuReading& reading : *readings) {
-    if (reading.t_ns < begin_ns) continue;
-    const auto state = (*again)->state_at(reading.t_ns);
-    if (!state) return state.error();
-    if (!*state) break;
-    plan.imu.push_back(reading);
-    plan.states.push_back(**state);
-  }
-  return {};
 }
 
 /// Writes where the data set comes from and how to make it again.
@@ -137,7 +98,7 @@ Status check_export(const ExportOptions& options) {
   if (options.video) {
     if (Status status = options.video->validate(); !status) return status;
   }
-  return options.imu.validate();
+  return options.imu ? options.imu->validate() : Status();
 }
 
 std::int64_t images_in(const MadeFrame& frame) {
@@ -159,12 +120,11 @@ Result<DatasetPlan> make_plan(const ExportSource& source,
   plan.rate = source.scenario.rate;
   plan.last_frame = frames.last_frame();
   plan.epoch_utc_ns = source.epoch_utc_ns;
-  plan.imu_model = options.imu;
+  if (source.run) plan.estimates = source.run->estimates;
   if (options.format != DatasetFormat::kEuroc) return plan;
   const auto keep_going = [&] { return keeps_going(options); };
-  if (Status status = measure_inertially(source, frames, keep_going, plan); !status) {
-    return status.error();
-  }
+  Status measured = add_inertial_data(source, options.imu, frames, keep_going, plan);
+  if (!measured) return measured.error();
   return plan;
 }
 
@@ -205,12 +165,14 @@ class FrameOutputs {
 Status write_frames(const ExportOptions& options,
                     const FrameRate& rate,
                     FrameSequence& frames,
+                    FrameSamples& samples,
                     FrameOutputs& outputs,
                     ExportSummary& summary) {
   while (keeps_going(options)) {
-    const Result<std::optional<MadeFrame>> frame = frames.next();
+    Result<std::optional<MadeFrame>> frame = frames.next();
     if (!frame) return frame.error();
     if (!frame->has_value()) return outputs.finish(rate);
+    if (Status status = samples.add_to(**frame); !status) return status;
     if (Status status = outputs.add(**frame); !status) return status;
     ++summary.frames;
     summary.images += images_in(**frame);
@@ -231,6 +193,8 @@ Result<ExportSummary> export_dataset(const ExportSource& source, const ExportOpt
   making.cancel = options.cancel;
   making.notice = options.notice;
   making.stages = &stages;
+  // The samples of a run are in its folder.
+  if (!source.run) making.sensing_from_utc_ns = source.epoch_utc_ns;
   FrameSpan span{options.from_s, options.to_s, options.cameras};
   if (takes_one_camera(options.format) && span.cameras.empty()) {
     span.cameras = {source.scenario.main_camera().name};
@@ -245,7 +209,9 @@ Result<ExportSummary> export_dataset(const ExportSource& source, const ExportOpt
   ExportSummary summary;
   summary.attribution = (*frames)->maker().world().tiles->attribution();
   FrameOutputs outputs(options, (*frames)->maker(), **writer, stages);
-  Status status = write_frames(options, source.scenario.rate, **frames, outputs, summary);
+  auto samples = FrameSamples::open(source);
+  if (!samples) return samples.error();
+  Status status = write_frames(options, source.scenario.rate, **frames, *samples, outputs, summary);
   if (status) status = write_origin(source, options, summary, **frames);
   if (!status) return status.error();
   summary.stages = stages.summary();

@@ -24,9 +24,11 @@ struct ExportOptions {
   std::set<TruthKind> truth;  ///< truth images for each frame
   /// Names; empty = all cameras (EuRoC, PNG), the first one (TUM mono, KITTI).
   std::vector<std::string> cameras;
-  double from_s = 0.0;             ///< frames stamped in [from_s, to_s]
-  std::optional<double> to_s;      ///< empty = to the end
-  flight::ImuModel imu;            ///< for EuRoC
+  double from_s = 0.0;         ///< frames stamped in [from_s, to_s]
+  std::optional<double> to_s;  ///< empty = to the end
+  /// For EuRoC. Empty: the scenario's own, or else the defaults. A scenario with an IMU takes no
+  /// other.
+  std::optional<flight::ImuModel> imu;
   std::optional<VideoLook> video;  ///< writes video.webm next to the images, of the first camera
 
   RendererFactory renderer_factory;           ///< the server's default if empty

@@ -16,6 +16,8 @@ const char* to_string(DatasetFormat format) {
       return "lcm";
     case DatasetFormat::kRosbag:
       return "rosbag";
+    case DatasetFormat::kMcap:
+      return "mcap";
     case DatasetFormat::kPng:
       break;
   }
@@ -28,7 +30,8 @@ std::optional<DatasetFormat> dataset_format_from(const std::string& text) {
                                      DatasetFormat::kKitti,
                                      DatasetFormat::kPng,
                                      DatasetFormat::kLcm,
-                                     DatasetFormat::kRosbag}) {
+                                     DatasetFormat::kRosbag,
+                                     DatasetFormat::kMcap}) {
     if (text == to_string(format)) return format;
   }
   return std::nullopt;
@@ -47,6 +50,8 @@ Result<std::unique_ptr<DatasetWriter>> create_dataset_writer(DatasetFormat forma
       return create_lcm_writer(plan);
     case DatasetFormat::kRosbag:
       return create_rosbag_writer(plan);
+    case DatasetFormat::kMcap:
+      return create_mcap_writer(plan);
     case DatasetFormat::kPng:
       break;
   }

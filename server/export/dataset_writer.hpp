@@ -9,18 +9,27 @@
 #include <vector>
 
 #include "core/earth/geodesy.hpp"
+#include "core/motion/estimate.hpp"
 #include "core/result.hpp"
-#include "flight/imu.hpp"
+#include "flight/sensors/imu.hpp"
 #include "server/camera/frame_maker.hpp"
 #include "server/scenario/scenario.hpp"
 
 namespace overfly::server {
 
-enum class DatasetFormat { kTumMono, kEuroc, kKitti, kPng, kLcm, kRosbag };
+enum class DatasetFormat { kTumMono, kEuroc, kKitti, kPng, kLcm, kRosbag, kMcap };
 
-/// "tum-mono", "euroc", "kitti", "png", "lcm", "rosbag".
+/// "tum-mono", "euroc", "kitti", "png", "lcm", "rosbag", "mcap".
 [[nodiscard]] const char* to_string(DatasetFormat format);
 [[nodiscard]] std::optional<DatasetFormat> dataset_format_from(const std::string& text);
+
+/// The answers of one estimator of a run.
+struct PlannedEstimate {
+  EstimateTrack track;  ///< by frame
+  /// Of the map that was scored, by the alignment `sim3`; empty if it is unavailable.
+  std::optional<Similarity> S_world_vo;
+  int map_id = 0;  ///< that map
+};
 
 /// What a writer needs to know before the first frame.
 struct DatasetPlan {
@@ -30,8 +39,9 @@ struct DatasetPlan {
   std::int64_t last_frame = 0;    ///< the highest index that may occur
   std::int64_t epoch_utc_ns = 0;  ///< Unix time of t = 0
   flight::ImuModel imu_model;
-  std::vector<flight::ImuReading> imu;  ///< over the exported time span; EuRoC only
-  std::vector<AircraftState> states;    ///< one for each IMU sample
+  std::vector<flight::ImuReading> imu;     ///< over the exported time span; EuRoC only
+  std::vector<AircraftState> states;       ///< one for each IMU sample
+  std::vector<PlannedEstimate> estimates;  ///< of a run; rosbag and MCAP only
 };
 
 /// Takes the frames in order; writes their images at once and the text files at the end. Images
@@ -59,6 +69,7 @@ class DatasetWriter {
 [[nodiscard]] Result<std::unique_ptr<DatasetWriter>> create_png_writer(const DatasetPlan&);
 [[nodiscard]] Result<std::unique_ptr<DatasetWriter>> create_lcm_writer(const DatasetPlan&);
 [[nodiscard]] Result<std::unique_ptr<DatasetWriter>> create_rosbag_writer(const DatasetPlan&);
+[[nodiscard]] Result<std::unique_ptr<DatasetWriter>> create_mcap_writer(const DatasetPlan&);
 
 /// Creates a folder with its parents. Errors: kIo naming it.
 [[nodiscard]] Status make_folder(const std::filesystem::path& folder);

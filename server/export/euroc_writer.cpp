@@ -119,8 +119,9 @@ class EurocWriter final : public DatasetWriter {
     if (Status status = make_folder(root_ / "imu0"); !status) return status;
     std::string rows = kImuHeader;
     for (const flight::ImuReading& reading : plan.imu) {
-      rows += std::to_string(epoch_ns_ + reading.t_ns) + "," + list_of(reading.angular_rate_rad_s) +
-              "," + list_of(reading.specific_force_m_s2) + "\n";
+      const ImuSample& sample = reading.sample;
+      rows += std::to_string(epoch_ns_ + sample.t_ns) + "," + list_of(sample.angular_rate_rad_s) +
+              "," + list_of(sample.acceleration_m_s2) + "\n";
     }
     if (Status status = write_whole(root_ / "imu0" / "data.csv", rows); !status) return status;
     return write_whole(root_ / "imu0" / "sensor.yaml", imu_text(plan.imu_model));

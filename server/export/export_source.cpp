@@ -7,6 +7,7 @@
 #include "server/record/run_folder.hpp"
 #include "server/record/run_records.hpp"
 #include "server/scenario/document/scenario_file.hpp"
+#include "server/scoring/run_metrics_json.hpp"
 
 namespace overfly::server {
 namespace {
@@ -28,6 +29,25 @@ std::vector<std::pair<std::string, std::string>> digests_of(const RunManifest& m
   return digests;
 }
 
+/// The answers of all estimators, aligned where the run has been scored.
+std::vector<PlannedEstimate> estimates_of(const fs::path& folder, const RunRecords& records) {
+  const Result<RunMetrics> metrics = read_run_metrics(folder);
+  std::vector<PlannedEstimate> estimates;
+  for (const EstimatorRecords& estimator : records.estimators) {
+    PlannedEstimate& estimate = estimates.emplace_back();
+    estimate.track = track_of(estimator);
+    if (!metrics) continue;
+    const auto scored = metrics->estimators.find(estimator.name);
+    if (scored == metrics->estimators.end() || !scored->second.map_id) continue;
+    const auto& alignments = scored->second.score.alignments;
+    const auto aligned = alignments.find(evaluation::AlignmentMode::kSim3);
+    if (aligned == alignments.end()) continue;
+    estimate.S_world_vo = aligned->second.S_world_vo;
+    estimate.map_id = *scored->second.map_id;
+  }
+  return estimates;
+}
+
 Result<ExportSource> open_run(const fs::path& folder) {
   const Result<ReadManifest> manifest = read_run_manifest(folder);
   if (!manifest) return manifest.error();
@@ -38,12 +58,14 @@ Result<ExportSource> open_run(const fs::path& folder) {
   if (!scenario) return scenario.error().in(scenario_file(folder).string());
   Result<RunRecords> records = read_run_records(folder, *manifest);
   if (!records) return records.error();
+  std::vector<PlannedEstimate> estimates = estimates_of(folder, *records);
   ExportSource source{
       std::move(*scenario),
       RecordedRun{folder,
                   std::move(records->cameras[kMainCamera].frames),
                   digests_of(manifest->values),
-                  manifest->values.flight ? manifest->values.flight->description : ""},
+                  manifest->values.flight ? manifest->values.flight->description : "",
+                  std::move(estimates)},
       manifest->values.epoch_utc_ns.value_or(kEpochUtcNs)};
   if (source.run->frames.empty()) {
     return Error{ErrorCode::kNotFound, folder.string() + ": the run recorded no frames"};

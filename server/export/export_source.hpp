@@ -9,6 +9,7 @@
 
 #include "core/result.hpp"
 #include "server/camera/frame_maker.hpp"
+#include "server/export/dataset_writer.hpp"
 #include "server/record/run_rows.hpp"
 #include "server/scenario/scenario.hpp"
 
@@ -20,6 +21,7 @@ struct RecordedRun {
   std::vector<FrameRow> frames;
   std::vector<std::pair<std::string, std::string>> world_digests;  ///< file, digest
   std::string flight;                                              ///< description
+  std::vector<PlannedEstimate> estimates;                          ///< of all estimators
 };
 
 struct ExportSource {

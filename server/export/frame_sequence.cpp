@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "server/record/rows.hpp"
+#include "server/record/run_info.hpp"
 
 namespace overfly::server {
 namespace {
@@ -62,7 +63,7 @@ Status FrameSequence::choose_cameras(const std::vector<std::string>& names) {
 Status FrameSequence::choose_frames(const FrameSpan& span) {
   const std::int64_t from_ns = ns_from_s(span.from_s);
   const auto inside = [&](std::int64_t k) {
-    const std::int64_t t_ns = frame_time_ns(k, source_.scenario.rate);
+    const std::int64_t t_ns = maker_->frame_ns(k);
     return t_ns >= from_ns && (!span.to_s || t_ns <= ns_from_s(*span.to_s));
   };
   if (source_.run) {

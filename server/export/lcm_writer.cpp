@@ -27,6 +27,9 @@ class LcmWriter final : public DatasetWriter {
       if (Status status = calibrate(frame); !status) return status.error();
       next_calibration_ns_ = frame.t_ns + kCalibrationPeriodNs;
     }
+    // On the channels of the first camera: an estimator of another one hears only its own prefix.
+    Status written = log_->write_samples(prefixes_.front(), frame.sensors);
+    if (!written) return written.error();
     std::vector<std::string> names(frame.shots.size());
     for (std::size_t i = 0; i < frame.shots.size(); ++i) {
       const CameraShot& shot = frame.shots[i];

@@ -1,53 +1,27 @@
 // A ROS 1 bag: for each camera the images as given to estimators, the calibration with each image,
-// and the truth of every frame.
-#include <set>
+// and the truth of every frame; of a run also its estimates.
 #include <system_error>
 
 #include "middleware/ros1/bag_writer.hpp"
 #include "server/export/dataset_writer.hpp"
+#include "server/export/ros_topics.hpp"
 
 namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kWorldFrame = "world";
-
-/// Topic and frame names of one camera.
-struct CameraNames {
-  std::string image, info, truth;
-  std::string frame;
-};
-
-/// The first camera is "/camera", as nodes expect it; the others are called by their names.
-std::vector<CameraNames> topic_names(const std::vector<CameraSpec>& cameras) {
-  std::vector<CameraNames> names;
-  std::set<std::string> taken;
-  for (const CameraSpec& camera : cameras) {
-    std::string prefix = taken.empty() ? "camera" : camera.name;
-    for (char& c : prefix) {
-      const bool word = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
-      if (!word) c = '_';
-    }
-    const std::string wanted = prefix;
-    for (int i = 2; !taken.insert(prefix).second; ++i) prefix = wanted + "_" + std::to_string(i);
-    names.push_back({"/" + prefix + "/image_raw",
-                     "/" + prefix + "/camera_info",
-                     "/" + prefix + "/truth",
-                     prefix + "_optical_frame"});
-  }
-  return names;
-}
-
 class RosbagWriter final : public DatasetWriter {
  public:
   RosbagWriter(const DatasetPlan& plan, std::unique_ptr<ros1::BagWriter> bag, fs::path unfinished)
       : plan_(plan),
-        names_(topic_names(plan.cameras)),
+        names_(ros_camera_topics(plan.cameras)),
         bag_(std::move(bag)),
         unfinished_(std::move(unfinished)) {}
 
   Result<std::vector<std::string>> add(const MadeFrame& frame) override {
+    Status sampled = bag_->add_samples(frame.sensors, plan_.epoch_utc_ns);
+    if (!sampled) return sampled.error();
     std::vector<std::string> names(frame.shots.size());
     for (std::size_t i = 0; i < frame.shots.size(); ++i) {
       const CameraShot& shot = frame.shots[i];
@@ -56,6 +30,7 @@ class RosbagWriter final : public DatasetWriter {
       if (status && shot.delivered) status = add_image(shot, plan_.cameras[i], names_[i]);
       if (!status) return status.error();
     }
+    if (Status status = add_estimates(frame.frame); !status) return status.error();
     return names;
   }
 
@@ -69,22 +44,32 @@ class RosbagWriter final : public DatasetWriter {
   }
 
  private:
-  Status add_image(const CameraShot& shot, const CameraSpec& camera, const CameraNames& names) {
+  Status add_image(const CameraShot& shot, const CameraSpec& camera, const RosCameraTopics& names) {
     const std::int64_t stamp_ns = plan_.epoch_utc_ns + shot.stamp_ns;
     Status status = bag_->add_camera_info(names.info, names.frame, stamp_ns, camera.model);
     return status ? bag_->add_image(names.image, names.frame, stamp_ns, grey_of(shot.image))
                   : status;
   }
 
-  Status add_truth(const MadeFrame& frame, const CameraShot& shot, const CameraNames& names) {
+  Status add_estimates(std::int64_t frame) {
+    for (const RosEstimate& estimate : estimates_.of(frame)) {
+      Status status = bag_->add_pose(
+          estimate.topic, estimate.frame_id, plan_.epoch_utc_ns + estimate.t_ns, estimate.pose);
+      if (!status) return status;
+    }
+    return {};
+  }
+
+  Status add_truth(const MadeFrame& frame, const CameraShot& shot, const RosCameraTopics& names) {
     const std::int64_t stamp_ns = plan_.epoch_utc_ns + frame.t_ns;
     const Pose& T_world_camera = shot.drawn.T_world_camera;
-    Status status = bag_->add_transform(kWorldFrame, names.frame, stamp_ns, T_world_camera);
-    return status ? bag_->add_pose(names.truth, kWorldFrame, stamp_ns, T_world_camera) : status;
+    Status status = bag_->add_transform(kRosWorldFrame, names.frame, stamp_ns, T_world_camera);
+    return status ? bag_->add_pose(names.truth, kRosWorldFrame, stamp_ns, T_world_camera) : status;
   }
 
   DatasetPlan plan_;
-  std::vector<CameraNames> names_;
+  std::vector<RosCameraTopics> names_;
+  RosEstimates estimates_{plan_.estimates};
   std::unique_ptr<ros1::BagWriter> bag_;
   fs::path unfinished_;  ///< name until it is complete, as used by rosbag
 };

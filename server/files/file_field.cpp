@@ -11,7 +11,7 @@ namespace {
 using Json = nlohmann::json;
 
 /// A value as shown in a message.
-std::string shown(const Json& value) {
+std::string value_text(const Json& value) {
   if (value.is_object()) return "an object";
   if (value.is_array()) return "an array";
   constexpr std::size_t kLongest = 60;
@@ -26,7 +26,7 @@ FileField::FileField(const Json& value, std::string path)
     : value_(&value), path_(std::move(path)) {}
 
 void FileField::reject(const std::string& must) const {
-  throw FieldViolation((path_.empty() ? "the document" : path_) + " = " + shown(*value_) +
+  throw FieldViolation((path_.empty() ? "the document" : path_) + " = " + value_text(*value_) +
                        ": must " + must);
 }
 

@@ -32,6 +32,8 @@ struct FrameRow {
   /// Of the grey image as sent to estimators; empty if none was sent.
   std::optional<std::uint32_t> image_crc32;
   std::optional<double> axis_depth_m;  ///< of the ground along the optical axis
+  /// Number of the recorded image in its source; negative: the image was rendered.
+  std::int64_t source_image = -1;
   /// The camera vibrates: the body's pose does not follow from the camera's and the mount.
   bool shaken = false;
 };

@@ -31,6 +31,7 @@ fs::path timings_file(const fs::path& folder) { return folder / "timings.json"; 
 fs::path metrics_file(const fs::path& folder) { return folder / "metrics.json"; }
 fs::path log_file(const fs::path& folder) { return folder / "log.jsonl"; }
 fs::path vehicle_file(const fs::path& folder) { return folder / "vehicle.jsonl"; }
+fs::path vehicle_log_file(const fs::path& folder) { return folder / "vehicle.tlog"; }
 fs::path truth_samples_file(const fs::path& folder) { return folder / "truth_samples.bin"; }
 
 fs::path estimate_file(const fs::path& folder, const std::string& estimator) {

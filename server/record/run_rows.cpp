@@ -59,6 +59,7 @@ Json json_from(const FrameRow& row) {
   if (row.saturated_fraction > 0.0) value["saturated_fraction"] = row.saturated_fraction;
   if (row.late_tiles != 0) value["late_tiles"] = row.late_tiles;
   if (row.stamp_offset_ns != 0) value["stamp_offset_ns"] = row.stamp_offset_ns;
+  if (row.source_image >= 0) value["source_image"] = row.source_image;
   if (!row.faults.empty()) value["faults"] = row.faults;
   return value;
 }

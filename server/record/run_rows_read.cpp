@@ -107,6 +107,7 @@ FrameRow read_frame(const FileField& value, const Pose& T_body_camera) {
   }
   if (const auto offset = value.find("stamp_offset_ns")) row.stamp_offset_ns = stamp(*offset);
   row.faults = read_faults(value);
+  if (const auto image = value.find("source_image")) row.source_image = stamp(*image);
   const FileField texels = value.at("texels_per_pixel");
   row.texels_per_pixel_min = texels.at("min").number();
   row.texels_per_pixel_median = texels.at("median").number();

@@ -84,12 +84,21 @@ class RecordedWhileFlown final : public TruthSource {
     return flight_->duration_ns();
   }
   [[nodiscard]] std::string description() const override { return flight_->description(); }
+  [[nodiscard]] std::optional<std::int64_t> log_start_ns() const override {
+    return flight_->log_start_ns();
+  }
   [[nodiscard]] std::vector<std::string> warnings() const override { return flight_->warnings(); }
   [[nodiscard]] std::vector<FlightEvent> take_events(std::int64_t t_ns) override {
     return flight_->take_events(t_ns);
   }
   [[nodiscard]] std::optional<VehicleStatus> take_status(std::int64_t t_ns) override {
     return flight_->take_status(t_ns);
+  }
+  [[nodiscard]] std::shared_ptr<EstimateReceiver> estimate_receiver() const override {
+    return flight_->estimate_receiver();
+  }
+  [[nodiscard]] std::optional<std::int64_t> heard_ns() const override {
+    return flight_->heard_ns();
   }
 
  private:

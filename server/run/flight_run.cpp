@@ -35,6 +35,7 @@ FrameRow row_from(const MadeFrame& made, const CameraShot& shot, const CameraSpe
   row.stamp_offset_ns = shot.stamp_ns - made.t_ns;
   row.faults = shot.faults;
   row.axis_depth_m = shot.drawn.axis_depth_m;
+  row.source_image = shot.source_image;
   return row;
 }
 
@@ -77,14 +78,16 @@ nlohmann::json FlightRun::timings() const {
   // Excludes the set-up: making or opening the world is not part of a frame's cost.
   const double loop_s = loop_begin_ns_ == 0 ? 0.0 : s_from_ns(now_ns - loop_begin_ns_);
   const double flight_s = s_from_ns(end_ns());
-  return {{"finished_utc", utc_text(utc_now_ns())},
-          {"wall_s", s_from_ns(now_ns - begin_ns_)},
-          {"loop_wall_s", loop_s},
-          {"flight_s", flight_s},
-          {"flight_s_per_wall_s", loop_s > 0.0 ? flight_s / loop_s : 0.0},
-          {"late_tiles", late_tiles_},
-          {"frames_with_late_tiles", frames_with_late_tiles_},
-          {"stages", stages_.summary()}};
+  nlohmann::json timings = {{"finished_utc", utc_text(utc_now_ns())},
+                            {"wall_s", s_from_ns(now_ns - begin_ns_)},
+                            {"loop_wall_s", loop_s},
+                            {"flight_s", flight_s},
+                            {"flight_s_per_wall_s", loop_s > 0.0 ? flight_s / loop_s : 0.0},
+                            {"late_tiles", late_tiles_},
+                            {"frames_with_late_tiles", frames_with_late_tiles_},
+                            {"stages", stages_.summary()}};
+  if (!message_to_frame_.ms.empty()) timings["message_to_frame"] = message_to_frame_.summary();
+  return timings;
 }
 
 Status FlightRun::fly() {
@@ -127,7 +130,12 @@ Status FlightRun::prepare_and_fly() {
   }
   loop_begin_ns_ = clock_.now_ns();
   const Status flown = scenario_.pacing == Pacing::kRealTime ? fly_real_time() : fly_lockstep();
-  return flown ? maker_->record_last_period() : flown;
+  return flown ? record_last_period() : flown;
+}
+
+Status FlightRun::record_last_period() {
+  const Result<SensorSamples> last = maker_->record_last_period();
+  return last ? recorder_.add_sensor_samples(*last) : last.error();
 }
 
 Status FlightRun::fly_lockstep() {
@@ -167,8 +175,8 @@ Status FlightRun::fly_real_time() {
 Status FlightRun::keep_pace(std::int64_t start_ns, PictureRate& pictures) {
   for (std::int64_t k = 0; k < maker_->frames_total(); ++k) {
     if (cancelled()) return stopped();
-    const std::int64_t t_ns = frame_time_ns(k, scenario_.rate);
-    const std::int64_t next_ns = frame_time_ns(k + 1, scenario_.rate);
+    const std::int64_t t_ns = maker_->frame_ns(k);
+    const std::int64_t next_ns = maker_->frame_ns(k + 1);
     const std::int64_t now_ns = clock_.now_ns() - start_ns;
     if (now_ns >= next_ns) {
       // The next frame is already due: drawing this one would only delay it.
@@ -190,6 +198,10 @@ Result<FlightRun::Flight> FlightRun::fly_frame(std::int64_t k, bool wait_for_est
   auto made = maker_->make(k);
   if (!made) return made.error();
   if (!*made) return Flight::kEnded;
+  if (const std::optional<std::int64_t> heard_ns = maker_->heard_ns()) {
+    message_to_frame_.ms.push_back(static_cast<double>(machine_clock().now_ns() - *heard_ns) *
+                                   1e-6);
+  }
 
   // The estimators worked on the previous frame while this one was drawn.
   if (wait_for_estimators) {
@@ -208,7 +220,44 @@ Result<FlightRun::Flight> FlightRun::fly_frame(std::int64_t k, bool wait_for_est
   return Flight::kGoesOn;
 }
 
+Status FlightRun::judge_recorded_image(const MadeFrame& made) {
+  constexpr int kMostProblemsTold = 100;
+  const CameraSpec* const camera = scenario_.recorded_camera();
+  if (camera == nullptr) return {};
+  const CameraShot& real = made.shots[static_cast<std::size_t>(camera - scenario_.cameras.data())];
+  if (!real.problem.empty() && problems_told_++ < kMostProblemsTold) {
+    const std::string end = problems_told_ == kMostProblemsTold ? "; no more are listed" : "";
+    Status told = recorder_.log(made.t_ns, "warning", "image lost: " + real.problem + end);
+    if (!told) return told;
+  }
+  if (!camera->images->compare_with) return {};
+  AgreementRow row{made.frame, made.t_ns, std::nullopt, real.problem};
+  if (real.delivered) {
+    const Image rendered = grey_of(made.shots[*camera->images->compare_with].image);
+    auto agreement = stages_.measure(
+        "compare_images", [&] { return evaluation::compare_images(real.image, rendered); });
+    if (!agreement) return agreement.error();
+    row.agreement = *agreement;
+  }
+  return recorder_.add_agreement(row);
+}
+
+Status FlightRun::take_sensor_samples(MadeFrame& made) {
+  if (Status recorded = recorder_.add_sensor_samples(made.sensors); !recorded) return recorded;
+  unsent_samples_.resize(workers_.size());
+  for (SensorSamples& unsent : unsent_samples_) {
+    append(unsent, SensorSamples(made.sensors));
+    drop_older_than(unsent, kOldestSampleNs);
+  }
+  return {};
+}
+
 Status FlightRun::deliver(MadeFrame& made) {
+  if (!made.sensors.empty()) {
+    const Status sensed = stages_.measure("sensors", [&] { return take_sensor_samples(made); });
+    if (!sensed) return sensed;
+  }
+  if (Status judged = judge_recorded_image(made); !judged) return judged;
   for (CameraShot& shot : made.shots) {
     const CameraSpec& camera = scenario_.cameras[shot.camera];
     FrameRow row = row_from(made, shot, camera);
@@ -220,6 +269,9 @@ Status FlightRun::deliver(MadeFrame& made) {
         image && image->channels != 1 ? std::make_shared<const Image>(grey_of(*image)) : image;
     // Computed once per frame, so that it applies to the image of every estimator.
     if (grey) row.image_crc32 = stages_.measure("hash", [&] { return crc32_of(*grey); });
+    if (feedback_ && scenario_.estimators[*scenario_.feedback_estimator].camera == shot.camera) {
+      feedback_->add_frame(row);
+    }
     if (const auto& feed = truth_feeds_[shot.camera]) {
       feed->add(shot.stamp_ns, {row.T_world_camera, row.axis_depth_m});
     }
@@ -227,6 +279,7 @@ Status FlightRun::deliver(MadeFrame& made) {
       if (scenario_.estimators[i].camera != shot.camera) continue;
       VoFrame frame = vo_frame_from(made, shot, camera, grey);
       frame.image_crc32 = row.image_crc32;
+      if (i < unsent_samples_.size()) frame.sensors = std::exchange(unsent_samples_[i], {});
       workers_[i]->submit(std::move(frame));
     }
     Status recorded = stages_.measure(

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "server/estimators/estimator_factory.hpp"
 #include "server/estimators/estimator_worker.hpp"
 #include "server/estimators/truth_feed.hpp"
+#include "server/run/estimate_feedback.hpp"
 #include "server/run/run_options.hpp"
 #include "server/run/run_recorder.hpp"
 #include "server/timing/stage_timer.hpp"
@@ -36,7 +38,11 @@ class FlightRun {
   Status open_estimators();
   void prepare_estimators();
   [[nodiscard]] Result<std::unique_ptr<VoPort>> open_estimator(const EstimatorSpec& spec);
+  /// Sends the answers of an estimator to the vehicle. @return what is called with each answer
+  std::function<void(const EstimateRecord&)> open_feedback(const EstimatorSpec& spec);
   Status describe();
+  /// Unix time of t = 0, if it is now.
+  [[nodiscard]] std::int64_t epoch_utc_ns() const;
   /// Records the estimators' remaining answers, their resource use and their parameters; also after
   /// an error.
   Status close_estimators();
@@ -56,6 +62,10 @@ class FlightRun {
   Result<Flight> fly_frame(std::int64_t k, bool wait_for_estimators);
   /// Gives each estimator its camera's image, and records all cameras.
   Status deliver(MadeFrame& made);
+  Status take_sensor_samples(MadeFrame& made);
+  Status record_last_period();
+  /// Compares the recorded image of a frame with the rendered one, and reports a lost one.
+  Status judge_recorded_image(const MadeFrame& made);
   Status record_events();
   /// Records the events of the flight and the state of a live vehicle.
   Status tell_flight(std::int64_t t_ns);
@@ -72,9 +82,15 @@ class FlightRun {
 
   std::unique_ptr<FrameMaker> maker_;
   FaultNews fault_news_;
+  /// Takes answers to a live vehicle; null without. Outlives the workers, which call it.
+  std::unique_ptr<EstimateFeedback> feedback_;
+  DurationList message_to_frame_;  ///< of a live vehicle
   std::int64_t late_tiles_ = 0;
   std::int64_t frames_with_late_tiles_ = 0;
+  int problems_told_ = 0;  ///< lost images in the log
   std::vector<std::unique_ptr<EstimatorWorker>> workers_;
+  /// By estimator: samples of sensors that wait for its next frame.
+  std::vector<SensorSamples> unsent_samples_;
   /// By camera; null where no test estimator needs the truth.
   std::vector<std::shared_ptr<TruthFeed>> truth_feeds_;
 };

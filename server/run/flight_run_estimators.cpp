@@ -66,7 +66,8 @@ Port FlightRun::open_estimator(const EstimatorSpec& spec) {
                                  scenario_.pacing == Pacing::kLockstep,
                                  *folder,
                                  scenario_.rate.hz(),
-                                 options_.cancel};
+                                 options_.cancel,
+                                 !scenario_.sensors.none()};
   if (is_outside_estimator(spec.type)) return create_estimator(spec, setting, truth);
   // Also binds the threads that a native estimator starts at once.
   const AffinityGuard guard;
@@ -74,6 +75,14 @@ Port FlightRun::open_estimator(const EstimatorSpec& spec) {
     return status.error().in("estimator \"" + spec.name + "\"");
   }
   return create_estimator(spec, setting, truth);
+}
+
+std::function<void(const EstimateRecord&)> FlightRun::open_feedback(const EstimatorSpec& spec) {
+  std::shared_ptr<EstimateReceiver> receiver = maker_->estimate_receiver();
+  if (!receiver) return {};
+  feedback_ = std::make_unique<EstimateFeedback>(std::move(receiver),
+                                                 scenario_.cameras[spec.camera].T_body_camera);
+  return [this](const EstimateRecord& record) { feedback_->take(record); };
 }
 
 Status FlightRun::open_estimators() {
@@ -93,6 +102,7 @@ Status FlightRun::open_estimators() {
       worker.throttle_hz = spec.throttle_hz;
       worker.in_process = !is_outside_estimator(spec.type);
       if (worker.in_process) worker.cpus = spec.cpus;
+      if (scenario_.feedback_estimator == i) worker.answered = open_feedback(spec);
       workers_.push_back(
           std::make_unique<EstimatorWorker>(std::move(*port), std::move(worker), clock_));
     }
@@ -125,6 +135,10 @@ Status FlightRun::close_estimators() {
     return 0;
   });
   const Status recorded = record_events();
+  if (feedback_) {
+    Status logged = recorder_.log(end_ns(), "info", feedback_->report());
+    if (!logged) return logged;
+  }
   const Status described = describe_use();
   return recorded ? described : recorded;
 }

@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "server/record/run_folder.hpp"
 #include "server/run/flight_run.hpp"
 #include "server/scenario/document/scenario_light.hpp"
 #include "server/worlds/scenario_world.hpp"
@@ -23,6 +24,8 @@ Status FlightRun::open_maker() {
   options.notice = options_.notice;
   options.stages = &stages_;
   options.truth_samples = &recorder_.truth_samples();
+  options.sensing_from_utc_ns = epoch_utc_ns();
+  options.vehicle_log = vehicle_log_file(options_.folder);
   options.wait_for_tiles = scenario_.pacing == Pacing::kLockstep;
   Result<std::unique_ptr<FrameMaker>> maker = FrameMaker::open(scenario_, options);
   if (!maker) return maker.error();
@@ -34,6 +37,9 @@ Status FlightRun::open_maker() {
   if (Status status = recorder_.set_cameras(); !status) return status;
   const std::vector<std::string> doubts = maker_->flight_warnings();
   recorder_.manifest().flight = RunManifest::Flight{maker_->flight_description(), doubts};
+  for (const std::string& warning : maker_->image_warnings()) {
+    if (Status status = recorder_.log(0, "warning", "images: " + warning); !status) return status;
+  }
   for (const std::string& warning : doubts) {
     if (Status status = recorder_.log(0, "warning", warning); !status) return status;
   }
@@ -77,10 +83,13 @@ Status FlightRun::describe_world() {
   return {};
 }
 
-Status FlightRun::describe() {
+std::int64_t FlightRun::epoch_utc_ns() const {
   const bool wall = scenario_.pacing == Pacing::kRealTime;
-  recorder_.manifest().epoch_utc_ns =
-      scenario_.epoch_utc_ns.value_or(wall ? utc_now_ns() : kLockstepEpochUtcNs);
+  return scenario_.epoch_utc_ns.value_or(wall ? utc_now_ns() : kLockstepEpochUtcNs);
+}
+
+Status FlightRun::describe() {
+  recorder_.manifest().epoch_utc_ns = epoch_utc_ns();
   return recorder_.write_manifest();
 }
 

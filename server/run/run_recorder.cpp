@@ -73,7 +73,10 @@ Status write_jpeg(const fs::path& file, const Image& image, int quality) {
 }  // namespace
 
 RunRecorder::RunRecorder(fs::path folder, RunLock lock, const Scenario& scenario)
-    : folder_(std::move(folder)), lock_(std::move(lock)), scenario_(scenario) {}
+    : folder_(std::move(folder)),
+      lock_(std::move(lock)),
+      scenario_(scenario),
+      sensor_files_(folder_) {}
 
 Result<std::unique_ptr<RunRecorder>> RunRecorder::create(const fs::path& folder,
                                                          const Scenario& scenario,
@@ -138,6 +141,12 @@ Status RunRecorder::open_files() {
   Result<LineFile> log = LineFile::create(log_file(folder_));
   if (!log) return log.error();
   log_lines_ = std::move(log).value();
+  const CameraSpec* const recorded = scenario_.recorded_camera();
+  if (recorded != nullptr && recorded->images->compare_with) {
+    Result<LineFile> agreement = LineFile::create(agreement_file(folder_));
+    if (!agreement) return agreement.error();
+    agreement_lines_ = std::move(agreement).value();
+  }
   Result<TruthSampleFile> samples = TruthSampleFile::create(truth_samples_file(folder_));
   if (!samples) return samples.error();
   truth_samples_ = std::move(samples).value();
@@ -223,6 +232,10 @@ Status RunRecorder::keep_image(std::int64_t frame,
   const CameraFiles files(folder_, camera, info_.cameras[camera]);
   if (Status status = write_jpeg(files.image(frame), image, kFrameQuality); !status) return status;
   return deep.empty() ? Status() : write_png_file(files.deep_image(frame), deep);
+}
+
+Status RunRecorder::add_agreement(const AgreementRow& row) {
+  return agreement_lines_->append(json_from(row));
 }
 
 Status RunRecorder::add_late_frame(std::int64_t frame, std::int64_t t_ns) {

@@ -11,12 +11,14 @@
 
 #include "core/result.hpp"
 #include "server/files/whole_file.hpp"
+#include "server/record/agreement_rows.hpp"
 #include "server/record/estimator_event.hpp"
 #include "server/record/run_folder.hpp"
 #include "server/record/run_info.hpp"
 #include "server/record/run_lock.hpp"
 #include "server/record/run_manifest.hpp"
 #include "server/record/run_records.hpp"
+#include "server/record/sensor_files.hpp"
 #include "server/record/truth_samples.hpp"
 #include "server/scenario/scenario.hpp"
 #include "server/scoring/run_metrics.hpp"
@@ -56,6 +58,10 @@ class RunRecorder {
                    const std::shared_ptr<const Image>& image,
                    const Image16& deep,
                    std::size_t camera);
+  /// Samples of the aircraft's other sensors, in the order of their times.
+  Status add_sensor_samples(const SensorSamples& samples) { return sensor_files_.add(samples); }
+  /// @pre the scenario compares recorded images
+  Status add_agreement(const AgreementRow& row);
   Status add_late_frame(std::int64_t frame, std::int64_t t_ns);
   Status add_event(std::size_t estimator, EstimatorEvent event);
   /// Log lines of an estimator; beyond a limit further lines are dropped.
@@ -122,8 +128,10 @@ class RunRecorder {
   RunRecords records_;
   std::vector<LineFile> frame_lines_;  ///< by camera
   std::optional<LineFile> log_lines_;
-  std::optional<LineFile> vehicle_lines_;  ///< created with the first line
+  std::optional<LineFile> vehicle_lines_;    ///< created with the first line
+  std::optional<LineFile> agreement_lines_;  ///< if recorded images are compared
   std::optional<TruthSampleFile> truth_samples_;
+  SensorFilesWriter sensor_files_;
   std::vector<EstimatorState> estimators_;
 };
 

@@ -1,6 +1,10 @@
 // One camera of the aircraft, as the scenario describes it.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
 #include <string>
 
 #include "core/camera/camera_model.hpp"
@@ -13,6 +17,24 @@ namespace overfly::server {
 
 inline constexpr const char* kOnlyCameraName = "camera0";  ///< name of a scenario's single `camera`
 
+/// What the time stamps of recorded images count from.
+enum class ImageClock {
+  kFlight,      ///< the start of the flight
+  kUtc,         ///< 1970: Unix time
+  kLog,         ///< the zero of the clock of the log that is flown
+  kFirstImage,  ///< whatever it is: the first image is at the start of the flight
+};
+
+/// Recorded images of a real camera.
+struct RecordedImages {
+  std::filesystem::path source;  ///< a log, a video or a folder
+  std::string topic;             ///< or channel, or camera of a data set; empty: see the schema
+  std::optional<std::filesystem::path> times;  ///< of the images of a plain folder
+  ImageClock clock = ImageClock::kFlight;
+  std::int64_t time_offset_ns = 0;          ///< added to the stamps
+  std::optional<std::size_t> compare_with;  ///< index of a camera with the same model and mount
+};
+
 struct CameraSpec {
   std::string name = kOnlyCameraName;  ///< unique in the scenario; used in file names
   CameraModel model;
@@ -23,6 +45,7 @@ struct CameraSpec {
   sensor::VibrationModel vibration;
   renderer::RenderQuality quality = renderer::RenderQuality::kTrilinear;
   renderer::Atmosphere atmosphere;
+  std::optional<RecordedImages> images;  ///< take the place of rendered ones
 };
 
 }  // namespace overfly::server

@@ -6,7 +6,7 @@
 namespace overfly::server {
 namespace {
 
-constexpr std::array<std::pair<FaultKind, const char*>, 8> kNames = {
+constexpr std::array<std::pair<FaultKind, const char*>, 9> kNames = {
     {{FaultKind::kDroppedFrames, "dropped_frames"},
      {FaultKind::kFrozenFrame, "frozen_frame"},
      {FaultKind::kSaturationBurst, "saturation_burst"},
@@ -14,7 +14,8 @@ constexpr std::array<std::pair<FaultKind, const char*>, 8> kNames = {
      {FaultKind::kWaterDrop, "water_drop"},
      {FaultKind::kBlackout, "blackout"},
      {FaultKind::kStampJitter, "stamp_jitter"},
-     {FaultKind::kStampOffset, "stamp_offset"}}};
+     {FaultKind::kStampOffset, "stamp_offset"},
+     {FaultKind::kGpsOutage, "gps_outage"}}};
 
 }  // namespace
 

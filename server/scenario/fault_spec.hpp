@@ -1,4 +1,4 @@
-// A camera fault, as the scenario describes it.
+// A fault of a camera or of the satellite receiver, as the scenario describes it.
 #pragma once
 
 #include <cstdint>
@@ -19,13 +19,14 @@ enum class FaultKind {
   kBlackout,
   kStampJitter,  ///< random jitter of the stamps given to estimators
   kStampOffset,  ///< constant offset of the stamps given to estimators
+  kGpsOutage,    ///< the satellite receiver has no fix
 };
 
 /// "dropped_frames", "frozen_frame", "saturation_burst", ...
 [[nodiscard]] const char* to_string(FaultKind kind);
 [[nodiscard]] std::optional<FaultKind> fault_kind_from(const std::string& text);
 
-/// Active for frames stamped in [at_ns, end_ns).
+/// Active for frames stamped, and satellite fixes measured, in [at_ns, end_ns).
 struct FaultSpec {
   FaultKind kind = FaultKind::kBlackout;
   std::int64_t at_ns = 0;

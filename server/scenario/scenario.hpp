@@ -18,6 +18,8 @@
 #include "flight/flight.hpp"
 #include "flight/live/fly_live.hpp"
 #include "flight/replay/logged_flight.hpp"
+#include "flight/ros/ros_flight.hpp"
+#include "flight/sensors/sensor_models.hpp"
 #include "server/scenario/camera_spec.hpp"
 #include "server/scenario/estimator_spec.hpp"
 #include "server/scenario/fault_spec.hpp"
@@ -77,6 +79,11 @@ struct MissionFile {
   std::optional<Eigen::Vector2d> home_m;
 };
 
+/// The truth that another run recorded.
+struct RunFlight {
+  std::filesystem::path folder;  ///< of that run
+};
+
 /// A pose file or a flight log, which the file's content decides.
 struct LoggedFlight {
   std::filesystem::path file;
@@ -103,10 +110,23 @@ struct Scenario {
   using BuiltinWorld = server::BuiltinWorld;
   std::variant<BuiltinWorld, std::filesystem::path, terrain::WorldSpec> world;
 
-  /// The course, a pose file or flight log, a live vehicle, or a mission.
+  /// The course, a pose file or flight log, a live vehicle by MAVLink or ROS, a mission, or another
+  /// run.
   using LoggedFlight = server::LoggedFlight;
-  std::variant<flight::CourseParameters, LoggedFlight, flight::live::LiveFlight, MissionFile>
+  std::variant<flight::CourseParameters,
+               LoggedFlight,
+               flight::live::LiveFlight,
+               flight::ros_live::RosFlight,
+               MissionFile,
+               RunFlight>
       flight;
+  /// Nobody can fly it again.
+  [[nodiscard]] bool is_live() const {
+    return std::holds_alternative<flight::live::LiveFlight>(flight) ||
+           std::holds_alternative<flight::ros_live::RosFlight>(flight);
+  }
+  /// Index of the estimator whose answers are sent to the live vehicle.
+  std::optional<std::size_t> feedback_estimator;
   /// Empty: coordinated turns.
   std::optional<CourseDynamics> course_dynamics;
   /// The course starts at the world's runway, which is known only when the world is open.
@@ -119,7 +139,12 @@ struct Scenario {
   /// At least one; the first is the main one.
   std::vector<CameraSpec> cameras{CameraSpec{}};
   [[nodiscard]] const CameraSpec& main_camera() const { return cameras.front(); }
-  FrameRate rate;  ///< of all cameras: they share their time stamps
+  /// The camera with recorded images; null if there is none.
+  [[nodiscard]] const CameraSpec* recorded_camera() const;
+  /// Of all cameras: they share their time stamps. With recorded images these are the stamps of
+  /// the images, and the rate is nominal.
+  FrameRate rate;
+  flight::SensorModels sensors;  ///< besides the cameras
   std::vector<FaultSpec> faults;
   std::vector<EstimatorSpec> estimators;
   RendererChoice renderer;

@@ -1,11 +1,13 @@
 // How many times faster than real time the flight model runs: each airframe at 400 Hz in banked
-// flight through turbulence, on one core. Run: dynamics_bench
+// flight through turbulence, on one core; and with its autopilot. Run: dynamics_bench
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
 #include <string>
 
+#include "core/measure/processor_time.hpp"
 #include "flight/dynamics/flight_speed.hpp"
+#include "tests/flight/autopilot/flights.hpp"
 #include "tests/flight/dynamics/airframes.hpp"
 
 namespace overfly::dynamics {
@@ -24,9 +26,28 @@ void flight(benchmark::State& state, const std::string& name) {
   state.counters["times_real_time"] = best;
 }
 
+/// The same with the autopilot at 100 Hz, circling in moderate turbulence.
+void mission(benchmark::State& state, const std::string& name) {
+  autopilot::MissionSetup setup = autopilot::testing::setup_of(name);
+  setup.turbulence = TurbulenceLevel::kModerate;
+  setup.duration_max_s = 60.0;
+  setup.mission.items = {autopilot::testing::item_of(autopilot::MissionCommand::kLoiter,
+                                                     autopilot::testing::waypoint(0, 200, 300))};
+  double best = 0.0;
+  for (auto _ : state) {
+    const double before_s = thread_cpu_s();
+    autopilot::testing::fly(setup, [](const autopilot::MissionFlight&) { return true; });
+    best = std::max(best, setup.duration_max_s / (thread_cpu_s() - before_s));
+  }
+  state.counters["times_real_time"] = best;
+}
+
 BENCHMARK_CAPTURE(flight, aerosonde, "aerosonde")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(flight, foam_trainer, "foam_trainer")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(flight, piper_cub_third, "piper_cub_third")->Unit(benchmark::kMillisecond);
+
+BENCHMARK_CAPTURE(mission, foam_trainer, "foam_trainer")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(mission, piper_cub_third, "piper_cub_third")->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace overfly::dynamics

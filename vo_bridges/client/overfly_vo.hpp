@@ -28,6 +28,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace overfly_vo {
@@ -54,6 +55,38 @@ struct ImuSample {
   std::array<double, 3> angular_rate_rad_s{};
 };
 
+struct BarometerSample {
+  std::int64_t t_ns = 0;
+  double pressure_pa = 0.0;  ///< static
+  double temperature_k = 0.0;
+};
+
+struct GpsSample {
+  std::int64_t t_ns = 0;          ///< when it was measured
+  std::int64_t delivered_ns = 0;  ///< when the receiver sent it
+  bool has_fix = false;           ///< false: all that follows is NaN
+  double lat_deg = 0.0, lon_deg = 0.0, alt_ellipsoid_m = 0.0;
+  std::array<double, 3> velocity_ned_m_s{};
+  /// Standard deviations: along north and east, vertical, along each axis.
+  double horizontal_accuracy_m = 0.0, vertical_accuracy_m = 0.0, speed_accuracy_m_s = 0.0;
+};
+
+struct AirspeedSample {
+  std::int64_t t_ns = 0;
+  double differential_pressure_pa = 0.0;
+  double indicated_airspeed_m_s = 0.0;  ///< in air of 1.225 kg/m^3
+};
+
+struct MagnetometerSample {
+  std::int64_t t_ns = 0;
+  std::array<double, 3> field_ut{};  ///< body axes
+};
+
+struct RangeSample {
+  std::int64_t t_ns = 0;
+  double range_m = 0.0;  ///< to the ground along the body's z axis; infinity = no echo
+};
+
 struct Frame {
   std::int64_t index = 0;        ///< gaps are dropped frames
   std::int64_t t_ns = 0;         ///< mid exposure of the middle row
@@ -62,7 +95,13 @@ struct Frame {
   int height_px = 0;
   const std::uint8_t* pixels = nullptr;  ///< grey, without padding; valid during track()
   bool debug_wanted = false;             ///< return a debug image and map points
-  std::vector<ImuSample> imu;            ///< since the previous frame
+  /// Samples of the aircraft's sensors since the previous frame; empty without the sensor.
+  std::vector<ImuSample> imu;
+  std::vector<BarometerSample> barometer;
+  std::vector<GpsSample> gps;
+  std::vector<AirspeedSample> airspeed;
+  std::vector<MagnetometerSample> magnetometer;
+  std::vector<RangeSample> range;
 };
 
 struct DebugImage {
@@ -150,7 +189,8 @@ enum Type : std::uint16_t {
   kMapPoints = 7,
   kParameters = 8,
   kLog = 9,
-  kStop = 11
+  kStop = 11,
+  kSensors = 12
 };
 constexpr std::size_t kHeaderBytes = 12;
 constexpr std::size_t kPayloadLimitBytes = 65U << 20U;
@@ -466,6 +506,61 @@ inline Frame frame_from(const std::string& payload, const Connection& connection
   return frame;
 }
 
+/// Reads numbers of 8 bytes one after another.
+class SampleReader {
+ public:
+  SampleReader(const std::string& payload, std::size_t at) : payload_(payload), at_(at) {}
+  std::int64_t whole() { return get<std::int64_t>(payload_, next()); }
+  double number() { return get<double>(payload_, next()); }
+  /// Appends `count` samples, each read by `read`.
+  template <typename Sample, typename Read>
+  void list(std::uint32_t count, std::vector<Sample>* samples, Read read) {
+    for (; count > 0; --count) {
+      Sample sample;
+      sample.t_ns = whole();
+      read(&sample);
+      samples->push_back(sample);
+    }
+  }
+
+ private:
+  std::size_t next() {
+    const std::size_t at = at_;
+    at_ += 8;
+    return at;
+  }
+  const std::string& payload_;
+  std::size_t at_;
+};
+
+/// Takes over the samples of a SENSORS message.
+inline void add_samples(const std::string& payload, Frame* frame) {
+  SampleReader reader(payload, 32);
+  reader.list(get<std::uint32_t>(payload, 8), &frame->barometer, [&](BarometerSample* s) {
+    s->pressure_pa = reader.number();
+    s->temperature_k = reader.number();
+  });
+  reader.list(get<std::uint32_t>(payload, 12), &frame->gps, [&](GpsSample* s) {
+    s->delivered_ns = reader.whole();
+    s->has_fix = reader.whole() == 3;
+    for (double* value : {&s->lat_deg, &s->lon_deg, &s->alt_ellipsoid_m}) *value = reader.number();
+    for (double& value : s->velocity_ned_m_s) value = reader.number();
+    s->horizontal_accuracy_m = reader.number();
+    s->vertical_accuracy_m = reader.number();
+    s->speed_accuracy_m_s = reader.number();
+  });
+  reader.list(get<std::uint32_t>(payload, 16), &frame->airspeed, [&](AirspeedSample* s) {
+    s->differential_pressure_pa = reader.number();
+    s->indicated_airspeed_m_s = reader.number();
+  });
+  reader.list(get<std::uint32_t>(payload, 20), &frame->magnetometer, [&](MagnetometerSample* s) {
+    for (double& value : s->field_ut) value = reader.number();
+  });
+  reader.list(get<std::uint32_t>(payload, 24), &frame->range, [&](RangeSample* s) {
+    s->range_m = reader.number();
+  });
+}
+
 inline void send_debug(Connection& connection, const Frame& frame, const Answer& answer) {
   const DebugImage& image = answer.debug_image;
   if (!image.pixels.empty()) {
@@ -528,8 +623,13 @@ inline void log_line(Connection& connection, Level level, const std::string& lin
   connection.send(kLog, payload + line.substr(0, 4096));
 }
 
-inline void answer_frame(Estimator& estimator, Connection& connection, const std::string& payload) {
-  const Frame frame = frame_from(payload, connection);
+/// @param sensors  payload of the SENSORS message before this frame; empty = none
+inline void answer_frame(Estimator& estimator,
+                         Connection& connection,
+                         const std::string& payload,
+                         const std::string& sensors) {
+  Frame frame = frame_from(payload, connection);
+  if (!sensors.empty()) add_samples(sensors, &frame);
   const std::uint32_t crc32 = crc32_of(
       frame.pixels,
       static_cast<std::size_t>(frame.width_px) * static_cast<std::size_t>(frame.height_px));
@@ -553,6 +653,7 @@ class Greeting {
 inline void greet(Estimator& estimator, Connection& connection) {
   std::string own = "protocol 1\nname ";
   own.append(estimator.name()).append("\nversion ").append(estimator.version()).append("\n");
+  own += "sensors true\n";
   if (connection.local()) own += "shared_memory true\n";
   connection.send(kHello, own);
   const Message hello = connection.receive();
@@ -568,11 +669,15 @@ inline void greet(Estimator& estimator, Connection& connection) {
 }
 
 inline void serve(Estimator& estimator, Connection& connection) {
+  std::string sensors;
   for (;;) {
-    const Message message = connection.receive();
+    Message message = connection.receive();
     if (message.type == kStop) return;
     if (message.type == kFrame) {
-      answer_frame(estimator, connection, message.payload);
+      answer_frame(estimator, connection, message.payload, sensors);
+      sensors.clear();
+    } else if (message.type == kSensors) {
+      sensors = std::move(message.payload);
     } else if (message.type == kCalibration) {
       estimator.calibrate(calibration_from(message.payload, connection));
       ready(connection, kCalibration);

@@ -7,6 +7,7 @@ One file, Python 3.9, standard library only:
 """
 
 import array
+import collections
 import dataclasses
 import math
 import mmap
@@ -35,6 +36,18 @@ class Calibration:
     rate_hz: float  # 0 = unknown
 
 
+# Samples of sensors. Axes of the body are forward, right, down.
+Barometer = collections.namedtuple("Barometer", "t_ns pressure_pa temperature_k")
+# t_ns: measured; delivered_ns: sent by the receiver. Without a fix all that follows is NaN.
+# Accuracies are standard deviations.
+Gps = collections.namedtuple(
+    "Gps", "t_ns delivered_ns has_fix lat_deg lon_deg alt_ellipsoid_m v_north_m_s v_east_m_s "
+    "v_down_m_s horizontal_accuracy_m vertical_accuracy_m speed_accuracy_m_s")
+Airspeed = collections.namedtuple("Airspeed", "t_ns differential_pressure_pa indicated_airspeed_m_s")
+Magnetometer = collections.namedtuple("Magnetometer", "t_ns x_ut y_ut z_ut")
+Range = collections.namedtuple("Range", "t_ns range_m")  # infinity = no echo
+
+
 @dataclasses.dataclass
 class Frame:
     index: int  # gaps are dropped frames
@@ -44,7 +57,13 @@ class Frame:
     height_px: int
     pixels: memoryview  # grey bytes, row by row, without padding; valid during track()
     debug_wanted: bool  # return a debug image and map points
-    imu: list  # since the previous frame: (t_ns, (x, y, z) m/s2, (x, y, z) rad/s), body axes
+    # Since the previous frame; empty without the sensor.
+    imu: list  # (t_ns, (x, y, z) m/s2, (x, y, z) rad/s), body axes
+    barometer: list = ()  # of Barometer
+    gps: list = ()  # of Gps
+    airspeed: list = ()  # of Airspeed
+    magnetometer: list = ()  # of Magnetometer
+    range: list = ()  # of Range
 
     def numpy(self):
         """The pixels as an array of height x width, without a copy. Requires numpy."""
@@ -100,10 +119,16 @@ class Estimator:
 
 # Implementation.
 _HELLO, _READY, _CALIBRATION, _FRAME, _ANSWER, _DEBUG_IMAGE = 1, 2, 3, 4, 5, 6
-_MAP_POINTS, _PARAMETERS, _LOG, _STOP = 7, 8, 9, 11
+_MAP_POINTS, _PARAMETERS, _LOG, _STOP, _SENSORS = 7, 8, 9, 11, 12
 _HEADER = struct.Struct("<4sHHI")
 _FRAME_HEAD = struct.Struct("<qqqIIIIII")
 _IMU = struct.Struct("<q6d")
+_SENSORS_HEAD = struct.Struct("<q6I")
+_SAMPLES = (("barometer", Barometer, struct.Struct("<q2d")),
+            ("gps", Gps, struct.Struct("<qqq9d")),
+            ("airspeed", Airspeed, struct.Struct("<q2d")),
+            ("magnetometer", Magnetometer, struct.Struct("<q3d")),
+            ("range", Range, struct.Struct("<qd")))
 
 
 def _text_of(parameters):
@@ -198,6 +223,18 @@ def _frame_from(payload, connection):
     return Frame(index, t_ns, exposure_ns, width, height, pixels, bool(flags & 1), imu)
 
 
+def _add_samples(payload, frame):
+    counts = _SENSORS_HEAD.unpack_from(payload)[1:6]
+    at = _SENSORS_HEAD.size
+    for (name, kind, layout), count in zip(_SAMPLES, counts):
+        end = at + count * layout.size
+        samples = [kind(*values) for values in layout.iter_unpack(payload[at:end])]
+        if kind is Gps:
+            samples = [sample._replace(has_fix=sample.has_fix == 3) for sample in samples]
+        setattr(frame, name, samples)
+        at = end
+
+
 def _send_answer(connection, frame, answer, crc32):
     if frame.debug_wanted and answer.debug_image:
         width, height, channels, pixels = answer.debug_image
@@ -226,7 +263,7 @@ def _send_answer(connection, frame, answer, crc32):
 def _greet(estimator, connection):
     offer = "shared_memory true\n" if connection.local else ""
     connection.send(_HELLO, f"protocol 1\nname {estimator.name}\n"
-                            f"version {estimator.version}\n{offer}".encode())
+                            f"version {estimator.version}\nsensors true\n{offer}".encode())
     message_type, payload = connection.receive()
     if message_type != _HELLO:
         raise ConnectionError("the server did not send HELLO")
@@ -242,14 +279,20 @@ def _greet(estimator, connection):
 
 
 def _serve(estimator, connection):
+    sensors = None
     while True:
         message_type, payload = connection.receive()
         if message_type == _STOP:
             return
         if message_type == _FRAME:
             frame = _frame_from(payload, connection)
+            if sensors:
+                _add_samples(sensors, frame)
+            sensors = None
             crc32 = zlib.crc32(frame.pixels)
             _send_answer(connection, frame, estimator.track(frame), crc32)
+        elif message_type == _SENSORS:
+            sensors = payload
         elif message_type == _CALIBRATION:
             estimator.calibrate(_calibration_from(payload, connection))
             connection.send(_READY, struct.pack("<I", _CALIBRATION))

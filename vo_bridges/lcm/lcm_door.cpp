@@ -67,6 +67,8 @@ class LcmEstimator final : public VoPort {
 
   Status begin_session(const VoFrame& frame);
   Result<Answer> ask(const VoFrame& frame);
+  /// Publishes the frame for the first time, after the samples since the last published one.
+  Status send(const VoFrame& frame);
   Result<bool> wait_for_estimator(Clock::time_point deadline);
   Result<Answer> wait_for_answer(const VoFrame& frame, Clock::time_point deadline);
   Error no_estimator() const;
@@ -81,6 +83,7 @@ class LcmEstimator final : public VoPort {
   const bool hears_;  ///< false: no messages can be received from this network
   PoseIntake poses_;
   std::optional<VoFrame> previous_;
+  SensorSamples unsent_samples_;
   std::optional<Error> gone_;
   Clock::time_point start_deadline_;
   bool in_session_ = false;
@@ -100,6 +103,9 @@ Result<VoEstimate> LcmEstimator::track(const VoFrame& frame) {
   if (gone_) return *gone_;
   previous_ = frame;
   previous_->image.reset();  // its size stays in the intrinsics
+  previous_->sensors = {};
+  append(unsent_samples_, SensorSamples(frame.sensors));
+  drop_older_than(unsent_samples_, kOldestSampleNs);
   Result<Answer> answer = ask(frame);
   if (!answer) return ended_by(answer.error());
   VoEstimate estimate = complete(std::move(*answer), frame);
@@ -146,7 +152,7 @@ Result<LcmEstimator::Answer> LcmEstimator::ask(const VoFrame& frame) {
     start_deadline_ = Clock::now() + from_seconds(options_.start_timeout_s);
   }
   if (!hears_) {
-    if (Status status = link_->send(frame); !status) return status.error();
+    if (Status status = send(frame); !status) return status.error();
     return Answer{};
   }
   const auto patience = Clock::now() + from_seconds(options_.answer_timeout_s);
@@ -158,6 +164,11 @@ Result<LcmEstimator::Answer> LcmEstimator::ask(const VoFrame& frame) {
   const bool starting = options_.lockstep && !had_pose_ && silent_frames_ == 0;
   return wait_for_answer(frame,
                          starting ? std::max(start_deadline_, answer_deadline) : answer_deadline);
+}
+
+Status LcmEstimator::send(const VoFrame& frame) {
+  if (Status status = link_->send(std::exchange(unsent_samples_, {})); !status) return status;
+  return link_->send(frame);
 }
 
 Result<bool> LcmEstimator::wait_for_estimator(Clock::time_point deadline) {
@@ -180,7 +191,7 @@ Result<bool> LcmEstimator::wait_for_estimator(Clock::time_point deadline) {
 
 Result<LcmEstimator::Answer> LcmEstimator::wait_for_answer(const VoFrame& frame,
                                                            Clock::time_point deadline) {
-  if (Status status = link_->send(frame); !status) return status.error();
+  if (Status status = send(frame); !status) return status.error();
   int sends = 1;
   bool stopping = false;
   while (Clock::now() < deadline) {

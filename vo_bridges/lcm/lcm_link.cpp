@@ -4,6 +4,7 @@
 #include <chrono>
 #include <utility>
 
+#include "middleware/lcm/sensor_messages.hpp"
 #include "vo_bridges/estimator_text.hpp"
 
 namespace overfly {
@@ -71,6 +72,15 @@ void LcmLink::begin(overfly_lcm::calibration_t calibration) {
 
 Status LcmLink::announce() {
   return lcm::publish_message(*node_, prefix_ + "CALIBRATION", calibration_);
+}
+
+Status LcmLink::send(const SensorSamples& samples) {
+  return lcm::with_each_message(samples, [&](const char* name, auto message) {
+    const std::string channel = prefix_ + name;
+    message.session = session();
+    message.sequence = ++sample_counts_[channel];
+    return lcm::publish_message(*node_, channel, message);
+  });
 }
 
 Status LcmLink::send(const VoFrame& frame) {

@@ -46,6 +46,8 @@ class LcmLink {
   /// Publishes the calibration. An estimator that receives it for the first time starts a new
   /// session.
   [[nodiscard]] Status announce();
+  /// Publishes samples of sensors, each once.
+  [[nodiscard]] Status send(const SensorSamples& samples);
   /// Publishes an image, then the time. The image's answer is expected from now on.
   [[nodiscard]] Status send(const VoFrame& frame);
   /// Publishes the time of the image again: the estimator repeats its answer or reports that the
@@ -84,7 +86,8 @@ class LcmLink {
   overfly_lcm::calibration_t calibration_{};
   overfly_lcm::sim_time_t time_{};  ///< last published
   std::atomic<std::int64_t> session_ = 0;
-  std::atomic<std::int64_t> sequence_ = 0;  ///< of the last published image
+  std::atomic<std::int64_t> sequence_ = 0;             ///< of the last published image
+  std::map<std::string, std::int64_t> sample_counts_;  ///< published, by channel
   std::atomic<int> width_px_ = 0;
   std::atomic<int> height_px_ = 0;
   std::atomic<bool> debug_wanted_ = false;

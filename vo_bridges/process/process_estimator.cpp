@@ -53,7 +53,7 @@ class ProcessEstimator final : public VoPort {
   static VoFrame without_image(const VoFrame& frame) {
     VoFrame copy = frame;
     copy.image.reset();
-    copy.imu.clear();
+    copy.sensors = {};
     return copy;
   }
 

@@ -62,6 +62,8 @@ class Session {
   /// Waits for the answer to the current frame; empty at the deadline.
   [[nodiscard]] Result<std::optional<VoEstimate>> wait_answer(Clock::time_point deadline);
   void send(const VoFrame& frame, bool debug_wanted);
+  /// The frame with the samples of frames that were not sent.
+  [[nodiscard]] VoFrame with_unsent_samples(const VoFrame& frame);
   /// Handles a message that may arrive at any time. @return whether it was one
   [[nodiscard]] Result<bool> take_notice(const Message& message);
   [[nodiscard]] Status take_parameters(const Message& message);
@@ -79,6 +81,7 @@ class Session {
   bool debug_under_way_ = false;
   bool parameters_overflow_noted_ = false;
   EstimatorHello hello_;
+  SensorSamples unsent_samples_;  // of frames that were not sent
   std::optional<FrameMemory> memory_;
   std::optional<VoFrame> under_way_;  // sent but not answered; without its image
   VoEstimate extra_;                  // its debug image and map points

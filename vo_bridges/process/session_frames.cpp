@@ -60,9 +60,15 @@ void Session::send(const VoFrame& frame, bool debug_wanted) {
     sending.slot = memory_->store(*frame.image);
   }
   channel_->begin_frame(frame.image->data.size());
+  if (hello_.takes_sensors) {
+    if (std::string sensors = sensors_message(frame); !sensors.empty()) {
+      channel_->enqueue(std::move(sensors));
+    }
+  }
   channel_->enqueue(frame_message(frame, sending), memory_ ? nullptr : frame.image);
   under_way_ = frame;
   under_way_->image.reset();
+  under_way_->sensors = {};
   debug_under_way_ = debug_wanted;
   extra_ = {};
   sent_at_ = Clock::now();
@@ -146,13 +152,24 @@ Result<std::optional<VoEstimate>> Session::wait_answer(Clock::time_point deadlin
   }
 }
 
-Result<std::optional<VoEstimate>> Session::track(const VoFrame& frame, bool debug_wanted) {
+VoFrame Session::with_unsent_samples(const VoFrame& frame) {
+  VoFrame complete = frame;
+  if (unsent_samples_.empty()) return complete;
+  SensorSamples samples = std::exchange(unsent_samples_, {});
+  append(samples, std::move(complete.sensors));
+  drop_older_than(samples, kOldestSampleNs);
+  complete.sensors = std::move(samples);
+  return complete;
+}
+
+Result<std::optional<VoEstimate>> Session::track(const VoFrame& newest, bool debug_wanted) {
   if (ended_) return *ended_;
+  VoFrame frame = with_unsent_samples(newest);
   if (const std::size_t bytes = frame_payload_bytes(frame, memory_.has_value());
       bytes > kFrameLimitBytes) {
     return Error{ErrorCode::kInvalidArgument,
                  "frame " + std::to_string(frame.index) + ": with " +
-                     std::to_string(frame.imu.size()) + " inertial samples FRAME has " +
+                     std::to_string(frame.sensors.imu.size()) + " inertial samples FRAME has " +
                      std::to_string(bytes) + " bytes: must be at most " +
                      std::to_string(kFrameLimitBytes)};
   }
@@ -166,6 +183,8 @@ Result<std::optional<VoEstimate>> Session::track(const VoFrame& frame, bool debu
     send(frame, debug_wanted);
     answer = wait_answer(deadline);
     if (!answer) return end(answer.error());
+  } else {
+    unsent_samples_ = std::move(frame.sensors);
   }
   if (*answer) return answer;
   const double silent_s = std::chrono::duration<double>(Clock::now() - sent_at_).count();

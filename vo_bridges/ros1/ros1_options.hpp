@@ -27,6 +27,8 @@ struct Ros1EstimatorOptions {
   /// True if the pose's camera has ROS body axes (REP 103: x forward, y left, z up) instead of
   /// optical axes.
   bool pose_in_body_axes = false;
+  /// Publishes the samples of the aircraft's sensors; set by the run if there are any.
+  bool publish_sensors = false;
   bool publish_clock = true;  ///< /clock, for nodes under use_sim_time
   /// Publishes the estimate on /tf, as camera_frame in vo_frame, for observers. Not with kTf.
   bool publish_tf = false;

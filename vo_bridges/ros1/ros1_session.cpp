@@ -198,6 +198,7 @@ Result<VoEstimate> Session::track(const VoFrame& frame) {
   if (ended_) return *ended_;
   previous_ = frame;
   previous_->image.reset();  // its size stays in the intrinsics
+  previous_->sensors = {};
   return exchange(frame, *stamp_ns);
 }
 

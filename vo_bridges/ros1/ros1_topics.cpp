@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "middleware/ros1/messages.hpp"
+#include "middleware/ros1/sensor_messages.hpp"
 #include "vo_bridges/ros1/own_topics.hpp"
 
 namespace overfly::ros1 {
@@ -12,6 +13,9 @@ namespace {
 
 constexpr const char* kClock = "/clock";
 constexpr const char* kTransforms = "/tf";
+constexpr const char* kSensors = "/sensors";
+/// Samples come in bursts, with each image: more than ten seconds of an IMU at 200 Hz.
+constexpr int kSensorQueue = 2500;
 
 std::int64_t ns_of(const ros::Time& time) { return static_cast<std::int64_t>(time.toNSec()); }
 
@@ -33,6 +37,7 @@ Topics::~Topics() {
   for (ros::Publisher* publisher : {&images_, &infos_, &clock_, &transforms_}) {
     publisher->shutdown();
   }
+  for (auto& [topic, publisher] : sensors_) publisher.shutdown();
   spinner_.stop();
   queue_.disable();
   node_.release(claimed_);
@@ -53,19 +58,23 @@ Result<std::unique_ptr<Topics>> Topics::open(Node& node,
 }
 
 template <typename M>
-Status Topics::advertise(const std::string& topic, ros::Publisher& publisher, bool latched) {
+Status Topics::advertise(const std::string& topic,
+                         ros::Publisher& publisher,
+                         bool latched,
+                         int queue_size) {
   const auto told = [this, topic](const char* what) {
     return [this, topic, what](const ros::SingleSubscriberPublisher& subscriber) {
       log_->add(subscriber.getSubscriberName() + what + topic);
     };
   };
   try {
-    publisher = handle_.advertise<M>(topic,
-                                     static_cast<std::uint32_t>(options_.queue_size),
-                                     told(" subscribed to "),
-                                     told(" left "),
-                                     ros::VoidConstPtr(),
-                                     latched);
+    publisher = handle_.advertise<M>(
+        topic,
+        static_cast<std::uint32_t>(queue_size > 0 ? queue_size : options_.queue_size),
+        told(" subscribed to "),
+        told(" left "),
+        ros::VoidConstPtr(),
+        latched);
   } catch (const std::exception& failure) {
     return Error{ErrorCode::kInternal, "topic " + topic + ": " + failure.what()};
   }
@@ -111,7 +120,20 @@ Status Topics::advertise_all() {
   if (status && options_.publish_tf) {
     status = advertise<TransformsMessage>(kTransforms, transforms_);
   }
+  if (status && options_.publish_sensors) status = advertise_sensors();
   return status ? advertise<ImageMessage>(options_.image_topic, images_) : status;
+}
+
+Status Topics::advertise_sensors() {
+  const OwnTopic own{"sensors", kSensors};
+  if (node_.claim({own})) {
+    log_->add("another estimator of this process publishes the topics of /sensors");
+    return {};
+  }
+  claimed_.push_back(own);
+  return with_each_topic([&](const char* topic, const auto& message) {
+    return advertise<std::decay_t<decltype(message)>>(topic, sensors_[topic], false, kSensorQueue);
+  });
 }
 
 template <typename M, typename Handle>
@@ -197,10 +219,22 @@ void Topics::publish_calibration(const VoFrame& frame, std::int64_t stamp_ns) {
 
 void Topics::publish(const VoFrame& frame, std::int64_t stamp_ns) {
   publish_calibration(frame, stamp_ns);
+  if (!sensors_.empty()) publish_samples(frame.sensors, stamp_ns - frame.t_ns);
   ImageMessage image = message_from(*frame.image);
   image.header.stamp = time_from_ns(stamp_ns);
   image.header.frame_id = options_.camera_frame;
   images_.publish(image);
+}
+
+void Topics::publish_samples(const SensorSamples& samples, std::int64_t offset_ns) {
+  // It cannot fail: an ended subscriber only loses its messages.
+  static_cast<void>(with_each_message(
+      samples,
+      [&](const char* topic, std::int64_t measured_ns, std::int64_t /*available*/, auto message) {
+        message.header.stamp = time_from_ns(measured_ns + offset_ns);
+        sensors_.at(topic).publish(message);
+        return Status();
+      }));
 }
 
 void Topics::publish_estimate(const Pose& T_vo_camera, std::int64_t stamp_ns) {

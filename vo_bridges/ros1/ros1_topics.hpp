@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -43,7 +44,8 @@ class Topics {
 
   /// Publishes time and calibration; late subscribers receive the last calibration.
   void publish_calibration(const VoFrame& frame, std::int64_t stamp_ns);
-  /// Publishes time, calibration, then the image: a node that has the image has the others.
+  /// Publishes time, calibration, samples of sensors, then the image: a node that has the image has
+  /// the others.
   void publish(const VoFrame& frame, std::int64_t stamp_ns);
   /// Does nothing without publish_tf.
   void publish_estimate(const Pose& T_vo_camera, std::int64_t stamp_ns);
@@ -70,7 +72,13 @@ class Topics {
   Status advertise_all();
   Status subscribe_all();
   template <typename M>
-  Status advertise(const std::string& topic, ros::Publisher& publisher, bool latched = false);
+  Status advertise(const std::string& topic,
+                   ros::Publisher& publisher,
+                   bool latched = false,
+                   int queue_size = 0);
+  Status advertise_sensors();
+  /// @param offset_ns  ROS time minus the flight's
+  void publish_samples(const SensorSamples& samples, std::int64_t offset_ns);
   template <typename M, typename Handle>
   Status subscribe(const std::string& topic, Handle handle, ros::Subscriber& subscriber);
   Status subscribe_pose();
@@ -85,6 +93,7 @@ class Topics {
   ros::CallbackQueue queue_;
   ros::NodeHandle handle_;
   ros::Publisher images_, infos_, clock_, transforms_;
+  std::map<std::string, ros::Publisher> sensors_;  ///< by topic
   ros::Subscriber poses_, debug_images_;
   ros::AsyncSpinner spinner_{1, &queue_};
 };

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/text/number_text.hpp"
 #include "core/time.hpp"
 #include "flight/logs/boot_clock.hpp"
 #include "flight/logs/dataflash/format_table.hpp"
@@ -232,8 +233,8 @@ void DataflashPass::report() {
     if (count > 0) sink_.warning(std::to_string(count) + " " + text);
   };
   warn(skipped_bytes_,
-       "bytes in " + std::to_string(damaged_places_) +
-           " places belong to no complete record and were skipped");
+       "bytes in " + counted(damaged_places_, "place") +
+           " belong to no complete record and were skipped");
   warn(left_out_records_,
        "records were left out: only " + std::to_string(kMaxRecordStreams) + " streams are read");
   warn(clock_.implausible(), "stamps of records are implausible and were not used");

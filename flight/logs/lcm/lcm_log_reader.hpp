@@ -1,17 +1,11 @@
 // Reads event logs of LCM.
 #pragma once
 
-#include <cstdint>
-#include <span>
-
 #include "core/outside/forward_reader.hpp"
 #include "core/result.hpp"
 #include "flight/logs/log_sink.hpp"
 
 namespace overfly::flight::logs {
-
-/// Whether the first bytes of a file are those of an LCM event log.
-[[nodiscard]] bool is_lcm_log(std::span<const std::uint8_t> head);
 
 /// Reads an LCM event log once, from start to end. LCM is not needed.
 ///

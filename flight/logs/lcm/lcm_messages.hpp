@@ -24,6 +24,10 @@ enum class LcmType : std::uint64_t {
   kOther = 0,
 };
 
+/// Fingerprint of bot_core.image_t of the libbot library (field for field the type of many robots'
+/// logs), as lcm-gen computes it.
+inline constexpr std::uint64_t kBotCoreImage = 0x14739ffe13d5f5f0;
+
 /// A number at an offset, big-endian; 0 if the bytes end before it.
 template <typename T>
 [[nodiscard]] T big_endian_at(std::span<const std::uint8_t> bytes, std::size_t offset) {

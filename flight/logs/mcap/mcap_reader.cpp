@@ -19,14 +19,15 @@ namespace overfly::flight::logs {
 namespace {
 
 /// Bytes of a record that are looked at: a message with its fields, a topic with its names.
-constexpr std::size_t kRecordBytes = 2 * RosTopics::kMessageBytes;
+constexpr std::size_t kRecordBytes = 2 * RosMessageSink::kMessageBytes;
 /// Schemas and channels that damaged or hostile bytes could declare are limited by 16 bit numbers;
 /// their names by this.
 constexpr std::size_t kMaxNameBytes = 512;
 
 class McapPass {
  public:
-  McapPass(ForwardReader& file, LogSink& sink) : file_(file), sink_(sink), topics_(sink) {}
+  McapPass(ForwardReader& file, LogSink& sink, RosMessageSink& topics)
+      : file_(file), sink_(sink), topics_(topics) {}
 
   Status run();
 
@@ -39,20 +40,22 @@ class McapPass {
   Result<bool> take_record();
   Status take_chunk(std::uint64_t length);
   /// Schemas, channels and messages, in chunks and outside of them.
-  void take(McapOpcode opcode, std::span<const std::uint8_t> content);
+  /// @param content  or its start
+  /// @param place  of the content
+  void take(McapOpcode opcode, std::span<const std::uint8_t> content, MessagePlace place);
   /// @param whole  the records end with these bytes
-  void take_records(std::span<const std::uint8_t> bytes, bool whole);
+  void take_records(std::span<const std::uint8_t> bytes, bool whole, MessagePlace chunk);
   void take_channel(const McapChannel& channel);
-  void take_message(const McapMessage& message);
+  void take_message(const McapMessage& message, const MessagePlace& place);
   void check_data(std::span<const std::uint8_t> content, std::uint32_t crc);
   void report();
 
   ForwardReader& file_;
   LogSink& sink_;
-  RosTopics topics_;
+  RosMessageSink& topics_;
   ChunkReader chunks_;
   std::unordered_map<std::uint16_t, std::string> schemas_;
-  std::unordered_map<std::uint16_t, std::optional<RosTopics::Topic>> channels_;
+  std::unordered_map<std::uint16_t, std::optional<RosMessageSink::Topic>> channels_;
   std::uint32_t crc_ = 0;  ///< of the file so far
   bool ended_ = false;     ///< the end of the data was met
   std::uint64_t bad_checksums_ = 0;
@@ -83,16 +86,16 @@ void McapPass::take_channel(const McapChannel& channel) {
   channels_[channel.id] = topics_.add(channel.topic, type, encoding);
 }
 
-void McapPass::take_message(const McapMessage& message) {
+void McapPass::take_message(const McapMessage& message, const MessagePlace& place) {
   const auto channel = channels_.find(message.channel_id);
   if (channel == channels_.end()) {
     ++without_channel_;
   } else if (channel->second) {
-    topics_.take(*channel->second, message.data, message.log_time_ns);
+    topics_.take(*channel->second, message.data, message.log_time_ns, place);
   }
 }
 
-void McapPass::take(McapOpcode opcode, std::span<const std::uint8_t> content) {
+void McapPass::take(McapOpcode opcode, std::span<const std::uint8_t> content, MessagePlace place) {
   bool ok = true;
   if (opcode == McapOpcode::kSchema) {
     std::optional<McapSchema> schema = mcap_schema_in(content);
@@ -107,12 +110,16 @@ void McapPass::take(McapOpcode opcode, std::span<const std::uint8_t> content) {
   } else if (opcode == McapOpcode::kMessage) {
     const std::optional<McapMessage> message = mcap_message_in(content);
     ok = message.has_value();
-    if (ok) take_message(*message);
+    if (ok) {
+      place.offset += kMcapMessageFieldBytes;
+      place.bytes -= kMcapMessageFieldBytes;
+      take_message(*message, place);
+    }
   }
   if (!ok) ++bad_records_;
 }
 
-void McapPass::take_records(std::span<const std::uint8_t> bytes, bool whole) {
+void McapPass::take_records(std::span<const std::uint8_t> bytes, bool whole, MessagePlace chunk) {
   while (!bytes.empty()) {
     const bool has_header = bytes.size() >= kMcapRecordHeaderBytes;
     const McapRecord record = has_header ? mcap_record_at(bytes) : McapRecord{};
@@ -122,7 +129,10 @@ void McapPass::take_records(std::span<const std::uint8_t> bytes, bool whole) {
       return;
     }
     const auto length = static_cast<std::size_t>(record.length);
-    take(record.opcode, bytes.subspan(kMcapRecordHeaderBytes, length));
+    chunk.offset += kMcapRecordHeaderBytes;
+    chunk.bytes = length;
+    take(record.opcode, bytes.subspan(kMcapRecordHeaderBytes, length), chunk);
+    chunk.offset += length;
     bytes = bytes.subspan(kMcapRecordHeaderBytes + length);
   }
 }
@@ -146,6 +156,10 @@ Status McapPass::take_chunk(std::uint64_t length) {
     return skip(length);
   }
   if (Status status = skip(chunk->header_bytes); !status) return status;
+  const MessagePlace place{
+      ChunkPlace{file_.file_offset(), chunk->stored_bytes, *compression, chunk->uncompressed_bytes},
+      0,
+      0};
   const Result<ChunkReader::Chunk> read =
       chunks_.read(file_,
                    chunk->stored_bytes,
@@ -161,7 +175,7 @@ Status McapPass::take_chunk(std::uint64_t length) {
     ++bad_checksums_;
   } else {
     if (read->cut && read->bytes.empty()) ++cut_records_;
-    take_records(read->bytes, !read->cut);
+    take_records(read->bytes, !read->cut, place);
   }
   return {};
 }
@@ -186,7 +200,9 @@ Result<bool> McapPass::take_record() {
     return false;
   }
   if (record.opcode != McapOpcode::kChunk) {
-    take(record.opcode, content);
+    take(record.opcode,
+         content,
+         {std::nullopt, file_.file_offset() + kMcapRecordHeaderBytes, record.length});
     if (Status status = skip(kMcapRecordHeaderBytes + record.length); !status) {
       return status.error();
     }
@@ -238,6 +254,13 @@ bool is_mcap(std::span<const std::uint8_t> head) {
          });
 }
 
-Status read_mcap(ForwardReader& file, LogSink& sink) { return McapPass(file, sink).run(); }
+Status read_mcap_messages(ForwardReader& file, LogSink& sink, RosMessageSink& messages) {
+  return McapPass(file, sink, messages).run();
+}
+
+Status read_mcap(ForwardReader& file, LogSink& sink) {
+  RosTopics topics(sink);
+  return read_mcap_messages(file, sink, topics);
+}
 
 }  // namespace overfly::flight::logs

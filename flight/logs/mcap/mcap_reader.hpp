@@ -7,6 +7,7 @@
 #include "core/outside/forward_reader.hpp"
 #include "core/result.hpp"
 #include "flight/logs/log_sink.hpp"
+#include "flight/logs/ros/message_sink.hpp"
 
 namespace overfly::flight::logs {
 
@@ -21,5 +22,10 @@ namespace overfly::flight::logs {
 /// checksum are left out. What was left out is reported in warnings.
 /// Errors: kIo; kCancelled if the sink stops.
 [[nodiscard]] Status read_mcap(ForwardReader& file, LogSink& sink);
+
+/// As read_mcap, with the messages for another receiver: `sink` gets warnings and progress only.
+[[nodiscard]] Status read_mcap_messages(ForwardReader& file,
+                                        LogSink& sink,
+                                        RosMessageSink& messages);
 
 }  // namespace overfly::flight::logs

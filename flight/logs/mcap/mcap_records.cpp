@@ -42,7 +42,6 @@ std::optional<McapChannel> mcap_channel_in(std::span<const std::uint8_t> content
 }
 
 std::optional<McapMessage> mcap_message_in(std::span<const std::uint8_t> content) {
-  constexpr std::size_t kFieldBytes = 22;
   RosCursor fields = fields_of(content);
   McapMessage message;
   message.channel_id = fields.number<std::uint16_t>();
@@ -50,7 +49,7 @@ std::optional<McapMessage> mcap_message_in(std::span<const std::uint8_t> content
   message.log_time_ns = fields.number<std::uint64_t>();
   (void)fields.number<std::uint64_t>();  // publish_time
   if (!fields.ok()) return std::nullopt;
-  message.data = content.subspan(kFieldBytes);
+  message.data = content.subspan(kMcapMessageFieldBytes);
   return message;
 }
 

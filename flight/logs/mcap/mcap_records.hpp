@@ -54,6 +54,8 @@ struct McapMessage {
   std::uint64_t log_time_ns = 0;
   std::span<const std::uint8_t> data;
 };
+/// The fields in front of a message's data.
+inline constexpr std::size_t kMcapMessageFieldBytes = 22;
 [[nodiscard]] std::optional<McapMessage> mcap_message_in(std::span<const std::uint8_t> content);
 
 /// A chunk's fields in front of its stored bytes.

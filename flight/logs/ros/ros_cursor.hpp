@@ -52,6 +52,13 @@ class RosCursor {
     return {from, terminated ? length - 1 : length};
   }
 
+  /// A sequence of bytes with its length in front; empty if they end early.
+  [[nodiscard]] std::span<const std::uint8_t> octets() {
+    const auto length = number<std::uint32_t>();
+    if (!take(length)) return {};
+    return bytes_.subspan(at_ - length, length);
+  }
+
   [[nodiscard]] RosEncoding encoding() const { return encoding_; }
   [[nodiscard]] bool ok() const { return ok_; }
 

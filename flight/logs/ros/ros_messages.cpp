@@ -149,4 +149,15 @@ std::optional<RosSample> decode_ros(RosType type, RosCursor message) {
   return sample;
 }
 
+std::optional<RosCursor> ros_cursor_of(std::span<const std::uint8_t> data, RosEncoding encoding) {
+  constexpr std::size_t kCdrHeaderBytes = 4;
+  if (encoding == RosEncoding::kRos1) return RosCursor(data, encoding, false);
+  const bool plain = encoding == RosEncoding::kCdr && data.size() >= kCdrHeaderBytes &&
+                     data[0] == 0 && data[1] <= 1;
+  if (!plain) return std::nullopt;
+  return RosCursor(data.subspan(kCdrHeaderBytes), encoding, data[1] == 0);
+}
+
+std::int64_t take_stamp(RosCursor& message) { return take_header(message).stamp_ns; }
+
 }  // namespace overfly::flight::logs

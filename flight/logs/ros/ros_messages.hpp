@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string_view>
 
 #include "flight/logs/log_sink.hpp"
@@ -50,5 +51,12 @@ struct RosSample {
 /// An Imu without orientation (orientation_covariance[0] = -1) gives neither.
 /// @return empty if the message ends early, or the type is kOther
 [[nodiscard]] std::optional<RosSample> decode_ros(RosType type, RosCursor message);
+
+/// The cursor behind the header that states the byte order of CDR.
+/// @return empty for other representations than plain CDR, and for kOther
+[[nodiscard]] std::optional<RosCursor> ros_cursor_of(std::span<const std::uint8_t> data,
+                                                     RosEncoding encoding);
+/// Moves behind the header. @return header.stamp
+[[nodiscard]] std::int64_t take_stamp(RosCursor& message);
 
 }  // namespace overfly::flight::logs

@@ -90,7 +90,10 @@ std::optional<RosSample> RosTopics::decode(const Stream& stream,
   return sample;
 }
 
-void RosTopics::take(Topic topic, std::span<const std::uint8_t> data, std::uint64_t recorded_ns) {
+void RosTopics::take(Topic topic,
+                     std::span<const std::uint8_t> data,
+                     std::uint64_t recorded_ns,
+                     const MessagePlace& /*place*/) {
   Stream& stream = streams_[topic];
   const auto id = static_cast<StreamId>(topic);
   if (stream.type == RosType::kOther) {

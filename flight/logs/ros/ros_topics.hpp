@@ -11,6 +11,7 @@
 
 #include "flight/logs/boot_clock.hpp"
 #include "flight/logs/log_sink.hpp"
+#include "flight/logs/ros/message_sink.hpp"
 #include "flight/logs/ros/ros_messages.hpp"
 
 namespace overfly::flight::logs {
@@ -20,25 +21,19 @@ namespace overfly::flight::logs {
 /// A stream is a topic. Messages of the types in RosType have the time of their header; all others
 /// are listed with the time at which they were recorded. Each topic has a BootClock of its own,
 /// because the clocks of sensors may differ.
-class RosTopics {
+class RosTopics final : public RosMessageSink {
  public:
-  using Topic = std::size_t;
-
   explicit RosTopics(LogSink& sink) : sink_(sink) {}
 
-  /// The topic of this name, type and encoding: a new one, or one that was added before.
-  /// @return empty if there are too many
   [[nodiscard]] std::optional<Topic> add(const std::string& name,
                                          std::string_view type,
-                                         RosEncoding encoding);
-  /// @param data         serialised message; of images the start is enough
-  /// @param recorded_ns  time of recording
-  void take(Topic topic, std::span<const std::uint8_t> data, std::uint64_t recorded_ns);
+                                         RosEncoding encoding) override;
+  void take(Topic topic,
+            std::span<const std::uint8_t> data,
+            std::uint64_t recorded_ns,
+            const MessagePlace& place) override;
   /// Reports what was left out.
-  void report();
-
-  /// No message of a known type needs more bytes than this, if its frames have sensible names.
-  static constexpr std::size_t kMessageBytes = std::size_t{1} << 16U;
+  void report() override;
 
  private:
   struct Stream {

@@ -23,7 +23,8 @@ constexpr std::size_t kMaxTopicBytes = 512;
 
 class RosbagPass {
  public:
-  RosbagPass(ForwardReader& file, LogSink& sink) : file_(file), sink_(sink), topics_(sink) {}
+  RosbagPass(ForwardReader& file, LogSink& sink, RosMessageSink& topics)
+      : file_(file), sink_(sink), topics_(topics) {}
 
   Status run();
 
@@ -34,19 +35,22 @@ class RosbagPass {
   /// @pre the position is that of the chunk's data
   Status take_chunk(std::string_view compression, std::uint32_t stored, std::uint32_t declared);
   /// @param whole  the records end with these bytes
-  void take_records(std::span<const std::uint8_t> bytes, bool whole);
+  void take_records(std::span<const std::uint8_t> bytes, bool whole, MessagePlace chunk);
   /// Connections and messages, in chunks and outside of them.
   /// @param data  or its start
-  void take(const BagRecord& record, std::span<const std::uint8_t> data);
+  /// @param place  of the data
+  void take(const BagRecord& record, std::span<const std::uint8_t> data, const MessagePlace& place);
   void take_connection(const BagRecord& record, std::span<const std::uint8_t> data);
-  void take_message(const BagRecord& record, std::span<const std::uint8_t> data);
+  void take_message(const BagRecord& record,
+                    std::span<const std::uint8_t> data,
+                    const MessagePlace& place);
   void report();
 
   ForwardReader& file_;
   LogSink& sink_;
-  RosTopics topics_;
+  RosMessageSink& topics_;
   ChunkReader chunks_;
-  std::unordered_map<std::uint32_t, std::optional<RosTopics::Topic>> connections_;
+  std::unordered_map<std::uint32_t, std::optional<RosMessageSink::Topic>> connections_;
   bool indexed_ = false;
   std::uint64_t damaged_chunks_ = 0;
   std::uint64_t large_chunks_ = 0;
@@ -77,7 +81,9 @@ void RosbagPass::take_connection(const BagRecord& record, std::span<const std::u
   connections_[*id] = topics_.add(std::string(topic), type, RosEncoding::kRos1);
 }
 
-void RosbagPass::take_message(const BagRecord& record, std::span<const std::uint8_t> data) {
+void RosbagPass::take_message(const BagRecord& record,
+                              std::span<const std::uint8_t> data,
+                              const MessagePlace& place) {
   const std::optional<std::uint32_t> id = bag_number(record.header, "conn");
   const auto time = bag_field(record.header, "time");
   if (!id || !time || time->size() != 8) {
@@ -93,15 +99,17 @@ void RosbagPass::take_message(const BagRecord& record, std::span<const std::uint
   const std::uint64_t seconds = fields.number<std::uint32_t>();
   const std::uint64_t recorded_ns =
       seconds * static_cast<std::uint64_t>(kNsPerS) + fields.number<std::uint32_t>();
-  if (connection->second) topics_.take(*connection->second, data, recorded_ns);
+  if (connection->second) topics_.take(*connection->second, data, recorded_ns, place);
 }
 
-void RosbagPass::take(const BagRecord& record, std::span<const std::uint8_t> data) {
+void RosbagPass::take(const BagRecord& record,
+                      std::span<const std::uint8_t> data,
+                      const MessagePlace& place) {
   if (record.op() == BagOp::kConnection) take_connection(record, data);
-  if (record.op() == BagOp::kMessage) take_message(record, data);
+  if (record.op() == BagOp::kMessage) take_message(record, data, place);
 }
 
-void RosbagPass::take_records(std::span<const std::uint8_t> bytes, bool whole) {
+void RosbagPass::take_records(std::span<const std::uint8_t> bytes, bool whole, MessagePlace chunk) {
   while (!bytes.empty()) {
     bool impossible = false;
     const std::optional<BagRecord> record = bag_record_at(bytes, &impossible);
@@ -109,7 +117,11 @@ void RosbagPass::take_records(std::span<const std::uint8_t> bytes, bool whole) {
       ++(whole || impossible ? bad_records_ : cut_records_);
       return;
     }
-    take(*record, bytes.subspan(record->data_at, record->data_bytes));
+    const std::uint64_t begin = chunk.offset;
+    chunk.offset += record->data_at;
+    chunk.bytes = record->data_bytes;
+    take(*record, bytes.subspan(record->data_at, record->data_bytes), chunk);
+    chunk.offset = begin + record->data_at + record->data_bytes;
     bytes = bytes.subspan(record->data_at + record->data_bytes);
   }
 }
@@ -132,18 +144,18 @@ Status RosbagPass::take_chunk(std::string_view compression,
     return skip(stored);
   }
   const std::uint64_t rest = file_.size_bytes() - file_.position();
+  const ChunkPlace place{file_.file_offset(),
+                         unfinished ? rest : stored,
+                         *known,
+                         unfinished ? ChunkReader::kMaxBytes : declared};
   const Result<ChunkReader::Chunk> chunk =
-      chunks_.read(file_,
-                   unfinished ? rest : stored,
-                   *known,
-                   unfinished ? ChunkReader::kMaxBytes : declared,
-                   {});
+      chunks_.read(file_, place.stored_bytes, *known, place.declared_bytes, {});
   if (!chunk) return chunk.error();
   if (chunk->damaged && !unfinished) {
     ++damaged_chunks_;
   } else {
     if ((chunk->cut || unfinished) && chunk->bytes.empty()) ++cut_records_;
-    take_records(chunk->bytes, !chunk->cut && !unfinished);
+    take_records(chunk->bytes, !chunk->cut && !unfinished, {place, 0, 0});
   }
   return {};
 }
@@ -183,7 +195,9 @@ Result<bool> RosbagPass::take_record() {
     file_.skip(record->data_at);
     status = take_chunk(compression, stored, declared);
   } else {
-    take(*record, ahead->subspan(record->data_at, shown));
+    take(*record,
+         ahead->subspan(record->data_at, shown),
+         {std::nullopt, file_.file_offset() + record->data_at, record->data_bytes});
     status = skip(record->data_at + std::uint64_t{record->data_bytes});
   }
   if (!status) return status.error();
@@ -225,6 +239,13 @@ bool is_rosbag(std::span<const std::uint8_t> head) {
          });
 }
 
-Status read_rosbag(ForwardReader& file, LogSink& sink) { return RosbagPass(file, sink).run(); }
+Status read_rosbag_messages(ForwardReader& file, LogSink& sink, RosMessageSink& messages) {
+  return RosbagPass(file, sink, messages).run();
+}
+
+Status read_rosbag(ForwardReader& file, LogSink& sink) {
+  RosTopics topics(sink);
+  return read_rosbag_messages(file, sink, topics);
+}
 
 }  // namespace overfly::flight::logs

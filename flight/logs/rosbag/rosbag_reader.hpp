@@ -7,6 +7,7 @@
 #include "core/outside/forward_reader.hpp"
 #include "core/result.hpp"
 #include "flight/logs/log_sink.hpp"
+#include "flight/logs/ros/message_sink.hpp"
 
 namespace overfly::flight::logs {
 
@@ -20,5 +21,10 @@ namespace overfly::flight::logs {
 /// out is reported in warnings.
 /// Errors: kIo; kUnsupported if the bag is encrypted; kCancelled if the sink stops.
 [[nodiscard]] Status read_rosbag(ForwardReader& file, LogSink& sink);
+
+/// As read_rosbag, with the messages for another receiver: `sink` gets warnings and progress only.
+[[nodiscard]] Status read_rosbag_messages(ForwardReader& file,
+                                          LogSink& sink,
+                                          RosMessageSink& messages);
 
 }  // namespace overfly::flight::logs

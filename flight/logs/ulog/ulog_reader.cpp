@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/text/number_text.hpp"
 #include "core/text/printable_text.hpp"
 #include "flight/logs/boot_clock.hpp"
 #include "flight/logs/ulog/ulog_message.hpp"
@@ -211,8 +212,7 @@ void UlogPass::report() {
   };
   warn(dropouts_, "dropouts of the logger, " + std::to_string(dropout_ms_) + " ms in all");
   warn(skipped_bytes_,
-       "bytes in " + std::to_string(damaged_places_) +
-           " places belong to no message and were skipped");
+       "bytes in " + counted(damaged_places_, "place") + " belong to no message and were skipped");
   warn(cut_messages_, "messages are cut off by the end of the file or by appended data");
   warn(unknown_kinds_, "messages are of kinds that are not known");
   warn(bad_formats_, "formats are missing or cannot be understood");

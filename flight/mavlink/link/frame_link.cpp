@@ -133,6 +133,7 @@ void FrameLink::take_frame(PeerId peer, const FrameFinder::Found& found, const T
       return;
     }
   }
+  if (options_.recorder) options_.recorder->add(found.bytes, std::chrono::system_clock::now());
   const auto sender = static_cast<std::uint16_t>((unsigned{frame.system} << 8U) | frame.component);
   SenderCounts& counts = senders_[sender];
   ++counts.frames;

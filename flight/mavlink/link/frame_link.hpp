@@ -16,6 +16,7 @@
 #include "flight/mavlink/frame_finder.hpp"
 #include "flight/mavlink/link/back_off.hpp"
 #include "flight/mavlink/link/byte_link.hpp"
+#include "flight/mavlink/link/frame_recorder.hpp"
 #include "flight/mavlink/link/signing.hpp"
 
 namespace overfly::flight::mavlink {
@@ -30,8 +31,9 @@ struct LinkOptions {
   /// With a key, only frames that are signed with it are accepted; without, signatures are not
   /// checked.
   std::optional<SigningKey> key;
-  bool sign = false;         ///< what is sent, with `key`
-  std::uint8_t link_id = 0;  ///< in signatures
+  bool sign = false;                        ///< what is sent, with `key`
+  std::uint8_t link_id = 0;                 ///< in signatures
+  std::shared_ptr<FrameRecorder> recorder;  ///< of what is received and accepted; may be null
 };
 
 /// Messages of one component.

@@ -12,6 +12,10 @@ namespace {
 
 constexpr std::uint16_t kSetMessageInterval = 511;
 constexpr std::uint8_t kIntervalAccepted = 0;
+constexpr std::uint8_t kIntervalDenied = 2;
+/// ArduPilot denies rates above 0.8 times that of its main loop: the next lower rate is tried.
+constexpr double kLowerRate = 0.8;
+constexpr int kRatesTried = 10;
 
 /// MAV_DATA_STREAM of a message, as ArduPlane groups its messages.
 std::optional<std::uint8_t> stream_with(MessageId message) {
@@ -54,15 +58,19 @@ Result<RateRequest> request_message_rate(Exchange& exchange, MessageId message, 
     return Error{ErrorCode::kInvalidArgument,
                  what + " = " + number_text(rate_hz) + " Hz: must be in (0, 1000]"};
   }
-  const Command command{
-      what,
-      kSetMessageInterval,
-      {static_cast<float>(id), static_cast<float>(std::round(1e6 / rate_hz)), 0, 0, 0, 0, 0}};
-  const Result<std::uint8_t> result =
-      command_result(exchange, command, {std::chrono::milliseconds(700), 3});
-  // kIo: no answer, as from firmware that does not know the command.
-  if (!result && result.error().code != ErrorCode::kIo) return result.error();
-  if (result && *result == kIntervalAccepted) return RateRequest::kInterval;
+  double asked_hz = rate_hz;
+  for (int i = 0; i < kRatesTried; ++i, asked_hz *= kLowerRate) {
+    const Command command{
+        what,
+        kSetMessageInterval,
+        {static_cast<float>(id), static_cast<float>(std::round(1e6 / asked_hz)), 0, 0, 0, 0, 0}};
+    const Result<std::uint8_t> result =
+        command_result(exchange, command, {std::chrono::milliseconds(700), 3});
+    // kIo: no answer, as from firmware that does not know the command.
+    if (!result && result.error().code != ErrorCode::kIo) return result.error();
+    if (result && *result == kIntervalAccepted) return RateRequest::kInterval;
+    if (!result || *result != kIntervalDenied) break;
+  }
   const std::optional<std::uint8_t> stream = stream_with(message);
   if (!stream) return RateRequest::kNone;
   const auto whole_rate_hz = static_cast<std::uint16_t>(std::ceil(rate_hz));

@@ -15,9 +15,10 @@ enum class RateRequest {
   kNone,      ///< the vehicle knows the message by neither
 };
 
-/// Asks a vehicle to send a message at a rate. SET_MESSAGE_INTERVAL is tried first; if the vehicle
-/// does not know it or does not answer, the stream that contains the message in ArduPilot is asked
-/// for. A vehicle may send at a lower rate than the one it accepts: what arrives has to be counted.
+/// Asks a vehicle to send a message at a rate. SET_MESSAGE_INTERVAL is tried first, with lower
+/// rates, down to a tenth, while the vehicle denies them. If it does not know the command or does
+/// not answer, the stream that contains the message in ArduPilot is asked for. A vehicle may send
+/// at a lower rate than the one it accepts: what arrives has to be counted.
 /// @param rate_hz  in (0, 1000]
 /// Errors: kInvalidArgument naming the rate; as ask() except for answers that do not come.
 [[nodiscard]] Result<RateRequest> request_message_rate(Exchange& exchange,

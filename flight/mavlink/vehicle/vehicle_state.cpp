@@ -27,6 +27,22 @@ void take_battery(const Frame& frame, VehicleState& state) {
   if (percent >= 0) state.battery_percent = percent;
 }
 
+void take_local_origin(const Frame& frame, VehicleState& state) {
+  const GlobalPosition origin = decode_gps_global_origin(frame);
+  const bool in_range = std::abs(origin.lat_deg) <= 90.0 && std::abs(origin.lon_deg) <= 180.0;
+  const bool unset = origin.lat_deg == 0.0 && origin.lon_deg == 0.0;
+  if (in_range && !unset) state.origin = origin;
+}
+
+void take_system_time(const Frame& frame, VehicleState& state) {
+  constexpr std::int64_t kYear2000Us = 946'684'800'000'000;
+  constexpr std::int64_t kYear2100Us = 4'102'444'800'000'000;
+  const SystemTime time = decode_system_time(frame);
+  // 0, or the years since 1970, without a receiver that has told the date.
+  if (time.unix_us < kYear2000Us || time.unix_us > kYear2100Us) return;
+  state.utc_minus_boot_ns = time.unix_us * 1000 - time.boot_ns;
+}
+
 void take_attitude_angles(const Frame& frame, VehicleState& state) {
   const RollPitchYaw angles = decode_attitude(frame).angles;
   if (std::isfinite(angles.roll_rad) && std::isfinite(angles.pitch_rad) &&
@@ -51,9 +67,16 @@ void take_message(const Frame& frame, VehicleState& state) {
     case MessageId::kGpsRawInt:
       state.gps = decode_gps_raw(frame);
       return;
-    case MessageId::kGlobalPositionInt:
-      state.position = decode_global_position(frame).position;
+    case MessageId::kGlobalPositionInt: {
+      const GlobalPositionVelocity sample = decode_global_position(frame);
+      state.position = sample.position;
+      state.v_down_m_s = sample.velocity_ned_m_s.z();
       return;
+    }
+    case MessageId::kGpsGlobalOrigin:
+      return take_local_origin(frame, state);
+    case MessageId::kSystemTime:
+      return take_system_time(frame, state);
     case MessageId::kAttitude:
       return take_attitude_angles(frame, state);
     case MessageId::kVfrHud:

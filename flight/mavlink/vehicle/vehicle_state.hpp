@@ -24,8 +24,12 @@ struct VehicleState {
   std::optional<int> battery_percent;
   std::optional<GpsRaw> gps;
   std::optional<GlobalPosition> position;  ///< of the vehicle's estimator
-  std::optional<RollPitchYaw> attitude;    ///< of the vehicle's estimator
-  std::optional<VfrHud> flight;            ///< speeds
+  std::optional<double> v_down_m_s;        ///< likewise
+  std::optional<GlobalPosition> origin;    ///< of its local positions
+  /// UTC since 1970 minus the vehicle's clock [ns], where the vehicle knows it.
+  std::optional<std::int64_t> utc_minus_boot_ns;
+  std::optional<RollPitchYaw> attitude;  ///< of the vehicle's estimator
+  std::optional<VfrHud> flight;          ///< speeds
   std::optional<std::uint16_t> mission_item;
   /// MAV_LANDED_STATE: 1 on the ground, 2 in the air, 3 taking off, 4 landing.
   std::optional<std::uint8_t> landed_state;

@@ -1,5 +1,6 @@
 // overfly export: writes a run or scenario as a data set in a common format, or as a video.
 #include <CLI/CLI.hpp>
+#include <functional>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -30,6 +31,7 @@ struct ExportArguments {
   std::optional<double> to_s;
   int threads = -1;  // -1 = use the scenario's value
   flight::ImuModel imu;
+  std::function<bool()> imu_given;  ///< one of its options
   std::string video;  ///< contents of the video; empty = no video; for webm, both views
   int video_quality = 70;
   bool json = false;
@@ -112,7 +114,7 @@ int export_as_dataset(const ExportArguments& arguments,
   options.folder = arguments.out;
   options.format = format;
   options.cameras = arguments.cameras;
-  options.imu = arguments.imu;
+  if (arguments.imu_given()) options.imu = arguments.imu;
   if (!arguments.video.empty()) options.video = look_of(arguments);
   for (const std::string& name : arguments.truth) {
     const auto kind = server::truth_kind_from(name);
@@ -146,7 +148,7 @@ int export_source(const ExportArguments& arguments) {
   if (!format && arguments.format != "webm") {
     return report({ErrorCode::kInvalidArgument,
                    "format = " + arguments.format +
-                       ": must be one of tum-mono, euroc, kitti, png, lcm, rosbag, webm"});
+                       ": must be one of tum-mono, euroc, kitti, png, lcm, rosbag, mcap, webm"});
   }
   const auto source = open_source(arguments);
   if (!source) return report(source.error());
@@ -154,7 +156,8 @@ int export_source(const ExportArguments& arguments) {
   return export_as_video(arguments, *source);
 }
 
-void add_imu_options(CLI::App& command, flight::ImuModel& imu) {
+/// Returns whether one of the options was given.
+std::function<bool()> add_imu_options(CLI::App& command, flight::ImuModel& imu) {
   command.add_option("--imu-rate", imu.rate_hz, "euroc: rate of the IMU [Hz]")
       ->capture_default_str();
   command
@@ -177,6 +180,11 @@ void add_imu_options(CLI::App& command, flight::ImuModel& imu) {
                   imu.accelerometer_walk_m_s3_sqrt_hz,
                   "euroc: random walk of the bias [m/s^3/sqrt(Hz)]")
       ->capture_default_str();
+  return [&command] {
+    const auto given = [&](const char* option) { return command.count(option) > 0; };
+    return given("--imu-rate") || given("--gyroscope-noise") || given("--gyroscope-walk") ||
+           given("--accelerometer-noise") || given("--accelerometer-walk");
+  };
 }
 
 }  // namespace
@@ -190,7 +198,7 @@ void add_export_command(CLI::App& app, int& exit_code) {
   command
       ->add_option("--format",
                    arguments->format,
-                   "tum-mono, euroc, kitti, png, lcm, rosbag, or webm for only a video")
+                   "tum-mono, euroc, kitti, png, lcm, rosbag, mcap, or webm for only a video")
       ->required();
   command->add_option("--out", arguments->out, "Folder to create; for webm the file")->required();
   command
@@ -208,7 +216,7 @@ void add_export_command(CLI::App& app, int& exit_code) {
   command
       ->add_option("--threads", arguments->threads, "Threads of the ray-caster; 0 = one per core")
       ->check(CLI::Range(0, 64));
-  add_imu_options(*command, arguments->imu);
+  arguments->imu_given = add_imu_options(*command, arguments->imu);
   command
       ->add_option("--video",
                    arguments->video,

@@ -46,7 +46,7 @@ Result<server::Scenario> load_to_fly(const RunArguments& arguments) {
 void show_progress(ProgressDisplay& display, const server::RunInfo& info) {
   const std::string done = "frame " + std::to_string(info.frames);
   if (info.frames_total == 0) {
-    display.show(0.0, done);
+    display.show_so_far(done);
     return;
   }
   display.show(static_cast<double>(info.frames) / static_cast<double>(info.frames_total),

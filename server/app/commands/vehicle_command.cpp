@@ -115,6 +115,9 @@ int fly_vehicle(const VehicleArguments& arguments) {
         std::cout << "vehicle " << arguments.system << ".1 (" << setup.airframe.name << ") on "
                   << opened.text() << std::endl;
       });
+  if (const std::uint64_t estimates = (*aircraft)->received_estimates(); estimates > 0) {
+    std::cout << "received " << estimates << " estimates of its position" << std::endl;
+  }
   return flown ? kExitOk : report(flown.error());
 }
 

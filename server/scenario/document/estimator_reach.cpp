@@ -51,16 +51,19 @@ Status check_link(const Scenario& scenario, const std::vector<std::string>& allo
 }
 
 Status check_reach(const Scenario& scenario, const Scenario& trusted) {
-  const auto live_of = [](const Scenario& each) {
-    const auto flight = each.resolved.find("flight");
-    return flight != each.resolved.end() ? flight->value("mavlink", nlohmann::json())
-                                         : nlohmann::json();
-  };
-  const nlohmann::json wanted = live_of(scenario);
-  if (!wanted.is_null() && wanted != live_of(trusted)) {
-    return Error{ErrorCode::kInvalidArgument,
-                 "flight.mavlink: must be as in the scenario's file; clients may set it only if "
-                 "the server was started with --allow-commands"};
+  for (const char* const kind : {"mavlink", "ros"}) {
+    const auto live_of = [kind](const Scenario& each) {
+      const auto flight = each.resolved.find("flight");
+      return flight != each.resolved.end() ? flight->value(kind, nlohmann::json())
+                                           : nlohmann::json();
+    };
+    const nlohmann::json wanted = live_of(scenario);
+    if (!wanted.is_null() && wanted != live_of(trusted)) {
+      return Error{ErrorCode::kInvalidArgument,
+                   std::string("flight.") + kind +
+                       ": must be as in the scenario's file; clients may set it only if the server "
+                       "was started with --allow-commands"};
+    }
   }
   for (std::size_t i = 0; i < scenario.estimators.size(); ++i) {
     const EstimatorSpec& spec = scenario.estimators[i];

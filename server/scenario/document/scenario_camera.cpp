@@ -165,9 +165,14 @@ Status add_camera(Json& camera, const std::string& path, Scenario& scenario) {
 
 }  // namespace
 
-Status read_cameras(Json& document, Scenario& scenario) {
+Status read_cameras(Json& document, const FileResolver& files, Scenario& scenario) {
   scenario.cameras.clear();
-  if (!document.contains("cameras")) return add_camera(document.at("camera"), "camera", scenario);
+  if (!document.contains("cameras")) {
+    if (Status status = add_camera(document.at("camera"), "camera", scenario); !status) {
+      return status;
+    }
+    return read_recorded_images(document, files, scenario);
+  }
   if (document.contains("camera")) {
     return Error{ErrorCode::kInvalidArgument, "camera: must not be given with cameras"};
   }
@@ -176,7 +181,7 @@ Status read_cameras(Json& document, Scenario& scenario) {
     Status status = add_camera(cameras[i], "cameras." + std::to_string(i), scenario);
     if (!status) return status;
   }
-  return {};
+  return read_recorded_images(document, files, scenario);
 }
 
 }  // namespace overfly::server

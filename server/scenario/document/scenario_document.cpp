@@ -5,6 +5,8 @@
 #include "server/scenario/document/flight/scenario_course.hpp"
 #include "server/scenario/document/flight/scenario_flight.hpp"
 #include "server/scenario/document/flight/scenario_live.hpp"
+#include "server/scenario/document/flight/scenario_ros.hpp"
+#include "server/scenario/document/flight/scenario_sensors.hpp"
 #include "server/scenario/document/scenario_camera.hpp"
 #include "server/scenario/document/scenario_estimators.hpp"
 #include "server/scenario/document/scenario_faults.hpp"
@@ -25,10 +27,20 @@ Status read_flight(Json& document, const FileResolver& files, Scenario& scenario
     scenario.flight = std::move(*log);
     return {};
   }
+  if (flight.contains("run")) {
+    scenario.flight = RunFlight{files.resolve(flight.at("run").at("folder"))};
+    return {};
+  }
   if (flight.contains("mavlink")) {
     Result<flight::live::LiveFlight> live = read_live_flight(flight.at("mavlink"), files);
     if (!live) return live.error();
     scenario.flight = std::move(*live);
+    return {};
+  }
+  if (flight.contains("ros")) {
+    Result<flight::ros_live::RosFlight> ros = read_ros_flight(flight.at("ros"));
+    if (!ros) return ros.error();
+    scenario.flight = std::move(*ros);
     return {};
   }
   if (flight.contains("mission")) {
@@ -56,6 +68,13 @@ Status check_camera_poses(const Scenario& scenario) {
                "body's origin"};
 }
 
+/// Faults are scheduled by the frames of a regular rate, which recorded images do not have.
+Status check_faults_of_real_images(const Scenario& scenario) {
+  if (scenario.faults.empty() || scenario.recorded_camera() == nullptr) return {};
+  return Error{ErrorCode::kInvalidArgument,
+               "faults: must be empty if a camera has recorded images"};
+}
+
 Status read_all(Json& document, const fs::path& base, Scenario& scenario) {
   const FileResolver files(document, base);
   scenario.name = document.at("name").get<std::string>();
@@ -72,12 +91,15 @@ Status read_all(Json& document, const fs::path& base, Scenario& scenario) {
   scenario.record_debug_hz = document.at("recording").at("debug_hz").get<double>();
   read_world(document, files, scenario);
   if (Status status = read_flight(document, files, scenario); !status) return status;
-  if (Status status = read_cameras(document, scenario); !status) return status;
+  if (Status status = read_cameras(document, files, scenario); !status) return status;
   if (Status status = check_camera_poses(scenario); !status) return status;
+  if (Status status = read_sensors(document, scenario); !status) return status;
   if (Status status = read_faults(document, scenario); !status) return status;
+  if (Status status = check_faults_of_real_images(scenario); !status) return status;
   read_renderer(document, scenario);
   if (Status status = read_light_and_detail(document, scenario); !status) return status;
-  return read_estimators(document, base, scenario);
+  if (Status status = read_estimators(document, base, scenario); !status) return status;
+  return find_feedback_estimator(document, scenario);
 }
 
 }  // namespace

@@ -28,6 +28,7 @@ std::set<std::string> fields_of(FaultKind kind) {
     case FaultKind::kStampOffset:
       return {"offset_ms"};
     case FaultKind::kFrozenFrame:
+    case FaultKind::kGpsOutage:
       break;
   }
   return {};
@@ -36,7 +37,8 @@ std::set<std::string> fields_of(FaultKind kind) {
 /// Rejects fields that do not apply to this kind of fault, and requires those without which it
 /// would have no effect.
 Status check_fields(const Json& entry, FaultKind kind, const std::string& path) {
-  const std::set<std::string> common = {"kind", "at_s", "duration_s", "camera"};
+  std::set<std::string> common = {"kind", "at_s", "duration_s"};
+  if (kind != FaultKind::kGpsOutage) common.insert("camera");
   const std::set<std::string> own = fields_of(kind);
   for (const auto& [field, value] : entry.items()) {
     if (common.count(field) + own.count(field) > 0) continue;
@@ -78,6 +80,9 @@ Status add_fault(const Json& entry, std::size_t index, Scenario& scenario) {
   FaultSpec fault;
   fault.kind = fault_kind_from(entry.at("kind").get<std::string>()).value_or(fault.kind);
   if (Status status = check_fields(entry, fault.kind, path); !status) return status;
+  if (fault.kind == FaultKind::kGpsOutage && !scenario.sensors.gps) {
+    return bad_field(path + ".kind", entry.at("kind"), "go with sensors.gps");
+  }
   fault.at_ns = ns_from_s(entry.at("at_s").get<double>());
   if (entry.contains("duration_s")) {
     fault.end_ns = fault.at_ns + ns_from_s(entry.at("duration_s").get<double>());

@@ -14,7 +14,7 @@ namespace overfly::server {
                                                const nlohmann::json& name,
                                                const std::string& path);
 
-/// @pre the document is valid, and the scenario has its cameras and seed
+/// @pre the document is valid, and the scenario has its cameras, sensors and seed
 /// Errors: kInvalidArgument with field, value and limit.
 [[nodiscard]] Status read_faults(const nlohmann::json& document, Scenario& scenario);
 

@@ -5,6 +5,7 @@
 #include "flight/logs/flight_log.hpp"
 #include "server/files/plain_name.hpp"
 #include "server/files/whole_file.hpp"
+#include "server/record/run_folder.hpp"
 #include "server/scenario/document/scenario_file.hpp"
 
 namespace overfly::server {
@@ -136,8 +137,36 @@ Status check_mission_files(const Scenario& scenario) {
 
 }  // namespace
 
+namespace {
+
+/// The source of a camera's recorded images. The files in a folder are checked when it is opened.
+Status check_recorded_images(const Scenario& scenario) {
+  const CameraSpec* const camera = scenario.recorded_camera();
+  if (camera == nullptr) return {};
+  const RecordedImages& images = *camera->images;
+  if (images.times) {
+    if (Status status = scenario.sources.check(*images.times, "images.times"); !status) {
+      return status;
+    }
+  }
+  if (Status place = scenario.sources.check_place(images.source, "images.source"); !place) {
+    return place;
+  }
+  std::error_code ignored;
+  if (fs::is_directory(images.source, ignored)) return {};
+  return scenario.sources.check(images.source, "images.source");
+}
+
+}  // namespace
+
 Status check_scenario(const Scenario& scenario) {
   std::optional<Error> error;
+  if (Status status = check_recorded_images(scenario); !status) return status.error();
+  if (const auto* run = std::get_if<RunFlight>(&scenario.flight)) {
+    Status status = scenario.sources.check(truth_samples_file(run->folder), "flight.run.folder");
+    if (status) status = scenario.sources.check(manifest_file(run->folder), "flight.run.folder");
+    if (!status) return status.error();
+  }
   if (Status status = check_live_files(scenario); !status) return status.error();
   if (Status status = check_world(scenario); !status) error = status.error();
   if (Status status = check_mission_files(scenario); !status && !error) error = status.error();

@@ -41,7 +41,7 @@ std::optional<std::size_t> index_from(const std::string& text) {
 void make_room_for_kind(Json& document, const std::vector<std::string>& parts) {
   static const std::vector<std::pair<std::string, std::vector<std::string>>> kinds = {
       {"world", {"builtin", "manifest", "imagery"}},
-      {"flight", {"course", "log", "mavlink", "mission"}}};
+      {"flight", {"course", "log", "mavlink", "ros", "mission"}}};
   // A document has either `camera` or `cameras`: setting the whole of one removes the other.
   if (parts.size() == 1 && parts[0] == "cameras") document.erase("camera");
   if (parts.size() == 1 && parts[0] == "camera") document.erase("cameras");

@@ -69,6 +69,9 @@ TEST_P(RollRate, ReachesItsLimitInAReversalAndNeverPassesItByFivePercent) {
     fastest = std::max(fastest, std::abs(deg_from_rad(state.omega_body_rad_s.x())));
     steepest = std::max(steepest, std::abs(deg_from_rad(state.attitude.roll_rad)));
   }
+  testing::print_figure(std::string(name) + ", limit " + std::to_string(int(limit_deg_s)) +
+                            " deg/s: fastest roll over limit",
+                        fastest / limit_deg_s);
   EXPECT_LE(fastest, 1.05 * limit_deg_s);
   EXPECT_GE(fastest, 0.95 * limit_deg_s);
   EXPECT_LE(steepest, bank_deg + 1.5);
@@ -95,6 +98,9 @@ TEST(AttitudeControl, FliesTurnsOfTheCoordinatedRadius) {
       const double radius_m = travelled_m / wrap_pi(state.attitude.yaw_rad - before);
       const double expected_m = state.airspeed_m_s * state.airspeed_m_s /
                                 (state.gravity_m_s2 * std::tan(rad_from_deg(bank_deg)));
+      testing::print_figure(std::string(name) + ", bank " + std::to_string(int(bank_deg)) +
+                                " deg: radius over the coordinated one",
+                            radius_m / expected_m);
       EXPECT_NEAR(radius_m / expected_m, 1.0, 0.03) << name << " " << bank_deg;
       EXPECT_NEAR(deg_from_rad(state.attitude.roll_rad), bank_deg, 0.2) << name;
       // Coordinated: no side force.

@@ -1,7 +1,10 @@
 // Flights of the airframes by the autopilot, for tests.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cmath>
+#include <cstdio>
 #include <functional>
 #include <memory>
 #include <string>
@@ -50,6 +53,11 @@ inline MissionFlight fly(
     if (!look(flight)) break;
   }
   return flight;
+}
+
+/// A measured figure, as the documents state them.
+inline void print_figure(const std::string& what, double value) {
+  std::printf("%s: %.3f\n", what.c_str(), value);
 }
 
 inline double t_s(const MissionFlight& flight) { return 1e-9 * static_cast<double>(flight.t_ns()); }

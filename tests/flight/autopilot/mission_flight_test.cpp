@@ -17,6 +17,7 @@ namespace {
 using testing::fly;
 using ::testing::HasSubstr;
 using testing::item_of;
+using testing::print_figure;
 using testing::setup_of;
 using testing::t_s;
 using testing::waypoint;
@@ -52,6 +53,8 @@ TEST(MissionFlight, HoldsHeightAndTrackOverASquareInWind) {
       }
       return true;
     });
+    print_figure(std::string(name) + ", square in wind: height RMS [m]", std::sqrt(square / count));
+    print_figure(std::string(name) + ", square in wind: largest cross-track [m]", off_m);
     EXPECT_EQ(flight.end(), FlightEnd::kMissionDone) << name;
     EXPECT_LT(off_m, 5.0) << name;
     EXPECT_LT(std::sqrt(square / count), 3.0) << name;
@@ -68,11 +71,21 @@ TEST(MissionFlight, StaysInTheAirForAnHourOfModerateTurbulence) {
     setup.mission.items = {item_of(MissionCommand::kLoiter, waypoint(0, 200, 300))};
     double lowest = 1e9;
     double highest = 0.0;
+    double square = 0.0;
+    int count = 0;
     const MissionFlight flight = fly(setup, [&](const MissionFlight& at) {
-      lowest = std::min(lowest, at.aircraft().state().position_world_m.z());
-      highest = std::max(highest, at.aircraft().state().position_world_m.z());
+      const double up_m = at.aircraft().state().position_world_m.z();
+      lowest = std::min(lowest, up_m);
+      highest = std::max(highest, up_m);
+      square += (up_m - 300.0) * (up_m - 300.0);
+      ++count;
       return true;
     });
+    print_figure(std::string(name) + ", an hour of moderate turbulence: height RMS [m]",
+                 std::sqrt(square / count));
+    print_figure(std::string(name) + ", the same: largest height error [m]",
+                 std::max(300.0 - lowest, highest - 300.0));
+    EXPECT_LT(std::sqrt(square / count), 3.0) << name;
     EXPECT_EQ(flight.end(), FlightEnd::kTimeLimit) << name;
     EXPECT_DOUBLE_EQ(t_s(flight), 3600.0);
     EXPECT_GT(lowest, 250.0) << name;
@@ -126,6 +139,9 @@ TEST(MissionFlight, TakesOffReturnsAndLands) {
       sink_m_s = -state.v_world_m_s.z();
       return true;
     });
+    print_figure(std::string(name) + ", landing: sink at contact [m/s]", sink_m_s);
+    print_figure(std::string(name) + ", landing: distance from the point [m]",
+                 flight.aircraft().state().position_world_m.head<2>().norm());
     EXPECT_EQ(flight.end(), FlightEnd::kLanded) << name << " " << t_s(flight);
     EXPECT_GT(lowest_after_climb, 35.0) << name;
     EXPECT_LT(sink_m_s, 1.5) << name;
@@ -176,6 +192,8 @@ TEST(MissionFlight, FollowsTheTerrainWhereAsked) {
         return true;
       },
       hills);
+  print_figure("terrain following: height RMS [m]", std::sqrt(square / count));
+  print_figure("terrain following: largest error [m]", worst);
   EXPECT_LT(std::sqrt(square / count), 3.0);
   EXPECT_LT(worst, 7.0);
 }

@@ -6,10 +6,12 @@
 
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <thread>
 
 #include "flight/logs/log_trajectory.hpp"
 #include "flight/logs/ned_attitude.hpp"
+#include "flight/mavlink/link/frame_recorder.hpp"
 #include "flight/mavlink/payload.hpp"
 #include "tests/flight/logs/log_bytes.hpp"
 #include "tests/flight/mavlink/link/peer_socket.hpp"
@@ -34,8 +36,10 @@ constexpr double kLon0 = 149.165237;
 
 LocalFrame frame_at_start() { return LocalFrame(geodetic_from_deg(kLat0, kLon0, 600.0)); }
 
-std::shared_ptr<Vehicle> listening_vehicle(const std::string& address) {
+std::shared_ptr<Vehicle> listening_vehicle(
+    const std::string& address, std::shared_ptr<mavlink::FrameRecorder> recorder = nullptr) {
   mavlink::VehicleOptions options;
+  options.link.recorder = std::move(recorder);
   options.link.read_only = true;
   Result<std::unique_ptr<Vehicle>> opened =
       Vehicle::open(*mavlink::parse_link_address(address, "link"), options);
@@ -103,7 +107,7 @@ struct OpenedTruth {
   std::unique_ptr<LiveTruth> truth;
 
   explicit OpenedTruth(LiveTruthOptions options = {}) {
-    vehicle = listening_vehicle("udp-listen:127.0.0.1:0");
+    vehicle = listening_vehicle("udp-listen:127.0.0.1:0", options.recorder);
     made = std::make_unique<MadeVehicle>(vehicle->address().port);
     made->heartbeat();
     options.simulation_wait_ns = std::min(options.simulation_wait_ns, kNsPerS / 10);
@@ -164,6 +168,46 @@ TEST(LiveTruth, FliesTheEstimateByTheVehiclesClock) {
       attitude_from((*state)->T_world_body.rotation).yaw_rad, MadeVehicle::yaw_at(asked_ms), 1e-5);
   EXPECT_EQ((*state)->t_ns, live.flight_ns(asked_ms));
   EXPECT_THAT(live.truth->warnings(), ElementsAre());
+}
+
+TEST(LiveTruth, IsFlownAgainFromItsRecording) {
+  const overfly::testing::TemporaryFolder folder;
+  const auto tlog = folder.path() / "vehicle.tlog";
+  auto recorder = mavlink::FrameRecorder::create(tlog);
+  ASSERT_TRUE(recorder.ok()) << recorder.error().message;
+  LiveTruthOptions options;
+  options.recorder = std::move(*recorder);
+  std::map<std::int64_t, Pose> flown;  // by the vehicle's clock
+  {
+    OpenedTruth live(options);
+    ASSERT_NE(live.truth, nullptr);
+    live.fly_until(live.last_ms + 3000);
+    for (std::int64_t t_ns = live.truth->start_ns(); t_ns <= std::int64_t{live.last_ms} * 1'000'000;
+         t_ns += 20'000'000) {
+      const auto state = live.truth->state_at(t_ns - live.truth->start_ns());
+      ASSERT_TRUE(state.ok() && *state);
+      flown[t_ns] = (*state)->T_world_body;
+    }
+    EXPECT_THAT(live.truth->warnings(), ElementsAre());
+  }
+  options.recorder.reset();  // the last messages are in the file now
+  const auto log = logs::open_log(tlog);
+  ASSERT_TRUE(log.ok()) << log.error().message;
+  const auto again = logs::read_log_trajectory(*log, {"", flown.begin()->first, {}}, nullptr);
+  ASSERT_TRUE(again.ok()) << again.error().message;
+  const LocalFrame frame = frame_at_start();
+  std::size_t compared = 0;
+  for (const logs::LogPose& pose : again->poses) {
+    const auto then = flown.find(pose.t_ns);
+    if (then == flown.end()) continue;
+    ++compared;
+    const Geodetic point =
+        geodetic_from_deg(pose.position.x(), pose.position.y(), pose.position.z());
+    EXPECT_LT((frame.world_from_geodetic(point) - then->second.translation).norm(), 1e-9);
+    const Eigen::Quaterniond R = frame.R_world_enu_at(point) * logs::R_enu_ned() * pose.R_ned_body;
+    EXPECT_LT(rotation_angle_rad(R, then->second.rotation), 1e-7);
+  }
+  EXPECT_GE(compared, 150U);
 }
 
 TEST(LiveTruth, PrefersTheSimulatorsState) {
@@ -266,6 +310,51 @@ TEST(LiveTruth, EndsByItsStopConditions) {
   mission.made->send(frame_bytes(42, PayloadWriter(18).put(0, std::uint16_t{7}).bytes(), 0));
   EXPECT_FALSE(mission.truth->state_at(mission.flight_ns(mission.last_ms) + 1)->has_value());
   EXPECT_THAT(mission.truth->warnings().back(), HasSubstr("the mission has come to item 7"));
+}
+
+TEST(LiveTruth, BeginsWithAnItemOfTheMission) {
+  const auto vehicle = listening_vehicle("udp-listen:127.0.0.1:0");
+  MadeVehicle made(vehicle->address().port);
+  made.heartbeat();
+  LiveTruthOptions options;
+  options.simulation_wait_ns = kNsPerS / 10;
+  options.start.mission_item = 5;
+  options.stop.mission_item = 9;
+  /// The mission comes to the items of a list, one every 2 s of the vehicle's clock, from 12 s on.
+  const auto open = [&](std::vector<std::uint16_t> items) {
+    std::atomic<bool> opened{false};
+    std::thread flying([&] {
+      for (std::uint32_t ms = 10000; !opened && ms < 60000; ms += 20) {
+        made.state(ms);
+        const std::size_t item = ms / 2000 - 6;
+        if (ms >= 12000 && ms % 2000 == 0 && item < items.size()) {
+          made.send(frame_bytes(42, PayloadWriter(18).put(0, items[item]).bytes(), 0));
+        }
+        std::this_thread::sleep_for(milliseconds(1));
+      }
+    });
+    auto truth = LiveTruth::open(vehicle, frame_at_start(), options, nullptr);
+    opened = true;
+    flying.join();
+    return truth;
+  };
+  for (const std::vector<std::uint16_t>& items :
+       {std::vector<std::uint16_t>{1, 4, 5}, std::vector<std::uint16_t>{1, 4, 6}}) {
+    const auto truth = open(items);
+    ASSERT_TRUE(truth.ok()) << truth.error().message;
+    EXPECT_EQ((*truth)->start_ns(), 16 * kNsPerS);
+    const auto first = (*truth)->state_at(0);
+    ASSERT_TRUE(first.ok() && *first);
+    const Eigen::Vector3d expected = frame_at_start().world_from_geodetic(
+        geodetic_from_deg(1e-7 * MadeVehicle::lat_at(16000), kLon0, 600.0));
+    EXPECT_LT(((*first)->T_world_body.translation - expected).norm(), 0.02);
+  }
+  const auto never = open({1, 9});
+  ASSERT_FALSE(never.ok());
+  EXPECT_THAT(
+      never.error().message,
+      HasSubstr("the flight ended before the mission came to item 5: the mission has come to "
+                "item 9"));
 }
 
 TEST(LiveTruth, SaysWhatIsMissing) {

@@ -8,6 +8,7 @@
 #include "core/motion/pose.hpp"
 #include "flight/logs/csv/csv_mapping.hpp"
 #include "flight/logs/flight_log.hpp"
+#include "flight/logs/log_samples.hpp"
 #include "flight/logs/log_trajectory.hpp"
 #include "flight/logs/ned_attitude.hpp"
 #include "tests/support/support.hpp"

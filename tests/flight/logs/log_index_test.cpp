@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "core/time.hpp"
+#include "flight/logs/log_samples.hpp"
 #include "flight/logs/log_trajectory.hpp"
 #include "flight/logs/probes/probe_log.hpp"
 #include "tests/flight/logs/log_bytes.hpp"

@@ -42,7 +42,8 @@ TEST(PoseJoiner, InterpolatesSamplesThatAreOutOfOrder) {
   std::stable_sort(samples.begin(), samples.end(), [](const Sample& a, const Sample& b) {
     return a.met_ns < b.met_ns;
   });
-  PoseJoiner joiner(10'000);
+  PoseJoiner joiner;
+  joiner.expect(10'000);
   for (const Sample& sample : samples) {
     if (sample.attitude) {
       joiner.attitude({0, sample.t_ns}, turn_at(sample.t_ns));
@@ -64,7 +65,7 @@ TEST(PoseJoiner, InterpolatesSamplesThatAreOutOfOrder) {
 }
 
 TEST(PoseJoiner, ReportsWhatItLeavesOut) {
-  PoseJoiner joiner(0);
+  PoseJoiner joiner;
   for (int i = 0; i < 5; ++i) joiner.attitude({0, i * kNsPerS}, turn_at(i * kNsPerS));
   joiner.attitude({0, 2 * kNsPerS}, yaw_of(3.0));    // a second one for that time
   joiner.position({0, kNsPerS / 2}, {1, 0, 0});      //
@@ -72,7 +73,6 @@ TEST(PoseJoiner, ReportsWhatItLeavesOut) {
   joiner.position({0, 2 * kNsPerS}, {3, 0, 0});      //
   joiner.position({0, 4 * kNsPerS + 1}, {4, 0, 0});  // after the last attitude
   joiner.position({1, kNsPerS}, {5, 0, 0});          // after a restart
-  EXPECT_EQ(joiner.positions(), 5U);
   std::vector<std::string> warnings;
   const std::vector<LogPose> poses = joiner.take_poses(warnings);
   ASSERT_EQ(poses.size(), 2U);
@@ -86,7 +86,8 @@ TEST(PoseJoiner, ReportsWhatItLeavesOut) {
 }
 
 TEST(PoseJoiner, TakesTheRunWithTheMostPositions) {
-  PoseJoiner joiner(10'000);
+  PoseJoiner joiner;
+  joiner.expect(10'000);
   for (std::uint32_t boot = 0; boot < 3; ++boot) {
     const int count = boot == 1 ? 6'000 : 5'000;
     for (int i = 0; i < count; ++i) {
@@ -105,7 +106,8 @@ TEST(PoseJoiner, TakesTheRunWithTheMostPositions) {
 
 TEST(PoseJoiner, CountsPositionsBeforeTheFirstOriginFromIt) {
   // Many positions are joined before the origin is known.
-  PoseJoiner joiner(20'000);
+  PoseJoiner joiner;
+  joiner.expect(20'000);
   const LocalOrigin origin{47.0, 8.0, 500.0, LocalGrid::kPx4};
   for (int i = 0; i < 20'000; ++i) {
     if (i == 15'000) joiner.local_origin(origin);
@@ -113,7 +115,6 @@ TEST(PoseJoiner, CountsPositionsBeforeTheFirstOriginFromIt) {
     joiner.attitude({0, i * kNsPerS / 50}, yaw_of(0.0));
     joiner.position({0, i * kNsPerS / 50}, {0.0, 0.0, -10.0});
   }
-  EXPECT_TRUE(joiner.has_origin());
   std::vector<std::string> warnings;
   const std::vector<LogPose> poses = joiner.take_poses(warnings);
   ASSERT_EQ(poses.size(), 20'000U);

@@ -263,7 +263,7 @@ TEST(Ulog, FindsTheNextMessageAfterDamage) {
   const auto log = open_ulog(folder, bytes);
   ASSERT_TRUE(log.ok()) << log.error().message;
   EXPECT_EQ(log->streams[0].messages, 22U);
-  EXPECT_THAT(log->warnings, Contains(HasSubstr("in 1 places belong to no message")));
+  EXPECT_THAT(log->warnings, Contains(HasSubstr("in 1 place belong to no message")));
 }
 
 }  // namespace

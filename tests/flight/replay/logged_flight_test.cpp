@@ -176,7 +176,7 @@ TEST(LoggedFlight, ReportsJumpsAsWarnings) {
   options.smooth.emplace();
   const auto flight = flown_log(log, options, log.frame());
   EXPECT_THAT(flight->warnings(),
-              ::testing::Contains(HasSubstr("1 positions left out at 150.000 s")));
+              ::testing::Contains(HasSubstr("1 position left out at 150.000 s")));
   EXPECT_EQ(flight->description(), "log: log.json, GPS with the attitude of ATT, smoothed");
 }
 

@@ -51,7 +51,7 @@ TEST(SmoothLog, WritesAResidualForEachSample) {
   ASSERT_TRUE(log.ok()) << log.error().message;
   ASSERT_EQ(log->smoothed.jumps.size(), 1U);
   EXPECT_THAT(jump_text(*log, log->smoothed.jumps[0]),
-              HasSubstr("1 positions left out at 150.000 s: up to 111."));
+              HasSubstr("1 position left out at 150.000 s: up to 111."));
   const overfly::testing::TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "residuals.csv";
   ASSERT_TRUE(write_residuals(file, *log).ok());

@@ -60,6 +60,90 @@ TEST(Ros1BagWriter, IsReadBackByRosItself) {
                                               "/tf tf2_msgs/TFMessage"));
 }
 
+TEST(Ros1BagWriter, SamplesOfSensorsAreStandardMessages) {
+  const testing::TemporaryFolder folder;
+  SensorSamples samples;
+  samples.imu = {{5'000'000, {1.0, 2.0, -9.75}, {4.0, 5.0, 6.0}}};
+  samples.barometer = {{2'000'000, 98765.5, 283.15}};
+  GpsSample fix;
+  fix.t_ns = 1'000'000;
+  fix.delivered_ns = 9'000'000;
+  fix.place = geodetic_from_deg(39.5, -86.0, 210.5);
+  fix.velocity_ned_m_s = {20.0, -3.0, 0.5};
+  fix.horizontal_accuracy_m = 2.0;
+  fix.vertical_accuracy_m = 3.0;
+  GpsSample none = fix;
+  none.delivered_ns = 10'000'000;
+  none.fix = GpsFixType::kNone;
+  samples.gps = {fix, none};
+  samples.airspeed = {{3'000'000, 350.5, 23.75}};
+  samples.magnetometer = {{4'000'000, {20.0, -1.0, 48.0}}};
+  samples.range = {{6'000'000, 55.5}};
+  {
+    auto writer = BagWriter::create(folder.path() / "a.bag").value();
+    ASSERT_TRUE(writer->add_samples(samples, kStampNs).ok());
+    ASSERT_TRUE(writer->close().ok());
+  }
+  rosbag::Bag bag((folder.path() / "a.bag").string());
+  rosbag::View view(bag);
+  std::map<std::string, std::string> topics;
+  int fixes = 0;
+  for (const rosbag::MessageInstance& message : view) {
+    topics[message.getTopic()] = message.getDataType();
+    if (const auto imu = message.instantiate<ImuMessage>()) {
+      // Forward-right-down became forward-left-up.
+      EXPECT_EQ(imu->angular_velocity.x, 4.0);
+      EXPECT_EQ(imu->angular_velocity.y, -5.0);
+      EXPECT_EQ(imu->angular_velocity.z, -6.0);
+      EXPECT_EQ(imu->linear_acceleration.z, 9.75);
+      EXPECT_EQ(imu->orientation_covariance[0], -1.0);
+      EXPECT_EQ(imu->header.frame_id, "base_link");
+    }
+    if (const auto gps = message.instantiate<NavSatFixMessage>()) {
+      ++fixes;
+      EXPECT_EQ(gps->header.stamp.toNSec(), static_cast<std::uint64_t>(kStampNs + 1'000'000));
+      const std::uint64_t delivered_ns = fixes == 1 ? 9'000'000 : 10'000'000;
+      EXPECT_EQ(message.getTime().toNSec(), static_cast<std::uint64_t>(kStampNs) + delivered_ns);
+      EXPECT_EQ(gps->status.status, fixes == 1 ? 0 : -1);
+      EXPECT_NEAR(gps->latitude, 39.5, 1e-12);
+      EXPECT_EQ(gps->altitude, 210.5);
+      if (fixes == 1) {
+        EXPECT_THAT(gps->position_covariance, ElementsAre(4, 0, 0, 0, 4, 0, 0, 0, 9));
+      }
+    }
+    if (const auto velocity = message.instantiate<TwistStampedMessage>()) {
+      EXPECT_EQ(velocity->twist.linear.x, -3.0);
+      EXPECT_EQ(velocity->twist.linear.y, 20.0);
+      EXPECT_EQ(velocity->twist.linear.z, -0.5);
+    }
+    if (const auto pressure = message.instantiate<FluidPressureMessage>()) {
+      EXPECT_EQ(pressure->fluid_pressure,
+                message.getTopic() == "/sensors/pressure" ? 98765.5 : 350.5);
+    }
+    if (const auto temperature = message.instantiate<TemperatureMessage>()) {
+      EXPECT_NEAR(temperature->temperature, 10.0, 1e-9);
+    }
+    if (const auto field = message.instantiate<MagneticFieldMessage>()) {
+      EXPECT_NEAR(field->magnetic_field.x, 20e-6, 1e-12);
+      EXPECT_NEAR(field->magnetic_field.z, -48e-6, 1e-12);
+    }
+    if (const auto range = message.instantiate<RangeMessage>()) {
+      EXPECT_EQ(range->range, 55.5F);
+    }
+  }
+  const std::map<std::string, std::string> expected = {
+      {"/sensors/imu", "sensor_msgs/Imu"},
+      {"/sensors/pressure", "sensor_msgs/FluidPressure"},
+      {"/sensors/temperature", "sensor_msgs/Temperature"},
+      {"/sensors/gps/fix", "sensor_msgs/NavSatFix"},
+      {"/sensors/gps/velocity", "geometry_msgs/TwistStamped"},
+      {"/sensors/airspeed/differential_pressure", "sensor_msgs/FluidPressure"},
+      {"/sensors/magnetic_field", "sensor_msgs/MagneticField"},
+      {"/sensors/range", "sensor_msgs/Range"}};
+  EXPECT_EQ(topics, expected);
+  EXPECT_EQ(fixes, 2);
+}
+
 TEST(Ros1BagWriter, WritesTheSameBytesEachTime) {
   const testing::TemporaryFolder folder;
   write_example(folder.path() / "a.bag");

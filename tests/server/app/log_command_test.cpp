@@ -177,7 +177,7 @@ TEST_F(LogCommand, SmoothWritesPosesResidualsAndAReport) {
                                         path("residuals.csv")});
   ASSERT_EQ(text.exit_code, 0) << text.err;
   EXPECT_THAT(text.out, HasSubstr("200 used (0 shifted), 1 left out"));
-  EXPECT_THAT(text.out, HasSubstr("1 jumps:\n  1 positions left out at "));
+  EXPECT_THAT(text.out, HasSubstr("1 jump:\n  1 position left out at "));
   EXPECT_THAT(read_text(path("residuals.csv")), HasSubstr(",position,0,0,"));
   const auto poses = read_trajectory(path("smooth.tum"));
   ASSERT_TRUE(poses.ok()) << poses.error().message;

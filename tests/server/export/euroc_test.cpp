@@ -7,6 +7,10 @@
 
 #include "core/motion/trajectory_io.hpp"
 #include "flight/gravity.hpp"
+#include "server/files/whole_file.hpp"
+#include "server/record/run_folder.hpp"
+#include "server/record/sensor_files.hpp"
+#include "server/run/run.hpp"
 #include "tests/server/export/export_fixture.hpp"
 
 namespace overfly::server {
@@ -139,13 +143,101 @@ TEST(Euroc, IntegratedImuGivesTheFlightBack) {
   EXPECT_LT((p - last.p).norm(), 0.1);
 }
 
+/// A run through a banked turn, and its export.
+fs::path flown_and_exported(const fs::path& folder, const std::string& sensors) {
+  const auto run = run_scenario(
+      testing::small_scenario({"duration_s=18", "flight.course.length_m=900", sensors}),
+      testing::options_for(folder / "run"));
+  EXPECT_TRUE(run.ok()) << run.error().message;
+  ExportOptions options = export_options(folder / "d", DatasetFormat::kEuroc);
+  options.renderer_factory = testing::noop_factory();
+  options.from_s = 6.0;
+  exported(open_export_source(folder / "run").value(), options);
+  return folder / "d" / "mav0";
+}
+
+TEST(Euroc, HasTheSamplesThatTheRunsEstimatorsReceived) {
+  const TemporaryFolder folder;
+  const fs::path mav0 = flown_and_exported(folder.path(), R"(sensors={"imu":{}})");
+  const auto samples = samples_of(mav0);
+  const SensorSamples received =
+      SensorFilesReader::open(folder.path() / "run").value().until(20 * kNsPerS).value();
+  ASSERT_GT(samples.size(), 2400U);
+  const std::int64_t epoch_ns = open_export_source(folder.path() / "run").value().epoch_utc_ns;
+  const auto first = static_cast<std::size_t>((samples[0].t_ns - epoch_ns) / 5'000'000);
+  Eigen::Vector3d gyro_bias = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    ASSERT_EQ(samples[i].t_ns - epoch_ns, received.imu[first + i].t_ns);
+    ASSERT_EQ(samples[i].rate, received.imu[first + i].angular_rate_rad_s);
+    ASSERT_EQ(samples[i].force, received.imu[first + i].acceleration_m_s2);
+    gyro_bias = samples[i].gyro_bias;
+  }
+  EXPECT_GT(gyro_bias.norm(), 1e-6);
+  const std::string yaml = read_text(mav0 / "imu0" / "sensor.yaml");
+  EXPECT_THAT(yaml, HasSubstr("gyroscope_noise_density: 0.00016968"));
+}
+
+/// What an estimator with an IMU does first: dead reckoning from the ground truth's first state.
+TEST(Euroc, IntegratedSamplesOfAnIdealImuOfARunGiveTheFlightBack) {
+  const TemporaryFolder folder;
+  const fs::path mav0 = flown_and_exported(
+      folder.path(),
+      R"(sensors={"imu":{"gyroscope_noise_rad_s_sqrt_hz":0,"gyroscope_walk_rad_s2_sqrt_hz":0,)"
+      R"("accelerometer_noise_m_s2_sqrt_hz":0,"accelerometer_walk_m_s3_sqrt_hz":0}})");
+  const auto samples = samples_of(mav0);
+  ASSERT_GT(samples.size(), 2400U);
+  const auto manifest = read_json(manifest_file(folder.path() / "run")).value();
+  const auto& origin = manifest.at("world").at("origin");
+  const double gravity = flight::normal_gravity_m_s2(
+      geodetic_from_deg(origin.at("lat_deg"), origin.at("lon_deg"), origin.at("alt_ellipsoid_m")));
+  Eigen::Vector3d p, v;
+  Eigen::Quaterniond q;
+  integrate(samples, gravity, p, v, q);
+  const Sample& last = samples.back();
+  std::printf("[ IMU      ] of a run, after %.1f s: %.4f m, %.5f m/s, %.6f deg\n",
+              double(last.t_ns - samples.front().t_ns) * 1e-9,
+              (p - last.p).norm(),
+              (v - last.v).norm(),
+              deg_from_rad(q.angularDistance(last.q)));
+  EXPECT_LT(q.angularDistance(last.q), 1e-4);
+  EXPECT_LT((v - last.v).norm(), 0.01);
+  EXPECT_LT((p - last.p).norm(), 0.1);
+}
+
+TEST(Euroc, AScenarioMeasuresWhatARunOfItMeasures) {
+  const TemporaryFolder folder;
+  const std::string sensors = R"(sensors={"imu":{}})";
+  const fs::path of_run = flown_and_exported(folder.path(), sensors);
+  ExportOptions options = export_options(folder.path() / "s", DatasetFormat::kEuroc);
+  options.renderer_factory = testing::noop_factory();
+  options.from_s = 6.0;
+  const ExportSource source =
+      small_source({"duration_s=18", "flight.course.length_m=900", sensors});
+  exported(source, options);
+  const auto recorded = samples_of(of_run);
+  const auto measured = samples_of(options.folder / "mav0");
+  ASSERT_GE(measured.size(), recorded.size());
+  for (std::size_t i = 0; i < recorded.size(); ++i) {
+    ASSERT_EQ(measured[i].rate, recorded[i].rate) << i;
+    ASSERT_EQ(measured[i].force, recorded[i].force) << i;
+    ASSERT_EQ(measured[i].accel_bias, recorded[i].accel_bias) << i;
+  }
+  options.folder = folder.path() / "refused";
+  options.imu = flight::ImuModel::ideal();
+  const auto refused = export_dataset(source, options);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().code, ErrorCode::kInvalidArgument);
+  EXPECT_THAT(refused.error().message, HasSubstr("imu: must not be given"));
+}
+
 TEST(Euroc, NoiseDensitiesAreThoseAskedForAndBiasesAreInTheTruth) {
   const TemporaryFolder folder;
   ExportOptions options = export_options(folder.path() / "noisy", DatasetFormat::kEuroc);
   options.renderer_factory = testing::noop_factory();
-  options.imu.rate_hz = 100.0;
-  options.imu.gyroscope_noise_rad_s_sqrt_hz = 2e-3;
-  options.imu.gyroscope_walk_rad_s2_sqrt_hz = 1e-3;
+  options.imu.emplace();
+  options.imu->rate_hz = 100.0;
+  options.imu->gyroscope_noise_rad_s_sqrt_hz = 2e-3;
+  options.imu->gyroscope_walk_rad_s2_sqrt_hz = 1e-3;
   const ExportSource source = small_source({"duration_s=20"});
   exported(source, options);
   ExportOptions exact = export_options(folder.path() / "exact", DatasetFormat::kEuroc);

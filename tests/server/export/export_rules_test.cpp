@@ -229,7 +229,7 @@ TEST(Export, NamesWhatCannotBeExported) {
   changed.from_s = -1.0;
   expect_refused(small_source(), changed, kInvalid, "from = -1");
   changed = options(DatasetFormat::kEuroc);
-  changed.imu.rate_hz = 0.0;
+  changed.imu = flight::ImuModel::ideal(0.0);
   expect_refused(small_source(), changed, kInvalid, "rate_hz");
   changed = options(DatasetFormat::kPng);
   changed.video = VideoLook{VideoView::kCamera, 0, 720};

@@ -10,7 +10,9 @@
 #ifdef OVERFLY_TESTS_LCM
 #include <lcm/lcm-cpp.hpp>
 #include <overfly_lcm/calibration_t.hpp>
+#include <overfly_lcm/gps_t.hpp>
 #include <overfly_lcm/image_t.hpp>
+#include <overfly_lcm/imu_t.hpp>
 #include <overfly_lcm/sim_time_t.hpp>
 #include <overfly_lcm/truth_t.hpp>
 #endif
@@ -161,6 +163,23 @@ TEST(LcmExport, GivesEstimatorsTheLumaOfColourImages) {
 #else
 
 TEST(LcmExport, IsReadBackByLcm) { GTEST_SKIP() << "LCM is not built in"; }
+
+TEST(LcmExport, HasTheSamplesOfSensorsOfTheExportedSpan) {
+  const TemporaryFolder folder;
+  const ExportSource source = small_source({R"(sensors={"imu":{},"gps":{"delay_s":0.2}})"});
+  ExportOptions options = export_options(folder.path() / "d", DatasetFormat::kLcm);
+  options.from_s = 0.95;
+  exported(source, options);
+  const Log log = read_log(options.folder / "flight.lcm");
+  const auto imu = log.decoded<overfly_lcm::imu_t>("OVERFLY_IMU");
+  // From one frame period before the first frame, 1.0 s, to the last, 2.0 s.
+  ASSERT_EQ(imu.size(), 220U);
+  EXPECT_EQ(imu.front().t_ns, 900'000'000 - 5'000'000);
+  EXPECT_EQ(imu.back().t_ns, 1'990'000'000);
+  const auto gps = log.decoded<overfly_lcm::gps_t>("OVERFLY_GPS");
+  ASSERT_FALSE(gps.empty());
+  for (const overfly_lcm::gps_t& fix : gps) EXPECT_EQ(fix.delivered_ns, fix.t_ns + 200'000'000);
+}
 
 #endif
 

@@ -5,6 +5,8 @@
 #include <map>
 
 #include "middleware/ros1/findings.hpp"
+#include "server/record/sensor_files.hpp"
+#include "server/run/run.hpp"
 #include "tests/server/export/export_fixture.hpp"
 
 #ifdef OVERFLY_TESTS_ROS1
@@ -120,6 +122,31 @@ TEST(RosbagExport, IsTheSameBytesEachTime) {
   }
   EXPECT_EQ(overfly::testing::read_text(folder.path() / "a" / "flight.bag"),
             overfly::testing::read_text(folder.path() / "b" / "flight.bag"));
+}
+
+TEST(RosbagExport, HasTheSamplesThatARunRecorded) {
+  const TemporaryFolder folder;
+  RunOptions flying = testing::options_for(folder.path() / "run");
+  const auto run = run_scenario(
+      testing::small_scenario({R"(sensors={"imu":{},"range":{"max_m":1000}})"}), flying);
+  ASSERT_TRUE(run.ok()) << run.error().message;
+  const ExportSource source = open_export_source(folder.path() / "run").value();
+  ExportOptions options = export_options(folder.path() / "d", DatasetFormat::kRosbag);
+  options.renderer_factory = testing::noop_factory();
+  exported(source, options);
+  const auto file = options.folder / "flight.bag";
+  const auto imu = messages_of<ros1::ImuMessage>(file, "/sensors/imu");
+  // Those of the first frame at t = 0 are older than it by nothing; the last frame is at 2 s.
+  const SensorSamples recorded =
+      SensorFilesReader::open(folder.path() / "run").value().until(2 * kNsPerS).value();
+  ASSERT_EQ(imu.size(), recorded.imu.size());
+  for (std::size_t i = 0; i < imu.size(); ++i) {
+    EXPECT_EQ(imu[i]->header.stamp.toNSec(),
+              static_cast<std::uint64_t>(source.epoch_utc_ns + recorded.imu[i].t_ns));
+    EXPECT_EQ(imu[i]->angular_velocity.x, recorded.imu[i].angular_rate_rad_s.x());
+    EXPECT_EQ(imu[i]->linear_acceleration.z, -recorded.imu[i].acceleration_m_s2.z());
+  }
+  EXPECT_EQ(messages_of<ros1::RangeMessage>(file, "/sensors/range").size(), recorded.range.size());
 }
 
 #endif

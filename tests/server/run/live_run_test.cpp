@@ -4,12 +4,18 @@
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 
+#include <array>
 #include <atomic>
 #include <chrono>
+#include <cmath>
+#include <set>
+#include <span>
 #include <thread>
+#include <vector>
 
 #include "core/outside/file_descriptor.hpp"
 #include "flight/mavlink/frame.hpp"
+#include "flight/mavlink/frame_finder.hpp"
 #include "flight/mavlink/payload.hpp"
 #include "server/camera/truth.hpp"
 #include "server/record/run_info_file.hpp"
@@ -33,7 +39,9 @@ using testing::small_scenario;
 /// as fast as the machine's, to the first connection, then disarms.
 class StreamingVehicle {
  public:
-  explicit StreamingVehicle(double seconds) : seconds_(seconds) {
+  /// @param pause_ms  of the machine's clock between samples that are 20 ms apart
+  explicit StreamingVehicle(double seconds, int pause_ms = 1)
+      : seconds_(seconds), pause_ms_(pause_ms) {
     listener_ = FileDescriptor(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
     sockaddr_in name{};
     name.sin_family = AF_INET;
@@ -48,9 +56,14 @@ class StreamingVehicle {
   }
   ~StreamingVehicle() {
     ::shutdown(listener_.get(), SHUT_RDWR);
-    thread_.join();
+    if (thread_.joinable()) thread_.join();
   }
   [[nodiscard]] std::string link() const { return "tcp:127.0.0.1:" + std::to_string(port_); }
+  /// All that the run sent, after its end.
+  [[nodiscard]] const std::vector<std::uint8_t>& received() {
+    thread_.join();
+    return received_;
+  }
 
  private:
   void run() {
@@ -61,11 +74,15 @@ class StreamingVehicle {
           !send(peer, 33, position_at(ms))) {
         return;
       }
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      std::this_thread::sleep_for(std::chrono::milliseconds(pause_ms_));
     }
     (void)send(peer, 0, heartbeat(false));
-    char byte = 0;
-    (void)!::recv(peer.get(), &byte, 1, 0);  // until the run has ended
+    // Until the run has ended.
+    std::array<std::uint8_t, 4096> bytes{};
+    for (ssize_t got = 1; got > 0;) {
+      got = ::recv(peer.get(), bytes.data(), bytes.size(), 0);
+      if (got > 0) received_.insert(received_.end(), bytes.begin(), bytes.begin() + got);
+    }
   }
   static std::vector<std::uint8_t> heartbeat(bool armed) {
     return PayloadWriter(9)
@@ -94,6 +111,8 @@ class StreamingVehicle {
   }
 
   double seconds_;
+  int pause_ms_;
+  std::vector<std::uint8_t> received_;
   FileDescriptor listener_;
   std::uint16_t port_ = 0;
   std::uint8_t sequence_ = 0;
@@ -150,6 +169,75 @@ TEST(LiveRun, FliesAVehicleUntilItIsDisarmed) {
               HasSubstr("live vehicle 1.1 on " + vehicle.link() +
                         ": the estimate (1.1/GLOBAL_POSITION_INT, 1.1/ATTITUDE)"));
   EXPECT_THAT(manifest, HasSubstr(" s: the vehicle was disarmed"));
+}
+
+TEST(LiveRun, SendsTheEstimatesToTheVehicle) {
+  StreamingVehicle vehicle(3.0, 20);
+  const TemporaryFolder folder;
+  Scenario scenario = small_scenario(
+      {"flight.mavlink.link=" + vehicle.link(),
+       R"(estimators=[{"name":"p","type":"perfect"},{"name":"q","type":"perfect"}])",
+       R"(flight.mavlink.feedback={"estimator":"p","message":"gps_input","send_height":true})",
+       "flight.mavlink.rate_hz=0"});
+  ASSERT_EQ(scenario.feedback_estimator, 0U);
+  scenario.duration_s.reset();
+  const auto run = run_scenario(scenario, options_for(folder.path() / "r"));
+  ASSERT_TRUE(run.ok()) << run.error().message;
+  flight::mavlink::FrameFinder finder;
+  std::span<const std::uint8_t> rest = vehicle.received();
+  std::set<std::uint64_t> stamps_us;
+  while (true) {
+    const auto found = finder.next(rest, true);
+    if (!found.frame) break;
+    rest = rest.subspan(found.consumed_bytes);
+    if (found.frame->message_id != 232) continue;
+    const flight::mavlink::PayloadReader payload(found.frame->payload);
+    stamps_us.insert(payload.at<std::uint64_t>(0));
+    // The vehicle's own place, within the rounding of 1e-7 deg and of the world's frame.
+    EXPECT_NEAR(payload.at<std::int32_t>(12), 392345678, 2);
+    EXPECT_NEAR(payload.at<std::int32_t>(16), -861234567, 2);
+    EXPECT_NEAR(payload.at<float>(20), 300.0, 0.02);
+  }
+  ASSERT_FALSE(stamps_us.empty());
+  // Captures lie on the camera's grid from some sample of the vehicle's clock, 20 ms apart, on.
+  const double period_us = 1e6 / scenario.rate.hz();
+  for (const std::uint64_t stamp_us : stamps_us) {
+    const auto since_first = static_cast<double>(stamp_us - *stamps_us.begin());
+    EXPECT_NEAR(std::remainder(since_first, period_us), 0.0, 1.5);
+    EXPECT_GE(stamp_us, 5'000'000U);
+    EXPECT_LE(stamp_us, 8'000'000U);
+  }
+  const std::string log = overfly::testing::read_text(folder.path() / "r" / "log.jsonl");
+  EXPECT_THAT(log,
+              HasSubstr("sent " + std::to_string(stamps_us.size()) +
+                        " GPS_INPUT to vehicle 1.1, the oldest "));
+  const std::string timings = overfly::testing::read_text(folder.path() / "r" / "timings.json");
+  EXPECT_THAT(timings, HasSubstr("message_to_frame"));
+}
+
+TEST(LiveRun, ChecksTheFeedbackOfItsScenario) {
+  const auto refused = [](const std::string& feedback, const std::string& more = "") {
+    std::vector<std::string> changes = {"flight.mavlink.link=tcp:127.0.0.1:1",
+                                        R"(estimators=[{"name":"p","type":"perfect"}])",
+                                        "flight.mavlink.feedback=" + feedback};
+    if (!more.empty()) changes.push_back(more);
+    try {
+      (void)small_scenario(changes);
+    } catch (const std::exception& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  EXPECT_EQ(refused(R"({"estimator":"p","message":"odometry","latency_ms":400})"), "accepted");
+  EXPECT_THAT(refused(R"({"estimator":"p","message":"odometry","latency_ms":401})"),
+              HasSubstr("flight.mavlink.feedback.latency_ms = 401: must be in [0, 400]"));
+  EXPECT_THAT(refused(R"({"estimator":"r","message":"odometry"})"),
+              HasSubstr("flight.mavlink.feedback.estimator = r: must be the name of one of the "
+                        "scenario's estimators: p"));
+  EXPECT_THAT(refused(R"({"estimator":"p","message":"odometry","position_std_dev_m":1})"),
+              HasSubstr("must be given together"));
+  EXPECT_THAT(refused(R"({"estimator":"p","message":"odometry"})", "flight.mavlink.read_only=true"),
+              HasSubstr("flight.mavlink.feedback: must not be given with read_only = true"));
 }
 
 TEST(LiveRun, EndsWhenItsScenarioSays) {

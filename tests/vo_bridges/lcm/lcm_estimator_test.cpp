@@ -68,6 +68,49 @@ TEST(LcmEstimator, SendsImagesByteForByteAndReturnsTheHashOfTheOtherEnd) {
   }
 }
 
+TEST(LcmEstimator, SamplesOfSensorsComeBeforeTheirImageAndOnce) {
+  // The second image is lost twice and sent again; its samples are not.
+  int losses = 0;
+  LcmBehaviour behaviour;
+  behaviour.loses_image = [&](const overfly_lcm::image_t& image) {
+    return image.frame == 1 && ++losses <= 2;
+  };
+  const LcmPair pair = make_memq_pair(behaviour);
+  std::vector<VoFrame> frames = varied_frames(3);
+  frames[1].sensors.imu = {{10'000'000, {0.5, -0.25, -9.75}, {0.125, 0.25, -0.5}},
+                           {15'000'000, {1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}}};
+  frames[2].sensors.imu = {{35'000'000, {}, {}}};
+  GpsSample fix;
+  fix.t_ns = 1'000'000;
+  fix.delivered_ns = 30'000'000;
+  fix.place = geodetic_from_deg(39.5, -86.0, 210.5);
+  fix.velocity_ned_m_s = {20.0, -3.0, 0.5};
+  fix.vertical_accuracy_m = 9.25;
+  frames[1].sensors.gps = {fix};
+  for (const VoFrame& frame : frames) ASSERT_TRUE(pair.door->track(frame).ok());
+  EXPECT_EQ(losses, 3);
+
+  const auto imu = pair.far_end->imu();
+  ASSERT_EQ(imu.size(), 3U);
+  EXPECT_EQ(imu[0].t_ns, 10'000'000);
+  EXPECT_EQ(imu[0].utime, 10'000);
+  EXPECT_EQ(imu[0].session, pair.far_end->calibration()->session);
+  EXPECT_THAT(imu[0].specific_force, ::testing::ElementsAre(0.5, -0.25, -9.75));
+  EXPECT_THAT(imu[0].angular_rate, ::testing::ElementsAre(0.125, 0.25, -0.5));
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(imu[i].sequence, static_cast<std::int64_t>(i) + 1);
+  }
+  const auto gps = pair.far_end->gps();
+  ASSERT_EQ(gps.size(), 1U);
+  EXPECT_EQ(gps[0].t_ns, 1'000'000);
+  EXPECT_EQ(gps[0].delivered_ns, 30'000'000);
+  EXPECT_EQ(gps[0].fix, 3);
+  EXPECT_NEAR(gps[0].lat_deg, 39.5, 1e-12);
+  EXPECT_EQ(gps[0].alt_ellipsoid, 210.5);
+  EXPECT_THAT(gps[0].velocity_ned, ::testing::ElementsAre(20.0, -3.0, 0.5));
+  EXPECT_EQ(gps[0].vertical_accuracy, 9.25);
+}
+
 TEST(LcmEstimator, ReturnsPoseDepthCountersAndTimings) {
   const LcmPair pair = make_memq_pair();
   const std::vector<VoEstimate> estimates = fly(*pair.door, 3);

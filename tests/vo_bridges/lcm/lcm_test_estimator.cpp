@@ -47,9 +47,29 @@ LcmTestEstimator::LcmTestEstimator(std::shared_ptr<lcm::Node> node,
   static_cast<void>(subscribe("CALIBRATION", &LcmTestEstimator::hear_calibration));
   static_cast<void>(subscribe("IMAGE", &LcmTestEstimator::hear_image));
   static_cast<void>(subscribe("TIME", &LcmTestEstimator::hear_time));
+  static_cast<void>(subscribe("IMU", &LcmTestEstimator::hear_imu));
+  static_cast<void>(subscribe("GPS", &LcmTestEstimator::hear_gps));
 }
 
 LcmTestEstimator::~LcmTestEstimator() { node_->stop(); }
+
+std::vector<overfly_lcm::imu_t> LcmTestEstimator::imu() const {
+  const std::lock_guard lock(mutex_);
+  return imu_;
+}
+
+std::vector<overfly_lcm::gps_t> LcmTestEstimator::gps() const {
+  const std::lock_guard lock(mutex_);
+  return gps_;
+}
+
+void LcmTestEstimator::hear_imu(std::span<const std::uint8_t> bytes) {
+  imu_.push_back(lcm::decode_message<overfly_lcm::imu_t>(bytes).value());
+}
+
+void LcmTestEstimator::hear_gps(std::span<const std::uint8_t> bytes) {
+  gps_.push_back(lcm::decode_message<overfly_lcm::gps_t>(bytes).value());
+}
 
 std::vector<overfly_lcm::image_t> LcmTestEstimator::images() const {
   const std::lock_guard lock(mutex_);

@@ -7,7 +7,9 @@
 #include <mutex>
 #include <optional>
 #include <overfly_lcm/calibration_t.hpp>
+#include <overfly_lcm/gps_t.hpp>
 #include <overfly_lcm/image_t.hpp>
+#include <overfly_lcm/imu_t.hpp>
 #include <overfly_lcm/pose_t.hpp>
 #include <overfly_lcm/sim_time_t.hpp>
 #include <string>
@@ -42,6 +44,8 @@ class LcmTestEstimator {
 
   [[nodiscard]] std::vector<overfly_lcm::image_t> images() const;  ///< received
   [[nodiscard]] std::optional<overfly_lcm::calibration_t> calibration() const;
+  [[nodiscard]] std::vector<overfly_lcm::imu_t> imu() const;  ///< received
+  [[nodiscard]] std::vector<overfly_lcm::gps_t> gps() const;  ///< received
   [[nodiscard]] int sessions() const;
   [[nodiscard]] bool ended() const;
   /// Publishes bytes on a channel, "POSE" for example.
@@ -50,6 +54,8 @@ class LcmTestEstimator {
  private:
   void hear_calibration(std::span<const std::uint8_t> bytes);
   void hear_image(std::span<const std::uint8_t> bytes);
+  void hear_imu(std::span<const std::uint8_t> bytes);
+  void hear_gps(std::span<const std::uint8_t> bytes);
   void hear_time(std::span<const std::uint8_t> bytes);
   void answer(const overfly_lcm::image_t& image);
   void publish_status(std::int64_t session);
@@ -62,6 +68,8 @@ class LcmTestEstimator {
   LcmBehaviour behaviour_;
   std::optional<overfly_lcm::calibration_t> calibration_;
   std::vector<overfly_lcm::image_t> images_;
+  std::vector<overfly_lcm::imu_t> imu_;
+  std::vector<overfly_lcm::gps_t> gps_;
   std::optional<overfly_lcm::pose_t> last_pose_;
   int calibrations_ = 0;
   int sessions_ = 0;

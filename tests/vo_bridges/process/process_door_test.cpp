@@ -49,8 +49,8 @@ TEST(ProcessDoor, TellsWhatTheEstimatorAnswers) {
   estimator->set_debug(true);
   std::vector<VoFrame> frames = ground_frames(2, 1.0, 1.0);
   frames[1].exposure_ns = 2'000'000;
-  frames[1].imu = {{frames[0].t_ns, {0.0, 0.0, -9.81}, {0.0, 0.0, 0.5}},
-                   {frames[1].t_ns, {0.0, 0.0, -9.81}, {0.0, 0.0, 0.25}}};
+  frames[1].sensors.imu = {{frames[0].t_ns, {0.0, 0.0, -9.81}, {0.0, 0.0, 0.5}},
+                           {frames[1].t_ns, {0.0, 0.0, -9.81}, {0.0, 0.0, 0.25}}};
   EXPECT_EQ(estimator->track(frames[0])->sample.state, TrackingState::kInitialising);
   const VoEstimate estimate = estimator->track(frames[1]).value();
   EXPECT_EQ(estimate.sample.state, TrackingState::kTracking);
@@ -64,6 +64,42 @@ TEST(ProcessDoor, TellsWhatTheEstimatorAnswers) {
   EXPECT_EQ(estimate.debug_image->data[3], frames[1].image->data[1]);
   EXPECT_EQ(estimate.map_points_vo,
             (std::vector<Eigen::Vector3f>{{1.0F, 2.0F, 3.0F}, {-1.0F, 0.0F, 8.5F}}));
+}
+
+TEST(ProcessDoor, SamplesOfSensorsComeWithTheirFrame) {
+  const testing::TemporaryFolder folder;
+  const auto python = testing::python_estimator(
+      "    def track(self, frame):\n"
+      "        counters = {}\n"
+      "        if frame.range:\n"
+      "            counters['last_range_m'] = frame.range[-1].range_m\n"
+      "        if frame.gps:\n"
+      "            counters['fix'] = int(frame.gps[0].has_fix)\n"
+      "            counters['lat_deg'] = frame.gps[0].lat_deg\n"
+      "            counters['v_down_m_s'] = frame.gps[0].v_down_m_s\n"
+      "        if frame.magnetometer:\n"
+      "            counters['z_ut'] = frame.magnetometer[0].z_ut\n"
+      "        return overfly_vo.Answer(counters=counters)\n",
+      folder.path());
+  for (const bool in_python : {false, true}) {
+    const auto estimator = started(in_python ? python : scripted("good"));
+    std::vector<VoFrame> frames = ground_frames(3, 1.0, 1.0);
+    frames[1].sensors.range = {{frames[0].t_ns + 1, 55.5}, {frames[1].t_ns, 56.25}};
+    GpsSample fix;
+    fix.place = geodetic_from_deg(40.0, -86.0, 200.0);
+    fix.velocity_ned_m_s = {20.0, 1.0, -0.5};
+    frames[1].sensors.gps = {fix};
+    frames[1].sensors.magnetometer = {{frames[1].t_ns, {1.0, 2.0, 47.5}}};
+    EXPECT_EQ(estimator->track(frames[0])->counters.count("last_range_m"), 0U);
+    const VoEstimate estimate = estimator->track(frames[1]).value();
+    EXPECT_EQ(estimate.counters.at("last_range_m"), 56.25) << in_python;
+    EXPECT_EQ(estimator->track(frames[2])->counters.count("last_range_m"), 0U) << in_python;
+    if (!in_python) continue;
+    EXPECT_EQ(estimate.counters.at("fix"), 1.0);
+    EXPECT_NEAR(estimate.counters.at("lat_deg"), 40.0, 1e-12);
+    EXPECT_EQ(estimate.counters.at("v_down_m_s"), -0.5);
+    EXPECT_EQ(estimate.counters.at("z_ut"), 47.5);
+  }
 }
 
 TEST(ProcessDoor, TellsTheCameraAndItsLens) {
@@ -137,13 +173,13 @@ TEST(ProcessDoor, FramesGoThroughTheSocketUpToTheSizeOfTheProtocol) {
                         "most 67108864"));
   frame.intrinsics.width_px = 8192;
   frame.image = std::make_shared<const Image>(8192, 8192, 1);
-  frame.imu.resize(1'300'000);
+  frame.sensors.imu.resize(1'300'000);
   const Result<VoEstimate> too_long = estimator->track(frame);
   ASSERT_FALSE(too_long.ok());
   EXPECT_THAT(too_long.error().message,
               HasSubstr("with 1300000 inertial samples FRAME has 139908912 bytes: must be at most "
                         "68157440"));
-  frame.imu.clear();
+  frame.sensors.imu.clear();
   const Result<VoEstimate> estimate = estimator->track(frame);
   ASSERT_TRUE(estimate.ok()) << estimate.error().message;
   EXPECT_EQ(estimate->image_crc32, crc32_of(*frame.image));

@@ -67,6 +67,60 @@ TEST(ProcessMessages, AreThoseOfTheDocument) {
   EXPECT_EQ(bytes, documented("frame"));
 }
 
+VoFrame frame_with_samples() {
+  VoFrame frame = small_frame();
+  frame.sensors.barometer = {{240'000'000, 98765.5, 281.25}, {245'000'000, 98765.75, 281.5}};
+  GpsSample fix;
+  fix.t_ns = 100'000'000;
+  fix.delivered_ns = 200'000'000;
+  fix.place = geodetic_from_deg(39.5, -86.25, 210.5);
+  fix.velocity_ned_m_s = {20.0, -3.0, 0.5};
+  fix.horizontal_accuracy_m = 4.75;
+  fix.vertical_accuracy_m = 9.25;
+  fix.speed_accuracy_m_s = 0.0625;
+  GpsSample none = fix;
+  none.fix = GpsFixType::kNone;
+  frame.sensors.gps = {fix, none};
+  frame.sensors.airspeed = {{230'000'000, 350.5, 23.75}};
+  frame.sensors.magnetometer = {{220'000'000, {19.5, -1.25, 48.0}}};
+  frame.sensors.range = {{210'000'000, std::numeric_limits<double>::infinity()}};
+  return frame;
+}
+
+TEST(ProcessMessages, SamplesOfSensorsReachTheClient) {
+  const std::string message = sensors_message(frame_with_samples());
+  EXPECT_EQ(message.size(), kHeaderBytes + 32 + 2 * 24 + 2 * 96 + 24 + 32 + 16);
+  overfly_vo::Frame frame;
+  overfly_vo::detail::add_samples(message.substr(kHeaderBytes), &frame);
+  ASSERT_EQ(frame.barometer.size(), 2U);
+  EXPECT_EQ(frame.barometer[1].t_ns, 245'000'000);
+  EXPECT_EQ(frame.barometer[1].pressure_pa, 98765.75);
+  EXPECT_EQ(frame.barometer[1].temperature_k, 281.5);
+  ASSERT_EQ(frame.gps.size(), 2U);
+  EXPECT_TRUE(frame.gps[0].has_fix);
+  EXPECT_FALSE(frame.gps[1].has_fix);
+  EXPECT_EQ(frame.gps[0].delivered_ns, 200'000'000);
+  EXPECT_NEAR(frame.gps[0].lat_deg, 39.5, 1e-12);
+  EXPECT_NEAR(frame.gps[0].lon_deg, -86.25, 1e-12);
+  EXPECT_EQ(frame.gps[0].alt_ellipsoid_m, 210.5);
+  EXPECT_EQ(frame.gps[0].velocity_ned_m_s, (std::array<double, 3>{20.0, -3.0, 0.5}));
+  EXPECT_EQ(frame.gps[0].horizontal_accuracy_m, 4.75);
+  EXPECT_EQ(frame.gps[0].vertical_accuracy_m, 9.25);
+  EXPECT_EQ(frame.gps[0].speed_accuracy_m_s, 0.0625);
+  ASSERT_EQ(frame.airspeed.size(), 1U);
+  EXPECT_EQ(frame.airspeed[0].differential_pressure_pa, 350.5);
+  EXPECT_EQ(frame.airspeed[0].indicated_airspeed_m_s, 23.75);
+  ASSERT_EQ(frame.magnetometer.size(), 1U);
+  EXPECT_EQ(frame.magnetometer[0].field_ut, (std::array<double, 3>{19.5, -1.25, 48.0}));
+  ASSERT_EQ(frame.range.size(), 1U);
+  EXPECT_EQ(frame.range[0].range_m, std::numeric_limits<double>::infinity());
+  // A server that announces more than it sends.
+  std::string short_by_one = message.substr(kHeaderBytes);
+  short_by_one.pop_back();
+  EXPECT_THROW(overfly_vo::detail::add_samples(short_by_one, &frame), std::runtime_error);
+  EXPECT_EQ(sensors_message(small_frame()), "") << "nothing to send";
+}
+
 TEST(ProcessMessages, OfTheClientAreThoseOfTheDocument) {
   overfly_vo::Answer answer;
   answer.state = overfly_vo::State::kTracking;

@@ -73,6 +73,10 @@ class Scripted final : public overfly_vo::Estimator {
                        {"cpus", CPU_COUNT(&cpus)},
                        {"calibrations", calibrations_}};
     if (!frame.imu.empty()) answer.counters["turn_z"] = frame.imu.back().angular_rate_rad_s[2];
+    for (const overfly_vo::RangeSample& sample : frame.range) {
+      answer.counters["last_range_m"] = sample.range_m;
+    }
+    if (!frame.imu.empty()) answer.counters["imu_samples"] = static_cast<double>(frame.imu.size());
     answer.timings_ms = {{"match", 1.5}};
     const bool now = argument_ == "all" || argument_ == std::to_string(frame.index);
     if (behaviour_ == "nan_pose" && now) {
@@ -197,7 +201,7 @@ int run_by_socket(Scripted& estimator) {
       const overfly_vo::detail::Message message = connection.receive();
       if (message.type == overfly_vo::detail::kStop) return 0;
       if (message.type == overfly_vo::detail::kFrame) {
-        overfly_vo::detail::answer_frame(estimator, connection, message.payload);
+        overfly_vo::detail::answer_frame(estimator, connection, message.payload, "");
       } else {
         overfly_vo::detail::ready(connection, static_cast<overfly_vo::detail::Type>(message.type));
       }

@@ -78,6 +78,43 @@ TEST(Ros1Exchange, TurnsBodyAxesIntoOpticalOnes) {
   for (const VoFrame& frame : grey_frames(3)) expect_proof(tracked(*port, frame), frame);
 }
 
+TEST(Ros1Exchange, PublishesSamplesOfSensors) {
+  ROS_MASTER_OR_SKIP();
+  Ros1EstimatorOptions options = fresh_options();
+  options.publish_sensors = true;
+  const TestNode node(options);
+  const auto port = created(options);
+  std::vector<VoFrame> frames = grey_frames(4);
+  for (std::size_t k = 1; k < frames.size(); ++k) {
+    for (int i = 0; i < 20; ++i) {  // more than the queue of the images
+      frames[k].sensors.imu.push_back(
+          {frames[k].t_ns - 1'000'000 * (20 - i), {0.0, 0.0, -9.75}, {0.0, 0.0, 0.5}});
+    }
+  }
+  GpsSample none;
+  none.t_ns = 250'000'000;
+  none.fix = GpsFixType::kNone;
+  GpsSample fix;
+  fix.t_ns = 50'000'000;
+  fix.place = geodetic_from_deg(39.5, -86.0, 210.5);
+  frames[3].sensors.gps = {fix, none};
+  for (const VoFrame& frame : frames) expect_proof(tracked(*port, frame), frame);
+  // ROS time is the flight's plus one second; axes are forward-left-up.
+  EXPECT_TRUE(node.says("fix 1.050 status 0 lat 39.5"));
+  EXPECT_TRUE(node.says("fix 1.250 status -1"));
+  EXPECT_TRUE(node.says("wz -0.5 az 9.75 base_link"));
+  const auto count = [&] {
+    const std::string said = node.output();
+    int samples = 0;
+    for (std::size_t at = said.find("imu "); at != std::string::npos;
+         at = said.find("imu ", at + 1)) {
+      ++samples;
+    }
+    return samples;
+  };
+  EXPECT_TRUE(wait_for([&] { return count() == 60; })) << count();
+}
+
 TEST(Ros1Exchange, TellsCalibrationTimeAndFrame) {
   ROS_MASTER_OR_SKIP();
   Ros1EstimatorOptions options = fresh_options();

@@ -75,6 +75,19 @@ class Estimator {
     clocks_ = subscribe<ClockMessage>(
         "/clock", [](const auto& m) { std::printf("clock %.9f\n", m->clock.toSec()); });
     transforms_ = subscribe<TransformsMessage>("/tf", [](const auto& m) { on_tf(*m); });
+    imu_ = subscribe<ImuMessage>("/sensors/imu", [](const auto& m) {
+      std::printf("imu %.3f wz %g az %g %s\n",
+                  m->header.stamp.toSec(),
+                  m->angular_velocity.z,
+                  m->linear_acceleration.z,
+                  m->header.frame_id.c_str());
+    });
+    fixes_ = subscribe<NavSatFixMessage>("/sensors/gps/fix", [](const auto& m) {
+      std::printf("fix %.3f status %d lat %g\n",
+                  m->header.stamp.toSec(),
+                  static_cast<int>(m->status.status),
+                  m->latitude);
+    });
     images_ = subscribe<ImageMessage>(text("image"), [this](const auto& m) { on_image(*m); });
   }
 
@@ -169,7 +182,7 @@ class Estimator {
 
   ros::NodeHandle node_;
   ros::Publisher poses_, debugs_;
-  ros::Subscriber images_, infos_, clocks_, transforms_;
+  ros::Subscriber imu_, fixes_, images_, infos_, clocks_, transforms_;
   double fx_px_ = 0.0;
   int seen_ = 0;
 };

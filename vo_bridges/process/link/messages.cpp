@@ -1,5 +1,6 @@
 #include "vo_bridges/process/link/messages.hpp"
 
+#include "core/motion/pose.hpp"
 #include "vo_bridges/estimator_text.hpp"
 
 namespace overfly::process {
@@ -50,7 +51,7 @@ std::string calibration_message(const VoFrame& frame, double rate_hz, const Fram
 }
 
 std::size_t frame_payload_bytes(const VoFrame& frame, bool in_shared_memory) {
-  return 48 + 56 * frame.imu.size() + (in_shared_memory ? 0 : frame.image->data.size());
+  return 48 + 56 * frame.sensors.imu.size() + (in_shared_memory ? 0 : frame.image->data.size());
 }
 
 std::string frame_message(const VoFrame& frame, const FrameSending& sending) {
@@ -61,13 +62,49 @@ std::string frame_message(const VoFrame& frame, const FrameSending& sending) {
   writer.u32(static_cast<std::uint32_t>(frame.image->height_px));
   writer.u32(sending.crc32);
   writer.u32((sending.debug_wanted ? 1U : 0U) | (sending.in_shared_memory ? 2U : 0U));
-  writer.u32(sending.slot).u32(static_cast<std::uint32_t>(frame.imu.size()));
-  for (const ImuSample& sample : frame.imu) {
+  writer.u32(sending.slot).u32(static_cast<std::uint32_t>(frame.sensors.imu.size()));
+  for (const ImuSample& sample : frame.sensors.imu) {
     writer.i64(sample.t_ns);
     for (const double value : sample.acceleration_m_s2) writer.f64(value);
     for (const double value : sample.angular_rate_rad_s) writer.f64(value);
   }
   return std::move(writer.bytes());
+}
+
+std::string sensors_message(const VoFrame& frame) {
+  const SensorSamples& samples = frame.sensors;
+  ByteWriter writer;
+  writer.i64(frame.index);
+  std::size_t count = 0;
+  for (const std::size_t size : {samples.barometer.size(),
+                                 samples.gps.size(),
+                                 samples.airspeed.size(),
+                                 samples.magnetometer.size(),
+                                 samples.range.size()}) {
+    writer.u32(static_cast<std::uint32_t>(size));
+    count += size;
+  }
+  if (count == 0) return {};
+  writer.u32(0);
+  for (const BarometerSample& s : samples.barometer) {
+    writer.i64(s.t_ns).f64(s.pressure_pa).f64(s.temperature_k);
+  }
+  for (const GpsSample& s : samples.gps) {
+    writer.i64(s.t_ns).i64(s.delivered_ns).u32(s.fix == GpsFixType::k3d ? 3 : 0).u32(0);
+    writer.f64(deg_from_rad(s.place.lat_rad)).f64(deg_from_rad(s.place.lon_rad));
+    writer.f64(s.place.alt_ellipsoid_m);
+    for (const double value : s.velocity_ned_m_s) writer.f64(value);
+    writer.f64(s.horizontal_accuracy_m).f64(s.vertical_accuracy_m).f64(s.speed_accuracy_m_s);
+  }
+  for (const AirspeedSample& s : samples.airspeed) {
+    writer.i64(s.t_ns).f64(s.differential_pressure_pa).f64(s.indicated_airspeed_m_s);
+  }
+  for (const MagnetometerSample& s : samples.magnetometer) {
+    writer.i64(s.t_ns);
+    for (const double value : s.field_ut) writer.f64(value);
+  }
+  for (const RangeSample& s : samples.range) writer.i64(s.t_ns).f64(s.range_m);
+  return message_of(MessageType::kSensors, writer.bytes());
 }
 
 }  // namespace overfly::process

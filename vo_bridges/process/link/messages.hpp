@@ -21,6 +21,7 @@ struct EstimatorHello {
   std::string name;
   std::string version;
   bool takes_shared_memory = false;
+  bool takes_sensors = false;
 };
 
 /// Shared memory for frames; without slots frames are sent through the socket.
@@ -45,6 +46,10 @@ struct FrameSending {
 [[nodiscard]] std::size_t frame_payload_bytes(const VoFrame& frame, bool in_shared_memory);
 /// A FRAME message without the pixels. They follow unless they are in shared memory.
 [[nodiscard]] std::string frame_message(const VoFrame& frame, const FrameSending& sending);
+
+/// A SENSORS message with the samples of a frame, except those of the IMU, which FRAME contains.
+/// Empty without samples.
+[[nodiscard]] std::string sensors_message(const VoFrame& frame);
 
 /// Errors of all decoding functions: kInternal naming the field, its value and the problem.
 [[nodiscard]] Result<EstimatorHello> hello_from(std::string_view payload);

@@ -76,6 +76,7 @@ Result<EstimatorHello> hello_from(std::string_view payload) {
     }
     if (key == "name") hello.name = printable(value, kNameLimitBytes);
     if (key == "version") hello.version = printable(value, kNameLimitBytes);
+    if (key == "sensors") hello.takes_sensors = value == "true";
     if (key == "shared_memory") hello.takes_shared_memory = value == "true";
   }
   if (!version_said) return bad_reply("HELLO lacks 'protocol': " + shown(payload));

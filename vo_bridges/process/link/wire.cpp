@@ -10,7 +10,7 @@ namespace overfly::process {
 
 namespace {
 
-constexpr std::array<const char*, 12> kNames = {"message 0",
+constexpr std::array<const char*, 13> kNames = {"message 0",
                                                 "HELLO",
                                                 "READY",
                                                 "CALIBRATION",
@@ -21,7 +21,8 @@ constexpr std::array<const char*, 12> kNames = {"message 0",
                                                 "PARAMETERS",
                                                 "LOG",
                                                 "message 10",
-                                                "STOP"};
+                                                "STOP",
+                                                "SENSORS"};
 
 }  // namespace
 

@@ -32,6 +32,7 @@ enum class MessageType : std::uint16_t {
   kParameters = 8,
   kLog = 9,
   kStop = 11,
+  kSensors = 12,
 };
 
 /// "HELLO", ...; "message 99" for an undefined number.

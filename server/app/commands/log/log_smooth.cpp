@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "core/text/number_text.hpp"
 #include "core/time.hpp"
 #include "flight/replay/smooth_log.hpp"
 #include "server/app/commands/log/log_output.hpp"
@@ -70,8 +71,8 @@ std::string report_text(const flight::SmoothedLog& log) {
     text += " (estimated, standard deviation " +
             places_text(smoothed.estimated_offset->sigma_s, 3) + " s)";
   }
-  text += "\n" + std::to_string(smoothed.jumps.size()) + " jumps" +
-          (smoothed.jumps.empty() ? "" : ":") + "\n";
+  text +=
+      "\n" + counted(smoothed.jumps.size(), "jump") + (smoothed.jumps.empty() ? "" : ":") + "\n";
   for (std::size_t i = 0; i < std::min(kShownJumps, smoothed.jumps.size()); ++i) {
     text += "  " + flight::jump_text(log, smoothed.jumps[i]) + "\n";
   }

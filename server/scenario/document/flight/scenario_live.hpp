@@ -6,6 +6,7 @@
 #include "core/result.hpp"
 #include "flight/live/fly_live.hpp"
 #include "server/scenario/document/scenario_layers.hpp"
+#include "server/scenario/scenario.hpp"
 
 namespace overfly::server {
 
@@ -13,5 +14,9 @@ namespace overfly::server {
 /// Errors: kInvalidArgument naming the field, its value and its limit.
 [[nodiscard]] Result<flight::live::LiveFlight> read_live_flight(nlohmann::json& mavlink,
                                                                 const FileResolver& files);
+
+/// Finds the estimator of `flight.mavlink.feedback`. @pre flight and estimators are read
+/// Errors: kInvalidArgument if there is none of that name.
+[[nodiscard]] Status find_feedback_estimator(const nlohmann::json& document, Scenario& scenario);
 
 }  // namespace overfly::server

@@ -5,6 +5,7 @@
 #include <deque>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "flight/mavlink/vehicle/exchange.hpp"
@@ -30,8 +31,9 @@ class FakeVehicle final : public mavlink::Exchange {
   bool keeps_parameters = false;  ///< whatever is sent
   bool old_mission_requests = false;
   bool cancelled = false;
-  double loss = 0.0;     ///< share of messages that get lost in either direction
-  bool is_mute = false;  ///< loses all that it sends
+  std::optional<std::int32_t> origin_lat;  ///< of GPS_GLOBAL_ORIGIN [1e-7 deg]; empty: none yet
+  double loss = 0.0;                       ///< share of messages that get lost in either direction
+  bool is_mute = false;                    ///< loses all that it sends
 
   // What it has got:
   std::map<std::uint32_t, int> received;  ///< by message id
@@ -72,6 +74,10 @@ class FakeVehicle final : public mavlink::Exchange {
     switch (id) {
       case MessageId::kCommandLong:
         take_command(payload);
+        break;
+      case MessageId::kSetGpsGlobalOrigin:
+        if (!origin_lat) origin_lat = got.at<std::int32_t>(0);
+        tell_origin();
         break;
       case MessageId::kParamRequestRead:
         take_request(got);
@@ -164,11 +170,15 @@ class FakeVehicle final : public mavlink::Exchange {
     }
     if (result == 0 && id == 400) armed = got.at<float>(0) == 1.0F;
     if (result == 0 && id == 176) mode = static_cast<std::uint32_t>(got.at<float>(4));
+    if (result == 0 && id == 512 && got.at<float>(0) == 49.0F) tell_origin();
     answer(MessageId::kCommandAck, Payload(10).put(0, id).put(2, result));
     if (result == 5) answer(MessageId::kCommandAck, Payload(10).put(0, id));
     if (result != 0 && !refusal_text.empty()) {
       answer(MessageId::kStatusText, Payload(54).put_text(1, refusal_text, 50));
     }
+  }
+  void tell_origin() {
+    if (origin_lat) answer(MessageId::kGpsGlobalOrigin, Payload(20).put(0, *origin_lat));
   }
   void ask_for_item(std::size_t index) {
     answer(old_mission_requests ? MessageId::kMissionRequest : MessageId::kMissionRequestInt,

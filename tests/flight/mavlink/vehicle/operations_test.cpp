@@ -127,6 +127,22 @@ TEST(VehicleCommands, ArmingIsTriedAgainUntilItsLimit) {
   EXPECT_THAT(arm(vehicle, std::chrono::seconds(10)).error().message, HasSubstr("unsupported"));
 }
 
+TEST(MessageRates, AskForLowerRatesThanTheVehicleDenies) {
+  FakeVehicle vehicle;
+  vehicle.command_results = {2, 2, 0};
+  Result<RateRequest> asked = request_message_rate(vehicle, MessageId::kSimState, 50.0);
+  ASSERT_TRUE(asked.ok());
+  EXPECT_EQ(*asked, RateRequest::kInterval);
+  ASSERT_EQ(vehicle.commands.size(), 3U);
+  EXPECT_EQ(PayloadReader(vehicle.commands[1]).at<float>(4), 25000.0F);  // us
+  EXPECT_EQ(PayloadReader(vehicle.commands[2]).at<float>(4), 31250.0F);
+  vehicle.command_results.assign(100, 2);
+  asked = request_message_rate(vehicle, MessageId::kTimesync, 10.0);
+  ASSERT_TRUE(asked.ok());
+  EXPECT_EQ(*asked, RateRequest::kNone);
+  EXPECT_EQ(vehicle.commands.size(), 13U);
+}
+
 TEST(MessageRates, FallBackToStreamsOfOldFirmware) {
   FakeVehicle vehicle;
   Result<RateRequest> asked = request_message_rate(vehicle, MessageId::kSimState, 50.0);

@@ -1,5 +1,5 @@
 // The inertial unit: integrated back, and its noise by Allan's deviation.
-#include "flight/imu.hpp"
+#include "flight/sensors/imu.hpp"
 
 #include <gtest/gtest.h>
 
@@ -60,10 +60,10 @@ TEST(Imu, MeasuresGravityAtRestAndLoadInATurn) {
   SteadyFlight level;
   const auto at_rest = synthesize_imu(level, kNsPerS, ImuModel::ideal(), kGravity, 1).value();
   ASSERT_EQ(at_rest.size(), 201U);
-  EXPECT_EQ(at_rest[1].t_ns, 5'000'000);
+  EXPECT_EQ(at_rest[1].sample.t_ns, 5'000'000);
   // Forward-right-down: the seat pushes up, along -z.
-  EXPECT_LT((at_rest[50].specific_force_m_s2 - Eigen::Vector3d(0, 0, -kGravity)).norm(), 1e-9);
-  EXPECT_LT(at_rest[50].angular_rate_rad_s.norm(), 1e-12);
+  EXPECT_LT((at_rest[50].sample.acceleration_m_s2 - Eigen::Vector3d(0, 0, -kGravity)).norm(), 1e-9);
+  EXPECT_LT(at_rest[50].sample.angular_rate_rad_s.norm(), 1e-12);
 
   const double turn = 0.3;
   SteadyFlight turning(turn);
@@ -72,9 +72,9 @@ TEST(Imu, MeasuresGravityAtRestAndLoadInATurn) {
   const double bank = std::atan(turn * 25.0 / kGravity);
   // Coordinated: no side force, load factor 1 / cos(bank). Means over 5 ms: 1e-7 of the whole.
   EXPECT_LT(
-      (reading.specific_force_m_s2 - Eigen::Vector3d(0, 0, -kGravity / std::cos(bank))).norm(),
+      (reading.sample.acceleration_m_s2 - Eigen::Vector3d(0, 0, -kGravity / std::cos(bank))).norm(),
       1e-5);
-  EXPECT_LT((reading.angular_rate_rad_s -
+  EXPECT_LT((reading.sample.angular_rate_rad_s -
              Eigen::Vector3d(0.0, turn * std::sin(bank), turn * std::cos(bank)))
                 .norm(),
             1e-6);
@@ -100,7 +100,7 @@ TEST(Imu, IntegratesBackToTheFlightThatMadeIt) {
   for (std::size_t k = 0; k < readings.size(); ++k) {
     const bool half = k == 0 || k + 1 == readings.size();
     const double dt_s = half ? 0.0025 : 0.005;
-    const Eigen::Vector3d turn = readings[k].angular_rate_rad_s * dt_s;
+    const Eigen::Vector3d turn = readings[k].sample.angular_rate_rad_s * dt_s;
     const auto rotated = [&](double share) -> Eigen::Quaterniond {
       const double angle = share * turn.norm();
       if (angle == 0.0) return R;
@@ -109,11 +109,12 @@ TEST(Imu, IntegratesBackToTheFlightThatMadeIt) {
     // The mean is stamped in the middle of its interval, or at the end of a half one.
     const double middle = k == 0 ? 0.0 : half ? 1.0 : 0.5;
     const Eigen::Vector3d a =
-        rotated(middle) * readings[k].specific_force_m_s2 - Eigen::Vector3d(0, 0, kGravity);
+        rotated(middle) * readings[k].sample.acceleration_m_s2 - Eigen::Vector3d(0, 0, kGravity);
     p += v * dt_s + 0.5 * a * dt_s * dt_s;
     v += a * dt_s;
     R = rotated(1.0).normalized();
-    const std::int64_t end_ns = half && k > 0 ? kEndNs : readings[k].t_ns + ns_from_s(0.0025);
+    const std::int64_t end_ns =
+        half && k > 0 ? kEndNs : readings[k].sample.t_ns + ns_from_s(0.0025);
     const AircraftState wanted = truth->state_at(end_ns).value().value();
     worst_m = std::max(worst_m, (p - wanted.T_world_body.translation).norm());
     worst_rad = std::max(worst_rad, rotation_angle_rad(R, wanted.T_world_body.rotation));
@@ -148,8 +149,8 @@ TEST(Imu, HasTheNoiseDensitiesItWasAskedFor) {
   const auto readings = synthesize_imu(flight, 600 * kNsPerS, white, kGravity, 7).value();
   std::vector<double> gyroscope, accelerometer;
   for (const ImuReading& reading : readings) {
-    gyroscope.push_back(reading.angular_rate_rad_s.x());
-    accelerometer.push_back(reading.specific_force_m_s2.y());
+    gyroscope.push_back(reading.sample.angular_rate_rad_s.x());
+    accelerometer.push_back(reading.sample.acceleration_m_s2.y());
   }
   // sigma(tau) = density / sqrt(tau): slope -1/2. 600 s hold 600 clusters of 1 s: 4 % each.
   for (const auto& [tau_s, within] : {std::pair{0.05, 0.02}, {1.0, 0.12}}) {
@@ -168,8 +169,8 @@ TEST(Imu, HasTheBiasWalksItWasAskedFor) {
   const auto readings = synthesize_imu(flight, 600 * kNsPerS, walk, kGravity, 11).value();
   std::vector<double> gyroscope, accelerometer;
   for (const ImuReading& reading : readings) {
-    gyroscope.push_back(reading.angular_rate_rad_s.z());
-    accelerometer.push_back(reading.specific_force_m_s2.x());
+    gyroscope.push_back(reading.sample.angular_rate_rad_s.z());
+    accelerometer.push_back(reading.sample.acceleration_m_s2.x());
   }
   EXPECT_EQ(readings.back().gyroscope_bias_rad_s.z(), gyroscope.back());
   // sigma(tau) = walk * sqrt(tau / 3): slope +1/2.
@@ -181,13 +182,89 @@ TEST(Imu, HasTheBiasWalksItWasAskedFor) {
   }
 }
 
+using Axes = std::array<std::vector<double>, 3>;
+
+/// Root mean square of the deviations of three axes with equal noise.
+double allan_deviation(const Axes& axes, double tau_s) {
+  double sum = 0.0;
+  for (const std::vector<double>& values : axes) {
+    const auto m = static_cast<std::size_t>(std::llround(tau_s * 200.0));
+    sum += std::pow(allan_deviation(values, m, 0.005), 2);
+  }
+  return std::sqrt(sum / 3.0);
+}
+
+/// Slope of the deviation over log(tau) between two clusters.
+double allan_slope(const Axes& axes, double tau1_s, double tau2_s) {
+  const double ratio = allan_deviation(axes, tau2_s) / allan_deviation(axes, tau1_s);
+  return std::log(ratio) / std::log(tau2_s / tau1_s);
+}
+
+TEST(Imu, HasBothSlopesAndCoefficientsOverTwoHours) {
+  SteadyFlight flight;
+  const ImuModel model;
+  const auto readings = synthesize_imu(flight, 7200 * kNsPerS, model, kGravity, 23).value();
+  Axes gyroscope, accelerometer;
+  for (const ImuReading& reading : readings) {
+    for (int axis = 0; axis < 3; ++axis) {
+      gyroscope[axis].push_back(reading.sample.angular_rate_rad_s(axis));
+      accelerometer[axis].push_back(reading.sample.acceleration_m_s2(axis));
+    }
+  }
+  // IEEE Std 952-1997, annex C: sigma^2(tau) = N^2 / tau + K^2 tau / 3. N is read where its term
+  // is at least 99 % of the sum, K after N's term was taken off.
+  const auto walk = [](const Axes& axes, double n, double tau_s) {
+    return std::sqrt((std::pow(allan_deviation(axes, tau_s), 2) - n * n / tau_s) * 3.0 / tau_s);
+  };
+  const double n_gyroscope = allan_deviation(gyroscope, 1.0);
+  const double n_accelerometer = allan_deviation(accelerometer, 0.1) * std::sqrt(0.1);
+  const double k_gyroscope = walk(gyroscope, n_gyroscope, 30.0);
+  const double k_accelerometer = walk(accelerometer, n_accelerometer, 3.0);
+  const double ratios[] = {n_gyroscope / model.gyroscope_noise_rad_s_sqrt_hz,
+                           n_accelerometer / model.accelerometer_noise_m_s2_sqrt_hz,
+                           k_gyroscope / model.gyroscope_walk_rad_s2_sqrt_hz,
+                           k_accelerometer / model.accelerometer_walk_m_s3_sqrt_hz};
+  std::printf("[ ALLAN    ] measured / asked: N %.3f %.3f, K %.3f %.3f\n",
+              ratios[0],
+              ratios[1],
+              ratios[2],
+              ratios[3]);
+  for (const double ratio : ratios) EXPECT_NEAR(ratio, 1.0, 0.1);
+  std::printf("[ ALLAN    ] slopes: %.3f %.3f %.3f\n",
+              allan_slope(gyroscope, 0.05, 0.5),
+              allan_slope(accelerometer, 0.01, 0.05),
+              allan_slope(accelerometer, 5.0, 20.0));
+  EXPECT_NEAR(allan_slope(gyroscope, 0.05, 0.5), -0.5, 0.05);
+  EXPECT_NEAR(allan_slope(accelerometer, 0.01, 0.05), -0.5, 0.05);
+  EXPECT_NEAR(allan_slope(accelerometer, 5.0, 20.0), 0.5, 0.05);
+}
+
+TEST(Imu, RecordedSamplesGetTheirBiasesBack) {
+  SteadyFlight flight(0.2);
+  const auto readings = synthesize_imu(flight, 10 * kNsPerS, {}, kGravity, 5).value();
+  std::vector<ImuSample> samples;
+  // The last one is of half an interval, which a run does not record.
+  for (std::size_t k = 0; k + 1 < readings.size(); ++k) samples.push_back(readings[k].sample);
+  const auto again = with_biases(samples, {}, 5).value();
+  ASSERT_EQ(again.size(), samples.size());
+  for (std::size_t k = 0; k < again.size(); ++k) {
+    ASSERT_EQ(again[k].sample.angular_rate_rad_s, samples[k].angular_rate_rad_s) << k;
+    ASSERT_EQ(again[k].gyroscope_bias_rad_s, readings[k].gyroscope_bias_rad_s) << k;
+    ASSERT_EQ(again[k].accelerometer_bias_m_s2, readings[k].accelerometer_bias_m_s2) << k;
+  }
+  samples.erase(samples.begin() + 3);
+  const auto refused = with_biases(samples, {}, 5);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().message, "sample 3: t_ns = 20000000: must be 15000000");
+}
+
 TEST(Imu, IsTheSameForTheSameSeedOnly) {
   SteadyFlight flight;
   const auto a = synthesize_imu(flight, kNsPerS, {}, kGravity, 3).value();
   const auto b = synthesize_imu(flight, kNsPerS, {}, kGravity, 3).value();
   const auto c = synthesize_imu(flight, kNsPerS, {}, kGravity, 4).value();
-  EXPECT_EQ(a[77].specific_force_m_s2, b[77].specific_force_m_s2);
-  EXPECT_NE(a[77].specific_force_m_s2, c[77].specific_force_m_s2);
+  EXPECT_EQ(a[77].sample.acceleration_m_s2, b[77].sample.acceleration_m_s2);
+  EXPECT_NE(a[77].sample.acceleration_m_s2, c[77].sample.acceleration_m_s2);
 }
 
 TEST(Imu, RefusesWhatCannotBe) {

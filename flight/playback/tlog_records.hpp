@@ -1,0 +1,52 @@
+// A telemetry log frame by frame, to be sent again.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+
+#include "core/outside/forward_reader.hpp"
+#include "core/result.hpp"
+#include "flight/mavlink/frame_finder.hpp"
+
+namespace overfly::flight::playback {
+
+/// Reads the valid frames of a `.tlog` in the order of the file, as often as wanted.
+class TlogRecords {
+ public:
+  struct Record {
+    std::int64_t t_us = 0;                ///< time of reception since the first record, >= 0
+    std::span<const std::uint8_t> frame;  ///< valid until the next call
+  };
+
+  /// Reads the file once, for its length.
+  /// Errors: as ForwardReader::open; kUnreadable if it is no telemetry log; kIo.
+  static Result<TlogRecords> open(const std::filesystem::path& file);
+
+  /// The next record; empty at the end. Times never decrease: a frame that was received before the
+  /// one in front of it has that one's time. Errors: kIo.
+  [[nodiscard]] Result<std::optional<Record>> next();
+  /// Continues with the first record at or after a time. Errors: kIo.
+  Status seek(std::int64_t t_us);
+
+  /// Time of the last record.
+  [[nodiscard]] std::int64_t duration_us() const { return duration_us_; }
+  [[nodiscard]] std::uint64_t count() const { return count_; }
+
+ private:
+  explicit TlogRecords(ForwardReader file);
+  void rewind();
+
+  ForwardReader file_;
+  mavlink::FrameFinder finder_;
+  std::uint64_t size_bytes_ = 0;
+  std::size_t consumed_ = 0;  ///< of the bytes that file_ shows: those of the last record
+  std::optional<std::uint64_t> first_us_;
+  std::int64_t last_us_ = 0;
+  std::int64_t begin_us_ = 0;  ///< earlier records are passed over
+  std::int64_t duration_us_ = 0;
+  std::uint64_t count_ = 0;
+};
+
+}  // namespace overfly::flight::playback

@@ -1,0 +1,220 @@
+#include "flight/ros/ros_truth.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+#include <set>
+#include <utility>
+
+#include "core/cancellable_wait.hpp"
+#include "core/text/number_text.hpp"
+#include "flight/live/live_motion.hpp"
+#include "flight/logs/ros/ros_cursor.hpp"
+#include "flight/ros/ros_samples.hpp"
+#include "middleware/ros1/topic_listener.hpp"
+
+namespace overfly::flight::ros_live {
+namespace {
+
+using SteadyClock = std::chrono::steady_clock;
+
+/// What a message of mavros_msgs/State says: header, connected, armed, ...
+struct MavrosState {
+  bool connected = false;
+  bool armed = false;
+};
+
+std::optional<MavrosState> decode_mavros_state(std::span<const std::uint8_t> bytes) {
+  logs::RosCursor message(bytes, logs::RosEncoding::kRos1, false);
+  for (int i = 0; i < 3; ++i) (void)message.number<std::uint32_t>();  // seq, stamp
+  (void)message.text();                                               // frame_id
+  MavrosState state;
+  state.connected = message.number<std::uint8_t>() != 0;
+  state.armed = message.number<std::uint8_t>() != 0;
+  if (!message.ok()) return std::nullopt;
+  return state;
+}
+
+class RosTruth final : public TruthSource {
+ public:
+  RosTruth(const RosFlight& flight, const LocalFrame& frame)
+      : flight_(flight),
+        samples_(flight, flight.origin.value_or(frame.origin())),
+        motion_(frame, 0.0, flight.gap_limit_ns) {}
+
+  Status open(const std::atomic<bool>* cancel) {
+    std::set<std::string> topics = {flight_.position_topic(), flight_.attitude_topic()};
+    if (flight_.stop_on_disarm && !flight_.state_topic.empty()) topics.insert(flight_.state_topic);
+    ros1::TopicListenerOptions options;
+    options.master_uri = flight_.master_uri;
+    options.node_name = flight_.node_name;
+    options.topics.assign(topics.begin(), topics.end());
+    options.patience = flight_.patience;
+    auto listener = ros1::TopicListener::open(
+        options, [this](const ros1::ListenedMessage& message) { take(message); }, cancel);
+    if (!listener) return listener.error();
+    listener_ = std::move(*listener);
+    return wait("waiting for the flight's start", cancel, [this] { return started_; });
+  }
+  ~RosTruth() override { listener_.reset(); }
+
+  [[nodiscard]] std::optional<std::int64_t> duration_ns() const override { return std::nullopt; }
+  [[nodiscard]] std::string description() const override {
+    return "ROS topics at " + flight_.master_uri + ": " + flight_.position_topic() +
+           (flight_.position_topic() == flight_.attitude_topic() ? ""
+                                                                 : ", " + flight_.attitude_topic());
+  }
+  [[nodiscard]] std::vector<std::string> warnings() const override {
+    const std::lock_guard lock(mutex_);
+    std::vector<std::string> warnings;
+    if (const auto gaps = motion_.gaps_text(start_ns_)) warnings.push_back(*gaps);
+    if (const std::uint64_t count = listener_->too_large(); count > 0) {
+      warnings.push_back(std::to_string(count) + " messages were larger than " +
+                         std::to_string(ros1::TopicListener::kMostBytes) +
+                         " bytes and were left out");
+    }
+    if (end_ns_) {
+      warnings.push_back("the flight ended at " + live::seconds_shown(*end_ns_ - start_ns_) + ": " +
+                         end_reason_);
+    }
+    return warnings;
+  }
+  [[nodiscard]] std::optional<std::int64_t> heard_ns() const override {
+    const std::lock_guard lock(mutex_);
+    if (!heard_) return std::nullopt;
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(heard_->time_since_epoch()).count();
+  }
+
+ private:
+  /// When the states up to a stamp became known.
+  struct Arrival {
+    std::int64_t known_until_ns = 0;
+    SteadyClock::time_point at;
+  };
+
+  void take(const ros1::ListenedMessage& message) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (end_ns_) return;
+      if (message.topic == flight_.state_topic && message.type == "mavros_msgs/State") {
+        take_state(message.bytes);
+      } else {
+        take_sample(message);
+      }
+    }
+    news_.notify_all();
+  }
+
+  void take_sample(const ros1::ListenedMessage& message) {
+    const std::int64_t before_ns = started_ ? known_until_ns() : 0;
+    samples_.take(message.topic, message.type, message.bytes);
+    if (!started_ && !samples_.positions().empty() && !samples_.attitudes().empty()) {
+      start_ns_ = std::max(samples_.positions().front().t_ns, samples_.attitudes().front().t_ns);
+      started_ = known_until_ns() >= start_ns_;
+      if (started_) samples_.forget_before(start_ns_);
+    }
+    if (!started_) return;
+    if (known_until_ns() > before_ns) {
+      last_sample_ = SteadyClock::now();
+      arrivals_.push_back({known_until_ns(), last_sample_});
+      if (arrivals_.size() > live::kMaxLiveSamples) arrivals_.pop_front();
+    }
+    if (!samples_.restarted().empty()) end("the stamps of " + samples_.restarted() + " went back");
+  }
+
+  void take_state(std::span<const std::uint8_t> bytes) {
+    const std::optional<MavrosState> state = decode_mavros_state(bytes);
+    if (!state || !state->connected) return;
+    was_armed_ = was_armed_ || state->armed;
+    if (was_armed_ && !state->armed && started_) end("the vehicle was disarmed");
+  }
+
+  void end(const std::string& reason) {
+    end_reason_ = reason;
+    end_ns_ = known_until_ns();
+  }
+
+  /// The stamp up to which position and attitude are known. @pre there are some of both
+  [[nodiscard]] std::int64_t known_until_ns() const {
+    return std::min(samples_.positions().back().t_ns, samples_.attitudes().back().t_ns);
+  }
+
+  /// Waits until `ready` returns true or the flight ends.
+  template <typename Ready>
+  Status wait(const std::string& what, const std::atomic<bool>* cancel, const Ready& ready) {
+    std::unique_lock lock(mutex_);
+    const SteadyClock::time_point begin = SteadyClock::now();
+    const auto failed = [&](const std::string& why) {
+      return Error{ErrorCode::kIo, flight_.master_uri + ": " + what + ": " + why};
+    };
+    while (!ready() && !end_ns_) {
+      if (is_cancelled(cancel)) return cancelled("the ROS topics");
+      if (samples_.full()) {
+        return failed("the run is more than " + std::to_string(live::kMaxLiveSamples) +
+                      " samples behind the topics");
+      }
+      if (SteadyClock::now() - std::max(last_sample_, begin) >= flight_.patience) {
+        const double patience_s = std::chrono::duration<double>(flight_.patience).count();
+        const std::string missing = started_ ? "no new state" : samples_.missing_text();
+        return failed(missing + " within " + number_text(patience_s) +
+                      " s: " + listener_->publishers());
+      }
+      news_.wait_for(lock, kCancelPeriod);
+    }
+    return {};
+  }
+
+  [[nodiscard]] Result<std::optional<AircraftState>> find_state(
+      std::int64_t t_ns, const std::atomic<bool>* cancel) override {
+    constexpr std::int64_t kLongestNs = 366LL * 86400 * kNsPerS;
+    if (t_ns < 0 || t_ns > kLongestNs) {
+      return Error{ErrorCode::kInvalidArgument,
+                   "t_ns = " + std::to_string(t_ns) + ": must be in [0, " +
+                       std::to_string(kLongestNs) + "]"};
+    }
+    const std::int64_t stamp_ns = start_ns_ + t_ns;
+    const Status waited = wait("the state at " + live::seconds_shown(t_ns),
+                               cancel,
+                               [this, stamp_ns] { return known_until_ns() >= stamp_ns; });
+    if (!waited) return waited.error();
+    const std::lock_guard lock(mutex_);
+    if (end_ns_ && stamp_ns > *end_ns_) return std::optional<AircraftState>();
+    samples_.forget_before(stamp_ns);
+    while (!arrivals_.empty() && arrivals_.front().known_until_ns < stamp_ns) arrivals_.pop_front();
+    heard_.reset();
+    if (!arrivals_.empty()) heard_ = arrivals_.front().at;
+    const bool joint = flight_.position_topic() == flight_.attitude_topic();
+    AircraftState state = motion_.at(samples_.positions(), samples_.attitudes(), joint, stamp_ns);
+    state.t_ns = t_ns;
+    return std::optional(state);
+  }
+
+  const RosFlight flight_;
+  mutable std::mutex mutex_;
+  std::condition_variable news_;
+  RosSamples samples_;
+  live::LiveMotion motion_;
+  bool started_ = false;
+  bool was_armed_ = false;
+  std::int64_t start_ns_ = 0;
+  SteadyClock::time_point last_sample_;
+  std::string end_reason_;
+  std::optional<std::int64_t> end_ns_;  ///< a stamp
+  std::deque<Arrival> arrivals_;
+  std::optional<SteadyClock::time_point> heard_;  ///< the latest state
+  std::unique_ptr<ros1::TopicListener> listener_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<TruthSource>> fly_ros(const RosFlight& flight,
+                                             const LocalFrame& frame,
+                                             const std::atomic<bool>* cancel) {
+  auto truth = std::make_unique<RosTruth>(flight, frame);
+  if (Status status = truth->open(cancel); !status) return status.error();
+  return std::unique_ptr<TruthSource>(std::move(truth));
+}
+
+}  // namespace overfly::flight::ros_live

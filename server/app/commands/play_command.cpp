@@ -1,0 +1,129 @@
+// overfly play: a recorded vehicle on a MAVLink link.
+#include <poll.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "flight/mavlink/link/link_address.hpp"
+#include "flight/playback/play_tlog.hpp"
+#include "server/app/commands/commands.hpp"
+#include "server/app/exit_code.hpp"
+#include "server/app/stop_signal.hpp"
+#include "server/record/run_folder.hpp"
+
+namespace overfly::app {
+namespace {
+
+namespace playback = flight::playback;
+
+struct PlayArguments {
+  std::string file;
+  std::string link = "udp:127.0.0.1:14550";
+  double speed = 1.0;
+  double from_s = 0.0;
+  bool repeat = false;
+};
+
+/// Lines of standard input, without waiting for them.
+class CommandInput {
+ public:
+  std::vector<playback::PlaybackCommand> take() {
+    constexpr std::size_t kLongestLine = 200;
+    pollfd ready{STDIN_FILENO, POLLIN, 0};
+    while (open_ && ::poll(&ready, 1, 0) == 1) {
+      std::array<char, 256> bytes{};
+      const ssize_t got = ::read(STDIN_FILENO, bytes.data(), bytes.size());
+      open_ = got > 0;
+      if (open_) line_.append(bytes.data(), static_cast<std::size_t>(got));
+      if (line_.size() > 64 * kLongestLine) line_.clear();
+    }
+    std::vector<playback::PlaybackCommand> commands;
+    for (std::size_t end = line_.find('\n'); end != std::string::npos; end = line_.find('\n')) {
+      const std::string line = line_.substr(0, end);
+      line_.erase(0, end + 1);
+      if (line.empty()) continue;
+      const auto command = playback::parse_playback_command(line);
+      if (command) {
+        commands.push_back(*command);
+      } else {
+        std::cerr << command.error().message << std::endl;
+      }
+    }
+    return commands;
+  }
+
+ private:
+  std::string line_;
+  bool open_ = true;
+};
+
+int play(const PlayArguments& arguments) {
+  const auto link = flight::mavlink::parse_link_address(arguments.link, "--link");
+  if (!link) return report(link.error());
+  if (!(arguments.speed >= playback::kSlowest && arguments.speed <= playback::kFastest)) {
+    return report({ErrorCode::kInvalidArgument,
+                   "--speed " + std::to_string(arguments.speed) + ": must be in [0.01, 1000]"});
+  }
+  std::filesystem::path file = arguments.file;
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) file = server::vehicle_log_file(file);
+  auto records = playback::TlogRecords::open(file);
+  if (!records) return report(records.error());
+  const double length_s = 1e-6 * static_cast<double>(records->duration_us());
+  if (!(arguments.from_s >= 0.0 && arguments.from_s <= length_s)) {
+    return report({ErrorCode::kInvalidArgument,
+                   "--from " + std::to_string(arguments.from_s) + ": must be in [0, " +
+                       std::to_string(length_s) + "] s"});
+  }
+  playback::PlaybackOptions options;
+  options.speed = arguments.speed;
+  options.from_us = static_cast<std::int64_t>(arguments.from_s * 1e6);
+  options.repeat = arguments.repeat;
+  CommandInput input;
+  playback::PlaybackPorts ports;
+  ports.now = [] { return std::chrono::steady_clock::now(); };
+  ports.commands = [&] { return input.take(); };
+  ports.opened = [&](const flight::mavlink::LinkAddress& address) {
+    std::cout << records->count() << " messages, " << length_s << " s, on " << address.text()
+              << std::endl;
+  };
+  ports.changed = [](const playback::PlaybackClock& clock, std::int64_t position_us) {
+    std::fprintf(stderr,
+                 "%s at %.3f s, speed %g\n",
+                 clock.paused() ? "paused" : "playing",
+                 1e-6 * static_cast<double>(position_us),
+                 clock.speed());
+  };
+  const auto played = playback::play_tlog(*records, *link, options, ports, catch_stop_signals());
+  if (!played) return report(played.error());
+  std::cout << played->sent << " messages sent";
+  if (played->unsent > 0) std::cout << ", " << played->unsent << " that nobody took";
+  std::cout << std::endl;
+  return kExitOk;
+}
+
+}  // namespace
+
+void add_play_command(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<PlayArguments>();
+  CLI::App* const command =
+      app.add_subcommand("play",
+                         "Play a telemetry log onto a MAVLink link; standard input takes pause, "
+                         "play, speed X, seek S, quit");
+  command->add_option("file", arguments->file, ".tlog, or the folder of a live run")->required();
+  command->add_option("--link", arguments->link, "udp:HOST:PORT, tcp-listen:HOST:PORT, ...")
+      ->capture_default_str();
+  command->add_option("--speed", arguments->speed, "Times the recording's")->capture_default_str();
+  command->add_option("--from", arguments->from_s, "Start [s]")->capture_default_str();
+  command->add_flag("--repeat", arguments->repeat, "Start again at the end");
+  command->callback([arguments, &exit_code] { exit_code = play(*arguments); });
+}
+
+}  // namespace overfly::app

@@ -1,0 +1,121 @@
+#include "server/export/exported_samples.hpp"
+
+#include <utility>
+
+#include "flight/gravity.hpp"
+#include "flight/sensors/imu.hpp"
+#include "flight/sensors/sensor_suite.hpp"
+
+namespace overfly::server {
+namespace {
+
+using Readings = Result<std::vector<flight::ImuReading>>;
+
+/// Empty if the run recorded none.
+Readings recorded_readings(const RecordedRun& run,
+                           const flight::ImuModel& model,
+                           std::uint64_t seed,
+                           std::int64_t end_ns) {
+  Result<SensorFilesReader> reader = SensorFilesReader::open(run.folder);
+  if (!reader) return reader.error();
+  const Result<SensorSamples> samples = reader->until(end_ns);
+  if (!samples) return samples.error();
+  Readings readings = flight::with_biases(samples->imu, model, flight::imu_seed(seed));
+  if (!readings) return readings.error().in((sensors_folder(run.folder) / "imu.csv").string());
+  return readings;
+}
+
+/// Where the flight begins, for gravity; empty for a flight without states.
+Result<std::optional<Geodetic>> place_at_start(const ExportSource& source,
+                                               const terrain::World& world) {
+  auto flight = open_truth(source, world);
+  if (!flight) return flight.error();
+  const auto start = (*flight)->state_at(0);
+  if (!start) return start.error();
+  if (!*start) return std::optional<Geodetic>();
+  return std::optional(
+      world.tiles->frame().geodetic_from_world((*start)->T_world_body.translation));
+}
+
+Readings synthesized_readings(const ExportSource& source,
+                              const flight::ImuModel& model,
+                              const terrain::World& world,
+                              std::int64_t end_ns,
+                              const std::function<bool()>& keep_going) {
+  const auto start = place_at_start(source, world);
+  if (!start) return start.error();
+  if (!*start) return std::vector<flight::ImuReading>();
+  auto flight = open_truth(source, world);
+  if (!flight) return flight.error();
+  // A fitted IMU measures what it measures in a run.
+  const bool fitted = source.scenario.sensors.imu.has_value();
+  const std::uint64_t seed = source.scenario.seed;
+  const Geodetic place = fitted ? world.tiles->frame().origin() : **start;
+  return flight::synthesize_imu(**flight,
+                                end_ns,
+                                model,
+                                flight::normal_gravity_m_s2(place),
+                                fitted ? flight::imu_seed(seed) : seed,
+                                keep_going);
+}
+
+}  // namespace
+
+Status add_inertial_data(const ExportSource& source,
+                         const std::optional<flight::ImuModel>& wanted,
+                         FrameSequence& frames,
+                         const std::function<bool()>& keep_going,
+                         DatasetPlan& plan) {
+  const Scenario& scenario = source.scenario;
+  const std::optional<flight::ImuModel>& fitted = scenario.sensors.imu;
+  if (wanted && fitted) {
+    return Error{ErrorCode::kInvalidArgument,
+                 "imu: must not be given for a scenario with sensors.imu, whose samples are "
+                 "exported"};
+  }
+  plan.imu_model = fitted ? *fitted : wanted.value_or(flight::ImuModel());
+  const terrain::World& world = frames.maker().world();
+  const std::int64_t margin_ns = frame_time_ns(1, scenario.rate);
+  const std::int64_t begin_ns = frames.maker().frame_ns(frames.first_frame()) - margin_ns;
+  const std::int64_t end_ns = frames.maker().frame_ns(frames.last_frame()) + margin_ns;
+  Readings readings = std::vector<flight::ImuReading>();
+  if (fitted && source.run) {
+    readings = recorded_readings(*source.run, *fitted, scenario.seed, end_ns);
+  }
+  if (readings && readings->empty()) {
+    readings = synthesized_readings(source, plan.imu_model, world, end_ns, keep_going);
+  }
+  if (!readings) return readings.error();
+  auto flight = open_truth(source, world);
+  if (!flight) return flight.error();
+  for (const flight::ImuReading& reading : *readings) {
+    if (reading.sample.t_ns < begin_ns) continue;
+    const auto state = (*flight)->state_at(reading.sample.t_ns);
+    if (!state) return state.error();
+    if (!*state) break;
+    plan.imu.push_back(reading);
+    plan.states.push_back(**state);
+  }
+  return {};
+}
+
+Result<FrameSamples> FrameSamples::open(const ExportSource& source) {
+  FrameSamples samples(frame_time_ns(1, source.scenario.rate));
+  if (!source.run) return samples;
+  Result<SensorFilesReader> reader = SensorFilesReader::open(source.run->folder);
+  if (!reader) return reader.error();
+  samples.recorded_ = std::move(*reader);
+  return samples;
+}
+
+Status FrameSamples::add_to(MadeFrame& frame) {
+  if (recorded_) {
+    Result<SensorSamples> samples = recorded_->until(frame.t_ns);
+    if (!samples) return samples.error();
+    frame.sensors = std::move(*samples);
+  }
+  if (std::exchange(first_, false)) drop_older_than(frame.sensors, period_ns_);
+  return {};
+}
+
+}  // namespace overfly::server

@@ -1,0 +1,307 @@
+// Exports of a flight take the camera's place on the same flight: what was rendered must come back.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <random>
+
+#include "middleware/lcm/findings.hpp"
+#include "middleware/ros1/findings.hpp"
+#include "server/camera/frame_remaker.hpp"
+#include "server/export/dataset_export.hpp"
+#include "server/export/video_export.hpp"
+#include "server/imagery/video_images.hpp"
+#include "server/record/agreement_rows.hpp"
+#include "server/record/run_records.hpp"
+#include "server/scenario/document/scenario_file.hpp"
+#include "server/scoring/agreement_report.hpp"
+#include "server/worlds/world_cache.hpp"
+#include "tests/server/support/server_fixture.hpp"
+
+namespace overfly::server {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+
+constexpr double kFovDeg = 40.0;
+constexpr int kFrames = 21;
+/// Of the camera: 80 px / tan(fov / 2).
+const double kFocalPx = 80.0 / std::tan(0.5 * kFovDeg * EIGEN_PI / 180.0);
+
+RendererFactory one_thread_raycaster() {
+  return [](std::shared_ptr<const terrain::TileSource> tiles) {
+    renderer::RendererOptions options;
+    options.threads = 1;
+    return Result<std::unique_ptr<renderer::Renderer>>(
+        renderer::create_raycast_renderer(std::move(tiles), options));
+  };
+}
+
+Json flight_document() {
+  Json document = testing::small_document();
+  document["camera"]["fov_deg"] = kFovDeg;
+  document["epoch_utc_s"] = 1'700'000'000;
+  return document;
+}
+
+Scenario scenario_of(Json document) {
+  auto scenario = resolve_scenario(std::move(document), {}, "/");
+  if (!scenario) throw std::runtime_error(scenario.error().message);
+  return std::move(*scenario);
+}
+
+/// The same flight with real images on the first camera and virtual ones on the second.
+Json twin_document(const Json& images, const Json& mount = Json::object()) {
+  Json document = flight_document();
+  Json real = document["camera"];
+  real["mount"] = mount;
+  Json rendered = real;
+  real["name"] = "real";
+  real["images"] = images;
+  real["images"]["compare_with"] = "virtual";
+  rendered["name"] = "virtual";
+  document.erase("camera");
+  document["cameras"] = {real, rendered};
+  document["estimators"] = {{{"name", "on_real"}, {"type", "feature"}, {"camera", "real"}},
+                            {{"name", "on_virtual"}, {"type", "feature"}, {"camera", "virtual"}}};
+  return document;
+}
+
+class RealImages : public ::testing::Test {
+ protected:
+  fs::path exported(DatasetFormat format) {
+    ExportSource source{scenario_of(flight_document()), std::nullopt, 1'700'000'000 * kNsPerS};
+    ExportOptions options;
+    options.folder = folder_.path() / "export";
+    options.format = format;
+    options.renderer_factory = one_thread_raycaster();
+    const auto summary = export_dataset(source, options);
+    if (!summary) throw std::runtime_error(summary.error().message);
+    EXPECT_EQ(summary->images, kFrames);
+    return options.folder;
+  }
+
+  /// Flies, and reads the report of the run's folder.
+  AgreementReport flown(const Json& document) {
+    const Scenario scenario = scenario_of(document);
+    RunOptions options;
+    options.folder = run();
+    options.renderer_factory = one_thread_raycaster();
+    const auto result = run_scenario(scenario, options);
+    if (!result) throw std::runtime_error(result.error().message);
+    metrics_ = result->metrics;
+    const auto rows = read_agreement(run());
+    if (!rows) throw std::runtime_error(rows.error().message);
+    const auto report = report_agreement(scenario, *rows);
+    if (!report) throw std::runtime_error(report.error().message);
+    return *report;
+  }
+
+  /// Lossless images: the offset is nothing, and the estimator's answers are the same to the byte.
+  void expect_identical(const AgreementReport& report) {
+    EXPECT_EQ(report.frames, kFrames);
+    EXPECT_EQ(report.lost, 0);
+    EXPECT_EQ(report.missing, 0);
+    EXPECT_LT(report.offset_px.p95, 1e-3);
+    EXPECT_GT(report.correlation.p5, 0.999999);
+    EXPECT_EQ(report.corners_real.median, report.corners_virtual.median);
+    EXPECT_GT(report.corners_real.median, 10);
+    ASSERT_EQ(report.estimators.size(), 1U);
+    EXPECT_EQ(report.estimators[0].real, "on_real");
+    EXPECT_EQ(report.estimators[0].rendered, "on_virtual");
+    const std::string real = overfly::testing::read_text(run() / "estimates" / "on_real.jsonl");
+    EXPECT_FALSE(real.empty());
+    EXPECT_EQ(real, overfly::testing::read_text(run() / "estimates" / "on_virtual.jsonl"));
+  }
+
+  [[nodiscard]] fs::path run() const { return folder_.path() / "run"; }
+
+  overfly::testing::TemporaryFolder folder_;
+  RunMetrics metrics_;
+};
+
+TEST_F(RealImages, OfAFolderAreThoseThatWereRendered) {
+  const fs::path folder = exported(DatasetFormat::kPng);
+  expect_identical(flown(twin_document({{"source", folder.string()}})));
+}
+
+TEST_F(RealImages, OfABagAreThoseThatWereRendered) {
+  if (!ros1::is_built_in()) GTEST_SKIP() << "no ROS 1";
+  const fs::path bag = exported(DatasetFormat::kRosbag) / "flight.bag";
+  expect_identical(flown(twin_document({{"source", bag.string()}, {"clock", "utc"}})));
+}
+
+TEST_F(RealImages, OfAnLcmLogAreThoseThatWereRendered) {
+  if (!lcm::is_built_in()) GTEST_SKIP() << "no LCM";
+  const fs::path log = exported(DatasetFormat::kLcm) / "flight.lcm";
+  expect_identical(flown(twin_document({{"source", log.string()}, {"topic", "OVERFLY_IMAGE"}})));
+}
+
+TEST_F(RealImages, OfAVideoAreCloseToThoseThatWereRendered) {
+  if (!reads_videos()) GTEST_SKIP() << "no FFmpeg";
+  ExportSource source{scenario_of(flight_document()), std::nullopt, 0};
+  VideoOptions options;
+  options.file = folder_.path() / "flight.webm";
+  options.look.view = VideoView::kCamera;
+  options.look.quality = 95;
+  options.renderer_factory = one_thread_raycaster();
+  const auto video = export_video(source, options);
+  ASSERT_TRUE(video.ok()) << video.error().message;
+  const AgreementReport report = flown(twin_document({{"source", options.file.string()}}));
+  EXPECT_EQ(report.frames, kFrames);
+  EXPECT_EQ(report.lost, 0);
+  EXPECT_LT(report.offset_px.p95, 0.2);  // what the peak resolves, and the compression
+  EXPECT_GT(report.correlation.p5, 0.98);
+}
+
+TEST_F(RealImages, OfADamagedVideoAreReadAsFarAsTheyGo) {
+  if (!reads_videos()) GTEST_SKIP() << "no FFmpeg";
+  ExportSource source{scenario_of(flight_document()), std::nullopt, 0};
+  VideoOptions options;
+  options.file = folder_.path() / "flight.webm";
+  options.look.view = VideoView::kCamera;
+  options.renderer_factory = one_thread_raycaster();
+  ASSERT_TRUE(export_video(source, options).ok());
+  const std::string whole = overfly::testing::read_text(options.file);
+  const fs::path damaged = folder_.path() / "damaged.webm";
+  std::mt19937 random(1);
+  int opened = 0;
+  int read = 0;
+  for (int round = 0; round < 100; ++round) {
+    std::string bytes = whole;
+    for (int i = 0; i < 1 + round % 20; ++i) {
+      bytes[random() % bytes.size()] = static_cast<char>(random());
+    }
+    if (round % 4 == 0) bytes.resize(random() % bytes.size());
+    overfly::testing::write_text(damaged, bytes);
+    const auto images = open_video_images(damaged, nullptr);
+    if (!images) continue;
+    ++opened;
+    for (std::size_t i = 0; i < (*images)->stamps_ns().size(); ++i) {
+      read += (*images)->read(i).ok() ? 1 : 0;
+    }
+  }
+  EXPECT_GT(opened, 10);
+  EXPECT_GT(read, 100);
+}
+
+TEST_F(RealImages, ShowAWrongTimeAsAnOffset) {
+  const fs::path folder = exported(DatasetFormat::kPng);
+  // Each image is placed half a second late: the aircraft flies 12.5 m on meanwhile, 300 m above
+  // the ground, so that the real image shows the ground further ahead: towards its top.
+  const AgreementReport report =
+      flown(twin_document({{"source", folder.string()}, {"time_offset_s", 0.5}}));
+  EXPECT_EQ(report.frames, kFrames - 5);
+  const double predicted_px = 12.5 / 300.0 * kFocalPx;
+  EXPECT_NEAR(report.mean_offset_px.y(), -predicted_px, 0.1 * predicted_px);
+  EXPECT_NEAR(report.mean_offset_px.x(), 0.0, 0.5);
+  EXPECT_GT(report.correlation_aligned.median, report.correlation.median);
+  const auto records = read_run_records(run());
+  ASSERT_TRUE(records.ok());
+  EXPECT_EQ(records->cameras[0].frames.front().t_ns, kNsPerS / 2);
+}
+
+TEST_F(RealImages, ShowAWrongMountAsAnOffset) {
+  const fs::path folder = exported(DatasetFormat::kPng);
+  // Both cameras are described as pitched up by 2 deg, and the real one was not: what the virtual
+  // one shows in the middle is ahead of the real one's middle.
+  const AgreementReport report =
+      flown(twin_document({{"source", folder.string()}}, {{"pitch_deg", 2.0}}));
+  const double predicted_px = std::tan(2.0 * EIGEN_PI / 180.0) * kFocalPx;
+  EXPECT_NEAR(report.mean_offset_px.y(), -predicted_px, 0.05 * predicted_px);
+  EXPECT_NEAR(report.mean_offset_px.x(), 0.0, 0.5);
+}
+
+TEST_F(RealImages, ThatAreMissingOrDamagedAreLostFrames) {
+  const fs::path folder = exported(DatasetFormat::kPng);
+  std::vector<fs::path> images;
+  for (const auto& entry : fs::recursive_directory_iterator(folder / "images")) {
+    if (entry.is_regular_file()) images.push_back(entry.path());
+  }
+  std::sort(images.begin(), images.end());
+  ASSERT_EQ(images.size(), static_cast<std::size_t>(kFrames));
+  fs::remove(images[4]);
+  fs::resize_file(images[9], 500);
+  const AgreementReport report = flown(twin_document({{"source", folder.string()}}));
+  EXPECT_EQ(report.frames, kFrames);
+  EXPECT_EQ(report.lost, 2);
+  EXPECT_EQ(metrics_.cameras[0].faults.at("unreadable_image"), 2);
+  EXPECT_EQ(metrics_.estimators.at("on_real").answered, kFrames - 2);
+  EXPECT_EQ(metrics_.estimators.at("on_virtual").answered, kFrames);
+  EXPECT_THAT(overfly::testing::read_text(run() / "log.jsonl"), HasSubstr("image lost: "));
+}
+
+TEST_F(RealImages, AreReadAgainForPlayback) {
+  const fs::path folder = exported(DatasetFormat::kPng);
+  const Json document = twin_document({{"source", folder.string()}});
+  (void)flown(document);
+  const Scenario scenario = scenario_of(document);
+  WorldCache worlds;
+  const auto opened = worlds.get(scenario, {});
+  ASSERT_TRUE(opened.ok());
+  const auto world = bare_world(*opened);
+  const auto records = read_run_records(run());
+  ASSERT_TRUE(records.ok());
+  auto remaker = FrameRemaker::create(run(), scenario, world);
+  ASSERT_TRUE(remaker.ok());
+  const auto renderer = one_thread_raycaster()(world->tiles);
+  ASSERT_TRUE(renderer.ok());
+  const FrameRow& row = records->cameras[0].frames[7];
+  EXPECT_EQ(row.source_image, 7);
+  const auto real = (*remaker)->make(0, row, **renderer);
+  const auto rendered = (*remaker)->make(1, records->cameras[1].frames[7], **renderer);
+  ASSERT_TRUE(real.ok()) << real.error().message;
+  ASSERT_TRUE(rendered.ok()) << rendered.error().message;
+  EXPECT_EQ(real->data, rendered->data);
+}
+
+TEST_F(RealImages, OutsideOfTheFlightAreAnError) {
+  const fs::path folder = exported(DatasetFormat::kPng);
+  const Scenario scenario =
+      scenario_of(twin_document({{"source", folder.string()}, {"time_offset_s", 100.0}}));
+  RunOptions options;
+  options.folder = run();
+  options.renderer_factory = one_thread_raycaster();
+  const auto result = run_scenario(scenario, options);
+  ASSERT_FALSE(result.ok());
+  EXPECT_THAT(result.error().message,
+              HasSubstr("no image lies within the flight: the images span [100, 102] s"));
+}
+
+TEST(RealImagesOfAScenario, AreCheckedWithTheirFields) {
+  const auto message_of = [](const std::function<void(Json&)>& change) {
+    Json document = twin_document({{"source", "flight.bag"}});
+    change(document);
+    const auto scenario = resolve_scenario(document, {}, "/");
+    return scenario ? std::string("accepted") : scenario.error().message;
+  };
+  EXPECT_EQ(message_of([](Json&) {}), "accepted");
+  EXPECT_THAT(
+      message_of([](Json& d) { d["cameras"][0]["images"]["clock"] = "log"; }),
+      HasSubstr("cameras.0.images.clock = \"log\": must be given together with flight.log"));
+  EXPECT_THAT(message_of([](Json& d) {
+                d["cameras"][0]["images"]["clock"] = "utc";
+                d.erase("epoch_utc_s");
+              }),
+              HasSubstr("must be given together with epoch_utc_s"));
+  EXPECT_THAT(message_of([](Json& d) { d["cameras"][1]["width_px"] = 170; }),
+              HasSubstr("must name a camera of the same model and mount"));
+  EXPECT_THAT(message_of([](Json& d) { d["cameras"][0]["images"]["compare_with"] = "none"; }),
+              HasSubstr("must name another camera of the scenario"));
+  EXPECT_THAT(message_of([](Json& d) { d["cameras"][0]["color"] = "rgb"; }),
+              HasSubstr("must be grey"));
+  EXPECT_THAT(message_of([](Json& d) {
+                d["cameras"][1]["images"] = {{"source", "b.bag"}};
+              }),
+              HasSubstr("only one camera can have recorded images"));
+  EXPECT_THAT(message_of([](Json& d) {
+                d["cameras"][0]["vibration"] = {{"engine_rpm", 5000}};
+              }),
+              HasSubstr("cameras.0.vibration"));
+}
+
+}  // namespace
+}  // namespace overfly::server
