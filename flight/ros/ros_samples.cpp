@@ -42,7 +42,7 @@ void RosSamples::take(const std::string& topic,
     return;
   }
   const auto known = topics_.add(topic, type, logs::RosEncoding::kRos1);
-  if (known) topics_.take(*known, bytes, 0);
+  if (known) topics_.take(*known, bytes, 0, {});
 }
 
 bool RosSamples::stream(logs::StreamId /*id*/, const logs::StreamDescription& description) {
