@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/motion/estimate_receiver.hpp"
+#include "core/motion/flight_event.hpp"
 #include "core/motion/pose.hpp"
 #include "core/result.hpp"
 
@@ -55,6 +56,13 @@ class TruthSource {
   /// Called before the first state is asked for, once a flight in real time is ready: a live flight
   /// then begins with the latest state instead of the one with which it was opened.
   virtual void begin() {}
+  /// Events up to `t_ns` that were not taken before, by time. @param t_ns  must not decrease
+  [[nodiscard]] virtual std::vector<FlightEvent> take_events(std::int64_t /*t_ns*/) { return {}; }
+  /// What a live vehicle says of itself, twice a second of the flight; empty in between, and of
+  /// other flights.
+  [[nodiscard]] virtual std::optional<VehicleStatus> take_status(std::int64_t /*t_ns*/) {
+    return std::nullopt;
+  }
   /// Takes estimates back to the vehicle that flies; null if it wants none.
   [[nodiscard]] virtual std::shared_ptr<EstimateReceiver> estimate_receiver() const {
     return nullptr;

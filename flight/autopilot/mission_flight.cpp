@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <utility>
 
 #include "core/text/number_text.hpp"
@@ -92,7 +93,9 @@ std::string end_warning(const MissionFlight& flight) {
 class MissionTruth final : public TruthSource {
  public:
   MissionTruth(MissionFlight flight, std::int64_t duration_ns, std::string warning)
-      : flight_(std::move(flight)), duration_ns_(duration_ns), warning_(std::move(warning)) {}
+      : flight_(std::move(flight)), duration_ns_(duration_ns), warning_(std::move(warning)) {
+    note_changes();
+  }
 
   [[nodiscard]] std::optional<std::int64_t> duration_ns() const override { return duration_ns_; }
   [[nodiscard]] std::string description() const override {
@@ -113,6 +116,14 @@ class MissionTruth final : public TruthSource {
     if (!warning_.empty()) all.push_back(warning_);
     return all;
   }
+  [[nodiscard]] std::vector<FlightEvent> take_events(std::int64_t t_ns) override {
+    std::vector<FlightEvent> taken;
+    while (!events_.empty() && events_.front().t_ns <= t_ns) {
+      taken.push_back(std::move(events_.front()));
+      events_.pop_front();
+    }
+    return taken;
+  }
 
  private:
   [[nodiscard]] Result<std::optional<AircraftState>> find_state(
@@ -127,13 +138,34 @@ class MissionTruth final : public TruthSource {
         return Error{ErrorCode::kCancelled, "the flight was cancelled"};
       }
       if (Status status = flight_.step(); !status) return status.error();
+      note_changes();
     }
     return std::optional(flight_.state_at(t_ns));
+  }
+
+  /// A new phase of the flight or item of the mission is an event.
+  void note_changes() {
+    if (!flight_.setup().tell_items) return;
+    const MissionPilot& pilot = flight_.autopilot().pilot();
+    if (phase_ != pilot.phase() && pilot.phase() != FlightPhase::kDone) {
+      events_.push_back({flight_.t_ns(), FlightEventKind::kMode, name_of(pilot.phase())});
+    }
+    phase_ = pilot.phase();
+    const bool flown = pilot.item() < flight_.setup().mission.items.size();
+    if (item_ != pilot.item() && flown) {
+      events_.push_back({flight_.t_ns(),
+                         FlightEventKind::kMissionItem,
+                         "mission item " + std::to_string(pilot.item() + 1)});
+    }
+    item_ = pilot.item();
   }
 
   MissionFlight flight_;
   std::int64_t duration_ns_;
   std::string warning_;
+  std::optional<FlightPhase> phase_;
+  std::optional<std::size_t> item_;
+  std::deque<FlightEvent> events_;  ///< not taken yet
 };
 
 }  // namespace

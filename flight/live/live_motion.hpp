@@ -33,6 +33,7 @@ class LiveMotion {
                                  bool joint,
                                  std::int64_t t_ns);
 
+  [[nodiscard]] std::uint64_t gap_count() const { return gaps_; }
   /// The gaps so far; empty without.
   /// @param start_ns  of the flight, by the samples' clock
   [[nodiscard]] std::optional<std::string> gaps_text(std::int64_t start_ns) const;

@@ -75,6 +75,15 @@ void LiveSamples::take(const mavlink::Frame& frame) {
   frame_ = nullptr;
 }
 
+void LiveSamples::event(logs::LogEvent event) {
+  std::optional<FlightEvent> kept = logs::flight_event_of(event.kind, event.text);
+  if (!kept) return;
+  // Before the first time of the vehicle's clock: in force from the start.
+  kept->t_ns = event.time ? event.time->t_ns : 0;
+  events_.push_back(std::move(*kept));
+  if (events_.size() > kMaxLiveEvents) events_.pop_front();
+}
+
 bool LiveSamples::stream(logs::StreamId id, const logs::StreamDescription& description) {
   streams_.push_back({description, {}, {}, std::nullopt, 0});
   const bool sample = description.position != logs::PositionKind::kNone || description.attitude;

@@ -17,6 +17,8 @@ namespace overfly::flight::live {
 
 /// Samples of one kind that are kept: 80 minutes at 100 Hz.
 inline constexpr std::size_t kMaxLiveSamples = 500'000;
+/// Events that wait to be taken; the oldest are dropped, because a vehicle may send any number.
+inline constexpr std::size_t kMaxLiveEvents = 1000;
 
 struct LivePosition {
   std::int64_t t_ns = 0;      ///< the vehicle's clock
@@ -65,12 +67,14 @@ class LiveSamples final : private logs::LogSink {
   /// A stream has reached kMaxLiveSamples.
   [[nodiscard]] bool full() const { return full_; }
   [[nodiscard]] std::uint64_t invalid() const { return invalid_; }
+  /// Events that were not taken yet, with times of the vehicle's clock; at most kMaxLiveEvents.
+  [[nodiscard]] std::deque<FlightEvent>& events() { return events_; }
 
  private:
   [[nodiscard]] bool stream(logs::StreamId id, const logs::StreamDescription& description) override;
   void message(logs::StreamId id, const std::optional<logs::LogTime>& time) override;
   void local_origin(logs::StreamId id, const logs::LocalOrigin& origin) override;
-  void event(logs::LogEvent /*event*/) override {}
+  void event(logs::LogEvent event) override;
   void warning(const std::string& /*text*/) override {}
   [[nodiscard]] bool progress(std::uint64_t /*bytes*/) override { return true; }
   void take_position(logs::StreamId id,
@@ -93,6 +97,7 @@ class LiveSamples final : private logs::LogSink {
   bool restarted_ = false;
   bool full_ = false;
   std::uint64_t invalid_ = 0;
+  std::deque<FlightEvent> events_;
 };
 
 }  // namespace overfly::flight::live

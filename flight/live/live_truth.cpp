@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <condition_variable>
+#include <map>
 #include <mutex>
 #include <utility>
 
@@ -17,6 +18,8 @@ namespace overfly::flight::live {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+constexpr std::int64_t kStatusPeriodNs = kNsPerS / 2;
 
 }  // namespace
 
@@ -45,6 +48,9 @@ struct LiveTruth::Impl {
   };
   std::deque<Arrival> arrivals;
   std::optional<Clock::time_point> heard;  ///< the latest state
+  std::int64_t next_status_ns = 0;         ///< from the start
+  std::int64_t counted_ns = 0;             ///< the vehicle's clock at the last status
+  std::uint64_t counted_messages = 0;      ///< until then
 
   Impl(std::shared_ptr<mavlink::Vehicle> of, const LocalFrame& in, const LiveTruthOptions& with)
       : vehicle(std::move(of)),
@@ -227,6 +233,65 @@ std::vector<std::string> LiveTruth::warnings() const {
     if (!problem.empty()) warnings.push_back(problem);
   }
   return warnings;
+}
+
+std::vector<FlightEvent> LiveTruth::take_events(std::int64_t t_ns) {
+  const std::lock_guard lock(impl_->mutex);
+  std::deque<FlightEvent>& waiting = impl_->samples.events();
+  std::vector<FlightEvent> taken;
+  std::map<FlightEventKind, FlightEvent> in_force;
+  while (!waiting.empty() && waiting.front().t_ns - impl_->start_ns <= t_ns) {
+    FlightEvent event = std::move(waiting.front());
+    waiting.pop_front();
+    event.t_ns -= impl_->start_ns;
+    if (event.t_ns >= 0) {
+      taken.push_back(std::move(event));
+    } else if (event.kind != FlightEventKind::kOther) {
+      event.t_ns = 0;
+      in_force[event.kind] = std::move(event);
+    }
+  }
+  for (auto& [kind, event] : in_force) taken.insert(taken.begin(), std::move(event));
+  return taken;
+}
+
+std::optional<VehicleStatus> LiveTruth::take_status(std::int64_t t_ns) {
+  Impl& impl = *impl_;
+  if (t_ns < impl.next_status_ns) return std::nullopt;
+  const mavlink::VehicleState state = impl.vehicle->state();
+  VehicleStatus status;
+  status.t_ns = t_ns;
+  status.vehicle = std::to_string(state.system) + "." + std::to_string(state.component);
+  if (const auto mode = logs::flight_event_of(logs::EventKind::kMode, state.mode)) {
+    status.mode = mode->text;
+  }
+  if (state.heartbeat) status.armed = state.armed();
+  status.battery_v = state.battery_v;
+  status.battery_percent = state.battery_percent;
+  if (state.gps) {
+    status.gps_fix = state.gps->fix_type;
+    // 255 stands for unknown.
+    if (state.gps->satellites != 255) status.satellites = state.gps->satellites;
+  }
+  // The first status has nothing to count from.
+  const std::int64_t boot_ns = state.boot_ns.value_or(0);
+  if (impl.counted_ns > 0 && boot_ns > impl.counted_ns) {
+    status.messages_per_s = static_cast<double>(state.messages - impl.counted_messages) /
+                            s_from_ns(boot_ns - impl.counted_ns);
+  }
+  impl.counted_ns = boot_ns;
+  impl.counted_messages = state.messages;
+  status.lost_messages = state.lost_messages;
+  const auto sent = static_cast<double>(state.messages + state.lost_messages);
+  if (sent > 0.0) status.lost_percent = 100.0 * static_cast<double>(state.lost_messages) / sent;
+  if (const auto clock = impl.vehicle->clock()) {
+    status.clock_rate = clock->rate;
+    status.round_trip_ms = static_cast<double>(clock->round_trip_ns) * 1e-6;
+  }
+  const std::lock_guard lock(impl.mutex);
+  status.gaps = impl.motion.gap_count();
+  impl.next_status_ns = (t_ns / kStatusPeriodNs + 1) * kStatusPeriodNs;
+  return status;
 }
 
 std::int64_t LiveTruth::start_ns() const { return impl_->start_ns; }

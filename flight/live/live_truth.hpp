@@ -43,6 +43,9 @@ class LiveTruth final : public TruthSource {
   [[nodiscard]] std::string description() const override;
   /// Gaps so far, and why the flight has ended.
   [[nodiscard]] std::vector<std::string> warnings() const override;
+  /// Modes, mission items, arming and texts of the vehicle.
+  [[nodiscard]] std::vector<FlightEvent> take_events(std::int64_t t_ns) override;
+  [[nodiscard]] std::optional<VehicleStatus> take_status(std::int64_t t_ns) override;
 
   /// Sends estimates to the vehicle by this from now on.
   void send_estimates_by(std::shared_ptr<mavlink::FeedbackSender> sender);

@@ -53,6 +53,7 @@ struct BootInfo {
   std::int64_t first_ns = 0;
   std::int64_t last_ns = 0;
   std::uint64_t messages = 0;
+  std::uint32_t number = 0;  ///< as LogTime::boot
 };
 
 /// What should be taken as the flight's truth.
@@ -72,6 +73,9 @@ struct OpenedLog {
   std::vector<StreamInfo> streams;  ///< in the order in which they are met: by StreamId
   std::vector<BootInfo> boots;
   std::vector<LogEvent> events;  ///< the first kMaxEvents
+  /// The last mode and the last event of the mission of each vehicle before the slice, as far as
+  /// that part of the log was read.
+  std::vector<LogEvent> events_before;
   std::optional<TruthChoice> truth;
   /// The positions of the chosen truth stay within kGroundReachM of the first one.
   bool on_ground = false;

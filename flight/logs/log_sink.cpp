@@ -50,6 +50,33 @@ const char* to_string(EventKind kind) {
   return "other";
 }
 
+std::optional<FlightEvent> flight_event_of(EventKind kind, const std::string& text) {
+  FlightEvent event{0, FlightEventKind::kOther, text};
+  switch (kind) {
+    case EventKind::kMode: {
+      event.kind = FlightEventKind::kMode;
+      // "mode 10 (AUTO)"
+      const std::size_t open = text.find('(');
+      if (open != std::string::npos && text.ends_with(')')) {
+        event.text = text.substr(open + 1, text.size() - open - 2);
+      }
+      return event;
+    }
+    case EventKind::kMission:
+      if (text.starts_with("reached ")) return event;
+      event.kind = FlightEventKind::kMissionItem;
+      if (text.starts_with("to ")) event.text = text.substr(3);
+      return event;
+    case EventKind::kCamera:
+      return std::nullopt;
+    case EventKind::kArming:
+    case EventKind::kText:
+    case EventKind::kOther:
+      break;
+  }
+  return event;
+}
+
 void LogSink::position(StreamId id, const LogTime& time, const Eigen::Vector3d& value) {
   if (is_plausible(position_kind(id), value)) {
     take_position(id, time, value);

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "core/motion/flight_event.hpp"
 #include "flight/logs/local_grid.hpp"
 
 namespace overfly::flight::logs {
@@ -63,6 +64,10 @@ struct LogEvent {
   EventKind kind = EventKind::kOther;
   std::string text;
 };
+
+/// What an event of a log is to a flight: modes and mission items by their names alone. Empty for
+/// what a flight does not report: camera triggers.
+[[nodiscard]] std::optional<FlightEvent> flight_event_of(EventKind kind, const std::string& text);
 
 /// Receives what a reader finds, in the order of the file.
 ///

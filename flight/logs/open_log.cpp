@@ -92,7 +92,7 @@ class OpeningSink final : public LogSink {
   void declaration() override { index_.declaration(); }
   void event(LogEvent event) override {
     const bool inside = event.time && log_.slice.contains(event.time->t_ns);
-    if (!log_.slice.is_whole() && !inside) return;
+    if (!log_.slice.is_whole() && !inside) return remember(std::move(event));
     if (log_.events.size() < kMaxEvents) {
       log_.events.push_back(std::move(event));
     } else {
@@ -128,6 +128,7 @@ class OpeningSink final : public LogSink {
     return streams_[id].description().position;
   }
   void count_boot(StreamId id, const LogTime& time);
+  void remember(LogEvent event);
 
   OpenedLog& log_;
   const std::atomic<bool>* cancel_;
@@ -141,6 +142,18 @@ class OpeningSink final : public LogSink {
   std::uint64_t left_out_boots_ = 0;
   std::uint64_t left_out_events_ = 0;
 };
+
+/// Keeps the state in which a slice begins.
+void OpeningSink::remember(LogEvent event) {
+  const bool state = event.kind == EventKind::kMode || event.kind == EventKind::kMission;
+  if (!state || !event.time || event.time->t_ns >= log_.slice.from_ns.value_or(0)) return;
+  for (LogEvent& known : log_.events_before) {
+    if (known.vehicle != event.vehicle || known.kind != event.kind) continue;
+    known = std::move(event);
+    return;
+  }
+  if (log_.events_before.size() < kMaxBoots) log_.events_before.push_back(std::move(event));
+}
 
 void OpeningSink::count_boot(StreamId id, const LogTime& time) {
   const std::string& vehicle = streams_[id].description().vehicle;
@@ -156,7 +169,7 @@ void OpeningSink::count_boot(StreamId id, const LogTime& time) {
         ++left_out_boots_;
         return;
       }
-      boots_.emplace_back(BootInfo{vehicle, time.t_ns, time.t_ns, 0}, time.boot);
+      boots_.emplace_back(BootInfo{vehicle, time.t_ns, time.t_ns, 0, time.boot}, time.boot);
     }
   }
   BootInfo& boot = boots_[index].first;

@@ -12,6 +12,7 @@
 #include "flight/logs/log_trajectory.hpp"
 #include "flight/logs/ned_attitude.hpp"
 #include "flight/pose_flight.hpp"
+#include "flight/replay/flight_events.hpp"
 #include "flight/replay/smooth_log.hpp"
 
 namespace overfly::flight {
@@ -138,8 +139,11 @@ Result<std::unique_ptr<TruthSource>> fly_smoothed(const logs::OpenedLog& opened,
   std::string description = "log: " + opened.file.filename().string() + ", " +
                             log->position_source + " with the attitude of " + log->attitude_source +
                             ", smoothed" + (options.rebase ? ", moved" : "");
-  return std::unique_ptr<TruthSource>(std::make_unique<SmoothedFlight>(
-      std::move(*log), T_world_log, std::move(warnings), std::move(description)));
+  std::vector<FlightEvent> events =
+      events_of(opened, log->position_source, log->begin_ns(), log->end_ns());
+  return with_events(std::make_unique<SmoothedFlight>(
+                         std::move(*log), T_world_log, std::move(warnings), std::move(description)),
+                     std::move(events));
 }
 
 }  // namespace
@@ -196,11 +200,14 @@ Result<std::unique_ptr<TruthSource>> fly_flight_log(const std::filesystem::path&
   }
   std::vector<std::string> warnings = opened->warnings;
   warnings.insert(warnings.end(), log->warnings.begin(), log->warnings.end());
-  return fly_poses(std::move(trajectory),
-                   std::move(warnings),
-                   "log: " + file.filename().string() + ", " + log->position_source +
-                       " with the attitude of " + log->attitude_source +
-                       (options.rebase ? ", moved" : ""));
+  auto flown = fly_poses(std::move(trajectory),
+                         std::move(warnings),
+                         "log: " + file.filename().string() + ", " + log->position_source +
+                             " with the attitude of " + log->attitude_source +
+                             (options.rebase ? ", moved" : ""));
+  return with_events(
+      std::move(flown),
+      events_of(*opened, log->position_source, log->poses.front().t_ns, log->poses.back().t_ns));
 }
 
 }  // namespace overfly::flight

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/motion/wrapped_truth.hpp"
 #include "core/time.hpp"
 #include "flight/sensors/fitted_sensor.hpp"
 
@@ -16,38 +17,24 @@ std::uint64_t seed_of_sensor(std::uint64_t seed, std::uint64_t index) {
   return seed + kGolden * (kFirst + index);
 }
 
-class SensedFlight final : public TruthSource {
+class SensedFlight final : public WrappedTruth {
  public:
   SensedFlight(std::unique_ptr<TruthSource> flight, SensorSuite& suite)
-      : flight_(std::move(flight)), suite_(suite) {}
-
-  [[nodiscard]] std::optional<std::int64_t> duration_ns() const override {
-    return flight_->duration_ns();
-  }
-  [[nodiscard]] std::string description() const override { return flight_->description(); }
-  [[nodiscard]] std::vector<std::string> warnings() const override { return flight_->warnings(); }
-  void begin() override { flight_->begin(); }
-  [[nodiscard]] std::shared_ptr<EstimateReceiver> estimate_receiver() const override {
-    return flight_->estimate_receiver();
-  }
-  [[nodiscard]] std::optional<std::int64_t> heard_ns() const override {
-    return flight_->heard_ns();
-  }
+      : WrappedTruth(std::move(flight)), suite_(suite) {}
 
  private:
   [[nodiscard]] Result<std::optional<AircraftState>> find_state(
       std::int64_t t_ns, const std::atomic<bool>* cancel) override {
     while (suite_.next_ns() <= t_ns) {
       const std::int64_t sample_ns = suite_.next_ns();
-      auto state = flight_->state_at(sample_ns, cancel);
+      auto state = flight().state_at(sample_ns, cancel);
       if (!state || !*state) return state;
       (*state)->t_ns = sample_ns;
       suite_.take(**state);
     }
-    return flight_->state_at(t_ns, cancel);
+    return flight().state_at(t_ns, cancel);
   }
 
-  std::unique_ptr<TruthSource> flight_;
   SensorSuite& suite_;
 };
 

@@ -70,6 +70,13 @@ class FrameMaker {
   [[nodiscard]] std::vector<std::string> flight_warnings() const {
     return truth_->source().warnings();
   }
+  /// As TruthSource::take_events and take_status.
+  [[nodiscard]] std::vector<FlightEvent> take_flight_events(std::int64_t t_ns) {
+    return truth_->source().take_events(t_ns);
+  }
+  [[nodiscard]] std::optional<VehicleStatus> take_vehicle_status(std::int64_t t_ns) {
+    return truth_->source().take_status(t_ns);
+  }
   /// Of the recorded images.
   [[nodiscard]] std::vector<std::string> image_warnings() const;
 

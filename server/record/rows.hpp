@@ -50,7 +50,9 @@ struct LogRow {
   std::int64_t t_ns = 0;
   std::string level;  ///< "info", "warning", "error"
   std::string text;
-  std::string kind = {};    ///< "fault" if a fault of the scenario begins or ends; else empty
+  /// "fault" if a fault of the scenario begins or ends; of the flight "mode", "mission" or "event"
+  /// (FlightEventKind); else empty.
+  std::string kind = {};
   std::string source = {};  ///< the estimator that reported it; empty = the range
 };
 

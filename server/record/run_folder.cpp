@@ -30,6 +30,7 @@ fs::path created_file(const fs::path& folder) { return folder / "created.json"; 
 fs::path timings_file(const fs::path& folder) { return folder / "timings.json"; }
 fs::path metrics_file(const fs::path& folder) { return folder / "metrics.json"; }
 fs::path log_file(const fs::path& folder) { return folder / "log.jsonl"; }
+fs::path vehicle_file(const fs::path& folder) { return folder / "vehicle.jsonl"; }
 fs::path vehicle_log_file(const fs::path& folder) { return folder / "vehicle.tlog"; }
 fs::path truth_samples_file(const fs::path& folder) { return folder / "truth_samples.bin"; }
 

@@ -17,6 +17,7 @@ inline constexpr int kRunFormatVersion = 1;
 [[nodiscard]] std::filesystem::path timings_file(const std::filesystem::path& folder);
 [[nodiscard]] std::filesystem::path metrics_file(const std::filesystem::path& folder);
 [[nodiscard]] std::filesystem::path log_file(const std::filesystem::path& folder);
+[[nodiscard]] std::filesystem::path vehicle_file(const std::filesystem::path& folder);
 [[nodiscard]] std::filesystem::path truth_samples_file(const std::filesystem::path& folder);
 /// vehicle.tlog: the messages of a live vehicle
 [[nodiscard]] std::filesystem::path vehicle_log_file(const std::filesystem::path& folder);

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/motion/wrapped_truth.hpp"
 #include "core/time.hpp"
 #include "server/files/file_field.hpp"
 
@@ -75,26 +76,10 @@ std::optional<AircraftState> state_from(const std::uint8_t* bytes) {
   return state;
 }
 
-class RecordedWhileFlown final : public TruthSource {
+class RecordedWhileFlown final : public WrappedTruth {
  public:
   RecordedWhileFlown(std::unique_ptr<TruthSource> flight, TruthSampleFile& file)
-      : flight_(std::move(flight)), file_(file) {}
-
-  [[nodiscard]] std::optional<std::int64_t> duration_ns() const override {
-    return flight_->duration_ns();
-  }
-  [[nodiscard]] std::string description() const override { return flight_->description(); }
-  [[nodiscard]] std::optional<std::int64_t> log_start_ns() const override {
-    return flight_->log_start_ns();
-  }
-  [[nodiscard]] std::vector<std::string> warnings() const override { return flight_->warnings(); }
-  void begin() override { flight_->begin(); }
-  [[nodiscard]] std::shared_ptr<EstimateReceiver> estimate_receiver() const override {
-    return flight_->estimate_receiver();
-  }
-  [[nodiscard]] std::optional<std::int64_t> heard_ns() const override {
-    return flight_->heard_ns();
-  }
+      : WrappedTruth(std::move(flight)), file_(file) {}
 
  private:
   [[nodiscard]] Result<std::optional<AircraftState>> find_state(
@@ -111,7 +96,7 @@ class RecordedWhileFlown final : public TruthSource {
   }
 
   Result<std::optional<AircraftState>> record(std::int64_t t_ns, const std::atomic<bool>* cancel) {
-    auto state = flight_->state_at(t_ns, cancel);
+    auto state = flight().state_at(t_ns, cancel);
     if (!state || !*state) return state;
     (*state)->t_ns = t_ns;
     if (t_ns > recorded_ns_) file_.add(**state);
@@ -119,7 +104,6 @@ class RecordedWhileFlown final : public TruthSource {
     return state;
   }
 
-  std::unique_ptr<TruthSource> flight_;
   TruthSampleFile& file_;
   std::int64_t next_sample_ = 0;   ///< index of the next sample of the regular grid
   std::int64_t recorded_ns_ = -1;  ///< time of the last sample in the file

@@ -221,6 +221,7 @@ Result<FlightRun::Flight> FlightRun::fly_frame(std::int64_t k, bool wait_for_est
   if (Status status = record_events(); !status) return status.error();
 
   if (Status status = tell_faults((*made)->t_ns); !status) return status.error();
+  if (Status status = tell_flight((*made)->t_ns); !status) return status.error();
   const Status delivered = deliver(**made);
   if (options_.progress) options_.progress(recorder_.info());
   if (!delivered) return delivered.error();
@@ -302,6 +303,16 @@ Status FlightRun::tell_faults(std::int64_t t_ns) {
     if (Status status = recorder_.log(t_ns, level, line.text, "fault"); !status) return status;
   }
   return {};
+}
+
+Status FlightRun::tell_flight(std::int64_t t_ns) {
+  for (const FlightEvent& event : maker_->take_flight_events(t_ns)) {
+    const char* kind = to_string(event.kind);
+    Status status = recorder_.log(event.t_ns, "info", event.text, kind);
+    if (!status) return status;
+  }
+  const std::optional<VehicleStatus> vehicle = maker_->take_vehicle_status(t_ns);
+  return vehicle ? recorder_.add_vehicle_status(*vehicle) : Status();
 }
 
 Status FlightRun::record_events() {

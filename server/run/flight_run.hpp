@@ -67,6 +67,8 @@ class FlightRun {
   /// Compares the recorded image of a frame with the rendered one, and reports a lost one.
   Status judge_recorded_image(const MadeFrame& made);
   Status record_events();
+  /// Records the events of the flight and the state of a live vehicle.
+  Status tell_flight(std::int64_t t_ns);
   Status tell_faults(std::int64_t t_ns);
   [[nodiscard]] bool cancelled() const;
 

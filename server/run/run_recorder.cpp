@@ -10,6 +10,7 @@
 #include "server/record/run_info_file.hpp"
 #include "server/record/run_lock.hpp"
 #include "server/record/run_manifest.hpp"
+#include "server/record/vehicle_rows.hpp"
 #include "server/run/run_calibration.hpp"
 #include "server/scoring/metrics.hpp"
 #include "server/timeline/run_timeline.hpp"
@@ -250,6 +251,16 @@ Status RunRecorder::log(std::int64_t t_ns,
   const LogRow row{t_ns, level, text, kind, source};
   timeline_->append_log(row);
   return log_lines_->append(json_from(row));
+}
+
+Status RunRecorder::add_vehicle_status(const VehicleStatus& status) {
+  if (!vehicle_lines_) {
+    Result<LineFile> lines = LineFile::create(vehicle_file(folder_));
+    if (!lines) return lines.error();
+    vehicle_lines_ = std::move(lines).value();
+  }
+  timeline_->append_vehicle_status(status);
+  return vehicle_lines_->append(json_from(status));
 }
 
 Result<RunMetrics> RunRecorder::finish(RunStatus status, const std::string& error, Json timings) {

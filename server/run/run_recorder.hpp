@@ -76,6 +76,8 @@ class RunRecorder {
              const std::string& kind = "",
              const std::string& source = "");
 
+  Status add_vehicle_status(const VehicleStatus& status);
+
   /// Derives trajectories and metrics, writes timings and the final manifest, releases the folder.
   /// @param timings  wall-clock measurements, written with those of the estimators
   Result<RunMetrics> finish(RunStatus status, const std::string& error, nlohmann::json timings);
@@ -126,6 +128,7 @@ class RunRecorder {
   RunRecords records_;
   std::vector<LineFile> frame_lines_;  ///< by camera
   std::optional<LineFile> log_lines_;
+  std::optional<LineFile> vehicle_lines_;    ///< created with the first line
   std::optional<LineFile> agreement_lines_;  ///< if recorded images are compared
   std::optional<TruthSampleFile> truth_samples_;
   SensorFilesWriter sensor_files_;

@@ -89,6 +89,12 @@ std::vector<LogRow> RunTimeline::logs(std::size_t first, std::size_t limit) cons
   return slice(logs_, first, limit);
 }
 
+std::vector<VehicleStatus> RunTimeline::vehicle_statuses(std::size_t first,
+                                                         std::size_t limit) const {
+  const std::lock_guard lock(mutex_);
+  return slice(vehicle_statuses_, first, limit);
+}
+
 std::size_t RunTimeline::frame_count() const {
   const std::lock_guard lock(mutex_);
   return cameras_.at(kMainCamera).rows.size();
@@ -192,6 +198,12 @@ void RunTimeline::append_estimate(std::size_t estimator, const EstimateRow& row)
 void RunTimeline::append_log(const LogRow& row) {
   const std::lock_guard lock(mutex_);
   logs_.push_back(row);
+  changed();
+}
+
+void RunTimeline::append_vehicle_status(const VehicleStatus& status) {
+  const std::lock_guard lock(mutex_);
+  vehicle_statuses_.push_back(status);
   changed();
 }
 

@@ -12,6 +12,7 @@
 
 #include "core/camera/camera_model.hpp"
 #include "core/camera/image.hpp"
+#include "core/motion/flight_event.hpp"
 #include "core/motion/pose.hpp"
 #include "core/result.hpp"
 #include "server/files/file_stamp.hpp"
@@ -53,6 +54,8 @@ class RunTimeline {
                                                    std::size_t first,
                                                    std::size_t limit) const;
   [[nodiscard]] std::vector<LogRow> logs(std::size_t first, std::size_t limit) const;
+  [[nodiscard]] std::vector<VehicleStatus> vehicle_statuses(std::size_t first,
+                                                            std::size_t limit) const;
   [[nodiscard]] std::size_t frame_count() const;  ///< of the main camera
   [[nodiscard]] std::size_t estimate_count(std::size_t estimator) const;
   /// Row of the last frame stamped at or before t; empty before the first.
@@ -86,6 +89,7 @@ class RunTimeline {
   void append_frame(const FrameRow& row, std::size_t camera = kMainCamera);
   void append_estimate(std::size_t estimator, const EstimateRow& row);
   void append_log(const LogRow& row);
+  void append_vehicle_status(const VehicleStatus& status);
   void set_status(std::size_t estimator, const EstimatorStatus& status);
   /// Keeps what metrics.json contains; errors of single poses would occupy memory as long as the
   /// run is viewed.
@@ -119,6 +123,7 @@ class RunTimeline {
   std::shared_ptr<const RunMetrics> metrics_;
   std::vector<EstimatorRows> estimates_;
   std::vector<LogRow> logs_;
+  std::vector<VehicleStatus> vehicle_statuses_;
 };
 
 }  // namespace overfly::server

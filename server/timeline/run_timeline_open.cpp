@@ -9,6 +9,7 @@
 #include "server/record/run_folder.hpp"
 #include "server/record/run_info_file.hpp"
 #include "server/record/run_records.hpp"
+#include "server/record/vehicle_rows.hpp"
 #include "server/scoring/run_metrics_json.hpp"
 #include "server/timeline/live_alignment.hpp"
 #include "server/timeline/run_timeline.hpp"
@@ -92,6 +93,18 @@ Status append_logs(const fs::path& folder, RunTimeline& timeline) {
   return {};
 }
 
+Status append_vehicle_statuses(const fs::path& folder, RunTimeline& timeline) {
+  const fs::path file = vehicle_file(folder);
+  const Result<std::vector<Json>> lines = read_lines(file);
+  if (!lines) return lines.error();
+  for (std::size_t i = 0; i < lines->size(); ++i) {
+    const Result<VehicleStatus> status = vehicle_status_from((*lines)[i]);
+    if (!status) return status.error().in(file.string() + ", row " + std::to_string(i + 1));
+    timeline.append_vehicle_status(*status);
+  }
+  return {};
+}
+
 void append_frames(const RunRecords& records, RunTimeline& timeline) {
   for (std::size_t i = 0; i < records.cameras.size(); ++i) {
     for (const FrameRow& row : records.cameras[i].frames) timeline.append_frame(row, i);
@@ -156,6 +169,7 @@ Result<std::shared_ptr<RunTimeline>> RunTimeline::open(const fs::path& folder) {
   append_frames(*records, *timeline);
   append_answers(folder, *records, *timeline, *info);
   if (Status status = append_logs(folder, *timeline); !status) return status.error();
+  if (Status status = append_vehicle_statuses(folder, *timeline); !status) return status.error();
   tell_metrics(folder, *timeline, *info);
   timeline->set_manifest_stamp(stamp);
   timeline->set_info(*info);

@@ -138,6 +138,8 @@ describe('flight logs', { skip, timeout: 900_000 }, () => {
     const { flight, frames } = await getJson(stage.server, `/runs/${run}/manifest`);
     assert.match(flight.description, /my_flight\.bin, SIM .*smoothed, moved/);
     assert.ok(Math.abs(frames - 15 * 31) < 31, `${frames} frames`);
+    const modes = page.locator('[data-role=flight-lane] .flight-mode');
+    assert.deepEqual(await modes.allInnerTexts(), ['AUTO']);
     await dashboard.screenshot('logs_flown_1280x800');
   });
 
@@ -157,7 +159,7 @@ describe('flight logs', { skip, timeout: 900_000 }, () => {
     await page.locator('.mode-band[data-mode=AUTO]').waitFor();
     await dashboard.until(() => document.querySelector('[data-role=log-message]').hidden);
     await page.locator('#log-source').selectOption('GPS[0]');
-    await dashboard.until(() => document.querySelector('[data-role=log-message]').hidden);
+    await page.locator('[data-panel=log-map][data-source="GPS[0]"]').waitFor();
     await dashboard.screenshot('logs_recorded_1280x800');
   });
 });

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "server/record/vehicle_rows.hpp"
+
 namespace overfly::net {
 namespace {
 
@@ -141,6 +143,15 @@ json log_columns(const std::vector<server::LogRow>& rows) {
       rows, [](const Row& row) { return row.kind.empty() ? json(nullptr) : json(row.kind); });
   columns["source"] = column(
       rows, [](const Row& row) { return row.source.empty() ? json(nullptr) : json(row.source); });
+  return columns;
+}
+
+json vehicle_columns(const std::vector<VehicleStatus>& rows) {
+  json columns = json::object();
+  for (const VehicleStatus& row : rows) {
+    const json fields = server::json_from(row);
+    for (const auto& [name, value] : fields.items()) columns[name].push_back(value);
+  }
   return columns;
 }
 

@@ -22,6 +22,7 @@ namespace overfly::net {
 [[nodiscard]] nlohmann::json estimate_columns(const std::vector<server::EstimateRow>& rows,
                                               const server::RowAlignment& alignment = {});
 [[nodiscard]] nlohmann::json log_columns(const std::vector<server::LogRow>& rows);
+[[nodiscard]] nlohmann::json vehicle_columns(const std::vector<VehicleStatus>& rows);
 
 /// {"NAME": status, ...} of a run's estimators, as in the message `estimators`.
 [[nodiscard]] nlohmann::json estimator_statuses_json(const server::RunTimeline& timeline);

@@ -16,6 +16,7 @@ RowFeed::RowFeed(std::shared_ptr<const server::RunTimeline> timeline,
     add("estimate/" + estimators[i], Stream::Kind::kEstimate, i, resume);
   }
   add("log", Stream::Kind::kLog, 0, resume);
+  add("vehicle", Stream::Kind::kVehicle, 0, resume);
 }
 
 void RowFeed::add(const std::string& name,
@@ -53,6 +54,12 @@ std::optional<std::string> RowFeed::next_of(Stream* stream) {
       const auto rows = timeline_->logs(stream->next_row, kMaxRows);
       count = rows.size();
       if (count > 0) columns = log_columns(rows);
+      break;
+    }
+    case Stream::Kind::kVehicle: {
+      const auto rows = timeline_->vehicle_statuses(stream->next_row, kMaxRows);
+      count = rows.size();
+      if (count > 0) columns = vehicle_columns(rows);
       break;
     }
   }

@@ -25,7 +25,7 @@ class RowFeed {
 
  private:
   struct Stream {
-    enum class Kind { kTruth, kEstimate, kLog };
+    enum class Kind { kTruth, kEstimate, kLog, kVehicle };
     std::string name;
     Kind kind;
     std::size_t estimator;

@@ -18,6 +18,11 @@ export function serverMissing() {
   return false;
 }
 
+/** The program under test. */
+export function programFile() {
+  return kProgram;
+}
+
 /** A file of the source tree. */
 export function sourceFile(file) {
   return path.join(kRoot, file);

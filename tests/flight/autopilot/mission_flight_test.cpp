@@ -8,6 +8,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/time.hpp"
 #include "tests/flight/autopilot/flights.hpp"
 
 namespace overfly::autopilot {
@@ -248,6 +249,36 @@ TEST(MissionFlight, IsASourceOfTruthThatRepeats) {
   const Eigen::Vector3d with_8 = position(*other);
   EXPECT_EQ(with_8, position(*again));
   EXPECT_NE(with_8, position(*first));
+}
+
+TEST(MissionFlight, TellsItsPhasesAndItems) {
+  MissionSetup setup = setup_of("foam_trainer");
+  setup.mission.items = {waypoint(0, 400, 300), waypoint(400, 400, 300), waypoint(400, 0, 300)};
+  for (const bool told : {true, false}) {
+    setup.tell_items = told;
+    const auto flight = fly_mission(setup, std::make_shared<FlatGround>(0.0));
+    ASSERT_TRUE(flight) << flight.error().message;
+    std::vector<std::string> lines;
+    std::int64_t last_ns = 0;
+    for (std::int64_t t_ns = 0; t_ns <= *(*flight)->duration_ns(); t_ns += kNsPerS) {
+      ASSERT_TRUE((*flight)->state_at(t_ns));
+      for (const FlightEvent& event : (*flight)->take_events(t_ns)) {
+        EXPECT_GE(event.t_ns, last_ns);
+        EXPECT_LE(event.t_ns, t_ns);
+        last_ns = event.t_ns;
+        lines.push_back(std::string(to_string(event.kind)) + " " + event.text);
+      }
+    }
+    if (told) {
+      EXPECT_THAT(lines,
+                  ::testing::ElementsAre(std::string("mode ") + name_of(FlightPhase::kEnRoute),
+                                         "mission mission item 1",
+                                         "mission mission item 2",
+                                         "mission mission item 3"));
+    } else {
+      EXPECT_TRUE(lines.empty());
+    }
+  }
 }
 
 TEST(MissionFlight, RejectsWhatItCannotFly) {

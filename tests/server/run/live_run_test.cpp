@@ -22,6 +22,7 @@
 #include "server/run/run.hpp"
 #include "server/scenario/document/estimator_reach.hpp"
 #include "server/scenario/document/scenario_file.hpp"
+#include "server/timeline/run_timeline.hpp"
 #include "tests/server/support/server_fixture.hpp"
 
 namespace overfly::server {
@@ -122,6 +123,35 @@ Scenario live_scenario(const StreamingVehicle& vehicle, const std::string& estim
   return small_scenario({"flight.mavlink.link=" + vehicle.link(),
                          "flight.mavlink.read_only=true",
                          "estimators=" + estimators});
+}
+
+TEST(LiveRun, RecordsModesAndTheVehiclesState) {
+  const StreamingVehicle vehicle(6.0);
+  const TemporaryFolder folder;
+  Scenario scenario = live_scenario(vehicle);
+  scenario.duration_s.reset();
+  const auto run = run_scenario(scenario, options_for(folder.path() / "r"));
+  ASSERT_TRUE(run.ok()) << run.error().message;
+  const auto timeline = RunTimeline::open(folder.path() / "r");
+  ASSERT_TRUE(timeline) << timeline.error().message;
+  const std::vector<VehicleStatus> statuses = (*timeline)->vehicle_statuses(0, 1000);
+  ASSERT_GE(statuses.size(), 2U);
+  EXPECT_EQ(statuses.front().t_ns, 0);
+  for (std::size_t i = 1; i < statuses.size(); ++i) {
+    const std::int64_t step_ns = statuses[i].t_ns - statuses[i - 1].t_ns;
+    EXPECT_GT(step_ns, 300'000'000);
+    EXPECT_LE(step_ns, 700'000'000);
+  }
+  EXPECT_EQ(statuses.front().vehicle, "1.1");
+  EXPECT_EQ(statuses.front().mode, "MANUAL");
+  EXPECT_EQ(statuses.front().armed, true);
+  EXPECT_FALSE(statuses.front().battery_v);
+  EXPECT_EQ(statuses.back().lost_messages, 0U);
+  std::vector<std::string> modes;
+  for (const LogRow& row : (*timeline)->logs(0, 1000)) {
+    if (row.kind == "mode") modes.push_back(row.text);
+  }
+  EXPECT_EQ(modes, std::vector<std::string>{"MANUAL"});
 }
 
 TEST(LiveRun, FliesAVehicleUntilItIsDisarmed) {

@@ -71,7 +71,7 @@ export interface Playback {
   estimates: Record<string, EstimateInstant>;
 }
 
-export type Cell = number | string | null | string[];
+export type Cell = number | string | boolean | null | string[];
 
 export interface Rows {
   stream: string;

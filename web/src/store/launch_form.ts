@@ -7,7 +7,7 @@ export interface FieldSpec {
   path: string;
   label: string;
   unit: string;
-  kind: 'number' | 'choice' | 'estimators';
+  kind: 'number' | 'choice' | 'estimators' | 'text';
   choices?: readonly { value: string; label: string }[];
   step?: number;
   /** The field is omitted if the document has no value at this path. */
@@ -109,6 +109,14 @@ export const kFields: readonly FieldSpec[] = [
     hint: 'Clockwise from north: 270 is wind from the west',
   },
   {
+    path: 'flight.mavlink.link',
+    label: 'Vehicle',
+    unit: '',
+    kind: 'text',
+    needs: 'flight.mavlink',
+    hint: 'Link to the autopilot: udp-listen:HOST:PORT, udp:, tcp:, tcp-listen:, serial:DEVICE:BAUD. The server opens only those of its --allow-link',
+  },
+  {
     path: 'seed',
     label: 'Seed',
     unit: '',
@@ -199,7 +207,7 @@ export function overridesOf(document: JsonObject, texts: ReadonlyMap<string, str
     if (text === fieldText(document, field)) continue;
     if (field.kind === 'estimators') {
       overrides[field.path] = estimatorList(text, estimatorsOf(valueAt(document, field.path)));
-    } else if (field.kind === 'choice') {
+    } else if (field.kind === 'choice' || field.kind === 'text') {
       overrides[field.path] = text;
     } else if (text !== '' && Number.isFinite(Number(text))) {
       overrides[field.path] = Number(text);

@@ -1,6 +1,8 @@
 // All rows received of the watched run.
 import type { Cell, Resume, Rows } from '../protocol/messages';
 import { Table } from './table';
+import type { VehicleRow } from './vehicle_status';
+import { vehicleRows } from './vehicle_status';
 
 export const kAxes = ['x_m', 'y_m', 'z_m', 'roll_deg', 'pitch_deg', 'yaw_deg'] as const;
 export type Axis = (typeof kAxes)[number];
@@ -24,7 +26,7 @@ export interface LogLine {
   t_ns: number;
   level: string;
   text: string;
-  /** 'fault' if a fault of the scenario begins or ends; else empty. */
+  /** 'fault'; 'mode', 'mission' or 'event' of the flight; else empty. */
   kind: string;
   /** The estimator that logged it; empty = the range. */
   source: string;
@@ -43,6 +45,8 @@ export class RunData {
   readonly faults: (readonly string[])[] = [];
   readonly estimates = new Map<string, EstimateRows>();
   readonly log: LogLine[] = [];
+  /** Of a live vehicle; empty for other flights. */
+  readonly vehicle: VehicleRow[] = [];
   /** Increases when rows are replaced, which invalidates values computed from them. */
   generation = 0;
 
@@ -60,6 +64,8 @@ export class RunData {
       this.faults.splice(rows.seq, Infinity, ...faultLists(rows.columns['faults'], count));
     } else if (rows.stream === 'log') {
       this.log.splice(rows.seq, Infinity, ...logLines(rows.columns, count));
+    } else if (rows.stream === 'vehicle') {
+      this.vehicle.splice(rows.seq, Infinity, ...vehicleRows(rows.columns, count));
     } else if (rows.stream.startsWith(kEstimatePrefix)) {
       const estimate = this.estimate(rows.stream.slice(kEstimatePrefix.length));
       estimate.table.write(rows.seq, count, rows.columns);
@@ -74,6 +80,7 @@ export class RunData {
     const counts: Resume = {};
     if (this.truth.length > 0) counts['truth'] = this.truth.length;
     if (this.log.length > 0) counts['log'] = this.log.length;
+    if (this.vehicle.length > 0) counts['vehicle'] = this.vehicle.length;
     for (const [name, { table }] of this.estimates) {
       if (table.length > 0) counts[kEstimatePrefix + name] = table.length;
     }
@@ -83,6 +90,7 @@ export class RunData {
   private countOf(stream: string): number {
     if (stream === 'truth') return this.truth.length;
     if (stream === 'log') return this.log.length;
+    if (stream === 'vehicle') return this.vehicle.length;
     return this.estimates.get(stream.slice(kEstimatePrefix.length))?.table.length ?? 0;
   }
 

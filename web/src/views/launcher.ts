@@ -172,8 +172,8 @@ function valueControl(spec: FieldSpec, text: string, id: string) {
   }
   const input = h('input', {
     id,
-    type: 'number',
-    step: 'any',
+    type: spec.kind === 'text' ? 'text' : 'number',
+    step: spec.kind === 'text' ? undefined : 'any',
     value: text,
     placeholder: spec.empty ?? '',
     autocomplete: 'off',

@@ -15,6 +15,7 @@ import { ScenarioEditor } from './scenario_editor';
 import { ScenePanel } from './scene_panel';
 import { listenToKeys } from './shortcuts';
 import { Timeline } from './timeline';
+import { VehicleCard } from './vehicle_card';
 import type { Context, View } from './view';
 
 const kEverything = new Set([
@@ -40,6 +41,8 @@ export function showScreen(context: Context, place: HTMLElement): void {
   const header = new HeaderBar(context);
   const left = [new Launcher(context), new RunList(context), new LogPanel(context)];
   const centre = [new ScenePanel(context), new PlotsPanel(context)];
+  const vehicle = new VehicleCard(context);
+  centre[0]?.root.querySelector('.panel-body')?.append(vehicle.root);
   const right = [new CameraPanel(context), new DebugPanel(context), new ErrorPanel(context)];
   const timeline = new Timeline(context);
   const above = [
@@ -48,7 +51,7 @@ export function showScreen(context: Context, place: HTMLElement): void {
     new HelpOverlay(context),
     new ScenarioEditor(context),
   ];
-  const views: View[] = [header, ...left, ...centre, ...right, timeline, ...above];
+  const views: View[] = [vehicle, header, ...left, ...centre, ...right, timeline, ...above];
   const column = (name: string, parts: View[]) =>
     h('div', { class: `column ${name}` }, ...parts.map(({ root }) => root));
   place.replaceChildren(

@@ -3,6 +3,8 @@ import { formatTime } from '../store/format';
 import type { EstimateRows } from '../store/run_data';
 import type { Topic } from '../store/state';
 import { faultMeaning, FaultSpans, kindsOf } from '../store/fault_spans';
+import { FlightBands } from '../store/flight_bands';
+import { bandHue } from '../store/logs/log_bands';
 import type { FaultSpan } from '../store/fault_spans';
 import { faultColour, kStateColours } from './colours';
 import { h, perFrame, rebuild, setAttribute, setText } from './dom';
@@ -16,6 +18,7 @@ const kMostFaults = 4;
 export class TimelineTrack {
   readonly root: HTMLElement;
   private readonly recorded = h('div', { class: 'recorded' });
+  private readonly flight = h('div', { class: 'flight-lane', 'data-role': 'flight-lane' });
   private readonly strips = h('canvas', { class: 'strips' });
   private readonly head = h('div', { class: 'head' });
   private readonly tip = h('div', { class: 'tip', hidden: true });
@@ -24,11 +27,13 @@ export class TimelineTrack {
   private readonly bar: HTMLElement;
   private spans = new FaultSpans();
   private spansOf = '';
+  private bands = new FlightBands();
+  private bandsOf = '';
   /** Position dragged to by the mouse, until the server confirms it. */
   private held_ns: number | null = null;
 
   constructor(private readonly context: Context) {
-    this.bar = h('div', { class: 'bar' }, this.recorded, this.strips, this.head);
+    this.bar = h('div', { class: 'bar' }, this.recorded, this.flight, this.strips, this.head);
     this.root = h(
       'div',
       { class: 'track', role: 'slider', tabindex: 0, 'aria-label': 'Time', 'aria-valuemin': 0 },
@@ -48,6 +53,9 @@ export class TimelineTrack {
     if (changed.has('rows') || changed.has('run')) {
       this.drawStrips();
       this.drawFaults();
+    }
+    if (['log', 'rows', 'run', 'playback'].some((topic) => changed.has(topic as Topic))) {
+      this.drawFlight();
     }
     if (changed.has('playback') || changed.has('run')) this.moveHead();
   }
@@ -110,6 +118,45 @@ export class TimelineTrack {
       pen.fillRect(x0, top, Math.max(1, x1 - x0), kStripHeight_px - 1);
       begin = i;
     }
+  }
+
+  /** Modes fill the bar, mission items are a line along its top, events are ticks above it. */
+  private drawFlight(): void {
+    const { runId, run, playback, data } = this.context.store.state;
+    const key = `${String(runId)}/${data.generation}`;
+    if (this.bandsOf !== key) {
+      this.bandsOf = key;
+      this.bands = new FlightBands();
+    }
+    this.bands.update(data.log);
+    const { bands, marks } = this.bands;
+    const span_ns = this.span_ns();
+    // The future of a running flight is not known.
+    const now_ns = run?.status === 'running' ? (playback?.end_ns ?? 0) : span_ns;
+    const share = (t_ns: number) => Math.min(100, (t_ns / span_ns) * 100).toFixed(3);
+    rebuild(this.flight, `${key} ${bands.length} ${marks.length} ${span_ns} ${now_ns}`, () => [
+      ...bands.map(({ kind, text, begin_ns, end_ns }, i) => {
+        const width = Math.max(0, Number(share(end_ns ?? now_ns)) - Number(share(begin_ns)));
+        const place = `left:${share(begin_ns)}%;width:${width.toFixed(3)}%;`;
+        const colour =
+          kind === 'mode'
+            ? `background:hsla(${bandHue(text)}, 55%, 42%, 0.75)`
+            : `opacity:${i % 2 === 0 ? 0.9 : 0.45}`;
+        return h(
+          'span',
+          { class: `flight-${kind}`, style: place + colour, [`data-${kind}`]: text },
+          kind === 'mode' ? text : '',
+        );
+      }),
+      ...marks.map(({ t_ns }) => h('i', { class: 'flight-mark', style: `left:${share(t_ns)}%` })),
+    ]);
+  }
+
+  /** The tooltip's text about the flight at a time. */
+  private flightText(t_ns: number): string {
+    const slack_ns = (kLeastFault_px / Math.max(1, this.bar.clientWidth)) * this.span_ns();
+    const texts = this.bands.textsAt(t_ns, slack_ns);
+    return texts.length === 0 ? '' : ` · ${texts.join(' · ')}`;
   }
 
   /** One lane for all faults; if several are active, the later kinds are drawn below. */
@@ -189,7 +236,7 @@ export class TimelineTrack {
       this.tip.hidden = false;
       this.tip.style.left = `${event.clientX - this.root.getBoundingClientRect().left}px`;
       const t_ns = this.timeAt(event);
-      setText(this.tip, formatTime(t_ns) + this.faultText(t_ns));
+      setText(this.tip, formatTime(t_ns) + this.flightText(t_ns) + this.faultText(t_ns));
     });
     this.root.addEventListener('pointerleave', () => {
       this.tip.hidden = true;

@@ -104,4 +104,14 @@ describe('the launcher', () => {
     expect(field('estimators.0.type')).toBe('estimators');
     expect(field('camera.fov_deg')).toBeUndefined();
   });
+
+  it('has a field for the link of a live vehicle only', () => {
+    const live = { flight: { mavlink: { link: 'tcp:127.0.0.1:5760' } } };
+    expect(fieldsOf(course).map(({ path }) => path)).not.toContain('flight.mavlink.link');
+    expect(texts(live).get('flight.mavlink.link')).toBe('tcp:127.0.0.1:5760');
+    const changed = texts(live, { 'flight.mavlink.link': 'udp:127.0.0.1:14550' });
+    expect(overridesOf(live, changed).overrides).toEqual({
+      'flight.mavlink.link': 'udp:127.0.0.1:14550',
+    });
+  });
 });

@@ -22,6 +22,7 @@ export interface LogPage {
   /** null while the server reads the log. */
   info: LogInfo | null;
   series: LogSeries | null;
+  reading: boolean;
   /** Why the chosen log, or its series, cannot be shown. */
   error: string | null;
   listError: string | null;
@@ -39,6 +40,7 @@ export function initialLogPage(): LogPage {
     chosen: null,
     info: null,
     series: null,
+    reading: false,
     error: null,
     listError: null,
     upload: null,
@@ -92,6 +94,7 @@ export class LogBrowser {
     const { page } = this;
     page.chosen = name;
     page.info = null;
+    page.series = null;
     page.flight = { ...newLogFlight(page.flight.scenario), estimators: page.flight.estimators };
     page.flightErrors = [];
     await this.read(async (signal) => {
@@ -202,7 +205,7 @@ export class LogBrowser {
     this.reading.abort();
     const reading = new AbortController();
     this.reading = reading;
-    this.page.series = null;
+    this.page.reading = true;
     this.page.error = null;
     this.changed();
     try {
@@ -210,8 +213,11 @@ export class LogBrowser {
     } catch (error) {
       if (reading.signal.aborted) return;
       this.page.error = textOf(error);
+      this.page.series = null;
     }
-    if (!reading.signal.aborted) this.changed();
+    if (reading.signal.aborted) return;
+    this.page.reading = false;
+    this.changed();
   }
 
   private get page(): LogPage {

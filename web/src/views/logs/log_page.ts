@@ -3,7 +3,7 @@ import type { Track } from '../../store/logs/log_track';
 import { trackOf } from '../../store/logs/log_track';
 import type { Topic } from '../../store/state';
 import type { LogSeries } from '../../protocol/log_types';
-import { h, setText } from '../dom';
+import { h, setAttribute, setText } from '../dom';
 import type { Context, View } from '../view';
 import { LogCurves } from './log_curves';
 import { LogForm } from './log_form';
@@ -65,6 +65,7 @@ export class LogPageView implements View {
     this.root.hidden = !logPage.open;
     if (!logPage.open) return;
     const { info, series, flight, error, chosen } = logPage;
+    setAttribute(this.map.root, 'data-source', series?.position_source ?? null);
     this.list.update();
     this.streams.show(info);
     this.form.update();
@@ -80,7 +81,7 @@ export class LogPageView implements View {
         : ([flight.from_s ?? -Infinity, flight.to_s ?? Infinity] as const);
     this.map.showSlice(slice);
     this.curves.showSlice(slice);
-    const reading = chosen !== null && series === null ? 'Reading the log' : '';
+    const reading = logPage.reading ? 'Reading the log' : '';
     setText(this.message, error ?? (chosen === null ? 'Choose a log, or upload one.' : reading));
     this.message.classList.toggle('failed', error !== null);
     this.message.hidden = this.message.textContent === '';

@@ -1,0 +1,105 @@
+#include "flight/replay/flight_events.hpp"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <utility>
+
+namespace overfly::flight {
+namespace {
+
+using logs::EventKind;
+using logs::LogEvent;
+
+class FlightWithEvents final : public TruthSource {
+ public:
+  FlightWithEvents(std::unique_ptr<TruthSource> flight, std::vector<FlightEvent> events)
+      : flight_(std::move(flight)), events_(std::move(events)) {}
+
+  [[nodiscard]] std::optional<std::int64_t> duration_ns() const override {
+    return flight_->duration_ns();
+  }
+  [[nodiscard]] std::string description() const override { return flight_->description(); }
+  [[nodiscard]] std::vector<std::string> warnings() const override { return flight_->warnings(); }
+  [[nodiscard]] std::vector<FlightEvent> take_events(std::int64_t t_ns) override {
+    std::vector<FlightEvent> taken;
+    while (next_ < events_.size() && events_[next_].t_ns <= t_ns) taken.push_back(events_[next_++]);
+    return taken;
+  }
+
+ private:
+  [[nodiscard]] Result<std::optional<AircraftState>> find_state(
+      std::int64_t t_ns, const std::atomic<bool>* cancel) override {
+    return flight_->state_at(t_ns, cancel);
+  }
+
+  std::unique_ptr<TruthSource> flight_;
+  std::vector<FlightEvent> events_;
+  std::size_t next_ = 0;
+};
+
+/// The run of a vehicle's clock with the most messages.
+std::uint32_t main_run(const logs::OpenedLog& log, const std::string& vehicle) {
+  const logs::BootInfo* most = nullptr;
+  for (const logs::BootInfo& boot : log.boots) {
+    if (boot.vehicle != vehicle) continue;
+    if (most == nullptr || boot.messages > most->messages) most = &boot;
+  }
+  return most != nullptr ? most->number : 0;
+}
+
+std::optional<FlightEvent> flight_event(const LogEvent& event) {
+  return logs::flight_event_of(event.kind, event.text);
+}
+
+}  // namespace
+
+std::vector<FlightEvent> events_of(const logs::OpenedLog& log,
+                                   const std::string& source,
+                                   std::int64_t begin_ns,
+                                   std::int64_t end_ns) {
+  const auto stream = std::find_if(log.streams.begin(), log.streams.end(), [&](const auto& info) {
+    return info.description.name == source;
+  });
+  const std::string vehicle = stream != log.streams.end() ? stream->description.vehicle : "";
+  const std::uint32_t run = main_run(log, vehicle);
+  std::vector<FlightEvent> events;
+  std::map<FlightEventKind, FlightEvent> in_force;
+  std::map<std::int64_t, int> items_at;
+  std::vector<const LogEvent*> own;
+  for (const auto* list : {&log.events_before, &log.events}) {
+    for (const LogEvent& event : *list) {
+      if (!event.time || event.vehicle != vehicle || event.time->boot != run) continue;
+      own.push_back(&event);
+      const auto kept = flight_event(event);
+      if (kept && kept->kind == FlightEventKind::kMissionItem) ++items_at[event.time->t_ns];
+    }
+  }
+  std::size_t others = 0;
+  for (const LogEvent* event : own) {
+    std::optional<FlightEvent> kept = flight_event(*event);
+    if (!kept || event->time->t_ns > end_ns) continue;
+    const bool item = kept->kind == FlightEventKind::kMissionItem;
+    if (item && items_at[event->time->t_ns] > 1) continue;
+    kept->t_ns = event->time->t_ns - begin_ns;
+    if (kept->t_ns >= 0) {
+      if (kept->kind == FlightEventKind::kOther && ++others > kMaxOtherEvents) continue;
+      events.push_back(std::move(*kept));
+    } else if (kept->kind != FlightEventKind::kOther) {
+      kept->t_ns = 0;
+      in_force[kept->kind] = std::move(*kept);
+    }
+  }
+  for (auto& [kind, event] : in_force) events.push_back(std::move(event));
+  std::stable_sort(events.begin(), events.end(), [](const FlightEvent& a, const FlightEvent& b) {
+    return a.t_ns < b.t_ns;
+  });
+  return events;
+}
+
+std::unique_ptr<TruthSource> with_events(std::unique_ptr<TruthSource> flight,
+                                         std::vector<FlightEvent> events) {
+  return std::make_unique<FlightWithEvents>(std::move(flight), std::move(events));
+}
+
+}  // namespace overfly::flight

@@ -1,0 +1,33 @@
+// The events of a flight log as those of a flight.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/motion/flight_event.hpp"
+#include "core/motion/truth_source.hpp"
+#include "flight/logs/flight_log.hpp"
+
+namespace overfly::flight {
+
+/// Other events than modes and mission items that a flight reports; a log may have thousands.
+inline constexpr std::size_t kMaxOtherEvents = 500;
+
+/// The events of one vehicle in a part of its flight, by time from `begin_ns`. The mode and the
+/// mission item that are in force at the beginning come at 0. Of a clock that starts again, the run
+/// with the most messages is taken. Mission items listed at one instant are an upload, and left
+/// out.
+/// @param source  stream of the flight's positions
+/// @param begin_ns, end_ns  by the vehicle's clock
+[[nodiscard]] std::vector<FlightEvent> events_of(const logs::OpenedLog& log,
+                                                 const std::string& source,
+                                                 std::int64_t begin_ns,
+                                                 std::int64_t end_ns);
+
+/// The same flight with events. @param events  by time
+[[nodiscard]] std::unique_ptr<TruthSource> with_events(std::unique_ptr<TruthSource> flight,
+                                                       std::vector<FlightEvent> events);
+
+}  // namespace overfly::flight
