@@ -20,13 +20,17 @@ bool is_origin(const HeldMessage& message) {
   return message.is(MessageId::kGpsGlobalOrigin) && message.reader().at<std::int32_t>(0) != 0;
 }
 
-/// Whether the vehicle has an origin.
-Result<bool> has_origin(Exchange& exchange) {
+/// An autopilot that has just started waits for its position first.
+constexpr int kPatientAttempts = 60;
+constexpr int kAttempts = 3;
+
+/// Whether the vehicle has an origin. @param attempts  of one second each
+Result<bool> has_origin(Exchange& exchange, int attempts) {
   Command request{"asking for the origin", kRequestMessageCommand, {}};
   request.parameters[0] = static_cast<float>(MessageId::kGpsGlobalOrigin);
   bool found = false;
   // The message may come before its acknowledgement, which command_result would drop.
-  for (int attempt = 0; attempt < 3 && !found; ++attempt) {
+  for (int attempt = 0; attempt < attempts && !found; ++attempt) {
     PayloadWriter payload(33);
     payload.put(0, request.parameters[0]).put(28, request.id);
     payload.put(30, exchange.target().system).put(31, exchange.target().component);
@@ -58,14 +62,16 @@ Status set_origin(Exchange& exchange, const GlobalPosition& origin) {
 Status check_origin(Exchange& exchange,
                     const FeedbackOptions& options,
                     const GlobalPosition& origin) {
-  const Result<bool> found = has_origin(exchange);
+  const Result<bool> found =
+      has_origin(exchange, options.set_origin ? kAttempts : kPatientAttempts);
   if (!found) return found.error();
   if (*found) return {};
   if (options.set_origin) return set_origin(exchange, origin);
   return Error{ErrorCode::kConflict,
                "feedback: " + exchange.target().name() +
-                   " has no origin of local positions (GPS_GLOBAL_ORIGIN) yet: wait for its "
-                   "position, or give set_origin = true"};
+                   " has had no origin of local positions (GPS_GLOBAL_ORIGIN) for " +
+                   std::to_string(kPatientAttempts) +
+                   " s: it needs a position, or give set_origin = true"};
 }
 
 Status check_height_source(Exchange& exchange, const FeedbackOptions& options) {
