@@ -1,5 +1,6 @@
 // An MCAP file with messages of ROS 2: for each camera the images as given to estimators, the
-// calibration with each image, and the truth of every frame; of a run also its estimates.
+// calibration with each image, the truth of every frame, and the samples of the aircraft's sensors;
+// of a run also its estimates.
 #include <limits>
 #include <map>
 #include <system_error>
@@ -7,6 +8,7 @@
 #include "server/export/dataset_writer.hpp"
 #include "server/export/mcap/mcap_file.hpp"
 #include "server/export/mcap/ros2_message.hpp"
+#include "server/export/mcap/ros2_samples.hpp"
 #include "server/export/ros_topics.hpp"
 
 namespace overfly::server {
@@ -31,6 +33,7 @@ class McapWriter final : public DatasetWriter {
   }
 
   Result<std::vector<std::string>> add(const MadeFrame& frame) override {
+    if (Status status = add_samples(frame.sensors); !status) return status.error();
     std::vector<std::string> names(frame.shots.size());
     for (std::size_t i = 0; i < frame.shots.size(); ++i) {
       const CameraShot& shot = frame.shots[i];
@@ -74,6 +77,16 @@ class McapWriter final : public DatasetWriter {
     const Ros2Header header{plan_.epoch_utc_ns + shot.stamp_ns, names.frame};
     Status status = write(names.info, header, ros2_camera_info(header, camera.model));
     return status ? write(names.image, header, ros2_image(header, grey_of(shot.image))) : status;
+  }
+
+  Status add_samples(const SensorSamples& samples) {
+    return with_each_ros2_sample(
+        samples, plan_.epoch_utc_ns, [this](const Ros2SampleMessage& message) {
+          if (!channels_.contains(message.topic)) add_channel(message.topic, *message.type);
+          return file_.add_message(channels_.at(message.topic),
+                                   static_cast<std::uint64_t>(message.available_ns),
+                                   message.data);
+        });
   }
 
   Status add_truth(const MadeFrame& frame, const CameraShot& shot, const RosCameraTopics& names) {

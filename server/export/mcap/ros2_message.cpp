@@ -1,101 +1,45 @@
 #include "server/export/mcap/ros2_message.hpp"
 
 #include <array>
-#include <concepts>
-#include <cstring>
-#include <span>
 
-#include "core/time.hpp"
+#include "server/export/mcap/cdr_writer.hpp"
 
 namespace overfly::server {
-namespace {
-
-#define OVERFLY_SEPARATOR \
-  "================================================================================\n"
-#define OVERFLY_HEADER                                                 \
-  OVERFLY_SEPARATOR                                                    \
-  "MSG: std_msgs/Header\n"                                             \
-  "builtin_interfaces/Time stamp\nstring frame_id\n" OVERFLY_SEPARATOR \
-  "MSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n"
-#define OVERFLY_QUATERNION \
-  OVERFLY_SEPARATOR "MSG: geometry_msgs/Quaternion\nfloat64 x\nfloat64 y\nfloat64 z\nfloat64 w\n"
-
-class CdrWriter {
- public:
-  explicit CdrWriter(const Ros2Header& first) { header(first); }
-  /// A message that begins with the length of a sequence.
-  explicit CdrWriter(std::uint32_t length) { number(length); }
-
-  template <typename T>
-  requires std::integral<T> || std::floating_point<T>
-  void number(T value) {
-    constexpr std::size_t kHeaderBytes = 4;
-    const std::size_t used = bytes_.size() - kHeaderBytes;
-    const std::size_t at = kHeaderBytes + (used + sizeof(T) - 1) / sizeof(T) * sizeof(T);
-    bytes_.resize(at + sizeof(T));
-    std::memcpy(bytes_.data() + at, &value, sizeof(T));
-  }
-  void text(std::string_view value) {
-    number(static_cast<std::uint32_t>(value.size() + 1));
-    bytes_.insert(bytes_.end(), value.begin(), value.end());
-    bytes_.push_back(0);
-  }
-  void numbers(std::span<const double> values) {
-    for (const double value : values) number(value);
-  }
-  void octets(std::span<const std::uint8_t> values) {
-    number(static_cast<std::uint32_t>(values.size()));
-    bytes_.insert(bytes_.end(), values.begin(), values.end());
-  }
-  void header(const Ros2Header& header) {
-    number(static_cast<std::int32_t>(header.stamp_ns / kNsPerS));
-    number(static_cast<std::uint32_t>(header.stamp_ns % kNsPerS));
-    text(header.frame_id);
-  }
-  void pose(const Pose& pose) {
-    for (const double value : pose.translation) number(value);
-    for (const double value : pose.rotation.coeffs()) number(value);  // x, y, z, w
-  }
-  [[nodiscard]] std::vector<std::uint8_t> take() { return std::move(bytes_); }
-
- private:
-  std::vector<std::uint8_t> bytes_ = {0, 1, 0, 0};  // plain CDR, little-endian
-};
-
-}  // namespace
 
 const Ros2Type kRos2Image = {
     "sensor_msgs/msg/Image",
     "std_msgs/Header header\nuint32 height\nuint32 width\nstring encoding\nuint8 is_bigendian\n"
-    "uint32 step\nuint8[] data\n" OVERFLY_HEADER};
+    "uint32 step\nuint8[] data\n" +
+        ros2_definition::kHeader};
 
 const Ros2Type kRos2CameraInfo = {
     "sensor_msgs/msg/CameraInfo",
     "std_msgs/Header header\nuint32 height\nuint32 width\nstring distortion_model\nfloat64[] d\n"
     "float64[9] k\nfloat64[9] r\nfloat64[12] p\nuint32 binning_x\nuint32 binning_y\n"
-    "sensor_msgs/RegionOfInterest roi\n" OVERFLY_HEADER OVERFLY_SEPARATOR
-    "MSG: sensor_msgs/RegionOfInterest\nuint32 x_offset\nuint32 y_offset\nuint32 height\n"
-    "uint32 width\nbool do_rectify\n"};
+    "sensor_msgs/RegionOfInterest roi\n" +
+        ros2_definition::kHeader + ros2_definition::kSeparator +
+        "MSG: sensor_msgs/RegionOfInterest\nuint32 x_offset\nuint32 y_offset\nuint32 height\n"
+        "uint32 width\nbool do_rectify\n"};
 
 const Ros2Type kRos2PoseStamped = {
     "geometry_msgs/msg/PoseStamped",
-    "std_msgs/Header header\ngeometry_msgs/Pose pose\n" OVERFLY_HEADER OVERFLY_SEPARATOR
-    "MSG: geometry_msgs/Pose\ngeometry_msgs/Point position\n"
-    "geometry_msgs/Quaternion orientation\n" OVERFLY_SEPARATOR
-    "MSG: geometry_msgs/Point\nfloat64 x\nfloat64 y\nfloat64 z\n" OVERFLY_QUATERNION};
+    "std_msgs/Header header\ngeometry_msgs/Pose pose\n" + ros2_definition::kHeader +
+        ros2_definition::kSeparator +
+        "MSG: geometry_msgs/Pose\ngeometry_msgs/Point position\n"
+        "geometry_msgs/Quaternion orientation\n" +
+        ros2_definition::kSeparator +
+        "MSG: geometry_msgs/Point\nfloat64 x\nfloat64 y\nfloat64 z\n" +
+        ros2_definition::kQuaternion};
 
 const Ros2Type kRos2TfMessage = {
     "tf2_msgs/msg/TFMessage",
-    "geometry_msgs/TransformStamped[] transforms\n" OVERFLY_SEPARATOR
-    "MSG: geometry_msgs/TransformStamped\nstd_msgs/Header header\nstring child_frame_id\n"
-    "geometry_msgs/Transform transform\n" OVERFLY_HEADER OVERFLY_SEPARATOR
-    "MSG: geometry_msgs/Transform\ngeometry_msgs/Vector3 translation\n"
-    "geometry_msgs/Quaternion rotation\n" OVERFLY_SEPARATOR
-    "MSG: geometry_msgs/Vector3\nfloat64 x\nfloat64 y\nfloat64 z\n" OVERFLY_QUATERNION};
-
-#undef OVERFLY_SEPARATOR
-#undef OVERFLY_HEADER
-#undef OVERFLY_QUATERNION
+    "geometry_msgs/TransformStamped[] transforms\n" + ros2_definition::kSeparator +
+        "MSG: geometry_msgs/TransformStamped\nstd_msgs/Header header\nstring child_frame_id\n"
+        "geometry_msgs/Transform transform\n" +
+        ros2_definition::kHeader + ros2_definition::kSeparator +
+        "MSG: geometry_msgs/Transform\ngeometry_msgs/Vector3 translation\n"
+        "geometry_msgs/Quaternion rotation\n" +
+        ros2_definition::kVector3 + ros2_definition::kQuaternion};
 
 std::vector<std::uint8_t> ros2_image(const Ros2Header& header, const Image& image) {
   CdrWriter message(header);

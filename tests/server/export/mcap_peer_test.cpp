@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <numeric>
 
+#include "core/motion/pose.hpp"
+#include "server/record/sensor_files.hpp"
 #include "tests/server/export/export_fixture.hpp"
 
 namespace overfly::server {
@@ -87,6 +89,101 @@ TEST(McapPeer, ReadsEveryMessageOfAnExport) {
     }
   }
   for (const auto& [topic, count] : seen) EXPECT_EQ(count, frames.size()) << topic;
+}
+
+TEST(McapPeer, ReadsTheSamplesOfTheSensors) {
+  const overfly::testing::TemporaryFolder folder;
+  const RunOptions flying = testing::options_for(folder.path() / "run");
+  const auto run = run_scenario(
+      testing::small_scenario({R"(sensors={"imu":{},"barometer":{},"gps":{},"airspeed":{},
+                                           "magnetometer":{},"range":{"max_m":1000}})",
+                               R"(faults=[{"kind":"gps_outage","at_s":1,"duration_s":0.5}])"}),
+      flying);
+  ASSERT_TRUE(run.ok()) << run.error().message;
+  const ExportSource source = open_export_source(folder.path() / "run").value();
+  ExportOptions options = testing::export_options(folder.path() / "d", DatasetFormat::kMcap);
+  options.renderer_factory = testing::noop_factory();
+  testing::exported(source, options);
+  const std::vector<Json> lines = mcap_peer_lines(options.folder / "flight.mcap");
+  if (lines.empty()) {
+    GTEST_SKIP() << "@mcap/core is not installed: npm ci --prefix tests/server/export/mcap_peer";
+  }
+  ASSERT_FALSE(lines.back().contains("error")) << lines.back();
+  std::map<std::string, std::vector<Json>> topics;
+  for (const Json& line : lines) {
+    if (line.contains("value")) topics[line.at("topic")].push_back(line);
+  }
+  const SensorSamples recorded =
+      SensorFilesReader::open(folder.path() / "run").value().until(2 * kNsPerS).value();
+  const auto& imu = topics["/sensors/imu"];
+  ASSERT_EQ(imu.size(), recorded.imu.size());
+  const auto vector_of = [](const Json& value) {
+    return Eigen::Vector3d(value.at("x"), value.at("y"), value.at("z"));
+  };
+  const Eigen::Vector3d kFlu(1.0, -1.0, -1.0);
+  for (std::size_t i = 0; i < imu.size(); ++i) {
+    const ImuSample& sample = recorded.imu[i];
+    const std::int64_t t_ns = source.epoch_utc_ns + sample.t_ns;
+    EXPECT_EQ(imu[i].at("stamp"), Json({t_ns / kNsPerS, t_ns % kNsPerS}));
+    EXPECT_EQ(imu[i].at("frame_id"), "base_link");
+    const Json& value = imu[i].at("value");
+    EXPECT_EQ(vector_of(value.at("angular_velocity")),
+              sample.angular_rate_rad_s.cwiseProduct(kFlu));
+    EXPECT_EQ(vector_of(value.at("linear_acceleration")),
+              sample.acceleration_m_s2.cwiseProduct(kFlu));
+    EXPECT_EQ(value.at("orientation_covariance").at(0), -1.0);
+  }
+  const auto& fixes = topics["/sensors/gps/fix"];
+  const auto& velocities = topics["/sensors/gps/velocity"];
+  ASSERT_EQ(fixes.size(), recorded.gps.size());
+  ASSERT_EQ(velocities.size(), recorded.gps.size());
+  std::size_t outages = 0;
+  for (std::size_t i = 0; i < fixes.size(); ++i) {
+    const GpsSample& sample = recorded.gps[i];
+    const Json& value = fixes[i].at("value");
+    EXPECT_EQ(fixes[i].at("log_ns"), std::to_string(source.epoch_utc_ns + sample.delivered_ns));
+    if (sample.fix == GpsFixType::kNone) {
+      ++outages;
+      EXPECT_EQ(value.at("status").at("status"), -1);
+      EXPECT_EQ(value.at("latitude"), "NaN");
+      continue;
+    }
+    EXPECT_EQ(value.at("status").at("status"), 0);
+    EXPECT_NEAR(value.at("latitude"), deg_from_rad(sample.place.lat_rad), 1e-12);
+    EXPECT_EQ(value.at("altitude"), sample.place.alt_ellipsoid_m);
+    EXPECT_NEAR(value.at("position_covariance").at(8),
+                sample.vertical_accuracy_m * sample.vertical_accuracy_m,
+                1e-9);
+    EXPECT_EQ(vector_of(velocities[i].at("value").at("twist").at("linear")),
+              Eigen::Vector3d(sample.velocity_ned_m_s.y(),
+                              sample.velocity_ned_m_s.x(),
+                              -sample.velocity_ned_m_s.z()));
+  }
+  EXPECT_GT(outages, 0U);
+  ASSERT_EQ(topics["/sensors/pressure"].size(), recorded.barometer.size());
+  ASSERT_EQ(topics["/sensors/temperature"].size(), recorded.barometer.size());
+  for (std::size_t i = 0; i < recorded.barometer.size(); ++i) {
+    EXPECT_EQ(topics["/sensors/pressure"][i].at("value").at("fluid_pressure"),
+              recorded.barometer[i].pressure_pa);
+    EXPECT_NEAR(topics["/sensors/temperature"][i].at("value").at("temperature"),
+                recorded.barometer[i].temperature_k - 273.15,
+                1e-9);
+  }
+  const auto& pitot = topics["/sensors/airspeed/differential_pressure"];
+  ASSERT_EQ(pitot.size(), recorded.airspeed.size());
+  EXPECT_EQ(pitot.back().at("value").at("fluid_pressure"),
+            recorded.airspeed.back().differential_pressure_pa);
+  const auto& fields = topics["/sensors/magnetic_field"];
+  ASSERT_EQ(fields.size(), recorded.magnetometer.size());
+  EXPECT_LT((1e6 * vector_of(fields.back().at("value").at("magnetic_field")) -
+             recorded.magnetometer.back().field_ut.cwiseProduct(kFlu))
+                .norm(),
+            1e-9);
+  const auto& ranges = topics["/sensors/range"];
+  ASSERT_EQ(ranges.size(), recorded.range.size());
+  EXPECT_EQ(ranges.back().at("value").at("range"),
+            static_cast<double>(static_cast<float>(recorded.range.back().range_m)));
+  EXPECT_EQ(ranges.back().at("value").at("max_range"), "Infinity");
 }
 
 }  // namespace

@@ -49,7 +49,10 @@ async function main(file) {
       Object.assign(line, { model: value.distortion_model, d: Array.from(value.d),
         k: Array.from(value.k), p: Array.from(value.p) });
     }
-    console.log(JSON.stringify(line));
+    if (channel.topic.startsWith("/sensors/")) line.value = { ...value, header: undefined };
+    console.log(JSON.stringify(line, (_, entry) =>
+      typeof entry === "number" && !Number.isFinite(entry) ? String(entry)
+        : ArrayBuffer.isView(entry) ? Array.from(entry) : entry));
     ++count;
   }
   // The same file from start to end: every record and checksum.
