@@ -26,7 +26,7 @@ struct ImuReading {
 /// Noise and bias of an IMU, sample by sample. White noise of density s has the standard deviation
 /// s / sqrt(T) per sample; a bias of walk density w grows by w sqrt(T) per sample (Woodman 2007,
 /// UCAM-CL-TR-696, section 3.2). The same random numbers are drawn for all densities, so that the
-/// bias of sample k follows from the seed and the model alone.
+/// bias of sample k follows only from the seed and the model.
 class ImuErrors {
  public:
   ImuErrors(const ImuModel& model, std::uint64_t seed) : model_(model), noise_(seed) {}

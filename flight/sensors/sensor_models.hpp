@@ -1,4 +1,4 @@
-// Error models of the sensors that an aircraft carries besides its cameras.
+// Error models of the sensors that an aircraft carries in addition to its cameras.
 //
 // The values are standard deviations, per axis and sample unless said otherwise. A "drift" is a
 // first-order Gauss-Markov process: it has this standard deviation at all times, and forgets its
@@ -7,7 +7,7 @@
 
 #include <cstdint>
 #include <optional>
-#include <string>
+#include <span>
 
 #include "core/result.hpp"
 
@@ -77,6 +77,31 @@ struct RangeModel {
   double max_m = 120.0;
 };
 
+/// A value of a model by its name in scenarios and messages, with its limits.
+template <typename Model>
+struct ModelField {
+  const char* name;
+  double Model::*value;
+  double min;
+  double max;
+};
+
+/// The values of a model in the order in which they are checked.
+template <typename Model>
+[[nodiscard]] std::span<const ModelField<Model>> fields_of();
+template <>
+std::span<const ModelField<ImuModel>> fields_of();
+template <>
+std::span<const ModelField<BarometerModel>> fields_of();
+template <>
+std::span<const ModelField<GpsModel>> fields_of();
+template <>
+std::span<const ModelField<AirspeedModel>> fields_of();
+template <>
+std::span<const ModelField<MagnetometerModel>> fields_of();
+template <>
+std::span<const ModelField<RangeModel>> fields_of();
+
 /// The sensors that are fitted.
 struct SensorModels {
   std::optional<ImuModel> imu;
@@ -89,10 +114,29 @@ struct SensorModels {
   [[nodiscard]] bool none() const {
     return !imu && !barometer && !gps && !airspeed && !magnetometer && !range;
   }
-  /// Rates must be in (0, 1000] Hz (the IMU's in (0, 10000] Hz), errors in [0, 1e5], times of drift
-  /// in [0.1, 1e6] s, a GPS's delay in [0, 10] s, and a range 0 <= min_m < max_m <= 1e5.
+  /// Calls `visit(name, model)` for each of the optional models.
+  template <typename Visit>
+  void with_each(const Visit& visit) {
+    with_each_of(*this, visit);
+  }
+  template <typename Visit>
+  void with_each(const Visit& visit) const {
+    with_each_of(*this, visit);
+  }
+  /// The limits of fields_of, and min_m < max_m of a range.
   /// Errors: kInvalidArgument naming field, value and limit.
   [[nodiscard]] Status validate() const;
+
+ private:
+  template <typename Models, typename Visit>
+  static void with_each_of(Models& models, const Visit& visit) {
+    visit("imu", models.imu);
+    visit("barometer", models.barometer);
+    visit("gps", models.gps);
+    visit("airspeed", models.airspeed);
+    visit("magnetometer", models.magnetometer);
+    visit("range", models.range);
+  }
 };
 
 }  // namespace overfly::flight

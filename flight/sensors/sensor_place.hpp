@@ -1,4 +1,4 @@
-// What sensors measure besides the aircraft's own motion: the earth where it flies.
+// What sensors measure in addition to the aircraft's own motion: the earth where it flies.
 #pragma once
 
 #include <cstdint>

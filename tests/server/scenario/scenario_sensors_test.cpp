@@ -41,42 +41,16 @@ TEST(ScenarioSensors, HaveTheDefaultsOfTheModels) {
       scenario_with({R"(sensors={"imu":{},"barometer":{},"gps":{},"airspeed":{},"magnetometer":{},)"
                      R"("range":{}})"})
           .value();
-  const flight::SensorModels& m = scenario.sensors;
-  const flight::ImuModel imu;
-  EXPECT_EQ(m.imu->gyroscope_noise_rad_s_sqrt_hz, imu.gyroscope_noise_rad_s_sqrt_hz);
-  EXPECT_EQ(m.imu->gyroscope_walk_rad_s2_sqrt_hz, imu.gyroscope_walk_rad_s2_sqrt_hz);
-  EXPECT_EQ(m.imu->accelerometer_noise_m_s2_sqrt_hz, imu.accelerometer_noise_m_s2_sqrt_hz);
-  EXPECT_EQ(m.imu->accelerometer_walk_m_s3_sqrt_hz, imu.accelerometer_walk_m_s3_sqrt_hz);
-  const flight::BarometerModel barometer;
-  EXPECT_EQ(m.barometer->rate_hz, barometer.rate_hz);
-  EXPECT_EQ(m.barometer->noise_pa, barometer.noise_pa);
-  EXPECT_EQ(m.barometer->drift_pa, barometer.drift_pa);
-  EXPECT_EQ(m.barometer->temperature_noise_k, barometer.temperature_noise_k);
-  EXPECT_EQ(m.barometer->temperature_drift_k, barometer.temperature_drift_k);
-  EXPECT_EQ(m.barometer->drift_time_s, barometer.drift_time_s);
-  const flight::GpsModel gps;
-  EXPECT_EQ(m.gps->rate_hz, gps.rate_hz);
-  EXPECT_EQ(m.gps->delay_s, gps.delay_s);
-  EXPECT_EQ(m.gps->horizontal_drift_m, gps.horizontal_drift_m);
-  EXPECT_EQ(m.gps->vertical_drift_m, gps.vertical_drift_m);
-  EXPECT_EQ(m.gps->drift_time_s, gps.drift_time_s);
-  EXPECT_EQ(m.gps->horizontal_noise_m, gps.horizontal_noise_m);
-  EXPECT_EQ(m.gps->vertical_noise_m, gps.vertical_noise_m);
-  EXPECT_EQ(m.gps->velocity_noise_m_s, gps.velocity_noise_m_s);
-  const flight::AirspeedModel airspeed;
-  EXPECT_EQ(m.airspeed->rate_hz, airspeed.rate_hz);
-  EXPECT_EQ(m.airspeed->noise_pa, airspeed.noise_pa);
-  EXPECT_EQ(m.airspeed->drift_pa, airspeed.drift_pa);
-  EXPECT_EQ(m.airspeed->drift_time_s, airspeed.drift_time_s);
-  const flight::MagnetometerModel magnetometer;
-  EXPECT_EQ(m.magnetometer->rate_hz, magnetometer.rate_hz);
-  EXPECT_EQ(m.magnetometer->noise_ut, magnetometer.noise_ut);
-  EXPECT_EQ(m.magnetometer->bias_ut, magnetometer.bias_ut);
-  const flight::RangeModel range;
-  EXPECT_EQ(m.range->rate_hz, range.rate_hz);
-  EXPECT_EQ(m.range->noise_m, range.noise_m);
-  EXPECT_EQ(m.range->min_m, range.min_m);
-  EXPECT_EQ(m.range->max_m, range.max_m);
+  int checked = 0;
+  scenario.sensors.with_each(
+      [&]<typename Model>(const char* name, const std::optional<Model>& model) {
+        ASSERT_TRUE(model) << name;
+        for (const auto& field : flight::fields_of<Model>()) {
+          EXPECT_EQ((*model).*field.value, Model().*field.value) << name << "." << field.name;
+          ++checked;
+        }
+      });
+  EXPECT_EQ(checked, 30);
 }
 
 TEST(ScenarioSensors, ErrorsNameFieldValueAndLimit) {

@@ -1,4 +1,4 @@
-// The sensors of a scenario document, besides the cameras.
+// The sensors of a scenario document, in addition to the cameras.
 #pragma once
 
 #include <nlohmann/json.hpp>
