@@ -15,6 +15,7 @@
 #include "core/barrier.hpp"
 #include "server/net/admission.hpp"
 #include "server/net/http/error_response.hpp"
+#include "server/net/http_answers.hpp"
 #include "server/net/upload_receiver.hpp"
 #include "server/net/websocket_session.hpp"
 
@@ -228,16 +229,9 @@ void HttpSession::on_body(const error_code& error) {
 
 void HttpSession::refuse(const error_code& error) {
   keep_alive_ = false;
-  if (error == http::error::body_limit) {
-    write(error_response(413,
-                         "payload_too_large",
-                         "the body is larger than " +
-                             std::to_string(context_->options.limits.max_body_bytes) + " bytes"));
-  } else if (error == http::error::header_limit || error == http::error::buffer_overflow) {
-    write(error_response(431, "headers_too_large", "the request's headers are too large"));
-  } else if (error.category() == make_error_code(http::error::bad_method).category() &&
-             error != http::error::end_of_stream && error != http::error::partial_message) {
-    write(error_response(400, "invalid_argument", "the request is malformed: " + error.message()));
+  auto response = answer_to_unreadable_request(error, context_->options.limits.max_body_bytes);
+  if (response) {
+    write(std::move(*response));
   } else {
     close();
   }
@@ -325,24 +319,7 @@ void HttpSession::answer(std::uint64_t number, HttpResponse response) {
 
 void HttpSession::write(HttpResponse response) {
   if (admitted_ && place_) (void)place_->enter(ConnectionPhase::kSending);
-  response_.emplace(static_cast<http::status>(response.status), version_);
-  response_->set(http::field::server, "overfly");
-  response_->set("X-Content-Type-Options", "nosniff");
-  // Keeps the address, which contains the token, from other sites.
-  response_->set("Referrer-Policy", "no-referrer");
-  response_->set("Content-Security-Policy",
-                 "default-src 'self'; img-src 'self' blob: data:; style-src 'self' "
-                 "'unsafe-inline'; connect-src 'self' ws: wss:; frame-ancestors 'self'; "
-                 "form-action 'self'; base-uri 'none'");
-  if (!response.content_type.empty()) {
-    response_->set(http::field::content_type, response.content_type);
-  }
-  for (const auto& [name, value] : response.headers) response_->set(name, value);
-  response_->keep_alive(keep_alive_);
-  const std::size_t body_bytes = response.body.size();
-  if (!head_) response_->body() = std::move(response.body);
-  response_->prepare_payload();
-  if (head_) response_->content_length(body_bytes);
+  response_.emplace(http_answer(std::move(response), version_, keep_alive_, head_));
   stream_.expires_after(std::chrono::milliseconds(context_->options.limits.idle_ms));
   http::async_write(
       stream_, *response_, [self = shared_from_this()](const error_code& error, std::size_t) {
