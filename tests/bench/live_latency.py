@@ -2,7 +2,7 @@
 """Time from a live vehicle's message to the rendered frame.
 
 Flies the built-in vehicle's take-off and pattern in a scenario, and prints the figures of the run's
-timings.json beside the camera's period.
+timings.json and the camera's period.
 Usage: live_latency.py OVERFLY [SECONDS] [SETTING...]
 SETTINGs are passed on as --set, after estimators=[]: "camera.width_px=640", "pacing=real_time".
 """

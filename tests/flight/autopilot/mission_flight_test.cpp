@@ -254,8 +254,8 @@ TEST(MissionFlight, IsASourceOfTruthThatRepeats) {
 TEST(MissionFlight, TellsItsPhasesAndItems) {
   MissionSetup setup = setup_of("foam_trainer");
   setup.mission.items = {waypoint(0, 400, 300), waypoint(400, 400, 300), waypoint(400, 0, 300)};
-  for (const bool told : {true, false}) {
-    setup.tell_items = told;
+  for (const bool reported : {true, false}) {
+    setup.report_items = reported;
     const auto flight = fly_mission(setup, std::make_shared<FlatGround>(0.0));
     ASSERT_TRUE(flight) << flight.error().message;
     std::vector<std::string> lines;
@@ -269,7 +269,7 @@ TEST(MissionFlight, TellsItsPhasesAndItems) {
         lines.push_back(std::string(to_string(event.kind)) + " " + event.text);
       }
     }
-    if (told) {
+    if (reported) {
       EXPECT_THAT(lines,
                   ::testing::ElementsAre(std::string("mode ") + name_of(FlightPhase::kEnRoute),
                                          "mission mission item 1",

@@ -15,7 +15,7 @@ logs::LogEvent logged(double t_s, EventKind kind, const std::string& text, std::
   return {"", logs::LogTime{boot, ns_from_s(t_s)}, kind, text};
 }
 
-std::vector<std::string> told(const std::vector<FlightEvent>& events) {
+std::vector<std::string> texts_of(const std::vector<FlightEvent>& events) {
   std::vector<std::string> lines;
   for (const FlightEvent& event : events) {
     lines.push_back(std::to_string(event.t_ns / kNsPerS) + " " + to_string(event.kind) + " " +
@@ -37,7 +37,7 @@ TEST(FlightEvents, CountFromTheBeginningOfTheFlight) {
                 logged(22, EventKind::kMission, "reached mission item 1"),
                 logged(22, EventKind::kArming, "disarmed"),
                 logged(31, EventKind::kMode, "mode 11 (RTL)")};
-  EXPECT_THAT(told(events_of(log, "GPS", 10 * kNsPerS, 30 * kNsPerS)),
+  EXPECT_THAT(texts_of(events_of(log, "GPS", 10 * kNsPerS, 30 * kNsPerS)),
               ::testing::ElementsAre("0 mode MANUAL",
                                      "0 mission mission item 1",
                                      "10 mode AUTO",
@@ -49,7 +49,7 @@ TEST(FlightEvents, BeginASliceInTheStateBeforeIt) {
   logs::OpenedLog log;
   log.events_before = {logged(5, EventKind::kMode, "mode 4")};
   log.events = {logged(12, EventKind::kMode, "mode 7")};
-  EXPECT_THAT(told(events_of(log, "GPS", 10 * kNsPerS, 30 * kNsPerS)),
+  EXPECT_THAT(texts_of(events_of(log, "GPS", 10 * kNsPerS, 30 * kNsPerS)),
               ::testing::ElementsAre("0 mode mode 4", "2 mode mode 7"));
 }
 
@@ -65,7 +65,7 @@ TEST(FlightEvents, AreThoseOfOneRunOfTheClockAndOneVehicle) {
   }
   log.events.push_back(logged(1, EventKind::kMode, "of another", 1));
   log.events.back().vehicle = "1.1";
-  EXPECT_THAT(told(events_of(log, "2.1/GPS", 0, 9 * kNsPerS)),
+  EXPECT_THAT(texts_of(events_of(log, "2.1/GPS", 0, 9 * kNsPerS)),
               ::testing::ElementsAre("1 mode of run 1"));
 }
 

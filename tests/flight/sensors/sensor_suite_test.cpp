@@ -97,14 +97,14 @@ TEST(SensorSuite, OneSensorDoesNotChangeAnother) {
   SensorModels few;
   few.imu = ImuModel{};
   few.gps = GpsModel{};
-  SensorSuite alone(options_with(few));
+  SensorSuite only_few(options_with(few));
   SensorSuite fitted(options_with(all_models()));
-  const auto a = sensed_while_flown(std::make_unique<StraightFlight>(5.0), alone);
+  const auto a = sensed_while_flown(std::make_unique<StraightFlight>(5.0), only_few);
   const auto b = sensed_while_flown(std::make_unique<StraightFlight>(5.0), fitted);
   // The suites are driven in steps of different lengths.
   for (int i = 0; i <= 50; ++i) ASSERT_TRUE(a->state_at(i * 100 * kMillisecondNs).value());
   ASSERT_TRUE(b->state_at(5 * kNsPerS).value());
-  const SensorSamples few_samples = alone.take_until(5 * kNsPerS);
+  const SensorSamples few_samples = only_few.take_until(5 * kNsPerS);
   const SensorSamples all_samples = fitted.take_until(5 * kNsPerS);
   ASSERT_EQ(few_samples.imu.size(), 1000U);
   ASSERT_EQ(all_samples.imu.size(), 1000U);

@@ -103,6 +103,22 @@ void integrate(const std::vector<Sample>& samples,
   }
 }
 
+/// Second order in 5 ms: about f' T^2 / 12 per second, and twice integrated for the position.
+void expect_to_end_with_the_truth(const std::vector<Sample>& samples, double gravity_m_s2) {
+  Eigen::Vector3d p, v;
+  Eigen::Quaterniond q;
+  integrate(samples, gravity_m_s2, p, v, q);
+  const Sample& last = samples.back();
+  std::printf("[ IMU      ] after %.1f s: %.4f m, %.5f m/s, %.6f deg\n",
+              double(last.t_ns - samples.front().t_ns) * 1e-9,
+              (p - last.p).norm(),
+              (v - last.v).norm(),
+              deg_from_rad(q.angularDistance(last.q)));
+  EXPECT_LT(q.angularDistance(last.q), 1e-4);
+  EXPECT_LT((v - last.v).norm(), 0.01);
+  EXPECT_LT((p - last.p).norm(), 0.1);
+}
+
 TEST(Euroc, IntegratedImuGivesTheFlightBack) {
   const TemporaryFolder folder;
   // The banked turn lies in these 12 s.
@@ -128,19 +144,7 @@ TEST(Euroc, IntegratedImuGivesTheFlightBack) {
   ASSERT_TRUE(maker.ok());
   const LocalFrame& frame = (*maker)->world().tiles->frame();
   const double gravity = flight::normal_gravity_m_s2(frame.geodetic_from_world(samples.front().p));
-  Eigen::Vector3d p, v;
-  Eigen::Quaterniond q;
-  integrate(samples, gravity, p, v, q);
-  const Sample& last = samples.back();
-  std::printf("[ IMU      ] after %.1f s: %.4f m, %.5f m/s, %.6f deg\n",
-              double(last.t_ns - samples.front().t_ns) * 1e-9,
-              (p - last.p).norm(),
-              (v - last.v).norm(),
-              deg_from_rad(q.angularDistance(last.q)));
-  // Second order in 5 ms: about f' T^2 / 12 per second, and twice integrated for the position.
-  EXPECT_LT(q.angularDistance(last.q), 1e-4);
-  EXPECT_LT((v - last.v).norm(), 0.01);
-  EXPECT_LT((p - last.p).norm(), 0.1);
+  expect_to_end_with_the_truth(samples, gravity);
 }
 
 /// A run through a banked turn, and its export.
@@ -190,18 +194,7 @@ TEST(Euroc, IntegratedSamplesOfAnIdealImuOfARunGiveTheFlightBack) {
   const auto& origin = manifest.at("world").at("origin");
   const double gravity = flight::normal_gravity_m_s2(
       geodetic_from_deg(origin.at("lat_deg"), origin.at("lon_deg"), origin.at("alt_ellipsoid_m")));
-  Eigen::Vector3d p, v;
-  Eigen::Quaterniond q;
-  integrate(samples, gravity, p, v, q);
-  const Sample& last = samples.back();
-  std::printf("[ IMU      ] of a run, after %.1f s: %.4f m, %.5f m/s, %.6f deg\n",
-              double(last.t_ns - samples.front().t_ns) * 1e-9,
-              (p - last.p).norm(),
-              (v - last.v).norm(),
-              deg_from_rad(q.angularDistance(last.q)));
-  EXPECT_LT(q.angularDistance(last.q), 1e-4);
-  EXPECT_LT((v - last.v).norm(), 0.01);
-  EXPECT_LT((p - last.p).norm(), 0.1);
+  expect_to_end_with_the_truth(samples, gravity);
 }
 
 TEST(Euroc, AScenarioMeasuresWhatARunOfItMeasures) {

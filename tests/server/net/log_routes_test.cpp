@@ -13,7 +13,7 @@
 #include <fstream>
 #include <thread>
 
-#include "tests/server/net/northward_log.hpp"
+#include "tests/flight/logs/northward_log.hpp"
 #include "tests/server/net/test_client.hpp"
 #include "tests/server/net/test_server.hpp"
 

@@ -12,7 +12,7 @@
 #include "server/scenario/document/scenario_file.hpp"
 #include "server/scenario/document/scenario_schema.hpp"
 #include "server/scenario/scenario.hpp"
-#include "tests/server/net/northward_log.hpp"
+#include "tests/flight/logs/northward_log.hpp"
 #include "tests/server/net/test_client.hpp"
 #include "tests/server/net/test_server.hpp"
 

@@ -1,4 +1,4 @@
-// Runs with sensors besides the cameras: what estimators and the folder get, and when.
+// Runs with sensors in addition to the cameras: what estimators and the folder get, and when.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

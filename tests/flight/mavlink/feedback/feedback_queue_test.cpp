@@ -21,7 +21,7 @@ FeedbackSample captured_at(std::int64_t t_ns) {
 }
 
 /// A vehicle whose clock is `offset_ns` ahead and runs `rate` times as fast, as TIMESYNC over a
-/// link with 4 ms there and 4 ms back tells it.
+/// link with 4 ms there and 4 ms back measures it.
 TimeSync synced(std::int64_t offset_ns, double rate) {
   TimeSync sync;
   for (int i = 0; i < 32; ++i) {

@@ -1,4 +1,4 @@
-// A small flight log for requests about logs.
+// A small flight log for tests of commands and requests.
 #pragma once
 
 #include <cstdint>
