@@ -1,4 +1,5 @@
-// What happens during a flight besides its motion: events, and what a live vehicle says of itself.
+// What happens during a flight in addition to its motion: events, and the state that a live
+// vehicle reports.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +29,7 @@ enum class FlightEventKind {
 struct FlightEvent {
   std::int64_t t_ns = 0;  ///< from the start of the flight
   FlightEventKind kind = FlightEventKind::kOther;
-  std::string text;  ///< of modes and items: the name alone
+  std::string text;  ///< of modes and items: only the name
 };
 
 /// A live vehicle at one instant. Empty: the vehicle has not sent it.

@@ -1,5 +1,5 @@
-// Measurements of the sensors that an aircraft carries besides its cameras: simulated, or received
-// from a live vehicle.
+// Measurements of the sensors that an aircraft carries in addition to its cameras: simulated, or
+// received from a live vehicle.
 //
 // Times are those of the run. "body" is forward-right-down. A value that a sensor does not give is
 // not a number (NaN).

@@ -105,7 +105,7 @@ Result<std::unique_ptr<TruthSource>> fly_course(const flight::CourseParameters& 
                 number_text(deg_from_rad(course.roll_rate_max_rad_s)) + " deg/s, " +
                 number_text(course.height_agl_m) + " m above the ground";
   // The waypoints that make up the course are not the user's.
-  setup.tell_items = false;
+  setup.report_items = false;
   Result<Parameters> parameters = course_autopilot(course, aircraft, setup.environment, start_up_m);
   if (!parameters) return parameters.error();
   setup.parameters = std::move(parameters).value();

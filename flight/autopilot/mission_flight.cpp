@@ -145,7 +145,7 @@ class MissionTruth final : public TruthSource {
 
   /// A new phase of the flight or item of the mission is an event.
   void note_changes() {
-    if (!flight_.setup().tell_items) return;
+    if (!flight_.setup().report_items) return;
     const MissionPilot& pilot = flight_.autopilot().pilot();
     if (phase_ != pilot.phase() && pilot.phase() != FlightPhase::kDone) {
       events_.push_back({flight_.t_ns(), FlightEventKind::kMode, name_of(pilot.phase())});

@@ -39,7 +39,7 @@ struct MissionSetup {
   double duration_max_s = kFlightMaxS;
   std::string title = "mission";      ///< first words of the description
   std::vector<std::string> warnings;  ///< of what was left out of the mission, for the run
-  bool tell_items = true;             ///< phases and items are events of the flight
+  bool report_items = true;           ///< phases and items are events of the flight
 };
 
 enum class FlightEnd {

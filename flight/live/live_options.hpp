@@ -26,7 +26,7 @@ struct StartCondition {
   std::int32_t mission_item = -1;
 };
 
-/// Conditions that end the flight, besides a restart of the vehicle.
+/// Conditions that end the flight, in addition to a restart of the vehicle.
 struct StopConditions {
   bool on_disarm = false;          ///< when the vehicle is disarmed after it was armed
   bool on_landing = false;         ///< when it reports to be on the ground after it was in the air

@@ -65,7 +65,7 @@ struct LogEvent {
   std::string text;
 };
 
-/// What an event of a log is to a flight: modes and mission items by their names alone. Empty for
+/// What an event of a log is to a flight: modes and mission items only by their names. Empty for
 /// what a flight does not report: camera triggers.
 [[nodiscard]] std::optional<FlightEvent> flight_event_of(EventKind kind, const std::string& text);
 

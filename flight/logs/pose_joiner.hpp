@@ -16,7 +16,7 @@
 
 namespace overfly::flight::logs {
 
-/// Keeps the poses, and of the samples only those whose poses cannot be told yet: attitudes may
+/// Keeps the poses, and of the samples only those whose poses are not known yet: attitudes may
 /// come up to 2 s out of order (BootClock).
 ///
 /// A run of the clock is a boot; samples of different runs are not joined.

@@ -23,9 +23,9 @@ inline constexpr double kMaxTimeOffsetS = 2.0;
 /// the part of the flight faster than 5 m/s. A constant part, as of a tilted mount, does not
 /// matter. The standard deviation assumes one independent residual each second.
 ///
-/// Sideslip that goes with the roll cannot be told from an offset. It is the larger error: 0.15 s
-/// in the state of a simulator, which has no offset. Differences between sources of one flight are
-/// right within some 0.03 s.
+/// Sideslip that goes with the roll cannot be distinguished from an offset. It is the larger error:
+/// 0.15 s in the state of a simulator, which has no offset. Differences between sources of one
+/// flight are right within some 0.03 s.
 /// @param attitude  body relative to north-east-down, by its own clock
 /// Errors: kUnsupported if the flight has too few turns (a standard deviation above 0.2 s, or no
 /// minimum within kMaxTimeOffsetS), or less than 30 s faster than 5 m/s; kCancelled.

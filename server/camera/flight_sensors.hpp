@@ -1,4 +1,4 @@
-// The sensors of a scenario, besides the cameras, over its opened world.
+// The sensors of a scenario, in addition to the cameras, over its opened world.
 #pragma once
 
 #include <cstdint>

@@ -170,7 +170,7 @@ Status FlightRun::fly_real_time() {
     InTheAir& operator=(const InTheAir&) = delete;
   } const in_the_air(clock_, pictures);
   maker_->begin_flight();
-  // A live flight tells at which time of the vehicle's clock it begins.
+  // A live flight states at which time of the vehicle's clock it begins.
   if (auto& flight = recorder_.manifest().flight)
     flight->description = maker_->flight_description();
   std::int64_t start_ns = clock_.now_ns();
@@ -229,14 +229,14 @@ Result<FlightRun::Flight> FlightRun::fly_frame(std::int64_t k, bool wait_for_est
 }
 
 Status FlightRun::judge_recorded_image(const MadeFrame& made) {
-  constexpr int kMostProblemsTold = 100;
+  constexpr int kMostProblemsLogged = 100;
   const CameraSpec* const camera = scenario_.recorded_camera();
   if (camera == nullptr) return {};
   const CameraShot& real = made.shots[static_cast<std::size_t>(camera - scenario_.cameras.data())];
-  if (!real.problem.empty() && problems_told_++ < kMostProblemsTold) {
-    const std::string end = problems_told_ == kMostProblemsTold ? "; no more are listed" : "";
-    Status told = recorder_.log(made.t_ns, "warning", "image lost: " + real.problem + end);
-    if (!told) return told;
+  if (!real.problem.empty() && problems_logged_++ < kMostProblemsLogged) {
+    const std::string end = problems_logged_ == kMostProblemsLogged ? "; no more are listed" : "";
+    Status logged = recorder_.log(made.t_ns, "warning", "image lost: " + real.problem + end);
+    if (!logged) return logged;
   }
   if (!camera->images->compare_with) return {};
   AgreementRow row{made.frame, made.t_ns, std::nullopt, real.problem};

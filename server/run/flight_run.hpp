@@ -87,7 +87,7 @@ class FlightRun {
   DurationList message_to_frame_;  ///< of a live vehicle
   std::int64_t late_tiles_ = 0;
   std::int64_t frames_with_late_tiles_ = 0;
-  int problems_told_ = 0;  ///< lost images in the log
+  int problems_logged_ = 0;  ///< lost images in the log
   std::vector<std::unique_ptr<EstimatorWorker>> workers_;
   /// By estimator: samples of sensors that wait for its next frame.
   std::vector<SensorSamples> unsent_samples_;

@@ -144,7 +144,7 @@ struct Scenario {
   /// Of all cameras: they share their time stamps. With recorded images these are the stamps of
   /// the images, and the rate is nominal.
   FrameRate rate;
-  flight::SensorModels sensors;  ///< besides the cameras
+  flight::SensorModels sensors;  ///< in addition to the cameras
   std::vector<FaultSpec> faults;
   std::vector<EstimatorSpec> estimators;
   RendererChoice renderer;

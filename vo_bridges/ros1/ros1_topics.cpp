@@ -62,7 +62,7 @@ Status Topics::advertise(const std::string& topic,
                          ros::Publisher& publisher,
                          bool latched,
                          int queue_size) {
-  const auto told = [this, topic](const char* what) {
+  const auto reported = [this, topic](const char* what) {
     return [this, topic, what](const ros::SingleSubscriberPublisher& subscriber) {
       log_->add(subscriber.getSubscriberName() + what + topic);
     };
@@ -71,8 +71,8 @@ Status Topics::advertise(const std::string& topic,
     publisher = handle_.advertise<M>(
         topic,
         static_cast<std::uint32_t>(queue_size > 0 ? queue_size : options_.queue_size),
-        told(" subscribed to "),
-        told(" left "),
+        reported(" subscribed to "),
+        reported(" left "),
         ros::VoidConstPtr(),
         latched);
   } catch (const std::exception& failure) {

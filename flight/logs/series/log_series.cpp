@@ -109,7 +109,7 @@ class SeriesSink final : public LogSink {
   void take_position(StreamId id, const LogTime& time, const Eigen::Vector3d& value) override {
     if (id != truth_.position) return;
     const StreamInfo& source = log_.streams[id];
-    // Without its origin a position cannot stand beside those that have one.
+    // Without its origin a position cannot be shown with those that have one.
     const bool local = source.description.position == PositionKind::kLocal;
     if (local && source.georeferenced && !origin_) return;
     RunOfClock* const run = run_of(time);

@@ -122,7 +122,7 @@ PayloadWriter odometry(const FeedbackOptions& options,
       payload, 36, terms.v_ned_m_s ? Eigen::Vector3d(q.conjugate() * *terms.v_ned_m_s) : unknown);
   put_floats(payload, 48, unknown);
   put_covariance(payload, 60, options.position_std_dev_m, options.attitude_std_dev_rad);
-  // The rates are not known: their variance stays unknown beside the velocity's.
+  // The rates are not known: their variance stays unknown when the velocity's is known.
   if (options.velocity_std_dev_m_s && terms.v_ned_m_s) {
     put_covariance(payload, 144, options.velocity_std_dev_m_s, nan);
   } else {

@@ -38,7 +38,7 @@ void take_system_time(const Frame& frame, VehicleState& state) {
   constexpr std::int64_t kYear2000Us = 946'684'800'000'000;
   constexpr std::int64_t kYear2100Us = 4'102'444'800'000'000;
   const SystemTime time = decode_system_time(frame);
-  // 0, or the years since 1970, without a receiver that has told the date.
+  // 0, or the years since 1970, without a receiver that knows the date.
   if (time.unix_us < kYear2000Us || time.unix_us > kYear2100Us) return;
   state.utc_minus_boot_ns = time.unix_us * 1000 - time.boot_ns;
 }
