@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/result.hpp"
-#include "flight/logs/logged_truth.hpp"
+#include "flight/logs/truth/logged_truth.hpp"
 
 namespace overfly::flight::logs {
 

@@ -11,8 +11,8 @@
 #include "core/motion/pose.hpp"
 #include "core/result.hpp"
 #include "flight/logs/flight_log.hpp"
-#include "flight/logs/log_trajectory.hpp"
-#include "flight/logs/logged_truth.hpp"
+#include "flight/logs/truth/log_trajectory.hpp"
+#include "flight/logs/truth/logged_truth.hpp"
 #include "flight/smoothing/smooth_motion.hpp"
 
 namespace overfly::flight {

@@ -11,7 +11,7 @@
 #include "core/sensors/sensor_samples.hpp"
 #include "renderer/renderer.hpp"
 #include "sensor/sensor.hpp"
-#include "server/record/rows.hpp"
+#include "server/record/rows/rows.hpp"
 
 namespace overfly::server {
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/time.hpp"
-#include "server/camera/lens_fault.hpp"
+#include "server/camera/faults/lens_fault.hpp"
 
 namespace overfly::server {
 namespace {

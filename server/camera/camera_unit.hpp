@@ -9,7 +9,7 @@
 #include "core/motion/truth_source.hpp"
 #include "core/result.hpp"
 #include "server/camera/camera_shot.hpp"
-#include "server/camera/fault_schedule.hpp"
+#include "server/camera/faults/fault_schedule.hpp"
 #include "server/scenario/camera_spec.hpp"
 
 namespace overfly::server {

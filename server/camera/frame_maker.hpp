@@ -15,7 +15,7 @@
 #include "renderer/renderer.hpp"
 #include "server/camera/camera_shot.hpp"
 #include "server/camera/camera_unit.hpp"
-#include "server/camera/fault_schedule.hpp"
+#include "server/camera/faults/fault_schedule.hpp"
 #include "server/camera/renderer_factory.hpp"
 #include "server/camera/truth_window.hpp"
 #include "server/camera/watched_tiles.hpp"

@@ -8,10 +8,10 @@
 
 #include "core/result.hpp"
 #include "server/camera/camera_unit.hpp"
-#include "server/camera/fault_schedule.hpp"
+#include "server/camera/faults/fault_schedule.hpp"
 #include "server/camera/truth_window.hpp"
 #include "server/imagery/image_source.hpp"
-#include "server/record/rows.hpp"
+#include "server/record/rows/rows.hpp"
 #include "server/scenario/scenario.hpp"
 #include "terrain/world.hpp"
 

@@ -5,7 +5,7 @@
 
 #include "server/dataset/dataset_reader.hpp"
 #include "server/files/whole_file.hpp"
-#include "server/record/run_rows.hpp"
+#include "server/record/rows/run_rows.hpp"
 
 namespace overfly::server {
 namespace {

@@ -14,7 +14,7 @@
 #include "core/result.hpp"
 #include "server/dataset/dataset.hpp"
 #include "server/dataset/map_cloud.hpp"
-#include "server/record/run_rows.hpp"
+#include "server/record/rows/run_rows.hpp"
 #include "server/timing/stage_timer.hpp"
 #include "vo_bridges/vo_port.hpp"
 

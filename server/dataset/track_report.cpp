@@ -5,7 +5,7 @@
 #include <set>
 
 #include "core/time.hpp"
-#include "server/record/rows.hpp"
+#include "server/record/rows/rows.hpp"
 #include "server/scoring/run_metrics_json.hpp"
 
 namespace overfly::server {

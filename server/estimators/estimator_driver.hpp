@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/result.hpp"
-#include "server/record/rows.hpp"
+#include "server/record/rows/rows.hpp"
 #include "vo_bridges/pose_intake.hpp"
 #include "vo_bridges/vo_port.hpp"
 

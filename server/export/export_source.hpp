@@ -10,7 +10,7 @@
 #include "core/result.hpp"
 #include "server/camera/frame_maker.hpp"
 #include "server/export/dataset_writer.hpp"
-#include "server/record/run_rows.hpp"
+#include "server/record/rows/run_rows.hpp"
 #include "server/scenario/scenario.hpp"
 
 namespace overfly::server {

@@ -9,7 +9,7 @@
 #include "server/export/dataset_writer.hpp"
 #include "server/export/export_source.hpp"
 #include "server/export/frame_sequence.hpp"
-#include "server/record/sensor_files.hpp"
+#include "server/record/rows/sensor_files.hpp"
 
 namespace overfly::server {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "server/record/rows.hpp"
+#include "server/record/rows/rows.hpp"
 #include "server/record/run_info.hpp"
 
 namespace overfly::server {

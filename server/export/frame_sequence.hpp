@@ -10,7 +10,7 @@
 #include "core/result.hpp"
 #include "server/camera/frame_maker.hpp"
 #include "server/export/export_source.hpp"
-#include "server/record/rows.hpp"
+#include "server/record/rows/rows.hpp"
 
 namespace overfly::server {
 

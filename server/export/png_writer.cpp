@@ -4,7 +4,7 @@
 #include "server/files/number_text.hpp"
 #include "server/files/png_file.hpp"
 #include "server/files/whole_file.hpp"
-#include "server/record/run_rows.hpp"
+#include "server/record/rows/run_rows.hpp"
 
 namespace overfly::server {
 namespace {

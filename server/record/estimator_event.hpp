@@ -8,7 +8,7 @@
 
 #include "core/camera/image.hpp"
 #include "server/record/estimator_status.hpp"
-#include "server/record/rows.hpp"
+#include "server/record/rows/rows.hpp"
 
 namespace overfly::server {
 

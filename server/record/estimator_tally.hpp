@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "server/record/estimator_status.hpp"
+#include "server/record/rows/run_rows.hpp"
 #include "server/record/run_records.hpp"
-#include "server/record/run_rows.hpp"
 
 namespace overfly::server {
 

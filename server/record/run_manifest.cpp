@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "server/record/run_rows.hpp"
+#include "server/record/rows/run_rows.hpp"
 
 namespace overfly::server {
 namespace {

@@ -3,9 +3,9 @@
 #include <utility>
 
 #include "server/files/file_field.hpp"
+#include "server/record/rows/run_rows.hpp"
 #include "server/record/run_folder.hpp"
 #include "server/record/run_manifest.hpp"
-#include "server/record/run_rows.hpp"
 
 namespace overfly::server {
 namespace {

@@ -9,9 +9,9 @@
 #include "core/motion/trajectory.hpp"
 #include "core/result.hpp"
 #include "evaluation/evaluation.hpp"
+#include "server/record/rows/run_rows.hpp"
 #include "server/record/run_info.hpp"
 #include "server/record/run_manifest.hpp"
-#include "server/record/run_rows.hpp"
 
 namespace overfly::server {
 

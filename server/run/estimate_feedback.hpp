@@ -9,7 +9,7 @@
 
 #include "core/motion/estimate_receiver.hpp"
 #include "core/motion/pose.hpp"
-#include "server/record/rows.hpp"
+#include "server/record/rows/rows.hpp"
 #include "server/timeline/live_alignment.hpp"
 
 namespace overfly::server {

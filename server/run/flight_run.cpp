@@ -8,7 +8,7 @@
 
 #include "core/cancel.hpp"
 #include "core/measure/crc32.hpp"
-#include "server/record/rows.hpp"
+#include "server/record/rows/rows.hpp"
 #include "server/timing/picture_rate.hpp"
 #include "server/timing/thread_priority.hpp"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/result.hpp"
-#include "server/record/run_rows.hpp"
+#include "server/record/rows/run_rows.hpp"
 #include "server/scenario/camera_spec.hpp"
 
 namespace overfly::server {

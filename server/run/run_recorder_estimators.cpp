@@ -5,7 +5,7 @@
 #include "core/measure/process_memory.hpp"
 #include "server/files/jpeg.hpp"
 #include "server/record/estimator_tally.hpp"
-#include "server/record/rows.hpp"
+#include "server/record/rows/rows.hpp"
 #include "server/run/run_recorder.hpp"
 
 namespace overfly::server {

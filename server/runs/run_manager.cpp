@@ -6,7 +6,7 @@
 #include "server/record/run_info.hpp"
 #include "server/runs/managed_runs.hpp"
 #include "server/runs/run_removal.hpp"
-#include "server/scenario/document/estimator_reach.hpp"
+#include "server/scenario/document/estimators/estimator_reach.hpp"
 #include "server/scenario/document/scenario_file.hpp"
 #include "server/timeline/run_timeline.hpp"
 

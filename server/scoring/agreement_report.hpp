@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "server/record/agreement_rows.hpp"
+#include "server/record/rows/agreement_rows.hpp"
 #include "server/scenario/scenario.hpp"
 #include "server/scoring/run_metrics.hpp"
 

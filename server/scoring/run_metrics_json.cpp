@@ -5,8 +5,8 @@
 
 #include "server/files/file_field.hpp"
 #include "server/files/whole_file.hpp"
+#include "server/record/rows/run_rows.hpp"
 #include "server/record/run_folder.hpp"
-#include "server/record/run_rows.hpp"
 
 namespace overfly::server {
 namespace {

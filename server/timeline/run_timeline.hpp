@@ -17,7 +17,7 @@
 #include "core/result.hpp"
 #include "server/files/file_stamp.hpp"
 #include "server/record/estimator_status.hpp"
-#include "server/record/rows.hpp"
+#include "server/record/rows/rows.hpp"
 #include "server/record/run_info.hpp"
 #include "server/scoring/run_metrics.hpp"
 #include "server/timeline/audience.hpp"

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "core/measure/processor_time.hpp"
-#include "server/record/rows.hpp"
+#include "server/record/rows/rows.hpp"
 #include "server/record/run_folder.hpp"
 #include "server/timeline/run_timeline.hpp"
 #include "server/views/view_scene.hpp"

@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "server/record/rows.hpp"
+#include "server/record/rows/rows.hpp"
 #include "server/timeline/run_timeline.hpp"
 #include "server/views/picture_request.hpp"
 #include "server/views/view_encoding.hpp"

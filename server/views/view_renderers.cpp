@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "server/camera/watched_tiles.hpp"
-#include "server/record/rows.hpp"
+#include "server/record/rows/rows.hpp"
 
 namespace overfly::server {
 namespace {

@@ -10,7 +10,7 @@
 #include "core/result.hpp"
 #include "renderer/renderer.hpp"
 #include "server/camera/frame_remaker.hpp"
-#include "server/record/rows.hpp"
+#include "server/record/rows/rows.hpp"
 #include "server/runs/run_manager.hpp"
 
 namespace overfly::server {

@@ -12,8 +12,8 @@
 #include "core/measure/process_memory.hpp"
 #include "core/outside/forward_reader.hpp"
 #include "core/time.hpp"
-#include "flight/logs/log_trajectory.hpp"
 #include "flight/logs/probes/probe_log.hpp"
+#include "flight/logs/truth/log_trajectory.hpp"
 
 namespace overfly::flight {
 namespace {

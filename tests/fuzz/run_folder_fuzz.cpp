@@ -4,7 +4,7 @@
 // The input is a run folder.
 #include <cmath>
 
-#include "server/record/rows.hpp"
+#include "server/record/rows/rows.hpp"
 #include "server/record/run_folder.hpp"
 #include "server/record/run_info_file.hpp"
 #include "server/scoring/metrics.hpp"

@@ -9,7 +9,7 @@
 #include "server/app/exit_code.hpp"
 #include "server/app/score_table.hpp"
 #include "server/files/whole_file.hpp"
-#include "server/record/agreement_rows.hpp"
+#include "server/record/rows/agreement_rows.hpp"
 #include "server/record/run_folder.hpp"
 #include "server/scenario/document/scenario_file.hpp"
 #include "server/scoring/agreement_report.hpp"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "server/record/vehicle_rows.hpp"
+#include "server/record/rows/vehicle_rows.hpp"
 
 namespace overfly::net {
 namespace {

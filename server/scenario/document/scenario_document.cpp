@@ -2,13 +2,13 @@
 
 #include <utility>
 
+#include "server/scenario/document/estimators/scenario_estimators.hpp"
 #include "server/scenario/document/flight/scenario_course.hpp"
 #include "server/scenario/document/flight/scenario_flight.hpp"
 #include "server/scenario/document/flight/scenario_live.hpp"
 #include "server/scenario/document/flight/scenario_ros.hpp"
 #include "server/scenario/document/flight/scenario_sensors.hpp"
 #include "server/scenario/document/scenario_camera.hpp"
-#include "server/scenario/document/scenario_estimators.hpp"
 #include "server/scenario/document/scenario_faults.hpp"
 #include "server/scenario/document/scenario_layers.hpp"
 #include "server/scenario/document/scenario_light.hpp"

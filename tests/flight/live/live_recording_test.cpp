@@ -7,8 +7,8 @@
 #include <map>
 
 #include "flight/live/live_truth.hpp"
-#include "flight/logs/log_trajectory.hpp"
 #include "flight/logs/ned_attitude.hpp"
+#include "flight/logs/truth/log_trajectory.hpp"
 #include "flight/mavlink/link/frame_recorder.hpp"
 #include "tests/flight/live/made_vehicle.hpp"
 #include "tests/flight/mavlink/replay_vehicle.hpp"

@@ -9,8 +9,8 @@
 #include "flight/logs/csv/csv_mapping.hpp"
 #include "flight/logs/flight_log.hpp"
 #include "flight/logs/log_samples.hpp"
-#include "flight/logs/log_trajectory.hpp"
 #include "flight/logs/ned_attitude.hpp"
+#include "flight/logs/truth/log_trajectory.hpp"
 #include "tests/support/support.hpp"
 
 namespace overfly::flight::logs {

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "flight/logs/flight_log.hpp"
-#include "flight/logs/log_trajectory.hpp"
+#include "flight/logs/truth/log_trajectory.hpp"
 #include "tests/flight/logs/log_bytes.hpp"
 #include "tests/flight/logs/ros_bytes.hpp"
 #include "tests/support/support.hpp"

@@ -5,7 +5,7 @@
 
 #include "core/motion/pose.hpp"
 #include "core/time.hpp"
-#include "flight/logs/log_trajectory.hpp"
+#include "flight/logs/truth/log_trajectory.hpp"
 #include "tests/flight/logs/log_bytes.hpp"
 #include "tests/support/support.hpp"
 

@@ -9,8 +9,8 @@
 
 #include "core/time.hpp"
 #include "flight/logs/log_samples.hpp"
-#include "flight/logs/log_trajectory.hpp"
 #include "flight/logs/probes/probe_log.hpp"
+#include "flight/logs/truth/log_trajectory.hpp"
 #include "tests/flight/logs/log_bytes.hpp"
 #include "tests/support/support.hpp"
 

@@ -1,4 +1,4 @@
-#include "flight/logs/log_trajectory.hpp"
+#include "flight/logs/truth/log_trajectory.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -10,7 +10,7 @@
 #include "core/motion/pose.hpp"
 #include "core/time.hpp"
 #include "flight/logs/flight_log.hpp"
-#include "flight/logs/log_trajectory.hpp"
+#include "flight/logs/truth/log_trajectory.hpp"
 #include "tests/support/support.hpp"
 
 namespace overfly::flight::logs {

@@ -4,7 +4,7 @@
 #include <lz4frame.h>
 
 #include "core/time.hpp"
-#include "flight/logs/log_trajectory.hpp"
+#include "flight/logs/truth/log_trajectory.hpp"
 #include "tests/flight/logs/ros_bytes.hpp"
 #include "tests/support/support.hpp"
 

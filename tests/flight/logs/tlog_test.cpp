@@ -4,7 +4,7 @@
 #include <array>
 
 #include "core/time.hpp"
-#include "flight/logs/log_trajectory.hpp"
+#include "flight/logs/truth/log_trajectory.hpp"
 #include "tests/flight/logs/log_bytes.hpp"
 #include "tests/support/support.hpp"
 

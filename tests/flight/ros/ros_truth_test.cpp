@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <map>
 
-#include "flight/logs/log_trajectory.hpp"
 #include "flight/logs/ned_attitude.hpp"
+#include "flight/logs/truth/log_trajectory.hpp"
 #include "tests/flight/ros/mavros_messages.hpp"
 #include "tests/vo_bridges/ros1/ros_world.hpp"
 

@@ -10,7 +10,7 @@
 #include "core/motion/pose.hpp"
 #include "core/time.hpp"
 #include "flight/logs/lcm/lcm_messages.hpp"
-#include "flight/logs/log_trajectory.hpp"
+#include "flight/logs/truth/log_trajectory.hpp"
 #include "middleware/lcm/log_writer.hpp"
 #include "tests/support/support.hpp"
 

@@ -5,7 +5,7 @@
 #include <sensor_msgs/NavSatFix.h>
 
 #include "core/time.hpp"
-#include "flight/logs/log_trajectory.hpp"
+#include "flight/logs/truth/log_trajectory.hpp"
 #include "middleware/ros1/bag_writer.hpp"
 #include "middleware/ros1/messages.hpp"
 #include "middleware/ros1/types.hpp"

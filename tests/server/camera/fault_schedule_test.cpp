@@ -1,5 +1,5 @@
 // Which frames a fault touches, and how.
-#include "server/camera/fault_schedule.hpp"
+#include "server/camera/faults/fault_schedule.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

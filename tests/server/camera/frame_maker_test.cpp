@@ -7,7 +7,7 @@
 #include <cstdio>
 
 #include "server/camera/frame_remaker.hpp"
-#include "server/record/rows.hpp"
+#include "server/record/rows/rows.hpp"
 #include "server/record/run_folder.hpp"
 #include "server/worlds/world_cache.hpp"
 #include "tests/server/support/server_fixture.hpp"

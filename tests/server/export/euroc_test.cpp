@@ -8,8 +8,8 @@
 #include "core/motion/trajectory_io.hpp"
 #include "flight/gravity.hpp"
 #include "server/files/whole_file.hpp"
+#include "server/record/rows/sensor_files.hpp"
 #include "server/record/run_folder.hpp"
-#include "server/record/sensor_files.hpp"
 #include "server/run/run.hpp"
 #include "tests/server/export/export_fixture.hpp"
 

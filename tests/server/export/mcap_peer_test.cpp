@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "core/motion/pose.hpp"
-#include "server/record/sensor_files.hpp"
+#include "server/record/rows/sensor_files.hpp"
 #include "tests/server/export/export_fixture.hpp"
 
 namespace overfly::server {

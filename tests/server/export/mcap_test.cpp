@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "flight/logs/images/logged_images.hpp"
-#include "flight/logs/log_trajectory.hpp"
+#include "flight/logs/truth/log_trajectory.hpp"
 #include "server/export/mcap/mcap_file.hpp"
 #include "server/scenario/document/scenario_file.hpp"
 #include "tests/server/export/export_fixture.hpp"

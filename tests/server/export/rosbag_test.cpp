@@ -5,7 +5,7 @@
 #include <map>
 
 #include "middleware/ros1/findings.hpp"
-#include "server/record/sensor_files.hpp"
+#include "server/record/rows/sensor_files.hpp"
 #include "server/run/run.hpp"
 #include "tests/server/export/export_fixture.hpp"
 

@@ -11,7 +11,7 @@
 #include "server/export/dataset_export.hpp"
 #include "server/export/video_export.hpp"
 #include "server/imagery/video_images.hpp"
-#include "server/record/agreement_rows.hpp"
+#include "server/record/rows/agreement_rows.hpp"
 #include "server/record/run_records.hpp"
 #include "server/scenario/document/scenario_file.hpp"
 #include "server/scoring/agreement_report.hpp"

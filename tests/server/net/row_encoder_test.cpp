@@ -1,5 +1,5 @@
 #include "server/net/stream/row_encoder.hpp"
-#include "server/record/rows.hpp"
+#include "server/record/rows/rows.hpp"
 #include "server/record/run_info.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "server/record/run_rows.hpp"
+#include "server/record/rows/run_rows.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Sensor files of a run folder: every bit comes back, in time, and damaged files are refused.
-#include "server/record/sensor_files.hpp"
+#include "server/record/rows/sensor_files.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "server/record/vehicle_rows.hpp"
+#include "server/record/rows/vehicle_rows.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

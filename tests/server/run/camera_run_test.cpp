@@ -7,7 +7,7 @@
 
 #include "core/motion/trajectory_io.hpp"
 #include "server/files/whole_file.hpp"
-#include "server/record/rows.hpp"
+#include "server/record/rows/rows.hpp"
 #include "server/record/run_folder.hpp"
 #include "server/record/run_info_file.hpp"
 #include "server/run/run_options.hpp"

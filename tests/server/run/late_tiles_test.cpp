@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "server/record/rows.hpp"
+#include "server/record/rows/rows.hpp"
 #include "server/run/run_options.hpp"
 #include "server/timeline/run_timeline.hpp"
 #include "tests/server/support/jumping_clock.hpp"

@@ -20,7 +20,7 @@
 #include "server/camera/truth.hpp"
 #include "server/record/run_info_file.hpp"
 #include "server/run/run.hpp"
-#include "server/scenario/document/estimator_reach.hpp"
+#include "server/scenario/document/estimators/estimator_reach.hpp"
 #include "server/scenario/document/scenario_file.hpp"
 #include "server/timeline/run_timeline.hpp"
 #include "tests/server/support/server_fixture.hpp"

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <limits>
 
-#include "server/record/sensor_files.hpp"
+#include "server/record/rows/sensor_files.hpp"
 #include "server/run/run.hpp"
 #include "tests/server/support/server_fixture.hpp"
 

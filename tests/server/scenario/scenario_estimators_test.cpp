@@ -1,6 +1,6 @@
 // Estimators of a scenario: what each door takes, and what it refuses.
 #include "server/run/run_options.hpp"
-#include "server/scenario/document/estimator_entry.hpp"
+#include "server/scenario/document/estimators/estimator_entry.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

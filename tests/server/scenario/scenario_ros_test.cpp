@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/motion/pose.hpp"
-#include "server/scenario/document/estimator_reach.hpp"
+#include "server/scenario/document/estimators/estimator_reach.hpp"
 #include "tests/server/support/server_fixture.hpp"
 
 namespace overfly::server {

@@ -1,5 +1,5 @@
 #include "server/timeline/row_alignment.hpp"
-#include "server/record/rows.hpp"
+#include "server/record/rows/rows.hpp"
 #include "server/record/run_info.hpp"
 #include "server/timeline/run_timeline.hpp"
 

@@ -1,5 +1,5 @@
 #include "server/views/view_encoding.hpp"
-#include "server/record/rows.hpp"
+#include "server/record/rows/rows.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 #include "server/views/view_ribbons.hpp"
-#include "server/record/rows.hpp"
+#include "server/record/rows/rows.hpp"
 #include "server/record/run_info.hpp"
 #include "server/timeline/run_timeline.hpp"
 

@@ -9,7 +9,7 @@ import { LogPanel } from './log_panel';
 import { LogPageView } from './logs/log_page';
 import { NoticesView } from './notices_view';
 import { DebugPanel } from './picture_panel';
-import { PlotsPanel } from './plots_panel';
+import { PlotsPanel } from './plots/plots_panel';
 import { RunList } from './run_list';
 import { ScenarioEditor } from './scenario_editor';
 import { ScenePanel } from './scene_panel';

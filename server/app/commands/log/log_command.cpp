@@ -6,7 +6,7 @@
 #include <string>
 
 #include "core/text/number_text.hpp"
-#include "flight/logs/log_trajectory.hpp"
+#include "flight/logs/truth/log_trajectory.hpp"
 #include "server/app/commands/commands.hpp"
 #include "server/app/commands/log/log_output.hpp"
 #include "server/app/commands/log/log_smooth.hpp"

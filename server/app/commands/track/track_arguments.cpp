@@ -8,7 +8,7 @@
 #include <optional>
 #include <string_view>
 
-#include "server/scenario/document/estimator_entry.hpp"
+#include "server/scenario/document/estimators/estimator_entry.hpp"
 #include "server/scenario/document/scenario_file.hpp"
 #include "server/scenario/document/scenario_override.hpp"
 #include "server/scenario/scenario.hpp"

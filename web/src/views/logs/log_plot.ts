@@ -5,7 +5,7 @@ import type { Band, Mark } from '../../store/logs/log_bands';
 import { bandHue } from '../../store/logs/log_bands';
 import { formatNumber } from '../../store/format';
 import { h, setText } from '../dom';
-import { paddedRange } from '../plot_range';
+import { paddedRange } from '../plots/plot_range';
 
 export interface LogPlotOptions {
   key: string;

@@ -1,6 +1,6 @@
-#include "flight/logs/log_trajectory.hpp"
+#include "flight/logs/truth/log_trajectory.hpp"
 
-#include "flight/logs/pose_joiner.hpp"
+#include "flight/logs/truth/pose_joiner.hpp"
 
 namespace overfly::flight::logs {
 

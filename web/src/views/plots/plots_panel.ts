@@ -1,19 +1,19 @@
 // Plots over time, drawn at most 15 times a second: the pose or the camera's image; or instead the
 // status of the estimators.
-import { needsAttention } from '../store/estimator_status';
-import { formatTime } from '../store/format';
-import { lastAtOrBefore } from '../store/table';
-import type { Span } from '../store/time_window';
-import { following, zoomed } from '../store/time_window';
-import { shownAlignment } from '../store/state';
-import type { Topic } from '../store/state';
-import { EstimatorTable } from './estimator_table';
-import { h, rebuild, setAttribute, setText } from './dom';
-import type { Panel } from './panel';
-import { frameOf, makePanel } from './panel';
+import { needsAttention } from '../../store/estimator_status';
+import { formatTime } from '../../store/format';
+import { lastAtOrBefore } from '../../store/table';
+import type { Span } from '../../store/time_window';
+import { following, zoomed } from '../../store/time_window';
+import { shownAlignment } from '../../store/state';
+import type { Topic } from '../../store/state';
+import { EstimatorTable } from '../estimator_table';
+import { h, rebuild, setAttribute, setText } from '../dom';
+import type { Panel } from '../panel';
+import { frameOf, makePanel } from '../panel';
 import type { PlotActions, Strip } from './plot_strips';
 import { imageStrips, poseStrips } from './plot_strips';
-import type { Context, View } from './view';
+import type { Context, View } from '../view';
 
 const kRedraw_ms = 1000 / 15;
 

@@ -1,4 +1,4 @@
-#include "server/camera/fault_schedule.hpp"
+#include "server/camera/faults/fault_schedule.hpp"
 
 #include <algorithm>
 #include <array>

@@ -12,7 +12,7 @@
 
 #include "flight/logs/local_grid.hpp"
 #include "flight/logs/log_pose.hpp"
-#include "flight/logs/logged_truth.hpp"
+#include "flight/logs/truth/logged_truth.hpp"
 
 namespace overfly::flight::logs {
 

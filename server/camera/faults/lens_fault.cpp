@@ -1,4 +1,4 @@
-#include "server/camera/lens_fault.hpp"
+#include "server/camera/faults/lens_fault.hpp"
 
 #include <algorithm>
 #include <array>

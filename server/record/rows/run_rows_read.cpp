@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "server/files/file_field.hpp"
-#include "server/record/run_rows.hpp"
+#include "server/record/rows/run_rows.hpp"
 
 namespace overfly::server {
 namespace {

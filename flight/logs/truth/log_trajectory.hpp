@@ -10,7 +10,7 @@
 #include "core/result.hpp"
 #include "flight/logs/flight_log.hpp"
 #include "flight/logs/log_pose.hpp"
-#include "flight/logs/logged_truth.hpp"
+#include "flight/logs/truth/logged_truth.hpp"
 
 namespace overfly::flight::logs {
 

@@ -1,13 +1,13 @@
 // The two groups of plots: poses of truth and estimates, and properties of the camera's image.
-import { kTextureLimit } from '../store/error_table';
-import { wrapDegrees } from '../store/format';
-import type { Axis, ImageColumn } from '../store/run_data';
-import { kAxes } from '../store/run_data';
-import { EstimateCurve, isAngle, TruthCurve } from '../store/series';
-import { shownEstimate } from '../store/state';
-import type { State } from '../store/state';
-import type { Span } from '../store/time_window';
-import { estimateColour, kTruthColour } from './colours';
+import { kTextureLimit } from '../../store/error_table';
+import { wrapDegrees } from '../../store/format';
+import type { Axis, ImageColumn } from '../../store/run_data';
+import { kAxes } from '../../store/run_data';
+import { EstimateCurve, isAngle, TruthCurve } from '../../store/series';
+import { shownEstimate } from '../../store/state';
+import type { State } from '../../store/state';
+import type { Span } from '../../store/time_window';
+import { estimateColour, kTruthColour } from '../colours';
 import type { PlotOptions } from './plot';
 import { Plot } from './plot';
 

@@ -1,4 +1,4 @@
-#include "server/scenario/document/scenario_estimators.hpp"
+#include "server/scenario/document/estimators/scenario_estimators.hpp"
 
 #include <algorithm>
 #include <array>

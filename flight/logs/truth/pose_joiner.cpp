@@ -1,4 +1,4 @@
-#include "flight/logs/pose_joiner.hpp"
+#include "flight/logs/truth/pose_joiner.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "server/scenario/document/estimator_entry.hpp"
+#include "server/scenario/document/estimators/estimator_entry.hpp"
 
 #include <filesystem>
 #include <utility>

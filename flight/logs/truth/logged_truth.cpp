@@ -1,4 +1,4 @@
-#include "flight/logs/logged_truth.hpp"
+#include "flight/logs/truth/logged_truth.hpp"
 
 #include "core/cancel.hpp"
 #include "core/text/number_text.hpp"

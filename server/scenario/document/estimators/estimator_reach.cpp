@@ -1,4 +1,4 @@
-#include "server/scenario/document/estimator_reach.hpp"
+#include "server/scenario/document/estimators/estimator_reach.hpp"
 
 #include <algorithm>
 #include <string>

@@ -5,7 +5,7 @@
 
 #include "core/camera/camera_model.hpp"
 #include "core/result.hpp"
-#include "server/record/rows.hpp"
+#include "server/record/rows/rows.hpp"
 
 namespace overfly::server {
 

@@ -1,8 +1,8 @@
 #include "core/earth/geodesy.hpp"
 #include "core/motion/pose.hpp"
 #include "core/text/number_text.hpp"
-#include "flight/logs/log_trajectory.hpp"
 #include "flight/logs/ned_attitude.hpp"
+#include "flight/logs/truth/log_trajectory.hpp"
 #include "flight/logs/whole_file.hpp"
 
 namespace overfly::flight::logs {

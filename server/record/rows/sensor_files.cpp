@@ -1,4 +1,4 @@
-#include "server/record/sensor_files.hpp"
+#include "server/record/rows/sensor_files.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -13,7 +13,7 @@
 #include "core/text/number_text.hpp"
 #include "server/files/file_field.hpp"
 #include "server/files/whole_file.hpp"
-#include "server/record/sensor_rows.hpp"
+#include "server/record/rows/sensor_rows.hpp"
 
 namespace overfly::server {
 

@@ -1,4 +1,4 @@
-#include "server/record/agreement_rows.hpp"
+#include "server/record/rows/agreement_rows.hpp"
 
 #include <utility>
 

@@ -1,8 +1,8 @@
 // One plot of curves over time with a playback cursor. A click or drag seeks.
 import uPlot from 'uplot';
-import { h, perFrame, setText } from './dom';
-import { formatNumber } from '../store/format';
-import type { Span } from '../store/time_window';
+import { h, perFrame, setText } from '../dom';
+import { formatNumber } from '../../store/format';
+import type { Span } from '../../store/time_window';
 import { paddedRange } from './plot_range';
 
 export interface PlotOptions {
