@@ -242,7 +242,8 @@ Result<SensorSamples> FrameMaker::record_last_period() {
 }
 
 Status FrameMaker::fetch_first_view() {
-  if (!duration_ns_) return {};
+  // A live flight is not asked before it begins, also if the scenario limits its duration.
+  if (!truth_->source().duration_ns()) return {};
   const auto first = truth_->at(0, options_.cancel);
   if (!first) return failed(first.error());
   if (!*first) return Error{ErrorCode::kInvalidArgument, "flight: ends before its first frame"};

@@ -136,7 +136,7 @@ Status FlightRun::close_estimators() {
   });
   const Status recorded = record_events();
   if (feedback_) {
-    Status logged = recorder_.log(end_ns(), "info", feedback_->report());
+    Status logged = recorder_.log(end_ns(), "info", feedback_->finish());
     if (!logged) return logged;
   }
   const Status described = describe_use();
