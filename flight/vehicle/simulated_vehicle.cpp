@@ -238,6 +238,8 @@ std::uint8_t SimulatedVehicle::change_mode(Mode mode, const Send& send) {
         mode_ = mode;
         return kResultAccepted;
       }
+      // A repeated command does not begin the mission again.
+      if (mode_ == Mode::kAuto && aircraft_) return kResultAccepted;
       if (Status status = fly_mission(aircraft_ ? resume_item_ : 0); !status) {
         say(status.error().message, Severity::kWarning, send);
         return kResultFailed;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/motion/pose.hpp"
+#include "flight/dynamics/environment.hpp"
 
 namespace overfly::vehicle {
 namespace {
@@ -146,13 +147,24 @@ PayloadWriter gps(const VehicleReport& report) {
 
 PayloadWriter hud(const VehicleReport& report) {
   const Geodetic at = report.frame.geodetic_from_world(report.state.position_world_m);
+  // Of an aeroplane, VFR_HUD has the indicated airspeed.
+  const double density = dynamics::standard_density_kg_m3(at.alt_ellipsoid_m);
+  const double indicated_m_s = report.state.airspeed_m_s * std::sqrt(density / 1.225);
   return PayloadWriter(20)
-      .put(0, static_cast<float>(report.state.airspeed_m_s))
+      .put(0, static_cast<float>(indicated_m_s))
       .put(4, static_cast<float>(report.state.v_world_m_s.head<2>().norm()))
       .put(8, static_cast<float>(at.alt_ellipsoid_m))
       .put(12, static_cast<float>(report.state.v_world_m_s.z()))
       .put(16, field<std::int16_t>(heading_deg(report)))
       .put(18, field<std::uint16_t>(100.0 * report.throttle));
+}
+
+/// "Total number of mission items" of MISSION_CURRENT, which is the number of the last item: item 0
+/// is the home position, and UINT16_MAX stands for no mission.
+std::uint16_t mission_total(const VehicleReport& report) {
+  constexpr std::uint16_t kNoMission = 0xFFFF;
+  return report.mission_items == 0 ? kNoMission
+                                   : static_cast<std::uint16_t>(report.mission_items - 1);
 }
 
 /// The true state: SIM_STATE as ArduPilot sends it, with latitude and longitude as integers too.
@@ -226,7 +238,7 @@ std::optional<PayloadWriter> payload_of(MessageId id, const VehicleReport& repor
     case MessageId::kAutopilotVersion:
       return autopilot_version();
     case MessageId::kMissionCurrent:
-      return PayloadWriter(18).put(0, report.mission_item).put(2, report.mission_items);
+      return PayloadWriter(18).put(0, report.mission_item).put(2, mission_total(report));
     case MessageId::kExtendedSysState:
       // MAV_LANDED_STATE: 1 on the ground, 2 in the air.
       return PayloadWriter(2).put(1, static_cast<std::uint8_t>(report.in_air ? 2 : 1));
