@@ -70,14 +70,24 @@ class EventLogWriter final : public LogWriter {
   }
 
   Status write_samples(const std::string& prefix, const SensorSamples& samples) override {
-    return with_each_message(samples, [&](const char* name, auto message) {
-      const std::string channel = prefix + name;
-      message.session = session_;
-      message.sequence = ++sequences_[channel];
-      std::int64_t available_ns = message.t_ns;
-      if constexpr (requires { message.delivered_ns; }) available_ns = message.delivered_ns;
-      return write(channel, available_ns, message);
+    // The events of a log are in order of time: seeking bisects them.
+    std::vector<Encoded> events;
+    Status status =
+        with_each_message(samples, [&](const char* name, std::int64_t available_ns, auto message) {
+          Encoded event{available_ns, prefix + name, {}};
+          message.session = session_;
+          message.sequence = ++sequences_[event.channel];
+          Status encoded = encode(event.channel, message, event.bytes);
+          events.push_back(std::move(event));
+          return encoded;
+        });
+    std::stable_sort(events.begin(), events.end(), [](const Encoded& a, const Encoded& b) {
+      return a.stamp_ns < b.stamp_ns;
     });
+    for (auto event = events.begin(); status && event != events.end(); ++event) {
+      status = write_event(event->channel, event->stamp_ns, event->bytes);
+    }
+    return status;
   }
 
   Status finish() override {
@@ -86,18 +96,36 @@ class EventLogWriter final : public LogWriter {
   }
 
  private:
+  struct Encoded {
+    std::int64_t stamp_ns = 0;
+    std::string channel;
+    std::vector<std::uint8_t> bytes;
+  };
+
   template <typename Message>
   Status write(std::string channel, std::int64_t stamp_ns, const Message& message) {
-    bytes_.resize(static_cast<std::size_t>(message.getEncodedSize()));
-    if (message.encode(bytes_.data(), 0, static_cast<int>(bytes_.size())) < 0) {
-      return Error{ErrorCode::kInternal, "cannot encode the message of " + channel};
-    }
+    Status status = encode(channel, message, bytes_);
+    return status ? write_event(channel, stamp_ns, bytes_) : status;
+  }
+
+  template <typename Message>
+  static Status encode(const std::string& channel,
+                       const Message& message,
+                       std::vector<std::uint8_t>& bytes) {
+    bytes.resize(static_cast<std::size_t>(message.getEncodedSize()));
+    if (message.encode(bytes.data(), 0, static_cast<int>(bytes.size())) >= 0) return {};
+    return Error{ErrorCode::kInternal, "cannot encode the message of " + channel};
+  }
+
+  Status write_event(std::string& channel,
+                     std::int64_t stamp_ns,
+                     std::vector<std::uint8_t>& bytes) {
     lcm_eventlog_event_t event{};
     event.timestamp = epoch_utc_us_ + stamp_ns / kNsPerUs;
     event.channellen = static_cast<std::int32_t>(channel.size());
-    event.datalen = static_cast<std::int32_t>(bytes_.size());
+    event.datalen = static_cast<std::int32_t>(bytes.size());
     event.channel = channel.data();
-    event.data = bytes_.data();
+    event.data = bytes.data();
     if (lcm_eventlog_write_event(log_, &event) != 0) return failure();
     return {};
   }

@@ -1,5 +1,6 @@
 #include "server/export/exported_samples.hpp"
 
+#include <limits>
 #include <utility>
 
 #include "flight/gravity.hpp"
@@ -8,6 +9,8 @@
 
 namespace overfly::server {
 namespace {
+
+constexpr std::int64_t kBeforeFlightNs = std::numeric_limits<std::int64_t>::min();
 
 using Readings = Result<std::vector<flight::ImuReading>>;
 
@@ -109,12 +112,16 @@ Result<FrameSamples> FrameSamples::open(const ExportSource& source) {
 }
 
 Status FrameSamples::add_to(MadeFrame& frame) {
+  const std::int64_t previous_ns =
+      previous_ns_.value_or(frame.t_ns > 0 ? frame.t_ns - period_ns_ : kBeforeFlightNs);
+  previous_ns_ = frame.t_ns;
   if (recorded_) {
-    Result<SensorSamples> samples = recorded_->until(frame.t_ns);
+    Result<SensorSamples> samples = recorded_->until(frame.t_ns, previous_ns);
     if (!samples) return samples.error();
     frame.sensors = std::move(*samples);
+  } else {
+    drop_available_at(frame.sensors, previous_ns);
   }
-  if (std::exchange(first_, false)) drop_older_than(frame.sensors, period_ns_);
   return {};
 }
 

@@ -30,8 +30,8 @@ class FrameSamples {
  public:
   /// Errors: as SensorFilesReader::open.
   static Result<FrameSamples> open(const ExportSource& source);
-  /// The first frame gets those of one frame period. Frames must come in order.
-  /// Errors: as SensorFilesReader::until.
+  /// The first frame gets those that became available during one frame period. Frames must come in
+  /// order. Errors: as SensorFilesReader::until.
   [[nodiscard]] Status add_to(MadeFrame& frame);
 
  private:
@@ -39,7 +39,7 @@ class FrameSamples {
 
   std::int64_t period_ns_;
   std::optional<SensorFilesReader> recorded_;  ///< empty: the frame maker has measured
-  bool first_ = true;
+  std::optional<std::int64_t> previous_ns_;    ///< time of the previous frame
 };
 
 }  // namespace overfly::server

@@ -1,5 +1,7 @@
 // LCM event logs: flight.lcm contains the messages that an estimator on LCM receives
 // (vo_bridges/lcm/README.md), and the true poses.
+#include <algorithm>
+#include <limits>
 #include <optional>
 
 #include "middleware/lcm/log_writer.hpp"
@@ -10,6 +12,7 @@ namespace overfly::server {
 namespace {
 
 constexpr std::int64_t kCalibrationPeriodNs = 1'000'000'000;
+constexpr std::int64_t kNeverNs = std::numeric_limits<std::int64_t>::max();
 
 class LcmWriter final : public DatasetWriter {
  public:
@@ -43,10 +46,14 @@ class LcmWriter final : public DatasetWriter {
   Status finish() override { return log_->finish(); }
 
  private:
+  /// Events of a log are in order of time, and the calibration precedes the frame's samples.
   Status calibrate(const MadeFrame& frame) {
+    const std::int64_t earliest_ns = first_available_ns(frame.sensors).value_or(kNeverNs);
     for (std::size_t i = 0; i < cameras_.size(); ++i) {
-      Status status = log_->write_calibration(
-          prefixes_[i], cameras_[i].name, cameras_[i].model, frame.shots[i].stamp_ns);
+      Status status = log_->write_calibration(prefixes_[i],
+                                              cameras_[i].name,
+                                              cameras_[i].model,
+                                              std::min(frame.shots[i].stamp_ns, earliest_ns));
       if (!status) return status;
     }
     return {};

@@ -85,14 +85,14 @@ class RowReader {
     return {};
   }
 
-  Status read_until(std::int64_t t_ns, SensorSamples& samples) {
+  Status read_until(std::int64_t t_ns, std::int64_t after_ns, SensorSamples& samples) {
     while (file_) {
       if (!next_) {
         if (Status status = read_next(); !status) return status;
         if (!next_) return {};
       }
       if (available_ns(*next_) > t_ns) return {};
-      (samples.*Row::kSamples).push_back(*next_);
+      if (available_ns(*next_) > after_ns) (samples.*Row::kSamples).push_back(*next_);
       next_.reset();
     }
     return {};
@@ -209,11 +209,13 @@ Result<SensorFilesReader> SensorFilesReader::open(const fs::path& run_folder) {
   return SensorFilesReader(std::move(files));
 }
 
-Result<SensorSamples> SensorFilesReader::until(std::int64_t t_ns) {
+Result<SensorSamples> SensorFilesReader::until(std::int64_t t_ns, std::int64_t after_ns) {
   SensorSamples samples;
   Status status;
   std::apply(
-      [&](auto&... reader) { (void)(... && (status = reader.read_until(t_ns, samples)).ok()); },
+      [&](auto&... reader) {
+        (void)(... && (status = reader.read_until(t_ns, after_ns, samples)).ok());
+      },
       files_->readers);
   if (!status) return status.error();
   return samples;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <memory>
 
 #include "core/result.hpp"
@@ -43,12 +44,13 @@ class SensorFilesReader {
   SensorFilesReader(SensorFilesReader&& other) noexcept;
   SensorFilesReader& operator=(SensorFilesReader&& other) noexcept;
 
-  /// The samples since the last call that are available at a time: stamped, and delivered by the
-  /// receiver, not after it. Times of calls must not decrease. A last line without line feed, as
+  /// The samples since the last call that are available at a time, without those that were already
+  /// available at `after_ns`. Times of calls must not decrease. A last line without line feed, as
   /// left by a killed program, is not read.
   /// Errors: kIo; kUnreadable naming file, line and reason, also for a time before that of the
   /// previous line.
-  [[nodiscard]] Result<SensorSamples> until(std::int64_t t_ns);
+  [[nodiscard]] Result<SensorSamples> until(
+      std::int64_t t_ns, std::int64_t after_ns = std::numeric_limits<std::int64_t>::min());
 
  private:
   struct Files;

@@ -160,10 +160,6 @@ TEST(LcmExport, GivesEstimatorsTheLumaOfColourImages) {
   EXPECT_EQ(images.front().pixelformat, overfly_lcm::image_t::PIXEL_FORMAT_GREY);
 }
 
-#else
-
-TEST(LcmExport, IsReadBackByLcm) { GTEST_SKIP() << "LCM is not built in"; }
-
 TEST(LcmExport, HasTheSamplesOfSensorsOfTheExportedSpan) {
   const TemporaryFolder folder;
   const ExportSource source = small_source({R"(sensors={"imu":{},"gps":{"delay_s":0.2}})"});
@@ -172,14 +168,25 @@ TEST(LcmExport, HasTheSamplesOfSensorsOfTheExportedSpan) {
   exported(source, options);
   const Log log = read_log(options.folder / "flight.lcm");
   const auto imu = log.decoded<overfly_lcm::imu_t>("OVERFLY_IMU");
-  // From one frame period before the first frame, 1.0 s, to the last, 2.0 s.
+  // A sample is available half a period after its time: those since the frame at 0.9 s, to the last
+  // frame at 2.0 s.
   ASSERT_EQ(imu.size(), 220U);
-  EXPECT_EQ(imu.front().t_ns, 900'000'000 - 5'000'000);
-  EXPECT_EQ(imu.back().t_ns, 1'990'000'000);
+  EXPECT_EQ(imu.front().t_ns, 900'000'000);
+  EXPECT_EQ(imu.back().t_ns, 1'995'000'000);
   const auto gps = log.decoded<overfly_lcm::gps_t>("OVERFLY_GPS");
   ASSERT_FALSE(gps.empty());
+  EXPECT_EQ(gps.front().t_ns, 800'000'000) << "delivered with the first frame";
   for (const overfly_lcm::gps_t& fix : gps) EXPECT_EQ(fix.delivered_ns, fix.t_ns + 200'000'000);
+  std::int64_t before_us = 0;
+  for (const auto& event : log.events) {
+    EXPECT_GE(event.utc_us, before_us) << event.channel;
+    before_us = event.utc_us;
+  }
 }
+
+#else
+
+TEST(LcmExport, IsReadBackByLcm) { GTEST_SKIP() << "LCM is not built in"; }
 
 #endif
 
