@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "flight/live/live_sensors.hpp"
 #include "flight/logs/log_sink.hpp"
 #include "flight/logs/tlog/frame_streams.hpp"
 #include "flight/mavlink/frame.hpp"
@@ -48,7 +49,10 @@ struct LiveStream {
 /// late are put in order; times that are known already are left out. Not thread-safe.
 class LiveSamples final : private logs::LogSink {
  public:
-  LiveSamples() : streams_of_frames_(*this) {}
+  /// @param geoid_separation_m  added to the heights of the vehicle's GPS
+  /// @param autopilot  as LiveSensors
+  explicit LiveSamples(double geoid_separation_m, std::uint8_t autopilot = 0)
+      : streams_of_frames_(*this), sensors_(geoid_separation_m, autopilot) {}
   LiveSamples(const LiveSamples&) = delete;
   LiveSamples& operator=(const LiveSamples&) = delete;
 
@@ -69,6 +73,7 @@ class LiveSamples final : private logs::LogSink {
   [[nodiscard]] std::uint64_t invalid() const { return invalid_; }
   /// Events that were not taken yet, with times of the vehicle's clock; at most kMaxLiveEvents.
   [[nodiscard]] std::deque<FlightEvent>& events() { return events_; }
+  [[nodiscard]] LiveSensors& sensors() { return sensors_; }
 
  private:
   [[nodiscard]] bool stream(logs::StreamId id, const logs::StreamDescription& description) override;
@@ -98,6 +103,7 @@ class LiveSamples final : private logs::LogSink {
   bool full_ = false;
   std::uint64_t invalid_ = 0;
   std::deque<FlightEvent> events_;
+  LiveSensors sensors_;
 };
 
 }  // namespace overfly::flight::live

@@ -21,6 +21,12 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::int64_t kStatusPeriodNs = kNsPerS / 2;
 
+/// 0: not known yet.
+std::uint8_t autopilot_of(const mavlink::Vehicle& vehicle) {
+  const std::optional<mavlink::Heartbeat> heartbeat = vehicle.state().heartbeat;
+  return heartbeat ? heartbeat->autopilot : std::uint8_t{0};
+}
+
 }  // namespace
 
 struct LiveTruth::Impl {
@@ -55,6 +61,7 @@ struct LiveTruth::Impl {
   Impl(std::shared_ptr<mavlink::Vehicle> of, const LocalFrame& in, const LiveTruthOptions& with)
       : vehicle(std::move(of)),
         options(with),
+        samples(with.geoid_separation_m, autopilot_of(*vehicle)),
         stop(with.stop),
         started(with.start.mission_item < 0),
         motion(in, with.geoid_separation_m, with.gap_limit_ns) {}
@@ -134,6 +141,7 @@ bool LiveTruth::Impl::choose() {
   start_ns = first_ns;
   samples.keep_only(chosen->position, chosen->attitude);
   samples.forget_before(start_ns);
+  samples.sensors().forget_before(start_ns);
   return true;
 }
 
@@ -141,6 +149,7 @@ bool LiveTruth::Impl::choose() {
 void LiveTruth::Impl::await_start(const mavlink::Frame& message) {
   start_ns = known_until_ns();
   samples.forget_before(start_ns);
+  samples.sensors().forget_before(start_ns);
   started = message.message_id == static_cast<std::uint32_t>(mavlink::MessageId::kMissionCurrent) &&
             mavlink::decode_mission_sequence(message) >= options.start.mission_item;
 }
@@ -292,6 +301,16 @@ std::optional<VehicleStatus> LiveTruth::take_status(std::int64_t t_ns) {
   status.gaps = impl.motion.gap_count();
   impl.next_status_ns = (t_ns / kStatusPeriodNs + 1) * kStatusPeriodNs;
   return status;
+}
+
+SensorSamples LiveTruth::take_samples(std::int64_t t_ns) {
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->samples.sensors().take_until(impl_->start_ns + t_ns, impl_->start_ns);
+}
+
+std::string LiveTruth::sensor_report() const {
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->samples.sensors().report();
 }
 
 std::int64_t LiveTruth::start_ns() const { return impl_->start_ns; }

@@ -1,6 +1,7 @@
 // What a simulated vehicle tells about itself, as MAVLink messages.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <optional>
 
@@ -30,9 +31,11 @@ struct VehicleReport {
   double throttle = 0.0;
   std::uint16_t mission_item = 0;
   std::uint16_t mission_items = 0;
+  Eigen::Vector3d field_ned_ut = Eigen::Vector3d::Zero();  ///< the earth's magnetic field at home
 };
 
-/// The payload of a message that describes the vehicle; empty for one that it does not send.
+/// The payload of a message that describes the vehicle, or of one of its sensors, which measure
+/// without errors; empty for one that it does not send.
 [[nodiscard]] std::optional<flight::mavlink::PayloadWriter> payload_of(
     flight::mavlink::MessageId id, const VehicleReport& report);
 
