@@ -89,6 +89,7 @@ VehicleReport SimulatedVehicle::report() const {
     report.state.gravity_m_s2 = dynamics::kStandardGravityMS2;
     report.state.specific_force_body_m_s2 = {0.0, 0.0, -dynamics::kStandardGravityMS2};
   }
+  report.height_above_home_m = report.state.position_world_m.z();
   const std::size_t item =
       autopilot_ && mode_ == Mode::kAuto ? autopilot_->pilot().item() : resume_item_;
   if (mode_ == Mode::kAuto && item < flown_.items.size()) {

@@ -69,6 +69,12 @@ PayloadWriter heartbeat(const VehicleReport& report) {
       .put(8, std::uint8_t{3});
 }
 
+PayloadWriter system_time(const VehicleReport& report) {
+  return PayloadWriter(12)
+      .put(0, static_cast<std::uint64_t>(report.unix_ns / 1000))
+      .put(8, boot_ms(report));
+}
+
 PayloadWriter system_status() {
   constexpr std::uint32_t kSensors = 0x2F | 0x200000;  // IMU, magnetometer, pressures, GPS, AHRS
   return PayloadWriter(43)
@@ -120,7 +126,7 @@ PayloadWriter global_position(const VehicleReport& report) {
       .put(4, field<std::int32_t>(1e7 * deg_from_rad(at.lat_rad)))
       .put(8, field<std::int32_t>(1e7 * deg_from_rad(at.lon_rad)))
       .put(12, field<std::int32_t>(1e3 * at.alt_ellipsoid_m))
-      .put(16, field<std::int32_t>(1e3 * report.state.position_world_m.z()))
+      .put(16, field<std::int32_t>(1e3 * report.height_above_home_m))
       .put(20, field<std::int16_t>(v.x()))
       .put(22, field<std::int16_t>(v.y()))
       .put(24, field<std::int16_t>(v.z()))
@@ -295,6 +301,8 @@ std::optional<PayloadWriter> payload_of(MessageId id, const VehicleReport& repor
   switch (id) {
     case MessageId::kHeartbeat:
       return heartbeat(report);
+    case MessageId::kSystemTime:
+      return system_time(report);
     case MessageId::kSysStatus:
       return system_status();
     case MessageId::kAttitude:

@@ -27,7 +27,9 @@ struct VehicleReport {
   bool armed = false;
   bool in_air = false;
   autopilot::FlightState state;
-  LocalFrame frame{Geodetic{}};  ///< origin = home; heights count as above mean sea level
+  LocalFrame frame{Geodetic{}};  ///< heights count as above mean sea level
+  double height_above_home_m = 0.0;
+  std::int64_t unix_ns = 0;  ///< UTC since 1970; 0: not known
   double throttle = 0.0;
   std::uint16_t mission_item = 0;
   std::uint16_t mission_items = 0;
