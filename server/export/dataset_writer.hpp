@@ -44,7 +44,7 @@ struct DatasetPlan {
   bool imu_of_vehicle = false;
   std::vector<flight::ImuReading> imu;     ///< over the exported time span; EuRoC only
   std::vector<AircraftState> states;       ///< one for each IMU sample
-  std::vector<PlannedEstimate> estimates;  ///< of a run; rosbag and MCAP only
+  std::vector<PlannedEstimate> estimates;  ///< of a run; LCM, rosbag, MCAP only
 };
 
 /// Takes the frames in order; writes their images at once and the text files at the end. Images
