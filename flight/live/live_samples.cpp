@@ -107,6 +107,7 @@ void LiveSamples::message(logs::StreamId /*id*/, const std::optional<logs::LogTi
     return;
   }
   latest_ns_ = std::max(latest_ns_.value_or(time->t_ns), time->t_ns);
+  sensors_.take(*frame_, *latest_ns_);
 }
 
 void LiveSamples::local_origin(logs::StreamId id, const logs::LocalOrigin& origin) {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "flight/live/live_sensors.hpp"
 #include "flight/logs/log_sink.hpp"
 #include "flight/logs/tlog/frame_streams.hpp"
 #include "flight/mavlink/frame.hpp"
@@ -49,7 +50,10 @@ struct LiveStream {
 /// late are put in order; times that are known already are left out. Not thread-safe.
 class LiveSamples final : private logs::LogSink {
  public:
-  LiveSamples() : streams_of_frames_(*this) {}
+  /// @param geoid_separation_m  added to the heights of the vehicle's GPS
+  /// @param autopilot  as LiveSensors
+  explicit LiveSamples(double geoid_separation_m, std::uint8_t autopilot = 0)
+      : streams_of_frames_(*this), sensors_(geoid_separation_m, autopilot) {}
   LiveSamples(const LiveSamples&) = delete;
   LiveSamples& operator=(const LiveSamples&) = delete;
 
@@ -73,6 +77,7 @@ class LiveSamples final : private logs::LogSink {
   [[nodiscard]] std::deque<FlightEvent>& events() { return events_; }
   /// Events that were dropped.
   [[nodiscard]] std::uint64_t lost_events() const { return lost_events_; }
+  [[nodiscard]] LiveSensors& sensors() { return sensors_; }
 
  private:
   [[nodiscard]] bool stream(logs::StreamId id, const logs::StreamDescription& description) override;
@@ -103,6 +108,7 @@ class LiveSamples final : private logs::LogSink {
   std::uint64_t invalid_ = 0;
   std::deque<FlightEvent> events_;
   std::uint64_t lost_events_ = 0;
+  LiveSensors sensors_;
 };
 
 }  // namespace overfly::flight::live

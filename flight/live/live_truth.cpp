@@ -25,6 +25,12 @@ constexpr std::size_t kMaxStatusReports = kMaxLiveSamples / 25;
 /// Texts and other instants that a flight records; a vehicle may send any number.
 constexpr std::uint64_t kMaxOtherEvents = 1000;
 
+/// 0: not known yet.
+std::uint8_t autopilot_of(const mavlink::Vehicle& vehicle) {
+  const std::optional<mavlink::Heartbeat> heartbeat = vehicle.state().heartbeat;
+  return heartbeat ? heartbeat->autopilot : std::uint8_t{0};
+}
+
 }  // namespace
 
 struct LiveTruth::Impl {
@@ -62,6 +68,7 @@ struct LiveTruth::Impl {
   Impl(std::shared_ptr<mavlink::Vehicle> of, const LocalFrame& in, const LiveTruthOptions& with)
       : vehicle(std::move(of)),
         options(with),
+        samples(with.geoid_separation_m, autopilot_of(*vehicle)),
         stop(with.stop),
         started(with.start.mission_item < 0),
         motion(in, with.geoid_separation_m, with.gap_limit_ns) {}
@@ -182,6 +189,7 @@ bool LiveTruth::Impl::choose() {
   start_ns = first_ns;
   samples.keep_only(chosen->position, chosen->attitude);
   samples.forget_before(start_ns);
+  samples.sensors().forget_before(start_ns);
   return true;
 }
 
@@ -189,6 +197,7 @@ bool LiveTruth::Impl::choose() {
 void LiveTruth::Impl::await_start(const mavlink::Frame& message) {
   start_ns = known_until_ns();
   samples.forget_before(start_ns);
+  samples.sensors().forget_before(start_ns);
   started = message.message_id == static_cast<std::uint32_t>(mavlink::MessageId::kMissionCurrent) &&
             mavlink::decode_mission_sequence(message) >= options.start.mission_item;
 }
@@ -334,6 +343,16 @@ std::optional<VehicleStatus> LiveTruth::take_status(std::int64_t t_ns) {
   latest->t_ns = std::max<std::int64_t>(latest->t_ns - impl_->start_ns, 0);
   latest->gaps = impl_->motion.gap_count();
   return latest;
+}
+
+SensorSamples LiveTruth::take_samples(std::int64_t t_ns) {
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->samples.sensors().take_until(impl_->start_ns + t_ns, impl_->start_ns);
+}
+
+std::string LiveTruth::sensor_report() const {
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->samples.sensors().report();
 }
 
 std::int64_t LiveTruth::start_ns() const { return impl_->start_ns; }

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cstdio>
 #include <map>
+#include <overfly_lcm/pose_t.hpp>
 #include <overfly_lcm/sim_time_t.hpp>
 #include <overfly_lcm/truth_t.hpp>
+#include <overfly_lcm/world_pose_t.hpp>
 #include <utility>
 #include <vector>
 
@@ -17,6 +19,18 @@ namespace overfly::lcm {
 namespace {
 
 constexpr std::int64_t kNsPerUs = 1000;
+
+template <typename Message>
+void put_pose(const Pose& T, Message& message) {
+  std::copy_n(T.translation.data(), 3, message.position);
+  std::copy_n(T.rotation.coeffs().data(), 4, message.orientation);
+}
+
+std::int8_t state_number(TrackingState state) {
+  if (state == TrackingState::kTracking) return overfly_lcm::pose_t::TRACKING;
+  return state == TrackingState::kLost ? overfly_lcm::pose_t::LOST
+                                       : overfly_lcm::pose_t::INITIALISING;
+}
 
 class EventLogWriter final : public LogWriter {
  public:
@@ -63,9 +77,7 @@ class EventLogWriter final : public LogWriter {
     message.t_ns = truth.t_ns;
     message.stamp_ns = truth.stamp_ns;
     message.frame = truth.frame;
-    const Pose& T = truth.T_world_camera;
-    std::copy_n(T.translation.data(), 3, message.position);
-    std::copy_n(T.rotation.coeffs().data(), 4, message.orientation);
+    put_pose(truth.T_world_camera, message);
     return write(prefix + "TRUTH", truth.stamp_ns, message);
   }
 
@@ -88,6 +100,37 @@ class EventLogWriter final : public LogWriter {
       status = write_event(event->channel, event->stamp_ns, event->bytes);
     }
     return status;
+  }
+
+  Status write_estimate(const std::string& estimator, const EstimateSample& sample) override {
+    const std::string channel = "ESTIMATE_" + estimator + "_POSE";
+    overfly_lcm::pose_t message{};
+    message.utime = sample.t_ns / kNsPerUs;
+    message.t_ns = sample.t_ns;
+    message.session = session_;
+    message.frame = sample.frame;
+    message.sequence = ++sequences_[channel];
+    message.attempt = 1;
+    message.image_received = true;
+    message.image_crc32 = -1;
+    message.state = state_number(sample.state);
+    message.map_id = sample.map_id;
+    const bool tracking = sample.state == TrackingState::kTracking;
+    put_pose(tracking ? sample.T_vo_camera : Pose(), message);
+    if (tracking) message.scene_depth = sample.scene_depth.value_or(0.0);
+    return write(channel, sample.t_ns, message);
+  }
+
+  Status write_world_estimate(const std::string& estimator,
+                              const EstimateSample& sample,
+                              const Pose& T_world_camera) override {
+    overfly_lcm::world_pose_t message{};
+    message.utime = sample.t_ns / kNsPerUs;
+    message.t_ns = sample.t_ns;
+    message.frame = sample.frame;
+    message.map_id = sample.map_id;
+    put_pose(T_world_camera, message);
+    return write("ESTIMATE_" + estimator + "_POSE_WORLD", sample.t_ns, message);
   }
 
   Status finish() override {

@@ -1,5 +1,5 @@
 // LCM event logs: flight.lcm contains the messages that an estimator on LCM receives
-// (vo_bridges/lcm/README.md), and the true poses.
+// (vo_bridges/lcm/README.md), the true poses, and of a run the answers of its estimators.
 #include <algorithm>
 #include <limits>
 #include <optional>
@@ -17,7 +17,8 @@ constexpr std::int64_t kNeverNs = std::numeric_limits<std::int64_t>::max();
 class LcmWriter final : public DatasetWriter {
  public:
   LcmWriter(const DatasetPlan& plan, std::unique_ptr<lcm::LogWriter> log)
-      : cameras_(plan.cameras), log_(std::move(log)) {
+      : cameras_(plan.cameras), estimates_(plan.estimates), log_(std::move(log)) {
+    next_.resize(estimates_.size());
     for (const CameraSpec& camera : cameras_) {
       // The first camera uses the door's own channels, so that its log can be played to an
       // estimator directly.
@@ -40,6 +41,7 @@ class LcmWriter final : public DatasetWriter {
       names[i] = padded(frame.frame, 6);
       if (Status status = write_shot(prefixes_[i], frame, shot); !status) return status.error();
     }
+    if (Status status = write_estimates(frame.frame); !status) return status.error();
     return names;
   }
 
@@ -69,7 +71,29 @@ class LcmWriter final : public DatasetWriter {
                              {frame.frame, frame.t_ns, shot.stamp_ns, shot.drawn.T_world_camera});
   }
 
+  Status write_estimates(std::int64_t frame) {
+    for (std::size_t i = 0; i < estimates_.size(); ++i) {
+      const PlannedEstimate& estimate = estimates_[i];
+      const std::string& name = estimate.track.name;
+      const std::vector<EstimateSample>& samples = estimate.track.samples;
+      while (next_[i] < samples.size() && samples[next_[i]].frame < frame) ++next_[i];
+      if (next_[i] == samples.size() || samples[next_[i]].frame != frame) continue;
+      const EstimateSample& sample = samples[next_[i]];
+      Status status = log_->write_estimate(name, sample);
+      const bool aligned = estimate.S_world_vo && sample.state == TrackingState::kTracking &&
+                           sample.map_id == estimate.map_id;
+      if (status && aligned) {
+        status =
+            log_->write_world_estimate(name, sample, *estimate.S_world_vo * sample.T_vo_camera);
+      }
+      if (!status) return status;
+    }
+    return {};
+  }
+
   std::vector<CameraSpec> cameras_;
+  std::vector<PlannedEstimate> estimates_;
+  std::vector<std::size_t> next_;  ///< sample, by estimator
   std::unique_ptr<lcm::LogWriter> log_;
   std::vector<std::string> prefixes_;  ///< channel prefixes, one for each camera
   std::optional<std::int64_t> next_calibration_ns_;

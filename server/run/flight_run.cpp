@@ -121,7 +121,8 @@ Status FlightRun::describe_end() {
     known.push_back(warning);
     if (Status status = recorder_.log(end_ns(), "warning", warning); !status) return status;
   }
-  return {};
+  const std::string sensors = maker_->sensor_report();
+  return sensors.empty() ? Status() : recorder_.log(end_ns(), "info", sensors);
 }
 
 Status FlightRun::prepare_and_fly() {

@@ -48,7 +48,8 @@ class FlightRun {
   Status close_estimators();
   Status describe_use();
 
-  /// Records what the flight has to report after it: gaps of a live vehicle, why it ended.
+  /// Records what the flight has to report after it: gaps of a live vehicle, why it ended, its
+  /// sensors.
   Status describe_end();
 
   Status fly_lockstep();

@@ -38,7 +38,7 @@ logs::StreamId stream_named(const LiveSamples& samples, const std::string& name)
 }
 
 TEST(LiveSamples, TakeNoneAfterTheFirstThatWasNotKept) {
-  LiveSamples samples;
+  LiveSamples samples(0.0);
   std::uint32_t boot_ms = 1000;
   take_state(samples, boot_ms);
   const logs::StreamId position = stream_named(samples, "GLOBAL_POSITION_INT");
@@ -57,7 +57,7 @@ TEST(LiveSamples, TakeNoneAfterTheFirstThatWasNotKept) {
 }
 
 TEST(LiveSamples, KeepModesBeforeTexts) {
-  LiveSamples samples;
+  LiveSamples samples(0.0);
   take_state(samples, 1000);
   const auto heartbeat = [&](std::uint32_t mode) {
     take_message(samples,

@@ -227,7 +227,7 @@ Status read_estimators(Json& document, const fs::path& base, Scenario& scenario)
       return bad_field(path + ".name", spec->name, "be unique");
     }
     for (const EstimatorSpec& other : scenario.estimators) {
-      Status apart = check_apart(*spec, other, !scenario.sensors.none(), path);
+      Status apart = check_apart(*spec, other, scenario.has_sensors(), path);
       if (!apart) return apart;
     }
     scenario.estimators.push_back(std::move(*spec));
