@@ -2,6 +2,7 @@
 // magnetometer.csv and range.csv of a run folder (docs/RUN_FOLDER.md).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -49,9 +50,13 @@ class SensorFilesReader {
   /// Errors: kIo; kUnreadable naming file, line and reason, also for a time before that of the
   /// previous line.
   [[nodiscard]] Result<SensorSamples> until(std::int64_t t_ns);
+  /// The next samples of each sensor, at most `limit` of each, whatever their times. No samples:
+  /// the end of all files. Errors: as until.
+  [[nodiscard]] Result<SensorSamples> next(std::size_t limit);
 
  private:
   struct Files;
+  [[nodiscard]] Result<SensorSamples> read(std::int64_t t_ns, std::size_t limit);
   explicit SensorFilesReader(std::unique_ptr<Files> files);
   std::unique_ptr<Files> files_;
 };
