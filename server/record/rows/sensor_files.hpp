@@ -2,6 +2,7 @@
 // magnetometer.csv and range.csv of a run folder (docs/RUN_FOLDER.md).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -51,9 +52,15 @@ class SensorFilesReader {
   /// previous line.
   [[nodiscard]] Result<SensorSamples> until(
       std::int64_t t_ns, std::int64_t after_ns = std::numeric_limits<std::int64_t>::min());
+  /// The next samples of each sensor, at most `limit` of each, whatever their times. No samples:
+  /// the end of all files. Errors: as until.
+  [[nodiscard]] Result<SensorSamples> next(std::size_t limit);
 
  private:
   struct Files;
+  [[nodiscard]] Result<SensorSamples> read(std::int64_t t_ns,
+                                           std::int64_t after_ns,
+                                           std::size_t limit);
   explicit SensorFilesReader(std::unique_ptr<Files> files);
   std::unique_ptr<Files> files_;
 };

@@ -29,7 +29,7 @@ void take_state(LiveSamples& samples, std::uint32_t boot_ms) {
                    .put(12, std::int32_t{300000}));
 }
 
-logs::StreamId stream_named(const LiveSamples& samples, const std::string& name) {
+logs::StreamId live_stream_named(const LiveSamples& samples, const std::string& name) {
   for (logs::StreamId i = 0; i < samples.streams().size(); ++i) {
     if (samples.streams()[i].description.name.find(name) != std::string::npos) return i;
   }
@@ -41,8 +41,8 @@ TEST(LiveSamples, TakeNoneAfterTheFirstThatWasNotKept) {
   LiveSamples samples(0.0);
   std::uint32_t boot_ms = 1000;
   take_state(samples, boot_ms);
-  const logs::StreamId position = stream_named(samples, "GLOBAL_POSITION_INT");
-  const logs::StreamId attitude = stream_named(samples, "ATTITUDE");
+  const logs::StreamId position = live_stream_named(samples, "GLOBAL_POSITION_INT");
+  const logs::StreamId attitude = live_stream_named(samples, "ATTITUDE");
   samples.keep_only(position, attitude);
   while (!samples.full()) take_state(samples, boot_ms += 10);
   const auto& positions = samples.streams()[position].positions;
