@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/motion/flight_event.hpp"
+#include "core/sensors/sensor_samples.hpp"
 #include "flight/logs/local_grid.hpp"
 
 namespace overfly::flight::logs {
@@ -44,6 +45,7 @@ struct StreamDescription {
   HeightDatum height = HeightDatum::kMeanSeaLevel;
   bool attitude = false;
   bool imu = false;
+  bool sensors = false;  ///< its messages may hold samples of sensors
   SourceOrigin origin = SourceOrigin::kNone;
   int preference = 0;  ///< among sources of one origin, the smaller the better
 };
@@ -76,7 +78,8 @@ class LogSink {
  public:
   virtual ~LogSink() = default;
 
-  /// A stream is met for the first time. @return whether its positions and attitudes are wanted
+  /// A stream is met for the first time. @return whether its positions, attitudes and samples of
+  /// sensors are wanted
   [[nodiscard]] virtual bool stream(StreamId id, const StreamDescription& description) = 0;
   /// A message of a stream; `time` is empty if its time is unknown.
   virtual void message(StreamId id, const std::optional<LogTime>& time) = 0;
@@ -86,6 +89,12 @@ class LogSink {
   /// @param R_ned_body  need not be normalised. Left out: values that are not finite, and norms
   /// that are not within 10 % of 1
   void attitude(StreamId id, const LogTime& time, const Eigen::Quaterniond& R_ned_body);
+  /// Samples of sensors in a message; their times are those of the clock of `time`.
+  /// @param preference  of several streams with samples of one sensor the lowest is the best
+  virtual void samples(StreamId /*id*/,
+                       const LogTime& /*time*/,
+                       int /*preference*/,
+                       const SensorSamples& /*samples*/) {}
   /// A sample that its sender marks as invalid, e.g. without a fix.
   void no_sample(StreamId id) { take_invalid(id); }
   /// Where a stream's local positions count from, until the next origin of that stream.

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "core/motion/pose.hpp"
 #include "core/time.hpp"
-#include "flight/mavlink/messages.hpp"
 #include "flight/mavlink/payload.hpp"
 
 namespace overfly::flight::mavlink {
@@ -234,6 +234,12 @@ void add_samples(const Frame& frame, const SensorContext& context, SensorSamples
 }
 
 }  // namespace
+
+bool may_have_samples(MessageId id) {
+  return std::any_of(std::begin(kSensorMessages),
+                     std::end(kSensorMessages),
+                     [id](const SensorMessage& message) { return message.id == id; });
+}
 
 std::optional<MessageSamples> sensor_samples_of(const Frame& frame, const SensorContext& context) {
   int preference = 0;

@@ -6,6 +6,7 @@
 
 #include "core/sensors/sensor_samples.hpp"
 #include "flight/mavlink/frame.hpp"
+#include "flight/mavlink/messages.hpp"
 
 namespace overfly::flight::mavlink {
 
@@ -22,6 +23,9 @@ struct MessageSamples {
   int preference = 0;
   SensorSamples samples;  ///< times of the vehicle's clock; at most one of each sensor
 };
+
+/// Whether sensor_samples_of() reads messages of this id.
+[[nodiscard]] bool may_have_samples(MessageId id);
 
 /// The samples in a message, in order of preference:
 ///   IMU, magnetometer:  HIGHRES_IMU, RAW_IMU (of ArduPilot: its definition leaves units open),

@@ -11,10 +11,12 @@ namespace {
 using logs::EventKind;
 using logs::LogEvent;
 
-class FlightWithEvents final : public TruthSource {
+class FlightWithRecords final : public TruthSource {
  public:
-  FlightWithEvents(std::unique_ptr<TruthSource> flight, std::vector<FlightEvent> events)
-      : flight_(std::move(flight)), events_(std::move(events)) {}
+  FlightWithRecords(std::unique_ptr<TruthSource> flight,
+                    std::vector<FlightEvent> events,
+                    std::unique_ptr<SampleSource> sensors)
+      : flight_(std::move(flight)), events_(std::move(events)), sensors_(std::move(sensors)) {}
 
   [[nodiscard]] std::optional<std::int64_t> duration_ns() const override {
     return flight_->duration_ns();
@@ -24,6 +26,7 @@ class FlightWithEvents final : public TruthSource {
   [[nodiscard]] std::optional<std::int64_t> log_start_ns() const override {
     return flight_->log_start_ns();
   }
+  [[nodiscard]] SampleSource* sample_source() override { return sensors_.get(); }
   [[nodiscard]] std::vector<FlightEvent> take_events(std::int64_t t_ns) override {
     std::vector<FlightEvent> taken;
     while (next_ < events_.size() && events_[next_].t_ns <= t_ns) taken.push_back(events_[next_++]);
@@ -38,11 +41,17 @@ class FlightWithEvents final : public TruthSource {
 
   std::unique_ptr<TruthSource> flight_;
   std::vector<FlightEvent> events_;
+  std::unique_ptr<SampleSource> sensors_;
   std::size_t next_ = 0;
 };
 
-/// The run of a vehicle's clock with the most messages.
-std::uint32_t main_run(const logs::OpenedLog& log, const std::string& vehicle) {
+std::optional<FlightEvent> flight_event(const LogEvent& event) {
+  return logs::flight_event_of(event.kind, event.text);
+}
+
+}  // namespace
+
+std::uint32_t main_boot(const logs::OpenedLog& log, const std::string& vehicle) {
   const logs::BootInfo* most = nullptr;
   for (const logs::BootInfo& boot : log.boots) {
     if (boot.vehicle != vehicle) continue;
@@ -50,12 +59,6 @@ std::uint32_t main_run(const logs::OpenedLog& log, const std::string& vehicle) {
   }
   return most != nullptr ? most->number : 0;
 }
-
-std::optional<FlightEvent> flight_event(const LogEvent& event) {
-  return logs::flight_event_of(event.kind, event.text);
-}
-
-}  // namespace
 
 std::vector<FlightEvent> events_of(const logs::OpenedLog& log,
                                    const std::string& source,
@@ -65,7 +68,7 @@ std::vector<FlightEvent> events_of(const logs::OpenedLog& log,
     return info.description.name == source;
   });
   const std::string vehicle = stream != log.streams.end() ? stream->description.vehicle : "";
-  const std::uint32_t run = main_run(log, vehicle);
+  const std::uint32_t run = main_boot(log, vehicle);
   std::vector<FlightEvent> events;
   std::map<FlightEventKind, FlightEvent> in_force;
   std::map<std::int64_t, int> items_at;
@@ -100,9 +103,11 @@ std::vector<FlightEvent> events_of(const logs::OpenedLog& log,
   return events;
 }
 
-std::unique_ptr<TruthSource> with_events(std::unique_ptr<TruthSource> flight,
-                                         std::vector<FlightEvent> events) {
-  return std::make_unique<FlightWithEvents>(std::move(flight), std::move(events));
+std::unique_ptr<TruthSource> with_records(std::unique_ptr<TruthSource> flight,
+                                          std::vector<FlightEvent> events,
+                                          std::unique_ptr<SampleSource> sensors) {
+  return std::make_unique<FlightWithRecords>(
+      std::move(flight), std::move(events), std::move(sensors));
 }
 
 }  // namespace overfly::flight

@@ -8,6 +8,7 @@
 
 #include "core/motion/flight_event.hpp"
 #include "core/motion/truth_source.hpp"
+#include "core/sensors/sample_source.hpp"
 #include "flight/logs/flight_log.hpp"
 
 namespace overfly::flight {
@@ -26,8 +27,12 @@ inline constexpr std::size_t kMaxOtherEvents = 500;
                                                  std::int64_t begin_ns,
                                                  std::int64_t end_ns);
 
-/// The same flight with events. @param events  by time
-[[nodiscard]] std::unique_ptr<TruthSource> with_events(std::unique_ptr<TruthSource> flight,
-                                                       std::vector<FlightEvent> events);
+/// Number of the run of a vehicle's clock with the most messages.
+[[nodiscard]] std::uint32_t main_boot(const logs::OpenedLog& log, const std::string& vehicle);
+
+/// The same flight with events and the aircraft's sensors. @param events  by time
+[[nodiscard]] std::unique_ptr<TruthSource> with_records(std::unique_ptr<TruthSource> flight,
+                                                        std::vector<FlightEvent> events,
+                                                        std::unique_ptr<SampleSource> sensors);
 
 }  // namespace overfly::flight

@@ -13,6 +13,7 @@
 #include "flight/logs/truth/log_trajectory.hpp"
 #include "flight/pose_flight.hpp"
 #include "flight/replay/flight_events.hpp"
+#include "flight/replay/logged_sensors.hpp"
 #include "flight/replay/smooth_log.hpp"
 
 namespace overfly::flight {
@@ -148,6 +149,13 @@ Result<PlacedPoses> place_poses(const logs::LogTrajectory& log, const LogFlightO
   return placed;
 }
 
+SensorRequest sensor_request(const LogFlightOptions& options,
+                             const std::string& source,
+                             std::int64_t begin_ns,
+                             std::int64_t end_ns) {
+  return {source, begin_ns, end_ns, options.geoid_separation_m, options.rebase.has_value()};
+}
+
 Result<std::unique_ptr<TruthSource>> fly_smoothed(const logs::OpenedLog& opened,
                                                   const logs::TrajectoryRequest& request,
                                                   const LogFlightOptions& options,
@@ -172,9 +180,16 @@ Result<std::unique_ptr<TruthSource>> fly_smoothed(const logs::OpenedLog& opened,
                             ", smoothed" + (options.rebase ? ", moved" : "");
   std::vector<FlightEvent> events =
       events_of(opened, log->position_source, log->begin_ns(), log->end_ns());
-  return with_events(std::make_unique<SmoothedFlight>(
-                         std::move(*log), T_world_log, std::move(warnings), std::move(description)),
-                     std::move(events));
+  auto sensors = read_logged_sensors(
+      opened,
+      sensor_request(options, log->position_source, log->begin_ns(), log->end_ns()),
+      cancel);
+  if (!sensors) return sensors.error();
+  return with_records(
+      std::make_unique<SmoothedFlight>(
+          std::move(*log), T_world_log, std::move(warnings), std::move(description)),
+      std::move(events),
+      std::move(*sensors));
 }
 
 }  // namespace
@@ -233,9 +248,14 @@ Result<std::unique_ptr<TruthSource>> fly_flight_log(const std::filesystem::path&
                          "log: " + file.filename().string() + ", " + log->position_source +
                              " with the attitude of " + log->attitude_source +
                              (options.rebase ? ", moved" : ""));
-  return with_events(
-      std::move(flown),
-      events_of(*opened, log->position_source, log->poses.front().t_ns, log->poses.back().t_ns));
+  const std::int64_t begin_ns = log->poses.front().t_ns;
+  const std::int64_t end_ns = log->poses.back().t_ns;
+  auto sensors = read_logged_sensors(
+      *opened, sensor_request(options, log->position_source, begin_ns, end_ns), cancel);
+  if (!sensors) return sensors.error();
+  return with_records(std::move(flown),
+                      events_of(*opened, log->position_source, begin_ns, end_ns),
+                      std::move(*sensors));
 }
 
 }  // namespace overfly::flight

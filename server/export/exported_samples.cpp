@@ -22,7 +22,7 @@ Result<std::vector<ImuSample>> recorded_samples(const RecordedRun& run, std::int
   return std::move(samples->imu);
 }
 
-/// Those of the IMU of a live vehicle; empty if the run recorded none.
+/// Those of the IMU of a live vehicle or of a log; empty if the run recorded none.
 Readings vehicle_readings(const RecordedRun& run, std::int64_t end_ns, DatasetPlan& plan) {
   const Result<std::vector<ImuSample>> samples = recorded_samples(run, end_ns);
   if (!samples) return samples.error();
@@ -103,7 +103,7 @@ Status add_inertial_data(const ExportSource& source,
   Readings readings = std::vector<flight::ImuReading>();
   if (fitted && source.run) {
     readings = recorded_readings(*source.run, *fitted, scenario.seed, end_ns);
-  } else if (!fitted && source.run && scenario.has_sensors()) {
+  } else if (!fitted && source.run) {
     readings = vehicle_readings(*source.run, end_ns, plan);
   }
   if (readings && readings->empty()) {

@@ -1,5 +1,6 @@
 // FlightRun: the estimators before the first frame and after the last.
 #include <utility>
+#include <variant>
 
 #include "server/record/run_folder.hpp"
 #include "server/run/flight_run.hpp"
@@ -62,12 +63,14 @@ Port FlightRun::open_estimator(const EstimatorSpec& spec) {
   }
   const Result<fs::path> folder = output_folder(options_.folder, spec);
   if (!folder) return folder.error();
+  // Logs may have samples of sensors.
+  const bool flies_log = std::holds_alternative<LoggedFlight>(scenario_.flight);
   const EstimatorSetting setting{scenario_.seed,
                                  scenario_.pacing == Pacing::kLockstep,
                                  *folder,
                                  scenario_.rate.hz(),
                                  options_.cancel,
-                                 scenario_.has_sensors()};
+                                 scenario_.has_sensors() || flies_log};
   if (is_outside_estimator(spec.type)) return create_estimator(spec, setting, truth);
   // Also binds the threads that a native estimator starts at once.
   const AffinityGuard guard;

@@ -62,6 +62,10 @@ class DataflashPass {
                     const RecordKind::Stream& stream,
                     const LogTime& time,
                     std::span<const std::uint8_t> record);
+  void take_sensor(const RecordPlan& plan,
+                   const RecordKind::Stream& stream,
+                   const LogTime& time,
+                   std::span<const std::uint8_t> record);
   void take_origin(const RecordPlan& plan, std::span<const std::uint8_t> record);
   void take_simulator_origin(const RecordPlan& plan,
                              const RecordKind::Stream& stream,
@@ -218,11 +222,26 @@ void DataflashPass::take_samples(const RecordKind& kind,
     take_simulator_origin(plan, stream, time, record);
   }
   if (!stream.wanted) return;
+  if (plan.sensor.kind != SensorRecord::kNone) take_sensor(plan, stream, time, record);
   if (plan.fix && number_in(*plan.fix, record) < 3.0) return sink_.no_sample(stream.id);
   if (plan.description.position != PositionKind::kNone) {
     sink_.position(stream.id, time, vector_in(plan.position, record));
   }
   if (plan.description.attitude) sink_.attitude(stream.id, time, attitude_in(plan, record));
+}
+
+void DataflashPass::take_sensor(const RecordPlan& plan,
+                                const RecordKind::Stream& stream,
+                                const LogTime& time,
+                                std::span<const std::uint8_t> record) {
+  const SensorSamples samples = samples_in(plan.sensor, record, time.t_ns);
+  if (samples.empty()) return;
+  constexpr int kInstances = 256;
+  const auto instance = plan.format.instance
+                            ? static_cast<int>(static_cast<std::uint8_t>(
+                                  integer_in(plan.format.fields[*plan.format.instance], record)))
+                            : 0;
+  sink_.samples(stream.id, time, kInstances * plan.sensor.rank + instance, samples);
 }
 
 void DataflashPass::take_origin(const RecordPlan& plan, std::span<const std::uint8_t> record) {

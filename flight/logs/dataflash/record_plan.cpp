@@ -118,6 +118,8 @@ RecordPlan plan_of(const RecordFormat& format) {
   find_source(plan);
   plan.description.imu = fields_named<3>(format, {"GyrX", "GyrY", "GyrZ"}).has_value() ||
                          fields_named<3>(format, {"AccX", "AccY", "AccZ"}).has_value();
+  plan.sensor = sensor_plan_of(format);
+  plan.description.sensors = plan.sensor.kind != SensorRecord::kNone;
   for (const EventRecord& candidate : kEventRecords) {
     if (candidate.name == format.name) plan.event = candidate.kind;
   }

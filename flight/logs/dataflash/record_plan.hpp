@@ -10,6 +10,7 @@
 #include <string>
 
 #include "flight/logs/dataflash/record_format.hpp"
+#include "flight/logs/dataflash/sensor_records.hpp"
 #include "flight/logs/log_sink.hpp"
 
 namespace overfly::flight::logs {
@@ -27,6 +28,7 @@ struct RecordPlan {
   std::optional<std::array<RecordField, 3>> angles;  ///< roll, pitch, yaw
   std::optional<RecordField> fix;                    ///< of GPS: 3 and above is a fix
   std::optional<EventKind> event;
+  SensorPlan sensor;
 };
 
 [[nodiscard]] RecordPlan plan_of(const RecordFormat& format);

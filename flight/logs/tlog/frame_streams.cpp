@@ -5,6 +5,7 @@
 #include "flight/logs/mode_names.hpp"
 #include "flight/logs/tlog/tlog_streams.hpp"
 #include "flight/mavlink/payload.hpp"
+#include "flight/mavlink/sensor_messages.hpp"
 
 namespace overfly::flight::logs {
 namespace {
@@ -37,7 +38,7 @@ FrameStreams::Stream* FrameStreams::stream_of(const Frame& frame, Sender& sender
   const StreamDescription description = describe_stream(frame);
   const auto id = static_cast<StreamId>(streams_.size());
   Stream& stream = streams_[key];
-  stream = {id, sink_.stream(id, description)};
+  stream = {id, sink_.stream(id, description), description.sensors};
   if (description.position == PositionKind::kLocal) {
     sender.local_stream = id;
     if (sender.origin) sink_.local_origin(id, *sender.origin);
@@ -77,7 +78,10 @@ void FrameStreams::pass(const Frame& frame,
                         Sender& sender) {
   sink_.message(stream.id, time);
   if (time && !sender.untimed_events.empty()) pass_untimed_events(sender, time);
-  if (stream.wanted && time) pass_samples(frame, stream.id, *time, sink_);
+  if (stream.wanted && time) {
+    pass_samples(frame, stream.id, *time, sink_);
+    if (stream.sensors) pass_sensors(frame, stream.id, *time, sender);
+  }
   take_origin(frame, sender);
   take_events(frame, time, sender);
 }
@@ -86,6 +90,15 @@ void FrameStreams::pass_untimed_events(Sender& sender, const std::optional<LogTi
   for (auto& [kind, text] : std::exchange(sender.untimed_events, {})) {
     sink_.event({sender.name, time, kind, std::move(text)});
   }
+}
+
+void FrameStreams::pass_sensors(const Frame& frame,
+                                StreamId id,
+                                const LogTime& time,
+                                const Sender& sender) {
+  const std::uint8_t autopilot = sender.heartbeat ? sender.heartbeat->autopilot : std::uint8_t{0};
+  const auto measured = mavlink::sensor_samples_of(frame, {time.t_ns, autopilot, 0.0});
+  if (measured) sink_.samples(id, time, measured->preference, measured->samples);
 }
 
 void FrameStreams::take_origin(const Frame& frame, Sender& sender) {

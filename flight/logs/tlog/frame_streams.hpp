@@ -32,6 +32,7 @@ class FrameStreams {
   struct Stream {
     StreamId id = 0;
     bool wanted = false;
+    bool sensors = false;
   };
   /// A frame whose payload points nowhere, and its payload.
   struct HeldFrame {
@@ -57,6 +58,10 @@ class FrameStreams {
             const Stream& stream,
             Sender& sender);
   void pass_held(Sender& sender);
+  void pass_sensors(const mavlink::Frame& frame,
+                    StreamId id,
+                    const LogTime& time,
+                    const Sender& sender);
   void take_origin(const mavlink::Frame& frame, Sender& sender);
   void take_events(const mavlink::Frame& frame, const std::optional<LogTime>& time, Sender& sender);
   void pass_untimed_events(Sender& sender, const std::optional<LogTime>& time);

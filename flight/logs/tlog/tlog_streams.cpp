@@ -3,6 +3,7 @@
 #include "flight/logs/ned_attitude.hpp"
 #include "flight/mavlink/message_table.hpp"
 #include "flight/mavlink/messages.hpp"
+#include "flight/mavlink/sensor_messages.hpp"
 
 namespace overfly::flight::logs {
 namespace {
@@ -52,6 +53,7 @@ StreamDescription describe_stream(const mavlink::Frame& frame) {
                      (facts != nullptr ? facts->name : "id " + std::to_string(frame.message_id));
   const auto id = static_cast<MessageId>(frame.message_id);
   description.imu = is_imu(id);
+  description.sensors = mavlink::may_have_samples(id);
   for (const SourceFacts& source : kMavlinkSources) {
     if (source.id != id) continue;
     description.position = source.position;

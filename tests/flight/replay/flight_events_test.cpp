@@ -95,10 +95,11 @@ class Rest final : public TruthSource {
 };
 
 TEST(FlightEvents, AreTakenOnceWhenTheirTimeHasCome) {
-  const auto flight = with_events(std::make_unique<Rest>(),
-                                  {{0, FlightEventKind::kMode, "a"},
-                                   {5, FlightEventKind::kOther, "b"},
-                                   {9, FlightEventKind::kMode, "c"}});
+  const auto flight = with_records(std::make_unique<Rest>(),
+                                   {{0, FlightEventKind::kMode, "a"},
+                                    {5, FlightEventKind::kOther, "b"},
+                                    {9, FlightEventKind::kMode, "c"}},
+                                   nullptr);
   EXPECT_EQ(flight->description(), "rest");
   EXPECT_EQ(flight->log_start_ns(), 77);
   EXPECT_EQ((*flight->state_at(7))->t_ns, 7);

@@ -1,0 +1,106 @@
+#include "flight/replay/logged_sensors.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "core/cancel.hpp"
+#include "core/sensors/sensor_tracks.hpp"
+#include "core/time.hpp"
+#include "flight/replay/flight_events.hpp"
+
+namespace overfly::flight {
+namespace {
+
+class LoggedSensors final : public SampleSource {
+ public:
+  explicit LoggedSensors(std::int64_t begin_ns) : begin_ns_(begin_ns) {}
+
+  [[nodiscard]] SensorSamples take_samples(std::int64_t t_ns) override {
+    return tracks.take_until(begin_ns_ + t_ns, begin_ns_);
+  }
+  [[nodiscard]] std::string sensor_report() const override {
+    const std::string sensors = tracks.report("not logged");
+    return sensors.empty() ? sensors : "sensors of the log: " + sensors;
+  }
+
+  SensorTracks tracks{kMaxLoggedSamples};
+
+ private:
+  std::int64_t begin_ns_;
+};
+
+/// Takes the samples of one vehicle in one run of its clock.
+class SensorSink final : public logs::LogSink {
+ public:
+  SensorSink(const logs::OpenedLog& log,
+             const SensorRequest& request,
+             SensorTracks& tracks,
+             const std::atomic<bool>* cancel)
+      : request_(request), tracks_(tracks), cancel_(cancel) {
+    for (const logs::StreamInfo& stream : log.streams) {
+      if (stream.description.name == request.source) vehicle_ = stream.description.vehicle;
+    }
+    boot_ = main_boot(log, vehicle_);
+  }
+
+  [[nodiscard]] bool stream(logs::StreamId id,
+                            const logs::StreamDescription& description) override {
+    names_.resize(std::max<std::size_t>(names_.size(), id + 1));
+    names_[id] = description.name;
+    return description.sensors && description.vehicle == vehicle_;
+  }
+  void message(logs::StreamId /*id*/, const std::optional<logs::LogTime>& /*time*/) override {}
+  void local_origin(logs::StreamId /*id*/, const logs::LocalOrigin& /*origin*/) override {}
+  void event(logs::LogEvent /*event*/) override {}
+  void warning(const std::string& /*text*/) override {}
+  [[nodiscard]] bool progress(std::uint64_t /*bytes*/) override { return !is_cancelled(cancel_); }
+  void samples(logs::StreamId id,
+               const logs::LogTime& time,
+               int preference,
+               const SensorSamples& samples) override {
+    constexpr std::int64_t kMarginNs = 2 * kNsPerS;  // messages are slightly out of order
+    if (time.boot != boot_ || time.t_ns < request_.begin_ns - kMarginNs ||
+        time.t_ns > request_.end_ns + kMarginNs) {
+      return;
+    }
+    SensorSamples kept = samples;
+    if (request_.moved) kept.gps.clear();
+    if (request_.moved) kept.magnetometer.clear();
+    for (GpsSample& gps : kept.gps) gps.place.alt_ellipsoid_m += request_.geoid_separation_m;
+    tracks_.add(preference, names_[id], kept);
+  }
+
+ private:
+  void take_position(logs::StreamId /*id*/,
+                     const logs::LogTime& /*time*/,
+                     const Eigen::Vector3d& /*value*/) override {}
+  void take_attitude(logs::StreamId /*id*/,
+                     const logs::LogTime& /*time*/,
+                     const Eigen::Quaterniond& /*R_ned_body*/) override {}
+  void take_invalid(logs::StreamId /*id*/) override {}
+  [[nodiscard]] logs::PositionKind position_kind(logs::StreamId /*id*/) const override {
+    return logs::PositionKind::kNone;
+  }
+
+  const SensorRequest& request_;
+  SensorTracks& tracks_;
+  const std::atomic<bool>* cancel_;
+  std::string vehicle_;
+  std::uint32_t boot_ = 0;
+  std::vector<std::string> names_;  ///< by StreamId
+};
+
+}  // namespace
+
+Result<std::unique_ptr<SampleSource>> read_logged_sensors(const logs::OpenedLog& log,
+                                                          const SensorRequest& request,
+                                                          const std::atomic<bool>* cancel) {
+  auto sensors = std::make_unique<LoggedSensors>(request.begin_ns);
+  SensorSink sink(log, request, sensors->tracks, cancel);
+  if (Status status = logs::read_log_into(log, sink); !status) return status.error();
+  return std::unique_ptr<SampleSource>(std::move(sensors));
+}
+
+}  // namespace overfly::flight
