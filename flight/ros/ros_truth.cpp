@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
-#include <deque>
+#include <limits>
 #include <mutex>
 #include <set>
 #include <utility>
 
 #include "core/cancellable_wait.hpp"
 #include "core/text/number_text.hpp"
+#include "flight/live/arrivals.hpp"
 #include "flight/live/live_motion.hpp"
 #include "flight/logs/ros/ros_cursor.hpp"
 #include "flight/ros/ros_samples.hpp"
@@ -17,8 +18,6 @@
 
 namespace overfly::flight::ros_live {
 namespace {
-
-using SteadyClock = std::chrono::steady_clock;
 
 /// What a message of mavros_msgs/State says: header, connected, armed, ...
 struct MavrosState {
@@ -86,21 +85,14 @@ class RosTruth final : public TruthSource {
     if (end_ns_) return;
     start_ns_ = known_until_ns();
     samples_.forget_before(start_ns_);
-    heard_ = last_sample_;
+    arrivals_.use_latest();
   }
   [[nodiscard]] std::optional<std::int64_t> heard_ns() const override {
     const std::lock_guard lock(mutex_);
-    if (!heard_) return std::nullopt;
-    return std::chrono::duration_cast<std::chrono::nanoseconds>(heard_->time_since_epoch()).count();
+    return arrivals_.used_ns();
   }
 
  private:
-  /// When the states up to a stamp became known.
-  struct Arrival {
-    std::int64_t known_until_ns = 0;
-    SteadyClock::time_point at;
-  };
-
   void take(const ros1::ListenedMessage& message) {
     {
       const std::lock_guard lock(mutex_);
@@ -115,7 +107,8 @@ class RosTruth final : public TruthSource {
   }
 
   void take_sample(const ros1::ListenedMessage& message) {
-    const std::int64_t before_ns = started_ ? known_until_ns() : 0;
+    const std::int64_t before_ns =
+        started_ ? known_until_ns() : std::numeric_limits<std::int64_t>::min();
     samples_.take(message.topic, message.type, message.bytes);
     if (!started_ && !samples_.positions().empty() && !samples_.attitudes().empty()) {
       start_ns_ = std::max(samples_.positions().front().t_ns, samples_.attitudes().front().t_ns);
@@ -123,11 +116,7 @@ class RosTruth final : public TruthSource {
       if (started_) samples_.forget_before(start_ns_);
     }
     if (!started_) return;
-    if (known_until_ns() > before_ns) {
-      last_sample_ = SteadyClock::now();
-      arrivals_.push_back({known_until_ns(), last_sample_});
-      if (arrivals_.size() > live::kMaxLiveSamples) arrivals_.pop_front();
-    }
+    if (known_until_ns() > before_ns) arrivals_.add(known_until_ns());
     if (!samples_.restarted().empty()) end("the stamps of " + samples_.restarted() + " went back");
   }
 
@@ -154,7 +143,7 @@ class RosTruth final : public TruthSource {
   template <typename Ready>
   Status wait(const std::string& what, const std::atomic<bool>* cancel, const Ready& ready) {
     std::unique_lock lock(mutex_);
-    const SteadyClock::time_point begin = SteadyClock::now();
+    const live::Arrivals::Clock::time_point begin = live::Arrivals::Clock::now();
     const auto failed = [&](const std::string& why) {
       return Error{ErrorCode::kIo, flight_.master_uri + ": " + what + ": " + why};
     };
@@ -169,7 +158,7 @@ class RosTruth final : public TruthSource {
             "the stamps of " + samples_.restarted() +
             " went back before there was a position and an attitude; start the run again");
       }
-      if (SteadyClock::now() - std::max(last_sample_, begin) >= flight_.patience) {
+      if (arrivals_.silence(begin) >= flight_.patience) {
         const double patience_s = std::chrono::duration<double>(flight_.patience).count();
         const std::string missing = started_ ? "no new state" : samples_.missing_text();
         return failed(missing + " within " + number_text(patience_s) +
@@ -198,9 +187,7 @@ class RosTruth final : public TruthSource {
     const std::lock_guard lock(mutex_);
     if (end_ns_ && stamp_ns > *end_ns_) return std::optional<AircraftState>();
     samples_.forget_before(stamp_ns);
-    while (!arrivals_.empty() && arrivals_.front().known_until_ns < stamp_ns) arrivals_.pop_front();
-    heard_.reset();
-    if (!arrivals_.empty()) heard_ = arrivals_.front().at;
+    arrivals_.use(stamp_ns);
     const bool joint = flight_.position_topic() == flight_.attitude_topic();
     AircraftState state = motion_.at(samples_.positions(), samples_.attitudes(), joint, stamp_ns);
     state.t_ns = t_ns;
@@ -215,11 +202,9 @@ class RosTruth final : public TruthSource {
   bool started_ = false;
   bool was_armed_ = false;
   std::int64_t start_ns_ = 0;
-  SteadyClock::time_point last_sample_;
   std::string end_reason_;
   std::optional<std::int64_t> end_ns_;  ///< a stamp
-  std::deque<Arrival> arrivals_;
-  std::optional<SteadyClock::time_point> heard_;  ///< the latest state
+  live::Arrivals arrivals_;
   std::unique_ptr<ros1::TopicListener> listener_;
 };
 
