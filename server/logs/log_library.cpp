@@ -34,20 +34,20 @@ std::string limit_text(const std::optional<std::int64_t>& t_ns) {
 }
 
 /// A column of a table; `factor` converts the unit, `steps` are kept in one unit.
-Json column(const std::vector<logs::SeriesPoint>& points,
+Json column(const std::vector<SeriesPoint>& points,
             std::size_t channel,
             double factor,
             double steps) {
   Json values = Json::array();
-  for (const logs::SeriesPoint& point : points) {
+  for (const SeriesPoint& point : points) {
     values.push_back(std::round(point.values[channel] * factor * steps) / steps);
   }
   return values;
 }
 
-Json times(const std::vector<logs::SeriesPoint>& points) {
+Json times(const std::vector<SeriesPoint>& points) {
   Json values = Json::array();
-  for (const logs::SeriesPoint& point : points) values.push_back(s_from_ns(point.t_ns));
+  for (const SeriesPoint& point : points) values.push_back(s_from_ns(point.t_ns));
   return values;
 }
 
@@ -174,8 +174,7 @@ Result<Json> LogLibrary::series(const std::string& name,
   key += '\n' + request.source + '\n' + std::to_string(request.max_points);
   if (const auto known = series_.find(key)) return *known;
   // Each interval keeps at most two points for each of three values.
-  logs::LogSeriesRequest wanted{request.source,
-                                (request.max_points - 2) / (2 * logs::kSeriesChannels)};
+  logs::LogSeriesRequest wanted{request.source, (request.max_points - 2) / (2 * kSeriesChannels)};
   const Result<logs::LogSeries> series = logs::read_log_series(**log, wanted, cancel);
   if (!series) return series.error();
   auto json = std::make_shared<const Json>(series_json(*series));

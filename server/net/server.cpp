@@ -74,13 +74,13 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options,
   add_run_routes(&context->router, &runs);
   add_result_routes(&context->router, &runs);
   add_frame_routes(&context->router, &runs, &views);
-  add_log_routes(
-      &context->router,
-      {&context->logs,
-       [raw = context.get()](std::function<void()> work, const ReadingThreads::Cancel& cancel) {
-         return raw->readers.take(std::move(work), cancel);
-       },
-       [raw = context.get()](const std::string& what) { raw->log("error", what); }});
+  const ReadingRoutes readers{
+      [raw = context.get()](std::function<void()> work, const ReadingThreads::Cancel& cancel) {
+        return raw->readers.take(std::move(work), cancel);
+      },
+      [raw = context.get()](const std::string& what) { raw->log("error", what); }};
+  add_sensor_routes(&context->router, &runs, readers);
+  add_log_routes(&context->router, {&context->logs, readers});
   context->offload = [workers = &server->impl_->workers](std::function<void()> work) {
     boost::asio::post(workers->loop(), std::move(work));
   };

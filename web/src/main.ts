@@ -18,6 +18,7 @@ import { LogBrowser } from './store/logs/log_browser';
 import { Notices } from './store/notices';
 import { Player } from './store/player';
 import { SceneControl } from './store/scene_control';
+import { Sensors } from './store/sensors';
 import { Session } from './store/session';
 import { Store } from './store/state';
 import { followAddress } from './views/address_bar';
@@ -56,6 +57,7 @@ const catalogue = new Catalogue(store, rest, session, notices, later, newKey);
 
 const alignment = new Alignment(store, rest, session, notices);
 const cameras = new Cameras(store, rest);
+const sensors = new Sensors(store, rest, { now_ms: () => performance.now(), later });
 const logs = new LogBrowser(store, rest, session, uploadByBrowser, newKey);
 
 const context = {
@@ -66,6 +68,7 @@ const context = {
   catalogue,
   alignment,
   cameras,
+  sensors,
   logs,
   notices,
   client,

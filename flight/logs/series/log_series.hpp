@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "core/measure/bounded_series.hpp"
 #include "core/result.hpp"
 #include "flight/logs/flight_log.hpp"
-#include "flight/logs/series/bounded_series.hpp"
 
 namespace overfly::flight::logs {
 

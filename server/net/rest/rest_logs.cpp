@@ -1,12 +1,9 @@
-#include <charconv>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <utility>
 
-#include "core/barrier.hpp"
-#include "core/time.hpp"
 #include "server/net/http/error_response.hpp"
 #include "server/net/rest/rest_api.hpp"
 
@@ -17,43 +14,12 @@ using nlohmann::json;
 using server::LogLibrary;
 using server::UploadRefusal;
 
-/// Times of ROS count from 1970.
-constexpr double kLatestS = 9e9;
-
-Error bad_query(const std::string& name, const std::string& text, const std::string& limit) {
-  constexpr std::size_t kShown = 100;
-  return {ErrorCode::kInvalidArgument,
-          "query." + name + " = " + text.substr(0, kShown) + ": must be " + limit};
-}
-
-template <typename Number>
-std::optional<Number> number_from(const std::string& text) {
-  Number number{};
-  const char* end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, number);
-  if (error != std::errc() || rest != end) return std::nullopt;
-  return number;
-}
-
-Status read_time(const RouteCall& call, const std::string& name, std::optional<std::int64_t>& t) {
-  const auto found = call.query.find(name);
-  if (found == call.query.end()) return {};
-  const auto time_s = number_from<double>(found->second);
-  // Written so that not-a-number is rejected as well.
-  if (!time_s || !(*time_s >= 0.0 && *time_s <= kLatestS)) {
-    return bad_query(name, found->second, "a time in [0, 9e9] s");
-  }
-  t = ns_from_s(*time_s);
-  return {};
-}
-
 Result<flight::logs::LogSlice> slice_of(const RouteCall& call) {
+  const Result<TimeQuery> times = time_query_of(call);
+  if (!times) return times.error();
   flight::logs::LogSlice slice;
-  if (Status status = read_time(call, "from_s", slice.from_ns); !status) return status.error();
-  if (Status status = read_time(call, "to_s", slice.to_ns); !status) return status.error();
-  if (slice.from_ns && slice.to_ns && *slice.from_ns > *slice.to_ns) {
-    return bad_query("to_s", call.query.at("to_s"), "no earlier than query.from_s");
-  }
+  slice.from_ns = times->from_ns;
+  slice.to_ns = times->to_ns;
   return slice;
 }
 
@@ -63,53 +29,11 @@ Result<server::SeriesRequest> series_request_of(const RouteCall& call) {
   if (!slice) return slice.error();
   request.slice = *slice;
   request.source = call.query_or("source", "");
-  const auto found = call.query.find("points");
-  if (found == call.query.end()) return request;
-  const auto points = number_from<std::size_t>(found->second);
-  if (!points || *points < server::kMinSeriesPoints || *points > server::kMaxSeriesPoints) {
-    return bad_query("points",
-                     found->second,
-                     "a whole number in [" + std::to_string(server::kMinSeriesPoints) + ", " +
-                         std::to_string(server::kMaxSeriesPoints) + "]");
-  }
+  const Result<std::size_t> points =
+      points_query_of(call, request.max_points, server::kMinSeriesPoints, server::kMaxSeriesPoints);
+  if (!points) return points.error();
   request.max_points = *points;
   return request;
-}
-
-HttpResponse answer_of(const Result<json>& result) {
-  if (result) return json_response(200, *result);
-  // The log is the client's choice: that it cannot be read is no failure of the server.
-  if (result.error().code == ErrorCode::kUnreadable) {
-    return error_response(422, "unreadable", result.error().message);
-  }
-  return error_response(result.error());
-}
-
-/// Reads on a thread for logs and answers from there.
-void read_and_answer(const LogRoutes& routes,
-                     const RouteCall& call,
-                     const Respond& respond,
-                     std::function<Result<json>(const std::atomic<bool>*)> read) {
-  const auto work = [report = routes.report,
-                     respond,
-                     abandoned = call.request.abandoned,
-                     read = std::move(read)] {
-    if (abandoned && *abandoned) {
-      respond(error_response({ErrorCode::kCancelled, "the client has gone"}));
-      return;
-    }
-    (void)contained([&] { respond(answer_of(read(abandoned.get()))); },
-                    [&](const char* what) {
-                      report(std::string("reading a flight log failed: ") + what);
-                      respond(error_response({ErrorCode::kInternal,
-                                              "internal error: the server's log has the reason"}));
-                    });
-  };
-  const bool taken = routes.read(work, call.request.abandoned);
-  if (!taken) {
-    respond(error_response(
-        503, "too_many_readers", "too many flight logs are being read: try again soon"));
-  }
 }
 
 HttpResponse upload_refused(UploadRefusal refusal, const Error& error) {
@@ -185,7 +109,8 @@ void add_log_routes(RestRouter* router, const LogRoutes& routes) {
           return;
         }
         read_and_answer(
-            routes,
+            routes.readers,
+            "a flight log",
             call,
             respond,
             [library = routes.logs, name = call.path.at("name"), slice = *slice](
@@ -200,7 +125,8 @@ void add_log_routes(RestRouter* router, const LogRoutes& routes) {
                   respond(error_response(request.error()));
                   return;
                 }
-                read_and_answer(routes,
+                read_and_answer(routes.readers,
+                                "a flight log",
                                 call,
                                 respond,
                                 [library = routes.logs,

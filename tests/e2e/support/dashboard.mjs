@@ -75,7 +75,7 @@ export class Dashboard {
     return this.page.evaluate(() =>
       [...document.querySelectorAll('.plot-title .readout')]
         .filter((readout) => {
-          const title = readout.parentElement.getBoundingClientRect();
+          const title = readout.closest('.plot-title').getBoundingClientRect();
           const text = document.createRange();
           text.selectNodeContents(readout);
           const { left, right, bottom } = text.getBoundingClientRect();

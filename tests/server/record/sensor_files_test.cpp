@@ -136,5 +136,25 @@ TEST(SensorFiles, DamagedFilesAreRefusedWithFileAndLine) {
               HasSubstr("range.csv:2: must have less than 1024"));
 }
 
+TEST(SensorFiles, AreReadInPiecesOfALimitedNumberOfSamples) {
+  const TemporaryFolder folder;
+  SensorFilesWriter writer(folder.path());
+  for (std::int64_t i = 0; i < 5; ++i) {
+    SensorSamples samples;
+    samples.imu = samples_at(i).imu;
+    if (i < 3) samples.range = samples_at(i).range;
+    ASSERT_TRUE(writer.add(samples));
+  }
+  SensorFilesReader reader = SensorFilesReader::open(folder.path()).value();
+  const SensorSamples first = reader.next(2).value();
+  EXPECT_EQ(first.imu.size(), 2U);
+  EXPECT_EQ(first.range.size(), 2U);
+  const SensorSamples second = reader.next(2).value();
+  EXPECT_EQ(second.imu.at(1).t_ns, 3);
+  EXPECT_EQ(second.range.size(), 1U);
+  EXPECT_EQ(reader.next(2).value().imu.size(), 1U);
+  EXPECT_TRUE(reader.next(2).value().empty());
+}
+
 }  // namespace
 }  // namespace overfly::server

@@ -4,6 +4,7 @@ import { readFieldErrors } from '../protocol/field_errors';
 import type { LogEntry, LogInfo, LogList, LogSeries } from '../protocol/log_types';
 import type { Cell } from '../protocol/messages';
 import type { Json, JsonObject, Manifest, Run, ScenarioEntry } from '../protocol/rest_types';
+import type { SensorCurves } from '../protocol/sensor_types';
 
 import type { Upload } from './upload';
 
@@ -53,6 +54,20 @@ export class RestClient {
     const place = `/runs/${encodeURIComponent(run)}/trajectories/${encodeURIComponent(name)}`;
     const query = `?format=json&alignment=${encodeURIComponent(alignment)}`;
     return (await this.call('GET', place + query)) as Record<string, Cell[]>;
+  }
+
+  /** @param span_s  null = the whole flight; @param points  most values of a curve */
+  async sensors(
+    run: string,
+    span_s: readonly [number, number] | null,
+    points: number,
+    signal: AbortSignal,
+  ): Promise<SensorCurves[]> {
+    const part =
+      span_s === null ? '' : `&from_s=${span_s[0].toFixed(6)}&to_s=${span_s[1].toFixed(6)}`;
+    const place = `/runs/${encodeURIComponent(run)}/sensors?points=${points}${part}`;
+    const answer = await this.call('GET', place, undefined, {}, signal);
+    return (answer as { sensors: SensorCurves[] }).sensors;
   }
 
   async runs(): Promise<Run[]> {

@@ -17,6 +17,7 @@ import { initialLogPage } from './logs/log_browser';
 import type { PictureRate } from './picture_rates';
 import type { EstimateRows } from './run_data';
 import { RunData } from './run_data';
+import type { SensorSamples } from './sensors';
 
 /** A decoded picture and the instant it belongs to. */
 export interface Picture {
@@ -75,6 +76,10 @@ export interface State {
   aligned: AlignedEstimates | null;
   /** Of the watched run; empty until its manifest was read. */
   cameras: CameraInfo[];
+  /** Read while their plots are shown. */
+  sensors: SensorSamples | null;
+  /** Why the sensors' samples cannot be read. */
+  sensorError: string | null;
   /** null = the first. */
   camera: string | null;
   sceneMode: SceneMode;
@@ -109,6 +114,8 @@ export function initialState(): State {
     alignment: kDefaultAlignment,
     aligned: null,
     cameras: [],
+    sensors: null,
+    sensorError: null,
     camera: null,
     sceneMode: 'chase',
     sceneOrbits: {
@@ -153,6 +160,7 @@ export type Topic =
   | 'pictures'
   | 'scene'
   | 'cameras'
+  | 'sensors'
   | 'notices'
   | 'help'
   | 'logs';

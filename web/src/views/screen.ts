@@ -31,6 +31,7 @@ const kEverything = new Set([
   'pictures',
   'scene',
   'cameras',
+  'sensors',
   'notices',
   'help',
   'logs',

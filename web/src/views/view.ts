@@ -4,6 +4,7 @@ import type { Cameras } from '../store/cameras';
 import type { Store, Topic } from '../store/state';
 import type { Player } from '../store/player';
 import type { SceneControl } from '../store/scene_control';
+import type { Sensors } from '../store/sensors';
 import type { Session } from '../store/session';
 import type { Catalogue } from '../store/catalogue';
 import type { LogBrowser } from '../store/logs/log_browser';
@@ -25,6 +26,7 @@ export interface Context {
   catalogue: Catalogue;
   alignment: Alignment;
   cameras: Cameras;
+  sensors: Sensors;
   logs: LogBrowser;
   notices: Notices;
   client: StreamClient;

@@ -112,6 +112,9 @@ TEST_F(RestApiTest, AnswersEveryRouteAsDocumented) {
   EXPECT_EQ(statuses.at("perfect").at("answered"), 63);
   EXPECT_EQ(statuses.at("perfect").at("hash_mismatches"), 0);
   EXPECT_EQ(statuses.at("perfect").at("resources").at("measured"), "calling_thread");
+  check("GET", one + "/sensors", run + "/sensors?from_s=0&to_s=1&points=100", 200);
+  check("GET", one + "/sensors", run + "/sensors?points=1", 400);
+  check("GET", one + "/sensors", runs + "/none/sensors", 404);
   const std::string trajectories = one + "/trajectories/{name}";
   const Answer tum = check("GET", trajectories, run + "/trajectories/truth", 200);
   EXPECT_GE(std::count(tum.body.begin(), tum.body.end(), '\n'), 62);

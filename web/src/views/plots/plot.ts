@@ -9,13 +9,19 @@ export interface PlotOptions {
   /** Identifies the plot in the page. */
   key: string;
   label: string;
+  /** Explains the label. */
+  hint?: string;
   unit: string;
   /** Digits of the values next to the title. */
   digits: number;
   /** Minimum span of the axis, so that noise does not fill the plot. */
   least: number;
-  /** One for each curve; the first curve is wider and lies below the others. */
+  /** One for each curve. */
   colours: readonly string[];
+  /** In front of the values next to the title, one per curve. */
+  names?: readonly string[];
+  /** The first curve is wider and lies below the others. */
+  widensFirst: boolean;
   /** Whether the time axis has numbers. */
   timeLabels: boolean;
   /** Reports the mouse position for its group of plots. */
@@ -23,7 +29,7 @@ export interface PlotOptions {
   /** Lower limit of good values, drawn as a dashed line. */
   limit?: number;
   onSeek: (t_s: number) => void;
-  onHover: (index: number | null) => void;
+  onHover: (t_s: number | null) => void;
   /** A factor above 1 zooms in; 0 shows all. */
   onZoom: (centre_s: number, factor: number) => void;
 }
@@ -38,7 +44,8 @@ const kZoom_per_px = 0.0015;
 const kSyncKey = 'overfly-plots';
 const kLimitColour = '#eab766';
 
-export type Curve = ArrayLike<number | null>;
+/** null breaks the line; undefined has no point and leaves the line as it is. */
+export type Curve = ArrayLike<number | null | undefined>;
 
 /** Up to three values start at the edge; more use separate rows, so that none is cut off. */
 function crowding(curves: number): string {
@@ -62,7 +69,7 @@ export class Plot {
     );
     const title = h(
       'div',
-      { class: `plot-title${crowding(colours.length)}` },
+      { class: `plot-title${crowding(colours.length)}`, title: options.hint },
       h('b', {}, options.label),
       h('span', { class: 'unit' }, options.unit),
       h('span', { class: 'readouts' }, ...this.readouts),
@@ -88,8 +95,12 @@ export class Plot {
 
   /** Values next to the title, one per curve. */
   showValues(values: (number | null | undefined)[]): void {
-    const { digits } = this.options;
-    this.readouts.forEach((readout, i) => setText(readout, formatNumber(values[i], digits)));
+    const { digits, names } = this.options;
+    this.readouts.forEach((readout, i) => {
+      const name = names?.[i];
+      const value = formatNumber(values[i], digits);
+      setText(readout, name === undefined ? value : `${name} ${value}`);
+    });
   }
 
   destroy(): void {
@@ -151,7 +162,7 @@ export class Plot {
 
   private uplotOptions(colours: readonly string[]): uPlot.Options {
     const axis = { stroke: kText, font: kFont, grid: { stroke: kGrid, width: 1 } };
-    const { timeLabels, onHover, leads, least } = this.options;
+    const { timeLabels, onHover, leads, least, widensFirst } = this.options;
     return {
       width: 200,
       height: 100,
@@ -178,7 +189,7 @@ export class Plot {
         ...colours.map((stroke, i) => ({
           label: String(i),
           stroke,
-          width: i === 0 ? kTruthWidth_px : kEstimateWidth_px,
+          width: i === 0 && widensFirst ? kTruthWidth_px : kEstimateWidth_px,
           pxAlign: 0,
           points: { show: false },
         })),
@@ -188,7 +199,9 @@ export class Plot {
         draw: [(plot: uPlot) => this.placeCursor(plot), (plot: uPlot) => this.drawLimit(plot)],
         setCursor: [
           (plot: uPlot) => {
-            if (leads) onHover(plot.cursor.idx ?? null);
+            const { left } = plot.cursor;
+            if (!leads) return;
+            onHover(left === undefined || left < 0 ? null : plot.posToVal(left, 'x'));
           },
         ],
       },

@@ -18,8 +18,8 @@ export interface Strip {
   draw(state: State, t_s: Float64Array, span_s: Span): void;
   /** Values at the playback cursor; @param row  of its frame */
   showCursor(state: State, row: number): void;
-  /** Values of a row under the mouse. */
-  showRow(state: State, row: number): void;
+  /** Values at the time under the mouse; @param row  of the frame nearest to it */
+  showHover(state: State, t_s: number, row: number): void;
 }
 
 const kAxisLabels: Record<Axis, string> = {
@@ -57,6 +57,7 @@ class PoseStrip implements Strip {
       digits: angle ? 2 : 1,
       least: angle ? 4 : 2,
       colours: [kTruthColour, ...names.map((_, i) => estimateColour(i))],
+      widensFirst: true,
       timeLabels: index >= 3,
       leads: index === 0,
     });
@@ -72,7 +73,7 @@ class PoseStrip implements Strip {
     this.plot.showValues(poses.map((pose) => pose?.[this.axis]));
   }
 
-  showRow(state: State, row: number): void {
+  showHover(state: State, _t_s: number, row: number): void {
     const truth = this.truth.update(state.data);
     const values = [
       state.data.truth.at(this.axis, row),
@@ -148,6 +149,7 @@ class ImageStrip implements Strip {
       least,
       ...(limit === undefined ? {} : { limit }),
       colours: [kImageColour],
+      widensFirst: true,
       timeLabels: index === kImageFigures.length - 1,
       leads: index === 0,
     });
@@ -165,7 +167,11 @@ class ImageStrip implements Strip {
     this.showRow(state, row);
   }
 
-  showRow({ data }: State, row: number): void {
+  showHover(state: State, _t_s: number, row: number): void {
+    this.showRow(state, row);
+  }
+
+  private showRow({ data }: State, row: number): void {
     const { column, per_unit } = this.figure;
     this.plot.showValues([row < 0 ? null : data.truth.at(column, row) / per_unit]);
   }

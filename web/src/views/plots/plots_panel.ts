@@ -1,8 +1,8 @@
-// Plots over time, drawn at most 15 times a second: the pose or the camera's image; or instead the
-// status of the estimators.
+// Plots over time, drawn at most 15 times a second: the pose, the camera's image or the sensors; or
+// instead the status of the estimators.
 import { needsAttention } from '../../store/estimator_status';
 import { formatTime } from '../../store/format';
-import { lastAtOrBefore } from '../../store/table';
+import { lastAtOrBefore, nearestIndex } from '../../store/table';
 import type { Span } from '../../store/time_window';
 import { following, zoomed } from '../../store/time_window';
 import { shownAlignment } from '../../store/state';
@@ -13,6 +13,7 @@ import type { Panel } from '../panel';
 import { frameOf, makePanel } from '../panel';
 import type { PlotActions, Strip } from './plot_strips';
 import { imageStrips, poseStrips } from './plot_strips';
+import { sensorStrips, shownFigures } from './sensor_strips';
 import type { Context, View } from '../view';
 
 const kRedraw_ms = 1000 / 15;
@@ -20,6 +21,7 @@ const kRedraw_ms = 1000 / 15;
 const kGroups = [
   { name: 'pose', label: 'Pose', hint: 'Position and attitude: truth and estimates' },
   { name: 'image', label: 'Image', hint: 'Texels per pixel, exposure and saturation' },
+  { name: 'sensors', label: 'Sensors', hint: 'IMU, GPS, air data, magnetometer, rangefinder' },
   { name: 'estimators', label: 'Estimators', hint: 'State, drops, latency, CPU, memory, log' },
 ] as const;
 type Group = (typeof kGroups)[number]['name'];
@@ -42,7 +44,8 @@ export class PlotsPanel implements View {
   private t_s = new Float64Array(0);
   private drawn_ms = -Infinity;
   private timer = 0;
-  private hovered: number | null = null;
+  /** Time under the mouse. */
+  private hovered_s: number | null = null;
   /** The part zoomed to; null = the whole flight. */
   private window_s: Span | null = null;
 
@@ -55,7 +58,7 @@ export class PlotsPanel implements View {
   }
 
   update(changed: ReadonlySet<Topic>): void {
-    if (changed.has('run') || changed.has('rows')) this.drawSoon();
+    if (changed.has('run') || changed.has('rows') || changed.has('sensors')) this.drawSoon();
     if (changed.has('run') || changed.has('estimators') || changed.has('log')) {
       this.drawTabs();
       if (this.group === 'estimators') this.statuses.draw(this.context.store.state);
@@ -76,13 +79,27 @@ export class PlotsPanel implements View {
 
   private draw(): void {
     const { state } = this.context.store;
+    if (this.group === 'sensors' && state.runId !== null) {
+      this.context.sensors.show(state.runId, this.window_s);
+    } else {
+      this.context.sensors.hide();
+    }
     if (this.key !== this.wantedKey()) this.build();
     const t_ns = state.data.truth.column('t_ns');
     if (this.t_s.length !== t_ns.length) this.t_s = t_ns.map((t) => t / 1e9);
     const span_s = this.window_s ?? this.whole();
     for (const strip of this.strips) strip.draw(state, this.t_s, span_s);
-    this.panel.showEmpty(state.runId === null ? 'Poses of the flight appear here.' : null);
+    this.panel.showEmpty(this.emptyText());
     this.moveCursor();
+  }
+
+  private emptyText(): string | null {
+    const { runId, sensors, sensorError } = this.context.store.state;
+    if (runId === null) return 'Poses of the flight appear here.';
+    if (this.group !== 'sensors') return null;
+    if (sensorError !== null) return sensorError;
+    if (sensors === null) return 'Reading the samples';
+    return this.strips.length === 0 ? 'This aircraft has no sensors besides its cameras.' : null;
   }
 
   private whole(): Span {
@@ -110,7 +127,14 @@ export class PlotsPanel implements View {
   private wantedKey(): string {
     const { state } = this.context.store;
     const names = state.run?.estimators ?? [];
-    const parts = [String(state.runId), state.data.generation, this.group, shownAlignment(state)];
+    const figures = this.group === 'sensors' ? shownFigures(state).map(({ key }) => key) : [];
+    const parts = [
+      String(state.runId),
+      state.data.generation,
+      this.group,
+      shownAlignment(state),
+      ...figures,
+    ];
     return [...parts, ...names].join('/');
   }
 
@@ -123,7 +147,7 @@ export class PlotsPanel implements View {
     for (const { plot } of this.strips) plot.destroy();
     const actions: PlotActions = {
       onSeek: (t_s: number) => this.context.player.seekTime(t_s * 1e9),
-      onHover: (row: number | null) => this.hover(row),
+      onHover: (t_s: number | null) => this.hover(t_s),
       onZoom: (centre_s: number, factor: number) => this.zoom(centre_s, factor),
     };
     this.strips = this.makeStrips(names, actions);
@@ -139,6 +163,7 @@ export class PlotsPanel implements View {
 
   private makeStrips(names: readonly string[], actions: PlotActions): Strip[] {
     if (this.group === 'pose') return poseStrips(names, actions);
+    if (this.group === 'sensors') return sensorStrips(this.context.store.state, actions);
     return this.group === 'image' ? imageStrips(actions) : [];
   }
 
@@ -170,7 +195,7 @@ export class PlotsPanel implements View {
     const t_s = playback === null ? null : playback.t_ns / 1e9;
     for (const { plot } of this.strips) plot.moveCursor(t_s);
     this.panel.showFrame(frameOf(playback));
-    if (this.hovered === null) this.showCursorValues();
+    if (this.hovered_s === null) this.showCursorValues();
   }
 
   private showCursorValues(): void {
@@ -183,11 +208,18 @@ export class PlotsPanel implements View {
   }
 
   /** Shows values under the mouse in place of those at the cursor. */
-  private hover(row: number | null): void {
-    this.hovered = row;
+  private hover(t_s: number | null): void {
+    this.hovered_s = t_s;
+    if (t_s === null) {
+      setText(this.hoverTime, '');
+      this.showCursorValues();
+      return;
+    }
     const { state } = this.context.store;
-    setText(this.hoverTime, row === null ? '' : formatTime(state.data.truth.at('t_ns', row)));
-    if (row === null) this.showCursorValues();
-    else for (const strip of this.strips) strip.showRow(state, row);
+    const { truth } = state.data;
+    const row = nearestIndex(truth.column('t_ns'), t_s * 1e9);
+    const byFrame = this.group !== 'sensors' && row >= 0;
+    setText(this.hoverTime, formatTime(byFrame ? truth.at('t_ns', row) : t_s * 1e9));
+    for (const strip of this.strips) strip.showHover(state, t_s, row);
   }
 }

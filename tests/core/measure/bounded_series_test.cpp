@@ -6,9 +6,9 @@
 #include <limits>
 #include <random>
 
-#include "flight/logs/series/bounded_series.hpp"
+#include "core/measure/bounded_series.hpp"
 
-namespace overfly::flight::logs {
+namespace overfly {
 namespace {
 
 TEST(BoundedSeries, KeepsAllOfAShortSeries) {
@@ -86,4 +86,4 @@ TEST(BoundedSeries, TakesTimesInAnyOrderAndOfAnySize) {
 }
 
 }  // namespace
-}  // namespace overfly::flight::logs
+}  // namespace overfly

@@ -1,8 +1,8 @@
-#include "flight/logs/series/bounded_series.hpp"
+#include "core/measure/bounded_series.hpp"
 
 #include <algorithm>
 
-namespace overfly::flight::logs {
+namespace overfly {
 namespace {
 
 std::int64_t floor_of_ratio(std::int64_t t_ns, std::int64_t width_ns) {
@@ -75,4 +75,4 @@ std::vector<SeriesPoint> BoundedSeries::points() const {
   return points;
 }
 
-}  // namespace overfly::flight::logs
+}  // namespace overfly

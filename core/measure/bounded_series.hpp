@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace overfly::flight::logs {
+namespace overfly {
 
 inline constexpr std::size_t kSeriesChannels = 3;
 
@@ -53,4 +53,4 @@ class BoundedSeries {
   std::uint64_t count_ = 0;
 };
 
-}  // namespace overfly::flight::logs
+}  // namespace overfly

@@ -1,0 +1,99 @@
+#include "server/net/rest/rest_reading.hpp"
+
+#include <utility>
+
+#include "core/barrier.hpp"
+#include "core/time.hpp"
+#include "server/net/http/error_response.hpp"
+
+namespace overfly::net {
+namespace {
+
+using nlohmann::json;
+
+/// Times of ROS count from 1970.
+constexpr double kLatestS = 9e9;
+
+Status read_time(const RouteCall& call, const std::string& name, std::optional<std::int64_t>& t) {
+  const auto found = call.query.find(name);
+  if (found == call.query.end()) return {};
+  const auto time_s = number_from<double>(found->second);
+  // Written so that not-a-number is rejected as well.
+  if (!time_s || !(*time_s >= 0.0 && *time_s <= kLatestS)) {
+    return bad_query(name, found->second, "a time in [0, 9e9] s");
+  }
+  t = ns_from_s(*time_s);
+  return {};
+}
+
+HttpResponse answer_of(const Result<json>& result) {
+  if (result) return json_response(200, *result);
+  // The file is the client's choice: that it cannot be read is no failure of the server.
+  if (result.error().code == ErrorCode::kUnreadable) {
+    return error_response(422, "unreadable", result.error().message);
+  }
+  return error_response(result.error());
+}
+
+}  // namespace
+
+void read_and_answer(const ReadingRoutes& routes,
+                     const std::string& what,
+                     const RouteCall& call,
+                     const Respond& respond,
+                     std::function<Result<json>(const std::atomic<bool>*)> read) {
+  const auto work = [report = routes.report,
+                     what,
+                     respond,
+                     abandoned = call.request.abandoned,
+                     read = std::move(read)] {
+    if (abandoned && *abandoned) {
+      respond(error_response({ErrorCode::kCancelled, "the client has gone"}));
+      return;
+    }
+    (void)contained([&] { respond(answer_of(read(abandoned.get()))); },
+                    [&](const char* reason) {
+                      report("reading " + what + " failed: " + reason);
+                      respond(error_response({ErrorCode::kInternal,
+                                              "internal error: the server's log has the reason"}));
+                    });
+  };
+  const bool taken = routes.read(work, call.request.abandoned);
+  if (!taken) {
+    respond(error_response(503, "too_many_readers", "too much is being read: try again soon"));
+  }
+}
+
+Error bad_query(const std::string& name, const std::string& text, const std::string& limit) {
+  constexpr std::size_t kShown = 100;
+  return {ErrorCode::kInvalidArgument,
+          "query." + name + " = " + text.substr(0, kShown) + ": must be " + limit};
+}
+
+Result<TimeQuery> time_query_of(const RouteCall& call) {
+  TimeQuery times;
+  if (Status status = read_time(call, "from_s", times.from_ns); !status) return status.error();
+  if (Status status = read_time(call, "to_s", times.to_ns); !status) return status.error();
+  if (times.from_ns && times.to_ns && *times.from_ns > *times.to_ns) {
+    return bad_query("to_s", call.query.at("to_s"), "no earlier than query.from_s");
+  }
+  return times;
+}
+
+Result<std::size_t> points_query_of(const RouteCall& call,
+                                    std::size_t absent,
+                                    std::size_t min,
+                                    std::size_t max) {
+  const auto found = call.query.find("points");
+  if (found == call.query.end()) return absent;
+  const auto points = number_from<std::size_t>(found->second);
+  if (!points || *points < min || *points > max) {
+    return bad_query(
+        "points",
+        found->second,
+        "a whole number in [" + std::to_string(min) + ", " + std::to_string(max) + "]");
+  }
+  return *points;
+}
+
+}  // namespace overfly::net
