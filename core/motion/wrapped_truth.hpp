@@ -10,7 +10,7 @@
 
 namespace overfly {
 
-/// Passes on everything but the states.
+/// Passes on everything but the states. A subclass may add events.
 class WrappedTruth : public TruthSource {
  public:
   explicit WrappedTruth(std::unique_ptr<TruthSource> flight) : flight_(std::move(flight)) {}
@@ -24,7 +24,7 @@ class WrappedTruth : public TruthSource {
   }
   [[nodiscard]] std::vector<std::string> warnings() const final { return flight_->warnings(); }
   void begin() final { flight_->begin(); }
-  [[nodiscard]] std::vector<FlightEvent> take_events(std::int64_t t_ns) final {
+  [[nodiscard]] std::vector<FlightEvent> take_events(std::int64_t t_ns) override {
     return flight_->take_events(t_ns);
   }
   [[nodiscard]] std::optional<VehicleStatus> take_status(std::int64_t t_ns) final {

@@ -1,5 +1,6 @@
 #include "flight/replay/smooth_log.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -46,7 +47,11 @@ Result<SmoothedLog> smooth_log(const logs::OpenedLog& log,
                                double geoid_separation_m,
                                const std::atomic<bool>* cancel) {
   const std::string name = log.file.string();
-  Result<logs::LogSamples> samples = logs::read_log_samples(log, request, cancel);
+  logs::TrajectoryRequest wider = request;
+  // The smoother moves the attitudes by the time offset: up to so much outside is needed.
+  wider.attitude_margin_ns =
+      std::max(logs::kMaxAttitudeStepNs, ns_from_s(smoothing::kMaxTimeOffsetS));
+  Result<logs::LogSamples> samples = logs::read_log_samples(log, wider, cancel);
   if (!samples) return samples.error();
   if (!samples->georeferenced) {
     return Error{ErrorCode::kUnsupported,

@@ -9,7 +9,6 @@
 #include "flight/ros/ros_truth.hpp"
 #include "server/camera/airframe_flight.hpp"
 #include "server/record/run_folder.hpp"
-#include "server/record/run_manifest.hpp"
 #include "server/record/truth_samples.hpp"
 
 namespace overfly::server {
@@ -108,6 +107,9 @@ class FlownAgain final : public TruthSource {
     return flown_ns_ > 0 && recorded_ns ? std::min(flown_ns_, *recorded_ns) : recorded_ns;
   }
   [[nodiscard]] std::string description() const override { return record_->description(); }
+  [[nodiscard]] std::optional<std::int64_t> log_start_ns() const override {
+    return record_->log_start_ns();
+  }
   [[nodiscard]] std::vector<std::string> warnings() const override { return record_->warnings(); }
 
  private:
@@ -142,9 +144,10 @@ Result<std::unique_ptr<TruthSource>> open_run_flight(const RunFlight& run,
                        std::to_string(apart.norm()) + " m away from this one's: must be the same"};
     }
   }
-  const std::string flown = manifest->values.flight ? manifest->values.flight->description : "";
+  const RunManifest::Flight flown = manifest->values.flight.value_or(RunManifest::Flight{});
   auto record = open_recorded_flight(truth_samples_file(run.folder),
-                                     "run " + folder_name(run.folder) + ": " + flown);
+                                     "run " + folder_name(run.folder) + ": " + flown.description,
+                                     flown.log_start_ns);
   if (!record) return record.error();
   return std::unique_ptr<TruthSource>(
       std::make_unique<FlownAgain>(std::move(*record), manifest->values.duration_ns));
@@ -192,10 +195,11 @@ Result<std::unique_ptr<TruthSource>> create_truth(const Scenario& scenario,
 }
 
 Result<std::unique_ptr<TruthSource>> open_flown_truth(const std::filesystem::path& folder,
-                                                      const std::string& description,
+                                                      const RunManifest::Flight& flight,
                                                       const Scenario& scenario,
                                                       const terrain::World& world) {
-  auto flown = open_recorded_flight(truth_samples_file(folder), description);
+  auto flown =
+      open_recorded_flight(truth_samples_file(folder), flight.description, flight.log_start_ns);
   if (!flown && flown.error().code == ErrorCode::kNotFound && !scenario.is_live()) {
     return create_truth(scenario, world);
   }

@@ -75,6 +75,8 @@ Json series_json(const logs::LogSeries& series) {
   return {{"position_source", series.position_source},
           {"attitude_source",
            series.attitude_source.empty() ? Json(nullptr) : Json(series.attitude_source)},
+          {"vehicle", series.vehicle},
+          {"run", series.run},
           {"georeferenced", series.georeferenced},
           {"position_count", series.position_count},
           {"attitude_count", series.attitude_count},

@@ -1,6 +1,8 @@
 #include "server/logs/log_uploads.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -13,6 +15,7 @@
 
 #include "flight/logs/flight_log.hpp"
 #include "server/files/plain_name.hpp"
+#include "server/files/take_name.hpp"
 #include "server/logs/log_places.hpp"
 
 namespace overfly::server {
@@ -43,6 +46,38 @@ std::uint64_t bytes_in(const fs::path& folder) {
     if (!ignored) bytes += size;
   }
   return bytes;
+}
+
+/// Removes a part whose upload no process receives any more: whoever receives it holds its lock.
+void remove_if_abandoned(const fs::path& part) {
+  const FileDescriptor file(::open(part.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+  if (file.open() && ::flock(file.get(), LOCK_EX | LOCK_NB) == 0) ::unlink(part.c_str());
+}
+
+/// Creates a part and takes its lock. @param number  no other upload of this process has it
+Result<std::pair<fs::path, FileDescriptor>> create_part(const fs::path& folder,
+                                                        std::uint64_t number) {
+  constexpr int kTries = 100;
+  for (int i = 0; i < kTries; ++i) {
+    const fs::path part =
+        folder / (std::string(kPartPrefix) + std::to_string(::getpid()) + "-" +
+                  std::to_string(number) + (i > 0 ? "-" + std::to_string(i) : ""));
+    FileDescriptor file(
+        ::open(part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0644));
+    if (!file.open()) {
+      // Another server, which may have the same process number in another container.
+      if (errno == EEXIST) continue;
+      return upload_error(part, "create");
+    }
+    // A server that starts now may have taken it for abandoned, before it was locked.
+    struct stat status {};
+    const bool own = ::flock(file.get(), LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+    if (own && ::fstat(file.get(), &status) == 0 && status.st_nlink > 0) {
+      return std::pair(part, std::move(file));
+    }
+  }
+  errno = EEXIST;
+  return upload_error(folder / kPartPrefix, "create");
 }
 
 }  // namespace
@@ -120,15 +155,14 @@ Result<fs::path> LogUpload::finish() {
     if (message.starts_with(own)) message = file_.filename().string() + message.substr(own.size());
     return Error{ErrorCode::kUnreadable, message};
   }
-  part_.close();
-  // Unlike rename, link does not replace a file.
-  if (::link(part_file_.c_str(), file_.c_str()) != 0) {
-    if (errno != EEXIST) return upload_error(file_, "create");
+  const Result<bool> named = take_free_name(part_file_, file_);
+  if (!named) return named.error();
+  if (!*named) {
     return Error{ErrorCode::kConflict,
                  "log \"" + file_.filename().string() + "\" exists already: delete it first"};
   }
-  ::unlink(part_file_.c_str());
   part_file_.clear();
+  part_.close();
   return file_;
 }
 
@@ -140,7 +174,7 @@ LogUploads::LogUploads(const fs::path& folder, const UploadLimits& limits)
   for (fs::directory_iterator entry(room_->folder, failed), end; !failed && entry != end;
        entry.increment(failed)) {
     const fs::path& file = entry->path();
-    if (file.filename().string().starts_with(kPartPrefix)) ::unlink(file.c_str());
+    if (file.filename().string().starts_with(kPartPrefix)) remove_if_abandoned(file);
   }
 }
 
@@ -184,12 +218,10 @@ Result<std::unique_ptr<LogUpload>> LogUploads::begin(const std::string& name,
     refusal = upload->refusal();
     return status.error();
   }
-  const fs::path part = room_->folder / (std::string(kPartPrefix) + std::to_string(::getpid()) +
-                                         "-" + std::to_string(number));
-  upload->part_ = FileDescriptor(
-      ::open(part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0644));
-  if (!upload->part_.open()) return upload_error(part, "create");
-  upload->part_file_ = part;
+  auto part = create_part(room_->folder, number);
+  if (!part) return part.error();
+  upload->part_file_ = std::move(part->first);
+  upload->part_ = std::move(part->second);
   return upload;
 }
 

@@ -57,7 +57,8 @@ class LogUpload {
 /// Thread-safe.
 class LogUploads {
  public:
-  /// Removes what uploads that were not finished have left there.
+  /// Removes what uploads that were not finished have left there, but not those that another server
+  /// is receiving.
   /// @param folder  created with the first upload; empty = uploads are refused
   LogUploads(const std::filesystem::path& folder, const UploadLimits& limits);
 

@@ -109,6 +109,9 @@ Json json_from(const RunManifest& manifest) {
   if (manifest.flight) {
     value["flight"] = {{"description", manifest.flight->description},
                        {"warnings", manifest.flight->warnings}};
+    if (manifest.flight->log_start_ns) {
+      value["flight"]["log_start_ns"] = *manifest.flight->log_start_ns;
+    }
   }
   if (manifest.cameras.empty()) return value;
   value["camera"] = main_camera_json(manifest.cameras.at(kMainCamera));

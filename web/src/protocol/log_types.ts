@@ -46,6 +46,8 @@ export interface LogEvent {
   kind: string;
   text: string;
   vehicle?: string;
+  /** Of the vehicle's clock, which may start again within the log; only with a time. */
+  run?: number;
 }
 
 export interface LogInfo {
@@ -63,6 +65,9 @@ export interface LogInfo {
 export interface LogSeries {
   position_source: string;
   attitude_source: string | null;
+  /** Whose clock, and which run of it, the times are. */
+  vehicle: string;
+  run: number;
   georeferenced: boolean;
   position_count: number;
   attitude_count: number;

@@ -3,7 +3,7 @@ import type { RestClient } from '../../connection/rest_client';
 import { RestError } from '../../connection/rest_client';
 import type { Upload } from '../../connection/upload';
 import type { FieldError } from '../../protocol/field_errors';
-import type { LogInfo, LogList, LogSeries } from '../../protocol/log_types';
+import type { LogEntry, LogInfo, LogList, LogSeries } from '../../protocol/log_types';
 import type { Session } from '../session';
 import type { Store } from '../state';
 import type { LogFlight } from './log_flight';
@@ -54,6 +54,8 @@ export function initialLogPage(): LogPage {
 export class LogBrowser {
   private reading = new AbortController();
   private sending: AbortController | null = null;
+  /** Number of the latest request for the list. */
+  private listing = 0;
 
   constructor(
     private readonly store: Store,
@@ -81,10 +83,15 @@ export class LogBrowser {
   }
 
   async readList(): Promise<void> {
+    const number = ++this.listing;
     try {
-      this.page.list = await this.rest.logs();
+      const list = await this.rest.logs();
+      // A later answer is newer, whichever comes first.
+      if (number !== this.listing) return;
+      this.page.list = list;
       this.page.listError = null;
     } catch (error) {
+      if (number !== this.listing) return;
       this.page.listError = textOf(error);
     }
     this.changed();
@@ -98,12 +105,16 @@ export class LogBrowser {
     page.flight = { ...newLogFlight(page.flight.scenario), estimators: page.flight.estimators };
     page.flightErrors = [];
     await this.read(async (signal) => {
-      page.info = await this.rest.log(name, signal);
-      const best = page.info.truth?.position ?? '';
+      const info = await this.rest.log(name, signal);
+      signal.throwIfAborted();
+      page.info = info;
+      const best = info.truth?.position ?? '';
       // Positions of an unknown place cannot be flown.
-      if (!flyableSources(page.info).includes(best)) page.flight.smooth = false;
+      if (!flyableSources(info).includes(best)) page.flight.smooth = false;
       this.changed();
-      page.series = await this.rest.logSeries(name, '', signal);
+      const series = await this.rest.logSeries(name, '', signal);
+      signal.throwIfAborted();
+      page.series = series;
     });
   }
 
@@ -113,7 +124,9 @@ export class LogBrowser {
     if (name === null) return;
     page.flight.source = source;
     await this.read(async (signal) => {
-      page.series = await this.rest.logSeries(name, source, signal);
+      const series = await this.rest.logSeries(name, source, signal);
+      signal.throwIfAborted();
+      page.series = series;
     });
   }
 
@@ -135,23 +148,20 @@ export class LogBrowser {
       page.upload = { name: file.name, share };
       this.changed();
     };
+    let entry: LogEntry;
     try {
       const name = file.name.replaceAll(/[^\w.-]/g, '_');
-      const entry = await this.rest.uploadLog(
-        this.upload,
-        name,
-        file,
-        progress,
-        this.sending.signal,
-      );
-      page.upload = null;
-      await this.readList();
-      await this.choose(entry.name);
+      entry = await this.rest.uploadLog(this.upload, name, file, progress, this.sending.signal);
     } catch (error) {
       page.uploadError = `${file.name}: ${textOf(error)}`;
+      return;
+    } finally {
+      page.upload = null;
+      this.changed();
     }
-    page.upload = null;
-    this.changed();
+    // The next upload may begin meanwhile.
+    await this.readList();
+    await this.choose(entry.name);
   }
 
   cancelUpload(): void {
@@ -162,6 +172,9 @@ export class LogBrowser {
     try {
       await this.rest.deleteLog(name);
       if (this.page.chosen === name) {
+        this.reading.abort();
+        this.page.reading = false;
+        this.page.error = null;
         this.page.chosen = null;
         this.page.info = null;
         this.page.series = null;
@@ -180,12 +193,14 @@ export class LogBrowser {
     page.starting = true;
     page.flightErrors = [];
     this.changed();
+    // The form as it is now: another log may be chosen meanwhile.
+    const flight = { ...page.flight };
     try {
-      const document = await this.rest.scenario(page.flight.scenario);
-      const { overrides, errors } = logOverrides(page.flight, entry.file, document);
-      page.flightErrors = errors;
+      const document = await this.rest.scenario(flight.scenario);
+      const { overrides, errors } = logOverrides(flight, entry.file, document);
+      if (page.chosen === entry.name) page.flightErrors = errors;
       if (errors.length === 0) {
-        const run = await this.rest.startRun(page.flight.scenario, overrides, this.newKey());
+        const run = await this.rest.startRun(flight.scenario, overrides, this.newKey());
         const { state } = this.store;
         state.runs = [run, ...(state.runs ?? []).filter(({ id }) => id !== run.id)];
         page.open = false;

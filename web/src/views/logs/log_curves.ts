@@ -1,6 +1,6 @@
 // The plots of a log, one below the other, with a lane that names the flight modes.
 import type { LogInfo, LogSeries } from '../../protocol/log_types';
-import { bandHue, marksOf, modeBands } from '../../store/logs/log_bands';
+import { bandHue, eventsOf, marksOf, modeBands } from '../../store/logs/log_bands';
 import type { Band, Mark } from '../../store/logs/log_bands';
 import { broken } from '../../store/logs/log_track';
 import { h, setText } from '../dom';
@@ -105,8 +105,9 @@ export class LogCurves {
     this.shown = series;
     const times = series?.positions['t_s'] ?? [];
     this.span_s = [times[0] ?? 0, times.at(-1) ?? 1];
-    this.bands = info === null ? [] : modeBands(info.events, this.span_s[1]);
-    this.marks = info === null ? [] : marksOf(info.events);
+    const events = info === null || series === null ? [] : eventsOf(info.events, series);
+    this.bands = modeBands(events, this.span_s[1]);
+    this.marks = marksOf(events);
     kCurves.forEach((curve, i) => this.showCurve(curve, this.plots[i], series));
     this.drawLane();
   }

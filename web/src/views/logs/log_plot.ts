@@ -2,7 +2,7 @@
 // slice.
 import uPlot from 'uplot';
 import type { Band, Mark } from '../../store/logs/log_bands';
-import { bandHue } from '../../store/logs/log_bands';
+import { bandHue, marksWithin } from '../../store/logs/log_bands';
 import { formatNumber } from '../../store/format';
 import { h, setText } from '../dom';
 import { paddedRange } from '../plots/plot_range';
@@ -53,6 +53,8 @@ export class LogPlot {
     );
     this.root = h('div', { class: 'plot', 'data-log-plot': options.key }, title, this.area);
     this.plot = new uPlot(this.uplotOptions(), [[], []], this.area);
+    // When the mouse is gone this plot is no longer the one that reports.
+    this.plot.over.addEventListener('mouseleave', () => options.onHover(null));
     new ResizeObserver(() => this.fit()).observe(this.area);
   }
 
@@ -152,7 +154,7 @@ export class LogPlot {
     }
     ctx.strokeStyle = 'rgba(234, 183, 102, 0.45)';
     ctx.beginPath();
-    for (const { t_s, kind } of this.data.marks) {
+    for (const { t_s, kind } of marksWithin(this.data.marks, this.data.span_s)) {
       if (kind === 'text') continue;
       ctx.moveTo(x(t_s), bbox.top);
       ctx.lineTo(x(t_s), bbox.top + bbox.height);
