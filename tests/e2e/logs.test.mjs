@@ -88,7 +88,7 @@ describe('flight logs', { skip, timeout: 900_000 }, () => {
     assert.ok(await drawn('.log-track'));
     assert.ok(await drawn('[data-log-plot=height] canvas'));
     const units = await page.locator('[data-log-plot] .unit').allInnerTexts();
-    assert.deepEqual(units, ['m above mean sea level', 'm/s', '°', '°', '°']);
+    assert.deepEqual(units, ['m above mean sea level', 'm/s', 'deg', 'deg', 'deg']);
   });
 
   step('follows the mouse on the map and in the plots', async () => {

@@ -3,7 +3,7 @@ import type { LogInfo, LogSeries } from '../../protocol/log_types';
 import { bandHue, marksOf, modeBands } from '../../store/logs/log_bands';
 import type { Band, Mark } from '../../store/logs/log_bands';
 import { broken } from '../../store/logs/log_track';
-import { h, setText } from '../dom';
+import { h, setText, wholeLabel } from '../dom';
 import { LogPlot } from './log_plot';
 
 interface Curve {
@@ -48,7 +48,7 @@ const kCurves: readonly Curve[] = [
   ).map(([name, label]) => ({
     key: name,
     label,
-    unit: '°',
+    unit: 'deg',
     digits: 1,
     least: 5,
     wraps: name === 'yaw',
@@ -144,7 +144,7 @@ export class LogCurves {
                 `left:${share(begin_s) * 100}%;width:${(share(end_s) - share(begin_s)) * 100}%;` +
                 `background:hsla(${bandHue(text)}, 60%, 45%, 0.55)`,
             },
-            text,
+            wholeLabel(text),
           ),
         ),
     );
