@@ -21,6 +21,7 @@ import { SceneControl } from './store/scene_control';
 import { Sensors } from './store/sensors';
 import { Session } from './store/session';
 import { Store } from './store/state';
+import { VehicleConnect } from './store/vehicle_connect';
 import { followAddress } from './views/address_bar';
 import { showScreen } from './views/screen';
 
@@ -59,6 +60,7 @@ const alignment = new Alignment(store, rest, session, notices);
 const cameras = new Cameras(store, rest);
 const sensors = new Sensors(store, rest, { now_ms: () => performance.now(), later });
 const logs = new LogBrowser(store, rest, session, uploadByBrowser, newKey);
+const connect = new VehicleConnect(store, rest, session, newKey);
 
 const context = {
   store,
@@ -70,6 +72,7 @@ const context = {
   cameras,
   sensors,
   logs,
+  connect,
   notices,
   client,
 };

@@ -161,6 +161,16 @@ export class RestClient {
   }
 }
 
+/** What to show at the fields of a form; an error of no field has an empty path. */
+export function fieldErrorsOf(error: unknown): FieldError[] {
+  const message = error instanceof Error ? error.message : String(error);
+  if (!(error instanceof RestError)) return [{ field: '', message }];
+  if (error.fieldErrors.length > 0) return error.fieldErrors;
+  // "flight.mavlink: must be ..." of a request that is forbidden.
+  const [, field, rest] = /^([a-z]\w*(?:\.\w+)+): (.+)$/s.exec(message) ?? [];
+  return [field === undefined ? { field: '', message } : { field, message: rest ?? '' }];
+}
+
 interface ErrorDocument {
   error: { code: string; message: string; faults?: unknown };
 }

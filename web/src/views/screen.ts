@@ -1,5 +1,6 @@
 // The layout of the screen.
 import { CameraPanel } from './camera_panel';
+import { ConnectDialog } from './connect_dialog';
 import { ErrorPanel } from './error_panel';
 import { h } from './dom';
 import { HeaderBar } from './header_bar';
@@ -48,6 +49,7 @@ export function showScreen(context: Context, place: HTMLElement): void {
   const timeline = new Timeline(context);
   const above = [
     new LogPageView(context),
+    new ConnectDialog(context),
     new NoticesView(context),
     new HelpOverlay(context),
     new ScenarioEditor(context),

@@ -2,6 +2,7 @@
 import { formatTime } from '../store/format';
 import type { EstimateRows } from '../store/run_data';
 import type { Topic } from '../store/state';
+import { plannedEnd_ns } from '../store/state';
 import { faultMeaning, FaultSpans, kindsOf } from '../store/fault_spans';
 import { FlightBands } from '../store/flight_bands';
 import { bandHue } from '../store/logs/log_bands';
@@ -61,10 +62,11 @@ export class TimelineTrack {
   }
 
   private span_ns(): number {
-    const { run, playback, data } = this.context.store.state;
+    const { state } = this.context.store;
+    const { playback, data } = state;
     const last = data.truth.at('t_ns', data.truth.length - 1);
     return Math.max(
-      run?.duration_ns ?? 0,
+      plannedEnd_ns(state),
       playback?.end_ns ?? 0,
       Number.isNaN(last) ? 0 : last,
       1e9,

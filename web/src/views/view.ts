@@ -8,6 +8,7 @@ import type { Sensors } from '../store/sensors';
 import type { Session } from '../store/session';
 import type { Catalogue } from '../store/catalogue';
 import type { LogBrowser } from '../store/logs/log_browser';
+import type { VehicleConnect } from '../store/vehicle_connect';
 import type { Notices } from '../store/notices';
 import type { StreamClient } from '../connection/stream_client';
 
@@ -28,6 +29,7 @@ export interface Context {
   cameras: Cameras;
   sensors: Sensors;
   logs: LogBrowser;
+  connect: VehicleConnect;
   notices: Notices;
   client: StreamClient;
 }

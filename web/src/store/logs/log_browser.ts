@@ -1,6 +1,6 @@
 // The page of flight logs: listed, uploaded, looked at, flown.
 import type { RestClient } from '../../connection/rest_client';
-import { RestError } from '../../connection/rest_client';
+import { fieldErrorsOf } from '../../connection/rest_client';
 import type { Upload } from '../../connection/upload';
 import type { FieldError } from '../../protocol/field_errors';
 import type { LogInfo, LogList, LogSeries } from '../../protocol/log_types';
@@ -193,8 +193,7 @@ export class LogBrowser {
         this.store.change('lists');
       }
     } catch (error) {
-      const known = error instanceof RestError ? error.fieldErrors : [];
-      page.flightErrors = known.length > 0 ? known : [{ field: '', message: textOf(error) }];
+      page.flightErrors = fieldErrorsOf(error);
     }
     page.starting = false;
     this.changed();
