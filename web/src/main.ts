@@ -15,6 +15,8 @@ import { Alignment } from './store/alignment';
 import { Cameras } from './store/cameras';
 import { Catalogue } from './store/catalogue';
 import { LogBrowser } from './store/logs/log_browser';
+import { LogSmoothing } from './store/logs/log_smoothing';
+import { LogWorlds } from './store/logs/log_worlds';
 import { Notices } from './store/notices';
 import { Player } from './store/player';
 import { SceneControl } from './store/scene_control';
@@ -61,6 +63,8 @@ const cameras = new Cameras(store, rest);
 const sensors = new Sensors(store, rest, { now_ms: () => performance.now(), later });
 const logs = new LogBrowser(store, rest, session, uploadByBrowser, newKey);
 const connect = new VehicleConnect(store, rest, session, newKey);
+const worlds = new LogWorlds(store, rest);
+const smoothing = new LogSmoothing(store, rest, later, newKey);
 
 const context = {
   store,
@@ -72,6 +76,8 @@ const context = {
   cameras,
   sensors,
   logs,
+  smoothing,
+  worlds,
   connect,
   notices,
   client,

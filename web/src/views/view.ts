@@ -8,6 +8,8 @@ import type { Sensors } from '../store/sensors';
 import type { Session } from '../store/session';
 import type { Catalogue } from '../store/catalogue';
 import type { LogBrowser } from '../store/logs/log_browser';
+import type { LogSmoothing } from '../store/logs/log_smoothing';
+import type { LogWorlds } from '../store/logs/log_worlds';
 import type { VehicleConnect } from '../store/vehicle_connect';
 import type { Notices } from '../store/notices';
 import type { StreamClient } from '../connection/stream_client';
@@ -29,6 +31,8 @@ export interface Context {
   cameras: Cameras;
   sensors: Sensors;
   logs: LogBrowser;
+  smoothing: LogSmoothing;
+  worlds: LogWorlds;
   connect: VehicleConnect;
   notices: Notices;
   client: StreamClient;

@@ -84,7 +84,7 @@ export class LogCurves {
         new LogPlot({
           ...curve,
           timeLabels: i === kCurves.length - 1,
-          colour: 'rgb(230, 90, 90)',
+          colours: ['rgb(230, 90, 90)'],
           dots: curve.wraps,
           onHover: (t_s) => this.hover(t_s),
           onSlice: (from_s, to_s) =>
@@ -120,7 +120,14 @@ export class LogCurves {
     const table = series?.[curve.table] ?? {};
     const name = curve.columns.find((column) => column in table) ?? '';
     const lines = broken(table['t_s'] ?? [], table[name] ?? [], curve.wraps);
-    plot.show({ ...lines, span_s: this.span_s, bands: this.bands, marks: this.marks });
+    plot.show({
+      t_s: lines.t_s,
+      curves: [lines.values],
+      dots: [],
+      span_s: this.span_s,
+      bands: this.bands,
+      marks: this.marks,
+    });
     if (curve.key === 'height') {
       const unit = plot.root.querySelector<HTMLElement>('.unit');
       if (unit !== null) setText(unit, kHeightNames[name] ?? 'm');
