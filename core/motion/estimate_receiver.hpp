@@ -24,6 +24,8 @@ class EstimateReceiver {
 
   /// Takes the next answer; does not wait for the vehicle.
   virtual void take(const PlacedEstimate& estimate) = 0;
+  /// Ends the sending, before the report.
+  virtual void finish() = 0;
   /// What was sent so far and what was left out, for the run's log.
   [[nodiscard]] virtual std::string report() const = 0;
 };

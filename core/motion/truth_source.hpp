@@ -15,6 +15,8 @@
 
 namespace overfly {
 
+class SampleSource;
+
 /// The aircraft at one instant.
 struct AircraftState {
   std::int64_t t_ns = 0;
@@ -63,6 +65,8 @@ class TruthSource {
   [[nodiscard]] virtual std::optional<VehicleStatus> take_status(std::int64_t /*t_ns*/) {
     return std::nullopt;
   }
+  /// The sensors of the aircraft that flies, until the flight goes; null for flights without.
+  [[nodiscard]] virtual SampleSource* sample_source() { return nullptr; }
   /// Takes estimates back to the vehicle that flies; null if it wants none.
   [[nodiscard]] virtual std::shared_ptr<EstimateReceiver> estimate_receiver() const {
     return nullptr;

@@ -30,6 +30,7 @@ class WrappedTruth : public TruthSource {
   [[nodiscard]] std::optional<VehicleStatus> take_status(std::int64_t t_ns) final {
     return flight_->take_status(t_ns);
   }
+  [[nodiscard]] SampleSource* sample_source() final { return flight_->sample_source(); }
   [[nodiscard]] std::shared_ptr<EstimateReceiver> estimate_receiver() const final {
     return flight_->estimate_receiver();
   }

@@ -16,6 +16,16 @@ void append_samples(std::vector<Sample>& to, std::vector<Sample>& from) {
   }
 }
 
+template <typename Samples, typename Visit>
+void with_each_list(Samples& samples, const Visit& visit) {
+  visit(samples.imu);
+  visit(samples.barometer);
+  visit(samples.gps);
+  visit(samples.airspeed);
+  visit(samples.magnetometer);
+  visit(samples.range);
+}
+
 }  // namespace
 
 void append(SensorSamples& to, SensorSamples&& from) {
@@ -27,28 +37,31 @@ void append(SensorSamples& to, SensorSamples&& from) {
   append_samples(to.range, from.range);
 }
 
-void drop_older_than(SensorSamples& samples, std::int64_t age_ns) {
-  std::int64_t newest_ns = std::numeric_limits<std::int64_t>::min();
-  const auto see = [&](const auto& list) {
-    if (!list.empty()) newest_ns = std::max(newest_ns, list.back().t_ns);
-  };
-  const auto drop = [&](auto& list) {
-    const auto kept = std::find_if(list.begin(), list.end(), [&](const auto& sample) {
-      return sample.t_ns >= newest_ns - age_ns;
-    });
+std::optional<std::int64_t> first_available_ns(const SensorSamples& samples) {
+  std::optional<std::int64_t> first_ns;
+  with_each_list(samples, [&](const auto& list) {
+    if (list.empty()) return;
+    const std::int64_t t_ns = available_ns(list.front());
+    first_ns = std::min(first_ns.value_or(t_ns), t_ns);
+  });
+  return first_ns;
+}
+
+void drop_available_at(SensorSamples& samples, std::int64_t t_ns) {
+  with_each_list(samples, [&](auto& list) {
+    const auto kept = std::find_if(
+        list.begin(), list.end(), [&](const auto& sample) { return available_ns(sample) > t_ns; });
     list.erase(list.begin(), kept);
-  };
-  const auto with_each = [&](const auto& visit) {
-    visit(samples.imu);
-    visit(samples.barometer);
-    visit(samples.gps);
-    visit(samples.airspeed);
-    visit(samples.magnetometer);
-    visit(samples.range);
-  };
+  });
+}
+
+void drop_older_than(SensorSamples& samples, std::int64_t age_ns) {
   if (samples.empty()) return;
-  with_each(see);
-  with_each(drop);
+  std::int64_t newest_ns = std::numeric_limits<std::int64_t>::min();
+  with_each_list(samples, [&](const auto& list) {
+    if (!list.empty()) newest_ns = std::max(newest_ns, available_ns(list.back()));
+  });
+  drop_available_at(samples, newest_ns - age_ns - 1);
 }
 
 }  // namespace overfly

@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/earth/geodesy.hpp"
@@ -18,6 +19,7 @@ struct ImuSample {
   std::int64_t t_ns = 0;  ///< the middle of the interval over which the unit averaged
   Eigen::Vector3d acceleration_m_s2 = Eigen::Vector3d::Zero();  ///< at rest: gravity upwards
   Eigen::Vector3d angular_rate_rad_s = Eigen::Vector3d::Zero();
+  std::int64_t interval_ns = 0;  ///< the length of this interval; 0: not known
 };
 
 /// Static pressure and temperature of the air.
@@ -61,7 +63,20 @@ struct RangeSample {
   double range_m = 0.0;  ///< +infinity: no echo within the sensor's limits
 };
 
-/// Samples of one stretch of time, each list ordered by time (of delivery, where a sample has one).
+/// When a sample is available: not before the end of the interval that it was averaged over, or
+/// before the receiver sent it.
+template <typename Sample>
+[[nodiscard]] std::int64_t available_ns(const Sample& sample) {
+  return sample.t_ns;
+}
+[[nodiscard]] inline std::int64_t available_ns(const ImuSample& sample) {
+  return sample.t_ns + sample.interval_ns / 2;
+}
+[[nodiscard]] inline std::int64_t available_ns(const GpsSample& sample) {
+  return sample.delivered_ns;
+}
+
+/// Samples of one stretch of time, each list ordered by the time at which they were available.
 struct SensorSamples {
   std::vector<ImuSample> imu;
   std::vector<BarometerSample> barometer;
@@ -78,7 +93,11 @@ struct SensorSamples {
 
 /// Moves the samples behind those already there.
 void append(SensorSamples& to, SensorSamples&& from);
-/// Removes the samples that were measured more than `age_ns` before the newest one.
+/// When the first of them was available; empty without samples.
+[[nodiscard]] std::optional<std::int64_t> first_available_ns(const SensorSamples& samples);
+/// Removes the samples that were available at a time.
+void drop_available_at(SensorSamples& samples, std::int64_t t_ns);
+/// Removes the samples that were available more than `age_ns` before the newest one.
 void drop_older_than(SensorSamples& samples, std::int64_t age_ns);
 
 }  // namespace overfly

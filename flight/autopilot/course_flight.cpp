@@ -44,6 +44,7 @@ Mission course_mission(const flight::CourseParameters& course,
     item.position_m = position_of(at);
     item.above_ground = aircraft.follow_ground;
     item.height_m = course.height_agl_m + (aircraft.follow_ground ? 0.0 : track_ground_up_m);
+    item.number = static_cast<std::uint16_t>(mission.items.size() + 1);
     mission.items.push_back(item);
   };
   add(track.at(turn_s));

@@ -27,7 +27,7 @@ struct MissionItem {
   std::optional<double> turns;
   std::optional<double> time_s;
   double airspeed_m_s = 0.0;     ///< of kSetSpeed
-  std::uint16_t number = 0;      ///< of the ground station's item it came from
+  std::uint16_t number = 0;      ///< in the mission's file or at the ground station
   double accept_radius_m = 0.0;  ///< of a waypoint; 0: WP_RADIUS or the turn's lead
 };
 

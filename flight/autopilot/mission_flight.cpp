@@ -69,6 +69,13 @@ Result<dynamics::Aircraft> start_of_flight(const MissionSetup& setup) {
       aircraft, setup.parameters.airspeed_cruise, *setup.start_world_m, setup.heading_rad);
 }
 
+/// The item as the mission's file numbers it; the last one when the mission is done.
+std::string item_text(const MissionFlight& flight) {
+  const std::vector<MissionItem>& items = flight.setup().mission.items;
+  const std::size_t item = std::min(flight.autopilot().pilot().item(), items.size() - 1);
+  return "mission item " + std::to_string(items[item].number);
+}
+
 std::string end_warning(const MissionFlight& flight) {
   const Eigen::Vector3d& at = flight.aircraft().state().position_world_m;
   const std::string when =
@@ -77,14 +84,13 @@ std::string end_warning(const MissionFlight& flight) {
   const MissionPilot& pilot = flight.autopilot().pilot();
   switch (flight.end().value_or(FlightEnd::kTimeLimit)) {
     case FlightEnd::kHitGround:
-      return "the aircraft hit the ground" + when + " (mission item " +
-             std::to_string(pilot.item() + 1) + ", " + name_of(pilot.phase()) + ")";
+      return "the aircraft hit the ground" + when + " (" + item_text(flight) + ", " +
+             name_of(pilot.phase()) + ")";
     case FlightEnd::kTimeLimit:
       // A shorter flight was asked for.
       if (flight.setup().duration_max_s < kFlightMaxS) return {};
-      return "the time limit ended the flight" + when + " in mission item " +
-             std::to_string(pilot.item() + 1) + " of " +
-             std::to_string(flight.setup().mission.items.size());
+      return "the time limit ended the flight" + when + " in " + item_text(flight) +
+             ", the last is " + std::to_string(flight.setup().mission.items.back().number);
     default:
       return {};
   }
@@ -153,9 +159,7 @@ class MissionTruth final : public TruthSource {
     phase_ = pilot.phase();
     const bool flown = pilot.item() < flight_.setup().mission.items.size();
     if (item_ != pilot.item() && flown) {
-      events_.push_back({flight_.t_ns(),
-                         FlightEventKind::kMissionItem,
-                         "mission item " + std::to_string(pilot.item() + 1)});
+      events_.push_back({flight_.t_ns(), FlightEventKind::kMissionItem, item_text(flight_)});
     }
     item_ = pilot.item();
   }

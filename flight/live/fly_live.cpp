@@ -1,5 +1,6 @@
 #include "flight/live/fly_live.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -52,6 +53,34 @@ Status request_rates(mavlink::Exchange& exchange, const LiveFlight& flight) {
   return {};
 }
 
+/// Asks for the messages of the vehicle's sensors: of each sensor for the best one that it has.
+Status request_sensor_rates(mavlink::Exchange& exchange, const LiveFlight& flight) {
+  if (flight.sensor_rate_hz <= 0.0) return {};
+  constexpr std::uint8_t kArduPilot = 3;
+  const MessageId other_imu =
+      exchange.target().autopilot == kArduPilot ? MessageId::kRawImu : MessageId::kScaledImu;
+  struct Sensor {
+    std::vector<MessageId> messages;  ///< the first is the best
+    double most_hz;
+  };
+  const Sensor sensors[] = {
+      {{MessageId::kHighresImu, other_imu}, 1000.0},
+      {{MessageId::kScaledPressure}, 20.0},
+      {{MessageId::kAirspeed, MessageId::kVfrHud}, 20.0},
+      {{MessageId::kGpsRawInt}, 10.0},
+      {{MessageId::kDistanceSensor, MessageId::kRangefinder}, 20.0},
+  };
+  for (const Sensor& sensor : sensors) {
+    for (const MessageId message : sensor.messages) {
+      const double rate_hz = std::min(flight.sensor_rate_hz, sensor.most_hz);
+      const auto requested = mavlink::request_message_rate(exchange, message, rate_hz);
+      if (!requested) return requested.error();
+      if (*requested == mavlink::RateRequest::kInterval) break;
+    }
+  }
+  return {};
+}
+
 /// Whether the vehicle's mission is the one that was sent. Item 0 is the home position, which
 /// ArduPilot keeps for itself; it rounds positions to 1e-7 deg and heights to 0.01 m.
 bool is_same_mission(const std::vector<mavlink::MissionItem>& sent,
@@ -83,6 +112,7 @@ Status set_mission(mavlink::Exchange& exchange, const std::filesystem::path& fil
 
 Status prepare(mavlink::Exchange& exchange, const LiveFlight& flight, const LocalFrame& frame) {
   if (Status status = request_rates(exchange, flight); !status) return status;
+  if (Status status = request_sensor_rates(exchange, flight); !status) return status;
   for (const auto& [name, value] : flight.parameters) {
     if (Status status = mavlink::set_parameter(exchange, name, value); !status) return status;
   }

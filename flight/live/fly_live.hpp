@@ -27,6 +27,9 @@ struct LiveFlight {
   /// If given, only messages signed with this key are accepted, and all that is sent is signed.
   std::optional<std::filesystem::path> signing_key_file;
   double rate_hz = 0.0;  ///< to ask for, of the messages of the truth; 0: as the vehicle sends them
+  /// To ask for, of the vehicle's IMU; its other sensors are asked for at up to 20 Hz, the GPS at
+  /// up to 10 Hz. 0: all as the vehicle sends them.
+  double sensor_rate_hz = 0.0;
   std::map<std::string, double> parameters;           ///< set in the order of their names
   std::optional<std::filesystem::path> mission_file;  ///< replaces the vehicle's mission
   bool arm_and_start = false;                         ///< arms, and starts the mission

@@ -1,9 +1,11 @@
 #include "flight/live/live_motion.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "core/time.hpp"
+#include "flight/dynamics/environment.hpp"
 #include "flight/logs/ned_attitude.hpp"
 
 namespace overfly::flight::live {
@@ -19,6 +21,16 @@ typename std::deque<Sample>::const_iterator not_before(const std::deque<Sample>&
         return sample.t_ns < t;
       });
 }
+
+/// The constant rate, about the body's axes, that turns one attitude into the other.
+Eigen::Vector3d mean_rate(const LiveAttitude& from, const LiveAttitude& to) {
+  Eigen::Quaterniond step = from.R_ned_body.conjugate() * to.R_ned_body;
+  if (step.w() < 0.0) step.coeffs() = -step.coeffs();
+  const Eigen::AngleAxisd turn(step);
+  return turn.axis() * (turn.angle() / s_from_ns(to.t_ns - from.t_ns));
+}
+
+constexpr double kSeaLevelDensityKgM3 = 1.225;
 
 }  // namespace
 
@@ -39,8 +51,18 @@ AircraftState LiveMotion::state_of(const LivePosition& position) const {
   state.t_ns = position.t_ns;
   state.T_world_body.translation = frame_.world_from_geodetic(point);
   state.v_body_world_m_s = frame_.R_world_enu_at(point) * (logs::R_enu_ned() * position.v_ned_m_s);
-  state.airspeed_m_s = position.airspeed_m_s;
+  if (position.indicated_airspeed_m_s >= 0.0) {
+    // MAVLink has the indicated airspeed; the state has the true one.
+    const double density = dynamics::standard_density_kg_m3(point.alt_ellipsoid_m);
+    state.airspeed_m_s =
+        position.indicated_airspeed_m_s * std::sqrt(kSeaLevelDensityKgM3 / density);
+  }
   return state;
+}
+
+/// Without an airspeed the ground speed takes its place.
+void LiveMotion::complete_airspeed(const LivePosition& position, AircraftState& state) {
+  if (position.indicated_airspeed_m_s < 0.0) state.airspeed_m_s = state.v_body_world_m_s.norm();
 }
 
 void LiveMotion::note_gap(std::int64_t begin_ns, std::int64_t end_ns) {
@@ -65,17 +87,16 @@ void LiveMotion::set_attitude(const std::deque<LiveAttitude>& attitudes,
   if (a.t_ns != b.t_ns) {
     // Of one stream the gap of the positions is the same.
     if (!joint) note_gap(a.t_ns, b.t_ns);
-    const double dt_s = s_from_ns(b.t_ns - a.t_ns);
-    const double part = s_from_ns(t_ns - a.t_ns) / dt_s;
+    const double part = s_from_ns(t_ns - a.t_ns) / s_from_ns(b.t_ns - a.t_ns);
     R_ned_body = a.R_ned_body.slerp(part, b.R_ned_body);
     if (a.has_rate && b.has_rate) {
       rate_rad_s = (1.0 - part) * a.rate_rad_s + part * b.rate_rad_s;
     } else {
-      Eigen::Quaterniond step = a.R_ned_body.conjugate() * b.R_ned_body;
-      if (step.w() < 0.0) step.coeffs() = -step.coeffs();
-      const Eigen::AngleAxisd turn(step);
-      rate_rad_s = turn.axis() * (turn.angle() / dt_s);
+      rate_rad_s = mean_rate(a, b);
     }
+  } else if (!b.has_rate && attitudes.size() > 1) {
+    const bool is_first = after == attitudes.begin();
+    rate_rad_s = is_first ? mean_rate(b, *std::next(after)) : mean_rate(*std::prev(after), b);
   }
   const Geodetic point = frame_.geodetic_from_world(state.T_world_body.translation);
   state.T_world_body.rotation =
@@ -97,6 +118,7 @@ AircraftState LiveMotion::at(const std::deque<LivePosition>& positions,
           (state_of(*other).T_world_body.translation - state.T_world_body.translation) /
           s_from_ns(other->t_ns - t_ns);
     }
+    complete_airspeed(*after, state);
   } else {
     const auto before = std::prev(after);
     note_gap(before->t_ns, after->t_ns);
@@ -106,9 +128,10 @@ AircraftState LiveMotion::at(const std::deque<LivePosition>& positions,
       a.v_body_world_m_s = b.v_body_world_m_s =
           (b.T_world_body.translation - a.T_world_body.translation) / s_from_ns(b.t_ns - a.t_ns);
     }
+    complete_airspeed(*before, a);
+    complete_airspeed(*after, b);
     state = interpolate(a, b, t_ns);
   }
-  if (after->airspeed_m_s < 0.0) state.airspeed_m_s = state.v_body_world_m_s.norm();
   set_attitude(attitudes, joint, t_ns, state);
   state.t_ns = t_ns;
   return state;

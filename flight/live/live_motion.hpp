@@ -45,6 +45,7 @@ class LiveMotion {
                     bool joint,
                     std::int64_t t_ns,
                     AircraftState& state);
+  static void complete_airspeed(const LivePosition& position, AircraftState& state);
   void note_gap(std::int64_t begin_ns, std::int64_t end_ns);
 
   LocalFrame frame_;

@@ -81,7 +81,12 @@ void LiveSamples::event(logs::LogEvent event) {
   // Before the first time of the vehicle's clock: in force from the start.
   kept->t_ns = event.time ? event.time->t_ns : 0;
   events_.push_back(std::move(*kept));
-  if (events_.size() > kMaxLiveEvents) events_.pop_front();
+  if (events_.size() <= kMaxLiveEvents) return;
+  ++lost_events_;
+  const auto other = std::find_if(events_.begin(), events_.end(), [](const FlightEvent& each) {
+    return each.kind == FlightEventKind::kOther;
+  });
+  events_.erase(other != events_.end() ? other : events_.begin());
 }
 
 bool LiveSamples::stream(logs::StreamId id, const logs::StreamDescription& description) {
@@ -93,7 +98,7 @@ bool LiveSamples::stream(logs::StreamId id, const logs::StreamDescription& descr
 void LiveSamples::message(logs::StreamId /*id*/, const std::optional<logs::LogTime>& time) {
   if (id_of(*frame_) == MessageId::kVfrHud) {
     const double airspeed_m_s = mavlink::decode_vfr_hud(*frame_).airspeed_m_s;
-    if (airspeed_m_s >= 0.0 && airspeed_m_s <= 1000.0) airspeed_m_s_ = airspeed_m_s;
+    if (airspeed_m_s >= 0.0 && airspeed_m_s <= 1000.0) indicated_airspeed_m_s_ = airspeed_m_s;
   }
   if (!time) return;
   if (!boot_) boot_ = time->boot;
@@ -102,6 +107,7 @@ void LiveSamples::message(logs::StreamId /*id*/, const std::optional<logs::LogTi
     return;
   }
   latest_ns_ = std::max(latest_ns_.value_or(time->t_ns), time->t_ns);
+  sensors_.take(*frame_, *latest_ns_);
 }
 
 void LiveSamples::local_origin(logs::StreamId id, const logs::LocalOrigin& origin) {
@@ -117,7 +123,7 @@ void LiveSamples::take_position(logs::StreamId id,
                                 const Eigen::Vector3d& value) {
   if (restarted_ || (position_ && id != *position_)) return;
   LiveStream& stream = streams_[id];
-  LivePosition sample{time.t_ns, value, Eigen::Vector3d::Zero(), false, airspeed_m_s_};
+  LivePosition sample{time.t_ns, value, Eigen::Vector3d::Zero(), false, indicated_airspeed_m_s_};
   if (stream.description.position == logs::PositionKind::kLocal) {
     if (!stream.origin) {
       ++stream.without_origin;
@@ -131,11 +137,8 @@ void LiveSamples::take_position(logs::StreamId id,
     sample.v_ned_m_s = *velocity;
     sample.has_velocity = true;
   }
-  if (stream.positions.size() >= kMaxLiveSamples) {
-    full_ = true;
-    return;
-  }
-  insert_by_time(stream.positions, sample);
+  full_ = full_ || stream.positions.size() >= kMaxLiveSamples;
+  if (!full_) insert_by_time(stream.positions, sample);
 }
 
 void LiveSamples::take_attitude(logs::StreamId id,
@@ -150,11 +153,8 @@ void LiveSamples::take_attitude(logs::StreamId id,
     sample.has_rate = true;
   }
   std::deque<LiveAttitude>& attitudes = streams_[id].attitudes;
-  if (attitudes.size() >= kMaxLiveSamples) {
-    full_ = true;
-    return;
-  }
-  insert_by_time(attitudes, sample);
+  full_ = full_ || attitudes.size() >= kMaxLiveSamples;
+  if (!full_) insert_by_time(attitudes, sample);
 }
 
 void LiveSamples::keep_only(logs::StreamId position, logs::StreamId attitude) {

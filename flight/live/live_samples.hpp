@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "flight/live/live_sensors.hpp"
 #include "flight/logs/log_sink.hpp"
 #include "flight/logs/tlog/frame_streams.hpp"
 #include "flight/mavlink/frame.hpp"
@@ -17,7 +18,8 @@ namespace overfly::flight::live {
 
 /// Samples of one kind that are kept: 80 minutes at 100 Hz.
 inline constexpr std::size_t kMaxLiveSamples = 500'000;
-/// Events that wait to be taken; the oldest are dropped, because a vehicle may send any number.
+/// Events that wait to be taken. A vehicle may send any number: of more, the oldest texts and other
+/// instants are dropped first, then the oldest modes and items.
 inline constexpr std::size_t kMaxLiveEvents = 1000;
 
 struct LivePosition {
@@ -25,7 +27,7 @@ struct LivePosition {
   Eigen::Vector3d geodetic;   ///< latitude, longitude [deg], height above mean sea level [m]
   Eigen::Vector3d v_ned_m_s;  ///< zero if the message has none
   bool has_velocity = false;
-  double airspeed_m_s = -1.0;  ///< the latest at that time; negative: unknown
+  double indicated_airspeed_m_s = -1.0;  ///< the latest at that time; negative: unknown
 };
 
 struct LiveAttitude {
@@ -48,7 +50,10 @@ struct LiveStream {
 /// late are put in order; times that are known already are left out. Not thread-safe.
 class LiveSamples final : private logs::LogSink {
  public:
-  LiveSamples() : streams_of_frames_(*this) {}
+  /// @param geoid_separation_m  added to the heights of the vehicle's GPS
+  /// @param autopilot  as LiveSensors
+  explicit LiveSamples(double geoid_separation_m, std::uint8_t autopilot = 0)
+      : streams_of_frames_(*this), sensors_(geoid_separation_m, autopilot) {}
   LiveSamples(const LiveSamples&) = delete;
   LiveSamples& operator=(const LiveSamples&) = delete;
 
@@ -64,11 +69,15 @@ class LiveSamples final : private logs::LogSink {
   /// The latest time of the vehicle's clock; empty before the first.
   [[nodiscard]] std::optional<std::int64_t> latest_ns() const { return latest_ns_; }
   [[nodiscard]] bool restarted() const { return restarted_; }
-  /// A stream has reached kMaxLiveSamples.
+  /// A stream has reached kMaxLiveSamples. From then on it takes no samples, also after others were
+  /// forgotten: there would be holes between them.
   [[nodiscard]] bool full() const { return full_; }
   [[nodiscard]] std::uint64_t invalid() const { return invalid_; }
   /// Events that were not taken yet, with times of the vehicle's clock; at most kMaxLiveEvents.
   [[nodiscard]] std::deque<FlightEvent>& events() { return events_; }
+  /// Events that were dropped.
+  [[nodiscard]] std::uint64_t lost_events() const { return lost_events_; }
+  [[nodiscard]] LiveSensors& sensors() { return sensors_; }
 
  private:
   [[nodiscard]] bool stream(logs::StreamId id, const logs::StreamDescription& description) override;
@@ -93,11 +102,13 @@ class LiveSamples final : private logs::LogSink {
   std::optional<logs::StreamId> attitude_;
   std::optional<std::uint32_t> boot_;
   std::optional<std::int64_t> latest_ns_;
-  double airspeed_m_s_ = -1.0;
+  double indicated_airspeed_m_s_ = -1.0;
   bool restarted_ = false;
   bool full_ = false;
   std::uint64_t invalid_ = 0;
   std::deque<FlightEvent> events_;
+  std::uint64_t lost_events_ = 0;
+  LiveSensors sensors_;
 };
 
 }  // namespace overfly::flight::live

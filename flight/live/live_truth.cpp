@@ -20,6 +20,16 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::int64_t kStatusPeriodNs = kNsPerS / 2;
+/// Reports that wait to be taken, as for as many samples at 50 Hz.
+constexpr std::size_t kMaxStatusReports = kMaxLiveSamples / 25;
+/// Texts and other instants that a flight records; a vehicle may send any number.
+constexpr std::uint64_t kMaxOtherEvents = 1000;
+
+/// 0: not known yet.
+std::uint8_t autopilot_of(const mavlink::Vehicle& vehicle) {
+  const std::optional<mavlink::Heartbeat> heartbeat = vehicle.state().heartbeat;
+  return heartbeat ? heartbeat->autopilot : std::uint8_t{0};
+}
 
 }  // namespace
 
@@ -48,18 +58,23 @@ struct LiveTruth::Impl {
   };
   std::deque<Arrival> arrivals;
   std::optional<Clock::time_point> heard;  ///< the latest state
-  std::int64_t next_status_ns = 0;         ///< from the start
-  std::int64_t counted_ns = 0;             ///< the vehicle's clock at the last status
+  std::deque<VehicleStatus> reports;       ///< not taken yet, at times of the vehicle's clock
+  std::int64_t next_report_ns = 0;         ///< of the vehicle's clock
+  std::int64_t counted_ns = 0;             ///< the vehicle's clock at the last report
   std::uint64_t counted_messages = 0;      ///< until then
+  std::uint64_t other_events = 0;          ///< taken
+  std::uint64_t unrecorded_events = 0;     ///< of these, beyond kMaxOtherEvents
 
   Impl(std::shared_ptr<mavlink::Vehicle> of, const LocalFrame& in, const LiveTruthOptions& with)
       : vehicle(std::move(of)),
         options(with),
+        samples(with.geoid_separation_m, autopilot_of(*vehicle)),
         stop(with.stop),
         started(with.start.mission_item < 0),
         motion(in, with.geoid_separation_m, with.gap_limit_ns) {}
 
   void take(const mavlink::Frame& message);
+  void add_report();
   [[nodiscard]] std::int64_t known_until_ns() const;
   bool choose();
   void await_start(const mavlink::Frame& message);
@@ -82,6 +97,7 @@ void LiveTruth::Impl::take(const mavlink::Frame& message) {
     if (end_ns) return;
     const std::int64_t before_ns = streams ? known_until_ns() : 0;
     samples.take(message);
+    add_report();
     if (!streams && choose()) last_sample = Clock::now();
     if (streams) {
       if (known_until_ns() > before_ns) {
@@ -98,6 +114,45 @@ void LiveTruth::Impl::take(const mavlink::Frame& message) {
     }
   }
   news.notify_all();
+}
+
+/// Keeps what the vehicle says of itself now, at the time of its own clock: a run in lockstep may
+/// be far behind.
+void LiveTruth::Impl::add_report() {
+  const std::optional<std::int64_t> now_ns = samples.latest_ns();
+  if (!now_ns || *now_ns < next_report_ns) return;
+  next_report_ns = *now_ns + kStatusPeriodNs;
+  const mavlink::VehicleState state = vehicle->state();
+  VehicleStatus report;
+  report.t_ns = *now_ns;
+  report.vehicle = std::to_string(state.system) + "." + std::to_string(state.component);
+  if (const auto mode = logs::flight_event_of(logs::EventKind::kMode, state.mode)) {
+    report.mode = mode->text;
+  }
+  if (state.heartbeat) report.armed = state.armed();
+  report.battery_v = state.battery_v;
+  report.battery_percent = state.battery_percent;
+  if (state.gps) {
+    report.gps_fix = state.gps->fix_type;
+    // 255 stands for unknown.
+    if (state.gps->satellites != 255) report.satellites = state.gps->satellites;
+  }
+  // The first report has nothing to count from.
+  if (counted_ns > 0 && *now_ns > counted_ns) {
+    report.messages_per_s =
+        static_cast<double>(state.messages - counted_messages) / s_from_ns(*now_ns - counted_ns);
+  }
+  counted_ns = *now_ns;
+  counted_messages = state.messages;
+  report.lost_messages = state.lost_messages;
+  const auto sent = static_cast<double>(state.messages + state.lost_messages);
+  if (sent > 0.0) report.lost_percent = 100.0 * static_cast<double>(state.lost_messages) / sent;
+  if (const auto clock = vehicle->clock()) {
+    report.clock_rate = clock->rate;
+    report.round_trip_ms = static_cast<double>(clock->round_trip_ns) * 1e-6;
+  }
+  reports.push_back(std::move(report));
+  if (reports.size() > kMaxStatusReports) reports.pop_front();
 }
 
 void LiveTruth::Impl::end(const std::string& reason) {
@@ -134,6 +189,7 @@ bool LiveTruth::Impl::choose() {
   start_ns = first_ns;
   samples.keep_only(chosen->position, chosen->attitude);
   samples.forget_before(start_ns);
+  samples.sensors().forget_before(start_ns);
   return true;
 }
 
@@ -141,8 +197,15 @@ bool LiveTruth::Impl::choose() {
 void LiveTruth::Impl::await_start(const mavlink::Frame& message) {
   start_ns = known_until_ns();
   samples.forget_before(start_ns);
+  samples.sensors().forget_before(start_ns);
   started = message.message_id == static_cast<std::uint32_t>(mavlink::MessageId::kMissionCurrent) &&
             mavlink::decode_mission_sequence(message) >= options.start.mission_item;
+}
+
+Error too_far_behind(const std::string& what) {
+  return {ErrorCode::kIo,
+          what + ": the run is more than " + std::to_string(kMaxLiveSamples) +
+              " samples behind the vehicle"};
 }
 
 /// Waits until `ready` returns true or the flight ends.
@@ -154,10 +217,12 @@ Status LiveTruth::Impl::wait(const std::string& what,
   const Clock::time_point begin = Clock::now();
   while (!ready() && !end_ns) {
     if (is_cancelled(cancel)) return cancelled("the vehicle");
-    if (samples.full()) {
+    if (samples.full()) return too_far_behind(what);
+    if (!streams && samples.restarted()) {
       return Error{ErrorCode::kIo,
-                   what + ": the run is more than " + std::to_string(kMaxLiveSamples) +
-                       " samples behind the vehicle"};
+                   what +
+                       ": the vehicle was restarted before it had sent a position and an "
+                       "attitude; start the run again"};
     }
     // Patience counts from the later of the last sample and the begin of the wait: a run that has
     // paused must not blame the vehicle.
@@ -172,6 +237,8 @@ Status LiveTruth::Impl::wait(const std::string& what,
     }
     news.wait_for(lock, kCancelPeriod);
   }
+  // The flight's end, too, lies behind what was not kept.
+  if (samples.full() && !ready()) return too_far_behind(what);
   return {};
 }
 
@@ -228,6 +295,11 @@ std::vector<std::string> LiveTruth::warnings() const {
     warnings.push_back("the flight ended at " + seconds_shown(*impl_->end_ns - impl_->start_ns) +
                        ": " + impl_->end_reason);
   }
+  const std::uint64_t lost = impl_->samples.lost_events() + impl_->unrecorded_events;
+  if (lost > 0) {
+    warnings.push_back(std::to_string(lost) + " events of the vehicle were not recorded: at most " +
+                       std::to_string(kMaxOtherEvents) + " texts and other instants are");
+  }
   if (impl_->options.recorder) {
     const std::string problem = impl_->options.recorder->problem();
     if (!problem.empty()) warnings.push_back(problem);
@@ -245,6 +317,10 @@ std::vector<FlightEvent> LiveTruth::take_events(std::int64_t t_ns) {
     waiting.pop_front();
     event.t_ns -= impl_->start_ns;
     if (event.t_ns >= 0) {
+      if (event.kind == FlightEventKind::kOther && ++impl_->other_events > kMaxOtherEvents) {
+        ++impl_->unrecorded_events;
+        continue;
+      }
       taken.push_back(std::move(event));
     } else if (event.kind != FlightEventKind::kOther) {
       event.t_ns = 0;
@@ -256,42 +332,27 @@ std::vector<FlightEvent> LiveTruth::take_events(std::int64_t t_ns) {
 }
 
 std::optional<VehicleStatus> LiveTruth::take_status(std::int64_t t_ns) {
-  Impl& impl = *impl_;
-  if (t_ns < impl.next_status_ns) return std::nullopt;
-  const mavlink::VehicleState state = impl.vehicle->state();
-  VehicleStatus status;
-  status.t_ns = t_ns;
-  status.vehicle = std::to_string(state.system) + "." + std::to_string(state.component);
-  if (const auto mode = logs::flight_event_of(logs::EventKind::kMode, state.mode)) {
-    status.mode = mode->text;
+  const std::lock_guard lock(impl_->mutex);
+  std::deque<VehicleStatus>& waiting = impl_->reports;
+  std::optional<VehicleStatus> latest;
+  while (!waiting.empty() && waiting.front().t_ns - impl_->start_ns <= t_ns) {
+    latest = std::move(waiting.front());
+    waiting.pop_front();
   }
-  if (state.heartbeat) status.armed = state.armed();
-  status.battery_v = state.battery_v;
-  status.battery_percent = state.battery_percent;
-  if (state.gps) {
-    status.gps_fix = state.gps->fix_type;
-    // 255 stands for unknown.
-    if (state.gps->satellites != 255) status.satellites = state.gps->satellites;
-  }
-  // The first status has nothing to count from.
-  const std::int64_t boot_ns = state.boot_ns.value_or(0);
-  if (impl.counted_ns > 0 && boot_ns > impl.counted_ns) {
-    status.messages_per_s = static_cast<double>(state.messages - impl.counted_messages) /
-                            s_from_ns(boot_ns - impl.counted_ns);
-  }
-  impl.counted_ns = boot_ns;
-  impl.counted_messages = state.messages;
-  status.lost_messages = state.lost_messages;
-  const auto sent = static_cast<double>(state.messages + state.lost_messages);
-  if (sent > 0.0) status.lost_percent = 100.0 * static_cast<double>(state.lost_messages) / sent;
-  if (const auto clock = impl.vehicle->clock()) {
-    status.clock_rate = clock->rate;
-    status.round_trip_ms = static_cast<double>(clock->round_trip_ns) * 1e-6;
-  }
-  const std::lock_guard lock(impl.mutex);
-  status.gaps = impl.motion.gap_count();
-  impl.next_status_ns = (t_ns / kStatusPeriodNs + 1) * kStatusPeriodNs;
-  return status;
+  if (!latest) return std::nullopt;
+  latest->t_ns = std::max<std::int64_t>(latest->t_ns - impl_->start_ns, 0);
+  latest->gaps = impl_->motion.gap_count();
+  return latest;
+}
+
+SensorSamples LiveTruth::take_samples(std::int64_t t_ns) {
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->samples.sensors().take_until(impl_->start_ns + t_ns, impl_->start_ns);
+}
+
+std::string LiveTruth::sensor_report() const {
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->samples.sensors().report();
 }
 
 std::int64_t LiveTruth::start_ns() const { return impl_->start_ns; }

@@ -11,6 +11,7 @@
 #include "core/earth/geodesy.hpp"
 #include "core/motion/truth_source.hpp"
 #include "core/result.hpp"
+#include "core/sensors/sample_source.hpp"
 #include "flight/live/live_options.hpp"
 #include "flight/mavlink/feedback/feedback_sender.hpp"
 #include "flight/mavlink/vehicle/vehicle.hpp"
@@ -25,7 +26,7 @@ namespace overfly::flight::live {
 /// state_at() waits until the vehicle's clock has passed the time. The flight ends at the last
 /// sample when the vehicle restarts or a stop condition holds; warnings() says why. It fails
 /// (kIo, with what was heard last) after `patience` without a sample.
-class LiveTruth final : public TruthSource {
+class LiveTruth final : public TruthSource, public SampleSource {
  public:
   /// Listens to the vehicle and waits for the flight's start. No other listener may be set until
   /// the object goes.
@@ -46,6 +47,10 @@ class LiveTruth final : public TruthSource {
   /// Modes, mission items, arming and texts of the vehicle.
   [[nodiscard]] std::vector<FlightEvent> take_events(std::int64_t t_ns) override;
   [[nodiscard]] std::optional<VehicleStatus> take_status(std::int64_t t_ns) override;
+  /// What the vehicle's own sensors measured: see LiveSensors.
+  [[nodiscard]] SampleSource* sample_source() override { return this; }
+  [[nodiscard]] SensorSamples take_samples(std::int64_t t_ns) override;
+  [[nodiscard]] std::string sensor_report() const override;
 
   /// Sends estimates to the vehicle by this from now on.
   void send_estimates_by(std::shared_ptr<mavlink::FeedbackSender> sender);

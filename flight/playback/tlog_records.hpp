@@ -4,35 +4,31 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
-#include <span>
 
 #include "core/outside/forward_reader.hpp"
 #include "core/result.hpp"
 #include "flight/mavlink/frame_finder.hpp"
+#include "flight/playback/playback_records.hpp"
 
 namespace overfly::flight::playback {
 
-/// Reads the valid frames of a `.tlog` in the order of the file, as often as wanted.
-class TlogRecords {
+/// Reads the valid frames of a `.tlog` in the order of the file. Their times are those of reception
+/// since the first one.
+class TlogRecords final : public PlaybackRecords {
  public:
-  struct Record {
-    std::int64_t t_us = 0;                ///< time of reception since the first record, >= 0
-    std::span<const std::uint8_t> frame;  ///< valid until the next call
-  };
-
   /// Reads the file once, for its length.
   /// Errors: as ForwardReader::open; kUnreadable if it is no telemetry log; kIo.
   static Result<TlogRecords> open(const std::filesystem::path& file);
 
   /// The next record; empty at the end. Times never decrease: a frame that was received before the
   /// one in front of it has that one's time. Errors: kIo.
-  [[nodiscard]] Result<std::optional<Record>> next();
+  [[nodiscard]] Result<std::optional<Record>> next() override;
   /// Continues with the first record at or after a time. Errors: kIo.
-  Status seek(std::int64_t t_us);
+  Status seek(std::int64_t t_us) override;
 
   /// Time of the last record.
-  [[nodiscard]] std::int64_t duration_us() const { return duration_us_; }
-  [[nodiscard]] std::uint64_t count() const { return count_; }
+  [[nodiscard]] std::int64_t duration_us() const override { return duration_us_; }
+  [[nodiscard]] std::uint64_t count() const override { return count_; }
 
  private:
   explicit TlogRecords(ForwardReader file);

@@ -21,6 +21,9 @@ class FlightWithEvents final : public TruthSource {
   }
   [[nodiscard]] std::string description() const override { return flight_->description(); }
   [[nodiscard]] std::vector<std::string> warnings() const override { return flight_->warnings(); }
+  [[nodiscard]] std::optional<std::int64_t> log_start_ns() const override {
+    return flight_->log_start_ns();
+  }
   [[nodiscard]] std::vector<FlightEvent> take_events(std::int64_t t_ns) override {
     std::vector<FlightEvent> taken;
     while (next_ < events_.size() && events_[next_].t_ns <= t_ns) taken.push_back(events_[next_++]);

@@ -117,6 +117,37 @@ std::vector<std::string> jump_warnings(const SmoothedLog& log) {
   return warnings;
 }
 
+/// The poses T_log_body of a log in a frame on the earth.
+struct PlacedPoses {
+  LocalFrame frame;
+  std::vector<Pose> poses;
+};
+
+Result<PlacedPoses> place_poses(const logs::LogTrajectory& log, const LogFlightOptions& options) {
+  if (options.local_origin) {
+    PlacedPoses placed{LocalFrame(*options.local_origin), {}};
+    for (const logs::LogPose& pose : log.poses) {
+      placed.poses.push_back(
+          {logs::R_enu_ned() * pose.R_ned_body, logs::R_enu_ned() * pose.position});
+    }
+    return placed;
+  }
+  const Result<double> separation =
+      logs::separation_of(log.height, log.position_source, options.geoid_separation_m);
+  if (!separation) return separation.error();
+  const auto geodetic = [&](const logs::LogPose& pose) {
+    return geodetic_from_deg(pose.position.x(), pose.position.y(), pose.position.z() + *separation);
+  };
+  PlacedPoses placed{LocalFrame(geodetic(log.poses.front())), {}};
+  for (const logs::LogPose& pose : log.poses) {
+    const Geodetic point = geodetic(pose);
+    placed.poses.push_back(
+        {placed.frame.R_world_enu_at(point) * logs::R_enu_ned() * pose.R_ned_body,
+         placed.frame.world_from_geodetic(point)});
+  }
+  return placed;
+}
+
 Result<std::unique_ptr<TruthSource>> fly_smoothed(const logs::OpenedLog& opened,
                                                   const logs::TrajectoryRequest& request,
                                                   const LogFlightOptions& options,
@@ -168,7 +199,12 @@ Result<std::unique_ptr<TruthSource>> fly_flight_log(const std::filesystem::path&
   request.attitude_offset_ns = ns_from_s(options.time_offset_s);
   Result<logs::LogTrajectory> log = logs::read_log_trajectory(*opened, request, cancel);
   if (!log) return log.error();
-  if (!log->georeferenced) {
+  if (log->georeferenced && options.local_origin) {
+    return Error{ErrorCode::kInvalidArgument,
+                 file.string() + ": an origin was given, but the positions of " +
+                     log->position_source + " have their place on the earth"};
+  }
+  if (!log->georeferenced && !options.local_origin) {
     return Error{ErrorCode::kUnsupported,
                  file.string() + ": the positions of " + log->position_source +
                      " count from an origin that the log does not state: they cannot be flown"};
@@ -176,21 +212,13 @@ Result<std::unique_ptr<TruthSource>> fly_flight_log(const std::filesystem::path&
   if (log->poses.size() < 2) {
     return Error{ErrorCode::kUnreadable, file.string() + ": 1 pose: a flight needs at least 2"};
   }
-  const Result<double> separation =
-      logs::separation_of(log->height, log->position_source, options.geoid_separation_m);
-  if (!separation) return separation.error().in(file.string());
-  const auto geodetic = [&](const logs::LogPose& pose) {
-    return geodetic_from_deg(pose.position.x(), pose.position.y(), pose.position.z() + *separation);
-  };
-  const LocalFrame log_frame(geodetic(log->poses.front()));
-  std::vector<Pose> poses;
+  Result<PlacedPoses> placed = place_poses(*log, options);
+  if (!placed) return placed.error().in(file.string());
+  const std::vector<Pose>& poses = placed->poses;
+  const LocalFrame& log_frame = placed->frame;
   std::vector<Eigen::Vector3d> path;
-  for (const logs::LogPose& pose : log->poses) {
-    const Geodetic point = geodetic(pose);
-    poses.push_back({log_frame.R_world_enu_at(point) * logs::R_enu_ned() * pose.R_ned_body,
-                     log_frame.world_from_geodetic(point)});
-    path.push_back(poses.back().translation);
-  }
+  path.reserve(poses.size());
+  for (const Pose& pose : poses) path.push_back(pose.translation);
   const Pose T_world_log = place_of(options, path, log_frame, frame, ground);
   Trajectory trajectory;
   for (std::size_t i = 0; i < poses.size(); ++i) {

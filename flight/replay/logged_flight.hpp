@@ -52,6 +52,9 @@ struct LogFlightOptions {
   /// Height of the geoid above the ellipsoid: logs have heights above mean sea level.
   double geoid_separation_m = 0.0;
   std::optional<Rebase> rebase;
+  /// Where positions count from if the log does not state it; east, north, up from there. Not for
+  /// smoothed flights.
+  std::optional<Geodetic> local_origin;
 };
 
 /// Whether fly_flight_log() can fly a file: it is a flight log, not a file of poses.
@@ -62,7 +65,8 @@ struct LogFlightOptions {
 /// @param ground   of the world; used by a rebase only
 /// @param sources  which files the log may name
 /// Errors: as open_log, choose_truth, read_log_trajectory and smooth_log; kUnsupported if the log
-/// does not state where its positions are; kInvalidArgument if the flight has less than 2 poses.
+/// does not state where its positions are and no origin is given, kInvalidArgument if both do;
+/// kInvalidArgument if the flight has less than 2 poses.
 [[nodiscard]] Result<std::unique_ptr<TruthSource>> fly_flight_log(
     const std::filesystem::path& file,
     const LogFlightOptions& options,

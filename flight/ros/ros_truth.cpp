@@ -164,8 +164,10 @@ class RosTruth final : public TruthSource {
     const std::optional<MavrosState> state = decode_mavros_state(bytes);
     if (!state || !state->connected) return;
     note_changes(*state);
-    was_armed_ = was_armed_ || state->armed;
-    const bool disarmed = was_armed_ && !state->armed && started_;
+    // A vehicle that was disarmed before the flight does not end it; one that is armed at its start
+    // may.
+    was_armed_ = state->armed || (started_ && was_armed_);
+    const bool disarmed = was_armed_ && !state->armed;
     if (disarmed && flight_.stop_on_disarm) end("the vehicle was disarmed");
   }
 
@@ -203,11 +205,16 @@ class RosTruth final : public TruthSource {
     const auto failed = [&](const std::string& why) {
       return Error{ErrorCode::kIo, flight_.master_uri + ": " + what + ": " + why};
     };
+    const std::string too_far_behind = "the run is more than " +
+                                       std::to_string(live::kMaxLiveSamples) +
+                                       " samples behind the topics";
     while (!ready() && !end_ns_) {
       if (is_cancelled(cancel)) return cancelled("the ROS topics");
-      if (samples_.full()) {
-        return failed("the run is more than " + std::to_string(live::kMaxLiveSamples) +
-                      " samples behind the topics");
+      if (samples_.full()) return failed(too_far_behind);
+      if (!started_ && !samples_.restarted().empty()) {
+        return failed(
+            "the stamps of " + samples_.restarted() +
+            " went back before there was a position and an attitude; start the run again");
       }
       if (SteadyClock::now() - std::max(last_sample_, begin) >= flight_.patience) {
         const double patience_s = std::chrono::duration<double>(flight_.patience).count();
@@ -217,6 +224,8 @@ class RosTruth final : public TruthSource {
       }
       news_.wait_for(lock, kCancelPeriod);
     }
+    // The flight's end, too, lies behind what was not kept.
+    if (samples_.full() && !ready()) return failed(too_far_behind);
     return {};
   }
 

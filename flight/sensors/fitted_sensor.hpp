@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/sensors/sensor_samples.hpp"
 #include "core/time.hpp"
 
 namespace overfly::flight {
@@ -18,22 +19,16 @@ inline constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
 template <typename Sample>
 class Outbox {
  public:
-  void add(std::int64_t available_ns, const Sample& sample) {
-    waiting_.push_back({available_ns, sample});
-  }
+  void add(const Sample& sample) { waiting_.push_back(sample); }
   void take_until(std::int64_t t_ns, std::vector<Sample>& samples) {
-    while (!waiting_.empty() && waiting_.front().available_ns <= t_ns) {
-      samples.push_back(waiting_.front().sample);
+    while (!waiting_.empty() && available_ns(waiting_.front()) <= t_ns) {
+      samples.push_back(waiting_.front());
       waiting_.pop_front();
     }
   }
 
  private:
-  struct Waiting {
-    std::int64_t available_ns;
-    Sample sample;
-  };
-  std::deque<Waiting> waiting_;
+  std::deque<Sample> waiting_;
 };
 
 /// A sensor that may be absent, with its clock and its outbox.

@@ -27,6 +27,7 @@ ImuReading mean_between(const AircraftState& from,
   const Eigen::Vector3d gravity_world(0.0, 0.0, -gravity_m_s2);
   ImuReading reading;
   reading.sample.t_ns = middle.t_ns;
+  reading.sample.interval_ns = 2 * (to.t_ns - middle.t_ns);
   reading.sample.angular_rate_rad_s = log_of(turn) / interval_s;
   reading.sample.acceleration_m_s2 =
       middle.T_world_body.rotation.conjugate() * (acceleration_world - gravity_world);

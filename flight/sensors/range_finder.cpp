@@ -20,7 +20,7 @@ std::optional<double> beam_range_m(const HeightQuery& ground,
   double below_m = 0.0;
   do {
     if (above_m >= max_m) return std::nullopt;
-    below_m = std::min(above_m + std::max(1.0, 0.25 * height), max_m);
+    below_m = std::min(above_m + std::max({1.0, 0.25 * height, 0.005 * above_m}), max_m);
     height = height_above_ground(below_m);
     if (height > 0.0) above_m = below_m;
   } while (height > 0.0);

@@ -85,15 +85,12 @@ void SensorSuite::take(const AircraftState& state) {
   Sensors& all = *sensors_;
   if (all.imu && all.imu->next_ns() == state.t_ns) {
     const std::optional<ImuReading> reading = all.imu->take(state);
-    if (reading) all.imu_outbox.add(state.t_ns, reading->sample);
+    if (reading) all.imu_outbox.add(reading->sample);
   }
   const auto measure = [&](auto& fitted, const auto& place) {
     if (fitted.next_ns() != state.t_ns) return;
     ++fitted.count;
-    const auto sample = fitted.sensor->measure(state, place);
-    std::int64_t available_ns = state.t_ns;
-    if constexpr (requires { sample.delivered_ns; }) available_ns = sample.delivered_ns;
-    fitted.outbox.add(available_ns, sample);
+    fitted.outbox.add(fitted.sensor->measure(state, place));
   };
   measure(all.barometer, all.place);
   measure(all.gps, all.place);

@@ -29,7 +29,12 @@ constexpr std::array kOwnMessages{
     Message{MessageId::kAttitude, 10, 10.0},
     Message{MessageId::kSimState, 10, 10.0},
     Message{MessageId::kVfrHud, 11, 4.0},
+    Message{MessageId::kRawImu, 1, 4.0},
+    Message{MessageId::kScaledPressure, 1, 4.0},
+    Message{MessageId::kAirspeed, 1, 4.0},
+    Message{MessageId::kDistanceSensor, 12, 4.0},
     Message{MessageId::kAttitudeQuaternion, 0, 0.0},
+    Message{MessageId::kHighresImu, 0, 0.0},
 };
 
 std::int64_t interval_ns_of(double rate_hz) {

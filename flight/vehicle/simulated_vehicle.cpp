@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/earth/magnetic_field.hpp"
 #include "core/motion/pose.hpp"
 #include "flight/autopilot/mission_flight.hpp"
 
@@ -34,6 +35,9 @@ enum : std::uint16_t {
   kRequestMessage = 512,
   kRequestCapabilities = 520,
 };
+/// Of the magnetic field: 2026-01-01T00:00:00Z.
+constexpr std::int64_t kFieldDateUnixNs = 1'767'225'600'000'000'000;
+
 /// A whole number that a client sends as a float; 0 for anything else.
 std::uint32_t number_from_float(double value) {
   return value >= 0.0 && value < 1e7 ? static_cast<std::uint32_t>(value) : 0U;
@@ -56,6 +60,7 @@ SimulatedVehicle::SimulatedVehicle(const VehicleSetup& setup,
     : setup_(setup),
       parameters_(setup.system, parameters),
       frame_(setup.home),
+      field_ned_ut_(MagneticField(kFieldDateUnixNs).ned_ut(setup.home)),
       missions_(setup.system,
                 [this](const MissionStore::Items& items) { return check_mission(items); }),
       parked_heading_rad_(setup.heading_rad) {}
@@ -73,6 +78,7 @@ VehicleReport SimulatedVehicle::report() const {
   report.armed = armed_;
   report.in_air = aircraft_.has_value();
   report.frame = frame_;
+  report.field_ned_ut = field_ned_ut_;
   report.mission_items = static_cast<std::uint16_t>(missions_.items().size());
   if (aircraft_) {
     report.state = autopilot::flight_state(*aircraft_);
@@ -83,6 +89,7 @@ VehicleReport SimulatedVehicle::report() const {
     report.state.gravity_m_s2 = dynamics::kStandardGravityMS2;
     report.state.specific_force_body_m_s2 = {0.0, 0.0, -dynamics::kStandardGravityMS2};
   }
+  report.height_above_home_m = report.state.position_world_m.z();
   const std::size_t item =
       autopilot_ && mode_ == Mode::kAuto ? autopilot_->pilot().item() : resume_item_;
   if (mode_ == Mode::kAuto && item < flown_.items.size()) {
@@ -238,6 +245,8 @@ std::uint8_t SimulatedVehicle::change_mode(Mode mode, const Send& send) {
         mode_ = mode;
         return kResultAccepted;
       }
+      // A repeated command does not begin the mission again.
+      if (mode_ == Mode::kAuto && aircraft_) return kResultAccepted;
       if (Status status = fly_mission(aircraft_ ? resume_item_ : 0); !status) {
         say(status.error().message, Severity::kWarning, send);
         return kResultFailed;

@@ -85,6 +85,7 @@ class SimulatedVehicle {
   VehicleSetup setup_;
   ParameterStore parameters_;
   LocalFrame frame_;
+  Eigen::Vector3d field_ned_ut_;  ///< the earth's magnetic field at home
   FlatGround ground_{0.0};
   MissionStore missions_;
   std::int64_t now_ns_ = 0;

@@ -1,6 +1,7 @@
 // What a simulated vehicle tells about itself, as MAVLink messages.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <optional>
 
@@ -26,13 +27,17 @@ struct VehicleReport {
   bool armed = false;
   bool in_air = false;
   autopilot::FlightState state;
-  LocalFrame frame{Geodetic{}};  ///< origin = home; heights count as above mean sea level
+  LocalFrame frame{Geodetic{}};  ///< heights count as above mean sea level
+  double height_above_home_m = 0.0;
+  std::int64_t unix_ns = 0;  ///< UTC since 1970; 0: not known
   double throttle = 0.0;
   std::uint16_t mission_item = 0;
   std::uint16_t mission_items = 0;
+  Eigen::Vector3d field_ned_ut = Eigen::Vector3d::Zero();  ///< the earth's magnetic field at home
 };
 
-/// The payload of a message that describes the vehicle; empty for one that it does not send.
+/// The payload of a message that describes the vehicle, or of one of its sensors, which measure
+/// without errors; empty for one that it does not send.
 [[nodiscard]] std::optional<flight::mavlink::PayloadWriter> payload_of(
     flight::mavlink::MessageId id, const VehicleReport& report);
 

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cstdio>
 #include <map>
+#include <overfly_lcm/pose_t.hpp>
 #include <overfly_lcm/sim_time_t.hpp>
 #include <overfly_lcm/truth_t.hpp>
+#include <overfly_lcm/world_pose_t.hpp>
 #include <utility>
 #include <vector>
 
@@ -17,6 +19,18 @@ namespace overfly::lcm {
 namespace {
 
 constexpr std::int64_t kNsPerUs = 1000;
+
+template <typename Message>
+void put_pose(const Pose& T, Message& message) {
+  std::copy_n(T.translation.data(), 3, message.position);
+  std::copy_n(T.rotation.coeffs().data(), 4, message.orientation);
+}
+
+std::int8_t state_number(TrackingState state) {
+  if (state == TrackingState::kTracking) return overfly_lcm::pose_t::TRACKING;
+  return state == TrackingState::kLost ? overfly_lcm::pose_t::LOST
+                                       : overfly_lcm::pose_t::INITIALISING;
+}
 
 class EventLogWriter final : public LogWriter {
  public:
@@ -63,21 +77,60 @@ class EventLogWriter final : public LogWriter {
     message.t_ns = truth.t_ns;
     message.stamp_ns = truth.stamp_ns;
     message.frame = truth.frame;
-    const Pose& T = truth.T_world_camera;
-    std::copy_n(T.translation.data(), 3, message.position);
-    std::copy_n(T.rotation.coeffs().data(), 4, message.orientation);
+    put_pose(truth.T_world_camera, message);
     return write(prefix + "TRUTH", truth.stamp_ns, message);
   }
 
   Status write_samples(const std::string& prefix, const SensorSamples& samples) override {
-    return with_each_message(samples, [&](const char* name, auto message) {
-      const std::string channel = prefix + name;
-      message.session = session_;
-      message.sequence = ++sequences_[channel];
-      std::int64_t available_ns = message.t_ns;
-      if constexpr (requires { message.delivered_ns; }) available_ns = message.delivered_ns;
-      return write(channel, available_ns, message);
+    // The events of a log are in order of time: seeking bisects them.
+    std::vector<Encoded> events;
+    Status status =
+        with_each_message(samples, [&](const char* name, std::int64_t available_ns, auto message) {
+          Encoded event{available_ns, prefix + name, {}};
+          message.session = session_;
+          message.sequence = ++sequences_[event.channel];
+          Status encoded = encode(event.channel, message, event.bytes);
+          events.push_back(std::move(event));
+          return encoded;
+        });
+    std::stable_sort(events.begin(), events.end(), [](const Encoded& a, const Encoded& b) {
+      return a.stamp_ns < b.stamp_ns;
     });
+    for (auto event = events.begin(); status && event != events.end(); ++event) {
+      status = write_event(event->channel, event->stamp_ns, event->bytes);
+    }
+    return status;
+  }
+
+  Status write_estimate(const std::string& estimator, const EstimateSample& sample) override {
+    const std::string channel = "ESTIMATE_" + estimator + "_POSE";
+    overfly_lcm::pose_t message{};
+    message.utime = sample.t_ns / kNsPerUs;
+    message.t_ns = sample.t_ns;
+    message.session = session_;
+    message.frame = sample.frame;
+    message.sequence = ++sequences_[channel];
+    message.attempt = 1;
+    message.image_received = true;
+    message.image_crc32 = -1;
+    message.state = state_number(sample.state);
+    message.map_id = sample.map_id;
+    const bool tracking = sample.state == TrackingState::kTracking;
+    put_pose(tracking ? sample.T_vo_camera : Pose(), message);
+    if (tracking) message.scene_depth = sample.scene_depth.value_or(0.0);
+    return write(channel, sample.t_ns, message);
+  }
+
+  Status write_world_estimate(const std::string& estimator,
+                              const EstimateSample& sample,
+                              const Pose& T_world_camera) override {
+    overfly_lcm::world_pose_t message{};
+    message.utime = sample.t_ns / kNsPerUs;
+    message.t_ns = sample.t_ns;
+    message.frame = sample.frame;
+    message.map_id = sample.map_id;
+    put_pose(T_world_camera, message);
+    return write("ESTIMATE_" + estimator + "_POSE_WORLD", sample.t_ns, message);
   }
 
   Status finish() override {
@@ -86,18 +139,36 @@ class EventLogWriter final : public LogWriter {
   }
 
  private:
+  struct Encoded {
+    std::int64_t stamp_ns = 0;
+    std::string channel;
+    std::vector<std::uint8_t> bytes;
+  };
+
   template <typename Message>
   Status write(std::string channel, std::int64_t stamp_ns, const Message& message) {
-    bytes_.resize(static_cast<std::size_t>(message.getEncodedSize()));
-    if (message.encode(bytes_.data(), 0, static_cast<int>(bytes_.size())) < 0) {
-      return Error{ErrorCode::kInternal, "cannot encode the message of " + channel};
-    }
+    Status status = encode(channel, message, bytes_);
+    return status ? write_event(channel, stamp_ns, bytes_) : status;
+  }
+
+  template <typename Message>
+  static Status encode(const std::string& channel,
+                       const Message& message,
+                       std::vector<std::uint8_t>& bytes) {
+    bytes.resize(static_cast<std::size_t>(message.getEncodedSize()));
+    if (message.encode(bytes.data(), 0, static_cast<int>(bytes.size())) >= 0) return {};
+    return Error{ErrorCode::kInternal, "cannot encode the message of " + channel};
+  }
+
+  Status write_event(std::string& channel,
+                     std::int64_t stamp_ns,
+                     std::vector<std::uint8_t>& bytes) {
     lcm_eventlog_event_t event{};
     event.timestamp = epoch_utc_us_ + stamp_ns / kNsPerUs;
     event.channellen = static_cast<std::int32_t>(channel.size());
-    event.datalen = static_cast<std::int32_t>(bytes_.size());
+    event.datalen = static_cast<std::int32_t>(bytes.size());
     event.channel = channel.data();
-    event.data = bytes_.data();
+    event.data = bytes.data();
     if (lcm_eventlog_write_event(log_, &event) != 0) return failure();
     return {};
   }

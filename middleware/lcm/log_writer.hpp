@@ -1,6 +1,6 @@
 // Writes LCM event logs with a camera's images, calibration, times and true poses, and with samples
-// of the aircraft's other sensors: the messages
-// that an estimator on LCM would have received, and the truth.
+// of the aircraft's other sensors: the messages that an estimator on LCM would have received, the
+// truth, and the answers of a run's estimators.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +10,7 @@
 
 #include "core/camera/camera_model.hpp"
 #include "core/camera/image.hpp"
+#include "core/motion/estimate.hpp"
 #include "core/motion/pose.hpp"
 #include "core/result.hpp"
 #include "core/sensors/sensor_samples.hpp"
@@ -55,6 +56,13 @@ class LogWriter {
   /// has the time at which the sample was available.
   [[nodiscard]] virtual Status write_samples(const std::string& prefix,
                                              const SensorSamples& samples) = 0;
+  /// Writes an answer of an estimator to ESTIMATE_NAME_POSE.
+  [[nodiscard]] virtual Status write_estimate(const std::string& estimator,
+                                              const EstimateSample& sample) = 0;
+  /// Writes the pose in the world of a tracked frame to ESTIMATE_NAME_POSE_WORLD.
+  [[nodiscard]] virtual Status write_world_estimate(const std::string& estimator,
+                                                    const EstimateSample& sample,
+                                                    const Pose& T_world_camera) = 0;
   /// Flushes the log. Errors: kIo naming the file.
   [[nodiscard]] virtual Status finish() = 0;
 };

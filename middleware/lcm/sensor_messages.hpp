@@ -21,14 +21,14 @@ namespace overfly::lcm {
 [[nodiscard]] overfly_lcm::magnetometer_t message_of(const MagnetometerSample& sample);
 [[nodiscard]] overfly_lcm::range_t message_of(const RangeSample& sample);
 
-/// Calls `take(channel, message)` for each sample, with the channel's name without prefix. Stops at
-/// the first error.
+/// Calls `take(channel, available_ns, message)` for each sample, with the channel's name without
+/// prefix. Stops at the first error.
 template <typename Take>
 [[nodiscard]] Status with_each_message(const SensorSamples& samples, const Take& take) {
   Status status;
   const auto with_all = [&](const char* channel, const auto& list) {
     for (auto sample = list.begin(); status && sample != list.end(); ++sample) {
-      status = take(channel, message_of(*sample));
+      status = take(channel, available_ns(*sample), message_of(*sample));
     }
   };
   with_all("IMU", samples.imu);

@@ -1,19 +1,17 @@
 // Converts samples of an aircraft's sensors to ROS messages.
 //
-// The body is base_link in ROS's axes (REP 103: x forward, y left, z up). Orientations and
-// covariances that a sensor does not give are marked as unknown, as the message types say.
+// Orientations and covariances that a sensor does not give are marked as unknown, as the message
+// types say.
 #pragma once
 
 #include <string>
 
 #include "core/result.hpp"
 #include "core/sensors/sensor_samples.hpp"
+#include "middleware/ros1/frame_names.hpp"
 #include "middleware/ros1/types.hpp"
 
 namespace overfly::ros1 {
-
-/// frame_id of all messages.
-inline constexpr const char* kBodyFrame = "base_link";
 
 [[nodiscard]] ImuMessage message_from(const ImuSample& sample);
 [[nodiscard]] FluidPressureMessage static_pressure_from(const BarometerSample& sample);
@@ -31,24 +29,25 @@ inline constexpr const char* kBodyFrame = "base_link";
 template <typename Take>
 [[nodiscard]] Status with_each_message(const SensorSamples& samples, const Take& take) {
   Status status;
-  const auto with_all = [&](const char* topic, const auto& list, auto convert) {
+  const auto with_all = [&](const char* topic, const char* frame, const auto& list, auto convert) {
     for (auto sample = list.begin(); status && sample != list.end(); ++sample) {
-      std::int64_t available_ns = sample->t_ns;
-      if constexpr (requires { sample->delivered_ns; }) available_ns = sample->delivered_ns;
       auto message = convert(*sample);
-      message.header.frame_id = kBodyFrame;
-      status = take(topic, sample->t_ns, available_ns, std::move(message));
+      message.header.frame_id = frame;
+      status = take(topic, sample->t_ns, available_ns(*sample), std::move(message));
     }
   };
   const auto as_message = [](const auto& sample) { return message_from(sample); };
-  with_all("/sensors/imu", samples.imu, as_message);
-  with_all("/sensors/pressure", samples.barometer, static_pressure_from);
-  with_all("/sensors/temperature", samples.barometer, temperature_from);
-  with_all("/sensors/gps/fix", samples.gps, as_message);
-  with_all("/sensors/gps/velocity", samples.gps, velocity_from);
-  with_all("/sensors/airspeed/differential_pressure", samples.airspeed, differential_pressure_from);
-  with_all("/sensors/magnetic_field", samples.magnetometer, as_message);
-  with_all("/sensors/range", samples.range, as_message);
+  with_all("/sensors/imu", kBodyFrame, samples.imu, as_message);
+  with_all("/sensors/pressure", kBodyFrame, samples.barometer, static_pressure_from);
+  with_all("/sensors/temperature", kBodyFrame, samples.barometer, temperature_from);
+  with_all("/sensors/gps/fix", kBodyFrame, samples.gps, as_message);
+  with_all("/sensors/gps/velocity", kWorldFrame, samples.gps, velocity_from);
+  with_all("/sensors/airspeed/differential_pressure",
+           kBodyFrame,
+           samples.airspeed,
+           differential_pressure_from);
+  with_all("/sensors/magnetic_field", kBodyFrame, samples.magnetometer, as_message);
+  with_all("/sensors/range", kRangeFrame, samples.range, as_message);
   return status;
 }
 

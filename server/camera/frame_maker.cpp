@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "core/cancel.hpp"
+#include "core/sensors/sample_source.hpp"
 #include "server/camera/flight_sensors.hpp"
 #include "server/camera/truth.hpp"
 #include "server/worlds/world_cache.hpp"
@@ -128,6 +129,27 @@ Status FrameMaker::open_cameras() {
   return {};
 }
 
+SensorSamples FrameMaker::take_samples(std::int64_t t_ns) {
+  SensorSamples samples;
+  if (SampleSource* const own = truth_->source().sample_source(); own != nullptr) {
+    samples = own->take_samples(t_ns);
+    const flight::SensorModels& simulated = scenario_.sensors;
+    if (simulated.imu) samples.imu.clear();
+    if (simulated.barometer) samples.barometer.clear();
+    if (simulated.gps) samples.gps.clear();
+    if (simulated.airspeed) samples.airspeed.clear();
+    if (simulated.magnetometer) samples.magnetometer.clear();
+    if (simulated.range) samples.range.clear();
+  }
+  if (sensors_) append(samples, sensors_->take_until(t_ns));
+  return samples;
+}
+
+std::string FrameMaker::sensor_report() const {
+  const SampleSource* const own = truth_->source().sample_source();
+  return own != nullptr ? own->sensor_report() : std::string();
+}
+
 Status FrameMaker::check_reading(int late_tiles) const {
   if (Status heights = tiles_->status(); !heights) return heights;
   return late_tiles > 0 ? tiles_->unread() : Status();
@@ -154,7 +176,7 @@ Result<std::optional<MadeFrame>> FrameMaker::make(std::int64_t k) {
   if (!*around) return std::optional<MadeFrame>();
   const std::vector<AircraftState>& states = **around;
   made.state = states[states.size() / 2];
-  if (sensors_) made.sensors = sensors_->take_until(made.t_ns);
+  made.sensors = take_samples(made.t_ns);
   next_frame_ = k + 1;
   made.shots.resize(cameras_.size());
   // A recorded camera takes what is known of its view from the camera that it is compared with.
@@ -238,11 +260,12 @@ Result<SensorSamples> FrameMaker::record_last_period() {
   const auto last = truth_->at(end_ns, options_.cancel);
   if (!last) return failed(last.error());
   if (Status written = options_.truth_samples->flush(); !written) return written.error();
-  return sensors_ ? sensors_->take_until(end_ns) : SensorSamples();
+  return take_samples(end_ns);
 }
 
 Status FrameMaker::fetch_first_view() {
-  if (!duration_ns_) return {};
+  // A live flight is not asked before it begins, also if the scenario limits its duration.
+  if (!truth_->source().duration_ns()) return {};
   const auto first = truth_->at(0, options_.cancel);
   if (!first) return failed(first.error());
   if (!*first) return Error{ErrorCode::kInvalidArgument, "flight: ends before its first frame"};

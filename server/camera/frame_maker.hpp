@@ -77,6 +77,8 @@ class FrameMaker {
   [[nodiscard]] std::optional<VehicleStatus> take_vehicle_status(std::int64_t t_ns) {
     return truth_->source().take_status(t_ns);
   }
+  /// As SampleSource::sensor_report; empty if the flight's aircraft has no sensors of its own.
+  [[nodiscard]] std::string sensor_report() const;
   /// Of the recorded images.
   [[nodiscard]] std::vector<std::string> image_warnings() const;
 
@@ -109,6 +111,9 @@ class FrameMaker {
   Status open_images();
   Status open_renderer();
   Status open_cameras();
+  /// The samples until a time: simulated ones of the scenario's sensors, of all others those of the
+  /// aircraft that flies.
+  [[nodiscard]] SensorSamples take_samples(std::int64_t t_ns);
   [[nodiscard]] Result<CameraShot> take(std::size_t camera,
                                         std::int64_t k,
                                         const std::vector<AircraftState>& states);

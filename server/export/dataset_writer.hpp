@@ -39,9 +39,12 @@ struct DatasetPlan {
   std::int64_t last_frame = 0;    ///< the highest index that may occur
   std::int64_t epoch_utc_ns = 0;  ///< Unix time of t = 0
   flight::ImuModel imu_model;
+  /// The samples are those of the aircraft's own IMU: its rate is measured, its biases and noise
+  /// are not known.
+  bool imu_of_vehicle = false;
   std::vector<flight::ImuReading> imu;     ///< over the exported time span; EuRoC only
   std::vector<AircraftState> states;       ///< one for each IMU sample
-  std::vector<PlannedEstimate> estimates;  ///< of a run; rosbag and MCAP only
+  std::vector<PlannedEstimate> estimates;  ///< of a run; LCM, rosbag, MCAP only
 };
 
 /// Takes the frames in order; writes their images at once and the text files at the end. Images

@@ -45,10 +45,15 @@ std::string sensor_text(const CameraSpec& camera, const FrameRate& rate) {
          distortion_text(camera.model.distortion());
 }
 
-std::string imu_text(const flight::ImuModel& imu) {
-  return "# Synthetic IMU in the aircraft's body origin.\nsensor_type: imu\ncomment: "
-         "synthetic\n\n" +
-         transform_text({}) + "\nrate_hz: " + number_text(imu.rate_hz) +
+/// @param of_vehicle  recorded from a vehicle, instead of made
+std::string imu_text(const flight::ImuModel& imu, bool of_vehicle) {
+  const char* const about =
+      of_vehicle
+          ? "# The vehicle's own IMU, as recorded; rate_hz is measured, the noise below is not.\n"
+            "sensor_type: imu\ncomment: recorded\n\n"
+          : "# Synthetic IMU in the aircraft's body origin.\nsensor_type: imu\ncomment: "
+            "synthetic\n\n";
+  return about + transform_text({}) + "\nrate_hz: " + number_text(imu.rate_hz) +
          "\n\ngyroscope_noise_density: " + number_text(imu.gyroscope_noise_rad_s_sqrt_hz) +
          "     # [ rad / s / sqrt(Hz) ]\ngyroscope_random_walk: " +
          number_text(imu.gyroscope_walk_rad_s2_sqrt_hz) +
@@ -124,7 +129,8 @@ class EurocWriter final : public DatasetWriter {
               "," + list_of(sample.acceleration_m_s2) + "\n";
     }
     if (Status status = write_whole(root_ / "imu0" / "data.csv", rows); !status) return status;
-    return write_whole(root_ / "imu0" / "sensor.yaml", imu_text(plan.imu_model));
+    return write_whole(root_ / "imu0" / "sensor.yaml",
+                       imu_text(plan.imu_model, plan.imu_of_vehicle));
   }
 
   Status write_states(const DatasetPlan& plan) const {

@@ -1,5 +1,6 @@
 #include "server/export/exported_samples.hpp"
 
+#include <limits>
 #include <utility>
 
 #include "flight/gravity.hpp"
@@ -9,18 +10,39 @@
 namespace overfly::server {
 namespace {
 
+constexpr std::int64_t kBeforeFlightNs = std::numeric_limits<std::int64_t>::min();
+
 using Readings = Result<std::vector<flight::ImuReading>>;
+
+Result<std::vector<ImuSample>> recorded_samples(const RecordedRun& run, std::int64_t end_ns) {
+  Result<SensorFilesReader> reader = SensorFilesReader::open(run.folder);
+  if (!reader) return reader.error();
+  Result<SensorSamples> samples = reader->until(end_ns);
+  if (!samples) return samples.error();
+  return std::move(samples->imu);
+}
+
+/// Those of the IMU of a live vehicle; empty if the run recorded none.
+Readings vehicle_readings(const RecordedRun& run, std::int64_t end_ns, DatasetPlan& plan) {
+  const Result<std::vector<ImuSample>> samples = recorded_samples(run, end_ns);
+  if (!samples) return samples.error();
+  std::vector<flight::ImuReading> readings;
+  for (const ImuSample& sample : *samples) readings.push_back({.sample = sample});
+  if (readings.size() < 2) return std::vector<flight::ImuReading>();
+  plan.imu_of_vehicle = true;
+  const std::int64_t length_ns = samples->back().t_ns - samples->front().t_ns;
+  plan.imu_model.rate_hz = static_cast<double>(samples->size() - 1) / s_from_ns(length_ns);
+  return readings;
+}
 
 /// Empty if the run recorded none.
 Readings recorded_readings(const RecordedRun& run,
                            const flight::ImuModel& model,
                            std::uint64_t seed,
                            std::int64_t end_ns) {
-  Result<SensorFilesReader> reader = SensorFilesReader::open(run.folder);
-  if (!reader) return reader.error();
-  const Result<SensorSamples> samples = reader->until(end_ns);
+  const Result<std::vector<ImuSample>> samples = recorded_samples(run, end_ns);
   if (!samples) return samples.error();
-  Readings readings = flight::with_biases(samples->imu, model, flight::imu_seed(seed));
+  Readings readings = flight::with_biases(*samples, model, flight::imu_seed(seed));
   if (!readings) return readings.error().in((sensors_folder(run.folder) / "imu.csv").string());
   return readings;
 }
@@ -81,6 +103,8 @@ Status add_inertial_data(const ExportSource& source,
   Readings readings = std::vector<flight::ImuReading>();
   if (fitted && source.run) {
     readings = recorded_readings(*source.run, *fitted, scenario.seed, end_ns);
+  } else if (!fitted && source.run && scenario.has_sensors()) {
+    readings = vehicle_readings(*source.run, end_ns, plan);
   }
   if (readings && readings->empty()) {
     readings = synthesized_readings(source, plan.imu_model, world, end_ns, keep_going);
@@ -109,12 +133,16 @@ Result<FrameSamples> FrameSamples::open(const ExportSource& source) {
 }
 
 Status FrameSamples::add_to(MadeFrame& frame) {
+  const std::int64_t previous_ns =
+      previous_ns_.value_or(frame.t_ns > 0 ? frame.t_ns - period_ns_ : kBeforeFlightNs);
+  previous_ns_ = frame.t_ns;
   if (recorded_) {
-    Result<SensorSamples> samples = recorded_->until(frame.t_ns);
+    Result<SensorSamples> samples = recorded_->until(frame.t_ns, previous_ns);
     if (!samples) return samples.error();
     frame.sensors = std::move(*samples);
+  } else {
+    drop_available_at(frame.sensors, previous_ns);
   }
-  if (std::exchange(first_, false)) drop_older_than(frame.sensors, period_ns_);
   return {};
 }
 

@@ -15,9 +15,9 @@ namespace overfly::server {
 
 /// Adds to a plan the IMU samples from one frame before the first to one frame after the last, and
 /// the states at their times: the samples that a run recorded if its aircraft has an IMU, otherwise
-/// synthesised ones.
-/// @param wanted  as ExportOptions::imu
-/// Errors: kInvalidArgument for a wanted IMU if the aircraft has one; as synthesize_imu and
+/// synthesised ones. The biases of a live vehicle's own IMU are not known, and are zero.
+/// @param wanted  as ExportOptions::imu; of a vehicle's own IMU it gives the noise only
+/// Errors: kInvalidArgument for a wanted IMU if the scenario has one; as synthesize_imu and
 /// SensorFilesReader.
 [[nodiscard]] Status add_inertial_data(const ExportSource& source,
                                        const std::optional<flight::ImuModel>& wanted,
@@ -30,8 +30,8 @@ class FrameSamples {
  public:
   /// Errors: as SensorFilesReader::open.
   static Result<FrameSamples> open(const ExportSource& source);
-  /// The first frame gets those of one frame period. Frames must come in order.
-  /// Errors: as SensorFilesReader::until.
+  /// The first frame gets those that became available during one frame period. Frames must come in
+  /// order. Errors: as SensorFilesReader::until.
   [[nodiscard]] Status add_to(MadeFrame& frame);
 
  private:
@@ -39,7 +39,7 @@ class FrameSamples {
 
   std::int64_t period_ns_;
   std::optional<SensorFilesReader> recorded_;  ///< empty: the frame maker has measured
-  bool first_ = true;
+  std::optional<std::int64_t> previous_ns_;    ///< time of the previous frame
 };
 
 }  // namespace overfly::server

@@ -13,7 +13,10 @@ namespace {
 bool needs_history(const Scenario& scenario) {
   // A frozen camera repeats an older image, and stamps shifted by faults depend on the preceding
   // ones.
-  if (!scenario.faults.empty()) return true;
+  const auto changes_frames = [](const FaultSpec& fault) {
+    return fault.kind != FaultKind::kGpsOutage;
+  };
+  if (std::any_of(scenario.faults.begin(), scenario.faults.end(), changes_frames)) return true;
   return std::any_of(
       scenario.cameras.begin(), scenario.cameras.end(), [](const CameraSpec& camera) {
         return camera.sensor.enabled && camera.sensor.auto_exposure.has_value();

@@ -33,7 +33,7 @@ class McapWriter final : public DatasetWriter {
   }
 
   Result<std::vector<std::string>> add(const MadeFrame& frame) override {
-    if (Status status = add_samples(frame.sensors); !status) return status.error();
+    if (Status status = add_samples(frame); !status) return status.error();
     std::vector<std::string> names(frame.shots.size());
     for (std::size_t i = 0; i < frame.shots.size(); ++i) {
       const CameraShot& shot = frame.shots[i];
@@ -79,9 +79,17 @@ class McapWriter final : public DatasetWriter {
     return status ? write(names.image, header, ros2_image(header, grey_of(shot.image))) : status;
   }
 
-  Status add_samples(const SensorSamples& samples) {
+  Status add_samples(const MadeFrame& frame) {
+    sampled_ = sampled_ || !frame.sensors.empty();
+    if (!sampled_) return {};
+    for (const RosMount& mount : ros_mounts(plan_.cameras.front(), names_.front().frame)) {
+      const Ros2Header header{plan_.epoch_utc_ns + frame.t_ns, mount.parent_frame};
+      Status status =
+          write("/tf", header, ros2_transform(header, mount.child_frame, mount.T_parent_child));
+      if (!status) return status;
+    }
     return with_each_ros2_sample(
-        samples, plan_.epoch_utc_ns, [this](const Ros2SampleMessage& message) {
+        frame.sensors, plan_.epoch_utc_ns, [this](const Ros2SampleMessage& message) {
           if (!channels_.contains(message.topic)) add_channel(message.topic, *message.type);
           return file_.add_message(channels_.at(message.topic),
                                    static_cast<std::uint64_t>(message.available_ns),
@@ -90,7 +98,7 @@ class McapWriter final : public DatasetWriter {
   }
 
   Status add_truth(const MadeFrame& frame, const CameraShot& shot, const RosCameraTopics& names) {
-    const Ros2Header header{plan_.epoch_utc_ns + frame.t_ns, kRosWorldFrame};
+    const Ros2Header header{plan_.epoch_utc_ns + frame.t_ns, ros1::kWorldFrame};
     const Pose& T_world_camera = shot.drawn.T_world_camera;
     Status status = write("/tf", header, ros2_transform(header, names.frame, T_world_camera));
     return status ? write(names.truth, header, ros2_pose(header, T_world_camera)) : status;
@@ -102,6 +110,7 @@ class McapWriter final : public DatasetWriter {
   McapFile file_;
   fs::path unfinished_;  ///< name until it is complete
   std::map<std::string, McapFile::ChannelId> channels_;
+  bool sampled_ = false;  ///< the aircraft has sensors
 };
 
 }  // namespace

@@ -32,6 +32,20 @@ std::vector<RosCameraTopics> ros_camera_topics(const std::vector<CameraSpec>& ca
   return names;
 }
 
+std::vector<RosMount> ros_mounts(const CameraSpec& first_camera, const std::string& camera_frame) {
+  // Forward-right-down and forward-left-up are half a turn about x apart.
+  const Eigen::Quaterniond R_body_base(0.0, 1.0, 0.0, 0.0);
+  const Pose T_camera_body = first_camera.T_body_camera.inverse();
+  // Columns are the range sensor's axes in base_link: x down, y left, z forward.
+  Eigen::Matrix3d R_base_range;
+  R_base_range << 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, -1.0, 0.0, 0.0;
+  return {
+      {ros1::kBodyFrame, camera_frame, T_camera_body * Pose{R_body_base, Eigen::Vector3d::Zero()}},
+      {ros1::kRangeFrame,
+       ros1::kBodyFrame,
+       Pose{Eigen::Quaterniond(R_base_range), Eigen::Vector3d::Zero()}}};
+}
+
 RosEstimates::RosEstimates(const std::vector<PlannedEstimate>& estimates)
     : estimates_(estimates), next_(estimates.size(), 0) {
   std::set<std::string> taken;
@@ -62,8 +76,10 @@ std::vector<RosEstimate> RosEstimates::of(std::int64_t frame) {
     const std::string topic = "/estimates/" + names_[i] + "/pose";
     poses.push_back({topic, names_[i] + "_vo", sample.t_ns, sample.T_vo_camera});
     if (!estimate.S_world_vo || sample.map_id != estimate.map_id) continue;
-    poses.push_back(
-        {topic + "_world", kRosWorldFrame, sample.t_ns, *estimate.S_world_vo * sample.T_vo_camera});
+    poses.push_back({topic + "_world",
+                     ros1::kWorldFrame,
+                     sample.t_ns,
+                     *estimate.S_world_vo * sample.T_vo_camera});
   }
   return poses;
 }

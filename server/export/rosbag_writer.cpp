@@ -20,7 +20,7 @@ class RosbagWriter final : public DatasetWriter {
         unfinished_(std::move(unfinished)) {}
 
   Result<std::vector<std::string>> add(const MadeFrame& frame) override {
-    Status sampled = bag_->add_samples(frame.sensors, plan_.epoch_utc_ns);
+    Status sampled = add_samples(frame);
     if (!sampled) return sampled.error();
     std::vector<std::string> names(frame.shots.size());
     for (std::size_t i = 0; i < frame.shots.size(); ++i) {
@@ -51,6 +51,19 @@ class RosbagWriter final : public DatasetWriter {
                   : status;
   }
 
+  Status add_samples(const MadeFrame& frame) {
+    sampled_ = sampled_ || !frame.sensors.empty();
+    if (!sampled_) return {};
+    for (const RosMount& mount : ros_mounts(plan_.cameras.front(), names_.front().frame)) {
+      Status status = bag_->add_transform(mount.parent_frame,
+                                          mount.child_frame,
+                                          plan_.epoch_utc_ns + frame.t_ns,
+                                          mount.T_parent_child);
+      if (!status) return status;
+    }
+    return bag_->add_samples(frame.sensors, plan_.epoch_utc_ns);
+  }
+
   Status add_estimates(std::int64_t frame) {
     for (const RosEstimate& estimate : estimates_.of(frame)) {
       Status status = bag_->add_pose(
@@ -63,15 +76,17 @@ class RosbagWriter final : public DatasetWriter {
   Status add_truth(const MadeFrame& frame, const CameraShot& shot, const RosCameraTopics& names) {
     const std::int64_t stamp_ns = plan_.epoch_utc_ns + frame.t_ns;
     const Pose& T_world_camera = shot.drawn.T_world_camera;
-    Status status = bag_->add_transform(kRosWorldFrame, names.frame, stamp_ns, T_world_camera);
-    return status ? bag_->add_pose(names.truth, kRosWorldFrame, stamp_ns, T_world_camera) : status;
+    Status status = bag_->add_transform(ros1::kWorldFrame, names.frame, stamp_ns, T_world_camera);
+    return status ? bag_->add_pose(names.truth, ros1::kWorldFrame, stamp_ns, T_world_camera)
+                  : status;
   }
 
   DatasetPlan plan_;
   std::vector<RosCameraTopics> names_;
   RosEstimates estimates_{plan_.estimates};
   std::unique_ptr<ros1::BagWriter> bag_;
-  fs::path unfinished_;  ///< name until it is complete, as used by rosbag
+  fs::path unfinished_;   ///< name until it is complete, as used by rosbag
+  bool sampled_ = false;  ///< the aircraft has sensors
 };
 
 }  // namespace

@@ -26,7 +26,11 @@ class EstimateFeedback {
   void add_frame(const FrameRow& row);
   /// Takes an answer; one of a frame that is not known any more counts as not placed.
   void take(const EstimateRecord& record);
-  [[nodiscard]] std::string report() const { return receiver_->report(); }
+  /// Ends the sending. @return what was sent, and why not more
+  [[nodiscard]] std::string finish() {
+    receiver_->finish();
+    return receiver_->report();
+  }
 
  private:
   /// The truth of a frame, for the alignment.

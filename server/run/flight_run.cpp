@@ -1,6 +1,7 @@
 #include "server/run/flight_run.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,6 +15,8 @@
 
 namespace overfly::server {
 namespace {
+
+constexpr std::int64_t kFlightsEndNs = std::numeric_limits<std::int64_t>::max();
 
 Error stopped() { return {ErrorCode::kCancelled, "cancelled"}; }
 
@@ -118,7 +121,8 @@ Status FlightRun::describe_end() {
     known.push_back(warning);
     if (Status status = recorder_.log(end_ns(), "warning", warning); !status) return status;
   }
-  return {};
+  const std::string sensors = maker_->sensor_report();
+  return sensors.empty() ? Status() : recorder_.log(end_ns(), "info", sensors);
 }
 
 Status FlightRun::prepare_and_fly() {
@@ -134,6 +138,11 @@ Status FlightRun::prepare_and_fly() {
 }
 
 Status FlightRun::record_last_period() {
+  // Events behind the last frame of a flight whose end is known.
+  if (maker_->duration_ns()) {
+    Status told = tell_flight(maker_->frame_ns(maker_->frames_total()), end_ns());
+    if (!told) return told;
+  }
   const Result<SensorSamples> last = maker_->record_last_period();
   return last ? recorder_.add_sensor_samples(*last) : last.error();
 }
@@ -170,9 +179,12 @@ Status FlightRun::fly_real_time() {
     InTheAir& operator=(const InTheAir&) = delete;
   } const in_the_air(clock_, pictures);
   maker_->begin_flight();
+  // t = 0 is now, after all that takes time.
+  recorder_.manifest().epoch_utc_ns = epoch_utc_ns();
   // A live flight states at which time of the vehicle's clock it begins.
   if (auto& flight = recorder_.manifest().flight)
     flight->description = maker_->flight_description();
+  if (Status written = recorder_.write_manifest(); !written) return written;
   std::int64_t start_ns = clock_.now_ns();
   // A live flight's first state came a moment ago: the camera must not be late by that.
   const std::optional<std::int64_t> heard_ns = maker_->heard_ns();
@@ -204,8 +216,12 @@ Status FlightRun::keep_pace(std::int64_t start_ns, PictureRate& pictures) {
 
 Result<FlightRun::Flight> FlightRun::fly_frame(std::int64_t k, bool wait_for_estimators) {
   auto made = maker_->make(k);
-  if (!made) return made.error();
-  if (!*made) return Flight::kEnded;
+  if (!made || !*made) {
+    // What ended the flight is an event behind the last frame.
+    Status told = cancelled() ? Status() : tell_flight(kFlightsEndNs, end_ns());
+    if (!made) return made.error();
+    return told ? Result<Flight>(Flight::kEnded) : Result<Flight>(told.error());
+  }
   if (const std::optional<std::int64_t> heard_ns = maker_->heard_ns()) {
     message_to_frame_.ms.push_back(static_cast<double>(machine_clock().now_ns() - *heard_ns) *
                                    1e-6);
@@ -221,7 +237,7 @@ Result<FlightRun::Flight> FlightRun::fly_frame(std::int64_t k, bool wait_for_est
   if (Status status = record_events(); !status) return status.error();
 
   if (Status status = tell_faults((*made)->t_ns); !status) return status.error();
-  if (Status status = tell_flight((*made)->t_ns); !status) return status.error();
+  if (Status status = tell_flight((*made)->t_ns, (*made)->t_ns); !status) return status.error();
   const Status delivered = deliver(**made);
   if (options_.progress) options_.progress(recorder_.info());
   if (!delivered) return delivered.error();
@@ -305,14 +321,16 @@ Status FlightRun::tell_faults(std::int64_t t_ns) {
   return {};
 }
 
-Status FlightRun::tell_flight(std::int64_t t_ns) {
-  for (const FlightEvent& event : maker_->take_flight_events(t_ns)) {
+Status FlightRun::tell_flight(std::int64_t until_ns, std::int64_t latest_ns) {
+  for (const FlightEvent& event : maker_->take_flight_events(until_ns)) {
     const char* kind = to_string(event.kind);
-    Status status = recorder_.log(event.t_ns, "info", event.text, kind);
+    Status status = recorder_.log(std::min(event.t_ns, latest_ns), "info", event.text, kind);
     if (!status) return status;
   }
-  const std::optional<VehicleStatus> vehicle = maker_->take_vehicle_status(t_ns);
-  return vehicle ? recorder_.add_vehicle_status(*vehicle) : Status();
+  std::optional<VehicleStatus> vehicle = maker_->take_vehicle_status(until_ns);
+  if (!vehicle) return {};
+  vehicle->t_ns = std::min(vehicle->t_ns, latest_ns);
+  return recorder_.add_vehicle_status(*vehicle);
 }
 
 Status FlightRun::record_events() {

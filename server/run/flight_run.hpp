@@ -48,7 +48,8 @@ class FlightRun {
   Status close_estimators();
   Status describe_use();
 
-  /// Records what the flight has to report after it: gaps of a live vehicle, why it ended.
+  /// Records what the flight has to report after it: gaps of a live vehicle, why it ended, its
+  /// sensors.
   Status describe_end();
 
   Status fly_lockstep();
@@ -68,7 +69,9 @@ class FlightRun {
   Status judge_recorded_image(const MadeFrame& made);
   Status record_events();
   /// Records the events of the flight and the state of a live vehicle.
-  Status tell_flight(std::int64_t t_ns);
+  /// Records the flight's events and the vehicle's reports up to a time, stamped no later than
+  /// `latest_ns`.
+  Status tell_flight(std::int64_t until_ns, std::int64_t latest_ns);
   Status tell_faults(std::int64_t t_ns);
   [[nodiscard]] bool cancelled() const;
 

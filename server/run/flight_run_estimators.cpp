@@ -67,7 +67,7 @@ Port FlightRun::open_estimator(const EstimatorSpec& spec) {
                                  *folder,
                                  scenario_.rate.hz(),
                                  options_.cancel,
-                                 !scenario_.sensors.none()};
+                                 scenario_.has_sensors()};
   if (is_outside_estimator(spec.type)) return create_estimator(spec, setting, truth);
   // Also binds the threads that a native estimator starts at once.
   const AffinityGuard guard;
@@ -136,7 +136,7 @@ Status FlightRun::close_estimators() {
   });
   const Status recorded = record_events();
   if (feedback_) {
-    Status logged = recorder_.log(end_ns(), "info", feedback_->report());
+    Status logged = recorder_.log(end_ns(), "info", feedback_->finish());
     if (!logged) return logged;
   }
   const Status described = describe_use();

@@ -145,6 +145,10 @@ struct Scenario {
   /// the images, and the rate is nominal.
   FrameRate rate;
   flight::SensorModels sensors;  ///< in addition to the cameras
+  /// Frames come with samples of sensors: simulated ones, or those of a vehicle.
+  [[nodiscard]] bool has_sensors() const {
+    return !sensors.none() || std::holds_alternative<flight::live::LiveFlight>(flight);
+  }
   std::vector<FaultSpec> faults;
   std::vector<EstimatorSpec> estimators;
   RendererChoice renderer;

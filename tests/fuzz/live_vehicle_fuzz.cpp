@@ -78,7 +78,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   FrameFinder finder;
   VehicleState state;
   TimeSync sync;
-  live::LiveSamples samples;
+  live::LiveSamples samples(0.0);
   live::StopWatch stop({true, true, 3});
   SignatureCheck signatures(SigningKey{}, 0);
   std::deque<HeldMessage> messages;

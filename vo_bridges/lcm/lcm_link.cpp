@@ -75,12 +75,13 @@ Status LcmLink::announce() {
 }
 
 Status LcmLink::send(const SensorSamples& samples) {
-  return lcm::with_each_message(samples, [&](const char* name, auto message) {
-    const std::string channel = prefix_ + name;
-    message.session = session();
-    message.sequence = ++sample_counts_[channel];
-    return lcm::publish_message(*node_, channel, message);
-  });
+  return lcm::with_each_message(samples,
+                                [&](const char* name, std::int64_t /*available*/, auto message) {
+                                  const std::string channel = prefix_ + name;
+                                  message.session = session();
+                                  message.sequence = ++sample_counts_[channel];
+                                  return lcm::publish_message(*node_, channel, message);
+                                });
 }
 
 Status LcmLink::send(const VoFrame& frame) {

@@ -64,6 +64,7 @@ class Session {
   void send(const VoFrame& frame, bool debug_wanted);
   /// The frame with the samples of frames that were not sent.
   [[nodiscard]] VoFrame with_unsent_samples(const VoFrame& frame);
+  void drop_samples_beyond_frame_limit(VoFrame& frame);
   /// Handles a message that may arrive at any time. @return whether it was one
   [[nodiscard]] Result<bool> take_notice(const Message& message);
   [[nodiscard]] Status take_parameters(const Message& message);

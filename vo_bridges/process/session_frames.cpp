@@ -162,17 +162,19 @@ VoFrame Session::with_unsent_samples(const VoFrame& frame) {
   return complete;
 }
 
+void Session::drop_samples_beyond_frame_limit(VoFrame& frame) {
+  std::vector<ImuSample>& imu = frame.sensors.imu;
+  const std::size_t most = most_imu_samples(frame, memory_.has_value());
+  if (imu.size() <= most) return;
+  output_->note("frame " + std::to_string(frame.index) + ": of " + std::to_string(imu.size()) +
+                " inertial samples FRAME has room for the last " + std::to_string(most));
+  imu.erase(imu.begin(), imu.end() - static_cast<std::ptrdiff_t>(most));
+}
+
 Result<std::optional<VoEstimate>> Session::track(const VoFrame& newest, bool debug_wanted) {
   if (ended_) return *ended_;
   VoFrame frame = with_unsent_samples(newest);
-  if (const std::size_t bytes = frame_payload_bytes(frame, memory_.has_value());
-      bytes > kFrameLimitBytes) {
-    return Error{ErrorCode::kInvalidArgument,
-                 "frame " + std::to_string(frame.index) + ": with " +
-                     std::to_string(frame.sensors.imu.size()) + " inertial samples FRAME has " +
-                     std::to_string(bytes) + " bytes: must be at most " +
-                     std::to_string(kFrameLimitBytes)};
-  }
+  drop_samples_beyond_frame_limit(frame);
   const auto deadline = after_s(options_.answer_timeout_s);
   if (under_way_) {
     const Result<std::optional<VoEstimate>> late = wait_answer(deadline);

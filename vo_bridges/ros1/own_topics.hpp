@@ -18,6 +18,7 @@ namespace overfly::ros1 {
   if (!options.debug_image_topic.empty()) {
     own.push_back({"debug_image_topic", options.debug_image_topic});
   }
+  if (options.publish_sensors) own.push_back({"sensor_namespace", options.sensor_namespace});
   if (by_tf || options.publish_tf) {
     own.push_back(
         {"camera_frame",

@@ -46,6 +46,7 @@ Status check_names(const Ros1EstimatorOptions& options) {
       {"camera_info_topic", options.camera_info_topic, false},
       {"pose_topic", options.pose_topic, options.pose_type == Ros1PoseType::kTf},
       {"debug_image_topic", options.debug_image_topic, true},
+      {"sensor_namespace", options.sensor_namespace, false},
       {"parameter_namespace", options.parameter_namespace, options.parameters.empty()},
   };
   for (const auto& [option, name, may_be_empty] : names) {

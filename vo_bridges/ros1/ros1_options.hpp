@@ -29,7 +29,8 @@ struct Ros1EstimatorOptions {
   bool pose_in_body_axes = false;
   /// Publishes the samples of the aircraft's sensors; set by the run if there are any.
   bool publish_sensors = false;
-  bool publish_clock = true;  ///< /clock, for nodes under use_sim_time
+  std::string sensor_namespace = "/sensors";  ///< of their topics
+  bool publish_clock = true;                  ///< /clock, for nodes under use_sim_time
   /// Publishes the estimate on /tf, as camera_frame in vo_frame, for observers. Not with kTf.
   bool publish_tf = false;
   int queue_size = 8;  ///< of each topic, in [1, 1000]

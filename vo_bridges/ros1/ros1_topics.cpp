@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* kClock = "/clock";
 constexpr const char* kTransforms = "/tf";
-constexpr const char* kSensors = "/sensors";
+constexpr std::string_view kSensors = "/sensors";  ///< of with_each_message
 /// Samples come in bursts, with each image: more than ten seconds of an IMU at 200 Hz.
 constexpr int kSensorQueue = 2500;
 
@@ -125,14 +125,9 @@ Status Topics::advertise_all() {
 }
 
 Status Topics::advertise_sensors() {
-  const OwnTopic own{"sensors", kSensors};
-  if (node_.claim({own})) {
-    log_->add("another estimator of this process publishes the topics of /sensors");
-    return {};
-  }
-  claimed_.push_back(own);
-  return with_each_topic([&](const char* topic, const auto& message) {
-    return advertise<std::decay_t<decltype(message)>>(topic, sensors_[topic], false, kSensorQueue);
+  return with_each_topic([&](const std::string& topic, const auto& message) {
+    const std::string name = options_.sensor_namespace + topic.substr(kSensors.size());
+    return advertise<std::decay_t<decltype(message)>>(name, sensors_[topic], false, kSensorQueue);
   });
 }
 

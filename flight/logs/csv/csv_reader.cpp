@@ -10,6 +10,7 @@
 #include "core/motion/pose.hpp"
 #include "flight/logs/boot_clock.hpp"
 #include "flight/logs/csv/csv_rows.hpp"
+#include "flight/logs/held_messages.hpp"
 #include "flight/logs/ned_attitude.hpp"
 
 namespace overfly::flight::logs {
@@ -85,6 +86,8 @@ class PiecePass {
   void report(const CsvRows& rows);
 
  private:
+  void pass(const std::vector<std::string_view>& fields, const std::optional<LogTime>& time);
+  void pass_held();
   void take_samples(const std::vector<std::string_view>& fields, const LogTime& time);
   [[nodiscard]] double value(CsvQuantity quantity) const {
     return values_[static_cast<std::size_t>(quantity)];
@@ -94,7 +97,8 @@ class PiecePass {
   StreamId id_;
   bool wanted_;
   LogSink& sink_;
-  BootClock clock_;
+  BootClock clock_{FirstStamps::kHeld};
+  HeldMessages<std::vector<std::string>> held_;  ///< fields of rows
   std::size_t time_index_ = 0;
   std::size_t valid_index_ = 0;
   std::array<std::size_t, kCsvQuantities> indices_{};
@@ -114,6 +118,19 @@ void PiecePass::take(const std::vector<std::string_view>& fields) {
     return;
   }
   const std::optional<LogTime> time = clock_.take(*t_ns);
+  if (held_.must_hold(clock_)) return held_.hold(time, {fields.begin(), fields.end()});
+  pass_held();
+  pass(fields, time);
+}
+
+void PiecePass::pass_held() {
+  held_.release(clock_, [this](const auto& time, const std::vector<std::string>& fields) {
+    pass({fields.begin(), fields.end()}, time);
+  });
+}
+
+void PiecePass::pass(const std::vector<std::string_view>& fields,
+                     const std::optional<LogTime>& time) {
   sink_.message(id_, time);
   if (!time) return;
   if (std::exchange(last_, time) == time) {
@@ -165,6 +182,7 @@ void PiecePass::take_samples(const std::vector<std::string_view>& fields, const 
 }
 
 void PiecePass::report(const CsvRows& rows) {
+  pass_held();
   const auto warn = [&](std::uint64_t count, const std::string& text) {
     if (count > 0) sink_.warning(std::to_string(count) + " " + text + " in " + piece_.name);
   };

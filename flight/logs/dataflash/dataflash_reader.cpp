@@ -11,6 +11,7 @@
 #include "flight/logs/boot_clock.hpp"
 #include "flight/logs/dataflash/format_table.hpp"
 #include "flight/logs/dataflash/record_plan.hpp"
+#include "flight/logs/held_messages.hpp"
 
 namespace overfly::flight::logs {
 namespace {
@@ -49,6 +50,14 @@ class DataflashPass {
   void update_kind(std::uint8_t type);
   /// Null if there are too many streams.
   RecordKind::Stream* stream_of(RecordKind& kind, std::span<const std::uint8_t> record);
+  /// Passes what a record contains to the sink.
+  void pass(const RecordKind& kind,
+            const RecordKind::Stream& stream,
+            const std::optional<LogTime>& time,
+            std::span<const std::uint8_t> record);
+  void pass_held();
+  /// Follows a record that says how others are read.
+  void declare(const RecordKind& kind, std::span<const std::uint8_t> record);
   void take_samples(const RecordKind& kind,
                     const RecordKind::Stream& stream,
                     const LogTime& time,
@@ -70,7 +79,8 @@ class DataflashPass {
   FormatTable table_;
   std::array<std::unique_ptr<RecordKind>, 256> kinds_;
   StreamId stream_count_ = 0;
-  BootClock clock_;
+  BootClock clock_{FirstStamps::kHeld};
+  HeldMessages<std::vector<std::uint8_t>> held_;
   std::optional<LocalOrigin> estimator_origin_;
   std::vector<StreamId> estimator_streams_;
   std::optional<SimulatedPoint> simulated_;
@@ -154,8 +164,40 @@ void DataflashPass::take(std::span<const std::uint8_t> record) {
     const bool possible = ticks >= 0 && ticks < kMaxTicks / kind.plan.ns_per_time_unit * 1000;
     time = clock_.take(possible ? ticks * kind.plan.ns_per_time_unit : -1);
   }
-  sink_.message(stream->id, time);
-  if (time) take_samples(kind, *stream, *time, record);
+  if (held_.must_hold(clock_)) {
+    sink_.declaration();
+    held_.hold(time, {record.begin(), record.end()});
+  } else {
+    pass_held();
+    pass(kind, *stream, time, record);
+  }
+  if (kind.declares) declare(kind, record);
+}
+
+void DataflashPass::pass_held() {
+  held_.release(clock_,
+                [this](const std::optional<LogTime>& time, std::span<const std::uint8_t> record) {
+                  RecordKind& kind = *kinds_[record[2]];
+                  // Its type may have been declared again meanwhile, with other fields.
+                  if (kind.plan.format.size_bytes != record.size()) return;
+                  const RecordKind::Stream* const stream = stream_of(kind, record);
+                  if (stream != nullptr) pass(kind, *stream, time, record);
+                });
+}
+
+void DataflashPass::declare(const RecordKind& kind, std::span<const std::uint8_t> record) {
+  const FormatTable::Change change = table_.take(kind.plan.format, record);
+  if (!change.any) return;
+  update_kind(change.type);
+  sink_.declaration();
+}
+
+void DataflashPass::pass(const RecordKind& kind,
+                         const RecordKind::Stream& stream,
+                         const std::optional<LogTime>& time,
+                         std::span<const std::uint8_t> record) {
+  sink_.message(stream.id, time);
+  if (time) take_samples(kind, stream, *time, record);
   if (kind.plan.event) {
     std::string text = event_text(kind.plan, record, is_ardu_plane_);
     if (!is_ardu_plane_ && text.starts_with("ArduPlane")) {
@@ -165,13 +207,6 @@ void DataflashPass::take(std::span<const std::uint8_t> record) {
     sink_.event({"", time, *kind.plan.event, std::move(text)});
   }
   if (kind.origin) take_origin(kind.plan, record);
-  if (kind.declares) {
-    const FormatTable::Change change = table_.take(kind.plan.format, record);
-    if (change.any) {
-      update_kind(change.type);
-      sink_.declaration();
-    }
-  }
 }
 
 void DataflashPass::take_samples(const RecordKind& kind,
@@ -229,6 +264,7 @@ void DataflashPass::take_simulator_origin(const RecordPlan& plan,
 }
 
 void DataflashPass::report() {
+  pass_held();
   const auto warn = [&](std::uint64_t count, const std::string& text) {
     if (count > 0) sink_.warning(std::to_string(count) + " " + text);
   };

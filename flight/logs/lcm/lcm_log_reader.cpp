@@ -1,5 +1,6 @@
 #include "flight/logs/lcm/lcm_log_reader.hpp"
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <string>
@@ -8,6 +9,7 @@
 
 #include "core/text/printable_text.hpp"
 #include "flight/logs/boot_clock.hpp"
+#include "flight/logs/held_messages.hpp"
 #include "flight/logs/lcm/lcm_events.hpp"
 #include "flight/logs/lcm/lcm_messages.hpp"
 
@@ -15,6 +17,8 @@ namespace overfly::flight::logs {
 namespace {
 
 constexpr std::size_t kMaxChannels = 4096;
+/// More than a truth_t has: of other types only the time is read.
+constexpr std::size_t kMostReadBytes = 256;
 
 class LcmPass {
  public:
@@ -28,11 +32,16 @@ class LcmPass {
     StreamId id = 0;
     bool wanted = false;
     LcmType type = LcmType::kOther;
-    BootClock clock;
+    BootClock clock{FirstStamps::kHeld};
+    HeldMessages<std::vector<std::uint8_t>> held;  ///< all that is read of each message
   };
 
   /// Null if there are too many.
   Channel* channel_of(const LcmEvent& event);
+  void pass(const Channel& channel,
+            const std::optional<LogTime>& time,
+            std::span<const std::uint8_t> data);
+  void pass_held(Channel& channel);
 
   LogSink& sink_;
   std::map<std::pair<std::string, LcmType>, Channel> channels_;
@@ -66,12 +75,31 @@ void LcmPass::take(const LcmEvent& event) {
   if (channel->type != LcmType::kOther) t_ns = lcm_time_ns(event.data);
   if (!t_ns) ++short_messages_;
   const std::optional<LogTime> time = t_ns ? channel->clock.take(*t_ns) : std::optional<LogTime>();
-  sink_.message(channel->id, time);
-  if (!channel->wanted || !time || channel->type != LcmType::kTruth) return;
-  if (!pass_truth(event.data, channel->id, *time, sink_)) ++short_messages_;
+  if (channel->held.must_hold(channel->clock)) {
+    const auto data = event.data.first(std::min(event.data.size(), kMostReadBytes));
+    sink_.declaration();
+    channel->held.hold(time, {data.begin(), data.end()});
+    return;
+  }
+  pass_held(*channel);
+  pass(*channel, time, event.data);
+}
+
+void LcmPass::pass_held(Channel& channel) {
+  channel.held.release(channel.clock,
+                       [&](const auto& time, const auto& data) { pass(channel, time, data); });
+}
+
+void LcmPass::pass(const Channel& channel,
+                   const std::optional<LogTime>& time,
+                   std::span<const std::uint8_t> data) {
+  sink_.message(channel.id, time);
+  if (!channel.wanted || !time || channel.type != LcmType::kTruth) return;
+  if (!pass_truth(data, channel.id, *time, sink_)) ++short_messages_;
 }
 
 void LcmPass::report() {
+  for (auto& [key, channel] : channels_) pass_held(channel);
   const auto warn = [&](std::uint64_t count, const std::string& text) {
     if (count > 0) sink_.warning(std::to_string(count) + " " + text);
   };

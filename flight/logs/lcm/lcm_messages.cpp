@@ -8,8 +8,12 @@
 namespace overfly::flight::logs {
 namespace {
 
-constexpr LcmType kTimedTypes[] = {
-    LcmType::kTruth, LcmType::kImage, LcmType::kPose, LcmType::kSimTime, LcmType::kDebug};
+constexpr LcmType kTimedTypes[] = {LcmType::kTruth,
+                                   LcmType::kImage,
+                                   LcmType::kPose,
+                                   LcmType::kSimTime,
+                                   LcmType::kDebug,
+                                   LcmType::kWorldPose};
 
 // Offsets behind the fingerprint (8), utime (8), t_ns (8), stamp_ns (8) and frame (8).
 constexpr std::size_t kTimeAt = 16;

@@ -21,6 +21,7 @@ enum class LcmType : std::uint64_t {
   kPose = 0x8e3c3a4ab34b4e3a,
   kSimTime = 0xe90c6fc4d87af431,
   kDebug = 0x856bca71191b3891,
+  kWorldPose = 0x7884b766ddbdb1af,
   kOther = 0,
 };
 

@@ -95,23 +95,50 @@ void RosTopics::take(Topic topic,
                      std::uint64_t recorded_ns,
                      const MessagePlace& /*place*/) {
   Stream& stream = streams_[topic];
-  const auto id = static_cast<StreamId>(topic);
   if (stream.type == RosType::kOther) {
     constexpr auto kMost = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
     const auto t_ns = recorded_ns <= kMost ? static_cast<std::int64_t>(recorded_ns) : -1;
-    return sink_.message(id, stream.clock.take(t_ns));
+    return take(topic, stream.clock.take(t_ns), std::nullopt);
   }
-  const std::optional<RosSample> sample = decode(stream, data);
+  std::optional<RosSample> sample = decode(stream, data);
   const std::optional<LogTime> time =
       sample ? stream.clock.take(sample->stamp_ns) : std::optional<LogTime>();
+  take(topic, time, std::move(sample));
+}
+
+void RosTopics::take(Topic topic,
+                     const std::optional<LogTime>& time,
+                     std::optional<RosSample> sample) {
+  Stream& stream = streams_[topic];
+  if (stream.held.must_hold(stream.clock)) {
+    sink_.declaration();
+    stream.held.hold(time, std::move(sample));
+    return;
+  }
+  pass_held(topic);
+  pass(topic, time, sample);
+}
+
+void RosTopics::pass_held(Topic topic) {
+  Stream& stream = streams_[topic];
+  stream.held.release(stream.clock, [&](const auto& time, const std::optional<RosSample>& sample) {
+    pass(topic, time, sample);
+  });
+}
+
+void RosTopics::pass(Topic topic,
+                     const std::optional<LogTime>& time,
+                     const std::optional<RosSample>& sample) {
+  const auto id = static_cast<StreamId>(topic);
   sink_.message(id, time);
-  if (!stream.wanted || !time) return;
+  if (!streams_[topic].wanted || !time || !sample) return;
   if (sample->invalid) return sink_.no_sample(id);
   if (sample->position) sink_.position(id, *time, *sample->position);
   if (sample->R_ned_body) sink_.attitude(id, *time, *sample->R_ned_body);
 }
 
 void RosTopics::report() {
+  for (Topic topic = 0; topic < streams_.size(); ++topic) pass_held(topic);
   const auto warn = [&](std::uint64_t count, const std::string& text) {
     if (count > 0) sink_.warning(std::to_string(count) + " " + text);
   };

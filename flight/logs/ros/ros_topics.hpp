@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "flight/logs/boot_clock.hpp"
+#include "flight/logs/held_messages.hpp"
 #include "flight/logs/log_sink.hpp"
 #include "flight/logs/ros/message_sink.hpp"
 #include "flight/logs/ros/ros_messages.hpp"
@@ -40,10 +41,16 @@ class RosTopics final : public RosMessageSink {
     RosType type = RosType::kOther;
     RosEncoding encoding = RosEncoding::kOther;
     bool wanted = false;
-    BootClock clock;
+    BootClock clock{FirstStamps::kHeld};
+    HeldMessages<std::optional<RosSample>> held;
   };
   using Key = std::pair<std::string, std::pair<std::string, RosEncoding>>;
 
+  void take(Topic topic, const std::optional<LogTime>& time, std::optional<RosSample> sample);
+  void pass(Topic topic,
+            const std::optional<LogTime>& time,
+            const std::optional<RosSample>& sample);
+  void pass_held(Topic topic);
   std::optional<RosSample> decode(const Stream& stream, std::span<const std::uint8_t> data);
 
   LogSink& sink_;

@@ -11,6 +11,8 @@ namespace {
 
 /// A logged flight has some hundred streams; damaged bytes could make up to 2^32.
 constexpr std::size_t kMaxStreams = 2048;
+/// Of a component; further ones are passed on without a time.
+constexpr std::size_t kMaxUntimedEvents = 256;
 
 }  // namespace
 
@@ -19,7 +21,10 @@ using mavlink::MessageId;
 
 FrameStreams::Sender& FrameStreams::sender_of(const Frame& frame) {
   Sender& sender = senders_[(std::uint32_t{frame.system} << 8U) | frame.component];
-  if (sender.name.empty()) sender.name = sender_name(frame);
+  if (sender.name.empty()) {
+    sender.name = sender_name(frame);
+    sender.clock = BootClock(first_stamps_);
+  }
   return sender;
 }
 
@@ -49,10 +54,38 @@ void FrameStreams::take(const Frame& frame) {
   }
   const std::optional<std::int64_t> boot_ns = mavlink::boot_time_ns(frame);
   const std::optional<LogTime> time = boot_ns ? sender.clock.take(*boot_ns) : sender.clock.latest();
-  sink_.message(stream->id, time);
-  if (stream->wanted && time) pass_samples(frame, stream->id, *time, sink_);
+  if (sender.held.must_hold(sender.clock)) {
+    sink_.declaration();
+    sender.held.hold(time, {frame, {frame.payload.begin(), frame.payload.end()}});
+    return;
+  }
+  pass_held(sender);
+  pass(frame, time, *stream, sender);
+}
+
+void FrameStreams::pass_held(Sender& sender) {
+  sender.held.release(sender.clock, [&](const auto& time, const HeldFrame& held) {
+    Frame frame = held.frame;
+    frame.payload = held.payload;
+    pass(frame, time, *stream_of(frame, sender), sender);
+  });
+}
+
+void FrameStreams::pass(const Frame& frame,
+                        const std::optional<LogTime>& time,
+                        const Stream& stream,
+                        Sender& sender) {
+  sink_.message(stream.id, time);
+  if (time && !sender.untimed_events.empty()) pass_untimed_events(sender, time);
+  if (stream.wanted && time) pass_samples(frame, stream.id, *time, sink_);
   take_origin(frame, sender);
-  take_events(frame, sender);
+  take_events(frame, time, sender);
+}
+
+void FrameStreams::pass_untimed_events(Sender& sender, const std::optional<LogTime>& time) {
+  for (auto& [kind, text] : std::exchange(sender.untimed_events, {})) {
+    sink_.event({sender.name, time, kind, std::move(text)});
+  }
 }
 
 void FrameStreams::take_origin(const Frame& frame, Sender& sender) {
@@ -69,11 +102,18 @@ void FrameStreams::take_origin(const Frame& frame, Sender& sender) {
   if (sender.local_stream) sink_.local_origin(*sender.local_stream, *sender.origin);
 }
 
-void FrameStreams::event(const Sender& sender, EventKind kind, std::string text) {
-  sink_.event({sender.name, sender.clock.latest(), kind, std::move(text)});
-}
-
-void FrameStreams::take_events(const Frame& frame, Sender& sender) {
+void FrameStreams::take_events(const Frame& frame,
+                               const std::optional<LogTime>& time,
+                               Sender& sender) {
+  const auto event = [&](EventKind kind, std::string text) {
+    const bool wait = !time && first_stamps_ == FirstStamps::kHeld;
+    if (wait && sender.untimed_events.size() < kMaxUntimedEvents) {
+      sink_.declaration();
+      sender.untimed_events.emplace_back(kind, std::move(text));
+    } else {
+      sink_.event({sender.name, time ? time : sender.clock.latest(), kind, std::move(text)});
+    }
+  };
   const mavlink::PayloadReader payload(frame.payload);
   switch (static_cast<MessageId>(frame.message_id)) {
     case MessageId::kHeartbeat: {
@@ -82,39 +122,40 @@ void FrameStreams::take_events(const Frame& frame, Sender& sender) {
       const std::optional<mavlink::Heartbeat> before = std::exchange(sender.heartbeat, now);
       if (!before || before->autopilot != now.autopilot) sink_.declaration();
       if (!before || before->custom_mode != now.custom_mode) {
-        event(sender, EventKind::kMode, mode_text(now.custom_mode, now.is_ardu_plane()));
+        event(EventKind::kMode, mode_text(now.custom_mode, now.is_ardu_plane()));
       }
       if (!before || before->armed() != now.armed()) {
-        event(sender, EventKind::kArming, now.armed() ? "armed" : "disarmed");
+        event(EventKind::kArming, now.armed() ? "armed" : "disarmed");
       }
       return;
     }
     case MessageId::kStatusText:
-      return event(sender, EventKind::kText, mavlink::decode_status_text(frame).text);
+      return event(EventKind::kText, mavlink::decode_status_text(frame).text);
     case MessageId::kMissionCurrent: {
       const std::uint16_t item = mavlink::decode_mission_sequence(frame);
       if (std::exchange(sender.mission_item, item) != item) {
-        event(sender, EventKind::kMission, "to mission item " + std::to_string(item));
+        event(EventKind::kMission, "to mission item " + std::to_string(item));
       }
       return;
     }
     case MessageId::kMissionItemReached:
       return event(
-          sender,
           EventKind::kMission,
           "reached mission item " + std::to_string(mavlink::decode_mission_sequence(frame)));
     case MessageId::kCameraTrigger:
-      return event(
-          sender, EventKind::kCamera, "trigger " + std::to_string(payload.at<std::uint32_t>(8)));
+      return event(EventKind::kCamera, "trigger " + std::to_string(payload.at<std::uint32_t>(8)));
     case MessageId::kCameraFeedback:
-      return event(
-          sender, EventKind::kCamera, "image " + std::to_string(payload.at<std::uint16_t>(40)));
+      return event(EventKind::kCamera, "image " + std::to_string(payload.at<std::uint16_t>(40)));
     default:
       return;
   }
 }
 
 void FrameStreams::report() {
+  for (auto& [key, sender] : senders_) {
+    pass_held(sender);
+    pass_untimed_events(sender, std::nullopt);
+  }
   const auto warn = [&](std::uint64_t count, const std::string& text) {
     if (count > 0) sink_.warning(std::to_string(count) + " " + text);
   };

@@ -5,21 +5,27 @@
 #include <optional>
 #include <string>
 #include <unordered_map>
+#include <utility>
+#include <vector>
 
 #include "flight/logs/boot_clock.hpp"
+#include "flight/logs/held_messages.hpp"
 #include "flight/logs/log_sink.hpp"
 #include "flight/mavlink/messages.hpp"
 
 namespace overfly::flight::logs {
 
 /// Passes what MAVLink messages contain to a sink, with the times of the vehicle's clock: those of
-/// the message, or of the latest message of the same component that has one.
+/// the message, or of the latest message of the same component that has one. Where first stamps are
+/// held, events before a component's first time are held as well, and get that time: the vehicle
+/// was in that mode when it came.
 class FrameStreams {
  public:
-  explicit FrameStreams(LogSink& sink) : sink_(sink) {}
+  explicit FrameStreams(LogSink& sink, FirstStamps first_stamps = FirstStamps::kPassed)
+      : sink_(sink), first_stamps_(first_stamps) {}
 
   void take(const mavlink::Frame& frame);
-  /// Passes counts of what was left out to the sink, as warnings.
+  /// Passes on what is still held, and counts of what was left out as warnings.
   void report();
 
  private:
@@ -27,10 +33,17 @@ class FrameStreams {
     StreamId id = 0;
     bool wanted = false;
   };
+  /// A frame whose payload points nowhere, and its payload.
+  struct HeldFrame {
+    mavlink::Frame frame;
+    std::vector<std::uint8_t> payload;
+  };
   /// A component of a system, with a clock of its own.
   struct Sender {
     std::string name;
     BootClock clock;
+    HeldMessages<HeldFrame> held;
+    std::vector<std::pair<EventKind, std::string>> untimed_events;  ///< before its first time
     std::optional<mavlink::Heartbeat> heartbeat;
     std::optional<std::uint16_t> mission_item;
     std::optional<LocalOrigin> origin;
@@ -39,11 +52,17 @@ class FrameStreams {
 
   Sender& sender_of(const mavlink::Frame& frame);
   Stream* stream_of(const mavlink::Frame& frame, Sender& sender);
+  void pass(const mavlink::Frame& frame,
+            const std::optional<LogTime>& time,
+            const Stream& stream,
+            Sender& sender);
+  void pass_held(Sender& sender);
   void take_origin(const mavlink::Frame& frame, Sender& sender);
-  void take_events(const mavlink::Frame& frame, Sender& sender);
-  void event(const Sender& sender, EventKind kind, std::string text);
+  void take_events(const mavlink::Frame& frame, const std::optional<LogTime>& time, Sender& sender);
+  void pass_untimed_events(Sender& sender, const std::optional<LogTime>& time);
 
   LogSink& sink_;
+  FirstStamps first_stamps_;
   std::unordered_map<std::uint64_t, Stream> streams_;
   std::unordered_map<std::uint32_t, Sender> senders_;
   std::uint64_t left_out_messages_ = 0;

@@ -11,6 +11,7 @@
 #include "core/text/number_text.hpp"
 #include "core/text/printable_text.hpp"
 #include "flight/logs/boot_clock.hpp"
+#include "flight/logs/held_messages.hpp"
 #include "flight/logs/ulog/ulog_message.hpp"
 #include "flight/logs/ulog/ulog_topics.hpp"
 
@@ -54,6 +55,11 @@ class UlogPass {
   Status take_flags(std::span<const std::uint8_t> body);
   void take_subscription(std::span<const std::uint8_t> body);
   void take_data(std::span<const std::uint8_t> body);
+  void pass_data(Topic& topic,
+                 const std::optional<LogTime>& time,
+                 std::span<const std::uint8_t> data);
+  /// Before subscriptions change: messages belong to those with which they were written.
+  void pass_held();
   void take_status(Topic& topic, const LogTime& time, std::span<const std::uint8_t> data);
   void take_text(std::span<const std::uint8_t> body, std::size_t time_at);
 
@@ -61,7 +67,8 @@ class UlogPass {
   UlogFormats formats_;
   std::unordered_map<std::uint16_t, Topic> topics_;  ///< by msg_id
   StreamId stream_count_ = 0;
-  BootClock clock_;
+  BootClock clock_{FirstStamps::kHeld};
+  HeldMessages<std::vector<std::uint8_t>> held_;  ///< bodies
   std::vector<std::uint64_t> appended_;
   std::uint64_t skipped_bytes_ = 0;
   std::uint64_t damaged_places_ = 0;
@@ -102,6 +109,7 @@ void UlogPass::take_subscription(std::span<const std::uint8_t> body) {
     ++left_out_topics_;
     return;
   }
+  pass_held();
   if (!formats_.has(name)) ++bad_formats_;
   Topic topic;
   topic.plan = plan_of(formats_, name, body[0]);
@@ -125,6 +133,26 @@ void UlogPass::take_data(std::span<const std::uint8_t> body) {
     constexpr std::uint64_t kMaxUs = std::uint64_t{1} << 52U;
     time = clock_.take(time_us < kMaxUs ? static_cast<std::int64_t>(time_us) * 1000 : -1);
   }
+  if (held_.must_hold(clock_)) {
+    sink_.declaration();
+    held_.hold(time, {body.begin(), body.end()});
+    return;
+  }
+  pass_held();
+  pass_data(topic, time, data);
+}
+
+void UlogPass::pass_held() {
+  held_.release(clock_,
+                [this](const std::optional<LogTime>& time, std::span<const std::uint8_t> body) {
+                  Topic& topic = topics_.at(ulog_value<std::uint16_t>(body, 0));
+                  pass_data(topic, time, body.subspan(2));
+                });
+}
+
+void UlogPass::pass_data(Topic& topic,
+                         const std::optional<LogTime>& time,
+                         std::span<const std::uint8_t> data) {
   sink_.message(topic.id, time);
   if (!time) return;
   if (topic.plan.description.position == PositionKind::kLocal) {
@@ -180,6 +208,7 @@ Status UlogPass::take(char kind, std::span<const std::uint8_t> body) {
       break;
     case 'R':
       sink_.declaration();
+      pass_held();
       topics_.erase(ulog_value<std::uint16_t>(body, 0));
       break;
     case 'D':
@@ -207,6 +236,7 @@ void UlogPass::skip(std::size_t bytes) {
 }
 
 void UlogPass::report() {
+  pass_held();
   const auto warn = [&](std::uint64_t count, const std::string& text) {
     if (count > 0) sink_.warning(std::to_string(count) + " " + text);
   };

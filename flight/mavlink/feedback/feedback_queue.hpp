@@ -46,6 +46,8 @@ class FeedbackQueue {
   /// When the next estimate is due; empty if none waits.
   [[nodiscard]] std::optional<std::int64_t> next_due_ns() const;
 
+  /// How many wait.
+  [[nodiscard]] std::size_t size() const { return waiting_.size(); }
   /// Estimates left out because they were too old, or because the vehicle's clock was too far back.
   [[nodiscard]] std::uint64_t too_late() const { return too_late_; }
   [[nodiscard]] std::uint64_t clock_back() const { return clock_back_; }

@@ -40,15 +40,26 @@ FeedbackSender::FeedbackSender(std::shared_ptr<Vehicle> vehicle,
       geoid_separation_m_(geoid_separation_m),
       start_ns_(start_ns),
       queue_(options.latency_ns, period_of(options.rate_hz)),
-      thread_([this] { contained([this] { run(); }, [](const std::string& /*what*/) {}); }) {}
+      thread_([this] {
+        contained([this] { run(); },
+                  [this](const std::string& what) {
+                    const std::lock_guard lock(mutex_);
+                    failure_ = what;
+                  });
+      }) {}
 
-FeedbackSender::~FeedbackSender() {
+FeedbackSender::~FeedbackSender() { finish(); }
+
+void FeedbackSender::finish() {
   {
     const std::lock_guard lock(mutex_);
     stops_ = true;
   }
   news_.notify_all();
+  if (!thread_.joinable()) return;
   thread_.join();
+  const std::lock_guard lock(mutex_);
+  counts_.waiting = queue_.size();
 }
 
 void FeedbackSender::start_at(std::int64_t start_ns) {
@@ -59,6 +70,7 @@ void FeedbackSender::start_at(std::int64_t start_ns) {
 void FeedbackSender::take(const PlacedEstimate& estimate) {
   {
     const std::lock_guard lock(mutex_);
+    if (stops_) return;
     std::optional<FeedbackSample> sample = track_.take(estimate);
     if (!sample) {
       ++counts_.unplaced;
@@ -151,8 +163,10 @@ std::string FeedbackSender::report() const {
   add(queue_.clock_back(), "estimates were not sent because the vehicle's clock was far behind");
   add(counts_.unknown, "were not sent because the vehicle's origin or height was unknown");
   add(counts_.unsent, "were not taken by the link");
+  add(counts_.waiting, "were still waiting for their latency at the end");
   add(counts_.sent - counts_.by_timesync,
       "were sent by the times in the vehicle's messages: TIMESYNC was not answered, or differed");
+  if (!failure_.empty()) text += "; sending ended early: " + failure_;
   return text;
 }
 

@@ -25,6 +25,7 @@ struct FeedbackCounts {
   std::uint64_t unplaced = 0;     ///< answers without a pose in the world
   std::uint64_t unknown = 0;      ///< the vehicle's origin or height was not known
   std::uint64_t unsent = 0;       ///< the link took no more
+  std::uint64_t waiting = 0;      ///< their latency had not passed at the end
   std::int64_t oldest_sent_ns = 0;
 };
 
@@ -47,6 +48,8 @@ class FeedbackSender final : public EstimateReceiver {
   /// Replaces start_ns, before the first estimate.
   void start_at(std::int64_t start_ns);
   void take(const PlacedEstimate& estimate) override;
+  /// Estimates whose latency has not passed are not sent any more, but counted.
+  void finish() override;
   /// "sent 930 ODOMETRY to vehicle 1.1, ...".
   [[nodiscard]] std::string report() const override;
   [[nodiscard]] FeedbackCounts counts() const;
@@ -67,6 +70,7 @@ class FeedbackSender final : public EstimateReceiver {
   FeedbackQueue queue_;
   FeedbackCounts counts_;
   bool stops_ = false;
+  std::string failure_;  ///< of the thread; empty: none
   std::thread thread_;
 };
 

@@ -10,6 +10,7 @@
 #include "flight/vehicle/serve_vehicle.hpp"
 #include "server/app/commands/commands.hpp"
 #include "server/app/exit_code.hpp"
+#include "server/app/place_argument.hpp"
 #include "server/app/stop_signal.hpp"
 
 namespace overfly::app {
@@ -39,24 +40,6 @@ Result<dynamics::Airframe> airframe_from(const std::string& name) {
   for (const auto& known : dynamics::builtin_airframes()) names += std::string(known.name) + ", ";
   return Error{ErrorCode::kInvalidArgument,
                "--airframe " + name + ": must be one of " + names + "or an airframe file (.json)"};
-}
-
-Result<Geodetic> home_from(const std::string& text) {
-  double lat_deg = 0.0;
-  double lon_deg = 0.0;
-  double alt_m = 0.0;
-  int used = 0;
-  const bool three =
-      std::sscanf(text.c_str(), "%lf,%lf,%lf%n", &lat_deg, &lon_deg, &alt_m, &used) == 3 &&
-      static_cast<std::size_t>(used) == text.size();
-  if (!three || !(std::abs(lat_deg) <= 89.0) || !(std::abs(lon_deg) <= 180.0) ||
-      !(alt_m >= -500.0 && alt_m <= 9000.0)) {
-    return Error{ErrorCode::kInvalidArgument,
-                 "--home " + text +
-                     ": must be LAT,LON,HEIGHT with degrees in [-89, 89] and [-180, 180] and a "
-                     "height in [-500, 9000] m"};
-  }
-  return geodetic_from_deg(lat_deg, lon_deg, alt_m);
 }
 
 Status check_numbers(const VehicleArguments& arguments) {
@@ -94,7 +77,7 @@ int fly_vehicle(const VehicleArguments& arguments) {
   Result<dynamics::Airframe> airframe = airframe_from(arguments.airframe);
   if (!airframe) return report(airframe.error());
   setup.airframe = std::move(*airframe);
-  const Result<Geodetic> home = home_from(arguments.home);
+  const Result<Geodetic> home = place_from("--home", arguments.home);
   if (!home) return report(home.error());
   setup.home = *home;
   const auto turbulence = turbulence_from(arguments.turbulence);

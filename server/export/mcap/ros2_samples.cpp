@@ -3,6 +3,7 @@
 #include <array>
 #include <limits>
 
+#include "middleware/ros1/frame_names.hpp"
 #include "server/export/mcap/cdr_writer.hpp"
 
 namespace overfly::server {
@@ -42,7 +43,7 @@ const Ros2Type kMagneticField = {"sensor_msgs/msg/MagneticField",
 const Ros2Type kRange = {
     "sensor_msgs/msg/Range",
     "std_msgs/Header header\nuint8 radiation_type\nfloat32 field_of_view\nfloat32 min_range\n"
-    "float32 max_range\nfloat32 range\n" +
+    "float32 max_range\nfloat32 range\nfloat32 variance\n" +
         ros2_definition::kHeader};
 
 constexpr std::array<double, 9> kUnknown{};
@@ -113,6 +114,7 @@ void put_sample(CdrWriter& message, const RangeSample& sample) {
   message.number(0.0F);
   message.number(std::numeric_limits<float>::infinity());
   message.number(static_cast<float>(sample.range_m));
+  message.number(0.0F);  // variance, since ROS 2 Iron: not known
 }
 
 }  // namespace
@@ -121,27 +123,33 @@ Status with_each_ros2_sample(const SensorSamples& samples,
                              std::int64_t epoch_utc_ns,
                              const std::function<Status(const Ros2SampleMessage&)>& take) {
   Status status;
-  const auto with_all =
-      [&](const char* topic, const Ros2Type& type, const auto& list, const auto& write_sample) {
-        for (auto sample = list.begin(); status && sample != list.end(); ++sample) {
-          std::int64_t available_ns = sample->t_ns;
-          if constexpr (requires { sample->delivered_ns; }) available_ns = sample->delivered_ns;
-          CdrWriter message(Ros2Header{epoch_utc_ns + sample->t_ns, "base_link"});
-          write_sample(message, *sample);
-          status = take({topic, &type, epoch_utc_ns + available_ns, message.take()});
-        }
-      };
+  const auto with_all = [&](const char* topic,
+                            const char* frame,
+                            const Ros2Type& type,
+                            const auto& list,
+                            const auto& write_sample) {
+    for (auto sample = list.begin(); status && sample != list.end(); ++sample) {
+      CdrWriter message(Ros2Header{epoch_utc_ns + sample->t_ns, frame});
+      write_sample(message, *sample);
+      status = take({topic, &type, epoch_utc_ns + available_ns(*sample), message.take()});
+    }
+  };
   const auto as_message = [](CdrWriter& message, const auto& sample) {
     put_sample(message, sample);
   };
-  with_all("/sensors/imu", kImu, samples.imu, as_message);
-  with_all("/sensors/pressure", kFluidPressure, samples.barometer, write_pressure);
-  with_all("/sensors/temperature", kTemperature, samples.barometer, write_temperature);
-  with_all("/sensors/gps/fix", kNavSatFix, samples.gps, write_fix);
-  with_all("/sensors/gps/velocity", kTwistStamped, samples.gps, write_velocity);
-  with_all("/sensors/airspeed/differential_pressure", kFluidPressure, samples.airspeed, as_message);
-  with_all("/sensors/magnetic_field", kMagneticField, samples.magnetometer, as_message);
-  with_all("/sensors/range", kRange, samples.range, as_message);
+  using ros1::kBodyFrame;
+  with_all("/sensors/imu", kBodyFrame, kImu, samples.imu, as_message);
+  with_all("/sensors/pressure", kBodyFrame, kFluidPressure, samples.barometer, write_pressure);
+  with_all("/sensors/temperature", kBodyFrame, kTemperature, samples.barometer, write_temperature);
+  with_all("/sensors/gps/fix", kBodyFrame, kNavSatFix, samples.gps, write_fix);
+  with_all("/sensors/gps/velocity", ros1::kWorldFrame, kTwistStamped, samples.gps, write_velocity);
+  with_all("/sensors/airspeed/differential_pressure",
+           kBodyFrame,
+           kFluidPressure,
+           samples.airspeed,
+           as_message);
+  with_all("/sensors/magnetic_field", kBodyFrame, kMagneticField, samples.magnetometer, as_message);
+  with_all("/sensors/range", ros1::kRangeFrame, kRange, samples.range, as_message);
   return status;
 }
 

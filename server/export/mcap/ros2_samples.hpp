@@ -21,8 +21,8 @@ struct Ros2SampleMessage {
 };
 
 /// Calls `take` for each message of the samples; stops at the first error. Topics, axes and units
-/// are those of bags (middleware/ros1/sensor_messages.hpp): frame base_link, REP 103; unknown
-/// orientations and covariances are marked as the types say.
+/// are those of bags (middleware/ros1/sensor_messages.hpp), and so are the frames
+/// (frame_names.hpp); unknown orientations and covariances are marked as the types say.
 /// @param epoch_utc_ns  Unix time of t = 0
 [[nodiscard]] Status with_each_ros2_sample(
     const SensorSamples& samples,

@@ -86,15 +86,19 @@ class RowReader {
     return {};
   }
 
-  /// @param limit  of samples
-  Status read_until(std::int64_t t_ns, std::size_t limit, SensorSamples& samples) {
+  /// @param after_ns  samples that were available then are left out
+  /// @param limit     of samples
+  Status read_until(std::int64_t t_ns,
+                    std::int64_t after_ns,
+                    std::size_t limit,
+                    SensorSamples& samples) {
     for (std::size_t read = 0; file_ && read < limit; ++read) {
       if (!next_) {
         if (Status status = read_next(); !status) return status;
         if (!next_) return {};
       }
       if (available_ns(*next_) > t_ns) return {};
-      (samples.*Row::kSamples).push_back(*next_);
+      if (available_ns(*next_) > after_ns) (samples.*Row::kSamples).push_back(*next_);
       next_.reset();
     }
     return {};
@@ -211,24 +215,27 @@ Result<SensorFilesReader> SensorFilesReader::open(const fs::path& run_folder) {
   return SensorFilesReader(std::move(files));
 }
 
-Result<SensorSamples> SensorFilesReader::read(std::int64_t t_ns, std::size_t limit) {
+Result<SensorSamples> SensorFilesReader::read(std::int64_t t_ns,
+                                              std::int64_t after_ns,
+                                              std::size_t limit) {
   SensorSamples samples;
   Status status;
   std::apply(
       [&](auto&... reader) {
-        (void)(... && (status = reader.read_until(t_ns, limit, samples)).ok());
+        (void)(... && (status = reader.read_until(t_ns, after_ns, limit, samples)).ok());
       },
       files_->readers);
   if (!status) return status.error();
   return samples;
 }
 
-Result<SensorSamples> SensorFilesReader::until(std::int64_t t_ns) {
-  return read(t_ns, std::numeric_limits<std::size_t>::max());
+Result<SensorSamples> SensorFilesReader::until(std::int64_t t_ns, std::int64_t after_ns) {
+  return read(t_ns, after_ns, std::numeric_limits<std::size_t>::max());
 }
 
 Result<SensorSamples> SensorFilesReader::next(std::size_t limit) {
-  return read(std::numeric_limits<std::int64_t>::max(), limit);
+  constexpr auto kTimes = std::numeric_limits<std::int64_t>();
+  return read(kTimes.max(), kTimes.min(), limit);
 }
 
 }  // namespace overfly::server

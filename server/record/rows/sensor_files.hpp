@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <memory>
 
 #include "core/result.hpp"
@@ -44,19 +45,22 @@ class SensorFilesReader {
   SensorFilesReader(SensorFilesReader&& other) noexcept;
   SensorFilesReader& operator=(SensorFilesReader&& other) noexcept;
 
-  /// The samples since the last call that are available at a time: stamped, and delivered by the
-  /// receiver, not after it. Times of calls must not decrease. A last line without line feed, as
+  /// The samples since the last call that are available at a time, without those that were already
+  /// available at `after_ns`. Times of calls must not decrease. A last line without line feed, as
   /// left by a killed program, is not read.
   /// Errors: kIo; kUnreadable naming file, line and reason, also for a time before that of the
   /// previous line.
-  [[nodiscard]] Result<SensorSamples> until(std::int64_t t_ns);
+  [[nodiscard]] Result<SensorSamples> until(
+      std::int64_t t_ns, std::int64_t after_ns = std::numeric_limits<std::int64_t>::min());
   /// The next samples of each sensor, at most `limit` of each, whatever their times. No samples:
   /// the end of all files. Errors: as until.
   [[nodiscard]] Result<SensorSamples> next(std::size_t limit);
 
  private:
   struct Files;
-  [[nodiscard]] Result<SensorSamples> read(std::int64_t t_ns, std::size_t limit);
+  [[nodiscard]] Result<SensorSamples> read(std::int64_t t_ns,
+                                           std::int64_t after_ns,
+                                           std::size_t limit);
   explicit SensorFilesReader(std::unique_ptr<Files> files);
   std::unique_ptr<Files> files_;
 };

@@ -21,19 +21,26 @@ struct SensorRow;
 
 inline constexpr double kRowDeg = 180.0 / kPi;
 
+/// A duration outside a day is no sensor's: 0. This also keeps the conversion defined.
+[[nodiscard]] inline std::int64_t duration_in_row_ns(double value) {
+  constexpr double kDayNs = 86400e9;
+  return value >= 0.0 && value <= kDayNs ? static_cast<std::int64_t>(value) : 0;
+}
+
 template <>
 struct SensorRow<ImuSample> {
   static constexpr const char* kFile = "imu.csv";
-  static constexpr const char* kHeader = "t_ns,wx_rad_s,wy_rad_s,wz_rad_s,fx_m_s2,fy_m_s2,fz_m_s2";
-  static constexpr std::size_t kValues = 6;
+  static constexpr const char* kHeader =
+      "t_ns,wx_rad_s,wy_rad_s,wz_rad_s,fx_m_s2,fy_m_s2,fz_m_s2,interval_ns";
+  static constexpr std::size_t kValues = 7;
   static constexpr auto kSamples = &SensorSamples::imu;
   static std::array<double, kValues> values(const ImuSample& s) {
     const Eigen::Vector3d& w = s.angular_rate_rad_s;
     const Eigen::Vector3d& f = s.acceleration_m_s2;
-    return {w.x(), w.y(), w.z(), f.x(), f.y(), f.z()};
+    return {w.x(), w.y(), w.z(), f.x(), f.y(), f.z(), static_cast<double>(s.interval_ns)};
   }
   static ImuSample sample(std::int64_t t_ns, const std::array<double, kValues>& v) {
-    return {t_ns, {v[3], v[4], v[5]}, {v[0], v[1], v[2]}};
+    return {t_ns, {v[3], v[4], v[5]}, {v[0], v[1], v[2]}, duration_in_row_ns(v[6])};
   }
 };
 
@@ -77,9 +84,7 @@ struct SensorRow<GpsSample> {
   static GpsSample sample(std::int64_t t_ns, const std::array<double, kValues>& v) {
     GpsSample s;
     s.t_ns = t_ns;
-    // A latency outside a day is no receiver's; this also keeps the conversion defined.
-    constexpr double kDayNs = 86400e9;
-    s.delivered_ns = t_ns + (v[0] >= 0.0 && v[0] <= kDayNs ? static_cast<std::int64_t>(v[0]) : 0);
+    s.delivered_ns = t_ns + duration_in_row_ns(v[0]);
     s.fix = v[1] == 3.0 ? GpsFixType::k3d : GpsFixType::kNone;
     s.place = {v[2] / kRowDeg, v[3] / kRowDeg, v[4]};
     s.velocity_ned_m_s = {v[5], v[6], v[7]};
@@ -129,12 +134,5 @@ struct SensorRow<RangeSample> {
     return {t_ns, v[0]};
   }
 };
-
-/// When a sample is available: by this the samples of a list are ordered.
-template <typename Sample>
-[[nodiscard]] std::int64_t available_ns(const Sample& sample) {
-  return sample.t_ns;
-}
-inline std::int64_t available_ns(const GpsSample& sample) { return sample.delivered_ns; }
 
 }  // namespace overfly::server

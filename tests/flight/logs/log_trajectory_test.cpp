@@ -142,5 +142,21 @@ TEST(BootClock, BelievesThreeStampsThatAgree) {
   EXPECT_EQ(clock.implausible(), 7U);
 }
 
+TEST(BootClock, TakesBackFirstStampsThatAreHeld) {
+  BootClock clock(FirstStamps::kHeld);
+  EXPECT_FALSE(clock.proven());
+  EXPECT_EQ(clock.take(5000 * kNsPerS), (LogTime{0, 5000 * kNsPerS}));
+  EXPECT_EQ(clock.take(5001 * kNsPerS), (LogTime{0, 5001 * kNsPerS}));
+  EXPECT_EQ(clock.take(1 * kNsPerS), std::nullopt);
+  EXPECT_EQ(clock.take(2 * kNsPerS), std::nullopt);
+  EXPECT_FALSE(clock.proven());
+  EXPECT_EQ(clock.take(3 * kNsPerS), (LogTime{0, 3 * kNsPerS}));  // no restart
+  EXPECT_TRUE(clock.proven() && clock.first_were_wrong());
+  EXPECT_EQ(clock.implausible(), 4U);
+  for (int i = 0; i < 3; ++i) (void)clock.take((9000 + i) * kNsPerS);
+  for (int i = 0; i < 3; ++i) (void)clock.take(i * kNsPerS);
+  EXPECT_EQ(clock.latest(), (LogTime{1, 2 * kNsPerS}));  // proven: this one is
+}
+
 }  // namespace
 }  // namespace overfly::flight::logs

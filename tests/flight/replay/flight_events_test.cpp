@@ -83,6 +83,7 @@ class Rest final : public TruthSource {
  public:
   [[nodiscard]] std::optional<std::int64_t> duration_ns() const override { return kNsPerS; }
   [[nodiscard]] std::string description() const override { return "rest"; }
+  [[nodiscard]] std::optional<std::int64_t> log_start_ns() const override { return 77; }
 
  private:
   [[nodiscard]] Result<std::optional<AircraftState>> find_state(
@@ -99,6 +100,7 @@ TEST(FlightEvents, AreTakenOnceWhenTheirTimeHasCome) {
                                    {5, FlightEventKind::kOther, "b"},
                                    {9, FlightEventKind::kMode, "c"}});
   EXPECT_EQ(flight->description(), "rest");
+  EXPECT_EQ(flight->log_start_ns(), 77);
   EXPECT_EQ((*flight->state_at(7))->t_ns, 7);
   EXPECT_EQ(flight->take_events(5).size(), 2U);
   EXPECT_TRUE(flight->take_events(8).empty());

@@ -264,6 +264,26 @@ class RisingPlane final : public HeightQuery {
   double rise_;
 };
 
+TEST(RangeSensor, LooksAlongAGrazingBeamInBoundedTime) {
+  /// Flat ground that counts how often it is asked.
+  class CountedGround final : public HeightQuery {
+   public:
+    [[nodiscard]] double ground_up_m(double /*east_m*/, double /*north_m*/) const override {
+      ++asked;
+      return 0.0;
+    }
+    mutable int asked = 0;
+  } ground;
+  // 3 m above the ground, along it.
+  EXPECT_FALSE(beam_range_m(ground, {0.0, 0.0, 3.0}, {1.0, 0.0, 0.0}, 100'000.0));
+  EXPECT_LT(ground.asked, 1600);
+  // It still finds where a flat beam meets the ground.
+  const Eigen::Vector3d beam = Eigen::Vector3d(1.0, 0.0, -0.001).normalized();
+  const auto found = beam_range_m(ground, {0.0, 0.0, 3.0}, beam, 100'000.0);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(*found, 3.0 / -beam.z(), 0.01);
+}
+
 TEST(RangeSensor, FindsTheNearestGroundOfASlope) {
   const RisingPlane slope(0.5);
   for (const double east : {-0.9, -0.3, 0.0, 0.4, 0.8}) {

@@ -186,6 +186,10 @@ TEST(SimulatedVehicle, ChangesModesInFlightAndResumesItsMission) {
   ASSERT_TRUE(flight::mavlink::start_mission(exchange).ok());
   exchange.fly(200.0, [](const VehicleReport& at) { return at.mission_item == 3; });
   ASSERT_EQ(exchange.vehicle->report().mission_item, 3);
+  // A repeated command changes nothing.
+  ASSERT_TRUE(flight::mavlink::change_mode(exchange, 10).ok());  // AUTO
+  ASSERT_TRUE(flight::mavlink::start_mission(exchange).ok());
+  EXPECT_EQ(exchange.vehicle->report().mission_item, 3);
   ASSERT_TRUE(flight::mavlink::change_mode(exchange, 12).ok());  // LOITER
   const Eigen::Vector3d there = exchange.vehicle->report().state.position_world_m;
   exchange.fly(60.0, [](const VehicleReport&) { return false; });

@@ -6,6 +6,7 @@
 #include <overfly_lcm/pose_t.hpp>
 #include <overfly_lcm/sim_time_t.hpp>
 #include <overfly_lcm/truth_t.hpp>
+#include <overfly_lcm/world_pose_t.hpp>
 
 #include "core/motion/pose.hpp"
 #include "core/time.hpp"
@@ -26,6 +27,7 @@ TEST(LogsAsFlights, KnowTheFingerprintsOfTheTypes) {
   EXPECT_EQ(overfly_lcm::pose_t::getHash(), of(logs::LcmType::kPose));
   EXPECT_EQ(overfly_lcm::sim_time_t::getHash(), of(logs::LcmType::kSimTime));
   EXPECT_EQ(overfly_lcm::debug_t::getHash(), of(logs::LcmType::kDebug));
+  EXPECT_EQ(overfly_lcm::world_pose_t::getHash(), of(logs::LcmType::kWorldPose));
 }
 
 TEST(LogsAsFlights, HaveThePosesOfTheWriter) {

@@ -13,8 +13,10 @@
 #include <overfly_lcm/gps_t.hpp>
 #include <overfly_lcm/image_t.hpp>
 #include <overfly_lcm/imu_t.hpp>
+#include <overfly_lcm/pose_t.hpp>
 #include <overfly_lcm/sim_time_t.hpp>
 #include <overfly_lcm/truth_t.hpp>
+#include <overfly_lcm/world_pose_t.hpp>
 #endif
 
 namespace overfly::server {
@@ -133,6 +135,52 @@ TEST(LcmExport, TellsTheCalibrationOncePerSecondInOneSession) {
   }
 }
 
+TEST(LcmExport, OfARunHoldsTheAnswersOfItsEstimators) {
+  const TemporaryFolder folder;
+  RunOptions run = testing::options_for(folder.path() / "run");
+  run.renderer_factory = testing::raycast_factory();
+  // An estimator that initialises late, and one whose scale is known.
+  const Scenario scenario = testing::small_scenario(
+      {R"(estimators=[{"name":"d-1","type":"drifting","parameters":{"scale":0.5}},)"
+       R"({"name":"f","type":"feature"}])"});
+  ASSERT_TRUE(run_scenario(scenario, run).ok());
+  const auto source = open_export_source(folder.path() / "run");
+  ASSERT_TRUE(source.ok()) << source.error().message;
+  const auto options = export_options(folder.path() / "d", DatasetFormat::kLcm);
+  const ExportSummary summary = exported(*source, options);
+  const Log log = read_log(options.folder / "flight.lcm");
+  const auto images = log.decoded<overfly_lcm::image_t>("OVERFLY_IMAGE");
+  const auto truth = log.decoded<overfly_lcm::truth_t>("OVERFLY_TRUTH");
+  ASSERT_EQ(source->run->estimates.size(), 2U);
+  for (const PlannedEstimate& estimate : source->run->estimates) {
+    const auto poses =
+        log.decoded<overfly_lcm::pose_t>("ESTIMATE_" + estimate.track.name + "_POSE");
+    ASSERT_EQ(poses.size(), static_cast<std::size_t>(summary.frames));
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      const EstimateSample& sample = estimate.track.samples[i];
+      EXPECT_EQ(poses[i].t_ns, images[i].t_ns);
+      EXPECT_EQ(poses[i].session, images[i].session);
+      EXPECT_EQ(poses[i].frame, sample.frame);
+      EXPECT_EQ(poses[i].sequence, static_cast<std::int64_t>(i) + 1);
+      EXPECT_EQ(poses[i].map_id, sample.map_id);
+      const bool tracking = sample.state == TrackingState::kTracking;
+      EXPECT_EQ(poses[i].state == overfly_lcm::pose_t::TRACKING, tracking);
+      if (!tracking) continue;
+      for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_EQ(poses[i].position[axis], sample.T_vo_camera.translation[axis]);
+      }
+      EXPECT_EQ(poses[i].orientation[3], sample.T_vo_camera.rotation.w());
+      EXPECT_EQ(poses[i].scene_depth, sample.scene_depth.value_or(0.0));
+    }
+  }
+  const auto in_world = log.decoded<overfly_lcm::world_pose_t>("ESTIMATE_d-1_POSE_WORLD");
+  ASSERT_EQ(in_world.size(), truth.size());
+  for (std::size_t i = 0; i < in_world.size(); ++i) {
+    const Eigen::Vector3d estimated(in_world[i].position);
+    EXPECT_LT((estimated - Eigen::Vector3d(truth[i].position)).norm(), 1.0);
+  }
+}
+
 TEST(LcmExport, StampsEventsInOrderByUtc) {
   const TemporaryFolder folder;
   const ExportSource source = small_source();
@@ -160,10 +208,6 @@ TEST(LcmExport, GivesEstimatorsTheLumaOfColourImages) {
   EXPECT_EQ(images.front().pixelformat, overfly_lcm::image_t::PIXEL_FORMAT_GREY);
 }
 
-#else
-
-TEST(LcmExport, IsReadBackByLcm) { GTEST_SKIP() << "LCM is not built in"; }
-
 TEST(LcmExport, HasTheSamplesOfSensorsOfTheExportedSpan) {
   const TemporaryFolder folder;
   const ExportSource source = small_source({R"(sensors={"imu":{},"gps":{"delay_s":0.2}})"});
@@ -172,14 +216,25 @@ TEST(LcmExport, HasTheSamplesOfSensorsOfTheExportedSpan) {
   exported(source, options);
   const Log log = read_log(options.folder / "flight.lcm");
   const auto imu = log.decoded<overfly_lcm::imu_t>("OVERFLY_IMU");
-  // From one frame period before the first frame, 1.0 s, to the last, 2.0 s.
+  // A sample is available half a period after its time: those since the frame at 0.9 s, to the last
+  // frame at 2.0 s.
   ASSERT_EQ(imu.size(), 220U);
-  EXPECT_EQ(imu.front().t_ns, 900'000'000 - 5'000'000);
-  EXPECT_EQ(imu.back().t_ns, 1'990'000'000);
+  EXPECT_EQ(imu.front().t_ns, 900'000'000);
+  EXPECT_EQ(imu.back().t_ns, 1'995'000'000);
   const auto gps = log.decoded<overfly_lcm::gps_t>("OVERFLY_GPS");
   ASSERT_FALSE(gps.empty());
+  EXPECT_EQ(gps.front().t_ns, 800'000'000) << "delivered with the first frame";
   for (const overfly_lcm::gps_t& fix : gps) EXPECT_EQ(fix.delivered_ns, fix.t_ns + 200'000'000);
+  std::int64_t before_us = 0;
+  for (const auto& event : log.events) {
+    EXPECT_GE(event.utc_us, before_us) << event.channel;
+    before_us = event.utc_us;
+  }
 }
+
+#else
+
+TEST(LcmExport, IsReadBackByLcm) { GTEST_SKIP() << "LCM is not built in"; }
 
 #endif
 

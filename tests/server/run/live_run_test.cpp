@@ -40,8 +40,9 @@ using testing::small_scenario;
 class StreamingVehicle {
  public:
   /// @param pause_ms  of the machine's clock between samples that are 20 ms apart
-  explicit StreamingVehicle(double seconds, int pause_ms = 1)
-      : seconds_(seconds), pause_ms_(pause_ms) {
+  /// @param north_m_s  its speed
+  explicit StreamingVehicle(double seconds, int pause_ms = 1, double north_m_s = 0.0)
+      : seconds_(seconds), pause_ms_(pause_ms), north_m_s_(north_m_s) {
     listener_ = FileDescriptor(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
     sockaddr_in name{};
     name.sin_family = AF_INET;
@@ -94,11 +95,14 @@ class StreamingVehicle {
   static std::vector<std::uint8_t> attitude_at(std::uint32_t ms) {
     return PayloadWriter(28).put(0, ms).put(12, 1.5F).bytes();
   }
-  /// At rest 300 m above sea level at the built-in world's place, or wherever it is.
-  static std::vector<std::uint8_t> position_at(std::uint32_t ms) {
+  /// 300 m above sea level, at the built-in world's place at first.
+  [[nodiscard]] std::vector<std::uint8_t> position_at(std::uint32_t ms) const {
+    constexpr double kMetresPerStep = 0.011132;  // of 1e-7 deg of latitude, to 0.3 %
+    const double north_m = north_m_s_ * 1e-3 * (ms - 5000.0);
     return PayloadWriter(28)
         .put(0, ms)
-        .put(4, std::int32_t{392345678})
+        .put(4, static_cast<std::int32_t>(392345678 + std::lround(north_m / kMetresPerStep)))
+        .put(20, static_cast<std::int16_t>(std::lround(100.0 * north_m_s_)))
         .put(8, std::int32_t{-861234567})
         .put(12, std::int32_t{300000})
         .bytes();
@@ -112,6 +116,7 @@ class StreamingVehicle {
 
   double seconds_;
   int pause_ms_;
+  double north_m_s_;
   std::vector<std::uint8_t> received_;
   FileDescriptor listener_;
   std::uint16_t port_ = 0;
@@ -148,10 +153,14 @@ TEST(LiveRun, RecordsModesAndTheVehiclesState) {
   EXPECT_FALSE(statuses.front().battery_v);
   EXPECT_EQ(statuses.back().lost_messages, 0U);
   std::vector<std::string> modes;
+  std::vector<std::string> others;
   for (const LogRow& row : (*timeline)->logs(0, 1000)) {
     if (row.kind == "mode") modes.push_back(row.text);
+    if (row.kind == "event") others.push_back(row.text);
   }
   EXPECT_EQ(modes, std::vector<std::string>{"MANUAL"});
+  // What ended the flight came after its last frame.
+  EXPECT_THAT(others, ::testing::Contains("disarmed"));
 }
 
 TEST(LiveRun, FliesAVehicleUntilItIsDisarmed) {
@@ -251,6 +260,33 @@ TEST(LiveRun, FliesInRealTime) {
   EXPECT_GT(run->info.frames, 0);
   EXPECT_THAT(overfly::testing::read_text(folder.path() / "r" / "timings.json"),
               HasSubstr("message_to_frame"));
+}
+
+TEST(LiveRun, InRealTimeBeginsWithTheLatestStateAlsoWithALimitedDuration) {
+  constexpr double kSpeedMS = 25.0;
+  const StreamingVehicle vehicle(20.0, 20, kSpeedMS);
+  const TemporaryFolder folder;
+  Scenario scenario = live_scenario(vehicle);
+  scenario.pacing = Pacing::kRealTime;
+  scenario.duration_s = 1.5;
+  RunOptions options = options_for(folder.path() / "r");
+  // A slow set-up: the vehicle flies on meanwhile.
+  options.renderer_factory = [make = options.renderer_factory](auto&&... arguments) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    return make(std::forward<decltype(arguments)>(arguments)...);
+  };
+  const auto run = run_scenario(scenario, options);
+  ASSERT_TRUE(run.ok()) << run.error().message;
+  const auto timeline = RunTimeline::open(folder.path() / "r");
+  ASSERT_TRUE(timeline) << timeline.error().message;
+  const std::vector<FrameRow> frames = (*timeline)->frames(0, 100);
+  ASSERT_GE(frames.size(), 2U);
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    const double expected_m = kSpeedMS * s_from_ns(frames[i].t_ns - frames[i - 1].t_ns);
+    const Eigen::Vector3d step =
+        frames[i].T_world_body.translation - frames[i - 1].T_world_body.translation;
+    EXPECT_NEAR(step.norm(), expected_m, 0.2) << "frame " << frames[i].frame;
+  }
 }
 
 TEST(LiveRun, EndsWhenItsScenarioSays) {

@@ -7,6 +7,9 @@ namespace overfly::process {
 
 namespace {
 
+constexpr std::size_t kFrameFieldBytes = 48;  ///< in front of the samples
+constexpr std::size_t kImuBytes = 56;
+
 std::string flag(bool value) { return value ? "true" : "false"; }
 
 }  // namespace
@@ -50,13 +53,16 @@ std::string calibration_message(const VoFrame& frame, double rate_hz, const Fram
   return message_of(MessageType::kCalibration, text);
 }
 
-std::size_t frame_payload_bytes(const VoFrame& frame, bool in_shared_memory) {
-  return 48 + 56 * frame.sensors.imu.size() + (in_shared_memory ? 0 : frame.image->data.size());
+std::size_t most_imu_samples(const VoFrame& frame, bool in_shared_memory) {
+  const std::size_t others = kFrameFieldBytes + (in_shared_memory ? 0 : frame.image->data.size());
+  return others < kFrameLimitBytes ? (kFrameLimitBytes - others) / kImuBytes : 0;
 }
 
 std::string frame_message(const VoFrame& frame, const FrameSending& sending) {
+  const std::size_t bytes = kFrameFieldBytes + kImuBytes * frame.sensors.imu.size() +
+                            (sending.in_shared_memory ? 0 : frame.image->data.size());
   ByteWriter writer;
-  writer.text(header_of(MessageType::kFrame, frame_payload_bytes(frame, sending.in_shared_memory)));
+  writer.text(header_of(MessageType::kFrame, bytes));
   writer.i64(frame.index).i64(frame.t_ns).i64(frame.exposure_ns);
   writer.u32(static_cast<std::uint32_t>(frame.image->width_px));
   writer.u32(static_cast<std::uint32_t>(frame.image->height_px));

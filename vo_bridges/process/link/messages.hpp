@@ -42,8 +42,8 @@ struct FrameSending {
 [[nodiscard]] std::string calibration_message(const VoFrame& frame,
                                               double rate_hz,
                                               const FrameSlots& slots);
-/// Length of the payload of a FRAME message.
-[[nodiscard]] std::size_t frame_payload_bytes(const VoFrame& frame, bool in_shared_memory);
+/// The number of inertial samples for which FRAME has room beside the image.
+[[nodiscard]] std::size_t most_imu_samples(const VoFrame& frame, bool in_shared_memory);
 /// A FRAME message without the pixels. They follow unless they are in shared memory.
 [[nodiscard]] std::string frame_message(const VoFrame& frame, const FrameSending& sending);
 

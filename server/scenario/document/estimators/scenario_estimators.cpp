@@ -120,6 +120,7 @@ Ros1EstimatorOptions ros1_from(const Json& ros1) {
   options.camera_info_topic = ros1.at("camera_info_topic").get<std::string>();
   options.pose_topic = ros1.at("pose_topic").get<std::string>();
   options.pose_type = pose_type_from(ros1.at("pose_type").get<std::string>());
+  options.sensor_namespace = ros1.at("sensor_namespace").get<std::string>();
   options.debug_image_topic = ros1.at("debug_image_topic").get<std::string>();
   options.camera_frame = ros1.at("camera_frame").get<std::string>();
   options.vo_frame = ros1.at("vo_frame").get<std::string>();
@@ -189,7 +190,11 @@ LcmChannels lcm_channels(const EstimatorSpec& spec) {
 }
 
 /// Two estimators with shared channels would receive each other's data.
-Status check_apart(const EstimatorSpec& spec, const EstimatorSpec& other, const std::string& path) {
+Status check_apart(EstimatorSpec spec,
+                   EstimatorSpec other,
+                   bool with_sensors,
+                   const std::string& path) {
+  spec.ros1.publish_sensors = other.ros1.publish_sensors = with_sensors;
   const std::string who = "\"" + other.name + "\" and \"" + spec.name + "\"";
   if (spec.type == "lcm" && other.type == "lcm" && lcm_channels(spec) == lcm_channels(other)) {
     const auto [network, prefix] = lcm_channels(spec);
@@ -222,7 +227,8 @@ Status read_estimators(Json& document, const fs::path& base, Scenario& scenario)
       return bad_field(path + ".name", spec->name, "be unique");
     }
     for (const EstimatorSpec& other : scenario.estimators) {
-      if (Status status = check_apart(*spec, other, path); !status) return status;
+      Status apart = check_apart(*spec, other, scenario.has_sensors(), path);
+      if (!apart) return apart;
     }
     scenario.estimators.push_back(std::move(*spec));
   }

@@ -59,6 +59,7 @@ Status check_read_only(const LiveFlight& flight) {
   if (flight.mission_file) field = "mission_file";
   if (flight.arm_and_start) field = "arm_and_start";
   if (flight.feedback) field = "feedback";
+  if (flight.sensor_rate_hz > 0.0) field = "sensor_rate_hz";
   if (!flight.read_only || field == nullptr) return {};
   return Error{ErrorCode::kInvalidArgument,
                std::string("flight.mavlink.") + field +
@@ -79,6 +80,7 @@ Result<LiveFlight> read_live_flight(Json& mavlink, const FileResolver& files) {
     flight.signing_key_file = files.resolve(mavlink.at("signing_key_file"));
   }
   flight.rate_hz = mavlink.at("rate_hz").get<double>();
+  flight.sensor_rate_hz = mavlink.at("sensor_rate_hz").get<double>();
   for (const auto& [name, value] : mavlink.at("parameters").items()) {
     if (!flight::mavlink::is_parameter_name(name)) {
       return Error{ErrorCode::kInvalidArgument,

@@ -1,4 +1,4 @@
-#include "flight/playback/play_tlog.hpp"
+#include "flight/playback/play_records.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,6 +6,7 @@
 #include <chrono>
 #include <map>
 
+#include "flight/playback/tlog_records.hpp"
 #include "tests/flight/logs/log_bytes.hpp"
 #include "tests/flight/mavlink/link/peer_socket.hpp"
 #include "tests/support/support.hpp"
@@ -88,7 +89,7 @@ class PlayTlog : public ::testing::Test {
     const std::atomic<bool> stop{false};
     const auto address =
         mavlink::parse_link_address("udp:127.0.0.1:" + std::to_string(port_), "link");
-    const auto summary = play_tlog(*records, *address, options, ports, stop);
+    const auto summary = play_records(*records, *address, options, ports, stop);
     EXPECT_TRUE(summary.ok()) << summary.error().message;
     while (socket_.readable(0)) append(received, socket_.receive(0));
     const std::vector<int> numbers = numbers_in(received);

@@ -1,22 +1,22 @@
-// overfly play: a recorded vehicle on a MAVLink link.
+// overfly play: a recorded flight on a MAVLink link.
 #include <poll.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <array>
 #include <cstdio>
-#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "flight/mavlink/link/link_address.hpp"
-#include "flight/playback/play_tlog.hpp"
+#include "flight/playback/play_records.hpp"
 #include "server/app/commands/commands.hpp"
+#include "server/app/commands/play/play_source.hpp"
 #include "server/app/exit_code.hpp"
+#include "server/app/place_argument.hpp"
 #include "server/app/stop_signal.hpp"
-#include "server/record/run_folder.hpp"
 
 namespace overfly::app {
 namespace {
@@ -29,7 +29,20 @@ struct PlayArguments {
   double speed = 1.0;
   double from_s = 0.0;
   bool repeat = false;
+  std::string source;
+  std::string origin;
+  double rate_hz = 50.0;
 };
+
+Result<OpenedPlayback> open_recording(const PlayArguments& arguments) {
+  PlayedFile played{arguments.file, arguments.source, std::nullopt, arguments.rate_hz};
+  if (!arguments.origin.empty()) {
+    const Result<Geodetic> origin = place_from("--origin", arguments.origin);
+    if (!origin) return origin.error();
+    played.origin = *origin;
+  }
+  return open_playback(played, &catch_stop_signals());
+}
 
 /// Lines of standard input, without waiting for them.
 class CommandInput {
@@ -71,12 +84,11 @@ int play(const PlayArguments& arguments) {
     return report({ErrorCode::kInvalidArgument,
                    "--speed " + std::to_string(arguments.speed) + ": must be in [0.01, 1000]"});
   }
-  std::filesystem::path file = arguments.file;
-  std::error_code ignored;
-  if (std::filesystem::is_directory(file, ignored)) file = server::vehicle_log_file(file);
-  auto records = playback::TlogRecords::open(file);
-  if (!records) return report(records.error());
-  const double length_s = 1e-6 * static_cast<double>(records->duration_us());
+  const Result<OpenedPlayback> opened = open_recording(arguments);
+  if (!opened) return report(opened.error());
+  for (const std::string& warning : opened->warnings) std::cerr << "warning: " << warning << "\n";
+  playback::PlaybackRecords& records = *opened->records;
+  const double length_s = 1e-6 * static_cast<double>(records.duration_us());
   if (!(arguments.from_s >= 0.0 && arguments.from_s <= length_s)) {
     return report({ErrorCode::kInvalidArgument,
                    "--from " + std::to_string(arguments.from_s) + ": must be in [0, " +
@@ -91,7 +103,8 @@ int play(const PlayArguments& arguments) {
   ports.now = [] { return std::chrono::steady_clock::now(); };
   ports.commands = [&] { return input.take(); };
   ports.opened = [&](const flight::mavlink::LinkAddress& address) {
-    std::cout << records->count() << " messages, " << length_s << " s, on " << address.text()
+    if (!opened->description.empty()) std::cout << opened->description << ": ";
+    std::cout << records.count() << " messages, " << length_s << " s, on " << address.text()
               << std::endl;
   };
   ports.changed = [](const playback::PlaybackClock& clock, std::int64_t position_us) {
@@ -101,7 +114,7 @@ int play(const PlayArguments& arguments) {
                  1e-6 * static_cast<double>(position_us),
                  clock.speed());
   };
-  const auto played = playback::play_tlog(*records, *link, options, ports, catch_stop_signals());
+  const auto played = playback::play_records(records, *link, options, ports, catch_stop_signals());
   if (!played) return report(played.error());
   std::cout << played->sent << " messages sent";
   if (played->unsent > 0) std::cout << ", " << played->unsent << " that nobody took";
@@ -115,14 +128,28 @@ void add_play_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<PlayArguments>();
   CLI::App* const command =
       app.add_subcommand("play",
-                         "Play a telemetry log onto a MAVLink link; standard input takes pause, "
-                         "play, speed X, seek S, quit");
-  command->add_option("file", arguments->file, ".tlog, or the folder of a live run")->required();
+                         "Play a recording onto a MAVLink link; standard input takes pause, play, "
+                         "speed X, seek S, quit");
+  command
+      ->add_option("file",
+                   arguments->file,
+                   ".tlog, or any other flight log, pose file or folder of a run, whose truth is "
+                   "flown by a vehicle")
+      ->required();
   command->add_option("--link", arguments->link, "udp:HOST:PORT, tcp-listen:HOST:PORT, ...")
       ->capture_default_str();
   command->add_option("--speed", arguments->speed, "Times the recording's")->capture_default_str();
   command->add_option("--from", arguments->from_s, "Start [s]")->capture_default_str();
   command->add_flag("--repeat", arguments->repeat, "Start again at the end");
+  command->add_option("--source",
+                      arguments->source,
+                      "Stream of the positions of a flight log, as listed by `log info`");
+  command->add_option("--origin",
+                      arguments->origin,
+                      "LAT,LON,HEIGHT: where positions in metres count from, if the file does not "
+                      "state it");
+  command->add_option("--rate-hz", arguments->rate_hz, "Of the messages of a flight, 1 to 1000")
+      ->capture_default_str();
   command->callback([arguments, &exit_code] { exit_code = play(*arguments); });
 }
 

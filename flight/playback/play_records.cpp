@@ -1,4 +1,4 @@
-#include "flight/playback/play_tlog.hpp"
+#include "flight/playback/play_records.hpp"
 
 #include <poll.h>
 
@@ -78,7 +78,7 @@ class Listeners {
 
 class Playback {
  public:
-  Playback(TlogRecords& records,
+  Playback(PlaybackRecords& records,
            Listeners& listeners,
            const PlaybackOptions& options,
            TimePoint now)
@@ -115,7 +115,7 @@ class Playback {
   Result<bool> send_due(TimePoint now) {
     for (int i = 0; i < kMostFramesAtOnce; ++i) {
       if (!next_) {
-        Result<std::optional<TlogRecords::Record>> record = records_.next();
+        Result<std::optional<PlaybackRecords::Record>> record = records_.next();
         if (!record) return record.error();
         if (!*record) {
           if (!options_.repeat) return false;
@@ -153,11 +153,11 @@ class Playback {
     return true;
   }
 
-  TlogRecords& records_;
+  PlaybackRecords& records_;
   Listeners& listeners_;
   PlaybackOptions options_;
   PlaybackClock clock_;
-  std::optional<TlogRecords::Record> next_;
+  std::optional<PlaybackRecords::Record> next_;
   PlaybackSummary summary_;
   TimePoint last_;
 };
@@ -186,11 +186,11 @@ Result<PlaybackCommand> parse_playback_command(const std::string& line) {
                    "\": must be pause, play, speed X (0.01 to 1000), seek SECONDS, or quit"};
 }
 
-Result<PlaybackSummary> play_tlog(TlogRecords& records,
-                                  const mavlink::LinkAddress& address,
-                                  const PlaybackOptions& options,
-                                  const PlaybackPorts& ports,
-                                  const std::atomic<bool>& stop) {
+Result<PlaybackSummary> play_records(PlaybackRecords& records,
+                                     const mavlink::LinkAddress& address,
+                                     const PlaybackOptions& options,
+                                     const PlaybackPorts& ports,
+                                     const std::atomic<bool>& stop) {
   Listeners listeners(address);
   if (Status status = listeners.open(); !status) return status.error();
   if (ports.opened) ports.opened(listeners.address());

@@ -1,4 +1,4 @@
-// Plays a telemetry log onto a link, as if the vehicle were there.
+// Plays recorded messages onto a link, as if the vehicle were there.
 #pragma once
 
 #include <atomic>
@@ -12,7 +12,7 @@
 #include "core/result.hpp"
 #include "flight/mavlink/link/link_address.hpp"
 #include "flight/playback/playback_clock.hpp"
-#include "flight/playback/tlog_records.hpp"
+#include "flight/playback/playback_records.hpp"
 
 namespace overfly::flight::playback {
 
@@ -26,7 +26,7 @@ struct PlaybackOptions {
   bool wait_for_listener = true;  ///< starts when there is somebody to send to
 };
 
-/// What a user asks for while a log is played.
+/// What a user asks for during a playback.
 struct PlaybackCommand {
   enum class Kind { kPause, kPlay, kSpeed, kSeek, kQuit };
   Kind kind = Kind::kPlay;
@@ -53,10 +53,10 @@ struct PlaybackSummary {
 /// Sends the frames at their times, byte by byte; what the other side sends is ignored. A link that
 /// fails is opened again after a second. Returns at the end, after kQuit, or when `stop` is set.
 /// Errors: as open_byte_link at the start; those of the records.
-[[nodiscard]] Result<PlaybackSummary> play_tlog(TlogRecords& records,
-                                                const mavlink::LinkAddress& address,
-                                                const PlaybackOptions& options,
-                                                const PlaybackPorts& ports,
-                                                const std::atomic<bool>& stop);
+[[nodiscard]] Result<PlaybackSummary> play_records(PlaybackRecords& records,
+                                                   const mavlink::LinkAddress& address,
+                                                   const PlaybackOptions& options,
+                                                   const PlaybackPorts& ports,
+                                                   const std::atomic<bool>& stop);
 
 }  // namespace overfly::flight::playback
