@@ -20,10 +20,10 @@ import { LogWorlds } from './store/logs/log_worlds';
 import { Notices } from './store/notices';
 import { Player } from './store/player';
 import { SceneControl } from './store/scene_control';
-import { Sensors } from './store/sensors';
+import { Sensors } from './store/sensors/sensors';
 import { Session } from './store/session';
 import { Store } from './store/state';
-import { VehicleConnect } from './store/vehicle_connect';
+import { VehicleConnect } from './store/vehicle/vehicle_connect';
 import { followAddress } from './views/address_bar';
 import { showScreen } from './views/screen';
 

@@ -16,10 +16,10 @@ import type { LogPage } from './logs/log_browser';
 import { initialLogPage } from './logs/log_browser';
 import type { PictureRate } from './picture_rates';
 import type { EstimateRows } from './run_data';
-import type { ConnectState } from './vehicle_connect';
-import { initialConnect } from './vehicle_connect';
+import type { ConnectState } from './vehicle/vehicle_connect';
+import { initialConnect } from './vehicle/vehicle_connect';
 import { RunData } from './run_data';
-import type { SensorSamples } from './sensors';
+import type { SensorSamples } from './sensors/sensors';
 
 /** A decoded picture and the instant it belongs to. */
 export interface Picture {

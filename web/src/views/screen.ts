@@ -1,6 +1,6 @@
 // The layout of the screen.
 import { CameraPanel } from './camera_panel';
-import { ConnectDialog } from './connect_dialog';
+import { ConnectDialog } from './vehicle/connect_dialog';
 import { ErrorPanel } from './error_panel';
 import { h } from './dom';
 import { HeaderBar } from './header_bar';
@@ -16,7 +16,7 @@ import { ScenarioEditor } from './scenario_editor';
 import { ScenePanel } from './scene_panel';
 import { listenToKeys } from './shortcuts';
 import { Timeline } from './timeline';
-import { VehicleCard } from './vehicle_card';
+import { VehicleCard } from './vehicle/vehicle_card';
 import type { Context, View } from './view';
 
 const kEverything = new Set([

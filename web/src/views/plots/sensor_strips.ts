@@ -1,7 +1,7 @@
 // Plots of the sensors' samples: as the estimators receive them, with noise and drift.
 import type { SensorCurve } from '../../protocol/sensor_types';
-import type { CurveTable } from '../../store/sensor_curves';
-import { curveTable, valueAt } from '../../store/sensor_curves';
+import type { CurveTable } from '../../store/sensors/sensor_curves';
+import { curveTable, valueAt } from '../../store/sensors/sensor_curves';
 import type { State } from '../../store/state';
 import type { Span } from '../../store/time_window';
 import { Plot } from './plot';

@@ -1,11 +1,11 @@
 // Connects to an autopilot by address and flies what it reports over the world of any scenario.
-import type { RestClient } from '../connection/rest_client';
-import { fieldErrorsOf } from '../connection/rest_client';
-import type { FieldError } from '../protocol/field_errors';
-import type { Json, JsonObject } from '../protocol/rest_types';
-import { valueAt } from './launch_form';
-import type { Session } from './session';
-import type { Store } from './state';
+import type { RestClient } from '../../connection/rest_client';
+import { fieldErrorsOf } from '../../connection/rest_client';
+import type { FieldError } from '../../protocol/field_errors';
+import type { Json, JsonObject } from '../../protocol/rest_types';
+import { valueAt } from '../launch_form';
+import type { Session } from '../session';
+import type { Store } from '../state';
 
 export type LinkKind = 'udp-listen' | 'udp' | 'tcp' | 'tcp-listen' | 'serial';
 

@@ -1,9 +1,9 @@
 // Samples of the watched run's sensors: read while they are shown, and again as the run goes on.
-import type { RestClient } from '../connection/rest_client';
-import type { SensorCurves } from '../protocol/sensor_types';
-import { isActive } from '../protocol/rest_types';
-import type { Store } from './state';
-import type { Span } from './time_window';
+import type { RestClient } from '../../connection/rest_client';
+import type { SensorCurves } from '../../protocol/sensor_types';
+import { isActive } from '../../protocol/rest_types';
+import type { Store } from '../state';
+import type { Span } from '../time_window';
 
 export interface SensorSamples {
   /** Of this run. */

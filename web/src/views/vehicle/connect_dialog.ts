@@ -1,9 +1,9 @@
 // Connects to an autopilot: its address, and the scenario over whose world it flies.
-import type { ConnectForm, LinkKind } from '../store/vehicle_connect';
-import { kGeoid, kLink, kSystem, linkOf } from '../store/vehicle_connect';
-import type { Topic } from '../store/state';
-import { h, rebuild, setText } from './dom';
-import type { Context, View } from './view';
+import type { ConnectForm, LinkKind } from '../../store/vehicle/vehicle_connect';
+import { kGeoid, kLink, kSystem, linkOf } from '../../store/vehicle/vehicle_connect';
+import type { Topic } from '../../store/state';
+import { h, rebuild, setText } from '../dom';
+import type { Context, View } from '../view';
 
 const kKinds: readonly { value: LinkKind; label: string; hint: string }[] = [
   {

@@ -1,12 +1,12 @@
 import { describe, expect, it } from 'vitest';
-import { fieldErrorsOf, RestError } from '../../src/connection/rest_client';
-import type { JsonObject } from '../../src/protocol/rest_types';
+import { fieldErrorsOf, RestError } from '../../../src/connection/rest_client';
+import type { JsonObject } from '../../../src/protocol/rest_types';
 import {
   connectOverrides,
   formOfLink,
   initialConnect,
   linkOf,
-} from '../../src/store/vehicle_connect';
+} from '../../../src/store/vehicle/vehicle_connect';
 
 const form = (changes = {}) => ({ ...initialConnect().form, ...changes });
 const kCourse = { flight: { course: {} }, duration_s: 100 } as JsonObject;

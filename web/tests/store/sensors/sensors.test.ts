@@ -1,8 +1,8 @@
 import { beforeEach, describe, expect, it } from 'vitest';
-import { RestClient } from '../../src/connection/rest_client';
-import { Sensors } from '../../src/store/sensors';
-import { sampleRun } from '../support/samples';
-import { Viewing } from '../support/viewing';
+import { RestClient } from '../../../src/connection/rest_client';
+import { Sensors } from '../../../src/store/sensors/sensors';
+import { sampleRun } from '../../support/samples';
+import { Viewing } from '../../support/viewing';
 
 const kAnswer = { sensors: [{ sensor: 'imu', samples: 1, curves: [] }] };
 
