@@ -182,7 +182,10 @@ class SensorStrip implements Strip {
   }
 
   showCursor(state: State): void {
-    this.showAt(state, (state.playback?.t_ns ?? -1) / 1e9);
+    // During the flight the cursor is ahead of what was read.
+    const t_s = (state.playback?.t_ns ?? -1) / 1e9;
+    const live = state.playback?.live === true;
+    this.showAt(state, live ? Math.min(t_s, state.sensors?.newest_s ?? t_s) : t_s);
   }
 
   showHover(state: State, t_s: number): void {
