@@ -45,7 +45,8 @@ Result<SmoothedLog> smooth_log(const logs::OpenedLog& log,
                                const logs::TrajectoryRequest& request,
                                const smoothing::SmoothingOptions& options,
                                double geoid_separation_m,
-                               const std::atomic<bool>* cancel) {
+                               const std::atomic<bool>* cancel,
+                               const smoothing::SmoothingProgress& progress) {
   const std::string name = log.file.string();
   logs::TrajectoryRequest wider = request;
   // The smoother moves the attitudes by the time offset: up to so much outside is needed.
@@ -77,7 +78,7 @@ Result<SmoothedLog> smooth_log(const logs::OpenedLog& log,
         {s_from_ns(attitude.t_ns - epoch_ns), attitude.R_ned_body.cast<double>().normalized()});
   }
   Result<smoothing::SmoothedMotion> smoothed =
-      smoothing::smooth_motion(positions, attitudes, options, cancel);
+      smoothing::smooth_motion(positions, attitudes, options, cancel, progress);
   if (!smoothed) return smoothed.error().in(name);
   warn_of_gaps(smoothed->positions, samples->position_source, samples->warnings);
   warn_of_gaps(smoothed->attitudes, samples->attitude_source, samples->warnings);

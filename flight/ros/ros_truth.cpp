@@ -10,6 +10,7 @@
 
 #include "core/cancellable_wait.hpp"
 #include "core/text/number_text.hpp"
+#include "core/text/printable_text.hpp"
 #include "flight/live/arrivals.hpp"
 #include "flight/live/live_motion.hpp"
 #include "flight/logs/ros/ros_cursor.hpp"
@@ -19,22 +20,34 @@
 namespace overfly::flight::ros_live {
 namespace {
 
-/// What a message of mavros_msgs/State says: header, connected, armed, ...
+/// What a message of mavros_msgs/State says: header, connected, armed, guided, manual_input, mode.
 struct MavrosState {
+  std::int64_t stamp_ns = 0;  ///< 0: not set
   bool connected = false;
   bool armed = false;
+  std::string mode;
 };
 
 std::optional<MavrosState> decode_mavros_state(std::span<const std::uint8_t> bytes) {
   logs::RosCursor message(bytes, logs::RosEncoding::kRos1, false);
-  for (int i = 0; i < 3; ++i) (void)message.number<std::uint32_t>();  // seq, stamp
-  (void)message.text();                                               // frame_id
   MavrosState state;
+  (void)message.number<std::uint32_t>();  // seq
+  const std::int64_t stamp_s = message.number<std::uint32_t>();
+  state.stamp_ns = stamp_s * kNsPerS + message.number<std::uint32_t>();
+  (void)message.text();  // frame_id
   state.connected = message.number<std::uint8_t>() != 0;
   state.armed = message.number<std::uint8_t>() != 0;
+  (void)message.number<std::uint8_t>();  // guided
+  (void)message.number<std::uint8_t>();  // manual_input
+  constexpr std::size_t kMostLetters = 32;
+  const auto mode = message.text().substr(0, kMostLetters);
+  state.mode = printable_text({reinterpret_cast<const std::uint8_t*>(mode.data()), mode.size()});
   if (!message.ok()) return std::nullopt;
   return state;
 }
+
+/// A publisher that changes the mode all the time does not fill the memory.
+constexpr std::size_t kMaxWaitingEvents = 1000;
 
 class RosTruth final : public TruthSource {
  public:
@@ -45,7 +58,7 @@ class RosTruth final : public TruthSource {
 
   Status open(const std::atomic<bool>* cancel) {
     std::set<std::string> topics = {flight_.position_topic(), flight_.attitude_topic()};
-    if (flight_.stop_on_disarm && !flight_.state_topic.empty()) topics.insert(flight_.state_topic);
+    if (!flight_.state_topic.empty()) topics.insert(flight_.state_topic);
     ros1::TopicListenerOptions options;
     options.master_uri = flight_.master_uri;
     options.node_name = flight_.node_name;
@@ -87,6 +100,22 @@ class RosTruth final : public TruthSource {
     samples_.forget_before(start_ns_);
     arrivals_.use_latest();
   }
+  [[nodiscard]] std::vector<FlightEvent> take_events(std::int64_t t_ns) override {
+    const std::lock_guard lock(mutex_);
+    std::vector<FlightEvent> taken;
+    while (!events_.empty() && events_.front().t_ns <= start_ns_ + t_ns) {
+      FlightEvent event = std::move(events_.front());
+      events_.pop_front();
+      event.t_ns -= start_ns_;
+      // Of what was before the start, only the last mode is still in force.
+      const bool is_mode = event.kind == FlightEventKind::kMode;
+      if (event.t_ns < 0 && !is_mode) continue;
+      if (is_mode && !taken.empty() && event.t_ns <= 0) taken.clear();
+      event.t_ns = std::max<std::int64_t>(event.t_ns, 0);
+      taken.push_back(std::move(event));
+    }
+    return taken;
+  }
   [[nodiscard]] std::optional<std::int64_t> heard_ns() const override {
     const std::lock_guard lock(mutex_);
     return arrivals_.used_ns();
@@ -123,10 +152,28 @@ class RosTruth final : public TruthSource {
   void take_state(std::span<const std::uint8_t> bytes) {
     const std::optional<MavrosState> state = decode_mavros_state(bytes);
     if (!state || !state->connected) return;
-    // What happened before the flight does not end it.
-    if (!started_) return;
-    was_armed_ = was_armed_ || state->armed;
-    if (was_armed_ && !state->armed) end("the vehicle was disarmed");
+    note_changes(*state);
+    // A vehicle that was disarmed before the flight does not end it; one that is armed at its start
+    // may.
+    was_armed_ = state->armed || (started_ && was_armed_);
+    const bool disarmed = was_armed_ && !state->armed;
+    if (disarmed && flight_.stop_on_disarm) end("the vehicle was disarmed");
+  }
+
+  /// Modes, and whether the vehicle is armed, at the stamps of the messages.
+  void note_changes(const MavrosState& state) {
+    std::int64_t stamp_ns = state.stamp_ns;
+    if (stamp_ns == 0 && started_) stamp_ns = known_until_ns();
+    if (!events_.empty()) stamp_ns = std::max(stamp_ns, events_.back().t_ns);
+    const auto add = [&](FlightEventKind kind, const std::string& text) {
+      if (events_.size() < kMaxWaitingEvents) events_.push_back({stamp_ns, kind, text});
+    };
+    if (state.mode != mode_ && !state.mode.empty()) add(FlightEventKind::kMode, state.mode);
+    if (armed_ && *armed_ != state.armed) {
+      add(FlightEventKind::kOther, state.armed ? "armed" : "disarmed");
+    }
+    mode_ = state.mode;
+    armed_ = state.armed;
   }
 
   void end(const std::string& reason) {
@@ -201,6 +248,9 @@ class RosTruth final : public TruthSource {
   live::LiveMotion motion_;
   bool started_ = false;
   bool was_armed_ = false;
+  std::string mode_;  ///< of the latest message about the vehicle's state
+  std::optional<bool> armed_;
+  std::deque<FlightEvent> events_;  ///< not taken yet; their times are stamps
   std::int64_t start_ns_ = 0;
   std::string end_reason_;
   std::optional<std::int64_t> end_ns_;  ///< a stamp

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "server/record/rows/run_rows.hpp"
+#include "server/record/run_folder.hpp"
 
 namespace overfly::server {
 namespace {

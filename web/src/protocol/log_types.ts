@@ -77,3 +77,49 @@ export interface LogSeries {
   attitudes: Record<string, number[]>;
   steps: { t_s: number; size_m: number }[];
 }
+
+/** Samples minus the smooth motion, column by column; times by the vehicle's clock. */
+export type ResidualTable = Record<string, number[]>;
+
+export interface ResidualFit {
+  source: string;
+  used_count: number;
+  shifted_count: number;
+  left_out_count: number;
+  longest_gap_s: number;
+  used: ResidualTable;
+  /** After a step, which their residuals contain. */
+  shifted: ResidualTable;
+  left_out: ResidualTable;
+}
+
+export interface LogResiduals {
+  /** east_m, north_m, up_m */
+  positions: ResidualFit & {
+    rms_m: number;
+    noise_horizontal_m: number;
+    noise_vertical_m: number;
+  };
+  /** Rotation vectors in body axes: x_deg, y_deg, z_deg */
+  attitudes: ResidualFit & { rms_deg: number; noise_deg: number };
+  time_offset_s: number;
+  /** null: the offset was given. */
+  time_offset_sigma_s: number | null;
+  jump_count: number;
+  jumps: { t_s: number; kind: string; text: string }[];
+  warnings: string[];
+}
+
+export interface WorkProgress {
+  step: string;
+  share: number;
+}
+
+/** Where the world of a scenario lies. */
+export interface WorldExtent {
+  name: string;
+  attribution: string;
+  centre: { lat_deg: number; lon_deg: number };
+  /** Of the imagery, clockwise. */
+  outline: { lat_deg: number; lon_deg: number }[];
+}

@@ -1,13 +1,17 @@
 // The page of flight logs: listed, uploaded, looked at, flown.
 import type { RestClient } from '../../connection/rest_client';
-import { RestError } from '../../connection/rest_client';
+import { fieldErrorsOf } from '../../connection/rest_client';
 import type { Upload } from '../../connection/upload';
 import type { FieldError } from '../../protocol/field_errors';
-import type { LogEntry, LogInfo, LogList, LogSeries } from '../../protocol/log_types';
+import type { LogEntry, LogInfo, LogList, LogSeries, WorldExtent } from '../../protocol/log_types';
 import type { Session } from '../session';
 import type { Store } from '../state';
 import type { LogFlight } from './log_flight';
 import { flyableSources, logOverrides, newLogFlight } from './log_flight';
+import type { LogSmoothingState } from './log_smoothing';
+import { initialSmoothing } from './log_smoothing';
+import type { UploadSet } from './upload_set';
+import { uploadQuery, uploadSets } from './upload_set';
 
 export interface UploadProgress {
   name: string;
@@ -31,6 +35,9 @@ export interface LogPage {
   flight: LogFlight;
   flightErrors: FieldError[];
   starting: boolean;
+  smoothing: LogSmoothingState;
+  /** By scenario; null: not known. */
+  worlds: Map<string, WorldExtent | null>;
 }
 
 export function initialLogPage(): LogPage {
@@ -48,6 +55,8 @@ export function initialLogPage(): LogPage {
     flight: newLogFlight(''),
     flightErrors: [],
     starting: false,
+    smoothing: initialSmoothing(),
+    worlds: new Map(),
   };
 }
 
@@ -68,6 +77,8 @@ export class LogBrowser {
   async open(): Promise<void> {
     const { page } = this;
     page.open = true;
+    // A world that was not there may have been made meanwhile.
+    for (const [name, world] of page.worlds) if (world === null) page.worlds.delete(name);
     const { scenarioName, scenarios } = this.store.state;
     const flyable = scenarios?.filter(({ error }) => error === null) ?? [];
     if (page.flight.scenario === '') {
@@ -137,23 +148,40 @@ export class LogBrowser {
     this.changed();
   }
 
-  async send(file: File): Promise<void> {
+  /** Uploads logs one after another, or a mapping with its CSV files as one log. */
+  async send(files: readonly File[]): Promise<void> {
     const { page } = this;
-    if (page.upload !== null) return;
-    page.uploadError = null;
-    page.upload = { name: file.name, share: 0 };
+    if (page.upload !== null || files.length === 0) return;
+    const sets = uploadSets(files);
+    page.uploadError = typeof sets === 'string' ? sets : null;
     this.changed();
-    this.sending = new AbortController();
+    if (typeof sets === 'string') return;
+    for (const set of sets) {
+      await this.sendOne(set);
+      if (page.uploadError !== null) return;
+    }
+  }
+
+  private async sendOne(files: UploadSet<File>): Promise<void> {
+    const { page } = this;
+    const { name } = files[0];
     const progress = (share: number) => {
-      page.upload = { name: file.name, share };
+      page.upload = { name, share };
       this.changed();
     };
+    progress(0);
+    this.sending = new AbortController();
     let entry: LogEntry;
     try {
-      const name = file.name.replaceAll(/[^\w.-]/g, '_');
-      entry = await this.rest.uploadLog(this.upload, name, file, progress, this.sending.signal);
+      entry = await this.rest.uploadLog(
+        this.upload,
+        uploadQuery(files),
+        files.length === 1 ? files[0] : new Blob([...files]),
+        progress,
+        this.sending.signal,
+      );
     } catch (error) {
-      page.uploadError = `${file.name}: ${textOf(error)}`;
+      page.uploadError = `${name}: ${textOf(error)}`;
       return;
     } finally {
       page.upload = null;
@@ -208,8 +236,7 @@ export class LogBrowser {
         this.store.change('lists');
       }
     } catch (error) {
-      const known = error instanceof RestError ? error.fieldErrors : [];
-      page.flightErrors = known.length > 0 ? known : [{ field: '', message: textOf(error) }];
+      page.flightErrors = fieldErrorsOf(error);
     }
     page.starting = false;
     this.changed();
