@@ -135,11 +135,11 @@ describe('LogBrowser', () => {
 
   it('shows the progress of an upload that begins while the one before is read', async () => {
     const done = (name: string) => ({ status: 201, text: JSON.stringify(entry(name)) });
-    void browser.send(new File(['x'], 'a.bin'));
+    void browser.send([new File(['x'], 'a.bin')]);
     uploads[0]?.(done('a.bin'));
     await settle();
     expect(page().upload).toBeNull();
-    void browser.send(new File(['x'], 'b.bin'));
+    void browser.send([new File(['x'], 'b.bin')]);
     await answer('GET', '/logs', list('a.bin'));
     await answer('GET', '/logs/a.bin', info('a.bin'));
     await answer('GET', '/logs/a.bin/series', kSeries);
