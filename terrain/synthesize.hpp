@@ -36,6 +36,8 @@ using Progress = std::function<bool(double)>;
                                   const SynthesisOptions& options,
                                   const Progress& progress = {});
 
+/// The folder of the built-in world with this seed, whether it was made or not.
+[[nodiscard]] std::filesystem::path builtin_world_folder(std::uint64_t seed);
 /// The folder of the built-in world with this seed in the user's cache
 /// ($OVERFLY_CACHE, else $XDG_CACHE_HOME/overfly, else ~/.cache/overfly), synthesised if absent.
 [[nodiscard]] Result<std::filesystem::path> builtin_world(std::uint64_t seed,

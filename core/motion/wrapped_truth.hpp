@@ -10,7 +10,8 @@
 
 namespace overfly {
 
-/// Passes on everything but the states.
+/// Passes on everything but the states. A subclass may add events and
+/// sensors.
 class WrappedTruth : public TruthSource {
  public:
   explicit WrappedTruth(std::unique_ptr<TruthSource> flight) : flight_(std::move(flight)) {}
@@ -24,13 +25,13 @@ class WrappedTruth : public TruthSource {
   }
   [[nodiscard]] std::vector<std::string> warnings() const final { return flight_->warnings(); }
   void begin() final { flight_->begin(); }
-  [[nodiscard]] std::vector<FlightEvent> take_events(std::int64_t t_ns) final {
+  [[nodiscard]] std::vector<FlightEvent> take_events(std::int64_t t_ns) override {
     return flight_->take_events(t_ns);
   }
   [[nodiscard]] std::optional<VehicleStatus> take_status(std::int64_t t_ns) final {
     return flight_->take_status(t_ns);
   }
-  [[nodiscard]] SampleSource* sample_source() final { return flight_->sample_source(); }
+  [[nodiscard]] SampleSource* sample_source() override { return flight_->sample_source(); }
   [[nodiscard]] std::shared_ptr<EstimateReceiver> estimate_receiver() const final {
     return flight_->estimate_receiver();
   }

@@ -55,14 +55,30 @@ void ForwardReader::only(std::vector<FileRange> parts) {
   begin_ = end_ = 0;
 }
 
-std::uint64_t ForwardReader::file_offset() const {
-  std::uint64_t left = position();
+std::pair<std::uint64_t, std::uint64_t> ForwardReader::place_of(std::uint64_t position) const {
   for (const FileRange& part : parts_) {
     const std::uint64_t bytes = part.end - part.begin;
-    if (left < bytes) return part.begin + left;
-    left -= bytes;
+    if (position < bytes) return {part.begin + position, bytes - position};
+    position -= bytes;
   }
-  return parts_.back().end;
+  return {parts_.back().end, 0};
 }
+
+Result<std::size_t> ForwardReader::peek(std::uint64_t distance,
+                                        std::span<std::uint8_t> bytes) const {
+  std::size_t done = 0;
+  while (done < bytes.size()) {
+    const auto [offset, left] = place_of(position() + distance + done);
+    const std::size_t most = std::min<std::uint64_t>(bytes.size() - done, left);
+    if (most == 0) break;
+    const Result<std::size_t> got = file_.read_some(offset, bytes.subspan(done, most));
+    if (!got) return got;
+    if (*got == 0) break;
+    done += *got;
+  }
+  return done;
+}
+
+std::uint64_t ForwardReader::file_offset() const { return place_of(position()).first; }
 
 }  // namespace overfly

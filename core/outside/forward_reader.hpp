@@ -35,6 +35,11 @@ class ForwardReader {
   /// @pre wanted <= kBufferBytes
   /// Errors: kIo.
   [[nodiscard]] Result<std::span<const std::uint8_t>> ahead(std::size_t wanted);
+  /// Reads the bytes that lie `distance` behind position(), and stays there.
+  /// @return how many there were: fewer than asked for at the end
+  /// Errors: kIo.
+  [[nodiscard]] Result<std::size_t> peek(std::uint64_t distance,
+                                         std::span<std::uint8_t> bytes) const;
   /// Moves the position forward. @pre at most as many bytes as ahead() last returned
   void skip(std::size_t bytes) { begin_ += bytes; }
 
@@ -51,6 +56,8 @@ class ForwardReader {
   [[nodiscard]] std::uint64_t size_bytes() const { return size_; }
 
  private:
+  /// Offset in the file of a position, and the bytes of its part from there on.
+  [[nodiscard]] std::pair<std::uint64_t, std::uint64_t> place_of(std::uint64_t position) const;
   ForwardReader(ReadableFile file, std::uint64_t size)
       : file_(std::move(file)),
         file_end_(size),

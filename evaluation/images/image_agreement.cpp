@@ -153,16 +153,18 @@ Result<ImageAgreement> compare_images(const Image& real, const Image& rendered) 
   view_of(real).convertTo(real_values, CV_32F);
   view_of(rendered).convertTo(rendered_values, CV_32F);
   cv::createHanningWindow(window, real_values.size(), CV_32F);
-  const cv::Point2d shift =
-      cv::phaseCorrelate(rendered_values, real_values, window, &agreement.peak);
-  if (!std::isfinite(shift.x) || !std::isfinite(shift.y)) return agreement;
-  agreement.offset_px = {shift.x, shift.y};
-  agreement.correlation_aligned = aligned_correlation(real, rendered, agreement.offset_px);
-  const std::optional<Eigen::Vector2d> better = refined(real, rendered, agreement.offset_px);
+  double peak = 0.0;
+  const cv::Point2d shift = cv::phaseCorrelate(rendered_values, real_values, window, &peak);
+  if (!std::isfinite(shift.x) || !std::isfinite(shift.y) || !std::isfinite(peak)) return agreement;
+  const Eigen::Vector2d offset_px(shift.x, shift.y);
+  agreement.peak = peak;
+  agreement.offset_px = offset_px;
+  agreement.correlation_aligned = aligned_correlation(real, rendered, offset_px);
+  const std::optional<Eigen::Vector2d> better = refined(real, rendered, offset_px);
   if (!better) return agreement;
   const std::optional<double> correlation = aligned_correlation(real, rendered, *better);
   if (!correlation || *correlation < agreement.correlation_aligned.value_or(-1.0)) return agreement;
-  agreement.offset_px = *better;
+  agreement.offset_px = better;
   agreement.correlation_aligned = correlation;
   return agreement;
 }

@@ -11,11 +11,11 @@ namespace overfly::evaluation {
 
 struct ImageAgreement {
   /// Position in the real image minus position in the virtual image of the same content: right,
-  /// down [px].
-  Eigen::Vector2d offset_px = Eigen::Vector2d::Zero();
+  /// down [px]. Empty if the images cannot be compared: one of them is uniform.
+  std::optional<Eigen::Vector2d> offset_px;
   /// Share of the cross-power spectrum in the peak that gave the offset, in [0, 1]. Below about
-  /// 0.05 the offset is not reliable.
-  double peak = 0.0;
+  /// 0.05 the offset is not reliable. Empty without an offset.
+  std::optional<double> peak;
   /// Normalised correlation of all pixels, in [-1, 1]; empty if an image is uniform.
   std::optional<double> correlation;
   /// The same after the offset was taken out, over the common part; empty also if less than a

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <condition_variable>
+#include <limits>
 #include <map>
 #include <mutex>
 #include <utility>
 
 #include "core/cancellable_wait.hpp"
 #include "core/text/number_text.hpp"
+#include "flight/live/arrivals.hpp"
 #include "flight/live/live_motion.hpp"
 #include "flight/live/stop_watch.hpp"
 #include "flight/live/truth_streams.hpp"
@@ -17,8 +19,7 @@
 namespace overfly::flight::live {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
+constexpr std::int64_t kNothingKnownNs = std::numeric_limits<std::int64_t>::min();
 constexpr std::int64_t kStatusPeriodNs = kNsPerS / 2;
 /// Reports that wait to be taken, as for as many samples at 50 Hz.
 constexpr std::size_t kMaxStatusReports = kMaxLiveSamples / 25;
@@ -45,25 +46,18 @@ struct LiveTruth::Impl {
   bool started = false;
   /// Once the streams are chosen; moves on until the flight has started.
   std::int64_t start_ns = 0;
-  Clock::time_point last_sample;
   std::string end_reason;              ///< empty while the flight goes on
   std::optional<std::int64_t> end_ns;  ///< of the vehicle's clock
   LiveMotion motion;
   std::string opened_as;  ///< description
   std::shared_ptr<mavlink::FeedbackSender> sender;
-  /// When the states up to a time of the vehicle's clock became known.
-  struct Arrival {
-    std::int64_t known_until_ns = 0;
-    Clock::time_point at;
-  };
-  std::deque<Arrival> arrivals;
-  std::optional<Clock::time_point> heard;  ///< the latest state
-  std::deque<VehicleStatus> reports;       ///< not taken yet, at times of the vehicle's clock
-  std::int64_t next_report_ns = 0;         ///< of the vehicle's clock
-  std::int64_t counted_ns = 0;             ///< the vehicle's clock at the last report
-  std::uint64_t counted_messages = 0;      ///< until then
-  std::uint64_t other_events = 0;          ///< taken
-  std::uint64_t unrecorded_events = 0;     ///< of these, beyond kMaxOtherEvents
+  Arrivals arrivals;
+  std::deque<VehicleStatus> reports;    ///< not taken yet, at times of the vehicle's clock
+  std::int64_t next_report_ns = 0;      ///< of the vehicle's clock
+  std::int64_t counted_ns = 0;          ///< the vehicle's clock at the last report
+  std::uint64_t counted_messages = 0;   ///< until then
+  std::uint64_t other_events = 0;       ///< taken
+  std::uint64_t unrecorded_events = 0;  ///< of these, beyond kMaxOtherEvents
 
   Impl(std::shared_ptr<mavlink::Vehicle> of, const LocalFrame& in, const LiveTruthOptions& with)
       : vehicle(std::move(of)),
@@ -95,16 +89,12 @@ void LiveTruth::Impl::take(const mavlink::Frame& message) {
   {
     const std::lock_guard lock(mutex);
     if (end_ns) return;
-    const std::int64_t before_ns = streams ? known_until_ns() : 0;
+    const std::int64_t before_ns = streams ? known_until_ns() : kNothingKnownNs;
     samples.take(message);
     add_report();
-    if (!streams && choose()) last_sample = Clock::now();
+    if (!streams) (void)choose();
     if (streams) {
-      if (known_until_ns() > before_ns) {
-        last_sample = Clock::now();
-        arrivals.push_back({known_until_ns(), last_sample});
-        if (arrivals.size() > kMaxLiveSamples) arrivals.pop_front();
-      }
+      if (known_until_ns() > before_ns) arrivals.add(known_until_ns());
       if (samples.restarted()) {
         end("the vehicle's clock started again: the vehicle was restarted");
       } else if (const std::string reason = stop.take(message); !reason.empty()) {
@@ -214,7 +204,7 @@ Status LiveTruth::Impl::wait(const std::string& what,
                              const std::atomic<bool>* cancel,
                              const Ready& ready) {
   std::unique_lock lock(mutex);
-  const Clock::time_point begin = Clock::now();
+  const Arrivals::Clock::time_point begin = Arrivals::Clock::now();
   while (!ready() && !end_ns) {
     if (is_cancelled(cancel)) return cancelled("the vehicle");
     if (samples.full()) return too_far_behind(what);
@@ -224,10 +214,7 @@ Status LiveTruth::Impl::wait(const std::string& what,
                        ": the vehicle was restarted before it had sent a position and an "
                        "attitude; start the run again"};
     }
-    // Patience counts from the later of the last sample and the begin of the wait: a run that has
-    // paused must not blame the vehicle.
-    const Clock::time_point quiet_since = std::max(last_sample, begin);
-    if (Clock::now() - quiet_since >= options.patience) {
+    if (arrivals.silence(begin) >= options.patience) {
       const double patience_s = std::chrono::duration<double>(options.patience).count();
       const std::string missing = streams ? "no new state within " + number_text(patience_s) + " s"
                                           : missing_text(samples, options.truth) + " within " +
@@ -245,9 +232,7 @@ Status LiveTruth::Impl::wait(const std::string& what,
 /// @pre start_ns <= vehicle_ns <= known_until_ns()
 AircraftState LiveTruth::Impl::at(std::int64_t vehicle_ns) {
   samples.forget_before(vehicle_ns);
-  while (!arrivals.empty() && arrivals.front().known_until_ns < vehicle_ns) arrivals.pop_front();
-  heard.reset();
-  if (!arrivals.empty()) heard = arrivals.front().at;
+  arrivals.use(vehicle_ns);
   AircraftState state =
       motion.at(positions(), attitudes(), streams->attitude == streams->position, vehicle_ns);
   state.t_ns = vehicle_ns - start_ns;
@@ -368,15 +353,13 @@ void LiveTruth::begin() {
   if (impl_->end_ns) return;
   impl_->start_ns = impl_->known_until_ns();
   impl_->samples.forget_before(impl_->start_ns);
-  impl_->heard = impl_->last_sample;
+  impl_->arrivals.use_latest();
   if (impl_->sender) impl_->sender->start_at(impl_->start_ns);
 }
 
 std::optional<std::int64_t> LiveTruth::heard_ns() const {
   const std::lock_guard lock(impl_->mutex);
-  if (!impl_->heard) return std::nullopt;
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(impl_->heard->time_since_epoch())
-      .count();
+  return impl_->arrivals.used_ns();
 }
 
 Result<std::optional<AircraftState>> LiveTruth::find_state(std::int64_t t_ns,

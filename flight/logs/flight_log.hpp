@@ -45,6 +45,8 @@ struct StreamInfo {
   double lowest_m = 0.0;  ///< height above the stream's datum, or above a local origin
   double highest_m = 0.0;
   bool georeferenced = false;  ///< positions are geodetic, or local with a known origin
+  /// The first origin of local positions: those before it count from it as well.
+  std::optional<LocalOrigin> first_origin;
 };
 
 /// The time from a start of a vehicle's clock to the next.

@@ -30,7 +30,7 @@ struct LogSamples : LoggedTruth {
   std::vector<LogAttitude> attitudes;  ///< times strictly increasing
 };
 
-/// Reads the positions in the time asked for, and attitudes from 1 s before to 1 s after it.
+/// Reads the positions in the time asked for, and the attitudes in it and its margins.
 ///
 /// Of a clock that starts again within the log, the run with the most positions is used. Positions
 /// with a time that is not later than the one before, and attitudes with a time that another one

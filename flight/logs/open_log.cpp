@@ -87,7 +87,7 @@ class OpeningSink final : public LogSink {
     const auto [known, first] = origins_.try_emplace(id, origin);
     if (first || known->second != origin) index_.declaration();
     known->second = origin;
-    streams_[id].georeferenced();
+    streams_[id].local_origin(origin);
   }
   void declaration() override { index_.declaration(); }
   void event(LogEvent event) override {

@@ -18,7 +18,10 @@ class StreamStatistics {
   void position(const LogTime& time, const Eigen::Vector3d& value);
   void attitude() { ++info_.attitudes; }
   void invalid() { ++info_.invalid; }
-  void georeferenced() { info_.georeferenced = true; }
+  void local_origin(const LocalOrigin& origin) {
+    info_.georeferenced = true;
+    if (!info_.first_origin) info_.first_origin = origin;
+  }
 
   [[nodiscard]] StreamInfo info() const;
 

@@ -5,28 +5,24 @@
 #include <optional>
 #include <utility>
 
+#include "core/motion/wrapped_truth.hpp"
+
 namespace overfly::flight {
 namespace {
 
 using logs::EventKind;
 using logs::LogEvent;
 
-class FlightWithRecords final : public TruthSource {
+class FlightWithRecords final : public WrappedTruth {
  public:
   FlightWithRecords(std::unique_ptr<TruthSource> flight,
                     std::vector<FlightEvent> events,
                     std::unique_ptr<SampleSource> sensors)
-      : flight_(std::move(flight)), events_(std::move(events)), sensors_(std::move(sensors)) {}
+      : WrappedTruth(std::move(flight)), events_(std::move(events)), sensors_(std::move(sensors)) {}
 
-  [[nodiscard]] std::optional<std::int64_t> duration_ns() const override {
-    return flight_->duration_ns();
+  [[nodiscard]] SampleSource* sample_source() override {
+    return sensors_ ? sensors_.get() : flight().sample_source();
   }
-  [[nodiscard]] std::string description() const override { return flight_->description(); }
-  [[nodiscard]] std::vector<std::string> warnings() const override { return flight_->warnings(); }
-  [[nodiscard]] std::optional<std::int64_t> log_start_ns() const override {
-    return flight_->log_start_ns();
-  }
-  [[nodiscard]] SampleSource* sample_source() override { return sensors_.get(); }
   [[nodiscard]] std::vector<FlightEvent> take_events(std::int64_t t_ns) override {
     std::vector<FlightEvent> taken;
     while (next_ < events_.size() && events_[next_].t_ns <= t_ns) taken.push_back(events_[next_++]);
@@ -36,10 +32,9 @@ class FlightWithRecords final : public TruthSource {
  private:
   [[nodiscard]] Result<std::optional<AircraftState>> find_state(
       std::int64_t t_ns, const std::atomic<bool>* cancel) override {
-    return flight_->state_at(t_ns, cancel);
+    return flight().state_at(t_ns, cancel);
   }
 
-  std::unique_ptr<TruthSource> flight_;
   std::vector<FlightEvent> events_;
   std::unique_ptr<SampleSource> sensors_;
   std::size_t next_ = 0;

@@ -30,7 +30,9 @@ inline constexpr std::size_t kMaxOtherEvents = 500;
 /// Number of the run of a vehicle's clock with the most messages.
 [[nodiscard]] std::uint32_t main_boot(const logs::OpenedLog& log, const std::string& vehicle);
 
-/// The same flight with events and the aircraft's sensors. @param events  by time
+/// The same flight with events and the aircraft's sensors.
+/// @param events   by time
+/// @param sensors  null: those of the flight, if it has any
 [[nodiscard]] std::unique_ptr<TruthSource> with_records(std::unique_ptr<TruthSource> flight,
                                                         std::vector<FlightEvent> events,
                                                         std::unique_ptr<SampleSource> sensors);

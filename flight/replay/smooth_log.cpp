@@ -1,5 +1,6 @@
 #include "flight/replay/smooth_log.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -44,9 +45,14 @@ Result<SmoothedLog> smooth_log(const logs::OpenedLog& log,
                                const logs::TrajectoryRequest& request,
                                const smoothing::SmoothingOptions& options,
                                double geoid_separation_m,
-                               const std::atomic<bool>* cancel) {
+                               const std::atomic<bool>* cancel,
+                               const smoothing::SmoothingProgress& progress) {
   const std::string name = log.file.string();
-  Result<logs::LogSamples> samples = logs::read_log_samples(log, request, cancel);
+  logs::TrajectoryRequest wider = request;
+  // The smoother moves the attitudes by the time offset: up to so much outside is needed.
+  wider.attitude_margin_ns =
+      std::max(logs::kMaxAttitudeStepNs, ns_from_s(smoothing::kMaxTimeOffsetS));
+  Result<logs::LogSamples> samples = logs::read_log_samples(log, wider, cancel);
   if (!samples) return samples.error();
   if (!samples->georeferenced) {
     return Error{ErrorCode::kUnsupported,
@@ -72,7 +78,7 @@ Result<SmoothedLog> smooth_log(const logs::OpenedLog& log,
         {s_from_ns(attitude.t_ns - epoch_ns), attitude.R_ned_body.cast<double>().normalized()});
   }
   Result<smoothing::SmoothedMotion> smoothed =
-      smoothing::smooth_motion(positions, attitudes, options, cancel);
+      smoothing::smooth_motion(positions, attitudes, options, cancel, progress);
   if (!smoothed) return smoothed.error().in(name);
   warn_of_gaps(smoothed->positions, samples->position_source, samples->warnings);
   warn_of_gaps(smoothed->attitudes, samples->attitude_source, samples->warnings);

@@ -44,7 +44,8 @@ struct SmoothedLog {
                                              const logs::TrajectoryRequest& request,
                                              const smoothing::SmoothingOptions& options,
                                              double geoid_separation_m,
-                                             const std::atomic<bool>* cancel = nullptr);
+                                             const std::atomic<bool>* cancel = nullptr,
+                                             const smoothing::SmoothingProgress& progress = {});
 
 inline constexpr std::size_t kMaxSampledPoses = 10'000'000;
 

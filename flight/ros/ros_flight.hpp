@@ -19,8 +19,9 @@ struct RosFlight {
   std::string pose_topic = "/mavros/local_position/pose";
   std::string global_topic = "/mavros/global_position/global";  ///< NavSatFix
   std::string imu_topic = "/mavros/imu/data";                   ///< Imu
-  std::string state_topic = "/mavros/state";                    ///< mavros_msgs/State
-  bool local = false;  ///< positions are those of the pose topic, else of the global topic
+  std::string state_topic =
+      "/mavros/state";  ///< mavros_msgs/State, for modes and `stop_on_disarm`; may be empty
+  bool local = false;   ///< positions are those of the pose topic, else of the global topic
   bool attitude_of_pose = false;  ///< attitudes are those of the pose topic, else of the imu topic
   /// Where local positions count from, in metres east, north and up; the world's origin if empty.
   std::optional<Geodetic> origin;

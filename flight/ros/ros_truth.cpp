@@ -4,12 +4,15 @@
 #include <chrono>
 #include <condition_variable>
 #include <deque>
+#include <limits>
 #include <mutex>
 #include <set>
 #include <utility>
 
 #include "core/cancellable_wait.hpp"
 #include "core/text/number_text.hpp"
+#include "core/text/printable_text.hpp"
+#include "flight/live/arrivals.hpp"
 #include "flight/live/live_motion.hpp"
 #include "flight/logs/ros/ros_cursor.hpp"
 #include "flight/ros/ros_samples.hpp"
@@ -18,24 +21,34 @@
 namespace overfly::flight::ros_live {
 namespace {
 
-using SteadyClock = std::chrono::steady_clock;
-
-/// What a message of mavros_msgs/State says: header, connected, armed, ...
+/// What a message of mavros_msgs/State says: header, connected, armed, guided, manual_input, mode.
 struct MavrosState {
+  std::int64_t stamp_ns = 0;  ///< 0: not set
   bool connected = false;
   bool armed = false;
+  std::string mode;
 };
 
 std::optional<MavrosState> decode_mavros_state(std::span<const std::uint8_t> bytes) {
   logs::RosCursor message(bytes, logs::RosEncoding::kRos1, false);
-  for (int i = 0; i < 3; ++i) (void)message.number<std::uint32_t>();  // seq, stamp
-  (void)message.text();                                               // frame_id
   MavrosState state;
+  (void)message.number<std::uint32_t>();  // seq
+  const std::int64_t stamp_s = message.number<std::uint32_t>();
+  state.stamp_ns = stamp_s * kNsPerS + message.number<std::uint32_t>();
+  (void)message.text();  // frame_id
   state.connected = message.number<std::uint8_t>() != 0;
   state.armed = message.number<std::uint8_t>() != 0;
+  (void)message.number<std::uint8_t>();  // guided
+  (void)message.number<std::uint8_t>();  // manual_input
+  constexpr std::size_t kMostLetters = 32;
+  const auto mode = message.text().substr(0, kMostLetters);
+  state.mode = printable_text({reinterpret_cast<const std::uint8_t*>(mode.data()), mode.size()});
   if (!message.ok()) return std::nullopt;
   return state;
 }
+
+/// A publisher that changes the mode all the time does not fill the memory.
+constexpr std::size_t kMaxWaitingEvents = 1000;
 
 class RosTruth final : public TruthSource {
  public:
@@ -46,7 +59,7 @@ class RosTruth final : public TruthSource {
 
   Status open(const std::atomic<bool>* cancel) {
     std::set<std::string> topics = {flight_.position_topic(), flight_.attitude_topic()};
-    if (flight_.stop_on_disarm && !flight_.state_topic.empty()) topics.insert(flight_.state_topic);
+    if (!flight_.state_topic.empty()) topics.insert(flight_.state_topic);
     ros1::TopicListenerOptions options;
     options.master_uri = flight_.master_uri;
     options.node_name = flight_.node_name;
@@ -86,21 +99,30 @@ class RosTruth final : public TruthSource {
     if (end_ns_) return;
     start_ns_ = known_until_ns();
     samples_.forget_before(start_ns_);
-    heard_ = last_sample_;
+    arrivals_.use_latest();
+  }
+  [[nodiscard]] std::vector<FlightEvent> take_events(std::int64_t t_ns) override {
+    const std::lock_guard lock(mutex_);
+    std::vector<FlightEvent> taken;
+    while (!events_.empty() && events_.front().t_ns <= start_ns_ + t_ns) {
+      FlightEvent event = std::move(events_.front());
+      events_.pop_front();
+      event.t_ns -= start_ns_;
+      // Of what was before the start, only the last mode is still in force.
+      const bool is_mode = event.kind == FlightEventKind::kMode;
+      if (event.t_ns < 0 && !is_mode) continue;
+      if (is_mode && !taken.empty() && event.t_ns <= 0) taken.clear();
+      event.t_ns = std::max<std::int64_t>(event.t_ns, 0);
+      taken.push_back(std::move(event));
+    }
+    return taken;
   }
   [[nodiscard]] std::optional<std::int64_t> heard_ns() const override {
     const std::lock_guard lock(mutex_);
-    if (!heard_) return std::nullopt;
-    return std::chrono::duration_cast<std::chrono::nanoseconds>(heard_->time_since_epoch()).count();
+    return arrivals_.used_ns();
   }
 
  private:
-  /// When the states up to a stamp became known.
-  struct Arrival {
-    std::int64_t known_until_ns = 0;
-    SteadyClock::time_point at;
-  };
-
   void take(const ros1::ListenedMessage& message) {
     {
       const std::lock_guard lock(mutex_);
@@ -115,7 +137,8 @@ class RosTruth final : public TruthSource {
   }
 
   void take_sample(const ros1::ListenedMessage& message) {
-    const std::int64_t before_ns = started_ ? known_until_ns() : 0;
+    const std::int64_t before_ns =
+        started_ ? known_until_ns() : std::numeric_limits<std::int64_t>::min();
     samples_.take(message.topic, message.type, message.bytes);
     if (!started_ && !samples_.positions().empty() && !samples_.attitudes().empty()) {
       start_ns_ = std::max(samples_.positions().front().t_ns, samples_.attitudes().front().t_ns);
@@ -123,21 +146,35 @@ class RosTruth final : public TruthSource {
       if (started_) samples_.forget_before(start_ns_);
     }
     if (!started_) return;
-    if (known_until_ns() > before_ns) {
-      last_sample_ = SteadyClock::now();
-      arrivals_.push_back({known_until_ns(), last_sample_});
-      if (arrivals_.size() > live::kMaxLiveSamples) arrivals_.pop_front();
-    }
+    if (known_until_ns() > before_ns) arrivals_.add(known_until_ns());
     if (!samples_.restarted().empty()) end("the stamps of " + samples_.restarted() + " went back");
   }
 
   void take_state(std::span<const std::uint8_t> bytes) {
     const std::optional<MavrosState> state = decode_mavros_state(bytes);
     if (!state || !state->connected) return;
-    // What happened before the flight does not end it.
-    if (!started_) return;
-    was_armed_ = was_armed_ || state->armed;
-    if (was_armed_ && !state->armed) end("the vehicle was disarmed");
+    note_changes(*state);
+    // A vehicle that was disarmed before the flight does not end it; one that is armed at its start
+    // may.
+    was_armed_ = state->armed || (started_ && was_armed_);
+    const bool disarmed = was_armed_ && !state->armed;
+    if (disarmed && flight_.stop_on_disarm) end("the vehicle was disarmed");
+  }
+
+  /// Modes, and whether the vehicle is armed, at the stamps of the messages.
+  void note_changes(const MavrosState& state) {
+    std::int64_t stamp_ns = state.stamp_ns;
+    if (stamp_ns == 0 && started_) stamp_ns = known_until_ns();
+    if (!events_.empty()) stamp_ns = std::max(stamp_ns, events_.back().t_ns);
+    const auto add = [&](FlightEventKind kind, const std::string& text) {
+      if (events_.size() < kMaxWaitingEvents) events_.push_back({stamp_ns, kind, text});
+    };
+    if (state.mode != mode_ && !state.mode.empty()) add(FlightEventKind::kMode, state.mode);
+    if (armed_ && *armed_ != state.armed) {
+      add(FlightEventKind::kOther, state.armed ? "armed" : "disarmed");
+    }
+    mode_ = state.mode;
+    armed_ = state.armed;
   }
 
   void end(const std::string& reason) {
@@ -154,7 +191,7 @@ class RosTruth final : public TruthSource {
   template <typename Ready>
   Status wait(const std::string& what, const std::atomic<bool>* cancel, const Ready& ready) {
     std::unique_lock lock(mutex_);
-    const SteadyClock::time_point begin = SteadyClock::now();
+    const live::Arrivals::Clock::time_point begin = live::Arrivals::Clock::now();
     const auto failed = [&](const std::string& why) {
       return Error{ErrorCode::kIo, flight_.master_uri + ": " + what + ": " + why};
     };
@@ -169,7 +206,7 @@ class RosTruth final : public TruthSource {
             "the stamps of " + samples_.restarted() +
             " went back before there was a position and an attitude; start the run again");
       }
-      if (SteadyClock::now() - std::max(last_sample_, begin) >= flight_.patience) {
+      if (arrivals_.silence(begin) >= flight_.patience) {
         const double patience_s = std::chrono::duration<double>(flight_.patience).count();
         const std::string missing = started_ ? "no new state" : samples_.missing_text();
         return failed(missing + " within " + number_text(patience_s) +
@@ -198,9 +235,7 @@ class RosTruth final : public TruthSource {
     const std::lock_guard lock(mutex_);
     if (end_ns_ && stamp_ns > *end_ns_) return std::optional<AircraftState>();
     samples_.forget_before(stamp_ns);
-    while (!arrivals_.empty() && arrivals_.front().known_until_ns < stamp_ns) arrivals_.pop_front();
-    heard_.reset();
-    if (!arrivals_.empty()) heard_ = arrivals_.front().at;
+    arrivals_.use(stamp_ns);
     const bool joint = flight_.position_topic() == flight_.attitude_topic();
     AircraftState state = motion_.at(samples_.positions(), samples_.attitudes(), joint, stamp_ns);
     state.t_ns = t_ns;
@@ -214,12 +249,13 @@ class RosTruth final : public TruthSource {
   live::LiveMotion motion_;
   bool started_ = false;
   bool was_armed_ = false;
+  std::string mode_;  ///< of the latest message about the vehicle's state
+  std::optional<bool> armed_;
+  std::deque<FlightEvent> events_;  ///< not taken yet; their times are stamps
   std::int64_t start_ns_ = 0;
-  SteadyClock::time_point last_sample_;
   std::string end_reason_;
   std::optional<std::int64_t> end_ns_;  ///< a stamp
-  std::deque<Arrival> arrivals_;
-  std::optional<SteadyClock::time_point> heard_;  ///< the latest state
+  live::Arrivals arrivals_;
   std::unique_ptr<ros1::TopicListener> listener_;
 };
 

@@ -73,8 +73,9 @@ struct PositionKindOf {
   }
   [[nodiscard]] Result<Spline> fit(std::span<const Sample> samples,
                                    const SplineKnots& knots,
-                                   const std::atomic<bool>* cancel) const {
-    return fit_positions(samples, knots, limits.position_noise, psd, cancel);
+                                   const std::atomic<bool>* cancel,
+                                   const FitProgress& progress) const {
+    return fit_positions(samples, knots, limits.position_noise, psd, cancel, progress);
   }
   static Sample shifted(Sample sample, const Eigen::Vector3d& shift) {
     sample.p_world_m -= shift;
@@ -108,8 +109,9 @@ struct AttitudeKindOf {
   }
   [[nodiscard]] Result<Spline> fit(std::span<const Sample> samples,
                                    const SplineKnots& knots,
-                                   const std::atomic<bool>* cancel) const {
-    return fit_rotations(samples, knots, limits.attitude_noise_rad, psd, cancel);
+                                   const std::atomic<bool>* cancel,
+                                   const FitProgress& progress) const {
+    return fit_rotations(samples, knots, limits.attitude_noise_rad, psd, cancel, progress);
   }
   static Sample shifted(Sample sample, const Eigen::Vector3d& shift) {
     sample.R_ned_body = rotation_from_vector(-shift) * sample.R_ned_body;
@@ -165,6 +167,7 @@ template <typename Kind>
 Result<typename Kind::Spline> fit_kind(std::span<const typename Kind::Sample> samples,
                                        const Kind& kind,
                                        const std::atomic<bool>* cancel,
+                                       const SmoothingProgress& progress,
                                        FitReport& report,
                                        std::vector<Jump>& jumps) {
   std::optional<Screening> screening = kind.screen(samples);
@@ -172,6 +175,8 @@ Result<typename Kind::Spline> fit_kind(std::span<const typename Kind::Sample> sa
                               " are too erratic: no piece of at least 1 s and 5 samples is smooth";
   if (!screening) return unusable(too_few);
   typename Kind::Spline spline;
+  FitProgress fit_progress;
+  if (progress) fit_progress = [&](double share) { progress(Kind::kName, share); };
   for (int round = 0; round < kMaxFits; ++round) {
     std::vector<typename Kind::Sample> kept;
     for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -180,7 +185,7 @@ Result<typename Kind::Spline> fit_kind(std::span<const typename Kind::Sample> sa
     if (kept.size() < 5) return unusable(too_few);
     const SplineKnots knots =
         SplineKnots::covering(kept.front().t_s, kept.back().t_s, Kind::kKnotS);
-    Result<typename Kind::Spline> fitted = kind.fit(kept, knots, cancel);
+    Result<typename Kind::Spline> fitted = kind.fit(kept, knots, cancel, fit_progress);
     if (!fitted) return fitted.error();
     spline = std::move(*fitted);
     if (round + 1 == kMaxFits) break;
@@ -249,7 +254,8 @@ MotionState SmoothMotion::at(double t_s) const {
 Result<SmoothedMotion> smooth_motion(std::span<const PositionSample> positions,
                                      std::span<const AttitudeSample> attitudes,
                                      const SmoothingOptions& options,
-                                     const std::atomic<bool>* cancel) {
+                                     const std::atomic<bool>* cancel,
+                                     const SmoothingProgress& progress) {
   if (Status status = options.validate(); !status) return status.error();
   if (Status status = check_samples(positions, PositionKindOf::kName); !status) {
     return status.error();
@@ -267,13 +273,18 @@ Result<SmoothedMotion> smooth_motion(std::span<const PositionSample> positions,
       result.position_noise, result.attitude_noise_rad, options.jump_m, options.jump_rad};
 
   SmoothMotion& motion = result.motion;
-  Result<PositionSpline> position = fit_kind(
-      positions, PositionKindOf{limits, options.jerk_psd}, cancel, result.positions, result.jumps);
+  Result<PositionSpline> position = fit_kind(positions,
+                                             PositionKindOf{limits, options.jerk_psd},
+                                             cancel,
+                                             progress,
+                                             result.positions,
+                                             result.jumps);
   if (!position) return position.error();
   motion.position = std::move(*position);
   Result<RotationSpline> attitude = fit_kind(attitudes,
                                              AttitudeKindOf{limits, options.angular_psd},
                                              cancel,
+                                             progress,
                                              result.attitudes,
                                              result.jumps);
   if (!attitude) return attitude.error();

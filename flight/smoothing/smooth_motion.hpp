@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -101,6 +102,10 @@ struct SmoothedMotion {
   std::optional<TimeOffset> estimated_offset;
 };
 
+/// Called during smoothing: "positions" or "attitudes", and the share of this fit that is done
+/// [0, 1]. A fit is repeated up to three times, when it has left out samples.
+using SmoothingProgress = std::function<void(const std::string& step, double share)>;
+
 /// Fits splines to samples, without outliers and steps.
 ///
 /// Positions and attitudes are fitted apart, each with its own noise, which is estimated from the
@@ -116,6 +121,7 @@ struct SmoothedMotion {
 [[nodiscard]] Result<SmoothedMotion> smooth_motion(std::span<const PositionSample> positions,
                                                    std::span<const AttitudeSample> attitudes,
                                                    const SmoothingOptions& options,
-                                                   const std::atomic<bool>* cancel = nullptr);
+                                                   const std::atomic<bool>* cancel = nullptr,
+                                                   const SmoothingProgress& progress = {});
 
 }  // namespace overfly::flight::smoothing

@@ -65,6 +65,7 @@ template <typename Control, typename Fill>
 Status solve_windows(const SplineKnots& knots,
                      std::vector<Control>& control,
                      const std::atomic<bool>* cancel,
+                     const FitProgress& progress,
                      const Fill& fill) {
   const auto points = [&](double duration_s) {
     return static_cast<std::size_t>(std::ceil(duration_s / knots.spacing_s));
@@ -72,6 +73,9 @@ Status solve_windows(const SplineKnots& knots,
   const std::vector<Control> start = control;
   for (const FitWindow& window : fit_windows(control.size(), points(kWindowS), points(kOverlapS))) {
     if (is_cancelled(cancel)) return Error{ErrorCode::kCancelled, "smoothing was cancelled"};
+    if (progress) {
+      progress(static_cast<double>(window.keep_first) / static_cast<double>(control.size()));
+    }
     std::vector<Control> solved(start.begin() + static_cast<std::ptrdiff_t>(window.first),
                                 start.begin() + static_cast<std::ptrdiff_t>(window.end));
     ceres::Problem problem(problem_options());
@@ -105,7 +109,8 @@ Result<PositionSpline> fit_positions(std::span<const PositionSample> samples,
                                      const SplineKnots& knots,
                                      const PositionNoise& noise,
                                      double psd,
-                                     const std::atomic<bool>* cancel) {
+                                     const std::atomic<bool>* cancel,
+                                     const FitProgress& progress) {
   PositionSpline spline{knots, std::vector<Eigen::Vector3d>(knots.control_points())};
   interpolate_control(
       samples, knots, [&](std::size_t i, const auto& a, const auto& b, double part) {
@@ -140,7 +145,7 @@ Result<PositionSpline> fit_positions(std::span<const PositionSample> samples,
           place.segment - window.first);
     }
   };
-  if (Status status = solve_windows(knots, spline.control_m, cancel, fill); !status) {
+  if (Status status = solve_windows(knots, spline.control_m, cancel, progress, fill); !status) {
     return status.error();
   }
   return spline;
@@ -150,7 +155,8 @@ Result<RotationSpline> fit_rotations(std::span<const AttitudeSample> samples,
                                      const SplineKnots& knots,
                                      double noise_rad,
                                      double psd,
-                                     const std::atomic<bool>* cancel) {
+                                     const std::atomic<bool>* cancel,
+                                     const FitProgress& progress) {
   RotationSpline spline{knots, std::vector<Eigen::Quaterniond>(knots.control_points())};
   interpolate_control(
       samples, knots, [&](std::size_t i, const auto& a, const auto& b, double part) {
@@ -189,7 +195,7 @@ Result<RotationSpline> fit_rotations(std::span<const AttitudeSample> samples,
           data(at + 3));
     }
   };
-  if (Status status = solve_windows(knots, spline.control, cancel, fill); !status) {
+  if (Status status = solve_windows(knots, spline.control, cancel, progress, fill); !status) {
     return status.error();
   }
   for (Eigen::Quaterniond& control : spline.control) control.normalize();

@@ -92,7 +92,7 @@ Status FrameMaker::open_images() {
     return Error{ErrorCode::kInvalidArgument,
                  "camera \"" + camera->name + "\": images: the length of the flight is not known"};
   }
-  const FlightStart start{scenario_.epoch_utc_ns, truth_->source().log_start_ns(), *duration_ns_};
+  const FlightStart start{scenario_.epoch_utc_ns, log_start_ns(), *duration_ns_};
   auto images = FlightImages::open(*camera, start, scenario_.sources, options_.cancel);
   if (!images) return images.error();
   images_ = std::move(*images);

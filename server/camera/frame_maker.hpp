@@ -67,6 +67,10 @@ class FrameMaker {
   [[nodiscard]] const std::shared_ptr<const OpenedWorld>& opened_world() const { return opened_; }
   [[nodiscard]] renderer::Renderer& renderer() { return *renderer_; }
   [[nodiscard]] std::string flight_description() const { return truth_->source().description(); }
+  /// As TruthSource::log_start_ns.
+  [[nodiscard]] std::optional<std::int64_t> log_start_ns() const {
+    return truth_->source().log_start_ns();
+  }
   [[nodiscard]] std::vector<std::string> flight_warnings() const {
     return truth_->source().warnings();
   }

@@ -27,7 +27,7 @@ Result<std::unique_ptr<FrameRemaker>> FrameRemaker::create(
 Result<std::optional<std::vector<AircraftState>>> FrameRemaker::states_around(std::int64_t t_ns) {
   // A window never goes back in time: an earlier frame needs a new one.
   if (!truth_ || t_ns < asked_ns_) {
-    auto source = open_flown_truth(folder_, "", scenario_, *world_);
+    auto source = open_flown_truth(folder_, {}, scenario_, *world_);
     if (!source) return source.error();
     truth_ = std::make_unique<TruthWindow>(std::move(*source));
   }

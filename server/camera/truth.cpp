@@ -5,11 +5,12 @@
 #include <utility>
 
 #include "flight/live/fly_live.hpp"
+#include "flight/replay/flight_events.hpp"
 #include "flight/replay/logged_flight.hpp"
 #include "flight/ros/ros_truth.hpp"
 #include "server/camera/airframe_flight.hpp"
+#include "server/record/rows/recorded_events.hpp"
 #include "server/record/run_folder.hpp"
-#include "server/record/run_manifest.hpp"
 #include "server/record/truth_samples.hpp"
 
 namespace overfly::server {
@@ -100,15 +101,24 @@ Result<std::unique_ptr<TruthSource>> open_log_flight(const Scenario& scenario,
 /// A recorded flight of the length that was flown: the record goes one frame further.
 class FlownAgain final : public TruthSource {
  public:
-  FlownAgain(std::unique_ptr<TruthSource> record, std::int64_t flown_ns)
-      : record_(std::move(record)), flown_ns_(flown_ns) {}
+  FlownAgain(std::unique_ptr<TruthSource> record,
+             std::int64_t flown_ns,
+             std::vector<std::string> warnings)
+      : record_(std::move(record)), flown_ns_(flown_ns), warnings_(std::move(warnings)) {}
 
   [[nodiscard]] std::optional<std::int64_t> duration_ns() const override {
     const std::optional<std::int64_t> recorded_ns = record_->duration_ns();
     return flown_ns_ > 0 && recorded_ns ? std::min(flown_ns_, *recorded_ns) : recorded_ns;
   }
   [[nodiscard]] std::string description() const override { return record_->description(); }
-  [[nodiscard]] std::vector<std::string> warnings() const override { return record_->warnings(); }
+  [[nodiscard]] std::optional<std::int64_t> log_start_ns() const override {
+    return record_->log_start_ns();
+  }
+  [[nodiscard]] std::vector<std::string> warnings() const override {
+    std::vector<std::string> warnings = record_->warnings();
+    warnings.insert(warnings.end(), warnings_.begin(), warnings_.end());
+    return warnings;
+  }
 
  private:
   [[nodiscard]] Result<std::optional<AircraftState>> find_state(
@@ -118,6 +128,7 @@ class FlownAgain final : public TruthSource {
 
   std::unique_ptr<TruthSource> record_;
   std::int64_t flown_ns_;  ///< 0: not known
+  std::vector<std::string> warnings_;
 };
 
 /// The truth that another run recorded counts from the origin of that run's world.
@@ -142,12 +153,20 @@ Result<std::unique_ptr<TruthSource>> open_run_flight(const RunFlight& run,
                        std::to_string(apart.norm()) + " m away from this one's: must be the same"};
     }
   }
-  const std::string flown = manifest->values.flight ? manifest->values.flight->description : "";
+  const RunManifest::Flight flown = manifest->values.flight.value_or(RunManifest::Flight{});
   auto record = open_recorded_flight(truth_samples_file(run.folder),
-                                     "run " + folder_name(run.folder) + ": " + flown);
+                                     "run " + folder_name(run.folder) + ": " + flown.description,
+                                     flown.log_start_ns);
   if (!record) return record.error();
-  return std::unique_ptr<TruthSource>(
-      std::make_unique<FlownAgain>(std::move(*record), manifest->values.duration_ns));
+  // The flight itself does not need its events.
+  Result<std::vector<FlightEvent>> events =
+      read_recorded_events(run.folder, flight::kMaxOtherEvents);
+  std::vector<std::string> warnings;
+  if (!events) warnings.push_back("the flight's events are not known: " + events.error().message);
+  auto again = std::make_unique<FlownAgain>(
+      std::move(*record), manifest->values.duration_ns, std::move(warnings));
+  return flight::with_records(
+      std::move(again), events ? std::move(*events) : std::vector<FlightEvent>(), nullptr);
 }
 
 }  // namespace
@@ -192,10 +211,11 @@ Result<std::unique_ptr<TruthSource>> create_truth(const Scenario& scenario,
 }
 
 Result<std::unique_ptr<TruthSource>> open_flown_truth(const std::filesystem::path& folder,
-                                                      const std::string& description,
+                                                      const RunManifest::Flight& flight,
                                                       const Scenario& scenario,
                                                       const terrain::World& world) {
-  auto flown = open_recorded_flight(truth_samples_file(folder), description);
+  auto flown =
+      open_recorded_flight(truth_samples_file(folder), flight.description, flight.log_start_ns);
   if (!flown && flown.error().code == ErrorCode::kNotFound && !scenario.is_live()) {
     return create_truth(scenario, world);
   }

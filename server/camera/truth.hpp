@@ -8,6 +8,7 @@
 
 #include "core/motion/truth_source.hpp"
 #include "core/result.hpp"
+#include "server/record/run_manifest.hpp"
 #include "server/scenario/scenario.hpp"
 #include "terrain/world.hpp"
 
@@ -29,11 +30,11 @@ namespace overfly::server {
 /// The flight of a recorded run, from its samples of the truth. A folder without samples, from an
 /// earlier version, gets the flight that its scenario describes.
 /// @param folder  of the run
-/// @param description  of the flight, as in its manifest
+/// @param flight  as in the run's manifest
 /// Errors: as open_recorded_flight and create_truth.
 [[nodiscard]] Result<std::unique_ptr<TruthSource>> open_flown_truth(
     const std::filesystem::path& folder,
-    const std::string& description,
+    const RunManifest::Flight& flight,
     const Scenario& scenario,
     const terrain::World& world);
 

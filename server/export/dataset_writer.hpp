@@ -43,6 +43,7 @@ struct DatasetPlan {
   /// are not known.
   bool imu_of_vehicle = false;
   std::vector<flight::ImuReading> imu;     ///< over the exported time span; EuRoC only
+  double gravity_m_s2 = 0.0;               ///< magnitude, in the IMU's samples
   std::vector<AircraftState> states;       ///< one for each IMU sample
   std::vector<PlannedEstimate> estimates;  ///< of a run; LCM, rosbag, MCAP only
 };

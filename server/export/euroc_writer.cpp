@@ -11,6 +11,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// data.csv of cameras and IMUs ends its lines as in the published data set: readers rely on both
+/// characters.
+constexpr const char* kLineEnd = "\r\n";
+
 std::string transform_text(const Pose& T_body_sensor) {
   return "T_BS:\n  cols: 4\n  rows: 4\n  data: [" + matrix_rows(T_body_sensor, 4, ", ") + "]\n";
 }
@@ -46,7 +50,7 @@ std::string sensor_text(const CameraSpec& camera, const FrameRate& rate) {
 }
 
 /// @param of_vehicle  recorded from a vehicle, instead of made
-std::string imu_text(const flight::ImuModel& imu, bool of_vehicle) {
+std::string imu_text(const flight::ImuModel& imu, bool of_vehicle, double gravity_m_s2) {
   const char* const about =
       of_vehicle
           ? "# The vehicle's own IMU, as recorded; rate_hz is measured, the noise below is not.\n"
@@ -60,12 +64,16 @@ std::string imu_text(const flight::ImuModel& imu, bool of_vehicle) {
          "     # [ rad / s^2 / sqrt(Hz) ]\naccelerometer_noise_density: " +
          number_text(imu.accelerometer_noise_m_s2_sqrt_hz) +
          "     # [ m / s^2 / sqrt(Hz) ]\naccelerometer_random_walk: " +
-         number_text(imu.accelerometer_walk_m_s3_sqrt_hz) + "     # [ m / s^3 / sqrt(Hz) ]\n";
+         number_text(imu.accelerometer_walk_m_s3_sqrt_hz) +
+         "     # [ m / s^3 / sqrt(Hz) ]\n\n# Time stamps are in the middle of the samples' "
+         "intervals.\n"
+         "gravity_magnitude: " +
+         number_text(gravity_m_s2) + "     # [ m / s^2 ]\n";
 }
 
 constexpr const char* kImuHeader =
     "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],"
-    "a_RS_S_x [m s^-2],a_RS_S_y [m s^-2],a_RS_S_z [m s^-2]\n";
+    "a_RS_S_x [m s^-2],a_RS_S_y [m s^-2],a_RS_S_z [m s^-2]";
 constexpr const char* kStateHeader =
     "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],"
     "q_RS_z [],v_RS_R_x [m s^-1],v_RS_R_y [m s^-1],v_RS_R_z [m s^-1],b_w_RS_S_x [rad s^-1],"
@@ -98,7 +106,7 @@ class EurocWriter final : public DatasetWriter {
       const CameraShot& shot = frame.shots[i];
       if (!shot.delivered) continue;
       names[i] = std::to_string(epoch_ns_ + shot.stamp_ns);
-      lists_[i] += names[i] + "," + names[i] + ".png\n";
+      lists_[i] += names[i] + "," + names[i] + ".png" + kLineEnd;
       const Status status =
           write_png_file(camera_folder(i) / "data" / (names[i] + ".png"), shot.image);
       if (!status) return status.error();
@@ -108,8 +116,8 @@ class EurocWriter final : public DatasetWriter {
 
   Status finish() override {
     for (std::size_t i = 0; i < lists_.size(); ++i) {
-      Status status =
-          write_whole(camera_folder(i) / "data.csv", "#timestamp [ns],filename\n" + lists_[i]);
+      Status status = write_whole(camera_folder(i) / "data.csv",
+                                  std::string("#timestamp [ns],filename") + kLineEnd + lists_[i]);
       if (!status) return status;
     }
     return {};
@@ -122,15 +130,15 @@ class EurocWriter final : public DatasetWriter {
 
   Status write_imu(const DatasetPlan& plan) const {
     if (Status status = make_folder(root_ / "imu0"); !status) return status;
-    std::string rows = kImuHeader;
+    std::string rows = kImuHeader + std::string(kLineEnd);
     for (const flight::ImuReading& reading : plan.imu) {
       const ImuSample& sample = reading.sample;
       rows += std::to_string(epoch_ns_ + sample.t_ns) + "," + list_of(sample.angular_rate_rad_s) +
-              "," + list_of(sample.acceleration_m_s2) + "\n";
+              "," + list_of(sample.acceleration_m_s2) + kLineEnd;
     }
     if (Status status = write_whole(root_ / "imu0" / "data.csv", rows); !status) return status;
     return write_whole(root_ / "imu0" / "sensor.yaml",
-                       imu_text(plan.imu_model, plan.imu_of_vehicle));
+                       imu_text(plan.imu_model, plan.imu_of_vehicle, plan.gravity_m_s2));
   }
 
   Status write_states(const DatasetPlan& plan) const {

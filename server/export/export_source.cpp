@@ -59,14 +59,13 @@ Result<ExportSource> open_run(const fs::path& folder) {
   Result<RunRecords> records = read_run_records(folder, *manifest);
   if (!records) return records.error();
   std::vector<PlannedEstimate> estimates = estimates_of(folder, *records);
-  ExportSource source{
-      std::move(*scenario),
-      RecordedRun{folder,
-                  std::move(records->cameras[kMainCamera].frames),
-                  digests_of(manifest->values),
-                  manifest->values.flight ? manifest->values.flight->description : "",
-                  std::move(estimates)},
-      manifest->values.epoch_utc_ns.value_or(kEpochUtcNs)};
+  ExportSource source{std::move(*scenario),
+                      RecordedRun{folder,
+                                  std::move(records->cameras[kMainCamera].frames),
+                                  digests_of(manifest->values),
+                                  manifest->values.flight.value_or(RunManifest::Flight{}),
+                                  std::move(estimates)},
+                      manifest->values.epoch_utc_ns.value_or(kEpochUtcNs)};
   if (source.run->frames.empty()) {
     return Error{ErrorCode::kNotFound, folder.string() + ": the run recorded no frames"};
   }

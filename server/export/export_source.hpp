@@ -11,6 +11,7 @@
 #include "server/camera/frame_maker.hpp"
 #include "server/export/dataset_writer.hpp"
 #include "server/record/rows/run_rows.hpp"
+#include "server/record/run_manifest.hpp"
 #include "server/scenario/scenario.hpp"
 
 namespace overfly::server {
@@ -20,7 +21,7 @@ struct RecordedRun {
   std::filesystem::path folder;
   std::vector<FrameRow> frames;
   std::vector<std::pair<std::string, std::string>> world_digests;  ///< file, digest
-  std::string flight;                                              ///< description
+  RunManifest::Flight flight;                                      ///< as in the manifest
   std::vector<PlannedEstimate> estimates;                          ///< of all estimators
 };
 

@@ -59,11 +59,12 @@ Result<std::optional<Geodetic>> place_at_start(const ExportSource& source,
       world.tiles->frame().geodetic_from_world((*start)->T_world_body.translation));
 }
 
+/// Sets the plan's gravity to the one at the flight's begin, unless the IMU is fitted.
 Readings synthesized_readings(const ExportSource& source,
-                              const flight::ImuModel& model,
                               const terrain::World& world,
                               std::int64_t end_ns,
-                              const std::function<bool()>& keep_going) {
+                              const std::function<bool()>& keep_going,
+                              DatasetPlan& plan) {
   const auto start = place_at_start(source, world);
   if (!start) return start.error();
   if (!*start) return std::vector<flight::ImuReading>();
@@ -72,11 +73,11 @@ Readings synthesized_readings(const ExportSource& source,
   // A fitted IMU measures what it measures in a run.
   const bool fitted = source.scenario.sensors.imu.has_value();
   const std::uint64_t seed = source.scenario.seed;
-  const Geodetic place = fitted ? world.tiles->frame().origin() : **start;
+  if (!fitted) plan.gravity_m_s2 = flight::normal_gravity_m_s2(**start);
   return flight::synthesize_imu(**flight,
                                 end_ns,
-                                model,
-                                flight::normal_gravity_m_s2(place),
+                                plan.imu_model,
+                                plan.gravity_m_s2,
                                 fitted ? flight::imu_seed(seed) : seed,
                                 keep_going);
 }
@@ -97,6 +98,7 @@ Status add_inertial_data(const ExportSource& source,
   }
   plan.imu_model = fitted ? *fitted : wanted.value_or(flight::ImuModel());
   const terrain::World& world = frames.maker().world();
+  plan.gravity_m_s2 = flight::normal_gravity_m_s2(world.tiles->frame().origin());
   const std::int64_t margin_ns = frame_time_ns(1, scenario.rate);
   const std::int64_t begin_ns = frames.maker().frame_ns(frames.first_frame()) - margin_ns;
   const std::int64_t end_ns = frames.maker().frame_ns(frames.last_frame()) + margin_ns;
@@ -107,7 +109,7 @@ Status add_inertial_data(const ExportSource& source,
     readings = vehicle_readings(*source.run, end_ns, plan);
   }
   if (readings && readings->empty()) {
-    readings = synthesized_readings(source, plan.imu_model, world, end_ns, keep_going);
+    readings = synthesized_readings(source, world, end_ns, keep_going, plan);
   }
   if (!readings) return readings.error();
   auto flight = open_truth(source, world);

@@ -49,12 +49,12 @@ Result<std::unique_ptr<FlightImages>> FlightImages::open(const CameraSpec& camer
   if (!source) return source.error().in(what);
   std::unique_ptr<FlightImages> images(new FlightImages(camera, std::move(*source)));
   if (Status status = images->place(start); !status) return status.error().in(what);
-  // Another size of all images is a wrong scenario, that of a single one a damaged image.
+  // Another size or encoding of all images is a wrong scenario, that of a single one a damaged
+  // image.
   const Result<Image> first = images->read(0);
-  if (!first && first.error().code == ErrorCode::kUnreadable && images->count() > 1) {
-    const Result<Image> second = images->read(1);
-    if (!second) return first.error().in(what);
-  }
+  if (first) return images;
+  const bool unsupported = first.error().code == ErrorCode::kUnsupported;
+  if (unsupported || (images->count() > 1 && !images->read(1))) return first.error().in(what);
   return images;
 }
 

@@ -28,7 +28,8 @@ class FlightImages {
  public:
   /// @param camera  of the scenario, with `images`; must outlive the object
   /// Errors: as open_image_source; kInvalidArgument if no image lies within the flight, or if the
-  /// flight has no clock of a log; kUnreadable if the first image has another size than the camera.
+  /// flight has no clock of a log; kUnsupported if the first image has an encoding that is not
+  /// read; as read() if neither the first nor the second image can be read.
   static Result<std::unique_ptr<FlightImages>> open(const CameraSpec& camera,
                                                     const FlightStart& start,
                                                     const SourcePolicy& sources,

@@ -154,13 +154,17 @@ OrderedJson log_info_json(const OpenedLog& log) {
   }
   for (const BootInfo& boot : log.boots) {
     json["clock_runs"].push_back({{"vehicle", boot.vehicle},
+                                  {"run", boot.number},
                                   {"first_s", s_from_ns(boot.first_ns)},
                                   {"last_s", s_from_ns(boot.last_ns)},
                                   {"messages", boot.messages}});
   }
   for (const LogEvent& event : log.events) {
     OrderedJson entry{{"t_s", nullptr}, {"kind", to_string(event.kind)}, {"text", event.text}};
-    if (event.time) entry["t_s"] = s_from_ns(event.time->t_ns);
+    if (event.time) {
+      entry["t_s"] = s_from_ns(event.time->t_ns);
+      entry["run"] = event.time->boot;
+    }
     if (!event.vehicle.empty()) entry["vehicle"] = event.vehicle;
     json["events"].push_back(std::move(entry));
   }

@@ -75,6 +75,8 @@ Json series_json(const logs::LogSeries& series) {
   return {{"position_source", series.position_source},
           {"attitude_source",
            series.attitude_source.empty() ? Json(nullptr) : Json(series.attitude_source)},
+          {"vehicle", series.vehicle},
+          {"run", series.run},
           {"georeferenced", series.georeferenced},
           {"position_count", series.position_count},
           {"attitude_count", series.attitude_count},
@@ -180,10 +182,31 @@ Result<Json> LogLibrary::series(const std::string& name,
   return *json;
 }
 
+Result<Json> LogLibrary::residuals(const std::string& name,
+                                   const ResidualRequest& request,
+                                   const std::atomic<bool>* cancel,
+                                   const flight::smoothing::SmoothingProgress& progress) {
+  const LogFolders where = folders();
+  const Result<fs::path> file = LogPlaces::find(where, name);
+  if (!file) return file.error();
+  std::string key;
+  const Result<Opened> log = open(*file, request.slice, where.sources, cancel, key);
+  if (!log) return log.error();
+  const std::string offset =
+      request.time_offset_s ? std::to_string(*request.time_offset_s) : "auto";
+  key += '\n' + request.source + '\n' + std::to_string(request.max_points) + '\n' + offset;
+  if (const auto known = residuals_.find(key)) return *known;
+  Result<Json> found = log_residuals(**log, request, cancel, progress);
+  if (!found) return found;
+  residuals_.keep(key, std::make_shared<const Json>(*found));
+  return found;
+}
+
 Json LogLibrary::entry_of(const fs::path& upload) const {
   const auto format = logs::detect_format(upload);
   const FileStamp stamp = FileStamp::of(upload);
-  return entry_json({std::string(kUploadsLabel) + "/" + upload.filename().string(),
+  return entry_json({std::string(kUploadsLabel) + "/" +
+                         upload.lexically_relative(uploads_.folder()).generic_string(),
                      upload,
                      format ? logs::to_string(*format) : "",
                      static_cast<std::uint64_t>(stamp.size_bytes),

@@ -13,7 +13,9 @@
 #include "core/result.hpp"
 #include "flight/logs/flight_log.hpp"
 #include "flight/logs/series/log_series.hpp"
+#include "flight/smoothing/smooth_motion.hpp"
 #include "server/logs/log_places.hpp"
+#include "server/logs/log_residuals.hpp"
 #include "server/logs/log_uploads.hpp"
 #include "server/logs/recent_values.hpp"
 
@@ -49,6 +51,13 @@ class LogLibrary {
   [[nodiscard]] Result<nlohmann::json> series(const std::string& name,
                                               const SeriesRequest& request,
                                               const std::atomic<bool>* cancel);
+  /// The samples minus the smooth motion through them.
+  /// Errors: kNotFound; as log_residuals.
+  [[nodiscard]] Result<nlohmann::json> residuals(
+      const std::string& name,
+      const ResidualRequest& request,
+      const std::atomic<bool>* cancel,
+      const flight::smoothing::SmoothingProgress& progress);
   [[nodiscard]] const LogUploads& uploads() const { return uploads_; }
   /// The entry of an upload that has just been finished.
   [[nodiscard]] nlohmann::json entry_of(const std::filesystem::path& upload) const;
@@ -69,6 +78,7 @@ class LogLibrary {
   LogPlaces places_;
   RecentValues<flight::logs::OpenedLog> opened_{8};
   RecentValues<nlohmann::json> series_{16};
+  RecentValues<nlohmann::json> residuals_{8};
 };
 
 }  // namespace overfly::server

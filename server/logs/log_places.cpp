@@ -52,9 +52,42 @@ bool is_hidden(const fs::path& file) { return file.filename().string().starts_wi
 
 bool may_be_mapping(const std::string& name) { return lower_case(name).ends_with(".json"); }
 
-/// Control characters, and bytes that the JSON of an answer could not repeat.
-bool is_clean(const std::string& name) {
-  return std::none_of(name.begin(), name.end(), [](unsigned char c) { return c < 0x20; });
+/// Length of the UTF-8 sequence at the start of `text` (RFC 3629, section 4); 0 if there is none.
+std::size_t utf8_bytes(std::string_view text) {
+  const auto byte = [&](std::size_t i) {
+    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
+  };
+  const auto tails = [&](std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i) {
+      if (byte(i) < 0x80 || byte(i) > 0xBF) return false;
+    }
+    return true;
+  };
+  const unsigned first = byte(0);
+  const unsigned second = byte(1);
+  if (first < 0x80) return 1;
+  if (first >= 0xC2 && first <= 0xDF) return tails(1, 2) ? 2 : 0;
+  if (first >= 0xE0 && first <= 0xEF) {
+    const bool overlong = first == 0xE0 && second < 0xA0;
+    const bool surrogate = first == 0xED && second > 0x9F;
+    return !overlong && !surrogate && tails(1, 3) ? 3 : 0;
+  }
+  if (first >= 0xF0 && first <= 0xF4) {
+    const bool overlong = first == 0xF0 && second < 0x90;
+    const bool beyond = first == 0xF4 && second > 0x8F;
+    return !overlong && !beyond && tails(1, 4) ? 4 : 0;
+  }
+  return 0;
+}
+
+/// Without control characters, and without bytes that the JSON of an answer could not repeat.
+bool is_clean(std::string_view name) {
+  while (!name.empty()) {
+    const std::size_t bytes = utf8_bytes(name);
+    if (bytes == 0 || static_cast<unsigned char>(name.front()) < 0x20) return false;
+    name.remove_prefix(bytes);
+  }
+  return true;
 }
 
 }  // namespace

@@ -1,11 +1,14 @@
 #include "server/logs/log_uploads.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <cstdio>
 #include <mutex>
 #include <string_view>
 #include <system_error>
@@ -13,6 +16,7 @@
 
 #include "flight/logs/flight_log.hpp"
 #include "server/files/plain_name.hpp"
+#include "server/files/take_name.hpp"
 #include "server/logs/log_places.hpp"
 
 namespace overfly::server {
@@ -30,19 +34,45 @@ Error upload_error(const fs::path& file, const std::string& what) {
 
 std::string mib_text(std::uint64_t bytes) { return std::to_string(bytes >> 20U) + " MiB"; }
 
-/// Bytes of the files in a folder that are no unfinished uploads.
+/// Bytes of the files in a folder, and in its folders, that are no unfinished uploads.
 std::uint64_t bytes_in(const fs::path& folder) {
   std::uint64_t bytes = 0;
   std::error_code failed;
-  for (fs::directory_iterator entry(folder, failed), end; !failed && entry != end;
+  for (fs::recursive_directory_iterator entry(folder, failed), end; !failed && entry != end;
        entry.increment(failed)) {
     std::error_code ignored;
-    if (entry->path().filename().string().starts_with(kPartPrefix)) continue;
-    if (!fs::is_regular_file(entry->symlink_status(ignored))) continue;
+    const bool part = entry->path().filename().string().starts_with(kPartPrefix);
+    if (part || entry.depth() > 0) entry.disable_recursion_pending();
+    if (part || !fs::is_regular_file(entry->symlink_status(ignored))) continue;
     const std::uintmax_t size = entry->file_size(ignored);
     if (!ignored) bytes += size;
   }
   return bytes;
+}
+
+void remove_part(const fs::path& part) {
+  std::error_code ignored;
+  fs::remove_all(part, ignored);
+}
+
+/// Removes a part whose upload no process receives any more: whoever receives it holds its lock.
+void remove_if_abandoned(const fs::path& part) {
+  const FileDescriptor file(::open(part.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+  if (file.open() && ::flock(file.get(), LOCK_EX | LOCK_NB) == 0) remove_part(part);
+}
+
+/// Whether a part that was just created is locked now and still there: a server that starts in
+/// between may have taken it for abandoned.
+bool is_locked(const FileDescriptor& part) {
+  struct stat status {};
+  // File systems without locks have no second server's either.
+  const bool own = ::flock(part.get(), LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+  return own && ::fstat(part.get(), &status) == 0 && status.st_nlink > 0;
+}
+
+Error exists_already(const fs::path& target) {
+  return {ErrorCode::kConflict,
+          "log \"" + target.filename().string() + "\" exists already: delete it first"};
 }
 
 }  // namespace
@@ -57,15 +87,54 @@ struct LogUpload::Room {
   std::uint64_t next_part = 0;
 };
 
-LogUpload::LogUpload(std::shared_ptr<Room> room, fs::path file, FileDescriptor part)
-    : room_(std::move(room)), file_(std::move(file)), part_(std::move(part)) {}
+LogUpload::LogUpload(std::shared_ptr<Room> room, fs::path target)
+    : room_(std::move(room)), target_(std::move(target)) {}
 
 LogUpload::~LogUpload() {
-  part_.close();
-  if (!part_file_.empty()) ::unlink(part_file_.c_str());
+  open_.close();
+  if (!part_.empty()) remove_part(part_);
   const std::lock_guard lock(room_->mutex);
   room_->reserved_bytes -= reserved_bytes_;
   --room_->active;
+}
+
+/// @return false with errno
+bool LogUpload::open_file(const fs::path& file) {
+  open_ = FileDescriptor(
+      ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0644));
+  return open_.open();
+}
+
+Status LogUpload::create_part(std::uint64_t number) {
+  constexpr int kTries = 100;
+  for (int i = 0; i < kTries; ++i) {
+    const fs::path part =
+        room_->folder / (std::string(kPartPrefix) + std::to_string(::getpid()) + "-" +
+                         std::to_string(number) + (i > 0 ? "-" + std::to_string(i) : ""));
+    const bool created = files_.empty() ? open_file(part) : ::mkdir(part.c_str(), 0755) == 0;
+    if (!created) {
+      // Another server, which may have the same process number in another container.
+      if (errno == EEXIST) continue;
+      return upload_error(part, "create");
+    }
+    if (!files_.empty()) {
+      folder_ = FileDescriptor(::open(part.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    }
+    const FileDescriptor& locked = files_.empty() ? open_ : folder_;
+    if (!locked.open() || !is_locked(locked)) continue;
+    part_ = part;
+    return files_.empty() ? Status() : open_next_file();
+  }
+  errno = EEXIST;
+  return upload_error(room_->folder / kPartPrefix, "create");
+}
+
+Status LogUpload::open_next_file() {
+  open_.close();
+  const UploadFile& file = files_[next_file_++];
+  missing_bytes_ = file.size_bytes;
+  const fs::path name = part_ / file.name;
+  return open_file(name) ? Status() : upload_error(name, "create");
 }
 
 Status LogUpload::reserve(std::uint64_t bytes) {
@@ -102,34 +171,72 @@ Status LogUpload::write(std::span<const std::uint8_t> bytes) {
     if (!status) return status;
     refusal_ = UploadRefusal::kNone;
   }
+  Status written = files_.empty() ? write_all(bytes) : write_to_files(bytes);
+  if (written) written_bytes_ = total;
+  return written;
+}
+
+Status LogUpload::write_all(std::span<const std::uint8_t> bytes) {
   while (!bytes.empty()) {
-    const ssize_t written = ::write(part_.get(), bytes.data(), bytes.size());
+    const ssize_t written = ::write(open_.get(), bytes.data(), bytes.size());
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return upload_error(file_, "write");
+    if (written < 0) return upload_error(target_, "write");
     bytes = bytes.subspan(static_cast<std::size_t>(written));
   }
-  written_bytes_ = total;
   return {};
 }
 
-Result<fs::path> LogUpload::finish() {
-  if (const auto format = flight::logs::detect_format(part_file_); !format) {
+Status LogUpload::write_to_files(std::span<const std::uint8_t> bytes) {
+  while (!bytes.empty()) {
+    if (missing_bytes_ == 0) {
+      if (next_file_ == files_.size()) {
+        return Error{ErrorCode::kInvalidArgument, "the body is longer than its files"};
+      }
+      if (Status status = open_next_file(); !status) return status;
+      continue;
+    }
+    const std::size_t count = std::min<std::uint64_t>(bytes.size(), missing_bytes_);
+    if (Status status = write_all(bytes.first(count)); !status) return status;
+    missing_bytes_ -= count;
+    bytes = bytes.subspan(count);
+  }
+  return {};
+}
+
+Result<fs::path> LogUpload::finish() { return files_.empty() ? finish_file() : finish_files(); }
+
+Result<fs::path> LogUpload::finish_file() {
+  if (const auto format = flight::logs::detect_format(part_); !format) {
     refusal_ = UploadRefusal::kNotALog;
-    std::string message = format.error().message;
-    const std::string own = part_file_.string();
-    if (message.starts_with(own)) message = file_.filename().string() + message.substr(own.size());
-    return Error{ErrorCode::kUnreadable, message};
+    return Error{ErrorCode::kUnreadable,
+                 shown_without(part_, target_.filename().string(), format.error().message)};
   }
-  part_.close();
-  // Unlike rename, link does not replace a file.
-  if (::link(part_file_.c_str(), file_.c_str()) != 0) {
-    if (errno != EEXIST) return upload_error(file_, "create");
-    return Error{ErrorCode::kConflict,
-                 "log \"" + file_.filename().string() + "\" exists already: delete it first"};
+  return take_target(target_);
+}
+
+Result<fs::path> LogUpload::finish_files() {
+  while (missing_bytes_ == 0 && next_file_ < files_.size()) {
+    if (Status status = open_next_file(); !status) return status.error();
   }
-  ::unlink(part_file_.c_str());
-  part_file_.clear();
-  return file_;
+  if (missing_bytes_ > 0) {
+    return Error{ErrorCode::kInvalidArgument, "the body is shorter than its files"};
+  }
+  if (Status status = check_uploaded_mapping(part_, files_); !status) {
+    refusal_ = UploadRefusal::kNotALog;
+    return status.error();
+  }
+  return take_target(target_ / files_.front().name);
+}
+
+/// @return the log
+Result<fs::path> LogUpload::take_target(const fs::path& log) {
+  const Result<bool> named = take_free_name(part_, target_);
+  if (!named) return named.error();
+  if (!*named) return exists_already(target_);
+  part_.clear();
+  open_.close();
+  folder_.close();
+  return log;
 }
 
 LogUploads::LogUploads(const fs::path& folder, const UploadLimits& limits)
@@ -140,7 +247,7 @@ LogUploads::LogUploads(const fs::path& folder, const UploadLimits& limits)
   for (fs::directory_iterator entry(room_->folder, failed), end; !failed && entry != end;
        entry.increment(failed)) {
     const fs::path& file = entry->path();
-    if (file.filename().string().starts_with(kPartPrefix)) ::unlink(file.c_str());
+    if (file.filename().string().starts_with(kPartPrefix)) remove_if_abandoned(file);
   }
 }
 
@@ -154,6 +261,23 @@ Result<std::unique_ptr<LogUpload>> LogUploads::begin(const std::string& name,
                      ": must be letters, digits, '_', '-' and '.', at most 200, and end with " +
                      "one of " + log_extensions_text()};
   }
+  return begin_into(room_->folder / name, {}, size_bytes, refusal);
+}
+
+Result<std::unique_ptr<LogUpload>> LogUploads::begin_set(const std::vector<UploadFile>& files,
+                                                         UploadRefusal& refusal) const {
+  if (Status status = check_upload_set(files, room_->limits.max_bytes); !status)
+    return status.error();
+  std::uint64_t total = 0;
+  for (const UploadFile& file : files) total += file.size_bytes;
+  const fs::path stem = fs::path(files.front().name).stem();
+  return begin_into(room_->folder / stem, files, total, refusal);
+}
+
+Result<std::unique_ptr<LogUpload>> LogUploads::begin_into(const fs::path& target,
+                                                          const std::vector<UploadFile>& files,
+                                                          std::optional<std::uint64_t> size_bytes,
+                                                          UploadRefusal& refusal) const {
   if (room_->folder.empty() || room_->limits.quota_bytes == 0) {
     refusal = UploadRefusal::kOff;
     return Error{ErrorCode::kConflict, "this server takes no uploads"};
@@ -161,10 +285,7 @@ Result<std::unique_ptr<LogUpload>> LogUploads::begin(const std::string& name,
   std::error_code failed;
   fs::create_directories(room_->folder, failed);
   if (failed) return Error{ErrorCode::kIo, room_->folder.string() + ": " + failed.message()};
-  const fs::path file = room_->folder / name;
-  if (fs::exists(fs::symlink_status(file, failed))) {
-    return Error{ErrorCode::kConflict, "log \"" + shown + "\" exists already: delete it first"};
-  }
+  if (fs::exists(fs::symlink_status(target, failed))) return exists_already(target);
   std::unique_ptr<LogUpload> upload;
   std::uint64_t number = 0;
   {
@@ -175,29 +296,32 @@ Result<std::unique_ptr<LogUpload>> LogUploads::begin(const std::string& name,
                    std::to_string(room_->active) + " uploads are being received, which is this " +
                        "server's limit: try again soon"};
     }
-    upload.reset(new LogUpload(room_, file, FileDescriptor()));
+    upload.reset(new LogUpload(room_, target));
     ++room_->active;
     number = room_->next_part++;
   }
+  upload->files_ = files;
   // Rejected by its size, it leaves no trace.
   if (Status status = upload->reserve(size_bytes.value_or(0)); !status) {
     refusal = upload->refusal();
     return status.error();
   }
-  const fs::path part = room_->folder / (std::string(kPartPrefix) + std::to_string(::getpid()) +
-                                         "-" + std::to_string(number));
-  upload->part_ = FileDescriptor(
-      ::open(part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0644));
-  if (!upload->part_.open()) return upload_error(part, "create");
-  upload->part_file_ = part;
+  if (Status status = upload->create_part(number); !status) return status.error();
   return upload;
 }
 
 Status LogUploads::remove(const fs::path& file) const {
   std::error_code failed;
-  const bool uploaded =
-      !room_->folder.empty() && fs::equivalent(file.parent_path(), room_->folder, failed);
-  if (!uploaded) {
+  const fs::path& own = room_->folder;
+  const fs::path parent = file.parent_path();
+  const auto is_own = [&](const fs::path& folder) {
+    return !own.empty() && fs::equivalent(folder, own, failed);
+  };
+  if (is_own(parent.parent_path()) && parent.filename() == file.stem()) {
+    if (fs::remove_all(parent, failed) > 0 && !failed) return {};
+    return Error{ErrorCode::kIo, parent.string() + ": cannot be deleted: " + failed.message()};
+  }
+  if (!is_own(parent)) {
     return Error{ErrorCode::kInvalidArgument,
                  "log \"" + file.filename().string() + "\": only uploaded logs can be deleted"};
   }

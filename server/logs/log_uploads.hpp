@@ -8,9 +8,11 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/outside/file_descriptor.hpp"
 #include "core/result.hpp"
+#include "server/logs/upload_set.hpp"
 
 namespace overfly::server {
 
@@ -30,25 +32,40 @@ class LogUpload {
   LogUpload(const LogUpload&) = delete;
   LogUpload& operator=(const LogUpload&) = delete;
 
-  /// Appends bytes. Errors: kConflict with refusal() where a limit is reached; kIo.
+  /// Appends bytes; of several files, those of one follow those of the file before it.
+  /// Errors: kConflict with refusal() where a limit is reached; kInvalidArgument for more bytes
+  /// than were announced for the files; kIo.
   [[nodiscard]] Status write(std::span<const std::uint8_t> bytes);
-  /// Gives the file its name.
-  /// @return the file
-  /// Errors: kUnreadable with kNotALog if its first bytes have no known format; kConflict if a log
-  /// with this name has come in the meantime; kIo.
+  /// Gives the file its name, or several files their folder.
+  /// @return the file, or the mapping
+  /// Errors: kUnreadable with kNotALog if its first bytes have no known format, or if a mapping
+  /// names other files than those that came with it; kInvalidArgument for fewer bytes than were
+  /// announced; kConflict if a log with this name has come in the meantime; kIo.
   [[nodiscard]] Result<std::filesystem::path> finish();
   [[nodiscard]] UploadRefusal refusal() const { return refusal_; }
 
  private:
   friend class LogUploads;
   struct Room;
-  LogUpload(std::shared_ptr<Room> room, std::filesystem::path file, FileDescriptor part);
+  LogUpload(std::shared_ptr<Room> room, std::filesystem::path target);
   [[nodiscard]] Status reserve(std::uint64_t bytes);
+  [[nodiscard]] Status create_part(std::uint64_t number);
+  [[nodiscard]] bool open_file(const std::filesystem::path& file);
+  [[nodiscard]] Status write_all(std::span<const std::uint8_t> bytes);
+  [[nodiscard]] Status write_to_files(std::span<const std::uint8_t> bytes);
+  [[nodiscard]] Status open_next_file();
+  [[nodiscard]] Result<std::filesystem::path> finish_file();
+  [[nodiscard]] Result<std::filesystem::path> finish_files();
+  [[nodiscard]] Result<std::filesystem::path> take_target(const std::filesystem::path& log);
 
   std::shared_ptr<Room> room_;
-  std::filesystem::path file_;
-  std::filesystem::path part_file_;
-  FileDescriptor part_;
+  std::filesystem::path target_;     ///< the log's file; of several files, their folder
+  std::filesystem::path part_;       ///< the same while it is received
+  std::vector<UploadFile> files_;    ///< empty: one file of any size
+  std::size_t next_file_ = 0;        ///< of files_: the first that was not begun
+  std::uint64_t missing_bytes_ = 0;  ///< of the file that was begun last
+  FileDescriptor open_;              ///< the file that is written
+  FileDescriptor folder_;  ///< of several files; like a single file it is locked until the end
   std::uint64_t reserved_bytes_ = 0;
   std::uint64_t written_bytes_ = 0;
   UploadRefusal refusal_ = UploadRefusal::kNone;
@@ -57,7 +74,8 @@ class LogUpload {
 /// Thread-safe.
 class LogUploads {
  public:
-  /// Removes what uploads that were not finished have left there.
+  /// Removes what uploads that were not finished have left there, but not those that another server
+  /// is receiving.
   /// @param folder  created with the first upload; empty = uploads are refused
   LogUploads(const std::filesystem::path& folder, const UploadLimits& limits);
 
@@ -68,8 +86,14 @@ class LogUploads {
   [[nodiscard]] Result<std::unique_ptr<LogUpload>> begin(const std::string& name,
                                                          std::optional<std::uint64_t> size_bytes,
                                                          UploadRefusal& refusal) const;
-  /// Deletes an upload and its index. Errors: kNotFound; kInvalidArgument for a log that was not
-  /// uploaded.
+  /// Begins an upload of a mapping of CSV files with its pieces, into a folder named like the
+  /// mapping.
+  /// @param files  the mapping first; with plain names: one .json file, the others .csv or .txt
+  /// Errors: kInvalidArgument for names, sizes and their number; as begin.
+  [[nodiscard]] Result<std::unique_ptr<LogUpload>> begin_set(const std::vector<UploadFile>& files,
+                                                             UploadRefusal& refusal) const;
+  /// Deletes an upload and its index, a mapping with its folder. Errors: kNotFound;
+  /// kInvalidArgument for a log that was not uploaded.
   [[nodiscard]] Status remove(const std::filesystem::path& file) const;
   /// Bytes of all uploads, with those that are being received.
   [[nodiscard]] std::uint64_t used_bytes() const;
@@ -77,6 +101,12 @@ class LogUploads {
   [[nodiscard]] const std::filesystem::path& folder() const;
 
  private:
+  [[nodiscard]] Result<std::unique_ptr<LogUpload>> begin_into(
+      const std::filesystem::path& target,
+      const std::vector<UploadFile>& files,
+      std::optional<std::uint64_t> size_bytes,
+      UploadRefusal& refusal) const;
+
   std::shared_ptr<LogUpload::Room> room_;
 };
 

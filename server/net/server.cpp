@@ -70,7 +70,6 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options,
   std::unique_ptr<Server> server(new Server());
   auto context = std::make_shared<ServerContext>(options, runs, views);
   add_service_routes(&context->router);
-  add_scenario_routes(&context->router, &runs);
   add_run_routes(&context->router, &runs);
   add_result_routes(&context->router, &runs);
   add_frame_routes(&context->router, &runs, &views);
@@ -79,8 +78,11 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options,
         return raw->readers.take(std::move(work), cancel);
       },
       [raw = context.get()](const std::string& what) { raw->log("error", what); }};
+  add_scenario_routes(&context->router, &runs, readers);
   add_sensor_routes(&context->router, &runs, readers);
-  add_log_routes(&context->router, {&context->logs, readers});
+  const auto progress = std::make_shared<ProgressBoard>();
+  add_progress_routes(&context->router, progress);
+  add_log_routes(&context->router, {&context->logs, readers, progress});
   context->offload = [workers = &server->impl_->workers](std::function<void()> work) {
     boost::asio::post(workers->loop(), std::move(work));
   };

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "server/record/rows/run_rows.hpp"
+#include "server/record/run_folder.hpp"
 
 namespace overfly::server {
 namespace {
@@ -109,6 +110,9 @@ Json json_from(const RunManifest& manifest) {
   if (manifest.flight) {
     value["flight"] = {{"description", manifest.flight->description},
                        {"warnings", manifest.flight->warnings}};
+    if (manifest.flight->log_start_ns) {
+      value["flight"]["log_start_ns"] = *manifest.flight->log_start_ns;
+    }
   }
   if (manifest.cameras.empty()) return value;
   value["camera"] = main_camera_json(manifest.cameras.at(kMainCamera));

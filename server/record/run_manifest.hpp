@@ -30,6 +30,8 @@ struct RunManifest {
   struct Flight {
     std::string description;
     std::vector<std::string> warnings;
+    /// t = 0 by the clock of the log that was flown [ns]; empty if it has none.
+    std::optional<std::int64_t> log_start_ns{};
   };
   struct WorldFile {
     std::string file;

@@ -63,8 +63,8 @@ std::uint64_t read_seed(const FileField& field) {
   return field.value().get<std::uint64_t>();
 }
 
-/// Nanoseconds since 1970, which exceed the range of FileField::integer.
-std::int64_t read_epoch(const FileField& field) {
+/// Nanoseconds that may count from 1970, which exceed the range of FileField::integer.
+std::int64_t read_clock_ns(const FileField& field) {
   const Json& value = field.value();
   constexpr auto kLast = std::uint64_t{std::numeric_limits<std::int64_t>::max()};
   const bool fits = !value.is_number_unsigned() || value.get<std::uint64_t>() <= kLast;
@@ -202,11 +202,14 @@ class ManifestReader {
     optional("version", [&](const FileField& text) { values.version = text.text(); });
     optional("commit", [&](const FileField& text) { values.commit = text.text(); });
     optional("seed", [&](const FileField& seed) { values.seed = read_seed(seed); });
-    optional("epoch_utc_ns", [&](const FileField& f) { values.epoch_utc_ns = read_epoch(f); });
+    optional("epoch_utc_ns", [&](const FileField& f) { values.epoch_utc_ns = read_clock_ns(f); });
     optional("renderer", [&](const FileField& f) { values.renderer = read_renderer_info(f); });
     optional("flight", [&](const FileField& flight) {
       values.flight = Manifest::Flight{optional_text(flight, "description"),
                                        optional_texts(flight, "warnings")};
+      if (const auto start = flight.find("log_start_ns")) {
+        values.flight->log_start_ns = read_clock_ns(*start);
+      }
     });
   }
 

@@ -112,8 +112,14 @@ class RecordedWhileFlown final : public WrappedTruth {
 /// Blocks of samples are read when a time in them is requested; their first times are known.
 class RecordedFlight final : public TruthSource {
  public:
-  RecordedFlight(ReadableFile file, fs::path name, std::string description)
-      : file_(std::move(file)), name_(std::move(name)), description_(std::move(description)) {}
+  RecordedFlight(ReadableFile file,
+                 fs::path name,
+                 std::string description,
+                 std::optional<std::int64_t> log_start_ns)
+      : file_(std::move(file)),
+        name_(std::move(name)),
+        description_(std::move(description)),
+        log_start_ns_(log_start_ns) {}
 
   /// Finds samples that were added to the file.
   Status read_on() {
@@ -143,6 +149,7 @@ class RecordedFlight final : public TruthSource {
 
   [[nodiscard]] std::optional<std::int64_t> duration_ns() const override { return end_ns_; }
   [[nodiscard]] std::string description() const override { return description_; }
+  [[nodiscard]] std::optional<std::int64_t> log_start_ns() const override { return log_start_ns_; }
 
  private:
   static constexpr std::uint64_t kBlock = 1024;
@@ -212,6 +219,7 @@ class RecordedFlight final : public TruthSource {
   ReadableFile file_;
   fs::path name_;
   std::string description_;
+  std::optional<std::int64_t> log_start_ns_;
   std::uint64_t count_ = 0;
   std::int64_t end_ns_ = 0;
   std::vector<std::int64_t> block_times_ns_;  ///< of the first sample of each block
@@ -243,11 +251,14 @@ std::unique_ptr<TruthSource> recorded_while_flown(std::unique_ptr<TruthSource> f
   return std::make_unique<RecordedWhileFlown>(std::move(flight), file);
 }
 
-Result<std::unique_ptr<TruthSource>> open_recorded_flight(const fs::path& file,
-                                                          const std::string& description) {
+Result<std::unique_ptr<TruthSource>> open_recorded_flight(
+    const fs::path& file,
+    const std::string& description,
+    std::optional<std::int64_t> log_start_ns) {
   Result<ReadableFile> opened = ReadableFile::open(file);
   if (!opened) return opened.error();
-  auto flight = std::make_unique<RecordedFlight>(std::move(*opened), file, description);
+  auto flight =
+      std::make_unique<RecordedFlight>(std::move(*opened), file, description, log_start_ns);
   if (Status status = flight->read_on(); !status) return status.error();
   return std::unique_ptr<TruthSource>(std::move(flight));
 }

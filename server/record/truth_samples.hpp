@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,10 +47,12 @@ class TruthSampleFile {
 /// recorded times are returned bit by bit, those between them interpolated. The flight ends with
 /// the last sample; a file that grows meanwhile is read on. Incomplete bytes at the end, as left by
 /// a killed program, are ignored. Memory does not depend on the length of the flight.
-/// @param description  as TruthSource::description of the flight
+/// @param description, log_start_ns  as TruthSource::description and log_start_ns of the flight
 /// Errors: kNotFound, kUnreadable, kIo. Of the source: kUnreadable naming the file and the sample
 /// with a value beyond its limit, no unit quaternion or a time that does not increase.
 [[nodiscard]] Result<std::unique_ptr<TruthSource>> open_recorded_flight(
-    const std::filesystem::path& file, const std::string& description);
+    const std::filesystem::path& file,
+    const std::string& description,
+    std::optional<std::int64_t> log_start_ns = std::nullopt);
 
 }  // namespace overfly::server

@@ -36,7 +36,8 @@ Status FlightRun::open_maker() {
   recorder_.set_length(duration_ns.value_or(0), duration_ns ? maker_->frames_total() : 0);
   if (Status status = recorder_.set_cameras(); !status) return status;
   const std::vector<std::string> doubts = maker_->flight_warnings();
-  recorder_.manifest().flight = RunManifest::Flight{maker_->flight_description(), doubts};
+  recorder_.manifest().flight =
+      RunManifest::Flight{maker_->flight_description(), doubts, maker_->log_start_ns()};
   for (const std::string& warning : maker_->image_warnings()) {
     if (Status status = recorder_.log(0, "warning", "images: " + warning); !status) return status;
   }

@@ -92,6 +92,23 @@ Result<Json> RunManager::scenario(const std::string& name) const {
   return loaded->resolved;
 }
 
+Result<WorldExtent> RunManager::world_extent(const std::string& scenario,
+                                             const std::function<bool()>& cancelled) {
+  const Result<fs::path> file = scenario_path(impl_->options.scenarios_folder, scenario);
+  if (!file) return file.error();
+  Result<Scenario> loaded = load_scenario(*file);
+  if (!loaded) return loaded.error();
+  loaded->sources = impl_->sources();
+  if (Status status = check_scenario(*loaded); !status) return status.error();
+  if (world_must_be_made(*loaded)) {
+    return Error{ErrorCode::kConflict, "the built-in world is made with its first flight"};
+  }
+  const auto go_on = [&](double) { return !cancelled || !cancelled(); };
+  const auto opened = impl_->worlds.get(*loaded, go_on);
+  if (!opened) return opened.error();
+  return extent_of((*opened)->world);
+}
+
 DataFolders RunManager::data_folders() const { return impl_->data_folders(); }
 
 RunList RunManager::runs() const { return impl_->list(); }

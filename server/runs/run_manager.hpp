@@ -16,6 +16,7 @@
 #include "server/scenario/document/scenario_list.hpp"
 #include "server/timeline/run_timeline.hpp"
 #include "server/timing/picture_rate.hpp"
+#include "server/worlds/world_extent.hpp"
 #include "terrain/world.hpp"
 
 namespace overfly::server {
@@ -34,6 +35,12 @@ class RunManager {
   /// The resolved document. Errors: kNotFound, kInvalidArgument.
   [[nodiscard]] Result<nlohmann::json> scenario(const std::string& name) const;
 
+  /// Where a scenario's world lies. Opens it; does not make the built-in one.
+  /// @param cancelled  polled while the world is opened; true cancels
+  /// Errors: kNotFound; kConflict if the built-in world was not made yet; as load_scenario,
+  /// check_scenario, open_scenario_world.
+  [[nodiscard]] Result<WorldExtent> world_extent(const std::string& scenario,
+                                                 const std::function<bool()>& cancelled = {});
   /// What scenarios may name now.
   [[nodiscard]] DataFolders data_folders() const;
 

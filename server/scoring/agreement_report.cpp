@@ -11,13 +11,14 @@ namespace {
 
 using Json = nlohmann::json;
 
-FigureSummary summary_of(std::vector<double> values) {
-  if (values.empty()) return {};
-  return {quantile(values, 0.5), quantile(values, 0.05), quantile(values, 0.95)};
+std::optional<FigureSummary> summary_of(const std::vector<double>& values) {
+  if (values.empty()) return std::nullopt;
+  return FigureSummary{quantile(values, 0.5), quantile(values, 0.05), quantile(values, 0.95)};
 }
 
-Json figure_json(const FigureSummary& summary) {
-  return {{"median", summary.median}, {"p5", summary.p5}, {"p95", summary.p95}};
+Json figure_json(const std::optional<FigureSummary>& summary) {
+  if (!summary) return nullptr;
+  return {{"median", summary->median}, {"p5", summary->p5}, {"p95", summary->p95}};
 }
 
 std::int64_t missing_images(const std::vector<AgreementRow>& rows) {
@@ -75,6 +76,7 @@ Result<AgreementReport> report_agreement(const Scenario& scenario,
   report.virtual_camera = scenario.cameras[other].name;
   report.frames = static_cast<std::int64_t>(rows.size());
   report.missing = missing_images(rows);
+  Eigen::Vector2d offset_sum_px = Eigen::Vector2d::Zero();
   std::vector<double> offsets, peaks, correlations, aligned, corners_real, corners_virtual;
   for (const AgreementRow& row : rows) {
     if (!row.agreement) {
@@ -82,43 +84,53 @@ Result<AgreementReport> report_agreement(const Scenario& scenario,
       continue;
     }
     const evaluation::ImageAgreement& agreement = *row.agreement;
-    report.mean_offset_px += agreement.offset_px;
-    offsets.push_back(agreement.offset_px.norm());
-    peaks.push_back(agreement.peak);
+    if (agreement.offset_px) {
+      offset_sum_px += *agreement.offset_px;
+      offsets.push_back(agreement.offset_px->norm());
+    } else {
+      ++report.not_comparable;
+    }
+    if (agreement.peak) peaks.push_back(*agreement.peak);
     if (agreement.correlation) correlations.push_back(*agreement.correlation);
     if (agreement.correlation_aligned) aligned.push_back(*agreement.correlation_aligned);
     corners_real.push_back(agreement.corners_real);
     corners_virtual.push_back(agreement.corners_virtual);
   }
-  if (offsets.empty()) {
-    return Error{ErrorCode::kNotFound, "none of the recorded images could be compared"};
+  if (report.lost == report.frames) {
+    return Error{ErrorCode::kNotFound, "none of the recorded images could be read"};
   }
-  report.mean_offset_px /= static_cast<double>(offsets.size());
-  report.offset_px = summary_of(std::move(offsets));
-  report.peak = summary_of(std::move(peaks));
-  report.correlation = summary_of(std::move(correlations));
-  report.correlation_aligned = summary_of(std::move(aligned));
-  report.corners_real = summary_of(std::move(corners_real));
-  report.corners_virtual = summary_of(std::move(corners_virtual));
+  if (!offsets.empty()) {
+    report.mean_offset_px = offset_sum_px / static_cast<double>(offsets.size());
+  }
+  report.offset_px = summary_of(offsets);
+  report.peak = summary_of(peaks);
+  report.correlation = summary_of(correlations);
+  report.correlation_aligned = summary_of(aligned);
+  report.corners_real = summary_of(corners_real);
+  report.corners_virtual = summary_of(corners_virtual);
   report.estimators =
       pairs_of(scenario, static_cast<std::size_t>(real - scenario.cameras.data()), other);
   return report;
 }
 
 Json json_from(const AgreementReport& report, const RunMetrics& metrics) {
-  Json value = {{"real_camera", report.real_camera},
-                {"virtual_camera", report.virtual_camera},
-                {"frames", report.frames},
-                {"lost", report.lost},
-                {"missing", report.missing},
-                {"mean_offset_px", {report.mean_offset_px.x(), report.mean_offset_px.y()}},
-                {"offset_px", figure_json(report.offset_px)},
-                {"peak", figure_json(report.peak)},
-                {"correlation", figure_json(report.correlation)},
-                {"correlation_aligned", figure_json(report.correlation_aligned)},
-                {"corners_real", figure_json(report.corners_real)},
-                {"corners_virtual", figure_json(report.corners_virtual)},
-                {"estimators", Json::array()}};
+  Json value = {
+      {"real_camera", report.real_camera},
+      {"virtual_camera", report.virtual_camera},
+      {"frames", report.frames},
+      {"lost", report.lost},
+      {"missing", report.missing},
+      {"not_comparable", report.not_comparable},
+      {"mean_offset_px",
+       report.mean_offset_px ? Json{report.mean_offset_px->x(), report.mean_offset_px->y()}
+                             : Json()},
+      {"offset_px", figure_json(report.offset_px)},
+      {"peak", figure_json(report.peak)},
+      {"correlation", figure_json(report.correlation)},
+      {"correlation_aligned", figure_json(report.correlation_aligned)},
+      {"corners_real", figure_json(report.corners_real)},
+      {"corners_virtual", figure_json(report.corners_virtual)},
+      {"estimators", Json::array()}};
   for (const EstimatorPair& pair : report.estimators) {
     Json entry = {{"real", pair.real}, {"virtual", pair.rendered}};
     for (const auto& [role, name] : {std::pair("real", pair.real), {"virtual", pair.rendered}}) {

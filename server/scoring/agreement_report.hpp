@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,17 +32,20 @@ struct AgreementReport {
   std::int64_t lost = 0;  ///< images that are missing or cannot be decoded
   /// Images that the stream lacks: in intervals of more than 1.5 times the median one.
   std::int64_t missing = 0;
-  Eigen::Vector2d mean_offset_px = Eigen::Vector2d::Zero();
-  FigureSummary offset_px;  ///< length of the offset
-  FigureSummary peak;
-  FigureSummary correlation;          ///< of the frames that have one
-  FigureSummary correlation_aligned;  ///< of the frames that have one
-  FigureSummary corners_real;
-  FigureSummary corners_virtual;
+  std::int64_t not_comparable =
+      0;  ///< images without an offset: they or the virtual ones are uniform
+  // Each is of the frames that have it; empty if there are none.
+  std::optional<Eigen::Vector2d> mean_offset_px;
+  std::optional<FigureSummary> offset_px;  ///< length of the offset
+  std::optional<FigureSummary> peak;
+  std::optional<FigureSummary> correlation;
+  std::optional<FigureSummary> correlation_aligned;
+  std::optional<FigureSummary> corners_real;
+  std::optional<FigureSummary> corners_virtual;
   std::vector<EstimatorPair> estimators;
 };
 
-/// Errors: kNotFound if no image could be compared; kInvalidArgument if the scenario compares none.
+/// Errors: kNotFound if all images are lost; kInvalidArgument if the scenario compares none.
 [[nodiscard]] Result<AgreementReport> report_agreement(const Scenario& scenario,
                                                        const std::vector<AgreementRow>& rows);
 

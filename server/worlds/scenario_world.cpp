@@ -1,5 +1,6 @@
 #include "server/worlds/scenario_world.hpp"
 
+#include <system_error>
 #include <utility>
 
 #include "server/scenario/document/scenario_light.hpp"
@@ -70,6 +71,14 @@ Result<OpenedWorld> open_scenario_world(const Scenario& scenario,
   if (!opened) return opened;
   if (Status status = dress_world(scenario, opened->world); !status) return status.error();
   return opened;
+}
+
+bool world_must_be_made(const Scenario& scenario) {
+  const auto* builtin = std::get_if<Scenario::BuiltinWorld>(&scenario.world);
+  std::error_code ignored;
+  return builtin != nullptr &&
+         !std::filesystem::exists(terrain::builtin_world_folder(builtin->seed) / "world.json",
+                                  ignored);
 }
 
 std::string world_key(const Scenario& scenario) {

@@ -32,6 +32,9 @@ struct OpenedWorld {
 [[nodiscard]] Result<OpenedWorld> open_scenario_world(
     const Scenario& scenario, const std::function<bool(double)>& progress = {});
 
+/// Whether the scenario's world is the built-in one and has to be made first.
+[[nodiscard]] bool world_must_be_made(const Scenario& scenario);
+
 /// Equal for scenarios with the same world.
 [[nodiscard]] std::string world_key(const Scenario& scenario);
 

@@ -173,10 +173,13 @@ Status ensure_world(const fs::path& folder,
   return synthesize_world(folder, options, progress);
 }
 
+fs::path builtin_world_folder(std::uint64_t seed) {
+  return cache_folder() / "worlds" /
+         ("airfield-v" + std::to_string(kLandscapeVersion) + "-seed" + std::to_string(seed));
+}
+
 Result<fs::path> builtin_world(std::uint64_t seed, const Progress& progress) {
-  const fs::path folder =
-      cache_folder() / "worlds" /
-      ("airfield-v" + std::to_string(kLandscapeVersion) + "-seed" + std::to_string(seed));
+  const fs::path folder = builtin_world_folder(seed);
   SynthesisOptions options;
   options.seed = seed;
   const Status there = ensure_world(folder, options, progress);

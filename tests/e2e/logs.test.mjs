@@ -79,7 +79,7 @@ describe('flight logs', { skip, timeout: 900_000 }, () => {
     await page.locator('[data-role=log-file]').setInputFiles({
       name: 'my flight.bin',
       mimeType: 'application/octet-stream',
-      buffer: dataflashFlight(60),
+      buffer: dataflashFlight(60, 40),
     });
     await page.locator('[data-log="uploads/my_flight.bin"][aria-current=true]').waitFor();
     await page.locator('[data-stream=SIM]').waitFor();
@@ -88,10 +88,11 @@ describe('flight logs', { skip, timeout: 900_000 }, () => {
     assert.ok(await drawn('.log-track'));
     assert.ok(await drawn('[data-log-plot=height] canvas'));
     const units = await page.locator('[data-log-plot] .unit').allInnerTexts();
-    assert.deepEqual(units, ['m above mean sea level', 'm/s', '°', '°', '°']);
+    assert.deepEqual(units, ['m above mean sea level', 'm/s', 'deg', 'deg', 'deg', 'm', 'deg']);
   });
 
   step('follows the mouse on the map and in the plots', async () => {
+    await page.locator('#log-rebase').uncheck();
     const box = await page.locator('[data-log-plot=speed] .u-over').boundingBox();
     await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
     await dashboard.until(() =>
@@ -99,6 +100,51 @@ describe('flight logs', { skip, timeout: 900_000 }, () => {
     );
     assert.match(await page.locator('[data-role=log-place]').innerText(), /E -?\d+ m, N -?\d+ m · 4\d\./);
     assert.match(await page.locator('[data-log-plot=speed] .readout').innerText(), /^\d+\.\d$/);
+  });
+
+  step('shows what smoothing leaves, and what it leaves out', async () => {
+    await page.locator('[data-tab=residuals]').click();
+    await page.locator('[data-role=residuals]').filter({ hasText: '1499 used, 1 left out' }).waitFor();
+    assert.match(
+      await page.locator('[data-role=jumps]').innerText(),
+      /^1 position left out at 40\.000 s: up to 11\d\.\d m off$/,
+    );
+    assert.ok(await drawn('[data-log-plot=residual_positions] canvas'));
+    assert.ok(await drawn('[data-log-plot=residual_attitudes] canvas'));
+    const box = await page.locator('[data-log-plot=residual_positions] .u-over').boundingBox();
+    await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+    await page
+      .locator('[data-log-plot=residual_positions] .readout')
+      .filter({ hasText: /^N −?0\.\d{3}$/ })
+      .waitFor();
+    assert.deepEqual(await dashboard.cutValues(), []);
+    await dashboard.screenshot('logs_residuals_1280x800');
+    await page.setViewportSize({ width: 1920, height: 1080 });
+    await dashboard.screenshot('logs_residuals_1920x1080');
+    await page.setViewportSize({ width: 1280, height: 800 });
+    await page.locator('[data-tab=flight]').click();
+  });
+
+  step('cancels a smoothing, and begins it again', async () => {
+    // The answer comes when the test lets it.
+    let release;
+    const held = new Promise((resolve) => (release = resolve));
+    await page.route('**/residuals?*', async (route) => {
+      await held;
+      await route.continue().catch(() => {});
+    });
+    await page.locator('[data-tab=residuals]').click();
+    await page.locator('#log-offset').check();
+    await page.locator('[data-role=smoothing-work]').waitFor({ state: 'visible' });
+    await dashboard.screenshot('logs_smoothing_1280x800');
+    await page.locator('[data-role=smoothing-work] button').click();
+    const failed = page.locator('[data-role=smoothing-failed]');
+    await failed.filter({ hasText: 'Cancelled' }).waitFor();
+    release();
+    await page.unroute('**/residuals?*');
+    await page.locator('#log-offset').uncheck();
+    await page.locator('[data-role=residuals]').filter({ hasText: '1499 used' }).waitFor();
+    await page.locator('[data-tab=flight]').click();
   });
 
   step('selects a slice by dragging in a plot', async () => {
@@ -121,6 +167,7 @@ describe('flight logs', { skip, timeout: 900_000 }, () => {
   });
 
   step('shows a fault of the form at its place', async () => {
+    await page.locator('#log-rebase').check();
     await page.locator('#log-agl').fill('-5');
     await page.getByRole('button', { name: 'Fly', exact: true }).click();
     const error = page.locator('.log-form .form-errors');
@@ -143,8 +190,67 @@ describe('flight logs', { skip, timeout: 900_000 }, () => {
     await dashboard.screenshot('logs_flown_1280x800');
   });
 
-  step('deletes the upload', async () => {
+  step('shows the worlds of the server on the map, and the flight moved to the chosen one', async () => {
+    // The first flight has made the built-in world.
     await page.locator('[data-role=open-logs]').click();
+    const note = page.locator('[data-role=log-map-note]');
+    await note.filter({ hasText: /^Moved to / }).waitFor();
+    const place = async () => {
+      const box = await page.locator('.log-track').boundingBox();
+      await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+      return page.locator('[data-role=log-place]').innerText();
+    };
+    // The built-in airfield is in Indiana.
+    assert.match(await place(), /· 39\.\d+°, -86\.\d+°$/);
+    await dashboard.screenshot('logs_moved_1280x800');
+    await page.locator('#log-rebase').uncheck();
+    await note.filter({ hasText: /^At its own place: all outside of / }).waitFor();
+    assert.match(await place(), /· 4[67]\.\d+°, 8\.\d+°$/);
+    await page.locator('#log-rebase').check();
+    await note.filter({ hasText: /^Moved to / }).waitFor();
+    await page.setViewportSize({ width: 1920, height: 1080 });
+    await dashboard.screenshot('logs_moved_1920x1080');
+    await page.setViewportSize({ width: 1280, height: 800 });
+    await page.locator('#log-rebase').uncheck();
+  });
+
+  step('uploads a mapping with its CSV files as one log', async () => {
+    const file = (name, text) => ({ name, mimeType: 'text/plain', buffer: Buffer.from(text) });
+    const rows = Array.from({ length: 50 }, (_, i) => `${200 * i},${47 + i * 1e-4},8,500`);
+    const mapping = {
+      csv_mapping_version: 1,
+      pieces: [
+        {
+          name: 'GPS',
+          file: 'gps.csv',
+          origin: 'gps',
+          time: { column: 'T', unit: 'ms' },
+          columns: {
+            lat: { column: 'Lat', unit: 'deg' },
+            lon: { column: 'Lng', unit: 'deg' },
+            alt_msl: { column: 'Alt', unit: 'm' },
+          },
+        },
+      ],
+    };
+    const picker = page.locator('[data-role=log-file]');
+    const text = JSON.stringify(mapping);
+    await picker.setInputFiles([file('csv flight.json', text)]);
+    const error = page.locator('.log-list .form-errors');
+    await error.filter({ hasText: 'choose the CSV files' }).waitFor();
+    await picker.setInputFiles([
+      file('gps.csv', ['T,Lat,Lng,Alt', ...rows, ''].join('\n')),
+      file('csv flight.json', text),
+    ]);
+    const name = 'uploads/csv_flight/csv_flight.json';
+    await page.locator(`[data-log="${name}"][aria-current=true]`).waitFor();
+    await page.locator('[data-stream=GPS]').waitFor();
+    await dashboard.screenshot('logs_csv_1280x800');
+    await page.locator(`[data-log="${name}"] .icon-button`).click();
+    await page.locator(`[data-log="${name}"]`).waitFor({ state: 'detached' });
+  });
+
+  step('deletes the upload', async () => {
     await page.locator('[data-log="uploads/my_flight.bin"] .icon-button').click();
     await page.locator('[data-log="uploads/my_flight.bin"]').waitFor({ state: 'detached' });
     assert.equal((await getJson(stage.server, '/logs')).uploads.used_bytes, 0);

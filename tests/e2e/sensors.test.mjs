@@ -99,7 +99,9 @@ describe('the sensors of a flight', { skip, timeout: 600_000 }, () => {
     assert.deepEqual(await dashboard.cutValues(), []);
   });
 
-  step('are missing in an outage', async () => {
+  step('are missing in an outage, which is marked on the time line', async () => {
+    await dashboard.until(() => document.querySelector('.track').dataset.faults === 'gps_outage');
+    await dashboard.page.locator('[data-fault-kind=gps_outage]').filter({ hasText: 'GPS outage' }).waitFor();
     await dashboard.seekAt('.track .bar', 7.5 / kFlight_s);
     await dashboard.until(
       () => document.querySelector('[data-axis=gps_velocity] .readout')?.textContent === 'E –',

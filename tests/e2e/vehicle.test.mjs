@@ -27,10 +27,12 @@ const skip = serverMissing() || browserMissing();
 describe('a live vehicle', { skip, timeout: 900_000 }, () => {
   let stage;
   let vehicle;
+  let port;
   let run;
 
   before(async () => {
-    const link = `127.0.0.1:${await freePort()}`;
+    port = await freePort();
+    const link = `127.0.0.1:${port}`;
     vehicle = spawn(
       programFile(),
       ['vehicle', '--link', `tcp-listen:${link}`, '--airspeed-m-s', '20', '--speed-up', '2'],
@@ -57,8 +59,10 @@ describe('a live vehicle', { skip, timeout: 900_000 }, () => {
       const other = { ...live, flight: { mavlink: { ...mavlink, link: 'tcp:127.0.0.1:9' } } };
       writeFileSync(path.join(scenarios, 'live.json'), JSON.stringify(live));
       writeFileSync(path.join(scenarios, 'other.json'), JSON.stringify(other));
+      const over = { ...live, title: 'A course', flight: course.flight };
+      writeFileSync(path.join(scenarios, 'over.json'), JSON.stringify(over));
       const data = [sourceFile('scenarios/missions')];
-      return { runs, scenarios, data, links: [`tcp:${link}`] };
+      return { runs, scenarios, data, links: [`tcp:${link}`], allowCommands: true };
     });
     dashboard = stage.dashboard;
   });
@@ -74,7 +78,7 @@ describe('a live vehicle', { skip, timeout: 900_000 }, () => {
     await dashboard.chooseScenario('other');
     assert.equal(await dashboard.field('flight.mavlink.link').inputValue(), 'tcp:127.0.0.1:9');
     await dashboard.page.getByRole('button', { name: 'Launch flight' }).click();
-    const error = dashboard.page.locator('[data-error-of="flight.mavlink.link"]');
+    const error = dashboard.page.locator('.fields [data-error-of="flight.mavlink.link"]');
     await error.waitFor({ state: 'visible' });
     assert.match(await error.innerText(), /--allow-link/);
   });
@@ -118,5 +122,46 @@ describe('a live vehicle', { skip, timeout: 900_000 }, () => {
     await tip.waitFor({ state: 'visible' });
     assert.match(await tip.innerText(), /AUTO/);
     await dashboard.screenshot('vehicle_replayed_1280x800');
+  });
+
+  step('is connected to by its address, over the world of a scenario that flies a course', async () => {
+    const { page } = dashboard;
+    await dashboard.chooseScenario('over');
+    await page.locator('[data-role=open-connect]').click();
+    await page.locator('#connect-kind').selectOption('tcp');
+    await page.locator('#connect-port').fill('70000');
+    const button = page.locator('.connect .primary');
+    await button.click();
+    const error = page.locator('.connect [data-error-of="flight.mavlink.link"]');
+    await error.filter({ hasText: 'from 1 to 65535' }).waitFor();
+    await page.locator('#connect-port').fill('9');
+    await button.click();
+    await error.filter({ hasText: '--allow-link' }).waitFor();
+    await dashboard.screenshot('connect_1280x800');
+    await page.setViewportSize({ width: 1920, height: 1080 });
+    await dashboard.screenshot('connect_1920x1080');
+    await page.setViewportSize({ width: 1280, height: 800 });
+    await page.locator('#connect-port').fill(String(port));
+    await button.click();
+    await dashboard.until(() => document.querySelector('[data-panel=connect]').hidden);
+    await dashboard.until((before) => {
+      const chosen = document.querySelector('.run[aria-current=true]')?.dataset.run;
+      return chosen !== undefined && chosen !== before;
+    }, run);
+    const live = await dashboard.runId();
+    await dashboard.until(
+      () =>
+        Number(document.querySelector('[data-panel=plots]').dataset.frame ?? -1) > 5 &&
+        !document.querySelector('[data-panel=vehicle]').hidden &&
+        document.querySelector('[data-role=vehicle-link]').textContent === 'connected',
+      undefined,
+      kFlightPatience_ms,
+    );
+    assert.match(await line('mode'), /armed$/);
+    await dashboard.screenshot('connected_1280x800');
+    await page.evaluate(async (id) => {
+      await fetch(`api/v1/runs/${id}/cancel`, { method: 'POST' });
+    }, live);
+    await dashboard.untilStatus(live, 'cancelled');
   });
 });

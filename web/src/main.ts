@@ -15,12 +15,15 @@ import { Alignment } from './store/alignment';
 import { Cameras } from './store/cameras';
 import { Catalogue } from './store/catalogue';
 import { LogBrowser } from './store/logs/log_browser';
+import { LogSmoothing } from './store/logs/log_smoothing';
+import { LogWorlds } from './store/logs/log_worlds';
 import { Notices } from './store/notices';
 import { Player } from './store/player';
 import { SceneControl } from './store/scene_control';
-import { Sensors } from './store/sensors';
+import { Sensors } from './store/sensors/sensors';
 import { Session } from './store/session';
 import { Store } from './store/state';
+import { VehicleConnect } from './store/vehicle/vehicle_connect';
 import { followAddress } from './views/address_bar';
 import { showScreen } from './views/screen';
 
@@ -59,6 +62,9 @@ const alignment = new Alignment(store, rest, session, notices);
 const cameras = new Cameras(store, rest);
 const sensors = new Sensors(store, rest, { now_ms: () => performance.now(), later });
 const logs = new LogBrowser(store, rest, session, uploadByBrowser, newKey);
+const connect = new VehicleConnect(store, rest, session, newKey);
+const worlds = new LogWorlds(store, rest);
+const smoothing = new LogSmoothing(store, rest, later, newKey);
 
 const context = {
   store,
@@ -70,6 +76,9 @@ const context = {
   cameras,
   sensors,
   logs,
+  smoothing,
+  worlds,
+  connect,
   notices,
   client,
 };

@@ -21,13 +21,15 @@ std::optional<RosMessageSink::Topic> ImageIndex::add(const std::string& name,
   if (encoding == RosEncoding::kOther || (!image && known != RosType::kCompressedImage)) {
     return std::nullopt;
   }
+  const std::string shown =
+      printable_text({reinterpret_cast<const std::uint8_t*>(name.data()), name.size()});
   const auto kind = image ? PictureMessage::kRosImage : PictureMessage::kRosCompressedImage;
   for (std::size_t i = 0; i < topics_.size(); ++i) {
     const ImageTopic& other = topics_[i];
-    if (other.name == name && other.kind == kind && other.encoding == encoding) return i;
+    if (other.name == shown && other.kind == kind && other.encoding == encoding) return i;
   }
   if (topics_.size() >= kMaxImageTopics) return std::nullopt;
-  topics_.push_back({name, kind, encoding, {}, 0, 0});
+  topics_.push_back({shown, kind, encoding, {}, 0, 0});
   return topics_.size() - 1;
 }
 

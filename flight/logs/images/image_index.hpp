@@ -23,7 +23,7 @@ struct IndexedImage {
 
 /// The images of a topic.
 struct ImageTopic {
-  std::string name;
+  std::string name;  ///< printable
   PictureMessage kind = PictureMessage::kRosImage;
   RosEncoding encoding = RosEncoding::kRos1;
   std::vector<IndexedImage> images;

@@ -67,13 +67,25 @@ Status index_images(LogFormat format, ForwardReader& file, LogSink& sink, ImageI
   }
 }
 
+/// Names of topics for an error: a file may have thousands, of any length.
+std::string names_of(const std::vector<ImageTopic>& topics) {
+  constexpr std::size_t kShownTopics = 20;
+  constexpr std::size_t kShownBytes = 100;
+  std::string names;
+  for (std::size_t i = 0; i < std::min(kShownTopics, topics.size()); ++i) {
+    names += (i == 0 ? "" : ", ") + topics[i].name.substr(0, kShownBytes);
+  }
+  if (topics.size() > kShownTopics) {
+    names += " and " + std::to_string(topics.size() - kShownTopics) + " more";
+  }
+  return names;
+}
+
 /// The topic of this name, or the only one with images.
 Result<std::size_t> chosen_topic(const std::vector<ImageTopic>& topics, const std::string& name) {
-  std::string known;
   std::optional<std::size_t> found;
   std::size_t with_images = 0;
   for (std::size_t i = 0; i < topics.size(); ++i) {
-    known += (known.empty() ? "" : ", ") + topics[i].name;
     const bool wanted = name.empty() || topics[i].name == name;
     if (!wanted || topics[i].images.empty()) continue;
     ++with_images;
@@ -81,13 +93,13 @@ Result<std::size_t> chosen_topic(const std::vector<ImageTopic>& topics, const st
   }
   if (with_images > 1 && name.empty()) {
     return Error{ErrorCode::kInvalidArgument,
-                 "several topics have images, one must be named: " + known};
+                 "several topics have images, one must be named: " + names_of(topics)};
   }
   if (found) return *found;
-  if (known.empty()) return Error{ErrorCode::kUnreadable, "contains no images"};
-  return Error{
-      ErrorCode::kInvalidArgument,
-      "topic = " + name + ": has no images that can be read (topics of images: " + known + ")"};
+  if (topics.empty()) return Error{ErrorCode::kUnreadable, "contains no images"};
+  return Error{ErrorCode::kInvalidArgument,
+               "topic = " + name +
+                   ": has no images that can be read (topics of images: " + names_of(topics) + ")"};
 }
 
 }  // namespace

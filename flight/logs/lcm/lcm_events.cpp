@@ -3,6 +3,7 @@
 #include "flight/logs/lcm/lcm_events.hpp"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <string>
 #include <utility>
@@ -49,18 +50,20 @@ std::optional<LcmEvent> event_at(std::span<const std::uint8_t> bytes, std::uint6
 /// Finds the events and counts what is between them.
 class LcmFraming {
  public:
+  /// @param bytes  that follow the position of `file`
   /// @return the bytes to move on: over an event, or to where one may begin
-  std::uint64_t step(std::span<const std::uint8_t> bytes,
-                     std::uint64_t file_offset,
-                     std::uint64_t left,
-                     const std::function<void(const LcmEvent&)>& take) {
+  /// Errors: kIo.
+  Result<std::uint64_t> step(std::span<const std::uint8_t> bytes,
+                             const ForwardReader& file,
+                             const std::function<void(const LcmEvent&)>& take) {
+    const std::uint64_t left = file.size_bytes() - file.position();
     std::optional<LcmEvent> event = event_at(bytes, left);
-    // Believed if another one or the end of the file follows, as far as that can be seen.
-    const bool followed =
-        event &&
-        (event->bytes == left || event->bytes + 4 > bytes.size() ||
-         big_endian_at<std::uint32_t>(bytes, static_cast<std::size_t>(event->bytes)) == kSyncWord);
-    if (!followed) {
+    // Believed if another one or the end of the file follows: a flipped bit in the length of the
+    // data would else skip what follows.
+    const Result<bool> followed =
+        !event || event->bytes == left ? event.has_value() : begins_at(event->bytes, bytes, file);
+    if (!followed) return followed.error();
+    if (!*followed) {
       constexpr std::uint8_t kFirstByte = kSyncWord >> 24U;
       const auto next = std::find(bytes.begin() + 1, bytes.end(), kFirstByte);
       const auto skipped = static_cast<std::uint64_t>(next - bytes.begin());
@@ -69,7 +72,7 @@ class LcmFraming {
       return skipped;
     }
     in_step_ = true;
-    event->data_at += file_offset;
+    event->data_at += file.file_offset();
     take(*event);
     return event->bytes;
   }
@@ -81,6 +84,20 @@ class LcmFraming {
   }
 
  private:
+  /// Whether an event begins `distance` behind the position.
+  static Result<bool> begins_at(std::uint64_t distance,
+                                std::span<const std::uint8_t> bytes,
+                                const ForwardReader& file) {
+    std::array<std::uint8_t, 4> word{};
+    if (distance + word.size() <= bytes.size()) {
+      const auto at = static_cast<std::size_t>(distance);
+      return big_endian_at<std::uint32_t>(bytes, at) == kSyncWord;
+    }
+    const Result<std::size_t> read = file.peek(distance, word);
+    if (!read) return read.error();
+    return *read == word.size() && big_endian_at<std::uint32_t>(word, 0) == kSyncWord;
+  }
+
   bool in_step_ = true;
   std::uint64_t skipped_bytes_ = 0;
   std::uint64_t damaged_places_ = 0;
@@ -100,9 +117,9 @@ Status read_lcm_events(ForwardReader& file,
     const Result<std::span<const std::uint8_t>> bytes = file.ahead(kEventWindowBytes);
     if (!bytes) return bytes.error();
     if (bytes->empty()) return false;
-    const std::uint64_t step =
-        framing.step(*bytes, file.file_offset(), file.size_bytes() - file.position(), take);
-    const Result<std::uint64_t> passed = pass_over(file, step, {});
+    const Result<std::uint64_t> step = framing.step(*bytes, file, take);
+    if (!step) return step.error();
+    const Result<std::uint64_t> passed = pass_over(file, *step, {});
     if (!passed) return passed.error();
     return true;
   });

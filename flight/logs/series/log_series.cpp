@@ -89,13 +89,14 @@ class SeriesSink final : public LogSink {
   void warning(const std::string& /*text*/) override {}
   [[nodiscard]] bool progress(std::uint64_t /*bytes*/) override { return !is_cancelled(cancel_); }
 
-  /// Null if there are no positions.
-  [[nodiscard]] const RunOfClock* main_run() const {
-    const RunOfClock* most = nullptr;
-    for (const auto& [boot, run] : runs_) {
-      if (most == nullptr || run.positions.count() > most->positions.count()) most = &run;
+  /// With the number of its boot. Null if there are no positions.
+  [[nodiscard]] const std::pair<const std::uint32_t, RunOfClock>* main_run() const {
+    const std::pair<const std::uint32_t, RunOfClock>* most = nullptr;
+    for (const auto& run : runs_) {
+      const std::uint64_t count = run.second.positions.count();
+      if (count > (most != nullptr ? most->second.positions.count() : 0)) most = &run;
     }
-    return most != nullptr && most->positions.count() > 0 ? most : nullptr;
+    return most;
   }
 
  private:
@@ -109,15 +110,14 @@ class SeriesSink final : public LogSink {
   void take_position(StreamId id, const LogTime& time, const Eigen::Vector3d& value) override {
     if (id != truth_.position) return;
     const StreamInfo& source = log_.streams[id];
-    // Without its origin a position cannot be shown with those that have one.
     const bool local = source.description.position == PositionKind::kLocal;
-    if (local && source.georeferenced && !origin_) return;
+    const std::optional<LocalOrigin>& origin = origin_ ? origin_ : source.first_origin;
     RunOfClock* const run = run_of(time);
     if (run == nullptr) return;
     if (!local) {
       run->add(time.t_ns, value, true);
-    } else if (origin_) {
-      run->add(time.t_ns, geodetic_from_local(*origin_, value), true);
+    } else if (origin) {
+      run->add(time.t_ns, geodetic_from_local(*origin, value), true);
     } else {
       run->add(time.t_ns, {value.x(), value.y(), -value.z()}, false);
     }
@@ -155,13 +155,16 @@ Result<LogSeries> read_log_series(const OpenedLog& log,
   const StreamInfo& source = log.streams[truth->position];
   SeriesSink sink(log, *truth, request.max_intervals, cancel);
   if (Status status = read_log_into(log, sink); !status) return status.error();
-  const RunOfClock* const run = sink.main_run();
-  if (run == nullptr) {
+  const auto* const main_run = sink.main_run();
+  if (main_run == nullptr) {
     return Error{ErrorCode::kUnreadable,
                  log.file.string() + ": " + source.description.name +
                      ": no valid positions in the time asked for"};
   }
+  const RunOfClock* const run = &main_run->second;
   LogSeries series;
+  series.vehicle = source.description.vehicle;
+  series.run = main_run->first;
   series.position_source = source.description.name;
   if (truth->attitude) series.attitude_source = log.streams[*truth->attitude].description.name;
   series.georeferenced = source.georeferenced;

@@ -27,6 +27,8 @@ struct LogStep {
 struct LogSeries {
   std::string position_source;
   std::string attitude_source;  ///< empty if the vehicle has no attitudes
+  std::string vehicle;          ///< of the positions, as in StreamDescription
+  std::uint32_t run = 0;        ///< of that vehicle's clock: LogTime::boot
   bool georeferenced = false;
   HeightDatum height = HeightDatum::kMeanSeaLevel;  ///< of georeferenced positions
   /// Latitude, longitude [deg], height above the datum [m]; or north, east, up [m] from an unknown

@@ -47,7 +47,7 @@ class ChosenStreams final : public LogSink {
                      const Eigen::Quaterniond& R_ned_body) override {
     LogTime moved = time;
     moved.t_ns += request_.attitude_offset_ns;
-    if (id != truth_.attitude || !is_asked_for(moved.t_ns, kMaxAttitudeStepNs)) return;
+    if (id != truth_.attitude || !is_asked_for(moved.t_ns, request_.attitude_margin_ns)) return;
     samples_.attitude(moved, R_ned_body);
   }
   void take_invalid(StreamId /*id*/) override {}

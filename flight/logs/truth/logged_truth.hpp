@@ -27,6 +27,8 @@ struct TrajectoryRequest {
   std::optional<std::int64_t> to_ns;
   /// Added to the times of attitudes [ns].
   std::int64_t attitude_offset_ns = 0;
+  /// Attitudes are read from so much before to so much after the time asked for [ns].
+  std::int64_t attitude_margin_ns = kMaxAttitudeStepNs;
 };
 
 /// What the samples of a log's truth are.
@@ -53,8 +55,7 @@ class TruthSampleSink {
   virtual void attitude(const LogTime& time, const Eigen::Quaterniond& R_ned_body) = 0;
 };
 
-/// Reads the positions in the time asked for, and the attitudes from kMaxAttitudeStepNs before to
-/// as much after it.
+/// Reads the positions in the time asked for, and the attitudes in it and its margins.
 /// Errors: as open_log and choose_truth; kUnreadable if there are no positions in the time asked
 /// for, or no attitudes of the same vehicle.
 [[nodiscard]] Result<LoggedTruth> read_truth_samples(const OpenedLog& log,

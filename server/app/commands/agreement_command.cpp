@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "server/app/commands/commands.hpp"
@@ -45,10 +46,13 @@ Result<ReadAgreement> read_run(const std::filesystem::path& folder) {
   return ReadAgreement{std::move(*report), std::move(*metrics)};
 }
 
-std::string line_of(const char* what, const FigureSummary& figure, const char* format) {
+std::string line_of(const char* what,
+                    const std::optional<FigureSummary>& figure,
+                    const char* format) {
   std::string text = what;
   text.resize(28, ' ');
-  for (const double value : {figure.median, figure.p5, figure.p95}) {
+  if (!figure) return text + "          -          -          -\n";
+  for (const double value : {figure->median, figure->p5, figure->p95}) {
     char number[40];
     std::snprintf(number, sizeof number, format, value);
     text += number;
@@ -58,18 +62,19 @@ std::string line_of(const char* what, const FigureSummary& figure, const char* f
 
 std::string table_of(const ReadAgreement& read) {
   const AgreementReport& report = read.report;
-  char head[200];
-  std::snprintf(head,
-                sizeof head,
-                "%lld frames, %lld images lost, %lld missing in the stream\n"
-                "mean offset %.3f px right, %.3f px down\n",
-                static_cast<long long>(report.frames),
-                static_cast<long long>(report.lost),
-                static_cast<long long>(report.missing),
-                report.mean_offset_px.x(),
-                report.mean_offset_px.y());
-  std::string text = "real images of " + report.real_camera + ", virtual ones of " +
-                     report.virtual_camera + "\n" + head;
+  char offset[100] = "-\n";
+  if (report.mean_offset_px) {
+    std::snprintf(offset,
+                  sizeof offset,
+                  "%.3f px right, %.3f px down\n",
+                  report.mean_offset_px->x(),
+                  report.mean_offset_px->y());
+  }
+  std::string text =
+      "real images of " + report.real_camera + ", virtual ones of " + report.virtual_camera + "\n" +
+      std::to_string(report.frames) + " frames, " + std::to_string(report.lost) + " images lost, " +
+      std::to_string(report.missing) + " missing in the stream, " +
+      std::to_string(report.not_comparable) + " not comparable (uniform)\nmean offset " + offset;
   text += "                                median        5 %       95 %\n";
   text += line_of("offset [px]", report.offset_px, "%11.3f");
   text += line_of("correlation", report.correlation, "%11.4f");

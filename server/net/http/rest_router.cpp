@@ -94,10 +94,11 @@ void RestRouter::add_upload(const std::string& pattern,
 }
 
 bool RestRouter::is_upload(const HttpRequest& request) const {
-  const std::string path = request.target.substr(0, request.target.find('?'));
-  return std::any_of(routes_.begin(), routes_.end(), [&](const Route& route) {
-    return route.receiver && route.method == request.method && route.pattern == path;
-  });
+  const auto url = parse_target(request.target);
+  return url && std::any_of(routes_.begin(), routes_.end(), [&](const Route& route) {
+           return route.receiver && route.method == request.method &&
+                  match(route.segments, url->segments);
+         });
 }
 
 void RestRouter::receive(const HttpRequest& request,
@@ -163,7 +164,7 @@ void RestRouter::find_and_handle(const HttpRequest& request, const Respond& resp
   for (const Route& route : routes_) {
     auto captures = match(route.segments, url->segments);
     if (!captures) continue;
-    if (route.method == method) {
+    if (route.method == method && route.handler) {
       if (const Status status = check_query(url->query, route.query); !status) {
         respond(error_response(status.error()));
         return;

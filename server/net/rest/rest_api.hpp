@@ -1,8 +1,11 @@
 // The REST resources under /api/v1 (docs/PROTOCOL.md, server/net/rest/openapi.json).
 #pragma once
 
+#include <memory>
+
 #include "server/logs/log_library.hpp"
 #include "server/net/http/rest_router.hpp"
+#include "server/net/rest/progress_board.hpp"
 #include "server/net/rest/rest_reading.hpp"
 #include "server/runs/run_manager.hpp"
 #include "server/views/view_service.hpp"
@@ -11,8 +14,10 @@ namespace overfly::net {
 
 /// health, openapi.json
 void add_service_routes(RestRouter* router);
-/// scenarios, scenarios/{name}, scenario-schema
-void add_scenario_routes(RestRouter* router, server::RunManager* runs);
+/// scenarios, scenarios/{name}, scenarios/{name}/world, scenario-schema
+void add_scenario_routes(RestRouter* router,
+                         server::RunManager* runs,
+                         const ReadingRoutes& readers);
 /// runs, runs/{id}, runs/{id}/cancel
 void add_run_routes(RestRouter* router, server::RunManager* runs);
 /// runs/{id}/metrics, estimators, manifest, trajectories/{name}
@@ -21,12 +26,15 @@ void add_result_routes(RestRouter* router, server::RunManager* runs);
 void add_frame_routes(RestRouter* router, server::RunManager* runs, server::ViewService* views);
 /// runs/{id}/sensors
 void add_sensor_routes(RestRouter* router, server::RunManager* runs, const ReadingRoutes& readers);
+/// progress/{id}
+void add_progress_routes(RestRouter* router, std::shared_ptr<ProgressBoard> progress);
 /// What the routes of flight logs need.
 struct LogRoutes {
   server::LogLibrary* logs = nullptr;
   ReadingRoutes readers;
+  std::shared_ptr<ProgressBoard> progress;
 };
-/// logs, logs/{name}, logs/{name}/series
+/// logs, logs/{name}, logs/{name}/series, logs/{name}/residuals
 void add_log_routes(RestRouter* router, const LogRoutes& routes);
 
 }  // namespace overfly::net

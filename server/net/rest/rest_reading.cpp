@@ -32,6 +32,9 @@ HttpResponse answer_of(const Result<json>& result) {
   if (result.error().code == ErrorCode::kUnreadable) {
     return error_response(422, "unreadable", result.error().message);
   }
+  if (result.error().code == ErrorCode::kUnsupported) {
+    return error_response(422, "unsupported", result.error().message);
+  }
   return error_response(result.error());
 }
 

@@ -29,9 +29,11 @@ AgreementRow read_row(const FileField& value) {
     return row;
   }
   ImageAgreement agreement;
-  const std::vector<double> offset = value.at("offset_px").numbers(2);
-  agreement.offset_px = {offset[0], offset[1]};
-  agreement.peak = value.at("peak").number();
+  if (const FileField field = value.at("offset_px"); !field.is_null()) {
+    const std::vector<double> offset = field.numbers(2);
+    agreement.offset_px = Eigen::Vector2d(offset[0], offset[1]);
+  }
+  agreement.peak = number_if_any(value, "peak");
   agreement.correlation = number_if_any(value, "correlation");
   agreement.correlation_aligned = number_if_any(value, "correlation_aligned");
   agreement.corners_real = static_cast<int>(value.at("corners_real").integer(0, kMostCorners));
@@ -54,8 +56,9 @@ Json json_from(const AgreementRow& row) {
     return value;
   }
   const ImageAgreement& agreement = *row.agreement;
-  value["offset_px"] = {agreement.offset_px.x(), agreement.offset_px.y()};
-  value["peak"] = agreement.peak;
+  value["offset_px"] =
+      agreement.offset_px ? Json{agreement.offset_px->x(), agreement.offset_px->y()} : Json();
+  value["peak"] = number_or_null(agreement.peak);
   value["correlation"] = number_or_null(agreement.correlation);
   value["correlation_aligned"] = number_or_null(agreement.correlation_aligned);
   value["corners_real"] = agreement.corners_real;

@@ -48,17 +48,27 @@ TEST(BoundedSeries, KeepsTheExtremesOfEveryIntervalAndChannel) {
     spikes += *std::max_element(point.values.begin(), point.values.end()) > 40.0;
   }
   EXPECT_EQ(spikes, 12U);
-  // In each thirtieth of the time, the smallest and largest value are those of all samples.
-  const std::int64_t last_ns = all.back().t_ns;
-  for (std::size_t channel = 0; channel < 3; ++channel) {
-    const auto range = [&](const std::vector<SeriesPoint>& points) {
-      const auto by_value = [&](const SeriesPoint& a, const SeriesPoint& b) {
-        return a.values[channel] < b.values[channel];
-      };
-      const auto [low, high] = std::minmax_element(points.begin(), points.end(), by_value);
-      return std::pair(low->values[channel], high->values[channel]);
-    };
-    EXPECT_EQ(range(kept), range(all)) << channel << last_ns;
+  // The intervals are 1 ms doubled until at most kIntervals have samples: 2^15 ms, 62 of them. In
+  // each of them the smallest and largest value are those of all samples.
+  const std::int64_t width_ns = 1'000'000LL << 15U;
+  const auto range = [&](const std::vector<SeriesPoint>& points, std::int64_t number, auto value) {
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    for (const SeriesPoint& point : points) {
+      if (point.t_ns / width_ns != number) continue;
+      low = std::min(low, value(point));
+      high = std::max(high, value(point));
+    }
+    return std::pair(low, high);
+  };
+  const std::int64_t numbers = all.back().t_ns / width_ns + 1;
+  EXPECT_GE(numbers, 30);
+  EXPECT_LE(numbers, static_cast<std::int64_t>(kIntervals));
+  for (std::int64_t number = 0; number < numbers; ++number) {
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      const auto value = [&](const SeriesPoint& point) { return point.values[channel]; };
+      EXPECT_EQ(range(kept, number, value), range(all, number, value)) << channel << " " << number;
+    }
   }
 }
 

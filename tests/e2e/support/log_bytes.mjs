@@ -33,8 +33,10 @@ function messageAt(t_s, text) {
 /**
  * Flies a circle of 200 m radius with 20 m/s at 25 Hz, beginning at 1 s: MANUAL, then AUTO, and RTL for
  * the last tenth. The height is that of a slow climb.
+ *
+ * @param outlierAt_s one position at this time is 0.001 deg, 111 m, north of its place
  */
-export function dataflashFlight(duration_s) {
+export function dataflashFlight(duration_s, outlierAt_s = null) {
   const pieces = [
     format(0x80, 89, 'FMT', 'BBnNZ', 'Type,Length,Name,Format,Columns'),
     format(2, 29, 'SIM', 'QLLfccc', 'TimeUS,Lat,Lng,Alt,Roll,Pitch,Yaw'),
@@ -54,7 +56,8 @@ export function dataflashFlight(duration_s) {
     pieces.push(
       record(2, 29, (bytes) => {
         bytes.writeBigUInt64LE(BigInt(Math.round(t_s * 1e6)), 3);
-        bytes.writeInt32LE(Math.round((47 + north_m / metresPerDeg) * 1e7), 11);
+        const wrong_deg = outlierAt_s !== null && i === Math.round((outlierAt_s - 1) * 25) ? 1e-3 : 0;
+        bytes.writeInt32LE(Math.round((47 + north_m / metresPerDeg + wrong_deg) * 1e7), 11);
         const east_deg = east_m / (metresPerDeg * Math.cos((47 * Math.PI) / 180));
         bytes.writeInt32LE(Math.round((8 + east_deg) * 1e7), 15);
         bytes.writeFloatLE(500 + 0.5 * (t_s - 1), 19);

@@ -50,6 +50,7 @@ export async function startServer({
   scenarios = path.join(kRoot, 'scenarios'),
   data = [],
   links = [],
+  allowCommands = false,
 }) {
   const args = ['serve', '--port', String(port), '--runs', runs];
   if (tokenFile !== null) args.push('--token-file', tokenFile);
@@ -57,6 +58,7 @@ export async function startServer({
   args.push('--uploads', path.join(path.dirname(runs), 'uploads'));
   for (const folder of data) args.push('--data', folder);
   for (const link of links) args.push('--allow-link', link);
+  if (allowCommands) args.push('--allow-commands');
   const child = spawn(kProgram, args, { cwd: kRoot, stdio: ['ignore', 'pipe', 'pipe'] });
   let output = '';
   const exited = new Promise((resolve) => child.on('exit', resolve));

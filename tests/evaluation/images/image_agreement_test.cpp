@@ -36,7 +36,7 @@ TEST(ImageAgreement, OfEqualImagesIsPerfect) {
   const Image image = pattern_image({0.0, 0.0});
   const auto agreement = compare_images(image, image);
   ASSERT_TRUE(agreement.ok());
-  EXPECT_LT(agreement->offset_px.norm(), 1e-3);
+  EXPECT_LT(agreement->offset_px.value().norm(), 1e-3);
   EXPECT_NEAR(agreement->correlation.value_or(0.0), 1.0, 1e-12);
   EXPECT_NEAR(agreement->correlation_aligned.value_or(0.0), 1.0, 1e-3);
   EXPECT_EQ(agreement->corners_real, agreement->corners_virtual);
@@ -48,8 +48,8 @@ TEST(ImageAgreement, MeasuresTheOffsetOfTheRealImage) {
     const auto agreement = compare_images(pattern_image(offset), pattern_image({0.0, 0.0}));
     ASSERT_TRUE(agreement.ok());
     // Grey levels are whole numbers, and the image is sampled bilinearly.
-    EXPECT_LT((agreement->offset_px - offset).norm(), 0.02)
-        << agreement->offset_px.transpose() << " instead of " << offset.transpose();
+    EXPECT_LT((agreement->offset_px.value() - offset).norm(), 0.02)
+        << agreement->offset_px->transpose() << " instead of " << offset.transpose();
     EXPECT_GT(agreement->correlation_aligned.value_or(0.0), 0.95);
     EXPECT_LT(*agreement->correlation, *agreement->correlation_aligned);
   }
@@ -59,7 +59,7 @@ TEST(ImageAgreement, DoesNotDependOnBrightnessAndContrast) {
   const auto agreement =
       compare_images(pattern_image({5.0, 3.0}, 0.5, 40.0), pattern_image({0.0, 0.0}));
   ASSERT_TRUE(agreement.ok());
-  EXPECT_LT((agreement->offset_px - Eigen::Vector2d(5.0, 3.0)).norm(), 0.02);
+  EXPECT_LT((agreement->offset_px.value() - Eigen::Vector2d(5.0, 3.0)).norm(), 0.02);
   EXPECT_GT(agreement->correlation_aligned.value_or(0.0), 0.95);
 }
 
@@ -69,6 +69,8 @@ TEST(ImageAgreement, OfUniformImagesIsUnknown) {
   const auto uniform = compare_images(Image(112, 84, 1, 7), pattern_image({0.0, 0.0}));
   ASSERT_TRUE(uniform.ok());
   EXPECT_FALSE(uniform->correlation.has_value());
+  EXPECT_FALSE(uniform->offset_px.has_value());
+  EXPECT_FALSE(uniform->peak.has_value());
   EXPECT_EQ(uniform->corners_real, 0);
 }
 

@@ -106,6 +106,26 @@ TEST_F(LcmLog, DoesNotBelieveWrongLengths) {
   }
 }
 
+/// A flipped bit in the length of one event must not cost those that follow.
+TEST_F(LcmLog, LooksBehindLongEventsBeforeItBelievesThem) {
+  const auto image = [](int i) {
+    return lcm_event(i, kEpochUs + i, "IMAGE", Bytes(100'000, static_cast<std::uint8_t>(i)));
+  };
+  Bytes bytes;
+  for (int i = 0; i < 5; ++i) append(bytes, image(i));
+  Bytes damaged = lcm_event(5, kEpochUs + 5, "IMAGE", Bytes(100'000, 1));
+  damaged[25] ^= 0x10;  // 1 MiB longer
+  append(bytes, damaged);
+  for (int i = 6; i < 26; ++i) append(bytes, image(i));
+  const auto log = open_bytes(bytes);
+  ASSERT_TRUE(log.ok()) << log.error().message;
+  ASSERT_EQ(log->streams.size(), 1U);
+  EXPECT_EQ(log->streams[0].messages, 25U);
+  EXPECT_THAT(log->warnings,
+              Contains(HasSubstr(std::to_string(damaged.size()) +
+                                 " bytes in 1 place belong to no complete event")));
+}
+
 TEST_F(LcmLog, CountsMessagesThatAreTooShort) {
   Bytes bytes = lcm_flight();
   Bytes truth = lcm_truth(kNsPerS, {1, 2, 3}, Eigen::Quaterniond::Identity());

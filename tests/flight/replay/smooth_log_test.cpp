@@ -45,6 +45,22 @@ TEST(SmoothLog, KeepsPlaceAndAttitudeOfALog) {
   EXPECT_FALSE(sampled_trajectory(*log, 2000.0).ok());
 }
 
+/// Attitudes that are 1.5 s early or late are needed that far outside of the slice.
+TEST(SmoothLog, KeepsTheWholeSliceWithATimeOffset) {
+  const testing::CsvFlight flight;
+  for (const double offset_s : {-1.5, 1.5}) {
+    smoothing::SmoothingOptions options;
+    options.time_offset_s = offset_s;
+    logs::TrajectoryRequest request;
+    request.from_ns = 120 * kNsPerS;
+    request.to_ns = 140 * kNsPerS;
+    const auto log = smooth_file(flight.mapping(), options, request);
+    ASSERT_TRUE(log.ok()) << log.error().message;
+    EXPECT_NEAR(s_from_ns(log->begin_ns()), 120.0, 1e-6) << offset_s;
+    EXPECT_NEAR(s_from_ns(log->end_ns()), 140.0, 1e-6) << offset_s;
+  }
+}
+
 TEST(SmoothLog, WritesAResidualForEachSample) {
   const testing::CsvFlight flight(true);
   const auto log = smooth_file(flight.mapping());

@@ -89,13 +89,23 @@ ros::Publisher publisher_of(ros::NodeHandle& handle,
 }
 
 /// mavros_msgs/State: header, connected, armed, guided, manual_input, mode, system_status.
-AnyMessage state_message(bool armed) {
+/// @param t_ms  of the vehicle's clock; negative: the stamp is not set
+AnyMessage state_message(bool armed, std::int64_t t_ms = -1, const std::string& mode = "") {
   AnyMessage message;
   message.bytes.assign(12, 0);  // seq, stamp
+  if (t_ms >= 0) {
+    const ros::Time stamp = testing::stamp_of(t_ms * 1'000'000);
+    std::memcpy(&message.bytes[4], &stamp.sec, 4);
+    std::memcpy(&message.bytes[8], &stamp.nsec, 4);
+  }
   message.bytes.resize(16, 0);  // an empty frame_id
   message.bytes.push_back(1);   // connected
   message.bytes.push_back(armed ? 1 : 0);
-  message.bytes.resize(message.bytes.size() + 2 + 4 + 1, 0);
+  message.bytes.resize(message.bytes.size() + 2, 0);  // guided, manual_input
+  message.bytes.push_back(static_cast<std::uint8_t>(mode.size()));
+  message.bytes.resize(message.bytes.size() + 3, 0);
+  message.bytes.insert(message.bytes.end(), mode.begin(), mode.end());
+  message.bytes.push_back(0);  // system_status
   return message;
 }
 
@@ -139,11 +149,13 @@ void disarm(ros::NodeHandle& handle, const std::string& prefix) {
   ros::Publisher pose = publisher_of<ros1::PoseStampedMessage>(handle, prefix + "/pose");
   ros::Publisher state = publisher_of(handle, prefix + "/state", "mavros_msgs/State");
   wait_for_subscribers(pose);
-  state.publish(state_message(true));
+  state.publish(state_message(true, 0, "AUTO"));
+  state.publish(state_message(true, 1000, "AUTO"));
+  state.publish(state_message(true, 1500, "RTL"));
   for (std::int64_t t_ms = 0; t_ms <= 2000; t_ms += 20) pose.publish(pose_at(t_ms));
   // Connections of their own: the first of these may overtake the poses.
   for (int i = 0; i < 100; ++i) {
-    state.publish(state_message(false));
+    state.publish(state_message(false, 2000, "RTL"));
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
 }

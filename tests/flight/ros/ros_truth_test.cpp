@@ -242,6 +242,16 @@ TEST(RosTruth, EndsWhenTheVehicleIsDisarmed) {
   EXPECT_FALSE(after->has_value());
   ASSERT_FALSE((*truth)->warnings().empty());
   EXPECT_THAT((*truth)->warnings().back(), HasSubstr(" s: the vehicle was disarmed"));
+  const std::vector<FlightEvent> events = (*truth)->take_events(3 * kNsPerS);
+  ASSERT_EQ(events.size(), 3U);
+  EXPECT_EQ(events[0].kind, FlightEventKind::kMode);
+  EXPECT_EQ(events[0].text, "AUTO");
+  EXPECT_EQ(events[0].t_ns, 0);
+  EXPECT_EQ(events[1].text, "RTL");
+  EXPECT_EQ(events[1].t_ns, 1'500'000'000);
+  EXPECT_EQ(events[2].kind, FlightEventKind::kOther);
+  EXPECT_EQ(events[2].text, "disarmed");
+  EXPECT_TRUE((*truth)->take_events(4 * kNsPerS).empty());
 }
 
 TEST(RosTruth, SaysWhatIsMissing) {

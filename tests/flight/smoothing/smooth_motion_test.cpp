@@ -257,6 +257,25 @@ TEST(SmoothMotion, IsFiniteForAnySamplesThatItAccepts) {
   EXPECT_GE(accepted, 3);
 }
 
+TEST(SmoothMotion, ReportsItsProgress) {
+  const Recording recording = testing::record({});
+  std::vector<std::string> steps;
+  double last = 0.0;
+  const auto result = smooth_motion(recording.positions,
+                                    recording.attitudes,
+                                    {},
+                                    nullptr,
+                                    [&](const std::string& step, double share) {
+                                      const bool begins = steps.empty() || steps.back() != step;
+                                      EXPECT_TRUE(begins || share > last || share == 0.0);
+                                      EXPECT_LT(share, 1.0);
+                                      if (begins) steps.push_back(step);
+                                      last = share;
+                                    });
+  ASSERT_TRUE(result.ok()) << result.error().message;
+  EXPECT_EQ(steps, (std::vector<std::string>{"positions", "attitudes"}));
+}
+
 TEST(SmoothMotion, RejectsWhatIsNoFlight) {
   const Recording recording = testing::record({});
   const auto error_of = [](const Recording& samples, const SmoothingOptions& options = {}) {

@@ -51,6 +51,12 @@ Eigen::Vector3d vector_at(const std::vector<std::string>& row, std::size_t begin
 std::vector<Sample> samples_of(const fs::path& mav0) {
   const auto states = rows_of(mav0 / "state_groundtruth_estimate0" / "data.csv", ',');
   const auto readings = rows_of(mav0 / "imu0" / "data.csv", ',');
+  for (const char* list : {"imu0/data.csv", "cam0/data.csv"}) {
+    const std::string text = overfly::testing::read_text(mav0 / list);
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'),
+              std::count(text.begin(), text.end(), '\r'));
+    EXPECT_TRUE(text.ends_with("\r\n")) << list;
+  }
   EXPECT_EQ(states.size(), readings.size());
   std::vector<Sample> samples;
   for (std::size_t i = 0; i < std::min(states.size(), readings.size()); ++i) {

@@ -81,6 +81,7 @@ std::vector<std::vector<std::string>> rows_of(const std::filesystem::path& file,
   EXPECT_TRUE(stream.good()) << file;
   std::vector<std::vector<std::string>> rows;
   for (std::string line; std::getline(stream, line);) {
+    if (!line.empty() && line.back() == '\r') line.pop_back();
     if (line.empty() || line.front() == '#') continue;
     std::istringstream fields(line);
     rows.emplace_back();

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 
 #include "server/files/jpeg.hpp"
+#include "server/files/take_name.hpp"
 #include "server/files/whole_file.hpp"
 #include "tests/support/support.hpp"
 
@@ -23,6 +24,39 @@ Image gradient(int channels) {
     }
   }
   return image;
+}
+
+TEST(TakeName, DoesNotReplaceAFile) {
+  const TemporaryFolder folder;
+  const std::filesystem::path part = folder.path() / "part";
+  const std::filesystem::path name = folder.path() / "name";
+  overfly::testing::write_text(part, "new");
+  const auto taken = take_free_name(part, name);
+  ASSERT_TRUE(taken.ok() && *taken);
+  EXPECT_FALSE(std::filesystem::exists(part));
+  overfly::testing::write_text(part, "newer");
+  const auto again = take_free_name(part, name);
+  ASSERT_TRUE(again.ok());
+  EXPECT_FALSE(*again);
+  EXPECT_EQ(overfly::testing::read_text(name), "new");
+  EXPECT_EQ(take_free_name(folder.path() / "none", folder.path() / "other").error().code,
+            ErrorCode::kIo);
+}
+
+/// Folders have no hard links, as no file of some file systems has.
+TEST(TakeName, WorksWithoutHardLinks) {
+  const TemporaryFolder folder;
+  for (const char* name : {"part", "part2"}) {
+    std::filesystem::create_directory(folder.path() / name);
+  }
+  const auto taken = take_free_name(folder.path() / "part", folder.path() / "name");
+  ASSERT_TRUE(taken.ok()) << taken.error().message;
+  EXPECT_TRUE(*taken);
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "name"));
+  const auto again = take_free_name(folder.path() / "part2", folder.path() / "name");
+  ASSERT_TRUE(again.ok()) << again.error().message;
+  EXPECT_FALSE(*again);
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "part2"));
 }
 
 TEST(Jpeg, KeepsSizeChannelsAndNearlyTheValues) {

@@ -5,17 +5,21 @@
 #include <functional>
 #include <random>
 
+#include "core/text/number_text.hpp"
 #include "middleware/lcm/findings.hpp"
 #include "middleware/ros1/findings.hpp"
 #include "server/camera/frame_remaker.hpp"
 #include "server/export/dataset_export.hpp"
 #include "server/export/video_export.hpp"
+#include "server/files/png_file.hpp"
+#include "server/imagery/flight_images.hpp"
 #include "server/imagery/video_images.hpp"
 #include "server/record/rows/agreement_rows.hpp"
 #include "server/record/run_records.hpp"
 #include "server/scenario/document/scenario_file.hpp"
 #include "server/scoring/agreement_report.hpp"
 #include "server/worlds/world_cache.hpp"
+#include "tests/flight/logs/ros_bytes.hpp"
 #include "tests/server/support/server_fixture.hpp"
 
 namespace overfly::server {
@@ -105,10 +109,10 @@ class RealImages : public ::testing::Test {
     EXPECT_EQ(report.frames, kFrames);
     EXPECT_EQ(report.lost, 0);
     EXPECT_EQ(report.missing, 0);
-    EXPECT_LT(report.offset_px.p95, 1e-3);
-    EXPECT_GT(report.correlation.p5, 0.999999);
-    EXPECT_EQ(report.corners_real.median, report.corners_virtual.median);
-    EXPECT_GT(report.corners_real.median, 10);
+    EXPECT_LT(report.offset_px->p95, 1e-3);
+    EXPECT_GT(report.correlation->p5, 0.999999);
+    EXPECT_EQ(report.corners_real->median, report.corners_virtual->median);
+    EXPECT_GT(report.corners_real->median, 10);
     ASSERT_EQ(report.estimators.size(), 1U);
     EXPECT_EQ(report.estimators[0].real, "on_real");
     EXPECT_EQ(report.estimators[0].rendered, "on_virtual");
@@ -153,8 +157,8 @@ TEST_F(RealImages, OfAVideoAreCloseToThoseThatWereRendered) {
   const AgreementReport report = flown(twin_document({{"source", options.file.string()}}));
   EXPECT_EQ(report.frames, kFrames);
   EXPECT_EQ(report.lost, 0);
-  EXPECT_LT(report.offset_px.p95, 0.2);  // what the peak resolves, and the compression
-  EXPECT_GT(report.correlation.p5, 0.98);
+  EXPECT_LT(report.offset_px->p95, 0.2);  // what the peak resolves, and the compression
+  EXPECT_GT(report.correlation->p5, 0.98);
 }
 
 TEST_F(RealImages, OfADamagedVideoAreReadAsFarAsTheyGo) {
@@ -196,9 +200,9 @@ TEST_F(RealImages, ShowAWrongTimeAsAnOffset) {
       flown(twin_document({{"source", folder.string()}, {"time_offset_s", 0.5}}));
   EXPECT_EQ(report.frames, kFrames - 5);
   const double predicted_px = 12.5 / 300.0 * kFocalPx;
-  EXPECT_NEAR(report.mean_offset_px.y(), -predicted_px, 0.1 * predicted_px);
-  EXPECT_NEAR(report.mean_offset_px.x(), 0.0, 0.5);
-  EXPECT_GT(report.correlation_aligned.median, report.correlation.median);
+  EXPECT_NEAR(report.mean_offset_px->y(), -predicted_px, 0.1 * predicted_px);
+  EXPECT_NEAR(report.mean_offset_px->x(), 0.0, 0.5);
+  EXPECT_GT(report.correlation_aligned->median, report.correlation->median);
   const auto records = read_run_records(run());
   ASSERT_TRUE(records.ok());
   EXPECT_EQ(records->cameras[0].frames.front().t_ns, kNsPerS / 2);
@@ -211,8 +215,8 @@ TEST_F(RealImages, ShowAWrongMountAsAnOffset) {
   const AgreementReport report =
       flown(twin_document({{"source", folder.string()}}, {{"pitch_deg", 2.0}}));
   const double predicted_px = std::tan(2.0 * EIGEN_PI / 180.0) * kFocalPx;
-  EXPECT_NEAR(report.mean_offset_px.y(), -predicted_px, 0.05 * predicted_px);
-  EXPECT_NEAR(report.mean_offset_px.x(), 0.0, 0.5);
+  EXPECT_NEAR(report.mean_offset_px->y(), -predicted_px, 0.05 * predicted_px);
+  EXPECT_NEAR(report.mean_offset_px->x(), 0.0, 0.5);
 }
 
 TEST_F(RealImages, ThatAreMissingOrDamagedAreLostFrames) {
@@ -232,6 +236,32 @@ TEST_F(RealImages, ThatAreMissingOrDamagedAreLostFrames) {
   EXPECT_EQ(metrics_.estimators.at("on_real").answered, kFrames - 2);
   EXPECT_EQ(metrics_.estimators.at("on_virtual").answered, kFrames);
   EXPECT_THAT(overfly::testing::read_text(run() / "log.jsonl"), HasSubstr("image lost: "));
+}
+
+TEST_F(RealImages, ThatAreUniformCannotBeComparedAndCountSeparately) {
+  const fs::path folder = exported(DatasetFormat::kPng);
+  std::vector<fs::path> images;
+  for (const auto& entry : fs::recursive_directory_iterator(folder / "images")) {
+    if (entry.is_regular_file()) images.push_back(entry.path());
+  }
+  std::sort(images.begin(), images.end());
+  Image grey(160, 120, 1);
+  std::fill(grey.data.begin(), grey.data.end(), std::uint8_t{128});
+  const auto write = [&](std::size_t i) { ASSERT_TRUE(write_png_file(images[i], grey).ok()); };
+  write(3);
+  write(4);
+  AgreementReport report = flown(twin_document({{"source", folder.string()}}));
+  EXPECT_EQ(report.lost, 0);
+  EXPECT_EQ(report.not_comparable, 2);
+  EXPECT_GT(report.correlation->p5, 0.999999);
+  EXPECT_GT(report.peak->p5, 0.1);  // an image without an offset has no peak of 0
+  for (std::size_t i = 0; i < images.size(); ++i) write(i);
+  fs::remove_all(run());
+  report = flown(twin_document({{"source", folder.string()}}));
+  EXPECT_EQ(report.not_comparable, kFrames);
+  EXPECT_FALSE(report.offset_px.has_value() || report.correlation.has_value());
+  const Json written = json_from(report, metrics_);
+  EXPECT_TRUE(written.at("mean_offset_px").is_null() && written.at("correlation").is_null());
 }
 
 TEST_F(RealImages, AreReadAgainForPlayback) {
@@ -258,6 +288,49 @@ TEST_F(RealImages, AreReadAgainForPlayback) {
   EXPECT_EQ(real->data, rendered->data);
 }
 
+TEST_F(RealImages, ThatCannotBeReadAtTheStartEndTheFlightThere) {
+  const fs::path folder = exported(DatasetFormat::kPng);
+  std::vector<fs::path> images;
+  for (const auto& entry : fs::recursive_directory_iterator(folder / "images")) {
+    if (entry.is_regular_file()) images.push_back(entry.path());
+  }
+  std::sort(images.begin(), images.end());
+  const auto opened = [&] {
+    const Scenario scenario = scenario_of(twin_document({{"source", folder.string()}}));
+    const auto source = FlightImages::open(
+        scenario.cameras[0], {std::nullopt, std::nullopt, 2 * kNsPerS}, scenario.sources, nullptr);
+    return source ? std::string("opened") : source.error().message;
+  };
+  fs::remove(images[0]);
+  EXPECT_EQ(opened(), "opened");  // one that is missing is a lost frame
+  fs::remove(images[1]);
+  EXPECT_THAT(opened(), HasSubstr("camera \"real\": "));
+}
+
+/// An encoding that is not read is that of all images.
+TEST_F(RealImages, OfAnUnknownEncodingAreAnError) {
+  using namespace flight::testing;
+  Bytes bytes = bag_start(1);
+  append(bytes, bag_connection(0, "/image", "sensor_msgs/Image"));
+  for (int i = 0; i < 3; ++i) {
+    WireWriter message(Wire::kRos1);
+    message.header(i * kNsPerS, "camera").number(std::uint32_t{120}).number(std::uint32_t{160});
+    message.text("rgb16").number(std::uint8_t{0}).number(std::uint32_t{960});
+    message.number(std::uint32_t{960 * 120});
+    Bytes image = message.bytes();
+    image.resize(image.size() + std::size_t{960} * 120);
+    append(bytes, bag_message(0, i, image));
+  }
+  const fs::path bag = folder_.path() / "flight.bag";
+  write_bytes(bag, bytes);
+  const Scenario scenario = scenario_of(twin_document({{"source", bag.string()}}));
+  const auto images = FlightImages::open(
+      scenario.cameras[0], {std::nullopt, std::nullopt, 2 * kNsPerS}, scenario.sources, nullptr);
+  ASSERT_FALSE(images.ok());
+  EXPECT_EQ(images.error().code, ErrorCode::kUnsupported);
+  EXPECT_THAT(images.error().message, HasSubstr("encoding \"rgb16\": is not read"));
+}
+
 TEST_F(RealImages, OutsideOfTheFlightAreAnError) {
   const fs::path folder = exported(DatasetFormat::kPng);
   const Scenario scenario =
@@ -269,6 +342,72 @@ TEST_F(RealImages, OutsideOfTheFlightAreAnError) {
   ASSERT_FALSE(result.ok());
   EXPECT_THAT(result.error().message,
               HasSubstr("no image lies within the flight: the images span [100, 102] s"));
+}
+
+/// A level flight to the north at 20 m/s over the middle of the world. The clock of its log stands
+/// at kLogStartS when it begins.
+class RealImagesOfALog : public RealImages {
+ protected:
+  static constexpr int kLogStartS = 1000;
+
+  RealImagesOfALog() {
+    std::string gps = "t,lat,lon,alt,roll,pitch,yaw\n";
+    for (int i = 0; i <= 100; ++i) {
+      gps += number_text(kLogStartS + 0.1 * i) + ',' + number_text(1.0 + 1.8087e-5 * i) +
+             ",2,100,0,0,0\n";
+    }
+    overfly::testing::write_text(folder_.path() / "gps.csv", gps);
+    overfly::testing::write_text(folder_.path() / "log.json",
+                                 R"({"csv_mapping_version": 1, "pieces": [
+      {"name": "GPS", "file": "gps.csv", "origin": "gps", "time": {"column": "t", "unit": "s"},
+       "columns": {"lat": {"column": "lat", "unit": "deg"}, "lon": {"column": "lon", "unit": "deg"},
+                   "alt_msl": {"column": "alt", "unit": "m"},
+                   "roll": {"column": "roll", "unit": "deg"},
+                   "pitch": {"column": "pitch", "unit": "deg"},
+                   "yaw": {"column": "yaw", "unit": "deg"}}}]})");
+  }
+  [[nodiscard]] Json of_log(Json document) const {
+    Json log = {{"file", (folder_.path() / "log.json").string()},
+                {"smooth", Json::object()},
+                {"rebase", {{"lowest_agl_m", 150}}}};
+    document["flight"] = {{"log", std::move(log)}};
+    return document;
+  }
+  /// Exports to PNG. @return the first images folder's files in order
+  std::vector<std::string> export_of(const ExportSource& source, const std::string& name) {
+    ExportOptions options;
+    options.folder = folder_.path() / name;
+    options.renderer_factory = one_thread_raycaster();
+    options.cameras = {source.scenario.cameras[0].name};
+    const auto summary = export_dataset(source, options);
+    if (!summary) throw std::runtime_error(summary.error().message);
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::recursive_directory_iterator(options.folder / "images")) {
+      if (entry.is_regular_file()) files.push_back(entry.path());
+    }
+    std::sort(files.begin(), files.end());
+    std::vector<std::string> images;
+    for (const fs::path& file : files) images.push_back(overfly::testing::read_text(file));
+    return images;
+  }
+};
+
+TEST_F(RealImagesOfALog, CountByTheClockOfTheLogInARunAndInItsExport) {
+  const ExportSource source{
+      scenario_of(of_log(flight_document())), std::nullopt, 1'700'000'000 * kNsPerS};
+  const std::vector<std::string> rendered = export_of(source, "export");
+  ASSERT_EQ(rendered.size(), static_cast<std::size_t>(kFrames));
+  // The export's stamps count from the start of the flight.
+  const Json images = {{"source", (folder_.path() / "export").string()},
+                       {"clock", "log"},
+                       {"time_offset_s", kLogStartS}};
+  expect_identical(flown(of_log(twin_document(images))));
+  const auto manifest = read_run_manifest(run());
+  ASSERT_TRUE(manifest.ok());
+  EXPECT_EQ(manifest->values.flight->log_start_ns, kLogStartS * kNsPerS);
+  const auto again = open_export_source(run());
+  ASSERT_TRUE(again.ok()) << again.error().message;
+  EXPECT_EQ(export_of(*again, "again"), rendered);
 }
 
 TEST(RealImagesOfAScenario, AreCheckedWithTheirFields) {

@@ -32,7 +32,7 @@ RunManifest full_manifest() {
   manifest.frames_total = 776;
   manifest.texture_limited = true;
   manifest.renderer = RunManifest::Renderer{"egl", "llvmpipe", "4.5", true, "no GPU", "as asked"};
-  manifest.flight = RunManifest::Flight{"a course", {"it is steep"}};
+  manifest.flight = RunManifest::Flight{"a course", {"it is steep"}, 1'700'000'000'000'000'001};
   RunManifest::World& world = manifest.world.emplace();
   world.name = "strip";
   world.attribution = "those who took it";

@@ -311,7 +311,7 @@ TEST(LiveRun, IsNeverFlownAgain) {
   const TemporaryFolder empty;
   const Scenario scenario = small_scenario({"flight.mavlink.link=tcp:127.0.0.1:1"});
   const auto world = terrain::World();
-  const auto again = open_flown_truth(empty.path(), "", scenario, world);
+  const auto again = open_flown_truth(empty.path(), {}, scenario, world);
   ASSERT_FALSE(again.ok());
   EXPECT_EQ(again.error().code, ErrorCode::kNotFound);
 }

@@ -52,6 +52,29 @@ TEST(RunAgain, FliesWhatAKilledRunHasRecorded) {
   EXPECT_EQ(read_text(first / "frames.jsonl").substr(0, frames.size()), frames);
 }
 
+TEST(RunAgain, ReportsTheEventsOfTheRecordedFlight) {
+  const overfly::testing::TemporaryFolder folder;
+  const fs::path first = folder.path() / "first";
+  ASSERT_TRUE(fly_into(first, testing::small_document()).ok());
+  const std::string events =
+      R"({"t_ns":500000000,"level":"info","text":"RTL","kind":"mode"}
+{"t_ns":0,"level":"info","text":"AUTO","kind":"mode"}
+{"t_ns":700000000,"level":"info","text":"disarmed","kind":"event"}
+)";
+  overfly::testing::write_text(log_file(first), read_text(log_file(first)) + events);
+  ASSERT_TRUE(fly_into(folder.path() / "second", again_document(first)).ok());
+  const std::string log = read_text(log_file(folder.path() / "second"));
+  const std::size_t mode = log.find("\"AUTO\"");
+  ASSERT_NE(mode, std::string::npos);
+  EXPECT_GT(log.find("\"RTL\""), mode);
+  EXPECT_THAT(log, HasSubstr("\"disarmed\""));
+  // Events that cannot be read do not keep the flight from being flown.
+  overfly::testing::write_text(log_file(first), "{\"t_ns\":-1}\n");
+  const fs::path third = folder.path() / "third";
+  ASSERT_TRUE(fly_into(third, again_document(first)).ok());
+  EXPECT_THAT(read_text(manifest_file(third)), HasSubstr("the flight's events are not known"));
+}
+
 TEST(RunAgain, NeedsAWorldWithTheSameOrigin) {
   const overfly::testing::TemporaryFolder folder;
   const fs::path first = folder.path() / "first";

@@ -1,7 +1,15 @@
 // The REST interface as typed calls.
 import type { FieldError } from '../protocol/field_errors';
 import { readFieldErrors } from '../protocol/field_errors';
-import type { LogEntry, LogInfo, LogList, LogSeries } from '../protocol/log_types';
+import type {
+  LogEntry,
+  LogInfo,
+  LogList,
+  LogResiduals,
+  LogSeries,
+  WorkProgress,
+  WorldExtent,
+} from '../protocol/log_types';
 import type { Cell } from '../protocol/messages';
 import type { Json, JsonObject, Manifest, Run, ScenarioEntry } from '../protocol/rest_types';
 import type { SensorCurves } from '../protocol/sensor_types';
@@ -39,6 +47,12 @@ export class RestClient {
 
   async scenario(name: string): Promise<JsonObject> {
     return (await this.call('GET', `/scenarios/${encodeURIComponent(name)}`)) as JsonObject;
+  }
+
+  /** The server opens the world for it, which may take seconds. */
+  async worldExtent(scenario: string): Promise<WorldExtent> {
+    const place = `/scenarios/${encodeURIComponent(scenario)}/world`;
+    return (await this.call('GET', place)) as WorldExtent;
   }
 
   async scenarioSchema(): Promise<JsonObject> {
@@ -105,19 +119,45 @@ export class RestClient {
     return (await this.call('GET', place, undefined, {}, signal)) as LogSeries;
   }
 
+  /** @param id  for progress(), of this request only */
+  async logResiduals(
+    name: string,
+    slice: { source: string; from_s: number | null; to_s: number | null; autoOffset: boolean },
+    id: string,
+    signal: AbortSignal,
+  ): Promise<LogResiduals> {
+    const query = new URLSearchParams({ progress: id });
+    if (slice.source !== '') query.set('source', slice.source);
+    if (slice.from_s !== null) query.set('from_s', String(slice.from_s));
+    if (slice.to_s !== null) query.set('to_s', String(slice.to_s));
+    if (slice.autoOffset) query.set('time_offset_s', 'auto');
+    const place = `/logs/${encodeURIComponent(name)}/residuals?${query.toString()}`;
+    return (await this.call('GET', place, undefined, {}, signal)) as LogResiduals;
+  }
+
+  /** null if the server does not know of it (yet, or any more). */
+  async progress(id: string): Promise<WorkProgress | null> {
+    try {
+      return (await this.call('GET', `/progress/${encodeURIComponent(id)}`)) as WorkProgress;
+    } catch {
+      return null;
+    }
+  }
+
   async deleteLog(name: string): Promise<void> {
     await this.call('DELETE', `/logs/${encodeURIComponent(name)}`);
   }
 
+  /** @param query  names the log, or the files of which the body consists */
   async uploadLog(
     upload: Upload,
-    name: string,
-    file: Blob,
+    query: string,
+    body: Blob,
     onProgress: (share: number) => void,
     signal: AbortSignal,
   ): Promise<LogEntry> {
-    const url = `${this.base}/logs?name=${encodeURIComponent(name)}`;
-    const { status, text } = await upload(url, file, onProgress, signal);
+    const url = `${this.base}/logs?${query}`;
+    const { status, text } = await upload(url, body, onProgress, signal);
     if (status === kUnauthorized) this.onLocked();
     if (status !== 201) throw await errorOf(new Response(text, { status }));
     return JSON.parse(text) as LogEntry;
@@ -159,6 +199,16 @@ export class RestClient {
     if (!response.ok) throw await errorOf(response);
     return response.status === 204 ? null : response.json();
   }
+}
+
+/** What to show at the fields of a form; an error of no field has an empty path. */
+export function fieldErrorsOf(error: unknown): FieldError[] {
+  const message = error instanceof Error ? error.message : String(error);
+  if (!(error instanceof RestError)) return [{ field: '', message }];
+  if (error.fieldErrors.length > 0) return error.fieldErrors;
+  // "flight.mavlink: must be ..." of a request that is forbidden.
+  const [, field, rest] = /^([a-z]\w*(?:\.\w+)+): (.+)$/s.exec(message) ?? [];
+  return [field === undefined ? { field: '', message } : { field, message: rest ?? '' }];
 }
 
 interface ErrorDocument {

@@ -46,6 +46,8 @@ export interface LogEvent {
   kind: string;
   text: string;
   vehicle?: string;
+  /** Of the vehicle's clock, which may start again within the log; only with a time. */
+  run?: number;
 }
 
 export interface LogInfo {
@@ -63,6 +65,9 @@ export interface LogInfo {
 export interface LogSeries {
   position_source: string;
   attitude_source: string | null;
+  /** Whose clock, and which run of it, the times are. */
+  vehicle: string;
+  run: number;
   georeferenced: boolean;
   position_count: number;
   attitude_count: number;
@@ -71,4 +76,50 @@ export interface LogSeries {
   speeds: Record<string, number[]>;
   attitudes: Record<string, number[]>;
   steps: { t_s: number; size_m: number }[];
+}
+
+/** Samples minus the smooth motion, column by column; times by the vehicle's clock. */
+export type ResidualTable = Record<string, number[]>;
+
+export interface ResidualFit {
+  source: string;
+  used_count: number;
+  shifted_count: number;
+  left_out_count: number;
+  longest_gap_s: number;
+  used: ResidualTable;
+  /** After a step, which their residuals contain. */
+  shifted: ResidualTable;
+  left_out: ResidualTable;
+}
+
+export interface LogResiduals {
+  /** east_m, north_m, up_m */
+  positions: ResidualFit & {
+    rms_m: number;
+    noise_horizontal_m: number;
+    noise_vertical_m: number;
+  };
+  /** Rotation vectors in body axes: x_deg, y_deg, z_deg */
+  attitudes: ResidualFit & { rms_deg: number; noise_deg: number };
+  time_offset_s: number;
+  /** null: the offset was given. */
+  time_offset_sigma_s: number | null;
+  jump_count: number;
+  jumps: { t_s: number; kind: string; text: string }[];
+  warnings: string[];
+}
+
+export interface WorkProgress {
+  step: string;
+  share: number;
+}
+
+/** Where the world of a scenario lies. */
+export interface WorldExtent {
+  name: string;
+  attribution: string;
+  centre: { lat_deg: number; lon_deg: number };
+  /** Of the imagery, clockwise. */
+  outline: { lat_deg: number; lon_deg: number }[];
 }

@@ -1,7 +1,6 @@
 // Scenarios and runs of the server: listed, launched, cancelled and deleted over REST.
 import type { RestClient } from '../connection/rest_client';
-import { RestError } from '../connection/rest_client';
-import type { FieldError } from '../protocol/field_errors';
+import { fieldErrorsOf } from '../connection/rest_client';
 import { isActive } from '../protocol/rest_types';
 import { overridesOf } from './launch_form';
 import type { Notices } from './notices';
@@ -157,12 +156,6 @@ export class Catalogue {
   }
 }
 
-function fieldErrorsOf(error: unknown): FieldError[] {
-  const known = error instanceof RestError ? error.fieldErrors : [];
-  return known.length > 0 ? known : [{ field: '', message: textOf(error) }];
-}
-
 function textOf(error: unknown): string {
-  if (error instanceof RestError || error instanceof Error) return error.message;
-  return String(error);
+  return error instanceof Error ? error.message : String(error);
 }

@@ -1,8 +1,8 @@
 // All rows received of the watched run.
 import type { Cell, Resume, Rows } from '../protocol/messages';
 import { Table } from './table';
-import type { VehicleRow } from './vehicle_status';
-import { vehicleRows } from './vehicle_status';
+import type { VehicleRow } from './vehicle/vehicle_status';
+import { vehicleRows } from './vehicle/vehicle_status';
 
 export const kAxes = ['x_m', 'y_m', 'z_m', 'roll_deg', 'pitch_deg', 'yaw_deg'] as const;
 export type Axis = (typeof kAxes)[number];

@@ -16,8 +16,10 @@ import type { LogPage } from './logs/log_browser';
 import { initialLogPage } from './logs/log_browser';
 import type { PictureRate } from './picture_rates';
 import type { EstimateRows } from './run_data';
+import type { ConnectState } from './vehicle/vehicle_connect';
+import { initialConnect } from './vehicle/vehicle_connect';
 import { RunData } from './run_data';
-import type { SensorSamples } from './sensors';
+import type { SensorSamples } from './sensors/sensors';
 
 /** A decoded picture and the instant it belongs to. */
 export interface Picture {
@@ -58,6 +60,7 @@ export interface State {
   editorOpen: boolean;
   launchErrors: FieldError[];
   launching: boolean;
+  connect: ConnectState;
   /** The watched run; `run` is null until the list or the stream has sent it. */
   runId: string | null;
   run: Run | null;
@@ -102,6 +105,7 @@ export function initialState(): State {
     editorOpen: false,
     launchErrors: [],
     launching: false,
+    connect: initialConnect(),
     runId: null,
     run: null,
     data: new RunData(),
@@ -127,6 +131,14 @@ export function initialState(): State {
     helpOpen: false,
     logPage: initialLogPage(),
   };
+}
+
+/**
+ * When the flight ends as far as that is known; 0 for a live vehicle, whose flight has only a limit
+ * that may be a day away.
+ */
+export function plannedEnd_ns({ run, data }: State): number {
+  return data.vehicle.length > 0 ? 0 : (run?.duration_ns ?? 0);
 }
 
 /** The alignment in which estimates are drawn now. */

@@ -32,6 +32,7 @@ const kFaultColours: Readonly<Record<string, string>> = {
   water_drop: '#56d4dd',
   stamp_jitter: '#d2a8ff',
   stamp_offset: '#ff9bce',
+  gps_outage: '#7ee787',
 };
 
 export function faultColour(kind: string): string {

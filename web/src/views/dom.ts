@@ -46,6 +46,11 @@ export function rebuild(element: HTMLElement, key: string, make: () => Node[]): 
   element.replaceChildren(...make());
 }
 
+/** A text that is shown as a whole or, in a box that is too narrow, not at all (base.css). */
+export function wholeLabel(text: string): HTMLElement {
+  return h('span', { class: 'whole-label' }, h('span', {}, text));
+}
+
 /** Calls `action` at most once per frame, with the latest argument. */
 export function perFrame<T>(action: (value: T) => void): (value: T) => void {
   let waiting: { value: T } | null = null;

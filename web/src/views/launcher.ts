@@ -74,6 +74,17 @@ export class Launcher implements View {
         },
         'Fly a log',
       ),
+      h(
+        'button',
+        {
+          class: 'tab',
+          type: 'button',
+          'data-role': 'open-connect',
+          title: 'Fly what an autopilot reports: simulated or real, by its address',
+          onclick: () => this.context.connect.open(),
+        },
+        'Connect',
+      ),
     );
   }
 

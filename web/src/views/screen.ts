@@ -1,5 +1,6 @@
 // The layout of the screen.
 import { CameraPanel } from './camera_panel';
+import { ConnectDialog } from './vehicle/connect_dialog';
 import { ErrorPanel } from './error_panel';
 import { h } from './dom';
 import { HeaderBar } from './header_bar';
@@ -15,7 +16,7 @@ import { ScenarioEditor } from './scenario_editor';
 import { ScenePanel } from './scene_panel';
 import { listenToKeys } from './shortcuts';
 import { Timeline } from './timeline';
-import { VehicleCard } from './vehicle_card';
+import { VehicleCard } from './vehicle/vehicle_card';
 import type { Context, View } from './view';
 
 const kEverything = new Set([
@@ -48,6 +49,7 @@ export function showScreen(context: Context, place: HTMLElement): void {
   const timeline = new Timeline(context);
   const above = [
     new LogPageView(context),
+    new ConnectDialog(context),
     new NoticesView(context),
     new HelpOverlay(context),
     new ScenarioEditor(context),

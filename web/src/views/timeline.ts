@@ -1,5 +1,6 @@
 // Playback controls: buttons, timeline, speed.
 import type { Topic } from '../store/state';
+import { plannedEnd_ns } from '../store/state';
 import { formatTime } from '../store/format';
 import { kSpeeds } from '../store/player';
 import { h, setAttribute, setText } from './dom';
@@ -77,7 +78,7 @@ export class Timeline implements View {
       control.disabled = playback === null;
     }
     setText(this.time, formatTime(playback?.t_ns ?? 0));
-    const end_ns = Math.max(playback?.end_ns ?? 0, run?.duration_ns ?? 0);
+    const end_ns = Math.max(playback?.end_ns ?? 0, plannedEnd_ns(this.context.store.state));
     setText(this.end, ` / ${formatTime(end_ns)}`);
     const frame = frameOf(playback);
     setText(this.frame, frame === null ? '' : `frame ${frame}`);

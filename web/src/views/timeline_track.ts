@@ -2,12 +2,13 @@
 import { formatTime } from '../store/format';
 import type { EstimateRows } from '../store/run_data';
 import type { Topic } from '../store/state';
+import { plannedEnd_ns } from '../store/state';
 import { faultMeaning, FaultSpans, kindsOf } from '../store/fault_spans';
 import { FlightBands } from '../store/flight_bands';
 import { bandHue } from '../store/logs/log_bands';
 import type { FaultSpan } from '../store/fault_spans';
 import { faultColour, kStateColours } from './colours';
-import { h, perFrame, rebuild, setAttribute, setText } from './dom';
+import { h, perFrame, rebuild, setAttribute, setText, wholeLabel } from './dom';
 import type { Context } from './view';
 
 const kStripHeight_px = 4;
@@ -50,7 +51,7 @@ export class TimelineTrack {
   }
 
   update(changed: ReadonlySet<Topic>): void {
-    if (changed.has('rows') || changed.has('run')) {
+    if (changed.has('rows') || changed.has('run') || changed.has('log')) {
       this.drawStrips();
       this.drawFaults();
     }
@@ -61,10 +62,11 @@ export class TimelineTrack {
   }
 
   private span_ns(): number {
-    const { run, playback, data } = this.context.store.state;
+    const { state } = this.context.store;
+    const { playback, data } = state;
     const last = data.truth.at('t_ns', data.truth.length - 1);
     return Math.max(
-      run?.duration_ns ?? 0,
+      plannedEnd_ns(state),
       playback?.end_ns ?? 0,
       Number.isNaN(last) ? 0 : last,
       1e9,
@@ -145,7 +147,7 @@ export class TimelineTrack {
         return h(
           'span',
           { class: `flight-${kind}`, style: place + colour, [`data-${kind}`]: text },
-          kind === 'mode' ? text : '',
+          kind === 'mode' ? wholeLabel(text) : null,
         );
       }),
       ...marks.map(({ t_ns }) => h('i', { class: 'flight-mark', style: `left:${share(t_ns)}%` })),
@@ -206,7 +208,8 @@ export class TimelineTrack {
     const lines = here.slice(0, kMostFaults).map(({ kind, begin_ns, end_ns, frames }) => {
       const { label, hint } = faultMeaning(kind);
       const when = `${formatTime(begin_ns)} to ${formatTime(end_ns)}`;
-      return `${label}, ${when}, ${frames} frame${frames === 1 ? '' : 's'}: ${hint}`;
+      const count = frames === 0 ? '' : `, ${frames} frame${frames === 1 ? '' : 's'}`;
+      return `${label}, ${when}${count}: ${hint}`;
     });
     if (here.length > kMostFaults) lines.push(`and ${here.length - kMostFaults} more`);
     return lines.map((line) => `\n${line}`).join('');

@@ -4,10 +4,13 @@ import type { Cameras } from '../store/cameras';
 import type { Store, Topic } from '../store/state';
 import type { Player } from '../store/player';
 import type { SceneControl } from '../store/scene_control';
-import type { Sensors } from '../store/sensors';
+import type { Sensors } from '../store/sensors/sensors';
 import type { Session } from '../store/session';
 import type { Catalogue } from '../store/catalogue';
 import type { LogBrowser } from '../store/logs/log_browser';
+import type { LogSmoothing } from '../store/logs/log_smoothing';
+import type { LogWorlds } from '../store/logs/log_worlds';
+import type { VehicleConnect } from '../store/vehicle/vehicle_connect';
 import type { Notices } from '../store/notices';
 import type { StreamClient } from '../connection/stream_client';
 
@@ -28,6 +31,9 @@ export interface Context {
   cameras: Cameras;
   sensors: Sensors;
   logs: LogBrowser;
+  smoothing: LogSmoothing;
+  worlds: LogWorlds;
+  connect: VehicleConnect;
   notices: Notices;
   client: StreamClient;
 }

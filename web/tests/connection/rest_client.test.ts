@@ -82,7 +82,7 @@ describe('RestClient', () => {
           onProgress(1);
           return Promise.resolve({ status, text: JSON.stringify(body) });
         },
-        'a b.bin',
+        'name=a%20b.bin',
         new Blob(['x']),
         () => {},
         new AbortController().signal,

@@ -51,6 +51,26 @@ describe('FaultSpans', () => {
     expect(growing.spans).toEqual(new FaultSpans().update(flight(faults)));
   });
 
+  it('takes faults of sensors from the log', () => {
+    const data = flight([null, null, null, ['dirt']]);
+    const spans = new FaultSpans();
+    const say = (t_ns: number, text: string, seq: number) => {
+      data.apply({
+        stream: 'log',
+        seq,
+        columns: { t_ns: [t_ns], level: ['warning'], text: [text], kind: ['fault'] },
+      });
+      return spans.update(data);
+    };
+    say(5, 'dirt begins, for 1 s', 0);
+    say(12, 'gps_outage begins, for 0.7 s', 1);
+    expect(spans.spans.at(-1)).toEqual({ kind: 'gps_outage', begin_ns: 12, end_ns: 30, frames: 0 });
+    say(24, 'gps_outage ends', 2);
+    expect(spans.spans.at(-1)).toMatchObject({ kind: 'gps_outage', end_ns: 24 });
+    expect(spans.spans).toHaveLength(2);
+    expect(faultMeaning('gps_outage').label).toBe('GPS outage');
+  });
+
   it('has a name even for a kind that it does not know', () => {
     expect(faultMeaning('loose_screw').label).toBe('loose screw');
   });

@@ -1,5 +1,6 @@
 import { describe, expect, it, vi } from 'vitest';
-import { Store } from '../../src/store/state';
+import { plannedEnd_ns, Store } from '../../src/store/state';
+import { sampleRun } from '../support/samples';
 
 describe('Store', () => {
   it('calls back once until the topics are taken', () => {
@@ -20,5 +21,16 @@ describe('Store', () => {
     const listener = vi.fn();
     store.onChange(listener);
     expect(listener).toHaveBeenCalledTimes(1);
+  });
+});
+
+describe('plannedEnd_ns', () => {
+  it('is the duration, but not the limit of a live flight', () => {
+    const { state } = new Store();
+    expect(plannedEnd_ns(state)).toBe(0);
+    state.run = sampleRun();
+    expect(plannedEnd_ns(state)).toBe(2e9);
+    state.data.apply({ stream: 'vehicle', seq: 0, columns: { t_ns: [0], vehicle: ['1.1'] } });
+    expect(plannedEnd_ns(state)).toBe(0);
   });
 });

@@ -225,6 +225,20 @@ TEST_F(LoggedImagesTest, NamesTheTopicsThatThereAre) {
   EXPECT_THAT(open_bytes(logged).error().message, HasSubstr("tlog holds no images"));
 }
 
+TEST_F(LoggedImagesTest, NamesAnyTopicsInALineThatCanBePrinted) {
+  Bytes bytes = bag_start(1);
+  for (std::uint32_t i = 0; i < 50; ++i) {
+    const std::string name = "/\x1b[31m\xFF" + std::to_string(i) + std::string(300, 'x');
+    append(bytes, bag_connection(i, name, "sensor_msgs/Image"));
+    append(bytes, bag_message(i, 1, ros_picture(Wire::kRos1, 5, 1)));
+  }
+  const std::string message = open_bytes(bytes).error().message;
+  EXPECT_THAT(message, HasSubstr("one must be named: /?[31m?0xxx"));
+  EXPECT_THAT(message, HasSubstr(" and 30 more"));
+  EXPECT_LT(message.size(), 3000U);
+  EXPECT_TRUE(std::all_of(message.begin(), message.end(), [](char c) { return c >= ' '; }));
+}
+
 TEST_F(LoggedImagesTest, DoesNotBelieveLengthsOfDamagedImages) {
   // Numbers of height, width, step and size that do not fit the bytes that are there.
   const std::vector<std::function<void(Bytes&)>> damages = {

@@ -10,6 +10,8 @@
 #include "core/time.hpp"
 #include "flight/logs/log_samples.hpp"
 #include "flight/logs/series/log_series.hpp"
+#include "flight/logs/truth/log_trajectory.hpp"
+#include "tests/flight/logs/log_bytes.hpp"
 #include "tests/support/support.hpp"
 
 namespace overfly::flight::logs {
@@ -71,6 +73,51 @@ TEST_P(LogSeriesTest, KeepsTheExtremesOfARecordedFlight) {
 INSTANTIATE_TEST_SUITE_P(Sitl,
                          LogSeriesTest,
                          ::testing::Values("sitl/plane25.BIN", "sitl/plane25.tlog"));
+
+/// A tlog of two runs of the clock, 5 s and 10 s, with local positions whose origin comes late.
+testing::Bytes late_origin_log() {
+  testing::Bytes bytes;
+  std::uint8_t sequence = 0;
+  const auto add = [&](std::uint32_t id, const testing::Bytes& payload) {
+    testing::append(
+        bytes,
+        testing::tlog_record(1'700'000'000'000'000, testing::frame_bytes(id, payload, sequence++)));
+  };
+  for (int i = 0; i < 150; ++i) {
+    const std::uint32_t boot_ms = i < 50 ? 900'000 + 100 * i : 1000 + 100 * (i - 50);
+    testing::Bytes position;
+    testing::put(position, boot_ms);
+    for (const float value : {1.0F * i, 2.0F, -100.0F, 0.0F, 0.0F, 0.0F}) {
+      testing::put(position, value);
+    }
+    add(30, testing::attitude_payload(boot_ms, 0.0F, 0.0F, 0.0F));
+    add(32, position);
+    if (i != 100) continue;
+    testing::Bytes origin;
+    for (const std::int32_t value : {470000000, 80000000, 400000}) testing::put(origin, value);
+    add(49, origin);
+  }
+  return bytes;
+}
+
+TEST(LogSeries, CountsPositionsBeforeTheFirstOriginFromIt) {
+  const overfly::testing::TemporaryFolder folder;
+  testing::write_bytes(folder.path() / "log", late_origin_log());
+  const Result<OpenedLog> log = open_log(folder.path() / "log");
+  ASSERT_TRUE(log.ok()) << log.error().message;
+  const Result<LogTrajectory> converted = read_log_trajectory(*log, {"LOCAL_POSITION_NED", {}, {}});
+  ASSERT_TRUE(converted.ok()) << converted.error().message;
+  const Result<LogSeries> series = read_log_series(*log, {"LOCAL_POSITION_NED", 1000});
+  ASSERT_TRUE(series.ok()) << series.error().message;
+  EXPECT_TRUE(series->georeferenced);
+  EXPECT_EQ(series->vehicle, "1.1");
+  EXPECT_EQ(series->run, 1U);
+  ASSERT_EQ(series->positions.size(), converted->poses.size());
+  for (std::size_t i = 0; i < converted->poses.size(); ++i) {
+    EXPECT_EQ(series->positions[i].t_ns, converted->poses[i].t_ns);
+    EXPECT_EQ(series->positions[i].values[0], converted->poses[i].position.x());
+  }
+}
 
 TEST(LogSeries, ReadsASliceOfASource) {
   OVERFLY_DATA_OR_SKIP(file, "sitl/plane25.BIN");

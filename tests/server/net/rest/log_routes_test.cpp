@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
 #include <boost/asio/connect.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -102,6 +104,10 @@ TEST_F(LogRoutesTest, ListsAndDescribesTheLogsOfTheDataFolders) {
   write_log(".c.bin", northward_log());
   write_log("text.bin", "not a log");
   write_log("other.tif", northward_log());
+  // Not UTF-8: a byte alone, an overlong sequence, a surrogate, one that is cut off.
+  for (const char* name : {"\xFF.bin", "\xC0\xAF.bin", "\xED\xA0\x80.bin", "\xE2\x82.bin"}) {
+    write_log(name, northward_log());
+  }
   const json list = call("GET", kLogs).json();
   ASSERT_EQ(list.at("logs").size(), 1U) << list;
   const json& entry = list.at("logs").at(0);
@@ -113,8 +119,12 @@ TEST_F(LogRoutesTest, ListsAndDescribesTheLogsOfTheDataFolders) {
   const json info = call("GET", log).json();
   EXPECT_EQ(info.at("name"), entry.at("name"));
   EXPECT_EQ(info.at("events").at(0).at("kind"), "mode");
+  EXPECT_EQ(info.at("events").at(0).at("run"), 0);
+  EXPECT_EQ(info.at("clock_runs").at(0).at("run"), 0);
   const json series = call("GET", log + "/series").json();
   EXPECT_EQ(series.at("position_count"), 50);
+  EXPECT_EQ(series.at("vehicle"), "");
+  EXPECT_EQ(series.at("run"), 0);
   EXPECT_EQ(series.at("attitudes").at("roll_deg").at(7), 10.0);
   EXPECT_EQ(series.at("positions").at("lat_deg").at(1), 47.000009);
   EXPECT_NEAR(series.at("speeds").at("ground_speed_m_s").at(0).get<double>(), 25.0, 0.1);
@@ -232,6 +242,62 @@ TEST_F(LogRoutesTest, RemovesUploadsWhoseClientsGoAway) {
   EXPECT_TRUE(comes_true([&] { return files_of_uploads() == 0; }));
   EXPECT_EQ(call("GET", kLogs).json().at("uploads").at("used_bytes"), 0);
   EXPECT_EQ(upload("c.bin", northward_log()).status, 201);
+}
+
+TEST_F(LogRoutesTest, TakesUploadsWhoseNameIsEncoded) {
+  EXPECT_EQ(call("POST", "/api/v1/%6Cogs?name=a.bin", northward_log()).status, 201);
+}
+
+TEST_F(LogRoutesTest, LeavesTheUploadsOfOtherServers) {
+  RawClient client(server_.port());
+  const std::string log = northward_log();
+  client.send(upload_head(
+      "a.bin", "Content-Length: " + std::to_string(log.size()) + "\r\nExpect: 100-continue\r\n"));
+  EXPECT_THAT(client.line(), HasSubstr("100 Continue"));
+  ASSERT_TRUE(comes_true([&] { return files_of_uploads() == 1; }));
+  // What a server left that was killed, with the number of this process.
+  const fs::path left =
+      server_.folder() / "uploads" / (".upload-" + std::to_string(::getpid()) + "-77");
+  write_text(left, "x");
+  const server::LogUploads other(server_.folder() / "uploads", small_limits().uploads);
+  EXPECT_FALSE(fs::exists(left));
+  EXPECT_EQ(files_of_uploads(), 1U);
+  client.send(log);
+  EXPECT_THAT(client.line(), ::testing::Eq("\r"));
+  EXPECT_THAT(client.line(), HasSubstr("201"));
+}
+
+class SlowUploadTest : public ::testing::Test {
+ protected:
+  /// Sends a log in `pieces` pieces, half a second apart. @return the first line of the answer
+  static std::string answer_to_slow_upload(const net::ServerLimits& limits, std::size_t pieces) {
+    TestServer server(limits);
+    RawClient client(server.port());
+    const std::string log = northward_log();
+    client.send(upload_head(
+        "a.bin", "Content-Length: " + std::to_string(log.size()) + "\r\nExpect: 100-continue\r\n"));
+    EXPECT_THAT(client.line(), HasSubstr("100 Continue"));
+    (void)client.line();
+    const std::size_t step = log.size() / pieces + 1;
+    for (std::size_t at = 0; at < log.size(); at += step) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(500));
+      client.send(log.substr(at, step));
+    }
+    return client.line();
+  }
+};
+
+TEST_F(SlowUploadTest, IsReceivedAsLongAsBytesArrive) {
+  net::ServerLimits limits = small_limits();
+  limits.idle_ms = 4'000;
+  EXPECT_THAT(answer_to_slow_upload(limits, 9), HasSubstr("201"));
+}
+
+TEST_F(SlowUploadTest, IsRefusedBelowTheLeastMeanRate) {
+  net::ServerLimits limits = small_limits();
+  limits.upload_grace_ms = 0;
+  limits.min_upload_bytes_per_s = std::uint64_t{1} << 50U;
+  EXPECT_THAT(answer_to_slow_upload(limits, 2), HasSubstr("408"));
 }
 
 TEST_F(LogRoutesTest, KeepsTheConnectionAfterAnUpload) {

@@ -94,6 +94,11 @@ TEST_F(RestApiTest, AnswersEveryRouteAsDocumented) {
   check("GET", "/api/v1/scenarios/{name}", "/api/v1/scenarios/tiny", 200);
   check("GET", "/api/v1/scenarios/{name}", "/api/v1/scenarios/none", 404);
   check("GET", "/api/v1/scenarios/{name}", "/api/v1/scenarios/broken", 400);
+  const Answer world =
+      check("GET", "/api/v1/scenarios/{name}/world", "/api/v1/scenarios/tiny/world", 200);
+  EXPECT_EQ(world.json().at("outline").size(), 32U);
+  check("GET", "/api/v1/scenarios/{name}/world", "/api/v1/scenarios/none/world", 404);
+  check("GET", "/api/v1/scenarios/{name}/world", "/api/v1/scenarios/broken/world", 400);
   const Answer schema = check("GET", "/api/v1/scenario-schema", "/api/v1/scenario-schema", 200);
   EXPECT_EQ(schema.body, server::scenario_schema_text());
 
@@ -161,6 +166,12 @@ TEST_F(RestApiTest, AnswersEveryRouteAsDocumented) {
   EXPECT_EQ(drawn.json().at("positions").at("t_s").size(), 13U);
   check("GET", series, upload + "/series?points=7", 400);
   check("GET", series, logs + "/none/series", 404);
+  const std::string residuals = log + "/residuals";
+  check("GET", residuals, upload + "/residuals?from_s=1&to_s=2.9&points=100", 200);
+  check("GET", residuals, upload + "/residuals?time_offset_s=3", 400);
+  check("GET", residuals, upload + "/residuals?time_offset_s=auto", 422);
+  check("GET", residuals, logs + "/none/residuals", 404);
+  check("GET", "/api/v1/progress/{id}", "/api/v1/progress/none", 404);
   check("DELETE", log, upload, 204);
   check("DELETE", log, upload, 404);
 

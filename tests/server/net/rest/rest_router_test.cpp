@@ -68,6 +68,29 @@ TEST(RestRouter, RefusesParametersThatTheRouteDoesNotKnow) {
   EXPECT_EQ(ask(router, "DELETE", "/runs/a?x=1").status, 400);
 }
 
+TEST(RestRouter, KnowsUploadsByTheirDecodedPath) {
+  RestRouter router = example();
+  router.add_upload(
+      "/logs",
+      [](const RouteCall&, std::optional<std::uint64_t>, std::optional<HttpResponse>* answer) {
+        answer->emplace().status = 299;
+        return std::unique_ptr<BodySink>();
+      },
+      {"name"});
+  for (const char* target : {"/logs", "/%6Cogs?name=a.bin", "/l%6fgs#x"}) {
+    const HttpRequest request{"POST", target, {}, ""};
+    ASSERT_TRUE(router.is_upload(request)) << target;
+    std::unique_ptr<BodySink> sink;
+    std::optional<HttpResponse> answer;
+    router.receive(request, std::nullopt, &sink, &answer);
+    EXPECT_EQ(answer.value().status, 299) << target;
+  }
+  EXPECT_FALSE(router.is_upload({"POST", "/logs%2F", {}, ""}));
+  EXPECT_FALSE(router.is_upload({"GET", "/logs", {}, ""}));
+  // A route without a handler is no reason to fail.
+  EXPECT_EQ(ask(router, "POST", "/%6Cogs").status, 405);
+}
+
 TEST(ErrorResponse, ListsTheFieldsAtFault) {
   const HttpResponse response = error_response({ErrorCode::kInvalidArgument,
                                                 "camera.fov_deg = 190: must be in (0, 180)\n"

@@ -1,5 +1,5 @@
 // Flight modes of a log as bands of time, and its other events as marks.
-import type { LogEvent } from '../../protocol/log_types';
+import type { LogEvent, LogSeries } from '../../protocol/log_types';
 
 export interface Band {
   begin_s: number;
@@ -16,6 +16,14 @@ export interface Mark {
 /** "mode 10 (AUTO)" -> "AUTO" */
 export function modeName(text: string): string {
   return /\(([^)]+)\)/.exec(text)?.[1] ?? text;
+}
+
+/** Those of the vehicle, and the run of its clock, whose series are shown: other times mean others. */
+export function eventsOf(
+  events: readonly LogEvent[],
+  { vehicle, run }: Pick<LogSeries, 'vehicle' | 'run'>,
+): LogEvent[] {
+  return events.filter((event) => (event.vehicle ?? '') === vehicle && event.run === run);
 }
 
 /** Each mode lasts until the next one, the last one to the end of the log. */
@@ -44,6 +52,13 @@ export function marksOf(events: readonly LogEvent[]): Mark[] {
   return events.flatMap(({ t_s, kind, text }) =>
     t_s !== null && kMarked.has(kind) ? [{ t_s, kind, text }] : [],
   );
+}
+
+export function marksWithin(
+  marks: readonly Mark[],
+  [begin_s, end_s]: readonly [number, number],
+): Mark[] {
+  return marks.filter(({ t_s }) => t_s >= begin_s && t_s <= end_s);
 }
 
 /** The same colour for the same name everywhere. */

@@ -1,13 +1,17 @@
 // The page of flight logs: listed, uploaded, looked at, flown.
 import type { RestClient } from '../../connection/rest_client';
-import { RestError } from '../../connection/rest_client';
+import { fieldErrorsOf } from '../../connection/rest_client';
 import type { Upload } from '../../connection/upload';
 import type { FieldError } from '../../protocol/field_errors';
-import type { LogInfo, LogList, LogSeries } from '../../protocol/log_types';
+import type { LogEntry, LogInfo, LogList, LogSeries, WorldExtent } from '../../protocol/log_types';
 import type { Session } from '../session';
 import type { Store } from '../state';
 import type { LogFlight } from './log_flight';
 import { flyableSources, logOverrides, newLogFlight } from './log_flight';
+import type { LogSmoothingState } from './log_smoothing';
+import { initialSmoothing } from './log_smoothing';
+import type { UploadSet } from './upload_set';
+import { uploadQuery, uploadSets } from './upload_set';
 
 export interface UploadProgress {
   name: string;
@@ -31,6 +35,9 @@ export interface LogPage {
   flight: LogFlight;
   flightErrors: FieldError[];
   starting: boolean;
+  smoothing: LogSmoothingState;
+  /** By scenario; null: not known. */
+  worlds: Map<string, WorldExtent | null>;
 }
 
 export function initialLogPage(): LogPage {
@@ -48,12 +55,16 @@ export function initialLogPage(): LogPage {
     flight: newLogFlight(''),
     flightErrors: [],
     starting: false,
+    smoothing: initialSmoothing(),
+    worlds: new Map(),
   };
 }
 
 export class LogBrowser {
   private reading = new AbortController();
   private sending: AbortController | null = null;
+  /** Number of the latest request for the list. */
+  private listing = 0;
 
   constructor(
     private readonly store: Store,
@@ -66,6 +77,8 @@ export class LogBrowser {
   async open(): Promise<void> {
     const { page } = this;
     page.open = true;
+    // A world that was not there may have been made meanwhile.
+    for (const [name, world] of page.worlds) if (world === null) page.worlds.delete(name);
     const { scenarioName, scenarios } = this.store.state;
     const flyable = scenarios?.filter(({ error }) => error === null) ?? [];
     if (page.flight.scenario === '') {
@@ -81,10 +94,15 @@ export class LogBrowser {
   }
 
   async readList(): Promise<void> {
+    const number = ++this.listing;
     try {
-      this.page.list = await this.rest.logs();
+      const list = await this.rest.logs();
+      // A later answer is newer, whichever comes first.
+      if (number !== this.listing) return;
+      this.page.list = list;
       this.page.listError = null;
     } catch (error) {
+      if (number !== this.listing) return;
       this.page.listError = textOf(error);
     }
     this.changed();
@@ -98,12 +116,16 @@ export class LogBrowser {
     page.flight = { ...newLogFlight(page.flight.scenario), estimators: page.flight.estimators };
     page.flightErrors = [];
     await this.read(async (signal) => {
-      page.info = await this.rest.log(name, signal);
-      const best = page.info.truth?.position ?? '';
+      const info = await this.rest.log(name, signal);
+      signal.throwIfAborted();
+      page.info = info;
+      const best = info.truth?.position ?? '';
       // Positions of an unknown place cannot be flown.
-      if (!flyableSources(page.info).includes(best)) page.flight.smooth = false;
+      if (!flyableSources(info).includes(best)) page.flight.smooth = false;
       this.changed();
-      page.series = await this.rest.logSeries(name, '', signal);
+      const series = await this.rest.logSeries(name, '', signal);
+      signal.throwIfAborted();
+      page.series = series;
     });
   }
 
@@ -113,7 +135,9 @@ export class LogBrowser {
     if (name === null) return;
     page.flight.source = source;
     await this.read(async (signal) => {
-      page.series = await this.rest.logSeries(name, source, signal);
+      const series = await this.rest.logSeries(name, source, signal);
+      signal.throwIfAborted();
+      page.series = series;
     });
   }
 
@@ -124,34 +148,48 @@ export class LogBrowser {
     this.changed();
   }
 
-  async send(file: File): Promise<void> {
+  /** Uploads logs one after another, or a mapping with its CSV files as one log. */
+  async send(files: readonly File[]): Promise<void> {
     const { page } = this;
-    if (page.upload !== null) return;
-    page.uploadError = null;
-    page.upload = { name: file.name, share: 0 };
+    if (page.upload !== null || files.length === 0) return;
+    const sets = uploadSets(files);
+    page.uploadError = typeof sets === 'string' ? sets : null;
     this.changed();
-    this.sending = new AbortController();
+    if (typeof sets === 'string') return;
+    for (const set of sets) {
+      await this.sendOne(set);
+      if (page.uploadError !== null) return;
+    }
+  }
+
+  private async sendOne(files: UploadSet<File>): Promise<void> {
+    const { page } = this;
+    const { name } = files[0];
     const progress = (share: number) => {
-      page.upload = { name: file.name, share };
+      page.upload = { name, share };
       this.changed();
     };
+    progress(0);
+    this.sending = new AbortController();
+    let entry: LogEntry;
     try {
-      const name = file.name.replaceAll(/[^\w.-]/g, '_');
-      const entry = await this.rest.uploadLog(
+      entry = await this.rest.uploadLog(
         this.upload,
-        name,
-        file,
+        uploadQuery(files),
+        files.length === 1 ? files[0] : new Blob([...files]),
         progress,
         this.sending.signal,
       );
-      page.upload = null;
-      await this.readList();
-      await this.choose(entry.name);
     } catch (error) {
-      page.uploadError = `${file.name}: ${textOf(error)}`;
+      page.uploadError = `${name}: ${textOf(error)}`;
+      return;
+    } finally {
+      page.upload = null;
+      this.changed();
     }
-    page.upload = null;
-    this.changed();
+    // The next upload may begin meanwhile.
+    await this.readList();
+    await this.choose(entry.name);
   }
 
   cancelUpload(): void {
@@ -162,6 +200,9 @@ export class LogBrowser {
     try {
       await this.rest.deleteLog(name);
       if (this.page.chosen === name) {
+        this.reading.abort();
+        this.page.reading = false;
+        this.page.error = null;
         this.page.chosen = null;
         this.page.info = null;
         this.page.series = null;
@@ -180,12 +221,14 @@ export class LogBrowser {
     page.starting = true;
     page.flightErrors = [];
     this.changed();
+    // The form as it is now: another log may be chosen meanwhile.
+    const flight = { ...page.flight };
     try {
-      const document = await this.rest.scenario(page.flight.scenario);
-      const { overrides, errors } = logOverrides(page.flight, entry.file, document);
-      page.flightErrors = errors;
+      const document = await this.rest.scenario(flight.scenario);
+      const { overrides, errors } = logOverrides(flight, entry.file, document);
+      if (page.chosen === entry.name) page.flightErrors = errors;
       if (errors.length === 0) {
-        const run = await this.rest.startRun(page.flight.scenario, overrides, this.newKey());
+        const run = await this.rest.startRun(flight.scenario, overrides, this.newKey());
         const { state } = this.store;
         state.runs = [run, ...(state.runs ?? []).filter(({ id }) => id !== run.id)];
         page.open = false;
@@ -193,8 +236,7 @@ export class LogBrowser {
         this.store.change('lists');
       }
     } catch (error) {
-      const known = error instanceof RestError ? error.fieldErrors : [];
-      page.flightErrors = known.length > 0 ? known : [{ field: '', message: textOf(error) }];
+      page.flightErrors = fieldErrorsOf(error);
     }
     page.starting = false;
     this.changed();

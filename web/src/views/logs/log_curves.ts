@@ -1,9 +1,9 @@
 // The plots of a log, one below the other, with a lane that names the flight modes.
 import type { LogInfo, LogSeries } from '../../protocol/log_types';
-import { bandHue, marksOf, modeBands } from '../../store/logs/log_bands';
+import { bandHue, eventsOf, marksOf, modeBands } from '../../store/logs/log_bands';
 import type { Band, Mark } from '../../store/logs/log_bands';
 import { broken } from '../../store/logs/log_track';
-import { h, setText } from '../dom';
+import { h, setText, wholeLabel } from '../dom';
 import { LogPlot } from './log_plot';
 
 interface Curve {
@@ -48,7 +48,7 @@ const kCurves: readonly Curve[] = [
   ).map(([name, label]) => ({
     key: name,
     label,
-    unit: '°',
+    unit: 'deg',
     digits: 1,
     least: 5,
     wraps: name === 'yaw',
@@ -84,7 +84,7 @@ export class LogCurves {
         new LogPlot({
           ...curve,
           timeLabels: i === kCurves.length - 1,
-          colour: 'rgb(230, 90, 90)',
+          colours: ['rgb(230, 90, 90)'],
           dots: curve.wraps,
           onHover: (t_s) => this.hover(t_s),
           onSlice: (from_s, to_s) =>
@@ -105,8 +105,9 @@ export class LogCurves {
     this.shown = series;
     const times = series?.positions['t_s'] ?? [];
     this.span_s = [times[0] ?? 0, times.at(-1) ?? 1];
-    this.bands = info === null ? [] : modeBands(info.events, this.span_s[1]);
-    this.marks = info === null ? [] : marksOf(info.events);
+    const events = info === null || series === null ? [] : eventsOf(info.events, series);
+    this.bands = modeBands(events, this.span_s[1]);
+    this.marks = marksOf(events);
     kCurves.forEach((curve, i) => this.showCurve(curve, this.plots[i], series));
     this.drawLane();
   }
@@ -120,7 +121,14 @@ export class LogCurves {
     const table = series?.[curve.table] ?? {};
     const name = curve.columns.find((column) => column in table) ?? '';
     const lines = broken(table['t_s'] ?? [], table[name] ?? [], curve.wraps);
-    plot.show({ ...lines, span_s: this.span_s, bands: this.bands, marks: this.marks });
+    plot.show({
+      t_s: lines.t_s,
+      curves: [lines.values],
+      dots: [],
+      span_s: this.span_s,
+      bands: this.bands,
+      marks: this.marks,
+    });
     if (curve.key === 'height') {
       const unit = plot.root.querySelector<HTMLElement>('.unit');
       if (unit !== null) setText(unit, kHeightNames[name] ?? 'm');
@@ -144,7 +152,7 @@ export class LogCurves {
                 `left:${share(begin_s) * 100}%;width:${(share(end_s) - share(begin_s)) * 100}%;` +
                 `background:hsla(${bandHue(text)}, 60%, 45%, 0.55)`,
             },
-            text,
+            wholeLabel(text),
           ),
         ),
     );

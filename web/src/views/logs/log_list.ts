@@ -16,19 +16,29 @@ export class LogListView {
   private readonly uploadText = h('span', {});
   private readonly uploading: HTMLElement;
   private readonly place = h('div', { class: 'upload-place' });
-  private readonly picker = h('input', { type: 'file', hidden: true, 'data-role': 'log-file' });
+  private readonly picker = h('input', {
+    type: 'file',
+    multiple: true,
+    hidden: true,
+    'data-role': 'log-file',
+  });
   private readonly button: HTMLButtonElement;
 
   constructor(private readonly context: Context) {
     this.button = h(
       'button',
-      { class: 'secondary', type: 'button', onclick: () => this.picker.click() },
+      {
+        class: 'secondary',
+        type: 'button',
+        title: 'Logs, or a mapping (.json) together with its CSV files',
+        onclick: () => this.picker.click(),
+      },
       'Upload ...',
     );
     this.picker.addEventListener('change', () => {
-      const file = this.picker.files?.[0];
+      const files = [...(this.picker.files ?? [])];
       this.picker.value = '';
-      if (file !== undefined) void this.context.logs.send(file);
+      void this.context.logs.send(files);
     });
     this.uploading = h(
       'div',
@@ -75,7 +85,7 @@ export class LogListView {
     this.button.disabled = upload !== null || quota === 0;
     const used = `${sizeText(list?.uploads.used_bytes ?? 0)} of ${sizeText(quota)} used`;
     const none = 'This server takes no uploads.';
-    setText(this.place, list === null ? '' : quota === 0 ? none : `or drop a file here · ${used}`);
+    setText(this.place, list === null ? '' : quota === 0 ? none : `or drop files here · ${used}`);
   }
 
   private row(entry: LogEntry, chosen: boolean): HTMLElement {

@@ -1,7 +1,8 @@
-// A map of a log's positions without a background: scale bar, north, coordinates.
+// A map of a log's positions: outlines of worlds, scale bar, north, coordinates.
 import type { Track } from '../../store/logs/log_track';
+import type { Outline } from '../../store/logs/log_worlds';
 import { nearestRow, placeText, scaleBar_m } from '../../store/logs/log_track';
-import { h, setText } from '../dom';
+import { h, setAttribute, setText } from '../dom';
 
 const kMargin_px = 34;
 const kGrid = 'rgba(140, 155, 180, 0.13)';
@@ -9,12 +10,16 @@ const kLine = 'rgb(230, 38, 38)';
 const kLineOutside = 'rgba(230, 38, 38, 0.3)';
 const kText = '#8a94a6';
 const kBar_px = 130;
+const kWorld = 'rgba(140, 155, 180, 0.5)';
+const kChosenWorld = '#5c9dff';
 
 export class LogMap {
   readonly root: HTMLElement;
   private readonly canvas = h('canvas', { class: 'log-track' });
   private readonly place = h('span', { class: 'log-place', 'data-role': 'log-place' });
+  private readonly note = h('span', { class: 'log-map-note', 'data-role': 'log-map-note' });
   private track: Track | null = null;
+  private outlines: readonly Outline[] = [];
   private slice: readonly [number, number] | null = null;
   private cursor_s: number | null = null;
   /** Metres per pixel, and the place in the middle. */
@@ -22,7 +27,13 @@ export class LogMap {
   private middle: readonly [number, number] = [0, 0];
 
   constructor(onHover: (t_s: number | null) => void) {
-    this.root = h('div', { class: 'log-map', 'data-panel': 'log-map' }, this.canvas, this.place);
+    this.root = h(
+      'div',
+      { class: 'log-map', 'data-panel': 'log-map' },
+      this.canvas,
+      this.place,
+      this.note,
+    );
     new ResizeObserver(() => this.fit()).observe(this.root);
     this.canvas.addEventListener('pointermove', (event) => this.hover(event, onHover));
     this.canvas.addEventListener('pointerleave', () => {
@@ -31,9 +42,13 @@ export class LogMap {
     });
   }
 
-  show(track: Track | null): void {
-    if (track === this.track) return;
+  /** @param note  about the place of the flight */
+  show(track: Track | null, outlines: readonly Outline[], note: string): void {
+    setText(this.note, note);
+    if (track === this.track && outlines === this.outlines) return;
     this.track = track;
+    this.outlines = outlines;
+    setAttribute(this.root, 'data-worlds', String(outlines.length));
     this.fit();
   }
 
@@ -100,8 +115,14 @@ export class LogMap {
           ([low, high], v) => [Math.min(low, v), Math.max(high, v)],
           [Infinity, -Infinity],
         );
-      const [west, east] = range(this.track.east_m);
-      const [south, north] = range(this.track.north_m);
+      // The chosen world if the flight is in or near it, not one on another continent.
+      const [own_m, span_m] = [range(this.track.east_m), range(this.track.north_m)];
+      const near = this.outlines.find(
+        ({ chosen, east_m, north_m }) =>
+          chosen && touches(own_m, range(east_m)) && touches(span_m, range(north_m)),
+      );
+      const [west, east] = range([...this.track.east_m, ...(near?.east_m ?? [])]);
+      const [south, north] = range([...this.track.north_m, ...(near?.north_m ?? [])]);
       this.middle = [(west + east) / 2, (south + north) / 2];
       this.scale = Math.max(
         (east - west) / Math.max(20, clientWidth - 2 * kMargin_px),
@@ -121,8 +142,39 @@ export class LogMap {
     if (this.track === null || this.track.t_s.length === 0) return;
     const bar_m = scaleBar_m(kBar_px * this.scale);
     this.drawGrid(pen, bar_m);
+    for (const outline of this.outlines) this.drawOutline(pen, outline);
     this.drawTrack(pen, this.track);
     this.drawFurniture(pen, bar_m);
+  }
+
+  private drawOutline(
+    pen: CanvasRenderingContext2D,
+    { name, east_m, north_m, chosen }: Outline,
+  ): void {
+    pen.strokeStyle = chosen ? kChosenWorld : kWorld;
+    pen.lineWidth = chosen ? 1.5 : 1;
+    pen.setLineDash(chosen ? [] : [5, 4]);
+    pen.beginPath();
+    let [left, top, right, bottom] = [Infinity, Infinity, -Infinity, -Infinity];
+    east_m.forEach((east, i) => {
+      const [x, y] = this.pixelOf(east, north_m[i] ?? 0);
+      if (i === 0) pen.moveTo(x, y);
+      else pen.lineTo(x, y);
+      [left, right] = [Math.min(left, x), Math.max(right, x)];
+      [top, bottom] = [Math.min(top, y), Math.max(bottom, y)];
+    });
+    const { clientWidth, clientHeight } = this.root;
+    if (!touches([left, right], [0, clientWidth]) || !touches([top, bottom], [0, clientHeight])) {
+      pen.setLineDash([]);
+      return;
+    }
+    pen.closePath();
+    pen.stroke();
+    pen.setLineDash([]);
+    pen.font = '10px system-ui, sans-serif';
+    pen.textAlign = 'left';
+    pen.fillStyle = chosen ? kChosenWorld : kText;
+    pen.fillText(name, Math.max(left + 5, 6), Math.max(top + 13, 34));
   }
 
   private drawGrid(pen: CanvasRenderingContext2D, step_m: number): void {
@@ -215,4 +267,9 @@ export class LogMap {
     pen.textAlign = 'center';
     pen.fillText('N', nx, ny + 12);
   }
+}
+
+/** Whether two ranges overlap. */
+function touches(a: readonly [number, number], b: readonly [number, number]): boolean {
+  return a[0] <= b[1] && b[0] <= a[1];
 }

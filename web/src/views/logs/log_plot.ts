@@ -1,8 +1,7 @@
-// One curve of a log over the vehicle's time, with the flight modes behind it. A drag selects a
-// slice.
+// Curves of a log over the vehicle's time, with the flight modes behind them. A drag selects a slice.
 import uPlot from 'uplot';
 import type { Band, Mark } from '../../store/logs/log_bands';
-import { bandHue } from '../../store/logs/log_bands';
+import { bandHue, marksWithin } from '../../store/logs/log_bands';
 import { formatNumber } from '../../store/format';
 import { h, setText } from '../dom';
 import { paddedRange } from '../plots/plot_range';
@@ -14,7 +13,10 @@ export interface LogPlotOptions {
   digits: number;
   least: number;
   timeLabels: boolean;
-  colour: string;
+  /** One for each curve. */
+  colours: readonly string[];
+  /** In front of the values next to the title, one per curve. */
+  names?: readonly string[];
   /** An angle that wraps: points, because a line would cross the plot. */
   dots: boolean;
   onHover: (t_s: number | null) => void;
@@ -25,10 +27,19 @@ const kText = '#8a94a6';
 const kFont = '10px system-ui, sans-serif';
 const kSyncKey = 'overfly-log-plots';
 const kLeastSlice_px = 4;
+const kDot_px = 2;
+
+/** A sample beside the curves; one outside of the axis is drawn at its edge. */
+export interface Dot {
+  t_s: number;
+  value: number;
+  colour: string;
+}
 
 export interface LogPlotData {
   t_s: number[];
-  values: (number | null)[];
+  curves: (number | null)[][];
+  dots: readonly Dot[];
   span_s: readonly [number, number];
   bands: readonly Band[];
   marks: readonly Mark[];
@@ -37,29 +48,41 @@ export interface LogPlotData {
 export class LogPlot {
   readonly root: HTMLElement;
   private readonly area = h('div', { class: 'plot-area' });
-  private readonly readout = h('span', { class: 'readout' });
+  private readonly readouts: HTMLElement[];
   private readonly plot: uPlot;
-  private data: LogPlotData = { t_s: [], values: [], span_s: [0, 1], bands: [], marks: [] };
+  private data: LogPlotData = {
+    t_s: [],
+    curves: [],
+    dots: [],
+    span_s: [0, 1],
+    bands: [],
+    marks: [],
+  };
   private slice: readonly [number, number] | null = null;
 
   constructor(private readonly options: LogPlotOptions) {
-    this.readout.style.color = options.colour;
+    this.readouts = options.colours.map((colour) =>
+      h('span', { class: 'readout', style: `color:${colour}` }),
+    );
     const title = h(
       'div',
       { class: 'plot-title' },
       h('b', {}, options.label),
       h('span', { class: 'unit' }, options.unit),
-      h('span', { class: 'readouts' }, this.readout),
+      h('span', { class: 'readouts' }, ...this.readouts),
     );
     this.root = h('div', { class: 'plot', 'data-log-plot': options.key }, title, this.area);
-    this.plot = new uPlot(this.uplotOptions(), [[], []], this.area);
+    const none: [][] = [[], ...options.colours.map((): [] => [])];
+    this.plot = new uPlot(this.uplotOptions(), none as unknown as uPlot.AlignedData, this.area);
+    // When the mouse is gone this plot is no longer the one that reports.
+    this.plot.over.addEventListener('mouseleave', () => options.onHover(null));
     new ResizeObserver(() => this.fit()).observe(this.area);
   }
 
   show(data: LogPlotData): void {
     this.data = data;
-    this.plot.setData([data.t_s, data.values], true);
-    setText(this.readout, '');
+    this.plot.setData([data.t_s, ...data.curves], true);
+    for (const readout of this.readouts) setText(readout, '');
   }
 
   showSlice(slice: readonly [number, number] | null): void {
@@ -74,7 +97,7 @@ export class LogPlot {
   }
 
   private uplotOptions(): uPlot.Options {
-    const { timeLabels, least, colour, dots } = this.options;
+    const { timeLabels, least, colours, dots } = this.options;
     const axis = {
       stroke: kText,
       font: kFont,
@@ -104,16 +127,16 @@ export class LogPlot {
       ],
       series: [
         {},
-        {
+        ...colours.map((colour) => ({
           stroke: colour,
           width: dots ? 0 : 1.25,
           pxAlign: 0,
           points: { show: dots, size: 2, fill: colour, width: 0 },
-        },
+        })),
       ],
       hooks: {
         drawClear: [(plot: uPlot) => this.drawBands(plot)],
-        draw: [(plot: uPlot) => this.drawSlice(plot)],
+        draw: [(plot: uPlot) => this.drawDots(plot), (plot: uPlot) => this.drawSlice(plot)],
         setCursor: [(plot: uPlot) => this.hover(plot)],
         setSelect: [(plot: uPlot) => this.select(plot)],
       },
@@ -122,11 +145,13 @@ export class LogPlot {
 
   private hover(plot: uPlot): void {
     const { idx, left } = plot.cursor;
-    const value = idx === null || idx === undefined ? null : this.data.values[idx];
-    setText(
-      this.readout,
-      value === null || value === undefined ? '' : formatNumber(value, this.options.digits),
-    );
+    const { digits, names } = this.options;
+    this.readouts.forEach((readout, i) => {
+      const value = idx === null || idx === undefined ? null : this.data.curves[i]?.[idx];
+      const name = names?.[i];
+      const text = value === null || value === undefined ? '' : formatNumber(value, digits);
+      setText(readout, text === '' || name === undefined ? text : `${name} ${text}`);
+    });
     // Of the synchronised plots only the one under the mouse reports.
     if (!plot.over.matches(':hover')) return;
     this.options.onHover(left === undefined || left < 0 ? null : plot.posToVal(left, 'x'));
@@ -152,12 +177,38 @@ export class LogPlot {
     }
     ctx.strokeStyle = 'rgba(234, 183, 102, 0.45)';
     ctx.beginPath();
-    for (const { t_s, kind } of this.data.marks) {
+    for (const { t_s, kind } of marksWithin(this.data.marks, this.data.span_s)) {
       if (kind === 'text') continue;
       ctx.moveTo(x(t_s), bbox.top);
       ctx.lineTo(x(t_s), bbox.top + bbox.height);
     }
     ctx.stroke();
+    ctx.restore();
+  }
+
+  private drawDots(plot: uPlot): void {
+    const { ctx, bbox } = plot;
+    const radius = kDot_px * window.devicePixelRatio;
+    ctx.save();
+    for (const { t_s, value, colour } of this.data.dots) {
+      const x = plot.valToPos(t_s, 'x', true);
+      if (x < bbox.left || x > bbox.left + bbox.width) continue;
+      const y = plot.valToPos(value, 'y', true);
+      const edge = Math.min(bbox.top + bbox.height, Math.max(bbox.top, y));
+      ctx.fillStyle = colour;
+      ctx.beginPath();
+      if (edge === y) {
+        ctx.arc(x, y, radius, 0, 2 * Math.PI);
+      } else {
+        // Points to where the sample is.
+        const tip = edge;
+        const base = y < edge ? edge + 3 * radius : edge - 3 * radius;
+        ctx.moveTo(x, tip);
+        ctx.lineTo(x - 1.5 * radius, base);
+        ctx.lineTo(x + 1.5 * radius, base);
+      }
+      ctx.fill();
+    }
     ctx.restore();
   }
 

@@ -5,7 +5,7 @@ import { formatTime } from '../../store/format';
 import { lastAtOrBefore, nearestIndex } from '../../store/table';
 import type { Span } from '../../store/time_window';
 import { following, zoomed } from '../../store/time_window';
-import { shownAlignment } from '../../store/state';
+import { plannedEnd_ns, shownAlignment } from '../../store/state';
 import type { Topic } from '../../store/state';
 import { EstimatorTable } from '../estimator_table';
 import { h, rebuild, setAttribute, setText } from '../dom';
@@ -103,8 +103,8 @@ export class PlotsPanel implements View {
   }
 
   private whole(): Span {
-    const { run } = this.context.store.state;
-    return [0, Math.max((run?.duration_ns ?? 0) / 1e9, this.t_s.at(-1) ?? 0, 1)];
+    const planned_s = plannedEnd_ns(this.context.store.state) / 1e9;
+    return [0, Math.max(planned_s, this.t_s.at(-1) ?? 0, 1)];
   }
 
   private zoom(centre_s: number, factor: number): void {

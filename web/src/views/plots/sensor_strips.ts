@@ -1,7 +1,7 @@
 // Plots of the sensors' samples: as the estimators receive them, with noise and drift.
 import type { SensorCurve } from '../../protocol/sensor_types';
-import type { CurveTable } from '../../store/sensor_curves';
-import { curveTable, valueAt } from '../../store/sensor_curves';
+import type { CurveTable } from '../../store/sensors/sensor_curves';
+import { curveTable, valueAt } from '../../store/sensors/sensor_curves';
 import type { State } from '../../store/state';
 import type { Span } from '../../store/time_window';
 import { Plot } from './plot';
@@ -182,7 +182,10 @@ class SensorStrip implements Strip {
   }
 
   showCursor(state: State): void {
-    this.showAt(state, (state.playback?.t_ns ?? -1) / 1e9);
+    // During the flight the cursor is ahead of what was read.
+    const t_s = (state.playback?.t_ns ?? -1) / 1e9;
+    const live = state.playback?.live === true;
+    this.showAt(state, live ? Math.min(t_s, state.sensors?.newest_s ?? t_s) : t_s);
   }
 
   showHover(state: State, t_s: number): void {

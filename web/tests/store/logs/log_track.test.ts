@@ -11,6 +11,8 @@ import {
 const series = {
   position_source: 'GPS',
   attitude_source: null,
+  vehicle: '',
+  run: 0,
   georeferenced: true,
   position_count: 2,
   attitude_count: 0,

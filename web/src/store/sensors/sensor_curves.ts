@@ -1,6 +1,6 @@
 // Curves of one plot on a common time axis.
-import type { SensorCurve } from '../protocol/sensor_types';
-import { lastAtOrBefore } from './table';
+import type { SensorCurve } from '../../protocol/sensor_types';
+import { lastAtOrBefore } from '../table';
 
 /** Rows of times; null breaks a curve, undefined means that it has no value at that time. */
 export interface CurveTable {

@@ -1,14 +1,16 @@
 // Samples of the watched run's sensors: read while they are shown, and again as the run goes on.
-import type { RestClient } from '../connection/rest_client';
-import type { SensorCurves } from '../protocol/sensor_types';
-import { isActive } from '../protocol/rest_types';
-import type { Store } from './state';
-import type { Span } from './time_window';
+import type { RestClient } from '../../connection/rest_client';
+import type { SensorCurves } from '../../protocol/sensor_types';
+import { isActive } from '../../protocol/rest_types';
+import type { Store } from '../state';
+import type { Span } from '../time_window';
 
 export interface SensorSamples {
   /** Of this run. */
   run: string;
   sensors: SensorCurves[];
+  /** Of all samples [s]; -Infinity without any. */
+  newest_s: number;
   /** Increases with every reading. */
   generation: number;
 }
@@ -96,7 +98,8 @@ export class Sensors {
       );
       if (reading.signal.aborted) return;
       this.generation += 1;
-      state.sensors = { run: wanted.run, sensors, generation: this.generation };
+      const newest_s = newestOf(sensors);
+      state.sensors = { run: wanted.run, sensors, newest_s, generation: this.generation };
       state.sensorError = null;
     } catch (error) {
       if (reading.signal.aborted) return;
@@ -111,6 +114,11 @@ export class Sensors {
     const { run } = this.store.state;
     return run === null || run.id !== id || isActive(run);
   }
+}
+
+function newestOf(sensors: readonly SensorCurves[]): number {
+  const ends = sensors.flatMap(({ curves }) => curves.map(({ t_s }) => t_s.at(-1) ?? -Infinity));
+  return Math.max(-Infinity, ...ends);
 }
 
 function widened(span_s: Span | null): Span | null {

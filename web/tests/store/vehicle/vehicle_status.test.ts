@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
-import { RunData } from '../../src/store/run_data';
-import { vehicleAt, vehicleLines } from '../../src/store/vehicle_status';
+import { RunData } from '../../../src/store/run_data';
+import { vehicleAt, vehicleLines } from '../../../src/store/vehicle/vehicle_status';
 
 const columns = {
   t_ns: [0, 5e8],

@@ -1,10 +1,11 @@
 import { beforeEach, describe, expect, it } from 'vitest';
-import { RestClient } from '../../src/connection/rest_client';
-import { Sensors } from '../../src/store/sensors';
-import { sampleRun } from '../support/samples';
-import { Viewing } from '../support/viewing';
+import { RestClient } from '../../../src/connection/rest_client';
+import { Sensors } from '../../../src/store/sensors/sensors';
+import { sampleRun } from '../../support/samples';
+import { Viewing } from '../../support/viewing';
 
-const kAnswer = { sensors: [{ sensor: 'imu', samples: 1, curves: [] }] };
+const kCurve = { name: 'wx_rad_s', t_s: [0.5, 1.5], values: [1, 2] };
+const kAnswer = { sensors: [{ sensor: 'imu', samples: 2, curves: [kCurve] }] };
 
 let viewing: Viewing;
 let asked: { url: string; signal: AbortSignal }[];
@@ -45,7 +46,11 @@ describe('Sensors', () => {
     sensors.show('r1', null);
     await settle();
     expect(asked.map(({ url }) => url)).toEqual(['api/runs/r1/sensors?points=1200']);
-    expect(viewing.store.state.sensors).toMatchObject({ run: 'r1', sensors: kAnswer.sensors });
+    expect(viewing.store.state.sensors).toMatchObject({
+      run: 'r1',
+      sensors: kAnswer.sensors,
+      newest_s: 1.5,
+    });
     expect(waiting).toEqual([]);
     sensors.show('r1', [10, 12]);
     sensors.show('r1', [10, 11]);

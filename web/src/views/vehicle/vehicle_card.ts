@@ -1,8 +1,8 @@
 // State of a live vehicle at the cursor, over the 3D view.
-import { vehicleAt, vehicleLines } from '../store/vehicle_status';
-import type { Topic } from '../store/state';
-import { h, rebuild, setAttribute, setText } from './dom';
-import type { Context, View } from './view';
+import { vehicleAt, vehicleLines } from '../../store/vehicle/vehicle_status';
+import type { Topic } from '../../store/state';
+import { h, rebuild, setAttribute, setText } from '../dom';
+import type { Context, View } from '../view';
 
 /** A running flight without a new row for this long has not heard its vehicle. */
 const kQuiet_ms = 3000;

@@ -1,6 +1,6 @@
 // What a live vehicle said of itself, as rows of a run: the same live and in playback.
-import type { Cell } from '../protocol/messages';
-import { formatNumber } from './format';
+import type { Cell } from '../../protocol/messages';
+import { formatNumber } from '../format';
 
 export interface VehicleRow {
   t_ns: number;

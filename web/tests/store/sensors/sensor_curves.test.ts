@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { curveTable, valueAt } from '../../src/store/sensor_curves';
+import { curveTable, valueAt } from '../../../src/store/sensors/sensor_curves';
 
 const every = (step_s: number, count: number, begin_s = 0) =>
   Array.from({ length: count }, (_, i) => begin_s + i * step_s);
