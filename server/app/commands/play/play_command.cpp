@@ -50,11 +50,16 @@ class CommandInput {
   std::vector<playback::PlaybackCommand> take() {
     constexpr std::size_t kLongestLine = 200;
     pollfd ready{STDIN_FILENO, POLLIN, 0};
-    while (open_ && ::poll(&ready, 1, 0) == 1) {
+    // One piece for each call: standard input may never end.
+    if (open_ && ::poll(&ready, 1, 0) == 1) {
       std::array<char, 256> bytes{};
       const ssize_t got = ::read(STDIN_FILENO, bytes.data(), bytes.size());
       open_ = got > 0;
-      if (open_) line_.append(bytes.data(), static_cast<std::size_t>(got));
+      if (open_) {
+        line_.append(bytes.data(), static_cast<std::size_t>(got));
+      } else if (!line_.empty()) {
+        line_ += '\n';  // the last line may lack its end
+      }
       if (line_.size() > 64 * kLongestLine) line_.clear();
     }
     std::vector<playback::PlaybackCommand> commands;
@@ -93,6 +98,11 @@ int play(const PlayArguments& arguments) {
     return report({ErrorCode::kInvalidArgument,
                    "--from " + std::to_string(arguments.from_s) + ": must be in [0, " +
                        std::to_string(length_s) + "] s"});
+  }
+  if (arguments.repeat && arguments.from_s >= length_s) {
+    return report({ErrorCode::kInvalidArgument,
+                   "--from " + std::to_string(arguments.from_s) + ": must be before the end, " +
+                       std::to_string(length_s) + " s, with --repeat"});
   }
   playback::PlaybackOptions options;
   options.speed = arguments.speed;

@@ -4,7 +4,7 @@ import type { Topic } from '../../store/state';
 import { h, rebuild, setAttribute, setText } from '../dom';
 import type { Context, View } from '../view';
 
-/** A running flight without a new row for this long has not heard its vehicle. */
+/** A running flight that stands still for this long waits for its vehicle. */
 const kQuiet_ms = 3000;
 
 export class VehicleCard implements View {
@@ -12,7 +12,7 @@ export class VehicleCard implements View {
   private readonly title = h('b', {});
   private readonly state = h('span', { class: 'vehicle-link', 'data-role': 'vehicle-link' });
   private readonly lines = h('dl', {});
-  private rows = 0;
+  private t_ns = -1;
   private heard_ms = 0;
 
   constructor(private readonly context: Context) {
@@ -31,12 +31,12 @@ export class VehicleCard implements View {
 
   private draw(): void {
     const { data, playback, run } = this.context.store.state;
-    const rows = data.vehicle;
-    if (rows.length !== this.rows) {
-      this.rows = rows.length;
+    const t_ns = playback?.t_ns ?? 0;
+    if (t_ns !== this.t_ns) {
+      this.t_ns = t_ns;
       this.heard_ms = performance.now();
     }
-    const at = vehicleAt(rows, playback?.t_ns ?? 0);
+    const at = vehicleAt(data.vehicle, t_ns);
     this.root.hidden = at === null;
     if (at === null) return;
     const live = run?.status === 'running' && playback?.live === true;
