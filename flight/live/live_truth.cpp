@@ -13,6 +13,7 @@
 #include "flight/live/live_motion.hpp"
 #include "flight/live/stop_watch.hpp"
 #include "flight/live/truth_streams.hpp"
+#include "flight/live/vehicle_reports.hpp"
 #include "flight/mavlink/link/frame_recorder.hpp"
 #include "flight/mavlink/messages.hpp"
 
@@ -20,9 +21,6 @@ namespace overfly::flight::live {
 namespace {
 
 constexpr std::int64_t kNothingKnownNs = std::numeric_limits<std::int64_t>::min();
-constexpr std::int64_t kStatusPeriodNs = kNsPerS / 2;
-/// Reports that wait to be taken, as for as many samples at 50 Hz.
-constexpr std::size_t kMaxStatusReports = kMaxLiveSamples / 25;
 /// Texts and other instants that a flight records; a vehicle may send any number.
 constexpr std::uint64_t kMaxOtherEvents = 1000;
 
@@ -52,10 +50,7 @@ struct LiveTruth::Impl {
   std::string opened_as;  ///< description
   std::shared_ptr<mavlink::FeedbackSender> sender;
   Arrivals arrivals;
-  std::deque<VehicleStatus> reports;    ///< not taken yet, at times of the vehicle's clock
-  std::int64_t next_report_ns = 0;      ///< of the vehicle's clock
-  std::int64_t counted_ns = 0;          ///< the vehicle's clock at the last report
-  std::uint64_t counted_messages = 0;   ///< until then
+  VehicleReports reports;
   std::uint64_t other_events = 0;       ///< taken
   std::uint64_t unrecorded_events = 0;  ///< of these, beyond kMaxOtherEvents
 
@@ -68,7 +63,6 @@ struct LiveTruth::Impl {
         motion(in, with.geoid_separation_m, with.gap_limit_ns) {}
 
   void take(const mavlink::Frame& message);
-  void add_report();
   [[nodiscard]] std::int64_t known_until_ns() const;
   bool choose();
   void await_start(const mavlink::Frame& message);
@@ -91,7 +85,7 @@ void LiveTruth::Impl::take(const mavlink::Frame& message) {
     if (end_ns) return;
     const std::int64_t before_ns = streams ? known_until_ns() : kNothingKnownNs;
     samples.take(message);
-    add_report();
+    if (const auto now_ns = samples.latest_ns()) reports.add(*vehicle, *now_ns);
     if (!streams) (void)choose();
     if (streams) {
       if (known_until_ns() > before_ns) arrivals.add(known_until_ns());
@@ -104,45 +98,6 @@ void LiveTruth::Impl::take(const mavlink::Frame& message) {
     }
   }
   news.notify_all();
-}
-
-/// Keeps what the vehicle says of itself now, at the time of its own clock: a run in lockstep may
-/// be far behind.
-void LiveTruth::Impl::add_report() {
-  const std::optional<std::int64_t> now_ns = samples.latest_ns();
-  if (!now_ns || *now_ns < next_report_ns) return;
-  next_report_ns = *now_ns + kStatusPeriodNs;
-  const mavlink::VehicleState state = vehicle->state();
-  VehicleStatus report;
-  report.t_ns = *now_ns;
-  report.vehicle = std::to_string(state.system) + "." + std::to_string(state.component);
-  if (const auto mode = logs::flight_event_of(logs::EventKind::kMode, state.mode)) {
-    report.mode = mode->text;
-  }
-  if (state.heartbeat) report.armed = state.armed();
-  report.battery_v = state.battery_v;
-  report.battery_percent = state.battery_percent;
-  if (state.gps) {
-    report.gps_fix = state.gps->fix_type;
-    // 255 stands for unknown.
-    if (state.gps->satellites != 255) report.satellites = state.gps->satellites;
-  }
-  // The first report has nothing to count from.
-  if (counted_ns > 0 && *now_ns > counted_ns) {
-    report.messages_per_s =
-        static_cast<double>(state.messages - counted_messages) / s_from_ns(*now_ns - counted_ns);
-  }
-  counted_ns = *now_ns;
-  counted_messages = state.messages;
-  report.lost_messages = state.lost_messages;
-  const auto sent = static_cast<double>(state.messages + state.lost_messages);
-  if (sent > 0.0) report.lost_percent = 100.0 * static_cast<double>(state.lost_messages) / sent;
-  if (const auto clock = vehicle->clock()) {
-    report.clock_rate = clock->rate;
-    report.round_trip_ms = static_cast<double>(clock->round_trip_ns) * 1e-6;
-  }
-  reports.push_back(std::move(report));
-  if (reports.size() > kMaxStatusReports) reports.pop_front();
 }
 
 void LiveTruth::Impl::end(const std::string& reason) {
@@ -318,12 +273,7 @@ std::vector<FlightEvent> LiveTruth::take_events(std::int64_t t_ns) {
 
 std::optional<VehicleStatus> LiveTruth::take_status(std::int64_t t_ns) {
   const std::lock_guard lock(impl_->mutex);
-  std::deque<VehicleStatus>& waiting = impl_->reports;
-  std::optional<VehicleStatus> latest;
-  while (!waiting.empty() && waiting.front().t_ns - impl_->start_ns <= t_ns) {
-    latest = std::move(waiting.front());
-    waiting.pop_front();
-  }
+  std::optional<VehicleStatus> latest = impl_->reports.take_until(impl_->start_ns + t_ns);
   if (!latest) return std::nullopt;
   latest->t_ns = std::max<std::int64_t>(latest->t_ns - impl_->start_ns, 0);
   latest->gaps = impl_->motion.gap_count();

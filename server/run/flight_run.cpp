@@ -1,7 +1,6 @@
 #include "server/run/flight_run.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -16,7 +15,8 @@
 namespace overfly::server {
 namespace {
 
-constexpr std::int64_t kFlightsEndNs = std::numeric_limits<std::int64_t>::max();
+/// Later than any flight; sums with times since 1970 stay in range.
+constexpr std::int64_t kFlightsEndNs = 366LL * 86400 * kNsPerS;
 
 Error stopped() { return {ErrorCode::kCancelled, "cancelled"}; }
 

@@ -115,6 +115,7 @@ TEST(Ros1BagWriter, SamplesOfSensorsAreStandardMessages) {
       EXPECT_EQ(velocity->twist.linear.x, -3.0);
       EXPECT_EQ(velocity->twist.linear.y, 20.0);
       EXPECT_EQ(velocity->twist.linear.z, -0.5);
+      EXPECT_EQ(velocity->header.frame_id, "world") << "east, north, up";
     }
     if (const auto pressure = message.instantiate<FluidPressureMessage>()) {
       EXPECT_EQ(pressure->fluid_pressure,
@@ -129,6 +130,7 @@ TEST(Ros1BagWriter, SamplesOfSensorsAreStandardMessages) {
     }
     if (const auto range = message.instantiate<RangeMessage>()) {
       EXPECT_EQ(range->range, 55.5F);
+      EXPECT_EQ(range->header.frame_id, "range_link");
     }
   }
   const std::map<std::string, std::string> expected = {
