@@ -147,18 +147,38 @@ class RosTruth final : public TruthSource {
     }
     if (!started_) return;
     if (known_until_ns() > before_ns) arrivals_.add(known_until_ns());
-    if (!samples_.restarted().empty()) end("the stamps of " + samples_.restarted() + " went back");
+    if (!samples_.restarted().empty()) {
+      end("the stamps of " + samples_.restarted() + " went back");
+    } else {
+      end_if_disarmed(false);
+    }
   }
 
   void take_state(std::span<const std::uint8_t> bytes) {
     const std::optional<MavrosState> state = decode_mavros_state(bytes);
     if (!state || !state->connected) return;
     note_changes(*state);
-    // A vehicle that was disarmed before the flight does not end it; one that is armed at its start
-    // may.
-    was_armed_ = state->armed || (started_ && was_armed_);
-    const bool disarmed = was_armed_ && !state->armed;
-    if (disarmed && flight_.stop_on_disarm) end("the vehicle was disarmed");
+    const bool is_change = was_armed_ && !state->armed;
+    was_armed_ = state->armed;
+    if (state->armed) {
+      disarmed_ns_.reset();
+    } else if (is_change) {
+      disarmed_ns_ = state->stamp_ns > 0 ? state->stamp_ns : (started_ ? known_until_ns() : 0);
+    }
+    // The message that says so may have overtaken poses on their own connection; it is repeated.
+    if (!is_change) end_if_disarmed(true);
+  }
+
+  /// Ends the flight if the vehicle was disarmed in it, not before.
+  /// @param heard_again  what is known so far is all that comes
+  void end_if_disarmed(bool heard_again) {
+    if (!started_ || !disarmed_ns_) return;
+    if (*disarmed_ns_ < start_ns_) {
+      disarmed_ns_.reset();
+      return;
+    }
+    const bool is_reached = heard_again || known_until_ns() >= *disarmed_ns_;
+    if (is_reached && flight_.stop_on_disarm) end("the vehicle was disarmed");
   }
 
   /// Modes, and whether the vehicle is armed, at the stamps of the messages.
@@ -249,7 +269,8 @@ class RosTruth final : public TruthSource {
   live::LiveMotion motion_;
   bool started_ = false;
   bool was_armed_ = false;
-  std::string mode_;  ///< of the latest message about the vehicle's state
+  std::optional<std::int64_t> disarmed_ns_;  ///< a stamp; empty while armed, and before
+  std::string mode_;                         ///< of the latest message about the vehicle's state
   std::optional<bool> armed_;
   std::deque<FlightEvent> events_;  ///< not taken yet; their times are stamps
   std::int64_t start_ns_ = 0;
