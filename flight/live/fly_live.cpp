@@ -57,27 +57,34 @@ Status request_rates(mavlink::Exchange& exchange, const LiveFlight& flight) {
 Status request_sensor_rates(mavlink::Exchange& exchange, const LiveFlight& flight) {
   if (flight.sensor_rate_hz <= 0.0) return {};
   constexpr std::uint8_t kArduPilot = 3;
-  const MessageId other_imu =
-      exchange.target().autopilot == kArduPilot ? MessageId::kRawImu : MessageId::kScaledImu;
+  const bool is_ardupilot = exchange.target().autopilot == kArduPilot;
   struct Sensor {
     std::vector<MessageId> messages;  ///< the first is the best
     double most_hz;
   };
   const Sensor sensors[] = {
-      {{MessageId::kHighresImu, other_imu}, 1000.0},
+      {{MessageId::kHighresImu, is_ardupilot ? MessageId::kRawImu : MessageId::kScaledImu}, 1000.0},
       {{MessageId::kScaledPressure}, 20.0},
       {{MessageId::kAirspeed, MessageId::kVfrHud}, 20.0},
       {{MessageId::kGpsRawInt}, 10.0},
       {{MessageId::kDistanceSensor, MessageId::kRangefinder}, 20.0},
   };
+  bool has_high_resolution = false;
   for (const Sensor& sensor : sensors) {
     for (const MessageId message : sensor.messages) {
       const double rate_hz = std::min(flight.sensor_rate_hz, sensor.most_hz);
       const auto requested = mavlink::request_message_rate(exchange, message, rate_hz);
       if (!requested) return requested.error();
-      if (*requested == mavlink::RateRequest::kInterval) break;
+      if (*requested != mavlink::RateRequest::kInterval) continue;
+      has_high_resolution = has_high_resolution || message == MessageId::kHighresImu;
+      break;
     }
   }
+  if (!is_ardupilot || !has_high_resolution) return {};
+  // The magnetic field of its HIGHRES_IMU is not in gauss.
+  const auto requested = mavlink::request_message_rate(
+      exchange, MessageId::kRawImu, std::min(flight.sensor_rate_hz, 20.0));
+  if (!requested) return requested.error();
   return {};
 }
 

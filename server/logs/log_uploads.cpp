@@ -266,8 +266,9 @@ Result<std::unique_ptr<LogUpload>> LogUploads::begin(const std::string& name,
 
 Result<std::unique_ptr<LogUpload>> LogUploads::begin_set(const std::vector<UploadFile>& files,
                                                          UploadRefusal& refusal) const {
-  if (Status status = check_upload_set(files, room_->limits.max_bytes); !status)
+  if (Status status = check_upload_set(files, room_->limits.max_bytes); !status) {
     return status.error();
+  }
   std::uint64_t total = 0;
   for (const UploadFile& file : files) total += file.size_bytes;
   const fs::path stem = fs::path(files.front().name).stem();
