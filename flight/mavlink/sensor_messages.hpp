@@ -10,7 +10,7 @@
 
 namespace overfly::flight::mavlink {
 
-/// What the samples of a message depend on besides the message.
+/// What the samples of a message depend on in addition to the message.
 struct SensorContext {
   std::int64_t latest_ns = 0;       ///< the vehicle's clock: its latest time so far
   std::uint8_t autopilot = 0;       ///< MAV_AUTOPILOT

@@ -1,4 +1,4 @@
-// What a simulated vehicle tells about itself.
+// What a simulated vehicle reports about itself.
 #pragma once
 
 #include <Eigen/Core>

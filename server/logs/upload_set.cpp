@@ -68,7 +68,7 @@ Status check_uploaded_mapping(const fs::path& folder, const std::vector<UploadFi
     if (!uploaded.contains(file)) {
       return unreadable(name + ": names \"" + file.filename().string() +
                         "\", which was not uploaded with it: each \"file\" must be only the name " +
-                        "of a CSV file beside the mapping, without \"data\"");
+                        "of a CSV file next to the mapping, without \"data\"");
     }
     unused.erase(file);
   }

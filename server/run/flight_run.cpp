@@ -140,8 +140,8 @@ Status FlightRun::prepare_and_fly() {
 Status FlightRun::record_last_period() {
   // Events behind the last frame of a flight whose end is known.
   if (maker_->duration_ns()) {
-    Status told = tell_flight(maker_->frame_ns(maker_->frames_total()), end_ns());
-    if (!told) return told;
+    Status logged = log_flight(maker_->frame_ns(maker_->frames_total()), end_ns());
+    if (!logged) return logged;
   }
   const Result<SensorSamples> last = maker_->record_last_period();
   return last ? recorder_.add_sensor_samples(*last) : last.error();
@@ -218,9 +218,9 @@ Result<FlightRun::Flight> FlightRun::fly_frame(std::int64_t k, bool wait_for_est
   auto made = maker_->make(k);
   if (!made || !*made) {
     // What ended the flight is an event behind the last frame.
-    Status told = cancelled() ? Status() : tell_flight(kFlightsEndNs, end_ns());
+    Status logged = cancelled() ? Status() : log_flight(kFlightsEndNs, end_ns());
     if (!made) return made.error();
-    return told ? Result<Flight>(Flight::kEnded) : Result<Flight>(told.error());
+    return logged ? Result<Flight>(Flight::kEnded) : Result<Flight>(logged.error());
   }
   if (const std::optional<std::int64_t> heard_ns = maker_->heard_ns()) {
     message_to_frame_.ms.push_back(static_cast<double>(machine_clock().now_ns() - *heard_ns) *
@@ -236,8 +236,8 @@ Result<FlightRun::Flight> FlightRun::fly_frame(std::int64_t k, bool wait_for_est
   }
   if (Status status = record_events(); !status) return status.error();
 
-  if (Status status = tell_faults((*made)->t_ns); !status) return status.error();
-  if (Status status = tell_flight((*made)->t_ns, (*made)->t_ns); !status) return status.error();
+  if (Status status = log_faults((*made)->t_ns); !status) return status.error();
+  if (Status status = log_flight((*made)->t_ns, (*made)->t_ns); !status) return status.error();
   const Status delivered = deliver(**made);
   if (options_.progress) options_.progress(recorder_.info());
   if (!delivered) return delivered.error();
@@ -313,7 +313,7 @@ Status FlightRun::deliver(MadeFrame& made) {
   return {};
 }
 
-Status FlightRun::tell_faults(std::int64_t t_ns) {
+Status FlightRun::log_faults(std::int64_t t_ns) {
   for (const FaultNews::Line& line : fault_news_.at(t_ns)) {
     const char* level = line.begins ? "warning" : "info";
     if (Status status = recorder_.log(t_ns, level, line.text, "fault"); !status) return status;
@@ -321,7 +321,7 @@ Status FlightRun::tell_faults(std::int64_t t_ns) {
   return {};
 }
 
-Status FlightRun::tell_flight(std::int64_t until_ns, std::int64_t latest_ns) {
+Status FlightRun::log_flight(std::int64_t until_ns, std::int64_t latest_ns) {
   for (const FlightEvent& event : maker_->take_flight_events(until_ns)) {
     const char* kind = to_string(event.kind);
     Status status = recorder_.log(std::min(event.t_ns, latest_ns), "info", event.text, kind);

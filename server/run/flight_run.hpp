@@ -71,8 +71,8 @@ class FlightRun {
   /// Records the events of the flight and the state of a live vehicle.
   /// Records the flight's events and the vehicle's reports up to a time, stamped no later than
   /// `latest_ns`.
-  Status tell_flight(std::int64_t until_ns, std::int64_t latest_ns);
-  Status tell_faults(std::int64_t t_ns);
+  Status log_flight(std::int64_t until_ns, std::int64_t latest_ns);
+  Status log_faults(std::int64_t t_ns);
   [[nodiscard]] bool cancelled() const;
 
   const Scenario& scenario_;

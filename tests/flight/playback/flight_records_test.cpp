@@ -230,7 +230,7 @@ class LivePlayback {
       PlaybackClock::TimePoint now{};
       int step = 0;
       PlaybackPorts ports;
-      // The first messages tell the vehicle's name; the others wait until somebody flies them.
+      // The first messages give the vehicle's name; the others wait until somebody flies them.
       ports.now = [&] { return go_ ? now += std::chrono::milliseconds(5) : now; };
       ports.commands = [&] {
         std::this_thread::sleep_for(std::chrono::milliseconds(go_ ? 1 : 5));

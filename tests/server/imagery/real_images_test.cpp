@@ -5,7 +5,6 @@
 #include <functional>
 #include <random>
 
-#include "core/text/number_text.hpp"
 #include "middleware/lcm/findings.hpp"
 #include "middleware/ros1/findings.hpp"
 #include "server/camera/frame_remaker.hpp"
@@ -20,6 +19,7 @@
 #include "server/scoring/agreement_report.hpp"
 #include "server/worlds/world_cache.hpp"
 #include "tests/flight/logs/ros_bytes.hpp"
+#include "tests/server/imagery/real_images_fixture.hpp"
 #include "tests/server/support/server_fixture.hpp"
 
 namespace overfly::server {
@@ -29,103 +29,6 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 using ::testing::Contains;
 using ::testing::HasSubstr;
-
-constexpr double kFovDeg = 40.0;
-constexpr int kFrames = 21;
-/// Of the camera: 80 px / tan(fov / 2).
-const double kFocalPx = 80.0 / std::tan(0.5 * kFovDeg * EIGEN_PI / 180.0);
-
-RendererFactory one_thread_raycaster() {
-  return [](std::shared_ptr<const terrain::TileSource> tiles) {
-    renderer::RendererOptions options;
-    options.threads = 1;
-    return Result<std::unique_ptr<renderer::Renderer>>(
-        renderer::create_raycast_renderer(std::move(tiles), options));
-  };
-}
-
-Json flight_document() {
-  Json document = testing::small_document();
-  document["camera"]["fov_deg"] = kFovDeg;
-  document["epoch_utc_s"] = 1'700'000'000;
-  return document;
-}
-
-Scenario scenario_of(Json document) {
-  auto scenario = resolve_scenario(std::move(document), {}, "/");
-  if (!scenario) throw std::runtime_error(scenario.error().message);
-  return std::move(*scenario);
-}
-
-/// The same flight with real images on the first camera and virtual ones on the second.
-Json twin_document(const Json& images, const Json& mount = Json::object()) {
-  Json document = flight_document();
-  Json real = document["camera"];
-  real["mount"] = mount;
-  Json rendered = real;
-  real["name"] = "real";
-  real["images"] = images;
-  real["images"]["compare_with"] = "virtual";
-  rendered["name"] = "virtual";
-  document.erase("camera");
-  document["cameras"] = {real, rendered};
-  document["estimators"] = {{{"name", "on_real"}, {"type", "feature"}, {"camera", "real"}},
-                            {{"name", "on_virtual"}, {"type", "feature"}, {"camera", "virtual"}}};
-  return document;
-}
-
-class RealImages : public ::testing::Test {
- protected:
-  fs::path exported(DatasetFormat format) {
-    ExportSource source{scenario_of(flight_document()), std::nullopt, 1'700'000'000 * kNsPerS};
-    ExportOptions options;
-    options.folder = folder_.path() / "export";
-    options.format = format;
-    options.renderer_factory = one_thread_raycaster();
-    const auto summary = export_dataset(source, options);
-    if (!summary) throw std::runtime_error(summary.error().message);
-    EXPECT_EQ(summary->images, kFrames);
-    return options.folder;
-  }
-
-  /// Flies, and reads the report of the run's folder.
-  AgreementReport flown(const Json& document) {
-    const Scenario scenario = scenario_of(document);
-    RunOptions options;
-    options.folder = run();
-    options.renderer_factory = one_thread_raycaster();
-    const auto result = run_scenario(scenario, options);
-    if (!result) throw std::runtime_error(result.error().message);
-    metrics_ = result->metrics;
-    const auto rows = read_agreement(run());
-    if (!rows) throw std::runtime_error(rows.error().message);
-    const auto report = report_agreement(scenario, *rows);
-    if (!report) throw std::runtime_error(report.error().message);
-    return *report;
-  }
-
-  /// Lossless images: the offset is nothing, and the estimator's answers are the same to the byte.
-  void expect_identical(const AgreementReport& report) {
-    EXPECT_EQ(report.frames, kFrames);
-    EXPECT_EQ(report.lost, 0);
-    EXPECT_EQ(report.missing, 0);
-    EXPECT_LT(report.offset_px->p95, 1e-3);
-    EXPECT_GT(report.correlation->p5, 0.999999);
-    EXPECT_EQ(report.corners_real->median, report.corners_virtual->median);
-    EXPECT_GT(report.corners_real->median, 10);
-    ASSERT_EQ(report.estimators.size(), 1U);
-    EXPECT_EQ(report.estimators[0].real, "on_real");
-    EXPECT_EQ(report.estimators[0].rendered, "on_virtual");
-    const std::string real = overfly::testing::read_text(run() / "estimates" / "on_real.jsonl");
-    EXPECT_FALSE(real.empty());
-    EXPECT_EQ(real, overfly::testing::read_text(run() / "estimates" / "on_virtual.jsonl"));
-  }
-
-  [[nodiscard]] fs::path run() const { return folder_.path() / "run"; }
-
-  overfly::testing::TemporaryFolder folder_;
-  RunMetrics metrics_;
-};
 
 TEST_F(RealImages, OfAFolderAreThoseThatWereRendered) {
   const fs::path folder = exported(DatasetFormat::kPng);
@@ -342,104 +245,6 @@ TEST_F(RealImages, OutsideOfTheFlightAreAnError) {
   ASSERT_FALSE(result.ok());
   EXPECT_THAT(result.error().message,
               HasSubstr("no image lies within the flight: the images span [100, 102] s"));
-}
-
-/// A level flight to the north at 20 m/s over the middle of the world. The clock of its log stands
-/// at kLogStartS when it begins.
-class RealImagesOfALog : public RealImages {
- protected:
-  static constexpr int kLogStartS = 1000;
-
-  RealImagesOfALog() {
-    std::string gps = "t,lat,lon,alt,roll,pitch,yaw\n";
-    for (int i = 0; i <= 100; ++i) {
-      gps += number_text(kLogStartS + 0.1 * i) + ',' + number_text(1.0 + 1.8087e-5 * i) +
-             ",2,100,0,0,0\n";
-    }
-    overfly::testing::write_text(folder_.path() / "gps.csv", gps);
-    overfly::testing::write_text(folder_.path() / "log.json",
-                                 R"({"csv_mapping_version": 1, "pieces": [
-      {"name": "GPS", "file": "gps.csv", "origin": "gps", "time": {"column": "t", "unit": "s"},
-       "columns": {"lat": {"column": "lat", "unit": "deg"}, "lon": {"column": "lon", "unit": "deg"},
-                   "alt_msl": {"column": "alt", "unit": "m"},
-                   "roll": {"column": "roll", "unit": "deg"},
-                   "pitch": {"column": "pitch", "unit": "deg"},
-                   "yaw": {"column": "yaw", "unit": "deg"}}}]})");
-  }
-  [[nodiscard]] Json of_log(Json document) const {
-    Json log = {{"file", (folder_.path() / "log.json").string()},
-                {"smooth", Json::object()},
-                {"rebase", {{"lowest_agl_m", 150}}}};
-    document["flight"] = {{"log", std::move(log)}};
-    return document;
-  }
-  /// Exports to PNG. @return the first images folder's files in order
-  std::vector<std::string> export_of(const ExportSource& source, const std::string& name) {
-    ExportOptions options;
-    options.folder = folder_.path() / name;
-    options.renderer_factory = one_thread_raycaster();
-    options.cameras = {source.scenario.cameras[0].name};
-    const auto summary = export_dataset(source, options);
-    if (!summary) throw std::runtime_error(summary.error().message);
-    std::vector<fs::path> files;
-    for (const auto& entry : fs::recursive_directory_iterator(options.folder / "images")) {
-      if (entry.is_regular_file()) files.push_back(entry.path());
-    }
-    std::sort(files.begin(), files.end());
-    std::vector<std::string> images;
-    for (const fs::path& file : files) images.push_back(overfly::testing::read_text(file));
-    return images;
-  }
-};
-
-TEST_F(RealImagesOfALog, CountByTheClockOfTheLogInARunAndInItsExport) {
-  const ExportSource source{
-      scenario_of(of_log(flight_document())), std::nullopt, 1'700'000'000 * kNsPerS};
-  const std::vector<std::string> rendered = export_of(source, "export");
-  ASSERT_EQ(rendered.size(), static_cast<std::size_t>(kFrames));
-  // The export's stamps count from the start of the flight.
-  const Json images = {{"source", (folder_.path() / "export").string()},
-                       {"clock", "log"},
-                       {"time_offset_s", kLogStartS}};
-  expect_identical(flown(of_log(twin_document(images))));
-  const auto manifest = read_run_manifest(run());
-  ASSERT_TRUE(manifest.ok());
-  EXPECT_EQ(manifest->values.flight->log_start_ns, kLogStartS * kNsPerS);
-  const auto again = open_export_source(run());
-  ASSERT_TRUE(again.ok()) << again.error().message;
-  EXPECT_EQ(export_of(*again, "again"), rendered);
-}
-
-TEST(RealImagesOfAScenario, AreCheckedWithTheirFields) {
-  const auto message_of = [](const std::function<void(Json&)>& change) {
-    Json document = twin_document({{"source", "flight.bag"}});
-    change(document);
-    const auto scenario = resolve_scenario(document, {}, "/");
-    return scenario ? std::string("accepted") : scenario.error().message;
-  };
-  EXPECT_EQ(message_of([](Json&) {}), "accepted");
-  EXPECT_THAT(
-      message_of([](Json& d) { d["cameras"][0]["images"]["clock"] = "log"; }),
-      HasSubstr("cameras.0.images.clock = \"log\": must be given together with flight.log"));
-  EXPECT_THAT(message_of([](Json& d) {
-                d["cameras"][0]["images"]["clock"] = "utc";
-                d.erase("epoch_utc_s");
-              }),
-              HasSubstr("must be given together with epoch_utc_s"));
-  EXPECT_THAT(message_of([](Json& d) { d["cameras"][1]["width_px"] = 170; }),
-              HasSubstr("must name a camera of the same model and mount"));
-  EXPECT_THAT(message_of([](Json& d) { d["cameras"][0]["images"]["compare_with"] = "none"; }),
-              HasSubstr("must name another camera of the scenario"));
-  EXPECT_THAT(message_of([](Json& d) { d["cameras"][0]["color"] = "rgb"; }),
-              HasSubstr("must be grey"));
-  EXPECT_THAT(message_of([](Json& d) {
-                d["cameras"][1]["images"] = {{"source", "b.bag"}};
-              }),
-              HasSubstr("only one camera can have recorded images"));
-  EXPECT_THAT(message_of([](Json& d) {
-                d["cameras"][0]["vibration"] = {{"engine_rpm", 5000}};
-              }),
-              HasSubstr("cameras.0.vibration"));
 }
 
 }  // namespace

@@ -42,7 +42,7 @@ struct FrameSending {
 [[nodiscard]] std::string calibration_message(const VoFrame& frame,
                                               double rate_hz,
                                               const FrameSlots& slots);
-/// The number of inertial samples for which FRAME has room beside the image.
+/// The number of inertial samples for which FRAME has room next to the image.
 [[nodiscard]] std::size_t most_imu_samples(const VoFrame& frame, bool in_shared_memory);
 /// A FRAME message without the pixels. They follow unless they are in shared memory.
 [[nodiscard]] std::string frame_message(const VoFrame& frame, const FrameSending& sending);

@@ -68,7 +68,7 @@ TEST(LogResiduals, SayWhatIsWrongWithARequest) {
     EXPECT_EQ(ask(server.port(), "GET", place + query).status, 400) << query;
   }
   EXPECT_EQ(ask(server.port(), "GET", "/api/v1/logs/logs%2Fb.bin/residuals").status, 404);
-  // A flight without turns does not tell the offset; less than 5 samples are no flight.
+  // A flight without turns does not determine the offset; less than 5 samples are no flight.
   EXPECT_EQ(ask(server.port(), "GET", place + "?time_offset_s=auto").status, 422);
   EXPECT_EQ(ask(server.port(), "GET", place + "?from_s=2.95").status, 422);
 }

@@ -104,7 +104,7 @@ TEST_F(LogRoutesTest, ListsAndDescribesTheLogsOfTheDataFolders) {
   write_log(".c.bin", northward_log());
   write_log("text.bin", "not a log");
   write_log("other.tif", northward_log());
-  // Not UTF-8: a byte alone, an overlong sequence, a surrogate, one that is cut off.
+  // Not UTF-8: a single continuation byte, an overlong sequence, a surrogate, one that is cut off.
   for (const char* name : {"\xFF.bin", "\xC0\xAF.bin", "\xED\xA0\x80.bin", "\xE2\x82.bin"}) {
     write_log(name, northward_log());
   }

@@ -23,7 +23,7 @@ export interface SensorTimers {
 /** Values of a curve: twice as many as pixels of a wide plot. */
 const kPoints = 1200;
 const kRefresh_ms = 2000;
-/** The server reads the files anew each time: it is busy with that for a tenth of the time. */
+/** The server reads the files again each time: it is busy with that for a tenth of the time. */
 const kRest = 9;
 /** While the plots are being zoomed, only the last span is read. */
 const kSettle_ms = 200;

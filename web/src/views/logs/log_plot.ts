@@ -29,7 +29,7 @@ const kSyncKey = 'overfly-log-plots';
 const kLeastSlice_px = 4;
 const kDot_px = 2;
 
-/** A sample beside the curves; one outside of the axis is drawn at its edge. */
+/** A sample off the curves; one outside of the axis is drawn at its edge. */
 export interface Dot {
   t_s: number;
   value: number;

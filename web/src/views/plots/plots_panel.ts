@@ -99,7 +99,7 @@ export class PlotsPanel implements View {
     if (this.group !== 'sensors') return null;
     if (sensorError !== null) return sensorError;
     if (sensors === null) return 'Reading the samples';
-    return this.strips.length === 0 ? 'This aircraft has no sensors besides its cameras.' : null;
+    return this.strips.length === 0 ? 'This aircraft has no sensors except its cameras.' : null;
   }
 
   private whole(): Span {

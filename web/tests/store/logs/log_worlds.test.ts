@@ -47,7 +47,7 @@ describe('worlds on the map', () => {
     expect(slice.north_m).toEqual([-500, -500, 500]);
   });
 
-  it('tell how much of the flight is outside', () => {
+  it('state how much of the flight is outside', () => {
     const outline = outlineOf(kWorld, kWorld.centre, true);
     expect(shareOutside(movedTrack(kTrack, kWorld, 0, null), outline, null)).toBe(1);
     expect(shareOutside(movedTrack(kTrack, kWorld, 0, [1, 2]), outline, [1, 2])).toBe(0);
