@@ -8,6 +8,7 @@ import './styles/side.css';
 import './styles/timeline.css';
 import './styles/estimators.css';
 import './styles/logs.css';
+import './styles/residuals.css';
 import { RestClient } from './connection/rest_client';
 import { StreamClient } from './connection/stream_client';
 import { uploadByBrowser } from './connection/upload';
