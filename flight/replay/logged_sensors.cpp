@@ -66,8 +66,13 @@ class SensorSink final : public logs::LogSink {
       return;
     }
     SensorSamples kept = samples;
-    if (request_.moved) kept.gps.clear();
-    if (request_.moved) kept.magnetometer.clear();
+    if (request_.moved) {
+      // They would give the old place and its heights.
+      kept.gps.clear();
+      kept.magnetometer.clear();
+      kept.barometer.clear();
+      kept.range.clear();
+    }
     for (GpsSample& gps : kept.gps) gps.place.alt_ellipsoid_m += request_.geoid_separation_m;
     tracks_.add(preference, names_[id], kept);
   }

@@ -20,7 +20,7 @@ struct SensorRequest {
   std::int64_t begin_ns = 0;  ///< by the vehicle's clock: the flight's time 0
   std::int64_t end_ns = 0;
   double geoid_separation_m = 0.0;  ///< added to the GPS's heights above mean sea level
-  bool moved = false;  ///< flown elsewhere: GPS and magnetometer would give the old place
+  bool moved = false;               ///< flown elsewhere: only the IMU and the airspeed still hold
 };
 
 /// Reads the samples of a part of a log. Of several messages or records with samples of one sensor,
