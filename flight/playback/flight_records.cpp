@@ -48,10 +48,7 @@ vehicle::VehicleReport report_of(const AircraftState& state, const LocalFrame& f
 }  // namespace
 
 Result<FlightRecords> FlightRecords::create(PlayedFlight played) {
-  if (!(played.rate_hz >= kSlowestMessagesHz && played.rate_hz <= kFastestMessagesHz)) {
-    return Error{ErrorCode::kInvalidArgument,
-                 "rate = " + number_text(played.rate_hz) + " Hz: must be in [1, 1000]"};
-  }
+  if (Status status = check_message_rate(played.rate_hz); !status) return status.error();
   const std::optional<std::int64_t> length_ns = played.flight->duration_ns();
   if (!length_ns) {
     return Error{ErrorCode::kUnsupported,

@@ -2,30 +2,15 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
-#include "core/earth/geodesy.hpp"
-#include "core/motion/truth_source.hpp"
 #include "core/result.hpp"
 #include "flight/playback/playback_records.hpp"
+#include "flight/playback/played_flight.hpp"
 
 namespace overfly::flight::playback {
-
-inline constexpr double kSlowestMessagesHz = 1.0;
-inline constexpr double kFastestMessagesHz = 1000.0;
-
-struct PlayedFlight {
-  /// Its length is known, and it may be asked for earlier times again: flights of logs, poses and
-  /// runs.
-  std::unique_ptr<TruthSource> flight;
-  LocalFrame frame{Geodetic{}};  ///< of its states
-  /// UTC since 1970 at the flight's start, where it is known.
-  std::optional<std::int64_t> unix_at_start_ns;
-  double rate_hz = 50.0;  ///< of the messages, rounded to whole milliseconds between them
-};
 
 /// A vehicle of system 1 with the pose, velocity and angular rate of a flight, in the messages of
 /// the built-in vehicle: ATTITUDE, ATTITUDE_QUATERNION, SIM_STATE, GLOBAL_POSITION_INT at the

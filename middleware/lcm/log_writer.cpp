@@ -7,7 +7,6 @@
 #include <map>
 #include <overfly_lcm/pose_t.hpp>
 #include <overfly_lcm/sim_time_t.hpp>
-#include <overfly_lcm/truth_t.hpp>
 #include <overfly_lcm/world_pose_t.hpp>
 #include <utility>
 #include <vector>
@@ -72,13 +71,9 @@ class EventLogWriter final : public LogWriter {
   }
 
   Status write_truth(const std::string& prefix, const LogTruth& truth) override {
-    overfly_lcm::truth_t message{};
-    message.utime = truth.t_ns / kNsPerUs;
-    message.t_ns = truth.t_ns;
-    message.stamp_ns = truth.stamp_ns;
-    message.frame = truth.frame;
-    put_pose(truth.T_world_camera, message);
-    return write(prefix + "TRUTH", truth.stamp_ns, message);
+    return write(prefix + "TRUTH",
+                 truth.stamp_ns,
+                 truth_message(truth.frame, truth.t_ns, truth.stamp_ns, truth.T_world_camera));
   }
 
   Status write_samples(const std::string& prefix, const SensorSamples& samples) override {

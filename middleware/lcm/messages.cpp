@@ -51,4 +51,18 @@ overfly_lcm::calibration_t calibration_message(
   return message;
 }
 
+overfly_lcm::truth_t truth_message(std::int64_t frame,
+                                   std::int64_t t_ns,
+                                   std::int64_t stamp_ns,
+                                   const Pose& T_world_camera) {
+  overfly_lcm::truth_t message{};
+  message.utime = t_ns / 1000;
+  message.t_ns = t_ns;
+  message.stamp_ns = stamp_ns;
+  message.frame = frame;
+  std::copy_n(T_world_camera.translation.data(), 3, message.position);
+  std::copy_n(T_world_camera.rotation.coeffs().data(), 4, message.orientation);
+  return message;
+}
+
 }  // namespace overfly::lcm

@@ -7,12 +7,14 @@
 #include <optional>
 #include <overfly_lcm/calibration_t.hpp>
 #include <overfly_lcm/image_t.hpp>
+#include <overfly_lcm/truth_t.hpp>
 #include <span>
 #include <string>
 
 #include "core/camera/camera.hpp"
 #include "core/camera/camera_model.hpp"
 #include "core/camera/image.hpp"
+#include "core/motion/pose.hpp"
 #include "middleware/lcm/lengths.hpp"
 
 namespace overfly::lcm {
@@ -32,6 +34,12 @@ namespace overfly::lcm {
     const PinholeCamera& pinhole,
     const Distortion& distortion,
     const std::map<std::string, std::string>& parameters);
+
+/// @param stamp_ns  of the image
+[[nodiscard]] overfly_lcm::truth_t truth_message(std::int64_t frame,
+                                                 std::int64_t t_ns,
+                                                 std::int64_t stamp_ns,
+                                                 const Pose& T_world_camera);
 
 /// Decodes a message; empty if the bytes are not valid. Messages of the types in lengths.hpp cannot
 /// allocate more memory than their size implies.

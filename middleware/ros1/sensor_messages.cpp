@@ -1,5 +1,6 @@
 #include "middleware/ros1/sensor_messages.hpp"
 
+#include <cmath>
 #include <limits>
 
 #include "core/motion/pose.hpp"
@@ -51,6 +52,10 @@ NavSatFixMessage message_from(const GpsSample& sample) {
     return message;
   }
   message.status.status = sensor_msgs::NavSatStatus::STATUS_FIX;
+  if (std::isnan(sample.horizontal_accuracy_m) || std::isnan(sample.vertical_accuracy_m)) {
+    message.position_covariance_type = NavSatFixMessage::COVARIANCE_TYPE_UNKNOWN;
+    return message;
+  }
   message.position_covariance_type = NavSatFixMessage::COVARIANCE_TYPE_DIAGONAL_KNOWN;
   const double horizontal = sample.horizontal_accuracy_m * sample.horizontal_accuracy_m;
   message.position_covariance[0] = horizontal;

@@ -15,62 +15,25 @@
 #include "flight/logs/truth/log_trajectory.hpp"
 #include "flight/mavlink/frame_finder.hpp"
 #include "flight/mavlink/payload.hpp"
-#include "flight/playback/play_records.hpp"
+#include "flight/playback/link_output.hpp"
+#include "flight/playback/play.hpp"
 #include "tests/flight/logs/log_bytes.hpp"
+#include "tests/flight/playback/circle_flight.hpp"
 #include "tests/support/support.hpp"
 
 namespace overfly::flight::playback {
 namespace {
 
 using testing::Bytes;
+using testing::CircleFlight;
+using testing::frame_of_circles;
 using ::testing::HasSubstr;
+using testing::kCircleLogStartNs;
 
-constexpr std::int64_t kLogStartNs = 12'345'600'000;
 constexpr std::int64_t kMsInNs = 1'000'000;
 /// Of the first message: at the next whole millisecond of the vehicle's clock.
 constexpr std::int64_t kFirstNs = 400'000;
 constexpr std::int64_t kFirstMs = 12'346;
-
-LocalFrame frame_of_circles() { return LocalFrame(geodetic_from_deg(47.3, 8.5, 500.0)); }
-
-/// Circles of 200 m at 25 m/s with a climb of 2 m/s, in closed form.
-class CircleFlight final : public TruthSource {
- public:
-  explicit CircleFlight(double length_s) : length_s_(length_s) {}
-  [[nodiscard]] std::optional<std::int64_t> duration_ns() const override {
-    return ns_from_s(length_s_);
-  }
-  [[nodiscard]] std::string description() const override { return "circles"; }
-  [[nodiscard]] std::optional<std::int64_t> log_start_ns() const override { return kLogStartNs; }
-
-  static AircraftState at(std::int64_t t_ns) {
-    constexpr double kRadiusM = 200.0;
-    constexpr double kRateRadS = 25.0 / kRadiusM;
-    const double t = s_from_ns(t_ns);
-    const double angle = kRateRadS * t;
-    AircraftState state;
-    state.t_ns = t_ns;
-    state.T_world_body.translation = {
-        kRadiusM * std::sin(angle), kRadiusM * std::cos(angle), 100.0 + 2.0 * t};
-    state.v_body_world_m_s = {25.0 * std::cos(angle), -25.0 * std::sin(angle), 2.0};
-    // Heading east at first, turning right.
-    state.T_world_body.rotation =
-        logs::R_enu_ned() *
-        Eigen::Quaterniond(Eigen::AngleAxisd(0.5 * kPi + angle, Eigen::Vector3d::UnitZ())) *
-        Eigen::Quaterniond(Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitX()));
-    state.omega_body_rad_s = {0.0, kRateRadS * std::sin(0.4), kRateRadS * std::cos(0.4)};
-    return state;
-  }
-
- private:
-  [[nodiscard]] Result<std::optional<AircraftState>> find_state(
-      std::int64_t t_ns, const std::atomic<bool>* /*cancel*/) override {
-    if (t_ns > ns_from_s(length_s_)) return std::optional<AircraftState>();
-    return std::optional(at(t_ns));
-  }
-
-  double length_s_;
-};
 
 FlightRecords circles(double length_s, double rate_hz = 50.0) {
   auto records = FlightRecords::create({std::make_unique<CircleFlight>(length_s),
@@ -204,7 +167,7 @@ TEST(FlightRecords, AreARecordingOfTheFlight) {
   ASSERT_EQ(again->poses.size(), 400U);
   const LocalFrame frame = frame_of_circles();
   for (const logs::LogPose& pose : again->poses) {
-    const AircraftState truth = CircleFlight::at(pose.t_ns - kLogStartNs);
+    const AircraftState truth = CircleFlight::at(pose.t_ns - kCircleLogStartNs);
     const Geodetic place =
         geodetic_from_deg(pose.position.x(), pose.position.y(), pose.position.z());
     // 1e-7 deg are 11 mm.
@@ -224,7 +187,6 @@ class LivePlayback {
     auto opened_vehicle = mavlink::Vehicle::open(*any_port, listening);
     vehicle_ = std::move(*opened_vehicle);
     thread_ = std::thread([this, speed, length_s, commands = std::move(commands)] {
-      FlightRecords records = circles(length_s);
       PlaybackOptions options;
       options.speed = speed;
       PlaybackClock::TimePoint now{};
@@ -242,7 +204,8 @@ class LivePlayback {
       };
       const auto address = mavlink::parse_link_address(
           "tcp:127.0.0.1:" + std::to_string(vehicle_->address().port), "link");
-      const auto summary = play_records(records, *address, options, ports, stop_);
+      const auto output = link_output(std::make_unique<FlightRecords>(circles(length_s)), *address);
+      const auto summary = play(*output, options, ports, stop_);
       EXPECT_TRUE(summary.ok()) << summary.error().message;
     });
     EXPECT_TRUE(vehicle_->wait_until_heard(std::chrono::seconds(60), nullptr).ok());
@@ -273,7 +236,7 @@ TEST(FlightRecords, AreFlownLiveAtAnySpeed) {
         speed, {{20, {PlaybackCommand::Kind::kPause}}, {60, {PlaybackCommand::Kind::kPlay}}});
     ASSERT_NE(playback.truth, nullptr);
     EXPECT_THAT(playback.truth->description(), HasSubstr("the simulator's state (1.1/SIM_STATE)"));
-    const std::int64_t start_ns = playback.truth->start_ns() - kLogStartNs;
+    const std::int64_t start_ns = playback.truth->start_ns() - kCircleLogStartNs;
     int compared = 0;
     for (std::int64_t t_ns = 0; start_ns + t_ns <= 5900 * kMsInNs; t_ns += 20 * kMsInNs) {
       const auto state = playback.truth->state_at(t_ns);
@@ -294,7 +257,7 @@ TEST(FlightRecords, ASeekIsAJumpOfTheVehiclesClock) {
   {
     LivePlayback forward(1.0, {{100, {PlaybackCommand::Kind::kSeek, 4.5}}});
     ASSERT_NE(forward.truth, nullptr);
-    const std::int64_t last_ns = kLogStartNs + 5500 * kMsInNs - forward.truth->start_ns();
+    const std::int64_t last_ns = kCircleLogStartNs + 5500 * kMsInNs - forward.truth->start_ns();
     for (std::int64_t t_ns = 0; t_ns <= last_ns; t_ns += 20 * kMsInNs) {
       ASSERT_TRUE(forward.truth->state_at(t_ns).ok());
     }

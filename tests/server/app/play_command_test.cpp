@@ -128,5 +128,23 @@ TEST_F(PlayCommand, SaysWhatDoesNotGoTogether) {
   EXPECT_NE(play({folder_.path().string()}).exit_code, 0);
 }
 
+TEST_F(PlayCommand, PlaysOntoLcmAndRosOnlyOneAtATime) {
+  write_text(path("flight.bin"), northward_log());
+  EXPECT_THAT(overfly_program({"play", path("flight.bin"), "--ros", "--lcm", "memq://"}).err,
+              HasSubstr("--link, --lcm, --ros: give one of them"));
+  EXPECT_THAT(overfly_program({"play", path("flight.bin"), "--ros-master", "somewhere"}).err,
+              HasSubstr("somewhere"));
+  const std::string url = "file://" + path("played.lcm") + "?mode=w";
+  const Outcome played = overfly_program(
+      {"play", path("flight.bin"), "--lcm", url, "--speed", "1000", "--rate-hz", "25"});
+  if (played.err.find("no LCM support") != std::string::npos) GTEST_SKIP() << played.err;
+  ASSERT_EQ(played.exit_code, 0) << played.err;
+  EXPECT_THAT(played.out, HasSubstr("map at 47,8,500: 150 messages, 1.96 s, on file://"));
+  EXPECT_THAT(played.out, HasSubstr("150 messages sent"));
+  const Outcome info = overfly_program({"log", "info", path("played.lcm")});
+  EXPECT_THAT(info.out, HasSubstr("OVERFLY_TRUTH"));
+  EXPECT_THAT(info.out, HasSubstr("OVERFLY_GPS"));
+}
+
 }  // namespace
 }  // namespace overfly::testing

@@ -1,17 +1,18 @@
-// overfly play: a recorded flight on a MAVLink link.
+// overfly play: a recorded flight on a MAVLink link, LCM channels or ROS topics.
 #include <poll.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <array>
 #include <cstdio>
+#include <cstdlib>
 #include <iostream>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "flight/mavlink/link/link_address.hpp"
-#include "flight/playback/play_records.hpp"
+#include "flight/playback/play.hpp"
 #include "server/app/commands/commands.hpp"
 #include "server/app/commands/play/play_source.hpp"
 #include "server/app/exit_code.hpp"
@@ -23,9 +24,14 @@ namespace {
 
 namespace playback = flight::playback;
 
+constexpr const char* kDefaultLink = "udp:127.0.0.1:14550";
+
 struct PlayArguments {
   std::string file;
-  std::string link = "udp:127.0.0.1:14550";
+  std::string link;
+  std::string lcm;
+  bool ros = false;
+  std::string ros_master;
   double speed = 1.0;
   double from_s = 0.0;
   bool repeat = false;
@@ -34,14 +40,42 @@ struct PlayArguments {
   double rate_hz = 50.0;
 };
 
+/// Without a choice the master that ROS's own programs would use.
+std::string master_uri(const PlayArguments& arguments) {
+  if (!arguments.ros_master.empty()) return arguments.ros_master;
+  const char* const from_environment = std::getenv("ROS_MASTER_URI");
+  return from_environment != nullptr && *from_environment != '\0'
+             ? from_environment
+             : playback::RosTarget().master_uri;
+}
+
+Result<PlaybackTarget> target_of(const PlayArguments& arguments) {
+  const bool is_ros = arguments.ros || !arguments.ros_master.empty();
+  if ((arguments.link.empty() ? 0 : 1) + (arguments.lcm.empty() ? 0 : 1) + (is_ros ? 1 : 0) > 1) {
+    return Error{ErrorCode::kInvalidArgument, "--link, --lcm, --ros: give one of them"};
+  }
+  if (!arguments.lcm.empty()) return PlaybackTarget(LcmTarget{arguments.lcm});
+  if (is_ros) {
+    playback::RosTarget ros;
+    ros.master_uri = master_uri(arguments);
+    return PlaybackTarget(ros);
+  }
+  const auto link = flight::mavlink::parse_link_address(
+      arguments.link.empty() ? kDefaultLink : arguments.link, "--link");
+  if (!link) return link.error();
+  return PlaybackTarget(*link);
+}
+
 Result<OpenedPlayback> open_recording(const PlayArguments& arguments) {
+  const Result<PlaybackTarget> target = target_of(arguments);
+  if (!target) return target.error();
   PlayedFile played{arguments.file, arguments.source, std::nullopt, arguments.rate_hz};
   if (!arguments.origin.empty()) {
     const Result<Geodetic> origin = place_from("--origin", arguments.origin);
     if (!origin) return origin.error();
     played.origin = *origin;
   }
-  return open_playback(played, &catch_stop_signals());
+  return open_playback(played, *target, &catch_stop_signals());
 }
 
 /// Lines of standard input, without waiting for them.
@@ -83,8 +117,6 @@ class CommandInput {
 };
 
 int play(const PlayArguments& arguments) {
-  const auto link = flight::mavlink::parse_link_address(arguments.link, "--link");
-  if (!link) return report(link.error());
   if (!(arguments.speed >= playback::kSlowest && arguments.speed <= playback::kFastest)) {
     return report({ErrorCode::kInvalidArgument,
                    "--speed " + std::to_string(arguments.speed) + ": must be in [0.01, 1000]"});
@@ -92,8 +124,8 @@ int play(const PlayArguments& arguments) {
   const Result<OpenedPlayback> opened = open_recording(arguments);
   if (!opened) return report(opened.error());
   for (const std::string& warning : opened->warnings) std::cerr << "warning: " << warning << "\n";
-  playback::PlaybackRecords& records = *opened->records;
-  const double length_s = 1e-6 * static_cast<double>(records.duration_us());
+  playback::PlaybackOutput& output = *opened->output;
+  const double length_s = 1e-6 * static_cast<double>(output.duration_us());
   if (!(arguments.from_s >= 0.0 && arguments.from_s <= length_s)) {
     return report({ErrorCode::kInvalidArgument,
                    "--from " + std::to_string(arguments.from_s) + ": must be in [0, " +
@@ -112,9 +144,9 @@ int play(const PlayArguments& arguments) {
   playback::PlaybackPorts ports;
   ports.now = [] { return std::chrono::steady_clock::now(); };
   ports.commands = [&] { return input.take(); };
-  ports.opened = [&](const flight::mavlink::LinkAddress& address) {
+  ports.opened = [&](const playback::PlaybackOutput& open) {
     if (!opened->description.empty()) std::cout << opened->description << ": ";
-    std::cout << records.count() << " messages, " << length_s << " s, on " << address.text()
+    std::cout << open.count() << " messages, " << length_s << " s, on " << open.place()
               << std::endl;
   };
   ports.changed = [](const playback::PlaybackClock& clock, std::int64_t position_us) {
@@ -124,7 +156,7 @@ int play(const PlayArguments& arguments) {
                  1e-6 * static_cast<double>(position_us),
                  clock.speed());
   };
-  const auto played = playback::play_records(records, *link, options, ports, catch_stop_signals());
+  const auto played = playback::play(output, options, ports, catch_stop_signals());
   if (!played) return report(played.error());
   std::cout << played->sent << " messages sent";
   if (played->unsent > 0) std::cout << ", " << played->unsent << " that nobody took";
@@ -138,16 +170,26 @@ void add_play_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<PlayArguments>();
   CLI::App* const command =
       app.add_subcommand("play",
-                         "Play a recording onto a MAVLink link; standard input takes pause, play, "
-                         "speed X, seek S, quit");
+                         "Play a recording onto a MAVLink link, LCM channels or ROS topics; "
+                         "standard input takes pause, play, speed X, seek S, quit");
   command
       ->add_option("file",
                    arguments->file,
                    ".tlog, or any other flight log, pose file or folder of a run, whose truth is "
                    "flown by a vehicle")
       ->required();
-  command->add_option("--link", arguments->link, "udp:HOST:PORT, tcp-listen:HOST:PORT, ...")
-      ->capture_default_str();
+  command->add_option(
+      "--link",
+      arguments->link,
+      "udp:HOST:PORT, tcp-listen:HOST:PORT, ...; by default " + std::string(kDefaultLink));
+  command->add_option("--lcm",
+                      arguments->lcm,
+                      "LCM URL: the flight as truth_t, gps_t and imu_t (\"udpm://?ttl=0\")");
+  command->add_flag("--ros", arguments->ros, "The flight on ROS 1 topics of MAVROS");
+  command->add_option("--ros-master",
+                      arguments->ros_master,
+                      "http://HOST:PORT, with --ros; by default $ROS_MASTER_URI, or port 11311 of "
+                      "this machine");
   command->add_option("--speed", arguments->speed, "Times the recording's")->capture_default_str();
   command->add_option("--from", arguments->from_s, "Start [s]")->capture_default_str();
   command->add_flag("--repeat", arguments->repeat, "Start again at the end");

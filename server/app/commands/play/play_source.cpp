@@ -1,12 +1,15 @@
 #include "server/app/commands/play/play_source.hpp"
 
+#include <cmath>
 #include <utility>
 
 #include "core/earth/height_query.hpp"
+#include "core/text/number_text.hpp"
 #include "core/time.hpp"
 #include "flight/flight.hpp"
 #include "flight/logs/flight_log.hpp"
 #include "flight/playback/flight_records.hpp"
+#include "flight/playback/link_output.hpp"
 #include "flight/playback/tlog_records.hpp"
 #include "flight/replay/logged_flight.hpp"
 #include "server/record/run_folder.hpp"
@@ -19,7 +22,9 @@ namespace {
 namespace fs = std::filesystem;
 namespace playback = flight::playback;
 
-Result<OpenedPlayback> open_frames(const PlayedFile& played) {
+using flight::mavlink::LinkAddress;
+
+Result<OpenedPlayback> open_frames(const PlayedFile& played, const LinkAddress& link) {
   if (played.origin) {
     return Error{ErrorCode::kInvalidArgument,
                  "--origin: does not apply to the messages of " + played.file.string() +
@@ -27,7 +32,10 @@ Result<OpenedPlayback> open_frames(const PlayedFile& played) {
   }
   auto records = playback::TlogRecords::open(played.file);
   if (!records) return records.error();
-  return OpenedPlayback{std::make_unique<playback::TlogRecords>(std::move(*records)), "", {}};
+  return OpenedPlayback{
+      playback::link_output(std::make_unique<playback::TlogRecords>(std::move(*records)), link),
+      "",
+      {}};
 }
 
 Error misused(const std::string& option, const PlayedFile& played, const std::string& what) {
@@ -72,7 +80,9 @@ Result<playback::PlayedFlight> open_poses(const PlayedFile& played,
   }
   auto flown = flight::fly_log(played.file, frame_of(played), false, cancel);
   if (!flown) return flown.error();
-  return playback::PlayedFlight{std::move(*flown), frame_of(played), std::nullopt};
+  playback::PlayedFlight flight{std::move(*flown), frame_of(played), std::nullopt};
+  flight.is_placed = played.origin.has_value();
+  return flight;
 }
 
 Result<playback::PlayedFlight> open_logged(const PlayedFile& played,
@@ -88,7 +98,9 @@ Result<playback::PlayedFlight> open_logged(const PlayedFile& played,
   constexpr std::int64_t kYear2000UtcNs = 946'684'800 * kNsPerS;
   std::optional<std::int64_t> unix_ns = (*flown)->log_start_ns();
   if (unix_ns && *unix_ns < kYear2000UtcNs) unix_ns.reset();
-  return playback::PlayedFlight{std::move(*flown), frame_of(played), unix_ns};
+  playback::PlayedFlight flight{std::move(*flown), frame_of(played), unix_ns};
+  flight.is_placed = played.origin.has_value();
+  return flight;
 }
 
 /// What is flown: the truth of a run, the flight of a log, or poses.
@@ -102,18 +114,33 @@ Result<playback::PlayedFlight> open_flight(const PlayedFile& played,
   return other_format ? open_poses(played, cancel) : format.error();
 }
 
+/// "map at 47.1, 8.2, 500.0": whoever takes positions in metres needs it.
+std::string map_text(const playback::FlightMoments& moments) {
+  const Geodetic& origin = moments.map_origin();
+  // Without the last digits of the change from radians: 1e-12 deg are 0.1 um.
+  const auto degrees = [](double angle_rad) {
+    return number_text(std::round(deg_from_rad(angle_rad) * 1e12) / 1e12);
+  };
+  return "map at " + degrees(origin.lat_rad) + "," + degrees(origin.lon_rad) + "," +
+         number_text(origin.alt_ellipsoid_m);
+}
+
 }  // namespace
 
-Result<OpenedPlayback> open_playback(const PlayedFile& asked, const std::atomic<bool>* cancel) {
+Result<OpenedPlayback> open_playback(const PlayedFile& asked,
+                                     const PlaybackTarget& target,
+                                     const std::atomic<bool>* cancel) {
   PlayedFile played = asked;
-  std::error_code ignored;
-  const fs::path messages = server::vehicle_log_file(played.file);
-  if (fs::is_directory(played.file, ignored) && fs::exists(messages, ignored)) {
-    played.file = messages;
-  }
-  const Result<flight::logs::LogFormat> format = flight::logs::detect_format(played.file);
-  if (played.source.empty() && format && *format == flight::logs::LogFormat::kTlog) {
-    return open_frames(played);
+  if (const auto* const link = std::get_if<LinkAddress>(&target)) {
+    std::error_code ignored;
+    const fs::path messages = server::vehicle_log_file(played.file);
+    if (fs::is_directory(played.file, ignored) && fs::exists(messages, ignored)) {
+      played.file = messages;
+    }
+    const Result<flight::logs::LogFormat> format = flight::logs::detect_format(played.file);
+    if (played.source.empty() && format && *format == flight::logs::LogFormat::kTlog) {
+      return open_frames(played, *link);
+    }
   }
   Result<playback::PlayedFlight> flown = open_flight(played, cancel);
   if (!flown) return flown.error();
@@ -121,9 +148,21 @@ Result<OpenedPlayback> open_playback(const PlayedFile& asked, const std::atomic<
   OpenedPlayback opened;
   opened.description = flown->flight->description();
   opened.warnings = flown->flight->warnings();
-  auto records = playback::FlightRecords::create(std::move(*flown));
-  if (!records) return records.error();
-  opened.records = std::make_unique<playback::FlightRecords>(std::move(*records));
+  if (const auto* const link = std::get_if<LinkAddress>(&target)) {
+    auto records = playback::FlightRecords::create(std::move(*flown));
+    if (!records) return records.error();
+    opened.output = playback::link_output(
+        std::make_unique<playback::FlightRecords>(std::move(*records)), *link);
+    return opened;
+  }
+  auto moments = playback::FlightMoments::create(std::move(*flown));
+  if (!moments) return moments.error();
+  opened.description += ", " + map_text(*moments);
+  if (const auto* const ros = std::get_if<playback::RosTarget>(&target)) {
+    opened.output = playback::ros_output(std::move(*moments), *ros);
+  } else {
+    opened.output = playback::lcm_output(std::move(*moments), std::get<LcmTarget>(target).url);
+  }
   return opened;
 }
 

@@ -1,4 +1,5 @@
-// What `overfly play` plays: the frames of a telemetry log, or the flight of any other recording.
+// What `overfly play` plays, and where: the frames of a telemetry log, or the flight of any other
+// recording.
 #pragma once
 
 #include <atomic>
@@ -6,11 +7,14 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "core/earth/geodesy.hpp"
 #include "core/result.hpp"
-#include "flight/playback/playback_records.hpp"
+#include "flight/mavlink/link/link_address.hpp"
+#include "flight/playback/playback_output.hpp"
+#include "flight/playback/topics/topic_outputs.hpp"
 
 namespace overfly::app {
 
@@ -22,17 +26,25 @@ struct PlayedFile {
   double rate_hz = 50.0;           ///< of the messages of a flight
 };
 
+struct LcmTarget {
+  std::string url;
+};
+using PlaybackTarget =
+    std::variant<flight::mavlink::LinkAddress, LcmTarget, flight::playback::RosTarget>;
+
 struct OpenedPlayback {
-  std::unique_ptr<flight::playback::PlaybackRecords> records;
+  std::unique_ptr<flight::playback::PlaybackOutput> output;  ///< not open yet
   std::string description;  ///< of a flight; empty for a telemetry log, whose frames are sent
   std::vector<std::string> warnings;
 };
 
-/// A .tlog without `source`, and the folder of a live run, are played byte by byte; of everything
-/// else the recommended truth is flown.
+/// Onto a link, a .tlog without `source` and the folder of a live run are played byte by byte. Of
+/// everything else, and onto LCM and ROS, the recommended truth is flown.
 /// Errors: kInvalidArgument for options that do not apply; as TlogRecords::open, fly_flight_log,
-/// fly_log, read_run_manifest, open_recorded_flight and FlightRecords::create.
+/// fly_log, read_run_manifest, open_recorded_flight, FlightRecords::create and
+/// FlightMoments::create.
 [[nodiscard]] Result<OpenedPlayback> open_playback(const PlayedFile& played,
+                                                   const PlaybackTarget& target,
                                                    const std::atomic<bool>* cancel);
 
 }  // namespace overfly::app

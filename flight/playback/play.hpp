@@ -1,4 +1,4 @@
-// Plays recorded messages onto a link, as if the vehicle were there.
+// Plays a recording onto an output at its own times, as if the vehicle were there.
 #pragma once
 
 #include <atomic>
@@ -10,9 +10,8 @@
 #include <vector>
 
 #include "core/result.hpp"
-#include "flight/mavlink/link/link_address.hpp"
 #include "flight/playback/playback_clock.hpp"
-#include "flight/playback/playback_records.hpp"
+#include "flight/playback/playback_output.hpp"
 
 namespace overfly::flight::playback {
 
@@ -39,24 +38,17 @@ struct PlaybackPorts {
   std::function<PlaybackClock::TimePoint()> now;
   /// Commands since the last call.
   std::function<std::vector<PlaybackCommand>()> commands;
-  /// Called when the link is open, with the actual port.
-  std::function<void(const mavlink::LinkAddress&)> opened;
+  /// Called when the output is open.
+  std::function<void(const PlaybackOutput&)> opened;
   /// Called after each command.
   std::function<void(const PlaybackClock& clock, std::int64_t position_us)> changed;
 };
 
-struct PlaybackSummary {
-  std::uint64_t sent = 0;    ///< frames
-  std::uint64_t unsent = 0;  ///< frames that no peer took
-};
-
-/// Sends the frames at their times, byte by byte; what the other side sends is ignored. A link that
-/// fails is opened again after a second. Returns at the end, after kQuit, or when `stop` is set.
-/// Errors: as open_byte_link at the start; those of the records.
-[[nodiscard]] Result<PlaybackSummary> play_records(PlaybackRecords& records,
-                                                   const mavlink::LinkAddress& address,
-                                                   const PlaybackOptions& options,
-                                                   const PlaybackPorts& ports,
-                                                   const std::atomic<bool>& stop);
+/// Sends the messages at their times. Returns at the end, after kQuit, or when `stop` is set.
+/// Errors: those of the output.
+[[nodiscard]] Result<PlaybackSummary> play(PlaybackOutput& output,
+                                           const PlaybackOptions& options,
+                                           const PlaybackPorts& ports,
+                                           const std::atomic<bool>& stop);
 
 }  // namespace overfly::flight::playback

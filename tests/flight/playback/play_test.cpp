@@ -1,4 +1,4 @@
-#include "flight/playback/play_records.hpp"
+#include "flight/playback/play.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,6 +6,7 @@
 #include <chrono>
 #include <map>
 
+#include "flight/playback/link_output.hpp"
 #include "flight/playback/tlog_records.hpp"
 #include "tests/flight/logs/log_bytes.hpp"
 #include "tests/flight/mavlink/link/peer_socket.hpp"
@@ -89,7 +90,8 @@ class PlayTlog : public ::testing::Test {
     const std::atomic<bool> stop{false};
     const auto address =
         mavlink::parse_link_address("udp:127.0.0.1:" + std::to_string(port_), "link");
-    const auto summary = play_records(*records, *address, options, ports, stop);
+    const auto output = link_output(std::make_unique<TlogRecords>(std::move(*records)), *address);
+    const auto summary = play(*output, options, ports, stop);
     EXPECT_TRUE(summary.ok()) << summary.error().message;
     while (socket_.readable(0)) append(received, socket_.receive(0));
     const std::vector<int> numbers = numbers_in(received);
