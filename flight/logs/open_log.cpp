@@ -12,6 +12,7 @@
 #include "flight/logs/flight_log.hpp"
 #include "flight/logs/lcm/lcm_events.hpp"
 #include "flight/logs/lcm/lcm_log_reader.hpp"
+#include "flight/logs/mcap/mcap_parts.hpp"
 #include "flight/logs/mcap/mcap_reader.hpp"
 #include "flight/logs/rosbag/rosbag_reader.hpp"
 #include "flight/logs/stream_statistics.hpp"
@@ -288,9 +289,24 @@ Result<OpenedLog> open_log(const std::filesystem::path& file,
       log.parts = parts_for(*index, log.slice);
     }
   }
+  std::string own_index_unused;
+  if (indexed && !log.slice.is_whole() && log.parts.empty() && log.format == LogFormat::kMcap) {
+    auto parts = mcap_parts_for(file, log.slice, cancel);
+    if (parts) {
+      log.parts = std::move(*parts);
+    } else if (parts.error().code == ErrorCode::kCancelled) {
+      return parts.error().in(file.string());
+    } else {
+      own_index_unused = parts.error().message;
+    }
+  }
   OpeningSink sink(log, cancel);
   if (Status status = read_log_into(log, sink); !status) return status.error();
   sink.finish();
+  if (!own_index_unused.empty()) {
+    log.warnings.push_back("the file's own index was not used, and the whole log was read: " +
+                           own_index_unused);
+  }
   if (!indexed || !log.parts.empty()) return log;
   // A log that was written to in the meantime gets its index another time.
   if (const auto index = sink.index(); index && identify_log(file) == identity) {

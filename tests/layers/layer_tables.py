@@ -86,7 +86,7 @@ MAY_INCLUDE = {
     "flight/logs/dataflash": ["core/", "flight/logs"],
     "flight/logs/ulog": ["core/", "flight/logs"],
     "flight/logs/ros": ["core/", "flight/logs"],
-    "flight/logs/mcap": ["core/", "flight/logs", "flight/logs/ros"],
+    "flight/logs/mcap": ["core/", "flight/logs", "flight/logs/index", "flight/logs/ros"],
     "flight/logs/rosbag": ["core/", "flight/logs", "flight/logs/ros"],
     "flight/logs/lcm": ["core/", "flight/logs"],
     "flight/logs/images": ["core/", "flight/logs", "flight/logs/ros", "flight/logs/mcap",

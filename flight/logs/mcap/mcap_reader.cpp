@@ -30,6 +30,7 @@ class McapPass {
       : file_(file), sink_(sink), topics_(topics) {}
 
   Status run();
+  [[nodiscard]] const McapFaults& faults() const { return faults_; }
 
  private:
   [[nodiscard]] Status skip(std::uint64_t bytes);
@@ -58,13 +59,7 @@ class McapPass {
   std::unordered_map<std::uint16_t, std::optional<RosMessageSink::Topic>> channels_;
   std::uint32_t crc_ = 0;  ///< of the file so far
   bool ended_ = false;     ///< the end of the data was met
-  std::uint64_t bad_checksums_ = 0;
-  std::uint64_t damaged_chunks_ = 0;
-  std::uint64_t large_chunks_ = 0;
-  std::uint64_t unknown_compressions_ = 0;
-  std::uint64_t cut_records_ = 0;
-  std::uint64_t bad_records_ = 0;
-  std::uint64_t without_channel_ = 0;
+  McapFaults faults_;
   bool bad_data_checksum_ = false;
 };
 
@@ -89,7 +84,7 @@ void McapPass::take_channel(const McapChannel& channel) {
 void McapPass::take_message(const McapMessage& message, const MessagePlace& place) {
   const auto channel = channels_.find(message.channel_id);
   if (channel == channels_.end()) {
-    ++without_channel_;
+    ++faults_.without_channel;
   } else if (channel->second) {
     topics_.take(*channel->second, message.data, message.log_time_ns, place);
   }
@@ -116,7 +111,7 @@ void McapPass::take(McapOpcode opcode, std::span<const std::uint8_t> content, Me
       take_message(*message, place);
     }
   }
-  if (!ok) ++bad_records_;
+  if (!ok) ++faults_.bad_records;
 }
 
 void McapPass::take_records(std::span<const std::uint8_t> bytes, bool whole, MessagePlace chunk) {
@@ -125,7 +120,7 @@ void McapPass::take_records(std::span<const std::uint8_t> bytes, bool whole, Mes
     const McapRecord record = has_header ? mcap_record_at(bytes) : McapRecord{};
     const std::size_t left = has_header ? bytes.size() - kMcapRecordHeaderBytes : 0;
     if (!has_header || record.length > left) {
-      ++(whole ? bad_records_ : cut_records_);
+      ++(whole ? faults_.bad_records : faults_.cut_records);
       return;
     }
     const auto length = static_cast<std::size_t>(record.length);
@@ -144,7 +139,8 @@ Status McapPass::take_chunk(std::uint64_t length) {
   const auto shown = static_cast<std::size_t>(std::min<std::uint64_t>(length, ahead->size()));
   const std::optional<McapChunk> chunk = mcap_chunk_in(ahead->first(shown));
   if (!chunk) {
-    ++(ahead->size() < kMcapChunkHeaderBytes && length > shown ? cut_records_ : damaged_chunks_);
+    ++(ahead->size() < kMcapChunkHeaderBytes && length > shown ? faults_.cut_records
+                                                               : faults_.damaged_chunks);
     return skip(length);
   }
   const std::optional<ChunkCompression> compression = chunk_compression_named(chunk->compression);
@@ -152,7 +148,9 @@ Status McapPass::take_chunk(std::uint64_t length) {
   const bool large = chunk->uncompressed_bytes > ChunkReader::kMaxBytes;
   const bool fits = chunk->stored_bytes == length - chunk->header_bytes;
   if (!supported || large || !fits) {
-    ++(!supported ? unknown_compressions_ : large ? large_chunks_ : damaged_chunks_);
+    ++(!supported ? faults_.unknown_compressions
+       : large    ? faults_.large_chunks
+                  : faults_.damaged_chunks);
     return skip(length);
   }
   if (Status status = skip(chunk->header_bytes); !status) return status;
@@ -168,13 +166,13 @@ Status McapPass::take_chunk(std::uint64_t length) {
                    [this](std::span<const std::uint8_t> stored) { count_crc(stored); });
   if (!read) return read.error();
   if (read->damaged) {
-    ++damaged_chunks_;
+    ++faults_.damaged_chunks;
   } else if (!read->cut && chunk->uncompressed_crc != 0 &&
              libdeflate_crc32(0, read->bytes.data(), read->bytes.size()) !=
                  chunk->uncompressed_crc) {
-    ++bad_checksums_;
+    ++faults_.bad_checksums;
   } else {
-    if (read->cut && read->bytes.empty()) ++cut_records_;
+    if (read->cut && read->bytes.empty()) ++faults_.cut_records;
     take_records(read->bytes, !read->cut, place);
   }
   return {};
@@ -188,7 +186,7 @@ Result<bool> McapPass::take_record() {
   const McapRecord record = has_header ? mcap_record_at(*ahead) : McapRecord{};
   const std::uint64_t left = file_.size_bytes() - file_.position() - kMcapRecordHeaderBytes;
   if (!has_header || (record.length > left && record.opcode != McapOpcode::kChunk)) {
-    ++cut_records_;
+    ++faults_.cut_records;
     return false;
   }
   const auto shown = static_cast<std::size_t>(
@@ -226,14 +224,15 @@ void McapPass::report() {
   const auto warn = [&](std::uint64_t count, const std::string& text) {
     if (count > 0) sink_.warning(std::to_string(count) + " " + text);
   };
-  warn(bad_checksums_, "chunks have a wrong checksum and were left out");
-  warn(damaged_chunks_, "chunks cannot be decompressed or have wrong lengths, and were left out");
-  warn(large_chunks_, "chunks are larger than 128 MiB and were left out");
-  warn(unknown_compressions_,
+  warn(faults_.bad_checksums, "chunks have a wrong checksum and were left out");
+  warn(faults_.damaged_chunks,
+       "chunks cannot be decompressed or have wrong lengths, and were left out");
+  warn(faults_.large_chunks, "chunks are larger than 128 MiB and were left out");
+  warn(faults_.unknown_compressions,
        "chunks are compressed in a way that is not read (only lz4 and zstd are) and were left out");
-  warn(cut_records_, "records are cut off by the end of the file");
-  warn(bad_records_, "records have wrong lengths and were left out");
-  warn(without_channel_, "messages belong to no channel");
+  warn(faults_.cut_records, "records are cut off by the end of the file");
+  warn(faults_.bad_records, "records have wrong lengths and were left out");
+  warn(faults_.without_channel, "messages belong to no channel");
   if (bad_data_checksum_) sink_.warning("the checksum of the data section is wrong");
   if (!ended_) sink_.warning("the recording has no end: it was read up to the end of the file");
 }
@@ -254,8 +253,14 @@ bool is_mcap(std::span<const std::uint8_t> head) {
          });
 }
 
-Status read_mcap_messages(ForwardReader& file, LogSink& sink, RosMessageSink& messages) {
-  return McapPass(file, sink, messages).run();
+Status read_mcap_messages(ForwardReader& file,
+                          LogSink& sink,
+                          RosMessageSink& messages,
+                          McapFaults* faults) {
+  McapPass pass(file, sink, messages);
+  Status status = pass.run();
+  if (faults != nullptr) *faults = pass.faults();
+  return status;
 }
 
 Status read_mcap(ForwardReader& file, LogSink& sink) {

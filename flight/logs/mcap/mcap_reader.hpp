@@ -23,9 +23,23 @@ namespace overfly::flight::logs {
 /// Errors: kIo; kCancelled if the sink stops.
 [[nodiscard]] Status read_mcap(ForwardReader& file, LogSink& sink);
 
+/// Numbers of what was left out of a file.
+struct McapFaults {
+  std::uint64_t bad_checksums = 0;  ///< chunks
+  std::uint64_t damaged_chunks = 0;
+  std::uint64_t large_chunks = 0;
+  std::uint64_t unknown_compressions = 0;  ///< chunks
+  std::uint64_t cut_records = 0;
+  std::uint64_t bad_records = 0;
+  std::uint64_t without_channel = 0;  ///< messages
+  friend bool operator==(const McapFaults&, const McapFaults&) = default;
+};
+
 /// As read_mcap, with the messages for another receiver: `sink` gets warnings and progress only.
+/// @param faults  may be null
 [[nodiscard]] Status read_mcap_messages(ForwardReader& file,
                                         LogSink& sink,
-                                        RosMessageSink& messages);
+                                        RosMessageSink& messages,
+                                        McapFaults* faults = nullptr);
 
 }  // namespace overfly::flight::logs

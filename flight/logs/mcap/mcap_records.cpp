@@ -57,8 +57,8 @@ std::optional<McapChunk> mcap_chunk_in(std::span<const std::uint8_t> content) {
   constexpr std::size_t kFixedBytes = 8 + 8 + 8 + 4 + 4 + 8;
   RosCursor fields = fields_of(content);
   McapChunk chunk;
-  (void)fields.number<std::uint64_t>();  // message_start_time
-  (void)fields.number<std::uint64_t>();  // message_end_time
+  chunk.first_ns = fields.number<std::uint64_t>();
+  chunk.last_ns = fields.number<std::uint64_t>();
   chunk.uncompressed_bytes = fields.number<std::uint64_t>();
   chunk.uncompressed_crc = fields.number<std::uint32_t>();
   chunk.compression = fields.text();
@@ -66,6 +66,32 @@ std::optional<McapChunk> mcap_chunk_in(std::span<const std::uint8_t> content) {
   chunk.header_bytes = kFixedBytes + chunk.compression.size();
   if (!fields.ok()) return std::nullopt;
   return chunk;
+}
+
+std::optional<McapChunkIndex> mcap_chunk_index_in(std::span<const std::uint8_t> content) {
+  RosCursor fields = fields_of(content);
+  McapChunkIndex index;
+  index.first_ns = fields.number<std::uint64_t>();
+  index.last_ns = fields.number<std::uint64_t>();
+  index.offset = fields.number<std::uint64_t>();
+  index.length = fields.number<std::uint64_t>();
+  (void)fields.octets();  // message_index_offsets: the message indexes themselves are read
+  index.index_length = fields.number<std::uint64_t>();
+  index.compression = fields.text();
+  index.stored_bytes = fields.number<std::uint64_t>();
+  index.uncompressed_bytes = fields.number<std::uint64_t>();
+  if (!fields.ok()) return std::nullopt;
+  return index;
+}
+
+std::optional<McapFooter> mcap_footer_in(std::span<const std::uint8_t> content) {
+  RosCursor fields = fields_of(content);
+  McapFooter footer;
+  footer.summary_start = fields.number<std::uint64_t>();
+  (void)fields.number<std::uint64_t>();  // summary_offset_start
+  footer.summary_crc = fields.number<std::uint32_t>();
+  if (!fields.ok()) return std::nullopt;
+  return footer;
 }
 
 }  // namespace overfly::flight::logs

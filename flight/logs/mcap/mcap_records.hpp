@@ -17,6 +17,7 @@ enum class McapOpcode : std::uint8_t {
   kChannel = 0x04,
   kMessage = 0x05,
   kChunk = 0x06,
+  kMessageIndex = 0x07,
   kChunkIndex = 0x08,
   kStatistics = 0x0B,
   kDataEnd = 0x0F,
@@ -60,6 +61,8 @@ inline constexpr std::size_t kMcapMessageFieldBytes = 22;
 
 /// A chunk's fields in front of its stored bytes.
 struct McapChunk {
+  std::uint64_t first_ns = 0;  ///< times of recording; 0 without messages
+  std::uint64_t last_ns = 0;
   std::uint64_t uncompressed_bytes = 0;
   std::uint32_t uncompressed_crc = 0;  ///< 0: none
   std::string compression;
@@ -69,5 +72,26 @@ struct McapChunk {
 [[nodiscard]] std::optional<McapChunk> mcap_chunk_in(std::span<const std::uint8_t> content);
 /// No chunk has longer fields: the name of a compression is short.
 inline constexpr std::size_t kMcapChunkHeaderBytes = 4096;
+
+/// What the summary says about a chunk.
+struct McapChunkIndex {
+  std::uint64_t first_ns = 0;
+  std::uint64_t last_ns = 0;
+  std::uint64_t offset = 0;        ///< of the chunk's record in the file
+  std::uint64_t length = 0;        ///< of the whole record
+  std::uint64_t index_length = 0;  ///< of the message indexes that follow it
+  std::string compression;
+  std::uint64_t stored_bytes = 0;
+  std::uint64_t uncompressed_bytes = 0;
+};
+[[nodiscard]] std::optional<McapChunkIndex> mcap_chunk_index_in(
+    std::span<const std::uint8_t> content);
+
+struct McapFooter {
+  std::uint64_t summary_start = 0;  ///< 0: there is no summary
+  std::uint32_t summary_crc = 0;    ///< 0: none
+};
+inline constexpr std::size_t kMcapFooterBytes = 20;
+[[nodiscard]] std::optional<McapFooter> mcap_footer_in(std::span<const std::uint8_t> content);
 
 }  // namespace overfly::flight::logs
