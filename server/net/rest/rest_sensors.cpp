@@ -45,6 +45,7 @@ json curve_json(const server::SensorCurve& curve) {
 Result<json> sensors_json(RunManager* runs,
                           const std::string& id,
                           server::SensorSeriesRequest request,
+                          server::SensorIndexShelf& indexes,
                           const std::atomic<bool>* cancel) {
   const auto timeline = runs->timeline(id);
   if (!timeline) return timeline.error();
@@ -56,10 +57,11 @@ Result<json> sensors_json(RunManager* runs,
         std::make_shared<server::GpsErrors>(**timeline, *manifest->values.world->origin);
     request.gps_error = [errors](const GpsSample& fix) { return errors->of(fix); };
   }
-  const auto sensors = server::read_sensor_series(*folder, request, cancel);
-  if (!sensors) return sensors.error();
+  const auto index = indexes.of(*folder);
+  const auto series = server::read_sensor_series(*folder, request, *index, cancel);
+  if (!series) return series.error();
   json list = json::array();
-  for (const server::SensorCurves& sensor : *sensors) {
+  for (const server::SensorCurves& sensor : series->sensors) {
     json curves = json::array();
     for (const server::SensorCurve& curve : sensor.curves) curves.push_back(curve_json(curve));
     list.push_back(
@@ -84,9 +86,10 @@ Result<server::SensorSeriesRequest> request_of(const RouteCall& call) {
 }  // namespace
 
 void add_sensor_routes(RestRouter* router, RunManager* runs, const ReadingRoutes& readers) {
+  const auto indexes = std::make_shared<server::SensorIndexShelf>();
   router->add("GET",
               "/api/v1/runs/{id}/sensors",
-              [runs, readers](const RouteCall& call, const Respond& respond) {
+              [runs, readers, indexes](const RouteCall& call, const Respond& respond) {
                 const auto request = request_of(call);
                 if (!request) {
                   respond(error_response(request.error()));
@@ -96,9 +99,9 @@ void add_sensor_routes(RestRouter* router, RunManager* runs, const ReadingRoutes
                                 "a run's sensors",
                                 call,
                                 respond,
-                                [runs, id = call.path.at("id"), request = *request](
+                                [runs, indexes, id = call.path.at("id"), request = *request](
                                     const std::atomic<bool>* cancel) {
-                                  return sensors_json(runs, id, request, cancel);
+                                  return sensors_json(runs, id, request, *indexes, cancel);
                                 });
               },
               {"from_s", "to_s", "points"});

@@ -1,20 +1,15 @@
 #include "server/record/rows/sensor_files.hpp"
 
-#include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <tuple>
 #include <utility>
 
-#include "core/outside/forward_reader.hpp"
 #include "core/text/number_text.hpp"
-#include "server/files/file_field.hpp"
 #include "server/files/whole_file.hpp"
-#include "server/record/rows/sensor_rows.hpp"
+#include "server/record/rows/sensor_row_reader.hpp"
 
 namespace overfly::server {
 
@@ -65,24 +60,19 @@ class RowWriter {
   std::optional<AppendFile> file_;
 };
 
-/// One file, line by line, and the sample that was read but is not due yet.
+/// One file, and the sample that was read but is not due yet.
 template <typename Sample>
 class RowReader {
  public:
   using Row = SensorRow<Sample>;
 
   Status open(const fs::path& folder) {
-    name_ = folder / Row::kFile;
-    Result<ForwardReader> opened = ForwardReader::open(name_);
-    if (!opened) {
-      return opened.error().code == ErrorCode::kNotFound ? Status() : opened.error();
-    }
-    file_.emplace(std::move(*opened));
-    const Result<std::optional<std::string_view>> header = line();
-    if (!header) return header.error();
-    if (*header && **header != Row::kHeader) {
-      return bad_line("must be \"" + std::string(Row::kHeader) + "\"");
-    }
+    const Result<bool> present = rows_.open(folder);
+    if (!present) return present.error();
+    if (!*present) return {};
+    if (Status status = rows_.read_header(); !status) return status;
+    rows_.go_to(rows_.place(), rows_.size_bytes());
+    more_ = true;
     return {};
   }
 
@@ -92,10 +82,13 @@ class RowReader {
                     std::int64_t after_ns,
                     std::size_t limit,
                     SensorSamples& samples) {
-    for (std::size_t read = 0; file_ && read < limit; ++read) {
+    for (std::size_t read = 0; more_ && read < limit; ++read) {
       if (!next_) {
-        if (Status status = read_next(); !status) return status;
-        if (!next_) return {};
+        const Result<std::optional<Sample>> next = rows_.next();
+        if (!next) return next.error();
+        next_ = *next;
+        more_ = next_.has_value();
+        if (!more_) return {};
       }
       if (available_ns(*next_) > t_ns) return {};
       if (available_ns(*next_) > after_ns) (samples.*Row::kSamples).push_back(*next_);
@@ -105,69 +98,8 @@ class RowReader {
   }
 
  private:
-  static constexpr std::size_t kMaxLineBytes = 1024;
-
-  /// The next complete line, without its end; empty at the end of the file.
-  Result<std::optional<std::string_view>> line() {
-    file_->skip(line_bytes_);
-    line_bytes_ = 0;
-    const auto bytes = file_->ahead(kMaxLineBytes);
-    if (!bytes) return bytes.error();
-    const std::string_view text(reinterpret_cast<const char*>(bytes->data()),
-                                std::min(bytes->size(), kMaxLineBytes));
-    ++number_;
-    const std::size_t end = text.find('\n');
-    if (end == std::string_view::npos) {
-      if (text.size() == kMaxLineBytes) {
-        return bad_line("must have less than " + std::to_string(kMaxLineBytes) + " characters");
-      }
-      return std::optional<std::string_view>();
-    }
-    line_bytes_ = end + 1;
-    return std::optional(text.substr(0, end));
-  }
-
-  Status read_next() {
-    const auto text = line();
-    if (!text) return text.error();
-    if (!*text) {
-      file_.reset();
-      return {};
-    }
-    std::int64_t t_ns = 0;
-    std::array<double, Row::kValues> values{};
-    const char* at = (*text)->data();
-    const char* const end = at + (*text)->size();
-    auto parsed = std::from_chars(at, end, t_ns);
-    bool good = parsed.ec == std::errc() && t_ns >= 0 && t_ns <= kLargestFileInteger;
-    for (double& value : values) {
-      good = good && parsed.ptr != end && *parsed.ptr == ',';
-      if (!good) break;
-      parsed = std::from_chars(parsed.ptr + 1, end, value);
-      good = parsed.ec == std::errc();
-    }
-    if (!good || parsed.ptr != end) {
-      return bad_line("must be a time in [0, " + std::to_string(kLargestFileInteger) + "] ns and " +
-                      std::to_string(Row::kValues) + " numbers, separated by commas");
-    }
-    const Sample sample = Row::sample(t_ns, values);
-    if (available_ns(sample) < last_ns_) {
-      return bad_line("must not be before the previous line's time");
-    }
-    last_ns_ = available_ns(sample);
-    next_ = sample;
-    return {};
-  }
-
-  [[nodiscard]] Error bad_line(const std::string& must) const {
-    return {ErrorCode::kUnreadable, name_.string() + ":" + std::to_string(number_) + ": " + must};
-  }
-
-  fs::path name_;
-  std::optional<ForwardReader> file_;  ///< empty: no file, or its end was reached
-  std::size_t line_bytes_ = 0;         ///< of the last line
-  std::int64_t number_ = 0;            ///< of the last line
-  std::int64_t last_ns_ = 0;
+  SensorRowReader<Sample> rows_;
+  bool more_ = false;  ///< false: no file, or its end was reached
   std::optional<Sample> next_;
 };
 

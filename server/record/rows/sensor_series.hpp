@@ -15,6 +15,7 @@
 #include "core/measure/bounded_series.hpp"
 #include "core/result.hpp"
 #include "core/sensors/sensor_samples.hpp"
+#include "server/record/rows/sensor_index.hpp"
 
 namespace overfly::server {
 
@@ -39,13 +40,20 @@ struct SensorSeriesRequest {
   std::function<std::optional<Eigen::Vector3d>(const GpsSample&)> gps_error;
 };
 
+struct SensorSeries {
+  std::vector<SensorCurves> sensors;
+  std::uint64_t bytes_read = 0;  ///< of the files
+};
+
 /// Reads the sensor files of a run folder, also while the run appends to them. Sensors without a
 /// file are left out. A value that is not finite (no fix, no echo) is no point of its curve.
 /// Memory: independent of the size of the files.
+/// @param index  of that run: rows that it knows are read only in the stretch of time asked for.
+/// It is extended by the others, which are read all
 /// Errors: as SensorFilesReader; kCancelled.
-[[nodiscard]] Result<std::vector<SensorCurves>> read_sensor_series(
-    const std::filesystem::path& run_folder,
-    const SensorSeriesRequest& request,
-    const std::atomic<bool>* cancel = nullptr);
+[[nodiscard]] Result<SensorSeries> read_sensor_series(const std::filesystem::path& run_folder,
+                                                      const SensorSeriesRequest& request,
+                                                      SensorIndex& index,
+                                                      const std::atomic<bool>* cancel = nullptr);
 
 }  // namespace overfly::server
