@@ -31,7 +31,7 @@ namespace message_traits {
 template <>
 struct IsMessage<overfly::ros1::MavrosStateMessage> : TrueType {};
 
-/// Of the definition in mavros_msgs since 0.18.6 (2017).
+/// Of the definition in mavros_msgs 1.x, whose constants (names of modes) are part of the checksum.
 template <>
 struct MD5Sum<overfly::ros1::MavrosStateMessage> {
   static const char* value() { return "65cd0a9fff993b062b91e354554ec7e9"; }
@@ -46,7 +46,10 @@ template <>
 struct Definition<overfly::ros1::MavrosStateMessage> {
   static const char* value() {
     return "std_msgs/Header header\nbool connected\nbool armed\nbool guided\nbool manual_input\n"
-           "string mode\nuint8 system_status\n";
+           "string mode\nuint8 system_status\n"
+           // Recorders keep this text, and decode by it what they have no package for.
+           "================================================================================\n"
+           "MSG: std_msgs/Header\nuint32 seq\ntime stamp\nstring frame_id\n";
   }
   static const char* value(const overfly::ros1::MavrosStateMessage& /*message*/) { return value(); }
 };
