@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/cancellable_wait.hpp"
+#include "core/sensors/sample_source.hpp"
 #include "core/text/number_text.hpp"
 #include "core/text/printable_text.hpp"
 #include "flight/live/arrivals.hpp"
@@ -50,7 +51,7 @@ std::optional<MavrosState> decode_mavros_state(std::span<const std::uint8_t> byt
 /// A publisher that changes the mode all the time does not fill the memory.
 constexpr std::size_t kMaxWaitingEvents = 1000;
 
-class RosTruth final : public TruthSource {
+class RosTruth final : public TruthSource, public SampleSource {
  public:
   RosTruth(const RosFlight& flight, const LocalFrame& frame)
       : flight_(flight),
@@ -59,6 +60,7 @@ class RosTruth final : public TruthSource {
 
   Status open(const std::atomic<bool>* cancel) {
     std::set<std::string> topics = {flight_.position_topic(), flight_.attitude_topic()};
+    topics.insert(flight_.sensor_topics.begin(), flight_.sensor_topics.end());
     if (!flight_.state_topic.empty()) topics.insert(flight_.state_topic);
     ros1::TopicListenerOptions options;
     options.master_uri = flight_.master_uri;
@@ -117,6 +119,16 @@ class RosTruth final : public TruthSource {
     }
     return taken;
   }
+  [[nodiscard]] SampleSource* sample_source() override { return this; }
+  [[nodiscard]] SensorSamples take_samples(std::int64_t t_ns) override {
+    const std::lock_guard lock(mutex_);
+    return samples_.sensors().take_until(start_ns_ + t_ns, start_ns_);
+  }
+  [[nodiscard]] std::string sensor_report() const override {
+    const std::lock_guard lock(mutex_);
+    const std::string sensors = samples_.sensors().report("not published");
+    return sensors.empty() ? sensors : "sensors of the vehicle: " + sensors;
+  }
   [[nodiscard]] std::optional<std::int64_t> heard_ns() const override {
     const std::lock_guard lock(mutex_);
     return arrivals_.used_ns();
@@ -143,7 +155,10 @@ class RosTruth final : public TruthSource {
     if (!started_ && !samples_.positions().empty() && !samples_.attitudes().empty()) {
       start_ns_ = std::max(samples_.positions().front().t_ns, samples_.attitudes().front().t_ns);
       started_ = known_until_ns() >= start_ns_;
-      if (started_) samples_.forget_before(start_ns_);
+      if (started_) {
+        samples_.forget_before(start_ns_);
+        samples_.sensors().forget_before(start_ns_);
+      }
     }
     if (!started_) return;
     if (known_until_ns() > before_ns) arrivals_.add(known_until_ns());

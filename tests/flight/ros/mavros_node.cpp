@@ -113,7 +113,11 @@ void fly(ros::NodeHandle& handle, const std::string& prefix, char** argv) {
   ros::Publisher global = publisher_of<testing::FixMessage>(handle, prefix + "/global");
   ros::Publisher imu = publisher_of<testing::ImuMessage>(handle, prefix + "/imu");
   ros::Publisher pose = publisher_of<ros1::PoseStampedMessage>(handle, prefix + "/pose");
+  ros::Publisher raw_imu = publisher_of<testing::ImuMessage>(handle, prefix + "/imu_raw");
+  ros::Publisher field = publisher_of<testing::FieldMessage>(handle, prefix + "/mag");
+  ros::Publisher pressure = publisher_of<testing::PressureMessage>(handle, prefix + "/pressure");
   ros::Publisher state = publisher_of(handle, prefix + "/state", "mavros_msgs/State");
+  for (const ros::Publisher& sensor : {raw_imu, field, pressure}) wait_for_subscribers(sensor);
   // The flight listens to two of the three.
   for (int i = 0; i < 4000; ++i) {
     const int listened = (global.getNumSubscribers() > 0 ? 1 : 0) +
@@ -127,6 +131,9 @@ void fly(ros::NodeHandle& handle, const std::string& prefix, char** argv) {
   topics.global = [&](const testing::FixMessage& message) { global.publish(message); };
   topics.imu = [&](const testing::ImuMessage& message) { imu.publish(message); };
   topics.pose = [&](const ros1::PoseStampedMessage& message) { pose.publish(message); };
+  topics.raw_imu = [&](const testing::ImuMessage& message) { raw_imu.publish(message); };
+  topics.field = [&](const testing::FieldMessage& message) { field.publish(message); };
+  topics.pressure = [&](const testing::PressureMessage& message) { pressure.publish(message); };
   testing::publish_recording(argv[2], std::atoll(argv[3]), std::atoll(argv[4]), topics);
 }
 
