@@ -1,20 +1,16 @@
 #include "flight/ros/ros_truth.hpp"
 
 #include <algorithm>
-#include <chrono>
-#include <condition_variable>
 #include <deque>
+#include <functional>
 #include <limits>
-#include <mutex>
 #include <set>
 #include <utility>
 
-#include "core/cancellable_wait.hpp"
 #include "core/sensors/sample_source.hpp"
-#include "core/text/number_text.hpp"
 #include "core/text/printable_text.hpp"
-#include "flight/live/arrivals.hpp"
 #include "flight/live/live_motion.hpp"
+#include "flight/live/state_wait.hpp"
 #include "flight/logs/ros/ros_cursor.hpp"
 #include "flight/ros/ros_samples.hpp"
 #include "middleware/ros1/topic_listener.hpp"
@@ -71,7 +67,8 @@ class RosTruth final : public TruthSource, public SampleSource {
         options, [this](const ros1::ListenedMessage& message) { take(message); }, cancel);
     if (!listener) return listener.error();
     listener_ = std::move(*listener);
-    return wait("waiting for the flight's start", cancel, [this] { return started_; });
+    return wait(
+        "waiting for the flight's start", [this] { return started_; }, cancel);
   }
   ~RosTruth() override { listener_.reset(); }
 
@@ -82,7 +79,7 @@ class RosTruth final : public TruthSource, public SampleSource {
                                                                  : ", " + flight_.attitude_topic());
   }
   [[nodiscard]] std::vector<std::string> warnings() const override {
-    const std::lock_guard lock(mutex_);
+    const std::lock_guard lock(news_.mutex);
     std::vector<std::string> warnings;
     if (const auto gaps = motion_.gaps_text(start_ns_)) warnings.push_back(*gaps);
     if (const std::uint64_t count = listener_->too_large(); count > 0) {
@@ -97,14 +94,14 @@ class RosTruth final : public TruthSource, public SampleSource {
     return warnings;
   }
   void begin() override {
-    const std::lock_guard lock(mutex_);
+    const std::lock_guard lock(news_.mutex);
     if (end_ns_) return;
     start_ns_ = known_until_ns();
     samples_.forget_before(start_ns_);
-    arrivals_.use_latest();
+    news_.arrivals.use_latest();
   }
   [[nodiscard]] std::vector<FlightEvent> take_events(std::int64_t t_ns) override {
-    const std::lock_guard lock(mutex_);
+    const std::lock_guard lock(news_.mutex);
     std::vector<FlightEvent> taken;
     while (!events_.empty() && events_.front().t_ns <= start_ns_ + t_ns) {
       FlightEvent event = std::move(events_.front());
@@ -121,23 +118,23 @@ class RosTruth final : public TruthSource, public SampleSource {
   }
   [[nodiscard]] SampleSource* sample_source() override { return this; }
   [[nodiscard]] SensorSamples take_samples(std::int64_t t_ns) override {
-    const std::lock_guard lock(mutex_);
+    const std::lock_guard lock(news_.mutex);
     return samples_.sensors().take_until(start_ns_ + t_ns, start_ns_);
   }
   [[nodiscard]] std::string sensor_report() const override {
-    const std::lock_guard lock(mutex_);
+    const std::lock_guard lock(news_.mutex);
     const std::string sensors = samples_.sensors().report("not published");
     return sensors.empty() ? sensors : "sensors of the vehicle: " + sensors;
   }
   [[nodiscard]] std::optional<std::int64_t> heard_ns() const override {
-    const std::lock_guard lock(mutex_);
-    return arrivals_.used_ns();
+    const std::lock_guard lock(news_.mutex);
+    return news_.arrivals.used_ns();
   }
 
  private:
   void take(const ros1::ListenedMessage& message) {
     {
-      const std::lock_guard lock(mutex_);
+      const std::lock_guard lock(news_.mutex);
       if (end_ns_) return;
       if (message.topic == flight_.state_topic && message.type == "mavros_msgs/State") {
         take_state(message.bytes);
@@ -145,7 +142,7 @@ class RosTruth final : public TruthSource, public SampleSource {
         take_sample(message);
       }
     }
-    news_.notify_all();
+    news_.arrived.notify_all();
   }
 
   void take_sample(const ros1::ListenedMessage& message) {
@@ -161,7 +158,7 @@ class RosTruth final : public TruthSource, public SampleSource {
       }
     }
     if (!started_) return;
-    if (known_until_ns() > before_ns) arrivals_.add(known_until_ns());
+    if (known_until_ns() > before_ns) news_.arrivals.add(known_until_ns());
     if (!samples_.restarted().empty()) {
       end("the stamps of " + samples_.restarted() + " went back");
     } else {
@@ -223,54 +220,46 @@ class RosTruth final : public TruthSource, public SampleSource {
   }
 
   /// Waits until `ready` returns true or the flight ends.
-  template <typename Ready>
-  Status wait(const std::string& what, const std::atomic<bool>* cancel, const Ready& ready) {
-    std::unique_lock lock(mutex_);
-    const live::Arrivals::Clock::time_point begin = live::Arrivals::Clock::now();
-    const auto failed = [&](const std::string& why) {
-      return Error{ErrorCode::kIo, flight_.master_uri + ": " + what + ": " + why};
+  Status wait(const std::string& what,
+              const std::function<bool()>& ready,
+              const std::atomic<bool>* cancel) {
+    live::AwaitedSource source;
+    source.name = "the ROS topics";
+    source.patience = flight_.patience;
+    source.ended = [this] { return end_ns_.has_value() || lost_before_start(); };
+    source.full = [this] { return samples_.full(); };
+    source.missing = [this] {
+      return started_ ? std::string("no new state") : samples_.missing_text();
     };
-    const std::string too_far_behind = "the run is more than " +
-                                       std::to_string(live::kMaxLiveSamples) +
-                                       " samples behind the topics";
-    while (!ready() && !end_ns_) {
-      if (is_cancelled(cancel)) return cancelled("the ROS topics");
-      if (samples_.full()) return failed(too_far_behind);
-      if (!started_ && !samples_.restarted().empty()) {
-        return failed(
-            "the stamps of " + samples_.restarted() +
-            " went back before there was a position and an attitude; start the run again");
-      }
-      if (arrivals_.silence(begin) >= flight_.patience) {
-        const double patience_s = std::chrono::duration<double>(flight_.patience).count();
-        const std::string missing = started_ ? "no new state" : samples_.missing_text();
-        return failed(missing + " within " + number_text(patience_s) +
-                      " s: " + listener_->publishers());
-      }
-      news_.wait_for(lock, kCancelPeriod);
+    source.heard = [this] { return listener_->publishers(); };
+    const std::string named = flight_.master_uri + ": " + what;
+    Status waited = live::wait_for_states(news_, source, named, ready, cancel);
+    const std::lock_guard lock(news_.mutex);
+    if (waited && lost_before_start()) {
+      return Error{ErrorCode::kIo,
+                   named + ": the stamps of " + samples_.restarted() +
+                       " went back before there was a position and an attitude; start the run "
+                       "again"};
     }
-    // The flight's end, too, lies behind what was not kept.
-    if (samples_.full() && !ready()) return failed(too_far_behind);
-    return {};
+    return waited;
+  }
+  [[nodiscard]] bool lost_before_start() const {
+    return !started_ && !samples_.restarted().empty();
   }
 
   [[nodiscard]] Result<std::optional<AircraftState>> find_state(
       std::int64_t t_ns, const std::atomic<bool>* cancel) override {
-    constexpr std::int64_t kLongestNs = 366LL * 86400 * kNsPerS;
-    if (t_ns < 0 || t_ns > kLongestNs) {
-      return Error{ErrorCode::kInvalidArgument,
-                   "t_ns = " + std::to_string(t_ns) + ": must be in [0, " +
-                       std::to_string(kLongestNs) + "]"};
-    }
+    if (Status status = live::check_flight_time(t_ns); !status) return status.error();
     const std::int64_t stamp_ns = start_ns_ + t_ns;
-    const Status waited = wait("the state at " + live::seconds_shown(t_ns),
-                               cancel,
-                               [this, stamp_ns] { return known_until_ns() >= stamp_ns; });
+    const Status waited = wait(
+        "the state at " + live::seconds_shown(t_ns),
+        [this, stamp_ns] { return known_until_ns() >= stamp_ns; },
+        cancel);
     if (!waited) return waited.error();
-    const std::lock_guard lock(mutex_);
+    const std::lock_guard lock(news_.mutex);
     if (end_ns_ && stamp_ns > *end_ns_) return std::optional<AircraftState>();
     samples_.forget_before(stamp_ns);
-    arrivals_.use(stamp_ns);
+    news_.arrivals.use(stamp_ns);
     const bool joint = flight_.position_topic() == flight_.attitude_topic();
     AircraftState state = motion_.at(samples_.positions(), samples_.attitudes(), joint, stamp_ns);
     state.t_ns = t_ns;
@@ -278,8 +267,7 @@ class RosTruth final : public TruthSource, public SampleSource {
   }
 
   const RosFlight flight_;
-  mutable std::mutex mutex_;
-  std::condition_variable news_;
+  live::StateNews news_;
   RosSamples samples_;
   live::LiveMotion motion_;
   bool started_ = false;
@@ -291,7 +279,6 @@ class RosTruth final : public TruthSource, public SampleSource {
   std::int64_t start_ns_ = 0;
   std::string end_reason_;
   std::optional<std::int64_t> end_ns_;  ///< a stamp
-  live::Arrivals arrivals_;
   std::unique_ptr<ros1::TopicListener> listener_;
 };
 
