@@ -4,10 +4,12 @@
 #include <deque>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <set>
 #include <utility>
 
 #include "core/sensors/sample_source.hpp"
+#include "core/text/number_text.hpp"
 #include "core/text/printable_text.hpp"
 #include "flight/live/live_motion.hpp"
 #include "flight/live/state_wait.hpp"
@@ -51,7 +53,8 @@ class RosTruth final : public TruthSource, public SampleSource {
  public:
   RosTruth(const RosFlight& flight, const LocalFrame& frame)
       : flight_(flight),
-        samples_(flight, flight.origin.value_or(frame.origin())),
+        origin_(flight.origin.value_or(frame.origin())),
+        samples_(std::make_unique<RosSamples>(flight, origin_)),
         motion_(frame, 0.0, flight.gap_limit_ns) {}
 
   Status open(const std::atomic<bool>* cancel) {
@@ -81,6 +84,10 @@ class RosTruth final : public TruthSource, public SampleSource {
   [[nodiscard]] std::vector<std::string> warnings() const override {
     const std::lock_guard lock(news_.mutex);
     std::vector<std::string> warnings;
+    if (restarts_ > 0) {
+      warnings.push_back("stamps went back before the flight (" + counted(restarts_, "time") +
+                         "): what had come was forgotten");
+    }
     if (const auto gaps = motion_.gaps_text(start_ns_)) warnings.push_back(*gaps);
     if (const std::uint64_t count = listener_->too_large(); count > 0) {
       warnings.push_back(std::to_string(count) + " messages were larger than " +
@@ -97,7 +104,7 @@ class RosTruth final : public TruthSource, public SampleSource {
     const std::lock_guard lock(news_.mutex);
     if (end_ns_) return;
     start_ns_ = known_until_ns();
-    samples_.forget_before(start_ns_);
+    samples_->forget_before(start_ns_);
     news_.arrivals.use_latest();
   }
   [[nodiscard]] std::vector<FlightEvent> take_events(std::int64_t t_ns) override {
@@ -119,11 +126,11 @@ class RosTruth final : public TruthSource, public SampleSource {
   [[nodiscard]] SampleSource* sample_source() override { return this; }
   [[nodiscard]] SensorSamples take_samples(std::int64_t t_ns) override {
     const std::lock_guard lock(news_.mutex);
-    return samples_.sensors().take_until(start_ns_ + t_ns, start_ns_);
+    return samples_->sensors().take_until(start_ns_ + t_ns, start_ns_);
   }
   [[nodiscard]] std::string sensor_report() const override {
     const std::lock_guard lock(news_.mutex);
-    const std::string sensors = samples_.sensors().report("not published");
+    const std::string sensors = samples_->sensors().report("not published");
     return sensors.empty() ? sensors : "sensors of the vehicle: " + sensors;
   }
   [[nodiscard]] std::optional<std::int64_t> heard_ns() const override {
@@ -148,22 +155,37 @@ class RosTruth final : public TruthSource, public SampleSource {
   void take_sample(const ros1::ListenedMessage& message) {
     const std::int64_t before_ns =
         started_ ? known_until_ns() : std::numeric_limits<std::int64_t>::min();
-    samples_.take(message.topic, message.type, message.bytes);
-    if (!started_ && !samples_.positions().empty() && !samples_.attitudes().empty()) {
-      start_ns_ = std::max(samples_.positions().front().t_ns, samples_.attitudes().front().t_ns);
+    samples_->take(message.topic, message.type, message.bytes);
+    if (!started_ && !samples_->restarted().empty()) return start_over(message);
+    if (!started_ && !samples_->positions().empty() && !samples_->attitudes().empty()) {
+      start_ns_ = std::max(samples_->positions().front().t_ns, samples_->attitudes().front().t_ns);
       started_ = known_until_ns() >= start_ns_;
       if (started_) {
-        samples_.forget_before(start_ns_);
-        samples_.sensors().forget_before(start_ns_);
+        samples_->forget_before(start_ns_);
+        samples_->sensors().forget_before(start_ns_);
       }
     }
     if (!started_) return;
     if (known_until_ns() > before_ns) news_.arrivals.add(known_until_ns());
-    if (!samples_.restarted().empty()) {
-      end("the stamps of " + samples_.restarted() + " went back");
+    if (!samples_->restarted().empty()) {
+      end("the stamps of " + samples_->restarted() + " went back");
     } else {
       end_if_disarmed(false);
     }
+  }
+
+  /// Stamps went back before the flight: all that has come is forgotten.
+  /// @param message  the first one that proves it
+  void start_over(const ros1::ListenedMessage& message) {
+    ++restarts_;
+    samples_ = std::make_unique<RosSamples>(flight_, origin_);
+    events_.clear();
+    mode_.clear();
+    armed_.reset();
+    was_armed_ = false;
+    disarmed_ns_.reset();
+    news_.arrivals.restart();
+    samples_->take(message.topic, message.type, message.bytes);
   }
 
   void take_state(std::span<const std::uint8_t> bytes) {
@@ -216,7 +238,7 @@ class RosTruth final : public TruthSource, public SampleSource {
 
   /// The stamp up to which position and attitude are known. @pre there are some of both
   [[nodiscard]] std::int64_t known_until_ns() const {
-    return std::min(samples_.positions().back().t_ns, samples_.attitudes().back().t_ns);
+    return std::min(samples_->positions().back().t_ns, samples_->attitudes().back().t_ns);
   }
 
   /// Waits until `ready` returns true or the flight ends.
@@ -226,25 +248,13 @@ class RosTruth final : public TruthSource, public SampleSource {
     live::AwaitedSource source;
     source.name = "the ROS topics";
     source.patience = flight_.patience;
-    source.ended = [this] { return end_ns_.has_value() || lost_before_start(); };
-    source.full = [this] { return samples_.full(); };
+    source.ended = [this] { return end_ns_.has_value(); };
+    source.full = [this] { return samples_->full(); };
     source.missing = [this] {
-      return started_ ? std::string("no new state") : samples_.missing_text();
+      return started_ ? std::string("no new state") : samples_->missing_text();
     };
     source.heard = [this] { return listener_->publishers(); };
-    const std::string named = flight_.master_uri + ": " + what;
-    Status waited = live::wait_for_states(news_, source, named, ready, cancel);
-    const std::lock_guard lock(news_.mutex);
-    if (waited && lost_before_start()) {
-      return Error{ErrorCode::kIo,
-                   named + ": the stamps of " + samples_.restarted() +
-                       " went back before there was a position and an attitude; start the run "
-                       "again"};
-    }
-    return waited;
-  }
-  [[nodiscard]] bool lost_before_start() const {
-    return !started_ && !samples_.restarted().empty();
+    return live::wait_for_states(news_, source, flight_.master_uri + ": " + what, ready, cancel);
   }
 
   [[nodiscard]] Result<std::optional<AircraftState>> find_state(
@@ -258,17 +268,19 @@ class RosTruth final : public TruthSource, public SampleSource {
     if (!waited) return waited.error();
     const std::lock_guard lock(news_.mutex);
     if (end_ns_ && stamp_ns > *end_ns_) return std::optional<AircraftState>();
-    samples_.forget_before(stamp_ns);
+    samples_->forget_before(stamp_ns);
     news_.arrivals.use(stamp_ns);
     const bool joint = flight_.position_topic() == flight_.attitude_topic();
-    AircraftState state = motion_.at(samples_.positions(), samples_.attitudes(), joint, stamp_ns);
+    AircraftState state = motion_.at(samples_->positions(), samples_->attitudes(), joint, stamp_ns);
     state.t_ns = t_ns;
     return std::optional(state);
   }
 
   const RosFlight flight_;
   live::StateNews news_;
-  RosSamples samples_;
+  Geodetic origin_;  ///< of local positions
+  std::unique_ptr<RosSamples> samples_;
+  std::uint64_t restarts_ = 0;  ///< of stamps before the flight
   live::LiveMotion motion_;
   bool started_ = false;
   bool was_armed_ = false;

@@ -2,6 +2,7 @@
 //   mavros_node PREFIX TLOG FROM_MS TO_MS   messages of a recording
 //   mavros_node PREFIX disarm               two seconds of poses, then "disarmed"
 //   mavros_node PREFIX restart              stamps that go back
+//   mavros_node PREFIX restart_early        and before there is a position
 //   mavros_node PREFIX odd                  messages of another type, cut ones, and far too large
 //   ones
 // It prints a line when all is sent, and stays.
@@ -152,6 +153,25 @@ void restart(ros::NodeHandle& handle, const std::string& prefix) {
   for (std::int64_t t_ms = 0; t_ms <= 1000; t_ms += 20) pose.publish(pose_at(t_ms));
 }
 
+/// Stamps of poses that go back before there are positions.
+void restart_early(ros::NodeHandle& handle, const std::string& prefix) {
+  ros::Publisher pose = publisher_of<ros1::PoseStampedMessage>(handle, prefix + "/pose");
+  ros::Publisher global = publisher_of<testing::FixMessage>(handle, prefix + "/global");
+  wait_for_subscribers(pose);
+  wait_for_subscribers(global);
+  for (std::int64_t t_ms = 60'000; t_ms <= 61'000; t_ms += 20) pose.publish(pose_at(t_ms));
+  // The topics have connections of their own: both repeat what may have come too early.
+  for (std::int64_t t_ms = 0; t_ms <= 20'000; t_ms += 20) {
+    pose.publish(pose_at(t_ms));
+    testing::FixMessage fix;
+    fix.header.stamp = testing::stamp_of(t_ms * 1'000'000);
+    fix.latitude = 47.0;
+    fix.longitude = 8.0;
+    global.publish(fix);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
+
 void disarm(ros::NodeHandle& handle, const std::string& prefix) {
   ros::Publisher pose = publisher_of<ros1::PoseStampedMessage>(handle, prefix + "/pose");
   ros::Publisher state = publisher_of(handle, prefix + "/state", "mavros_msgs/State");
@@ -194,6 +214,8 @@ int main(int argc, char** argv) {
   const std::string what = argv[2];
   if (what == "restart") {
     restart(handle, prefix);
+  } else if (what == "restart_early") {
+    restart_early(handle, prefix);
   } else if (what == "disarm") {
     disarm(handle, prefix);
   } else if (what == "odd") {

@@ -296,6 +296,20 @@ TEST(RosTruth, EndsWhenStampsGoBack) {
               HasSubstr("the flight ended at 2.000 s: the stamps of "));
 }
 
+TEST(RosTruth, WaitsOnWhenStampsGoBackBeforeTheFlight) {
+  ROS_MASTER_OR_SKIP();
+  const MavrosNode node({"restart_early"});
+  RosFlight flight = node.flight();
+  flight.attitude_of_pose = true;
+  const auto truth = fly_ros(flight, place_frame(), nullptr);
+  ASSERT_TRUE(truth.ok()) << truth.error().message;
+  const auto state = (*truth)->state_at(kNsPerS);
+  ASSERT_TRUE(state.ok()) << state.error().message;
+  ASSERT_TRUE(*state);
+  EXPECT_THAT((*truth)->warnings(),
+              ::testing::ElementsAre(HasSubstr("stamps went back before the flight (1 time)")));
+}
+
 TEST(RosTruth, EndsWhenTheVehicleIsDisarmed) {
   ROS_MASTER_OR_SKIP();
   const MavrosNode node({"disarm"});
