@@ -22,6 +22,12 @@ class Arrivals {
     known_.push_back({known_until_ns, last_});
     if (known_.size() > kMaxLiveSamples) known_.pop_front();
   }
+  /// The source's clock starts again: what was known is forgotten. A wait has heard it now.
+  void restart() {
+    known_.clear();
+    used_.reset();
+    last_ = Clock::now();
+  }
   /// The state at a time is used; times do not decrease.
   void use(std::int64_t t_ns) {
     while (!known_.empty() && known_.front().until_ns < t_ns) known_.pop_front();

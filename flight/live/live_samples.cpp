@@ -70,9 +70,7 @@ void forget(std::deque<Sample>& samples, std::int64_t t_ns) {
 
 void LiveSamples::take(const mavlink::Frame& frame) {
   if (restarted_) return;
-  frame_ = &frame;
   streams_of_frames_.take(frame);
-  frame_ = nullptr;
 }
 
 void LiveSamples::event(logs::LogEvent event) {
@@ -96,8 +94,9 @@ bool LiveSamples::stream(logs::StreamId id, const logs::StreamDescription& descr
 }
 
 void LiveSamples::message(logs::StreamId /*id*/, const std::optional<logs::LogTime>& time) {
-  if (id_of(*frame_) == MessageId::kVfrHud) {
-    const double airspeed_m_s = mavlink::decode_vfr_hud(*frame_).airspeed_m_s;
+  const mavlink::Frame& frame = streams_of_frames_.passing();
+  if (id_of(frame) == MessageId::kVfrHud) {
+    const double airspeed_m_s = mavlink::decode_vfr_hud(frame).airspeed_m_s;
     if (airspeed_m_s >= 0.0 && airspeed_m_s <= 1000.0) indicated_airspeed_m_s_ = airspeed_m_s;
   }
   if (!time) return;
@@ -106,8 +105,9 @@ void LiveSamples::message(logs::StreamId /*id*/, const std::optional<logs::LogTi
     restarted_ = true;
     return;
   }
+  if (!first_ns_) first_ns_ = time->t_ns;
   latest_ns_ = std::max(latest_ns_.value_or(time->t_ns), time->t_ns);
-  sensors_.take(*frame_, *latest_ns_);
+  sensors_.take(frame, *latest_ns_);
 }
 
 void LiveSamples::local_origin(logs::StreamId id, const logs::LocalOrigin& origin) {
@@ -131,7 +131,7 @@ void LiveSamples::take_position(logs::StreamId id,
     }
     sample.geodetic = logs::geodetic_from_local(*stream.origin, value);
   }
-  const std::optional<Eigen::Vector3d> velocity = velocity_of(*frame_);
+  const std::optional<Eigen::Vector3d> velocity = velocity_of(streams_of_frames_.passing());
   constexpr double kMaxSpeedMS = 1000.0;
   if (is_within(velocity, kMaxSpeedMS)) {
     sample.v_ned_m_s = *velocity;
@@ -146,7 +146,7 @@ void LiveSamples::take_attitude(logs::StreamId id,
                                 const Eigen::Quaterniond& R_ned_body) {
   if (restarted_ || (attitude_ && id != *attitude_)) return;
   LiveAttitude sample{time.t_ns, R_ned_body.normalized(), Eigen::Vector3d::Zero(), false};
-  const std::optional<Eigen::Vector3d> rate = rate_of(*frame_);
+  const std::optional<Eigen::Vector3d> rate = rate_of(streams_of_frames_.passing());
   constexpr double kMaxRateRadS = 100.0;
   if (is_within(rate, kMaxRateRadS)) {
     sample.rate_rad_s = *rate;

@@ -47,13 +47,16 @@ struct LiveStream {
 };
 
 /// Collects the samples of one vehicle by the same rules as a recording of it. Messages that come
-/// late are put in order; times that are known already are left out. Not thread-safe.
+/// late are put in order; times that are known already are left out. Messages are held until the
+/// vehicle's clock is proven (HeldMessages): first stamps that are wrong begin no flight. Not
+/// thread-safe.
 class LiveSamples final : private logs::LogSink {
  public:
   /// @param geoid_separation_m  added to the heights of the vehicle's GPS
   /// @param autopilot  as LiveSensors
   explicit LiveSamples(double geoid_separation_m, std::uint8_t autopilot = 0)
-      : streams_of_frames_(*this), sensors_(geoid_separation_m, autopilot) {}
+      : streams_of_frames_(*this, logs::FirstStamps::kHeld),
+        sensors_(geoid_separation_m, autopilot) {}
   LiveSamples(const LiveSamples&) = delete;
   LiveSamples& operator=(const LiveSamples&) = delete;
 
@@ -66,6 +69,8 @@ class LiveSamples final : private logs::LogSink {
   /// Drops samples that are not needed from `t_ns` on.
   void forget_before(std::int64_t t_ns);
 
+  /// The first time of the vehicle's clock; empty before it.
+  [[nodiscard]] std::optional<std::int64_t> first_ns() const { return first_ns_; }
   /// The latest time of the vehicle's clock; empty before the first.
   [[nodiscard]] std::optional<std::int64_t> latest_ns() const { return latest_ns_; }
   [[nodiscard]] bool restarted() const { return restarted_; }
@@ -96,11 +101,11 @@ class LiveSamples final : private logs::LogSink {
   [[nodiscard]] logs::PositionKind position_kind(logs::StreamId id) const override;
 
   logs::FrameStreams streams_of_frames_;
-  const mavlink::Frame* frame_ = nullptr;  ///< being taken
-  std::deque<LiveStream> streams_;         ///< by StreamId
+  std::deque<LiveStream> streams_;  ///< by StreamId
   std::optional<logs::StreamId> position_;
   std::optional<logs::StreamId> attitude_;
   std::optional<std::uint32_t> boot_;
+  std::optional<std::int64_t> first_ns_;
   std::optional<std::int64_t> latest_ns_;
   double indicated_airspeed_m_s_ = -1.0;
   bool restarted_ = false;

@@ -1,16 +1,15 @@
 #include "flight/live/live_truth.hpp"
 
 #include <algorithm>
-#include <condition_variable>
+#include <functional>
 #include <limits>
 #include <map>
 #include <mutex>
 #include <utility>
 
-#include "core/cancellable_wait.hpp"
 #include "core/text/number_text.hpp"
-#include "flight/live/arrivals.hpp"
 #include "flight/live/live_motion.hpp"
+#include "flight/live/state_wait.hpp"
 #include "flight/live/stop_watch.hpp"
 #include "flight/live/truth_streams.hpp"
 #include "flight/live/vehicle_reports.hpp"
@@ -36,9 +35,9 @@ struct LiveTruth::Impl {
   std::shared_ptr<mavlink::Vehicle> vehicle;
   LiveTruthOptions options;
 
-  mutable std::mutex mutex;
-  std::condition_variable news;
-  LiveSamples samples;
+  StateNews news;
+  std::unique_ptr<LiveSamples> samples;
+  std::uint64_t restarts = 0;  ///< of the vehicle before its flight
   StopWatch stop;
   std::optional<TruthStreams> streams;
   bool started = false;
@@ -49,15 +48,15 @@ struct LiveTruth::Impl {
   LiveMotion motion;
   std::string opened_as;  ///< description
   std::shared_ptr<mavlink::FeedbackSender> sender;
-  Arrivals arrivals;
   VehicleReports reports;
+  bool reported = false;                ///< since the vehicle was restarted
   std::uint64_t other_events = 0;       ///< taken
   std::uint64_t unrecorded_events = 0;  ///< of these, beyond kMaxOtherEvents
 
   Impl(std::shared_ptr<mavlink::Vehicle> of, const LocalFrame& in, const LiveTruthOptions& with)
       : vehicle(std::move(of)),
         options(with),
-        samples(with.geoid_separation_m, autopilot_of(*vehicle)),
+        samples(std::make_unique<LiveSamples>(with.geoid_separation_m, autopilot_of(*vehicle))),
         stop(with.stop),
         started(with.start.mission_item < 0),
         motion(in, with.geoid_separation_m, with.gap_limit_ns) {}
@@ -65,31 +64,40 @@ struct LiveTruth::Impl {
   void take(const mavlink::Frame& message);
   [[nodiscard]] std::int64_t known_until_ns() const;
   bool choose();
+  void start_over(const mavlink::Frame& message);
   void await_start(const mavlink::Frame& message);
   void end(const std::string& reason);
   [[nodiscard]] AircraftState at(std::int64_t vehicle_ns);
-  template <typename Ready>
-  Status wait(const std::string& what, const std::atomic<bool>* cancel, const Ready& ready);
+  /// Waits until `ready` returns true or the flight ends.
+  Status wait(const std::string& what,
+              const std::function<bool()>& ready,
+              const std::atomic<bool>* cancel);
 
   [[nodiscard]] const std::deque<LivePosition>& positions() const {
-    return samples.streams()[streams->position].positions;
+    return samples->streams()[streams->position].positions;
   }
   [[nodiscard]] const std::deque<LiveAttitude>& attitudes() const {
-    return samples.streams()[streams->attitude].attitudes;
+    return samples->streams()[streams->attitude].attitudes;
   }
 };
 
 void LiveTruth::Impl::take(const mavlink::Frame& message) {
   {
-    const std::lock_guard lock(mutex);
+    const std::lock_guard lock(news.mutex);
     if (end_ns) return;
     const std::int64_t before_ns = streams ? known_until_ns() : kNothingKnownNs;
-    samples.take(message);
-    if (const auto now_ns = samples.latest_ns()) reports.add(*vehicle, *now_ns);
+    samples->take(message);
+    if (samples->restarted() && !(streams && started)) start_over(message);
+    if (const auto now_ns = samples->latest_ns()) {
+      // The flight may begin with a message that was held: the first report is as early.
+      if (!reported) reports.add(*vehicle, *samples->first_ns());
+      reported = true;
+      reports.add(*vehicle, *now_ns);
+    }
     if (!streams) (void)choose();
     if (streams) {
-      if (known_until_ns() > before_ns) arrivals.add(known_until_ns());
-      if (samples.restarted()) {
+      if (known_until_ns() > before_ns) news.arrivals.add(known_until_ns());
+      if (samples->restarted()) {
         end("the vehicle's clock started again: the vehicle was restarted");
       } else if (const std::string reason = stop.take(message); !reason.empty()) {
         end(reason);
@@ -97,7 +105,20 @@ void LiveTruth::Impl::take(const mavlink::Frame& message) {
       if (!started && !end_ns) await_start(message);
     }
   }
-  news.notify_all();
+  news.arrived.notify_all();
+}
+
+/// The vehicle was restarted before its flight: all that it has sent is forgotten.
+/// @param message  the first one that proves it
+void LiveTruth::Impl::start_over(const mavlink::Frame& message) {
+  ++restarts;
+  samples = std::make_unique<LiveSamples>(options.geoid_separation_m, autopilot_of(*vehicle));
+  stop = StopWatch(options.stop);
+  streams.reset();
+  reports = VehicleReports();
+  reported = false;
+  news.arrivals.restart();
+  samples->take(message);
 }
 
 void LiveTruth::Impl::end(const std::string& reason) {
@@ -112,15 +133,15 @@ std::int64_t LiveTruth::Impl::known_until_ns() const {
 
 /// Chooses the streams once the best ones have had time to come. @return whether it did
 bool LiveTruth::Impl::choose() {
-  const std::optional<TruthStreams> chosen = choose_streams(samples, options.truth);
+  const std::optional<TruthStreams> chosen = choose_streams(*samples, options.truth);
   if (!chosen) return false;
-  const LiveStream& position = samples.streams()[chosen->position];
-  const LiveStream& attitude = samples.streams()[chosen->attitude];
+  const LiveStream& position = samples->streams()[chosen->position];
+  const LiveStream& attitude = samples->streams()[chosen->attitude];
   const std::int64_t first_ns =
       std::max(position.positions.front().t_ns, attitude.attitudes.front().t_ns);
   // Better streams of the same origin come within the same time.
   const bool best = chosen->simulation && position.description.preference == 0;
-  if (!best && samples.latest_ns().value_or(0) - first_ns < options.simulation_wait_ns) {
+  if (!best && samples->latest_ns().value_or(0) - first_ns < options.simulation_wait_ns) {
     return false;
   }
   if (std::min(position.positions.back().t_ns, attitude.attitudes.back().t_ns) < first_ns) {
@@ -132,62 +153,40 @@ bool LiveTruth::Impl::choose() {
   opened_as += ")";
   streams = chosen;
   start_ns = first_ns;
-  samples.keep_only(chosen->position, chosen->attitude);
-  samples.forget_before(start_ns);
-  samples.sensors().forget_before(start_ns);
+  samples->keep_only(chosen->position, chosen->attitude);
+  samples->forget_before(start_ns);
+  samples->sensors().forget_before(start_ns);
   return true;
 }
 
 /// Forgets the flight so far until its start condition holds.
 void LiveTruth::Impl::await_start(const mavlink::Frame& message) {
   start_ns = known_until_ns();
-  samples.forget_before(start_ns);
-  samples.sensors().forget_before(start_ns);
+  samples->forget_before(start_ns);
+  samples->sensors().forget_before(start_ns);
   started = message.message_id == static_cast<std::uint32_t>(mavlink::MessageId::kMissionCurrent) &&
             mavlink::decode_mission_sequence(message) >= options.start.mission_item;
 }
 
-Error too_far_behind(const std::string& what) {
-  return {ErrorCode::kIo,
-          what + ": the run is more than " + std::to_string(kMaxLiveSamples) +
-              " samples behind the vehicle"};
-}
-
-/// Waits until `ready` returns true or the flight ends.
-template <typename Ready>
 Status LiveTruth::Impl::wait(const std::string& what,
-                             const std::atomic<bool>* cancel,
-                             const Ready& ready) {
-  std::unique_lock lock(mutex);
-  const Arrivals::Clock::time_point begin = Arrivals::Clock::now();
-  while (!ready() && !end_ns) {
-    if (is_cancelled(cancel)) return cancelled("the vehicle");
-    if (samples.full()) return too_far_behind(what);
-    if (!streams && samples.restarted()) {
-      return Error{ErrorCode::kIo,
-                   what +
-                       ": the vehicle was restarted before it had sent a position and an "
-                       "attitude; start the run again"};
-    }
-    if (arrivals.silence(begin) >= options.patience) {
-      const double patience_s = std::chrono::duration<double>(options.patience).count();
-      const std::string missing = streams ? "no new state within " + number_text(patience_s) + " s"
-                                          : missing_text(samples, options.truth) + " within " +
-                                                number_text(patience_s) + " s";
-      lock.unlock();
-      return Error{ErrorCode::kIo, what + ": " + missing + ": " + vehicle->last_heard()};
-    }
-    news.wait_for(lock, kCancelPeriod);
-  }
-  // The flight's end, too, lies behind what was not kept.
-  if (samples.full() && !ready()) return too_far_behind(what);
-  return {};
+                             const std::function<bool()>& ready,
+                             const std::atomic<bool>* cancel) {
+  AwaitedSource source;
+  source.name = "the vehicle";
+  source.patience = options.patience;
+  source.ended = [this] { return end_ns.has_value(); };
+  source.full = [this] { return samples->full(); };
+  source.missing = [this] {
+    return streams ? std::string("no new state") : missing_text(*samples, options.truth);
+  };
+  source.heard = [this] { return vehicle->last_heard(); };
+  return wait_for_states(news, source, what, ready, cancel);
 }
 
 /// @pre start_ns <= vehicle_ns <= known_until_ns()
 AircraftState LiveTruth::Impl::at(std::int64_t vehicle_ns) {
-  samples.forget_before(vehicle_ns);
-  arrivals.use(vehicle_ns);
+  samples->forget_before(vehicle_ns);
+  news.arrivals.use(vehicle_ns);
   AircraftState state =
       motion.at(positions(), attitudes(), streams->attitude == streams->position, vehicle_ns);
   state.t_ns = vehicle_ns - start_ns;
@@ -208,8 +207,8 @@ Result<std::unique_ptr<LiveTruth>> LiveTruth::open(std::shared_ptr<mavlink::Vehi
   impl.vehicle->set_listener([&impl](const mavlink::Frame& message) { impl.take(message); });
   const std::string what = impl.vehicle->address().text() + ": waiting for the flight's start";
   const auto started = [&impl] { return impl.streams.has_value() && impl.started; };
-  if (Status status = impl.wait(what, cancel, started); !status) return status.error();
-  const std::lock_guard lock(impl.mutex);
+  if (Status status = impl.wait(what, started, cancel); !status) return status.error();
+  const std::lock_guard lock(impl.news.mutex);
   if (!impl.started) {
     return Error{ErrorCode::kIo,
                  impl.vehicle->address().text() +
@@ -221,21 +220,25 @@ Result<std::unique_ptr<LiveTruth>> LiveTruth::open(std::shared_ptr<mavlink::Vehi
 
 std::string LiveTruth::description() const {
   const mavlink::VehicleState state = impl_->vehicle->state();
-  const std::lock_guard lock(impl_->mutex);
+  const std::lock_guard lock(impl_->news.mutex);
   return "live vehicle " + std::to_string(state.system) + "." + std::to_string(state.component) +
          " on " + impl_->vehicle->address().text() + ": " + impl_->opened_as + " from " +
          seconds_shown(impl_->start_ns) + " of its clock";
 }
 
 std::vector<std::string> LiveTruth::warnings() const {
-  const std::lock_guard lock(impl_->mutex);
+  const std::lock_guard lock(impl_->news.mutex);
   std::vector<std::string> warnings;
+  if (impl_->restarts > 0) {
+    warnings.push_back("the vehicle was restarted before its flight (" +
+                       counted(impl_->restarts, "time") + "): what it had sent was forgotten");
+  }
   if (const auto gaps = impl_->motion.gaps_text(impl_->start_ns)) warnings.push_back(*gaps);
   if (impl_->end_ns) {
     warnings.push_back("the flight ended at " + seconds_shown(*impl_->end_ns - impl_->start_ns) +
                        ": " + impl_->end_reason);
   }
-  const std::uint64_t lost = impl_->samples.lost_events() + impl_->unrecorded_events;
+  const std::uint64_t lost = impl_->samples->lost_events() + impl_->unrecorded_events;
   if (lost > 0) {
     warnings.push_back(std::to_string(lost) + " events of the vehicle were not recorded: at most " +
                        std::to_string(kMaxOtherEvents) + " texts and other instants are");
@@ -248,8 +251,8 @@ std::vector<std::string> LiveTruth::warnings() const {
 }
 
 std::vector<FlightEvent> LiveTruth::take_events(std::int64_t t_ns) {
-  const std::lock_guard lock(impl_->mutex);
-  std::deque<FlightEvent>& waiting = impl_->samples.events();
+  const std::lock_guard lock(impl_->news.mutex);
+  std::deque<FlightEvent>& waiting = impl_->samples->events();
   std::vector<FlightEvent> taken;
   std::map<FlightEventKind, FlightEvent> in_force;
   while (!waiting.empty() && waiting.front().t_ns - impl_->start_ns <= t_ns) {
@@ -272,7 +275,7 @@ std::vector<FlightEvent> LiveTruth::take_events(std::int64_t t_ns) {
 }
 
 std::optional<VehicleStatus> LiveTruth::take_status(std::int64_t t_ns) {
-  const std::lock_guard lock(impl_->mutex);
+  const std::lock_guard lock(impl_->news.mutex);
   std::optional<VehicleStatus> latest = impl_->reports.take_until(impl_->start_ns + t_ns);
   if (!latest) return std::nullopt;
   latest->t_ns = std::max<std::int64_t>(latest->t_ns - impl_->start_ns, 0);
@@ -281,13 +284,13 @@ std::optional<VehicleStatus> LiveTruth::take_status(std::int64_t t_ns) {
 }
 
 SensorSamples LiveTruth::take_samples(std::int64_t t_ns) {
-  const std::lock_guard lock(impl_->mutex);
-  return impl_->samples.sensors().take_until(impl_->start_ns + t_ns, impl_->start_ns);
+  const std::lock_guard lock(impl_->news.mutex);
+  return impl_->samples->sensors().take_until(impl_->start_ns + t_ns, impl_->start_ns);
 }
 
 std::string LiveTruth::sensor_report() const {
-  const std::lock_guard lock(impl_->mutex);
-  return impl_->samples.sensors().report();
+  const std::lock_guard lock(impl_->news.mutex);
+  return impl_->samples->sensors().report();
 }
 
 std::int64_t LiveTruth::start_ns() const { return impl_->start_ns; }
@@ -299,35 +302,30 @@ void LiveTruth::send_estimates_by(std::shared_ptr<mavlink::FeedbackSender> sende
 std::shared_ptr<EstimateReceiver> LiveTruth::estimate_receiver() const { return impl_->sender; }
 
 void LiveTruth::begin() {
-  const std::lock_guard lock(impl_->mutex);
+  const std::lock_guard lock(impl_->news.mutex);
   if (impl_->end_ns) return;
   impl_->start_ns = impl_->known_until_ns();
-  impl_->samples.forget_before(impl_->start_ns);
-  impl_->arrivals.use_latest();
+  impl_->samples->forget_before(impl_->start_ns);
+  impl_->news.arrivals.use_latest();
   if (impl_->sender) impl_->sender->start_at(impl_->start_ns);
 }
 
 std::optional<std::int64_t> LiveTruth::heard_ns() const {
-  const std::lock_guard lock(impl_->mutex);
-  return impl_->arrivals.used_ns();
+  const std::lock_guard lock(impl_->news.mutex);
+  return impl_->news.arrivals.used_ns();
 }
 
 Result<std::optional<AircraftState>> LiveTruth::find_state(std::int64_t t_ns,
                                                            const std::atomic<bool>* cancel) {
   Impl& impl = *impl_;
-  constexpr std::int64_t kLongestFlightNs = 366LL * 86400 * kNsPerS;
-  if (t_ns < 0 || t_ns > kLongestFlightNs) {
-    return Error{ErrorCode::kInvalidArgument,
-                 "t_ns = " + std::to_string(t_ns) + ": must be in [0, " +
-                     std::to_string(kLongestFlightNs) + "]"};
-  }
+  if (Status status = check_flight_time(t_ns); !status) return status.error();
   const std::int64_t vehicle_ns = impl.start_ns + t_ns;
-  const Status waited =
-      impl.wait("the vehicle's state at " + seconds_shown(t_ns), cancel, [&impl, vehicle_ns] {
-        return impl.known_until_ns() >= vehicle_ns;
-      });
+  const Status waited = impl.wait(
+      "the vehicle's state at " + seconds_shown(t_ns),
+      [&impl, vehicle_ns] { return impl.known_until_ns() >= vehicle_ns; },
+      cancel);
   if (!waited) return waited.error();
-  const std::lock_guard lock(impl.mutex);
+  const std::lock_guard lock(impl.news.mutex);
   if (impl.end_ns && vehicle_ns > *impl.end_ns) return std::optional<AircraftState>();
   return std::optional(impl.at(vehicle_ns));
 }

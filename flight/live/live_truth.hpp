@@ -24,7 +24,8 @@ namespace overfly::flight::live {
 /// Hermite polynomials of the reported velocities, attitudes by SLERP.
 ///
 /// state_at() waits until the vehicle's clock has passed the time. The flight ends at the last
-/// sample when the vehicle restarts or a stop condition holds; warnings() says why. It fails
+/// sample when the vehicle restarts or a stop condition holds; warnings() says why. A vehicle that
+/// restarts before its flight has started is waited for again, with a warning. It fails
 /// (kIo, with what was heard last) after `patience` without a sample.
 class LiveTruth final : public TruthSource, public SampleSource {
  public:

@@ -26,6 +26,9 @@ enum class FirstStamps {
 /// reader that holds their messages can still take them back.
 class BootClock {
  public:
+  /// Stamps in a row that agree and are then believed.
+  static constexpr int kBelieved = 3;
+
   explicit BootClock(FirstStamps first_stamps = FirstStamps::kPassed)
       : first_stamps_(first_stamps) {}
 
@@ -43,8 +46,6 @@ class BootClock {
   [[nodiscard]] std::uint64_t implausible() const { return implausible_; }
 
  private:
-  static constexpr int kBelieved = 3;
-
   FirstStamps first_stamps_;
   std::optional<LogTime> latest_;
   int first_ = 0;  ///< stamps taken since the first one, up to kBelieved

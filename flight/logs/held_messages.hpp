@@ -10,16 +10,17 @@
 
 namespace overfly::flight::logs {
 
-/// The messages of a clock's first stamps, in their order. At most kMost are held: if the clock is
-/// not proven by then, they are passed on as they are.
+/// If a clock is not proven by then, it is believed.
+inline constexpr std::size_t kMostHeld = 64;
+
+/// The messages of a clock's first stamps, in their order. At most kMostHeld are held: if the clock
+/// is not proven by then, they are passed on as they are.
 template <typename Message>
 class HeldMessages {
  public:
-  static constexpr std::size_t kMost = 64;
-
   /// Whether the message of the stamp that the clock took last must be held.
   [[nodiscard]] bool must_hold(const BootClock& clock) const {
-    return !clock.proven() && clock.latest() && held_.size() < kMost;
+    return !clock.proven() && clock.latest() && held_.size() < kMostHeld;
   }
   void hold(const std::optional<LogTime>& time, Message message) {
     held_.emplace_back(time, std::move(message));

@@ -90,6 +90,7 @@ class LogSink {
   /// that are not within 10 % of 1
   void attitude(StreamId id, const LogTime& time, const Eigen::Quaterniond& R_ned_body);
   /// Samples of sensors in a message; their times are those of the clock of `time`.
+  /// Without any, the message had none that can be right.
   /// @param preference  of several streams with samples of one sensor the lowest is the best
   virtual void samples(StreamId /*id*/,
                        const LogTime& /*time*/,

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/motion/pose.hpp"
+#include "core/sensors/measured_samples.hpp"
 #include "core/time.hpp"
 #include "flight/mavlink/payload.hpp"
 
@@ -16,7 +17,6 @@ constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 constexpr double kUtPerGauss = 100.0;
 constexpr double kPaPerHpa = 100.0;
 constexpr double kZeroCelsiusK = 273.15;
-constexpr double kSeaLevelDensity = 1.225;  // of indicated airspeeds [kg/m^3]
 
 /// The time of a message, if it is one of the vehicle's clock.
 std::int64_t sample_time_ns(std::int64_t stated_ns, const SensorContext& context) {
@@ -35,39 +35,26 @@ std::int64_t ms_at(const PayloadReader& payload, std::size_t offset) {
   return std::int64_t{payload.at<std::uint32_t>(offset)} * 1'000'000;
 }
 
-bool is_measurable(const Eigen::Vector3d& value, double limit) {
-  return value.allFinite() && value.cwiseAbs().maxCoeff() <= limit;
-}
-
 void add_imu(std::int64_t t_ns, const Imu& imu, SensorSamples& samples) {
-  constexpr double kMaxAccelerationMS2 = 10'000.0;
-  constexpr double kMaxRateRadS = 1000.0;
-  if (!is_measurable(imu.acceleration_m_s2, kMaxAccelerationMS2)) return;
-  if (!is_measurable(imu.rate_rad_s, kMaxRateRadS)) return;
-  samples.imu.push_back({t_ns, imu.acceleration_m_s2, imu.rate_rad_s});
+  (void)add_measured(samples, ImuSample{t_ns, imu.acceleration_m_s2, imu.rate_rad_s});
 }
 
 void add_field(std::int64_t t_ns, const Eigen::Vector3d& field_ut, SensorSamples& samples) {
-  constexpr double kMaxFieldUt = 10'000.0;
-  if (!is_measurable(field_ut, kMaxFieldUt) || field_ut.isZero(0.0)) return;
-  samples.magnetometer.push_back({t_ns, field_ut});
+  (void)add_measured(samples, MagnetometerSample{t_ns, field_ut});
 }
 
 /// @param temperature_k  NaN: unknown
 void add_pressure(std::int64_t t_ns, double pa, double temperature_k, SensorSamples& samples) {
-  constexpr double kMaxPressurePa = 200'000.0;
-  if (!(pa > 0.0 && pa <= kMaxPressurePa)) return;
-  samples.barometer.push_back({t_ns, pa, temperature_k > 0.0 ? temperature_k : kNotANumber});
+  (void)add_measured(samples, BarometerSample{t_ns, pa, temperature_k});
 }
 
-void add_airspeed(std::int64_t t_ns, double pa, double airspeed_m_s, SensorSamples& samples) {
-  constexpr double kMaxAirspeedMS = 1000.0;
-  if (!std::isfinite(pa) || !(airspeed_m_s >= 0.0 && airspeed_m_s <= kMaxAirspeedMS)) return;
-  samples.airspeed.push_back({t_ns, pa, airspeed_m_s});
+/// Vehicles send no airspeed below 0.
+void add_airspeed(const AirspeedSample& sample, SensorSamples& samples) {
+  if (sample.indicated_airspeed_m_s >= 0.0) (void)add_measured(samples, sample);
 }
 
 void add_range(std::int64_t t_ns, double range_m, SensorSamples& samples) {
-  if (range_m >= 0.0) samples.range.push_back({t_ns, range_m});
+  (void)add_measured(samples, RangeSample{t_ns, range_m});
 }
 
 /// Milligauss in three signed fields.
@@ -117,25 +104,15 @@ double accuracy_at(const PayloadReader& payload, std::size_t offset) {
 
 GpsSample gps_sample(const Frame& frame, const GpsLayout& layout, const SensorContext& context) {
   const PayloadReader payload(frame.payload);
-  GpsSample sample;
-  sample.delivered_ns = context.latest_ns;
+  GpsSample sample = gps_without_fix(context.latest_ns, context.latest_ns);
+  if (payload.at<std::uint8_t>(layout.fix_type) < 3) return sample;
   // A receiver that has stopped is sent again and again with its old time. Others state UTC.
   const std::int64_t stated_ns = us_at(payload, 0);
   const bool of_vehicle = stated_ns > 0 && stated_ns <= context.latest_ns + kNsPerS;
-  sample.t_ns = of_vehicle ? std::min(stated_ns, context.latest_ns) : context.latest_ns;
-  sample.velocity_ned_m_s.setConstant(kNotANumber);
+  if (of_vehicle) sample.t_ns = std::min(stated_ns, context.latest_ns);
+  sample.fix = GpsFixType::k3d;
   const double lat_deg = 1e-7 * payload.at<std::int32_t>(8);
   const double lon_deg = 1e-7 * payload.at<std::int32_t>(12);
-  const bool on_earth = std::abs(lat_deg) <= 90.0 && std::abs(lon_deg) <= 180.0;
-  if (payload.at<std::uint8_t>(layout.fix_type) < 3 || !on_earth) {
-    sample.t_ns = sample.delivered_ns;
-    sample.fix = GpsFixType::kNone;
-    sample.place = {kNotANumber, kNotANumber, kNotANumber};
-    sample.horizontal_accuracy_m = kNotANumber;
-    sample.vertical_accuracy_m = kNotANumber;
-    sample.speed_accuracy_m_s = kNotANumber;
-    return sample;
-  }
   const double alt_msl_m = 1e-3 * payload.at<std::int32_t>(16);
   sample.place = geodetic_from_deg(lat_deg, lon_deg, alt_msl_m + context.geoid_separation_m);
   constexpr std::uint16_t kUnknown = 0xFFFF;
@@ -212,18 +189,17 @@ void add_samples(const Frame& frame, const SensorContext& context, SensorSamples
                           samples);
     case MessageId::kAirspeed:
       return add_airspeed(
-          context.latest_ns, kPaPerHpa * payload.at<float>(4), decode_airspeed_m_s(frame), samples);
-    case MessageId::kVfrHud: {
-      const double airspeed_m_s = decode_vfr_hud(frame).airspeed_m_s;
-      return add_airspeed(context.latest_ns,
-                          0.5 * kSeaLevelDensity * airspeed_m_s * airspeed_m_s,
-                          airspeed_m_s,
+          {context.latest_ns, kPaPerHpa * payload.at<float>(4), decode_airspeed_m_s(frame)},
+          samples);
+    case MessageId::kVfrHud:
+      return add_airspeed(airspeed_of_speed(context.latest_ns, decode_vfr_hud(frame).airspeed_m_s),
                           samples);
-    }
     case MessageId::kGpsRawInt:
-      return samples.gps.push_back(gps_sample(frame, kFirstReceiver, context));
+      (void)add_measured(samples, gps_sample(frame, kFirstReceiver, context));
+      return;
     case MessageId::kGps2Raw:
-      return samples.gps.push_back(gps_sample(frame, kSecondReceiver, context));
+      (void)add_measured(samples, gps_sample(frame, kSecondReceiver, context));
+      return;
     case MessageId::kDistanceSensor:
       return add_distance(frame, context, samples);
     case MessageId::kRangefinder:

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
+#include "flight/logs/boot_clock.hpp"
+#include "flight/logs/held_messages.hpp"
 #include "flight/logs/tlog/tlog_reader.hpp"
 
 namespace overfly::flight::playback {
@@ -29,7 +32,27 @@ void TlogRecords::rewind() {
   file_.only({{0, size_bytes_}});
   finder_ = mavlink::FrameFinder(kReceptionBytes);
   consumed_ = 0;
+  read_ = 0;
   last_us_ = 0;
+}
+
+Status TlogRecords::find_first_stamp() {
+  constexpr std::uint64_t kMostUs = std::uint64_t{1} << 52U;  // its nanoseconds fit
+  logs::BootClock clock(logs::FirstStamps::kHeld);
+  std::vector<std::uint64_t> stamps_us;
+  while (!clock.proven() && stamps_us.size() < logs::kMostHeld) {
+    const auto record = next();
+    if (!record) return record.error();
+    if (!*record) break;
+    stamps_us.push_back(stamp_us_);
+    (void)clock.take(stamp_us_ < kMostUs ? static_cast<std::int64_t>(stamp_us_) * 1000 : -1);
+  }
+  if (clock.proven() && clock.first_were_wrong()) {
+    wrong_first_ = stamps_us.size() - logs::BootClock::kBelieved;
+  }
+  if (!stamps_us.empty()) first_us_ = stamps_us[wrong_first_];
+  rewind();
+  return {};
 }
 
 Result<TlogRecords> TlogRecords::open(const std::filesystem::path& file) {
@@ -41,6 +64,7 @@ Result<TlogRecords> TlogRecords::open(const std::filesystem::path& file) {
     return Error{ErrorCode::kUnreadable, file.string() + ": is no telemetry log (.tlog)"};
   }
   TlogRecords records(std::move(*reader));
+  if (Status status = records.find_first_stamp(); !status) return status.error();
   while (true) {
     const auto record = records.next();
     if (!record) return record.error();
@@ -72,11 +96,11 @@ Result<std::optional<TlogRecords::Record>> TlogRecords::next() {
       if (last && consumed_ == 0) return std::optional<Record>();
       continue;
     }
-    const std::uint64_t us = reception_us(found.prefix);
-    if (!first_us_) first_us_ = us;
-    const std::uint64_t since = us > *first_us_ ? us - *first_us_ : 0;
+    stamp_us_ = reception_us(found.prefix);
+    const std::uint64_t since = stamp_us_ > first_us_ ? stamp_us_ - first_us_ : 0;
+    const bool wrong = read_++ < wrong_first_;
     // A stamp far ahead is damage: it must not stop the playback.
-    if (since <= static_cast<std::uint64_t>(last_us_) + kLongestUs) {
+    if (!wrong && since <= static_cast<std::uint64_t>(last_us_) + kLongestUs) {
       last_us_ = std::max(last_us_, static_cast<std::int64_t>(since));
     }
     if (last_us_ < begin_us_) continue;

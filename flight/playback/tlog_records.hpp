@@ -13,7 +13,8 @@
 namespace overfly::flight::playback {
 
 /// Reads the valid frames of a `.tlog` in the order of the file. Their times are those of reception
-/// since the first one.
+/// since the first one. First stamps that later ones prove to be wrong (logs::BootClock) count as
+/// the first right one.
 class TlogRecords final : public PlaybackRecords {
  public:
   /// Reads the file once, for its length.
@@ -33,12 +34,17 @@ class TlogRecords final : public PlaybackRecords {
  private:
   explicit TlogRecords(ForwardReader file);
   void rewind();
+  /// Finds first_us_ and wrong_first_.
+  Status find_first_stamp();
 
   ForwardReader file_;
   mavlink::FrameFinder finder_;
   std::uint64_t size_bytes_ = 0;
-  std::size_t consumed_ = 0;  ///< of the bytes that file_ shows: those of the last record
-  std::optional<std::uint64_t> first_us_;
+  std::size_t consumed_ = 0;       ///< of the bytes that file_ shows: those of the last record
+  std::uint64_t stamp_us_ = 0;     ///< of the last record
+  std::uint64_t first_us_ = 0;     ///< the first right stamp
+  std::uint64_t wrong_first_ = 0;  ///< records in front of it
+  std::uint64_t read_ = 0;         ///< records since the start
   std::int64_t last_us_ = 0;
   std::int64_t begin_us_ = 0;  ///< earlier records are passed over
   std::int64_t duration_us_ = 0;

@@ -21,11 +21,16 @@ class LoggedSensors final : public SampleSource {
     return tracks.take_until(begin_ns_ + t_ns, begin_ns_);
   }
   [[nodiscard]] std::string sensor_report() const override {
-    const std::string sensors = tracks.report("not logged");
-    return sensors.empty() ? sensors : "sensors of the log: " + sensors;
+    std::string sensors = tracks.report("not logged");
+    if (sensors.empty()) return sensors;
+    if (without_value > 0) {
+      sensors += "; " + std::to_string(without_value) + " messages had no value that can be right";
+    }
+    return "sensors of the log: " + sensors;
   }
 
   SensorTracks tracks{kMaxLoggedSamples};
+  std::uint64_t without_value = 0;  ///< messages of sensors
 
  private:
   std::int64_t begin_ns_;
@@ -36,9 +41,9 @@ class SensorSink final : public logs::LogSink {
  public:
   SensorSink(const logs::OpenedLog& log,
              const SensorRequest& request,
-             SensorTracks& tracks,
+             LoggedSensors& sensors,
              const std::atomic<bool>* cancel)
-      : request_(request), tracks_(tracks), cancel_(cancel) {
+      : request_(request), sensors_(sensors), cancel_(cancel) {
     for (const logs::StreamInfo& stream : log.streams) {
       if (stream.description.name == request.source) vehicle_ = stream.description.vehicle;
     }
@@ -47,8 +52,8 @@ class SensorSink final : public logs::LogSink {
 
   [[nodiscard]] bool stream(logs::StreamId id,
                             const logs::StreamDescription& description) override {
-    names_.resize(std::max<std::size_t>(names_.size(), id + 1));
-    names_[id] = description.name;
+    streams_.resize(std::max<std::size_t>(streams_.size(), id + 1));
+    streams_[id] = {description.name, description.height};
     return description.sensors && description.vehicle == vehicle_;
   }
   void message(logs::StreamId /*id*/, const std::optional<logs::LogTime>& /*time*/) override {}
@@ -65,6 +70,7 @@ class SensorSink final : public logs::LogSink {
         time.t_ns > request_.end_ns + kMarginNs) {
       return;
     }
+    if (samples.empty()) ++sensors_.without_value;
     SensorSamples kept = samples;
     if (request_.moved) {
       // They would give the old place and its heights.
@@ -73,8 +79,10 @@ class SensorSink final : public logs::LogSink {
       kept.barometer.clear();
       kept.range.clear();
     }
-    for (GpsSample& gps : kept.gps) gps.place.alt_ellipsoid_m += request_.geoid_separation_m;
-    tracks_.add(preference, names_[id], kept);
+    if (streams_[id].height == logs::HeightDatum::kMeanSeaLevel) {
+      for (GpsSample& gps : kept.gps) gps.place.alt_ellipsoid_m += request_.geoid_separation_m;
+    }
+    sensors_.tracks.add(preference, streams_[id].name, kept);
   }
 
  private:
@@ -90,11 +98,15 @@ class SensorSink final : public logs::LogSink {
   }
 
   const SensorRequest& request_;
-  SensorTracks& tracks_;
+  LoggedSensors& sensors_;
   const std::atomic<bool>* cancel_;
   std::string vehicle_;
   std::uint32_t boot_ = 0;
-  std::vector<std::string> names_;  ///< by StreamId
+  struct Stream {
+    std::string name;
+    logs::HeightDatum height = logs::HeightDatum::kMeanSeaLevel;
+  };
+  std::vector<Stream> streams_;  ///< by StreamId
 };
 
 }  // namespace
@@ -103,7 +115,7 @@ Result<std::unique_ptr<SampleSource>> read_logged_sensors(const logs::OpenedLog&
                                                           const SensorRequest& request,
                                                           const std::atomic<bool>* cancel) {
   auto sensors = std::make_unique<LoggedSensors>(request.begin_ns);
-  SensorSink sink(log, request, sensors->tracks, cancel);
+  SensorSink sink(log, request, *sensors, cancel);
   if (Status status = logs::read_log_into(log, sink); !status) return status.error();
   return std::unique_ptr<SampleSource>(std::move(sensors));
 }

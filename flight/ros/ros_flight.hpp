@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/earth/geodesy.hpp"
 #include "core/time.hpp"
@@ -21,7 +22,15 @@ struct RosFlight {
   std::string imu_topic = "/mavros/imu/data";                   ///< Imu
   std::string state_topic =
       "/mavros/state";  ///< mavros_msgs/State, for modes and `stop_on_disarm`; may be empty
-  bool local = false;   ///< positions are those of the pose topic, else of the global topic
+  /// Imu, MagneticField, FluidPressure, NavSatFix and Range: what the vehicle's sensors measure, in
+  /// addition to the topics above.
+  std::vector<std::string> sensor_topics = {"/mavros/imu/data_raw",
+                                            "/mavros/imu/mag",
+                                            "/mavros/imu/static_pressure",
+                                            "/mavros/imu/diff_pressure",
+                                            "/mavros/global_position/raw/fix",
+                                            "/mavros/rangefinder/rangefinder"};
+  bool local = false;  ///< positions are those of the pose topic, else of the global topic
   bool attitude_of_pose = false;  ///< attitudes are those of the pose topic, else of the imu topic
   /// Where local positions count from, in metres east, north and up; the world's origin if empty.
   std::optional<Geodetic> origin;

@@ -34,6 +34,7 @@ void RosSamples::take(const std::string& topic,
   if (!restarted_.empty()) return;
   // Publishers may declare any number of types, and topics_ keeps each.
   if (logs::ros_type_named(type) == logs::RosType::kOther) {
+    if (!is_of_flight(topic)) return;
     constexpr std::size_t kShown = 100;
     type = type.substr(0, kShown);
     other_type_ =
@@ -47,14 +48,23 @@ void RosSamples::take(const std::string& topic,
 
 bool RosSamples::stream(logs::StreamId /*id*/, const logs::StreamDescription& description) {
   streams_.push_back({description.name, description.position, std::nullopt});
-  return description.position != PositionKind::kNone || description.attitude;
+  return description.position != PositionKind::kNone || description.attitude || description.sensors;
 }
 
 void RosSamples::message(logs::StreamId id, const std::optional<logs::LogTime>& time) {
   if (!time) return;
   Stream& stream = streams_[id];
   if (!stream.boot) stream.boot = time->boot;
-  if (*stream.boot != time->boot) restarted_ = stream.topic;
+  if (*stream.boot != time->boot && is_of_flight(stream.topic)) restarted_ = stream.topic;
+}
+
+void RosSamples::samples(logs::StreamId id,
+                         const logs::LogTime& time,
+                         int preference,
+                         const SensorSamples& samples) {
+  if (restarted_.empty() && streams_[id].boot == time.boot) {
+    sensors_.add(preference, streams_[id].topic, samples);
+  }
 }
 
 PositionKind RosSamples::position_kind(logs::StreamId id) const {

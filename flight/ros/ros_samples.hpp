@@ -1,4 +1,4 @@
-// Positions and attitudes of ROS topics until a flight has used them.
+// Positions, attitudes and measurements of ROS topics until a flight has used them.
 #pragma once
 
 #include <cstdint>
@@ -9,13 +9,14 @@
 #include <string_view>
 
 #include "core/earth/geodesy.hpp"
+#include "core/sensors/sensor_tracks.hpp"
 #include "flight/live/live_samples.hpp"
 #include "flight/logs/ros/ros_topics.hpp"
 #include "flight/ros/ros_flight.hpp"
 
 namespace overfly::flight::ros_live {
 
-/// Collects the samples of the two topics of a flight by the same rules as a recording of them.
+/// Collects the samples of the topics of a flight by the same rules as a recording of them.
 /// Times are those of the messages' headers. Not thread-safe.
 class RosSamples final : private logs::LogSink {
  public:
@@ -32,10 +33,14 @@ class RosSamples final : private logs::LogSink {
   /// Heights are above the ellipsoid.
   [[nodiscard]] const std::deque<live::LivePosition>& positions() const { return positions_; }
   [[nodiscard]] const std::deque<live::LiveAttitude>& attitudes() const { return attitudes_; }
+  /// What the vehicle's sensors measured. Stamps of a topic of sensors that start again are left
+  /// out; they end no flight.
+  [[nodiscard]] SensorTracks& sensors() { return sensors_; }
+  [[nodiscard]] const SensorTracks& sensors() const { return sensors_; }
   /// Drops samples that are not needed from `t_ns` on.
   void forget_before(std::int64_t t_ns);
 
-  /// The topic whose stamps started again; empty while none did.
+  /// The topic of positions or attitudes whose stamps started again; empty while none did.
   [[nodiscard]] const std::string& restarted() const { return restarted_; }
   /// live::kMaxLiveSamples are held.
   [[nodiscard]] bool full() const { return full_; }
@@ -45,6 +50,10 @@ class RosSamples final : private logs::LogSink {
  private:
   [[nodiscard]] bool stream(logs::StreamId id, const logs::StreamDescription& description) override;
   void message(logs::StreamId id, const std::optional<logs::LogTime>& time) override;
+  void samples(logs::StreamId id,
+               const logs::LogTime& time,
+               int preference,
+               const SensorSamples& samples) override;
   void local_origin(logs::StreamId /*id*/, const logs::LocalOrigin& /*origin*/) override {}
   void event(logs::LogEvent /*event*/) override {}
   void warning(const std::string& /*text*/) override {}
@@ -57,6 +66,10 @@ class RosSamples final : private logs::LogSink {
                      const Eigen::Quaterniond& R_ned_body) override;
   void take_invalid(logs::StreamId /*id*/) override { ++invalid_; }
   [[nodiscard]] logs::PositionKind position_kind(logs::StreamId id) const override;
+  /// Whether the flight has its positions or attitudes from a topic.
+  [[nodiscard]] bool is_of_flight(const std::string& topic) const {
+    return topic == flight_.position_topic() || topic == flight_.attitude_topic();
+  }
 
   /// A topic with one type.
   struct Stream {
@@ -71,7 +84,8 @@ class RosSamples final : private logs::LogSink {
   std::deque<Stream> streams_;  ///< by StreamId
   std::deque<live::LivePosition> positions_;
   std::deque<live::LiveAttitude> attitudes_;
-  std::string other_type_;  ///< of a message on one of the topics that has no sample
+  SensorTracks sensors_{live::LiveSensors::kMaxWaiting};
+  std::string other_type_;  ///< of a message on a topic of the flight that has no sample
   std::string restarted_;
   bool full_ = false;
   std::uint64_t invalid_ = 0;

@@ -1,19 +1,18 @@
 #include "flight/ros/ros_truth.hpp"
 
 #include <algorithm>
-#include <chrono>
-#include <condition_variable>
 #include <deque>
+#include <functional>
 #include <limits>
-#include <mutex>
+#include <memory>
 #include <set>
 #include <utility>
 
-#include "core/cancellable_wait.hpp"
+#include "core/sensors/sample_source.hpp"
 #include "core/text/number_text.hpp"
 #include "core/text/printable_text.hpp"
-#include "flight/live/arrivals.hpp"
 #include "flight/live/live_motion.hpp"
+#include "flight/live/state_wait.hpp"
 #include "flight/logs/ros/ros_cursor.hpp"
 #include "flight/ros/ros_samples.hpp"
 #include "middleware/ros1/topic_listener.hpp"
@@ -50,15 +49,17 @@ std::optional<MavrosState> decode_mavros_state(std::span<const std::uint8_t> byt
 /// A publisher that changes the mode all the time does not fill the memory.
 constexpr std::size_t kMaxWaitingEvents = 1000;
 
-class RosTruth final : public TruthSource {
+class RosTruth final : public TruthSource, public SampleSource {
  public:
   RosTruth(const RosFlight& flight, const LocalFrame& frame)
       : flight_(flight),
-        samples_(flight, flight.origin.value_or(frame.origin())),
+        origin_(flight.origin.value_or(frame.origin())),
+        samples_(std::make_unique<RosSamples>(flight, origin_)),
         motion_(frame, 0.0, flight.gap_limit_ns) {}
 
   Status open(const std::atomic<bool>* cancel) {
     std::set<std::string> topics = {flight_.position_topic(), flight_.attitude_topic()};
+    topics.insert(flight_.sensor_topics.begin(), flight_.sensor_topics.end());
     if (!flight_.state_topic.empty()) topics.insert(flight_.state_topic);
     ros1::TopicListenerOptions options;
     options.master_uri = flight_.master_uri;
@@ -69,7 +70,8 @@ class RosTruth final : public TruthSource {
         options, [this](const ros1::ListenedMessage& message) { take(message); }, cancel);
     if (!listener) return listener.error();
     listener_ = std::move(*listener);
-    return wait("waiting for the flight's start", cancel, [this] { return started_; });
+    return wait(
+        "waiting for the flight's start", [this] { return started_; }, cancel);
   }
   ~RosTruth() override { listener_.reset(); }
 
@@ -80,8 +82,12 @@ class RosTruth final : public TruthSource {
                                                                  : ", " + flight_.attitude_topic());
   }
   [[nodiscard]] std::vector<std::string> warnings() const override {
-    const std::lock_guard lock(mutex_);
+    const std::lock_guard lock(news_.mutex);
     std::vector<std::string> warnings;
+    if (restarts_ > 0) {
+      warnings.push_back("stamps went back before the flight (" + counted(restarts_, "time") +
+                         "): what had come was forgotten");
+    }
     if (const auto gaps = motion_.gaps_text(start_ns_)) warnings.push_back(*gaps);
     if (const std::uint64_t count = listener_->too_large(); count > 0) {
       warnings.push_back(std::to_string(count) + " messages were larger than " +
@@ -95,14 +101,14 @@ class RosTruth final : public TruthSource {
     return warnings;
   }
   void begin() override {
-    const std::lock_guard lock(mutex_);
+    const std::lock_guard lock(news_.mutex);
     if (end_ns_) return;
     start_ns_ = known_until_ns();
-    samples_.forget_before(start_ns_);
-    arrivals_.use_latest();
+    samples_->forget_before(start_ns_);
+    news_.arrivals.use_latest();
   }
   [[nodiscard]] std::vector<FlightEvent> take_events(std::int64_t t_ns) override {
-    const std::lock_guard lock(mutex_);
+    const std::lock_guard lock(news_.mutex);
     std::vector<FlightEvent> taken;
     while (!events_.empty() && events_.front().t_ns <= start_ns_ + t_ns) {
       FlightEvent event = std::move(events_.front());
@@ -117,15 +123,25 @@ class RosTruth final : public TruthSource {
     }
     return taken;
   }
+  [[nodiscard]] SampleSource* sample_source() override { return this; }
+  [[nodiscard]] SensorSamples take_samples(std::int64_t t_ns) override {
+    const std::lock_guard lock(news_.mutex);
+    return samples_->sensors().take_until(start_ns_ + t_ns, start_ns_);
+  }
+  [[nodiscard]] std::string sensor_report() const override {
+    const std::lock_guard lock(news_.mutex);
+    const std::string sensors = samples_->sensors().report("not published");
+    return sensors.empty() ? sensors : "sensors of the vehicle: " + sensors;
+  }
   [[nodiscard]] std::optional<std::int64_t> heard_ns() const override {
-    const std::lock_guard lock(mutex_);
-    return arrivals_.used_ns();
+    const std::lock_guard lock(news_.mutex);
+    return news_.arrivals.used_ns();
   }
 
  private:
   void take(const ros1::ListenedMessage& message) {
     {
-      const std::lock_guard lock(mutex_);
+      const std::lock_guard lock(news_.mutex);
       if (end_ns_) return;
       if (message.topic == flight_.state_topic && message.type == "mavros_msgs/State") {
         take_state(message.bytes);
@@ -133,25 +149,43 @@ class RosTruth final : public TruthSource {
         take_sample(message);
       }
     }
-    news_.notify_all();
+    news_.arrived.notify_all();
   }
 
   void take_sample(const ros1::ListenedMessage& message) {
     const std::int64_t before_ns =
         started_ ? known_until_ns() : std::numeric_limits<std::int64_t>::min();
-    samples_.take(message.topic, message.type, message.bytes);
-    if (!started_ && !samples_.positions().empty() && !samples_.attitudes().empty()) {
-      start_ns_ = std::max(samples_.positions().front().t_ns, samples_.attitudes().front().t_ns);
+    samples_->take(message.topic, message.type, message.bytes);
+    if (!started_ && !samples_->restarted().empty()) return start_over(message);
+    if (!started_ && !samples_->positions().empty() && !samples_->attitudes().empty()) {
+      start_ns_ = std::max(samples_->positions().front().t_ns, samples_->attitudes().front().t_ns);
       started_ = known_until_ns() >= start_ns_;
-      if (started_) samples_.forget_before(start_ns_);
+      if (started_) {
+        samples_->forget_before(start_ns_);
+        samples_->sensors().forget_before(start_ns_);
+      }
     }
     if (!started_) return;
-    if (known_until_ns() > before_ns) arrivals_.add(known_until_ns());
-    if (!samples_.restarted().empty()) {
-      end("the stamps of " + samples_.restarted() + " went back");
+    if (known_until_ns() > before_ns) news_.arrivals.add(known_until_ns());
+    if (!samples_->restarted().empty()) {
+      end("the stamps of " + samples_->restarted() + " went back");
     } else {
       end_if_disarmed(false);
     }
+  }
+
+  /// Stamps went back before the flight: all that has come is forgotten.
+  /// @param message  the first one that proves it
+  void start_over(const ros1::ListenedMessage& message) {
+    ++restarts_;
+    samples_ = std::make_unique<RosSamples>(flight_, origin_);
+    events_.clear();
+    mode_.clear();
+    armed_.reset();
+    was_armed_ = false;
+    disarmed_ns_.reset();
+    news_.arrivals.restart();
+    samples_->take(message.topic, message.type, message.bytes);
   }
 
   void take_state(std::span<const std::uint8_t> bytes) {
@@ -204,68 +238,49 @@ class RosTruth final : public TruthSource {
 
   /// The stamp up to which position and attitude are known. @pre there are some of both
   [[nodiscard]] std::int64_t known_until_ns() const {
-    return std::min(samples_.positions().back().t_ns, samples_.attitudes().back().t_ns);
+    return std::min(samples_->positions().back().t_ns, samples_->attitudes().back().t_ns);
   }
 
   /// Waits until `ready` returns true or the flight ends.
-  template <typename Ready>
-  Status wait(const std::string& what, const std::atomic<bool>* cancel, const Ready& ready) {
-    std::unique_lock lock(mutex_);
-    const live::Arrivals::Clock::time_point begin = live::Arrivals::Clock::now();
-    const auto failed = [&](const std::string& why) {
-      return Error{ErrorCode::kIo, flight_.master_uri + ": " + what + ": " + why};
+  Status wait(const std::string& what,
+              const std::function<bool()>& ready,
+              const std::atomic<bool>* cancel) {
+    live::AwaitedSource source;
+    source.name = "the ROS topics";
+    source.patience = flight_.patience;
+    source.ended = [this] { return end_ns_.has_value(); };
+    source.full = [this] { return samples_->full(); };
+    source.missing = [this] {
+      return started_ ? std::string("no new state") : samples_->missing_text();
     };
-    const std::string too_far_behind = "the run is more than " +
-                                       std::to_string(live::kMaxLiveSamples) +
-                                       " samples behind the topics";
-    while (!ready() && !end_ns_) {
-      if (is_cancelled(cancel)) return cancelled("the ROS topics");
-      if (samples_.full()) return failed(too_far_behind);
-      if (!started_ && !samples_.restarted().empty()) {
-        return failed(
-            "the stamps of " + samples_.restarted() +
-            " went back before there was a position and an attitude; start the run again");
-      }
-      if (arrivals_.silence(begin) >= flight_.patience) {
-        const double patience_s = std::chrono::duration<double>(flight_.patience).count();
-        const std::string missing = started_ ? "no new state" : samples_.missing_text();
-        return failed(missing + " within " + number_text(patience_s) +
-                      " s: " + listener_->publishers());
-      }
-      news_.wait_for(lock, kCancelPeriod);
-    }
-    // The flight's end, too, lies behind what was not kept.
-    if (samples_.full() && !ready()) return failed(too_far_behind);
-    return {};
+    source.heard = [this] { return listener_->publishers(); };
+    return live::wait_for_states(news_, source, flight_.master_uri + ": " + what, ready, cancel);
   }
 
   [[nodiscard]] Result<std::optional<AircraftState>> find_state(
       std::int64_t t_ns, const std::atomic<bool>* cancel) override {
-    constexpr std::int64_t kLongestNs = 366LL * 86400 * kNsPerS;
-    if (t_ns < 0 || t_ns > kLongestNs) {
-      return Error{ErrorCode::kInvalidArgument,
-                   "t_ns = " + std::to_string(t_ns) + ": must be in [0, " +
-                       std::to_string(kLongestNs) + "]"};
-    }
+    if (Status status = live::check_flight_time(t_ns); !status) return status.error();
     const std::int64_t stamp_ns = start_ns_ + t_ns;
-    const Status waited = wait("the state at " + live::seconds_shown(t_ns),
-                               cancel,
-                               [this, stamp_ns] { return known_until_ns() >= stamp_ns; });
+    const Status waited = wait(
+        "the state at " + live::seconds_shown(t_ns),
+        [this, stamp_ns] { return known_until_ns() >= stamp_ns; },
+        cancel);
     if (!waited) return waited.error();
-    const std::lock_guard lock(mutex_);
+    const std::lock_guard lock(news_.mutex);
     if (end_ns_ && stamp_ns > *end_ns_) return std::optional<AircraftState>();
-    samples_.forget_before(stamp_ns);
-    arrivals_.use(stamp_ns);
+    samples_->forget_before(stamp_ns);
+    news_.arrivals.use(stamp_ns);
     const bool joint = flight_.position_topic() == flight_.attitude_topic();
-    AircraftState state = motion_.at(samples_.positions(), samples_.attitudes(), joint, stamp_ns);
+    AircraftState state = motion_.at(samples_->positions(), samples_->attitudes(), joint, stamp_ns);
     state.t_ns = t_ns;
     return std::optional(state);
   }
 
   const RosFlight flight_;
-  mutable std::mutex mutex_;
-  std::condition_variable news_;
-  RosSamples samples_;
+  live::StateNews news_;
+  Geodetic origin_;  ///< of local positions
+  std::unique_ptr<RosSamples> samples_;
+  std::uint64_t restarts_ = 0;  ///< of stamps before the flight
   live::LiveMotion motion_;
   bool started_ = false;
   bool was_armed_ = false;
@@ -276,7 +291,6 @@ class RosTruth final : public TruthSource {
   std::int64_t start_ns_ = 0;
   std::string end_reason_;
   std::optional<std::int64_t> end_ns_;  ///< a stamp
-  live::Arrivals arrivals_;
   std::unique_ptr<ros1::TopicListener> listener_;
 };
 

@@ -18,8 +18,11 @@ namespace overfly::flight::ros_live {
 /// Messages are read as those of recordings are (logs::decode_ros): world east-north-up, body
 /// forward-left-up (REP-103), heights of NavSatFix above the ellipsoid. state_at() waits until the
 /// stamps have passed the time. The flight ends at the last sample when a topic's stamps start
-/// again or the vehicle is disarmed; warnings() says why. It fails (kIo) after `patience` without a
+/// again or the vehicle is disarmed; warnings() says why. Stamps that start again before the flight
+/// begins are waited for again, with a warning. It fails (kIo) after `patience` without a
 /// sample.
+///
+/// What its sensors measure is in sample_source(), as logged_sensors.hpp has it of a recording.
 /// @param cancel  ends the wait for the flight's start; may be null
 /// Errors: as ros1::TopicListener::open; kIo after `patience`, with what is missing; kCancelled.
 [[nodiscard]] Result<std::unique_ptr<TruthSource>> fly_ros(const RosFlight& flight,

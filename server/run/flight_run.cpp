@@ -67,6 +67,7 @@ FlightRun::FlightRun(const Scenario& scenario, const RunOptions& options, RunRec
       stages_(clock_),
       begin_ns_(clock_.now_ns()),
       fault_news_(scenario),
+      saturation_(scenario),
       truth_feeds_(scenario.cameras.size()) {}
 
 bool FlightRun::cancelled() const { return is_cancelled(options_.cancel); }
@@ -114,6 +115,9 @@ Status FlightRun::fly() {
 }
 
 Status FlightRun::describe_end() {
+  for (const std::string& line : saturation_.report()) {
+    if (Status status = recorder_.log(end_ns(), "warning", line); !status) return status;
+  }
   if (!maker_ || !recorder_.manifest().flight) return {};
   std::vector<std::string>& known = recorder_.manifest().flight->warnings;
   for (const std::string& warning : maker_->flight_warnings()) {
@@ -285,6 +289,11 @@ Status FlightRun::deliver(MadeFrame& made) {
   for (CameraShot& shot : made.shots) {
     const CameraSpec& camera = scenario_.cameras[shot.camera];
     FrameRow row = row_from(made, shot, camera);
+    const std::optional<std::string> overexposed =
+        saturation_.add(shot.camera, row.frame, row.saturated_fraction, row.exposure_ns);
+    if (overexposed) {
+      if (Status status = recorder_.log(row.t_ns, "warning", *overexposed); !status) return status;
+    }
     late_tiles_ += row.late_tiles;
     frames_with_late_tiles_ += row.late_tiles > 0 ? 1 : 0;
     std::shared_ptr<const Image> image;

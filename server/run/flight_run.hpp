@@ -15,6 +15,7 @@
 #include "server/run/estimate_feedback.hpp"
 #include "server/run/run_options.hpp"
 #include "server/run/run_recorder.hpp"
+#include "server/run/saturation_watch.hpp"
 #include "server/timing/stage_timer.hpp"
 
 namespace overfly::server {
@@ -49,7 +50,7 @@ class FlightRun {
   Status describe_use();
 
   /// Records what the flight has to report after it: gaps of a live vehicle, why it ended, its
-  /// sensors.
+  /// sensors, overexposed images.
   Status describe_end();
 
   Status fly_lockstep();
@@ -85,6 +86,7 @@ class FlightRun {
 
   std::unique_ptr<FrameMaker> maker_;
   FaultNews fault_news_;
+  SaturationWatch saturation_;
   /// Takes answers to a live vehicle; null without. Outlives the workers, which call it.
   std::unique_ptr<EstimateFeedback> feedback_;
   DurationList message_to_frame_;  ///< of a live vehicle

@@ -20,33 +20,6 @@ constexpr std::size_t kMaxColumnNameBytes = 200;
 constexpr std::size_t kMaxPathBytes = 4096;
 constexpr std::string_view kVersionKey = "\"csv_mapping_version\"";
 
-enum class Dimension { kDegrees, kRadians, kLength, kNumber };
-
-struct QuantityFacts {
-  const char* name;
-  Dimension dimension;
-};
-
-constexpr std::array<QuantityFacts, kCsvQuantities> kQuantities{{{"lat", Dimension::kDegrees},
-                                                                 {"lon", Dimension::kDegrees},
-                                                                 {"alt_msl", Dimension::kLength},
-                                                                 {"roll", Dimension::kRadians},
-                                                                 {"pitch", Dimension::kRadians},
-                                                                 {"yaw", Dimension::kRadians},
-                                                                 {"qw", Dimension::kNumber},
-                                                                 {"qx", Dimension::kNumber},
-                                                                 {"qy", Dimension::kNumber},
-                                                                 {"qz", Dimension::kNumber}}};
-
-struct Unit {
-  const char* name;
-  double factor;  ///< to degrees or metres
-};
-
-constexpr std::array<Unit, 4> kAngleUnits{
-    {{"deg", 1.0}, {"rad", 180.0 / kPi}, {"cdeg", 0.01}, {"1e-7deg", 1e-7}}};
-constexpr std::array<Unit, 4> kLengthUnits{
-    {{"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}, {"ft", 0.3048}}};
 constexpr std::array<std::pair<const char*, std::int64_t>, 4> kTimeUnits{
     {{"s", kNsPerS}, {"ms", 1'000'000}, {"us", 1'000}, {"ns", 1}}};
 
@@ -70,7 +43,7 @@ Result<double> unit_factor(const MappingObject& column, Dimension dimension) {
   }
   const Result<std::string> name = column.text("unit", kMaxColumnNameBytes);
   if (!name) return name.error();
-  const auto& units = dimension == Dimension::kLength ? kLengthUnits : kAngleUnits;
+  const std::span<const Unit> units = units_of(dimension);
   for (const Unit& unit : units) {
     if (unit.name != *name) continue;
     return dimension == Dimension::kRadians ? rad_from_deg(unit.factor) : unit.factor;
@@ -99,28 +72,21 @@ Status take_columns(const MappingObject& piece, CsvPiece& result) {
   const Result<MappingObject> columns = piece.object("columns");
   if (!columns) return columns.error();
   std::vector<std::string> names;
-  for (const QuantityFacts& facts : kQuantities) names.emplace_back(facts.name);
+  for (std::size_t i = 0; i < kCsvQuantities; ++i) names.emplace_back(facts_of(i).name);
   if (Status status = columns->expect_members(names); !status) return status;
   for (std::size_t i = 0; i < kCsvQuantities; ++i) {
     if (!columns->has(names[i])) continue;
     const Result<MappingObject> object = columns->object(names[i]);
     if (!object) return object.error();
-    Result<CsvColumn> column = column_from(*object, kQuantities[i].dimension);
+    Result<CsvColumn> column = column_from(*object, facts_of(i).dimension);
     if (!column) return column.error();
     result.columns[i] = std::move(*column);
   }
   // The first of each group stands for the group from here on.
-  for (const auto& [first, count] : {std::pair{0, 3}, std::pair{3, 3}, std::pair{6, 4}}) {
-    for (int i = first + 1; i < first + count; ++i) {
-      const auto at = static_cast<std::size_t>(i);
-      if (result.columns[at].has_value() ==
-          result.columns[static_cast<std::size_t>(first)].has_value())
-        continue;
-      return columns->fault(
-          "",
-          std::string("needs all or none of ") + (first == 0   ? "lat, lon, alt_msl"
-                                                  : first == 3 ? "roll, pitch, yaw"
-                                                               : "qw, qx, qy, qz"));
+  for (const QuantityGroup& group : quantity_groups()) {
+    for (std::size_t i = group.first + 1; i < group.first + group.count; ++i) {
+      if (result.columns[i].has_value() == result.columns[group.first].has_value()) continue;
+      return columns->fault("", std::string("needs all or none of ") + group.names);
     }
   }
   if (result.has_angles() && result.has_quaternion()) {
@@ -228,8 +194,12 @@ Result<CsvPiece> piece_from(const MappingObject& object, const PieceFolders& fol
 
 }  // namespace
 
-const char* to_string(CsvQuantity quantity) {
-  return kQuantities[static_cast<std::size_t>(quantity)].name;
+bool CsvPiece::has_samples() const {
+  if (has_position() && origin == SourceOrigin::kGps) return true;
+  for (auto i = static_cast<std::size_t>(CsvQuantity::kRateX); i < kCsvQuantities; ++i) {
+    if (columns[i]) return true;
+  }
+  return false;
 }
 
 bool is_csv_mapping(std::span<const std::uint8_t> head) {

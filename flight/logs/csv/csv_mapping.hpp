@@ -10,19 +10,14 @@
 #include <vector>
 
 #include "core/result.hpp"
+#include "flight/logs/csv/csv_quantities.hpp"
 #include "flight/logs/log_sink.hpp"
 
 namespace overfly::flight::logs {
 
-/// What a column can hold. Angles of attitudes: body (forward-right-down) relative to
-/// north-east-down, intrinsic Z-Y-X; quaternions R_ned_body.
-enum class CsvQuantity { kLat, kLon, kAltMsl, kRoll, kPitch, kYaw, kQw, kQx, kQy, kQz };
-inline constexpr std::size_t kCsvQuantities = 10;
-/// The name in a mapping: "lat", "alt_msl", "qw".
-[[nodiscard]] const char* to_string(CsvQuantity quantity);
-
 /// A column and the factor that turns its numbers into degrees (lat, lon), metres (alt_msl),
-/// radians (roll, pitch, yaw) or parts of a quaternion.
+/// radians (roll, pitch, yaw), parts of a quaternion, rad/s, m/s^2, uT, Pa, m/s (airspeed) or
+/// metres (range).
 struct CsvColumn {
   std::string name;
   double factor = 1.0;
@@ -47,6 +42,9 @@ struct CsvPiece {
   [[nodiscard]] bool has_position() const { return column(CsvQuantity::kLat).has_value(); }
   [[nodiscard]] bool has_angles() const { return column(CsvQuantity::kRoll).has_value(); }
   [[nodiscard]] bool has_quaternion() const { return column(CsvQuantity::kQw).has_value(); }
+  /// Its rows are samples of sensors: positions of a receiver, or one of the quantities from rates
+  /// on.
+  [[nodiscard]] bool has_samples() const;
 };
 
 inline constexpr std::size_t kMaxCsvPieces = 32;

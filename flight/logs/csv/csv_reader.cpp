@@ -10,6 +10,7 @@
 #include "core/motion/pose.hpp"
 #include "flight/logs/boot_clock.hpp"
 #include "flight/logs/csv/csv_rows.hpp"
+#include "flight/logs/csv/csv_samples.hpp"
 #include "flight/logs/held_messages.hpp"
 #include "flight/logs/ned_attitude.hpp"
 
@@ -156,6 +157,9 @@ void PiecePass::take_samples(const std::vector<std::string_view>& fields, const 
     }
     values_[i] = field.value * piece_.columns[i]->factor;
   }
+  if (piece_.has_samples()) {
+    sink_.samples(id_, time, static_cast<int>(id_), csv_samples_of(piece_, values_, time.t_ns));
+  }
   if (piece_.has_position()) {
     sink_.position(
         id_,
@@ -199,6 +203,7 @@ StreamDescription description_of(const CsvPiece& piece, int preference) {
   StreamDescription description;
   description.name = piece.name;
   description.position = piece.has_position() ? PositionKind::kGeodetic : PositionKind::kNone;
+  description.sensors = piece.has_samples();
   description.attitude = piece.has_angles() || piece.has_quaternion();
   description.origin = piece.origin;
   description.preference = preference;

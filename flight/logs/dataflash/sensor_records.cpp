@@ -7,12 +7,12 @@
 #include <string_view>
 
 #include "core/motion/pose.hpp"
+#include "core/sensors/measured_samples.hpp"
 
 namespace overfly::flight::logs {
 namespace {
 
 constexpr double kIcePointK = 273.15;
-constexpr double kNotLogged = std::numeric_limits<double>::quiet_NaN();
 
 struct SensorRecordName {
   std::string_view name;
@@ -76,25 +76,15 @@ bool find_sensor_fields(const RecordFormat& format, SensorPlan& plan) {
 }
 
 GpsSample gps_in(const SensorPlan& plan, std::span<const std::uint8_t> record, std::int64_t t_ns) {
-  GpsSample sample;
-  sample.t_ns = t_ns;
-  sample.delivered_ns = t_ns;
-  sample.velocity_ned_m_s.setConstant(kNotLogged);
-  sample.horizontal_accuracy_m = kNotLogged;
-  sample.vertical_accuracy_m = kNotLogged;
-  sample.speed_accuracy_m_s = kNotLogged;
+  GpsSample sample = gps_without_fix(t_ns, t_ns);
   const auto value = [&](std::size_t i) { return number_in(plan.fields[i], record); };
-  const bool on_earth = std::abs(value(1)) <= 90.0 && std::abs(value(2)) <= 180.0;
-  if (!(value(0) >= 3.0) || !on_earth || !std::isfinite(value(3))) {
-    sample.fix = GpsFixType::kNone;
-    sample.place = {kNotLogged, kNotLogged, kNotLogged};
-    return sample;
-  }
+  if (!(value(0) >= 3.0)) return sample;
+  sample.fix = GpsFixType::k3d;
   sample.place = geodetic_from_deg(value(1), value(2), value(3));
   const double course_rad = rad_from_deg(value(5));
-  sample.velocity_ned_m_s = {value(4) * std::cos(course_rad),
-                             value(4) * std::sin(course_rad),
-                             plan.first_extra ? number_in(*plan.first_extra, record) : kNotLogged};
+  sample.velocity_ned_m_s.x() = value(4) * std::cos(course_rad);
+  sample.velocity_ned_m_s.y() = value(4) * std::sin(course_rad);
+  if (plan.first_extra) sample.velocity_ned_m_s.z() = number_in(*plan.first_extra, record);
   return sample;
 }
 
@@ -108,8 +98,7 @@ std::optional<double> range_in(const SensorPlan& plan, std::span<const std::uint
       plan.second_extra ? integer_in(*plan.second_extra, record) : std::int64_t{kGood};
   if (state < kOutOfRangeLow) return std::nullopt;
   if (state < kGood) return std::numeric_limits<double>::infinity();
-  const double range_m = number_in(plan.fields[0], record);
-  return range_m >= 0.0 ? std::optional(range_m) : std::nullopt;
+  return number_in(plan.fields[0], record);
 }
 
 }  // namespace
@@ -131,32 +120,30 @@ SensorSamples samples_in(const SensorPlan& plan,
   SensorSamples samples;
   const auto value = [&](std::size_t i) { return number_in(plan.fields[i], record); };
   switch (plan.kind) {
-    case SensorRecord::kImu: {
-      const Eigen::Vector3d rate(value(0), value(1), value(2));
-      const Eigen::Vector3d force(value(3), value(4), value(5));
-      if (rate.allFinite() && force.allFinite()) samples.imu.push_back({t_ns, force, rate});
+    case SensorRecord::kImu:
+      (void)add_measured(
+          samples, ImuSample{t_ns, {value(3), value(4), value(5)}, {value(0), value(1), value(2)}});
       break;
-    }
     case SensorRecord::kBarometer:
-      if (value(0) > 0.0) samples.barometer.push_back({t_ns, value(0), value(1) + kIcePointK});
+      (void)add_measured(samples, BarometerSample{t_ns, value(0), value(1) + kIcePointK});
       break;
     case SensorRecord::kGps:
-      samples.gps.push_back(gps_in(plan, record, t_ns));
+      (void)add_measured(samples, gps_in(plan, record, t_ns));
       break;
     case SensorRecord::kAirspeed:
-      if (std::isfinite(value(0)) && std::isfinite(value(1))) {
-        samples.airspeed.push_back({t_ns, value(1), value(0)});
-      }
+      (void)add_measured(samples, AirspeedSample{t_ns, value(1), value(0)});
       break;
     case SensorRecord::kMagnetometer: {
       // FMTU declares gauss, with a multiplier; older logs have milligauss without a unit.
       const double ut_per_unit = plan.fields[0].unit == "Gauss" ? 100.0 : 0.1;
       const Eigen::Vector3d field = ut_per_unit * Eigen::Vector3d(value(0), value(1), value(2));
-      if (field.allFinite() && !field.isZero(0.0)) samples.magnetometer.push_back({t_ns, field});
+      (void)add_measured(samples, MagnetometerSample{t_ns, field});
       break;
     }
     case SensorRecord::kRange:
-      if (const auto range_m = range_in(plan, record)) samples.range.push_back({t_ns, *range_m});
+      if (const auto range_m = range_in(plan, record)) {
+        (void)add_measured(samples, RangeSample{t_ns, *range_m});
+      }
       break;
     case SensorRecord::kNone:
       break;

@@ -31,6 +31,7 @@ class LcmPass {
   struct Channel {
     StreamId id = 0;
     bool wanted = false;
+    bool sensors = false;
     LcmType type = LcmType::kOther;
     BootClock clock{FirstStamps::kHeld};
     HeldMessages<std::vector<std::uint8_t>> held;  ///< all that is read of each message
@@ -59,7 +60,9 @@ LcmPass::Channel* LcmPass::channel_of(const LcmEvent& event) {
   Channel& channel = channels_[{name, type}];
   channel.id = id;
   channel.type = type;
-  channel.wanted = sink_.stream(id, describe_channel(name, type));
+  const StreamDescription description = describe_channel(name, type);
+  channel.sensors = description.sensors;
+  channel.wanted = sink_.stream(id, description);
   return &channel;
 }
 
@@ -94,8 +97,15 @@ void LcmPass::pass(const Channel& channel,
                    const std::optional<LogTime>& time,
                    std::span<const std::uint8_t> data) {
   sink_.message(channel.id, time);
-  if (!channel.wanted || !time || channel.type != LcmType::kTruth) return;
-  if (!pass_truth(data, channel.id, *time, sink_)) ++short_messages_;
+  if (!channel.wanted || !time) return;
+  if (channel.sensors) {
+    const std::optional<SensorSamples> samples = lcm_samples_in(channel.type, data);
+    if (!samples) ++short_messages_;
+    if (samples) sink_.samples(channel.id, *time, static_cast<int>(channel.id), *samples);
+    return;
+  }
+  if (channel.type == LcmType::kTruth && !pass_truth(data, channel.id, *time, sink_))
+    ++short_messages_;
 }
 
 void LcmPass::report() {

@@ -22,6 +22,12 @@ enum class LcmType : std::uint64_t {
   kSimTime = 0xe90c6fc4d87af431,
   kDebug = 0x856bca71191b3891,
   kWorldPose = 0x7884b766ddbdb1af,
+  kImu = 0x13b6cfa4e7f6d5d2,
+  kBarometer = 0x7474facbe707e2be,
+  kGps = 0x6e481370a472a917,
+  kAirspeed = 0x636cd740e32eee76,
+  kMagnetometer = 0xedeb216826c4afd7,
+  kRange = 0xd7c5028f3465f922,
   kOther = 0,
 };
 
@@ -55,5 +61,10 @@ bool pass_truth(std::span<const std::uint8_t> message,
                 StreamId id,
                 const LogTime& time,
                 LogSink& sink);
+
+/// The sample in a message of one of the types from kImu on; without one if it has none that can be
+/// right. @return empty if the message ends early
+[[nodiscard]] std::optional<SensorSamples> lcm_samples_in(LcmType type,
+                                                          std::span<const std::uint8_t> message);
 
 }  // namespace overfly::flight::logs

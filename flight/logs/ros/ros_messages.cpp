@@ -7,6 +7,7 @@
 
 #include "core/time.hpp"
 #include "flight/logs/ned_attitude.hpp"
+#include "flight/logs/ros/ros_sensors.hpp"
 
 namespace overfly::flight::logs {
 namespace {
@@ -18,13 +19,17 @@ struct RosTypeFacts {
   PositionKind position;
   bool attitude;
   int preference;
+  bool sensors = false;
 };
 
 constexpr RosTypeFacts kRosTypes[] = {
     {"nav_msgs", "Odometry", RosType::kOdometry, PositionKind::kLocal, true, 0},
     {"geometry_msgs", "PoseStamped", RosType::kPoseStamped, PositionKind::kLocal, true, 1},
-    {"sensor_msgs", "NavSatFix", RosType::kNavSatFix, PositionKind::kGeodetic, false, 0},
-    {"sensor_msgs", "Imu", RosType::kImu, PositionKind::kNone, true, 2},
+    {"sensor_msgs", "NavSatFix", RosType::kNavSatFix, PositionKind::kGeodetic, false, 0, true},
+    {"sensor_msgs", "Imu", RosType::kImu, PositionKind::kNone, true, 2, true},
+    {"sensor_msgs", "MagneticField", RosType::kMagneticField, PositionKind::kNone, false, 0, true},
+    {"sensor_msgs", "FluidPressure", RosType::kFluidPressure, PositionKind::kNone, false, 0, true},
+    {"sensor_msgs", "Range", RosType::kRange, PositionKind::kNone, false, 0, true},
     {"sensor_msgs", "Image", RosType::kImage, PositionKind::kNone, false, 0},
     {"sensor_msgs", "CompressedImage", RosType::kCompressedImage, PositionKind::kNone, false, 0},
 };
@@ -83,16 +88,17 @@ void take_pose(RosCursor& message,
   sample.R_ned_body = ned_attitude(world, body, take_quaternion(message));
 }
 
-void take_fix(RosCursor& message, RosSample& sample) {
+void take_fix(RosCursor message, RosSample& sample) {
   const auto status = message.number<std::int8_t>();
   (void)message.number<std::uint16_t>();  // service
   sample.position = take_vector(message);
   sample.invalid = status < 0;
 }
 
-void take_imu(RosCursor& message, std::string_view body, RosSample& sample) {
+void take_orientation(RosCursor& message, std::string_view body, RosSample& sample) {
   const Eigen::Quaterniond R_world_body = take_quaternion(message);
   const bool known = message.number<double>() != -1.0;
+  for (int i = 1; i < 9; ++i) (void)message.number<double>();  // the rest of its covariance
   if (known) sample.R_ned_body = ned_attitude("", body, R_world_body);
 }
 
@@ -118,14 +124,11 @@ StreamDescription describe_topic(std::string_view topic, RosType type) {
     description.position = facts.position;
     description.attitude = facts.attitude;
     description.preference = facts.preference;
+    description.sensors = facts.sensors && !ros_topic_name(topic).is_truth;
   }
   if (description.position == PositionKind::kNone && !description.attitude) return description;
   if (type == RosType::kNavSatFix) description.height = HeightDatum::kEllipsoid;
-  std::string lower(topic);
-  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) {
-    return static_cast<char>(std::tolower(c));
-  });
-  if (lower.find("truth") != std::string::npos) {
+  if (ros_topic_name(topic).is_truth) {
     description.origin = SourceOrigin::kSimulation;
   } else {
     description.origin = type == RosType::kNavSatFix ? SourceOrigin::kGps : SourceOrigin::kEstimate;
@@ -133,18 +136,52 @@ StreamDescription describe_topic(std::string_view topic, RosType type) {
   return description;
 }
 
-std::optional<RosSample> decode_ros(RosType type, RosCursor message) {
-  if (type == RosType::kOther) return std::nullopt;
+RosTopicName ros_topic_name(std::string_view topic) {
+  std::string lower(topic);
+  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) {
+    return static_cast<char>(std::tolower(c));
+  });
+  const auto has = [&lower](const char* word) { return lower.find(word) != std::string::npos; };
+  return {has("truth"), has("raw"), has("diff_press") || has("differential_press")};
+}
+
+std::optional<RosSample> decode_ros(RosType type, RosCursor message, const RosTopicName& topic) {
   const RosHeader header = take_header(message);
+  const RosSensorHeader sensor{header.stamp_ns, header.frame_id, topic.is_differential};
   RosSample sample;
   sample.stamp_ns = header.stamp_ns;
-  if (type == RosType::kPoseStamped) take_pose(message, header.frame_id, "", sample);
-  if (type == RosType::kOdometry) {
-    const std::string_view child_frame_id = message.text();
-    take_pose(message, header.frame_id, child_frame_id, sample);
+  switch (type) {
+    case RosType::kPoseStamped:
+      take_pose(message, header.frame_id, "", sample);
+      break;
+    case RosType::kOdometry: {
+      const std::string_view child_frame_id = message.text();
+      take_pose(message, header.frame_id, child_frame_id, sample);
+      break;
+    }
+    case RosType::kNavSatFix:
+      take_fix(message, sample);
+      sample.sensors = take_fix_samples(message, sensor);
+      break;
+    case RosType::kImu:
+      take_orientation(message, header.frame_id, sample);
+      sample.sensors = take_imu_samples(message, sensor);
+      break;
+    case RosType::kMagneticField:
+      sample.sensors = take_field_samples(message, sensor);
+      break;
+    case RosType::kFluidPressure:
+      sample.sensors = take_pressure_samples(message, sensor);
+      break;
+    case RosType::kRange:
+      sample.sensors = take_range_samples(message, sensor);
+      break;
+    case RosType::kImage:
+    case RosType::kCompressedImage:
+      break;
+    case RosType::kOther:
+      return std::nullopt;
   }
-  if (type == RosType::kNavSatFix) take_fix(message, sample);
-  if (type == RosType::kImu) take_imu(message, header.frame_id, sample);
   if (!message.ok()) return std::nullopt;
   return sample;
 }

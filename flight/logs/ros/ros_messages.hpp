@@ -8,6 +8,7 @@
 #include <span>
 #include <string_view>
 
+#include "core/sensors/sensor_samples.hpp"
 #include "flight/logs/log_sink.hpp"
 #include "flight/logs/ros/ros_cursor.hpp"
 
@@ -18,6 +19,9 @@ enum class RosType {
   kOdometry,         ///< nav_msgs/Odometry
   kNavSatFix,        ///< sensor_msgs/NavSatFix
   kImu,              ///< sensor_msgs/Imu
+  kMagneticField,    ///< sensor_msgs/MagneticField
+  kFluidPressure,    ///< sensor_msgs/FluidPressure
+  kRange,            ///< sensor_msgs/Range
   kImage,            ///< sensor_msgs/Image
   kCompressedImage,  ///< sensor_msgs/CompressedImage
   kOther,
@@ -30,7 +34,8 @@ enum class RosType {
 /// How the topic of a type contributes to a flight; the name is that of the topic.
 ///
 /// A topic with "truth" in its name is a simulator's or a tracking system's state, NavSatFix is
-/// GPS, all others are estimates.
+/// GPS, all others are estimates. Types with measurements give samples of sensors, but not on a
+/// topic with "truth" in its name.
 [[nodiscard]] StreamDescription describe_topic(std::string_view topic, RosType type);
 
 /// What a message says of the flight.
@@ -41,16 +46,28 @@ struct RosSample {
   std::optional<Eigen::Vector3d> position;
   std::optional<Eigen::Quaterniond> R_ned_body;  ///< not normalised
   bool invalid = false;                          ///< the sender marks the sample as invalid: no fix
+  SensorSamples sensors;
 };
+
+/// How a topic's name tells what its messages are.
+struct RosTopicName {
+  bool is_truth = false;         ///< "truth": a simulator's or a tracking system's state
+  bool is_raw = false;           ///< "raw": measured, where others are estimated
+  bool is_differential = false;  ///< "diff_press", "differential_press": of a Pitot tube
+};
+[[nodiscard]] RosTopicName ros_topic_name(std::string_view topic);
 
 /// Reads the header, and the position and attitude of types that have them.
 ///
 /// Frames are those of REP-103: a world east-north-up, a body forward-left-up. A frame_id that ends
 /// with "ned" is a world north-east-down, a frame of the body that ends with "frd" is
 /// forward-right-down; the body's frame is child_frame_id of Odometry and frame_id of Imu.
-/// An Imu without orientation (orientation_covariance[0] = -1) gives neither.
+/// An Imu without orientation (orientation_covariance[0] = -1) gives neither. Samples of sensors
+/// are those of ros_sensors.hpp.
 /// @return empty if the message ends early, or the type is kOther
-[[nodiscard]] std::optional<RosSample> decode_ros(RosType type, RosCursor message);
+[[nodiscard]] std::optional<RosSample> decode_ros(RosType type,
+                                                  RosCursor message,
+                                                  const RosTopicName& topic = {});
 
 /// The cursor behind the header that states the byte order of CDR.
 /// @return empty for other representations than plain CDR, and for kOther

@@ -1,10 +1,12 @@
 #include "flight/logs/ros/ros_topics.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <limits>
 
 #include "core/text/printable_text.hpp"
+#include "core/time.hpp"
 
 namespace overfly::flight::logs {
 namespace {
@@ -41,6 +43,16 @@ const char* representation_name(unsigned representation) {
   }
 }
 
+/// A receiver's answer was delivered when it was recorded, if both clocks are the same.
+void set_delivery(std::uint64_t recorded_ns, SensorSamples& samples) {
+  constexpr std::int64_t kMaxDelayNs = 10 * kNsPerS;
+  for (GpsSample& gps : samples.gps) {
+    const auto latest = static_cast<std::uint64_t>(gps.t_ns + kMaxDelayNs);
+    if (gps.t_ns < 0 || recorded_ns > latest) continue;
+    gps.delivered_ns = std::max(gps.t_ns, static_cast<std::int64_t>(recorded_ns));
+  }
+}
+
 std::string topic_text(const std::string& name) {
   return printable_text({reinterpret_cast<const std::uint8_t*>(name.data()), name.size()});
 }
@@ -61,7 +73,9 @@ std::optional<RosTopics::Topic> RosTopics::add(const std::string& name,
   Stream stream;
   stream.encoding = encoding;
   if (encoding != RosEncoding::kOther) stream.type = ros_type_named(type);
+  stream.name = ros_topic_name(name);
   StreamDescription description = describe_topic(topic_text(name), stream.type);
+  stream.sensors = description.sensors;
   if (stream.type == RosType::kOther) description.vehicle = "recording";
   stream.wanted = sink_.stream(static_cast<StreamId>(streams_.size()), description);
   streams_.push_back(std::move(stream));
@@ -69,7 +83,8 @@ std::optional<RosTopics::Topic> RosTopics::add(const std::string& name,
 }
 
 std::optional<RosSample> RosTopics::decode(const Stream& stream,
-                                           std::span<const std::uint8_t> data) {
+                                           std::span<const std::uint8_t> data,
+                                           std::uint64_t recorded_ns) {
   bool big_endian = false;
   if (stream.encoding == RosEncoding::kCdr) {
     if (data.size() < kCdrHeaderBytes) {
@@ -84,9 +99,10 @@ std::optional<RosSample> RosTopics::decode(const Stream& stream,
     big_endian = representation == kCdrBigEndian;
     data = data.subspan(kCdrHeaderBytes);
   }
-  const std::optional<RosSample> sample =
-      decode_ros(stream.type, RosCursor(data, stream.encoding, big_endian));
+  std::optional<RosSample> sample =
+      decode_ros(stream.type, RosCursor(data, stream.encoding, big_endian), stream.name);
   if (!sample) ++short_messages_;
+  if (sample) set_delivery(recorded_ns, sample->sensors);
   return sample;
 }
 
@@ -100,7 +116,7 @@ void RosTopics::take(Topic topic,
     const auto t_ns = recorded_ns <= kMost ? static_cast<std::int64_t>(recorded_ns) : -1;
     return take(topic, stream.clock.take(t_ns), std::nullopt);
   }
-  std::optional<RosSample> sample = decode(stream, data);
+  std::optional<RosSample> sample = decode(stream, data, recorded_ns);
   const std::optional<LogTime> time =
       sample ? stream.clock.take(sample->stamp_ns) : std::optional<LogTime>();
   take(topic, time, std::move(sample));
@@ -131,7 +147,12 @@ void RosTopics::pass(Topic topic,
                      const std::optional<RosSample>& sample) {
   const auto id = static_cast<StreamId>(topic);
   sink_.message(id, time);
-  if (!streams_[topic].wanted || !time || !sample) return;
+  const Stream& stream = streams_[topic];
+  if (!stream.wanted || !time || !sample) return;
+  if (stream.sensors) {
+    const std::size_t preference = (stream.name.is_raw ? 0 : kMaxRosTopics) + topic;
+    sink_.samples(id, *time, static_cast<int>(preference), sample->sensors);
+  }
   if (sample->invalid) return sink_.no_sample(id);
   if (sample->position) sink_.position(id, *time, *sample->position);
   if (sample->R_ned_body) sink_.attitude(id, *time, *sample->R_ned_body);

@@ -21,7 +21,8 @@ namespace overfly::flight::logs {
 ///
 /// A stream is a topic. Messages of the types in RosType have the time of their header; all others
 /// are listed with the time at which they were recorded. Each topic has a BootClock of its own,
-/// because the clocks of sensors may differ.
+/// because the clocks of sensors may differ. Of several topics with samples of one sensor, those
+/// with "raw" in their names come first, then those that were met first.
 class RosTopics final : public RosMessageSink {
  public:
   explicit RosTopics(LogSink& sink) : sink_(sink) {}
@@ -40,6 +41,8 @@ class RosTopics final : public RosMessageSink {
   struct Stream {
     RosType type = RosType::kOther;
     RosEncoding encoding = RosEncoding::kOther;
+    RosTopicName name;
+    bool sensors = false;
     bool wanted = false;
     BootClock clock{FirstStamps::kHeld};
     HeldMessages<std::optional<RosSample>> held;
@@ -51,7 +54,9 @@ class RosTopics final : public RosMessageSink {
             const std::optional<LogTime>& time,
             const std::optional<RosSample>& sample);
   void pass_held(Topic topic);
-  std::optional<RosSample> decode(const Stream& stream, std::span<const std::uint8_t> data);
+  std::optional<RosSample> decode(const Stream& stream,
+                                  std::span<const std::uint8_t> data,
+                                  std::uint64_t recorded_ns);
 
   LogSink& sink_;
   std::vector<Stream> streams_;  ///< by StreamId

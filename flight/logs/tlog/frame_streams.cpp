@@ -76,6 +76,7 @@ void FrameStreams::pass(const Frame& frame,
                         const std::optional<LogTime>& time,
                         const Stream& stream,
                         Sender& sender) {
+  passing_ = &frame;
   sink_.message(stream.id, time);
   if (time && !sender.untimed_events.empty()) pass_untimed_events(sender, time);
   if (stream.wanted && time) {

@@ -25,6 +25,9 @@ class FrameStreams {
       : sink_(sink), first_stamps_(first_stamps) {}
 
   void take(const mavlink::Frame& frame);
+  /// The frame whose content is being passed to the sink: the one that was taken, or one that was
+  /// held. @pre the sink is being called with a message, a sample or an event
+  [[nodiscard]] const mavlink::Frame& passing() const { return *passing_; }
   /// Passes on what is still held, and counts of what was left out as warnings.
   void report();
 
@@ -68,6 +71,7 @@ class FrameStreams {
 
   LogSink& sink_;
   FirstStamps first_stamps_;
+  const mavlink::Frame* passing_ = nullptr;
   std::unordered_map<std::uint64_t, Stream> streams_;
   std::unordered_map<std::uint32_t, Sender> senders_;
   std::uint64_t left_out_messages_ = 0;

@@ -163,6 +163,10 @@ void UlogPass::pass_data(Topic& topic,
     }
   }
   if (topic.wanted) pass_samples(topic.plan, data, topic.id, *time, sink_);
+  if (topic.wanted && topic.plan.description.sensors) {
+    const auto samples = sensor_samples_in(topic.plan.sensor, data, time->t_ns);
+    if (samples) sink_.samples(topic.id, *time, topic.plan.sensor.preference, *samples);
+  }
   take_status(topic, *time, data);
 }
 

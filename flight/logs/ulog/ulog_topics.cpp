@@ -87,6 +87,13 @@ TopicPlan plan_of(const UlogFormats& formats, const std::string& topic, std::uin
     plan.description.origin = facts.origin;
     plan.description.preference = 10 * facts.preference + instance;
   }
+  plan.sensor = sensor_plan_of(formats, topic, instance);
+  if (plan.sensor.kind == UlogSensor::kGps) {
+    if (plan.description.position != PositionKind::kGeodetic) plan.sensor = {};
+    plan.sensor.position = plan.position;
+    plan.sensor.position_scale = plan.position_scale;
+  }
+  plan.description.sensors = plan.sensor.kind != UlogSensor::kNone;
   return plan;
 }
 

@@ -9,6 +9,7 @@
 
 #include "flight/logs/log_sink.hpp"
 #include "flight/logs/ulog/ulog_format.hpp"
+#include "flight/logs/ulog/ulog_sensors.hpp"
 
 namespace overfly::flight::logs {
 
@@ -25,6 +26,7 @@ struct TopicPlan {
   std::array<std::optional<UlogField>, 2> origin_valid;
   std::optional<UlogField> mode;    ///< of vehicle_status
   std::optional<UlogField> arming;  ///< of vehicle_status: 2 is armed
+  SensorTopicPlan sensor;
 };
 
 /// @param instance  multi_id of the subscription

@@ -56,9 +56,43 @@ TEST(LiveSamples, TakeNoneAfterTheFirstThatWasNotKept) {
   EXPECT_LE(samples.streams()[attitude].attitudes.back().t_ns, last_ns);
 }
 
+TEST(LiveSamples, LeaveOutFirstStampsThatAreWrong) {
+  LiveSamples samples(0.0);
+  take_state(samples, 4'000'000'000U);  // two messages
+  EXPECT_FALSE(samples.latest_ns());
+  for (const std::uint32_t boot_ms : {1000U, 1020U, 1040U}) take_state(samples, boot_ms);
+  EXPECT_FALSE(samples.restarted());
+  EXPECT_EQ(samples.latest_ns(), 1'040'000'000);
+  // Three stamps in a row were needed to believe them.
+  const auto& positions =
+      samples.streams()[live_stream_named(samples, "GLOBAL_POSITION_INT")].positions;
+  ASSERT_EQ(positions.size(), 2U);
+  EXPECT_EQ(positions.front().t_ns, 1'020'000'000);
+}
+
+TEST(LiveSamples, AreThoseOfTheirOwnMessagesWhereTheseWereHeld) {
+  LiveSamples samples(0.0);
+  for (const std::uint32_t boot_ms : {1000U, 1020U}) {
+    take_message(samples,
+                 33,
+                 PayloadWriter(28)
+                     .put(0, boot_ms)
+                     .put(4, std::int32_t{392345678})
+                     .put(8, std::int32_t{-861234567})
+                     .put(20, static_cast<std::int16_t>(boot_ms)));
+  }
+  EXPECT_FALSE(samples.latest_ns());
+  take_message(samples, 30, PayloadWriter(28).put(0, std::uint32_t{1040}));
+  const auto& positions =
+      samples.streams()[live_stream_named(samples, "GLOBAL_POSITION_INT")].positions;
+  ASSERT_EQ(positions.size(), 2U);
+  EXPECT_DOUBLE_EQ(positions[0].v_ned_m_s.x(), 10.0);
+  EXPECT_DOUBLE_EQ(positions[1].v_ned_m_s.x(), 10.2);
+}
+
 TEST(LiveSamples, KeepModesBeforeTexts) {
   LiveSamples samples(0.0);
-  take_state(samples, 1000);
+  for (const std::uint32_t boot_ms : {1000U, 1020U}) take_state(samples, boot_ms);
   const auto heartbeat = [&](std::uint32_t mode) {
     take_message(samples,
                  0,

@@ -117,6 +117,49 @@ TEST(LiveTruth, EndsWhenTheVehicleRestarts) {
   EXPECT_THAT(live.truth->warnings()[0], HasSubstr("the vehicle was restarted"));
 }
 
+TEST(LiveTruth, WaitsOnWhenTheVehicleRestartsBeforeTheFlight) {
+  for (const bool waits_for_item : {false, true}) {
+    const auto vehicle = listening_vehicle("udp-listen:127.0.0.1:0");
+    MadeVehicle made(vehicle->address().port);
+    made.heartbeat();
+    ASSERT_TRUE(vehicle->wait_until_heard(milliseconds(5000), nullptr).ok());
+    LiveTruthOptions options;
+    options.simulation_wait_ns = kNsPerS / 10;
+    if (waits_for_item) options.start.mission_item = 5;
+    std::atomic<bool> opened{false};
+    std::thread flying([&] {
+      // An hour after its start; without positions where the flight would begin with them.
+      for (std::uint32_t ms = 3'600'000; ms < 3'610'000; ms += 20) {
+        waits_for_item ? made.state(ms) : made.attitude(ms);
+        std::this_thread::sleep_for(milliseconds(1));
+      }
+      for (std::uint32_t ms = 1000; !opened && ms < 60'000; ms += 20) {
+        made.state(ms);
+        if (waits_for_item && ms >= 3000 && ms % 500 == 0) {
+          made.send(frame_bytes(42, PayloadWriter(18).put(0, std::uint16_t{5}).bytes(), 0));
+        }
+        std::this_thread::sleep_for(milliseconds(1));
+      }
+    });
+    const auto truth = LiveTruth::open(vehicle, frame_at_start(), options, nullptr);
+    opened = true;
+    flying.join();
+    ASSERT_TRUE(truth.ok()) << truth.error().message;
+    const std::int64_t start_ns = (*truth)->start_ns();
+    EXPECT_GE(start_ns, (waits_for_item ? 3 : 1) * kNsPerS);
+    EXPECT_LT(start_ns, 60 * kNsPerS);
+    EXPECT_THAT(
+        (*truth)->warnings(),
+        ::testing::ElementsAre(HasSubstr("the vehicle was restarted before its flight (1 time)")));
+    const auto first = (*truth)->state_at(0);
+    ASSERT_TRUE(first.ok() && *first);
+    const auto start_ms = static_cast<std::uint32_t>(start_ns / 1'000'000);
+    const Eigen::Vector3d expected = frame_at_start().world_from_geodetic(
+        geodetic_from_deg(1e-7 * MadeVehicle::lat_at(start_ms), kLon0, 600.0));
+    EXPECT_LT(((*first)->T_world_body.translation - expected).norm(), 0.02);
+  }
+}
+
 TEST(LiveTruth, EndsByItsStopConditions) {
   LiveTruthOptions options;
   options.stop.on_disarm = true;

@@ -196,6 +196,27 @@ TEST_F(PlayTlog, PassesOverDamageAndStampsThatAreWrong) {
   EXPECT_THAT(TlogRecords::open(file()).error().message, HasSubstr("is no telemetry log"));
 }
 
+TEST_F(PlayTlog, DoesNotBelieveFirstStampsThatAreWrong) {
+  constexpr std::int64_t kHourUs = 3'600'000'000;
+  for (const std::int64_t wrong_us : {-5 * kHourUs, kHourUs, 9000 * kHourUs}) {
+    Bytes bytes = stamped(wrong_us, played_frame(0));
+    for (int i = 1; i < 6; ++i) append(bytes, stamped(100'000 * i, played_frame(i)));
+    testing::write_bytes(file(), bytes);
+    auto records = TlogRecords::open(file());
+    ASSERT_TRUE(records.ok()) << records.error().message;
+    EXPECT_EQ(records->count(), 6U);
+    EXPECT_EQ(records->duration_us(), 400'000) << wrong_us;
+    for (const int pass : {1, 2}) {
+      for (int i = 0; i < 6; ++i) {
+        const auto record = records->next();
+        ASSERT_TRUE(record.ok() && *record);
+        EXPECT_EQ((*record)->t_us, 100'000 * std::max(i - 1, 0)) << pass;
+      }
+      ASSERT_TRUE(records->seek(0).ok());
+    }
+  }
+}
+
 TEST(PlaybackCommands, AreReadFromLines) {
   EXPECT_EQ(parse_playback_command("pause")->kind, Kind::kPause);
   EXPECT_EQ(parse_playback_command("speed 0.5")->value, 0.5);

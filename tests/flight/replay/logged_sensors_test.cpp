@@ -7,14 +7,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <optional>
 
 #include "core/time.hpp"
 #include "flight/logs/flight_log.hpp"
-#include "flight/replay/logged_flight.hpp"
 #include "tests/flight/logs/log_bytes.hpp"
 #include "tests/flight/logs/northward_log.hpp"
+#include "tests/flight/replay/flown_sensors.hpp"
 #include "tests/support/support.hpp"
 
 namespace overfly::flight {
@@ -22,31 +21,10 @@ namespace {
 
 using testing::append;
 using testing::Bytes;
+using testing::FlownSensors;
 using ::testing::HasSubstr;
 using testing::put;
-
-constexpr std::int64_t kForeverNs = std::numeric_limits<std::int64_t>::max() / 2;
-
-struct FlownSensors {
-  std::unique_ptr<TruthSource> flight;
-  SensorSamples samples;
-  std::string report;
-};
-
-FlownSensors sensors_of(const std::filesystem::path& file, const LogFlightOptions& options = {}) {
-  FlownSensors flown;
-  auto flight = fly_flight_log(
-      file, options, LocalFrame(geodetic_from_deg(47, 8, 0)), FlatGround(0.0), SourcePolicy());
-  EXPECT_TRUE(flight.ok()) << (flight ? "" : flight.error().message);
-  if (!flight) return flown;
-  flown.flight = std::move(*flight);
-  SampleSource* const source = flown.flight->sample_source();
-  EXPECT_NE(source, nullptr);
-  if (source == nullptr) return flown;
-  flown.samples = source->take_samples(kForeverNs);
-  flown.report = source->sensor_report();
-  return flown;
-}
+using testing::sensors_of;
 
 /// A DataFlash record of a type at a time of 1.0 s + 40 ms * i.
 Bytes record_at(std::uint8_t type, int i) {

@@ -5,7 +5,9 @@
 // REP-105. Written out in components, apart from the program's own changes of axes.
 #pragma once
 
+#include <sensor_msgs/FluidPressure.h>
 #include <sensor_msgs/Imu.h>
+#include <sensor_msgs/MagneticField.h>
 #include <sensor_msgs/NavSatFix.h>
 
 #include <Eigen/Core>
@@ -16,6 +18,7 @@
 #include <optional>
 
 #include "flight/mavlink/messages.hpp"
+#include "flight/mavlink/payload.hpp"
 #include "middleware/ros1/messages.hpp"
 #include "middleware/ros1/types.hpp"
 #include "tests/flight/mavlink/replay_vehicle.hpp"
@@ -23,6 +26,8 @@
 namespace overfly::flight::testing {
 
 using FixMessage = sensor_msgs::NavSatFix_<ros1::MessageAllocator>;
+using FieldMessage = sensor_msgs::MagneticField_<ros1::MessageAllocator>;
+using PressureMessage = sensor_msgs::FluidPressure_<ros1::MessageAllocator>;
 using ImuMessage = sensor_msgs::Imu_<ros1::MessageAllocator>;
 
 /// Unix time of the vehicle's start, which MAVROS knows from TIMESYNC.
@@ -65,6 +70,44 @@ inline FixMessage fix_of(const mavlink::Frame& frame) {
   return fix;
 }
 
+/// /mavros/imu/data_raw of RAW_IMU, of which ArduPilot sends milli-g and mrad/s; by its definition
+/// 8 bytes of time in microseconds, then three times int16_t acceleration, rate, field.
+inline ImuMessage raw_imu_of(const mavlink::Frame& frame) {
+  const mavlink::PayloadReader payload(frame.payload);
+  ImuMessage imu;
+  imu.header.stamp = stamp_of(static_cast<std::int64_t>(payload.at<std::uint64_t>(0)) * 1000);
+  imu.header.frame_id = "base_link";
+  imu.orientation_covariance[0] = -1.0;
+  imu.linear_acceleration.x = payload.at<std::int16_t>(8) * 9.80665e-3;
+  imu.linear_acceleration.y = -payload.at<std::int16_t>(10) * 9.80665e-3;
+  imu.linear_acceleration.z = -payload.at<std::int16_t>(12) * 9.80665e-3;
+  imu.angular_velocity.x = payload.at<std::int16_t>(14) * 1e-3;
+  imu.angular_velocity.y = -payload.at<std::int16_t>(16) * 1e-3;
+  imu.angular_velocity.z = -payload.at<std::int16_t>(18) * 1e-3;
+  return imu;
+}
+
+/// /mavros/imu/mag: milligauss, 1e-7 T.
+inline FieldMessage field_of(const mavlink::Frame& frame) {
+  const mavlink::PayloadReader payload(frame.payload);
+  FieldMessage field;
+  field.header = raw_imu_of(frame).header;
+  field.magnetic_field.x = payload.at<std::int16_t>(20) * 1e-7;
+  field.magnetic_field.y = -payload.at<std::int16_t>(22) * 1e-7;
+  field.magnetic_field.z = -payload.at<std::int16_t>(24) * 1e-7;
+  return field;
+}
+
+/// /mavros/imu/static_pressure of SCALED_PRESSURE: milliseconds, then hPa.
+inline PressureMessage pressure_of(const mavlink::Frame& frame) {
+  const mavlink::PayloadReader payload(frame.payload);
+  PressureMessage pressure;
+  pressure.header.stamp = stamp_of(std::int64_t{payload.at<std::uint32_t>(0)} * 1'000'000);
+  pressure.header.frame_id = "base_link";
+  pressure.fluid_pressure = 100.0 * payload.at<float>(4);
+  return pressure;
+}
+
 /// /mavros/imu/data of ATTITUDE_QUATERNION; its accelerations are not needed here.
 inline ImuMessage imu_of(const mavlink::Frame& frame) {
   const mavlink::AttitudeQuaternion attitude = mavlink::decode_attitude_quaternion(frame);
@@ -97,6 +140,10 @@ struct MavrosTopics {
   std::function<void(const FixMessage&)> global;
   std::function<void(const ImuMessage&)> imu;
   std::function<void(const ros1::PoseStampedMessage&)> pose;
+  /// What the sensors measure; may be empty.
+  std::function<void(const ImuMessage&)> raw_imu;
+  std::function<void(const FieldMessage&)> field;
+  std::function<void(const PressureMessage&)> pressure;
 };
 
 /// Passes on the messages of a recording within [from_ms, to_ms) of the vehicle's clock.
@@ -106,10 +153,17 @@ inline void publish_recording(const std::filesystem::path& tlog,
                               const MavrosTopics& topics) {
   using mavlink::MessageId;
   std::optional<Eigen::Quaterniond> attitude;
+  bool begun = false;
   for_each_frame(tlog, [&](const mavlink::Frame& frame, std::span<const std::uint8_t>) {
+    if (begun && topics.pressure && frame.component == 1 &&
+        static_cast<MessageId>(frame.message_id) == MessageId::kScaledPressure) {
+      topics.pressure(pressure_of(frame));
+      return true;
+    }
     const std::optional<std::int64_t> boot_ns = mavlink::boot_time_ns(frame);
     if (frame.component != 1 || !boot_ns || *boot_ns < from_ms * 1'000'000) return true;
     if (*boot_ns >= to_ms * 1'000'000) return false;
+    begun = true;
     switch (static_cast<MessageId>(frame.message_id)) {
       case MessageId::kGlobalPositionInt:
         topics.global(fix_of(frame));
@@ -120,6 +174,10 @@ inline void publish_recording(const std::filesystem::path& tlog,
         break;
       case MessageId::kLocalPositionNed:
         if (attitude) topics.pose(pose_of(frame, *attitude));
+        break;
+      case MessageId::kRawImu:
+        if (topics.raw_imu) topics.raw_imu(raw_imu_of(frame));
+        if (topics.field) topics.field(field_of(frame));
         break;
       default:
         break;

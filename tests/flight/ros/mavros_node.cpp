@@ -2,6 +2,7 @@
 //   mavros_node PREFIX TLOG FROM_MS TO_MS   messages of a recording
 //   mavros_node PREFIX disarm               two seconds of poses, then "disarmed"
 //   mavros_node PREFIX restart              stamps that go back
+//   mavros_node PREFIX restart_early        and before there is a position
 //   mavros_node PREFIX odd                  messages of another type, cut ones, and far too large
 //   ones
 // It prints a line when all is sent, and stays.
@@ -113,7 +114,11 @@ void fly(ros::NodeHandle& handle, const std::string& prefix, char** argv) {
   ros::Publisher global = publisher_of<testing::FixMessage>(handle, prefix + "/global");
   ros::Publisher imu = publisher_of<testing::ImuMessage>(handle, prefix + "/imu");
   ros::Publisher pose = publisher_of<ros1::PoseStampedMessage>(handle, prefix + "/pose");
+  ros::Publisher raw_imu = publisher_of<testing::ImuMessage>(handle, prefix + "/imu_raw");
+  ros::Publisher field = publisher_of<testing::FieldMessage>(handle, prefix + "/mag");
+  ros::Publisher pressure = publisher_of<testing::PressureMessage>(handle, prefix + "/pressure");
   ros::Publisher state = publisher_of(handle, prefix + "/state", "mavros_msgs/State");
+  for (const ros::Publisher& sensor : {raw_imu, field, pressure}) wait_for_subscribers(sensor);
   // The flight listens to two of the three.
   for (int i = 0; i < 4000; ++i) {
     const int listened = (global.getNumSubscribers() > 0 ? 1 : 0) +
@@ -127,6 +132,9 @@ void fly(ros::NodeHandle& handle, const std::string& prefix, char** argv) {
   topics.global = [&](const testing::FixMessage& message) { global.publish(message); };
   topics.imu = [&](const testing::ImuMessage& message) { imu.publish(message); };
   topics.pose = [&](const ros1::PoseStampedMessage& message) { pose.publish(message); };
+  topics.raw_imu = [&](const testing::ImuMessage& message) { raw_imu.publish(message); };
+  topics.field = [&](const testing::FieldMessage& message) { field.publish(message); };
+  topics.pressure = [&](const testing::PressureMessage& message) { pressure.publish(message); };
   testing::publish_recording(argv[2], std::atoll(argv[3]), std::atoll(argv[4]), topics);
 }
 
@@ -143,6 +151,25 @@ void restart(ros::NodeHandle& handle, const std::string& prefix) {
   wait_for_subscribers(pose);
   for (std::int64_t t_ms = 60'000; t_ms <= 62'000; t_ms += 20) pose.publish(pose_at(t_ms));
   for (std::int64_t t_ms = 0; t_ms <= 1000; t_ms += 20) pose.publish(pose_at(t_ms));
+}
+
+/// Stamps of poses that go back before there are positions.
+void restart_early(ros::NodeHandle& handle, const std::string& prefix) {
+  ros::Publisher pose = publisher_of<ros1::PoseStampedMessage>(handle, prefix + "/pose");
+  ros::Publisher global = publisher_of<testing::FixMessage>(handle, prefix + "/global");
+  wait_for_subscribers(pose);
+  wait_for_subscribers(global);
+  for (std::int64_t t_ms = 60'000; t_ms <= 61'000; t_ms += 20) pose.publish(pose_at(t_ms));
+  // The topics have connections of their own: both repeat what may have come too early.
+  for (std::int64_t t_ms = 0; t_ms <= 20'000; t_ms += 20) {
+    pose.publish(pose_at(t_ms));
+    testing::FixMessage fix;
+    fix.header.stamp = testing::stamp_of(t_ms * 1'000'000);
+    fix.latitude = 47.0;
+    fix.longitude = 8.0;
+    global.publish(fix);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
 }
 
 void disarm(ros::NodeHandle& handle, const std::string& prefix) {
@@ -187,6 +214,8 @@ int main(int argc, char** argv) {
   const std::string what = argv[2];
   if (what == "restart") {
     restart(handle, prefix);
+  } else if (what == "restart_early") {
+    restart_early(handle, prefix);
   } else if (what == "disarm") {
     disarm(handle, prefix);
   } else if (what == "odd") {

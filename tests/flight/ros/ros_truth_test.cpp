@@ -6,10 +6,14 @@
 #include <rosbag/bag.h>
 
 #include <algorithm>
+#include <chrono>
 #include <map>
+#include <thread>
 
+#include "core/sensors/sample_source.hpp"
 #include "flight/logs/ned_attitude.hpp"
 #include "flight/logs/truth/log_trajectory.hpp"
+#include "flight/replay/logged_flight.hpp"
 #include "tests/flight/ros/mavros_messages.hpp"
 #include "tests/vo_bridges/ros1/ros_world.hpp"
 
@@ -48,6 +52,7 @@ class MavrosNode {
     flight.global_topic = prefix_ + "/global";
     flight.imu_topic = prefix_ + "/imu";
     flight.state_topic = prefix_ + "/state";
+    flight.sensor_topics = {prefix_ + "/imu_raw", prefix_ + "/mag", prefix_ + "/pressure"};
     return flight;
   }
 
@@ -168,6 +173,68 @@ TEST(RosTruth, FliesThePoseTopicAsTheRawMessages) {
   EXPECT_LT(worst_m, 1e-6);
 }
 
+TEST(RosTruth, HasTheSensorsOfTheRawMessages) {
+  OVERFLY_DATA_OR_SKIP(file, "sitl/plane25.tlog");
+  ROS_MASTER_OR_SKIP();
+  const MavrosNode node({file.string(), std::to_string(kFromMs), std::to_string(kToMs)});
+  const auto truth = fly_ros(node.flight(), place_frame(), nullptr);
+  ASSERT_TRUE(truth.ok()) << truth.error().message;
+  const std::int64_t start_ns = start_of(file, false);
+  constexpr std::int64_t kLastNs = 55 * kNsPerS;
+  ASSERT_TRUE((*truth)->state_at(kLastNs).ok());
+  // Each topic has a connection of its own.
+  SampleSource* const source = (*truth)->sample_source();
+  ASSERT_NE(source, nullptr);
+  SensorSamples published;
+  for (int i = 0; i < 500; ++i) {
+    append(published, source->take_samples(kLastNs));
+    if (published.imu.size() > 2700 && published.barometer.size() > 50) break;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  // The same messages read as a recording of the vehicle.
+  auto recording = fly_flight_log(file, {}, place_frame(), FlatGround(0.0), SourcePolicy());
+  ASSERT_TRUE(recording.ok()) << recording.error().message;
+  const std::int64_t shift_ns = start_ns - (*recording)->log_start_ns().value();
+  const SensorSamples recorded = (*recording)->sample_source()->take_samples(1000 * kNsPerS);
+  const auto compare = [&](const auto& list, const auto& others, const auto& difference) {
+    std::size_t compared = 0;
+    double worst = 0.0;
+    auto other = others.begin();
+    for (const auto& sample : list) {
+      while (other != others.end() && other->t_ns < sample.t_ns + shift_ns) ++other;
+      if (other == others.end() || other->t_ns != sample.t_ns + shift_ns) continue;
+      ++compared;
+      worst = std::max(worst, difference(sample, *other));
+    }
+    EXPECT_EQ(compared, list.size());
+    return std::pair(compared, worst);
+  };
+  const auto imu = compare(published.imu, recorded.imu, [](const auto& a, const auto& b) {
+    return (a.angular_rate_rad_s - b.angular_rate_rad_s).norm() +
+           (a.acceleration_m_s2 - b.acceleration_m_s2).norm();
+  });
+  EXPECT_GT(imu.first, 2000U);
+  EXPECT_LT(imu.second, 1e-9);
+  const auto field =
+      compare(published.magnetometer, recorded.magnetometer, [](const auto& a, const auto& b) {
+        return (a.field_ut - b.field_ut).norm();
+      });
+  EXPECT_GT(field.first, 2000U);
+  EXPECT_LT(field.second, 1e-9);
+  const auto pressure =
+      compare(published.barometer, recorded.barometer, [](const auto& a, const auto& b) {
+        return std::abs(a.pressure_pa - b.pressure_pa);
+      });
+  EXPECT_GT(pressure.first, 50U);
+  EXPECT_LT(pressure.second, 1e-9);
+  // Of the global topic.
+  ASSERT_GT(published.gps.size(), 2000U);
+  EXPECT_EQ(published.gps[0].fix, GpsFixType::k3d);
+  EXPECT_THAT(source->sensor_report(), HasSubstr("sensors of the vehicle: imu from "));
+  EXPECT_THAT(source->sensor_report(), HasSubstr("/imu_raw ("));
+  EXPECT_THAT(source->sensor_report(), HasSubstr("not published: airspeed, range"));
+}
+
 TEST(RosTruth, ABagOfTheSameTopicsIsTheSameFlight) {
   OVERFLY_DATA_OR_SKIP(file, "sitl/plane25.tlog");
   const TemporaryFolder folder;
@@ -227,6 +294,20 @@ TEST(RosTruth, EndsWhenStampsGoBack) {
   ASSERT_FALSE((*truth)->warnings().empty());
   EXPECT_THAT((*truth)->warnings().back(),
               HasSubstr("the flight ended at 2.000 s: the stamps of "));
+}
+
+TEST(RosTruth, WaitsOnWhenStampsGoBackBeforeTheFlight) {
+  ROS_MASTER_OR_SKIP();
+  const MavrosNode node({"restart_early"});
+  RosFlight flight = node.flight();
+  flight.attitude_of_pose = true;
+  const auto truth = fly_ros(flight, place_frame(), nullptr);
+  ASSERT_TRUE(truth.ok()) << truth.error().message;
+  const auto state = (*truth)->state_at(kNsPerS);
+  ASSERT_TRUE(state.ok()) << state.error().message;
+  ASSERT_TRUE(*state);
+  EXPECT_THAT((*truth)->warnings(),
+              ::testing::ElementsAre(HasSubstr("stamps went back before the flight (1 time)")));
 }
 
 TEST(RosTruth, EndsWhenTheVehicleIsDisarmed) {

@@ -1,9 +1,15 @@
 // Event logs that LCM's own library writes, read as flight logs.
 #include <gmock/gmock.h>
 
+#include <overfly_lcm/airspeed_t.hpp>
+#include <overfly_lcm/barometer_t.hpp>
 #include <overfly_lcm/debug_t.hpp>
+#include <overfly_lcm/gps_t.hpp>
 #include <overfly_lcm/image_t.hpp>
+#include <overfly_lcm/imu_t.hpp>
+#include <overfly_lcm/magnetometer_t.hpp>
 #include <overfly_lcm/pose_t.hpp>
+#include <overfly_lcm/range_t.hpp>
 #include <overfly_lcm/sim_time_t.hpp>
 #include <overfly_lcm/truth_t.hpp>
 #include <overfly_lcm/world_pose_t.hpp>
@@ -28,6 +34,12 @@ TEST(LogsAsFlights, KnowTheFingerprintsOfTheTypes) {
   EXPECT_EQ(overfly_lcm::sim_time_t::getHash(), of(logs::LcmType::kSimTime));
   EXPECT_EQ(overfly_lcm::debug_t::getHash(), of(logs::LcmType::kDebug));
   EXPECT_EQ(overfly_lcm::world_pose_t::getHash(), of(logs::LcmType::kWorldPose));
+  EXPECT_EQ(overfly_lcm::imu_t::getHash(), of(logs::LcmType::kImu));
+  EXPECT_EQ(overfly_lcm::barometer_t::getHash(), of(logs::LcmType::kBarometer));
+  EXPECT_EQ(overfly_lcm::gps_t::getHash(), of(logs::LcmType::kGps));
+  EXPECT_EQ(overfly_lcm::airspeed_t::getHash(), of(logs::LcmType::kAirspeed));
+  EXPECT_EQ(overfly_lcm::magnetometer_t::getHash(), of(logs::LcmType::kMagnetometer));
+  EXPECT_EQ(overfly_lcm::range_t::getHash(), of(logs::LcmType::kRange));
 }
 
 TEST(LogsAsFlights, HaveThePosesOfTheWriter) {

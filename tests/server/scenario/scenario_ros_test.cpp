@@ -29,6 +29,7 @@ TEST(ScenarioRos, HasTheTopicsOfMavros) {
   EXPECT_EQ(flight.position_topic(), "/mavros/global_position/global");
   EXPECT_EQ(flight.attitude_topic(), "/mavros/imu/data");
   EXPECT_EQ(flight.state_topic, "/mavros/state");
+  EXPECT_EQ(flight.sensor_topics, flight::ros_live::RosFlight().sensor_topics);
   EXPECT_EQ(flight.gap_limit_ns, kNsPerS / 2);
   EXPECT_EQ(flight.patience.count(), 10000);
   EXPECT_TRUE(flight.stop_on_disarm);
@@ -39,12 +40,13 @@ TEST(ScenarioRos, ReadsAllFields) {
   const Scenario scenario = small_scenario({R"(flight.ros={
     "master_uri": "http://10.0.0.2:11312", "node_name": "camera", "position": "pose",
     "attitude": "pose", "pose_topic": "/odom", "origin": {"lat_deg": 47, "lon_deg": 8,
-    "alt_ellipsoid_m": 500}, "gap_limit_s": 0.2, "patience_s": 3, "stop": {"on_disarm": false}})"});
+    "alt_ellipsoid_m": 500}, "sensor_topics": ["/imu"], "gap_limit_s": 0.2, "patience_s": 3, "stop": {"on_disarm": false}})"});
   const auto& flight = std::get<flight::ros_live::RosFlight>(scenario.flight);
   EXPECT_EQ(flight.master_uri, "http://10.0.0.2:11312");
   EXPECT_EQ(flight.node_name, "camera");
   EXPECT_EQ(flight.position_topic(), "/odom");
   EXPECT_EQ(flight.attitude_topic(), "/odom");
+  EXPECT_EQ(flight.sensor_topics, std::vector<std::string>{"/imu"});
   ASSERT_TRUE(flight.origin);
   EXPECT_NEAR(flight.origin->lat_rad, rad_from_deg(47.0), 1e-15);
   EXPECT_EQ(flight.gap_limit_ns, 200'000'000);
@@ -55,6 +57,7 @@ TEST(ScenarioRos, ReadsAllFields) {
 TEST(ScenarioRos, NamesWhatIsWrong) {
   EXPECT_THAT(refusal({"flight.ros.patience_s=0"}), HasSubstr("flight.ros.patience_s = 0"));
   EXPECT_THAT(refusal({"flight.ros.position=elsewhere"}), HasSubstr("flight.ros.position"));
+  EXPECT_THAT(refusal({R"(flight.ros.sensor_topics=[""])"}), HasSubstr("flight.ros.sensor_topics"));
   EXPECT_THAT(refusal({"flight.ros.topic=/a"}), HasSubstr("no such field"));
   EXPECT_THAT(refusal({R"(flight.ros.origin={"lat_deg": 1, "lon_deg": 2, "alt_ellipsoid_m": 3})"}),
               HasSubstr("flight.ros.origin: applies to position = \"pose\" only"));

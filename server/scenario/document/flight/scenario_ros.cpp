@@ -2,6 +2,8 @@
 
 #include <chrono>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "core/time.hpp"
 
@@ -16,6 +18,7 @@ Result<flight::ros_live::RosFlight> read_ros_flight(const nlohmann::json& ros) {
   flight.global_topic = text("global_topic");
   flight.imu_topic = text("imu_topic");
   flight.state_topic = text("state_topic");
+  flight.sensor_topics = ros.at("sensor_topics").get<std::vector<std::string>>();
   flight.local = text("position") == "pose";
   flight.attitude_of_pose = text("attitude") == "pose";
   if (ros.contains("origin")) {
