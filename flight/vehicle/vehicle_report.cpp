@@ -41,11 +41,13 @@ PayloadWriter system_time(const VehicleReport& report) {
 }
 
 PayloadWriter system_status() {
-  constexpr std::uint32_t kSensors = 0x2F | 0x200000;  // IMU, magnetometer, pressures, GPS, AHRS
+  constexpr std::uint32_t kSensors = 0x3F | 0x200000;  // IMU, magnetometer, pressures, GPS, AHRS
+  // ArduPilot calls an absent fence healthy; ground stations take anything else for a breach.
+  constexpr std::uint32_t kFence = 0x100000;
   return PayloadWriter(43)
       .put(0, kSensors)
       .put(4, kSensors)
-      .put(8, kSensors)
+      .put(8, kSensors | kFence)
       .put(14, std::uint16_t{11100})  // mV; the model's battery does not drain
       .put(16, std::int16_t{-1})
       .put(30, std::int8_t{100});

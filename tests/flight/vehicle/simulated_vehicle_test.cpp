@@ -4,8 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <deque>
+#include <optional>
 
 #include "flight/mavlink/vehicle/commands.hpp"
 #include "flight/mavlink/vehicle/message_rates.hpp"
@@ -258,6 +260,21 @@ TEST(SimulatedVehicle, ChangesTheRatesOfOneStreamOnly) {
   EXPECT_NEAR(exchange.counts[MessageId::kAttitude], 100, 2);  // another stream: as before
   EXPECT_EQ(exchange.counts[MessageId::kVfrHud], 0);
   EXPECT_NEAR(exchange.counts[MessageId::kHeartbeat], 10, 1);
+}
+
+TEST(SimulatedVehicle, ReportsItsSensorsAndAnAbsentFenceAsHealthy) {
+  DirectExchange exchange;
+  std::optional<HeldMessage> status;
+  while (!status) {
+    const auto next = exchange.next(exchange.now() + std::chrono::seconds(5));
+    ASSERT_TRUE(next && *next) << "no SYS_STATUS within 5 s";
+    if ((*next)->is(MessageId::kSysStatus)) status = **next;
+  }
+  // MAV_SYS_STATUS_SENSOR: gyro, accelerometer, magnetometer, both pressures, GPS; AHRS; GEOFENCE.
+  constexpr std::uint32_t kSensors = 1 | 2 | 4 | 8 | 16 | 32 | 0x200000;
+  EXPECT_EQ(status->reader().at<std::uint32_t>(0), kSensors);
+  EXPECT_EQ(status->reader().at<std::uint32_t>(4), kSensors);
+  EXPECT_EQ(status->reader().at<std::uint32_t>(8), kSensors | 0x100000);
 }
 
 TEST(SimulatedVehicle, RefusesNumbersThatAreNone) {
