@@ -5,6 +5,9 @@ import { LogBrowser } from '../../../src/store/logs/log_browser';
 import { sampleRun } from '../../support/samples';
 import { Viewing } from '../../support/viewing';
 
+// Node 18 has no global `File`.
+const file = (name: string) => Object.assign(new Blob(['x']), { name }) as unknown as File;
+
 interface Request {
   method: string;
   url: string;
@@ -135,11 +138,11 @@ describe('LogBrowser', () => {
 
   it('shows the progress of an upload that begins while the one before is read', async () => {
     const done = (name: string) => ({ status: 201, text: JSON.stringify(entry(name)) });
-    void browser.send([new File(['x'], 'a.bin')]);
+    void browser.send([file('a.bin')]);
     uploads[0]?.(done('a.bin'));
     await settle();
     expect(page().upload).toBeNull();
-    void browser.send([new File(['x'], 'b.bin')]);
+    void browser.send([file('b.bin')]);
     await answer('GET', '/logs', list('a.bin'));
     await answer('GET', '/logs/a.bin', info('a.bin'));
     await answer('GET', '/logs/a.bin/series', kSeries);
