@@ -97,7 +97,7 @@ Status RunRecorder::add_answer(std::size_t estimator, EstimatorEvent& event) {
     state.latency_so_far.add(event.latency_ms);
   }
   for (const auto& [stage, ms] : event.timing_ms) state.stages[stage].ms.push_back(ms);
-  timeline_->append_estimate(estimator, row);
+  timeline_->append_estimate(estimator, std::move(row), event.record.counters);
   if (Status status = keep_debug_image(estimator, event); !status) return status;
   if (publish_images_ && !event.map_points_vo.empty() && state.alignment.S_world_vo()) {
     const Similarity S_world_vo = *state.alignment.S_world_vo();

@@ -22,15 +22,14 @@ const EstimatorMetrics* metrics_of(const RunMetrics& metrics, const std::string&
   return found == metrics.estimators.end() ? nullptr : &found->second;
 }
 
-/// The mount of the camera whose images an estimator gets.
-Pose mount_of_estimator(const RunTimeline& timeline, std::size_t estimator) {
+}  // namespace
+
+std::size_t camera_of_estimator(const RunTimeline& timeline, std::size_t estimator) {
   const std::vector<std::string> names = timeline.info().estimator_cameras;
   const Result<std::size_t> camera =
       timeline.camera_index(estimator < names.size() ? names[estimator] : "");
-  return timeline.cameras().at(camera ? *camera : kMainCamera).T_body_camera;
+  return camera ? *camera : kMainCamera;
 }
-
-}  // namespace
 
 Result<RowAlignment> RowAlignment::of(const RunTimeline& timeline,
                                       std::size_t estimator,
@@ -58,10 +57,10 @@ Result<RowAlignment> RowAlignment::of(const RunTimeline& timeline,
                  "alignment = " + mode + " of " + name +
                      ": metrics.json has no transform (overfly evaluate --run writes it)"};
   }
+  const std::size_t camera = camera_of_estimator(timeline, estimator);
+  const Pose T_body_camera = timeline.cameras().at(camera).T_body_camera;
   RowAlignment placed;
-  placed.scored_ = Scored{alignment->second.S_world_vo,
-                          mount_of_estimator(timeline, estimator).inverse(),
-                          *scored->map_id};
+  placed.scored_ = Scored{alignment->second.S_world_vo, T_body_camera.inverse(), *scored->map_id};
   return placed;
 }
 

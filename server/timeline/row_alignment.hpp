@@ -39,6 +39,9 @@ class RowAlignment {
   std::optional<Scored> scored_;
 };
 
+/// The camera whose images an estimator gets.
+[[nodiscard]] std::size_t camera_of_estimator(const RunTimeline& timeline, std::size_t estimator);
+
 /// Checks that the alignment can be shown for at least one estimator of this run.
 /// Errors: as RowAlignment::of, if there is none.
 [[nodiscard]] Status check_alignment(const RunTimeline& timeline, const std::string& mode);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <utility>
 
 namespace overfly::server {
@@ -95,14 +96,19 @@ std::vector<VehicleStatus> RunTimeline::vehicle_statuses(std::size_t first,
   return slice(vehicle_statuses_, first, limit);
 }
 
-std::size_t RunTimeline::frame_count() const {
+std::size_t RunTimeline::frame_count(std::size_t camera) const {
   const std::lock_guard lock(mutex_);
-  return cameras_.at(kMainCamera).rows.size();
+  return cameras_.at(camera).rows.size();
 }
 
 std::size_t RunTimeline::estimate_count(std::size_t estimator) const {
   const std::lock_guard lock(mutex_);
   return estimates_.at(estimator).rows.size();
+}
+
+std::vector<std::string> RunTimeline::counter_names(std::size_t estimator) const {
+  const std::lock_guard lock(mutex_);
+  return estimates_.at(estimator).counter_names;
 }
 
 std::optional<FrameRow> RunTimeline::frame_at(std::int64_t t_ns, std::size_t camera) const {
@@ -189,9 +195,22 @@ void RunTimeline::append_frame(const FrameRow& row, std::size_t camera) {
   changed();
 }
 
-void RunTimeline::append_estimate(std::size_t estimator, const EstimateRow& row) {
+void RunTimeline::append_estimate(std::size_t estimator,
+                                  EstimateRow row,
+                                  const std::map<std::string, double>& counters) {
   const std::lock_guard lock(mutex_);
-  estimates_.at(estimator).rows.push_back(row);
+  EstimatorRows& own = estimates_.at(estimator);
+  for (const auto& [name, value] : counters) {
+    const auto known = std::find(own.counter_names.begin(), own.counter_names.end(), name);
+    const auto index = static_cast<std::size_t>(known - own.counter_names.begin());
+    if (index >= kMaxCounters) continue;
+    if (known == own.counter_names.end()) own.counter_names.push_back(name);
+    if (row.counters.size() <= index) {
+      row.counters.resize(index + 1, std::numeric_limits<double>::quiet_NaN());
+    }
+    row.counters[index] = value;
+  }
+  own.rows.push_back(std::move(row));
   changed();
 }
 

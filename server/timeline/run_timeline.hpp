@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -28,6 +29,8 @@ namespace overfly::server {
 /// next number on, so no row is lost or delivered twice, live or in replay.
 class RunTimeline {
  public:
+  static constexpr std::size_t kMaxCounters = 32;
+
   explicit RunTimeline(RunInfo info, std::vector<std::string> estimators);
   /// Reads a run folder: complete, failed, or still marked as running by a program that has ended
   /// (its status is then kInterrupted).
@@ -56,8 +59,10 @@ class RunTimeline {
   [[nodiscard]] std::vector<LogRow> logs(std::size_t first, std::size_t limit) const;
   [[nodiscard]] std::vector<VehicleStatus> vehicle_statuses(std::size_t first,
                                                             std::size_t limit) const;
-  [[nodiscard]] std::size_t frame_count() const;  ///< of the main camera
+  [[nodiscard]] std::size_t frame_count(std::size_t camera = kMainCamera) const;
   [[nodiscard]] std::size_t estimate_count(std::size_t estimator) const;
+  /// Names of the counters of an estimator's answers so far, in the order of EstimateRow::counters.
+  [[nodiscard]] std::vector<std::string> counter_names(std::size_t estimator) const;
   /// Row of the last frame stamped at or before t; empty before the first.
   [[nodiscard]] std::optional<FrameRow> frame_at(std::int64_t t_ns,
                                                  std::size_t camera = kMainCamera) const;
@@ -87,7 +92,10 @@ class RunTimeline {
   void set_manifest_stamp(const FileStamp& stamp);
   void set_info(const RunInfo& info);
   void append_frame(const FrameRow& row, std::size_t camera = kMainCamera);
-  void append_estimate(std::size_t estimator, const EstimateRow& row);
+  /// @param counters  of the answer, by name; at most kMaxCounters different ones are kept
+  void append_estimate(std::size_t estimator,
+                       EstimateRow row,
+                       const std::map<std::string, double>& counters = {});
   void append_log(const LogRow& row);
   void append_vehicle_status(const VehicleStatus& status);
   void set_status(std::size_t estimator, const EstimatorStatus& status);
@@ -101,6 +109,7 @@ class RunTimeline {
  private:
   struct EstimatorRows {
     std::vector<EstimateRow> rows;
+    std::vector<std::string> counter_names;
     EstimatorStatus status;
     std::optional<StampedImage> debug;
     std::vector<Eigen::Vector3f> points;

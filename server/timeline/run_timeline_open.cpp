@@ -65,7 +65,7 @@ void append_estimates(const RunRecords& records,
     row.T_world_body = alignment.add(record.sample, frame->T_world_camera, frame->axis_depth_m);
     const auto latency = timings.latency_ms.find(record.sample.frame);
     if (latency != timings.latency_ms.end()) row.latency_ms = latency->second;
-    timeline.append_estimate(index, row);
+    timeline.append_estimate(index, std::move(row), record.counters);
   }
 }
 

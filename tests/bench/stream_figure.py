@@ -2,7 +2,7 @@
 """How fast camera imagery is made and the chase view streams while a run is live.
 
 Starts `overfly serve` on a free loopback port, flies a scenario in real time with a 31 Hz
-1280 x 960 camera and no estimator, attaches one client to the camera and the chase view
+1280 x 960 camera and no estimator, one client watches the camera and the chase view
 (960 x 720), and prints the rates over a span of the flight, after the tiles are warm.
 
     tests/bench/stream_figure.py build/release/overfly [--scenario course] [--seconds 20]
@@ -77,9 +77,9 @@ def start_run(port, token, scenario):
 def measure(port, token, pid, run, warm_s, span_s):
     client = WebSocket(port, token)
     client.send({"type": "view", "mode": "chase", "width_px": 960, "height_px": 720})
-    client.send({"type": "subscribe", "streams": [
-        {"name": "camera", "max_hz": 31}, {"name": "scene", "max_hz": 15}]})
-    client.send({"type": "attach", "run": run})
+    client.send({"type": "subscribe", "pictures": [
+        {"run": run, "name": "camera", "max_hz": 31}, {"run": run, "name": "scene", "max_hz": 15}]})
+    client.send({"type": "watch", "run": run})
     names, pictures, sizes, stamps = {}, {}, {}, []
     begin = None
     while True:
@@ -94,8 +94,8 @@ def measure(port, token, pid, run, warm_s, span_s):
             break
         if opcode == 1:
             message = json.loads(data)
-            if message["type"] == "streams":
-                names = {stream["id"]: stream["name"] for stream in message["streams"]}
+            if message["type"] == "pictures":
+                names = {picture["id"]: picture["name"] for picture in message["pictures"]}
             elif message["type"] == "rows" and message["stream"] == "truth":
                 stamps += message["columns"]["t_ns"]
             elif message["type"] == "error":

@@ -55,10 +55,10 @@ class Server:
 def take_pictures(server, run):
     client = WebSocket(int(server.port), server.token)
     client.send({"type": "view", "mode": "chase", "width_px": 960, "height_px": 720})
-    client.send({"type": "subscribe", "streams": [
-        {"name": "camera", "max_hz": 31}, {"name": "scene", "max_hz": 15},
-        {"name": "debug/feature", "max_hz": 15}]})
-    client.send({"type": "attach", "run": run})
+    client.send({"type": "subscribe", "pictures": [
+        {"run": run, "name": "camera", "max_hz": 31}, {"run": run, "name": "scene", "max_hz": 15},
+        {"run": run, "name": "debug/feature", "max_hz": 15}]})
+    client.send({"type": "watch", "run": run})
     try:
         while client.receive()[0] != 8:
             pass

@@ -43,7 +43,7 @@ class Depth(Attack):
         connection = handshake(self.victim, keep=True)
         self.assertIsInstance(connection, socket.socket)
         with connection:
-            for text in (nested(20_000), '{"type":"attach","run":' + nested(20_000) + "}",
+            for text in (nested(20_000), '{"type":"watch","run":' + nested(20_000) + "}",
                          '{"a":' * 10_000, "null", "[]", "{", '{"type":null}'):
                 connection.sendall(text_frame(text))
             connection.settimeout(HEALTH_S)

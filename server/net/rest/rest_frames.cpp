@@ -4,7 +4,7 @@
 
 #include "server/net/http/error_response.hpp"
 #include "server/net/rest/rest_api.hpp"
-#include "server/net/stream/playback_state.hpp"
+#include "server/net/stream/run_instant.hpp"
 #include "server/timeline/run_timeline.hpp"
 #include "server/views/picture_request.hpp"
 

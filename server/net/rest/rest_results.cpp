@@ -87,7 +87,8 @@ Result<json> columns_of(const RunTimeline& timeline,
       static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
   const auto placed = server::RowAlignment::of(timeline, index, alignment);
   if (!placed) return placed.error();
-  return estimate_columns(timeline.estimates(index, 0, timeline.estimate_count(index)), *placed);
+  return estimate_columns(
+      timeline, index, timeline.estimates(index, 0, timeline.estimate_count(index)), *placed);
 }
 
 /// Checks the parameters `format` and `alignment` for the trajectory `name`.

@@ -1,11 +1,12 @@
 #include "server/net/stream/client_message.hpp"
 
+#include <cmath>
 #include <functional>
 #include <utility>
 
 #include "core/motion/pose.hpp"
 #include "server/net/http/json_text.hpp"
-#include "server/net/stream/playback_cursor.hpp"
+#include "server/net/stream/playback_clock.hpp"
 
 namespace overfly::net {
 namespace {
@@ -14,18 +15,36 @@ using nlohmann::json;
 
 constexpr std::int64_t kMaxNs = std::int64_t{1} << 62;
 constexpr std::int64_t kMaxFrame = std::int64_t{1} << 53;
-constexpr std::size_t kMaxStreams = 16;
+constexpr std::size_t kMaxStreams = 64;
 constexpr std::size_t kMaxNameBytes = 200;
 
-ClientCommand read_attach(JsonFields* fields) {
-  AttachCommand command;
+/// The time of a day, so that offsets cannot add up to more than 64 bits.
+constexpr std::int64_t kMaxOffsetNs = 86'400'000'000'000;
+
+/// A name that selects something; empty if the field is absent.
+std::string read_name(JsonFields* fields, const char* field) {
+  std::string name = fields->text(field).value_or("");
+  if (name.size() > kMaxNameBytes) {
+    fields->reject(field, ": must have at most " + std::to_string(kMaxNameBytes) + " bytes");
+  }
+  return name;
+}
+
+std::string require_run(JsonFields* fields) {
   fields->require("run");
-  command.run_id = fields->text("run").value_or("");
+  return read_name(fields, "run");
+}
+
+ClientCommand read_watch(JsonFields* fields) {
+  WatchCommand command;
+  command.run_id = require_run(fields);
+  command.offset_ns = fields->integer("offset_ns", -kMaxOffsetNs, kMaxOffsetNs);
   if (const json* resume = fields->object("resume")) {
-    JsonFields counts(*resume, "attach.resume");
+    command.resume.emplace();
+    JsonFields counts(*resume, "watch.resume");
     for (const auto& [name, value] : resume->items()) {
       const auto count = counts.integer(name, 0, kMaxFrame);
-      command.resume[name] = static_cast<std::size_t>(count.value_or(0));
+      (*command.resume)[name] = static_cast<std::size_t>(count.value_or(0));
     }
     if (const Status status = counts.finish(); !status) {
       fields->reject("resume", ": " + status.error().message);
@@ -33,6 +52,8 @@ ClientCommand read_attach(JsonFields* fields) {
   }
   return command;
 }
+
+ClientCommand read_unwatch(JsonFields* fields) { return UnwatchCommand{require_run(fields)}; }
 
 bool is_picture_stream(const std::string& name) {
   if (name == "camera" || name == "scene") return true;
@@ -45,15 +66,19 @@ Result<StreamRequest> read_stream(const json& entry, const std::string& where) {
   }
   JsonFields fields(entry, where);
   StreamRequest stream;
+  stream.run_id = require_run(&fields);
   fields.require("name");
   stream.name = fields.text("name").value_or("");
   if (!is_picture_stream(stream.name)) {
     fields.reject("name", ": must be \"camera\", \"scene\" or \"debug/NAME\"");
   }
-  stream.camera = fields.text("camera").value_or("");
-  if (stream.camera.size() > kMaxNameBytes) fields.reject("camera", ": the name is too long");
+  stream.camera = read_name(&fields, "camera");
   if (!stream.camera.empty() && stream.name != "camera") {
     fields.reject("camera", ": applies only to the stream \"camera\"");
+  }
+  stream.view = read_name(&fields, "view");
+  if (!stream.view.empty() && stream.name != "scene") {
+    fields.reject("view", ": applies only to the stream \"scene\"");
   }
   stream.max_hz = fields.number("max_hz", 0.1, 120.0).value_or(stream.max_hz);
   stream.quality = static_cast<int>(fields.integer("quality", 1, 100).value_or(stream.quality));
@@ -63,27 +88,32 @@ Result<StreamRequest> read_stream(const json& entry, const std::string& where) {
   return stream;
 }
 
+bool same_stream(const StreamRequest& a, const StreamRequest& b) {
+  return a.run_id == b.run_id && a.name == b.name && a.camera == b.camera && a.view == b.view;
+}
+
 ClientCommand read_subscribe(JsonFields* fields) {
   SubscribeCommand command;
-  fields->require("streams");
-  const json* streams = fields->array("streams");
-  if (streams == nullptr) return command;
-  if (streams->size() > kMaxStreams) {
-    fields->reject("streams", ": must have at most " + std::to_string(kMaxStreams) + " entries");
+  fields->require("pictures");
+  const json* pictures = fields->array("pictures");
+  if (pictures == nullptr) return command;
+  if (pictures->size() > kMaxStreams) {
+    fields->reject("pictures", ": must have at most " + std::to_string(kMaxStreams) + " entries");
     return command;
   }
-  for (std::size_t i = 0; i < streams->size(); ++i) {
-    Result<StreamRequest> stream = read_stream((*streams)[i], "streams." + std::to_string(i));
+  for (std::size_t i = 0; i < pictures->size(); ++i) {
+    Result<StreamRequest> stream = read_stream((*pictures)[i], "pictures." + std::to_string(i));
     if (!stream) {
-      fields->reject("streams", ": " + stream.error().message);
+      fields->reject("pictures", ": " + stream.error().message);
       return command;
     }
-    for (const StreamRequest& other : command.streams) {
-      if (other.name == stream->name && other.camera == stream->camera) {
-        fields->reject("streams", ": " + stream->name + " occurs twice");
+    for (const StreamRequest& other : command.pictures) {
+      if (same_stream(other, *stream)) {
+        fields->reject("pictures",
+                       ": " + stream->name + " of run " + stream->run_id + " occurs twice");
       }
     }
-    command.streams.push_back(std::move(*stream));
+    command.pictures.push_back(std::move(*stream));
   }
   return command;
 }
@@ -110,6 +140,7 @@ std::optional<int> read_size_px(JsonFields* fields, const char* name, int max) {
 
 ClientCommand read_view(JsonFields* fields) {
   ViewCommand command;
+  command.view = read_name(fields, "view");
   command.mode = read_mode(fields);
   command.azimuth_rad = read_angle_rad(fields, "azimuth_deg", -36000, 36000);
   command.elevation_rad = read_angle_rad(fields, "elevation_deg", -11, 90);
@@ -124,20 +155,41 @@ ClientCommand read_seek(JsonFields* fields) {
   SeekCommand command;
   command.t_ns = fields->integer("t_ns", -kMaxNs, kMaxNs);
   command.frame = fields->integer("frame", -kMaxFrame, kMaxFrame);
+  command.run_id = read_name(fields, "run");
   if (command.t_ns.has_value() == command.frame.has_value()) {
     fields->reject("t_ns", ": either t_ns or frame must be given");
+  } else if (command.t_ns && !command.run_id.empty()) {
+    fields->reject("run", ": applies only to a frame; t_ns is the time of the clock");
   }
   return command;
 }
 
 ClientCommand read_step(JsonFields* fields) {
   fields->require("frames");
-  return StepCommand{fields->integer("frames", -kMaxFrame, kMaxFrame).value_or(0)};
+  return StepCommand{fields->integer("frames", -kMaxFrame, kMaxFrame).value_or(0),
+                     read_name(fields, "run")};
 }
 
 ClientCommand read_speed(JsonFields* fields) {
   fields->require("value");
-  return SpeedCommand{fields->number("value", kMinSpeed, kMaxSpeed).value_or(1.0)};
+  const double value = fields->number("value", -kMaxSpeed, kMaxSpeed).value_or(1.0);
+  if (std::abs(value) < kMinSpeed) {
+    fields->reject("value", " = " + to_text(value) + ": must be at least 0.1, or at most -0.1");
+  }
+  return SpeedCommand{value};
+}
+
+ClientCommand read_range(JsonFields* fields) {
+  const auto begin_ns = fields->integer("begin_ns", -kMaxNs, kMaxNs);
+  const auto end_ns = fields->integer("end_ns", -kMaxNs, kMaxNs);
+  RangeCommand command;
+  if (!begin_ns && !end_ns) return command;
+  if (!begin_ns || !end_ns || *begin_ns >= *end_ns) {
+    fields->reject("end_ns", ": a range needs begin_ns and an end_ns after it");
+    return command;
+  }
+  command.range = PlaybackClock::Range{*begin_ns, *end_ns};
+  return command;
 }
 
 ClientCommand read_loop(JsonFields* fields) {
@@ -147,7 +199,7 @@ ClientCommand read_loop(JsonFields* fields) {
 
 ClientCommand read_align(JsonFields* fields) {
   fields->require("mode");
-  return AlignCommand{fields->text("mode").value_or("")};
+  return AlignCommand{require_run(fields), fields->text("mode").value_or("")};
 }
 
 template <typename Command>
@@ -157,8 +209,8 @@ ClientCommand read_plain(JsonFields* /*fields*/) {
 
 const std::map<std::string, std::function<ClientCommand(JsonFields*)>>& readers() {
   static const std::map<std::string, std::function<ClientCommand(JsonFields*)>> table = {
-      {"attach", read_attach},
-      {"detach", read_plain<DetachCommand>},
+      {"watch", read_watch},
+      {"unwatch", read_unwatch},
       {"subscribe", read_subscribe},
       {"view", read_view},
       {"play", read_plain<PlayCommand>},
@@ -167,6 +219,7 @@ const std::map<std::string, std::function<ClientCommand(JsonFields*)>>& readers(
       {"step", read_step},
       {"speed", read_speed},
       {"loop", read_loop},
+      {"range", read_range},
       {"live", read_plain<LiveCommand>},
       {"align", read_align}};
   return table;

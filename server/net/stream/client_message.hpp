@@ -10,31 +10,43 @@
 #include <vector>
 
 #include "core/result.hpp"
+#include "server/net/stream/playback_clock.hpp"
 #include "server/views/view_service.hpp"
 
 namespace overfly::net {
 
+inline constexpr std::size_t kMaxRuns = 16;  ///< that one client watches
+
 /// One requested picture stream.
 struct StreamRequest {
+  std::string run_id;
   std::string name;  ///< "camera", "scene" or "debug/NAME"
   double max_hz = 31.0;
   int quality = 75;
   int max_width_px = 1280;
   std::string camera = {};  ///< for the stream "camera"; empty = the run's first
+  std::string view = {};    ///< for the stream "scene": the name of its view
   bool operator==(const StreamRequest&) const = default;
 };
 
-struct AttachCommand {
+/// Starts watching a run, or changes its place on the clock.
+struct WatchCommand {
   std::string run_id;
-  /// Number of rows that the client has, by data stream.
-  std::map<std::string, std::size_t> resume;
+  /// Time of the clock at the run's beginning; empty = 0, or as it is for a run watched already.
+  std::optional<std::int64_t> offset_ns;
+  /// Number of rows that the client has, by data stream; the others are sent, also if the run is
+  /// watched already.
+  std::optional<std::map<std::string, std::size_t>> resume;
 };
-struct DetachCommand {};
+struct UnwatchCommand {
+  std::string run_id;
+};
 struct SubscribeCommand {
-  std::vector<StreamRequest> streams;
+  std::vector<StreamRequest> pictures;
 };
 /// Empty fields keep their present value.
 struct ViewCommand {
+  std::string view;  ///< its name; empty = the one without a name
   std::optional<server::SceneMode> mode;
   std::optional<double> azimuth_rad;
   std::optional<double> elevation_rad;
@@ -47,11 +59,13 @@ struct PlayCommand {};
 struct PauseCommand {};
 /// Exactly one of the two is set.
 struct SeekCommand {
-  std::optional<std::int64_t> t_ns;
-  std::optional<std::int64_t> frame;
+  std::optional<std::int64_t> t_ns;   ///< of the clock
+  std::optional<std::int64_t> frame;  ///< of the run
+  std::string run_id;                 ///< with a frame; empty = the first one watched
 };
 struct StepCommand {
   std::int64_t frames = 0;
+  std::string run_id;  ///< whose frames; empty = the first one watched
 };
 struct SpeedCommand {
   double value = 1.0;
@@ -59,14 +73,19 @@ struct SpeedCommand {
 struct LoopCommand {
   bool value = false;
 };
+/// Empty = no range.
+struct RangeCommand {
+  std::optional<PlaybackClock::Range> range;
+};
 struct LiveCommand {};
-/// Alignment of the estimates in `playback` and in the scene.
+/// Alignment of a run's estimates in `playback` and in the scenes.
 struct AlignCommand {
+  std::string run_id;
   std::string mode;
 };
 
-using ClientCommand = std::variant<AttachCommand,
-                                   DetachCommand,
+using ClientCommand = std::variant<WatchCommand,
+                                   UnwatchCommand,
                                    SubscribeCommand,
                                    ViewCommand,
                                    PlayCommand,
@@ -75,6 +94,7 @@ using ClientCommand = std::variant<AttachCommand,
                                    StepCommand,
                                    SpeedCommand,
                                    LoopCommand,
+                                   RangeCommand,
                                    LiveCommand,
                                    AlignCommand>;
 

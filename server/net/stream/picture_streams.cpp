@@ -1,6 +1,7 @@
 #include "server/net/stream/picture_streams.hpp"
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "server/net/http/json_text.hpp"
@@ -11,6 +12,9 @@ namespace {
 using server::PictureRequest;
 
 constexpr const char* kDebugPrefix = "debug/";
+/// Numbers of streams that are not subscribed any more are kept up to this count, so that a stream
+/// that comes back keeps its number.
+constexpr std::size_t kMaxKnownStreams = 1024;
 
 PictureRequest::Kind kind_of(const std::string& name) {
   if (name == "camera") return PictureRequest::Kind::kCamera;
@@ -20,12 +24,13 @@ PictureRequest::Kind kind_of(const std::string& name) {
 
 }  // namespace
 
+PictureStreams::StreamKey PictureStreams::key_of(const StreamRequest& request) {
+  return {request.run_id, request.name, request.camera, request.view};
+}
+
 void PictureStreams::subscribe(const std::vector<StreamRequest>& requests) {
   std::vector<Stream> before = std::move(streams_);
   streams_.clear();
-  const auto key_of = [](const StreamRequest& requested) {
-    return StreamKey(requested.name, requested.camera);
-  };
   for (const Stream& stream : before) sequences_[key_of(stream.request)] = stream.sequence;
   for (const StreamRequest& requested : requests) {
     const auto kept = std::find_if(before.begin(), before.end(), [&](const Stream& stream) {
@@ -33,8 +38,8 @@ void PictureStreams::subscribe(const std::vector<StreamRequest>& requests) {
     });
     Stream stream;
     if (kept != before.end()) stream = std::move(*kept);
-    const auto [id, is_new] =
-        ids_.emplace(key_of(requested), static_cast<std::uint32_t>(ids_.size() + 1));
+    const auto [id, is_new] = ids_.emplace(key_of(requested), next_id_);
+    if (is_new) ++next_id_;
     stream.id = id->second;
     stream.sequence = is_new ? 0 : sequences_[key_of(requested)];
     stream.request = requested;
@@ -42,24 +47,54 @@ void PictureStreams::subscribe(const std::vector<StreamRequest>& requests) {
     stream.slot.set_limit_hz(limit_hz_);
     streams_.push_back(std::move(stream));
   }
+  forget_old_streams();
   show_again();
 }
 
-void PictureStreams::set_view(const ViewCommand& command) {
-  scene_.mode = command.mode.value_or(scene_.mode);
-  scene_.azimuth_rad = command.azimuth_rad.value_or(scene_.azimuth_rad);
-  scene_.elevation_rad = command.elevation_rad.value_or(scene_.elevation_rad);
-  scene_.distance_m = command.distance_m.value_or(scene_.distance_m);
-  scene_.follow = command.follow.value_or(scene_.follow);
-  scene_.width_px = command.width_px.value_or(scene_.width_px);
-  scene_.height_px = command.height_px.value_or(scene_.height_px);
-  ++view_change_;
+void PictureStreams::forget_old_streams() {
+  if (ids_.size() <= kMaxKnownStreams) return;
+  std::set<StreamKey> subscribed;
+  for (const Stream& stream : streams_) subscribed.insert(key_of(stream.request));
+  std::erase_if(ids_, [&](const auto& entry) { return !subscribed.contains(entry.first); });
+  std::erase_if(sequences_, [&](const auto& entry) { return !subscribed.contains(entry.first); });
 }
 
-void PictureStreams::set_alignment(const std::string& mode) {
-  if (scene_.alignment == mode) return;
-  scene_.alignment = mode;
-  ++view_change_;
+Status PictureStreams::set_view(const ViewCommand& command) {
+  if (!views_.contains(command.view) && views_.size() >= kMaxViews) {
+    return Error{ErrorCode::kInvalidArgument,
+                 "view.view: " + std::to_string(kMaxViews) + " views exist, which is the limit"};
+  }
+  View& view = views_[command.view];
+  server::SceneSettings& settings = view.settings;
+  settings.mode = command.mode.value_or(settings.mode);
+  settings.azimuth_rad = command.azimuth_rad.value_or(settings.azimuth_rad);
+  settings.elevation_rad = command.elevation_rad.value_or(settings.elevation_rad);
+  settings.distance_m = command.distance_m.value_or(settings.distance_m);
+  settings.follow = command.follow.value_or(settings.follow);
+  settings.width_px = command.width_px.value_or(settings.width_px);
+  settings.height_px = command.height_px.value_or(settings.height_px);
+  ++view.change;
+  return {};
+}
+
+void PictureStreams::set_alignment(const std::string& run_id, const std::string& mode) {
+  Alignment& alignment = alignments_[run_id];
+  if (alignment.mode == mode) return;
+  alignment.mode = mode;
+  ++alignment.change;
+}
+
+std::uint64_t PictureStreams::change_of(const Stream& stream) const {
+  std::uint64_t change = change_;
+  if (kind_of(stream.request.name) != PictureRequest::Kind::kScene) return change;
+  if (const auto view = views_.find(stream.request.view); view != views_.end()) {
+    change += view->second.change;
+  }
+  if (const auto alignment = alignments_.find(stream.request.run_id);
+      alignment != alignments_.end()) {
+    change += alignment->second.change;
+  }
+  return change;
 }
 
 bool PictureStreams::set_limit_hz(std::optional<double> limit_hz) {
@@ -69,14 +104,16 @@ bool PictureStreams::set_limit_hz(std::optional<double> limit_hz) {
   return true;
 }
 
-void PictureStreams::restart() {
+void PictureStreams::restart(const std::string& run_id) {
   for (Stream& stream : streams_) {
+    if (stream.request.run_id != run_id) continue;
     stream.slot = PictureSlot(stream.request.max_hz);
     stream.slot.set_limit_hz(limit_hz_);
     stream.ticket = 0;
     stream.sent_frame.reset();
     stream.error_sent.clear();
   }
+  show_again();
 }
 
 std::optional<PictureRequest> PictureStreams::request_of(const Stream& stream,
@@ -86,10 +123,15 @@ std::optional<PictureRequest> PictureStreams::request_of(const Stream& stream,
   request.kind = kind_of(stream.request.name);
   request.t_ns = instant.t_ns;
   request.live = instant.live;
-  request.scene = scene_;
   request.camera = stream.request.camera;
   request.quality = stream.request.quality;
   request.max_width_px = stream.request.max_width_px;
+  if (request.kind == PictureRequest::Kind::kScene) {
+    const auto view = views_.find(stream.request.view);
+    if (view != views_.end()) request.scene = view->second.settings;
+    const auto alignment = alignments_.find(instant.run_id);
+    if (alignment != alignments_.end()) request.scene.alignment = alignment->second.mode;
+  }
   if (request.kind == PictureRequest::Kind::kDebug) {
     const auto& names = instant.timeline.estimators();
     const std::string name = stream.request.name.substr(std::string(kDebugPrefix).size());
@@ -102,10 +144,10 @@ std::optional<PictureRequest> PictureStreams::request_of(const Stream& stream,
 
 void PictureStreams::pump(const Instant& instant, ViewerPort* port, std::int64_t now_ns) {
   for (Stream& stream : streams_) {
+    if (stream.request.run_id != instant.run_id) continue;
     const auto request = request_of(stream, instant);
     if (!request) continue;
-    const bool is_scene = request->kind == PictureRequest::Kind::kScene;
-    stream.slot.want({instant.frame, change_ + (is_scene ? view_change_ : 0)});
+    stream.slot.want({instant.frame, change_of(stream)});
     const auto key = stream.slot.take(now_ns);
     if (!key) continue;
     stream.ticket = ++tickets_;
@@ -159,7 +201,8 @@ void PictureStreams::tell_error(Stream* stream, const Error& error, ViewerPort* 
   if (stream->error_sent == error.message) return;
   stream->error_sent = error.message;
   port->send_text(to_text({{"type", "error"},
-                           {"stream", stream->request.name},
+                           {"run", stream->request.run_id},
+                           {"picture", stream->request.name},
                            {"code", to_string(error.code)},
                            {"message", error.message}}));
 }
@@ -176,18 +219,20 @@ bool PictureStreams::waiting() const {
       streams_.begin(), streams_.end(), [](const Stream& stream) { return stream.slot.waiting(); });
 }
 
-nlohmann::json PictureStreams::streams_json() const {
+nlohmann::json PictureStreams::pictures_json() const {
   nlohmann::json list = nlohmann::json::array();
   for (const Stream& stream : streams_) {
     const double max_hz = stream.request.max_hz;
     nlohmann::json entry = {{"id", stream.id},
+                            {"run", stream.request.run_id},
                             {"name", stream.request.name},
                             {"max_hz", max_hz},
                             {"limit_hz", std::min(max_hz, limit_hz_.value_or(max_hz))}};
     if (!stream.request.camera.empty()) entry["camera"] = stream.request.camera;
+    if (!stream.request.view.empty()) entry["view"] = stream.request.view;
     list.push_back(std::move(entry));
   }
-  return {{"type", "streams"}, {"streams", std::move(list)}};
+  return {{"type", "pictures"}, {"pictures", std::move(list)}};
 }
 
 }  // namespace overfly::net

@@ -1,5 +1,5 @@
-// The picture streams of one viewer: which are subscribed, what each shows, and which is drawn
-// next.
+// The picture streams of one viewer: which are subscribed of each run, what each shows, and which
+// is drawn next.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <utility>
+#include <tuple>
 #include <vector>
 
 #include "core/result.hpp"
@@ -21,7 +21,9 @@ namespace overfly::net {
 
 class PictureStreams {
  public:
-  /// The viewer's position.
+  static constexpr std::size_t kMaxViews = 16;
+
+  /// The viewer's position in a run.
   struct Instant {
     const server::RunTimeline& timeline;
     std::string run_id;
@@ -32,17 +34,18 @@ class PictureStreams {
 
   /// Replaces the set of streams. A stream that stays, or comes back later, keeps its number.
   void subscribe(const std::vector<StreamRequest>& requests);
-  void set_view(const ViewCommand& command);
-  /// The alignment of the estimates in the scene.
-  void set_alignment(const std::string& mode);
-  /// Discards the pictures in progress, because another run, or none, is watched now.
-  void restart();
+  /// Errors: kInvalidArgument beyond kMaxViews views.
+  Status set_view(const ViewCommand& command);
+  /// The alignment of a run's estimates in its scenes.
+  void set_alignment(const std::string& run_id, const std::string& mode);
+  /// Discards a run's pictures in progress, because it is not watched any more, or again.
+  void restart(const std::string& run_id);
   /// The maximum rate of each stream; empty = none. @return true if it changed
   bool set_limit_hz(std::optional<double> limit_hz);
   /// Makes every stream send the picture of the present instant again.
   void show_again() { ++change_; }
 
-  /// Requests every picture that is due.
+  /// Requests every picture of a run that is due.
   void pump(const Instant& instant, ViewerPort* port, std::int64_t now_ns);
   /// Sends a picture that was drawn, or reports to the client why it was not.
   void ready(const PictureTicket& ticket, const Result<server::Picture>& picture, ViewerPort* port);
@@ -50,8 +53,8 @@ class PictureStreams {
 
   /// True if a picture waits only for its time.
   [[nodiscard]] bool waiting() const;
-  /// The `streams` message.
-  [[nodiscard]] nlohmann::json streams_json() const;
+  /// The `pictures` message.
+  [[nodiscard]] nlohmann::json pictures_json() const;
 
  private:
   struct Stream {
@@ -71,14 +74,29 @@ class PictureStreams {
                                                    const Instant& instant) const;
   static void tell_error(Stream* stream, const Error& error, ViewerPort* port);
 
+  /// Settings of the scene view of a stream.
+  struct View {
+    server::SceneSettings settings;
+    std::uint64_t change = 0;
+  };
+  struct Alignment {
+    std::string mode;
+    std::uint64_t change = 0;
+  };
+  std::uint64_t change_of(const Stream& stream) const;
+  void forget_old_streams();
+
   std::vector<Stream> streams_;
-  using StreamKey = std::pair<std::string, std::string>;  ///< name and camera
-  std::map<StreamKey, std::uint32_t> ids_;                ///< of all streams ever subscribed
-  std::map<StreamKey, std::uint32_t> sequences_;          ///< of streams not subscribed now
-  server::SceneSettings scene_;
+  /// Run, name, camera and view.
+  using StreamKey = std::tuple<std::string, std::string, std::string, std::string>;
+  static StreamKey key_of(const StreamRequest& request);
+  std::map<StreamKey, std::uint32_t> ids_;  ///< of the streams subscribed so far
+  std::uint32_t next_id_ = 1;
+  std::map<StreamKey, std::uint32_t> sequences_;  ///< of streams not subscribed now
+  std::map<std::string, View> views_;             ///< by name
+  std::map<std::string, Alignment> alignments_;   ///< by run; only those set
   std::optional<double> limit_hz_;
   std::uint64_t change_ = 0;
-  std::uint64_t view_change_ = 0;
   std::uint64_t tickets_ = 0;
 };
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "server/record/rows/vehicle_rows.hpp"
+#include "server/timeline/estimate_errors.hpp"
 
 namespace overfly::net {
 namespace {
@@ -95,7 +96,32 @@ void add_image_columns(const std::vector<server::FrameRow>& rows, json* columns)
       [](const Row& row) { return row.faults.empty() ? json(nullptr) : json(row.faults); });
 }
 
+void add_error_columns(const std::vector<std::optional<server::EstimateError>>& errors,
+                       json* columns) {
+  using MaybeError = std::optional<server::EstimateError>;
+  constexpr double kPerUnit = 1e6;
+  const auto add = [&](const char* name, auto value_of) {
+    (*columns)[name] = column(errors, [&](const MaybeError& error) {
+      const std::optional<double> value = error ? value_of(*error) : std::nullopt;
+      return value ? rounded(*value, kPerUnit) : json(nullptr);
+    });
+  };
+  using Error = server::EstimateError;
+  using Value = std::optional<double>;
+  add("error_m", [](const Error& error) { return Value(error.position_m); });
+  add("error_along_m", [](const Error& error) { return error.along_m; });
+  add("error_across_m", [](const Error& error) { return error.across_m; });
+  add("error_up_m", [](const Error& error) { return Value(error.up_m); });
+  add("error_rotation_deg",
+      [](const Error& error) { return Value(deg_from_rad(error.rotation_rad)); });
+}
+
+/// Null for a value that JSON cannot represent.
+json json_number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+
 }  // namespace
+
+std::string counter_column(const std::string& counter) { return "counter." + counter; }
 
 json pose_json(const Pose& T_world_body) {
   json pose = json::object();
@@ -120,7 +146,9 @@ json truth_columns(const std::vector<server::FrameRow>& rows) {
   return columns;
 }
 
-json estimate_columns(const std::vector<server::EstimateRow>& rows,
+json estimate_columns(const server::RunTimeline& timeline,
+                      std::size_t estimator,
+                      const std::vector<server::EstimateRow>& rows,
                       const server::RowAlignment& alignment) {
   using Row = server::EstimateRow;
   json columns = json::object();
@@ -130,6 +158,13 @@ json estimate_columns(const std::vector<server::EstimateRow>& rows,
   columns["latency_ms"] = column(rows, [](const Row& row) { return rounded(row.latency_ms, 1e3); });
   add_pose_columns(
       rows, [&](const Row& row) { return alignment.T_world_body(row); }, &columns);
+  add_error_columns(server::errors_of(timeline, estimator, rows, alignment), &columns);
+  const std::vector<std::string> counters = timeline.counter_names(estimator);
+  for (std::size_t i = 0; i < counters.size(); ++i) {
+    columns[counter_column(counters[i])] = column(rows, [&](const Row& row) {
+      return i < row.counters.size() ? json_number(row.counters[i]) : json(nullptr);
+    });
+  }
   return columns;
 }
 

@@ -16,10 +16,16 @@ namespace overfly::net {
 /// to keep the text short.
 [[nodiscard]] nlohmann::json pose_json(const Pose& T_world_body);
 
+/// The column of an estimator's counter.
+[[nodiscard]] std::string counter_column(const std::string& counter);
+
 /// Columns of the stream `truth`, of `estimate/NAME`, and of `log`.
 [[nodiscard]] nlohmann::json truth_columns(const std::vector<server::FrameRow>& rows);
-/// Poses of the estimates by `alignment`; by default as recorded.
-[[nodiscard]] nlohmann::json estimate_columns(const std::vector<server::EstimateRow>& rows,
+/// Poses and errors of the estimates by `alignment`, by default as recorded, and a column
+/// `counter.NAME` for each of the estimator's counters so far.
+[[nodiscard]] nlohmann::json estimate_columns(const server::RunTimeline& timeline,
+                                              std::size_t estimator,
+                                              const std::vector<server::EstimateRow>& rows,
                                               const server::RowAlignment& alignment = {});
 [[nodiscard]] nlohmann::json log_columns(const std::vector<server::LogRow>& rows);
 [[nodiscard]] nlohmann::json vehicle_columns(const std::vector<VehicleStatus>& rows);

@@ -7,9 +7,10 @@
 
 namespace overfly::net {
 
-RowFeed::RowFeed(std::shared_ptr<const server::RunTimeline> timeline,
+RowFeed::RowFeed(std::string run_id,
+                 std::shared_ptr<const server::RunTimeline> timeline,
                  const std::map<std::string, std::size_t>& resume)
-    : timeline_(std::move(timeline)) {
+    : run_id_(std::move(run_id)), timeline_(std::move(timeline)) {
   add("truth", Stream::Kind::kTruth, 0, resume);
   const auto& estimators = timeline_->estimators();
   for (std::size_t i = 0; i < estimators.size(); ++i) {
@@ -47,7 +48,7 @@ std::optional<std::string> RowFeed::next_of(Stream* stream) {
     case Stream::Kind::kEstimate: {
       const auto rows = timeline_->estimates(stream->estimator, stream->next_row, kMaxRows);
       count = rows.size();
-      if (count > 0) columns = estimate_columns(rows);
+      if (count > 0) columns = estimate_columns(*timeline_, stream->estimator, rows);
       break;
     }
     case Stream::Kind::kLog: {
@@ -67,6 +68,7 @@ std::optional<std::string> RowFeed::next_of(Stream* stream) {
   const std::size_t first = stream->next_row;
   stream->next_row += count;
   return to_text({{"type", "rows"},
+                  {"run", run_id_},
                   {"stream", stream->name},
                   {"seq", first},
                   {"columns", std::move(columns)}});

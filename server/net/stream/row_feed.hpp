@@ -17,7 +17,8 @@ class RowFeed {
   static constexpr std::size_t kMaxRows = 2000;
 
   /// @param resume  number of rows that the viewer already has, by stream; others start at 0
-  RowFeed(std::shared_ptr<const server::RunTimeline> timeline,
+  RowFeed(std::string run_id,
+          std::shared_ptr<const server::RunTimeline> timeline,
           const std::map<std::string, std::size_t>& resume);
 
   /// The next `rows` message; empty if all rows so far have been sent.
@@ -37,6 +38,7 @@ class RowFeed {
            const std::map<std::string, std::size_t>& resume);
   std::optional<std::string> next_of(Stream* stream);
 
+  std::string run_id_;
   std::shared_ptr<const server::RunTimeline> timeline_;
   std::vector<Stream> streams_;
 };

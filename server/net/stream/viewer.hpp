@@ -7,9 +7,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "server/net/stream/client_message.hpp"
 #include "server/net/stream/picture_streams.hpp"
+#include "server/net/stream/playback_clock.hpp"
 #include "server/net/stream/run_watch.hpp"
 #include "server/net/stream/viewer_port.hpp"
 #include "server/timeline/run_timeline.hpp"
@@ -43,26 +45,47 @@ class Viewer {
  private:
   static constexpr std::size_t kMaxWaiting = 64;
   struct CommandVisitor;
-  /// An `attach` that waits for its run.
+  /// A `watch` that waits for its run.
   struct Opening {
     std::optional<std::int64_t> request;
-    AttachCommand command;
+    WatchCommand command;
+  };
+  struct SentClock {
+    std::int64_t t_ns = -1;
+    bool playing = false;
+    bool live = false;
+    bool loop = false;
+    double speed = 0.0;
+    std::optional<PlaybackClock::Range> range;
+    bool operator==(const SentClock&) const = default;
   };
   void carry_out(const std::string& text, std::int64_t now_ns);
-  void attach(const AttachCommand& command, std::shared_ptr<const server::RunTimeline> timeline);
-  void detach();
+  /// True if the command was carried out or rejected without opening a run.
+  bool watch_known(const WatchCommand& command, Status* status);
+  void watch(const WatchCommand& command, std::shared_ptr<const server::RunTimeline> timeline);
+  Status unwatch(const UnwatchCommand& command);
   Status align(const AlignCommand& command);
   Status seek(const SeekCommand& command);
   Status step(const StepCommand& command);
+  /// The run of a command; an empty id means the first one. Errors: kConflict if it is not watched.
+  Result<RunWatch*> watched(const std::string& run_id);
+  /// Takes in what was recorded since, and lets the clock go on.
+  void refresh(std::int64_t now_ns);
+  void set_extent();
+  void send_playback(std::int64_t now_ns);
   void pump_pictures(std::int64_t now_ns);
 
   ViewerPort& port_;
   std::optional<Opening> opening_;
-  std::deque<std::string> waiting_;  ///< messages received after the `attach` in progress
-  std::string run_id_;
-  std::optional<RunWatch> watch_;
+  std::deque<std::string> waiting_;  ///< messages received after the `watch` in progress
+  std::vector<std::unique_ptr<RunWatch>> watches_;  ///< in the order of their commands
+  PlaybackClock clock_;
   PictureStreams pictures_;
-  bool streams_due_ = false;
+  bool pictures_due_ = false;
+  bool playback_due_ = false;
+  SentClock clock_sent_;
+  PlaybackClock::Extent extent_sent_;
+  std::optional<std::int64_t> playback_at_ns_;  ///< when it was sent last
 };
 
 }  // namespace overfly::net

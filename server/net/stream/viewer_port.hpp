@@ -18,6 +18,10 @@ struct PictureTicket {
   std::uint64_t number = 0;
 };
 
+/// While more than this is unsent, no further rows are encoded, and positions of the clock are
+/// skipped.
+inline constexpr std::size_t kHighWaterBytes = std::size_t{1} << 20U;
+
 class ViewerPort {
  public:
   virtual ~ViewerPort() = default;

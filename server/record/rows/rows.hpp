@@ -44,6 +44,8 @@ struct EstimateRow {
   EstimateSample sample;
   std::optional<Pose> T_world_body;  ///< by `init_scale`; empty while not tracking
   double latency_ms = 0.0;
+  /// In the order of RunTimeline::counter_names; NaN or absent where the answer has none.
+  std::vector<double> counters = {};
 };
 
 struct LogRow {

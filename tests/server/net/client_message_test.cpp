@@ -22,20 +22,25 @@ Command parse_as(const std::string& text) {
   return command != nullptr ? *command : Command{};
 }
 
-TEST(ClientMessage, ReadsAttachWithResume) {
-  const auto attach = parse_as<AttachCommand>(
-      R"({"type":"attach","request":3,"run":"r1","resume":{"truth":17,"estimate/a":4}})");
-  EXPECT_EQ(attach.run_id, "r1");
-  EXPECT_EQ(attach.resume.at("truth"), 17U);
-  EXPECT_EQ(attach.resume.at("estimate/a"), 4U);
+TEST(ClientMessage, ReadsWatchWithPlaceAndResume) {
+  const auto watch = parse_as<WatchCommand>(
+      R"({"type":"watch","request":3,"run":"r1","offset_ns":-5,"resume":{"truth":17,"estimate/a":4}})");
+  EXPECT_EQ(watch.run_id, "r1");
+  EXPECT_EQ(watch.offset_ns, -5);
+  EXPECT_EQ(watch.resume->at("truth"), 17U);
+  EXPECT_EQ(watch.resume->at("estimate/a"), 4U);
+  EXPECT_FALSE(parse_as<WatchCommand>(R"({"type":"watch","run":"r1"})").resume);
 }
 
 TEST(ClientMessage, ReadsSubscriptionsWithDefaults) {
   const auto subscribe = parse_as<SubscribeCommand>(
-      R"({"type":"subscribe","streams":[{"name":"camera"},{"name":"debug/a","max_hz":5,"quality":60}]})");
-  ASSERT_EQ(subscribe.streams.size(), 2U);
-  EXPECT_EQ(subscribe.streams[0], (StreamRequest{"camera", 31.0, 75, 1280}));
-  EXPECT_EQ(subscribe.streams[1], (StreamRequest{"debug/a", 5.0, 60, 1280}));
+      R"({"type":"subscribe","pictures":[{"run":"r","name":"camera"},
+          {"run":"q","name":"debug/a","max_hz":5,"quality":60},
+          {"run":"r","name":"scene"},{"run":"r","name":"scene","view":"map"}]})");
+  ASSERT_EQ(subscribe.pictures.size(), 4U);
+  EXPECT_EQ(subscribe.pictures[0], (StreamRequest{"r", "camera", 31.0, 75, 1280}));
+  EXPECT_EQ(subscribe.pictures[1], (StreamRequest{"q", "debug/a", 5.0, 60, 1280}));
+  EXPECT_EQ(subscribe.pictures[3], (StreamRequest{"r", "scene", 31.0, 75, 1280, "", "map"}));
 }
 
 TEST(ClientMessage, TurnsDegreesOfAViewIntoRadians) {
@@ -48,11 +53,18 @@ TEST(ClientMessage, TurnsDegreesOfAViewIntoRadians) {
 }
 
 TEST(ClientMessage, ReadsEachPlaybackCommand) {
-  parse_as<DetachCommand>(R"({"type":"detach"})");
+  EXPECT_EQ(parse_as<UnwatchCommand>(R"({"type":"unwatch","run":"r"})").run_id, "r");
   parse_as<PlayCommand>(R"({"type":"play"})");
   parse_as<PauseCommand>(R"({"type":"pause"})");
   parse_as<LiveCommand>(R"({"type":"live"})");
-  EXPECT_EQ(parse_as<AlignCommand>(R"({"type":"align","mode":"sim3"})").mode, "sim3");
+  const auto align = parse_as<AlignCommand>(R"({"type":"align","run":"r","mode":"sim3"})");
+  EXPECT_EQ(align.run_id + " " + align.mode, "r sim3");
+  EXPECT_EQ(parse_as<SpeedCommand>(R"({"type":"speed","value":-0.1})").value, -0.1);
+  const auto range = parse_as<RangeCommand>(R"({"type":"range","begin_ns":-1,"end_ns":7})");
+  EXPECT_EQ(range.range, (PlaybackClock::Range{-1, 7}));
+  EXPECT_FALSE(parse_as<RangeCommand>(R"({"type":"range"})").range);
+  EXPECT_EQ(parse_as<SeekCommand>(R"({"type":"seek","run":"r","frame":1})").run_id, "r");
+  EXPECT_EQ(parse_as<StepCommand>(R"({"type":"step","run":"r","frames":1})").run_id, "r");
   EXPECT_EQ(parse_as<SeekCommand>(R"({"type":"seek","t_ns":5000000000})").t_ns, 5'000'000'000);
   EXPECT_EQ(parse_as<SeekCommand>(R"({"type":"seek","frame":12})").frame, 12);
   EXPECT_EQ(parse_as<StepCommand>(R"({"type":"step","frames":-3})").frames, -3);
@@ -64,24 +76,35 @@ TEST(ClientMessage, NamesTheFaultyField) {
   const std::pair<std::string, const char*> faults[] = {
       {"", "the message, line 1, column 1: syntax error"},
       {std::string(100'000, '['), "the message: is nested more than 64 deep"},
-      {R"({"type":"attach","run":)" + std::string(65, '['), "is nested more than 64 deep"},
+      {R"({"type":"watch","run":)" + std::string(65, '['), "is nested more than 64 deep"},
       {"[]", "must be a JSON object"},
       {"{}", "type"},
       {R"({"type":7})", "type"},
       {R"({"type":"fly"})", "type = \"fly\""},
       {R"({"type":"speed"})", "speed.value: is required"},
-      {R"({"type":"speed","value":99})", "speed.value = 99: must be in [0.1, 50.0]"},
+      {R"({"type":"speed","value":99})", "speed.value = 99: must be in [-50.0, 50.0]"},
+      {R"({"type":"speed","value":0})", "speed.value = 0.0: must be at least 0.1, or at most -0.1"},
       {R"({"type":"speed","value":"1"})", "speed.value"},
+      {R"({"type":"range","end_ns":1})", "a range needs begin_ns"},
+      {R"({"type":"range","begin_ns":1,"end_ns":1})", "an end_ns after it"},
+      {R"({"type":"seek","run":"a","t_ns":1})", "seek.run: applies only to a frame"},
+      {R"({"type":"align","mode":"sim3"})", "align.run: is required"},
+      {R"({"type":"watch","run":"a","offset_ns":86400000000001})", "watch.offset_ns"},
       {R"({"type":"play","now":1})", "play.now: is not a known field"},
-      {R"({"type":"attach"})", "attach.run: is required"},
-      {R"({"type":"attach","run":"a","resume":{"truth":-1}})", "attach.resume.truth = -1"},
-      {R"({"type":"attach","run":"a","resume":7})", "attach.resume = 7"},
-      {R"({"type":"subscribe"})", "subscribe.streams: is required"},
-      {R"({"type":"subscribe","streams":[{"name":"x"}]})", "streams.0.name"},
-      {R"({"type":"subscribe","streams":[{"name":"debug/"}]})", "streams.0.name"},
-      {R"({"type":"subscribe","streams":[7]})", "streams.0"},
-      {R"({"type":"subscribe","streams":[{"name":"camera"},{"name":"camera"}]})", "occurs twice"},
-      {R"({"type":"subscribe","streams":[{"name":"camera","max_hz":0}]})", "streams.0.max_hz"},
+      {R"({"type":"watch"})", "watch.run: is required"},
+      {R"({"type":"watch","run":"a","resume":{"truth":-1}})", "watch.resume.truth = -1"},
+      {R"({"type":"watch","run":"a","resume":7})", "watch.resume = 7"},
+      {R"({"type":"subscribe"})", "subscribe.pictures: is required"},
+      {R"({"type":"subscribe","pictures":[{"run":"r","name":"x"}]})", "pictures.0.name"},
+      {R"({"type":"subscribe","pictures":[{"name":"camera"}]})", "pictures.0.run: is required"},
+      {R"({"type":"subscribe","pictures":[{"run":"r","name":"debug/"}]})", "pictures.0.name"},
+      {R"({"type":"subscribe","pictures":[7]})", "pictures.0"},
+      {R"({"type":"subscribe","pictures":[{"run":"r","name":"camera"},{"run":"r","name":"camera"}]})",
+       "camera of run r occurs twice"},
+      {R"({"type":"subscribe","pictures":[{"run":"r","name":"camera","view":"map"}]})",
+       "pictures.0.view: applies only"},
+      {R"({"type":"subscribe","pictures":[{"run":"r","name":"camera","max_hz":0}]})",
+       "pictures.0.max_hz"},
       {R"({"type":"view","mode":"side"})", "view.mode"},
       {R"({"type":"view","width_px":63})", "view.width_px = 63"},
       {R"({"type":"view","elevation_deg":91})", "view.elevation_deg"},
@@ -108,7 +131,7 @@ TEST(ClientMessage, RepeatsTheRequestOfAFaultyMessage) {
 
 TEST(ClientMessage, SurvivesEveryMutationOfAMessage) {
   const std::string seed =
-      R"({"type":"subscribe","request":1,"streams":[{"name":"scene","max_hz":15,"quality":75}]})";
+      R"({"type":"subscribe","request":1,"pictures":[{"run":"r","name":"scene","max_hz":15,"quality":75}]})";
   std::mt19937 random(7);
   int understood = 0;
   for (int i = 0; i < 20000; ++i) {

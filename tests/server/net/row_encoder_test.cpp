@@ -61,7 +61,10 @@ TEST(RowEncoder, LeavesPosesOutWhileNotTracking) {
   server::EstimateRow tracked;
   tracked.sample.state = TrackingState::kTracking;
   tracked.T_world_body = pose_of(1, 2, 3);
-  const auto columns = estimate_columns({lost, tracked});
+  tracked.counters = {7.0};
+  const server::RunTimeline timeline({}, {"a"});
+  const auto columns = estimate_columns(timeline, 0, {lost, tracked});
+  EXPECT_TRUE(columns["error_m"][1].is_null()) << "no frame is recorded";
   EXPECT_EQ(columns["state"][0], "LOST");
   EXPECT_TRUE(columns["yaw_deg"][0].is_null());
   EXPECT_DOUBLE_EQ(columns["yaw_deg"][1], 3.0);

@@ -17,11 +17,11 @@ TEST(SlowClient, IsClosedWith4000WhileOthersGoOnAndThenResumes) {
   const std::string id = server.fly("tiny");
   WebSocketClient slow(server.port(), {{}, 4 << 10});
   WebSocketClient other(server.port());
-  slow.command({{"type", "attach"}, {"run", id}});
-  other.command({{"type", "attach"}, {"run", id}});
+  slow.command({{"type", "watch"}, {"run", id}});
+  other.command({{"type", "watch"}, {"run", id}});
   // Each of these answers repeats a name of 2 kB: 1 MB that `slow` does not read.
   const std::string name(2000, 'x');
-  for (int i = 0; i < 500; ++i) slow.send({{"type", "attach"}, {"run", name}, {"request", i}});
+  for (int i = 0; i < 500; ++i) slow.send({{"type", "watch"}, {"run", name}, {"request", i}});
   for (int frame = 0; frame < 20; ++frame) {
     EXPECT_EQ(other.command({{"type", "seek"}, {"frame", frame}}).at("type"), "ok");
   }
@@ -35,7 +35,7 @@ TEST(SlowClient, IsClosedWith4000WhileOthersGoOnAndThenResumes) {
     }
   }
   WebSocketClient again(server.port());
-  again.command({{"type", "attach"}, {"run", id}, {"resume", {{"truth", rows}}}});
+  again.command({{"type", "watch"}, {"run", id}, {"resume", {{"truth", rows}}}});
   again.wait_for("playback");
   for (const json& message : again.texts()) {
     if (message.at("type") != "rows" || message.at("stream") != "truth") continue;
@@ -52,24 +52,25 @@ TEST(SlowClient, GetsOnePictureAtATimeAndThenTheNewest) {
   const std::string id = server.start("slow");
   WebSocketClient slow(server.port(), {{}, 4 << 10});
   WebSocketClient witness(server.port());
-  slow.command({{"type", "subscribe"}, {"streams", {{{"name", "scene"}, {"quality", 100}}}}});
+  slow.command(
+      {{"type", "subscribe"}, {"pictures", {{{"run", id}, {"name", "scene"}, {"quality", 100}}}}});
 #if defined(__SANITIZE_THREAD__)  // which makes drawing ten times slower
   const int height_px = 720;
 #else
   const int height_px = 1440;
 #endif
   slow.command({{"type", "view"}, {"width_px", 4 * height_px / 3}, {"height_px", height_px}});
-  slow.command({{"type", "attach"}, {"run", id}});
-  witness.command({{"type", "attach"}, {"run", id}});
+  slow.command({{"type", "watch"}, {"run", id}});
+  witness.command({{"type", "watch"}, {"run", id}});
   const auto frame_at_least = [](std::int64_t frame) {
     return [frame](const json& message) {
-      return message.at("type") == "playback" && message.at("frame") >= frame;
+      return message.at("type") == "playback" && run_in(message).at("frame") >= frame;
     };
   };
   // `slow` takes a first picture, then nothing for 30 frames of the run.
   slow.wait_for_picture([](const PictureMessage&) { return true; });
-  const std::int64_t before = witness.wait_until(frame_at_least(0)).at("frame");
-  const std::int64_t later = witness.wait_until(frame_at_least(before + 30)).at("frame");
+  const std::int64_t before = run_in(witness.wait_until(frame_at_least(0))).at("frame");
+  const std::int64_t later = run_in(witness.wait_until(frame_at_least(before + 30))).at("frame");
   const std::size_t stale = slow.pictures().size();
   slow.wait_for_picture(
       [&](const PictureMessage& picture) { return picture.header.frame >= later; });

@@ -81,4 +81,9 @@ class WebSocketClient {
   std::unique_ptr<Impl> impl_;
 };
 
+/// The run in a message `playback` of a client that watches one run.
+[[nodiscard]] inline nlohmann::json run_in(const nlohmann::json& playback) {
+  return playback.at("runs").begin().value();
+}
+
 }  // namespace overfly::testing

@@ -41,14 +41,14 @@ TEST(WebSocketPlayback, SendsAFinishedRunCompletelyAndWaitsAtItsStart) {
   TestServer server;
   const std::string id = server.fly("tiny");
   WebSocketClient client(server.port());
-  EXPECT_EQ(client.command({{"type", "attach"}, {"run", id}}).at("type"), "ok");
+  EXPECT_EQ(client.command({{"type", "watch"}, {"run", id}}).at("type"), "ok");
   const json playback = client.wait_until(is_playback);
   EXPECT_EQ(playback.at("t_ns"), 0);
-  EXPECT_EQ(playback.at("frame"), 0);
+  EXPECT_EQ(run_in(playback).at("frame"), 0);
   EXPECT_EQ(playback.at("playing"), false);
   EXPECT_EQ(playback.at("live"), false);
-  EXPECT_TRUE(playback.at("truth").contains("roll_deg"));
-  EXPECT_TRUE(playback.at("estimates").contains("perfect"));
+  EXPECT_TRUE(run_in(playback).at("truth").contains("roll_deg"));
+  EXPECT_TRUE(run_in(playback).at("estimates").contains("perfect"));
   const auto rows = rows_of(client);
   EXPECT_EQ(rows.at("truth"), 63U);
   EXPECT_EQ(rows.at("estimate/perfect"), 63U);
@@ -56,7 +56,7 @@ TEST(WebSocketPlayback, SendsAFinishedRunCompletelyAndWaitsAtItsStart) {
   std::set<std::string> types;
   for (const json& message : client.texts()) types.insert(message.at("type"));
   EXPECT_TRUE(types.contains("run"));
-  EXPECT_TRUE(types.contains("streams"));
+  EXPECT_TRUE(types.contains("pictures"));
   EXPECT_TRUE(types.contains("metrics"));
   // Sent before the metrics.
   json status_message;
@@ -75,7 +75,7 @@ TEST(WebSocketPlayback, ResumesAfterTheRowsThatTheClientHas) {
   TestServer server;
   const std::string id = server.fly("tiny");
   WebSocketClient client(server.port());
-  client.command({{"type", "attach"}, {"run", id}, {"resume", {{"truth", 60}}}});
+  client.command({{"type", "watch"}, {"run", id}, {"resume", {{"truth", 60}}}});
   client.wait_until(is_playback);
   for (const json& message : client.texts()) {
     if (message.at("type") == "rows" && message.at("stream") == "truth") {
@@ -92,47 +92,49 @@ TEST(WebSocketPlayback, SeeksStepsAndChangesSpeedWithoutTouchingOtherViewers) {
   WebSocketClient client(server.port());
   WebSocketClient other(server.port());
   for (WebSocketClient* each : {&client, &other}) {
-    each->command({{"type", "attach"}, {"run", id}});
+    each->command({{"type", "watch"}, {"run", id}});
     each->wait_until(is_playback);
   }
   client.command({{"type", "seek"}, {"t_ns", kFrame + kFrame / 2}});
   json playback = client.wait_until(is_playback);
   EXPECT_EQ(playback.at("t_ns"), kFrame + kFrame / 2);
-  EXPECT_EQ(playback.at("frame"), 1);
+  EXPECT_EQ(run_in(playback).at("frame"), 1);
   const json rows =
       ask(server.port(), "GET", "/api/v1/runs/" + id + "/trajectories/truth?format=json").json();
   const double y_1 = rows.at("y_m").at(1);
   const double y_2 = rows.at("y_m").at(2);
   // Half way between two frames; the wire has millimetres.
-  EXPECT_NEAR(playback.at("truth").at("y_m"), 0.5 * (y_1 + y_2), 2e-3);
+  EXPECT_NEAR(run_in(playback).at("truth").at("y_m"), 0.5 * (y_1 + y_2), 2e-3);
   client.command({{"type", "seek"}, {"frame", 40}});
-  EXPECT_EQ(client.wait_until(is_playback).at("frame"), 40);
+  EXPECT_EQ(run_in(client.wait_until(is_playback)).at("frame"), 40);
   client.command({{"type", "step"}, {"frames", -3}});
-  EXPECT_EQ(client.wait_until(is_playback).at("frame"), 37);
+  EXPECT_EQ(run_in(client.wait_until(is_playback)).at("frame"), 37);
   client.command({{"type", "step"}, {"frames", 1000}});
-  EXPECT_EQ(client.wait_until(is_playback).at("frame"), 62);
+  EXPECT_EQ(run_in(client.wait_until(is_playback)).at("frame"), 62);
   client.command({{"type", "speed"}, {"value", 50}});
   EXPECT_EQ(client.wait_until(is_playback).at("speed"), 50.0);
   client.command({{"type", "play"}});
   // From the start again; the end is reached after 1/25 s.
   playback = client.wait_until(
       [](const json& message) { return is_playback(message) && !message.at("playing"); });
-  EXPECT_EQ(playback.at("frame"), 62);
+  EXPECT_EQ(run_in(playback).at("frame"), 62);
   other.command({{"type", "step"}, {"frames", 1}});
-  EXPECT_EQ(other.wait_until(is_playback).at("frame"), 1);
+  EXPECT_EQ(run_in(other.wait_until(is_playback)).at("frame"), 1);
 }
 
 TEST(WebSocketPlayback, SendsEveryStreamThePictureOfTheRequestedTime) {
   TestServer server;
   const std::string id = server.fly("tiny");
   WebSocketClient client(server.port());
-  client.command({{"type", "subscribe"},
-                  {"streams", {{{"name", "camera"}}, {{"name", "scene"}, {"max_hz", 15}}}}});
+  client.command(
+      {{"type", "subscribe"},
+       {"pictures",
+        {{{"run", id}, {"name", "camera"}}, {{"run", id}, {"name", "scene"}, {"max_hz", 15}}}}});
   client.command({{"type", "view"}, {"width_px", 96}, {"height_px", 64}, {"distance_m", 50}});
-  client.command({{"type", "attach"}, {"run", id}});
-  const json streams = client.wait_for("streams");
+  client.command({{"type", "watch"}, {"run", id}});
+  const json pictures = client.wait_for("pictures");
   std::map<std::uint32_t, std::string> names;
-  for (const json& stream : streams.at("streams")) names[stream.at("id")] = stream.at("name");
+  for (const json& picture : pictures.at("pictures")) names[picture.at("id")] = picture.at("name");
   ASSERT_EQ(names.size(), 2U);
   for (const std::int64_t frame : {30, 10, 62, 0}) {
     client.command({{"type", "seek"}, {"frame", frame}});
@@ -159,11 +161,11 @@ TEST(WebSocketPlayback, FollowsALiveRunAndLeavesItByASeek) {
   TestServer server;
   const std::string id = server.start("slow");
   WebSocketClient client(server.port());
-  client.command({{"type", "subscribe"}, {"streams", {{{"name", "camera"}}}}});
-  client.command({{"type", "attach"}, {"run", id}});
+  client.command({{"type", "subscribe"}, {"pictures", {{{"run", id}, {"name", "camera"}}}}});
+  client.command({{"type", "watch"}, {"run", id}});
   const auto live_beyond = [](std::int64_t frame) {
     return [frame](const json& message) {
-      return is_playback(message) && message.at("live") && message.at("frame") > frame;
+      return is_playback(message) && message.at("live") && run_in(message).at("frame") > frame;
     };
   };
   client.wait_until(live_beyond(5));
@@ -177,7 +179,7 @@ TEST(WebSocketPlayback, FollowsALiveRunAndLeavesItByASeek) {
       [](const json& message) { return is_playback(message) && !message.at("playing"); });
   EXPECT_EQ(paused.at("live"), false);
   client.wait_for_picture([&](const PictureMessage& message) {
-    return message.header.frame == paused.at("frame") && !message.header.live;
+    return message.header.frame == run_in(paused).at("frame") && !message.header.live;
   });
   client.command({{"type", "live"}});
   client.wait_until(live_beyond(15));
@@ -195,52 +197,58 @@ TEST(WebSocketPlayback, ShowsEstimatesByTheRequestedAlignment) {
   TestServer server;
   const std::string id = server.fly("tiny");
   WebSocketClient client(server.port());
-  const json align = {{"type", "align"}, {"mode", "sim3"}};
+  const json align = {{"type", "align"}, {"run", id}, {"mode", "sim3"}};
   EXPECT_EQ(client.command(align).at("code"), "conflict");
-  client.command({{"type", "attach"}, {"run", id}});
-  EXPECT_EQ(client.wait_until(is_playback).at("alignment"), "init_scale");
-  EXPECT_EQ(client.command({{"type", "align"}, {"mode", "sim4"}}).at("code"), "invalid_argument");
+  client.command({{"type", "watch"}, {"run", id}});
+  EXPECT_EQ(run_in(client.wait_until(is_playback)).at("alignment"), "init_scale");
+  EXPECT_EQ(client.command({{"type", "align"}, {"run", id}, {"mode", "sim4"}}).at("code"),
+            "invalid_argument");
   // With `none` the estimate is in its own frame, which differs from the world.
-  EXPECT_EQ(client.command({{"type", "align"}, {"mode", "none"}}).at("type"), "ok");
+  EXPECT_EQ(client.command({{"type", "align"}, {"run", id}, {"mode", "none"}}).at("type"), "ok");
   client.command({{"type", "seek"}, {"frame", 40}});
   const auto at_40 = [](const json& message) {
-    return is_playback(message) && message.at("frame") == 40;
+    return is_playback(message) && run_in(message).at("frame") == 40;
   };
   json playback = client.wait_until(at_40);
-  EXPECT_EQ(playback.at("alignment"), "none");
+  EXPECT_EQ(run_in(playback).at("alignment"), "none");
   const json columns =
       ask(server.port(),
           "GET",
           "/api/v1/runs/" + id + "/trajectories/perfect?format=json&alignment=none")
           .json();
-  EXPECT_EQ(playback["estimates"]["perfect"]["pose"]["z_m"], columns["z_m"][40]);
-  EXPECT_GT(std::abs(playback["truth"]["z_m"].get<double>() - columns["z_m"][40].get<double>()),
-            10.0);
+  EXPECT_EQ(run_in(playback)["estimates"]["perfect"]["pose"]["z_m"], columns["z_m"][40]);
+  EXPECT_GT(
+      std::abs(run_in(playback)["truth"]["z_m"].get<double>() - columns["z_m"][40].get<double>()),
+      10.0);
   client.command(align);
   playback = client.wait_until(at_40);
-  EXPECT_EQ(playback.at("alignment"), "sim3");
-  EXPECT_NEAR(playback["estimates"]["perfect"]["pose"]["z_m"], playback["truth"]["z_m"], 0.05);
-  client.command({{"type", "attach"}, {"run", id}});
-  EXPECT_EQ(client.wait_until(is_playback).at("alignment"), "init_scale");
+  EXPECT_EQ(run_in(playback).at("alignment"), "sim3");
+  EXPECT_NEAR(run_in(playback)["estimates"]["perfect"]["pose"]["z_m"],
+              run_in(playback)["truth"]["z_m"],
+              0.05);
+  client.command({{"type", "unwatch"}, {"run", id}});
+  client.command({{"type", "watch"}, {"run", id}});
+  EXPECT_EQ(run_in(client.wait_until(is_playback)).at("alignment"), "init_scale");
 }
 
-TEST(WebSocketPlayback, NumbersAStreamByItsCamera) {
+TEST(WebSocketPlayback, NumbersAStreamByItsRunAndCamera) {
   TestServer server;
   const std::string id = server.fly("tiny");
   WebSocketClient client(server.port());
   const auto number_of = [&](const json& stream) {
     EXPECT_EQ(
-        client.command({{"type", "subscribe"}, {"streams", json::array({stream})}}).at("type"),
+        client.command({{"type", "subscribe"}, {"pictures", json::array({stream})}}).at("type"),
         "ok");
-    const json listed = client.wait_for("streams").at("streams").at(0);
+    const json listed = client.wait_for("pictures").at("pictures").at(0);
     EXPECT_EQ(listed.value("camera", ""), stream.value("camera", ""));
     return listed.at("id").get<int>();
   };
-  const int first = number_of({{"name", "camera"}});
-  EXPECT_NE(number_of({{"name", "camera"}, {"camera", "tail"}}), first);
-  EXPECT_EQ(number_of({{"name", "camera"}}), first);
-  const json scene = {{"name", "scene"}, {"camera", "tail"}};
-  EXPECT_EQ(client.command({{"type", "subscribe"}, {"streams", json::array({scene})}}).at("code"),
+  const int first = number_of({{"run", id}, {"name", "camera"}});
+  EXPECT_NE(number_of({{"run", id}, {"name", "camera"}, {"camera", "tail"}}), first);
+  EXPECT_EQ(number_of({{"run", id}, {"name", "camera"}}), first);
+  EXPECT_NE(number_of({{"run", "other"}, {"name", "camera"}}), first);
+  const json scene = {{"run", id}, {"name", "scene"}, {"camera", "tail"}};
+  EXPECT_EQ(client.command({{"type", "subscribe"}, {"pictures", json::array({scene})}}).at("code"),
             "invalid_argument");
 }
 
@@ -248,19 +256,20 @@ TEST(WebSocketPlayback, ReportsThePictureRateDuringARealTimeFlight) {
   TestServer server;
   const std::string id = server.fly("tiny");
   WebSocketClient client(server.port());
-  const json streams = {{{"name", "camera"}, {"max_hz", 31}}, {{"name", "scene"}, {"max_hz", 2}}};
-  client.command({{"type", "subscribe"}, {"streams", streams}});
+  const json pictures = {{{"run", id}, {"name", "camera"}, {"max_hz", 31}},
+                         {{"run", id}, {"name", "scene"}, {"max_hz", 2}}};
+  client.command({{"type", "subscribe"}, {"pictures", pictures}});
   const auto limit_is = [](auto camera_hz) {
     return [camera_hz](const json& message) {
-      return message.at("type") == "streams" && camera_hz(message["streams"][0]["limit_hz"]) &&
-             message["streams"][0]["max_hz"] == 31.0 && message["streams"][1]["limit_hz"] == 2.0;
+      return message.at("type") == "pictures" && camera_hz(message["pictures"][0]["limit_hz"]) &&
+             message["pictures"][0]["max_hz"] == 31.0 && message["pictures"][1]["limit_hz"] == 2.0;
     };
   };
   const auto wanted = limit_is([](const json& hz) { return hz == 31.0; });
   // The rate then depends on the load of the machine.
   const auto lowered = limit_is([](const json& hz) { return hz < 31.0; });
   client.wait_until(wanted);
-  client.command({{"type", "attach"}, {"run", id}});
+  client.command({{"type", "watch"}, {"run", id}});
   // The report may come before the answer to the command.
   const std::size_t before = client.texts().size();
   server.runs().picture_rate().flight_began(0);

@@ -28,24 +28,24 @@ TEST(WebSocket, GreetsAndAnswersEachRequest) {
   WebSocketClient client(server.port());
   EXPECT_TRUE(client.is_open());
   const json hello = client.wait_for("hello");
-  EXPECT_EQ(hello.at("protocol"), 1);
+  EXPECT_EQ(hello.at("protocol"), 2);
   EXPECT_THAT(hello.at("server").get<std::string>(), HasSubstr("overfly "));
-  EXPECT_EQ(client.command({{"type", "detach"}}).at("type"), "ok");
+  EXPECT_EQ(client.command({{"type", "unwatch"}, {"run", "a"}}).at("code"), "conflict");
   const json error = client.command({{"type", "play"}});
   EXPECT_EQ(error.at("type"), "error");
   EXPECT_EQ(error.at("code"), "conflict");
-  EXPECT_EQ(client.command({{"type", "attach"}, {"run", "none"}}).at("code"), "not_found");
-  EXPECT_EQ(client.command({{"type", "attach"}, {"run", "../x"}}).at("code"), "not_found");
+  EXPECT_EQ(client.command({{"type", "watch"}, {"run", "none"}}).at("code"), "not_found");
+  EXPECT_EQ(client.command({{"type", "watch"}, {"run", "../x"}}).at("code"), "not_found");
 }
 
-TEST(WebSocket, IsCountedAsAViewerOfTheRunItIsAttachedTo) {
+TEST(WebSocket, IsCountedAsAViewerOfTheRunThatItWatches) {
   TestServer server;
   const std::string id = server.start("slow");
   WebSocketClient client(server.port());
-  client.command({{"type", "subscribe"}, {"streams", {{{"name", "camera"}}}}});
-  client.command({{"type", "attach"}, {"run", id}});
+  client.command({{"type", "subscribe"}, {"pictures", {{{"run", id}, {"name", "camera"}}}}});
+  client.command({{"type", "watch"}, {"run", id}});
   client.wait_for_picture([](const PictureMessage&) { return true; });
-  client.command({{"type", "detach"}});
+  client.command({{"type", "unwatch"}, {"run", id}});
   ASSERT_TRUE(server.runs().cancel(id).ok());
   server.wait_for_end(id);
   const json viewers =
@@ -62,7 +62,7 @@ TEST(WebSocket, CarriesOutCommandsInOrderWhileARunIsOpened) {
   const std::string id = server.fly("tiny");
   WebSocketClient client(server.port());
   for (int i = 0; i < 300; ++i) {
-    client.send({{"type", "attach"}, {"run", i % 3 == 2 ? "none" : id}, {"request", 2 * i}});
+    client.send({{"type", "watch"}, {"run", i % 3 == 2 ? "none" : id}, {"request", 2 * i}});
     client.send({{"type", "seek"}, {"frame", i % 60}, {"request", 2 * i + 1}});
   }
   for (int request = 0; request < 600; ++request) {
@@ -78,7 +78,7 @@ TEST(WebSocket, NotifiesItsViewersWhenTheServerShutsDown) {
   auto server = std::make_unique<TestServer>();
   const std::string id = server->fly("tiny");
   WebSocketClient watching(server->port());
-  watching.command({{"type", "attach"}, {"run", id}});
+  watching.command({{"type", "watch"}, {"run", id}});
   WebSocketClient idle(server->port());
   idle.wait_for("hello");
   std::thread stop([&] { server.reset(); });
@@ -102,7 +102,7 @@ TEST(WebSocket, AnswersInvalidMessagesAndStaysOpen) {
       text[random() % text.size()] = static_cast<char>(32 + random() % 95);
     client.send_text(text);
   }
-  EXPECT_EQ(client.command({{"type", "detach"}}).at("type"), "ok");
+  EXPECT_EQ(client.command({{"type", "subscribe"}, {"pictures", json::array()}}).at("type"), "ok");
 }
 
 TEST(WebSocket, EndsAConnectionWithAMessageThatIsTooLarge) {

@@ -1,4 +1,4 @@
-// A WebSocket that reconnects by itself. It stores the viewer's settings (run, streams, view) and
+// A WebSocket that reconnects by itself. It stores the viewer's settings (run, pictures, view) and
 // sends them again after every reconnection.
 import { backoffDelay_ms } from './backoff';
 import type {
@@ -38,13 +38,13 @@ export type ConnectionState =
 
 export interface StreamListener {
   onState(state: ConnectionState): void;
-  /** Messages of the attached run, and errors; never messages of a previous run. */
+  /** Messages of the watched run, and errors; never messages of a previous run. */
   onMessage(message: ServerMessage): void;
-  onAttachFailed(run: string, message: string): void;
+  onWatchFailed(run: string, message: string): void;
   onPicture(name: string, picture: PictureMessage): void;
   /** Commands that restore the cursor after a reconnection to the same run. */
   restore(): ClientMessage[];
-  /** Rows already received of the attached run, from which the stream resumes. */
+  /** Rows already received of the watched run, from which the stream resumes. */
   resume(): Resume;
   onProtocolError(text: string): void;
 }
@@ -77,10 +77,8 @@ export class StreamClient {
   private timer: number | null = null;
   private request = 0;
   private run: string | null = null;
-  /**
-   * Request number of the unanswered `attach`; until its answer, data belong to the previous run.
-   */
-  private attaching: number | null = null;
+  /** Request number of the unanswered `watch`. */
+  private opening: number | null = null;
   private subscriptions: PictureStream[] = [];
   private view: Partial<SceneView> = {};
   private names = new Map<number, string>();
@@ -119,16 +117,17 @@ export class StreamClient {
     this.options.listener.onState({ ...this.waiting, reason });
   }
 
-  attach(run: string | null): void {
+  /** Watches this run, and no other one; null = none. */
+  watch(run: string | null): void {
+    if (this.run !== null && this.run !== run) this.send({ type: 'unwatch', run: this.run });
     this.run = run;
     this.names.clear();
-    if (run === null) this.send({ type: 'detach' });
-    else this.sendAttach(run);
+    if (run !== null) this.sendWatch(run);
   }
 
-  subscribe(streams: PictureStream[]): void {
-    this.subscriptions = streams;
-    this.send({ type: 'subscribe', streams });
+  subscribe(pictures: PictureStream[]): void {
+    this.subscriptions = pictures;
+    this.send({ type: 'subscribe', pictures });
   }
 
   setView(view: Partial<SceneView>): void {
@@ -147,11 +146,9 @@ export class StreamClient {
     this.socket.send(JSON.stringify({ ...message, request: this.request }));
   }
 
-  private sendAttach(run: string): void {
-    const resume = this.options.listener.resume();
-    const known = Object.keys(resume).length > 0;
-    this.attaching = this.greeted ? this.request + 1 : null;
-    this.send(known ? { type: 'attach', run, resume } : { type: 'attach', run });
+  private sendWatch(run: string): void {
+    this.opening = this.greeted ? this.request + 1 : null;
+    this.send({ type: 'watch', run, resume: this.options.listener.resume() });
   }
 
   private onData(data: string | ArrayBuffer): void {
@@ -169,27 +166,33 @@ export class StreamClient {
     if (message === null) return;
     if (message.type === 'hello') {
       this.onHello(message);
-    } else if (message.type === 'streams') {
-      this.names = new Map(
-        message.streams.map(({ id, name, camera }) => [id, picturesOf(name, camera)]),
-      );
-      this.options.listener.onMessage(message);
+    } else if (message.type === 'pictures') {
+      const own = message.pictures.filter(({ run }) => run === this.run);
+      this.names = new Map(own.map(({ id, name, camera }) => [id, picturesOf(name, camera)]));
+      this.options.listener.onMessage({ ...message, pictures: own });
     } else if (message.type === 'ok' || message.type === 'error') {
       this.onAnswer(message);
-    } else {
-      if (message.type === 'run' && message.run.id === this.run) this.attaching = null;
-      if (this.attaching === null && this.run !== null) this.options.listener.onMessage(message);
+    } else if (this.concerns(message)) {
+      this.options.listener.onMessage(message);
     }
   }
 
+  /** Whether a message is about the watched run; the others are of one that was left. */
+  private concerns(message: Exclude<ServerMessage, { type: 'hello' | 'ok' | 'error' }>): boolean {
+    if (this.run === null || message.type === 'pictures') return false;
+    if (message.type === 'run') return message.run.id === this.run;
+    if (message.type === 'playback') return Object.hasOwn(message.runs, this.run);
+    return message.run === this.run;
+  }
+
   private onAnswer(message: ServerMessage & { type: 'ok' | 'error' }): void {
-    const attach = message.request !== undefined && message.request === this.attaching;
-    if (attach) this.attaching = null;
+    const opened = message.request !== undefined && message.request === this.opening;
+    if (opened) this.opening = null;
     if (message.type === 'ok') return;
-    if (attach && this.run !== null) {
+    if (opened && this.run !== null) {
       const run = this.run;
       this.run = null;
-      this.options.listener.onAttachFailed(run, message.message);
+      this.options.listener.onWatchFailed(run, message.message);
     } else {
       this.options.listener.onMessage(message);
     }
@@ -207,9 +210,9 @@ export class StreamClient {
     this.options.listener.onState({ status: 'open', server: message.server });
     if (Object.keys(this.view).length > 0) this.send({ type: 'view', ...this.view });
     if (this.run === null) return;
-    this.sendAttach(this.run);
+    this.sendWatch(this.run);
     if (this.subscriptions.length > 0) {
-      this.send({ type: 'subscribe', streams: this.subscriptions });
+      this.send({ type: 'subscribe', pictures: this.subscriptions });
     }
     for (const command of this.options.listener.restore()) this.send(command);
   }
@@ -217,7 +220,7 @@ export class StreamClient {
   private onBinary(buffer: ArrayBuffer): void {
     const picture = parsePicture(buffer);
     const name = picture === null ? undefined : this.names.get(picture.streamId);
-    if (picture === null || name === undefined || this.attaching !== null) return;
+    if (picture === null || name === undefined) return;
     this.options.listener.onPicture(name, picture);
   }
 
@@ -237,7 +240,7 @@ export class StreamClient {
     const socket = this.socket;
     this.socket = null;
     this.greeted = false;
-    this.attaching = null;
+    this.opening = null;
     this.names.clear();
     if (socket !== null) {
       socket.onclose = null;

@@ -1,7 +1,7 @@
 // Messages of the WebSocket /api/v1/stream; docs/PROTOCOL.md is the contract.
 import type { EstimatorStatus, Metrics, Run } from './rest_types';
 
-export const kProtocolVersion = 1;
+export const kProtocolVersion = 2;
 
 export type SceneMode = 'chase' | 'orbit' | 'top';
 
@@ -16,9 +16,12 @@ export interface SceneView {
 }
 
 export interface PictureStream {
+  run: string;
   name: string;
   /** Selects one of several cameras; by default the first. */
   camera?: string;
+  /** Selects one of several views of the scene. */
+  view?: string;
   max_hz?: number;
   quality?: number;
   max_width_px?: number;
@@ -27,20 +30,27 @@ export interface PictureStream {
 /** Number of rows that the client already has, by data stream. */
 export type Resume = Record<string, number>;
 
+/** A part of the clock's time that playback repeats or stops at. */
+export interface ClockRange {
+  begin_ns: number;
+  end_ns: number;
+}
+
 export type ClientMessage =
-  | { type: 'attach'; run: string; resume?: Resume }
-  | { type: 'detach' }
-  | { type: 'subscribe'; streams: PictureStream[] }
-  | ({ type: 'view' } & Partial<SceneView>)
+  | { type: 'watch'; run: string; offset_ns?: number; resume?: Resume }
+  | { type: 'unwatch'; run: string }
+  | { type: 'subscribe'; pictures: PictureStream[] }
+  | ({ type: 'view'; view?: string } & Partial<SceneView>)
   | { type: 'play' }
   | { type: 'pause' }
   | { type: 'seek'; t_ns: number }
-  | { type: 'seek'; frame: number }
-  | { type: 'step'; frames: number }
+  | { type: 'seek'; frame: number; run?: string }
+  | { type: 'step'; frames: number; run?: string }
   | { type: 'speed'; value: number }
   | { type: 'loop'; value: boolean }
+  | ({ type: 'range' } & Partial<ClockRange>)
   | { type: 'live' }
-  | { type: 'align'; mode: string };
+  | { type: 'align'; run: string; mode: string };
 
 export interface PoseValues {
   x_m: number;
@@ -56,14 +66,14 @@ export interface EstimateInstant {
   pose: PoseValues | null;
 }
 
-export interface Playback {
+/** A run at the clock's time. */
+export interface RunInstant {
+  /** Of the run, clamped to what is recorded. */
   t_ns: number;
   frame: number;
-  playing: boolean;
-  live: boolean;
-  speed: number;
-  loop: boolean;
-  begin_ns: number;
+  /** Time of the clock at the run's beginning. */
+  offset_ns: number;
+  /** Of the run. */
   end_ns: number;
   /** Alignment of the estimates. */
   alignment: string;
@@ -71,19 +81,51 @@ export interface Playback {
   estimates: Record<string, EstimateInstant>;
 }
 
+/** The viewer's clock, and every watched run at its time. */
+export interface Playback {
+  t_ns: number;
+  playing: boolean;
+  live: boolean;
+  /** Negative = backwards. */
+  speed: number;
+  loop: boolean;
+  range: ClockRange | null;
+  begin_ns: number;
+  end_ns: number;
+  /** A watched run still flies. */
+  flying: boolean;
+  runs: Record<string, RunInstant>;
+}
+
 export type Cell = number | string | boolean | null | string[];
 
 export interface Rows {
+  run: string;
   stream: string;
   /** Number of the first row. */
   seq: number;
   columns: Record<string, Cell[]>;
 }
 
-export interface StreamInfo {
+/** A column of a data stream that can be plotted. */
+export interface SeriesInfo {
+  stream: string;
+  column: string;
+  label: string;
+  /** Of the values as shown. */
+  unit: string;
+  /** Series of one group share a plot. */
+  group: string;
+  /** Shown value = value of the column * scale; by default 1. */
+  scale?: number;
+}
+
+export interface PictureInfo {
   id: number;
+  run: string;
   name: string;
   camera?: string;
+  view?: string;
   /** Requested rate. */
   max_hz?: number;
   /** Maximum rate of pictures during a real-time flight. */
@@ -95,8 +137,9 @@ export type ServerMessage =
   | { type: 'ok'; request?: number }
   | { type: 'error'; request?: number; code: string; message: string }
   | { type: 'run'; run: Run }
-  | { type: 'streams'; streams: StreamInfo[] }
+  | { type: 'series'; run: string; series: SeriesInfo[] }
+  | { type: 'pictures'; pictures: PictureInfo[] }
   | ({ type: 'rows' } & Rows)
-  | { type: 'estimators'; estimators: Record<string, EstimatorStatus> }
-  | { type: 'metrics'; metrics: Metrics }
+  | { type: 'estimators'; run: string; estimators: Record<string, EstimatorStatus> }
+  | { type: 'metrics'; run: string; metrics: Metrics }
   | ({ type: 'playback' } & Playback);

@@ -8,11 +8,12 @@ const kRequired: Record<ServerMessage['type'], Record<string, string>> = {
   ok: {},
   error: { code: 'string', message: 'string' },
   run: { run: 'object' },
-  streams: { streams: 'object' },
-  rows: { stream: 'string', seq: 'number', columns: 'object' },
-  estimators: { estimators: 'object' },
-  metrics: { metrics: 'object' },
-  playback: { t_ns: 'number', frame: 'number', playing: 'boolean', estimates: 'object' },
+  series: { run: 'string', series: 'object' },
+  pictures: { pictures: 'object' },
+  rows: { run: 'string', stream: 'string', seq: 'number', columns: 'object' },
+  estimators: { run: 'string', estimators: 'object' },
+  metrics: { run: 'string', metrics: 'object' },
+  playback: { t_ns: 'number', playing: 'boolean', runs: 'object' },
 };
 
 /** @return null for a type unknown to this version, since newer servers may send more types. */

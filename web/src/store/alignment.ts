@@ -44,7 +44,7 @@ export class Alignment {
     if (runId === null || metrics === null || mode === shownAlignment(state)) return;
     if (mode === kDefaultAlignment) {
       state.aligned = null;
-      this.apply(mode);
+      this.apply(runId, mode);
       return;
     }
     const attempt = `${runId}/${mode}`;
@@ -60,11 +60,11 @@ export class Alignment {
     if (estimates.size === 0) return;
     this.tried.delete(attempt);
     now.aligned = { mode, estimates };
-    this.apply(mode);
+    this.apply(runId, mode);
   }
 
-  private apply(mode: string): void {
-    this.session.command({ type: 'align', mode });
+  private apply(run: string, mode: string): void {
+    this.session.command({ type: 'align', run, mode });
     this.store.change('rows', 'metrics', 'scene');
   }
 

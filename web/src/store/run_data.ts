@@ -54,7 +54,7 @@ export class RunData {
    * Adds rows. If rows are sent again, the server's version replaces the stored one.
    * @return false if preceding rows are missing; nothing is changed then
    */
-  apply(rows: Rows): boolean {
+  apply(rows: Omit<Rows, 'run'>): boolean {
     const count = Math.max(0, ...Object.values(rows.columns).map((cells) => cells.length));
     const known = this.countOf(rows.stream);
     if (rows.seq > known) return false;
@@ -75,7 +75,7 @@ export class RunData {
     return true;
   }
 
-  /** Number of rows received by stream, in the form of `attach`. */
+  /** Number of rows received by stream, in the form of `watch`. */
   resume(): Resume {
     const counts: Resume = {};
     if (this.truth.length > 0) counts['truth'] = this.truth.length;

@@ -3,7 +3,6 @@ import type { ConnectionState, StreamClient, StreamListener } from '../connectio
 import type {
   ClientMessage,
   PictureStream,
-  Playback,
   Resume,
   ServerMessage,
 } from '../protocol/messages';
@@ -13,13 +12,15 @@ import type { Decode } from './picture_decoder';
 import { PictureDecoder } from './picture_decoder';
 import { pictureRates } from './picture_rates';
 import { RunData } from './run_data';
+import type { RunPlayback } from './run_playback';
+import { playbackOf } from './run_playback';
 import type { Notices } from './notices';
 import type { Store } from './state';
 
 export class Session implements StreamListener {
   private client: StreamClient | null = null;
   private readonly decoder: PictureDecoder;
-  /** Where to seek when the attached run sends its playback. */
+  /** Where to seek when the watched run sends its playback. */
   private pendingSeek_ns: number | null = null;
   /**
    * Position of a live viewer when the connection was lost; used if the run has ended meanwhile.
@@ -68,6 +69,7 @@ export class Session implements StreamListener {
     state.metrics = null;
     state.statuses = {};
     state.playback = null;
+    state.series = [];
     state.wantedSpeed = null;
     state.aligned = null;
     state.cameras = [];
@@ -76,7 +78,7 @@ export class Session implements StreamListener {
     this.livePlace_ns = null;
     this.subscribed = '';
     this.saidOfWorld = null;
-    this.client?.attach(id);
+    this.client?.watch(id);
     this.store.change('run', 'rows', 'log', 'metrics', 'estimators', 'playback');
     this.store.change('pictures', 'scene', 'cameras');
   }
@@ -115,17 +117,21 @@ export class Session implements StreamListener {
     } else if (message.type === 'estimators') {
       state.statuses = message.estimators;
       this.store.change('estimators');
-    } else if (message.type === 'streams') {
-      state.rates = pictureRates(message.streams);
+    } else if (message.type === 'series') {
+      state.series = message.series;
+      this.store.change('rows');
+    } else if (message.type === 'pictures') {
+      state.rates = pictureRates(message.pictures);
       this.store.change('pictures');
     } else if (message.type === 'playback') {
-      this.onPlayback(message);
+      const playback = playbackOf(message, state.runId);
+      if (playback !== null) this.onPlayback(playback);
     } else if (message.type === 'error') {
       this.notices.error(message.message);
     }
   }
 
-  onAttachFailed(run: string, message: string): void {
+  onWatchFailed(run: string, message: string): void {
     if (this.store.state.runId === run) this.selectRun(null);
     this.notices.error(`Run ${run} cannot be shown: ${message}`);
   }
@@ -143,11 +149,11 @@ export class Session implements StreamListener {
   }
 
   restore(): ClientMessage[] {
-    const { playback } = this.store.state;
-    if (playback === null) return [];
+    const { playback, runId } = this.store.state;
+    if (playback === null || runId === null) return [];
     const commands: ClientMessage[] = [];
     const { aligned } = this.store.state;
-    if (aligned !== null) commands.push({ type: 'align', mode: aligned.mode });
+    if (aligned !== null) commands.push({ type: 'align', run: runId, mode: aligned.mode });
     if (playback.speed !== 1) commands.push({ type: 'speed', value: playback.speed });
     if (playback.loop) commands.push({ type: 'loop', value: true });
     this.livePlace_ns = playback.live ? playback.t_ns : null;
@@ -175,12 +181,11 @@ export class Session implements StreamListener {
     const { state } = this.store;
     if (state.data.apply(rows)) this.store.change(rows.stream === 'log' ? 'log' : 'rows');
     else if (state.runId !== null) {
-      this.client?.attach(state.runId);
-      if (state.aligned !== null) this.command({ type: 'align', mode: state.aligned.mode });
+      this.client?.watch(state.runId);
     }
   }
 
-  private onPlayback(playback: Playback): void {
+  private onPlayback(playback: RunPlayback): void {
     const { state } = this.store;
     state.playback = playback;
     if (playback.speed === state.wantedSpeed) state.wantedSpeed = null;
@@ -196,12 +201,13 @@ export class Session implements StreamListener {
   }
 
   private subscribe(): void {
-    const { run, camera } = this.store.state;
-    if (run === null || this.store.state.runId === null) return;
+    const { run, runId, camera } = this.store.state;
+    if (run === null || runId === null) return;
     const max_width_px = this.pictureWidth_px;
-    const streams: PictureStream[] = [
-      { name: 'scene', max_hz: 20, quality: 80 },
+    const pictures: PictureStream[] = [
+      { run: runId, name: 'scene', max_hz: 20, quality: 80 },
       {
+        run: runId,
         name: 'camera',
         ...(camera === null ? {} : { camera }),
         max_hz: 31,
@@ -209,16 +215,17 @@ export class Session implements StreamListener {
         max_width_px,
       },
       ...run.estimators.map((name) => ({
+        run: runId,
         name: `debug/${name}`,
         max_hz: 15,
         quality: 75,
         max_width_px,
       })),
     ];
-    const key = JSON.stringify(streams);
+    const key = JSON.stringify(pictures);
     if (key === this.subscribed) return;
     this.subscribed = key;
-    this.client?.subscribe(streams);
+    this.client?.subscribe(pictures);
   }
 
   /** Sends a playback command to the watched run. */

@@ -2,7 +2,7 @@
 import type { ConnectionState } from '../connection/stream_client';
 import { picturesOf } from '../connection/stream_client';
 import type { FieldError } from '../protocol/field_errors';
-import type { Playback, SceneMode, SceneView } from '../protocol/messages';
+import type { SceneMode, SceneView, SeriesInfo } from '../protocol/messages';
 import type {
   CameraInfo,
   EstimatorStatus,
@@ -16,6 +16,7 @@ import type { LogPage } from './logs/log_browser';
 import { initialLogPage } from './logs/log_browser';
 import type { PictureRate } from './picture_rates';
 import type { EstimateRows } from './run_data';
+import type { RunPlayback } from './run_playback';
 import type { ConnectState } from './vehicle/vehicle_connect';
 import { initialConnect } from './vehicle/vehicle_connect';
 import { RunData } from './run_data';
@@ -68,7 +69,9 @@ export interface State {
   metrics: Metrics | null;
   /** Status of the run's estimators, by name. */
   statuses: Record<string, EstimatorStatus>;
-  playback: Playback | null;
+  playback: RunPlayback | null;
+  /** What the server offers of the run to be plotted. */
+  series: SeriesInfo[];
   /** Requested and not confirmed yet. */
   wantedSpeed: number | null;
   pictures: Map<string, Picture>;
@@ -112,6 +115,7 @@ export function initialState(): State {
     metrics: null,
     statuses: {},
     playback: null,
+    series: [],
     wantedSpeed: null,
     pictures: new Map(),
     rates: new Map(),

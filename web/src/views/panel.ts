@@ -1,5 +1,5 @@
 // The frame of every panel: title, tools, and the number of the frame that it shows.
-import type { Playback } from '../protocol/messages';
+import type { RunPlayback } from '../store/run_playback';
 import { h, setAttribute, setText } from './dom';
 import { icon } from './icons';
 
@@ -18,7 +18,7 @@ export interface Panel {
 const kRateHint = 'Pictures per second, actual / requested: the real-time flight has priority';
 
 /** Frame at the cursor; null before the first one. */
-export function frameOf(playback: Playback | null): number | null {
+export function frameOf(playback: RunPlayback | null): number | null {
   return playback === null || playback.frame < 0 ? null : playback.frame;
 }
 

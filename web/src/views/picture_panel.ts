@@ -1,5 +1,5 @@
 // Panels that show the pictures of a stream; here the debug images of the estimators.
-import type { Playback } from '../protocol/messages';
+import type { RunPlayback } from '../store/run_playback';
 import { rateText } from '../store/picture_rates';
 import type { State, Topic } from '../store/state';
 import { h, rebuild } from './dom';
@@ -96,7 +96,7 @@ export class DebugPanel extends PicturePanel {
 }
 
 /** The playback while it is paused or stopped; null while it moves. */
-export function standingStill({ playback }: State): Playback | null {
+export function standingStill({ playback }: State): RunPlayback | null {
   return playback === null || playback.playing ? null : playback;
 }
 

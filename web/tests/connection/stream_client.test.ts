@@ -4,7 +4,7 @@ import { StreamClient } from '../../src/connection/stream_client';
 import type { ClientMessage, Resume, ServerMessage } from '../../src/protocol/messages';
 import { encodePicture } from '../support/encode_picture';
 import { FakeSocket, FakeTimers } from '../support/fake_socket';
-import { samplePlayback, sampleRun } from '../support/samples';
+import { playbackMessage, sampleRun } from '../support/samples';
 
 class Listener implements StreamListener {
   states: ConnectionState[] = [];
@@ -16,7 +16,7 @@ class Listener implements StreamListener {
   commands: ClientMessage[] = [];
   onState = (state: ConnectionState) => this.states.push(state);
   onMessage = (message: ServerMessage) => this.messages.push(message);
-  onAttachFailed = (run: string, message: string) => this.failed.push(`${run}: ${message}`);
+  onWatchFailed = (run: string, message: string) => this.failed.push(`${run}: ${message}`);
   onPicture = (name: string) => this.pictures.push(name);
   onProtocolError = (text: string) => this.protocolErrors.push(text);
   resume = () => this.rows;
@@ -58,10 +58,10 @@ beforeEach(() => {
   });
 });
 
-function attached(run = 'r1'): void {
+function watching(run = 'r1'): void {
   client.connect();
   socket().hello();
-  client.attach(run);
+  client.watch(run);
   socket().receive({ type: 'ok', request: socket().last().request });
   socket().receive({ type: 'run', run: sampleRun({ id: run }) });
 }
@@ -69,18 +69,18 @@ function attached(run = 'r1'): void {
 describe('StreamClient', () => {
   it('says nothing before the server has greeted, then all that is wanted', () => {
     client.connect();
-    client.attach('r1');
-    client.subscribe([{ name: 'camera' }]);
+    client.watch('r1');
+    client.subscribe([{ run: 'r1', name: 'camera' }]);
     client.setView({ mode: 'top' });
     expect(socket().sent).toEqual([]);
     socket().hello();
-    expect(socket().types()).toEqual(['view', 'attach', 'subscribe']);
+    expect(socket().types()).toEqual(['view', 'watch', 'subscribe']);
     expect(listener.states.at(-1)).toEqual({ status: 'open', server: 'overfly 0.1.0' });
   });
 
   it('refuses a server of another protocol and does not come back', () => {
     client.connect();
-    socket().hello(2);
+    socket().hello(3);
     expect(listener.states.at(-1)?.status).toBe('incompatible');
     expect(socket().closed).toBe(true);
     expect(timers.waiting.size).toBe(0);
@@ -139,7 +139,7 @@ describe('StreamClient', () => {
   });
 
   it('closes an open connection when it gives up', () => {
-    attached();
+    watching();
     client.lock();
     expect(socket().closed).toBe(true);
     socket().lose();
@@ -154,40 +154,40 @@ describe('StreamClient', () => {
     expect(timers.waiting.size).toBe(0);
   });
 
-  it('reattaches to the same run with the rows that it has and restores the cursor', () => {
-    attached();
+  it('watches the same run again with the rows that it has and restores the cursor', () => {
+    watching();
     listener.rows = { truth: 10 };
     listener.commands = [{ type: 'seek', t_ns: 5 }];
     socket().lose();
     timers.fire();
     socket().hello();
-    expect(socket().types()).toEqual(['attach', 'seek']);
+    expect(socket().types()).toEqual(['watch', 'seek']);
     expect(socket().sent[0]).toMatchObject({ run: 'r1', resume: { truth: 10 } });
   });
 
   it('resumes without waiting when the server found it too slow', () => {
-    attached();
+    watching();
     socket().lose(4000);
     expect(timers.delays()).toEqual([0]);
   });
 
   it('keeps out what still comes of the run left behind', () => {
-    attached('old');
+    watching('old');
     listener.messages = [];
-    client.attach('new');
-    const request = socket().last().request;
-    socket().receive({ type: 'playback', ...samplePlayback({ frame: 7 }) });
+    client.watch('new');
+    expect(socket().types().slice(-2)).toEqual(['unwatch', 'watch']);
+    socket().receive(playbackMessage({ frame: 7 }, 'old'));
     socket().receive({ type: 'run', run: sampleRun({ id: 'old' }) });
+    socket().receive({ type: 'metrics', run: 'old', metrics: {} });
     expect(listener.messages).toEqual([]);
-    socket().receive({ type: 'ok', request });
-    socket().receive({ type: 'playback', ...samplePlayback({ frame: 8 }) });
-    expect(listener.messages).toMatchObject([{ type: 'playback', frame: 8 }]);
+    socket().receive(playbackMessage({ frame: 8 }, 'new'));
+    expect(listener.messages).toMatchObject([{ type: 'playback', runs: { new: { frame: 8 } } }]);
   });
 
-  it('reports a run that cannot be attached and does not try again', () => {
+  it('reports a run that cannot be watched and does not try again', () => {
     client.connect();
     socket().hello();
-    client.attach('gone');
+    client.watch('gone');
     const { request } = socket().last();
     socket().receive({ type: 'error', request, code: 'not_found', message: 'no such run' });
     expect(listener.failed).toEqual(['gone: no such run']);
@@ -197,16 +197,19 @@ describe('StreamClient', () => {
     expect(socket().types()).toEqual([]);
   });
 
-  it('names pictures by the streams announced and ignores others', () => {
-    attached();
-    socket().receive({ type: 'streams', streams: [{ id: 4, name: 'camera' }] });
-    socket().receive(picture(4));
-    socket().receive(picture(5));
+  it('names pictures as announced and ignores those of other runs', () => {
+    watching();
+    const pictures = [
+      { id: 4, run: 'r1', name: 'camera' },
+      { id: 6, run: 'old', name: 'camera' },
+    ];
+    socket().receive({ type: 'pictures', pictures });
+    for (const id of [4, 5, 6]) socket().receive(picture(id));
     expect(listener.pictures).toEqual(['camera']);
   });
 
   it('survives unreadable messages and reports them', () => {
-    attached();
+    watching();
     socket().receive(new ArrayBuffer(3));
     socket().onmessage?.({ data: '{' } as MessageEvent);
     expect(listener.protocolErrors.length).toBe(2);

@@ -4,7 +4,7 @@ import { Alignment, canBeDrawn } from '../../src/store/alignment';
 import { Cameras } from '../../src/store/cameras';
 import { Notices } from '../../src/store/notices';
 import { shownAlignment, shownEstimate } from '../../src/store/state';
-import { samplePlayback } from '../support/samples';
+import { playbackMessage } from '../support/samples';
 import { Viewing } from '../support/viewing';
 
 const metrics = {
@@ -45,7 +45,7 @@ describe('Alignment', () => {
     );
 
   it('draws the estimates as the server places them, and has the views do so', async () => {
-    viewing.socket.receive({ type: 'metrics', metrics });
+    viewing.socket.receive({ type: 'metrics', run: 'r1', metrics });
     const chosen = alignment();
     await chosen.choose('sim3');
     expect(asked).toEqual(['api/runs/r1/trajectories/feature?format=json&alignment=sim3']);
@@ -58,7 +58,7 @@ describe('Alignment', () => {
   });
 
   it('stays with what rows say where the score has no transform', async () => {
-    viewing.socket.receive({ type: 'metrics', metrics });
+    viewing.socket.receive({ type: 'metrics', run: 'r1', metrics });
     await alignment().choose('se3');
     expect(asked).toEqual([]);
     expect(viewing.store.state.alignment).toBe('se3');
@@ -69,7 +69,7 @@ describe('Alignment', () => {
 
   it('asks once for what the server refuses', async () => {
     answer = () => Response.json({ error: { code: 'conflict', message: 'no' } }, { status: 409 });
-    viewing.socket.receive({ type: 'metrics', metrics });
+    viewing.socket.receive({ type: 'metrics', run: 'r1', metrics });
     const chosen = alignment();
     await chosen.choose('sim3');
     await chosen.refresh();
@@ -79,7 +79,7 @@ describe('Alignment', () => {
   });
 
   it('is asked for again after a lost connection', async () => {
-    viewing.socket.receive({ type: 'metrics', metrics });
+    viewing.socket.receive({ type: 'metrics', run: 'r1', metrics });
     await alignment().choose('sim3');
     viewing.socket.lose();
     viewing.timers.fire();
@@ -92,10 +92,10 @@ describe('Cameras', () => {
   it('are read once a run has frames', async () => {
     answer = () => Response.json({ cameras: [{ name: 'front', width_px: 64, height_px: 48 }] });
     const cameras = new Cameras(viewing.store, rest());
-    viewing.socket.receive({ type: 'playback', ...samplePlayback({ frame: -1 }) });
+    viewing.socket.receive(playbackMessage({ frame: -1 }));
     await cameras.refresh();
     expect(asked).toEqual([]);
-    viewing.socket.receive({ type: 'playback', ...samplePlayback() });
+    viewing.socket.receive(playbackMessage());
     await cameras.refresh();
     await cameras.refresh();
     expect(asked).toEqual(['api/runs/r1/manifest']);

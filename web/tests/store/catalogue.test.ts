@@ -90,7 +90,7 @@ describe('Catalogue', () => {
       ]),
     );
     expect(store.state.runs?.map(({ id }) => id)).toEqual(['new']);
-    expect(socket.sent.find(({ type }) => type === 'attach')).toMatchObject({ run: 'new' });
+    expect(socket.sent.find(({ type }) => type === 'watch')).toMatchObject({ run: 'new' });
     expect(store.state.launching).toBe(false);
   });
 

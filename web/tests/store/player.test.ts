@@ -1,5 +1,5 @@
 import { beforeEach, describe, expect, it } from 'vitest';
-import { samplePlayback } from '../support/samples';
+import { playbackMessage } from '../support/samples';
 import { Viewing } from '../support/viewing';
 
 let viewing: Viewing;
@@ -21,10 +21,10 @@ describe('Player', () => {
 
   it('plays from the begin again when it stands at the end', () => {
     viewing.watch();
-    viewing.socket.receive({ type: 'playback', ...samplePlayback({ t_ns: 2e9 }) });
+    viewing.socket.receive(playbackMessage({ t_ns: 2e9 }));
     viewing.player.togglePlay();
     expect(viewing.socket.types().slice(-2)).toEqual(['seek', 'play']);
-    viewing.socket.receive({ type: 'playback', ...samplePlayback({ playing: true }) });
+    viewing.socket.receive(playbackMessage({ playing: true }));
     viewing.player.togglePlay();
     expect(viewing.socket.last().type).toBe('pause');
   });
@@ -35,9 +35,9 @@ describe('Player', () => {
     expect(viewing.socket.last()).toMatchObject({ type: 'speed', value: 2 });
     viewing.player.changeSpeed(1);
     expect(viewing.socket.last()).toMatchObject({ type: 'speed', value: 5 });
-    viewing.socket.receive({ type: 'playback', ...samplePlayback({ speed: 2 }) });
-    viewing.socket.receive({ type: 'playback', ...samplePlayback({ speed: 5 }) });
-    viewing.socket.receive({ type: 'playback', ...samplePlayback({ speed: 0.1 }) });
+    viewing.socket.receive(playbackMessage({ speed: 2 }));
+    viewing.socket.receive(playbackMessage({ speed: 5 }));
+    viewing.socket.receive(playbackMessage({ speed: 0.1 }));
     const sent = viewing.socket.sent.length;
     viewing.player.changeSpeed(-1);
     expect(viewing.socket.sent.length).toBe(sent);

@@ -1,7 +1,7 @@
 import { beforeEach, describe, expect, it } from 'vitest';
 import { rateText } from '../../src/store/picture_rates';
 import { cameraPictures } from '../../src/store/state';
-import { samplePlayback, sampleRun, sampleStatus } from '../support/samples';
+import { samplePlayback, playbackMessage, sampleRun, sampleStatus } from '../support/samples';
 import { Viewing } from '../support/viewing';
 
 let viewing: Viewing;
@@ -15,7 +15,7 @@ describe('Session', () => {
     viewing.watch();
     const subscribe = viewing.socket.sent.find(({ type }) => type === 'subscribe');
     expect(subscribe).toMatchObject({
-      streams: [{ name: 'scene' }, { name: 'camera' }, { name: 'debug/feature' }],
+      pictures: [{ name: 'scene' }, { name: 'camera' }, { name: 'debug/feature' }],
     });
     expect(viewing.socket.types().filter((type) => type === 'subscribe')).toHaveLength(1);
   });
@@ -24,19 +24,19 @@ describe('Session', () => {
     viewing.watch(1.5e9);
     expect(viewing.socket.last()).toMatchObject({ type: 'seek', t_ns: 1.5e9 });
     const sent = viewing.socket.sent.length;
-    viewing.socket.receive({ type: 'playback', ...samplePlayback({ t_ns: 1.5e9 }) });
+    viewing.socket.receive(playbackMessage({ t_ns: 1.5e9 }));
     expect(viewing.socket.sent.length).toBe(sent);
   });
 
   it('comes back after a lost connection: rows resumed, cursor where it was', () => {
     viewing.watch();
-    viewing.socket.receive({ type: 'playback', ...samplePlayback({ t_ns: 1e9, speed: 2 }) });
+    viewing.socket.receive(playbackMessage({ t_ns: 1e9, speed: 2 }));
     viewing.socket.lose();
     expect(viewing.store.state.connection.status).toBe('waiting');
     viewing.timers.fire();
     viewing.socket.hello();
-    const attach = viewing.socket.sent.find(({ type }) => type === 'attach');
-    expect(attach).toMatchObject({ run: 'r1', resume: { truth: 63 } });
+    const watch = viewing.socket.sent.find(({ type }) => type === 'watch');
+    expect(watch).toMatchObject({ run: 'r1', resume: { truth: 63 } });
     expect(viewing.socket.types().slice(-3)).toEqual(['speed', 'seek', 'pause']);
   });
 
@@ -45,13 +45,13 @@ describe('Session', () => {
     session.selectRun('r1');
     socket.receive({ type: 'run', run: sampleRun({ status: 'running' }) });
     const live = samplePlayback({ t_ns: 1.2e9, live: true, playing: true });
-    socket.receive({ type: 'playback', ...live });
+    socket.receive(playbackMessage(live));
     socket.lose();
     viewing.timers.fire();
     viewing.socket.hello();
     viewing.socket.receive({ type: 'run', run: sampleRun() });
     expect(viewing.socket.types()).not.toContain('seek');
-    viewing.socket.receive({ type: 'playback', ...samplePlayback() });
+    viewing.socket.receive(playbackMessage());
     expect(viewing.socket.last()).toMatchObject({ type: 'seek', t_ns: 1.2e9 });
   });
 
@@ -59,19 +59,19 @@ describe('Session', () => {
     viewing.session.selectRun('r1');
     viewing.socket.receive({ type: 'run', run: sampleRun({ status: 'running' }) });
     const live = samplePlayback({ t_ns: 1.2e9, live: true, playing: true });
-    viewing.socket.receive({ type: 'playback', ...live });
+    viewing.socket.receive(playbackMessage(live));
     viewing.socket.lose();
     viewing.timers.fire();
     viewing.socket.hello();
     viewing.socket.receive({ type: 'run', run: sampleRun({ status: 'running' }) });
-    viewing.socket.receive({ type: 'playback', ...samplePlayback({ live: true, t_ns: 1.5e9 }) });
+    viewing.socket.receive(playbackMessage({ live: true, t_ns: 1.5e9 }));
     expect(viewing.socket.types()).not.toContain('seek');
   });
 
   it('keeps the status of the estimators until another run is watched', () => {
     viewing.watch();
     const estimators = { feature: sampleStatus({ dropped: 7 }) };
-    viewing.socket.receive({ type: 'estimators', estimators });
+    viewing.socket.receive({ type: 'estimators', run: 'r1', estimators });
     expect(viewing.store.state.statuses['feature']?.dropped).toBe(7);
     expect(viewing.store.take().has('estimators')).toBe(true);
     viewing.session.selectRun('r2');
@@ -80,17 +80,17 @@ describe('Session', () => {
 
   it('knows which pictures come more slowly than they were asked for', () => {
     viewing.watch();
-    const streams = [
-      { id: 1, name: 'scene', max_hz: 20, limit_hz: 5 },
-      { id: 2, name: 'camera', camera: 'left', max_hz: 31, limit_hz: 5 },
-      { id: 3, name: 'debug/feature', max_hz: 4, limit_hz: 4 },
+    const pictures = [
+      { id: 1, run: 'r1', name: 'scene', max_hz: 20, limit_hz: 5 },
+      { id: 2, run: 'r1', name: 'camera', camera: 'left', max_hz: 31, limit_hz: 5 },
+      { id: 3, run: 'r1', name: 'debug/feature', max_hz: 4, limit_hz: 4 },
     ];
-    viewing.socket.receive({ type: 'streams', streams });
+    viewing.socket.receive({ type: 'pictures', pictures });
     const { rates } = viewing.store.state;
     expect([...rates.keys()]).toEqual(['scene', 'camera/left']);
     expect(rateText(rates.get('camera/left'))).toBe('5/31 Hz');
     expect(rateText(rates.get('debug/feature'))).toBe('');
-    viewing.socket.receive({ type: 'streams', streams: [{ id: 1, name: 'scene' }] });
+    viewing.socket.receive({ type: 'pictures', pictures: [{ id: 1, run: 'r1', name: 'scene' }] });
     expect(viewing.store.state.rates.size).toBe(0);
   });
 
@@ -99,7 +99,7 @@ describe('Session', () => {
     viewing.session.setCamera('tail');
     expect(viewing.socket.last()).toMatchObject({
       type: 'subscribe',
-      streams: [{ name: 'scene' }, { name: 'camera', camera: 'tail' }, { name: 'debug/feature' }],
+      pictures: [{ name: 'scene' }, { name: 'camera', camera: 'tail' }, { name: 'debug/feature' }],
     });
     expect(cameraPictures(viewing.store.state)).toBe('camera/tail');
     viewing.session.selectRun('r2');
@@ -108,9 +108,9 @@ describe('Session', () => {
 
   it('asks again for rows when some are missing', () => {
     viewing.watch();
-    viewing.socket.receive({ type: 'rows', stream: 'truth', seq: 99, columns: { frame: [99] } });
+    viewing.socket.receive({ type: 'rows', run: 'r1', stream: 'truth', seq: 99, columns: { frame: [99] } });
     expect(viewing.socket.last()).toMatchObject({
-      type: 'attach',
+      type: 'watch',
       run: 'r1',
       resume: { truth: 63 },
     });
@@ -118,7 +118,7 @@ describe('Session', () => {
 
   it('leaves nothing of a run behind when another is chosen', () => {
     viewing.watch();
-    viewing.socket.receive({ type: 'metrics', metrics: { estimators: {} } });
+    viewing.socket.receive({ type: 'metrics', run: 'r1', metrics: { estimators: {} } });
     viewing.session.selectRun('r2');
     const { data, metrics, playback, run } = viewing.store.state;
     expect([data.truth.length, metrics, playback, run]).toEqual([0, null, null, null]);

@@ -26,7 +26,7 @@ export class FakeSocket implements Socket {
     this.onmessage?.({ data: payload } as MessageEvent);
   }
 
-  hello(protocol = 1): void {
+  hello(protocol = 2): void {
     this.receive({ type: 'hello', protocol, server: 'overfly 0.1.0', connection: 'c1' });
   }
 

@@ -1,5 +1,6 @@
 // Values as the server sends them.
-import type { Playback } from '../../src/protocol/messages';
+import type { RunInstant } from '../../src/protocol/messages';
+import type { RunPlayback } from '../../src/store/run_playback';
 import type { EstimatorStatus, Run } from '../../src/protocol/rest_types';
 
 export function sampleRun(change: Partial<Run> = {}): Run {
@@ -24,7 +25,7 @@ export function sampleRun(change: Partial<Run> = {}): Run {
   };
 }
 
-export function samplePlayback(change: Partial<Playback> = {}): Playback {
+export function samplePlayback(change: Partial<RunPlayback> = {}): RunPlayback {
   return {
     t_ns: 0,
     frame: 0,
@@ -32,13 +33,23 @@ export function samplePlayback(change: Partial<Playback> = {}): Playback {
     live: false,
     speed: 1,
     loop: false,
+    range: null,
     begin_ns: 0,
     end_ns: 2e9,
+    flying: false,
     alignment: 'init_scale',
     truth: null,
     estimates: {},
     ...change,
   };
+}
+
+/** The message `playback` about one run. */
+export function playbackMessage(change: Partial<RunPlayback> = {}, run = 'r1') {
+  const { frame, alignment, truth, estimates, ...clock } = samplePlayback(change);
+  const { t_ns, end_ns } = clock;
+  const instant: RunInstant = { t_ns, frame, alignment, truth, estimates, offset_ns: 0, end_ns };
+  return { type: 'playback' as const, ...clock, runs: { [run]: instant } };
 }
 
 export function sampleStatus(change: Partial<EstimatorStatus> = {}): EstimatorStatus {

@@ -6,7 +6,7 @@ import { SceneControl } from '../../src/store/scene_control';
 import { Session } from '../../src/store/session';
 import { Store } from '../../src/store/state';
 import { FakeSocket, FakeTimers } from './fake_socket';
-import { samplePlayback, sampleRun } from './samples';
+import { playbackMessage, sampleRun } from './samples';
 
 export class Viewing {
   readonly store = new Store();
@@ -47,10 +47,11 @@ export class Viewing {
     const stamps = frame.map((k) => Math.round((k * 1e9) / 31));
     this.socket.receive({
       type: 'rows',
+      run: 'r1',
       stream: 'truth',
       seq: 0,
       columns: { frame, t_ns: stamps },
     });
-    this.socket.receive({ type: 'playback', ...samplePlayback() });
+    this.socket.receive(playbackMessage());
   }
 }

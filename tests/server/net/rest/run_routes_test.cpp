@@ -104,7 +104,7 @@ TEST(RunRoutes, NewMetricsAreServedAndSentToViewers) {
   TestServer server;
   const std::string id = server.fly("tiny");
   WebSocketClient viewer(server.port());
-  viewer.send({{"type", "attach"}, {"run", id}});
+  viewer.send({{"type", "watch"}, {"run", id}});
   json metrics = viewer.wait_for("metrics").at("metrics");
   metrics["flight"]["path_length_m"] = 1.5;
   const fs::path folder = server.folder() / "runs" / id;

@@ -1,4 +1,4 @@
-#include "server/net/stream/playback_state.hpp"
+#include "server/net/stream/run_instant.hpp"
 
 #include <algorithm>
 
@@ -100,25 +100,15 @@ EstimatePlaces EstimatePlaces::of(const RunTimeline& timeline, const std::string
   return places;
 }
 
-json playback_json(const RunTimeline& timeline,
-                   const PlaybackCursor& cursor,
-                   const EstimatePlaces& places) {
-  const std::int64_t t_ns = cursor.t_ns();
+json instant_json(const RunTimeline& timeline, std::int64_t t_ns, const EstimatePlaces& places) {
   const auto row = timeline.frame_at(t_ns);
   json estimates = json::object();
   const std::int64_t period_ns = frame_period_ns(timeline);
   for (std::size_t i = 0; i < timeline.estimators().size(); ++i) {
     estimates[timeline.estimators()[i]] = estimate_json(timeline, i, places, t_ns, period_ns);
   }
-  return {{"type", "playback"},
-          {"t_ns", t_ns},
+  return {{"t_ns", t_ns},
           {"frame", row ? row->frame : -1},
-          {"playing", cursor.playing()},
-          {"live", cursor.live()},
-          {"speed", cursor.speed()},
-          {"loop", cursor.loop()},
-          {"begin_ns", 0},
-          {"end_ns", cursor.end_ns()},
           {"alignment", places.mode},
           {"truth", row ? truth_json(timeline, *row, t_ns) : json(nullptr)},
           {"estimates", std::move(estimates)}};

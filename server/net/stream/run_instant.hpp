@@ -1,4 +1,4 @@
-// A viewer's position in a run: the state at an instant, and the neighbouring frames.
+// The state of a run at an instant, and the neighbouring frames.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "server/net/stream/playback_cursor.hpp"
 #include "server/timeline/row_alignment.hpp"
 #include "server/timeline/run_timeline.hpp"
 
@@ -22,11 +21,11 @@ struct EstimatePlaces {
   static EstimatePlaces of(const server::RunTimeline& timeline, const std::string& mode);
 };
 
-/// The `playback` message: cursor, truth and estimates at its instant, interpolated between
-/// frames. Before the first frame `frame` is -1 and `truth` null.
-[[nodiscard]] nlohmann::json playback_json(const server::RunTimeline& timeline,
-                                           const PlaybackCursor& cursor,
-                                           const EstimatePlaces& places);
+/// What the message `playback` says about a run: truth and estimates at an instant of the run,
+/// interpolated between frames. Before the first frame `frame` is -1 and `truth` null.
+[[nodiscard]] nlohmann::json instant_json(const server::RunTimeline& timeline,
+                                          std::int64_t t_ns,
+                                          const EstimatePlaces& places);
 
 /// Stamp of the last recorded frame; 0 before the first.
 [[nodiscard]] std::int64_t end_of(const server::RunTimeline& timeline);

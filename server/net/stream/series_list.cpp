@@ -1,0 +1,87 @@
+#include "server/net/stream/series_list.hpp"
+
+#include <span>
+#include <string>
+
+#include "server/net/stream/row_encoder.hpp"
+
+namespace overfly::net {
+namespace {
+
+using nlohmann::json;
+
+struct Series {
+  const char* column;
+  const char* label;
+  const char* unit;    ///< of the values as shown
+  const char* group;   ///< series of one group share a plot
+  double scale = 1.0;  ///< shown value = value of the column * scale
+};
+
+constexpr Series kPose[] = {{"x_m", "x (east)", "m", "x"},
+                            {"y_m", "y (north)", "m", "y"},
+                            {"z_m", "z (up)", "m", "z"},
+                            {"roll_deg", "roll", "deg", "roll"},
+                            {"pitch_deg", "pitch", "deg", "pitch"},
+                            {"yaw_deg", "yaw", "deg", "yaw"}};
+
+constexpr Series kImage[] = {
+    {"texels_per_pixel", "texels per pixel", "texel/px", "texels_per_pixel"},
+    {"void_fraction", "void", "%", "void", 100.0},
+    {"exposure_ns", "exposure", "ms", "exposure", 1e-6},
+    {"gain", "gain", "", "gain"},
+    {"saturated_fraction", "saturated", "%", "saturated", 100.0},
+    {"late_tiles", "late tiles", "", "late_tiles"},
+    {"stamp_offset_ns", "stamp offset", "ms", "stamp_offset", 1e-6}};
+
+constexpr Series kEstimate[] = {
+    {"error_m", "position error", "m", "position_error"},
+    {"error_along_m", "error along the path", "m", "position_error_parts"},
+    {"error_across_m", "error to the right", "m", "position_error_parts"},
+    {"error_up_m", "error up", "m", "position_error_parts"},
+    {"error_rotation_deg", "rotation error", "deg", "rotation_error"},
+    {"latency_ms", "latency", "ms", "latency"}};
+
+constexpr Series kVehicle[] = {{"battery_v", "battery", "V", "battery_voltage"},
+                               {"battery_percent", "battery", "%", "battery"},
+                               {"satellites", "satellites", "", "satellites"},
+                               {"messages_per_s", "messages", "1/s", "messages"},
+                               {"lost_percent", "lost messages", "%", "lost_messages"},
+                               {"clock_rate", "clock rate", "", "clock_rate"},
+                               {"round_trip_ms", "round trip", "ms", "round_trip"}};
+
+void add(const std::string& stream, std::span<const Series> list, json* all) {
+  for (const Series& series : list) {
+    json entry = {{"stream", stream},
+                  {"column", series.column},
+                  {"label", series.label},
+                  {"unit", series.unit},
+                  {"group", series.group}};
+    if (series.scale != 1.0) entry["scale"] = series.scale;
+    all->push_back(std::move(entry));
+  }
+}
+
+}  // namespace
+
+json series_json(const server::RunTimeline& timeline) {
+  json all = json::array();
+  add("truth", kPose, &all);
+  add("truth", kImage, &all);
+  for (std::size_t i = 0; i < timeline.estimators().size(); ++i) {
+    const std::string stream = "estimate/" + timeline.estimators()[i];
+    add(stream, kPose, &all);
+    add(stream, kEstimate, &all);
+    for (const std::string& counter : timeline.counter_names(i)) {
+      all.push_back({{"stream", stream},
+                     {"column", counter_column(counter)},
+                     {"label", counter},
+                     {"unit", ""},
+                     {"group", counter_column(counter)}});
+    }
+  }
+  if (!timeline.vehicle_statuses(0, 1).empty()) add("vehicle", kVehicle, &all);
+  return all;
+}
+
+}  // namespace overfly::net

@@ -1,0 +1,100 @@
+#include "server/timeline/estimate_errors.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+namespace overfly::server {
+namespace {
+
+/// 10 m/s to the north-east (heading 45 deg) for ten frames, the camera at the body.
+std::unique_ptr<RunTimeline> straight_flight(double speed_m_s = 10.0) {
+  auto timeline = std::make_unique<RunTimeline>(RunInfo{}, std::vector<std::string>{"a"});
+  timeline->set_cameras({{"", PinholeCamera(), Pose()}});
+  for (int k = 0; k < 10; ++k) {
+    FrameRow row;
+    row.frame = 2 * k;  // every other frame was lost
+    row.t_ns = k * 100'000'000LL;
+    const double way_m = speed_m_s * 0.1 * k / std::sqrt(2.0);
+    row.T_world_body.translation = {way_m, way_m, 50.0};
+    row.T_world_camera = row.T_world_body;
+    timeline->append_frame(row);
+  }
+  return timeline;
+}
+
+EstimateRow estimate_at(std::int64_t frame, const Pose& T_world_body) {
+  EstimateRow row;
+  row.sample.frame = frame;
+  row.sample.state = TrackingState::kTracking;
+  row.T_world_body = T_world_body;
+  return row;
+}
+
+TEST(EstimateErrors, AreSplitByTheDirectionOfTheTrueMotion) {
+  const auto flight = straight_flight();
+  const RunTimeline& timeline = *flight;
+  Pose off = timeline.frames(4, 1).front().T_world_body;
+  // 3 m ahead, 2 m to the right (south-east), 1 m down, and 10 deg of yaw.
+  const double d = 1.0 / std::sqrt(2.0);
+  off.translation += Eigen::Vector3d(3.0 * d + 2.0 * d, 3.0 * d - 2.0 * d, -1.0);
+  off.rotation = off.rotation *
+                 Eigen::Quaterniond(Eigen::AngleAxisd(rad_from_deg(10), Eigen::Vector3d::UnitZ()));
+  EstimateRow lost = estimate_at(10, Pose());
+  lost.T_world_body.reset();
+  const auto errors =
+      errors_of(timeline, 0, {estimate_at(8, off), lost, estimate_at(11, off)}, RowAlignment());
+  ASSERT_EQ(errors.size(), 3U);
+  ASSERT_TRUE(errors[0]);
+  EXPECT_NEAR(*errors[0]->along_m, 3.0, 1e-12);
+  EXPECT_NEAR(*errors[0]->across_m, 2.0, 1e-12);
+  EXPECT_NEAR(errors[0]->up_m, -1.0, 1e-12);
+  EXPECT_NEAR(errors[0]->position_m, std::sqrt(14.0), 1e-12);
+  EXPECT_NEAR(deg_from_rad(errors[0]->rotation_rad), 10.0, 1e-9);
+  EXPECT_FALSE(errors[1]) << "not tracking";
+  EXPECT_FALSE(errors[2]) << "frame 11 is not recorded";
+}
+
+TEST(EstimateErrors, HaveNoHorizontalPartsWithoutMotion) {
+  const auto flight = straight_flight(0.5);
+  const RunTimeline& timeline = *flight;
+  const auto errors = errors_of(timeline, 0, {estimate_at(0, Pose())}, RowAlignment());
+  ASSERT_TRUE(errors[0]);
+  EXPECT_FALSE(errors[0]->along_m);
+  EXPECT_NEAR(errors[0]->up_m, -50.0, 1e-12);
+}
+
+TEST(EstimateErrors, AreThoseOfTheCameraNotOfTheBody) {
+  RunTimeline timeline(RunInfo{}, {"a"});
+  const Pose mount{Eigen::Quaterniond::Identity(), Eigen::Vector3d(5.0, 0.0, 0.0)};
+  timeline.set_cameras({{"", PinholeCamera(), mount}});
+  FrameRow row;
+  row.T_world_camera = mount;
+  timeline.append_frame(row);
+  // The body turns by 180 deg about the vertical: the camera moves by 10 m, the body does not.
+  Pose turned;
+  turned.rotation = Eigen::AngleAxisd(kPi, Eigen::Vector3d::UnitZ());
+  const auto errors = errors_of(timeline, 0, {estimate_at(0, turned)}, RowAlignment());
+  ASSERT_TRUE(errors[0]);
+  EXPECT_NEAR(errors[0]->position_m, 10.0, 1e-9);
+}
+
+TEST(RunTimeline, KeepsCountersByTheOrderOfTheirFirstUse) {
+  RunTimeline timeline(RunInfo{}, {"a"});
+  timeline.append_estimate(0, EstimateRow(), {{"inliers", 30.0}});
+  timeline.append_estimate(0, EstimateRow(), {{"blocks", 2.0}, {"inliers", 31.0}});
+  timeline.append_estimate(0, EstimateRow());
+  EXPECT_EQ(timeline.counter_names(0), (std::vector<std::string>{"inliers", "blocks"}));
+  const auto rows = timeline.estimates(0, 0, 3);
+  EXPECT_EQ(rows[0].counters, std::vector<double>{30.0});
+  EXPECT_EQ(rows[1].counters, (std::vector<double>{31.0, 2.0}));
+  EXPECT_TRUE(rows[2].counters.empty());
+  std::map<std::string, double> many;
+  for (int i = 0; i < 100; ++i) many["c" + std::to_string(i)] = i;
+  timeline.append_estimate(0, EstimateRow(), many);
+  EXPECT_EQ(timeline.counter_names(0).size(), RunTimeline::kMaxCounters);
+}
+
+}  // namespace
+}  // namespace overfly::server
