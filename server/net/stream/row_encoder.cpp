@@ -19,7 +19,7 @@ constexpr std::array<const char*, 6> kPoseColumns = {
 /// Null for a value that JSON cannot represent.
 json rounded(double value, double per_unit) {
   if (!std::isfinite(value)) return nullptr;
-  return std::round(value * per_unit) / per_unit;
+  return std::round(value * per_unit) / per_unit + 0.0;  // no negative zeros
 }
 
 std::array<json, 6> pose_values(const Pose& T_world_body) {
