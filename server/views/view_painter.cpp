@@ -67,21 +67,28 @@ std::int64_t stamp_before(const RunTimeline& timeline, const FrameRow& row, std:
   return row.t_ns;
 }
 
+ViewPainter::Painted painted(Result<Picture> picture) {
+  if (!picture) return picture.error();
+  return std::optional<Picture>(std::move(*picture));
+}
+
 }  // namespace
 
-Result<Picture> ViewPainter::paint(const PictureRequest& request) {
+ViewPainter::Painted ViewPainter::paint(const PictureRequest& request) {
   const double before_s = thread_cpu_s();
   auto timeline = runs_.timeline(request.run_id);
   if (!timeline) return timeline.error();
-  Result<Picture> picture = paint_of(request, *timeline);
-  if (picture)
+  Painted picture = paint_of(request, *timeline);
+  if (picture && !*picture) return picture;
+  if (picture) {
     (*timeline)->audience()->picture_made(audience_kind(request), thread_cpu_s() - before_s);
+  }
   runs_.picture_rate().picture_made();
   return picture;
 }
 
-Result<Picture> ViewPainter::paint_of(const PictureRequest& request,
-                                      const std::shared_ptr<RunTimeline>& timeline) {
+ViewPainter::Painted ViewPainter::paint_of(const PictureRequest& request,
+                                           const std::shared_ptr<RunTimeline>& timeline) {
   const Result<std::size_t> camera = timeline->camera_index(request.camera);
   if (!camera) return camera.error();
   const auto row = row_of(*timeline, request, *camera);
@@ -97,31 +104,33 @@ Result<Picture> ViewPainter::paint_of(const PictureRequest& request,
   return Error{ErrorCode::kInvalidArgument, "no such kind of picture"};
 }
 
-Result<Picture> ViewPainter::paint_camera(const PictureRequest& request,
-                                          const RunTimeline& timeline,
-                                          std::size_t camera,
-                                          const FrameRow& row) {
+ViewPainter::Painted ViewPainter::paint_camera(const PictureRequest& request,
+                                               const RunTimeline& timeline,
+                                               std::size_t camera,
+                                               const FrameRow& row) {
   const auto live = timeline.live_camera(camera);
   if (live && live->image && (request.live || live->frame == row.frame)) {
-    return encoder_.encode(*live, request.quality, request.max_width_px);
+    return painted(encoder_.encode(*live, request.quality, request.max_width_px));
   }
   const auto folder = runs_.folder(request.run_id);
   if (!folder) return folder.error();
   const fs::path recorded = CameraFiles(*folder, camera, request.camera).image(row.frame);
   std::error_code error;
   if (fs::is_regular_file(recorded, error)) {
-    return encoder_.encode_file(
-        recorded, row.frame, row.t_ns, request.quality, request.max_width_px);
+    return painted(
+        encoder_.encode_file(recorded, row.frame, row.t_ns, request.quality, request.max_width_px));
   }
-  Result<Image> made = renderers_.remake(request.run_id, camera, row);
+  Result<std::optional<Image>> made = renderers_.remake(request.run_id, camera, row);
   if (!made) return made.error();
-  const auto image = std::make_shared<const Image>(std::move(*made));
-  return encoder_.encode({row.frame, row.t_ns, image}, request.quality, request.max_width_px);
+  if (!*made) return std::optional<Picture>();
+  const auto image = std::make_shared<const Image>(std::move(**made));
+  return painted(
+      encoder_.encode({row.frame, row.t_ns, image}, request.quality, request.max_width_px));
 }
 
-Result<Picture> ViewPainter::paint_debug(const PictureRequest& request,
-                                         const RunTimeline& timeline,
-                                         const FrameRow& row) {
+ViewPainter::Painted ViewPainter::paint_debug(const PictureRequest& request,
+                                              const RunTimeline& timeline,
+                                              const FrameRow& row) {
   if (request.estimator >= timeline.estimators().size()) {
     return Error{ErrorCode::kInvalidArgument,
                  "estimator = " + std::to_string(request.estimator) + ": must be below " +
@@ -129,7 +138,7 @@ Result<Picture> ViewPainter::paint_debug(const PictureRequest& request,
   }
   const auto live = timeline.live_debug(request.estimator);
   if (live && live->image && (request.live || live->frame == row.frame)) {
-    return encoder_.encode(*live, request.quality, request.max_width_px);
+    return painted(encoder_.encode(*live, request.quality, request.max_width_px));
   }
   const auto folder = runs_.folder(request.run_id);
   if (!folder) return folder.error();
@@ -139,18 +148,19 @@ Result<Picture> ViewPainter::paint_debug(const PictureRequest& request,
     return Error{ErrorCode::kNotFound,
                  "estimator " + name + " has no picture up to frame " + std::to_string(row.frame)};
   }
-  return encoder_.encode_file(debug_image_file(*folder, name, *frame),
-                              *frame,
-                              stamp_before(timeline, row, *frame),
-                              request.quality,
-                              request.max_width_px);
+  return painted(encoder_.encode_file(debug_image_file(*folder, name, *frame),
+                                      *frame,
+                                      stamp_before(timeline, row, *frame),
+                                      request.quality,
+                                      request.max_width_px));
 }
 
-Result<Picture> ViewPainter::paint_scene(const PictureRequest& request,
-                                         const std::shared_ptr<RunTimeline>& timeline,
-                                         const FrameRow& row) {
+ViewPainter::Painted ViewPainter::paint_scene(const PictureRequest& request,
+                                              const std::shared_ptr<RunTimeline>& timeline,
+                                              const FrameRow& row) {
   auto view = renderers_.of_run(request.run_id);
   if (!view) return view.error();
+  if (*view == nullptr) return std::optional<Picture>();
   ViewRibbons& ribbons = ribbons_of(timeline, request.scene.alignment);
   ribbons.refresh();
   const auto scene =
@@ -159,7 +169,7 @@ Result<Picture> ViewPainter::paint_scene(const PictureRequest& request,
   auto image = (*view)->renderer->render_scene(scene, content);
   if (!image) return image.error();
   const auto shared = std::make_shared<const Image>(std::move(*image));
-  return encoder_.encode({row.frame, row.t_ns, shared}, request.quality, shared->width_px);
+  return painted(encoder_.encode({row.frame, row.t_ns, shared}, request.quality, shared->width_px));
 }
 
 ViewRibbons& ViewPainter::ribbons_of(const std::shared_ptr<RunTimeline>& timeline,

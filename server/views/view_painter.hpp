@@ -19,26 +19,30 @@ namespace overfly::server {
 /// Used and destroyed on one thread.
 class ViewPainter {
  public:
-  /// @param stopping  true cancels the opening of a world
-  ViewPainter(RunManager& runs, const std::atomic<bool>& stopping)
-      : runs_(runs), renderers_(runs, stopping) {}
+  /// A picture; empty while its world is being opened.
+  using Painted = Result<std::optional<Picture>>;
+
+  /// @param worlds  must outlive this
+  /// @param stopping  true cancels the reading of tiles
+  ViewPainter(RunManager& runs, WorldOpener& worlds, const std::atomic<bool>& stopping)
+      : runs_(runs), renderers_(runs, worlds, stopping) {}
 
   /// Errors: kNotFound if there is nothing to show at that instant; as world and renderer.
-  [[nodiscard]] Result<Picture> paint(const PictureRequest& request);
+  [[nodiscard]] Painted paint(const PictureRequest& request);
 
  private:
-  [[nodiscard]] Result<Picture> paint_of(const PictureRequest& request,
-                                         const std::shared_ptr<RunTimeline>& timeline);
-  [[nodiscard]] Result<Picture> paint_camera(const PictureRequest& request,
-                                             const RunTimeline& timeline,
-                                             std::size_t camera,
-                                             const FrameRow& row);
-  [[nodiscard]] Result<Picture> paint_debug(const PictureRequest& request,
-                                            const RunTimeline& timeline,
-                                            const FrameRow& row);
-  [[nodiscard]] Result<Picture> paint_scene(const PictureRequest& request,
-                                            const std::shared_ptr<RunTimeline>& timeline,
-                                            const FrameRow& row);
+  [[nodiscard]] Painted paint_of(const PictureRequest& request,
+                                 const std::shared_ptr<RunTimeline>& timeline);
+  [[nodiscard]] Painted paint_camera(const PictureRequest& request,
+                                     const RunTimeline& timeline,
+                                     std::size_t camera,
+                                     const FrameRow& row);
+  [[nodiscard]] Painted paint_debug(const PictureRequest& request,
+                                    const RunTimeline& timeline,
+                                    const FrameRow& row);
+  [[nodiscard]] Painted paint_scene(const PictureRequest& request,
+                                    const std::shared_ptr<RunTimeline>& timeline,
+                                    const FrameRow& row);
   ViewRibbons& ribbons_of(const std::shared_ptr<RunTimeline>& timeline,
                           const std::string& alignment);
 

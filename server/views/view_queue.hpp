@@ -1,4 +1,5 @@
 // Queue of picture requests: the newest request of each client's stream, first come first served.
+// Requests whose world is being opened stand aside.
 #pragma once
 
 #include <cstdint>
@@ -24,13 +25,31 @@ class ViewQueue {
   /// A stream that waits already keeps its place in the queue and gets the new request.
   /// @return the `done` of the request replaced, empty if there was none
   [[nodiscard]] PictureDone push(Entry entry) {
-    for (Entry& waiting : entries_) {
-      if (waiting.client != entry.client || waiting.stream != entry.stream) continue;
-      std::swap(waiting, entry);
-      return std::move(entry.done);
+    for (std::deque<Entry>* waiting : {&entries_, &aside_}) {
+      for (Entry& other : *waiting) {
+        if (!same_stream(other, entry)) continue;
+        std::swap(other, entry);
+        return std::move(entry.done);
+      }
     }
     entries_.push_back(std::move(entry));
     return {};
+  }
+
+  /// Puts an entry that was popped aside until release().
+  /// @return its `done` if a newer request of its stream waits, else empty
+  [[nodiscard]] PictureDone stand_aside(Entry entry) {
+    for (const Entry& other : entries_) {
+      if (same_stream(other, entry)) return std::move(entry.done);
+    }
+    aside_.push_back(std::move(entry));
+    return {};
+  }
+
+  /// Puts the entries that stand aside back into the queue.
+  void release() {
+    for (Entry& entry : aside_) entries_.push_back(std::move(entry));
+    aside_.clear();
   }
 
   [[nodiscard]] std::optional<Entry> pop() {
@@ -41,13 +60,21 @@ class ViewQueue {
   }
 
   void forget(std::uint64_t client) {
-    std::erase_if(entries_, [&](const Entry& entry) { return entry.client == client; });
+    const auto is_clients = [&](const Entry& entry) { return entry.client == client; };
+    std::erase_if(entries_, is_clients);
+    std::erase_if(aside_, is_clients);
   }
 
+  /// True if there is nothing to pop.
   [[nodiscard]] bool empty() const { return entries_.empty(); }
 
  private:
+  static bool same_stream(const Entry& a, const Entry& b) {
+    return a.client == b.client && a.stream == b.stream;
+  }
+
   std::deque<Entry> entries_;
+  std::deque<Entry> aside_;
 };
 
 }  // namespace overfly::server

@@ -9,8 +9,11 @@
 namespace overfly::server {
 namespace {
 
-/// Each keeps its tiles as textures: a viewer can switch between two worlds without reloading them.
-constexpr std::size_t kMaxRenderers = 2;
+/// Each keeps its tiles as textures: viewers can compare runs over this many worlds without
+/// reloading them.
+constexpr std::size_t kMaxRenderers = 4;
+/// Of each, for tiles in memory, and the same again for textures.
+constexpr std::size_t kTileCacheBytes = std::size_t{128} << 20U;
 
 }  // namespace
 
@@ -35,7 +38,9 @@ Result<ViewRenderers::WorldView*> ViewRenderers::of_run(const std::string& run_i
   }
   const Result<const Scenario*> scenario = scenario_of(run_id);
   if (!scenario) return scenario.error();
-  auto world = runs_.world_of(run_id, [this] { return stopping_.load(); });
+  const auto opened = worlds_.take(run_id);
+  if (!opened) return nullptr;
+  const Result<WorldOpener::World>& world = *opened;
   if (!world) return world.error();
   const RendererChoice& choice = (*scenario)->renderer;
   const auto known = std::find_if(views_.begin(), views_.end(), [&](const WorldView& view) {
@@ -48,17 +53,19 @@ Result<ViewRenderers::WorldView*> ViewRenderers::of_run(const std::string& run_i
   }
   while (views_.size() >= kMaxRenderers) views_.pop_back();
   auto tiles = std::make_shared<const WatchedTiles>((*world)->tiles, &stopping_);
-  auto renderer = make_renderer(**scenario, std::move(tiles), runs_.renderer_factory());
+  auto renderer =
+      make_renderer(**scenario, std::move(tiles), runs_.renderer_factory(), kTileCacheBytes);
   if (!renderer) return renderer.error();
   views_.push_front({*world, choice, std::move(*renderer), run_id, "", nullptr});
   return &views_.front();
 }
 
-Result<Image> ViewRenderers::remake(const std::string& run_id,
-                                    std::size_t camera,
-                                    const FrameRow& row) {
+Result<std::optional<Image>> ViewRenderers::remake(const std::string& run_id,
+                                                   std::size_t camera,
+                                                   const FrameRow& row) {
   const Result<WorldView*> view = of_run(run_id);
   if (!view) return view.error();
+  if (*view == nullptr) return std::optional<Image>();
   WorldView& found = **view;
   if (!found.frames || found.run_id != run_id) {
     const Result<const Scenario*> scenario = scenario_of(run_id);
@@ -70,7 +77,9 @@ Result<Image> ViewRenderers::remake(const std::string& run_id,
     found.frames = std::move(*frames);
     found.run_id = run_id;
   }
-  return found.frames->make(camera, row, *found.renderer);
+  Result<Image> image = found.frames->make(camera, row, *found.renderer);
+  if (!image) return image.error();
+  return std::optional<Image>(std::move(*image));
 }
 
 }  // namespace overfly::server

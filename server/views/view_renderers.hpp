@@ -12,6 +12,7 @@
 #include "server/camera/frame_remaker.hpp"
 #include "server/record/rows/rows.hpp"
 #include "server/runs/run_manager.hpp"
+#include "server/views/world_opener.hpp"
 
 namespace overfly::server {
 
@@ -19,9 +20,10 @@ namespace overfly::server {
 /// thread.
 class ViewRenderers {
  public:
-  /// @param stopping  true cancels the opening of a world
-  ViewRenderers(RunManager& runs, const std::atomic<bool>& stopping)
-      : runs_(runs), stopping_(stopping) {}
+  /// @param worlds  must outlive this
+  /// @param stopping  true cancels the reading of tiles
+  ViewRenderers(RunManager& runs, WorldOpener& worlds, const std::atomic<bool>& stopping)
+      : runs_(runs), worlds_(worlds), stopping_(stopping) {}
 
   struct WorldView {
     std::shared_ptr<const terrain::World> world;
@@ -31,18 +33,20 @@ class ViewRenderers {
     std::string run_id;                    ///< the run whose frames `frames` renders
     std::unique_ptr<FrameRemaker> frames;  ///< null until needed
   };
-  /// The view of a run's world, drawn with the scenario's settings. Valid until the next call.
-  /// Errors: as RunManager::world_of and the renderer factory.
+  /// The view of a run's world, drawn with the scenario's settings. Valid until the next call. Null
+  /// while the world is being opened. Errors: as RunManager::world_of and the renderer factory.
   [[nodiscard]] Result<WorldView*> of_run(const std::string& run_id);
-  /// One image of one of the run's cameras, rendered again. Errors: as of_run and FrameRemaker.
-  [[nodiscard]] Result<Image> remake(const std::string& run_id,
-                                     std::size_t camera,
-                                     const FrameRow& row);
+  /// One image of one of the run's cameras, rendered again; empty while its world is being opened.
+  /// Errors: as of_run and FrameRemaker.
+  [[nodiscard]] Result<std::optional<Image>> remake(const std::string& run_id,
+                                                    std::size_t camera,
+                                                    const FrameRow& row);
 
  private:
   [[nodiscard]] Result<const Scenario*> scenario_of(const std::string& run_id);
 
   RunManager& runs_;
+  WorldOpener& worlds_;
   const std::atomic<bool>& stopping_;
   std::string scenario_run_id_;  ///< the run whose scenario was read last
   std::optional<Scenario> scenario_;

@@ -25,7 +25,8 @@ void answer(const PictureDone& done, Result<Picture> picture) {
 }  // namespace
 
 struct ViewService::Impl {
-  explicit Impl(RunManager& run_manager) : runs(run_manager), thread([this] { work(); }) {}
+  explicit Impl(RunManager& run_manager)
+      : runs(run_manager), worlds(opening_functions()), thread([this] { work(); }) {}
   /// Cancels all runs and joins their threads.
   ~Impl();
   void work();
@@ -33,6 +34,9 @@ struct ViewService::Impl {
   /// Answers all waiting requests with an error.
   void refuse(const Error& reason);
   std::optional<ViewQueue::Entry> next(bool beside_flight);
+  WorldOpener::Functions opening_functions();
+  /// Paints and answers one request, or puts it aside until its world is open.
+  void serve(ViewQueue::Entry entry, ViewPainter& painter);
 
   RunManager& runs;
   std::mutex mutex;
@@ -40,7 +44,9 @@ struct ViewService::Impl {
   ViewQueue queue;
   std::vector<PictureDone> replaced;   ///< still to be answered, on the thread
   std::atomic<bool> stopping = false;  ///< written under the mutex
-  std::thread thread;                  ///< last member, because it uses all of the above
+  std::uint64_t worlds_opened = 0;
+  WorldOpener worlds;  ///< used by the drawing thread
+  std::thread thread;  ///< last member, because it uses all of the above
 };
 
 ViewService::Impl::~Impl() {
@@ -74,7 +80,7 @@ void ViewService::Impl::work() {
     {
       std::unique_lock lock(mutex);
       wake.wait(lock, [this] { return stopping || !queue.empty() || !replaced.empty(); });
-      if (stopping) return;
+      if (stopping) break;
     }
     // A thread's priority can only be lowered: during a real-time flight another thread draws.
     const bool beside_flight = runs.picture_rate().flying();
@@ -84,6 +90,11 @@ void ViewService::Impl::work() {
           refuse({ErrorCode::kInternal, std::string("cannot start the drawing thread: ") + what});
         });
   }
+  {
+    const std::lock_guard lock(mutex);
+    queue.release();
+  }
+  refuse({ErrorCode::kCancelled, "the server is shutting down"});
 }
 
 void ViewService::Impl::refuse(const Error& reason) {
@@ -99,12 +110,51 @@ void ViewService::Impl::paint(bool beside_flight) {
   lower_thread(beside_flight ? ThreadPriority::kLeftOver : ThreadPriority::kBelowFlights);
   const auto paint_all = [&] {
     // The painter's renderers are created and destroyed on this thread.
-    ViewPainter painter(runs, stopping);
-    while (auto entry = next(beside_flight)) {
-      answer(entry->done, guarded([&] { return painter.paint(entry->request); }));
-    }
+    ViewPainter painter(runs, worlds, stopping);
+    while (auto entry = next(beside_flight)) serve(std::move(*entry), painter);
   };
   (void)contained(paint_all, [this](const char* what) { refuse({ErrorCode::kInternal, what}); });
+}
+
+WorldOpener::Functions ViewService::Impl::opening_functions() {
+  WorldOpener::Functions functions;
+  functions.open = [this](const std::string& run_id, const std::function<bool()>& cancelled) {
+    return runs.world_of(run_id, cancelled);
+  };
+  functions.opened = [this] {
+    {
+      const std::lock_guard lock(mutex);
+      ++worlds_opened;
+      queue.release();
+    }
+    wake.notify_one();
+  };
+  functions.priority = [this] {
+    return runs.picture_rate().flying() ? ThreadPriority::kLeftOver : ThreadPriority::kBelowFlights;
+  };
+  return functions;
+}
+
+void ViewService::Impl::serve(ViewQueue::Entry entry, ViewPainter& painter) {
+  std::uint64_t opened_before = 0;
+  {
+    const std::lock_guard lock(mutex);
+    opened_before = worlds_opened;
+  }
+  ViewPainter::Painted picture = guarded([&] { return painter.paint(entry.request); });
+  if (!picture) {
+    answer(entry.done, picture.error());
+  } else if (*picture) {
+    answer(entry.done, std::move(**picture));
+  } else {
+    PictureDone outdated;
+    {
+      const std::lock_guard lock(mutex);
+      outdated = queue.stand_aside(std::move(entry));
+      if (worlds_opened != opened_before) queue.release();
+    }
+    if (outdated) answer(outdated, Error{ErrorCode::kCancelled, "a newer picture was requested"});
+  }
 }
 
 ViewService::ViewService(RunManager& runs) : impl_(std::make_unique<Impl>(runs)) {}

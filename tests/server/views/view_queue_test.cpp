@@ -43,5 +43,28 @@ TEST(ViewQueue, ForgetsAClientWhole) {
   EXPECT_TRUE(queue.empty());
 }
 
+TEST(ViewQueue, PassesOverWhatStandsAside) {
+  ViewQueue queue;
+  EXPECT_FALSE(queue.push(entry(1, 1, 10)));
+  EXPECT_FALSE(queue.push(entry(2, 1, 20)));
+  EXPECT_FALSE(queue.stand_aside(*queue.pop()));
+  EXPECT_EQ(queue.pop()->client, 2U);
+  EXPECT_TRUE(queue.empty());
+  // A newer request of the stream replaces the one aside.
+  EXPECT_TRUE(queue.push(entry(1, 1, 30)));
+  EXPECT_TRUE(queue.empty());
+  queue.release();
+  EXPECT_EQ(queue.pop()->request.t_ns, 30);
+}
+
+TEST(ViewQueue, LeavesOutWhatHasBecomeOldMeanwhile) {
+  ViewQueue queue;
+  EXPECT_FALSE(queue.push(entry(1, 1, 10)));
+  auto popped = queue.pop();
+  EXPECT_FALSE(queue.push(entry(1, 1, 20)));
+  EXPECT_TRUE(queue.stand_aside(std::move(*popped)));
+  EXPECT_EQ(queue.pop()->request.t_ns, 20);
+}
+
 }  // namespace
 }  // namespace overfly::server

@@ -1,4 +1,5 @@
-// Pictures for viewers at the server's end: it waits for no world that is still being opened.
+// Pictures for viewers while a world is being opened: others do not wait for it, nor does the
+// server's end.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -121,6 +122,34 @@ TEST_F(ViewServiceTest, AWorldThatIsBeingOpenedIsGivenUpWhenAsked) {
   const auto world = runs->world_of(id, [&] { return ++asked > 20; });
   ASSERT_FALSE(world.ok());
   EXPECT_EQ(world.error().code, ErrorCode::kCancelled) << world.error().message;
+}
+
+TEST_F(ViewServiceTest, DrawsOverOtherWorldsMeanwhile) {
+  const std::string slow = flown();
+  const auto runs = manager();
+  const std::string other = fly(*runs);
+  fs::remove(imagery());
+  write_endless_geotiff(imagery());
+  std::promise<ErrorCode> first;
+  std::promise<Result<Picture>> second;
+  std::promise<Result<Picture>> third;
+  ViewService views(*runs);
+  PictureRequest request;
+  request.kind = PictureRequest::Kind::kCamera;
+  request.run_id = slow;
+  views.request(1, 1, request, [&](const Result<Picture>& picture) {
+    first.set_value(picture ? ErrorCode::kInternal : picture.error().code);
+  });
+  while (!has_open(imagery())) std::this_thread::yield();
+  request.run_id = other;
+  views.request(1, 2, request, [&](Result<Picture> made) { second.set_value(made); });
+  const Result<Picture> picture = second.get_future().get();
+  EXPECT_TRUE(picture.ok()) << picture.error().message;
+  EXPECT_TRUE(has_open(imagery())) << "the other world was opened meanwhile";
+  // A newer request of the stream that waits takes its place.
+  request.run_id = other;
+  views.request(1, 1, request, [&](Result<Picture> made) { third.set_value(made); });
+  EXPECT_EQ(first.get_future().get(), ErrorCode::kCancelled);
 }
 
 TEST_F(ViewServiceTest, EndsWhileAWorldIsBeingOpened) {
