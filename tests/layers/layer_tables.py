@@ -4,7 +4,7 @@
 LIBRARIES = [
     "core", "terrain", "renderer", "sensor", "flight", "middleware", "odometry", "vo_bridges",
     "evaluation",
-    "server", "server/net", "server/app",
+    "server", "server/report", "server/net", "server/app",
 ]
 
 # Headers of the terrain's sub-rooms by what they build on.
@@ -183,6 +183,10 @@ MAY_INCLUDE = {
                     "server/camera/", "server/run/"],
     "server/views": ["core/", "renderer/", "server/files/", "server/timing/", "server/record/",
                      "server/scoring/", "server/timeline/", "server/camera/", "server/runs/"],
+    "server/report": ["core/", "terrain/", "evaluation/", "server/files/", "server/timing/",
+                      "server/scenario/", "server/record/", "server/scoring/", "server/timeline/",
+                      "server/worlds/", "server/report/plot"],
+    "server/report/plot": ["core/"],
     "server/net/http": ["core/"],
     "server/net/stream": ["core/", "server/record/", "server/scoring/", "server/timeline/",
                           "server/views/", "server/net/http/"],

@@ -1,0 +1,69 @@
+#include "server/report/map_picture.hpp"
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/cancel.hpp"
+#include "server/files/jpeg.hpp"
+#include "server/report/plot/markup.hpp"
+#include "server/scenario/document/scenario_file.hpp"
+#include "server/worlds/scenario_world.hpp"
+#include "server/worlds/world_change.hpp"
+
+namespace overfly::server::report {
+namespace {
+
+constexpr int kJpegQuality = 80;
+
+Result<OpenedWorld> open_world_of(const ReportRun& run, const std::atomic<bool>* cancel) {
+  if (run.scenario.is_null()) {
+    return Error{ErrorCode::kUnreadable, "the run's scenario cannot be read"};
+  }
+  const Result<Scenario> scenario = resolve_scenario(run.scenario, {}, run.folder);
+  if (!scenario) return scenario.error();
+  if (world_must_be_made(*scenario)) {
+    return Error{ErrorCode::kNotFound, "the built-in world is not on this machine"};
+  }
+  return open_scenario_world(*scenario, [&](double) { return !is_cancelled(cancel); });
+}
+
+Result<std::string> picture_uri(const OpenedWorld& opened,
+                                const GroundExtent& extent,
+                                int width_px,
+                                int height_px,
+                                const std::atomic<bool>* cancel) {
+  const Result<Image> picture = ground_picture(
+      *opened.world.tiles, extent, width_px, height_px, [&] { return is_cancelled(cancel); });
+  if (!picture) return picture.error();
+  const Result<std::vector<std::uint8_t>> jpeg = encode_jpeg(*picture, kJpegQuality);
+  if (!jpeg) return jpeg.error();
+  return "data:image/jpeg;base64," + plot::base64(*jpeg);
+}
+
+}  // namespace
+
+Result<MapPicture> map_picture(const ReportRun& run,
+                               const GroundExtent& extent,
+                               int width_px,
+                               int height_px,
+                               const std::atomic<bool>* cancel) {
+  MapPicture map;
+  const auto without = [&](const Error& error) -> Result<MapPicture> {
+    if (is_cancelled(cancel)) return Error{ErrorCode::kCancelled, "the report was cancelled"};
+    map.note = "Without a picture of the ground: " + error.message + ".";
+    return map;
+  };
+  const Result<OpenedWorld> opened = open_world_of(run, cancel);
+  if (!opened) return without(opened.error());
+  Result<std::string> uri = picture_uri(*opened, extent, width_px, height_px, cancel);
+  if (!uri) return without(uri.error());
+  map.data_uri = std::move(*uri);
+  map.attribution = opened->world.tiles->attribution();
+  const std::string change = world_change(run.folder, *opened);
+  if (!change.empty()) map.note = change + ".";
+  return map;
+}
+
+}  // namespace overfly::server::report

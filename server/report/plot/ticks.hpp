@@ -1,0 +1,37 @@
+// Where an axis has its ticks, and what they say.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace overfly::server::plot {
+
+struct Range {
+  double low = 0.0;
+  double high = 1.0;
+  [[nodiscard]] double span() const { return high - low; }
+};
+
+/// The range of finite values, empty ones as [0, 1] and a single value with room around it.
+[[nodiscard]] Range usable(const Range& range);
+/// A part of the span more on both sides.
+[[nodiscard]] Range padded_by(const Range& range, double share);
+
+struct Ticks {
+  std::vector<double> values;  ///< increasing, in the range
+  int decimals = 0;            ///< that all of them need
+};
+
+/// Multiples of 1, 2 or 5 times a power of ten: the finest of these steps with at most `most`
+/// ticks.
+/// @pre usable range; most >= 2
+[[nodiscard]] Ticks nice_ticks(const Range& range, int most);
+/// 1, 2 and 5 times powers of ten, or only powers if the former are too many. @pre range.low > 0
+[[nodiscard]] Ticks log_ticks(const Range& range, int most);
+/// With a minus sign (U+2212), and a power of ten where the digits would not fit.
+[[nodiscard]] std::string tick_text(double value, const Ticks& ticks);
+
+/// The largest 1, 2 or 5 times a power of ten that does not exceed `limit`. @pre limit > 0
+[[nodiscard]] double nice_below(double limit);
+
+}  // namespace overfly::server::plot

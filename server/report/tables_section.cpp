@@ -1,0 +1,285 @@
+#include "server/report/tables_section.hpp"
+
+#include <filesystem>
+
+#include "core/text/number_text.hpp"
+#include "server/record/run_manifest.hpp"
+#include "server/report/differences.hpp"
+#include "server/report/html_parts.hpp"
+#include "server/report/words.hpp"
+
+namespace overfly::server::report {
+namespace {
+
+using evaluation::AlignmentMode;
+using evaluation::AlignmentScore;
+using Json = nlohmann::json;
+
+constexpr const char* kAbsent = "(absent)";
+/// Rows of a table of fields; a document has some hundred.
+constexpr std::size_t kMaxFields = 2000;
+
+std::optional<double> rmse_figure(const std::optional<evaluation::ErrorStatistics>& errors) {
+  return errors ? std::optional<double>(errors->rmse) : std::nullopt;
+}
+
+std::vector<Cell> score_row(const ReportEntry& entry,
+                            AlignmentMode mode,
+                            const AlignmentScore& aligned) {
+  const evaluation::AxisRmse parts = [&] {
+    const auto found = entry.estimate->axis_rmse.find(mode);
+    return found == entry.estimate->axis_rmse.end() ? evaluation::AxisRmse{} : found->second;
+  }();
+  const auto number = [](const std::optional<double>& value) {
+    return Cell{figure_text(value), true};
+  };
+  return {{name_of(*entry.run, *entry.estimate)},
+          {outcome_text(entry.metrics().score)},
+          {evaluation::to_string(mode)},
+          number(aligned.S_world_vo.scale),
+          {std::to_string(aligned.matched), true},
+          number(aligned.position_m.rmse),
+          number(percent_of_path(*entry.run, aligned.position_m.rmse)),
+          number(parts.horizontal_m),
+          number(parts.along_m),
+          number(parts.across_m),
+          number(parts.vertical_m),
+          number(aligned.position_m.median),
+          number(aligned.position_m.max),
+          number(aligned.position_rmse_hold_m),
+          number(rmse_figure(aligned.rotation_deg)),
+          number(rmse_figure(aligned.rotation_euler_norm_deg))};
+}
+
+constexpr int kScoreColumns = 16;
+
+void add_score_rows(const ReportEntry& entry, std::vector<std::vector<Cell>>& rows) {
+  const evaluation::Score& score = entry.metrics().score;
+  for (const AlignmentMode mode : evaluation::all_alignment_modes()) {
+    if (const AlignmentScore* aligned = entry.aligned(mode)) {
+      rows.push_back(score_row(entry, mode, *aligned));
+    }
+    const auto reason = score.unavailable.find(mode);
+    if (reason != score.unavailable.end()) {
+      rows.push_back({{name_of(*entry.run, *entry.estimate)},
+                      {outcome_text(score)},
+                      {evaluation::to_string(mode)},
+                      {"X: " + reason->second, false, false, kScoreColumns - 3}});
+    }
+  }
+}
+
+std::string remarks_of(const ReportContent& content) {
+  Table remarks;
+  remarks.caption = "Remarks on alignments";
+  remarks.head = {{"estimator"}, {"alignment"}, {"remark"}};
+  for (const ReportRun& run : content.runs) {
+    for (const ReportEstimate& estimate : run.estimates) {
+      for (const auto& [mode, aligned] : run.metrics_of(estimate).score.alignments) {
+        std::vector<std::string> texts = aligned.notes;
+        if (aligned.degenerate) {
+          texts.push_back("degenerate: " + *aligned.degenerate + "; no rotation error");
+        }
+        for (const std::string& text : texts) {
+          remarks.rows.push_back({{name_of(run, estimate)}, {evaluation::to_string(mode)}, {text}});
+        }
+      }
+    }
+  }
+  return remarks.rows.empty() ? "" : table(remarks);
+}
+
+std::string relative_table(const ReportContent& content) {
+  Table relative;
+  relative.caption =
+      "Relative errors over segments of the true path (root mean squares over all segments of a "
+      "length), by the alignment " +
+      std::string(evaluation::to_string(content.alignment));
+  relative.head = {{"estimator"},
+                   {"length [m]", true},
+                   {"segments", true},
+                   {"translation [%]", true},
+                   {"rotation [deg / 100 m]", true}};
+  for (const ReportRun& run : content.runs) {
+    for (const ReportEstimate& estimate : run.estimates) {
+      const AlignmentScore* aligned = ReportEntry{&run, &estimate}.aligned(content.alignment);
+      if (aligned == nullptr) continue;
+      for (const evaluation::RelativeError& error : aligned->relative) {
+        relative.rows.push_back({{name_of(run, estimate)},
+                                 {figure_text(error.length_m), true},
+                                 {std::to_string(error.pairs), true},
+                                 {figure_text(error.translation_percent), true},
+                                 {figure_text(error.rotation_deg_per_100m), true}});
+      }
+    }
+  }
+  return relative.rows.empty() ? "" : table(relative);
+}
+
+std::string fields_table(const std::string& caption, const Json& document) {
+  Table fields;
+  fields.caption = caption;
+  fields.fields = true;
+  fields.head = {{"field"}, {"value"}};
+  const auto leaves = leaves_of(document);
+  for (const auto& [field, value] : leaves) {
+    if (fields.rows.size() == kMaxFields) {
+      fields.rows.push_back(
+          {{"..."}, {counted(leaves.size() - kMaxFields, "further field") + " not shown"}});
+      break;
+    }
+    fields.rows.push_back({{field}, {value}});
+  }
+  return table(fields);
+}
+
+std::string parameters_words(const RunManifest::Estimator& estimator) {
+  if (!estimator.start_error.empty()) return "did not start: " + estimator.start_error;
+  if (!estimator.parameters || estimator.parameters->empty()) return "none";
+  std::string text;
+  for (const auto& [name, value] : *estimator.parameters) {
+    text += (text.empty() ? "" : ", ") + name + " = " + value;
+  }
+  if (estimator.parameters_at_end && estimator.parameters_at_end != estimator.parameters) {
+    text += "; changed during the run";
+  }
+  return text;
+}
+
+/// The file's name without its folders, which say nothing on another machine.
+std::string file_words(const RunManifest::WorldFile& file) {
+  return std::filesystem::path(file.file).filename().string() + ": " + file.digest;
+}
+
+void add_world_rows(const RunManifest::World& world, std::vector<std::vector<Cell>>& rows) {
+  rows.push_back({{"world"}, {world.name}});
+  rows.push_back({{"attribution"}, {world.attribution}});
+  if (world.manifest) rows.push_back({{"world manifest"}, {file_words(*world.manifest)}});
+  for (const RunManifest::WorldFile& file : world.data_hashes) {
+    rows.push_back({{"world data"}, {file_words(file)}});
+  }
+  if (!world.light.empty()) rows.push_back({{"light"}, {world.light}});
+  if (!world.detail.empty()) rows.push_back({{"detail"}, {world.detail}});
+}
+
+Table origin_table(const ReportRun& run) {
+  const RunManifest& manifest = run.manifest;
+  Table origin;
+  origin.caption = (run.label.empty() ? "" : run.label + ": ") + std::string("how it was made");
+  origin.fields = true;
+  origin.head = {{"what"}, {"value"}};
+  origin.rows = {{{"run"}, {run.id}},
+                 {{"status"}, {to_string(run.info.status)}},
+                 {{"scenario"}, {manifest.scenario}},
+                 {{"Overfly"}, {manifest.version + ", commit " + manifest.commit}},
+                 {{"pacing"}, {manifest.pacing}},
+                 {{"seed"}, {std::to_string(manifest.seed)}}};
+  if (manifest.flight) origin.rows.push_back({{"flight"}, {manifest.flight->description}});
+  if (manifest.renderer) {
+    origin.rows.push_back(
+        {{"renderer"}, {manifest.renderer->backend + ", " + manifest.renderer->device}});
+  }
+  if (manifest.world) add_world_rows(*manifest.world, origin.rows);
+  for (const RunManifest::Estimator& estimator : manifest.estimators) {
+    origin.rows.push_back({{"estimator " + estimator.name},
+                           {estimator.type + ", camera " + estimator.camera +
+                            "; parameters: " + parameters_words(estimator)}});
+  }
+  return origin;
+}
+
+}  // namespace
+
+Json compared_document(const ReportRun& run) {
+  Json manifest = json_from(run.manifest);
+  // What follows from the run, not what it was made of; the scenario has the fields of the cameras.
+  for (const char* field : {"format_version",
+                            "status",
+                            "error",
+                            "frames",
+                            "frames_total",
+                            "texture_limited",
+                            "camera",
+                            "cameras",
+                            "epoch_utc_ns",
+                            "duration_ns"}) {
+    manifest.erase(field);
+  }
+  return {{"scenario", run.scenario}, {"run", std::move(manifest)}};
+}
+
+std::string differences_section(const ReportContent& content) {
+  if (content.runs.size() < 2) return "";
+  std::vector<Json> documents;
+  Table differing;
+  differing.caption = "Fields of scenarios and manifests that are not the same in all runs";
+  differing.fields = true;
+  differing.head = {{"field"}};
+  for (const ReportRun& run : content.runs) {
+    documents.push_back(compared_document(run));
+    differing.head.push_back({run.label});
+  }
+  const Differences differences = differences_between(documents);
+  for (const Difference& difference : differences.fields) {
+    std::vector<Cell>& row = differing.rows.emplace_back();
+    row.push_back({difference.field});
+    for (const auto& value : difference.values) row.push_back({value.value_or(kAbsent)});
+  }
+  std::string markup =
+      "<section id=\"differences\">\n" + heading(2, "What differs between the runs");
+  if (differing.rows.empty()) {
+    markup += paragraph("Nothing: scenarios, program, world and parameters are the same.");
+  } else {
+    markup += table(differing);
+  }
+  if (differences.left_out > 0) {
+    markup += paragraph(counted(differences.left_out, "further field") + " differ.");
+  }
+  return markup + "</section>\n";
+}
+
+std::string scores_section(const ReportContent& content) {
+  Table scores;
+  scores.caption =
+      "Every estimator by every alignment. Errors are root mean squares unless stated otherwise; "
+      "\"held\" holds the last pose to the end of the flight, \"Euler\" is the norm of the "
+      "differences of roll, pitch and yaw.";
+  scores.head = {{"estimator"},
+                 {"outcome"},
+                 {"alignment"},
+                 {"scale", true},
+                 {"poses", true},
+                 {"position [m]", true},
+                 {"of the path [%]", true},
+                 {"horizontal [m]", true},
+                 {"along [m]", true},
+                 {"across [m]", true},
+                 {"vertical [m]", true},
+                 {"median [m]", true},
+                 {"max. [m]", true},
+                 {"held [m]", true},
+                 {"rotation [deg]", true},
+                 {"Euler [deg]", true}};
+  for (const ReportRun& run : content.runs) {
+    for (const ReportEstimate& estimate : run.estimates) {
+      add_score_rows({&run, &estimate}, scores.rows);
+    }
+  }
+  return "<section id=\"scores\">\n" + heading(2, "All scores") + table(scores) +
+         remarks_of(content) + folded("Relative errors", relative_table(content)) + "</section>\n";
+}
+
+std::string provenance_section(const ReportContent& content) {
+  std::string markup = "<section id=\"provenance\">\n" + heading(2, "Where the numbers come from");
+  for (const ReportRun& run : content.runs) {
+    const std::string of = run.label.empty() ? "" : " of " + run.label;
+    markup += table(origin_table(run));
+    markup += folded("Every field of the manifest" + of,
+                     fields_table("manifest.json" + of, json_from(run.manifest)));
+    markup +=
+        folded("The scenario as flown" + of, fields_table("scenario.json" + of, run.scenario));
+  }
+  return markup + "</section>\n";
+}
+
+}  // namespace overfly::server::report
