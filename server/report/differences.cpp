@@ -44,9 +44,73 @@ void add_leaves(const std::string& path, const Json& value, Leaves& leaves) {
   }
 }
 
-bool all_the_same(const std::vector<std::optional<std::string>>& values) {
-  return std::all_of(
-      values.begin(), values.end(), [&](const auto& value) { return value == values.front(); });
+/// A value of each document; null where it is absent.
+using Values = std::vector<const Json*>;
+
+bool all_the_same(const Values& values) {
+  return std::all_of(values.begin(), values.end(), [&](const Json* value) {
+    const Json* first = values.front();
+    return value == nullptr || first == nullptr ? value == first : *value == *first;
+  });
+}
+
+/// The members of an object, or of an array by name or number.
+std::map<std::string, const Json*> members_of(const Json& value) {
+  std::map<std::string, const Json*> members;
+  if (value.is_object()) {
+    for (const auto& [key, member] : value.items()) members[key] = &member;
+    return members;
+  }
+  const std::vector<std::string> names = element_names(value);
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    members[names.empty() ? std::to_string(i) : names[i]] = &value[i];
+  }
+  return members;
+}
+
+/// Whether the values are all objects or all arrays, so that their members can be compared.
+bool have_members(const Values& values) {
+  const auto all = [&](bool (Json::*is)() const noexcept) {
+    return std::all_of(values.begin(), values.end(), [&](const Json* value) {
+      return value != nullptr && (value->*is)();
+    });
+  };
+  return all(&Json::is_object) || all(&Json::is_array);
+}
+
+void add_difference(const std::string& path,
+                    const Values& values,
+                    std::size_t most,
+                    Differences& differences) {
+  if (differences.fields.size() >= most) {
+    ++differences.left_out;
+    return;
+  }
+  Difference& difference = differences.fields.emplace_back();
+  difference.field = path;
+  for (const Json* value : values) {
+    difference.values.push_back(value == nullptr ? std::nullopt
+                                                 : std::optional(value_text(*value)));
+  }
+}
+
+// NOLINTNEXTLINE(misc-no-recursion): as add_leaves
+void add_differences(const std::string& path,
+                     const Values& values,
+                     std::size_t most,
+                     Differences& differences) {
+  if (all_the_same(values)) return;
+  if (!have_members(values)) return add_difference(path, values, most, differences);
+  std::map<std::string, Values> members;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    for (const auto& [key, member] : members_of(*values[i])) {
+      Values& each = members[key];
+      each.resize(values.size());
+      each[i] = member;
+    }
+  }
+  const std::string prefix = path.empty() ? "" : path + ".";
+  for (const auto& [key, each] : members) add_differences(prefix + key, each, most, differences);
 }
 
 }  // namespace
@@ -58,23 +122,10 @@ std::vector<std::pair<std::string, std::string>> leaves_of(const Json& document)
 }
 
 Differences differences_between(const std::vector<Json>& documents, std::size_t most) {
-  std::map<std::string, std::vector<std::optional<std::string>>> fields;
-  for (std::size_t i = 0; i < documents.size(); ++i) {
-    for (const auto& [field, value] : leaves_of(documents[i])) {
-      std::vector<std::optional<std::string>>& values = fields[field];
-      values.resize(documents.size());
-      values[i] = value;
-    }
-  }
+  Values values;
+  for (const Json& document : documents) values.push_back(&document);
   Differences differences;
-  for (auto& [field, values] : fields) {
-    if (all_the_same(values)) continue;
-    if (differences.fields.size() < most) {
-      differences.fields.push_back({field, std::move(values)});
-    } else {
-      ++differences.left_out;
-    }
-  }
+  if (!values.empty()) add_differences("", values, most, differences);
   return differences;
 }
 

@@ -23,13 +23,15 @@ struct Difference {
 };
 
 struct Differences {
-  std::vector<Difference> fields;  ///< in alphabetical order
+  std::vector<Difference> fields;  ///< in alphabetical order of each object's keys
   std::size_t left_out = 0;        ///< fields beyond the limit
 };
 
 inline constexpr std::size_t kMaxDifferences = 200;
 
-/// The fields whose values are not the same in all documents. None for fewer than two documents.
+/// The fields whose values are not the same in all documents, at the deepest level that all of them
+/// have: an object that some lack is one field, with its JSON as the value. None for fewer than two
+/// documents.
 [[nodiscard]] Differences differences_between(const std::vector<nlohmann::json>& documents,
                                               std::size_t most = kMaxDifferences);
 

@@ -60,9 +60,11 @@ p,li,figcaption,.fields td,.fields th{overflow-wrap:anywhere}
 .verdict{font-size:1.12rem;font-weight:600}
 .warnings{list-style:none;padding:0}
 .warnings li{border-left:4px solid var(--caution);padding:.1rem 0 .1rem .7rem}
+.warnings li.note{border-color:var(--grid)}
 .warnings li.error{border-color:var(--error)}
 .warnings b{color:var(--caution)}
 .warnings .error b{color:var(--error)}
+.warnings .note b{color:var(--muted)}
 nav a{color:var(--link);margin-right:1.1rem;white-space:nowrap}
 a:focus-visible,summary:focus-visible,.wide:focus-visible{outline:3px solid var(--link);
 outline-offset:2px}

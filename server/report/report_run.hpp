@@ -35,7 +35,7 @@ struct ReportEstimate {
 
 /// A warning of a run, or equal lines of its log as one.
 struct ReportWarning {
-  std::string level;   ///< "info", "warning" or "error"
+  std::string level;   ///< "note", "warning" or "error"
   std::string source;  ///< the estimator that wrote it; else empty
   std::string text;
   std::optional<double> first_s;  ///< time of the first line in the log

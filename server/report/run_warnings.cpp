@@ -113,8 +113,9 @@ void RunWarnings::add_of_cameras(const ReportRun& run) {
            std::to_string(camera.frames_with_late_tiles) + " frames");
     }
     for (const auto& [kind, count] : camera.faults) {
-      warn("fault of the scenario: " + kind + " of " + name + ", " + std::to_string(count) +
-           " frames");
+      note("",
+           "fault of the scenario: " + kind + " of " + name + ", " + std::to_string(count) +
+               " frames");
     }
   }
   if (run.metrics.late_frames > 0) {
@@ -129,7 +130,7 @@ void RunWarnings::add_of_estimators(const ReportRun& run) {
     const auto about = [&](const std::string& text) {
       add({"warning", estimate.name, text, std::nullopt, 1});
     };
-    if (metrics.test_estimator) about("a test estimator: it is given the truth");
+    if (metrics.test_estimator) note(estimate.name, "a test estimator: it is given the truth");
     if (metrics.hash_mismatches > 0) {
       about(std::to_string(metrics.hash_mismatches) + " of " +
             std::to_string(metrics.hashes_compared) +

@@ -28,6 +28,9 @@ class RunWarnings {
 
  private:
   void warn(const std::string& text) { add({"warning", "", text, std::nullopt, 1}); }
+  void note(const std::string& source, const std::string& text) {
+    add({"note", source, text, std::nullopt, 1});
+  }
   void add_of_manifest(const ReportRun& run);
   void add_of_cameras(const ReportRun& run);
   void add_of_estimators(const ReportRun& run);

@@ -230,19 +230,26 @@ std::string group_words(const ReportContent& content, const std::vector<std::siz
   for (const std::size_t index : group) {
     markup += "<li>" + run_line(content.runs[index]) + "</li>\n";
   }
-  const std::vector<ReportEntry> entries = entries_of(content, group);
-  markup += "</ul>\n" + paragraph(verdict(entries, content.alignment), "verdict");
-  markup += "<ul>\n";
-  for (const ReportEntry& entry : entries) {
-    markup += "<li><b>" + escaped(name_of(*entry.run, *entry.estimate)) + "</b> " +
-              escaped(entry_words(entry, content.alignment)) + "</li>\n";
+  return markup + "</ul>\n" +
+         paragraph(verdict(entries_of(content, group), content.alignment), "verdict") + "</div>\n";
+}
+
+/// What each estimator did, and under which circumstances.
+std::string accounts_of(const ReportContent& content) {
+  std::string items;
+  for (const std::vector<std::size_t>& group : content.groups) {
+    for (const ReportEntry& entry : entries_of(content, group)) {
+      items += "<li><b>" + escaped(name_of(*entry.run, *entry.estimate)) + "</b> " +
+               escaped(entry_words(entry, content.alignment)) + "</li>\n";
+    }
   }
-  return markup + "</ul>\n</div>\n";
+  return items.empty() ? "" : heading(3, "In words") + "<ul>\n" + items + "</ul>\n";
 }
 
 std::string warning_item(const ReportWarning& warning) {
-  std::string text = "<li class=\"" + std::string(warning.level == "error" ? "error" : "warning") +
-                     "\"><b>" + escaped(warning.level) + "</b> ";
+  const std::string level =
+      warning.level == "error" || warning.level == "note" ? warning.level : "warning";
+  std::string text = "<li class=\"" + level + "\"><b>" + level + "</b> ";
   if (!warning.source.empty()) text += "<i>" + escaped(warning.source) + "</i> ";
   text += escaped(warning.text, 1000);
   if (warning.first_s) {
@@ -287,8 +294,8 @@ std::string summary_section(const ReportContent& content) {
   for (const std::vector<std::size_t>& group : content.groups) {
     markup += group_words(content, group);
   }
-  return markup + scores_table(content) + left_out_of(content) + warnings_of(content) +
-         "</section>\n";
+  return markup + scores_table(content) + left_out_of(content) + accounts_of(content) +
+         warnings_of(content) + "</section>\n";
 }
 
 }  // namespace overfly::server::report

@@ -6,6 +6,7 @@
 #include "server/record/run_manifest.hpp"
 #include "server/report/differences.hpp"
 #include "server/report/html_parts.hpp"
+#include "server/report/plot/markup.hpp"
 #include "server/report/words.hpp"
 
 namespace overfly::server::report {
@@ -15,6 +16,7 @@ using evaluation::AlignmentMode;
 using evaluation::AlignmentScore;
 using Json = nlohmann::json;
 
+constexpr std::size_t kMaxValueBytes = 400;
 constexpr const char* kAbsent = "(absent)";
 /// Rows of a table of fields; a document has some hundred.
 constexpr std::size_t kMaxFields = 2000;
@@ -188,6 +190,15 @@ Table origin_table(const ReportRun& run) {
   return origin;
 }
 
+/// Those of the scenario: the estimators told theirs, with defaults, to the manifest.
+void drop_parameters(Json& scenario) {
+  const auto estimators = scenario.find("estimators");
+  if (estimators == scenario.end() || !estimators->is_array()) return;
+  for (Json& estimator : *estimators) {
+    if (estimator.is_object()) estimator.erase("parameters");
+  }
+}
+
 }  // namespace
 
 Json compared_document(const ReportRun& run) {
@@ -202,10 +213,19 @@ Json compared_document(const ReportRun& run) {
                             "camera",
                             "cameras",
                             "epoch_utc_ns",
-                            "duration_ns"}) {
+                            "duration_ns",
+                            "estimators"}) {
     manifest.erase(field);
   }
-  return {{"scenario", run.scenario}, {"run", std::move(manifest)}};
+  Json parameters = Json::object();
+  for (const RunManifest::Estimator& estimator : run.manifest.estimators) {
+    parameters[estimator.name] = estimator.parameters.value_or(RunManifest::Parameters{});
+  }
+  Json scenario = run.scenario;
+  if (scenario.is_object()) drop_parameters(scenario);
+  return {{"scenario", std::move(scenario)},
+          {"parameters", std::move(parameters)},
+          {"manifest", std::move(manifest)}};
 }
 
 std::string differences_section(const ReportContent& content) {
@@ -223,7 +243,8 @@ std::string differences_section(const ReportContent& content) {
   for (const Difference& difference : differences.fields) {
     std::vector<Cell>& row = differing.rows.emplace_back();
     row.push_back({difference.field});
-    for (const auto& value : difference.values) row.push_back({value.value_or(kAbsent)});
+    for (const auto& value : difference.values)
+      row.push_back({value ? plot::clean_text(*value, kMaxValueBytes) : kAbsent});
   }
   std::string markup =
       "<section id=\"differences\">\n" + heading(2, "What differs between the runs");

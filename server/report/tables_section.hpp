@@ -8,8 +8,8 @@
 
 namespace overfly::server::report {
 
-/// What a run is made of, for comparing runs: its scenario as flown, and of its manifest all but
-/// what the scenario says.
+/// What a run is made of, for comparing runs: its scenario as flown, the parameters that its
+/// estimators used, and of its manifest what the scenario does not say.
 [[nodiscard]] nlohmann::json compared_document(const ReportRun& run);
 
 /// HTML. Of the differences nothing for a single run.

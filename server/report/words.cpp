@@ -12,14 +12,17 @@ namespace {
 
 constexpr const char* kNoFigure = "\xE2\x80\x93";
 constexpr int kSignificant = 4;
+constexpr double kLeastShown = 1e-6;
 
 std::string fixed_text(double value, int decimals) {
   char text[400];
   std::snprintf(text, sizeof text, "%.*f", decimals, value);
-  return text;
+  const std::string digits = text;
+  const bool minus_zero = digits.find_first_not_of("-0.") == std::string::npos;
+  return minus_zero && digits.front() == '-' ? digits.substr(1) : digits;
 }
 
-std::string seconds_words(double t_s) { return fixed_text(t_s, 1) + " s"; }
+std::string seconds_words(double t_s) { return fixed_text(t_s, 1) + "\xC2\xA0s"; }
 
 /// The last row at or before t, and the rows around it.
 const FrameRow* row_at(const std::vector<FrameRow>& rows, std::int64_t t_ns) {
@@ -47,7 +50,8 @@ std::string figure_text(double value) {
   if (!std::isfinite(value)) return kNoFigure;
   if (value == 0.0) return "0";
   const double size = std::abs(value);
-  if (size >= 1e9 || size < 1e-6) {
+  if (size < kLeastShown) return value < 0.0 ? "> -1e-6" : "< 1e-6";
+  if (size >= 1e9) {
     char text[40];
     std::snprintf(text, sizeof text, "%.3e", value);
     return text;

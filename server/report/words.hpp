@@ -8,12 +8,12 @@
 
 namespace overfly::server::report {
 
-/// Four significant digits, never fewer than the whole part: "0.03412", "3.412", "34123". An en
-/// dash for a number that is not finite, and for none.
+/// Four significant digits, never fewer than the whole part: "0.03412", "3.412", "34123"; "< 1e-6"
+/// for what rounding leaves. An en dash for a number that is not finite, and for none.
 [[nodiscard]] std::string figure_text(double value);
 [[nodiscard]] std::string figure_text(const std::optional<double>& value);
 
-/// "COMPLETED", "LOST at 12.3 s".
+/// "COMPLETED", "LOST at 12.3 s", with a no-break space before the unit.
 [[nodiscard]] std::string outcome_text(const evaluation::Score& score);
 
 /// What an estimator did, as a predicate: "was lost at 12.3 s".

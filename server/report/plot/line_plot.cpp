@@ -14,6 +14,8 @@ constexpr double kRightPx = 16.0;
 constexpr double kBelowPx = 40.0;
 constexpr double kTickPx = 5.0;
 constexpr double kMarginShare = 0.06;
+/// Of a logarithmic axis; smaller values lie below it.
+constexpr double kMostDecades = 5.0;
 /// Share of a map's width that its scale bar may take.
 constexpr double kScaleBarShare = 0.25;
 
@@ -68,7 +70,9 @@ Range y_range_for(const LinePlot& plot, const std::vector<Series>& series) {
   }
   if (plot.logarithmic) {
     if (!(range.low > 0.0) || !std::isfinite(range.high)) return {0.0, 1.0};
-    return padded_by(usable({std::log10(range.low), std::log10(range.high)}), kMarginShare);
+    const double high = std::log10(range.high);
+    const double low = std::max(std::log10(range.low), high - kMostDecades);
+    return padded_by(usable({low, high}), kMarginShare);
   }
   if (plot.from_zero) range.low = std::min(range.low, 0.0);
   range = usable(range);

@@ -36,7 +36,8 @@ struct LinePlot {
   double width_px = 900.0;
   double area_height_px = 170.0;  ///< between the axes
   bool from_zero = false;         ///< the y axis begins at 0
-  bool logarithmic = false;       ///< y; values that are not positive become gaps
+  /// y, over at most five powers of ten. Values that are not positive become gaps.
+  bool logarithmic = false;
   bool legend = true;
   /// The data URI of a picture that fills the area between the axes; lines get an outline.
   std::string background_uri;

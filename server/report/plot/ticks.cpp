@@ -64,31 +64,30 @@ Ticks nice_ticks(const Range& range, int most) {
 Ticks log_ticks(const Range& range, int most) {
   std::vector<double> fine;
   std::vector<double> powers;
-  int lowest = 0;
   for (int power = exponent_of(range.low); power <= exponent_of(range.high); ++power) {
     for (const double mantissa : kMantissas) {
       const double value = mantissa * power_of_ten(power);
       if (value < range.low * (1.0 - kSlack) || value > range.high * (1.0 + kSlack)) continue;
-      if (fine.empty()) lowest = power;
       fine.push_back(value);
       if (mantissa == 1.0) powers.push_back(value);
     }
   }
+  const auto limit = static_cast<std::size_t>(most);
+  if (fine.size() <= limit || powers.size() < 2) return {fine, std::nullopt};
+  const std::size_t stride = (powers.size() + limit - 1) / limit;
   Ticks ticks;
-  ticks.decimals = std::clamp(-lowest, 0, 12);
-  const bool all = fine.size() <= static_cast<std::size_t>(most) || powers.size() < 2;
-  ticks.values = all ? fine : powers;
+  for (std::size_t i = 0; i < powers.size(); i += stride) ticks.values.push_back(powers[i]);
   return ticks;
 }
 
 std::string tick_text(double value, const Ticks& ticks) {
   char text[40];
-  const bool short_enough = std::abs(value) < 1e7 && ticks.decimals <= 6;
-  std::snprintf(text,
-                sizeof text,
-                short_enough ? "%.*f" : "%.*g",
-                short_enough ? ticks.decimals : 6,
-                std::abs(value));
+  const bool fixed = ticks.decimals && *ticks.decimals <= 6 && std::abs(value) < 1e7;
+  if (fixed) {
+    std::snprintf(text, sizeof text, "%.*f", *ticks.decimals, std::abs(value));
+  } else {
+    std::snprintf(text, sizeof text, "%.6g", std::abs(value));
+  }
   return value < 0.0 ? "\xE2\x88\x92" + std::string(text) : text;
 }
 

@@ -1,6 +1,7 @@
 // Where an axis has its ticks, and what they say.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,14 +20,16 @@ struct Range {
 
 struct Ticks {
   std::vector<double> values;  ///< increasing, in the range
-  int decimals = 0;            ///< that all of them need
+  /// That all of them need; empty: each as many as it needs itself.
+  std::optional<int> decimals;
 };
 
 /// Multiples of 1, 2 or 5 times a power of ten: the finest of these steps with at most `most`
 /// ticks.
 /// @pre usable range; most >= 2
 [[nodiscard]] Ticks nice_ticks(const Range& range, int most);
-/// 1, 2 and 5 times powers of ten, or only powers if the former are too many. @pre range.low > 0
+/// 1, 2 and 5 times powers of ten, or only powers if the former are too many; of many powers every
+/// second, third, ... @pre range.low > 0
 [[nodiscard]] Ticks log_ticks(const Range& range, int most);
 /// With a minus sign (U+2212), and a power of ten where the digits would not fit.
 [[nodiscard]] std::string tick_text(double value, const Ticks& ticks);

@@ -1,0 +1,371 @@
+// Whole reports of small runs.
+#include "server/report/report.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "server/files/whole_file.hpp"
+#include "server/record/run_folder.hpp"
+#include "server/record/run_lock.hpp"
+#include "server/record/run_records.hpp"
+#include "server/report/best_values.hpp"
+#include "server/scoring/metrics.hpp"
+#include "server/scoring/run_metrics_json.hpp"
+#include "tests/server/report/markup_reader.hpp"
+#include "tests/server/support/server_fixture.hpp"
+
+namespace overfly::server::report {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+using overfly::testing::read_text;
+using overfly::testing::TemporaryFolder;
+using overfly::testing::write_text;
+using testing::Element;
+using ::testing::HasSubstr;
+using testing::Markup;
+using ::testing::Not;
+using testing::read_markup;
+
+constexpr const char* kTwo =
+    R"(estimators=[{"name":"p","type":"perfect"},
+                   {"name":"d","type":"drifting","parameters":{"drift":0.02}}])";
+
+/// A run of 2 s in `folder`.
+void fly(const fs::path& folder, std::vector<std::string> overrides = {}) {
+  overrides.insert(overrides.begin(), kTwo);
+  const auto run = run_scenario(server::testing::small_scenario(overrides),
+                                server::testing::options_for(folder));
+  ASSERT_TRUE(run.ok()) << run.error().message;
+}
+
+MadeReport made(const std::vector<fs::path>& runs, const ReportOptions& options = {}) {
+  Result<MadeReport> report = make_report(runs, options);
+  EXPECT_TRUE(report.ok()) << (report.ok() ? "" : report.error().message);
+  return report.ok() ? *report : MadeReport{};
+}
+
+Json data_of(const std::string& html) {
+  for (const Element& script : read_markup(html).named("script")) {
+    if (script.attribute("id") == "overfly-report") return Json::parse(script.text);
+  }
+  return {};
+}
+
+void expect_near(const Json& a, const Json& b, const std::string& path) {
+  ASSERT_EQ(a.is_number(), b.is_number()) << path;
+  if (a.is_number()) {
+    EXPECT_NEAR(a.get<double>(), b.get<double>(), 1e-9) << path;
+  } else if (a.is_structured()) {
+    ASSERT_EQ(a.size(), b.size()) << path;
+    const Json flat_a = a.flatten();
+    const Json flat_b = b.flatten();
+    for (const auto& [key, value] : flat_a.items()) {
+      ASSERT_TRUE(flat_b.contains(key)) << path << key;
+      if (!value.is_structured()) expect_near(value, flat_b.at(key), path + key);
+    }
+  } else {
+    EXPECT_EQ(a, b) << path;
+  }
+}
+
+/// Nothing in the page can load or run anything.
+void expect_self_contained(const std::string& html) {
+  const Markup markup = read_markup(html);
+  ASSERT_EQ(markup.fault, "");
+  EXPECT_EQ(markup.named("script").size(), 1U);  // the data
+  for (const Element& element : markup.elements) {
+    EXPECT_THAT(std::vector<std::string>({"iframe",
+                                          "object",
+                                          "embed",
+                                          "link",
+                                          "base",
+                                          "form",
+                                          "audio",
+                                          "video",
+                                          "use",
+                                          "foreignObject"}),
+                Not(::testing::Contains(element.name)));
+    for (const auto& [key, value] : element.attributes) {
+      EXPECT_NE(key.substr(0, 2), "on") << element.name;
+      EXPECT_NE(key, "style");
+      if (key != "href" && key != "src") continue;
+      EXPECT_TRUE(value.starts_with("#") || value.starts_with("data:image/jpeg;base64,")) << value;
+    }
+  }
+  for (const Element& style : markup.named("style")) {
+    EXPECT_THAT(style.text, Not(HasSubstr("url(")));
+  }
+}
+
+class Report : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new TemporaryFolder;
+    fly(run_folder());
+  }
+  static void TearDownTestSuite() {
+    delete folder_;
+    folder_ = nullptr;
+  }
+  static fs::path run_folder() { return folder_->path() / "run"; }
+  /// A copy of the run, to be changed.
+  [[nodiscard]] fs::path copy(const std::string& name = "copy") const {
+    fs::copy(run_folder(), own_.path() / name, fs::copy_options::recursive);
+    return own_.path() / name;
+  }
+  [[nodiscard]] const fs::path& own() const { return own_.path(); }
+
+ private:
+  static TemporaryFolder* folder_;
+  TemporaryFolder own_;
+};
+TemporaryFolder* Report::folder_ = nullptr;
+
+TEST_F(Report, HasTheNumbersOfEvaluate) {
+  const MadeReport report = made({run_folder()});
+  EXPECT_EQ(report.runs, 1U);
+  EXPECT_EQ(report.estimators, 2U);
+  EXPECT_TRUE(report.left_out.empty());
+  const Json data = data_of(report.html);
+  const Json& run = data.at("runs").at(0);
+  const auto records = read_run_records(run_folder());
+  ASSERT_TRUE(records.ok());
+  expect_near(run.at("metrics"), json_from(metrics_from(*records)), "metrics");
+  expect_near(run.at("metrics"), *read_json(metrics_file(run_folder())), "metrics.json");
+  // The parts in the axes of the path belong to the same errors.
+  const Json& alignments = run.at("metrics").at("estimators").at("d").at("alignments");
+  ASSERT_GT(alignments.size(), 3U);
+  for (const auto& [mode, alignment] : alignments.items()) {
+    const Json& axes = run.at("axes").at("d").at(mode);
+    EXPECT_NEAR(std::hypot(axes.at("horizontal_rmse_m").get<double>(),
+                           axes.at("vertical_rmse_m").get<double>()),
+                alignment.at("position_rmse_m").get<double>(),
+                1e-9);
+    EXPECT_NEAR(axes.at("percent_of_path").get<double>() *
+                    run.at("metrics").at("flight").at("path_length_m").get<double>(),
+                100.0 * alignment.at("position_rmse_m").get<double>(),
+                1e-9);
+  }
+  EXPECT_GT(run.at("latency").at("d").at("median_ms").get<double>(), 0.0);
+  // What is printed is the same, rounded.
+  char printed[40];
+  std::snprintf(printed,
+                sizeof printed,
+                "%.4g",
+                alignments.at("init_scale").at("position_rmse_m").get<double>());
+  EXPECT_THAT(report.html, HasSubstr("<td class=\"n\">" + std::string(printed)));
+}
+
+TEST_F(Report, IsOneFileThatLoadsNothing) {
+  const std::string html = made({run_folder()}).html;
+  expect_self_contained(html);
+  const Markup markup = read_markup(html);
+  ASSERT_EQ(markup.named("image").size(), 1U);  // the ground
+  EXPECT_THAT(html, HasSubstr("Content-Security-Policy\" content=\"default-src 'none'"));
+  // Everything drawn has a text alternative, and ids are unique.
+  for (const Element& svg : markup.named("svg")) {
+    EXPECT_EQ(svg.attribute("role"), "img");
+    EXPECT_NE(svg.attribute("aria-labelledby"), "");
+  }
+  EXPECT_EQ(markup.named("svg").size(), markup.named("desc").size());
+  EXPECT_GE(markup.named("svg").size(), 12U);
+  std::map<std::string, int> ids;
+  for (const Element& element : markup.elements) {
+    if (!element.attribute("id").empty()) ++ids[element.attribute("id")];
+  }
+  for (const auto& [id, count] : ids) EXPECT_EQ(count, 1) << id;
+  for (const Element& link : markup.named("a")) {
+    EXPECT_EQ(ids.count(link.attribute("href").substr(1)), 1U) << link.attribute("href");
+  }
+}
+
+TEST_F(Report, OfTheSameRunIsTheSameByteByByte) {
+  EXPECT_EQ(made({run_folder()}).html, made({run_folder()}).html);
+}
+
+TEST_F(Report, ComparesRunsAndSaysWhatDiffers) {
+  fly(own() / "b", {"estimators.1.parameters.drift=0.1"});
+  fly(own() / "c", {"flight.course.height_agl_m=150"});
+  const std::string html = made({run_folder(), own() / "b", own() / "c"}).html;
+  expect_self_contained(html);
+  EXPECT_THAT(html, HasSubstr("<h2>What differs between the runs</h2>"));
+  EXPECT_THAT(html,
+              HasSubstr(R"(<th scope="row">parameters.d.drift</th><td>0.02</td><td>0.1</td>)"));
+  EXPECT_THAT(html, HasSubstr(R"(<th scope="row">scenario.flight.course.height_agl_m</th>)"));
+  // The first two flew the same way.
+  EXPECT_THAT(html, HasSubstr("<h2>One flight: run 1, run 2</h2>"));
+  EXPECT_THAT(html, HasSubstr("<h2>The flight of run 3</h2>"));
+  EXPECT_EQ(data_of(html).at("runs").size(), 3U);
+  EXPECT_THAT(made({run_folder()}).html, Not(HasSubstr("What differs")));
+}
+
+TEST_F(Report, NamesRunsThatCannotBeReported) {
+  const fs::path broken = copy("broken");
+  write_text(CameraFiles::of_main_camera(broken).rows(), "{\"frame\": \"<b>\"}\n");
+  const fs::path empty = copy("empty");
+  write_text(CameraFiles::of_main_camera(empty).rows(), "");
+  const fs::path running = copy("running");
+  Json manifest = *read_json(manifest_file(running));
+  manifest["status"] = "running";
+  ASSERT_TRUE(write_json(manifest_file(running), manifest).ok());
+  const auto lock = RunLock::take(running);
+  ASSERT_TRUE(lock.ok());
+  const MadeReport report = made({broken, run_folder(), empty, running, own() / "absent"});
+  EXPECT_EQ(report.runs, 1U);
+  ASSERT_EQ(report.left_out.size(), 4U);
+  EXPECT_THAT(report.left_out[0].reason, HasSubstr("frames.jsonl"));
+  EXPECT_THAT(report.left_out[1].reason, HasSubstr("no frames"));
+  EXPECT_THAT(report.left_out[2].reason, HasSubstr("running"));
+  EXPECT_EQ(report.left_out[3].name, "absent");
+  expect_self_contained(report.html);
+  EXPECT_THAT(report.html, HasSubstr("Not in this report"));
+  EXPECT_EQ(data_of(report.html).at("left_out").size(), 4U);
+  const auto none = make_report({own() / "absent"});
+  ASSERT_FALSE(none.ok());
+  EXPECT_EQ(none.error().code, ErrorCode::kNotFound);
+}
+
+/// An interrupted run is scored up to its end; a metrics.json that says something else is named.
+TEST_F(Report, ScoresTheRowsItself) {
+  const fs::path run = copy();
+  fs::remove(metrics_file(run));
+  Json manifest = *read_json(manifest_file(run));
+  manifest["status"] = "running";
+  ASSERT_TRUE(write_json(manifest_file(run), manifest).ok());
+  const std::string html = made({run}).html;
+  EXPECT_THAT(html, HasSubstr("the run is interrupted"));
+  EXPECT_THAT(html, HasSubstr("no readable metrics.json"));
+  EXPECT_EQ(data_of(html).at("runs").at(0).at("status"), "interrupted");
+
+  const fs::path other = copy("other");
+  Json metrics = *read_json(metrics_file(other));
+  metrics["estimators"]["d"]["alignments"]["init_scale"]["position_rmse_m"] = 0.001;
+  ASSERT_TRUE(write_json(metrics_file(other), metrics).ok());
+  const std::string changed = made({other}).html;
+  EXPECT_THAT(changed, HasSubstr("metrics.json has other scores"));
+  EXPECT_GT(data_of(changed)
+                .at("runs")
+                .at(0)
+                .at("metrics")
+                .at("estimators")
+                .at("d")
+                .at("alignments")
+                .at("init_scale")
+                .at("position_rmse_m")
+                .get<double>(),
+            0.01);
+  EXPECT_THAT(made({run_folder()}).html, Not(HasSubstr("metrics.json has other")));
+}
+
+TEST_F(Report, SaysWhyThereIsNoPictureOfTheGround) {
+  const fs::path run = copy();
+  Json scenario = *read_json(scenario_file(run));
+  scenario["world"] = {{"manifest", "/nowhere/<world>.json"}};
+  ASSERT_TRUE(write_json(scenario_file(run), scenario).ok());
+  const std::string html = made({run}).html;
+  expect_self_contained(html);
+  EXPECT_TRUE(read_markup(html).named("image").empty());
+  EXPECT_THAT(html, HasSubstr("Without a picture of the ground: /nowhere/&lt;world&gt;.json"));
+  EXPECT_THAT(html, HasSubstr("Map of the tracks"));
+}
+
+/// Texts of a run folder from somebody else.
+TEST_F(Report, ShowsHostileTextsAsTexts) {
+  const std::string hostile =
+      "</script><script>alert(1)</script>\"'><img src=x onerror=alert(2)> ]]> -->\x01&amp;";
+  const fs::path run = copy("<script>\"'&\xFF");
+  Json manifest = *read_json(manifest_file(run));
+  manifest["title"] = hostile;
+  manifest["version"] = hostile;
+  manifest["error"] = hostile;
+  manifest["world"]["attribution"] = hostile;
+  manifest["world"]["warnings"] = {hostile};
+  manifest["flight"]["description"] = hostile;
+  manifest["renderer"]["device"] = hostile;
+  manifest["estimators"][0]["parameters"] = {{hostile, hostile}};
+  ASSERT_TRUE(write_json(manifest_file(run), manifest).ok());
+  Json scenario = *read_json(scenario_file(run));
+  scenario["description"] = hostile;
+  scenario[hostile] = hostile;
+  ASSERT_TRUE(write_json(scenario_file(run), scenario).ok());
+  const Json line = {{"t_ns", 1}, {"level", "error"}, {"text", hostile}, {"source", hostile}};
+  const Json odd = {{"t_ns", 1}, {"level", "warning"}, {"text", std::string(100'000, '<')}};
+  write_text(log_file(run), line.dump() + "\n" + odd.dump() + "\n");
+  const MadeReport report = made({run, run_folder(), own() / ("no<b>\xFE")});
+  expect_self_contained(report.html);
+  const Markup markup = read_markup(report.html);
+  EXPECT_TRUE(markup.named("img").empty());
+  bool shown = false;
+  for (const Element& item : markup.named("li")) {
+    shown = shown || item.text.find("<script>alert(1)</script>\"'>") != std::string::npos;
+  }
+  EXPECT_TRUE(shown);
+  EXPECT_THAT(report.html, Not(HasSubstr("\xFF")));
+  EXPECT_THAT(report.html, Not(HasSubstr("\x01")));
+  EXPECT_LT(report.html.size(), 4'000'000U);
+  // The data is whole in spite of them.
+  EXPECT_EQ(data_of(report.html).at("runs").size(), 2U);
+}
+
+TEST_F(Report, HasLimits) {
+  ReportOptions options;
+  options.max_bytes = 10'000;
+  const auto large = make_report({run_folder()}, options);
+  ASSERT_FALSE(large.ok());
+  EXPECT_EQ(large.error().code, ErrorCode::kInvalidArgument);
+  EXPECT_THAT(large.error().message, HasSubstr("larger than"));
+  EXPECT_FALSE(make_report({}).ok());
+  const auto many = make_report(std::vector<fs::path>(kMaxRuns + 1, run_folder()));
+  ASSERT_FALSE(many.ok());
+  EXPECT_THAT(many.error().message, HasSubstr("runs = 33: must be 1 to 32"));
+  const std::atomic<bool> cancel = true;
+  options = {};
+  options.cancel = &cancel;
+  const auto cancelled = make_report({run_folder()}, options);
+  ASSERT_FALSE(cancelled.ok());
+  EXPECT_EQ(cancelled.error().code, ErrorCode::kCancelled);
+}
+
+TEST_F(Report, NeverReplacesAFile) {
+  const fs::path file = own() / "report.html";
+  ASSERT_TRUE(check_report_file(file).ok());
+  ASSERT_TRUE(write_report(file, "<p>").ok());
+  EXPECT_EQ(read_text(file), "<p>");
+  const Status again = write_report(file, "<b>");
+  ASSERT_FALSE(again.ok());
+  EXPECT_EQ(again.error().code, ErrorCode::kConflict);
+  EXPECT_FALSE(check_report_file(file).ok());
+  EXPECT_EQ(read_text(file), "<p>");
+  EXPECT_FALSE(write_report(own() / "none" / "r.html", "<p>").ok());
+  // Nothing unfinished stays.
+  EXPECT_EQ(std::distance(fs::directory_iterator(own()), fs::directory_iterator()), 1);
+  fs::create_symlink("nowhere", own() / "link.html");
+  EXPECT_FALSE(check_report_file(own() / "link.html").ok());
+}
+
+/// Every alignment can be shown, whether the flight determines it or not.
+TEST_F(Report, CanBeByAnyAlignment) {
+  for (const evaluation::AlignmentMode mode : evaluation::all_alignment_modes()) {
+    ReportOptions options;
+    options.alignment = mode;
+    const std::string html = made({run_folder()}, options).html;
+    EXPECT_EQ(read_markup(html).fault, "");
+    EXPECT_EQ(data_of(html).at("alignment"), evaluation::to_string(mode));
+  }
+}
+
+TEST(BestValues, AreOfThoseThatTakePart) {
+  const auto none = std::optional<double>();
+  EXPECT_EQ(best_of({3.0, 1.0, none, 1.0}, false), (std::vector<bool>{0, 1, 0, 1}));
+  EXPECT_EQ(best_of({3.0, 1.0, none}, true), (std::vector<bool>{1, 0, 0}));
+  EXPECT_EQ(best_of({none, 1.0, std::nan("")}, false), (std::vector<bool>{0, 0, 0}));
+  EXPECT_TRUE(best_of({}, false).empty());
+}
+
+}  // namespace
+}  // namespace overfly::server::report
