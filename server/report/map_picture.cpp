@@ -16,6 +16,13 @@ namespace overfly::server::report {
 namespace {
 
 constexpr int kJpegQuality = 80;
+/// Half of the earth's circumference.
+constexpr double kFarthestM = 2e7;
+
+bool is_on_earth(const GroundExtent& extent) {
+  return extent.east_low_m >= -kFarthestM && extent.east_high_m <= kFarthestM &&
+         extent.north_low_m >= -kFarthestM && extent.north_high_m <= kFarthestM;
+}
 
 Result<OpenedWorld> open_world_of(const ReportRun& run, const std::atomic<bool>* cancel) {
   if (run.scenario.is_null()) {
@@ -55,6 +62,9 @@ Result<MapPicture> map_picture(const ReportRun& run,
     map.note = "Without a picture of the ground: " + error.message + ".";
     return map;
   };
+  if (!is_on_earth(extent)) {
+    return without({ErrorCode::kInvalidArgument, "the tracks span more than the earth"});
+  }
   const Result<OpenedWorld> opened = open_world_of(run, cancel);
   if (!opened) return without(opened.error());
   Result<std::string> uri = picture_uri(*opened, extent, width_px, height_px, cancel);

@@ -82,10 +82,10 @@ void RunWarnings::add_of_manifest(const ReportRun& run) {
   }
   if (!run.info.problem.empty()) warn(run.info.problem);
   if (run.manifest.world) {
-    for (const std::string& text : run.manifest.world->warnings) warn("world: " + text);
+    for (const std::string& text : run.manifest.world->warnings) warn(text);
   }
   if (run.manifest.flight) {
-    for (const std::string& text : run.manifest.flight->warnings) warn("flight: " + text);
+    for (const std::string& text : run.manifest.flight->warnings) warn(text);
   }
 }
 

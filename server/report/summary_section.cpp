@@ -123,7 +123,7 @@ std::string scores_table(const ReportContent& content) {
   for (const std::vector<std::size_t>& group : content.groups) {
     add_rows(entries_of(content, group), content.alignment, scores.rows);
   }
-  return table(scores);
+  return scores.rows.empty() ? "" : table(scores);
 }
 
 std::string errors_words(const ReportEntry& entry, AlignmentMode mode) {

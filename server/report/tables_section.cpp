@@ -286,8 +286,11 @@ std::string scores_section(const ReportContent& content) {
       add_score_rows({&run, &estimate}, scores.rows);
     }
   }
-  return "<section id=\"scores\">\n" + heading(2, "All scores") + table(scores) +
-         remarks_of(content) + folded("Relative errors", relative_table(content)) + "</section>\n";
+  std::string markup = "<section id=\"scores\">\n" + heading(2, "All scores");
+  markup += scores.rows.empty() ? paragraph("No estimator.") : table(scores);
+  const std::string relative = relative_table(content);
+  markup += remarks_of(content) + (relative.empty() ? "" : folded("Relative errors", relative));
+  return markup + "</section>\n";
 }
 
 std::string provenance_section(const ReportContent& content) {

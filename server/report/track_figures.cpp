@@ -22,6 +22,7 @@ constexpr double kMapWidthPx = 900.0;
 constexpr double kSideWidthPx = 446.0;
 constexpr double kSideHeightPx = 170.0;
 constexpr double kLeastSpanM = 50.0;
+constexpr double kLeastHeightM = 10.0;
 /// Height of a map, as a share of its width.
 constexpr double kFlattest = 0.45;
 constexpr double kSteepest = 0.85;
@@ -51,12 +52,12 @@ void widen(Range& range, double span) {
 }
 
 /// What is shown of one axis: the truth, and estimates up to a flight's size beside it.
-Range shown_range(const Range& truth, const Range& all, double flight_m) {
+Range shown_range(const Range& truth, const Range& all, double flight_m, double least_m) {
   if (!(truth.low <= truth.high)) return plot::usable(truth);
   Range range{std::max(std::min(all.low, truth.low), truth.low - flight_m),
               std::min(std::max(all.high, truth.high), truth.high + flight_m)};
-  widen(range, kLeastSpanM);
-  return plot::padded_by(range, 0.08);
+  widen(range, least_m);
+  return plot::usable(plot::padded_by(range, 0.08));
 }
 
 struct Extent {
@@ -70,8 +71,8 @@ Extent shown_extent(const std::vector<Series>& paths) {
   const Range x = plot::x_range_of(truth);
   const Range y = plot::y_range_of(truth);
   const double flight_m = std::max({kLeastSpanM, x.span(), y.span()});
-  return {shown_range(x, plot::x_range_of(paths), flight_m),
-          shown_range(y, plot::y_range_of(paths), flight_m)};
+  return {shown_range(x, plot::x_range_of(paths), flight_m, kLeastSpanM),
+          shown_range(y, plot::y_range_of(paths), flight_m, kLeastSpanM)};
 }
 
 /// Share of the points that lie outside.
@@ -169,7 +170,8 @@ std::string side_view(const ReportRun& run,
   // Heights are drawn larger: estimates may leave the truth's range by its own size.
   const std::vector<Series> truth(side.series.begin(), side.series.begin() + 1);
   const Range up = plot::y_range_of(truth);
-  extent.y = shown_range(up, plot::y_range_of(side.series), std::max(kLeastSpanM, up.span()));
+  extent.y = shown_range(
+      up, plot::y_range_of(side.series), std::max(kLeastHeightM, up.span()), kLeastHeightM);
   side.x_range = extent.x;
   side.y_range = extent.y;
   side.description =

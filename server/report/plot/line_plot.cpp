@@ -16,6 +16,8 @@ constexpr double kTickPx = 5.0;
 constexpr double kMarginShare = 0.06;
 /// Of a logarithmic axis; smaller values lie below it.
 constexpr double kMostDecades = 5.0;
+/// Powers of ten that such an axis may reach: all of them are doubles.
+constexpr double kMostPower = 280.0;
 /// Share of a map's width that its scale bar may take.
 constexpr double kScaleBarShare = 0.25;
 
@@ -70,8 +72,8 @@ Range y_range_for(const LinePlot& plot, const std::vector<Series>& series) {
   }
   if (plot.logarithmic) {
     if (!(range.low > 0.0) || !std::isfinite(range.high)) return {0.0, 1.0};
-    const double high = std::log10(range.high);
-    const double low = std::max(std::log10(range.low), high - kMostDecades);
+    const double high = std::clamp(std::log10(range.high), -kMostPower, kMostPower);
+    const double low = std::clamp(std::log10(range.low), high - kMostDecades, high);
     return padded_by(usable({low, high}), kMarginShare);
   }
   if (plot.from_zero) range.low = std::min(range.low, 0.0);
@@ -204,7 +206,7 @@ std::string svg_of(const LinePlot& plot) {
   area.width = area_width_px(plot.width_px);
   area.height = plot.area_height_px;
   area.x = usable(plot.x_range.value_or(x_range_of(series)));
-  area.y = y_range_for(plot, series);
+  area.y = usable(y_range_for(plot, series));
   area.logarithmic = plot.logarithmic;
 
   const std::string clip = plot.id + "-c";

@@ -38,6 +38,7 @@ double step_for(const Range& range, int most, int* exponent) {
 
 Range usable(const Range& range) {
   if (!std::isfinite(range.low) || !std::isfinite(range.high) || range.low > range.high) return {};
+  if (!std::isfinite(range.span())) return {};
   const double size = std::max(std::abs(range.low), std::abs(range.high));
   // Ticks closer than this to each other cannot be told apart as doubles.
   if (range.span() > 1e-9 * size && range.span() > 1e-300) return range;
@@ -49,7 +50,8 @@ Range padded_by(const Range& range, double share) {
   return {range.low - share * range.span(), range.high + share * range.span()};
 }
 
-Ticks nice_ticks(const Range& range, int most) {
+Ticks nice_ticks(const Range& any_range, int most) {
+  const Range range = usable(any_range);
   int exponent = 0;
   const double step = step_for(range, most, &exponent);
   Ticks ticks;

@@ -13,7 +13,7 @@ struct Range {
   [[nodiscard]] double span() const { return high - low; }
 };
 
-/// The range of finite values, empty ones as [0, 1] and a single value with room around it.
+/// A range that can be drawn: [0, 1] if it is empty or not finite, and room around a single value.
 [[nodiscard]] Range usable(const Range& range);
 /// A part of the span more on both sides.
 [[nodiscard]] Range padded_by(const Range& range, double share);
@@ -24,9 +24,8 @@ struct Ticks {
   std::optional<int> decimals;
 };
 
-/// Multiples of 1, 2 or 5 times a power of ten: the finest of these steps with at most `most`
-/// ticks.
-/// @pre usable range; most >= 2
+/// Multiples of 1, 2 or 5 times a power of ten in the usable range: the finest of these steps with
+/// at most `most` ticks. @pre most >= 2
 [[nodiscard]] Ticks nice_ticks(const Range& range, int most);
 /// 1, 2 and 5 times powers of ten, or only powers if the former are too many; of many powers every
 /// second, third, ... @pre range.low > 0

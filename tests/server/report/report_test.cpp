@@ -312,6 +312,34 @@ TEST_F(Report, ShowsHostileTextsAsTexts) {
   EXPECT_EQ(data_of(report.html).at("runs").size(), 2U);
 }
 
+/// Rows that are valid numbers and no flight.
+TEST_F(Report, DrawsAnyNumbers) {
+  for (const double far_m : {1e12, 1e300, 1.7e308}) {
+    const fs::path run = copy("far" + std::to_string(std::log10(far_m)));
+    std::string rows;
+    double sign = 1.0;
+    const auto lines = read_lines(CameraFiles::of_main_camera(run).rows());
+    ASSERT_TRUE(lines.ok());
+    for (Json row : *lines) {
+      row["T_world_camera"]["p_m"] = {sign * far_m, -sign * far_m, far_m};
+      row["texels_per_pixel"]["median"] = far_m;
+      sign = -sign;
+      rows += row.dump() + "\n";
+    }
+    write_text(CameraFiles::of_main_camera(run).rows(), rows);
+    const auto report = make_report({run});
+    if (!report) {
+      EXPECT_THAT(report.error().message, HasSubstr("frames.jsonl"));
+      continue;
+    }
+    expect_self_contained(report->html);
+    for (const Element& path : read_markup(report->html).named("path")) {
+      EXPECT_THAT(path.attribute("d"), Not(HasSubstr("nan")));
+      EXPECT_THAT(path.attribute("d"), Not(HasSubstr("inf")));
+    }
+  }
+}
+
 TEST_F(Report, HasLimits) {
   ReportOptions options;
   options.max_bytes = 10'000;

@@ -122,6 +122,9 @@ TEST(LinePlot, HasNoNumberThatIsNone) {
                                            std::vector<Point>{{3, 7}},
                                            std::vector<Point>{{0, inf}, {1, -inf}, {2, 1}},
                                            std::vector<Point>{{0, 1e300}, {1, -1e300}},
+                                           std::vector<Point>{{0, 1.7e308}, {1, -1.7e308}},
+                                           std::vector<Point>{{0, 1.7e308}, {1, 1.7e308}},
+                                           std::vector<Point>{{0, 1e-310}, {1, 2e-320}},
                                            std::vector<Point>{{0, 0}, {1, 0}}}) {
     for (const bool logarithmic : {false, true}) {
       LinePlot plot = plot_of(points);

@@ -59,8 +59,10 @@ TEST(Ticks, OfRangesThatCannotBeDrawn) {
   EXPECT_GT(usable({5.0, 5.0}).high, 5.0);
   EXPECT_GT(usable({0.0, 0.0}).span(), 0.0);
   EXPECT_GT(usable({1e15, 1e15 + 1.0}).span(), 2.0);
-  for (const Range& range : {Range{5.0, 5.0}, Range{1e15, 1e15 + 1.0}, Range{-1e300, 1e300}}) {
-    EXPECT_LE(nice_ticks(usable(range), 6).values.size(), 6U);
+  for (const Range& range :
+       {Range{5.0, 5.0}, Range{1e15, 1e15 + 1.0}, Range{-1e300, 1e300}, Range{-1.7e308, 1.7e308}}) {
+    EXPECT_LE(nice_ticks(range, 6).values.size(), 6U);
+    EXPECT_LE(nice_ticks(padded_by(usable(range), 0.5), 6).values.size(), 6U);
   }
 }
 
