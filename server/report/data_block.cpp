@@ -1,7 +1,7 @@
 #include "server/report/data_block.hpp"
 
 #include "server/report/plot/markup.hpp"
-#include "server/report/words.hpp"
+#include "server/report/run/words.hpp"
 #include "server/scoring/run_metrics_json.hpp"
 
 namespace overfly::server::report {

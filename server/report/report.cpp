@@ -15,16 +15,16 @@
 #include "server/files/whole_file.hpp"
 #include "server/record/run_folder.hpp"
 #include "server/report/data_block.hpp"
-#include "server/report/flight_groups.hpp"
+#include "server/report/figures/time_figures.hpp"
+#include "server/report/figures/track_figures.hpp"
 #include "server/report/html_parts.hpp"
 #include "server/report/page_style.hpp"
 #include "server/report/plot/markup.hpp"
 #include "server/report/plot/series.hpp"
-#include "server/report/read_run.hpp"
+#include "server/report/run/flight_groups.hpp"
+#include "server/report/run/read_run.hpp"
 #include "server/report/summary_section.hpp"
 #include "server/report/tables_section.hpp"
-#include "server/report/time_figures.hpp"
-#include "server/report/track_figures.hpp"
 
 namespace overfly::server::report {
 namespace {

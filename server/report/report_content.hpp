@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "evaluation/evaluation.hpp"
-#include "server/report/report_run.hpp"
+#include "server/report/run/report_run.hpp"
 
 namespace overfly::server::report {
 

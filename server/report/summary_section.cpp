@@ -8,7 +8,7 @@
 #include "server/report/best_values.hpp"
 #include "server/report/html_parts.hpp"
 #include "server/report/plot/markup.hpp"
-#include "server/report/words.hpp"
+#include "server/report/run/words.hpp"
 
 namespace overfly::server::report {
 namespace {
@@ -201,9 +201,9 @@ std::string verdict(const std::vector<ReportEntry>& entries, AlignmentMode mode)
   const auto first = std::find(best.begin(), best.end(), true);
   if (first != best.end()) {
     const auto index = static_cast<std::size_t>(first - best.begin());
-    text += " The smallest position error has " +
-            name_of(*entries[index].run, *entries[index].estimate) + ": " +
-            figure_text(positions[index]) + " m RMSE by " + evaluation::to_string(mode) + ".";
+    text += " " + name_of(*entries[index].run, *entries[index].estimate) +
+            " has the smallest position error: " + figure_text(positions[index]) + " m RMSE by " +
+            evaluation::to_string(mode) + ".";
   }
   return text;
 }

@@ -7,7 +7,7 @@
 #include "server/report/differences.hpp"
 #include "server/report/html_parts.hpp"
 #include "server/report/plot/markup.hpp"
-#include "server/report/words.hpp"
+#include "server/report/run/words.hpp"
 
 namespace overfly::server::report {
 namespace {

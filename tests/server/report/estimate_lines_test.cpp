@@ -1,12 +1,12 @@
 // Lines of runs made by hand: their values, and their gaps.
-#include "server/report/estimate_lines.hpp"
+#include "server/report/figures/estimate_lines.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "server/report/flight_groups.hpp"
-#include "server/report/words.hpp"
+#include "server/report/run/flight_groups.hpp"
+#include "server/report/run/words.hpp"
 #include "tests/server/report/report_fixture.hpp"
 
 namespace overfly::server::report {

@@ -1,5 +1,5 @@
 // The picture of the ground against a world whose colour follows from the place.
-#include "server/report/ground_picture.hpp"
+#include "server/report/figures/ground_picture.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 
 #include "core/time.hpp"
 #include "server/record/run_records.hpp"
-#include "server/report/report_run.hpp"
+#include "server/report/run/report_run.hpp"
 #include "server/scoring/metrics.hpp"
 
 namespace overfly::server::report::testing {

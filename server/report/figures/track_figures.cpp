@@ -1,14 +1,14 @@
-#include "server/report/track_figures.hpp"
+#include "server/report/figures/track_figures.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/text/percent.hpp"
-#include "server/report/estimate_lines.hpp"
+#include "server/report/figures/estimate_lines.hpp"
+#include "server/report/figures/map_picture.hpp"
 #include "server/report/html_parts.hpp"
-#include "server/report/map_picture.hpp"
 #include "server/report/plot/line_plot.hpp"
-#include "server/report/words.hpp"
+#include "server/report/run/words.hpp"
 
 namespace overfly::server::report {
 namespace {

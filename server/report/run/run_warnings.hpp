@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "server/report/report_run.hpp"
+#include "server/report/run/report_run.hpp"
 
 namespace overfly::server::report {
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "server/report/report_run.hpp"
+#include "server/report/run/report_run.hpp"
 
 namespace overfly::server::report {
 

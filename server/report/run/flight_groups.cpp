@@ -1,4 +1,4 @@
-#include "server/report/flight_groups.hpp"
+#include "server/report/run/flight_groups.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "server/report/map_picture.hpp"
+#include "server/report/figures/map_picture.hpp"
 
 #include <cstdint>
 #include <span>

@@ -1,4 +1,4 @@
-#include "server/report/run_warnings.hpp"
+#include "server/report/run/run_warnings.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include "core/text/number_text.hpp"
 #include "core/text/percent.hpp"
 #include "core/time.hpp"
-#include "server/report/words.hpp"
+#include "server/report/run/words.hpp"
 
 namespace overfly::server::report {
 namespace {

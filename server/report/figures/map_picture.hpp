@@ -5,8 +5,8 @@
 #include <string>
 
 #include "core/result.hpp"
-#include "server/report/ground_picture.hpp"
-#include "server/report/report_run.hpp"
+#include "server/report/figures/ground_picture.hpp"
+#include "server/report/run/report_run.hpp"
 
 namespace overfly::server::report {
 

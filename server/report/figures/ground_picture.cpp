@@ -1,4 +1,4 @@
-#include "server/report/ground_picture.hpp"
+#include "server/report/figures/ground_picture.hpp"
 
 #include <algorithm>
 #include <array>

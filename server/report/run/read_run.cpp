@@ -1,4 +1,4 @@
-#include "server/report/read_run.hpp"
+#include "server/report/run/read_run.hpp"
 
 #include <limits>
 #include <memory>
@@ -7,7 +7,7 @@
 #include "server/files/whole_file.hpp"
 #include "server/record/run_folder.hpp"
 #include "server/record/run_records.hpp"
-#include "server/report/run_warnings.hpp"
+#include "server/report/run/run_warnings.hpp"
 #include "server/scoring/metrics.hpp"
 #include "server/timeline/run_timeline.hpp"
 

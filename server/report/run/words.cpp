@@ -1,4 +1,4 @@
-#include "server/report/words.hpp"
+#include "server/report/run/words.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "server/report/estimate_lines.hpp"
+#include "server/report/figures/estimate_lines.hpp"
 
 #include <algorithm>
 #include <cmath>

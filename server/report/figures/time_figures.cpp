@@ -1,18 +1,21 @@
-#include "server/report/time_figures.hpp"
+#include "server/report/figures/time_figures.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "core/measure/quantile.hpp"
 #include "core/time.hpp"
-#include "server/report/estimate_lines.hpp"
+#include "server/report/figures/camera_figures.hpp"
+#include "server/report/figures/estimate_lines.hpp"
+#include "server/report/figures/flight_plots.hpp"
 #include "server/report/html_parts.hpp"
 #include "server/report/plot/band_plot.hpp"
 #include "server/report/plot/line_plot.hpp"
-#include "server/report/words.hpp"
+#include "server/report/run/words.hpp"
 
 namespace overfly::server::report {
 namespace {
@@ -25,56 +28,6 @@ using plot::Series;
 
 /// Errors whose sizes differ by more than this are drawn on a logarithmic axis.
 constexpr double kLogarithmicFrom = 20.0;
-constexpr double kTexturedFrom = 0.5;
-
-/// What all figures of one flight have in common.
-struct Flight {
-  const ReportContent& content;
-  const ReportRun& run;
-  const std::vector<ReportEntry>& entries;
-  std::string id;
-};
-
-Range flight_range(const Flight& flight) {
-  const std::vector<FrameRow>& frames = flight.run.main_frames();
-  return {std::min(0.0, s_from_ns(frames.front().t_ns)), s_from_ns(frames.back().t_ns)};
-}
-
-/// "orb 0.1 to 3.2, at the end 3.1" of each line.
-std::string values_in_words(const std::vector<Series>& series) {
-  std::string text;
-  for (const Series& line : series) {
-    const Range range = plot::y_range_of({line});
-    const auto last = std::find_if(line.points.rbegin(),
-                                   line.points.rend(),
-                                   [](const Point& point) { return !point.is_gap(); });
-    text += text.empty() ? "" : "; ";
-    text += line.label + ": ";
-    if (last == line.points.rend()) {
-      text += "no values";
-    } else {
-      text += figure_text(range.low) + " to " + figure_text(range.high) + ", at the end " +
-              figure_text(last->y);
-    }
-  }
-  return text + ".";
-}
-
-LinePlot time_plot(const Flight& flight,
-                   const std::string& name,
-                   const std::string& title,
-                   const std::string& y_label,
-                   std::vector<Series> series) {
-  LinePlot plot;
-  plot.id = flight.id + "-" + name;
-  plot.title = title;
-  plot.description = y_label + " over time. " + values_in_words(series);
-  plot.x_label = "time [s]";
-  plot.y_label = y_label;
-  plot.x_range = flight_range(flight);
-  plot.series = std::move(series);
-  return plot;
-}
 
 /// One line for each entry, of entries that have points.
 std::vector<Series> entry_lines(
@@ -250,80 +203,6 @@ std::string latency_figure(const Flight& flight) {
   return figure("Latency.", "Time from sending a frame to its answer.", plot::svg_of(plot));
 }
 
-/// The same quantity of several runs of one flight is one line.
-void add_new_line(std::vector<Series>& series, Series line) {
-  const auto same = [&](const Series& other) {
-    return std::equal(other.points.begin(),
-                      other.points.end(),
-                      line.points.begin(),
-                      line.points.end(),
-                      [](const Point& a, const Point& b) {
-                        return a.x == b.x && (a.y == b.y || (a.is_gap() && b.is_gap()));
-                      });
-  };
-  if (line.points.empty() || std::any_of(series.begin(), series.end(), same)) return;
-  line.style = static_cast<int>(series.size()) + 1;
-  series.push_back(std::move(line));
-}
-
-/// A quantity of the frames of all cameras of the flight's runs.
-std::vector<Series> camera_lines(
-    const Flight& flight,
-    const std::string& what,
-    const std::function<std::optional<double>(const FrameRow&)>& value) {
-  std::vector<const ReportRun*> runs;
-  for (const ReportEntry& entry : flight.entries) {
-    if (runs.empty() || runs.back() != entry.run) runs.push_back(entry.run);
-  }
-  if (runs.empty()) runs.push_back(&flight.run);
-  std::vector<Series> series;
-  for (const ReportRun* run : runs) {
-    for (std::size_t i = 0; i < run->cameras.size(); ++i) {
-      std::string label = run->cameras[i].name.empty() ? "camera" : run->cameras[i].name;
-      if (!run->label.empty()) label = run->label + ": " + label;
-      add_new_line(series, {label + ", " + what, 0, frames_over_time(*run, i, value)});
-    }
-  }
-  return series;
-}
-
-std::string texture_figure(const Flight& flight) {
-  const auto imaged = [](double FrameRow::*value) {
-    return [value](const FrameRow& row) {
-      const bool seen = row.texels_per_pixel_median > 0.0;
-      return seen ? std::optional<double>(row.*value) : std::nullopt;
-    };
-  };
-  std::vector<Series> series =
-      camera_lines(flight, "median", imaged(&FrameRow::texels_per_pixel_median));
-  for (Series& line : camera_lines(flight, "least", imaged(&FrameRow::texels_per_pixel_min))) {
-    add_new_line(series, std::move(line));
-  }
-  if (series.empty()) return "";
-  LinePlot plot = time_plot(
-      flight, "texture", "Texture of the ground over time", "texels per pixel", std::move(series));
-  plot.levels = {{kTexturedFrom, "0.5: below, the imagery limits the result"}};
-  plot.from_zero = true;
-  plot.area_height_px = 140.0;
-  return figure("Texture.",
-                "Linear texels of the finest imagery per pixel of the camera, in each frame.",
-                plot::svg_of(plot));
-}
-
-std::string share_figure(const Flight& flight,
-                         double FrameRow::*share,
-                         const std::string& name,
-                         const std::string& title,
-                         const std::string& caption) {
-  std::vector<Series> series = camera_lines(
-      flight, name, [&](const FrameRow& row) { return std::optional<double>(100.0 * row.*share); });
-  if (!(plot::y_range_of(series).high > 0.0)) return "";
-  LinePlot plot = time_plot(flight, name, title + " over time", name + " [%]", std::move(series));
-  plot.from_zero = true;
-  plot.area_height_px = 100.0;
-  return figure(title + ".", caption, plot::svg_of(plot));
-}
-
 }  // namespace
 
 std::string time_figures(const ReportContent& content,
@@ -338,7 +217,7 @@ std::string time_figures(const ReportContent& content,
                         &AxisError::along_m,
                         "along",
                         "Error along the path",
-                        "Positive: ahead of the truth. A growing error is one of scale.");
+                        "Positive: ahead of the truth.");
   markup += axis_figure(flight,
                         &AxisError::across_m,
                         "across",
@@ -349,14 +228,7 @@ std::string time_figures(const ReportContent& content,
   markup += rotation_figure(flight);
   markup += pose_figures(flight);
   markup += latency_figure(flight);
-  markup += texture_figure(flight);
-  markup += share_figure(
-      flight, &FrameRow::void_fraction, "void", "Ground without imagery", "Share of the image.");
-  markup += share_figure(flight,
-                         &FrameRow::saturated_fraction,
-                         "saturated",
-                         "Saturated pixels",
-                         "Share of the image.");
+  markup += camera_figures(flight);
   return markup;
 }
 

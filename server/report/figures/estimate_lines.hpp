@@ -8,7 +8,7 @@
 
 #include "server/report/plot/band_plot.hpp"
 #include "server/report/plot/series.hpp"
-#include "server/report/report_run.hpp"
+#include "server/report/run/report_run.hpp"
 
 namespace overfly::server::report {
 
