@@ -3,7 +3,7 @@
 # Rooms whose sources make one library of the program each, with all their sub-rooms.
 LIBRARIES = [
     "core", "terrain", "renderer", "sensor", "flight", "middleware", "odometry", "vo_bridges",
-    "evaluation",
+    "evaluation", "calibration",
     "server", "server/report", "server/net", "server/app",
 ]
 
@@ -131,13 +131,22 @@ MAY_INCLUDE = {
     "vo_bridges/adapters/svo": ["vo_bridges/adapters"],
     "evaluation": ["core/"],
     "evaluation/images": ["core/"],
+    "calibration": ["core/", "calibration/detection", "calibration/solver"],
+    "calibration/detection": ["core/", "calibration"],
+    "calibration/solver": ["core/", "calibration"],
+    "calibration/virtual": ["core/", "calibration"],
     "server/files": ["core/"],
     "server/timing": ["core/"],
+    "server/calibration": ["core/", "calibration", "calibration/virtual", "sensor/", "server/files/",
+                           "server/record/rows", "server/dataset/dataset_reader.hpp",
+                           "server/dataset/grey_image.hpp"],
     "server/scenario": ["core/", "terrain/", "renderer/", "sensor/", "flight/",
                         "vo_bridges/"],
     "server/scenario/document": ["core/", "terrain/", "renderer/", "flight/",
                                  "middleware/lcm/network.hpp", "vo_bridges/", "server/files/",
                                  "server/scenario/", "server/record/run_folder.hpp",
+                                 "server/calibration/calibration_file.hpp",
+                                 "server/record/rows/run_rows.hpp",
                                  "server/scenario/document/estimators",
                                  "server/scenario/document/flight"],
     "server/scenario/document/estimators": ["core/", "vo_bridges/", "middleware/lcm/network.hpp",
@@ -167,7 +176,7 @@ MAY_INCLUDE = {
     "server/dataset": ["core/", "terrain/", "evaluation/", "vo_bridges/", "server/files/",
                        "server/timing/", "server/record/", "server/scoring/", "server/camera/",
                        "server/estimators/"],
-    "server/export": ["core/", "terrain/", "renderer/", "sensor/", "flight/", "middleware/",
+    "server/export": ["core/", "server/calibration/camera_text.hpp", "terrain/", "renderer/", "sensor/", "flight/", "middleware/",
                       "server/files/", "server/timing/", "server/scenario/", "server/record/",
                       "server/camera/", "server/scoring/", "server/export/video/",
                       "server/export/mcap/"],
@@ -202,7 +211,7 @@ MAY_INCLUDE = {
     "server/net": ["core/", "server/logs/", "server/timing/", "server/record/", "server/timeline/",
                    "server/runs/", "server/views/", "server/net/http/", "server/net/stream/", "server/net/rest/"],
     "server/app": ["core/", "terrain/", "renderer/", "flight/", "middleware/", "odometry/",
-                   "vo_bridges/", "evaluation/", "server/"],
+                   "vo_bridges/", "evaluation/", "calibration/", "server/"],
 }
 # Rooms whose sub-folders have no entry above: their files belong to the room itself.
 WHOLE = ["server/app"]
@@ -218,7 +227,7 @@ THIRD_PARTY = [
     (r"(epoxy|EGL|GL|GLES\d?)/", ["renderer"], False),
     # OpenCV's C headers have the names that upstream systems of its second version use.
     (r"opencv2/\w+/\w+_c\.h$", ["vo_bridges/adapters"], False),
-    (r"opencv2/(?!\w+/\w+_c\.h$)", ["odometry", "evaluation/images"], False),
+    (r"opencv2/(?!\w+/\w+_c\.h$)", ["odometry", "evaluation/images", "calibration/detection"], False),
     (r"ceres/", ["odometry", "flight/smoothing"], False),
     (r"boost/", ["server/net"], False),
     (r"openssl/", ["server/net"], False),

@@ -1,5 +1,6 @@
 // Compiles only while no third-party type leaks out of its room: the public headers of all rooms
 // are included, and none of the libraries' own macros may be visible after that.
+#include "calibration/calibrator.hpp"
 #include "evaluation/evaluation.hpp"
 #include "flight/dynamics/aircraft.hpp"
 #include "flight/dynamics/airframe_file.hpp"
@@ -22,7 +23,7 @@
 #error "OpenGL or EGL leaks out of the renderer"
 #endif
 #if defined(CV_VERSION) || defined(CERES_VERSION)
-#error "OpenCV or Ceres leaks out of odometry"
+#error "OpenCV or Ceres leaks out of odometry or calibration"
 #endif
 #if defined(BOOST_VERSION) || defined(BOOST_BEAST_VERSION)
 #error "Boost leaks out of server/net"

@@ -1,0 +1,43 @@
+// How well views of a board cover the image, the distances and the tilts.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "calibration/board.hpp"
+#include "calibration/view.hpp"
+
+namespace overfly::calibration {
+
+/// Where and how a view shows the board: the measures of ROS's camera_calibration (Bowman,
+/// Mihelich; wiki.ros.org/camera_calibration), each in [0, 1].
+struct ViewMeasures {
+  double x = 0.0;     ///< of the board in the image, 0 = left, 1 = right edge
+  double y = 0.0;     ///< 0 = top, 1 = bottom
+  double size = 0.0;  ///< square root of the part of the image that the outer corners enclose
+  double skew = 0.0;  ///< by how much the angle at a corner differs from 90 deg, in half radians
+};
+
+/// @pre the view has all corners of the board
+[[nodiscard]] ViewMeasures measures_of(const BoardView& view,
+                                       const Board& board,
+                                       int width_px,
+                                       int height_px);
+
+/// One bar: the range of a measure over the views, compared with the range that is enough.
+struct CoverageBar {
+  std::string name;  ///< "x", "y", "size", "skew"
+  double min = 0.0;
+  double max = 0.0;
+  double progress = 0.0;  ///< in [0, 1]; 1 = enough
+};
+
+/// The bars x, y, size and skew. Enough is a range of 0.7 in x and y, a size of 0.4 and a skew of
+/// 0.5, as for ROS; small boards and straight views are no merit, so size and skew begin at 0.
+/// Empty views give bars of 0.
+[[nodiscard]] std::vector<CoverageBar> coverage_bars(const std::vector<ViewMeasures>& views);
+
+/// Mean distance between the same corners of two views [px]. @pre the same corners
+[[nodiscard]] double mean_shift_px(const BoardView& a, const BoardView& b);
+
+}  // namespace overfly::calibration

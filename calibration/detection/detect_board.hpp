@@ -1,0 +1,24 @@
+// Finds a board's corners in an image.
+#pragma once
+
+#include <optional>
+
+#include "calibration/board.hpp"
+#include "calibration/view.hpp"
+#include "core/camera/image.hpp"
+#include "core/result.hpp"
+
+namespace overfly::calibration {
+
+/// Finds all inner corners of a chequerboard, or nothing.
+///
+/// Method: OpenCV's sector-based detector (Duda, Frese 2018, "Accurate detection and localization
+/// of checkerboard corners for calibration", BMVC), which locates corners to about a hundredth of a
+/// pixel. The first corner is the one of which the board's definition says so, by the colour of its
+/// squares; for a half-turn symmetric board it is either of two.
+/// @param image  8-bit grey, sides of 16 to 16384 px
+/// @pre board.validate()
+/// Errors: kInvalidArgument for another image; kInternal if OpenCV fails.
+[[nodiscard]] Result<std::optional<BoardView>> detect_board(const Image& image, const Board& board);
+
+}  // namespace overfly::calibration
