@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
   add_report_command(app, exit_code);
   add_agreement_command(app, exit_code);
   add_render_command(app, exit_code);
+  add_calibrate_command(app, exit_code);
   add_world_command(app, exit_code);
   add_scenario_command(app, exit_code);
   add_export_command(app, exit_code);

@@ -36,6 +36,23 @@ Kind kind_of(const std::array<unsigned char, 25>& head) {
   return Kind::kOther;
 }
 
+/// A number of four bytes, the highest first.
+std::uint32_t big_endian(const unsigned char* bytes) {
+  std::uint32_t value = 0;
+  for (int i = 0; i < 4; ++i) value = value << 8U | bytes[i];
+  return value;
+}
+
+/// Checks the size that the header states before anything of that size is allocated.
+Status check_png_size(const fs::path& file, const std::array<unsigned char, 25>& head) {
+  const std::uint32_t width = big_endian(&head[16]);
+  const std::uint32_t height = big_endian(&head[20]);
+  if (width <= kMostImageSidePx && height <= kMostImageSidePx) return {};
+  return unreadable(file,
+                    std::to_string(width) + " x " + std::to_string(height) +
+                        " px: must be at most " + std::to_string(kMostImageSidePx) + " a side");
+}
+
 Result<Kind> kind_of(const fs::path& file) {
   if (Status status = check_regular_file(file); !status) return status.error();
   std::ifstream in(file, std::ios::binary);
@@ -45,7 +62,11 @@ Result<Kind> kind_of(const fs::path& file) {
   if (in.gcount() == 0) return unreadable(file, "is empty (0 bytes)");
   std::array<unsigned char, 25> head{};
   std::copy(bytes.begin(), bytes.end(), head.begin());
-  return kind_of(head);
+  const Kind kind = kind_of(head);
+  if (kind == Kind::kPng8 || kind == Kind::kPng16) {
+    if (Status status = check_png_size(file, head); !status) return status.error();
+  }
+  return kind;
 }
 
 Result<Image> read_jpeg(const fs::path& file) {

@@ -1,10 +1,10 @@
 // The layout of the TUM monoVO data set (Engel, Usenko, Cremers 2016, arXiv:1607.02555), as DSO
 // reads it: images/, times.txt, camera.txt, pcalib.txt, vignette.png, groundtruth.txt.
 #include <algorithm>
-#include <cmath>
 
 #include "core/motion/trajectory_io.hpp"
 #include "sensor/photometric_calibration.hpp"
+#include "server/calibration/camera_text.hpp"
 #include "server/export/dataset_writer.hpp"
 #include "server/files/number_text.hpp"
 #include "server/files/png_file.hpp"
@@ -13,27 +13,10 @@
 namespace overfly::server {
 namespace {
 
-/// Name and coefficients of a lens, as in the first line of camera.txt.
-/// Errors: kUnsupported for a lens that the file cannot represent.
-Result<std::pair<std::string, std::string>> lens_text(const CameraSpec& camera) {
-  const Distortion& lens = camera.model.distortion();
-  const auto& k = lens.k;
-  switch (lens.model) {
-    case DistortionModel::kNone:
-      return std::pair<std::string, std::string>("Pinhole", "0");
-    case DistortionModel::kFov:
-      return std::pair<std::string, std::string>("FOV", number_text(k[0]));
-    case DistortionModel::kEquidistant:
-      return std::pair("EquiDistant" + std::string(), number_list({k[0], k[1], k[2], k[3]}, " "));
-    case DistortionModel::kRadtan:
-      break;
-  }
-  if (k[4] != 0.0) {
-    return Error{ErrorCode::kUnsupported,
-                 "camera " + camera.name + ": distortion k3 = " + number_text(k[4]) +
-                     ": must be 0, since camera.txt holds only k1 k2 p1 p2"};
-  }
-  return std::pair("RadTan" + std::string(), number_list({k[0], k[1], k[2], k[3]}, " "));
+Result<std::string> camera_file_text(const CameraSpec& camera) {
+  Result<std::string> text = camera_text(CameraFormat::kDso, camera.model, camera.name);
+  if (!text) return text.error().in("camera " + camera.name);
+  return text;
 }
 
 class TumMonoWriter final : public DatasetWriter {
@@ -77,23 +60,10 @@ class TumMonoWriter final : public DatasetWriter {
   }
 
  private:
-  /// Intrinsics relative to the image's size, which every reader of the format accepts. DSO
-  /// converts them to pixels as cx = cx_relative * width - 0.5; half a pixel is therefore added
-  /// here.
   Status write_camera() const {
-    const auto lens = lens_text(camera_);
-    if (!lens) return lens.error();
-    const PinholeCamera& c = camera_.model.pinhole();
-    const std::string size = std::to_string(c.width_px) + " " + std::to_string(c.height_px) + "\n";
-    const std::string intrinsics = number_list({c.fx_px / c.width_px,
-                                                c.fy_px / c.height_px,
-                                                (c.cx_px + 0.5) / c.width_px,
-                                                (c.cy_px + 0.5) / c.height_px},
-                                               " ");
-    const bool pinhole = camera_.model.distortion().none();
-    return write_whole(folder_ / "camera.txt",
-                       lens->first + " " + intrinsics + " " + lens->second + "\n" + size +
-                           (pinhole ? "none" : "crop") + "\n" + size);
+    const Result<std::string> text = camera_file_text(camera_);
+    if (!text) return text.error();
+    return write_whole(folder_ / "camera.txt", *text);
   }
 
   std::filesystem::path folder_;
@@ -112,8 +82,8 @@ Result<std::unique_ptr<DatasetWriter>> create_tum_mono_writer(const DatasetPlan&
                      " were requested: select one with --camera"};
   }
   // Checked before anything is written: a rejected export leaves the folder unchanged.
-  const auto lens = lens_text(plan.cameras.front());
-  if (!lens) return lens.error();
+  const Result<std::string> text = camera_file_text(plan.cameras.front());
+  if (!text) return text.error();
   auto writer = std::make_unique<TumMonoWriter>(plan);
   if (Status status = writer->begin(); !status) return status.error();
   return std::unique_ptr<DatasetWriter>(std::move(writer));

@@ -69,6 +69,12 @@ Result<Image> decode_jpeg(std::span<const std::uint8_t> bytes) {
     return Error{ErrorCode::kUnreadable,
                  std::string("not a JPEG image: ") + tjGetErrorStr2(handle.get())};
   }
+  constexpr auto kMost = static_cast<int>(kMostImageSidePx);
+  if (width > kMost || height > kMost) {
+    return Error{ErrorCode::kUnreadable,
+                 "JPEG image of " + std::to_string(width) + " x " + std::to_string(height) +
+                     " px: must be at most " + std::to_string(kMost) + " a side"};
+  }
   const bool grey = colour_space == TJCS_GRAY;
   Image image(width, height, grey ? 1 : 3);
   if (tjDecompress2(handle.get(),

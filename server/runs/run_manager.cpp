@@ -59,7 +59,7 @@ Result<RunInfo> RunManager::start(const std::string& scenario,
   }
   const Result<fs::path> file = scenario_path(impl_->options.scenarios_folder, scenario);
   if (!file) return file.error();
-  Result<Scenario> loaded = load_scenario(*file, overrides);
+  Result<Scenario> loaded = load_scenario(*file, overrides, impl_->sources());
   if (!loaded) return loaded.error();
   loaded->sources = impl_->sources();
   if (Status status = check_scenario(*loaded); !status) return status.error();
@@ -74,8 +74,8 @@ Status RunManager::check_overrides(const std::string& scenario,
   if (impl_->options.allow_commands || overrides.empty()) return {};
   const Result<fs::path> file = scenario_path(impl_->options.scenarios_folder, scenario);
   if (!file) return {};
-  const Result<Scenario> trusted = load_scenario(*file);
-  const Result<Scenario> wanted = load_scenario(*file, overrides);
+  const Result<Scenario> trusted = load_scenario(*file, {}, impl_->sources());
+  const Result<Scenario> wanted = load_scenario(*file, overrides, impl_->sources());
   // If the file itself is invalid and only the overrides make it valid, nothing in it is trusted.
   return wanted ? check_reach(*wanted, trusted ? *trusted : Scenario()) : Status();
 }
@@ -87,7 +87,7 @@ std::vector<ScenarioEntry> RunManager::scenarios() const {
 Result<Json> RunManager::scenario(const std::string& name) const {
   const Result<fs::path> file = scenario_path(impl_->options.scenarios_folder, name);
   if (!file) return file.error();
-  Result<Scenario> loaded = load_scenario(*file);
+  Result<Scenario> loaded = load_scenario(*file, {}, impl_->sources());
   if (!loaded) return loaded.error();
   return loaded->resolved;
 }
@@ -96,7 +96,7 @@ Result<WorldExtent> RunManager::world_extent(const std::string& scenario,
                                              const std::function<bool()>& cancelled) {
   const Result<fs::path> file = scenario_path(impl_->options.scenarios_folder, scenario);
   if (!file) return file.error();
-  Result<Scenario> loaded = load_scenario(*file);
+  Result<Scenario> loaded = load_scenario(*file, {}, impl_->sources());
   if (!loaded) return loaded.error();
   loaded->sources = impl_->sources();
   if (Status status = check_scenario(*loaded); !status) return status.error();
@@ -158,7 +158,7 @@ Result<Scenario> RunManager::scenario_of(const std::string& id) const {
   if (std::optional<Scenario> scenario = impl_->active_scenario(id)) return *scenario;
   const Result<fs::path> place = folder(id);
   if (!place) return place.error();
-  Result<Scenario> flown = load_scenario(scenario_file(*place));
+  Result<Scenario> flown = load_scenario(scenario_file(*place), {}, impl_->sources());
   if (!flown) return flown.error();
   flown->sources = impl_->sources();
   if (Status status = check_scenario(*flown); !status) return status.error();

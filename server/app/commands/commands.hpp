@@ -15,6 +15,7 @@ void add_evaluate_command(CLI::App& app, int& exit_code);
 void add_report_command(CLI::App& app, int& exit_code);
 void add_agreement_command(CLI::App& app, int& exit_code);
 void add_render_command(CLI::App& app, int& exit_code);
+void add_calibrate_command(CLI::App& app, int& exit_code);
 void add_world_command(CLI::App& app, int& exit_code);
 /// Below `world`.
 void add_world_build_command(CLI::App& world, int& exit_code);

@@ -5,6 +5,7 @@
 
 #include "core/outside/outside_json.hpp"
 #include "server/files/whole_file.hpp"
+#include "server/scenario/document/scenario_calibration.hpp"
 #include "server/scenario/document/scenario_document.hpp"
 #include "server/scenario/document/scenario_override.hpp"
 #include "server/scenario/document/scenario_schema.hpp"
@@ -44,11 +45,21 @@ bool is_deeper_than(const Json& value, std::size_t limit) {
          });
 }
 
+Status check_schema(const Json& document) {
+  std::string messages;
+  for (const auto& [path, text] : schema_violations(document)) {
+    messages += (messages.empty() ? "" : "\n") + text;
+  }
+  if (messages.empty()) return {};
+  return Error{ErrorCode::kInvalidArgument, messages};
+}
+
 }  // namespace
 
 Result<Scenario> resolve_scenario(Json document,
                                   const std::vector<Override>& overrides,
-                                  const fs::path& base) {
+                                  const fs::path& base,
+                                  const SourcePolicy& sources) {
   for (const Override& change : overrides) {
     if (Status status = apply_override(change, document); !status) return status.error();
   }
@@ -57,24 +68,25 @@ Result<Scenario> resolve_scenario(Json document,
     return Error{ErrorCode::kInvalidArgument,
                  "the scenario is nested more than " + std::to_string(kMaxJsonDepth) + " deep"};
   }
-  std::string messages;
-  for (const auto& [path, text] : schema_violations(document)) {
-    messages += (messages.empty() ? "" : "\n") + text;
-  }
-  if (!messages.empty()) return Error{ErrorCode::kInvalidArgument, messages};
+  if (Status status = check_schema(document); !status) return status.error();
   put_name(document, "scenario");
   if (!document.contains("cameras")) document.emplace("camera", Json::object());
+  if (Status status = read_calibrations(document, base, sources); !status) return status.error();
+  // A file's camera must meet the limits of one in the document.
+  if (Status status = check_schema(document); !status) return status.error();
   apply_schema_defaults(document);
   return scenario_from(std::move(document), base);
 }
 
-Result<Scenario> load_scenario(const fs::path& file, const std::vector<Override>& overrides) {
+Result<Scenario> load_scenario(const fs::path& file,
+                               const std::vector<Override>& overrides,
+                               const SourcePolicy& sources) {
   constexpr std::uint64_t kMaxBytes = std::uint64_t{4} << 20U;
   Result<Json> document = read_json(file, kMaxBytes);
   if (!document) return document.error();
   put_name(*document, name_from(file.stem().string()));
   const fs::path folder = fs::absolute(file).parent_path().lexically_normal();
-  Result<Scenario> scenario = resolve_scenario(std::move(*document), overrides, folder);
+  Result<Scenario> scenario = resolve_scenario(std::move(*document), overrides, folder, sources);
   if (!scenario) return scenario.error().in(file.string());
   return scenario;
 }

@@ -20,7 +20,7 @@ ScenarioEntry entry_of(const fs::path& file, const SourcePolicy& sources) {
   entry.name = file.stem().string();
   entry.file = file;
   entry.title = entry.name;
-  Result<Scenario> scenario = load_scenario(file);
+  Result<Scenario> scenario = load_scenario(file, {}, sources);
   if (!scenario) {
     entry.error = scenario.error().message;
     return entry;
