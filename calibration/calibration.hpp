@@ -47,7 +47,7 @@ struct Calibration {
 };
 
 /// @param size   of the images; its intrinsics are ignored
-/// @param views  each with all corners of the board
+/// @param views  each with at least four corners, not on a line
 /// Errors: kInvalidArgument if `size`, the board or the number of views is outside its limits, and
 /// if the views do not determine the camera: the focal length must follow to 2 % for corners with a
 /// noise of at least 0.1 px. Views that are all parallel to the image do not determine it.

@@ -1,8 +1,12 @@
 #include "calibration/coverage.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
+#include "calibration/solver/plane_homography.hpp"
 #include "core/motion/pose.hpp"
 
 namespace overfly::calibration {
@@ -15,16 +19,35 @@ double turn(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
 
 double clamped(double value) { return std::clamp(value, 0.0, 1.0); }
 
+/// The images of the corners of the smallest rectangle on the board around the view's corners.
+std::array<Eigen::Vector2d, 4> outline(const BoardView& view, const Board& board) {
+  Eigen::Vector2d low(board.cols, board.rows);
+  Eigen::Vector2d high(0.0, 0.0);
+  std::vector<PlanePair> pairs;
+  for (const BoardCorner& corner : view.corners) {
+    const Eigen::Vector2d at(corner.id % board.cols, corner.id / board.cols);
+    low = low.cwiseMin(at);
+    high = high.cwiseMax(at);
+    pairs.push_back({at, corner.pixel});
+  }
+  std::array<Eigen::Vector2d, 4> corners = {low, {high.x(), low.y()}, high, {low.x(), high.y()}};
+  const auto H = homography(pairs);
+  for (Eigen::Vector2d& corner : corners) {
+    const auto seen = std::find_if(
+        pairs.begin(), pairs.end(), [&](const PlanePair& pair) { return pair.plane == corner; });
+    if (seen != pairs.end()) {
+      corner = seen->image;
+    } else if (H) {
+      corner = Eigen::Vector3d(*H * corner.homogeneous()).hnormalized();
+    }
+  }
+  return corners;
+}
+
 }  // namespace
 
 ViewMeasures measures_of(const BoardView& view, const Board& board, int width_px, int height_px) {
-  const auto corner = [&view](int id) -> const Eigen::Vector2d& {
-    return view.corners[static_cast<std::size_t>(id)].pixel;
-  };
-  const Eigen::Vector2d& a = corner(0);
-  const Eigen::Vector2d& b = corner(board.cols - 1);
-  const Eigen::Vector2d& c = corner(board.corner_count() - 1);
-  const Eigen::Vector2d& d = corner(board.corner_count() - board.cols);
+  const auto [a, b, c, d] = outline(view, board);
   const double area = 0.5 * std::abs(turn(c - a, d - b));
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
   for (const BoardCorner& each : view.corners) mean += each.pixel;
@@ -72,10 +95,16 @@ std::vector<CoverageBar> coverage_bars(const std::vector<ViewMeasures>& views) {
 
 double mean_shift_px(const BoardView& a, const BoardView& b) {
   double sum = 0.0;
-  for (std::size_t i = 0; i < a.corners.size(); ++i) {
-    sum += (a.corners[i].pixel - b.corners[i].pixel).norm();
+  int shared = 0;
+  auto other = b.corners.begin();
+  for (const BoardCorner& corner : a.corners) {
+    while (other != b.corners.end() && other->id < corner.id) ++other;
+    if (other == b.corners.end()) break;
+    if (other->id != corner.id) continue;
+    sum += (corner.pixel - other->pixel).norm();
+    ++shared;
   }
-  return sum / static_cast<double>(a.corners.size());
+  return shared == 0 ? std::numeric_limits<double>::infinity() : sum / shared;
 }
 
 }  // namespace overfly::calibration

@@ -18,7 +18,8 @@ struct ViewMeasures {
   double skew = 0.0;  ///< by how much the angle at a corner differs from 90 deg, in half radians
 };
 
-/// @pre the view has all corners of the board
+/// Of a view without all corners: of the smallest rectangle on the board around those that it has.
+/// @pre the view has corners that determine a homography
 [[nodiscard]] ViewMeasures measures_of(const BoardView& view,
                                        const Board& board,
                                        int width_px,
@@ -37,7 +38,7 @@ struct CoverageBar {
 /// Empty views give bars of 0.
 [[nodiscard]] std::vector<CoverageBar> coverage_bars(const std::vector<ViewMeasures>& views);
 
-/// Mean distance between the same corners of two views [px]. @pre the same corners
+/// Mean distance between the corners that two views share [px]; infinite if they share none.
 [[nodiscard]] double mean_shift_px(const BoardView& a, const BoardView& b);
 
 }  // namespace overfly::calibration

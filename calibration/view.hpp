@@ -11,7 +11,7 @@ struct BoardCorner {
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< pixel centres at integers
 };
 
-/// The corners of a board in one image, by increasing id.
+/// The visible corners of a board in one image, by increasing id.
 struct BoardView {
   std::vector<BoardCorner> corners;
 };

@@ -1,5 +1,7 @@
 #include "calibration/detection/detect_board.hpp"
 
+#include "calibration/detection/detect_charuco.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -120,6 +122,7 @@ Result<std::optional<BoardView>> detect_board(const Image& image, const Board& b
   if (Status status = check_image(image); !status) return status.error();
   std::vector<cv::Point2f> corners;
   try {
+    if (board.markers) return detect_charuco(image, board);
     if (!find_corners(image, board, corners)) return std::optional<BoardView>();
   } catch (const cv::Exception& failure) {
     return Error{ErrorCode::kInternal, std::string("OpenCV's board detector: ") + failure.what()};

@@ -10,12 +10,13 @@
 
 namespace overfly::calibration {
 
-/// Finds all inner corners of a chequerboard, or nothing.
+/// Finds all inner corners of a chequerboard, or nothing; of a ChArUco board those that are visible
+/// (detect_charuco.hpp).
 ///
 /// Method: OpenCV's sector-based detector (Duda, Frese 2018, "Accurate detection and localization
-/// of checkerboard corners for calibration", BMVC), which locates corners to about a hundredth of a
-/// pixel. The first corner is the one of which the board's definition says so, by the colour of its
-/// squares; for a half-turn symmetric board it is either of two.
+/// of checkerboard corners for calibration", BMVC), then gradients around each corner. The first
+/// corner is the one of which the board's definition says so, by the colour of its squares; for a
+/// half-turn symmetric board it is either of two.
 /// @param image  8-bit grey, sides of 16 to 16384 px
 /// @pre board.validate()
 /// Errors: kInvalidArgument for another image; kInternal if OpenCV fails.

@@ -1,10 +1,13 @@
 #include "calibration/virtual/virtual_board.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
+
+#include "calibration/marker_dictionary.hpp"
 
 namespace overfly::calibration {
 namespace {
@@ -74,26 +77,65 @@ class BoardDrawing {
     return (origin + range * direction).head<2>() / board_.square_m;
   }
 
-  /// Squares are numbered from -1, so that square (0, 0) lies between the inner corners (0, 0) and
-  /// (1, 1). Points that share a square share a colour.
-  [[nodiscard]] float colour(double i, double j) const {
-    const bool on_squares = i >= -1.0 && i < board_.cols && j >= -1.0 && j < board_.rows;
-    if (on_squares) return std::fmod(std::abs(i + j), 2.0) < 0.5 ? paint_.dark : paint_.bright;
-    const double most = kBoardBorder;
-    const bool on_border =
-        i >= -1.0 - most && i < board_.cols + most && j >= -1.0 - most && j < board_.rows + most;
-    return on_border ? paint_.bright : paint_.background;
+  /// A part of the board with one colour: a square, or a cell of its marker. Points that share it
+  /// share a colour.
+  struct Part {
+    int i = 0;
+    int j = 0;
+    int col = -1;  ///< of the cell, the marker's border included; -1 or `cells` beside the marker
+    int row = -1;
+    [[nodiscard]] bool operator==(const Part&) const = default;
+  };
+
+  [[nodiscard]] Part part_of(const BoardPoint& p) const {
+    // Far from the board all is background.
+    const auto number = [](double x) { return static_cast<int>(std::clamp(x, -1e6, 1e6)); };
+    Part part{number(std::floor(p.x())), number(std::floor(p.y())), -1, -1};
+    if (!board_.markers || !board_.marker_of(part.i, part.j)) return part;
+    const double gap = board_.marker_gap();
+    const int cells = board_.markers->bits + 2;
+    const double cell = (1.0 - 2.0 * gap) / cells;
+    const auto cell_of = [&](double along) {
+      return std::clamp(static_cast<int>(std::floor((along - gap) / cell)), -1, cells);
+    };
+    part.col = cell_of(p.x() - part.i);
+    part.row = cell_of(p.y() - part.j);
+    return part;
+  }
+
+  [[nodiscard]] float colour(const Part& part) const {
+    const bool on_squares =
+        part.i >= -1 && part.i < board_.cols && part.j >= -1 && part.j < board_.rows;
+    if (!on_squares) {
+      const int low = -1 - kBoardBorder;
+      const bool on_border = part.i >= low && part.i < board_.cols + kBoardBorder &&
+                             part.j >= low && part.j < board_.rows + kBoardBorder;
+      return on_border ? paint_.bright : paint_.background;
+    }
+    if ((part.i + part.j) % 2 == 0) return paint_.dark;
+    return board_.markers ? marker_colour(part) : paint_.bright;
+  }
+
+  [[nodiscard]] float marker_colour(const Part& part) const {
+    const int bits = board_.markers->bits;
+    const int cells = bits + 2;
+    const auto within = [](int cell, int count) { return cell >= 0 && cell < count; };
+    if (!within(part.col, cells) || !within(part.row, cells)) return paint_.bright;
+    const int col = part.col - 1;
+    const int row = part.row - 1;
+    if (!within(col, bits) || !within(row, bits)) return paint_.dark;
+    const std::uint64_t marker = marker_cells(bits, board_.marker_of(part.i, part.j).value());
+    return marker_cell(bits, marker, row, col) ? paint_.bright : paint_.dark;
   }
 
   [[nodiscard]] float pixel(const std::array<BoardPoint, 4>& corners) const {
-    const double i = std::floor(corners[0].x());
-    const double j = std::floor(corners[0].y());
     bool whole = true;
     for (const BoardPoint& corner : corners) {
       if (!corner.allFinite()) return paint_.background;
-      whole = whole && std::floor(corner.x()) == i && std::floor(corner.y()) == j;
     }
-    return whole ? colour(i, j) : sampled(corners);
+    const Part part = part_of(corners[0]);
+    for (const BoardPoint& corner : corners) whole = whole && part_of(corner) == part;
+    return whole ? colour(part) : sampled(corners);
   }
 
   [[nodiscard]] float sampled(const std::array<BoardPoint, 4>& corners) const {
@@ -101,7 +143,7 @@ class BoardDrawing {
     for (const Eigen::Vector2d& s : hammersley()) {
       const BoardPoint p = (1.0 - s.y()) * ((1.0 - s.x()) * corners[0] + s.x() * corners[1]) +
                            s.y() * ((1.0 - s.x()) * corners[2] + s.x() * corners[3]);
-      sum += colour(std::floor(p.x()), std::floor(p.y()));
+      sum += colour(part_of(p));
     }
     return sum / kSamples;
   }

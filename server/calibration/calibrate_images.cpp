@@ -27,14 +27,16 @@ Error invalid_request(const std::string& what) { return {ErrorCode::kInvalidArgu
 class Session {
  public:
   static Result<Session> create(const CalibratorOptions& options,
-                                const CalibrationProgress& progress,
-                                std::size_t total) {
+                                const CalibrationProgress& progress) {
     auto calibrator = Calibrator::create(options);
     if (!calibrator) return calibrator.error();
-    Session session(std::move(*calibrator), progress, total);
+    Session session(std::move(*calibrator), progress);
     session.record_.options = options;
     return session;
   }
+
+  /// The number of images to come, for the progress.
+  void expect(std::size_t images) { total_ = images; }
 
   /// Errors: kCancelled.
   Status take(const std::string& name, const Result<Image>& image) {
@@ -60,8 +62,8 @@ class Session {
   }
 
  private:
-  Session(Calibrator calibrator, const CalibrationProgress& progress, std::size_t total)
-      : calibrator_(std::move(calibrator)), progress_(progress), total_(total) {}
+  Session(Calibrator calibrator, const CalibrationProgress& progress)
+      : calibrator_(std::move(calibrator)), progress_(progress) {}
 
   static std::string reason_of(const Result<ViewVerdict>& verdict) {
     if (!verdict) return verdict.error().message;
@@ -108,6 +110,8 @@ Status check_request(const VirtualCalibration& request) {
 Result<CalibrationRecord> calibrate_images(const fs::path& folder,
                                            const CalibratorOptions& options,
                                            const CalibrationProgress& progress) {
+  Result<Session> session = Session::create(options, progress);
+  if (!session) return session.error();
   const Result<std::vector<fs::path>> files = images_in(folder);
   if (!files) return files.error();
   if (files->empty() || files->size() > kMostCalibrationImages) {
@@ -115,8 +119,7 @@ Result<CalibrationRecord> calibrate_images(const fs::path& folder,
                            " images (PNG, JPEG, PGM, PPM): must be 1 to " +
                            std::to_string(kMostCalibrationImages));
   }
-  Result<Session> session = Session::create(options, progress, files->size());
-  if (!session) return session.error();
+  session->expect(files->size());
   for (const fs::path& file : *files) {
     const Status status = session->take(file.filename().string(), read_grey_image(file));
     if (!status) return status.error();
@@ -128,14 +131,14 @@ Result<CalibrationRecord> calibrate_virtual(const VirtualCalibration& request,
                                             const CalibratorOptions& options,
                                             const CalibrationProgress& progress) {
   if (Status status = check_request(request); !status) return status.error();
-  Result<Session> session =
-      Session::create(options, progress, static_cast<std::size_t>(request.views));
+  Result<Session> session = Session::create(options, progress);
   if (!session) return session.error();
   auto sensor = sensor::Sensor::create(request.sensor, request.camera, request.seed);
   if (!sensor) return sensor.error().in("sensor");
   const std::vector<Pose> poses =
       calibration::virtual_views(request.camera, options.board, request.views, request.seed);
   if (poses.empty()) return invalid_request("the board fits nowhere into the camera's image");
+  session->expect(poses.size());
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const RadianceImage light = calibration::draw_board(request.camera, options.board, poses[i]);
     const Image image = (*sensor)->expose(light, static_cast<std::int64_t>(i)).image;

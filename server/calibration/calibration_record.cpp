@@ -74,6 +74,11 @@ Json json_from(const CalibrationRecord& record) {
   value["board"] = {{"cols", record.options.board.cols},
                     {"rows", record.options.board.rows},
                     {"square_m", record.options.board.square_m}};
+  if (const auto& markers = record.options.board.markers) {
+    const std::string bits = std::to_string(markers->bits);
+    value["board"]["dictionary"] = "DICT_" + bits + "X" + bits + "_250";
+    value["board"]["marker_m"] = markers->side_m;
+  }
   value["standard_deviation"] = deviation_json(result.deviation, result.camera.distortion());
   value["rms_px"] = result.rms_px;
   value["max_px"] = result.max_px;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <random>
 
 namespace overfly::calibration {
@@ -38,6 +39,23 @@ std::vector<BoardView> exact_views(const CameraModel& camera,
     views.push_back(std::move(view));
   }
   return views;
+}
+
+RadianceImage slightly_blurred(const RadianceImage& sharp) {
+  RadianceImage blurred = sharp;
+  for (int y = 1; y + 1 < sharp.height_px; ++y) {
+    for (int x = 1; x + 1 < sharp.width_px; ++x) {
+      float sum = 0.0F;
+      for (int dy = -1; dy <= 1; ++dy) {
+        for (int dx = -1; dx <= 1; ++dx) {
+          sum += sharp.at(x + dx, y + dy) *
+                 static_cast<float>((2 - std::abs(dx)) * (2 - std::abs(dy)));
+        }
+      }
+      blurred.at(x, y) = sum / 16.0F;
+    }
+  }
+  return blurred;
 }
 
 Image grey_from(const RadianceImage& radiance) {

@@ -26,6 +26,9 @@ inline constexpr PinholeCamera kSampleSize{640, 480, 0.0, 0.0, 0.0, 0.0};
                                                  double noise_px = 0.0,
                                                  std::uint64_t seed = 1);
 
+/// Blurred as by a lens: binomial weights 1 2 1 in both directions, a standard deviation of 0.7 px.
+[[nodiscard]] RadianceImage slightly_blurred(const RadianceImage& sharp);
+
 /// A radiance of 1 is 255.
 [[nodiscard]] Image grey_from(const RadianceImage& radiance);
 

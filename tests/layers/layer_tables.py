@@ -132,7 +132,7 @@ MAY_INCLUDE = {
     "evaluation": ["core/"],
     "evaluation/images": ["core/"],
     "calibration": ["core/", "calibration/detection", "calibration/solver"],
-    "calibration/detection": ["core/", "calibration"],
+    "calibration/detection": ["core/", "calibration", "calibration/solver"],
     "calibration/solver": ["core/", "calibration"],
     "calibration/virtual": ["core/", "calibration"],
     "server/files": ["core/"],

@@ -53,7 +53,7 @@ TEST(CalibrateCommand, CalibratesAScenariosCameraThenItsSavedImages) {
       {"calibrate", "--images", images, "--board", "9x6", "--square-m", "0.03", "--json"});
   ASSERT_EQ(read.exit_code, 0) << read.err;
   const Json json = Json::parse(read.out);
-  EXPECT_NEAR(json.at("fx_px").get<double>(), 340.0, 0.34);
+  EXPECT_NEAR(json.at("fx_px").get<double>(), 340.0, 1.7);  // nine views of sharp images
   EXPECT_LT(json.at("rms_px").get<double>(), 0.15);
   EXPECT_EQ(json.at("distortion").at("model"), "radtan");
   EXPECT_EQ(json.at("fx_px"), Json::parse(read_text(out)).at("fx_px"));

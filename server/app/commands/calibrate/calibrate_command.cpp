@@ -31,6 +31,8 @@ struct CalibrateArguments {
   std::string camera;
   std::string board;
   double square_m = 0.0;
+  std::string charuco;  ///< "4x4", "5x5", "6x6"; empty = no markers
+  double marker_m = 0.0;
   std::string model = "radtan";
   bool k3 = false;
   bool accept_symmetric = false;
@@ -69,6 +71,10 @@ Result<CalibratorOptions> options_from(const CalibrateArguments& arguments) {
   if (!board) return board.error();
   CalibratorOptions options;
   options.board = *board;
+  if (!arguments.charuco.empty()) {
+    options.board.markers =
+        calibration::BoardMarkers{arguments.charuco.front() - '0', arguments.marker_m};
+  }
   options.accept_symmetric = arguments.accept_symmetric;
   options.lens = {distortion_model_from(arguments.model).value_or(DistortionModel::kRadtan),
                   arguments.k3};
@@ -175,12 +181,19 @@ void add_virtual_options(CLI::App& command, CalibrateArguments& arguments) {
 void add_calibrate_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<CalibrateArguments>();
   CLI::App* command = app.add_subcommand(
-      "calibrate", "Estimate a camera's intrinsics from images of a chequerboard");
+      "calibrate", "Estimate a camera's intrinsics from images of a chequerboard or ChArUco board");
   command->add_option("--images", arguments->images, "Folder of the images");
   add_virtual_options(*command, *arguments);
   command->add_option("--board", arguments->board, "COLSxROWS, the board's inner corners")
       ->required();
   command->add_option("--square-m", arguments->square_m, "Side of a square [m]")->required();
+  CLI::Option* charuco =
+      command->add_option("--charuco", arguments->charuco, "ChArUco board: cells of its markers")
+          ->check(CLI::IsMember({"4x4", "5x5", "6x6"}));
+  CLI::Option* marker =
+      command->add_option("--marker-m", arguments->marker_m, "Side of a marker [m]");
+  charuco->needs(marker);
+  marker->needs(charuco);
   command->add_option("--model", arguments->model, "Distortion model")
       ->check(CLI::IsMember({"none", "radtan", "equidistant"}))
       ->capture_default_str();
