@@ -52,6 +52,10 @@ fs::path debug_image_file(const fs::path& folder,
   return folder / "debug" / estimator / numbered_jpg(frame);
 }
 
+fs::path map_points_file(const fs::path& folder, const std::string& estimator, std::int64_t frame) {
+  return folder / "points" / estimator / numbered(frame, ".bin");
+}
+
 CameraFiles::CameraFiles(fs::path folder, std::size_t camera, const std::string& name)
     : folder_(std::move(folder)), name_(camera == kMainCamera ? "" : name) {}
 

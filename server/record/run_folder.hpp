@@ -33,6 +33,10 @@ inline constexpr int kRunFormatVersion = 1;
 [[nodiscard]] std::filesystem::path debug_image_file(const std::filesystem::path& folder,
                                                      const std::string& estimator,
                                                      std::int64_t frame);
+/// points/NAME/NNNNNN.bin
+[[nodiscard]] std::filesystem::path map_points_file(const std::filesystem::path& folder,
+                                                    const std::string& estimator,
+                                                    std::int64_t frame);
 
 /// The files of one camera of a run. Only this class knows that those of the main camera have no
 /// name in their paths.

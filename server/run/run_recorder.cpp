@@ -155,7 +155,11 @@ Status RunRecorder::open_files() {
     if (!lines) return lines.error();
     const CameraRecords& camera = records_.camera_of(records_.estimators[estimators_.size()]);
     estimators_.push_back({std::move(lines).value(), LiveAlignment(camera.T_body_camera)});
-    if (scenario_.record_debug_hz > 0.0) fs::create_directories(folder_ / "debug" / name, failure);
+    if (scenario_.record_debug_hz > 0.0) {
+      fs::create_directories(folder_ / "debug" / name, failure);
+      if (!failure) fs::create_directories(folder_ / "points" / name, failure);
+    }
+    if (failure) break;
   }
   if (failure) return Error{ErrorCode::kIo, folder_.string() + ": " + failure.message()};
   timeline_->set_info(info_);

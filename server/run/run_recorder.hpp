@@ -114,6 +114,7 @@ class RunRecorder {
   void tell_status(std::size_t estimator, const EstimatorEvent& event);
   Status log_transition(std::size_t estimator, const EstimateRecord& record);
   Status keep_debug_image(std::size_t estimator, EstimatorEvent& event);
+  Status keep_map_points(std::size_t estimator, EstimatorEvent& event);
   Status write_timings(nlohmann::json timings) const;
   /// Writes the final manifest and releases the lock.
   Status let_go();

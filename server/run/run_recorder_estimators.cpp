@@ -5,6 +5,7 @@
 #include "core/measure/process_memory.hpp"
 #include "server/files/jpeg.hpp"
 #include "server/record/estimator_tally.hpp"
+#include "server/record/map_points.hpp"
 #include "server/record/rows/rows.hpp"
 #include "server/run/run_recorder.hpp"
 
@@ -99,13 +100,7 @@ Status RunRecorder::add_answer(std::size_t estimator, EstimatorEvent& event) {
   for (const auto& [stage, ms] : event.timing_ms) state.stages[stage].ms.push_back(ms);
   timeline_->append_estimate(estimator, std::move(row), event.record.counters);
   if (Status status = keep_debug_image(estimator, event); !status) return status;
-  if (publish_images_ && !event.map_points_vo.empty() && state.alignment.S_world_vo()) {
-    const Similarity S_world_vo = *state.alignment.S_world_vo();
-    for (Eigen::Vector3f& point : event.map_points_vo) {
-      point = (S_world_vo * Eigen::Vector3d(point.cast<double>())).cast<float>();
-    }
-    timeline_->set_live_points(estimator, std::move(event.map_points_vo));
-  }
+  if (Status status = keep_map_points(estimator, event); !status) return status;
   return log_transition(estimator, event.record);
 }
 
@@ -117,6 +112,16 @@ Status RunRecorder::keep_debug_image(std::size_t estimator, EstimatorEvent& even
   const fs::path file = debug_image_file(folder_, info_.estimators[estimator], sample.frame);
   const auto bytes = encode_jpeg(*image, kDebugQuality);
   return bytes ? write_whole(file, *bytes) : Status(bytes.error());
+}
+
+Status RunRecorder::keep_map_points(std::size_t estimator, EstimatorEvent& event) {
+  const auto& S_world_vo = estimators_[estimator].alignment.S_world_vo();
+  if (event.map_points_vo.empty() || !S_world_vo) return {};
+  const MapPoints points{*S_world_vo, std::move(event.map_points_vo)};
+  if (publish_images_) timeline_->set_live_points(estimator, in_world(points, points.S_world_vo));
+  const std::int64_t frame = event.record.sample.frame;
+  return write_whole(map_points_file(folder_, info_.estimators[estimator], frame),
+                     bytes_of(points));
 }
 
 Status RunRecorder::log_transition(std::size_t estimator, const EstimateRecord& record) {

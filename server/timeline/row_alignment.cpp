@@ -71,6 +71,12 @@ std::optional<Pose> RowAlignment::T_world_body(const EstimateRow& row) const {
   return scored_->S_world_vo * row.sample.T_vo_camera * scored_->T_camera_body;
 }
 
+std::optional<Similarity> RowAlignment::S_world_vo(int map_id, const Similarity& recorded) const {
+  if (!scored_) return recorded;
+  if (map_id != scored_->map_id) return std::nullopt;
+  return scored_->S_world_vo;
+}
+
 Status check_alignment(const RunTimeline& timeline, const std::string& mode) {
   if (mode == kRecordedAlignment) return {};
   if (!evaluation::alignment_mode_from(mode)) return unknown_mode(mode);

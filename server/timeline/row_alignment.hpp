@@ -29,6 +29,9 @@ class RowAlignment {
 
   /// Empty while not tracking, and for rows of a map that was not scored.
   [[nodiscard]] std::optional<Pose> T_world_body(const EstimateRow& row) const;
+  /// The similarity of a map; empty if the map was not scored.
+  /// @param recorded  that of `init_scale`, which each map has by itself
+  [[nodiscard]] std::optional<Similarity> S_world_vo(int map_id, const Similarity& recorded) const;
 
  private:
   struct Scored {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/measure/processor_time.hpp"
+#include "server/record/map_points.hpp"
 #include "server/record/rows/rows.hpp"
 #include "server/record/run_folder.hpp"
 #include "server/timeline/run_timeline.hpp"
@@ -40,7 +41,7 @@ std::optional<FrameRow> row_of(const RunTimeline& timeline,
   return timeline.frame_at(std::numeric_limits<std::int64_t>::max(), camera);
 }
 
-/// Number of the last picture NNNNNN.jpg in a folder at or before `frame`.
+/// Number of the last file NNNNNN.* in a folder at or before `frame`.
 std::optional<std::int64_t> last_recorded(const fs::path& folder, std::int64_t frame) {
   std::optional<std::int64_t> last;
   std::error_code error;
@@ -54,6 +55,25 @@ std::optional<std::int64_t> last_recorded(const fs::path& folder, std::int64_t f
     if (!last || number > *last) last = number;
   }
   return last;
+}
+
+/// The map points that an estimator observed last at or before a frame, world frame; empty if there
+/// are none that can be read, and while it does not track.
+std::vector<Eigen::Vector3f> recorded_points(const fs::path& folder,
+                                             const RunTimeline& timeline,
+                                             const ViewRibbons& ribbons,
+                                             const FrameRow& row,
+                                             std::size_t estimator) {
+  const auto& alignment = ribbons.alignment_of(estimator);
+  const auto estimate = timeline.estimate_at(estimator, row.t_ns);
+  if (!alignment || !estimate || estimate->sample.state != TrackingState::kTracking) return {};
+  const std::string& name = timeline.estimators()[estimator];
+  const auto frame = last_recorded(map_points_file(folder, name, 0).parent_path(), row.frame);
+  if (!frame) return {};
+  const auto points = read_map_points(map_points_file(folder, name, *frame));
+  if (!points) return {};
+  const auto S_world_vo = alignment->S_world_vo(estimate->sample.map_id, points->S_world_vo);
+  return S_world_vo ? in_world(*points, *S_world_vo) : std::vector<Eigen::Vector3f>();
 }
 
 /// Stamp of a frame at or before `row`. Row i holds frame i, or a later frame if some were skipped.
@@ -165,11 +185,30 @@ ViewPainter::Painted ViewPainter::paint_scene(const PictureRequest& request,
   ribbons.refresh();
   const auto scene =
       scene_view(request.scene, row.T_world_body, ribbons.centre(), *(*view)->world->tiles);
-  const auto content = scene_content(*timeline, ribbons, row, request.live);
+  const auto content =
+      scene_content(*timeline, ribbons, row, map_points(request, *timeline, ribbons, row));
   auto image = (*view)->renderer->render_scene(scene, content);
   if (!image) return image.error();
   const auto shared = std::make_shared<const Image>(std::move(*image));
   return painted(encoder_.encode({row.frame, row.t_ns, shared}, request.quality, shared->width_px));
+}
+
+std::vector<Eigen::Vector3f> ViewPainter::map_points(const PictureRequest& request,
+                                                     const RunTimeline& timeline,
+                                                     const ViewRibbons& ribbons,
+                                                     const FrameRow& row) {
+  std::vector<Eigen::Vector3f> all;
+  const auto folder = runs_.folder(request.run_id);
+  for (std::size_t i = 0; i < timeline.estimators().size(); ++i) {
+    std::vector<Eigen::Vector3f> points;
+    if (request.live) {
+      points = timeline.live_points(i);
+    } else if (folder) {
+      points = recorded_points(*folder, timeline, ribbons, row, i);
+    }
+    all.insert(all.end(), points.begin(), points.end());
+  }
+  return all;
 }
 
 ViewRibbons& ViewPainter::ribbons_of(const std::shared_ptr<RunTimeline>& timeline,

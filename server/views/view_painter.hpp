@@ -6,6 +6,7 @@
 #include <list>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "server/record/rows/rows.hpp"
 #include "server/timeline/run_timeline.hpp"
@@ -43,6 +44,11 @@ class ViewPainter {
   [[nodiscard]] Painted paint_scene(const PictureRequest& request,
                                     const std::shared_ptr<RunTimeline>& timeline,
                                     const FrameRow& row);
+  /// Of the run's estimators at a frame, world frame.
+  std::vector<Eigen::Vector3f> map_points(const PictureRequest& request,
+                                          const RunTimeline& timeline,
+                                          const ViewRibbons& ribbons,
+                                          const FrameRow& row);
   ViewRibbons& ribbons_of(const std::shared_ptr<RunTimeline>& timeline,
                           const std::string& alignment);
 

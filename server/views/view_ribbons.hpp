@@ -38,6 +38,10 @@ class ViewRibbons {
   /// Pose of an estimate's row under the alignment; empty while not tracking.
   [[nodiscard]] std::optional<Pose> T_world_body(std::size_t estimator,
                                                  const EstimateRow& row) const;
+  /// Empty if the estimate has no such alignment.
+  [[nodiscard]] const std::optional<RowAlignment>& alignment_of(std::size_t estimator) const {
+    return estimates_.at(estimator).alignment;
+  }
 
  private:
   /// Poses without a gap.

@@ -44,7 +44,7 @@ renderer::SceneView scene_view(const SceneSettings& settings,
 renderer::SceneContent scene_content(const RunTimeline& timeline,
                                      const ViewRibbons& ribbons,
                                      const FrameRow& row,
-                                     bool live) {
+                                     std::vector<Eigen::Vector3f> map_points_world) {
   renderer::SceneContent content;
   renderer::SceneContent::Aircraft truth;
   truth.T_world_body = row.T_world_body;
@@ -60,11 +60,8 @@ renderer::SceneContent scene_content(const RunTimeline& timeline,
       ghost.ghost = true;
       content.aircraft.push_back(ghost);
     }
-    if (live) {
-      const auto points = timeline.live_points(i);
-      content.points.insert(content.points.end(), points.begin(), points.end());
-    }
   }
+  content.points = std::move(map_points_world);
   const PinholeCamera camera = timeline.main_camera().model.pinhole();
   content.frustum = renderer::SceneContent::Frustum{camera, row.T_world_camera, true};
   content.ribbons = ribbons.until(row.t_ns, row.T_world_body);

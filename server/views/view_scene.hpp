@@ -18,10 +18,11 @@ namespace overfly::server {
                                              const Eigen::Vector3d& centre_world,
                                              const HeightQuery& ground);
 
-/// Aircraft, frustum, ribbons and estimates at the frame `row`; map points of a live run.
+/// Aircraft, frustum, ribbons and estimates at the frame `row`.
+/// @param map_points_world  shown with them
 [[nodiscard]] renderer::SceneContent scene_content(const RunTimeline& timeline,
                                                    const ViewRibbons& ribbons,
                                                    const FrameRow& row,
-                                                   bool live);
+                                                   std::vector<Eigen::Vector3f> map_points_world);
 
 }  // namespace overfly::server
