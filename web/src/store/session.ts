@@ -1,11 +1,6 @@
 // Watches one run: requests it and stores what the stream sends about it.
 import type { ConnectionState, StreamClient, StreamListener } from '../connection/stream_client';
-import type {
-  ClientMessage,
-  PictureStream,
-  Resume,
-  ServerMessage,
-} from '../protocol/messages';
+import type { ClientMessage, PictureStream, Resume, ServerMessage } from '../protocol/messages';
 import type { PictureMessage } from '../protocol/parse';
 import type { Run } from '../protocol/rest_types';
 import type { Decode } from './picture_decoder';

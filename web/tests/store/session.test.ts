@@ -108,7 +108,13 @@ describe('Session', () => {
 
   it('asks again for rows when some are missing', () => {
     viewing.watch();
-    viewing.socket.receive({ type: 'rows', run: 'r1', stream: 'truth', seq: 99, columns: { frame: [99] } });
+    viewing.socket.receive({
+      type: 'rows',
+      run: 'r1',
+      stream: 'truth',
+      seq: 99,
+      columns: { frame: [99] },
+    });
     expect(viewing.socket.last()).toMatchObject({
       type: 'watch',
       run: 'r1',
