@@ -1,6 +1,7 @@
 // The server's runs, newest first.
 import { textureHint } from '../store/error_table';
 import { formatDate, formatNumber } from '../store/format';
+import { matching } from '../store/run_search';
 import type { Run } from '../protocol/rest_types';
 import { isActive } from '../protocol/rest_types';
 import type { Topic } from '../store/state';
@@ -8,6 +9,7 @@ import { h, rebuild } from './dom';
 import { icon } from './icons';
 import type { Panel } from './panel';
 import { makePanel } from './panel';
+import { ShownRuns } from './shown_runs';
 import type { Context, View } from './view';
 
 const kConfirm_ms = 3000;
@@ -16,12 +18,23 @@ export class RunList implements View {
   readonly root: HTMLElement;
   private readonly panel: Panel;
   private readonly list = h('ul', { class: 'runs' });
+  private readonly shown: ShownRuns;
+  private readonly search = h('input', {
+    type: 'search',
+    id: 'run-search',
+    placeholder: 'Search',
+    'aria-label': 'Search the runs',
+    title: 'Words of title, id, scenario, estimators or status',
+  });
   /** The run whose deletion awaits confirmation. */
   private confirming: string | null = null;
 
   constructor(private readonly context: Context) {
     this.panel = makePanel('runs', 'Runs');
-    this.panel.body.append(this.list);
+    this.shown = new ShownRuns(context);
+    this.panel.tools.append(this.search);
+    this.panel.body.append(this.shown.root, this.list);
+    this.search.addEventListener('input', () => this.draw());
     this.root = this.panel.root;
   }
 
@@ -30,11 +43,18 @@ export class RunList implements View {
   }
 
   private draw(): void {
-    const { runs, runId, listError } = this.context.store.state;
-    const key = JSON.stringify([runs, runId, this.confirming]);
-    rebuild(this.list, key, () => (runs ?? []).map((run) => this.entry(run, run.id === runId)));
+    const { state } = this.context.store;
+    const { runs, runId, listError } = state;
+    const found = matching(runs ?? [], this.search.value);
+    const shown = state.watched.map(({ id }) => id);
+    rebuild(this.list, JSON.stringify([found, runId, shown, this.confirming]), () =>
+      found.map((run) => this.entry(run, run.id === runId)),
+    );
+    this.shown.draw(state);
+    this.search.hidden = (runs?.length ?? 0) < 2;
     if (runs === null) this.panel.showEmpty(listError ?? 'Reading the runs');
-    else this.panel.showEmpty(runs.length === 0 ? 'No runs yet. Launch a flight above.' : null);
+    else if (runs.length === 0) this.panel.showEmpty('No runs yet. Launch a flight above.');
+    else this.panel.showEmpty(found.length === 0 ? 'No run has all of these words.' : null);
   }
 
   private entry(run: Run, selected: boolean): HTMLElement {
@@ -93,7 +113,31 @@ export class RunList implements View {
             )
           : null,
       ),
+      this.compareButton(run),
       isActive(run) ? this.cancelButton(run) : this.deleteButton(run),
+    );
+  }
+
+  /** Without a run shown, there is nothing to compare with. */
+  private compareButton(run: Run): HTMLElement {
+    const { session, store } = this.context;
+    const { watched } = store.state;
+    const isShown = watched.some(({ id }) => id === run.id);
+    const label = isShown ? 'Remove from the comparison' : 'Show together with the others';
+    return h(
+      'button',
+      {
+        class: 'icon-button compare',
+        title: label,
+        'aria-label': `${label}: ${run.title}`,
+        'aria-pressed': isShown && watched.length > 1 ? 'true' : 'false',
+        disabled: watched.length === 0 || (isShown && watched.length === 1),
+        onclick: () => {
+          if (isShown) session.removeRun(run.id);
+          else session.addRun(run.id);
+        },
+      },
+      icon('add'),
     );
   }
 

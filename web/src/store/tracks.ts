@@ -1,0 +1,39 @@
+// The tracks of the watched runs: the true one and one of each estimator.
+import type { State } from './state';
+import type { WatchedRun } from './watched_run';
+
+export interface Track {
+  run: WatchedRun;
+  /** Of the estimator; '' = the truth. */
+  name: string;
+  /** 'truth' or the estimator, with the run's letter if several runs are watched. */
+  label: string;
+  /** Index of the estimate's colour; -1 for the truth. */
+  colour: number;
+  /** Position of its run among the watched ones. */
+  order: number;
+  shown: boolean;
+}
+
+/** 'A', 'B', ... by the order of watching; '' for a run that is watched alone. */
+export function runLetter({ watched }: Pick<State, 'watched'>, run: WatchedRun): string {
+  return watched.length < 2 ? '' : String.fromCharCode(65 + watched.indexOf(run));
+}
+
+/** All tracks, run by run; each run's truth comes first. */
+export function tracksOf(state: Pick<State, 'watched'>): Track[] {
+  let colour = 0;
+  return state.watched.flatMap((run, order) => {
+    const letter = runLetter(state, run);
+    const prefix = letter === '' ? '' : `${letter} `;
+    const names = ['', ...(run.run?.estimators ?? [])];
+    return names.map((name) => ({
+      run,
+      name,
+      label: `${prefix}${name === '' ? 'truth' : name}`,
+      colour: name === '' ? -1 : colour++,
+      order,
+      shown: !run.hidden.has(name),
+    }));
+  });
+}
