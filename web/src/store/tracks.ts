@@ -8,6 +8,8 @@ export interface Track {
   name: string;
   /** 'truth' or the estimator, with the run's letter if several runs are watched. */
   label: string;
+  /** Of its run; '' if one run is watched. */
+  letter: string;
   /** Index of the estimate's colour; -1 for the truth. */
   colour: number;
   /** Position of its run among the watched ones. */
@@ -30,6 +32,7 @@ export function tracksOf(state: Pick<State, 'watched'>): Track[] {
     return names.map((name) => ({
       run,
       name,
+      letter,
       label: `${prefix}${name === '' ? 'truth' : name}`,
       colour: name === '' ? -1 : colour++,
       order,

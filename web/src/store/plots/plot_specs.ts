@@ -23,6 +23,8 @@ export type CurveHue =
 
 export interface CurveSpec {
   name: string;
+  /** In front of its value: of curves of several runs the run's letter. */
+  short: string;
   hue: CurveHue;
   /** As it is now; null if there are no rows yet. */
   curve: () => Curve | null;
@@ -41,8 +43,6 @@ export interface PlotSpec {
   least: number;
   /** Lower limit of good values, drawn as a dashed line. */
   limit?: number;
-  /** Whether each value has its curve's name. */
-  named: boolean;
   curves: CurveSpec[];
 }
 
@@ -93,9 +93,9 @@ function poseSpecs(state: State): PlotSpec[] {
       unit: angle ? 'deg' : 'm',
       digits: angle ? 2 : 1,
       least: angle ? 4 : 2,
-      named: state.watched.length > 1,
       curves: tracks.map((track) => ({
         name: track.label,
+        short: track.letter,
         hue: hueOf(track),
         curve: () => curveOf(tableOf(track), track.run, axis, 1, angle),
         atClock: () => poseAtClock(track)?.[axis],
@@ -117,10 +117,11 @@ function seriesSpecs(state: State, group: PlotGroup): PlotSpec[] {
       if (groupOf(series) !== group || trackOf(series) !== track.name) continue;
       const table = seriesTable(track, series);
       if (table?.has(series.column) !== true) continue;
-      const spec = specs.get(series.column) ?? specOf(series, state.watched.length > 1);
+      const spec = specs.get(series.column) ?? specOf(series);
       specs.set(series.column, spec);
       spec.curves.push({
         name: track.label,
+        short: track.letter,
         hue: track.name === '' ? { kind: 'run', order: track.order } : hueOf(track),
         curve: () =>
           curveOf(seriesTable(track, series), track.run, series.column, series.scale ?? 1, false),
@@ -130,9 +131,9 @@ function seriesSpecs(state: State, group: PlotGroup): PlotSpec[] {
   return [...specs.values()];
 }
 
-function specOf({ column, label, unit }: SeriesInfo, severalRuns: boolean): PlotSpec {
+function specOf({ column, label, unit }: SeriesInfo): PlotSpec {
   const spec = { key: column, label: capital(label), unit, digits: 1, least: 1, curves: [] };
-  return { ...spec, named: severalRuns, ...kKnown[column] };
+  return { ...spec, ...kKnown[column] };
 }
 
 /** The estimator whose series it is; '' = a series of the flight. */
@@ -181,11 +182,12 @@ function sensorSpecs(state: State): PlotSpec[] {
     const curves = figure.curves.map(
       (_, i): CurveSpec => ({
         name: names?.[i] ?? '',
+        short: names?.[i] ?? '',
         hue: figure.curves.length === 1 ? { kind: 'run', order: 0 } : { kind: 'axis', axis: i },
         curve: () => sensorCurve(state, curvesNow()[i], 1 / figure.per_unit),
       }),
     );
-    return [{ key, label, hint, unit, digits, least, named: names !== undefined, curves }];
+    return [{ key, label, hint, unit, digits, least, curves }];
   });
 }
 

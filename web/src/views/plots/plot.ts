@@ -117,10 +117,11 @@ export class Plot {
   }
 
   private showValues(values: (number | null)[]): void {
-    const { digits, named, curves } = this.spec;
+    const { digits, curves } = this.spec;
     this.readouts.forEach((readout, i) => {
       const value = formatNumber(values[i], digits);
-      setText(readout, named ? `${curves[i]?.name ?? ''} ${value}` : value);
+      const short = curves[i]?.short ?? '';
+      setText(readout, short === '' ? value : `${short} ${value}`);
     });
   }
 
