@@ -4,63 +4,65 @@
 #include <cmath>
 #include <optional>
 
+#include "core/time.hpp"
+
 namespace overfly::evaluation {
 namespace {
 
-constexpr std::int64_t kHalfWindowNs = 250'000'000;
-constexpr double kLeastMotionM = 0.05;
+constexpr double kLeastSpeed_m_s = 1.0;
 
-/// The truth at t, or at `otherwise_ns` where it has no pose at t.
-Eigen::Vector3d place_near(const Trajectory& truth,
-                           std::int64_t t_ns,
-                           const Eigen::Vector3d& otherwise) {
-  const std::int64_t inside_ns = std::clamp(t_ns, truth.begin_ns(), truth.end_ns());
-  const std::optional<Pose> pose = truth.at(inside_ns);
-  return pose ? pose->translation : otherwise;
-}
-
-/// Horizontal unit vector of the motion around a match; empty if it hardly moves.
-std::optional<Eigen::Vector2d> direction_at(const Trajectory& truth, const MatchedPose& match) {
+/// Horizontal unit vector of the motion up to t; empty if it is slow or not known.
+std::optional<Eigen::Vector2d> motion_direction(const Trajectory& truth,
+                                                std::int64_t t_ns,
+                                                const Eigen::Vector3d& p_world) {
   if (truth.empty()) return std::nullopt;
-  const Eigen::Vector3d& here = match.T_world_camera.translation;
-  const Eigen::Vector3d before = place_near(truth, match.t_ns - kHalfWindowNs, here);
-  const Eigen::Vector3d after = place_near(truth, match.t_ns + kHalfWindowNs, here);
-  const Eigen::Vector2d motion = (after - before).head<2>();
-  const double length_m = motion.norm();
-  if (!(length_m >= kLeastMotionM)) return std::nullopt;
-  return motion / length_m;
+  const std::int64_t before_ns = std::max(t_ns - kPathWindowNs, truth.begin_ns());
+  if (before_ns >= t_ns) return std::nullopt;
+  const std::optional<Pose> before = truth.at(before_ns);
+  if (!before) return std::nullopt;
+  const Eigen::Vector2d motion_m = (p_world - before->translation).head<2>();
+  const double length_m = motion_m.norm();
+  if (!(length_m >= kLeastSpeed_m_s * s_from_ns(t_ns - before_ns))) return std::nullopt;
+  return motion_m / length_m;
 }
 
-/// The direction at each match, with those that are not determined filled in.
-std::vector<Eigen::Vector2d> directions_of(const Trajectory& truth,
-                                           const std::vector<MatchedPose>& matches) {
-  std::vector<Eigen::Vector2d> directions;
-  std::optional<Eigen::Vector2d> last;
-  for (const MatchedPose& match : matches) {
-    if (const auto direction = direction_at(truth, match)) {
-      if (!last) std::fill(directions.begin(), directions.end(), *direction);
-      last = direction;
-    }
-    directions.push_back(last.value_or(Eigen::Vector2d::UnitX()));
-  }
-  return directions;
+/// Horizontal unit vector of the nose.
+Eigen::Vector2d nose_direction(const Pose& T_world_camera, const Pose& T_body_camera) {
+  constexpr double kVertical = 1e-9;
+  const Eigen::Quaterniond R_world_body =
+      T_world_camera.rotation * T_body_camera.rotation.inverse();
+  const Eigen::Vector2d nose = (R_world_body * Eigen::Vector3d::UnitX()).head<2>();
+  if (!(nose.norm() > kVertical)) return Eigen::Vector2d::UnitX();
+  return nose.normalized();
 }
 
 }  // namespace
 
+AxisError axis_error(const Trajectory& T_world_camera_truth,
+                     std::int64_t t_ns,
+                     const Pose& T_world_camera,
+                     const Eigen::Vector3d& p_world_estimated,
+                     const Pose& T_body_camera) {
+  const Eigen::Vector2d along =
+      motion_direction(T_world_camera_truth, t_ns, T_world_camera.translation)
+          .value_or(nose_direction(T_world_camera, T_body_camera));
+  const Eigen::Vector2d right(along.y(), -along.x());
+  const Eigen::Vector3d error_m = p_world_estimated - T_world_camera.translation;
+  return {t_ns, error_m.head<2>().dot(along), error_m.head<2>().dot(right), error_m.z()};
+}
+
 std::vector<AxisError> axis_errors(const Trajectory& T_world_camera_truth,
                                    const std::vector<MatchedPose>& matches,
-                                   const Similarity& S_world_vo) {
-  const std::vector<Eigen::Vector2d> directions = directions_of(T_world_camera_truth, matches);
+                                   const Similarity& S_world_vo,
+                                   const Pose& T_body_camera) {
   std::vector<AxisError> errors;
   errors.reserve(matches.size());
-  for (std::size_t i = 0; i < matches.size(); ++i) {
-    const Eigen::Vector3d error =
-        S_world_vo * matches[i].T_vo_camera.translation - matches[i].T_world_camera.translation;
-    const Eigen::Vector2d& along = directions[i];
-    const Eigen::Vector2d right(along.y(), -along.x());
-    errors.push_back(
-        {matches[i].t_ns, error.head<2>().dot(along), error.head<2>().dot(right), error.z()});
+  for (const MatchedPose& match : matches) {
+    errors.push_back(axis_error(T_world_camera_truth,
+                                match.t_ns,
+                                match.T_world_camera,
+                                S_world_vo * match.T_vo_camera.translation,
+                                T_body_camera));
   }
   return errors;
 }

@@ -1,10 +1,12 @@
 // Errors of single estimates against the truth, for plots over time.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <vector>
 
+#include "evaluation/axis_errors.hpp"
 #include "server/timeline/row_alignment.hpp"
 #include "server/timeline/run_timeline.hpp"
 
@@ -12,13 +14,12 @@ namespace overfly::server {
 
 /// Error of an aligned camera pose at its frame: estimate minus truth.
 struct EstimateError {
-  double position_m = 0.0;
-  double up_m = 0.0;
-  /// Horizontal parts: in the direction of the true motion, and to its right. Empty while the
-  /// camera moves by less than 1 m/s horizontally.
-  std::optional<double> along_m;
-  std::optional<double> across_m;
+  evaluation::AxisError position;
   double rotation_rad = 0.0;  ///< angle of the rotation from one to the other
+
+  [[nodiscard]] double position_m() const {
+    return std::hypot(position.along_m, position.across_m, position.up_m);
+  }
 };
 
 /// @param rows  successive rows of the estimator

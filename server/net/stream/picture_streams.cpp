@@ -77,22 +77,11 @@ Status PictureStreams::set_view(const ViewCommand& command) {
   return {};
 }
 
-void PictureStreams::set_alignment(const std::string& run_id, const std::string& mode) {
-  Alignment& alignment = alignments_[run_id];
-  if (alignment.mode == mode) return;
-  alignment.mode = mode;
-  ++alignment.change;
-}
-
 std::uint64_t PictureStreams::change_of(const Stream& stream) const {
   std::uint64_t change = change_;
   if (kind_of(stream.request.name) != PictureRequest::Kind::kScene) return change;
   if (const auto view = views_.find(stream.request.view); view != views_.end()) {
     change += view->second.change;
-  }
-  if (const auto alignment = alignments_.find(stream.request.run_id);
-      alignment != alignments_.end()) {
-    change += alignment->second.change;
   }
   return change;
 }
@@ -129,8 +118,7 @@ std::optional<PictureRequest> PictureStreams::request_of(const Stream& stream,
   if (request.kind == PictureRequest::Kind::kScene) {
     const auto view = views_.find(stream.request.view);
     if (view != views_.end()) request.scene = view->second.settings;
-    const auto alignment = alignments_.find(instant.run_id);
-    if (alignment != alignments_.end()) request.scene.alignment = alignment->second.mode;
+    request.scene.alignment = instant.alignment;
   }
   if (request.kind == PictureRequest::Kind::kDebug) {
     const auto& names = instant.timeline.estimators();

@@ -14,6 +14,7 @@
 #include "server/net/stream/client_message.hpp"
 #include "server/net/stream/picture_slot.hpp"
 #include "server/net/stream/viewer_port.hpp"
+#include "server/timeline/row_alignment.hpp"
 #include "server/timeline/run_timeline.hpp"
 #include "server/views/view_service.hpp"
 
@@ -30,14 +31,13 @@ class PictureStreams {
     std::int64_t frame = 0;
     std::int64_t t_ns = 0;
     bool live = false;
+    std::string alignment = server::kRecordedAlignment;  ///< of the estimates in scenes
   };
 
   /// Replaces the set of streams. A stream that stays, or comes back later, keeps its number.
   void subscribe(const std::vector<StreamRequest>& requests);
   /// Errors: kInvalidArgument beyond kMaxViews views.
   Status set_view(const ViewCommand& command);
-  /// The alignment of a run's estimates in its scenes.
-  void set_alignment(const std::string& run_id, const std::string& mode);
   /// Discards a run's pictures in progress, because it is not watched any more, or again.
   void restart(const std::string& run_id);
   /// The maximum rate of each stream; empty = none. @return true if it changed
@@ -79,10 +79,6 @@ class PictureStreams {
     server::SceneSettings settings;
     std::uint64_t change = 0;
   };
-  struct Alignment {
-    std::string mode;
-    std::uint64_t change = 0;
-  };
   std::uint64_t change_of(const Stream& stream) const;
   void forget_old_streams();
 
@@ -94,7 +90,6 @@ class PictureStreams {
   std::uint32_t next_id_ = 1;
   std::map<StreamKey, std::uint32_t> sequences_;  ///< of streams not subscribed now
   std::map<std::string, View> views_;             ///< by name
-  std::map<std::string, Alignment> alignments_;   ///< by run; only those set
   std::optional<double> limit_hz_;
   std::uint64_t change_ = 0;
   std::uint64_t tickets_ = 0;

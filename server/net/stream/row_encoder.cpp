@@ -98,22 +98,18 @@ void add_image_columns(const std::vector<server::FrameRow>& rows, json* columns)
 
 void add_error_columns(const std::vector<std::optional<server::EstimateError>>& errors,
                        json* columns) {
-  using MaybeError = std::optional<server::EstimateError>;
   constexpr double kPerUnit = 1e6;
   const auto add = [&](const char* name, auto value_of) {
-    (*columns)[name] = column(errors, [&](const MaybeError& error) {
-      const std::optional<double> value = error ? value_of(*error) : std::nullopt;
-      return value ? rounded(*value, kPerUnit) : json(nullptr);
+    (*columns)[name] = column(errors, [&](const std::optional<server::EstimateError>& error) {
+      return error ? rounded(value_of(*error), kPerUnit) : json(nullptr);
     });
   };
   using Error = server::EstimateError;
-  using Value = std::optional<double>;
-  add("error_m", [](const Error& error) { return Value(error.position_m); });
-  add("error_along_m", [](const Error& error) { return error.along_m; });
-  add("error_across_m", [](const Error& error) { return error.across_m; });
-  add("error_up_m", [](const Error& error) { return Value(error.up_m); });
-  add("error_rotation_deg",
-      [](const Error& error) { return Value(deg_from_rad(error.rotation_rad)); });
+  add("error_m", [](const Error& error) { return error.position_m(); });
+  add("error_along_m", [](const Error& error) { return error.position.along_m; });
+  add("error_across_m", [](const Error& error) { return error.position.across_m; });
+  add("error_up_m", [](const Error& error) { return error.position.up_m; });
+  add("error_rotation_deg", [](const Error& error) { return deg_from_rad(error.rotation_rad); });
 }
 
 /// Null for a value that JSON cannot represent.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "server/net/stream/row_encoder.hpp"
+#include "server/timeline/count_frames.hpp"
 
 namespace overfly::net {
 namespace {
@@ -12,21 +13,10 @@ using server::EstimateRow;
 using server::FrameRow;
 using server::RunTimeline;
 
-/// Number of recorded frames for which `before` holds. @pre it holds for the first ones only
+/// Number of the main camera's frames for which `before` holds. @pre as server::count_frames
 template <typename Before>
-std::int64_t count_frames(const RunTimeline& timeline, Before before) {
-  std::int64_t low = 0;
-  std::int64_t high = static_cast<std::int64_t>(timeline.frame_count());
-  while (low < high) {
-    const std::int64_t middle = low + (high - low) / 2;
-    const auto row = timeline.frames(static_cast<std::size_t>(middle), 1);
-    if (!row.empty() && before(row.front())) {
-      low = middle + 1;
-    } else {
-      high = middle;
-    }
-  }
-  return low;
+std::int64_t main_frames_where(const RunTimeline& timeline, const Before& before) {
+  return static_cast<std::int64_t>(server::count_frames(timeline, server::kMainCamera, before));
 }
 
 std::optional<std::int64_t> time_of_row(const RunTimeline& timeline, std::int64_t index) {
@@ -43,7 +33,7 @@ double share(std::int64_t from_ns, std::int64_t to_ns, std::int64_t t_ns) {
 
 json truth_json(const RunTimeline& timeline, const FrameRow& row, std::int64_t t_ns) {
   const std::int64_t rows_to_t =
-      count_frames(timeline, [&](const FrameRow& other) { return other.t_ns <= t_ns; });
+      main_frames_where(timeline, [&](const FrameRow& other) { return other.t_ns <= t_ns; });
   const auto next = timeline.frames(static_cast<std::size_t>(rows_to_t), 1);
   if (next.empty() || row.t_ns == t_ns) return pose_json(row.T_world_body);
   const double alpha = share(row.t_ns, next.front().t_ns, t_ns);
@@ -121,7 +111,7 @@ std::int64_t end_of(const RunTimeline& timeline) {
 
 std::optional<std::int64_t> time_of_frame(const RunTimeline& timeline, std::int64_t frame) {
   const std::int64_t rows_to_frame =
-      count_frames(timeline, [&](const FrameRow& row) { return row.frame <= frame; });
+      main_frames_where(timeline, [&](const FrameRow& row) { return row.frame <= frame; });
   return time_of_row(timeline, rows_to_frame - 1);
 }
 
@@ -129,7 +119,7 @@ std::optional<std::int64_t> time_of_step(const RunTimeline& timeline,
                                          std::int64_t t_ns,
                                          std::int64_t steps) {
   const std::int64_t rows_to_t =
-      count_frames(timeline, [&](const FrameRow& row) { return row.t_ns <= t_ns; });
+      main_frames_where(timeline, [&](const FrameRow& row) { return row.t_ns <= t_ns; });
   return time_of_row(timeline, rows_to_t - 1 + steps);
 }
 

@@ -216,7 +216,7 @@ Status Viewer::align(const AlignCommand& command) {
   if (!watch) return watch.error();
   if (Status status = (*watch)->align(command.mode); !status) return status;
   playback_due_ = true;
-  pictures_.set_alignment(command.run_id, command.mode);
+  pictures_.show_again();
   return {};
 }
 
@@ -317,7 +317,9 @@ void Viewer::pump_pictures(std::int64_t now_ns) {
     if (!row) continue;
     const bool live = clock_.live() && watch->flying();
     pictures_.pump(
-        {watch->timeline(), watch->run_id(), row->frame, row->t_ns, live}, &port_, now_ns);
+        {watch->timeline(), watch->run_id(), row->frame, row->t_ns, live, watch->alignment()},
+        &port_,
+        now_ns);
   }
 }
 

@@ -49,13 +49,14 @@ void add_axis_errors(const RunRecords& records,
                      const EstimatorMetrics& metrics,
                      AlignmentMode shown,
                      ReportEstimate& estimate) {
-  const Result<Trajectory> truth = truth_of(records.camera_of(estimator));
+  const CameraRecords& camera = records.camera_of(estimator);
+  const Result<Trajectory> truth = truth_of(camera);
   if (!truth) return;
   const auto matches = evaluation::associate(*truth, track_of(estimator), {});
   if (!matches) return;
   for (const auto& [mode, alignment] : metrics.score.alignments) {
     std::vector<evaluation::AxisError> errors =
-        evaluation::axis_errors(*truth, *matches, alignment.S_world_vo);
+        evaluation::axis_errors(*truth, *matches, alignment.S_world_vo, camera.T_body_camera);
     estimate.axis_rmse[mode] = evaluation::rmse_of(errors);
     if (mode == shown) estimate.axis_errors = std::move(errors);
   }

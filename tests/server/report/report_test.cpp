@@ -12,8 +12,12 @@
 #include "server/record/run_lock.hpp"
 #include "server/record/run_records.hpp"
 #include "server/report/best_values.hpp"
+#include "server/report/run/read_run.hpp"
 #include "server/scoring/metrics.hpp"
 #include "server/scoring/run_metrics_json.hpp"
+#include "server/timeline/estimate_errors.hpp"
+#include "server/timeline/row_alignment.hpp"
+#include "server/timeline/run_timeline.hpp"
 #include "tests/server/report/markup_reader.hpp"
 #include "tests/server/support/server_fixture.hpp"
 
@@ -159,6 +163,35 @@ TEST_F(Report, HasTheNumbersOfEvaluate) {
                 "%.4g",
                 alignments.at("init_scale").at("position_rmse_m").get<double>());
   EXPECT_THAT(report.html, HasSubstr("<td class=\"n\">" + std::string(printed)));
+}
+
+/// The dashboard's errors over time are those of the report, by every alignment.
+TEST_F(Report, HasTheErrorsThatViewersAreSent) {
+  const auto timeline = RunTimeline::open(run_folder());
+  ASSERT_TRUE(timeline.ok());
+  for (const auto mode : evaluation::all_alignment_modes()) {
+    const auto run = read_report_run(run_folder(), mode);
+    ASSERT_TRUE(run.ok());
+    for (std::size_t i = 0; i < run->estimates.size(); ++i) {
+      const auto alignment = RowAlignment::of(**timeline, i, evaluation::to_string(mode));
+      if (!alignment) continue;
+      const std::vector<EstimateRow> rows = (*timeline)->estimates(i, 0, 10'000);
+      const auto sent = errors_of(**timeline, i, rows, *alignment);
+      const std::vector<evaluation::AxisError>& shown = run->estimates[i].axis_errors;
+      std::size_t next = 0;
+      for (std::size_t k = 0; k < rows.size(); ++k) {
+        if (!sent[k]) continue;
+        ASSERT_LT(next, shown.size());
+        EXPECT_EQ(shown[next].t_ns, rows[k].sample.t_ns);
+        EXPECT_NEAR(shown[next].along_m, sent[k]->position.along_m, 1e-9) << k;
+        EXPECT_NEAR(shown[next].across_m, sent[k]->position.across_m, 1e-9) << k;
+        EXPECT_NEAR(shown[next].up_m, sent[k]->position.up_m, 1e-9) << k;
+        ++next;
+      }
+      EXPECT_EQ(next, shown.size());
+      EXPECT_GT(next, 15U);
+    }
+  }
 }
 
 TEST_F(Report, IsOneFileThatLoadsNothing) {

@@ -47,22 +47,55 @@ TEST(EstimateErrors, AreSplitByTheDirectionOfTheTrueMotion) {
       errors_of(timeline, 0, {estimate_at(8, off), lost, estimate_at(11, off)}, RowAlignment());
   ASSERT_EQ(errors.size(), 3U);
   ASSERT_TRUE(errors[0]);
-  EXPECT_NEAR(*errors[0]->along_m, 3.0, 1e-12);
-  EXPECT_NEAR(*errors[0]->across_m, 2.0, 1e-12);
-  EXPECT_NEAR(errors[0]->up_m, -1.0, 1e-12);
-  EXPECT_NEAR(errors[0]->position_m, std::sqrt(14.0), 1e-12);
+  EXPECT_NEAR(errors[0]->position.along_m, 3.0, 1e-12);
+  EXPECT_NEAR(errors[0]->position.across_m, 2.0, 1e-12);
+  EXPECT_NEAR(errors[0]->position.up_m, -1.0, 1e-12);
+  EXPECT_NEAR(errors[0]->position_m(), std::sqrt(14.0), 1e-12);
   EXPECT_NEAR(deg_from_rad(errors[0]->rotation_rad), 10.0, 1e-9);
   EXPECT_FALSE(errors[1]) << "not tracking";
   EXPECT_FALSE(errors[2]) << "frame 11 is not recorded";
 }
 
-TEST(EstimateErrors, HaveNoHorizontalPartsWithoutMotion) {
+/// Slower than 1 m/s the nose (to the east here) gives the direction.
+TEST(EstimateErrors, AreInTheAxesOfTheNoseWithoutMotion) {
   const auto flight = straight_flight(0.5);
   const RunTimeline& timeline = *flight;
-  const auto errors = errors_of(timeline, 0, {estimate_at(0, Pose())}, RowAlignment());
+  Pose off = timeline.frames(4, 1).front().T_world_body;
+  off.translation += Eigen::Vector3d(3.0, -2.0, -1.0);
+  const auto errors = errors_of(timeline, 0, {estimate_at(8, off)}, RowAlignment());
   ASSERT_TRUE(errors[0]);
-  EXPECT_FALSE(errors[0]->along_m);
-  EXPECT_NEAR(errors[0]->up_m, -50.0, 1e-12);
+  EXPECT_NEAR(errors[0]->position.along_m, 3.0, 1e-12);
+  EXPECT_NEAR(errors[0]->position.across_m, 2.0, 1e-12);
+  EXPECT_NEAR(errors[0]->position.up_m, -1.0, 1e-12);
+}
+
+/// A row that is sent alone, during the flight, has the errors that it has among all rows after it.
+TEST(EstimateErrors, DoNotDependOnWhatComesLater) {
+  RunTimeline timeline(RunInfo{}, {"a"});
+  timeline.set_cameras({{"", PinholeCamera(), Pose()}});
+  std::vector<EstimateRow> rows;
+  std::vector<EstimateError> alone;
+  for (int k = 0; k < 40; ++k) {
+    FrameRow frame;
+    frame.frame = k;
+    frame.t_ns = k * 30'000'000LL;
+    frame.T_world_body.translation = {0.5 * k, 0.02 * k * k, 50.0};
+    frame.T_world_camera = frame.T_world_body;
+    timeline.append_frame(frame);
+    Pose off = frame.T_world_body;
+    off.translation += Eigen::Vector3d(0.1 * k, 2.0, 1.0);
+    rows.push_back(estimate_at(k, off));
+    const auto errors = errors_of(timeline, 0, {rows.back()}, RowAlignment());
+    ASSERT_TRUE(errors.front());
+    alone.push_back(*errors.front());
+  }
+  const auto together = errors_of(timeline, 0, rows, RowAlignment());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    ASSERT_TRUE(together[i]) << i;
+    EXPECT_EQ(together[i]->position.along_m, alone[i].position.along_m) << i;
+    EXPECT_EQ(together[i]->position.across_m, alone[i].position.across_m) << i;
+    EXPECT_EQ(together[i]->rotation_rad, alone[i].rotation_rad) << i;
+  }
 }
 
 TEST(EstimateErrors, AreThoseOfTheCameraNotOfTheBody) {
@@ -77,7 +110,7 @@ TEST(EstimateErrors, AreThoseOfTheCameraNotOfTheBody) {
   turned.rotation = Eigen::AngleAxisd(kPi, Eigen::Vector3d::UnitZ());
   const auto errors = errors_of(timeline, 0, {estimate_at(0, turned)}, RowAlignment());
   ASSERT_TRUE(errors[0]);
-  EXPECT_NEAR(errors[0]->position_m, 10.0, 1e-9);
+  EXPECT_NEAR(errors[0]->position_m(), 10.0, 1e-9);
 }
 
 TEST(RunTimeline, KeepsCountersByTheOrderOfTheirFirstUse) {
