@@ -4,7 +4,7 @@ import type { State } from '../store/state';
 import type { Track } from '../store/tracks';
 import { runLetter, tracksOf } from '../store/tracks';
 import type { WatchedRun } from '../store/watched_run';
-import { curveStyle } from './colours';
+import { curveStyle, trackHue } from './colours';
 import { h, rebuild } from './dom';
 import { icon } from './icons';
 import type { Context } from './view';
@@ -77,10 +77,9 @@ export class ShownRuns {
     );
   }
 
-  private trackButton({ run, name, label, shown, ...hue }: Track): HTMLElement {
-    const { colour } = curveStyle(
-      name === '' ? { kind: 'truth', order: hue.order } : { kind: 'estimate', colour: hue.colour },
-    );
+  private trackButton(track: Track): HTMLElement {
+    const { run, name, label, shown } = track;
+    const { colour } = curveStyle(trackHue(track));
     const text = name === '' ? 'truth' : name;
     return h(
       'button',

@@ -14,6 +14,7 @@ import type { Panel } from '../panel';
 import { frameOf, makePanel } from '../panel';
 import type { PlotActions } from './plot';
 import { Plot } from './plot';
+import { kPathAxes, PathPlot } from './path_plot';
 import type { Context, View } from '../view';
 
 const kRedraw_ms = 1000 / 15;
@@ -23,6 +24,7 @@ const kFew = 3;
 
 const kGroups = [
   { name: 'pose', label: 'Pose', hint: 'Position and attitude: truth and estimates' },
+  { name: 'path', label: 'Path', hint: 'The tracks from above and from the side' },
   { name: 'errors', label: 'Errors', hint: 'Estimates minus truth: position, rotation' },
   { name: 'estimates', label: 'Estimates', hint: 'Latency and counters of the estimators' },
   { name: 'image', label: 'Image', hint: 'Texels per pixel, exposure and saturation' },
@@ -57,6 +59,7 @@ export class PlotsPanel implements View {
   private readonly hoverTime = h('span', { class: 'hover-time' });
   private group: Group = 'pose';
   private plots: Plot[] = [];
+  private readonly paths: readonly PathPlot[];
   private key = '';
   private runs = '';
   private drawn_ms = -Infinity;
@@ -68,6 +71,9 @@ export class PlotsPanel implements View {
 
   constructor(private readonly context: Context) {
     this.panel = makePanel('plots', 'Over time [s]', true);
+    this.paths = kPathAxes.map(
+      (axes) => new PathPlot(axes, (t_s) => context.player.seekTime(t_s * 1e9)),
+    );
     this.panel.tools.append(this.tabs, this.alignment, this.hoverTime);
     this.panel.body.append(this.grid, this.statuses.root);
     this.root = this.panel.root;
@@ -105,6 +111,7 @@ export class PlotsPanel implements View {
     this.drawTabs();
     const span_s = this.window_s ?? this.whole();
     for (const plot of this.plots) plot.draw(span_s);
+    if (this.group === 'path') for (const path of this.paths) path.draw(state);
     this.panel.showEmpty(this.emptyText());
     this.moveCursor();
   }
@@ -112,8 +119,9 @@ export class PlotsPanel implements View {
   private emptyText(): string | null {
     const { runId, sensors, sensorError } = this.context.store.state;
     if (runId === null) return 'Poses of the flight appear here.';
-    if (this.plots.length > 0 || this.group === 'estimators') return null;
-    if (this.group !== 'sensors') return kNothingYet[this.group];
+    const { group } = this;
+    if (this.plots.length > 0 || group === 'estimators' || group === 'path') return null;
+    if (group !== 'sensors') return kNothingYet[group];
     if (sensorError !== null) return sensorError;
     return sensors === null
       ? 'Reading the samples'
@@ -153,7 +161,8 @@ export class PlotsPanel implements View {
   }
 
   private specs(): PlotSpec[] {
-    return this.group === 'estimators' ? [] : plotSpecs(this.context.store.state, this.group);
+    if (this.group === 'estimators' || this.group === 'path') return [];
+    return plotSpecs(this.context.store.state, this.group);
   }
 
   private build(): void {
@@ -179,7 +188,8 @@ export class PlotsPanel implements View {
     this.statuses.root.hidden = this.group !== 'estimators';
     if (this.group === 'estimators') this.statuses.draw(state);
     setAttribute(this.grid, 'data-group', this.group);
-    this.grid.replaceChildren(...this.plots.map(({ root }) => root));
+    const drawn = this.group === 'path' ? this.paths : this.plots;
+    this.grid.replaceChildren(...drawn.map(({ root }) => root));
     setText(this.alignment, this.alignmentText());
     this.drawTabs();
   }
@@ -188,7 +198,8 @@ export class PlotsPanel implements View {
     const aligned = this.context.store.state.watched.filter(
       ({ run }) => (run?.estimators.length ?? 0) > 0,
     );
-    if ((this.group !== 'pose' && this.group !== 'errors') || aligned.length === 0) return '';
+    const byAlignment: readonly Group[] = ['pose', 'path', 'errors'];
+    if (!byAlignment.includes(this.group) || aligned.length === 0) return '';
     return `estimates by ${[...new Set(aligned.map(shownAlignment))].join(', ')}`;
   }
 
@@ -225,6 +236,9 @@ export class PlotsPanel implements View {
   private moveCursor(): void {
     const { playback } = this.context.store.state;
     for (const plot of this.plots) plot.moveCursor(this.cursor_s());
+    if (this.group === 'path') {
+      for (const path of this.paths) path.moveMarks(this.context.store.state);
+    }
     this.panel.showFrame(frameOf(playback));
     if (this.hovered_s === null) this.showCursorValues();
   }
