@@ -5,9 +5,9 @@ import { h, perFrame, setText } from '../dom';
 import { formatNumber } from '../../store/format';
 import type { Polyline } from '../../store/plots/curve';
 import { decimated, valueAt } from '../../store/plots/curve';
+import { paddedRange } from '../../store/plots/plot_range';
 import type { PlotSpec } from '../../store/plots/plot_specs';
 import type { Span } from '../../store/time_window';
-import { paddedRange } from './plot_range';
 
 export interface PlotActions {
   onSeek: (t_s: number) => void;

@@ -15,6 +15,8 @@ import { frameOf, makePanel } from '../panel';
 import type { PlotActions } from './plot';
 import { Plot } from './plot';
 import { kPathAxes, PathPlot } from './path_plot';
+import type { ShownPlots } from './plot_files';
+import { plotFilesMenu } from './plot_files';
 import type { Context, View } from '../view';
 
 const kRedraw_ms = 1000 / 15;
@@ -58,6 +60,7 @@ export class PlotsPanel implements View {
   });
   private readonly hoverTime = h('span', { class: 'hover-time' });
   private group: Group = 'pose';
+  private readonly files: HTMLSelectElement;
   private plots: Plot[] = [];
   private readonly paths: readonly PathPlot[];
   private key = '';
@@ -74,7 +77,11 @@ export class PlotsPanel implements View {
     this.paths = kPathAxes.map(
       (axes) => new PathPlot(axes, (t_s) => context.player.seekTime(t_s * 1e9)),
     );
-    this.panel.tools.append(this.tabs, this.alignment, this.hoverTime);
+    this.files = plotFilesMenu(
+      () => this.shownPlots(),
+      (text) => context.notices.error(text),
+    );
+    this.panel.tools.append(this.tabs, this.files, this.alignment, this.hoverTime);
     this.panel.body.append(this.grid, this.statuses.root);
     this.root = this.panel.root;
     this.build();
@@ -160,6 +167,13 @@ export class PlotsPanel implements View {
     return JSON.stringify([this.group, runs, this.specs().map(specKey)]);
   }
 
+  private shownPlots(): ShownPlots | null {
+    const specs = this.specs();
+    if (specs.length === 0) return null;
+    const { group } = this;
+    return { group, specs, span_s: this.window_s ?? this.whole(), columns: columnsFor(specs) };
+  }
+
   private specs(): PlotSpec[] {
     if (this.group === 'estimators' || this.group === 'path') return [];
     return plotSpecs(this.context.store.state, this.group);
@@ -178,7 +192,8 @@ export class PlotsPanel implements View {
       onZoom: (centre_s: number, factor: number) => this.zoom(centre_s, factor),
     };
     const specs = this.specs();
-    const columns = specs.length <= kFew ? 1 : kColumns;
+    const columns = columnsFor(specs);
+    this.files.disabled = specs.length === 0;
     this.plots = specs.map(
       (spec, i) =>
         new Plot(spec, actions, { timeLabels: i >= specs.length - columns, leads: i === 0 }),
@@ -266,6 +281,10 @@ export class PlotsPanel implements View {
     if (t_s === null) this.showCursorValues();
     else for (const plot of this.plots) plot.showHover(t_s);
   }
+}
+
+function columnsFor(specs: readonly PlotSpec[]): number {
+  return specs.length <= kFew ? 1 : kColumns;
 }
 
 function specKey({ key, curves }: PlotSpec) {
