@@ -69,7 +69,7 @@ class ViewerTest : public ::testing::Test {
     const auto [ticket, request] = port_.drawn.back();
     port_.drawn.clear();
     viewer_.picture_ready(ticket, Error{ErrorCode::kCancelled, ""}, now_ns_);
-    return request.scene.alignment;
+    return request.alignment;
   }
 
   std::shared_ptr<server::RunTimeline> timeline_ = scored_run();

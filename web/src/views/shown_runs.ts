@@ -19,7 +19,7 @@ export class ShownRuns {
     const { watched, runId } = state;
     const tracks = tracksOf(state);
     const drawn = tracks.map(({ label, shown }) => [label, shown]);
-    const runs = watched.map(({ id, run, offset_ns }) => [id, run?.title, offset_ns]);
+    const runs = watched.map(({ id, run, offset_ns }) => [id, run?.title, run?.flight, offset_ns]);
     rebuild(this.root, JSON.stringify([drawn, runs, runId]), () =>
       watched.length < 2
         ? []
@@ -56,11 +56,11 @@ export class ShownRuns {
         'button',
         {
           class: 'shown-title',
-          title: `${id}: show its pictures and timeline`,
+          title: `${run?.title ?? ''} ${id}: show its pictures and timeline`,
           onclick: () => session.makeMain(id),
         },
         h('b', { class: 'run-letter' }, letter),
-        h('span', {}, run?.title ?? id),
+        h('span', {}, run === null ? id : run.flight === '' ? run.title : run.flight),
       ),
       h('label', { class: 'shown-offset' }, offset, h('span', { class: 'unit' }, 's')),
       h(
