@@ -8,6 +8,7 @@ import type { Span } from '../../store/time_window';
 import { following, zoomed } from '../../store/time_window';
 import { clockSpan_ns, shownAlignment } from '../../store/state';
 import type { Topic } from '../../store/state';
+import { kPanels } from '../../store/layouts/panel_names';
 import { EstimatorTable } from '../estimator_table';
 import { h, rebuild, setAttribute, setText } from '../dom';
 import type { Panel } from '../panel';
@@ -35,6 +36,9 @@ const kGroups = [
   { name: 'estimators', label: 'Status', hint: 'State, drops, latency, CPU, memory, log' },
 ] as const;
 type Group = (typeof kGroups)[number]['name'];
+
+/** Groups that are panels of their own as well. */
+type Alone = 'errors' | 'image';
 
 /** Groups that are offered only if a run has their series. */
 const kOptional: readonly PlotGroup[] = ['vehicle'];
@@ -72,8 +76,13 @@ export class PlotsPanel implements View {
   /** The part zoomed to; null = the whole flight. */
   private window_s: Span | null = null;
 
-  constructor(private readonly context: Context) {
-    this.panel = makePanel('plots', 'Over time [s]', true);
+  /** @param only  shows this group alone, as a panel of its own */
+  constructor(
+    private readonly context: Context,
+    private readonly only: Alone | null = null,
+  ) {
+    const name = only === null ? 'plots' : (`plots-${only}` as const);
+    this.panel = makePanel(name, kPanels[name].title);
     this.paths = kPathAxes.map(
       (axes) => new PathPlot(axes, (t_s) => context.player.seekTime(t_s * 1e9)),
     );
@@ -81,7 +90,9 @@ export class PlotsPanel implements View {
       () => this.shownPlots(),
       (text) => context.notices.error(text),
     );
-    this.panel.tools.append(this.tabs, this.files, this.alignment, this.hoverTime);
+    if (only !== null) this.group = only;
+    else this.panel.tools.append(this.tabs);
+    this.panel.tools.append(this.files, this.alignment, this.hoverTime);
     this.panel.body.append(this.grid, this.statuses.root);
     this.root = this.panel.root;
     this.build();
@@ -95,6 +106,10 @@ export class PlotsPanel implements View {
     }
     if (changed.has('playback')) this.followCursor();
     if (changed.has('playback') || changed.has('run')) this.moveCursor();
+  }
+
+  onHidden(): void {
+    if (this.only === null) this.context.sensors.hide();
   }
 
   private drawSoon(): void {
@@ -112,7 +127,7 @@ export class PlotsPanel implements View {
     if (this.group === 'sensors' && state.runId !== null) {
       this.context.sensors.show(state.runId, this.window_s);
     } else {
-      this.context.sensors.hide();
+      this.onHidden();
     }
     if (this.key !== this.wantedKey()) this.build();
     this.drawTabs();
