@@ -21,9 +21,11 @@ import { plotFilesMenu } from './plot_files';
 import type { Context, View } from '../view';
 
 const kRedraw_ms = 1000 / 15;
-/** Columns of the grid in plots.css, except for few plots. */
-const kColumns = 3;
+const kMostColumns = 3;
 const kFew = 3;
+/** A plot with axis, title and values. Below this the panel scrolls. */
+const kLeastWidth_px = 190;
+const kLeastHeight_px = 92;
 
 const kGroups = [
   { name: 'pose', label: 'Pose', hint: 'Position and attitude: truth and estimates' },
@@ -96,6 +98,7 @@ export class PlotsPanel implements View {
     this.panel.body.append(this.grid, this.statuses.root);
     this.root = this.panel.root;
     this.build();
+    new ResizeObserver(() => this.drawSoon()).observe(this.panel.body);
   }
 
   update(changed: ReadonlySet<Topic>): void {
@@ -179,14 +182,27 @@ export class PlotsPanel implements View {
       watched.data.generation,
       shownAlignment(watched),
     ]);
-    return JSON.stringify([this.group, runs, this.specs().map(specKey)]);
+    const specs = this.specs();
+    const columns = this.columns(specs.length);
+    return JSON.stringify([this.group, runs, columns, specs.map(specKey)]);
   }
 
   private shownPlots(): ShownPlots | null {
     const specs = this.specs();
     if (specs.length === 0) return null;
     const { group } = this;
-    return { group, specs, span_s: this.window_s ?? this.whole(), columns: columnsFor(specs) };
+    return {
+      group,
+      specs,
+      span_s: this.window_s ?? this.whole(),
+      columns: this.columns(specs.length),
+    };
+  }
+
+  /** As many as fit; few plots lie below each other. */
+  private columns(plots: number): number {
+    const fitting = Math.floor(this.panel.body.clientWidth / kLeastWidth_px);
+    return plots <= kFew ? 1 : Math.min(kMostColumns, Math.max(1, fitting));
   }
 
   private specs(): PlotSpec[] {
@@ -207,13 +223,16 @@ export class PlotsPanel implements View {
       onZoom: (centre_s: number, factor: number) => this.zoom(centre_s, factor),
     };
     const specs = this.specs();
-    const columns = columnsFor(specs);
+    const columns = this.columns(specs.length);
     this.files.disabled = specs.length === 0;
     this.plots = specs.map(
       (spec, i) =>
         new Plot(spec, actions, { timeLabels: i >= specs.length - columns, leads: i === 0 }),
     );
-    setAttribute(this.grid, 'data-columns', String(columns));
+    const down = Math.ceil(specs.length / columns);
+    this.grid.style.gridTemplateColumns = `repeat(${columns}, minmax(0, 1fr))`;
+    this.grid.style.gridTemplateRows = `repeat(${down}, minmax(${kLeastHeight_px}px, 1fr))`;
+    if (this.group === 'path') this.grid.removeAttribute('style');
     this.grid.hidden = this.group === 'estimators';
     this.statuses.root.hidden = this.group !== 'estimators';
     if (this.group === 'estimators') this.statuses.draw(state);
@@ -296,10 +315,6 @@ export class PlotsPanel implements View {
     if (t_s === null) this.showCursorValues();
     else for (const plot of this.plots) plot.showHover(t_s);
   }
-}
-
-function columnsFor(specs: readonly PlotSpec[]): number {
-  return specs.length <= kFew ? 1 : kColumns;
 }
 
 function specKey({ key, curves }: PlotSpec) {
