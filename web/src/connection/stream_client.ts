@@ -1,4 +1,4 @@
-// A WebSocket that reconnects by itself. It stores the viewer's settings (run, pictures, view) and
+// A WebSocket that reconnects by itself. It stores the viewer's settings (runs, pictures, view) and
 // sends them again after every reconnection.
 import { backoffDelay_ms } from './backoff';
 import type {
@@ -38,14 +38,14 @@ export type ConnectionState =
 
 export interface StreamListener {
   onState(state: ConnectionState): void;
-  /** Messages of the watched run, and errors; never messages of a previous run. */
+  /** Messages of watched runs, and errors; never messages of a run that was left. */
   onMessage(message: ServerMessage): void;
   onWatchFailed(run: string, message: string): void;
-  onPicture(name: string, picture: PictureMessage): void;
-  /** Commands that restore the cursor after a reconnection to the same run. */
+  onPicture(run: string, name: string, picture: PictureMessage): void;
+  /** Commands that restore the cursor after a reconnection to the same runs. */
   restore(): ClientMessage[];
-  /** Rows already received of the watched run, from which the stream resumes. */
-  resume(): Resume;
+  /** Rows already received of a watched run, from which the stream resumes. */
+  resume(run: string): Resume;
   onProtocolError(text: string): void;
 }
 
@@ -76,12 +76,13 @@ export class StreamClient {
   private attempt = 0;
   private timer: number | null = null;
   private request = 0;
-  private run: string | null = null;
-  /** Request number of the unanswered `watch`. */
-  private opening: number | null = null;
+  /** The watched runs and their offsets [ns]. */
+  private readonly runs = new Map<string, number>();
+  /** The run of each unanswered `watch`, by the number of the request. */
+  private readonly opening = new Map<number, string>();
   private subscriptions: PictureStream[] = [];
   private view: Partial<SceneView> = {};
-  private names = new Map<number, string>();
+  private streams = new Map<number, { run: string; name: string }>();
 
   constructor(private readonly options: StreamClientOptions) {}
 
@@ -117,12 +118,23 @@ export class StreamClient {
     this.options.listener.onState({ ...this.waiting, reason });
   }
 
-  /** Watches this run, and no other one; null = none. */
-  watch(run: string | null): void {
-    if (this.run !== null && this.run !== run) this.send({ type: 'unwatch', run: this.run });
-    this.run = run;
-    this.names.clear();
-    if (run !== null) this.sendWatch(run);
+  /**
+   * Watches this run in addition to the others, or again from the rows that are missing.
+   * @param offset_ns  time of the clock at the run's beginning
+   */
+  watch(run: string, offset_ns: number): void {
+    this.runs.set(run, offset_ns);
+    this.sendWatch(run, offset_ns);
+  }
+
+  /** Moves a watched run on the clock. */
+  move(run: string, offset_ns: number): void {
+    this.runs.set(run, offset_ns);
+    this.send({ type: 'watch', run, offset_ns });
+  }
+
+  unwatch(run: string): void {
+    if (this.runs.delete(run)) this.send({ type: 'unwatch', run });
   }
 
   subscribe(pictures: PictureStream[]): void {
@@ -146,9 +158,10 @@ export class StreamClient {
     this.socket.send(JSON.stringify({ ...message, request: this.request }));
   }
 
-  private sendWatch(run: string): void {
-    this.opening = this.greeted ? this.request + 1 : null;
-    this.send({ type: 'watch', run, resume: this.options.listener.resume() });
+  private sendWatch(run: string, offset_ns: number): void {
+    if (this.greeted) this.opening.set(this.request + 1, run);
+    const offset = offset_ns === 0 ? {} : { offset_ns };
+    this.send({ type: 'watch', run, ...offset, resume: this.options.listener.resume(run) });
   }
 
   private onData(data: string | ArrayBuffer): void {
@@ -167,8 +180,10 @@ export class StreamClient {
     if (message.type === 'hello') {
       this.onHello(message);
     } else if (message.type === 'pictures') {
-      const own = message.pictures.filter(({ run }) => run === this.run);
-      this.names = new Map(own.map(({ id, name, camera }) => [id, picturesOf(name, camera)]));
+      const own = message.pictures.filter(({ run }) => this.runs.has(run));
+      this.streams = new Map(
+        own.map(({ id, run, name, camera }) => [id, { run, name: picturesOf(name, camera) }]),
+      );
       this.options.listener.onMessage({ ...message, pictures: own });
     } else if (message.type === 'ok' || message.type === 'error') {
       this.onAnswer(message);
@@ -177,22 +192,20 @@ export class StreamClient {
     }
   }
 
-  /** Whether a message is about the watched run; the others are of one that was left. */
+  /** Whether a message is about a watched run; the others are of one that was left. */
   private concerns(message: Exclude<ServerMessage, { type: 'hello' | 'ok' | 'error' }>): boolean {
-    if (this.run === null || message.type === 'pictures') return false;
-    if (message.type === 'run') return message.run.id === this.run;
-    if (message.type === 'playback') return Object.hasOwn(message.runs, this.run);
-    return message.run === this.run;
+    if (message.type === 'pictures') return false;
+    if (message.type === 'playback')
+      return Object.keys(message.runs).some((run) => this.runs.has(run));
+    return this.runs.has(message.type === 'run' ? message.run.id : message.run);
   }
 
   private onAnswer(message: ServerMessage & { type: 'ok' | 'error' }): void {
-    const opened = message.request !== undefined && message.request === this.opening;
-    if (opened) this.opening = null;
+    const opened = message.request === undefined ? undefined : this.opening.get(message.request);
+    if (message.request !== undefined) this.opening.delete(message.request);
     if (message.type === 'ok') return;
-    if (opened && this.run !== null) {
-      const run = this.run;
-      this.run = null;
-      this.options.listener.onWatchFailed(run, message.message);
+    if (opened !== undefined && this.runs.delete(opened)) {
+      this.options.listener.onWatchFailed(opened, message.message);
     } else {
       this.options.listener.onMessage(message);
     }
@@ -209,8 +222,8 @@ export class StreamClient {
     this.attempt = 0;
     this.options.listener.onState({ status: 'open', server: message.server });
     if (Object.keys(this.view).length > 0) this.send({ type: 'view', ...this.view });
-    if (this.run === null) return;
-    this.sendWatch(this.run);
+    if (this.runs.size === 0) return;
+    for (const [run, offset_ns] of this.runs) this.sendWatch(run, offset_ns);
     if (this.subscriptions.length > 0) {
       this.send({ type: 'subscribe', pictures: this.subscriptions });
     }
@@ -219,9 +232,9 @@ export class StreamClient {
 
   private onBinary(buffer: ArrayBuffer): void {
     const picture = parsePicture(buffer);
-    const name = picture === null ? undefined : this.names.get(picture.streamId);
-    if (picture === null || name === undefined) return;
-    this.options.listener.onPicture(name, picture);
+    const stream = picture === null ? undefined : this.streams.get(picture.streamId);
+    if (picture === null || stream === undefined || !this.runs.has(stream.run)) return;
+    this.options.listener.onPicture(stream.run, stream.name, picture);
   }
 
   private onClosed(socket: Socket, code: number): void {
@@ -240,8 +253,8 @@ export class StreamClient {
     const socket = this.socket;
     this.socket = null;
     this.greeted = false;
-    this.opening = null;
-    this.names.clear();
+    this.opening.clear();
+    this.streams.clear();
     if (socket !== null) {
       socket.onclose = null;
       socket.close();

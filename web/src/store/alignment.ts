@@ -8,6 +8,7 @@ import { estimateRows } from './run_data';
 import type { Session } from './session';
 import { shownAlignment } from './state';
 import type { Store } from './state';
+import type { WatchedRun } from './watched_run';
 
 /**
  * Whether the score contains the transform of this alignment, so that estimates can be drawn by it.
@@ -36,31 +37,34 @@ export class Alignment {
     await this.refresh();
   }
 
-  /** Updates the drawn alignment to the chosen one, if the run's score permits. */
+  /** Draws every watched run by the chosen alignment, where its score permits. */
   async refresh(): Promise<void> {
+    await Promise.all(this.store.state.watched.map((watched) => this.refreshRun(watched)));
+  }
+
+  private async refreshRun(watched: WatchedRun): Promise<void> {
     const { state } = this.store;
-    const { metrics, runId } = state;
+    const { metrics, id } = watched;
     const mode = canBeDrawn(metrics, state.alignment) ? state.alignment : kDefaultAlignment;
-    if (runId === null || metrics === null || mode === shownAlignment(state)) return;
+    if (metrics === null || mode === shownAlignment(watched)) return;
     if (mode === kDefaultAlignment) {
-      state.aligned = null;
-      this.apply(runId, mode);
+      watched.aligned = null;
+      this.apply(id, mode);
       return;
     }
-    const attempt = `${runId}/${mode}`;
+    const attempt = `${id}/${mode}`;
     if (this.tried.has(attempt)) return;
     this.tried.add(attempt);
-    const names = state.run?.estimators ?? Object.keys(metrics.estimators ?? {});
+    const names = watched.run?.estimators ?? Object.keys(metrics.estimators ?? {});
     const placed = await Promise.all(
-      names.map(async (name) => [name, await this.place(runId, name, mode)] as const),
+      names.map(async (name) => [name, await this.place(id, name, mode)] as const),
     );
-    const now = this.store.state;
-    if (now.runId !== runId || now.alignment !== mode) return;
+    if (state.watchedRun(id) !== watched || state.alignment !== mode) return;
     const estimates = new Map(placed.flatMap(([name, rows]) => (rows ? [[name, rows]] : [])));
     if (estimates.size === 0) return;
     this.tried.delete(attempt);
-    now.aligned = { mode, estimates };
-    this.apply(runId, mode);
+    watched.aligned = { mode, estimates };
+    this.apply(id, mode);
   }
 
   private apply(run: string, mode: string): void {

@@ -1,9 +1,10 @@
-// The cameras of the watched run, read from its manifest.
+// The cameras of the main run, read from its manifest.
 import type { RestClient } from '../connection/rest_client';
 import type { Store } from './state';
+import type { WatchedRun } from './watched_run';
 
 export class Cameras {
-  private asked: string | null = null;
+  private readonly asked = new WeakSet<WatchedRun>();
 
   constructor(
     private readonly store: Store,
@@ -12,15 +13,14 @@ export class Cameras {
 
   /** Reads them once per run. */
   async refresh(): Promise<void> {
-    const { runId, playback } = this.store.state;
-    if (runId === null) this.asked = null;
+    const { main } = this.store.state;
     // The manifest lists them before the first frame.
-    if (runId === null || runId === this.asked || playback === null || playback.frame < 0) return;
-    this.asked = runId;
+    if (main === null || this.asked.has(main) || (main.instant?.frame ?? -1) < 0) return;
+    this.asked.add(main);
     try {
-      const { cameras } = await this.rest.manifest(runId);
-      if (this.store.state.runId !== runId || cameras === undefined) return;
-      this.store.state.cameras = cameras;
+      const { cameras } = await this.rest.manifest(main.id);
+      if (cameras === undefined) return;
+      main.cameras = cameras;
       this.store.change('cameras');
     } catch {
       // Without a manifest the run has one unnamed camera, whose pictures still arrive.

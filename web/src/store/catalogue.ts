@@ -114,7 +114,7 @@ export class Catalogue {
   async remove(id: string): Promise<void> {
     await this.attempt(async () => {
       await this.rest.deleteRun(id);
-      if (this.store.state.runId === id) this.session.selectRun(null);
+      this.session.removeRun(id);
     });
   }
 
@@ -132,10 +132,10 @@ export class Catalogue {
     try {
       state.runs = await this.rest.runs();
       state.listError = null;
-      const watched = state.runs.find(({ id }) => id === state.runId);
-      if (watched !== undefined && state.run === null) {
-        state.run = watched;
-        this.store.change('run');
+      for (const watched of state.watched) {
+        if (watched.run !== null) continue;
+        watched.run = state.runs.find(({ id }) => id === watched.id) ?? null;
+        if (watched.run !== null) this.store.change('run');
       }
       if (state.scenarios === null) await this.readScenarios();
     } catch (error) {

@@ -42,7 +42,8 @@ interface Figure {
   digits: number;
 }
 
-const kFigures: readonly Figure[] = [
+/** The errors of an estimate under one alignment. */
+export const kErrorFigures: readonly Figure[] = [
   { key: 'scale', label: 'Scale', unit: '', hint: 'Metres per unit of the estimate', digits: 4 },
   {
     key: 'position_rmse_m',
@@ -99,7 +100,7 @@ export function errorTable(
         cells: estimators.map(({ coverage }) => formatPercent(coverage)),
         cellHints: [],
       },
-      ...kFigures.map(({ digits, ...row }) => ({
+      ...kErrorFigures.map(({ digits, ...row }) => ({
         ...row,
         cells: errors.map((error) => formatNumber(numberOf(error[row.key]), digits)),
         cellHints: errors.map((error) => missingHint(error, row.key)),
@@ -113,6 +114,22 @@ export function errorTable(
         cellHints: [],
       },
     ],
+  };
+}
+
+/** Tables of several runs as one, next to each other. */
+export function joinedTables(tables: readonly ErrorTable[]): ErrorTable {
+  const [first, ...others] = tables;
+  return {
+    estimators: tables.flatMap(({ estimators }) => estimators),
+    rows: (first?.rows ?? []).map((row, i) => {
+      const rows = [row, ...others.flatMap((table) => table.rows[i] ?? [])];
+      return {
+        ...row,
+        cells: rows.flatMap(({ cells }) => cells),
+        cellHints: rows.flatMap(({ cells, cellHints }) => cells.map((_, k) => cellHints[k] ?? '')),
+      };
+    }),
   };
 }
 
@@ -152,7 +169,7 @@ export function textureHint(median: number | null): string {
   );
 }
 
-function outcomeText({ outcome, outcome_time_s }: EstimatorMetrics): string {
+export function outcomeText({ outcome, outcome_time_s }: EstimatorMetrics): string {
   if (outcome === '') return kNothing;
   return typeof outcome_time_s === 'number' && outcome !== 'COMPLETED'
     ? `${outcome} at ${formatNumber(outcome_time_s, 1)} s`

@@ -14,12 +14,13 @@ export function formatPercent(fraction: number | null | undefined, digits = 1): 
   return `${formatNumber(fraction * 100, digits)} %`;
 }
 
-/** mm:ss.mmm of a time since the run's start. */
+/** mm:ss.mmm of a time since the run's start, or before it. */
 export function formatTime(t_ns: number): string {
-  const ms = Math.max(0, Math.round(t_ns / 1e6));
+  const ms = Math.abs(Math.round(t_ns / 1e6));
+  const sign = t_ns < 0 && ms > 0 ? '−' : '';
   const minutes = Math.floor(ms / 60000);
   const seconds = Math.floor(ms / 1000) % 60;
-  return `${pad(minutes, 2)}:${pad(seconds, 2)}.${pad(ms % 1000, 3)}`;
+  return `${sign}${pad(minutes, 2)}:${pad(seconds, 2)}.${pad(ms % 1000, 3)}`;
 }
 
 /** Local date and time of an ISO 8601 instant, without seconds. */

@@ -1,25 +1,52 @@
-// State stored in the address bar: the run, and the instant unless the view is live.
+// State stored in the address bar: the runs, and the instant unless the view is live.
+
+export interface ShownRun {
+  id: string;
+  /** Time of the clock at its beginning. */
+  offset_ns: number;
+}
 
 export interface Permalink {
-  run: string | null;
+  /** In the order of watching. */
+  runs: ShownRun[];
+  /** null = the first. */
+  main: string | null;
+  /** Of the clock. */
   t_ns: number | null;
 }
 
-/** "#run=ID&t=SECONDS"; unknown parts are ignored. */
+/**
+ * "#run=ID&run=ID@OFFSET&main=ID&t=SECONDS": OFFSET in seconds, by default 0. Unknown parts are
+ * ignored.
+ */
 export function parsePermalink(hash: string): Permalink {
   const fields = new URLSearchParams(hash.replace(/^#/, ''));
-  const run = fields.get('run');
-  const t = fields.get('t');
-  const seconds = t === null || t === '' ? NaN : Number(t);
+  const runs = fields.getAll('run').map(shownRun);
+  const main = fields.get('main');
   return {
-    run: run === '' ? null : run,
-    t_ns: Number.isFinite(seconds) && seconds >= 0 ? Math.round(seconds * 1e9) : null,
+    runs: runs.filter(({ id }, i) => id !== '' && runs.findIndex((run) => run.id === id) === i),
+    main: main === '' ? null : main,
+    t_ns: nanoseconds(fields.get('t')),
   };
 }
 
-export function formatPermalink(link: Permalink): string {
-  if (link.run === null) return '';
-  const fields = new URLSearchParams({ run: link.run });
-  if (link.t_ns !== null) fields.set('t', (link.t_ns / 1e9).toFixed(3));
+export function formatPermalink({ runs, main, t_ns }: Permalink): string {
+  if (runs.length === 0) return '';
+  const fields = new URLSearchParams();
+  for (const { id, offset_ns } of runs) {
+    fields.append('run', offset_ns === 0 ? id : `${id}@${(offset_ns / 1e9).toFixed(3)}`);
+  }
+  if (main !== null && main !== runs[0]?.id) fields.set('main', main);
+  if (t_ns !== null) fields.set('t', (t_ns / 1e9).toFixed(3));
   return `#${fields.toString()}`;
+}
+
+function shownRun(text: string): ShownRun {
+  const [, id = text, offset] = /^(.*)@(-?[0-9.]+)$/.exec(text) ?? [];
+  return { id, offset_ns: nanoseconds(offset ?? null) ?? 0 };
+}
+
+function nanoseconds(text: string | null): number | null {
+  const seconds = text === null || text === '' ? NaN : Number(text);
+  return Number.isFinite(seconds) ? Math.round(seconds * 1e9) : null;
 }

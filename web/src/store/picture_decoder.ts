@@ -1,6 +1,6 @@
 // Decodes pictures asynchronously and keeps the newest of each stream.
 import type { PictureMessage } from '../protocol/parse';
-import type { Picture } from './state';
+import type { Picture } from './watched_run';
 
 export type Decode = (jpeg: Blob) => Promise<ImageBitmap>;
 

@@ -5,6 +5,8 @@ import type { Session } from './session';
 import type { Store } from './state';
 import { nearestIndex } from './table';
 
+const kSecond_ns = 1e9;
+
 export const kSpeeds = [0.1, 0.25, 0.5, 1, 2, 5, 10, 20, 50] as const;
 
 export class Player {
@@ -14,60 +16,99 @@ export class Player {
   ) {}
 
   togglePlay(): void {
-    const { playback } = this.store.state;
-    if (playback === null) return;
-    const atEnd = !playback.live && playback.t_ns >= playback.end_ns;
-    if (!playback.playing && atEnd) this.command({ type: 'seek', t_ns: playback.begin_ns });
-    this.command({ type: playback.playing ? 'pause' : 'play' });
+    const { clock } = this.store.state;
+    if (clock !== null) this.command({ type: clock.playing ? 'pause' : 'play' });
   }
 
+  /** Moves by frames of the main run. */
   step(frames: number): void {
-    this.command({ type: 'step', frames });
+    const { runId } = this.store.state;
+    if (runId !== null) this.command({ type: 'step', frames, run: runId });
   }
 
   /**
-   * Seeks to the frame nearest to a time, so that every panel has a picture of exactly that
-   * instant.
+   * Seeks to the frame of the main run nearest to a time of the clock, so that every panel has a
+   * picture of exactly that instant. Outside of this run seeks to the time itself.
    */
   seekTime(t_ns: number): void {
-    const { truth } = this.store.state.data;
-    const row = nearestIndex(truth.column('t_ns'), t_ns);
-    if (row < 0) this.command({ type: 'seek', t_ns: Math.round(t_ns) });
-    else this.command({ type: 'seek', frame: truth.at('frame', row) });
+    const { data, offset_ns, runId } = this.store.state;
+    const stamps = data.truth.column('t_ns');
+    const row = nearestIndex(stamps, t_ns - offset_ns);
+    const off_ns = Math.abs((stamps[row] ?? NaN) - (t_ns - offset_ns));
+    if (row < 0 || runId === null || !(off_ns < kSecond_ns)) {
+      this.command({ type: 'seek', t_ns: Math.round(t_ns) });
+    } else {
+      this.command({ type: 'seek', frame: data.truth.at('frame', row), run: runId });
+    }
   }
 
   seekBy(delta_ns: number): void {
-    const { playback } = this.store.state;
-    if (playback !== null) this.seekTime(playback.t_ns + delta_ns);
+    const { clock } = this.store.state;
+    if (clock !== null) this.seekTime(clock.t_ns + delta_ns);
   }
 
   seekEdge(edge: 'begin' | 'end'): void {
-    const { playback } = this.store.state;
-    if (playback !== null) this.seekTime(edge === 'begin' ? playback.begin_ns : playback.end_ns);
+    const { clock } = this.store.state;
+    if (clock !== null) this.seekTime(edge === 'begin' ? clock.begin_ns : clock.end_ns);
   }
 
-  setSpeed(value: number): void {
-    this.store.state.wantedSpeed = value;
-    this.command({ type: 'speed', value });
+  /** Keeps the direction. */
+  setSpeed(magnitude: number): void {
+    this.sendSpeed(this.direction() * magnitude);
   }
 
-  changeSpeed(direction: 1 | -1): void {
-    const { playback, wantedSpeed } = this.store.state;
-    const speed = wantedSpeed ?? playback?.speed ?? 1;
+  changeSpeed(change: 1 | -1): void {
+    const magnitude = Math.abs(this.speed());
     const next =
-      direction > 0
-        ? kSpeeds.find((value) => value > speed * 1.001)
-        : kSpeeds.findLast((value) => value < speed * 0.999);
+      change > 0
+        ? kSpeeds.find((value) => value > magnitude * 1.001)
+        : kSpeeds.findLast((value) => value < magnitude * 0.999);
     if (next !== undefined) this.setSpeed(next);
   }
 
+  /** Plays backwards, or forwards again. */
+  reverse(): void {
+    this.sendSpeed(-this.speed());
+  }
+
   toggleLoop(): void {
-    const { playback } = this.store.state;
-    if (playback !== null) this.command({ type: 'loop', value: !playback.loop });
+    const { clock } = this.store.state;
+    if (clock !== null) this.command({ type: 'loop', value: !clock.loop });
+  }
+
+  /** Sets one end of the range to play to the clock's time; the other end stays. */
+  setRangeEnd(end: 'begin' | 'end'): void {
+    const { clock } = this.store.state;
+    if (clock === null) return;
+    const now_ns = clock.t_ns;
+    const old = clock.range ?? { begin_ns: clock.begin_ns, end_ns: clock.end_ns };
+    const range =
+      end === 'begin'
+        ? { begin_ns: now_ns, end_ns: old.end_ns > now_ns ? old.end_ns : clock.end_ns }
+        : { begin_ns: old.begin_ns < now_ns ? old.begin_ns : clock.begin_ns, end_ns: now_ns };
+    if (range.begin_ns < range.end_ns) this.command({ type: 'range', ...range });
+  }
+
+  clearRange(): void {
+    this.command({ type: 'range' });
   }
 
   goLive(): void {
     if (this.store.state.run?.status === 'running') this.command({ type: 'live' });
+  }
+
+  private speed(): number {
+    const { clock, wantedSpeed } = this.store.state;
+    return wantedSpeed ?? clock?.speed ?? 1;
+  }
+
+  private direction(): 1 | -1 {
+    return this.speed() < 0 ? -1 : 1;
+  }
+
+  private sendSpeed(value: number): void {
+    this.store.state.wantedSpeed = value;
+    this.command({ type: 'speed', value });
   }
 
   private command(message: ClientMessage): void {

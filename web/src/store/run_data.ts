@@ -1,4 +1,4 @@
-// All rows received of the watched run.
+// All rows received of a watched run.
 import type { Cell, Resume, Rows } from '../protocol/messages';
 import { Table } from './table';
 import type { VehicleRow } from './vehicle/vehicle_status';
@@ -6,21 +6,6 @@ import { vehicleRows } from './vehicle/vehicle_status';
 
 export const kAxes = ['x_m', 'y_m', 'z_m', 'roll_deg', 'pitch_deg', 'yaw_deg'] as const;
 export type Axis = (typeof kAxes)[number];
-
-/** Quantities of a frame's image; NaN if not known. */
-export const kImageColumns = [
-  'texels_per_pixel',
-  'void_fraction',
-  'exposure_ns',
-  'gain',
-  'saturated_fraction',
-  'late_tiles',
-  'stamp_offset_ns',
-] as const;
-export type ImageColumn = (typeof kImageColumns)[number];
-
-export type TruthColumn = 'frame' | 't_ns' | Axis | ImageColumn;
-export type EstimateColumn = 'frame' | 't_ns' | Axis | 'latency_ms';
 
 export interface LogLine {
   t_ns: number;
@@ -33,20 +18,24 @@ export interface LogLine {
 }
 
 export interface EstimateRows {
-  table: Table<EstimateColumn>;
+  /** The six axes, errors, latency and counters of docs/PROTOCOL.md. */
+  table: Table;
   states: string[];
 }
 
 const kEstimatePrefix = 'estimate/';
 
 export class RunData {
-  readonly truth = new Table<TruthColumn>(['frame', 't_ns', ...kAxes, ...kImageColumns]);
+  /** Poses of the frames and quantities of their images (docs/PROTOCOL.md). */
+  readonly truth = new Table();
   /** Faults of the scenario active at each frame. */
   readonly faults: (readonly string[])[] = [];
   readonly estimates = new Map<string, EstimateRows>();
   readonly log: LogLine[] = [];
   /** Of a live vehicle; empty for other flights. */
   readonly vehicle: VehicleRow[] = [];
+  /** Its numbers, to be plotted. */
+  readonly vehicleTable = new Table();
   /** Increases when rows are replaced, which invalidates values computed from them. */
   generation = 0;
 
@@ -66,6 +55,7 @@ export class RunData {
       this.log.splice(rows.seq, Infinity, ...logLines(rows.columns, count));
     } else if (rows.stream === 'vehicle') {
       this.vehicle.splice(rows.seq, Infinity, ...vehicleRows(rows.columns, count));
+      this.vehicleTable.write(rows.seq, count, rows.columns);
     } else if (rows.stream.startsWith(kEstimatePrefix)) {
       const estimate = this.estimate(rows.stream.slice(kEstimatePrefix.length));
       estimate.table.write(rows.seq, count, rows.columns);
@@ -107,7 +97,7 @@ export class RunData {
 /** Rows of an estimate from their columns. */
 export function estimateRows(columns: Record<string, Cell[]>): EstimateRows {
   const rows: EstimateRows = {
-    table: new Table(['frame', 't_ns', ...kAxes, 'latency_ms']),
+    table: new Table(),
     states: (columns['state'] ?? []).map(String),
   };
   rows.table.write(0, columns['frame']?.length ?? 0, columns);

@@ -1,21 +1,26 @@
-// Watches one run: requests it and stores what the stream sends about it.
+// Watches runs: requests them and stores what the stream sends about them.
 import type { ConnectionState, StreamClient, StreamListener } from '../connection/stream_client';
 import type { ClientMessage, PictureStream, Resume, ServerMessage } from '../protocol/messages';
 import type { PictureMessage } from '../protocol/parse';
 import type { Run } from '../protocol/rest_types';
+import type { Notices } from './notices';
 import type { Decode } from './picture_decoder';
 import { PictureDecoder } from './picture_decoder';
+import type { ShownRun } from './permalink';
 import { pictureRates } from './picture_rates';
-import { RunData } from './run_data';
-import type { RunPlayback } from './run_playback';
-import { playbackOf } from './run_playback';
-import type { Notices } from './notices';
-import type { Store } from './state';
+import { clockOf } from './run_playback';
+import { shownAlignment } from './state';
+import type { State, Store } from './state';
+import { tracksOf } from './tracks';
+import { WatchedRun } from './watched_run';
+
+/** Limit of the server. */
+export const kMostRuns = 16;
 
 export class Session implements StreamListener {
   private client: StreamClient | null = null;
-  private readonly decoder: PictureDecoder;
-  /** Where to seek when the watched run sends its playback. */
+  private readonly decoders = new Map<string, PictureDecoder>();
+  /** Where to seek when the server sends the playback of the main run. */
   private pendingSeek_ns: number | null = null;
   /**
    * Position of a live viewer when the connection was lost; used if the run has ended meanwhile.
@@ -23,23 +28,16 @@ export class Session implements StreamListener {
   private livePlace_ns: number | null = null;
   private pictureWidth_px = 640;
   private subscribed = '';
-  /** The latest message about the watched run's world. */
-  private saidOfWorld: string | null = null;
+  /** The latest message about the world of each run. */
+  private readonly saidOfWorld = new Map<string, string | null>();
+  private readonly state: State;
 
   constructor(
     private readonly store: Store,
     private readonly notices: Notices,
-    decode: Decode,
+    private readonly decode: Decode,
   ) {
-    this.decoder = new PictureDecoder(
-      decode,
-      (name, picture) => {
-        this.store.state.pictures.get(name)?.bitmap.close();
-        this.store.state.pictures.set(name, picture);
-        this.store.change('pictures');
-      },
-      (text) => this.notices.error(text),
-    );
+    this.state = store.state;
   }
 
   use(client: StreamClient): void {
@@ -48,39 +46,95 @@ export class Session implements StreamListener {
 
   // ---- commands of the viewer ------------------------------------------------------------------
 
-  /** Watches a run from `t_ns` on, or from the server's default position. */
-  selectRun(id: string | null, t_ns: number | null = null): void {
-    const { state } = this.store;
-    if (id !== null && id === state.runId) {
-      if (t_ns !== null) this.command({ type: 'seek', t_ns });
-      return;
-    }
-    this.decoder.clear();
-    for (const picture of state.pictures.values()) picture.bitmap.close();
-    state.pictures.clear();
-    state.runId = id;
-    state.run = state.runs?.find((run) => run.id === id) ?? null;
-    state.data = new RunData();
-    state.metrics = null;
-    state.statuses = {};
-    state.playback = null;
-    state.series = [];
-    state.wantedSpeed = null;
-    state.aligned = null;
-    state.cameras = [];
-    state.camera = null;
-    this.pendingSeek_ns = t_ns;
-    this.livePlace_ns = null;
-    this.subscribed = '';
-    this.saidOfWorld = null;
-    this.client?.watch(id);
-    this.store.change('run', 'rows', 'log', 'metrics', 'estimators', 'playback');
-    this.store.change('pictures', 'scene', 'cameras');
+  /** Shows a run: one that is watched already becomes the main one, another replaces all. */
+  selectRun(id: string | null): void {
+    if (id !== null && this.state.watchedRun(id) !== undefined) this.makeMain(id);
+    else this.showRuns(id === null ? [] : [{ id, offset_ns: 0 }], null, null);
   }
 
-  /** Shows another camera of the run; null = the first. */
+  /**
+   * Shows exactly these runs.
+   * @param main  null = the first
+   * @param t_ns  of the clock; null = where it is, or the server's default position
+   */
+  showRuns(runs: readonly ShownRun[], main: string | null, t_ns: number | null): void {
+    const { state } = this;
+    for (const { id } of [...state.watched]) {
+      if (!runs.some((run) => run.id === id)) this.leave(id);
+    }
+    if (state.watched.length === 0) {
+      state.clock = null;
+      state.wantedSpeed = null;
+      this.livePlace_ns = null;
+      this.pendingSeek_ns = t_ns;
+    } else if (t_ns !== null) {
+      this.command({ type: 'seek', t_ns });
+    }
+    for (const { id, offset_ns } of runs) {
+      if (state.watchedRun(id) === undefined) this.watch(id, offset_ns);
+      else this.setOffset(id, offset_ns);
+    }
+    state.main = (main === null ? undefined : state.watchedRun(main)) ?? state.watched[0] ?? null;
+    this.subscribe();
+    this.changedRuns();
+  }
+
+  /** Shows a run together with those that are watched. */
+  addRun(id: string, offset_ns = 0): void {
+    const { watched } = this.state;
+    if (this.state.watchedRun(id) !== undefined) return;
+    if (watched.length >= kMostRuns) {
+      this.notices.error(`Not more than ${kMostRuns} runs can be shown together.`);
+      return;
+    }
+    this.watch(id, offset_ns);
+    this.subscribe();
+    this.changedRuns();
+  }
+
+  /** Stops showing a run; the others stay. */
+  removeRun(id: string): void {
+    if (this.state.watchedRun(id) === undefined) return;
+    if (this.state.watched.length === 1) {
+      this.selectRun(null);
+      return;
+    }
+    this.leave(id);
+    this.subscribe();
+    this.changedRuns();
+  }
+
+  /** Shows pictures, timeline and details of one of the watched runs. */
+  makeMain(id: string): void {
+    const watched = this.state.watchedRun(id);
+    if (watched === undefined || watched === this.state.main) return;
+    this.state.main = watched;
+    this.subscribe();
+    this.changedRuns();
+  }
+
+  /** Moves a run on the clock. */
+  setOffset(id: string, offset_ns: number): void {
+    const watched = this.state.watchedRun(id);
+    if (watched === undefined || watched.offset_ns === offset_ns) return;
+    watched.offset_ns = offset_ns;
+    this.client?.move(id, offset_ns);
+    this.store.change('run', 'rows', 'playback');
+  }
+
+  /** Shows or hides a track in the plots. @param name  of the estimator; '' = the truth */
+  showTrack(id: string, name: string, shown: boolean): void {
+    const hidden = this.state.watchedRun(id)?.hidden;
+    if (shown) hidden?.delete(name);
+    else hidden?.add(name);
+    this.store.change('run', 'rows');
+  }
+
+  /** Shows another camera of the main run; null = the first. */
   setCamera(name: string | null): void {
-    this.store.state.camera = name;
+    const { main } = this.state;
+    if (main === null) return;
+    main.camera = name;
     this.subscribe();
     this.store.change('cameras', 'pictures');
   }
@@ -91,140 +145,203 @@ export class Session implements StreamListener {
     this.subscribe();
   }
 
+  /** Sends a command about the watched runs. */
+  command(message: ClientMessage): void {
+    if (this.state.main !== null) this.client?.command(message);
+  }
+
   // ---- messages of the stream ------------------------------------------------------------------
 
   onState(state: ConnectionState): void {
-    this.store.state.connection = state;
-    this.store.state.wantedSpeed = null;
+    this.state.connection = state;
+    this.state.wantedSpeed = null;
     if (state.status === 'open') this.subscribed = '';
     this.store.change('connection');
   }
 
   onMessage(message: ServerMessage): void {
-    const { state } = this.store;
-    if (message.type === 'run') {
-      this.onRun(message.run);
-    } else if (message.type === 'rows') {
-      this.onRows(message);
-    } else if (message.type === 'metrics') {
-      state.metrics = message.metrics;
-      this.store.change('metrics');
-    } else if (message.type === 'estimators') {
-      state.statuses = message.estimators;
-      this.store.change('estimators');
-    } else if (message.type === 'series') {
-      state.series = message.series;
-      this.store.change('rows');
-    } else if (message.type === 'pictures') {
-      state.rates = pictureRates(message.pictures);
-      this.store.change('pictures');
-    } else if (message.type === 'playback') {
-      const playback = playbackOf(message, state.runId);
-      if (playback !== null) this.onPlayback(playback);
-    } else if (message.type === 'error') {
-      this.notices.error(message.message);
-    }
+    if (message.type === 'error') this.notices.error(message.message);
+    else if (message.type === 'playback') this.onPlayback(message);
+    else if (message.type === 'pictures') this.onPictures(message);
+    else if (message.type === 'run') this.onRun(message.run);
+    else if ('run' in message) this.onRunData(message);
   }
 
   onWatchFailed(run: string, message: string): void {
-    if (this.store.state.runId === run) this.selectRun(null);
+    if (this.state.watchedRun(run) !== undefined) this.removeRun(run);
     this.notices.error(`Run ${run} cannot be shown: ${message}`);
   }
 
-  onPicture(name: string, picture: PictureMessage): void {
-    this.decoder.push(name, picture);
+  onPicture(run: string, name: string, picture: PictureMessage): void {
+    this.decoders.get(run)?.push(name, picture);
   }
 
   onProtocolError(text: string): void {
     this.notices.error(`The server sent an invalid message: ${text}`);
   }
 
-  resume(): Resume {
-    return this.store.state.data.resume();
+  resume(run: string): Resume {
+    return this.state.watchedRun(run)?.data.resume() ?? {};
   }
 
   restore(): ClientMessage[] {
-    const { playback, runId } = this.store.state;
-    if (playback === null || runId === null) return [];
+    const { clock, watched } = this.state;
+    if (clock === null) return [];
     const commands: ClientMessage[] = [];
-    const { aligned } = this.store.state;
-    if (aligned !== null) commands.push({ type: 'align', run: runId, mode: aligned.mode });
-    if (playback.speed !== 1) commands.push({ type: 'speed', value: playback.speed });
-    if (playback.loop) commands.push({ type: 'loop', value: true });
-    this.livePlace_ns = playback.live ? playback.t_ns : null;
-    if (!playback.live) {
-      commands.push({ type: 'seek', t_ns: playback.t_ns });
-      commands.push({ type: playback.playing ? 'play' : 'pause' });
+    for (const one of watched) {
+      if (one.aligned !== null) {
+        commands.push({ type: 'align', run: one.id, mode: shownAlignment(one) });
+      }
+    }
+    if (clock.speed !== 1) commands.push({ type: 'speed', value: clock.speed });
+    if (clock.loop) commands.push({ type: 'loop', value: true });
+    if (clock.range !== null) commands.push({ type: 'range', ...clock.range });
+    this.livePlace_ns = clock.live ? clock.t_ns : null;
+    if (!clock.live) {
+      commands.push({ type: 'seek', t_ns: clock.t_ns });
+      commands.push({ type: clock.playing ? 'play' : 'pause' });
     }
     return commands;
   }
 
-  private onRun(run: Run): void {
-    const { state } = this.store;
-    state.run = run;
-    if (run.world_change !== null && run.world_change !== this.saidOfWorld) {
-      this.notices.error(run.world_change);
+  // ---- the watched runs ------------------------------------------------------------------------
+
+  private watch(id: string, offset_ns: number): void {
+    const { state } = this;
+    const watched = new WatchedRun(id);
+    watched.run = state.runs?.find((run) => run.id === id) ?? null;
+    watched.offset_ns = offset_ns;
+    state.watched.push(watched);
+    state.main ??= watched;
+    this.decoders.set(
+      id,
+      new PictureDecoder(
+        this.decode,
+        (name, picture) => {
+          watched.pictures.get(name)?.bitmap.close();
+          watched.pictures.set(name, picture);
+          this.store.change('pictures');
+        },
+        (text) => this.notices.error(text),
+      ),
+    );
+    this.client?.watch(id, offset_ns);
+  }
+
+  private leave(id: string): void {
+    const { state } = this;
+    const watched = state.watchedRun(id);
+    if (watched === undefined) return;
+    this.client?.unwatch(id);
+    this.decoders.get(id)?.clear();
+    this.decoders.delete(id);
+    this.saidOfWorld.delete(id);
+    for (const { bitmap } of watched.pictures.values()) bitmap.close();
+    state.watched.splice(state.watched.indexOf(watched), 1);
+    if (state.main === watched) state.main = state.watched[0] ?? null;
+    if (state.main === null) this.subscribed = '';
+  }
+
+  private changedRuns(): void {
+    this.store.change('run', 'rows', 'log', 'metrics', 'estimators', 'playback');
+    this.store.change('pictures', 'scene', 'cameras');
+  }
+
+  private onPictures(message: ServerMessage & { type: 'pictures' }): void {
+    for (const watched of this.state.watched) {
+      watched.rates = pictureRates(message.pictures.filter(({ run }) => run === watched.id));
     }
-    this.saidOfWorld = run.world_change;
+    this.store.change('pictures');
+  }
+
+  private onRun(run: Run): void {
+    const { state } = this;
+    const watched = state.watchedRun(run.id);
+    if (watched === undefined) return;
+    watched.run = run;
+    const { world_change } = run;
+    if (world_change !== null && world_change !== this.saidOfWorld.get(run.id)) {
+      this.notices.error(world_change);
+    }
+    this.saidOfWorld.set(run.id, world_change);
     const index = state.runs?.findIndex(({ id }) => id === run.id) ?? -1;
     if (state.runs !== null && index >= 0) state.runs[index] = run;
     this.subscribe();
     this.store.change('run', 'lists');
   }
 
-  private onRows(rows: ServerMessage & { type: 'rows' }): void {
-    const { state } = this.store;
-    if (state.data.apply(rows)) this.store.change(rows.stream === 'log' ? 'log' : 'rows');
-    else if (state.runId !== null) {
-      this.client?.watch(state.runId);
+  private onRunData(
+    message: ServerMessage & { type: 'rows' | 'metrics' | 'estimators' | 'series' },
+  ): void {
+    const watched = this.state.watchedRun(message.run);
+    if (watched === undefined) return;
+    if (message.type === 'metrics') {
+      watched.metrics = message.metrics;
+      this.store.change('metrics');
+    } else if (message.type === 'estimators') {
+      watched.statuses = message.estimators;
+      this.store.change('estimators');
+    } else if (message.type === 'series') {
+      watched.series = message.series;
+      this.store.change('rows');
+    } else if (watched.data.apply(message)) {
+      this.store.change(message.stream === 'log' ? 'log' : 'rows');
+    } else {
+      this.client?.watch(watched.id, watched.offset_ns);
     }
   }
 
-  private onPlayback(playback: RunPlayback): void {
-    const { state } = this.store;
-    state.playback = playback;
-    if (playback.speed === state.wantedSpeed) state.wantedSpeed = null;
+  private onPlayback(message: ServerMessage & { type: 'playback' }): void {
+    const { state } = this;
+    const clock = clockOf(message);
+    state.clock = clock;
+    for (const watched of state.watched) watched.instant = message.runs[watched.id] ?? null;
+    if (clock.speed === state.wantedSpeed) state.wantedSpeed = null;
     this.store.change('playback');
+    if (state.playback === null) return;
     const place_ns = this.livePlace_ns;
     this.livePlace_ns = null;
-    if (place_ns !== null && !playback.live) this.command({ type: 'seek', t_ns: place_ns });
+    if (place_ns !== null && !clock.live) this.command({ type: 'seek', t_ns: place_ns });
     if (this.pendingSeek_ns === null) return;
     const t_ns = this.pendingSeek_ns;
     this.pendingSeek_ns = null;
     this.command({ type: 'seek', t_ns });
-    if (playback.playing) this.command({ type: 'pause' });
+    if (clock.playing) this.command({ type: 'pause' });
+  }
+
+  /** All watched runs, each with the colours of its tracks in the plots. */
+  private sceneTracks(): Pick<PictureStream, 'first_colour' | 'with'> {
+    const { main } = this.state;
+    const firsts = tracksOf(this.state).filter(({ name }) => name === '');
+    const all = firsts.map(({ run, colour }) => ({ run: run.id, first_colour: colour }));
+    const own = all.find(({ run }) => run === main?.id);
+    return {
+      ...(own === undefined || own.first_colour === 0 ? {} : { first_colour: own.first_colour }),
+      ...(all.length < 2 ? {} : { with: all.filter((one) => one !== own) }),
+    };
   }
 
   private subscribe(): void {
-    const { run, runId, camera } = this.store.state;
-    if (run === null || runId === null) return;
+    const { main } = this.state;
+    if (main === null || main.run === null) return;
+    const { id: run, camera } = main;
     const max_width_px = this.pictureWidth_px;
+    const small = { max_hz: 15, quality: 75, max_width_px };
     const pictures: PictureStream[] = [
-      { run: runId, name: 'scene', max_hz: 20, quality: 80 },
+      { run, name: 'scene', max_hz: 20, quality: 80, ...this.sceneTracks() },
       {
-        run: runId,
+        run,
         name: 'camera',
         ...(camera === null ? {} : { camera }),
         max_hz: 31,
         quality: 75,
         max_width_px,
       },
-      ...run.estimators.map((name) => ({
-        run: runId,
-        name: `debug/${name}`,
-        max_hz: 15,
-        quality: 75,
-        max_width_px,
-      })),
+      ...main.run.estimators.map((name) => ({ run, name: `debug/${name}`, ...small })),
     ];
     const key = JSON.stringify(pictures);
     if (key === this.subscribed) return;
     this.subscribed = key;
     this.client?.subscribe(pictures);
-  }
-
-  /** Sends a playback command to the watched run. */
-  command(message: ClientMessage): void {
-    if (this.store.state.runId !== null) this.client?.command(message);
   }
 }

@@ -2,7 +2,7 @@
 import type { ConnectionState } from '../connection/stream_client';
 import { picturesOf } from '../connection/stream_client';
 import type { FieldError } from '../protocol/field_errors';
-import type { SceneMode, SceneView, SeriesInfo } from '../protocol/messages';
+import type { SceneMode, SceneView } from '../protocol/messages';
 import type {
   CameraInfo,
   EstimatorStatus,
@@ -15,22 +15,12 @@ import { kDefaultAlignment } from './error_table';
 import type { LogPage } from './logs/log_browser';
 import { initialLogPage } from './logs/log_browser';
 import type { PictureRate } from './picture_rates';
-import type { EstimateRows } from './run_data';
-import type { RunPlayback } from './run_playback';
+import type { Clock, RunPlayback } from './run_playback';
 import type { ConnectState } from './vehicle/vehicle_connect';
 import { initialConnect } from './vehicle/vehicle_connect';
 import { RunData } from './run_data';
 import type { SensorSamples } from './sensors/sensors';
-
-/** A decoded picture and the instant it belongs to. */
-export interface Picture {
-  frame: number;
-  t_ns: number;
-  width_px: number;
-  height_px: number;
-  live: boolean;
-  bitmap: ImageBitmap;
-}
+import type { AlignedEstimates, Picture, WatchedRun } from './watched_run';
 
 export interface Notice {
   id: number;
@@ -40,126 +30,126 @@ export interface Notice {
 
 export type SceneOrbit = Pick<SceneView, 'azimuth_deg' | 'elevation_deg' | 'distance_m' | 'follow'>;
 
-/** Estimates under an alignment other than the recorded one. */
-export interface AlignedEstimates {
-  mode: string;
-  /** Contains no entry for an estimator without this alignment. */
-  estimates: Map<string, EstimateRows>;
-}
+const kNoRows = new RunData();
+const kNoPictures: ReadonlyMap<string, Picture> = new Map();
+const kNoRates: ReadonlyMap<string, PictureRate> = new Map();
 
-export interface State {
-  connection: ConnectionState;
+export class State {
+  connection: ConnectionState = { status: 'connecting', attempt: 1 };
   /** null until read. */
-  scenarios: ScenarioEntry[] | null;
-  runs: Run[] | null;
-  listError: string | null;
-  scenarioName: string | null;
-  scenarioDocument: JsonObject | null;
-  scenarioSchema: JsonObject | null;
+  scenarios: ScenarioEntry[] | null = null;
+  runs: Run[] | null = null;
+  listError: string | null = null;
+  scenarioName: string | null = null;
+  scenarioDocument: JsonObject | null = null;
+  scenarioSchema: JsonObject | null = null;
   /** Sections of the scenario edited as JSON: text by section name. */
-  scenarioEdits: Map<string, string>;
-  editorOpen: boolean;
-  launchErrors: FieldError[];
-  launching: boolean;
-  connect: ConnectState;
-  /** The watched run; `run` is null until the list or the stream has sent it. */
-  runId: string | null;
-  run: Run | null;
-  data: RunData;
-  metrics: Metrics | null;
-  /** Status of the run's estimators, by name. */
-  statuses: Record<string, EstimatorStatus>;
-  playback: RunPlayback | null;
-  /** What the server offers of the run to be plotted. */
-  series: SeriesInfo[];
+  scenarioEdits = new Map<string, string>();
+  editorOpen = false;
+  launchErrors: FieldError[] = [];
+  launching = false;
+  connect: ConnectState = initialConnect();
+  /** The runs shown together, in the order in which they were added. */
+  watched: WatchedRun[] = [];
+  /** The one whose pictures, timeline and details are shown; always one of `watched`. */
+  main: WatchedRun | null = null;
+  clock: Clock | null = null;
   /** Requested and not confirmed yet. */
-  wantedSpeed: number | null;
-  pictures: Map<string, Picture>;
-  /** For the streams whose rate is below the requested one, by name. */
-  rates: Map<string, PictureRate>;
-  /** Chosen by the viewer; shown once the run is scored. */
-  alignment: string;
-  aligned: AlignedEstimates | null;
-  /** Of the watched run; empty until its manifest was read. */
-  cameras: CameraInfo[];
-  /** Read while their plots are shown. */
-  sensors: SensorSamples | null;
+  wantedSpeed: number | null = null;
+  /** Chosen by the viewer; shown once a run is scored. */
+  alignment: string = kDefaultAlignment;
+  /** Of the main run; read while their plots are shown. */
+  sensors: SensorSamples | null = null;
   /** Why the sensors' samples cannot be read. */
-  sensorError: string | null;
-  /** null = the first. */
-  camera: string | null;
-  sceneMode: SceneMode;
-  sceneOrbits: Record<SceneMode, SceneOrbit>;
-  notices: Notice[];
-  helpOpen: boolean;
-  logPage: LogPage;
-}
-
-export function initialState(): State {
-  return {
-    connection: { status: 'connecting', attempt: 1 },
-    scenarios: null,
-    runs: null,
-    listError: null,
-    scenarioName: null,
-    scenarioDocument: null,
-    scenarioSchema: null,
-    scenarioEdits: new Map(),
-    editorOpen: false,
-    launchErrors: [],
-    launching: false,
-    connect: initialConnect(),
-    runId: null,
-    run: null,
-    data: new RunData(),
-    metrics: null,
-    statuses: {},
-    playback: null,
-    series: [],
-    wantedSpeed: null,
-    pictures: new Map(),
-    rates: new Map(),
-    alignment: kDefaultAlignment,
-    aligned: null,
-    cameras: [],
-    sensors: null,
-    sensorError: null,
-    camera: null,
-    sceneMode: 'chase',
-    sceneOrbits: {
-      chase: { azimuth_deg: 20, elevation_deg: 18, distance_m: 40, follow: true },
-      orbit: { azimuth_deg: 215, elevation_deg: 35, distance_m: 900, follow: true },
-      top: { azimuth_deg: 0, elevation_deg: 90, distance_m: 2400, follow: false },
-    },
-    notices: [],
-    helpOpen: false,
-    logPage: initialLogPage(),
+  sensorError: string | null = null;
+  sceneMode: SceneMode = 'chase';
+  sceneOrbits: Record<SceneMode, SceneOrbit> = {
+    chase: { azimuth_deg: 20, elevation_deg: 18, distance_m: 40, follow: true },
+    orbit: { azimuth_deg: 215, elevation_deg: 35, distance_m: 900, follow: true },
+    top: { azimuth_deg: 0, elevation_deg: 90, distance_m: 2400, follow: false },
   };
+  notices: Notice[] = [];
+  helpOpen = false;
+  logPage: LogPage = initialLogPage();
+
+  // ---- the main run ----------------------------------------------------------------------------
+
+  get runId(): string | null {
+    return this.main?.id ?? null;
+  }
+  get run(): Run | null {
+    return this.main?.run ?? null;
+  }
+  get data(): RunData {
+    return this.main?.data ?? kNoRows;
+  }
+  get metrics(): Metrics | null {
+    return this.main?.metrics ?? null;
+  }
+  get statuses(): Record<string, EstimatorStatus> {
+    return this.main?.statuses ?? {};
+  }
+  get aligned(): AlignedEstimates | null {
+    return this.main?.aligned ?? null;
+  }
+  get cameras(): readonly CameraInfo[] {
+    return this.main?.cameras ?? [];
+  }
+  get camera(): string | null {
+    return this.main?.camera ?? null;
+  }
+  get pictures(): ReadonlyMap<string, Picture> {
+    return this.main?.pictures ?? kNoPictures;
+  }
+  get rates(): ReadonlyMap<string, PictureRate> {
+    return this.main?.rates ?? kNoRates;
+  }
+  /** Time of the clock at its beginning. */
+  get offset_ns(): number {
+    return this.main?.offset_ns ?? 0;
+  }
+  /** null until the server has sent where the run is. */
+  get playback(): RunPlayback | null {
+    const instant = this.main?.instant ?? null;
+    if (instant === null || this.clock === null) return null;
+    const { frame, alignment, truth, estimates } = instant;
+    return { ...this.clock, frame, alignment, truth, estimates };
+  }
+
+  /** The run of this name if it is watched. */
+  watchedRun(id: string): WatchedRun | undefined {
+    return this.watched.find((watched) => watched.id === id);
+  }
 }
 
 /**
- * When the flight ends as far as that is known; 0 for a live vehicle, whose flight has only a limit
- * that may be a day away.
+ * When the flight ends by its own time, as far as that is known; 0 for a live vehicle, whose flight
+ * has only a limit that may be a day away.
  */
-export function plannedEnd_ns({ run, data }: State): number {
+export function plannedEnd_ns({ run, data }: Pick<WatchedRun, 'run' | 'data'>): number {
   return data.vehicle.length > 0 ? 0 : (run?.duration_ns ?? 0);
 }
 
-/** The alignment in which estimates are drawn now. */
-export function shownAlignment(state: State): string {
-  return state.aligned?.mode ?? kDefaultAlignment;
+/** The part of the clock's time in which the watched runs lie [ns]. */
+export function clockSpan_ns({ watched, clock }: State): [number, number] {
+  let begin_ns = Math.min(0, clock?.begin_ns ?? 0);
+  let end_ns = Math.max(1e9, clock?.end_ns ?? 0);
+  for (const one of watched) {
+    const last_ns = one.data.truth.length === 0 ? 0 : one.data.truth.last('t_ns');
+    begin_ns = Math.min(begin_ns, one.offset_ns);
+    end_ns = Math.max(end_ns, one.offset_ns + Math.max(plannedEnd_ns(one), last_ns));
+  }
+  return [begin_ns, end_ns];
 }
 
-/** Rows of an estimate under the shown alignment. */
-export function shownEstimate(state: State, name: string): EstimateRows | undefined {
-  return state.aligned === null
-    ? state.data.estimates.get(name)
-    : state.aligned.estimates.get(name);
+/** The alignment in which estimates are drawn now. */
+export function shownAlignment({ aligned }: Pick<WatchedRun, 'aligned'>): string {
+  return aligned?.mode ?? kDefaultAlignment;
 }
 
 /** The name under which the chosen camera's pictures arrive. */
-export function cameraPictures(state: State): string {
-  return picturesOf('camera', state.camera ?? undefined);
+export function cameraPictures({ camera }: Pick<WatchedRun, 'camera'>): string {
+  return picturesOf('camera', camera ?? undefined);
 }
 
 /** Views redraw themselves for the topics that changed since the last frame. */
@@ -182,7 +172,7 @@ export type Topic =
   | 'logs';
 
 export class Store {
-  readonly state = initialState();
+  readonly state = new State();
   private changed = new Set<Topic>();
   private listener: (() => void) | null = null;
 

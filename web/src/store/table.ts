@@ -4,13 +4,9 @@ import type { Cell } from '../protocol/messages';
 const kFirstCapacity = 1024;
 
 /** Numbers; absent or null values are NaN. */
-export class NumberColumn {
+class NumberColumn {
   private values = new Float64Array(kFirstCapacity);
   private count = 0;
-
-  get length(): number {
-    return this.count;
-  }
 
   /** A view, valid until the next write. */
   view(): Float64Array {
@@ -21,50 +17,59 @@ export class NumberColumn {
     return row < this.count ? (this.values[row] ?? NaN) : NaN;
   }
 
-  /** Writes `cells` from row `first` on, and discards all old rows from there. */
-  write(first: number, cells: readonly Cell[]): void {
-    const end = first + cells.length;
+  /** Writes `rows` cells from row `first` on, and discards all old rows from there. */
+  write(first: number, rows: number, cells: readonly Cell[] | undefined): void {
+    const end = first + rows;
     if (end > this.values.length) {
       const grown = new Float64Array(Math.max(end, this.values.length * 2));
       grown.set(this.values.subarray(0, this.count));
       this.values = grown;
     }
-    for (let i = 0; i < cells.length; i += 1) {
-      const cell = cells[i];
+    if (first > this.count) this.values.fill(NaN, this.count, first);
+    for (let i = 0; i < rows; i += 1) {
+      const cell = cells?.[i];
       this.values[first + i] = typeof cell === 'number' ? cell : NaN;
     }
     this.count = end;
   }
 }
 
-export class Table<Name extends string> {
-  private readonly columns: Record<Name, NumberColumn>;
+/** The columns of numbers that the server has sent. A column that was never sent is NaN. */
+export class Table {
+  private readonly columns = new Map<string, NumberColumn>();
   private count = 0;
-
-  constructor(private readonly names: readonly Name[]) {
-    this.columns = Object.fromEntries(names.map((name) => [name, new NumberColumn()])) as Record<
-      Name,
-      NumberColumn
-    >;
-  }
 
   get length(): number {
     return this.count;
   }
 
-  column(name: Name): Float64Array {
-    return this.columns[name].view();
+  /** A view, valid until the next write. */
+  column(name: string): Float64Array {
+    return this.columns.get(name)?.view() ?? new Float64Array(this.count).fill(NaN);
   }
 
-  at(name: Name, row: number): number {
-    return this.columns[name].at(row);
+  /** Whether a column of numbers was sent. */
+  has(name: string): boolean {
+    return this.columns.has(name);
   }
 
+  at(name: string, row: number): number {
+    return this.columns.get(name)?.at(row) ?? NaN;
+  }
+
+  /** The value in the last row; NaN without rows. */
+  last(name: string): number {
+    return this.at(name, this.count - 1);
+  }
+
+  /** Writes rows from `first` on, and discards all old rows from there. */
   write(first: number, rows: number, columns: Record<string, Cell[]>): void {
-    for (const name of this.names) {
-      const cells = columns[name] ?? new Array<Cell>(rows).fill(null);
-      this.columns[name].write(first, cells);
+    for (const [name, cells] of Object.entries(columns)) {
+      if (!this.columns.has(name) && cells.some((cell) => typeof cell === 'number')) {
+        this.columns.set(name, new NumberColumn());
+      }
     }
+    for (const [name, column] of this.columns) column.write(first, rows, columns[name]);
     this.count = first + rows;
   }
 }

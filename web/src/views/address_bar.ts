@@ -8,16 +8,16 @@ const kWrite_ms = 400;
 export function followAddress(context: Context): void {
   const { store, session } = context;
   const open = () => {
-    const { run, t_ns } = parsePermalink(location.hash);
-    session.selectRun(run, t_ns);
+    const { runs, main, t_ns } = parsePermalink(location.hash);
+    session.showRuns(runs, main, t_ns);
   };
   window.addEventListener('hashchange', open);
   if (location.hash !== '') open();
   window.setInterval(() => {
-    const { runId, playback } = store.state;
-    const t_ns = playback === null || playback.live ? null : playback.t_ns;
-    if (runId !== null && playback === null) return;
-    const hash = formatPermalink({ run: runId, t_ns });
+    const { watched, runId, clock } = store.state;
+    if (runId !== null && clock === null) return;
+    const t_ns = clock === null || clock.live ? null : clock.t_ns;
+    const hash = formatPermalink({ runs: watched, main: runId, t_ns });
     if (hash !== location.hash)
       history.replaceState(null, '', hash === '' ? location.pathname : hash);
   }, kWrite_ms);

@@ -1,5 +1,7 @@
 // The common colour scheme of the 3D view's ribbons, the curves and the table.
 
+import type { CurveHue } from '../store/plots/plot_specs';
+
 export const kTruthColour = 'rgb(230, 38, 38)';
 
 /** By the estimator's index in the run. */
@@ -13,7 +15,45 @@ const kEstimateColours = [
 ] as const;
 
 export function estimateColour(index: number): string {
-  return kEstimateColours[index % kEstimateColours.length] ?? kEstimateColours[0];
+  return cyclic(kEstimateColours, index);
+}
+
+/** Curves of which neither truth nor an estimate is meant. */
+const kNeutralColours = ['rgb(150, 178, 220)', 'rgb(200, 165, 120)', 'rgb(140, 195, 160)'] as const;
+const kAxisColours = ['#ff9288', '#5fd07a', '#79b8ff'] as const;
+
+// The truth lies below the estimates and stays visible where they agree.
+const kTruthWidth_px = 3;
+const kCurveWidth_px = 1.25;
+/** By the position of the run among those that are watched. */
+const kDashes = [[], [7, 4], [2, 3], [9, 3, 2, 3]] as const;
+
+export interface CurveStyle {
+  colour: string;
+  width_px: number;
+  dash: number[];
+}
+
+export function curveStyle(hue: CurveHue): CurveStyle {
+  const thin = { width_px: kCurveWidth_px, dash: [] };
+  switch (hue.kind) {
+    case 'truth':
+      return {
+        colour: kTruthColour,
+        width_px: hue.order === 0 ? kTruthWidth_px : kTruthWidth_px / 2,
+        dash: [...(kDashes[hue.order % kDashes.length] ?? [])],
+      };
+    case 'estimate':
+      return { ...thin, colour: estimateColour(hue.colour) };
+    case 'run':
+      return { ...thin, colour: cyclic(kNeutralColours, hue.order) };
+    case 'axis':
+      return { ...thin, colour: cyclic(kAxisColours, hue.axis) };
+  }
+}
+
+function cyclic(colours: readonly string[], index: number): string {
+  return colours[index % colours.length] ?? '';
 }
 
 export const kStateColours: Readonly<Record<string, string>> = {

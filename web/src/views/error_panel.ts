@@ -1,15 +1,23 @@
 // Errors of the estimates as scored by the server; the dashboard computes none.
-import type { ErrorRow, ErrorTable } from '../store/error_table';
 import { canBeDrawn } from '../store/alignment';
+import type { ExportFormat } from '../store/error_export';
+import { exportErrors, kExportFormats } from '../store/error_export';
+import type { ErrorRow, ErrorTable } from '../store/error_table';
 import {
   alignmentModes,
   errorTable,
+  joinedTables,
   texelsPerPixel,
   textureHint,
   textureLimited,
 } from '../store/error_table';
 import { formatNumber, kNothing } from '../store/format';
+import type { Metrics } from '../protocol/rest_types';
 import type { State, Topic } from '../store/state';
+import type { Track } from '../store/tracks';
+import { tracksOf } from '../store/tracks';
+import type { WatchedRun } from '../store/watched_run';
+import { copyText } from './clipboard';
 import { estimateColour, kStateColours } from './colours';
 import { h, rebuild, setAttribute, setText } from './dom';
 import type { Panel } from './panel';
@@ -20,16 +28,31 @@ export class ErrorPanel implements View {
   readonly root: HTMLElement;
   private readonly panel: Panel;
   private readonly alignment = h('select', { id: 'alignment', 'aria-label': 'Alignment' });
+  private readonly copy = h(
+    'select',
+    {
+      id: 'copy-errors',
+      'aria-label': 'Copy the errors',
+      title: 'Copies the errors of all shown runs under every alignment',
+    },
+    h('option', { value: '' }, 'Copy'),
+    ...kExportFormats.map((format) => h('option', { value: format }, format)),
+  );
   private readonly table = h('table', { class: 'errors' });
 
   constructor(private readonly context: Context) {
     this.panel = makePanel('errors', 'Errors');
     this.root = this.panel.root;
-    this.panel.tools.append(h('label', { for: 'alignment' }, 'Alignment'), this.alignment);
+    this.panel.tools.append(
+      h('label', { for: 'alignment' }, 'Alignment'),
+      this.alignment,
+      this.copy,
+    );
     this.panel.body.append(this.table);
     this.alignment.addEventListener('change', () => {
       void context.alignment.choose(this.alignment.value);
     });
+    this.copy.addEventListener('change', () => void this.copyAs(this.copy.value as ExportFormat));
   }
 
   update(changed: ReadonlySet<Topic>): void {
@@ -46,7 +69,7 @@ export class ErrorPanel implements View {
   }
 
   private drawModes(state: State): void {
-    const modes = alignmentModes(state.metrics);
+    const modes = alignmentModes(allMetrics(state.watched));
     const shown = modes.length > 0 ? modes : [state.alignment];
     rebuild(this.alignment, shown.join(' '), () =>
       shown.map((mode) => h('option', { value: mode }, mode)),
@@ -54,41 +77,45 @@ export class ErrorPanel implements View {
     if (!shown.includes(state.alignment)) state.alignment = shown[0] ?? state.alignment;
     this.alignment.value = state.alignment;
     this.alignment.disabled = modes.length === 0;
-    const drawn = canBeDrawn(state.metrics, state.alignment);
+    const drawn = state.watched.some(({ metrics }) => canBeDrawn(metrics, state.alignment));
     this.alignment.title = drawn
       ? 'Alignment of the errors, the plots and the 3D view'
       : 'Alignment of the errors only: this run does not contain its transform';
   }
 
+  private async copyAs(format: ExportFormat): Promise<void> {
+    this.copy.value = '';
+    const { notices, store } = this.context;
+    if (await copyText(exportErrors(store.state.watched, format))) {
+      notices.info(`Errors copied as ${format}.`);
+    } else {
+      notices.error('The browser does not permit copying.');
+    }
+  }
+
   private draw(state: State): void {
-    const names = state.run?.estimators ?? [];
-    const scored = state.metrics?.estimators !== undefined;
-    this.panel.showEmpty(emptyText(state));
-    this.table.hidden = names.length === 0;
-    const metrics = state.metrics ?? {};
-    const table = errorTable(
-      scored
-        ? metrics
-        : { estimators: Object.fromEntries(names.map((name) => [name, { outcome: '' }])) },
-      state.alignment,
-      names,
-    );
-    this.table.classList.toggle('many', names.length > 2);
-    const texture = textureOf(state);
-    rebuild(this.table, JSON.stringify([table, names, texture]), () => [
-      h('thead', {}, headRow(table, names)),
+    const tracks = tracksOf(state).filter(({ name }) => name !== '');
+    this.panel.showEmpty(emptyText(state, tracks.length));
+    this.table.hidden = tracks.length === 0;
+    const table = joinedTables(state.watched.map((one) => tableOf(one, state.alignment)));
+    const scored = state.watched.some(({ metrics }) => metrics?.estimators !== undefined);
+    this.copy.disabled = !scored;
+    this.table.classList.toggle('many', tracks.length > 2);
+    const textures = state.watched.map(textureOf);
+    rebuild(this.table, JSON.stringify([table, tracks.map(headOf), textures]), () => [
+      h('thead', {}, headRow(tracks)),
       h(
         'tbody',
         {},
-        stateRow(table),
-        outcomeRow(table, scored),
+        stateRow(tracks),
+        outcomeRow(table),
         ...table.rows.map(({ cells, cellHints, ...row }) =>
           tableRow(
             row,
             cells.map((cell, i) => figureCell(cell, cellHints[i] ?? '')),
           ),
         ),
-        textureRow(texture, names.length),
+        textureRow(textures),
       ),
     ]);
     setAttribute(this.table, 'data-alignment', scored ? state.alignment : null);
@@ -98,29 +125,50 @@ export class ErrorPanel implements View {
   private drawStates(state: State): void {
     for (const cell of this.table.querySelectorAll<HTMLElement>('[data-state-of]')) {
       const name = cell.dataset['stateOf'] ?? '';
-      const here = state.playback?.estimates[name]?.state ?? kNothing;
+      const watched = state.watchedRun(cell.dataset['run'] ?? '');
+      const here = watched?.instant?.estimates[name]?.state ?? kNothing;
       setText(cell, here);
       cell.style.color = kStateColours[here] ?? '';
     }
   }
 }
 
-function headRow(table: ErrorTable, names: string[]): HTMLElement {
-  const heads = table.estimators.map(({ name }) =>
-    h('th', { scope: 'col', style: `color:${estimateColour(names.indexOf(name))}` }, name),
+/** The score of a run, or the same table without figures. */
+function tableOf({ run, metrics }: WatchedRun, alignment: string): ErrorTable {
+  const names = run?.estimators ?? [];
+  const empty = { estimators: Object.fromEntries(names.map((name) => [name, { outcome: '' }])) };
+  const scored = metrics?.estimators !== undefined;
+  return errorTable(scored ? metrics : empty, alignment, names);
+}
+
+/** Estimators of all runs, to find their alignments. */
+function allMetrics(watched: readonly WatchedRun[]): Metrics {
+  const entries = watched.flatMap(({ id, metrics }) =>
+    Object.entries(metrics?.estimators ?? {}).map(([name, one]) => [`${id}/${name}`, one] as const),
+  );
+  return { estimators: Object.fromEntries(entries) };
+}
+
+function headOf({ label, colour }: Track) {
+  return [label, colour];
+}
+
+function headRow(tracks: Track[]): HTMLElement {
+  const heads = tracks.map(({ label, colour }) =>
+    h('th', { scope: 'col', style: `color:${estimateColour(colour)}` }, label),
   );
   return h('tr', {}, h('th', {}), ...heads);
 }
 
-function stateRow(table: ErrorTable): HTMLElement {
+function stateRow(tracks: Track[]): HTMLElement {
   const row = { key: 'state', label: 'State here', unit: '', hint: 'At the playback cursor' };
   return tableRow(
     row,
-    table.estimators.map(({ name }) => h('td', { 'data-state-of': name }, kNothing)),
+    tracks.map(({ run, name }) => h('td', { 'data-state-of': name, 'data-run': run.id }, kNothing)),
   );
 }
 
-function outcomeRow(table: ErrorTable, scored: boolean): HTMLElement {
+function outcomeRow(table: ErrorTable): HTMLElement {
   const row = {
     key: 'outcome',
     label: 'Outcome',
@@ -130,31 +178,41 @@ function outcomeRow(table: ErrorTable, scored: boolean): HTMLElement {
   return tableRow(
     row,
     table.estimators.map(({ outcome, good }) =>
-      scored
-        ? h('td', { class: good ? 'good' : 'bad', title: outcome }, outcome)
-        : h('td', { class: 'pending' }, 'not scored yet'),
+      outcome === kNothing
+        ? h('td', { class: 'pending' }, 'not scored yet')
+        : h('td', { class: good ? 'good' : 'bad', title: outcome }, outcome),
     ),
   );
 }
 
 interface Texture {
+  /** Number of its estimators. */
+  columns: number;
   median: number | null;
   limited: boolean;
 }
 
-function textureOf({ run, metrics }: State): Texture {
-  return { median: texelsPerPixel(metrics), limited: textureLimited(run, metrics) };
+function textureOf({ run, metrics }: WatchedRun): Texture {
+  const columns = run?.estimators.length ?? 0;
+  return { columns, median: texelsPerPixel(metrics), limited: textureLimited(run, metrics) };
 }
 
-/** A value of the run, not of an estimator: one cell across all columns. */
-function textureRow({ median, limited }: Texture, columns: number): HTMLElement {
+/** A value of the run, not of an estimator: one cell across its columns. */
+function textureRow(textures: Texture[]): HTMLElement {
   const row = { key: 'texture', label: 'Texture', unit: 'texels/px', hint: 'Median of the run' };
-  const badge = limited ? h('span', { class: 'chip small texture-limited' }, 'limited') : null;
-  const title = limited ? textureHint(median) : row.hint;
-  const value = formatNumber(median, 2);
-  return tableRow(row, [
-    h('td', { colspan: columns, title, class: limited ? 'bad' : '' }, badge, ` ${value}`),
-  ]);
+  const cells = textures.flatMap(({ columns, median, limited }) => {
+    if (columns === 0) return [];
+    const badge = limited ? h('span', { class: 'chip small texture-limited' }, 'limited') : null;
+    const title = limited ? textureHint(median) : row.hint;
+    const className = limited ? 'bad' : '';
+    return h(
+      'td',
+      { colspan: columns, title, class: className },
+      badge,
+      ` ${formatNumber(median, 2)}`,
+    );
+  });
+  return tableRow(row, cells);
 }
 
 function figureCell(text: string, hint: string): HTMLElement {
@@ -167,8 +225,7 @@ function tableRow(row: Omit<ErrorRow, 'cells' | 'cellHints'>, cells: HTMLElement
   return h('tr', { 'data-row': row.key }, head, ...cells);
 }
 
-function emptyText(state: State): string | null {
+function emptyText(state: State, estimates: number): string | null {
   if (state.runId === null) return 'Errors of the estimates appear here.';
-  if (state.run?.estimators.length === 0) return 'This flight has no estimators.';
-  return null;
+  return state.run !== null && estimates === 0 ? 'This flight has no estimators.' : null;
 }

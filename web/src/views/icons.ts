@@ -11,6 +11,10 @@ const kPaths = {
   expand: 'M3 3h4v1.5H4.5V7H3zM9 11.5h2.5V9H13v4H9z',
   bin: 'M6 2.5h4v1h3V5H3V3.5h3zM4 6h8l-.6 7.5H4.6z',
   stop: 'M4 4h8v8H4z',
+  add: 'M7.2 3.5h1.6v3.7h3.7v1.6H8.8v3.7H7.2V8.8H3.5V7.2h3.7z',
+  close:
+    'M4.6 3.5 8 6.9l3.4-3.4 1.1 1.1L9.1 8l3.4 3.4-1.1 1.1L8 9.1l-3.4 3.4-1.1-1.1L6.9 8 3.5 4.6z',
+  reverse: 'M11 3.5v9L3.5 8z',
 } as const;
 
 export type IconName = keyof typeof kPaths;

@@ -1,5 +1,5 @@
 // Panels that show the pictures of a stream; here the debug images of the estimators.
-import type { RunPlayback } from '../store/run_playback';
+import type { RunInstant } from '../protocol/messages';
 import { rateText } from '../store/picture_rates';
 import type { State, Topic } from '../store/state';
 import { h, rebuild } from './dom';
@@ -95,9 +95,9 @@ export class DebugPanel extends PicturePanel {
   }
 }
 
-/** The playback while it is paused or stopped; null while it moves. */
-export function standingStill({ playback }: State): RunPlayback | null {
-  return playback === null || playback.playing ? null : playback;
+/** The main run's instant while the playback is paused or stopped; null while it moves. */
+export function standingStill({ main, clock }: State): RunInstant | null {
+  return clock === null || clock.playing ? null : (main?.instant ?? null);
 }
 
 function sentence(text: string): string {

@@ -1,6 +1,7 @@
 // The server's runs, newest first.
 import { textureHint } from '../store/error_table';
 import { formatDate, formatNumber } from '../store/format';
+import { matching } from '../store/run_search';
 import type { Run } from '../protocol/rest_types';
 import { isActive } from '../protocol/rest_types';
 import type { Topic } from '../store/state';
@@ -8,6 +9,7 @@ import { h, rebuild } from './dom';
 import { icon } from './icons';
 import type { Panel } from './panel';
 import { makePanel } from './panel';
+import { ShownRuns } from './shown_runs';
 import type { Context, View } from './view';
 
 const kConfirm_ms = 3000;
@@ -16,12 +18,23 @@ export class RunList implements View {
   readonly root: HTMLElement;
   private readonly panel: Panel;
   private readonly list = h('ul', { class: 'runs' });
+  private readonly shown: ShownRuns;
+  private readonly search = h('input', {
+    type: 'search',
+    id: 'run-search',
+    placeholder: 'Search',
+    'aria-label': 'Search the runs',
+    title: 'Words of title, id, scenario, estimators or status',
+  });
   /** The run whose deletion awaits confirmation. */
   private confirming: string | null = null;
 
   constructor(private readonly context: Context) {
     this.panel = makePanel('runs', 'Runs');
-    this.panel.body.append(this.list);
+    this.shown = new ShownRuns(context);
+    this.panel.tools.append(this.search);
+    this.panel.body.append(this.shown.root, this.list);
+    this.search.addEventListener('input', () => this.draw());
     this.root = this.panel.root;
   }
 
@@ -30,21 +43,29 @@ export class RunList implements View {
   }
 
   private draw(): void {
-    const { runs, runId, listError } = this.context.store.state;
-    const key = JSON.stringify([runs, runId, this.confirming]);
-    rebuild(this.list, key, () => (runs ?? []).map((run) => this.entry(run, run.id === runId)));
+    const { state } = this.context.store;
+    const { runs, runId, listError } = state;
+    const found = matching(runs ?? [], this.search.value);
+    const shown = state.watched.map(({ id }) => id);
+    rebuild(this.list, JSON.stringify([found, runId, shown, this.confirming]), () =>
+      found.map((run) => this.entry(run, run.id === runId)),
+    );
+    this.shown.draw(state);
+    this.search.hidden = (runs?.length ?? 0) < 2;
     if (runs === null) this.panel.showEmpty(listError ?? 'Reading the runs');
-    else this.panel.showEmpty(runs.length === 0 ? 'No runs yet. Launch a flight above.' : null);
+    else if (runs.length === 0) this.panel.showEmpty('No runs yet. Launch a flight above.');
+    else this.panel.showEmpty(found.length === 0 ? 'No run has all of these words.' : null);
   }
 
   private entry(run: Run, selected: boolean): HTMLElement {
     const share = run.frames_total > 0 ? run.frames / run.frames_total : 0;
     const length = run.duration_ns > 0 ? `${formatNumber(run.duration_ns / 1e9, 0)} s` : '';
+    const flight = run.flight === '' ? run.scenario : run.flight;
     const detail = [
       formatDate(run.created_utc),
       length,
       run.estimators.join(', ') || 'no estimators',
-    ];
+    ].filter((part) => part !== '');
     return h(
       'li',
       {
@@ -61,7 +82,8 @@ export class RunList implements View {
           onclick: () => this.context.session.selectRun(run.id),
         },
         h('span', { class: 'run-name' }, run.title || run.scenario),
-        h('span', { class: 'run-detail' }, detail.filter((part) => part !== '').join(' · ')),
+        h('span', { class: 'run-detail', 'data-role': 'flight', title: flight }, flight),
+        h('span', { class: 'run-detail' }, detail.join(' · ')),
         isActive(run)
           ? h(
               'span',
@@ -70,30 +92,32 @@ export class RunList implements View {
             )
           : null,
       ),
-      h(
-        'span',
-        { class: 'run-chips' },
-        h('span', { class: 'chip small', 'data-status': run.status }, run.status),
-        run.problem !== null
-          ? h(
-              'span',
-              { class: 'chip small warn', 'data-role': 'problem', title: run.problem },
-              'damaged',
-            )
-          : null,
-        run.texture_limited
-          ? h(
-              'span',
-              {
-                class: 'chip small texture-limited',
-                'data-role': 'texture-limited',
-                title: textureHint(null),
-              },
-              'texture-limited',
-            )
-          : null,
-      ),
+      chips(run),
+      this.compareButton(run),
       isActive(run) ? this.cancelButton(run) : this.deleteButton(run),
+    );
+  }
+
+  /** Without a run shown, there is nothing to compare with. */
+  private compareButton(run: Run): HTMLElement {
+    const { session, store } = this.context;
+    const { watched } = store.state;
+    const isShown = watched.some(({ id }) => id === run.id);
+    const label = isShown ? 'Remove from the comparison' : 'Show together with the others';
+    return h(
+      'button',
+      {
+        class: 'icon-button compare',
+        title: label,
+        'aria-label': `${label}: ${run.title}`,
+        'aria-pressed': isShown && watched.length > 1 ? 'true' : 'false',
+        disabled: watched.length === 0 || (isShown && watched.length === 1),
+        onclick: () => {
+          if (isShown) session.removeRun(run.id);
+          else session.addRun(run.id);
+        },
+      },
+      icon('add'),
     );
   }
 
@@ -135,4 +159,31 @@ export class RunList implements View {
       if (this.confirming === id) this.ask(null);
     }, kConfirm_ms);
   }
+}
+
+/** Status, and what is wrong with the run. */
+function chips(run: Run): HTMLElement {
+  return h(
+    'span',
+    { class: 'run-chips' },
+    h('span', { class: 'chip small', 'data-status': run.status }, run.status),
+    run.problem !== null
+      ? h(
+          'span',
+          { class: 'chip small warn', 'data-role': 'problem', title: run.problem },
+          'damaged',
+        )
+      : null,
+    run.texture_limited
+      ? h(
+          'span',
+          {
+            class: 'chip small texture-limited',
+            'data-role': 'texture-limited',
+            title: textureHint(null),
+          },
+          'texture-limited',
+        )
+      : null,
+  );
 }

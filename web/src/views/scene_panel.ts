@@ -5,6 +5,7 @@ import { shownAlignment } from '../store/state';
 import type { Topic } from '../store/state';
 import { h, perFrame } from './dom';
 import { formatNumber } from '../store/format';
+import { tracksOf } from '../store/tracks';
 import { estimateColour, kTruthColour } from './colours';
 import { rebuild, setAttribute, setText } from './dom';
 import type { Panel } from './panel';
@@ -88,19 +89,15 @@ export class ScenePanel implements View {
     this.followButton.toggleAttribute('disabled', state.sceneMode === 'chase');
     const angles = `${formatNumber(orbit.azimuth_deg, 0)}° ${formatNumber(orbit.elevation_deg, 0)}°`;
     setText(this.readout, `${angles} · ${formatNumber(orbit.distance_m, 0)} m`);
-    const names = state.run?.estimators ?? [];
-    const alignment = shownAlignment(state);
-    rebuild(this.legend, `${String(state.runId)} ${alignment} ${names.join(' ')}`, () =>
-      state.runId === null
-        ? []
-        : [
-            legendEntry('truth', kTruthColour),
-            ...names.map((name, index) => legendEntry(name, estimateColour(index))),
-            ...(names.length === 0
-              ? []
-              : [h('span', { class: 'alignment-note' }, `by ${alignment}`)]),
-          ],
-    );
+    const tracks = tracksOf(state);
+    const alignment = [...new Set(state.watched.map(shownAlignment))].join(', ');
+    const key = JSON.stringify([state.runId, alignment, tracks.map(({ label }) => label)]);
+    rebuild(this.legend, key, () => [
+      ...tracks.map(({ name, label, colour }) =>
+        legendEntry(label, name === '' ? kTruthColour : estimateColour(colour)),
+      ),
+      ...(tracks.length < 2 ? [] : [h('span', { class: 'alignment-note' }, `by ${alignment}`)]),
+    ]);
   }
 
   private steer(area: HTMLElement): void {

@@ -62,6 +62,30 @@ export const kShortcuts: readonly Shortcut[] = [
   },
   { keys: ['-'], label: '−', what: 'slower', run: ({ player }) => player.changeSpeed(-1) },
   {
+    keys: ['r'],
+    label: 'R',
+    what: 'backwards or forwards',
+    run: ({ player }) => player.reverse(),
+  },
+  {
+    keys: ['['],
+    label: '[',
+    what: 'play from here',
+    run: ({ player }) => player.setRangeEnd('begin'),
+  },
+  {
+    keys: [']'],
+    label: ']',
+    what: 'play to here',
+    run: ({ player }) => player.setRangeEnd('end'),
+  },
+  {
+    keys: ['\\'],
+    label: '\\',
+    what: 'play everything again',
+    run: ({ player }) => player.clearRange(),
+  },
+  {
     keys: ['1'],
     label: '1',
     what: 'chase view',

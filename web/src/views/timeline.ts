@@ -1,6 +1,6 @@
 // Playback controls: buttons, timeline, speed.
 import type { Topic } from '../store/state';
-import { plannedEnd_ns } from '../store/state';
+import { clockSpan_ns } from '../store/state';
 import { formatTime } from '../store/format';
 import { kSpeeds } from '../store/player';
 import { h, setAttribute, setText } from './dom';
@@ -18,6 +18,8 @@ export class Timeline implements View {
   private readonly play: HTMLButtonElement;
   private readonly loop: HTMLButtonElement;
   private readonly live: HTMLButtonElement;
+  private readonly reverse: HTMLButtonElement;
+  private readonly rangeButtons: HTMLButtonElement[];
   private readonly speed = h('select', {
     id: 'speed',
     'aria-label': 'Speed',
@@ -35,6 +37,12 @@ export class Timeline implements View {
     this.play.append(this.pauseIcon);
     this.play.replaceChildren(this.playIcon, this.pauseIcon);
     this.loop = iconButton('loop', 'Repeat from the start', () => player.toggleLoop());
+    this.reverse = iconButton('reverse', 'Backwards or forwards (R)', () => player.reverse());
+    this.rangeButtons = [
+      textButton('A', 'Play from here ([)', () => player.setRangeEnd('begin')),
+      textButton('B', 'Play to here (])', () => player.setRangeEnd('end')),
+      textButton('A–B', 'Play everything again (\\)', () => player.clearRange()),
+    ];
     this.live = h(
       'button',
       {
@@ -61,7 +69,15 @@ export class Timeline implements View {
       ),
       h('div', { class: 'clock' }, h('div', {}, this.time, this.end), this.frame),
       this.track.root,
-      h('div', { class: 'rates' }, this.speed, this.loop, this.live),
+      h(
+        'div',
+        { class: 'rates' },
+        this.reverse,
+        this.speed,
+        h('span', { class: 'range-buttons' }, ...this.rangeButtons),
+        this.loop,
+        this.live,
+      ),
     );
   }
 
@@ -78,15 +94,18 @@ export class Timeline implements View {
       control.disabled = playback === null;
     }
     setText(this.time, formatTime(playback?.t_ns ?? 0));
-    const end_ns = Math.max(playback?.end_ns ?? 0, plannedEnd_ns(this.context.store.state));
-    setText(this.end, ` / ${formatTime(end_ns)}`);
+    const [, end_ns] = clockSpan_ns(this.context.store.state);
+    setText(this.end, ` / ${formatTime(playback === null ? 0 : end_ns)}`);
     const frame = frameOf(playback);
     setText(this.frame, frame === null ? '' : `frame ${frame}`);
     setAttribute(this.root, 'data-frame', frame === null ? null : String(frame));
     setAttribute(this.root, 'data-t-ns', playback === null ? null : String(playback.t_ns));
     setAttribute(this.root, 'data-playing', playing ? 'true' : 'false');
     setAttribute(this.root, 'data-speed', playback === null ? null : String(playback.speed));
-    this.showSpeed(playback?.speed ?? 1);
+    this.showSpeed(Math.abs(playback?.speed ?? 1));
+    setAttribute(this.reverse, 'aria-pressed', (playback?.speed ?? 1) < 0 ? 'true' : 'false');
+    const [, , clear] = this.rangeButtons;
+    if (clear !== undefined) clear.disabled = (playback?.range ?? null) === null;
     setAttribute(this.loop, 'aria-pressed', playback?.loop === true ? 'true' : 'false');
     setAttribute(this.live, 'aria-pressed', playback?.live === true ? 'true' : 'false');
     this.live.disabled = run?.status !== 'running' || playback === null;
@@ -101,6 +120,14 @@ export class Timeline implements View {
       this.speed.value = String(speed);
     }
   }
+}
+
+function textButton(text: string, label: string, onclick: () => void): HTMLButtonElement {
+  return h(
+    'button',
+    { class: 'tab range-button', title: label, 'aria-label': label, onclick },
+    text,
+  );
 }
 
 function iconButton(name: IconName, label: string, onclick: () => void): HTMLButtonElement {

@@ -2,11 +2,12 @@
 import { formatTime } from '../store/format';
 import type { EstimateRows } from '../store/run_data';
 import type { Topic } from '../store/state';
-import { plannedEnd_ns } from '../store/state';
+import { clockSpan_ns } from '../store/state';
 import { faultMeaning, FaultSpans, kindsOf } from '../store/fault_spans';
 import { FlightBands } from '../store/flight_bands';
 import { bandHue } from '../store/logs/log_bands';
 import type { FaultSpan } from '../store/fault_spans';
+import { tracksOf } from '../store/tracks';
 import { faultColour, kStateColours } from './colours';
 import { h, perFrame, rebuild, setAttribute, setText, wholeLabel } from './dom';
 import type { Context } from './view';
@@ -19,6 +20,7 @@ const kMostFaults = 4;
 export class TimelineTrack {
   readonly root: HTMLElement;
   private readonly recorded = h('div', { class: 'recorded' });
+  private readonly range = h('div', { class: 'range', 'data-role': 'range', hidden: true });
   private readonly flight = h('div', { class: 'flight-lane', 'data-role': 'flight-lane' });
   private readonly strips = h('canvas', { class: 'strips' });
   private readonly head = h('div', { class: 'head' });
@@ -34,10 +36,18 @@ export class TimelineTrack {
   private held_ns: number | null = null;
 
   constructor(private readonly context: Context) {
-    this.bar = h('div', { class: 'bar' }, this.recorded, this.flight, this.strips, this.head);
+    this.bar = h(
+      'div',
+      { class: 'bar' },
+      this.recorded,
+      this.flight,
+      this.strips,
+      this.range,
+      this.head,
+    );
     this.root = h(
       'div',
-      { class: 'track', role: 'slider', tabindex: 0, 'aria-label': 'Time', 'aria-valuemin': 0 },
+      { class: 'track', role: 'slider', tabindex: 0, 'aria-label': 'Time' },
       this.faults,
       this.bar,
       this.legend,
@@ -61,43 +71,45 @@ export class TimelineTrack {
     if (changed.has('playback') || changed.has('run')) this.moveHead();
   }
 
-  private span_ns(): number {
-    const { state } = this.context.store;
-    const { playback, data } = state;
-    const last = data.truth.at('t_ns', data.truth.length - 1);
-    return Math.max(
-      plannedEnd_ns(state),
-      playback?.end_ns ?? 0,
-      Number.isNaN(last) ? 0 : last,
-      1e9,
-    );
+  /** Share of the bar at a time of the clock. */
+  private share(t_ns: number): number {
+    const [begin_ns, end_ns] = clockSpan_ns(this.context.store.state);
+    return Math.min(1, Math.max(0, (t_ns - begin_ns) / (end_ns - begin_ns)));
+  }
+
+  private percent(t_ns: number): string {
+    return `${(this.share(t_ns) * 100).toFixed(3)}%`;
   }
 
   private moveHead(): void {
-    const { playback } = this.context.store.state;
-    const span_ns = this.span_ns();
-    const t_ns = this.held_ns ?? playback?.t_ns ?? 0;
-    this.head.style.left = `${((t_ns / span_ns) * 100).toFixed(3)}%`;
-    this.head.hidden = playback === null;
-    this.recorded.style.width = `${(((playback?.end_ns ?? 0) / span_ns) * 100).toFixed(3)}%`;
-    this.root.setAttribute('aria-valuemax', (span_ns / 1e9).toFixed(3));
+    const { state } = this.context.store;
+    const { clock } = state;
+    const [begin_ns, end_ns] = clockSpan_ns(state);
+    const t_ns = this.held_ns ?? clock?.t_ns ?? 0;
+    this.head.style.left = this.percent(t_ns);
+    this.head.hidden = clock === null;
+    place(this.recorded, this.share(clock?.begin_ns ?? 0), this.share(clock?.end_ns ?? 0));
+    const range = clock?.range ?? null;
+    this.range.hidden = range === null;
+    if (range !== null) place(this.range, this.share(range.begin_ns), this.share(range.end_ns));
+    this.root.setAttribute('aria-valuemin', (begin_ns / 1e9).toFixed(3));
+    this.root.setAttribute('aria-valuemax', (end_ns / 1e9).toFixed(3));
     this.root.setAttribute('aria-valuenow', (t_ns / 1e9).toFixed(3));
     this.root.setAttribute('aria-valuetext', formatTime(t_ns));
   }
 
   private drawStrips(): void {
-    const { run, data } = this.context.store.state;
-    const names = run?.estimators ?? [];
+    const tracks = tracksOf(this.context.store.state).filter(({ name }) => name !== '');
     const width = Math.max(1, Math.round(this.bar.clientWidth * window.devicePixelRatio));
-    const height = Math.max(1, names.length * kStripHeight_px);
+    const height = Math.max(1, tracks.length * kStripHeight_px);
     this.strips.style.height = `${height}px`;
     this.strips.width = width;
     this.strips.height = height;
     const pen = this.strips.getContext('2d');
     if (pen === null) return;
-    names.forEach((name, i) => {
-      const rows = data.estimates.get(name);
-      if (rows !== undefined) this.drawStrip(pen, rows, i * kStripHeight_px, width);
+    tracks.forEach(({ run, name }, i) => {
+      const rows = run.data.estimates.get(name);
+      if (rows !== undefined) this.drawStrip(pen, rows, run.offset_ns, i * kStripHeight_px, width);
     });
   }
 
@@ -105,17 +117,19 @@ export class TimelineTrack {
   private drawStrip(
     pen: CanvasRenderingContext2D,
     rows: EstimateRows,
+    offset_ns: number,
     top: number,
     width: number,
   ): void {
-    const span_ns = this.span_ns();
+    const [begin_ns, end_ns] = clockSpan_ns(this.context.store.state);
+    const xOf = (t_ns: number) => ((t_ns + offset_ns - begin_ns) / (end_ns - begin_ns)) * width;
     const times = rows.table.column('t_ns');
     let begin = 0;
     for (let i = 1; i <= times.length; i += 1) {
       const state = rows.states[begin] ?? '';
       if (i < times.length && rows.states[i] === state) continue;
-      const x0 = ((times[begin] ?? 0) / span_ns) * width;
-      const x1 = ((times[Math.min(i, times.length - 1)] ?? 0) / span_ns) * width;
+      const x0 = xOf(times[begin] ?? 0);
+      const x1 = xOf(times[Math.min(i, times.length - 1)] ?? 0);
       pen.fillStyle = kStateColours[state] ?? '#6b7688';
       pen.fillRect(x0, top, Math.max(1, x1 - x0), kStripHeight_px - 1);
       begin = i;
@@ -124,7 +138,8 @@ export class TimelineTrack {
 
   /** Modes fill the bar, mission items are a line along its top, events are ticks above it. */
   private drawFlight(): void {
-    const { runId, run, playback, data } = this.context.store.state;
+    const { state } = this.context.store;
+    const { runId, run, main, data, offset_ns } = state;
     const key = `${String(runId)}/${data.generation}`;
     if (this.bandsOf !== key) {
       this.bandsOf = key;
@@ -132,14 +147,16 @@ export class TimelineTrack {
     }
     this.bands.update(data.log);
     const { bands, marks } = this.bands;
-    const span_ns = this.span_ns();
+    const [, clockEnd_ns] = clockSpan_ns(state);
     // The future of a running flight is not known.
-    const now_ns = run?.status === 'running' ? (playback?.end_ns ?? 0) : span_ns;
-    const share = (t_ns: number) => Math.min(100, (t_ns / span_ns) * 100).toFixed(3);
-    rebuild(this.flight, `${key} ${bands.length} ${marks.length} ${span_ns} ${now_ns}`, () => [
+    const now_ns =
+      run?.status === 'running' ? (main?.instant?.end_ns ?? 0) : clockEnd_ns - offset_ns;
+    const percent = (t_ns: number) => this.share(t_ns + offset_ns) * 100;
+    const drawn = [key, bands.length, marks.length, percent(0), percent(1e9), now_ns].join(' ');
+    rebuild(this.flight, drawn, () => [
       ...bands.map(({ kind, text, begin_ns, end_ns }, i) => {
-        const width = Math.max(0, Number(share(end_ns ?? now_ns)) - Number(share(begin_ns)));
-        const place = `left:${share(begin_ns)}%;width:${width.toFixed(3)}%;`;
+        const width = Math.max(0, percent(end_ns ?? now_ns) - percent(begin_ns));
+        const place = `left:${percent(begin_ns).toFixed(3)}%;width:${width.toFixed(3)}%;`;
         const colour =
           kind === 'mode'
             ? `background:hsla(${bandHue(text)}, 55%, 42%, 0.75)`
@@ -150,13 +167,21 @@ export class TimelineTrack {
           kind === 'mode' ? wholeLabel(text) : null,
         );
       }),
-      ...marks.map(({ t_ns }) => h('i', { class: 'flight-mark', style: `left:${share(t_ns)}%` })),
+      ...marks.map(({ t_ns }) =>
+        h('i', { class: 'flight-mark', style: `left:${percent(t_ns).toFixed(3)}%` }),
+      ),
     ]);
+  }
+
+  /** Time of the clock of a few pixels of the bar. */
+  private slack_ns(): number {
+    const [begin_ns, end_ns] = clockSpan_ns(this.context.store.state);
+    return (kLeastFault_px / Math.max(1, this.bar.clientWidth)) * (end_ns - begin_ns);
   }
 
   /** The tooltip's text about the flight at a time. */
   private flightText(t_ns: number): string {
-    const slack_ns = (kLeastFault_px / Math.max(1, this.bar.clientWidth)) * this.span_ns();
+    const slack_ns = this.slack_ns();
     const texts = this.bands.textsAt(t_ns, slack_ns);
     return texts.length === 0 ? '' : ` · ${texts.join(' · ')}`;
   }
@@ -187,13 +212,13 @@ export class TimelineTrack {
     spans: readonly FaultSpan[],
     kinds: readonly string[],
   ): void {
-    const span_ns = this.span_ns();
+    const { offset_ns } = this.context.store.state;
     const { width, height } = pen.canvas;
     const lane = height / kinds.length;
     const least = kLeastFault_px * window.devicePixelRatio;
     for (const { kind, begin_ns, end_ns } of spans) {
-      const x = (begin_ns / span_ns) * width;
-      const length = Math.max(least, ((end_ns - begin_ns) / span_ns) * width);
+      const x = this.share(begin_ns + offset_ns) * width;
+      const length = Math.max(least, this.share(end_ns + offset_ns) * width - x);
       pen.fillStyle = faultColour(kind);
       pen.fillRect(x, kinds.indexOf(kind) * lane, length, Math.max(1, lane));
     }
@@ -201,7 +226,7 @@ export class TimelineTrack {
 
   /** The tooltip's text about the faults at a time. */
   private faultText(t_ns: number): string {
-    const slack_ns = (kLeastFault_px / this.bar.clientWidth) * this.span_ns();
+    const slack_ns = this.slack_ns();
     const here = this.spans.spans.filter(
       ({ begin_ns, end_ns }) => t_ns >= begin_ns - slack_ns && t_ns <= end_ns + slack_ns,
     );
@@ -218,19 +243,20 @@ export class TimelineTrack {
   private timeAt(event: PointerEvent): number {
     const box = this.bar.getBoundingClientRect();
     const share = Math.min(1, Math.max(0, (event.clientX - box.left) / box.width));
-    return share * this.span_ns();
+    const [begin_ns, end_ns] = clockSpan_ns(this.context.store.state);
+    return begin_ns + share * (end_ns - begin_ns);
   }
 
   private scrub(): void {
     const seek = perFrame((t_ns: number) => this.context.player.seekTime(t_ns));
     const hold = (event: PointerEvent) => {
-      const end_ns = this.context.store.state.playback?.end_ns ?? 0;
-      this.held_ns = Math.min(this.timeAt(event), end_ns);
+      const { begin_ns = 0, end_ns = 0 } = this.context.store.state.clock ?? {};
+      this.held_ns = Math.min(Math.max(this.timeAt(event), begin_ns), end_ns);
       this.moveHead();
       seek(this.held_ns);
     };
     this.root.addEventListener('pointerdown', (event) => {
-      if (event.button !== 0 || this.context.store.state.playback === null) return;
+      if (event.button !== 0 || this.context.store.state.clock === null) return;
       this.root.setPointerCapture(event.pointerId);
       hold(event);
     });
@@ -239,7 +265,8 @@ export class TimelineTrack {
       this.tip.hidden = false;
       this.tip.style.left = `${event.clientX - this.root.getBoundingClientRect().left}px`;
       const t_ns = this.timeAt(event);
-      setText(this.tip, formatTime(t_ns) + this.flightText(t_ns) + this.faultText(t_ns));
+      const run_ns = t_ns - this.context.store.state.offset_ns;
+      setText(this.tip, formatTime(t_ns) + this.flightText(run_ns) + this.faultText(run_ns));
     });
     this.root.addEventListener('pointerleave', () => {
       this.tip.hidden = true;
@@ -250,6 +277,12 @@ export class TimelineTrack {
     this.root.addEventListener('pointerup', release);
     this.root.addEventListener('pointercancel', release);
   }
+}
+
+/** Spans two shares of the bar. */
+function place(element: HTMLElement, begin: number, end: number): void {
+  element.style.left = `${(begin * 100).toFixed(3)}%`;
+  element.style.width = `${((end - begin) * 100).toFixed(3)}%`;
 }
 
 function legendEntry(kind: string): HTMLElement {

@@ -17,7 +17,7 @@ class Listener implements StreamListener {
   onState = (state: ConnectionState) => this.states.push(state);
   onMessage = (message: ServerMessage) => this.messages.push(message);
   onWatchFailed = (run: string, message: string) => this.failed.push(`${run}: ${message}`);
-  onPicture = (name: string) => this.pictures.push(name);
+  onPicture = (run: string, name: string) => this.pictures.push(`${run} ${name}`);
   onProtocolError = (text: string) => this.protocolErrors.push(text);
   resume = () => this.rows;
   restore = () => this.commands;
@@ -61,7 +61,7 @@ beforeEach(() => {
 function watching(run = 'r1'): void {
   client.connect();
   socket().hello();
-  client.watch(run);
+  client.watch(run, 0);
   socket().receive({ type: 'ok', request: socket().last().request });
   socket().receive({ type: 'run', run: sampleRun({ id: run }) });
 }
@@ -69,7 +69,7 @@ function watching(run = 'r1'): void {
 describe('StreamClient', () => {
   it('says nothing before the server has greeted, then all that is wanted', () => {
     client.connect();
-    client.watch('r1');
+    client.watch('r1', 0);
     client.subscribe([{ run: 'r1', name: 'camera' }]);
     client.setView({ mode: 'top' });
     expect(socket().sent).toEqual([]);
@@ -174,7 +174,8 @@ describe('StreamClient', () => {
   it('keeps out what still comes of the run left behind', () => {
     watching('old');
     listener.messages = [];
-    client.watch('new');
+    client.unwatch('old');
+    client.watch('new', 0);
     expect(socket().types().slice(-2)).toEqual(['unwatch', 'watch']);
     socket().receive(playbackMessage({ frame: 7 }, 'old'));
     socket().receive({ type: 'run', run: sampleRun({ id: 'old' }) });
@@ -187,7 +188,7 @@ describe('StreamClient', () => {
   it('reports a run that cannot be watched and does not try again', () => {
     client.connect();
     socket().hello();
-    client.watch('gone');
+    client.watch('gone', 0);
     const { request } = socket().last();
     socket().receive({ type: 'error', request, code: 'not_found', message: 'no such run' });
     expect(listener.failed).toEqual(['gone: no such run']);
@@ -205,7 +206,7 @@ describe('StreamClient', () => {
     ];
     socket().receive({ type: 'pictures', pictures });
     for (const id of [4, 5, 6]) socket().receive(picture(id));
-    expect(listener.pictures).toEqual(['camera']);
+    expect(listener.pictures).toEqual(['r1 camera']);
   });
 
   it('survives unreadable messages and reports them', () => {

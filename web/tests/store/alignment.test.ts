@@ -3,7 +3,7 @@ import { RestClient } from '../../src/connection/rest_client';
 import { Alignment, canBeDrawn } from '../../src/store/alignment';
 import { Cameras } from '../../src/store/cameras';
 import { Notices } from '../../src/store/notices';
-import { shownAlignment, shownEstimate } from '../../src/store/state';
+import { shownAlignment } from '../../src/store/state';
 import { playbackMessage } from '../support/samples';
 import { Viewing } from '../support/viewing';
 
@@ -51,7 +51,7 @@ describe('Alignment', () => {
     expect(asked).toEqual(['api/runs/r1/trajectories/feature?format=json&alignment=sim3']);
     expect(viewing.socket.last()).toMatchObject({ type: 'align', mode: 'sim3' });
     expect(shownAlignment(viewing.store.state)).toBe('sim3');
-    expect(shownEstimate(viewing.store.state, 'feature')?.table.at('x_m', 0)).toBe(7);
+    expect(viewing.store.state.main?.shownEstimate('feature')?.table.at('x_m', 0)).toBe(7);
     await chosen.choose('init_scale');
     expect(viewing.socket.last()).toMatchObject({ type: 'align', mode: 'init_scale' });
     expect(viewing.store.state.aligned).toBeNull();

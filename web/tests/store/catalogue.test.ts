@@ -6,6 +6,7 @@ import { Notices } from '../../src/store/notices';
 import { Session } from '../../src/store/session';
 import { Store } from '../../src/store/state';
 import { FakeSocket, FakeTimers } from '../support/fake_socket';
+import { WatchedRun } from '../../src/store/watched_run';
 import { sampleRun } from '../support/samples';
 
 const document = { seed: 1, pacing: 'lockstep', estimators: [] };
@@ -128,7 +129,9 @@ describe('Catalogue', () => {
       'DELETE /runs/r1': () => [204, null],
       'GET /runs': () => [200, { runs: [] }],
     });
-    store.state.runId = 'r1';
+    const watched = new WatchedRun('r1');
+    store.state.watched.push(watched);
+    store.state.main = watched;
     await subject.remove('r1');
     expect(store.state.runId).toBeNull();
     expect(store.state.runs).toEqual([]);

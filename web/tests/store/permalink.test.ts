@@ -1,18 +1,34 @@
 import { describe, expect, it } from 'vitest';
 import { formatPermalink, parsePermalink } from '../../src/store/permalink';
 
+const alone = (id: string) => [{ id, offset_ns: 0 }];
+
 describe('permalink', () => {
   it('comes back as it was', () => {
-    const link = { run: '20260102-a b&c', t_ns: 12_345_000_000 };
+    const link = { runs: alone('20260102-a b&c'), main: null, t_ns: 12_345_000_000 };
+    expect(parsePermalink(formatPermalink(link))).toEqual(link);
+  });
+
+  it('has several runs with their offsets, and the main one', () => {
+    const link = {
+      runs: [...alone('r1'), { id: 'r2', offset_ns: -1_500_000_000 }],
+      main: 'r2',
+      t_ns: 0,
+    };
+    expect(formatPermalink(link)).toBe('#run=r1&run=r2%40-1.500&main=r2&t=0.000');
     expect(parsePermalink(formatPermalink(link))).toEqual(link);
   });
 
   it('leaves the time out while it follows live', () => {
-    expect(formatPermalink({ run: 'r', t_ns: null })).toBe('#run=r');
-    expect(formatPermalink({ run: null, t_ns: 3 })).toBe('');
+    expect(formatPermalink({ runs: alone('r'), main: 'r', t_ns: null })).toBe('#run=r');
+    expect(formatPermalink({ runs: [], main: null, t_ns: 3 })).toBe('');
   });
 
-  it.each(['', '#', '#t=4x', '#run=', '#t=-1', '#t='])('reads nothing from %s', (hash) => {
-    expect(parsePermalink(hash)).toEqual({ run: null, t_ns: null });
+  it('takes a run once', () => {
+    expect(parsePermalink('#run=r&run=r@3').runs).toEqual(alone('r'));
+  });
+
+  it.each(['', '#', '#t=4x', '#run=', '#t=', '#main='])('reads nothing from %s', (hash) => {
+    expect(parsePermalink(hash)).toEqual({ runs: [], main: null, t_ns: null });
   });
 });

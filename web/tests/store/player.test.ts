@@ -19,14 +19,47 @@ describe('Player', () => {
     expect(viewing.socket.last()).toMatchObject({ type: 'seek', frame: 62 });
   });
 
-  it('plays from the begin again when it stands at the end', () => {
+  it('plays and pauses', () => {
     viewing.watch();
-    viewing.socket.receive(playbackMessage({ t_ns: 2e9 }));
     viewing.player.togglePlay();
-    expect(viewing.socket.types().slice(-2)).toEqual(['seek', 'play']);
+    expect(viewing.socket.last().type).toBe('play');
     viewing.socket.receive(playbackMessage({ playing: true }));
     viewing.player.togglePlay();
     expect(viewing.socket.last().type).toBe('pause');
+  });
+
+  it('seeks by the clock: a run begins at its offset', () => {
+    viewing.watch();
+    viewing.session.setOffset('r1', 10e9);
+    expect(viewing.socket.last()).toMatchObject({ type: 'watch', run: 'r1', offset_ns: 10e9 });
+    viewing.player.seekTime(11e9);
+    expect(viewing.socket.last()).toMatchObject({ type: 'seek', frame: 31, run: 'r1' });
+    viewing.player.seekTime(5e9);
+    expect(viewing.socket.last()).toMatchObject({ type: 'seek', t_ns: 5e9 });
+  });
+
+  it('keeps its direction when the speed changes', () => {
+    viewing.watch();
+    viewing.player.reverse();
+    expect(viewing.socket.last()).toMatchObject({ type: 'speed', value: -1 });
+    viewing.player.changeSpeed(1);
+    expect(viewing.socket.last()).toMatchObject({ type: 'speed', value: -2 });
+    viewing.player.reverse();
+    expect(viewing.socket.last()).toMatchObject({ type: 'speed', value: 2 });
+  });
+
+  it('sets the ends of a range one after the other', () => {
+    viewing.watch();
+    viewing.socket.receive(playbackMessage({ t_ns: 5e8 }));
+    viewing.player.setRangeEnd('begin');
+    expect(viewing.socket.last()).toMatchObject({ type: 'range', begin_ns: 5e8, end_ns: 2e9 });
+    const range = { begin_ns: 5e8, end_ns: 2e9 };
+    viewing.socket.receive(playbackMessage({ t_ns: 1e9, range }));
+    viewing.player.setRangeEnd('end');
+    expect(viewing.socket.last()).toMatchObject({ type: 'range', begin_ns: 5e8, end_ns: 1e9 });
+    viewing.player.clearRange();
+    expect(viewing.socket.last()).not.toHaveProperty('begin_ns');
+    expect(viewing.socket.last().type).toBe('range');
   });
 
   it('walks through the speeds without waiting for answers and stops at the limits', () => {

@@ -155,4 +155,81 @@ describe('Session', () => {
     viewing.timers.fire();
     expect(viewing.store.state.notices).toEqual([]);
   });
+
+  it('shows several runs on one clock, each with its own rows and pictures', () => {
+    viewing.watch();
+    viewing.session.addRun('r2', 2e9);
+    expect(viewing.socket.sent).toContainEqual(
+      expect.objectContaining({ type: 'watch', run: 'r2', offset_ns: 2e9 }),
+    );
+    viewing.socket.receive({ type: 'run', run: sampleRun({ id: 'r2', title: 'Second' }) });
+    const rows = { stream: 'truth', seq: 0, columns: { frame: [0], t_ns: [0] } };
+    viewing.socket.receive({ type: 'rows', run: 'r2', ...rows });
+    const { state } = viewing.store;
+    expect(state.watched.map(({ id, data }) => [id, data.truth.length])).toEqual([
+      ['r1', 63],
+      ['r2', 1],
+    ]);
+    expect(state.runId).toBe('r1');
+    viewing.session.selectRun('r2');
+    expect(state.runId).toBe('r2');
+    expect(state.watched).toHaveLength(2);
+    expect(viewing.socket.last()).toMatchObject({
+      type: 'subscribe',
+      pictures: [
+        { run: 'r2', name: 'scene', first_colour: 1, with: [{ run: 'r1', first_colour: 0 }] },
+        { name: 'camera' },
+        { name: 'debug/feature' },
+      ],
+    });
+  });
+
+  it('leaves one of several runs: the others stay', () => {
+    viewing.watch();
+    viewing.session.addRun('r2');
+    viewing.socket.receive({ type: 'run', run: sampleRun({ id: 'r2' }) });
+    viewing.session.removeRun('r1');
+    expect(viewing.socket.types()).toContain('unwatch');
+    expect(viewing.store.state.runId).toBe('r2');
+    viewing.session.removeRun('r2');
+    expect(viewing.store.state.watched).toEqual([]);
+    expect(viewing.store.state.main).toBeNull();
+  });
+
+  it('goes from one set of runs to another without watching anew what stays', () => {
+    viewing.watch();
+    viewing.session.showRuns(
+      [
+        { id: 'r3', offset_ns: 0 },
+        { id: 'r1', offset_ns: 1e9 },
+      ],
+      'r1',
+      null,
+    );
+    const { state } = viewing.store;
+    expect(state.watched.map(({ id }) => id)).toEqual(['r1', 'r3']);
+    expect(state.runId).toBe('r1');
+    expect(state.data.truth.length).toBe(63);
+    expect(state.offset_ns).toBe(1e9);
+  });
+
+  it('watches all runs again after a lost connection', () => {
+    viewing.watch();
+    viewing.session.addRun('r2', 3e9);
+    viewing.socket.lose();
+    viewing.timers.fire();
+    viewing.socket.hello();
+    const watches = viewing.socket.sent.filter(({ type }) => type === 'watch');
+    expect(watches).toMatchObject([
+      { run: 'r1', resume: { truth: 63 } },
+      { run: 'r2', offset_ns: 3e9, resume: {} },
+    ]);
+  });
+
+  it('refuses more runs than the server permits', () => {
+    viewing.watch();
+    for (let i = 2; i <= 17; i += 1) viewing.session.addRun(`r${i}`);
+    expect(viewing.store.state.watched).toHaveLength(16);
+    expect(viewing.store.state.notices[0]?.text).toContain('16');
+  });
 });

@@ -1,5 +1,6 @@
 import { describe, expect, it, vi } from 'vitest';
-import { plannedEnd_ns, Store } from '../../src/store/state';
+import { clockSpan_ns, plannedEnd_ns, Store } from '../../src/store/state';
+import { WatchedRun } from '../../src/store/watched_run';
 import { sampleRun } from '../support/samples';
 
 describe('Store', () => {
@@ -26,11 +27,31 @@ describe('Store', () => {
 
 describe('plannedEnd_ns', () => {
   it('is the duration, but not the limit of a live flight', () => {
+    const watched = new WatchedRun('r1');
+    expect(plannedEnd_ns(watched)).toBe(0);
+    watched.run = sampleRun();
+    expect(plannedEnd_ns(watched)).toBe(2e9);
+    watched.data.apply({ stream: 'vehicle', seq: 0, columns: { t_ns: [0], vehicle: ['1.1'] } });
+    expect(plannedEnd_ns(watched)).toBe(0);
+  });
+});
+
+describe('clockSpan_ns', () => {
+  it('holds every watched run where it lies on the clock', () => {
     const { state } = new Store();
-    expect(plannedEnd_ns(state)).toBe(0);
-    state.run = sampleRun();
-    expect(plannedEnd_ns(state)).toBe(2e9);
-    state.data.apply({ stream: 'vehicle', seq: 0, columns: { t_ns: [0], vehicle: ['1.1'] } });
-    expect(plannedEnd_ns(state)).toBe(0);
+    expect(clockSpan_ns(state)).toEqual([0, 1e9]);
+    for (const [id, offset_ns] of [
+      ['r1', 0],
+      ['r2', -3e9],
+    ] as const) {
+      const watched = new WatchedRun(id);
+      watched.run = sampleRun({ id });
+      watched.offset_ns = offset_ns;
+      state.watched.push(watched);
+    }
+    expect(clockSpan_ns(state)).toEqual([-3e9, 2e9]);
+    const [, second] = state.watched;
+    second?.data.apply({ stream: 'truth', seq: 0, columns: { frame: [0], t_ns: [7e9] } });
+    expect(clockSpan_ns(state)).toEqual([-3e9, 4e9]);
   });
 });

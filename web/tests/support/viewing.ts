@@ -41,7 +41,7 @@ export class Viewing {
 
   /** Watches run r1, 63 frames of 31 a second. */
   watch(t_ns: number | null = null): void {
-    this.session.selectRun('r1', t_ns);
+    this.session.showRuns([{ id: 'r1', offset_ns: 0 }], null, t_ns);
     this.socket.receive({ type: 'run', run: sampleRun() });
     const frame = Array.from({ length: 63 }, (_, k) => k);
     const stamps = frame.map((k) => Math.round((k * 1e9) / 31));

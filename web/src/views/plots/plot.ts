@@ -1,33 +1,15 @@
 // One plot of curves over time with a playback cursor. A click or drag seeks.
 import uPlot from 'uplot';
+import { curveStyle } from '../colours';
 import { h, perFrame, setText } from '../dom';
 import { formatNumber } from '../../store/format';
+import type { Polyline } from '../../store/plots/curve';
+import { decimated, valueAt } from '../../store/plots/curve';
+import type { PlotSpec } from '../../store/plots/plot_specs';
 import type { Span } from '../../store/time_window';
 import { paddedRange } from './plot_range';
 
-export interface PlotOptions {
-  /** Identifies the plot in the page. */
-  key: string;
-  label: string;
-  /** Explains the label. */
-  hint?: string;
-  unit: string;
-  /** Digits of the values next to the title. */
-  digits: number;
-  /** Minimum span of the axis, so that noise does not fill the plot. */
-  least: number;
-  /** One for each curve. */
-  colours: readonly string[];
-  /** In front of the values next to the title, one per curve. */
-  names?: readonly string[];
-  /** The first curve is wider and lies below the others. */
-  widensFirst: boolean;
-  /** Whether the time axis has numbers. */
-  timeLabels: boolean;
-  /** Reports the mouse position for its group of plots. */
-  leads: boolean;
-  /** Lower limit of good values, drawn as a dashed line. */
-  limit?: number;
+export interface PlotActions {
   onSeek: (t_s: number) => void;
   onHover: (t_s: number | null) => void;
   /** A factor above 1 zooms in; 0 shows all. */
@@ -37,19 +19,15 @@ export interface PlotOptions {
 const kGrid = 'rgba(140, 155, 180, 0.11)';
 const kText = '#8a94a6';
 const kFont = '10px system-ui, sans-serif';
-// The truth lies below the estimates and stays visible where they agree.
-const kTruthWidth_px = 3;
-const kEstimateWidth_px = 1.25;
 const kZoom_per_px = 0.0015;
+/** Beyond this many, the values of all curves do not fit next to the title. */
+const kMostReadouts = 6;
 const kSyncKey = 'overfly-plots';
 const kLimitColour = '#eab766';
 
-/** null breaks the line; undefined has no point and leaves the line as it is. */
-export type Curve = ArrayLike<number | null | undefined>;
-
 /** Up to three values start at the edge; more use separate rows, so that none is cut off. */
 function crowding(curves: number): string {
-  if (curves <= 2) return '';
+  if (curves <= 2 || curves > kMostReadouts) return '';
   return curves === 3 ? ' crowded' : ' own-rows';
 }
 
@@ -59,33 +37,53 @@ export class Plot {
   private readonly area = h('div', { class: 'plot-area' });
   private readonly cursor = h('div', { class: 'plot-cursor' });
   private readonly readouts: HTMLElement[];
+  private lines: Polyline[] = [];
   private span_s: Span = [0, 1];
+  private range: [number, number] = [0, 1];
   private cursor_s: number | null = null;
 
-  constructor(private readonly options: PlotOptions) {
-    const { colours } = options;
-    this.readouts = colours.map((colour) =>
-      h('span', { class: 'readout', style: `color:${colour}` }),
+  /**
+   * @param timeLabels  whether the time axis has numbers
+   * @param leads  reports the mouse position for its group of plots
+   */
+  constructor(
+    private readonly spec: PlotSpec,
+    private readonly actions: PlotActions,
+    { timeLabels, leads }: { timeLabels: boolean; leads: boolean },
+  ) {
+    const { curves } = spec;
+    const shown = curves.length > kMostReadouts ? [] : curves;
+    this.readouts = shown.map(({ hue, name }) =>
+      h('span', { class: 'readout', style: `color:${curveStyle(hue).colour}`, title: name }),
     );
     const title = h(
       'div',
-      { class: `plot-title${crowding(colours.length)}`, title: options.hint },
-      h('b', {}, options.label),
-      h('span', { class: 'unit' }, options.unit),
+      { class: `plot-title${crowding(curves.length)}`, title: spec.hint },
+      h('b', {}, spec.label),
+      h('span', { class: 'unit' }, spec.unit),
       h('span', { class: 'readouts' }, ...this.readouts),
     );
-    this.root = h('div', { class: 'plot', 'data-axis': options.key }, title, this.area);
-    this.plot = new uPlot(this.uplotOptions(colours), [[], ...colours.map(() => [])], this.area);
+    this.root = h('div', { class: 'plot', 'data-axis': spec.key }, title, this.area);
+    const data = [[0, 1], ...curves.map(() => [null, null])] as uPlot.AlignedData;
+    this.plot = new uPlot(this.uplotOptions(timeLabels, leads), data, this.area);
     this.plot.over.append(this.cursor);
     this.seekable(this.plot.over);
     new ResizeObserver(() => this.fit()).observe(this.area);
   }
 
-  /** @param curves  one per colour */
-  setData(t_s: Float64Array, curves: Curve[], span_s: Span): void {
+  /** Draws the curves as they are now in a span of time. */
+  draw(span_s: Span): void {
+    const { curves, least } = this.spec;
+    const pixels = Math.max(100, this.plot.over.clientWidth);
     this.span_s = span_s;
-    // uPlot reads the series only by index; its type requires one kind of array.
-    this.plot.setData([t_s, ...curves] as unknown as uPlot.AlignedData, true);
+    this.lines = curves.map(({ curve }) => {
+      const now = curve();
+      return now === null ? { t_s: [], values: [] } : decimated(now, span_s, pixels);
+    });
+    this.range = paddedRange(...this.extremes(), least);
+    const ends = [...span_s];
+    // uPlot draws the axes for these two times; the curves are drawn by `path`.
+    this.plot.setData([ends, ...curves.map(() => [null, null])] as uPlot.AlignedData, true);
   }
 
   moveCursor(t_s: number | null): void {
@@ -93,18 +91,73 @@ export class Plot {
     this.placeCursor(this.plot);
   }
 
-  /** Values next to the title, one per curve. */
-  showValues(values: (number | null | undefined)[]): void {
-    const { digits, names } = this.options;
-    this.readouts.forEach((readout, i) => {
-      const name = names?.[i];
-      const value = formatNumber(values[i], digits);
-      setText(readout, name === undefined ? value : `${name} ${value}`);
-    });
+  /** Values at the clock's time; null = none. */
+  showCursor(t_s: number | null): void {
+    this.showValues(
+      this.spec.curves.map(({ atClock, curve }) => {
+        if (atClock !== undefined) return atClock() ?? null;
+        const now = t_s === null ? null : curve();
+        return now === null || t_s === null ? null : valueAt(now, t_s);
+      }),
+    );
+  }
+
+  /** Values at the time under the mouse. */
+  showHover(t_s: number): void {
+    this.showValues(
+      this.spec.curves.map(({ curve }) => {
+        const now = curve();
+        return now === null ? null : valueAt(now, t_s);
+      }),
+    );
   }
 
   destroy(): void {
     this.plot.destroy();
+  }
+
+  private showValues(values: (number | null)[]): void {
+    const { digits, curves } = this.spec;
+    this.readouts.forEach((readout, i) => {
+      const value = formatNumber(values[i], digits);
+      const short = curves[i]?.short ?? '';
+      setText(readout, short === '' ? value : `${short} ${value}`);
+    });
+  }
+
+  /** The smallest and the largest value in the span. */
+  private extremes(): [number, number] {
+    let low = Infinity;
+    let high = -Infinity;
+    for (const { t_s, values } of this.lines) {
+      values.forEach((value, i) => {
+        const t = t_s[i] ?? NaN;
+        if (t < this.span_s[0] || t > this.span_s[1]) return;
+        if (value < low) low = value;
+        if (value > high) high = value;
+      });
+    }
+    return [low, high];
+  }
+
+  private path(plot: uPlot, line: Polyline | undefined): uPlot.Series.Paths {
+    const stroke = new Path2D();
+    let drawing = false;
+    line?.t_s.forEach((t_s, i) => {
+      const value = line.values[i] ?? NaN;
+      if (Number.isNaN(value)) {
+        drawing = false;
+        return;
+      }
+      const x = plot.valToPos(t_s, 'x', true);
+      const y = plot.valToPos(value, 'y', true);
+      if (drawing) stroke.lineTo(x, y);
+      else stroke.moveTo(x, y);
+      // A single point is drawn as well.
+      if (!drawing) stroke.lineTo(x + 0.01, y);
+      drawing = true;
+    });
+    return { stroke };
   }
 
   private fit(): void {
@@ -121,7 +174,7 @@ export class Plot {
   }
 
   private seekable(over: HTMLElement): void {
-    const seek = perFrame((x: number) => this.options.onSeek(this.plot.posToVal(x, 'x')));
+    const seek = perFrame((x: number) => this.actions.onSeek(this.plot.posToVal(x, 'x')));
     const seekTo = (event: PointerEvent) => seek(event.clientX - over.getBoundingClientRect().left);
     over.addEventListener('pointerdown', (event) => {
       if (event.button !== 0) return;
@@ -136,16 +189,16 @@ export class Plot {
       (event) => {
         event.preventDefault();
         const x = event.clientX - over.getBoundingClientRect().left;
-        this.options.onZoom(this.plot.posToVal(x, 'x'), Math.exp(event.deltaY * kZoom_per_px));
+        this.actions.onZoom(this.plot.posToVal(x, 'x'), Math.exp(event.deltaY * kZoom_per_px));
       },
       { passive: false },
     );
-    over.addEventListener('dblclick', () => this.options.onZoom(0, 0));
-    over.addEventListener('pointerleave', () => this.options.onHover(null));
+    over.addEventListener('dblclick', () => this.actions.onZoom(0, 0));
+    over.addEventListener('pointerleave', () => this.actions.onHover(null));
   }
 
   private drawLimit(plot: uPlot): void {
-    const { limit } = this.options;
+    const { limit } = this.spec;
     if (limit === undefined) return;
     const { left, width, top, height } = plot.bbox;
     const y = plot.valToPos(limit, 'y', true);
@@ -160,9 +213,8 @@ export class Plot {
     plot.ctx.restore();
   }
 
-  private uplotOptions(colours: readonly string[]): uPlot.Options {
+  private uplotOptions(timeLabels: boolean, leads: boolean): uPlot.Options {
     const axis = { stroke: kText, font: kFont, grid: { stroke: kGrid, width: 1 } };
-    const { timeLabels, onHover, leads, least, widensFirst } = this.options;
     return {
       width: 200,
       height: 100,
@@ -176,7 +228,7 @@ export class Plot {
       },
       scales: {
         x: { time: false, range: () => [...this.span_s] },
-        y: { range: (_, low, high) => paddedRange(low, high, least) },
+        y: { range: () => this.range },
       },
       axes: [
         timeLabels
@@ -186,13 +238,17 @@ export class Plot {
       ],
       series: [
         {},
-        ...colours.map((stroke, i) => ({
-          label: String(i),
-          stroke,
-          width: i === 0 && widensFirst ? kTruthWidth_px : kEstimateWidth_px,
-          pxAlign: 0,
-          points: { show: false },
-        })),
+        ...this.spec.curves.map(({ hue, name }, i) => {
+          const { colour, width_px, dash } = curveStyle(hue);
+          return {
+            label: name,
+            stroke: colour,
+            width: width_px,
+            dash,
+            paths: (plot: uPlot) => this.path(plot, this.lines[i]),
+            points: { show: false },
+          };
+        }),
       ],
       hooks: {
         // The scales match the data only now.
@@ -201,7 +257,7 @@ export class Plot {
           (plot: uPlot) => {
             const { left } = plot.cursor;
             if (!leads) return;
-            onHover(left === undefined || left < 0 ? null : plot.posToVal(left, 'x'));
+            this.actions.onHover(left === undefined || left < 0 ? null : plot.posToVal(left, 'x'));
           },
         ],
       },

@@ -2,29 +2,46 @@
 // instead the status of the estimators.
 import { needsAttention } from '../../store/estimator_status';
 import { formatTime } from '../../store/format';
-import { lastAtOrBefore, nearestIndex } from '../../store/table';
+import type { PlotGroup, PlotSpec } from '../../store/plots/plot_specs';
+import { groupOf, plotSpecs } from '../../store/plots/plot_specs';
 import type { Span } from '../../store/time_window';
 import { following, zoomed } from '../../store/time_window';
-import { plannedEnd_ns, shownAlignment } from '../../store/state';
+import { clockSpan_ns, shownAlignment } from '../../store/state';
 import type { Topic } from '../../store/state';
 import { EstimatorTable } from '../estimator_table';
 import { h, rebuild, setAttribute, setText } from '../dom';
 import type { Panel } from '../panel';
 import { frameOf, makePanel } from '../panel';
-import type { PlotActions, Strip } from './plot_strips';
-import { imageStrips, poseStrips } from './plot_strips';
-import { sensorStrips, shownFigures } from './sensor_strips';
+import type { PlotActions } from './plot';
+import { Plot } from './plot';
 import type { Context, View } from '../view';
 
 const kRedraw_ms = 1000 / 15;
+/** Columns of the grid in plots.css, except for few plots. */
+const kColumns = 3;
+const kFew = 3;
 
 const kGroups = [
   { name: 'pose', label: 'Pose', hint: 'Position and attitude: truth and estimates' },
+  { name: 'errors', label: 'Errors', hint: 'Estimates minus truth: position, rotation' },
+  { name: 'estimates', label: 'Estimates', hint: 'Latency and counters of the estimators' },
   { name: 'image', label: 'Image', hint: 'Texels per pixel, exposure and saturation' },
   { name: 'sensors', label: 'Sensors', hint: 'IMU, GPS, air data, magnetometer, rangefinder' },
-  { name: 'estimators', label: 'Estimators', hint: 'State, drops, latency, CPU, memory, log' },
+  { name: 'vehicle', label: 'Vehicle', hint: 'Battery, satellites and link of a live vehicle' },
+  { name: 'estimators', label: 'Status', hint: 'State, drops, latency, CPU, memory, log' },
 ] as const;
 type Group = (typeof kGroups)[number]['name'];
+
+/** Groups that are offered only if a run has their series. */
+const kOptional: readonly PlotGroup[] = ['vehicle'];
+
+const kNothingYet: Readonly<Record<Exclude<PlotGroup, 'sensors'>, string>> = {
+  pose: 'No track is shown.',
+  errors: 'No errors yet: they begin with the first pose of an estimator.',
+  estimates: 'No values yet: they begin with the first answer of an estimator.',
+  image: 'No frames yet.',
+  vehicle: 'No live vehicle.',
+};
 
 export class PlotsPanel implements View {
   readonly root: HTMLElement;
@@ -39,9 +56,9 @@ export class PlotsPanel implements View {
   });
   private readonly hoverTime = h('span', { class: 'hover-time' });
   private group: Group = 'pose';
-  private strips: Strip[] = [];
+  private plots: Plot[] = [];
   private key = '';
-  private t_s = new Float64Array(0);
+  private runs = '';
   private drawn_ms = -Infinity;
   private timer = 0;
   /** Time under the mouse. */
@@ -85,10 +102,9 @@ export class PlotsPanel implements View {
       this.context.sensors.hide();
     }
     if (this.key !== this.wantedKey()) this.build();
-    const t_ns = state.data.truth.column('t_ns');
-    if (this.t_s.length !== t_ns.length) this.t_s = t_ns.map((t) => t / 1e9);
+    this.drawTabs();
     const span_s = this.window_s ?? this.whole();
-    for (const strip of this.strips) strip.draw(state, this.t_s, span_s);
+    for (const plot of this.plots) plot.draw(span_s);
     this.panel.showEmpty(this.emptyText());
     this.moveCursor();
   }
@@ -96,15 +112,17 @@ export class PlotsPanel implements View {
   private emptyText(): string | null {
     const { runId, sensors, sensorError } = this.context.store.state;
     if (runId === null) return 'Poses of the flight appear here.';
-    if (this.group !== 'sensors') return null;
+    if (this.plots.length > 0 || this.group === 'estimators') return null;
+    if (this.group !== 'sensors') return kNothingYet[this.group];
     if (sensorError !== null) return sensorError;
-    if (sensors === null) return 'Reading the samples';
-    return this.strips.length === 0 ? 'This aircraft has no sensors except its cameras.' : null;
+    return sensors === null
+      ? 'Reading the samples'
+      : 'This aircraft has no sensors except its cameras.';
   }
 
   private whole(): Span {
-    const planned_s = plannedEnd_ns(this.context.store.state) / 1e9;
-    return [0, Math.max(planned_s, this.t_s.at(-1) ?? 0, 1)];
+    const [begin_ns, end_ns] = clockSpan_ns(this.context.store.state);
+    return [begin_ns / 1e9, end_ns / 1e9];
   }
 
   private zoom(centre_s: number, factor: number): void {
@@ -115,9 +133,9 @@ export class PlotsPanel implements View {
 
   /** Keeps the cursor inside the window. */
   private followCursor(): void {
-    const { playback } = this.context.store.state;
-    if (this.window_s === null || playback === null) return;
-    const moved = following(this.window_s, this.whole(), playback.t_ns / 1e9);
+    const { clock } = this.context.store.state;
+    if (this.window_s === null || clock === null) return;
+    const moved = following(this.window_s, this.whole(), clock.t_ns / 1e9);
     if (moved === this.window_s) return;
     this.window_s = moved;
     this.drawSoon();
@@ -126,51 +144,65 @@ export class PlotsPanel implements View {
   /** Unchanged as long as the plots need not be rebuilt. */
   private wantedKey(): string {
     const { state } = this.context.store;
-    const names = state.run?.estimators ?? [];
-    const figures = this.group === 'sensors' ? shownFigures(state).map(({ key }) => key) : [];
-    const parts = [
-      String(state.runId),
-      state.data.generation,
-      this.group,
-      shownAlignment(state),
-      ...figures,
-    ];
-    return [...parts, ...names].join('/');
+    const runs = state.watched.map((watched) => [
+      watched.id,
+      watched.data.generation,
+      shownAlignment(watched),
+    ]);
+    return JSON.stringify([this.group, runs, this.specs().map(specKey)]);
+  }
+
+  private specs(): PlotSpec[] {
+    return this.group === 'estimators' ? [] : plotSpecs(this.context.store.state, this.group);
   }
 
   private build(): void {
     const { state } = this.context.store;
-    const names = state.run?.estimators ?? [];
-    const [run] = this.key.split('/', 1);
-    if (run !== String(state.runId)) this.window_s = null;
+    const runs = state.watched.map(({ id }) => id).join(' ');
+    if (runs !== this.runs) this.window_s = null;
+    this.runs = runs;
     this.key = this.wantedKey();
-    for (const { plot } of this.strips) plot.destroy();
+    for (const plot of this.plots) plot.destroy();
     const actions: PlotActions = {
       onSeek: (t_s: number) => this.context.player.seekTime(t_s * 1e9),
       onHover: (t_s: number | null) => this.hover(t_s),
       onZoom: (centre_s: number, factor: number) => this.zoom(centre_s, factor),
     };
-    this.strips = this.makeStrips(names, actions);
+    const specs = this.specs();
+    const columns = specs.length <= kFew ? 1 : kColumns;
+    this.plots = specs.map(
+      (spec, i) =>
+        new Plot(spec, actions, { timeLabels: i >= specs.length - columns, leads: i === 0 }),
+    );
+    setAttribute(this.grid, 'data-columns', String(columns));
     this.grid.hidden = this.group === 'estimators';
     this.statuses.root.hidden = this.group !== 'estimators';
     if (this.group === 'estimators') this.statuses.draw(state);
     setAttribute(this.grid, 'data-group', this.group);
-    this.grid.replaceChildren(...this.strips.map(({ plot }) => plot.root));
-    const drawn = this.group === 'pose' && names.length > 0;
-    setText(this.alignment, drawn ? `estimates by ${shownAlignment(state)}` : '');
+    this.grid.replaceChildren(...this.plots.map(({ root }) => root));
+    setText(this.alignment, this.alignmentText());
     this.drawTabs();
   }
 
-  private makeStrips(names: readonly string[], actions: PlotActions): Strip[] {
-    if (this.group === 'pose') return poseStrips(names, actions);
-    if (this.group === 'sensors') return sensorStrips(this.context.store.state, actions);
-    return this.group === 'image' ? imageStrips(actions) : [];
+  private alignmentText(): string {
+    const aligned = this.context.store.state.watched.filter(
+      ({ run }) => (run?.estimators.length ?? 0) > 0,
+    );
+    if ((this.group !== 'pose' && this.group !== 'errors') || aligned.length === 0) return '';
+    return `estimates by ${[...new Set(aligned.map(shownAlignment))].join(', ')}`;
   }
 
   private drawTabs(): void {
-    const attention = needsAttention(this.context.store.state.statuses);
-    rebuild(this.tabs, `${this.group} ${attention}`, () =>
-      kGroups.map(({ name, label, hint }) =>
+    const { watched } = this.context.store.state;
+    const attention = watched.some(({ statuses }) => needsAttention(statuses));
+    const groups = kGroups.filter(
+      ({ name }) =>
+        !kOptional.some((group) => group === name) ||
+        watched.some(({ series }) => series.some((one) => groupOf(one) === name)),
+    );
+    const names = groups.map(({ name }) => name).join(' ');
+    rebuild(this.tabs, `${names} ${this.group} ${attention}`, () =>
+      groups.map(({ name, label, hint }) =>
         h(
           'button',
           {
@@ -192,34 +224,36 @@ export class PlotsPanel implements View {
 
   private moveCursor(): void {
     const { playback } = this.context.store.state;
-    const t_s = playback === null ? null : playback.t_ns / 1e9;
-    for (const { plot } of this.strips) plot.moveCursor(t_s);
+    for (const plot of this.plots) plot.moveCursor(this.cursor_s());
     this.panel.showFrame(frameOf(playback));
     if (this.hovered_s === null) this.showCursorValues();
   }
 
+  private cursor_s(): number | null {
+    const { clock } = this.context.store.state;
+    return clock === null ? null : clock.t_ns / 1e9;
+  }
+
   private showCursorValues(): void {
     const { state } = this.context.store;
-    const row = lastAtOrBefore(
-      state.data.truth.column('frame'),
-      state.playback === null ? -1 : state.playback.frame,
-    );
-    for (const strip of this.strips) strip.showCursor(state, row);
+    // During the flight the cursor is ahead of the samples that were read.
+    const live = this.group === 'sensors' && state.clock?.live === true;
+    const newest_s = (state.sensors?.newest_s ?? Infinity) + state.offset_ns / 1e9;
+    const t_s = this.cursor_s();
+    for (const plot of this.plots) {
+      plot.showCursor(live && t_s !== null ? Math.min(t_s, newest_s) : t_s);
+    }
   }
 
   /** Shows values under the mouse in place of those at the cursor. */
   private hover(t_s: number | null): void {
     this.hovered_s = t_s;
-    if (t_s === null) {
-      setText(this.hoverTime, '');
-      this.showCursorValues();
-      return;
-    }
-    const { state } = this.context.store;
-    const { truth } = state.data;
-    const row = nearestIndex(truth.column('t_ns'), t_s * 1e9);
-    const byFrame = this.group !== 'sensors' && row >= 0;
-    setText(this.hoverTime, formatTime(byFrame ? truth.at('t_ns', row) : t_s * 1e9));
-    for (const strip of this.strips) strip.showHover(state, t_s, row);
+    setText(this.hoverTime, t_s === null ? '' : formatTime(t_s * 1e9));
+    if (t_s === null) this.showCursorValues();
+    else for (const plot of this.plots) plot.showHover(t_s);
   }
+}
+
+function specKey({ key, curves }: PlotSpec) {
+  return [key, curves.map(({ name, hue }) => [name, hue])];
 }

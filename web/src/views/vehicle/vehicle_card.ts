@@ -30,8 +30,8 @@ export class VehicleCard implements View {
   }
 
   private draw(): void {
-    const { data, playback, run } = this.context.store.state;
-    const t_ns = playback?.t_ns ?? 0;
+    const { data, clock, main, run } = this.context.store.state;
+    const t_ns = main?.instant?.t_ns ?? 0;
     if (t_ns !== this.t_ns) {
       this.t_ns = t_ns;
       this.heard_ms = performance.now();
@@ -39,7 +39,7 @@ export class VehicleCard implements View {
     const at = vehicleAt(data.vehicle, t_ns);
     this.root.hidden = at === null;
     if (at === null) return;
-    const live = run?.status === 'running' && playback?.live === true;
+    const live = run?.status === 'running' && clock?.live === true;
     const quiet_ms = performance.now() - this.heard_ms;
     const silent = live && quiet_ms > kQuiet_ms;
     const connected = at.connected && !silent;

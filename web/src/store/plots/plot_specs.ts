@@ -1,0 +1,216 @@
+// What the plots over time show: groups of plots, made from the series that the server offers.
+import type { SensorCurve } from '../../protocol/sensor_types';
+import type { SeriesInfo } from '../../protocol/messages';
+import { kTextureLimit } from '../error_table';
+import type { Axis } from '../run_data';
+import { kAxes } from '../run_data';
+import type { State } from '../state';
+import type { Table } from '../table';
+import type { Track } from '../tracks';
+import { tracksOf } from '../tracks';
+import type { WatchedRun } from '../watched_run';
+import type { Curve } from './curve';
+import { kSensorFigures, longestPause_s } from './sensor_figures';
+
+export type PlotGroup = 'pose' | 'errors' | 'image' | 'estimates' | 'sensors' | 'vehicle';
+
+/** Truth is red, an estimate has its own colour, other curves are neutral or of an axis. */
+export type CurveHue =
+  | { kind: 'truth'; order: number }
+  | { kind: 'estimate'; colour: number }
+  | { kind: 'run'; order: number }
+  | { kind: 'axis'; axis: number };
+
+export interface CurveSpec {
+  name: string;
+  /** In front of its value: of curves of several runs the run's letter. */
+  short: string;
+  hue: CurveHue;
+  /** As it is now; null if there are no rows yet. */
+  curve: () => Curve | null;
+  /** The exact value at the clock's time, where the server sends it. */
+  atClock?: () => number | null | undefined;
+}
+
+export interface PlotSpec {
+  key: string;
+  label: string;
+  hint?: string;
+  unit: string;
+  /** Digits of values. */
+  digits: number;
+  /** Minimum span of the axis, so that noise does not fill the plot. */
+  least: number;
+  /** Lower limit of good values, drawn as a dashed line. */
+  limit?: number;
+  curves: CurveSpec[];
+}
+
+const kAxisLabels: Record<Axis, string> = {
+  x_m: 'x east',
+  y_m: 'y north',
+  z_m: 'z up',
+  roll_deg: 'Roll',
+  pitch_deg: 'Pitch',
+  yaw_deg: 'Yaw',
+};
+
+/** What is better known here than from the series' unit, by column. */
+const kKnown: Readonly<Record<string, Partial<PlotSpec>>> = {
+  texels_per_pixel: { label: 'Texture (median)', digits: 2, least: 0.5, limit: kTextureLimit },
+  exposure_ns: { digits: 3, least: 0.5 },
+  saturated_fraction: { digits: 1, least: 2 },
+  void_fraction: { digits: 1, least: 2 },
+  gain: { digits: 2, least: 0.5 },
+  error_m: { digits: 3, least: 0.1, hint: 'Distance between the estimated and the true position' },
+  error_along_m: { digits: 3, least: 0.1, hint: 'In the direction of the true motion' },
+  error_across_m: { digits: 3, least: 0.1, hint: 'To the right of the true motion' },
+  error_up_m: { digits: 3, least: 0.1, hint: 'Estimated height minus the true one' },
+  error_rotation_deg: { digits: 3, least: 0.1, hint: 'Angle between the two attitudes' },
+  latency_ms: { digits: 1, least: 5, hint: 'From the frame to its answer' },
+};
+
+export function plotSpecs(state: State, group: PlotGroup): PlotSpec[] {
+  if (group === 'pose') return poseSpecs(state);
+  return group === 'sensors' ? sensorSpecs(state) : seriesSpecs(state, group);
+}
+
+/** The group in which a series is shown; null if it is part of a pose. */
+export function groupOf({ stream, column }: SeriesInfo): PlotGroup | null {
+  if (kAxes.some((axis) => axis === column)) return null;
+  if (stream === 'truth') return 'image';
+  if (stream === 'vehicle') return 'vehicle';
+  return column.startsWith('error_') ? 'errors' : 'estimates';
+}
+
+function poseSpecs(state: State): PlotSpec[] {
+  const tracks = tracksOf(state).filter(({ shown }) => shown);
+  return kAxes.map((axis) => {
+    const angle = axis.endsWith('_deg');
+    return {
+      key: axis,
+      label: kAxisLabels[axis],
+      unit: angle ? 'deg' : 'm',
+      digits: angle ? 2 : 1,
+      least: angle ? 4 : 2,
+      curves: tracks.map((track) => ({
+        name: track.label,
+        short: track.letter,
+        hue: hueOf(track),
+        curve: () => curveOf(tableOf(track), track.run, axis, 1, angle),
+        atClock: () => poseAtClock(track)?.[axis],
+      })),
+    };
+  });
+}
+
+function poseAtClock({ run, name }: Track) {
+  return name === '' ? run.instant?.truth : run.instant?.estimates[name]?.pose;
+}
+
+/** One plot for each column of the group of which values have arrived. */
+function seriesSpecs(state: State, group: PlotGroup): PlotSpec[] {
+  const specs = new Map<string, PlotSpec>();
+  for (const track of tracksOf(state)) {
+    if (!track.shown) continue;
+    for (const series of track.run.series) {
+      if (groupOf(series) !== group || trackOf(series) !== track.name) continue;
+      const table = seriesTable(track, series);
+      if (table?.has(series.column) !== true) continue;
+      const spec = specs.get(series.column) ?? specOf(series);
+      specs.set(series.column, spec);
+      spec.curves.push({
+        name: track.label,
+        short: track.letter,
+        hue: track.name === '' ? { kind: 'run', order: track.order } : hueOf(track),
+        curve: () =>
+          curveOf(seriesTable(track, series), track.run, series.column, series.scale ?? 1, false),
+      });
+    }
+  }
+  return [...specs.values()];
+}
+
+function specOf({ column, label, unit }: SeriesInfo): PlotSpec {
+  const spec = { key: column, label: capital(label), unit, digits: 1, least: 1, curves: [] };
+  return { ...spec, ...kKnown[column] };
+}
+
+/** The estimator whose series it is; '' = a series of the flight. */
+function trackOf({ stream }: SeriesInfo): string {
+  return stream.startsWith('estimate/') ? stream.slice('estimate/'.length) : '';
+}
+
+function seriesTable(track: Track, { stream }: SeriesInfo): Table | undefined {
+  return stream === 'vehicle' ? track.run.data.vehicleTable : tableOf(track);
+}
+
+function tableOf({ run, name }: Track): Table | undefined {
+  return name === '' ? run.data.truth : run.shownEstimate(name)?.table;
+}
+
+function hueOf({ name, order, colour }: Track): CurveHue {
+  return name === '' ? { kind: 'truth', order } : { kind: 'estimate', colour };
+}
+
+/** Frames that were dropped do not break a curve; lost ones have no value and do. */
+function curveOf(
+  table: Table | undefined,
+  run: WatchedRun,
+  column: string,
+  scale: number,
+  wraps: boolean,
+): Curve | null {
+  if (table === undefined || table.length === 0) return null;
+  return {
+    t: table.column('t_ns'),
+    t_scale_s: 1e-9,
+    t_offset_s: run.offset_s,
+    values: table.column(column),
+    scale,
+    longest_gap_s: Infinity,
+    wraps,
+  };
+}
+
+/** Plots of the sensors that the main run has. */
+function sensorSpecs(state: State): PlotSpec[] {
+  return kSensorFigures.flatMap((figure) => {
+    const { key, label, hint, unit, digits, least, names } = figure;
+    const curvesNow = () => sensorCurves(state, figure.sensor, figure.curves);
+    if (curvesNow().length === 0) return [];
+    const curves = figure.curves.map(
+      (_, i): CurveSpec => ({
+        name: names?.[i] ?? '',
+        short: names?.[i] ?? '',
+        hue: figure.curves.length === 1 ? { kind: 'run', order: 0 } : { kind: 'axis', axis: i },
+        curve: () => sensorCurve(state, curvesNow()[i], 1 / figure.per_unit),
+      }),
+    );
+    return [{ key, label, hint, unit, digits, least, curves }];
+  });
+}
+
+function sensorCurves(state: State, sensor: string, names: readonly string[]): SensorCurve[] {
+  const { sensors, runId } = state;
+  if (sensors === null || sensors.run !== runId) return [];
+  const found = sensors.sensors.find((one) => one.sensor === sensor);
+  return names.flatMap((name) => found?.curves.find((curve) => curve.name === name) ?? []);
+}
+
+function sensorCurve(state: State, curve: SensorCurve | undefined, scale: number): Curve | null {
+  if (curve === undefined) return null;
+  return {
+    t: curve.t_s,
+    t_scale_s: 1,
+    t_offset_s: state.offset_ns / 1e9,
+    values: curve.values,
+    scale,
+    longest_gap_s: longestPause_s(curve.t_s),
+    wraps: false,
+  };
+}
+
+function capital(text: string): string {
+  return text.charAt(0).toUpperCase() + text.slice(1);
+}

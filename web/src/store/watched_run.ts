@@ -1,0 +1,60 @@
+// One of the runs shown together: what the server sent about it, and how it is shown.
+import type { RunInstant, SeriesInfo } from '../protocol/messages';
+import type { CameraInfo, EstimatorStatus, Metrics, Run } from '../protocol/rest_types';
+import type { PictureRate } from './picture_rates';
+import type { EstimateRows } from './run_data';
+import { RunData } from './run_data';
+
+/** A decoded picture and the instant it belongs to. */
+export interface Picture {
+  frame: number;
+  t_ns: number;
+  width_px: number;
+  height_px: number;
+  live: boolean;
+  bitmap: ImageBitmap;
+}
+
+/** Estimates under an alignment other than the recorded one. */
+export interface AlignedEstimates {
+  mode: string;
+  /** Contains no entry for an estimator without this alignment. */
+  estimates: Map<string, EstimateRows>;
+}
+
+export class WatchedRun {
+  /** null until the list or the stream has sent it. */
+  run: Run | null = null;
+  readonly data = new RunData();
+  metrics: Metrics | null = null;
+  /** Status of its estimators, by name. */
+  statuses: Record<string, EstimatorStatus> = {};
+  /** What the server offers to be plotted. */
+  series: SeriesInfo[] = [];
+  /** At the clock's time; null until the server has sent it. */
+  instant: RunInstant | null = null;
+  /** Time of the clock at its beginning, as requested. */
+  offset_ns = 0;
+  aligned: AlignedEstimates | null = null;
+  /** Empty until its manifest was read. */
+  cameras: CameraInfo[] = [];
+  /** The camera shown; null = the first. */
+  camera: string | null = null;
+  readonly pictures = new Map<string, Picture>();
+  /** For the streams whose rate is below the requested one, by name. */
+  rates = new Map<string, PictureRate>();
+  /** Tracks that the viewer has hidden: names of estimators, '' = the truth. */
+  readonly hidden = new Set<string>();
+
+  constructor(readonly id: string) {}
+
+  /** Rows of an estimate under the shown alignment. */
+  shownEstimate(name: string): EstimateRows | undefined {
+    return this.aligned === null ? this.data.estimates.get(name) : this.aligned.estimates.get(name);
+  }
+
+  /** Seconds of the clock at its beginning. */
+  get offset_s(): number {
+    return this.offset_ns / 1e9;
+  }
+}

@@ -1,0 +1,97 @@
+// The runs that are shown together: their tracks, their offsets on the clock, which one is the main.
+import { formatNumber } from '../store/format';
+import type { State } from '../store/state';
+import type { Track } from '../store/tracks';
+import { runLetter, tracksOf } from '../store/tracks';
+import type { WatchedRun } from '../store/watched_run';
+import { curveStyle } from './colours';
+import { h, rebuild } from './dom';
+import { icon } from './icons';
+import type { Context } from './view';
+
+/** Empty while one run is shown, whose entry in the list is enough. */
+export class ShownRuns {
+  readonly root = h('ul', { class: 'shown-runs', 'aria-label': 'Runs shown together' });
+
+  constructor(private readonly context: Context) {}
+
+  draw(state: State): void {
+    const { watched, runId } = state;
+    const tracks = tracksOf(state);
+    const drawn = tracks.map(({ label, shown }) => [label, shown]);
+    const runs = watched.map(({ id, run, offset_ns }) => [id, run?.title, run?.flight, offset_ns]);
+    rebuild(this.root, JSON.stringify([drawn, runs, runId]), () =>
+      watched.length < 2
+        ? []
+        : watched.map((one) =>
+            this.entry(
+              one,
+              runLetter(state, one),
+              tracks.filter(({ run }) => run === one),
+            ),
+          ),
+    );
+    this.root.hidden = watched.length < 2;
+  }
+
+  private entry(watched: WatchedRun, letter: string, tracks: Track[]): HTMLElement {
+    const { session, store } = this.context;
+    const { id, run, offset_ns } = watched;
+    const isMain = store.state.main === watched;
+    const offset = h('input', {
+      type: 'number',
+      step: 0.1,
+      value: formatNumber(offset_ns / 1e9, 3).replace('−', '-'),
+      'aria-label': `Offset of run ${letter} in seconds`,
+      title: 'Time of the clock at which this run begins [s]',
+      onchange: () => {
+        const seconds = offset.valueAsNumber;
+        if (Number.isFinite(seconds)) session.setOffset(id, Math.round(seconds * 1e9));
+      },
+    });
+    return h(
+      'li',
+      { class: 'shown-run', 'data-shown-run': id, 'aria-current': isMain ? 'true' : 'false' },
+      h(
+        'button',
+        {
+          class: 'shown-title',
+          title: `${run?.title ?? ''} ${id}: show its pictures and timeline`,
+          onclick: () => session.makeMain(id),
+        },
+        h('b', { class: 'run-letter' }, letter),
+        h('span', {}, run === null ? id : run.flight === '' ? run.title : run.flight),
+      ),
+      h('label', { class: 'shown-offset' }, offset, h('span', { class: 'unit' }, 's')),
+      h(
+        'button',
+        {
+          class: 'icon-button',
+          title: `Remove run ${letter} from the comparison`,
+          'aria-label': `Remove run ${letter} from the comparison`,
+          onclick: () => session.removeRun(id),
+        },
+        icon('close'),
+      ),
+      h('div', { class: 'shown-tracks' }, ...tracks.map((track) => this.trackButton(track))),
+    );
+  }
+
+  private trackButton({ run, name, label, shown, ...hue }: Track): HTMLElement {
+    const { colour } = curveStyle(
+      name === '' ? { kind: 'truth', order: hue.order } : { kind: 'estimate', colour: hue.colour },
+    );
+    const text = name === '' ? 'truth' : name;
+    return h(
+      'button',
+      {
+        class: 'track-button',
+        'aria-pressed': shown ? 'true' : 'false',
+        title: `${shown ? 'Hide' : 'Show'} ${label} in the plots`,
+        onclick: () => this.context.session.showTrack(run.id, name, !shown),
+      },
+      h('i', { style: `background:${colour}` }),
+      text,
+    );
+  }
+}
