@@ -91,6 +91,7 @@ export class PlotsPanel implements View {
       this.drawTabs();
       if (this.group === 'estimators') this.statuses.draw(this.context.store.state);
     }
+    if (changed.has('theme')) for (const plot of this.plots) plot.repaint();
     if (changed.has('playback')) this.followCursor();
     if (changed.has('playback') || changed.has('run')) this.moveCursor();
   }
