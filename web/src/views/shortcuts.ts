@@ -110,6 +110,7 @@ export const kShortcuts: readonly Shortcut[] = [
     what: 'follow the running flight',
     run: ({ player }) => player.goLive(),
   },
+  { keys: ['t'], label: 'T', what: 'next theme', run: ({ themes }) => themes.next() },
   { keys: ['?', 'shift+?'], label: '?', what: 'this help', run: ({ store }) => toggleHelp(store) },
   {
     keys: ['escape'],

@@ -11,6 +11,7 @@ import type { Layouts } from '../store/layouts/layouts';
 import type { LogBrowser } from '../store/logs/log_browser';
 import type { LogSmoothing } from '../store/logs/log_smoothing';
 import type { LogWorlds } from '../store/logs/log_worlds';
+import type { Themes } from '../store/themes';
 import type { VehicleConnect } from '../store/vehicle/vehicle_connect';
 import type { Notices } from '../store/notices';
 import type { StreamClient } from '../connection/stream_client';
@@ -40,4 +41,5 @@ export interface Context {
   notices: Notices;
   client: StreamClient;
   layouts: Layouts;
+  themes: Themes;
 }

@@ -18,6 +18,9 @@ export interface ReadyLayout {
 /** From this width on the fonts are larger (layout.css), and with them the columns of forms. */
 const kWide_px = 1600;
 
+/** Several tabs leave less room for the tools next to them. */
+const kTabs_px = 40;
+
 export const kReadyLayouts: readonly ReadyLayout[] = [
   { name: 'fly', title: 'Fly', hint: 'Launch a flight and watch it', arrange: fly },
   {
@@ -74,11 +77,11 @@ function fly(area: Area): LayoutNode {
 
 function compare(area: Area): LayoutNode {
   const side_px = sideWidth(area);
-  const right_px = clamp(area.width_px * 0.3, 330, 620);
+  const right_px = clamp(area.width_px * 0.32, 330, 680);
   return split('row', [
-    [side_px, tabs('runs', 'launcher', 'log')],
+    [side_px + kTabs_px, tabs('runs', 'launcher', 'log')],
     [
-      area.width_px - side_px - right_px,
+      area.width_px - side_px - kTabs_px - right_px,
       split('column', [
         [45, tabs('scene')],
         [55, tabs('plots')],
@@ -126,8 +129,8 @@ function camera(area: Area): LayoutNode {
   const side_px = sideWidth(area);
   const right_px = clamp(area.width_px * 0.3, 320, 640);
   return split('row', [
-    [side_px, tabs('runs', 'launcher', 'log')],
-    [area.width_px - side_px - right_px, tabs('camera')],
+    [side_px + kTabs_px, tabs('runs', 'launcher', 'log')],
+    [area.width_px - side_px - kTabs_px - right_px, tabs('camera')],
     [
       right_px,
       split('column', [

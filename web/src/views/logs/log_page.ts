@@ -79,6 +79,7 @@ export class LogPageView implements View {
   }
 
   update(changed: ReadonlySet<Topic>): void {
+    if (changed.has('theme')) this.repaint();
     const relevant = changed.has('logs') || changed.has('lists') || changed.has('connection');
     if (!relevant) return;
     const { logPage } = this.context.store.state;
@@ -108,6 +109,12 @@ export class LogPageView implements View {
     setText(this.message, error ?? (chosen === null ? 'Choose a log, or upload one.' : reading));
     this.message.classList.toggle('failed', error !== null);
     this.message.hidden = this.message.textContent === '';
+  }
+
+  private repaint(): void {
+    this.map.repaint();
+    this.curves.repaint();
+    this.residuals.repaint();
   }
 
   /** The flight at its own place, or moved to the chosen world. */

@@ -16,6 +16,7 @@ import type { Track } from '../../store/tracks';
 import { tracksOf } from '../../store/tracks';
 import { curveStyle, trackHue } from '../colours';
 import { h, perFrame, setText } from '../dom';
+import { paint } from '../paint';
 
 const kZoom_per_px = 0.0015;
 const kTickSpace_px = 70;
@@ -76,7 +77,7 @@ export class PathPlot {
       this.area,
     );
     this.steer();
-    new ResizeObserver(() => this.paint()).observe(this.area);
+    new ResizeObserver(() => this.repaint()).observe(this.area);
   }
 
   /** Takes the tracks as they are now. */
@@ -100,13 +101,13 @@ export class PathPlot {
       if (!shown || pose === undefined || pose === null) return [];
       return { x: pose[across], y: pose[up], track };
     });
-    this.paint();
+    this.repaint();
   }
 
-  private readonly paintInFrame = perFrame<null>(() => this.paintNow());
+  private readonly repaintInFrame = perFrame<null>(() => this.paintNow());
 
-  private paint(): void {
-    this.paintInFrame(null);
+  repaint(): void {
+    this.repaintInFrame(null);
   }
 
   private size(): Size {
@@ -135,7 +136,7 @@ export class PathPlot {
     for (const path of this.paths) paintPath(pen, path, frame, size);
     for (const { x, y, track } of this.marks) {
       const [px, py] = toPixels(frame, size, [x, y]);
-      pen.fillStyle = curveStyle(trackHue(track)).colour;
+      pen.fillStyle = paint(curveStyle(trackHue(track)).colour);
       pen.beginPath();
       pen.arc(px, py, track.name === '' ? 5 : 3.5, 0, 2 * Math.PI);
       pen.fill();
@@ -143,11 +144,10 @@ export class PathPlot {
   }
 
   private paintGrid(pen: CanvasRenderingContext2D, frame: PathFrame, size: Size): void {
-    const style = getComputedStyle(this.root);
     const [left, bottom] = toMetres(frame, size, [0, size.height_px]);
     const [right, top] = toMetres(frame, size, [size.width_px, 0]);
-    pen.strokeStyle = style.getPropertyValue('--line');
-    pen.fillStyle = style.getPropertyValue('--muted');
+    pen.strokeStyle = paint('var(--grid)');
+    pen.fillStyle = paint('var(--muted)');
     pen.font = '10px system-ui, sans-serif';
     pen.lineWidth = 1;
     const columns = ticks(left, right, size.width_px / kTickSpace_px);
@@ -204,7 +204,7 @@ export class PathPlot {
         m_per_px,
       };
       grabbed = { at: here, moved: true };
-      this.paint();
+      this.repaint();
     });
     area.addEventListener('pointerup', (event) => {
       if (grabbed?.moved === false) this.seekNear(at(event));
@@ -214,7 +214,7 @@ export class PathPlot {
     area.addEventListener('pointerleave', () => setText(this.readout, ''));
     area.addEventListener('dblclick', () => {
       this.chosen = null;
-      this.paint();
+      this.repaint();
     });
     area.addEventListener(
       'wheel',
@@ -222,7 +222,7 @@ export class PathPlot {
         event.preventDefault();
         const factor = Math.exp(event.deltaY * kZoom_per_px);
         this.chosen = zoomedAt(this.frame(), this.size(), at(event), factor);
-        this.paint();
+        this.repaint();
       },
       { passive: false },
     );
@@ -256,7 +256,7 @@ function paintPath(
   size: Size,
 ): void {
   const { colour, width_px, dash } = curveStyle(trackHue(track));
-  pen.strokeStyle = colour;
+  pen.strokeStyle = paint(colour);
   pen.lineWidth = width_px;
   pen.setLineDash(dash);
   pen.beginPath();

@@ -4,6 +4,7 @@ import type { PlotSpec } from '../../store/plots/plot_specs';
 import type { Span } from '../../store/time_window';
 import { curveStyle } from '../colours';
 import { h } from '../dom';
+import { paint } from '../paint';
 
 const kFormats = [
   { format: 'csv', label: 'CSV', hint: 'all values' },
@@ -50,12 +51,14 @@ async function save({ group, specs, span_s, columns }: ShownPlots, format: Forma
     download(name, new Blob([plotsCsv(specs)], { type: 'text/csv' }));
     return;
   }
-  const style = getComputedStyle(document.body);
   const svg = plotsSvg(specs, span_s, columns, {
-    background: style.getPropertyValue('--panel').trim(),
-    text: style.getPropertyValue('--text').trim(),
-    grid: style.getPropertyValue('--line').trim(),
-    curve: curveStyle,
+    background: paint('var(--panel)'),
+    text: paint('var(--text)'),
+    grid: paint('var(--grid)'),
+    curve: (hue) => {
+      const style = curveStyle(hue);
+      return { ...style, colour: paint(style.colour) };
+    },
   });
   const blob = new Blob([svg], { type: 'image/svg+xml' });
   download(name, format === 'svg' ? blob : await pngOf(blob));

@@ -107,6 +107,7 @@ export class PlotsPanel implements View {
       this.drawTabs();
       if (this.group === 'estimators') this.statuses.draw(this.context.store.state);
     }
+    if (changed.has('theme')) for (const plot of [...this.plots, ...this.paths]) plot.repaint();
     if (changed.has('playback')) this.followCursor();
     if (changed.has('playback') || changed.has('run')) this.moveCursor();
   }
@@ -224,7 +225,7 @@ export class PlotsPanel implements View {
     };
     const specs = this.specs();
     const columns = this.columns(specs.length);
-    this.files.disabled = specs.length === 0;
+    this.files.hidden = specs.length === 0;
     this.plots = specs.map(
       (spec, i) =>
         new Plot(spec, actions, { timeLabels: i >= specs.length - columns, leads: i === 0 }),
