@@ -1,7 +1,10 @@
 // The dashboard's entry point; it connects to the server that served it.
+import 'dockview-core/dist/styles/dockview.css';
 import 'uplot/dist/uPlot.min.css';
 import './styles/base.css';
 import './styles/layout.css';
+import './styles/dock.css';
+import './styles/narrow.css';
 import './styles/panels.css';
 import './styles/plots.css';
 import './styles/side.css';
@@ -15,6 +18,7 @@ import { uploadByBrowser } from './connection/upload';
 import { Alignment } from './store/alignment';
 import { Cameras } from './store/cameras';
 import { Catalogue } from './store/catalogue';
+import { Layouts } from './store/layouts/layouts';
 import { LogBrowser } from './store/logs/log_browser';
 import { LogSmoothing } from './store/logs/log_smoothing';
 import { LogWorlds } from './store/logs/log_worlds';
@@ -65,6 +69,7 @@ const sensors = new Sensors(store, rest, { now_ms: () => performance.now(), late
 const logs = new LogBrowser(store, rest, session, uploadByBrowser, newKey);
 const connect = new VehicleConnect(store, rest, session, newKey);
 const worlds = new LogWorlds(store, rest);
+const layouts = new Layouts(store, notices, localStorage);
 const smoothing = new LogSmoothing(store, rest, later, newKey);
 
 const context = {
@@ -82,6 +87,7 @@ const context = {
   connect,
   notices,
   client,
+  layouts,
 };
 scene.setMode(store.state.sceneMode);
 showScreen(context, document.body);

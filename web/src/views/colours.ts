@@ -1,6 +1,7 @@
 // The common colour scheme of the 3D view's ribbons, the curves and the table.
 
 import type { CurveHue } from '../store/plots/plot_specs';
+import type { Track } from '../store/tracks';
 
 export const kTruthColour = 'rgb(230, 38, 38)';
 
@@ -50,6 +51,10 @@ export function curveStyle(hue: CurveHue): CurveStyle {
     case 'axis':
       return { ...thin, colour: cyclic(kAxisColours, hue.axis) };
   }
+}
+
+export function trackHue({ name, order, colour }: Track): CurveHue {
+  return name === '' ? { kind: 'truth', order } : { kind: 'estimate', colour };
 }
 
 function cyclic(colours: readonly string[], index: number): string {

@@ -36,7 +36,7 @@ export class ScenePanel implements View {
   private readonly readout = h('div', { class: 'scene-readout' });
 
   constructor(private readonly context: Context) {
-    this.panel = makePanel('scene', '3D view', true);
+    this.panel = makePanel('scene', '3D view');
     this.root = this.panel.root;
     for (const { mode, label, key } of kModes) {
       const button = h(

@@ -7,6 +7,7 @@ import type { SceneControl } from '../store/scene_control';
 import type { Sensors } from '../store/sensors/sensors';
 import type { Session } from '../store/session';
 import type { Catalogue } from '../store/catalogue';
+import type { Layouts } from '../store/layouts/layouts';
 import type { LogBrowser } from '../store/logs/log_browser';
 import type { LogSmoothing } from '../store/logs/log_smoothing';
 import type { LogWorlds } from '../store/logs/log_worlds';
@@ -18,6 +19,8 @@ export interface View {
   readonly root: HTMLElement;
   /** Redraws if one of the changed topics matters to this view. */
   update(changed: ReadonlySet<Topic>): void;
+  /** Called when the view is no longer visible: it stops reading what only it shows. */
+  onHidden?(): void;
 }
 
 /** What views read and call. */
@@ -36,4 +39,5 @@ export interface Context {
   connect: VehicleConnect;
   notices: Notices;
   client: StreamClient;
+  layouts: Layouts;
 }

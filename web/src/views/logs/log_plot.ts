@@ -4,7 +4,7 @@ import type { Band, Mark } from '../../store/logs/log_bands';
 import { bandHue, marksWithin } from '../../store/logs/log_bands';
 import { formatNumber } from '../../store/format';
 import { h, setText } from '../dom';
-import { paddedRange } from '../plots/plot_range';
+import { paddedRange } from '../../store/plots/plot_range';
 
 export interface LogPlotOptions {
   key: string;
