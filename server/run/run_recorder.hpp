@@ -40,7 +40,7 @@ class RunRecorder {
                                                      std::shared_ptr<RunTimeline> timeline,
                                                      bool publish_images);
 
-  /// Contents of the manifest besides the run's info; written by write_manifest().
+  /// Contents of the manifest without the run's info; written by write_manifest().
   [[nodiscard]] RunManifest& manifest() { return manifest_; }
   Status write_manifest();
   /// Takes the truth while the run flies.

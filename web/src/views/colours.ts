@@ -2,6 +2,7 @@
 // Canvases need paint().
 
 import type { CurveHue } from '../store/plots/plot_specs';
+import type { Track } from '../store/tracks';
 
 export const kTruthColour = 'var(--truth)';
 
@@ -51,6 +52,10 @@ export function curveStyle(hue: CurveHue): CurveStyle {
     case 'axis':
       return { ...thin, colour: cyclic(kAxisColours, hue.axis) };
   }
+}
+
+export function trackHue({ name, order, colour }: Track): CurveHue {
+  return name === '' ? { kind: 'truth', order } : { kind: 'estimate', colour };
 }
 
 function cyclic(colours: readonly string[], index: number): string {

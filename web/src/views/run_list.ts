@@ -32,8 +32,7 @@ export class RunList implements View {
   constructor(private readonly context: Context) {
     this.panel = makePanel('runs', 'Runs');
     this.shown = new ShownRuns(context);
-    this.panel.tools.append(this.search);
-    this.panel.body.append(this.shown.root, this.list);
+    this.panel.body.append(this.shown.root, this.search, this.list);
     this.search.addEventListener('input', () => this.draw());
     this.root = this.panel.root;
   }

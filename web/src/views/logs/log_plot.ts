@@ -5,7 +5,7 @@ import { bandHue, marksWithin } from '../../store/logs/log_bands';
 import { formatNumber } from '../../store/format';
 import { h, setText } from '../dom';
 import { paint } from '../paint';
-import { paddedRange } from '../plots/plot_range';
+import { paddedRange } from '../../store/plots/plot_range';
 
 export interface LogPlotOptions {
   key: string;

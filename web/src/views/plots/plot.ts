@@ -6,9 +6,9 @@ import { paint } from '../paint';
 import { formatNumber } from '../../store/format';
 import type { Polyline } from '../../store/plots/curve';
 import { decimated, valueAt } from '../../store/plots/curve';
+import { paddedRange } from '../../store/plots/plot_range';
 import type { PlotSpec } from '../../store/plots/plot_specs';
 import type { Span } from '../../store/time_window';
-import { paddedRange } from './plot_range';
 
 export interface PlotActions {
   onSeek: (t_s: number) => void;
@@ -24,9 +24,11 @@ const kMostReadouts = 6;
 const kSyncKey = 'overfly-plots';
 
 /** Up to three values start at the edge; more use separate rows, so that none is cut off. */
-function crowding(curves: number): string {
-  if (curves <= 2 || curves > kMostReadouts) return '';
-  return curves === 3 ? ' crowded' : ' own-rows';
+function crowding(curves: PlotSpec['curves']): string {
+  if (curves.length > kMostReadouts) return '';
+  const named = curves.some(({ short }) => short !== '');
+  if (curves.length > 3 || (named && curves.length === 2)) return ' own-rows';
+  return curves.length === 3 ? ' crowded' : '';
 }
 
 export class Plot {
@@ -56,7 +58,7 @@ export class Plot {
     );
     const title = h(
       'div',
-      { class: `plot-title${crowding(curves.length)}`, title: spec.hint },
+      { class: `plot-title${crowding(curves)}`, title: spec.hint },
       h('b', {}, spec.label),
       h('span', { class: 'unit' }, spec.unit),
       h('span', { class: 'readouts' }, ...this.readouts),
