@@ -12,6 +12,7 @@ import './styles/timeline.css';
 import './styles/estimators.css';
 import './styles/logs.css';
 import './styles/residuals.css';
+import './styles/palette.css';
 import './styles/narrow.css';
 import { RestClient } from './connection/rest_client';
 import { StreamClient } from './connection/stream_client';

@@ -70,6 +70,7 @@ export class State {
   };
   notices: Notice[] = [];
   helpOpen = false;
+  paletteOpen = false;
   logPage: LogPage = initialLogPage();
 
   // ---- the main run ----------------------------------------------------------------------------

@@ -3,6 +3,7 @@ import type { State, Topic } from '../store/state';
 import { texelsPerPixel, textureHint, textureLimited } from '../store/error_table';
 import { formatNumber, formatPercent } from '../store/format';
 import { h, setAttribute, setText } from './dom';
+import { icon } from './icons';
 import { LayoutMenu } from './frame/layout_menu';
 import { ThemeMenu } from './theme_menu';
 import type { Context, View } from './view';
@@ -51,6 +52,20 @@ export class HeaderBar implements View {
       },
       '?',
     );
+    const commands = h(
+      'button',
+      {
+        class: 'icon-button',
+        title: 'Every command by name (Ctrl K)',
+        'aria-label': 'Commands',
+        'data-role': 'open-palette',
+        onclick: () => {
+          context.store.state.paletteOpen = true;
+          context.store.change('palette');
+        },
+      },
+      icon('search'),
+    );
     this.root = h(
       'header',
       { class: 'header-bar' },
@@ -65,6 +80,7 @@ export class HeaderBar implements View {
       this.layouts.root,
       this.themes.root,
       this.connection,
+      commands,
       help,
     );
   }

@@ -4,6 +4,7 @@ import { HeaderBar } from './header_bar';
 import { HelpOverlay } from './help_overlay';
 import { acceptLogFiles, LogPageOverlay } from './logs/log_page_overlay';
 import { NoticesView } from './notices_view';
+import { Palette } from './palette';
 import { ScenarioEditor } from './scenario_editor';
 import { listenToKeys } from './shortcuts';
 import { Timeline } from './timeline';
@@ -23,6 +24,7 @@ export function showScreen(context: Context, place: HTMLElement): void {
     new NoticesView(context),
     new HelpOverlay(context),
     new ScenarioEditor(context),
+    new Palette(context),
   ];
   place.replaceChildren(...views.map(({ root }) => root));
   frame.fit();
