@@ -34,8 +34,8 @@ struct CoverageBar {
 };
 
 /// The bars x, y, size and skew. Enough is a range of 0.7 in x and y, a size of 0.4 and a skew of
-/// 0.5, as for ROS; small boards and straight views are no merit, so size and skew begin at 0.
-/// Empty views give bars of 0.
+/// 0.5, as for ROS; small boards and straight views add nothing, so the ranges of size and skew
+/// begin at 0. Empty views give bars of 0.
 [[nodiscard]] std::vector<CoverageBar> coverage_bars(const std::vector<ViewMeasures>& views);
 
 /// Mean distance between the corners that two views share [px]; infinite if they share none.

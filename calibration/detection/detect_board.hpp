@@ -14,9 +14,9 @@ namespace overfly::calibration {
 /// (detect_charuco.hpp).
 ///
 /// Method: OpenCV's sector-based detector (Duda, Frese 2018, "Accurate detection and localization
-/// of checkerboard corners for calibration", BMVC), then gradients around each corner. The first
-/// corner is the one of which the board's definition says so, by the colour of its squares; for a
-/// half-turn symmetric board it is either of two.
+/// of checkerboard corners for calibration", BMVC), then gradients around each corner. The colours
+/// of the squares decide which corner is the first (board.hpp); on a half-turn symmetric board it
+/// may be either of two.
 /// @param image  8-bit grey, sides of 16 to 16384 px
 /// @pre board.validate()
 /// Errors: kInvalidArgument for another image; kInternal if OpenCV fails.

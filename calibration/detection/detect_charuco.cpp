@@ -107,8 +107,9 @@ std::map<int, Prediction> predictions(const Board& board,
 std::optional<Eigen::Vector2d> refined(const cv::Mat& grey, const Prediction& prediction) {
   // Closer markers fall into the smallest window, and draw the corner away by tenths of a pixel.
   constexpr double kLeastReachPx = 4.0;
-  if (prediction.reach_px < kLeastReachPx) return std::nullopt;
   const Eigen::Vector2d first = prediction.sum / prediction.count;
+  // A distorted marker may put its corners at infinity.
+  if (!first.allFinite() || prediction.reach_px < kLeastReachPx) return std::nullopt;
   const int half_px = std::clamp(static_cast<int>(0.7 * prediction.reach_px), 2, 10);
   const double edge = half_px + 1.0;
   if (first.minCoeff() < edge || first.x() > grey.cols - 1 - edge ||

@@ -82,7 +82,7 @@ class BoardDrawing {
   struct Part {
     int i = 0;
     int j = 0;
-    int col = -1;  ///< of the cell, the marker's border included; -1 or `cells` beside the marker
+    int col = -1;  ///< of the cell, with the marker's border; -1 or `cells` outside it
     int row = -1;
     [[nodiscard]] bool operator==(const Part&) const = default;
   };

@@ -39,7 +39,7 @@ double SmoothGround::node_m(std::int32_t column, std::int32_t row) {
 
 double SmoothGround::up_m(const Eigen::Vector2d& position_m) {
   const Eigen::Vector2d at = position_m / spacing_m_;
-  if (!(at.cwiseAbs().maxCoeff() < 1e8)) return std::nan("");
+  if (!at.allFinite() || at.cwiseAbs().maxCoeff() >= 1e8) return std::nan("");
   const Eigen::Vector2d cell = at.array().floor();
   const std::array east = cubic_weights(at.x() - cell.x());
   const std::array north = cubic_weights(at.y() - cell.y());

@@ -1,29 +1,25 @@
 #include "server/calibration/camera_text.hpp"
 
-#include <algorithm>
-#include <vector>
+#include <array>
+#include <initializer_list>
+#include <span>
+#include <utility>
 
 #include "server/files/number_text.hpp"
 
 namespace overfly::server {
 namespace {
 
-/// With a point: YAML 1.1 (PyYAML, which ROS and Kalibr use) reads 1e-05 as text, and ORB-SLAM3
-/// rejects 700 as an integer.
-std::string yaml_number(double value) {
-  std::string text = number_text(value);
-  if (text.find('.') == std::string::npos) text.insert(std::min(text.find('e'), text.size()), ".0");
+/// Lines "KEY: VALUE".
+std::string yaml_lines(std::initializer_list<std::pair<const char*, double>> fields) {
+  std::string text;
+  for (const auto& [key, value] : fields)
+    text += std::string(key) + ": " + yaml_number(value) + "\n";
   return text;
 }
 
-std::string yaml_list(const std::vector<double>& values) {
-  std::string text;
-  for (const double value : values) text += (text.empty() ? "" : ", ") + yaml_number(value);
-  return "[" + text + "]";
-}
-
-std::vector<double> coefficients(const Distortion& lens, int count) {
-  return {lens.k.begin(), lens.k.begin() + count};
+std::string coefficients(const Distortion& lens, std::size_t count) {
+  return yaml_list(std::span(lens.k).first(count));
 }
 
 Error lens_unsupported(CameraFormat format, const Distortion& lens, const std::string& must) {
@@ -51,22 +47,19 @@ Result<std::string> orb_slam2_text(const CameraModel& camera) {
     return lens_unsupported(CameraFormat::kOrbSlam2, lens, "be none or radtan");
   }
   const PinholeCamera& c = camera.pinhole();
-  std::string text = "%YAML:1.0\n";
-  const auto line = [&text](const char* key, double value) {
-    text += std::string(key) + ": " + yaml_number(value) + "\n";
-  };
-  line("Camera.fx", c.fx_px);
-  line("Camera.fy", c.fy_px);
-  line("Camera.cx", c.cx_px);
-  line("Camera.cy", c.cy_px);
-  line("Camera.k1", lens.k[0]);
-  line("Camera.k2", lens.k[1]);
-  line("Camera.p1", lens.k[2]);
-  line("Camera.p2", lens.k[3]);
-  line("Camera.k3", lens.k[4]);
-  line("Camera.bf", 0.0);
-  line("Camera.fps", 0.0);
-  return text + "Camera.width: " + std::to_string(c.width_px) +
+  return "%YAML:1.0\n" +
+         yaml_lines({{"Camera.fx", c.fx_px},
+                     {"Camera.fy", c.fy_px},
+                     {"Camera.cx", c.cx_px},
+                     {"Camera.cy", c.cy_px},
+                     {"Camera.k1", lens.k[0]},
+                     {"Camera.k2", lens.k[1]},
+                     {"Camera.p1", lens.k[2]},
+                     {"Camera.p2", lens.k[3]},
+                     {"Camera.k3", lens.k[4]},
+                     {"Camera.bf", 0.0},
+                     {"Camera.fps", 0.0}}) +
+         "Camera.width: " + std::to_string(c.width_px) +
          "\nCamera.height: " + std::to_string(c.height_px) + "\nCamera.RGB: 1\n";
 }
 
@@ -110,25 +103,21 @@ Result<std::string> svo_text(const CameraModel& camera) {
   }
   if (Status status = require_four(CameraFormat::kSvo, lens); !status) return status.error();
   const PinholeCamera& c = camera.pinhole();
-  std::string text = "cam_model: Pinhole\ncam_width: " + std::to_string(c.width_px) +
-                     "\ncam_height: " + std::to_string(c.height_px) + "\n";
-  const auto line = [&text](const char* key, double value) {
-    text += std::string(key) + ": " + yaml_number(value) + "\n";
-  };
-  line("cam_fx", c.fx_px);
-  line("cam_fy", c.fy_px);
-  line("cam_cx", c.cx_px);
-  line("cam_cy", c.cy_px);
-  line("cam_d0", lens.k[0]);
-  line("cam_d1", lens.k[1]);
-  line("cam_d2", lens.k[2]);
-  line("cam_d3", lens.k[3]);
-  return text;
+  return "cam_model: Pinhole\ncam_width: " + std::to_string(c.width_px) +
+         "\ncam_height: " + std::to_string(c.height_px) + "\n" +
+         yaml_lines({{"cam_fx", c.fx_px},
+                     {"cam_fy", c.fy_px},
+                     {"cam_cx", c.cx_px},
+                     {"cam_cy", c.cy_px},
+                     {"cam_d0", lens.k[0]},
+                     {"cam_d1", lens.k[1]},
+                     {"cam_d2", lens.k[2]},
+                     {"cam_d3", lens.k[3]}});
 }
 
-std::string ros_matrix(const char* name, int rows, int cols, const std::vector<double>& data) {
+std::string ros_matrix(const char* name, int rows, int cols, const std::string& data) {
   return std::string(name) + ":\n  rows: " + std::to_string(rows) +
-         "\n  cols: " + std::to_string(cols) + "\n  data: " + yaml_list(data) + "\n";
+         "\n  cols: " + std::to_string(cols) + "\n  data: " + data + "\n";
 }
 
 Result<std::string> ros_text(const CameraModel& camera, const std::string& name) {
@@ -138,17 +127,18 @@ Result<std::string> ros_text(const CameraModel& camera, const std::string& name)
   }
   const PinholeCamera& c = camera.pinhole();
   const bool fisheye = lens.model == DistortionModel::kEquidistant;
-  const int count = fisheye ? 4 : 5;
+  const std::size_t count = fisheye ? 4 : 5;
+  constexpr double kTurn[] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  const double K[] = {c.fx_px, 0, c.cx_px, 0, c.fy_px, c.cy_px, 0, 0, 1};
+  const double P[] = {c.fx_px, 0, c.cx_px, 0, 0, c.fy_px, c.cy_px, 0, 0, 0, 1, 0};
   return "image_width: " + std::to_string(c.width_px) +
          "\nimage_height: " + std::to_string(c.height_px) + "\ncamera_name: " + name + "\n" +
-         ros_matrix("camera_matrix", 3, 3, {c.fx_px, 0, c.cx_px, 0, c.fy_px, c.cy_px, 0, 0, 1}) +
+         ros_matrix("camera_matrix", 3, 3, yaml_list(K)) +
          "distortion_model: " + (fisheye ? "equidistant" : "plumb_bob") + "\n" +
-         ros_matrix("distortion_coefficients", 1, count, coefficients(lens, count)) +
-         ros_matrix("rectification_matrix", 3, 3, {1, 0, 0, 0, 1, 0, 0, 0, 1}) +
-         ros_matrix("projection_matrix",
-                    3,
-                    4,
-                    {c.fx_px, 0, c.cx_px, 0, 0, c.fy_px, c.cy_px, 0, 0, 0, 1, 0});
+         ros_matrix(
+             "distortion_coefficients", 1, static_cast<int>(count), coefficients(lens, count)) +
+         ros_matrix("rectification_matrix", 3, 3, yaml_list(kTurn)) +
+         ros_matrix("projection_matrix", 3, 4, yaml_list(P));
 }
 
 Result<std::string> kalibr_text(const CameraModel& camera) {
@@ -156,7 +146,7 @@ Result<std::string> kalibr_text(const CameraModel& camera) {
   const PinholeCamera& c = camera.pinhole();
   if (Status status = require_four(CameraFormat::kKalibr, lens); !status) return status.error();
   const char* model = "radtan";
-  int count = 4;
+  std::size_t count = 4;
   if (lens.model == DistortionModel::kNone) {
     model = "none";
     count = 0;
@@ -167,9 +157,9 @@ Result<std::string> kalibr_text(const CameraModel& camera) {
     count = 1;
   }
   return "cam0:\n  camera_model: pinhole\n  intrinsics: " +
-         yaml_list({c.fx_px, c.fy_px, c.cx_px, c.cy_px}) + "\n  distortion_model: " + model +
-         "\n  distortion_coeffs: " + yaml_list(coefficients(lens, count)) + "\n  resolution: [" +
-         std::to_string(c.width_px) + ", " + std::to_string(c.height_px) +
+         yaml_list(std::array{c.fx_px, c.fy_px, c.cx_px, c.cy_px}) +
+         "\n  distortion_model: " + model + "\n  distortion_coeffs: " + coefficients(lens, count) +
+         "\n  resolution: [" + std::to_string(c.width_px) + ", " + std::to_string(c.height_px) +
          "]\n  rostopic: /camera/image_raw\n  cam_overlaps: []\n";
 }
 

@@ -1,6 +1,9 @@
 // The ASL layout of the EuRoC data set (Burri et al. 2016, IJRR 35(10)): mav0/ with cam0, cam1,
 // ..., imu0, state_groundtruth_estimate0. Body = the aircraft's (forward-right-down); the IMU is at
 // its origin. Reference = the world frame (east-north-up).
+#include <array>
+#include <span>
+
 #include "server/export/dataset_writer.hpp"
 #include "server/files/number_text.hpp"
 #include "server/files/png_file.hpp"
@@ -16,25 +19,25 @@ namespace fs = std::filesystem;
 constexpr const char* kLineEnd = "\r\n";
 
 std::string transform_text(const Pose& T_body_sensor) {
-  return "T_BS:\n  cols: 4\n  rows: 4\n  data: [" + matrix_rows(T_body_sensor, 4, ", ") + "]\n";
+  const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> T = T_body_sensor.matrix();
+  return "T_BS:\n  cols: 4\n  rows: 4\n  data: " + yaml_list(std::span(T.data(), 16)) + "\n";
 }
 
 std::string distortion_text(const Distortion& lens) {
-  const auto& k = lens.k;
+  const std::string key = "\ndistortion_coefficients: ";
+  const std::span k(lens.k);
   switch (lens.model) {
     case DistortionModel::kEquidistant:
-      return "distortion_model: equidistant\ndistortion_coefficients: [" +
-             number_list({k[0], k[1], k[2], k[3]}, ", ") + "]\n";
+      return "distortion_model: equidistant" + key + yaml_list(k.first(4)) + "\n";
     case DistortionModel::kFov:
-      return "distortion_model: fov\ndistortion_coefficients: [" + number_text(k[0]) + "]\n";
+      return "distortion_model: fov" + key + yaml_list(k.first(1)) + "\n";
     case DistortionModel::kNone:
     case DistortionModel::kRadtan:
       break;
   }
   // k1 k2 p1 p2; k3 only if it is not 0, since readers of the format expect four coefficients.
-  const std::string third = k[4] == 0.0 ? "" : ", " + number_text(k[4]);
-  return "distortion_model: radial-tangential\ndistortion_coefficients: [" +
-         number_list({k[0], k[1], k[2], k[3]}, ", ") + third + "]\n";
+  const std::size_t count = k[4] == 0.0 ? 4 : 5;
+  return "distortion_model: radial-tangential" + key + yaml_list(k.first(count)) + "\n";
 }
 
 std::string sensor_text(const CameraSpec& camera, const FrameRate& rate) {
@@ -44,8 +47,8 @@ std::string sensor_text(const CameraSpec& camera, const FrameRate& rate) {
          transform_text(camera.T_body_camera) + "\nrate_hz: " + number_text(rate.hz()) +
          "\nresolution: [" + std::to_string(c.width_px) + ", " + std::to_string(c.height_px) +
          "]\ncamera_model: pinhole\n" +
-         "# fu, fv, cu, cv; pixel centres at integers\nintrinsics: [" +
-         number_list({c.fx_px, c.fy_px, c.cx_px, c.cy_px}, ", ") + "]\n" +
+         "# fu, fv, cu, cv; pixel centres at integers\nintrinsics: " +
+         yaml_list(std::array{c.fx_px, c.fy_px, c.cx_px, c.cy_px}) + "\n" +
          distortion_text(camera.model.distortion());
 }
 
@@ -58,17 +61,17 @@ std::string imu_text(const flight::ImuModel& imu, bool of_vehicle, double gravit
           : "# Synthetic IMU in the aircraft's body origin.\nsensor_type: imu\ncomment: "
             "synthetic\n\n";
   return about + transform_text({}) + "\nrate_hz: " + number_text(imu.rate_hz) +
-         "\n\ngyroscope_noise_density: " + number_text(imu.gyroscope_noise_rad_s_sqrt_hz) +
+         "\n\ngyroscope_noise_density: " + yaml_number(imu.gyroscope_noise_rad_s_sqrt_hz) +
          "     # [ rad / s / sqrt(Hz) ]\ngyroscope_random_walk: " +
-         number_text(imu.gyroscope_walk_rad_s2_sqrt_hz) +
+         yaml_number(imu.gyroscope_walk_rad_s2_sqrt_hz) +
          "     # [ rad / s^2 / sqrt(Hz) ]\naccelerometer_noise_density: " +
-         number_text(imu.accelerometer_noise_m_s2_sqrt_hz) +
+         yaml_number(imu.accelerometer_noise_m_s2_sqrt_hz) +
          "     # [ m / s^2 / sqrt(Hz) ]\naccelerometer_random_walk: " +
-         number_text(imu.accelerometer_walk_m_s3_sqrt_hz) +
+         yaml_number(imu.accelerometer_walk_m_s3_sqrt_hz) +
          "     # [ m / s^3 / sqrt(Hz) ]\n\n# Time stamps are in the middle of the samples' "
          "intervals.\n"
          "gravity_magnitude: " +
-         number_text(gravity_m_s2) + "     # [ m / s^2 ]\n";
+         yaml_number(gravity_m_s2) + "     # [ m / s^2 ]\n";
 }
 
 constexpr const char* kImuHeader =

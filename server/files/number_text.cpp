@@ -1,11 +1,25 @@
 #include "server/files/number_text.hpp"
 
+#include <algorithm>
+
 namespace overfly::server {
 
 std::string number_list(std::initializer_list<double> values, const std::string& separator) {
   std::string text;
   for (const double value : values) text += (text.empty() ? "" : separator) + number_text(value);
   return text;
+}
+
+std::string yaml_number(double value) {
+  std::string text = number_text(value);
+  if (text.find('.') == std::string::npos) text.insert(std::min(text.find('e'), text.size()), ".0");
+  return text;
+}
+
+std::string yaml_list(std::span<const double> values) {
+  std::string text;
+  for (const double value : values) text += (text.empty() ? "" : ", ") + yaml_number(value);
+  return "[" + text + "]";
 }
 
 std::string padded(std::int64_t number, int digits) {

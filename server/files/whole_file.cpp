@@ -117,20 +117,30 @@ Status LineFile::append(const nlohmann::json& line) {
   return file_.append(line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
+Status for_each_line(const fs::path& file,
+                     const std::function<Status(const nlohmann::json&)>& take) {
+  const Result<std::string> text = read_file_text(file, kMaxRowsBytes);
+  if (!text && text.error().code == ErrorCode::kNotFound) return {};
+  if (!text) return text.error();
+  std::string_view rest = *text;
+  std::size_t row = 0;
+  for (std::size_t end = rest.find('\n'); end != std::string_view::npos; end = rest.find('\n')) {
+    const std::string origin = file.string() + ", row " + std::to_string(++row);
+    const Result<nlohmann::json> line = parse_json(rest.substr(0, end), origin);
+    if (!line) return line.error();
+    if (Status status = take(*line); !status) return status.error().in(origin);
+    rest.remove_prefix(end + 1);
+  }
+  return {};
+}
+
 Result<std::vector<nlohmann::json>> read_lines(const fs::path& file) {
   std::vector<nlohmann::json> lines;
-  const Result<std::string> text = read_file_text(file, kMaxRowsBytes);
-  if (!text && text.error().code == ErrorCode::kNotFound) return lines;
-  if (!text) return text.error();
-  std::size_t begin = 0;
-  for (std::size_t end = text->find('\n'); end != std::string::npos;
-       end = text->find('\n', begin)) {
-    const std::string origin = file.string() + ", row " + std::to_string(lines.size() + 1);
-    Result<nlohmann::json> line = parse_json(text->substr(begin, end - begin), origin);
-    if (!line) return line.error();
-    lines.push_back(std::move(*line));
-    begin = end + 1;
-  }
+  const Status status = for_each_line(file, [&](const nlohmann::json& line) -> Status {
+    lines.push_back(line);
+    return {};
+  });
+  if (!status) return status.error();
   return lines;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <span>
@@ -66,8 +67,12 @@ class LineFile {
   AppendFile file_;
 };
 
-/// Reads such a file. A last line without line feed is the remains of a kill and is skipped. An
-/// absent file has no lines. Errors: as read_file_text; kUnreadable naming file and line.
+/// Reads such a file and passes each line to `take`, so that only one document is in memory. A last
+/// line without line feed is the remains of a kill and is skipped. An absent file has no lines.
+/// Errors: as read_file_text; kUnreadable naming file and row; those of `take`, with file and row.
+[[nodiscard]] Status for_each_line(const std::filesystem::path& file,
+                                   const std::function<Status(const nlohmann::json&)>& take);
+/// All lines of such a file. Errors: as for_each_line.
 [[nodiscard]] Result<std::vector<nlohmann::json>> read_lines(const std::filesystem::path& file);
 
 }  // namespace overfly::server

@@ -63,8 +63,8 @@ Result<MapPoints> read_map_points(const std::filesystem::path& file) {
   S.scale = head[0];
   S.rotation = Eigen::Quaterniond(head[4], head[1], head[2], head[3]);
   S.translation = {head[5], head[6], head[7]};
-  // Comparisons with a value that is not a number are false.
-  const bool is_similarity = S.scale > 0.0 && S.scale < 1e12 &&
+  // Comparisons with a value that is not a number are false; maxCoeff() may skip such a value.
+  const bool is_similarity = S.translation.allFinite() && S.scale > 0.0 && S.scale < 1e12 &&
                              std::abs(S.rotation.norm() - 1.0) < 1e-6 &&
                              S.translation.cwiseAbs().maxCoeff() < 1e12;
   if (!is_similarity) {

@@ -3,10 +3,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/camera/camera_model.hpp"
+#include "core/earth/geodesy.hpp"
 #include "core/motion/pose.hpp"
 
 namespace overfly::server {
@@ -37,7 +39,10 @@ struct RunInfo {
   std::string pacing;
   std::vector<std::string> estimators;
   std::vector<std::string> estimator_cameras;  ///< the camera whose images each estimator gets
+  std::string flight;                          ///< what is flown, for people; empty = not known yet
+  std::uint64_t seed = 0;
   std::string attribution;
+  std::optional<Geodetic> origin;    ///< of the world frame; empty until the world is open
   std::vector<std::string> cameras;  ///< names, the main camera first
   /// The imagery, not the camera, limits the result: the median is below 0.5 texels per pixel.
   bool texture_limited = false;

@@ -134,6 +134,14 @@ void put_run_info(const RunInfo& info, RunManifest& manifest) {
   manifest.texture_limited = info.texture_limited;
 }
 
+void put_description(const RunManifest& manifest, RunInfo* info) {
+  info->seed = manifest.seed;
+  if (manifest.flight) info->flight = manifest.flight->description;
+  if (!manifest.world) return;
+  info->attribution = manifest.world->attribution;
+  info->origin = manifest.world->origin;
+}
+
 RunInfo run_info_from(const RunManifest& manifest) {
   RunInfo info;
   info.status = manifest.status;
@@ -150,7 +158,7 @@ RunInfo run_info_from(const RunManifest& manifest) {
     info.estimator_cameras.push_back(estimator.camera);
   }
   for (const RunManifest::Camera& camera : manifest.cameras) info.cameras.push_back(camera.name);
-  if (manifest.world) info.attribution = manifest.world->attribution;
+  put_description(manifest, &info);
   return info;
 }
 

@@ -127,6 +127,8 @@ struct ReadManifest {
 
 /// The manifest's fields of a run's info, and the inverse.
 void put_run_info(const RunInfo& info, RunManifest& manifest);
+/// Sets what the manifest says about flight and world.
+void put_description(const RunManifest& manifest, RunInfo* info);
 [[nodiscard]] RunInfo run_info_from(const RunManifest& manifest);
 
 }  // namespace overfly::server

@@ -16,19 +16,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-/// Converts each line of a file to a row; `read` returns a Result.
-template <typename Read>
-Status for_each_row(const fs::path& file, const Read& read) {
-  const Result<std::vector<Json>> lines = read_lines(file);
-  if (!lines) return lines.error();
-  for (std::size_t i = 0; i < lines->size(); ++i) {
-    if (Status status = read((*lines)[i]); !status) {
-      return status.error().in(file.string() + ", row " + std::to_string(i + 1));
-    }
-  }
-  return {};
-}
-
 /// The cameras without frames; a run that failed before it had a camera keeps the default mount.
 void add_cameras(const RunManifest& manifest, RunRecords& records) {
   if (!manifest.cameras.empty()) records.cameras.clear();
@@ -67,7 +54,7 @@ Result<std::optional<evaluation::FlightFrame>> late_frame_from(const Json& line)
 Status read_camera_rows(const fs::path& file,
                         CameraRecords& camera,
                         std::vector<evaluation::FlightFrame>& late_frames) {
-  return for_each_row(file, [&](const Json& line) -> Status {
+  return for_each_line(file, [&](const Json& line) -> Status {
     const auto late = late_frame_from(line);
     if (!late) return late.error();
     if (*late) {
@@ -82,7 +69,7 @@ Status read_camera_rows(const fs::path& file,
 }
 
 Status read_estimator_rows(const fs::path& folder, EstimatorRecords& estimator) {
-  return for_each_row(estimate_file(folder, estimator.name), [&](const Json& line) -> Status {
+  return for_each_line(estimate_file(folder, estimator.name), [&](const Json& line) -> Status {
     Result<EstimateRecord> record = estimate_record_from(line);
     if (!record) return record.error();
     estimator.records.push_back(std::move(*record));

@@ -28,8 +28,7 @@ std::string value_text(const Json& value) {
   return value.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-// The depth is that of documents from outside: at most kMaxJsonDepth.
-// NOLINTNEXTLINE(misc-no-recursion)
+// NOLINTNEXTLINE(misc-no-recursion): documents from outside are at most kMaxJsonDepth deep
 void add_leaves(const std::string& path, const Json& value, Leaves& leaves) {
   const std::string prefix = path.empty() ? "" : path + ".";
   if (value.is_object() && !value.empty()) {
@@ -94,7 +93,7 @@ void add_difference(const std::string& path,
   }
 }
 
-// NOLINTNEXTLINE(misc-no-recursion): as add_leaves
+// NOLINTNEXTLINE(misc-no-recursion): documents from outside are at most kMaxJsonDepth deep
 void add_differences(const std::string& path,
                      const Values& values,
                      std::size_t most,

@@ -35,14 +35,13 @@ std::string paragraph(const std::string& text, const std::string& css_class) {
 }
 
 std::string table(const Table& table) {
-  std::string markup =
-      "<div class=\"wide\" role=\"region\" tabindex=\"0\" aria-label=\"" +
-      escaped(table.caption, 200) +
-      (table.fields ? "\"><table class=\"fields\">\n<caption>" : "\"><table>\n<caption>") +
-      escaped(table.caption) + "</caption>\n<thead><tr>";
+  std::string markup = "<div class=\"wide\" role=\"region\" tabindex=\"0\" aria-label=\"" +
+                       escaped(table.caption, 200) +
+                       (table.fields ? "\"><table class=\"fields\">\n" : "\"><table>\n") +
+                       "<caption><span>" + escaped(table.caption) +
+                       "</span></caption>\n<thead><tr>";
   for (const Cell& cell : table.head) {
-    Cell head = cell;
-    markup += opening("th scope=\"col\"", head) + content_of(head) + "</th>";
+    markup += opening("th scope=\"col\"", cell) + content_of(cell) + "</th>";
   }
   markup += "</tr></thead>\n<tbody>\n";
   for (const std::vector<Cell>& row : table.rows) {

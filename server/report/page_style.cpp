@@ -53,7 +53,7 @@ h3{font-size:1.08rem;margin:1.6rem 0 .4rem}
 p,ul{margin:.4rem 0}
 li{margin:.25rem 0}
 code{font-size:.88em;overflow-wrap:anywhere}
-p,li,figcaption,.fields td,.fields th{overflow-wrap:anywhere}
+p,li,figcaption,.fields td{overflow-wrap:anywhere}
 .lead{color:var(--muted);margin:0 0 1rem}
 .flight{border-left:4px solid var(--e0);padding:.1rem 0 .1rem 1rem;margin:.8rem 0 1.2rem}
 .runs{list-style:none;padding:0;color:var(--muted)}
@@ -65,17 +65,19 @@ p,li,figcaption,.fields td,.fields th{overflow-wrap:anywhere}
 .warnings b{color:var(--caution)}
 .warnings .error b{color:var(--error)}
 .warnings .note b{color:var(--muted)}
-nav a{color:var(--link);margin-right:1.1rem;white-space:nowrap}
+nav{display:flex;flex-wrap:wrap;gap:.2rem 1.1rem}
+nav a{color:var(--link);white-space:nowrap}
 a:focus-visible,summary:focus-visible,.wide:focus-visible{outline:3px solid var(--link);
 outline-offset:2px}
 .wide{overflow-x:auto;margin:.8rem 0}
 table{border-collapse:collapse;font-size:.86rem;font-variant-numeric:tabular-nums;min-width:100%}
 caption{text-align:left;color:var(--muted);padding:.3rem 0;caption-side:top}
+caption span{display:inline-block;position:sticky;left:0;max-width:calc(100vw - 2rem)}
 th,td{padding:.28rem .55rem;text-align:left;vertical-align:top;border-bottom:1px solid var(--grid)}
 thead th{background:var(--box);border-bottom:2px solid var(--muted);vertical-align:bottom}
 tbody th{font-weight:600}
 td{max-width:34rem}
-.fields th{max-width:24rem;min-width:8rem}
+.fields th{max-width:24rem;min-width:min(16rem,45vw);overflow-wrap:break-word}
 .n{text-align:right;white-space:nowrap}
 thead .n{white-space:normal}
 .best{font-weight:700}
@@ -86,7 +88,7 @@ summary{cursor:pointer;color:var(--link);font-weight:600}
 figure{margin:1.1rem 0;break-inside:avoid}
 figcaption{color:var(--muted);font-size:.92rem;margin-bottom:.2rem}
 figcaption strong{color:var(--text)}
-.pair{display:grid;grid-template-columns:repeat(auto-fit,minmax(24rem,1fr));gap:0 1rem}
+.pair{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(24rem,100%),1fr));gap:0 1rem}
 svg{display:block;width:100%;height:auto}
 svg text{font:12px system-ui,-apple-system,"Segoe UI",Roboto,"DejaVu Sans",sans-serif;
 fill:var(--text)}
@@ -110,12 +112,21 @@ svg .north{fill:var(--text);stroke:var(--page);stroke-width:2;paint-order:stroke
 .band-lost{fill:var(--lost)}
 footer{margin-top:3rem;padding-top:.6rem;border-top:2px solid var(--grid);color:var(--muted);
 font-size:.9rem}
+@media screen and (max-width:40rem){
+figure{overflow-x:auto}
+figure>svg{min-width:36rem}
+.pair svg{min-width:0}
+}
+@page{size:A4;margin:14mm 12mm}
 @media print{
 body{max-width:none;padding:0;font-size:10pt}
-nav{display:none}
+nav,details:not([open]){display:none}
 table{font-size:7.5pt}
 .wide{overflow:visible}
 th,td{padding:.15rem .3rem}
+tbody th{overflow-wrap:anywhere}
+.fields th{min-width:8rem}
+caption{break-after:avoid}
 thead{display:table-header-group}
 tr{break-inside:avoid}
 h2,h3,figcaption{break-after:avoid}

@@ -65,17 +65,32 @@ Error too_large(const ReportContent& content, std::uint64_t max_bytes) {
 
 Error report_cancelled() { return {ErrorCode::kCancelled, "the report was cancelled"}; }
 
+Error too_many_rows(const fs::path& folder,
+                    std::size_t rows,
+                    std::size_t earlier,
+                    std::size_t max_rows) {
+  return {ErrorCode::kInvalidArgument,
+          folder.string() + ": its " + std::to_string(rows) + " frames and answers, with " +
+              std::to_string(earlier) + " of the runs before it, are more than " +
+              std::to_string(max_rows) + ", the limit of one report: report it in another file"};
+}
+
 /// Reads what can be read. Errors: as make_report.
 Result<ReportContent> read_content(const std::vector<fs::path>& folders,
                                    const ReportOptions& options) {
   ReportContent content;
   content.alignment = options.alignment;
   std::optional<Error> first;
+  std::size_t rows = 0;
   for (const fs::path& folder : folders) {
     if (is_cancelled(options.cancel)) return report_cancelled();
     if (options.notice) options.notice("reading " + folder.string());
     Result<ReportRun> run = read_report_run(folder, options.alignment);
+    if (run && run->rows() > options.max_rows - rows) {
+      run = too_many_rows(folder, run->rows(), rows, options.max_rows);
+    }
     if (run) {
+      rows += run->rows();
       content.runs.push_back(std::move(*run));
       continue;
     }

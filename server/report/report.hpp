@@ -17,11 +17,14 @@ namespace overfly::server::report {
 
 inline constexpr std::size_t kMaxRuns = 32;
 inline constexpr std::uint64_t kMaxReportBytes = std::uint64_t{64} << 20U;
+/// Frames and answers of all runs, which are in memory together.
+inline constexpr std::size_t kMaxReportRows = 4'000'000;
 
 struct ReportOptions {
   /// Of the errors and poses over time, and of the summary.
   evaluation::AlignmentMode alignment = evaluation::AlignmentMode::kInitScale;
   std::uint64_t max_bytes = kMaxReportBytes;
+  std::size_t max_rows = kMaxReportRows;
   const std::atomic<bool>* cancel = nullptr;  ///< may be null
   /// Told each step, for people. May be empty.
   std::function<void(const std::string&)> notice{};

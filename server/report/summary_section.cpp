@@ -21,7 +21,8 @@ using plot::escaped;
 /// Of a time as text, up to its seconds: "2026-11-21T09:12:04".
 constexpr std::size_t kSecondsLength = 19;
 
-/// Its errors may be compared: it flew the whole flight, and on images alone.
+/// True if its errors may be compared with those of others: it completed the flight, and it was not
+/// given the truth.
 bool competes(const ReportEntry& entry) {
   return entry.metrics().score.outcome == Outcome::kCompleted && !entry.metrics().test_estimator;
 }

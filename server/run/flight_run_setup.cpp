@@ -59,7 +59,6 @@ Status FlightRun::open_maker() {
 
 Status FlightRun::describe_world() {
   const terrain::World& world = maker_->world();
-  recorder_.set_attribution(world.tiles->attribution());
   const Geodetic& origin = world.tiles->frame().origin();
   RunManifest::World& described = recorder_.manifest().world.emplace();
   described.name = world.spec.name;

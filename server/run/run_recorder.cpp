@@ -187,6 +187,7 @@ Status RunRecorder::open_camera_files() {
 
 Status RunRecorder::write_manifest() {
   put_run_info(info_, manifest_);
+  put_description(manifest_, &info_);
   timeline_->set_info(info_);
   return write_json(manifest_file(folder_), json_from(manifest_));
 }
@@ -206,10 +207,6 @@ Status RunRecorder::set_cameras() {
 void RunRecorder::set_length(std::int64_t duration_ns, std::int64_t frames_total) {
   info_.duration_ns = duration_ns;
   info_.frames_total = frames_total;
-}
-
-void RunRecorder::set_attribution(const std::string& attribution) {
-  info_.attribution = attribution;
 }
 
 Status RunRecorder::add_frame(const FrameRow& row,

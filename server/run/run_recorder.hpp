@@ -40,7 +40,7 @@ class RunRecorder {
                                                      std::shared_ptr<RunTimeline> timeline,
                                                      bool publish_images);
 
-  /// Contents of the manifest besides the run's info; written by write_manifest().
+  /// Contents of the manifest without the run's info; written by write_manifest().
   [[nodiscard]] RunManifest& manifest() { return manifest_; }
   Status write_manifest();
   /// Takes the truth while the run flies.
@@ -49,7 +49,6 @@ class RunRecorder {
   /// Adds the cameras to manifest and timeline, and stores their photometric calibration.
   Status set_cameras();
   void set_length(std::int64_t duration_ns, std::int64_t frames_total);
-  void set_attribution(const std::string& attribution);
 
   /// @param camera  index; of each frame the main camera's record comes first
   /// @param image  null if it was lost: then it is neither recorded nor shown

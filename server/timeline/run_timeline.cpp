@@ -235,10 +235,10 @@ void RunTimeline::set_status(std::size_t estimator, const EstimatorStatus& statu
 void RunTimeline::set_metrics(RunMetrics metrics) {
   for (auto& [name, estimator] : metrics.estimators) {
     for (auto& [mode, alignment] : estimator.score.alignments) {
-      alignment.position_errors_m = {};
-      alignment.rotation_errors_deg = {};
+      alignment.position_errors_m = std::vector<double>();  // "= {}" would keep the memory
+      alignment.rotation_errors_deg = std::vector<double>();
     }
-    estimator.score.matched_t_ns = {};
+    estimator.score.matched_t_ns = std::vector<std::int64_t>();
   }
   auto shared = std::make_shared<const RunMetrics>(std::move(metrics));
   const std::lock_guard lock(mutex_);

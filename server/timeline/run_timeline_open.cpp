@@ -1,4 +1,6 @@
-// RunTimeline::open: reads a run folder back into the rows of the live run.
+// Reads a run folder back into the rows of the live run.
+#include "server/timeline/opened_run.hpp"
+
 #include <optional>
 #include <unordered_map>
 #include <utility>
@@ -82,27 +84,21 @@ void tell_status(const RunRecords& records,
 }
 
 Status append_logs(const fs::path& folder, RunTimeline& timeline) {
-  const fs::path file = log_file(folder);
-  const Result<std::vector<Json>> lines = read_lines(file);
-  if (!lines) return lines.error();
-  for (std::size_t i = 0; i < lines->size(); ++i) {
-    const Result<LogRow> row = log_row_from((*lines)[i]);
-    if (!row) return row.error().in(file.string() + ", row " + std::to_string(i + 1));
+  return for_each_line(log_file(folder), [&](const Json& line) -> Status {
+    const Result<LogRow> row = log_row_from(line);
+    if (!row) return row.error();
     timeline.append_log(*row);
-  }
-  return {};
+    return {};
+  });
 }
 
 Status append_vehicle_statuses(const fs::path& folder, RunTimeline& timeline) {
-  const fs::path file = vehicle_file(folder);
-  const Result<std::vector<Json>> lines = read_lines(file);
-  if (!lines) return lines.error();
-  for (std::size_t i = 0; i < lines->size(); ++i) {
-    const Result<VehicleStatus> status = vehicle_status_from((*lines)[i]);
-    if (!status) return status.error().in(file.string() + ", row " + std::to_string(i + 1));
+  return for_each_line(vehicle_file(folder), [&](const Json& line) -> Status {
+    const Result<VehicleStatus> status = vehicle_status_from(line);
+    if (!status) return status.error();
     timeline.append_vehicle_status(*status);
-  }
-  return {};
+    return {};
+  });
 }
 
 void append_frames(const RunRecords& records, RunTimeline& timeline) {
@@ -150,14 +146,14 @@ void tell_metrics(const fs::path& folder, RunTimeline& timeline, RunInfo& info) 
 
 }  // namespace
 
-Result<std::shared_ptr<RunTimeline>> RunTimeline::open(const fs::path& folder) {
+Result<OpenedRun> open_run(const fs::path& folder) {
   const FileStamp stamp = FileStamp::of(manifest_file(folder));
   Result<RunInfo> info = read_run_info(folder);
   if (!info) return info.error();
   if (info->status == RunStatus::kUnreadable) return Error{ErrorCode::kUnreadable, info->problem};
-  const Result<ReadManifest> manifest = read_run_manifest(folder);
+  Result<ReadManifest> manifest = read_run_manifest(folder);
   if (!manifest) return manifest.error();
-  const Result<RunRecords> records = read_run_records(folder, *manifest);
+  Result<RunRecords> records = read_run_records(folder, *manifest);
   if (!records) return records.error();
   info->estimators.clear();
   for (const EstimatorRecords& estimator : records->estimators) {
@@ -173,7 +169,13 @@ Result<std::shared_ptr<RunTimeline>> RunTimeline::open(const fs::path& folder) {
   tell_metrics(folder, *timeline, *info);
   timeline->set_manifest_stamp(stamp);
   timeline->set_info(*info);
-  return timeline;
+  return OpenedRun{std::move(timeline), std::move(manifest->values), std::move(*records)};
+}
+
+Result<std::shared_ptr<RunTimeline>> RunTimeline::open(const fs::path& folder) {
+  Result<OpenedRun> opened = open_run(folder);
+  if (!opened) return opened.error();
+  return std::move(opened->timeline);
 }
 
 }  // namespace overfly::server

@@ -22,19 +22,30 @@ struct SceneSettings {
   bool follow = true;          ///< orbit and top: target = aircraft, else the trajectory's centre
   int width_px = 960;          ///< in [64, 1920]
   int height_px = 720;         ///< in [64, 1440]
-  std::string alignment = "init_scale";  ///< of the estimates shown
+};
+
+/// Tracks of a run in a scene.
+struct SceneTracks {
+  std::string run_id;
+  std::int64_t t_ns = 0;  ///< of the run: the tracks end there
+  bool live = false;      ///< use the latest rows if the run is live
+  std::string alignment = "init_scale";
+  std::size_t first_colour = 0;  ///< index of the first estimator's colour
 };
 
 struct PictureRequest {
   std::string run_id;
   enum class Kind { kCamera, kDebug, kScene } kind = Kind::kCamera;
-  std::size_t estimator = 0;  ///< kDebug
-  std::string camera;         ///< kCamera: its name; empty = the first one
-  std::int64_t t_ns = 0;      ///< selects the frame at or before it
-  bool live = false;          ///< use the latest picture if the run is live
-  SceneSettings scene;        ///< kScene
-  int quality = 75;           ///< JPEG, in [1, 100]
-  int max_width_px = 1280;    ///< camera and debug images are halved until they fit
+  std::size_t estimator = 0;             ///< kDebug
+  std::string camera;                    ///< kCamera: its name; empty = the first one
+  std::int64_t t_ns = 0;                 ///< selects the frame at or before it
+  bool live = false;                     ///< use the latest picture if the run is live
+  SceneSettings scene;                   ///< kScene
+  std::string alignment = "init_scale";  ///< kScene: of the estimates
+  std::size_t first_colour = 0;          ///< kScene: index of the first estimator's colour
+  std::vector<SceneTracks> others;       ///< kScene: other runs whose tracks are shown
+  int quality = 75;                      ///< JPEG, in [1, 100]
+  int max_width_px = 1280;               ///< camera and debug images are halved until they fit
 };
 
 struct Picture {

@@ -20,7 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMaxRibbons = 4;
+/// Of a viewer's runs, and a few more.
+constexpr std::size_t kMaxRibbons = 20;
 
 Audience::Kind audience_kind(const PictureRequest& request) {
   switch (request.kind) {
@@ -181,16 +182,33 @@ ViewPainter::Painted ViewPainter::paint_scene(const PictureRequest& request,
   auto view = renderers_.of_run(request.run_id);
   if (!view) return view.error();
   if (*view == nullptr) return std::optional<Picture>();
-  ViewRibbons& ribbons = ribbons_of(timeline, request.scene.alignment);
+  ViewRibbons& ribbons = ribbons_of(timeline, request.alignment);
   ribbons.refresh();
   const auto scene =
       scene_view(request.scene, row.T_world_body, ribbons.centre(), *(*view)->world->tiles);
-  const auto content =
-      scene_content(*timeline, ribbons, row, map_points(request, *timeline, ribbons, row));
+  auto points = map_points(request, *timeline, ribbons, row);
+  auto content = scene_content(*timeline, ribbons, row, std::move(points), request.first_colour);
+  const Geodetic& origin = (*view)->world->tiles->frame().origin();
+  for (const SceneTracks& tracks : request.others) add_tracks(tracks, origin, &content);
   auto image = (*view)->renderer->render_scene(scene, content);
   if (!image) return image.error();
   const auto shared = std::make_shared<const Image>(std::move(*image));
   return painted(encoder_.encode({row.frame, row.t_ns, shared}, request.quality, shared->width_px));
+}
+
+void ViewPainter::add_tracks(const SceneTracks& tracks,
+                             const Geodetic& origin,
+                             renderer::SceneContent* content) {
+  const auto timeline = runs_.timeline(tracks.run_id);
+  if (!timeline) return;
+  const std::int64_t t_ns = tracks.live ? std::numeric_limits<std::int64_t>::max() : tracks.t_ns;
+  const auto row = (*timeline)->frame_at(t_ns);
+  const std::optional<Geodetic> other_origin = (*timeline)->info().origin;
+  if (!row || !other_origin) return;
+  ViewRibbons& ribbons = ribbons_of(*timeline, tracks.alignment);
+  ribbons.refresh();
+  const Pose T_scene_other = T_world_other(origin, *other_origin);
+  add_other_run(**timeline, ribbons, *row, T_scene_other, tracks.first_colour, content);
 }
 
 std::vector<Eigen::Vector3f> ViewPainter::map_points(const PictureRequest& request,

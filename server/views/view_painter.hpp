@@ -44,6 +44,11 @@ class ViewPainter {
   [[nodiscard]] Painted paint_scene(const PictureRequest& request,
                                     const std::shared_ptr<RunTimeline>& timeline,
                                     const FrameRow& row);
+  /// Adds the tracks of another run; nothing while it has no frame.
+  /// @param origin  of the scene's world frame
+  void add_tracks(const SceneTracks& tracks,
+                  const Geodetic& origin,
+                  renderer::SceneContent* content);
   /// Of the run's estimators at a frame, world frame.
   std::vector<Eigen::Vector3f> map_points(const PictureRequest& request,
                                           const RunTimeline& timeline,

@@ -33,8 +33,8 @@ renderer::Ribbon ribbon_of(const std::vector<std::int64_t>& stamps_ns,
 
 }  // namespace
 
-std::array<float, 3> estimator_rgb(std::size_t estimator) {
-  return kEstimatorRgb[estimator % kEstimatorRgb.size()];
+std::array<float, 3> estimator_rgb(std::size_t index) {
+  return kEstimatorRgb[index % kEstimatorRgb.size()];
 }
 
 ViewRibbons::ViewRibbons(std::shared_ptr<const RunTimeline> timeline, std::string alignment)
@@ -99,13 +99,15 @@ void ViewRibbons::refresh_estimate(std::size_t estimator) {
 }
 
 std::vector<renderer::Ribbon> ViewRibbons::until(std::int64_t t_ns,
-                                                 const Pose& T_world_body_now) const {
+                                                 const Pose& T_world_body_now,
+                                                 std::size_t first_colour) const {
   std::vector<renderer::Ribbon> ribbons;
   ribbons.push_back(ribbon_of(truth_.t_ns, truth_.T_world_body, t_ns, kTruthRgb));
   ribbons.back().T_world_body.push_back(T_world_body_now);
   for (std::size_t i = 0; i < estimates_.size(); ++i) {
     for (const Piece& piece : estimates_[i].pieces) {
-      auto ribbon = ribbon_of(piece.t_ns, piece.T_world_body, t_ns, estimator_rgb(i));
+      auto ribbon =
+          ribbon_of(piece.t_ns, piece.T_world_body, t_ns, estimator_rgb(first_colour + i));
       // Narrower than the truth, so that the red edges stay visible where both coincide.
       ribbon.wing_span_m *= kEstimateRibbonWidth;
       if (ribbon.T_world_body.size() > 1) ribbons.push_back(std::move(ribbon));

@@ -16,9 +16,9 @@
 
 namespace overfly::server {
 
-/// Colour of the truth, and of estimator i, in [0, 1].
+/// Colour of the truth, and of an estimate by its index, in [0, 1].
 inline constexpr std::array<float, 3> kTruthRgb = {0.90F, 0.15F, 0.15F};
-[[nodiscard]] std::array<float, 3> estimator_rgb(std::size_t estimator);
+[[nodiscard]] std::array<float, 3> estimator_rgb(std::size_t index);
 
 class ViewRibbons {
  public:
@@ -29,8 +29,10 @@ class ViewRibbons {
   /// Adds the rows since the last call: every third one, which is less than a wing span apart.
   void refresh();
   /// The truth up to t (ending at `T_world_body_now`) and each estimate's tracked pieces up to t.
+  /// @param first_colour  index of the first estimator's colour
   [[nodiscard]] std::vector<renderer::Ribbon> until(std::int64_t t_ns,
-                                                    const Pose& T_world_body_now) const;
+                                                    const Pose& T_world_body_now,
+                                                    std::size_t first_colour) const;
   /// Centre of the box around the flown trajectory; zero before the first frame [m].
   [[nodiscard]] Eigen::Vector3d centre() const;
   [[nodiscard]] const std::shared_ptr<const RunTimeline>& timeline() const { return timeline_; }

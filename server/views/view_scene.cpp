@@ -1,5 +1,8 @@
 #include "server/views/view_scene.hpp"
 
+#include <utility>
+
+#include "core/earth/geodesy.hpp"
 #include "renderer/viewpoint.hpp"
 
 namespace overfly::server {
@@ -44,28 +47,45 @@ renderer::SceneView scene_view(const SceneSettings& settings,
 renderer::SceneContent scene_content(const RunTimeline& timeline,
                                      const ViewRibbons& ribbons,
                                      const FrameRow& row,
-                                     std::vector<Eigen::Vector3f> map_points_world) {
+                                     std::vector<Eigen::Vector3f> map_points_world,
+                                     std::size_t first_colour) {
   renderer::SceneContent content;
-  renderer::SceneContent::Aircraft truth;
-  truth.T_world_body = row.T_world_body;
-  truth.rgb = kTruthRgb;
-  content.aircraft.push_back(truth);
-  for (std::size_t i = 0; i < timeline.estimators().size(); ++i) {
-    const auto estimate = timeline.estimate_at(i, row.t_ns);
-    const auto T_world_body = estimate ? ribbons.T_world_body(i, *estimate) : std::nullopt;
-    if (T_world_body) {
-      renderer::SceneContent::Aircraft ghost;
-      ghost.T_world_body = *T_world_body;
-      ghost.rgb = estimator_rgb(i);
-      ghost.ghost = true;
-      content.aircraft.push_back(ghost);
-    }
-  }
+  add_other_run(timeline, ribbons, row, Pose{}, first_colour, &content);
   content.points = std::move(map_points_world);
   const PinholeCamera camera = timeline.main_camera().model.pinhole();
   content.frustum = renderer::SceneContent::Frustum{camera, row.T_world_camera, true};
-  content.ribbons = ribbons.until(row.t_ns, row.T_world_body);
   return content;
+}
+
+void add_other_run(const RunTimeline& timeline,
+                   const ViewRibbons& ribbons,
+                   const FrameRow& row,
+                   const Pose& T_world_other,
+                   std::size_t first_colour,
+                   renderer::SceneContent* content) {
+  renderer::SceneContent::Aircraft truth;
+  truth.T_world_body = T_world_other * row.T_world_body;
+  truth.rgb = kTruthRgb;
+  content->aircraft.push_back(truth);
+  for (std::size_t i = 0; i < timeline.estimators().size(); ++i) {
+    const auto estimate = timeline.estimate_at(i, row.t_ns);
+    const auto T_other_body = estimate ? ribbons.T_world_body(i, *estimate) : std::nullopt;
+    if (!T_other_body) continue;
+    renderer::SceneContent::Aircraft ghost;
+    ghost.T_world_body = T_world_other * *T_other_body;
+    ghost.rgb = estimator_rgb(first_colour + i);
+    ghost.ghost = true;
+    content->aircraft.push_back(ghost);
+  }
+  for (renderer::Ribbon& ribbon : ribbons.until(row.t_ns, row.T_world_body, first_colour)) {
+    for (Pose& pose : ribbon.T_world_body) pose = T_world_other * pose;
+    content->ribbons.push_back(std::move(ribbon));
+  }
+}
+
+Pose T_world_other(const Geodetic& origin, const Geodetic& other_origin) {
+  const LocalFrame world(origin);
+  return {world.R_world_enu_at(other_origin), world.world_from_geodetic(other_origin)};
 }
 
 }  // namespace overfly::server

@@ -188,6 +188,10 @@ TEST(Charuco, CalibratesARadtanCamera) {
   const PinholeCamera& b = camera.pinhole();
   EXPECT_NEAR(a.fx_px, b.fx_px, 1e-3 * b.fx_px);
   EXPECT_NEAR(a.fy_px, b.fy_px, 1e-3 * b.fy_px);
+  // The errors are those of the corners' noise, not of the method.
+  EXPECT_LT(std::abs(a.fx_px - b.fx_px), 4.0 * found->deviation.fx_px);
+  EXPECT_LT(std::abs(a.fy_px - b.fy_px), 4.0 * found->deviation.fy_px);
+  EXPECT_LT(found->deviation.fx_px, 1e-3 * b.fx_px);
   EXPECT_NEAR(a.cx_px, b.cx_px, 0.5);
   EXPECT_NEAR(a.cy_px, b.cy_px, 0.5);
   const double k1 = camera.distortion().k[0];

@@ -76,8 +76,9 @@ CvResult calibrate_by_opencv(const Calibrator& calibrator, int flags) {
           rms};
 }
 
-/// The file left_intrinsics.yml beside the images. It was made with one focal length for both axes
-/// and less accurate corners (RMS 0.39 px, one view 1.2 px), so the cameras agree only roughly.
+/// The file left_intrinsics.yml in the folder of the images. It was made with one focal length for
+/// both axes and less accurate corners (RMS 0.39 px, one view 1.2 px), so the cameras agree only
+/// roughly.
 TEST(Photographs, GiveTheCameraThatOpenCvPublishes) {
   PHOTOGRAPHS_OR_SKIP("left");
   cv::FileStorage file((photographs() / "left_intrinsics.yml").string(), cv::FileStorage::READ);

@@ -1,7 +1,10 @@
 // The dashboard's entry point; it connects to the server that served it.
+import 'dockview-core/dist/styles/dockview.css';
 import 'uplot/dist/uPlot.min.css';
+import './styles/themes.css';
 import './styles/base.css';
 import './styles/layout.css';
+import './styles/dock.css';
 import './styles/panels.css';
 import './styles/plots.css';
 import './styles/side.css';
@@ -9,12 +12,15 @@ import './styles/timeline.css';
 import './styles/estimators.css';
 import './styles/logs.css';
 import './styles/residuals.css';
+import './styles/narrow.css';
 import { RestClient } from './connection/rest_client';
 import { StreamClient } from './connection/stream_client';
 import { uploadByBrowser } from './connection/upload';
 import { Alignment } from './store/alignment';
 import { Cameras } from './store/cameras';
 import { Catalogue } from './store/catalogue';
+import { Layouts } from './store/layouts/layouts';
+import type { Storage } from './store/layouts/layouts';
 import { LogBrowser } from './store/logs/log_browser';
 import { LogSmoothing } from './store/logs/log_smoothing';
 import { LogWorlds } from './store/logs/log_worlds';
@@ -24,8 +30,10 @@ import { SceneControl } from './store/scene_control';
 import { Sensors } from './store/sensors/sensors';
 import { Session } from './store/session';
 import { Store } from './store/state';
+import { Themes } from './store/themes';
 import { VehicleConnect } from './store/vehicle/vehicle_connect';
 import { followAddress } from './views/address_bar';
+import { applyTheme } from './views/paint';
 import { showScreen } from './views/screen';
 
 const streamUrl = new URL('api/v1/stream', location.href);
@@ -65,6 +73,9 @@ const sensors = new Sensors(store, rest, { now_ms: () => performance.now(), late
 const logs = new LogBrowser(store, rest, session, uploadByBrowser, newKey);
 const connect = new VehicleConnect(store, rest, session, newKey);
 const worlds = new LogWorlds(store, rest);
+const storage = browserStorage();
+const layouts = new Layouts(store, notices, storage);
+const themes = new Themes(store, storage, applyTheme);
 const smoothing = new LogSmoothing(store, rest, later, newKey);
 
 const context = {
@@ -82,10 +93,24 @@ const context = {
   connect,
   notices,
   client,
+  layouts,
+  themes,
 };
 scene.setMode(store.state.sceneMode);
 showScreen(context, document.body);
 followAddress(context);
+window
+  .matchMedia('(prefers-color-scheme: light)')
+  .addEventListener('change', () => themes.refresh());
 window.addEventListener('online', () => client.connect());
 client.connect();
 catalogue.start();
+
+/** A browser that refuses to keep anything keeps nothing. */
+function browserStorage(): Storage {
+  try {
+    return window.localStorage;
+  } catch {
+    return { getItem: () => null, setItem: () => undefined };
+  }
+}

@@ -70,12 +70,13 @@ struct LogIdentity {
 /// Empty if the file cannot be read.
 [[nodiscard]] std::optional<LogIdentity> identify_log(const std::filesystem::path& log);
 
-/// The index that was saved for a log: FILE.overfly-index beside it, or a file in the cache folder
+/// The index that was saved for a log: FILE.overfly-index in its folder, or a file in the cache
+/// folder
 /// ($OVERFLY_CACHE, $XDG_CACHE_HOME/overfly or ~/.cache/overfly).
 /// @return empty if there is none, or if it is damaged or belongs to other content
 [[nodiscard]] std::optional<LogIndex> load_log_index(const std::filesystem::path& log,
                                                      const LogIdentity& identity);
-/// Saves it beside the log, or else in the cache folder: also if the log's folder is marked as
+/// Saves it in the log's folder, or else in the cache folder: also if the log's folder is marked as
 /// read-only, but the user may write there nevertheless. Where neither can be written, the next
 /// slice is read without it.
 void save_log_index(const std::filesystem::path& log,

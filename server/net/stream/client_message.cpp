@@ -17,6 +17,9 @@ constexpr std::int64_t kMaxNs = std::int64_t{1} << 62;
 constexpr std::int64_t kMaxFrame = std::int64_t{1} << 53;
 constexpr std::size_t kMaxStreams = 64;
 constexpr std::size_t kMaxNameBytes = 200;
+/// As many runs as a viewer can watch.
+constexpr std::size_t kMaxSceneRuns = 16;
+constexpr std::int64_t kMaxColour = 1000;
 
 /// The time of a day, so that offsets cannot add up to more than 64 bits.
 constexpr std::int64_t kMaxOffsetNs = 86'400'000'000'000;
@@ -60,6 +63,38 @@ bool is_picture_stream(const std::string& name) {
   return name.starts_with("debug/") && name.size() > 6 && name.size() <= kMaxNameBytes;
 }
 
+std::size_t read_colour(JsonFields* fields) {
+  return static_cast<std::size_t>(fields->integer("first_colour", 0, kMaxColour).value_or(0));
+}
+
+/// Other runs whose tracks a scene shows.
+std::vector<SceneRun> read_with(JsonFields* fields) {
+  std::vector<SceneRun> runs;
+  const json* with = fields->array("with");
+  if (with == nullptr) return runs;
+  if (with->size() > kMaxSceneRuns) {
+    fields->reject("with", ": must have at most " + std::to_string(kMaxSceneRuns) + " entries");
+    return runs;
+  }
+  for (std::size_t i = 0; i < with->size(); ++i) {
+    const std::string where = "with." + std::to_string(i);
+    if (!(*with)[i].is_object()) {
+      fields->reject(where, ": must be an object");
+      return runs;
+    }
+    JsonFields entry((*with)[i], where);
+    SceneRun run;
+    run.run_id = require_run(&entry);
+    run.first_colour = read_colour(&entry);
+    if (const Status status = entry.finish(); !status) {
+      fields->reject("with", ": " + status.error().message);
+      return runs;
+    }
+    runs.push_back(std::move(run));
+  }
+  return runs;
+}
+
 Result<StreamRequest> read_stream(const json& entry, const std::string& where) {
   if (!entry.is_object()) {
     return Error{ErrorCode::kInvalidArgument, where + ": must be an object"};
@@ -79,6 +114,12 @@ Result<StreamRequest> read_stream(const json& entry, const std::string& where) {
   stream.view = read_name(&fields, "view");
   if (!stream.view.empty() && stream.name != "scene") {
     fields.reject("view", ": applies only to the stream \"scene\"");
+  }
+  stream.first_colour = read_colour(&fields);
+  stream.with = read_with(&fields);
+  if ((stream.first_colour != 0 || !stream.with.empty()) && stream.name != "scene") {
+    fields.reject(stream.with.empty() ? "first_colour" : "with",
+                  ": applies only to the stream \"scene\"");
   }
   stream.max_hz = fields.number("max_hz", 0.1, 120.0).value_or(stream.max_hz);
   stream.quality = static_cast<int>(fields.integer("quality", 1, 100).value_or(stream.quality));

@@ -18,14 +18,23 @@ namespace overfly::net {
 inline constexpr std::size_t kMaxRuns = 16;  ///< that one client watches
 
 /// One requested picture stream.
+/// Another run whose tracks a scene shows.
+struct SceneRun {
+  std::string run_id;
+  std::size_t first_colour = 0;  ///< index of its first estimator's colour
+  bool operator==(const SceneRun&) const = default;
+};
+
 struct StreamRequest {
   std::string run_id;
   std::string name;  ///< "camera", "scene" or "debug/NAME"
   double max_hz = 31.0;
   int quality = 75;
   int max_width_px = 1280;
-  std::string camera = {};  ///< for the stream "camera"; empty = the run's first
-  std::string view = {};    ///< for the stream "scene": the name of its view
+  std::string camera = {};          ///< for the stream "camera"; empty = the run's first
+  std::string view = {};            ///< for the stream "scene": the name of its view
+  std::size_t first_colour = 0;     ///< likewise: index of the first estimator's colour
+  std::vector<SceneRun> with = {};  ///< likewise: other runs whose tracks it shows
   bool operator==(const StreamRequest&) const = default;
 };
 

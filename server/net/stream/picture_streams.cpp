@@ -99,7 +99,7 @@ void PictureStreams::restart(const std::string& run_id) {
     stream.slot = PictureSlot(stream.request.max_hz);
     stream.slot.set_limit_hz(limit_hz_);
     stream.ticket = 0;
-    stream.sent_frame.reset();
+    stream.sent.reset();
     stream.error_sent.clear();
   }
   show_again();
@@ -118,10 +118,11 @@ std::optional<PictureRequest> PictureStreams::request_of(const Stream& stream,
   if (request.kind == PictureRequest::Kind::kScene) {
     const auto view = views_.find(stream.request.view);
     if (view != views_.end()) request.scene = view->second.settings;
-    request.scene.alignment = instant.alignment;
+    request.alignment = instant.alignment;
+    request.first_colour = stream.request.first_colour;
   }
   if (request.kind == PictureRequest::Kind::kDebug) {
-    const auto& names = instant.timeline.estimators();
+    const auto& names = instant.timeline->estimators();
     const std::string name = stream.request.name.substr(std::string(kDebugPrefix).size());
     const auto found = std::find(names.begin(), names.end(), name);
     if (found == names.end()) return std::nullopt;
@@ -130,17 +131,43 @@ std::optional<PictureRequest> PictureStreams::request_of(const Stream& stream,
   return request;
 }
 
-void PictureStreams::pump(const Instant& instant, ViewerPort* port, std::int64_t now_ns) {
+const PictureStreams::Instant* PictureStreams::find_instant(const std::vector<Instant>& instants,
+                                                            const std::string& run_id) {
+  const auto found = std::find_if(instants.begin(), instants.end(), [&](const Instant& instant) {
+    return instant.run_id == run_id;
+  });
+  return found == instants.end() ? nullptr : &*found;
+}
+
+std::int64_t PictureStreams::add_others(const Stream& stream,
+                                        const std::vector<Instant>& instants,
+                                        PictureRequest* request) {
+  std::int64_t frames = 0;
+  for (const SceneRun& run : stream.request.with) {
+    const Instant* other = find_instant(instants, run.run_id);
+    if (other == nullptr || other->run_id == stream.request.run_id) continue;
+    request->others.push_back(
+        {other->run_id, other->t_ns, other->live, other->alignment, run.first_colour});
+    frames += other->frame;
+  }
+  return frames;
+}
+
+void PictureStreams::pump(const std::vector<Instant>& instants,
+                          ViewerPort* port,
+                          std::int64_t now_ns) {
   for (Stream& stream : streams_) {
-    if (stream.request.run_id != instant.run_id) continue;
-    const auto request = request_of(stream, instant);
+    const Instant* instant = find_instant(instants, stream.request.run_id);
+    if (instant == nullptr) continue;
+    auto request = request_of(stream, *instant);
     if (!request) continue;
-    stream.slot.want({instant.frame, change_of(stream)});
+    const std::int64_t others = add_others(stream, instants, &*request);
+    stream.slot.want({instant->frame, change_of(stream), others});
     const auto key = stream.slot.take(now_ns);
     if (!key) continue;
     stream.ticket = ++tickets_;
-    stream.live = instant.live;
-    stream.change = key->change;
+    stream.live = instant->live;
+    stream.drawn = *key;
     port->draw({stream.id, stream.ticket}, *request);
   }
 }
@@ -157,8 +184,9 @@ void PictureStreams::ready(const PictureTicket& ticket,
                            ViewerPort* port) {
   Stream* stream = find(ticket);
   if (stream == nullptr) return;
-  const bool same =
-      picture && stream->sent_frame == picture->frame && stream->sent_change == stream->change;
+  PictureKey shown = stream->drawn;
+  if (picture) shown.frame = picture->frame;
+  const bool same = picture && stream->sent == shown;
   if (!picture || same) {
     if (!picture) tell_error(stream, picture.error(), port);
     stream->slot.done();
@@ -167,8 +195,7 @@ void PictureStreams::ready(const PictureTicket& ticket,
   }
   stream->error_sent.clear();
   stream->slot.answered_with(picture->frame);
-  stream->sent_frame = picture->frame;
-  stream->sent_change = stream->change;
+  stream->sent = shown;
   PictureHeader header;
   header.stream_id = stream->id;
   header.sequence = stream->sequence++;

@@ -26,7 +26,7 @@ class PictureStreams {
 
   /// The viewer's position in a run.
   struct Instant {
-    const server::RunTimeline& timeline;
+    const server::RunTimeline* timeline;
     std::string run_id;
     std::int64_t frame = 0;
     std::int64_t t_ns = 0;
@@ -45,8 +45,8 @@ class PictureStreams {
   /// Makes every stream send the picture of the present instant again.
   void show_again() { ++change_; }
 
-  /// Requests every picture of a run that is due.
-  void pump(const Instant& instant, ViewerPort* port, std::int64_t now_ns);
+  /// Requests every picture that is due. @param instants  of the watched runs that have frames
+  void pump(const std::vector<Instant>& instants, ViewerPort* port, std::int64_t now_ns);
   /// Sends a picture that was drawn, or reports to the client why it was not.
   void ready(const PictureTicket& ticket, const Result<server::Picture>& picture, ViewerPort* port);
   void sent(const PictureTicket& ticket);
@@ -64,14 +64,19 @@ class PictureStreams {
     std::uint32_t sequence = 0;
     std::uint64_t ticket = 0;  ///< of the picture in progress; 0 = none
     bool live = false;         ///< it was requested as a live one
-    std::uint64_t change = 0;  ///< the change count at its request
-    std::optional<std::int64_t> sent_frame;
-    std::uint64_t sent_change = 0;
+    PictureKey drawn;          ///< the key of its request
+    std::optional<PictureKey> sent;
     std::string error_sent;
   };
   Stream* find(const PictureTicket& ticket);
   std::optional<server::PictureRequest> request_of(const Stream& stream,
                                                    const Instant& instant) const;
+  /// Adds the other runs that a scene shows. @return the sum of their frames
+  static std::int64_t add_others(const Stream& stream,
+                                 const std::vector<Instant>& instants,
+                                 server::PictureRequest* request);
+  static const Instant* find_instant(const std::vector<Instant>& instants,
+                                     const std::string& run_id);
   static void tell_error(Stream* stream, const Error& error, ViewerPort* port);
 
   /// Settings of the scene view of a stream.

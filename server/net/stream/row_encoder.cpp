@@ -208,6 +208,8 @@ json run_json(const server::RunInfo& info) {
           {"frames_total", info.frames_total},
           {"pacing", info.pacing},
           {"estimators", info.estimators},
+          {"flight", info.flight},
+          {"seed", info.seed},
           {"attribution", info.attribution},
           {"texture_limited", info.texture_limited},
           {"notice", info.notice.empty() ? json(nullptr) : json(info.notice)},

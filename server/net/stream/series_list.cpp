@@ -1,7 +1,9 @@
 #include "server/net/stream/series_list.hpp"
 
+#include <algorithm>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "server/net/stream/row_encoder.hpp"
 
@@ -50,6 +52,27 @@ constexpr Series kVehicle[] = {{"battery_v", "battery", "V", "battery_voltage"},
                                {"clock_rate", "clock rate", "", "clock_rate"},
                                {"round_trip_ms", "round trip", "ms", "round_trip"}};
 
+/// The unit that the name of a counter ends with, and the rest of the name as words.
+std::pair<std::string, std::string> label_and_unit(const std::string& counter) {
+  constexpr std::pair<const char*, const char*> kUnits[] = {{"_px", "px"},
+                                                            {"_mb", "MB"},
+                                                            {"_ms", "ms"},
+                                                            {"_s", "s"},
+                                                            {"_m", "m"},
+                                                            {"_deg", "deg"},
+                                                            {"_hz", "Hz"},
+                                                            {"_percent", "%"}};
+  std::string label = counter;
+  std::string unit;
+  for (const auto& [suffix, name] : kUnits) {
+    if (!counter.ends_with(suffix) || counter.size() == std::string(suffix).size()) continue;
+    label.resize(counter.size() - std::string(suffix).size());
+    unit = name;
+  }
+  std::replace(label.begin(), label.end(), '_', ' ');
+  return {label, unit};
+}
+
 void add(const std::string& stream, std::span<const Series> list, json* all) {
   for (const Series& series : list) {
     json entry = {{"stream", stream},
@@ -73,10 +96,11 @@ json series_json(const server::RunTimeline& timeline) {
     add(stream, kPose, &all);
     add(stream, kEstimate, &all);
     for (const std::string& counter : timeline.counter_names(i)) {
+      const auto [label, unit] = label_and_unit(counter);
       all.push_back({{"stream", stream},
                      {"column", counter_column(counter)},
-                     {"label", counter},
-                     {"unit", ""},
+                     {"label", label},
+                     {"unit", unit},
                      {"group", counter_column(counter)}});
     }
   }

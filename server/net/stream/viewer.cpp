@@ -312,15 +312,15 @@ void Viewer::send_playback(std::int64_t now_ns) {
 }
 
 void Viewer::pump_pictures(std::int64_t now_ns) {
+  std::vector<PictureStreams::Instant> instants;
   for (const auto& watch : watches_) {
     const auto row = watch->timeline().frame_at(watch->run_t_ns(clock_.t_ns()));
     if (!row) continue;
     const bool live = clock_.live() && watch->flying();
-    pictures_.pump(
-        {watch->timeline(), watch->run_id(), row->frame, row->t_ns, live, watch->alignment()},
-        &port_,
-        now_ns);
+    instants.push_back(
+        {&watch->timeline(), watch->run_id(), row->frame, row->t_ns, live, watch->alignment()});
   }
+  pictures_.pump(instants, &port_, now_ns);
 }
 
 void Viewer::picture_ready(const PictureTicket& ticket,

@@ -75,8 +75,13 @@ Distortion read_distortion(const FileField& lens) {
   const auto model = distortion_model_from(name.text());
   if (!model) name.reject("be a known lens model");
   distortion.model = *model;
-  const std::vector<FileField> coefficients = lens.at("coefficients").items();
-  for (std::size_t i = 0; i < coefficients.size() && i < distortion.k.size(); ++i) {
+  const FileField list = lens.at("coefficients");
+  const std::vector<FileField> coefficients = list.items();
+  const auto most = static_cast<std::size_t>(coefficient_count(*model));
+  if (coefficients.size() > most) {
+    list.reject("have at most " + std::to_string(most) + " numbers for " + name.text());
+  }
+  for (std::size_t i = 0; i < coefficients.size(); ++i) {
     distortion.k[i] = coefficients[i].number();
   }
   return distortion;

@@ -52,12 +52,11 @@ std::vector<Point> estimate_line(const ReportRun& run,
                                  const ReportEstimate& estimate,
                                  const PointAt& point_at) {
   LineBuilder line(gap_limit_of(run, estimate));
-  for (std::size_t i = 0; i < estimate.rows.size(); ++i) {
-    const std::int64_t t_ns = estimate.rows[i].sample.t_ns;
-    if (estimate.T_world_body[i]) {
-      line.add(t_ns, point_at(t_ns, *estimate.T_world_body[i]));
+  for (const ReportAnswer& answer : estimate.answers) {
+    if (answer.T_world_body) {
+      line.add(answer.t_ns, point_at(answer.t_ns, *answer.T_world_body));
     } else {
-      line.interrupt(s_from_ns(t_ns));
+      line.interrupt(s_from_ns(answer.t_ns));
     }
   }
   return std::move(line).line();
@@ -119,17 +118,14 @@ std::vector<Point> estimate_path(const ReportRun& run,
 std::vector<Point> matched_over_time(const ReportRun& run,
                                      const ReportEstimate& estimate,
                                      const std::vector<double>& values) {
-  const EstimatorMetrics& metrics = run.metrics_of(estimate);
-  const std::vector<std::int64_t>& matched_t_ns = metrics.score.matched_t_ns;
+  const std::vector<std::int64_t>& matched_t_ns = run.metrics_of(estimate).score.matched_t_ns;
   LineBuilder line(gap_limit_of(run, estimate));
   std::size_t next = 0;
-  for (const EstimateRow& row : estimate.rows) {
-    const std::int64_t t_ns = row.sample.t_ns;
+  for (const ReportAnswer& answer : estimate.answers) {
+    const std::int64_t t_ns = answer.t_ns;
     while (next < matched_t_ns.size() && matched_t_ns[next] < t_ns) ++next;
-    const bool scored =
-        row.sample.state == TrackingState::kTracking && row.sample.map_id == metrics.map_id;
-    const bool matched =
-        scored && next < matched_t_ns.size() && next < values.size() && matched_t_ns[next] == t_ns;
+    const bool matched = answer.scored && next < matched_t_ns.size() && next < values.size() &&
+                         matched_t_ns[next] == t_ns;
     if (matched) {
       line.add(t_ns, {s_from_ns(t_ns), values[next]});
     } else {
@@ -141,10 +137,9 @@ std::vector<Point> matched_over_time(const ReportRun& run,
 
 std::vector<Point> latency_over_time(const ReportRun& run, const ReportEstimate& estimate) {
   LineBuilder line(gap_limit_of(run, estimate));
-  for (const EstimateRow& row : estimate.rows) {
-    // A row without an entry in timings.json has none.
-    if (row.latency_ms > 0.0) {
-      line.add(row.sample.t_ns, {s_from_ns(row.sample.t_ns), row.latency_ms});
+  for (const ReportAnswer& answer : estimate.answers) {
+    if (answer.latency_ms > 0.0) {
+      line.add(answer.t_ns, {s_from_ns(answer.t_ns), answer.latency_ms});
     }
   }
   return std::move(line).line();
@@ -180,14 +175,15 @@ std::vector<plot::Band> state_bands(const ReportRun& run, const ReportEstimate& 
     return plot::BandKind::kNone;
   };
   std::vector<plot::Band> bands;
-  for (std::size_t i = 0; i < estimate.rows.size(); ++i) {
-    const EstimateSample& sample = estimate.rows[i].sample;
-    const std::int64_t last_ns = run.main_frames().back().t_ns;
-    const std::int64_t next_ns = i + 1 < estimate.rows.size() ? estimate.rows[i + 1].sample.t_ns
-                                                              : std::max(sample.t_ns, last_ns);
-    bands.push_back({s_from_ns(sample.t_ns),
-                     s_from_ns(std::min(next_ns, sample.t_ns + limit_ns)),
-                     kind_of(sample.state)});
+  const std::vector<ReportAnswer>& answers = estimate.answers;
+  const std::int64_t last_ns = run.main_frames().back().t_ns;
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    const std::int64_t t_ns = answers[i].t_ns;
+    const std::int64_t next_ns =
+        i + 1 < answers.size() ? answers[i + 1].t_ns : std::max(t_ns, last_ns);
+    bands.push_back({s_from_ns(t_ns),
+                     s_from_ns(std::min(next_ns, t_ns + limit_ns)),
+                     kind_of(answers[i].state)});
   }
   return bands;
 }

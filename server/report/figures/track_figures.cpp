@@ -51,7 +51,7 @@ void widen(Range& range, double span) {
   if (lacking > 0.0) range = {range.low - 0.5 * lacking, range.high + 0.5 * lacking};
 }
 
-/// What is shown of one axis: the truth, and estimates up to a flight's size beside it.
+/// The shown range of one axis: that of the truth, extended to the estimates by `flight_m` at most.
 Range shown_range(const Range& truth, const Range& all, double flight_m, double least_m) {
   if (!(truth.low <= truth.high)) return plot::usable(truth);
   Range range{std::max(std::min(all.low, truth.low), truth.low - flight_m),
@@ -65,7 +65,8 @@ struct Extent {
   Range y;
 };
 
-/// What is shown of a pair of axes.
+/// The shown ranges of a pair of axes: estimates are shown up to one size of the flight outside the
+/// truth.
 Extent shown_extent(const std::vector<Series>& paths) {
   const std::vector<Series> truth(paths.begin(), paths.begin() + 1);
   const Range x = plot::x_range_of(truth);

@@ -1,15 +1,13 @@
 #include "server/report/run/read_run.hpp"
 
 #include <limits>
-#include <memory>
 #include <utility>
 
 #include "server/files/whole_file.hpp"
 #include "server/record/run_folder.hpp"
-#include "server/record/run_records.hpp"
 #include "server/report/run/run_warnings.hpp"
 #include "server/scoring/metrics.hpp"
-#include "server/timeline/run_timeline.hpp"
+#include "server/timeline/opened_run.hpp"
 
 namespace overfly::server::report {
 namespace {
@@ -26,20 +24,26 @@ Status check_over(const fs::path& folder, const RunInfo& info) {
                    "; it can be reported when it is over"};
 }
 
-/// The body's pose in the world at each row, by one alignment.
-std::vector<std::optional<Pose>> aligned_poses(const std::vector<EstimateRow>& rows,
-                                               const EstimatorMetrics& metrics,
-                                               const Pose& T_camera_body,
-                                               AlignmentMode shown) {
-  std::vector<std::optional<Pose>> poses(rows.size());
+/// The answers, with the body's pose by the alignment that is shown.
+std::vector<ReportAnswer> answers_of(const std::vector<EstimateRow>& rows,
+                                     const EstimatorMetrics& metrics,
+                                     const Pose& T_camera_body,
+                                     AlignmentMode shown) {
   const auto alignment = metrics.score.alignments.find(shown);
-  if (alignment == metrics.score.alignments.end()) return poses;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const EstimateSample& sample = rows[i].sample;
-    const bool scored = sample.state == TrackingState::kTracking && sample.map_id == metrics.map_id;
-    if (scored) poses[i] = alignment->second.S_world_vo * sample.T_vo_camera * T_camera_body;
+  std::vector<ReportAnswer> answers;
+  answers.reserve(rows.size());
+  for (const EstimateRow& row : rows) {
+    const EstimateSample& sample = row.sample;
+    ReportAnswer& answer = answers.emplace_back();
+    answer.t_ns = sample.t_ns;
+    answer.state = sample.state;
+    answer.scored = sample.state == TrackingState::kTracking && sample.map_id == metrics.map_id;
+    answer.latency_ms = row.latency_ms;
+    if (answer.scored && alignment != metrics.score.alignments.end()) {
+      answer.T_world_body = alignment->second.S_world_vo * sample.T_vo_camera * T_camera_body;
+    }
   }
-  return poses;
+  return answers;
 }
 
 /// Errors in the axes of the path: their means by every alignment, and each pose's by the one
@@ -74,40 +78,50 @@ std::vector<ReportEstimate> estimates_in(const RunTimeline& timeline,
     ReportEstimate& estimate = estimates.emplace_back();
     estimate.name = estimator.name;
     estimate.camera = estimator.camera;
-    estimate.rows = timeline.estimates(i, 0, kAllRows);
     estimate.status = statuses.at(i);
     const Pose T_camera_body = records.camera_of(estimator).T_body_camera.inverse();
-    estimate.T_world_body = aligned_poses(estimate.rows, scored, T_camera_body, shown);
+    estimate.answers = answers_of(timeline.estimates(i, 0, kAllRows), scored, T_camera_body, shown);
     add_axis_errors(records, estimator, scored, shown, estimate);
   }
   return estimates;
 }
 
+/// Errors of single poses need much memory, and are drawn by one alignment.
+void drop_errors_not_shown(AlignmentMode shown, RunMetrics& metrics) {
+  for (auto& [name, estimator] : metrics.estimators) {
+    for (auto& [mode, alignment] : estimator.score.alignments) {
+      if (mode == shown) continue;
+      alignment.position_errors_m = std::vector<double>();  // "= {}" would keep the memory
+      alignment.rotation_errors_deg = std::vector<double>();
+    }
+  }
+}
+
 }  // namespace
 
 Result<ReportRun> read_report_run(const fs::path& folder, AlignmentMode shown) {
-  const Result<std::shared_ptr<RunTimeline>> timeline = RunTimeline::open(folder);
-  if (!timeline) return timeline.error();
-  const Result<ReadManifest> manifest = read_run_manifest(folder);
-  if (!manifest) return manifest.error();
+  Result<OpenedRun> opened = open_run(folder);
+  if (!opened) return opened.error();
+  const RunTimeline& timeline = *opened->timeline;
+  RunRecords& records = opened->records;
   ReportRun run;
   run.folder = folder;
   run.id = folder_name(folder);
-  run.info = (*timeline)->info();
+  run.info = timeline.info();
   if (Status status = check_over(folder, run.info); !status) return status.error();
-  const Result<RunRecords> records = read_run_records(folder, *manifest);
-  if (!records) return records.error();
-  if (records->main_camera().frames.empty()) {
+  if (records.main_camera().frames.empty()) {
     return Error{ErrorCode::kNotFound, folder.string() + ": the run recorded no frames"};
   }
-  run.manifest = manifest->values;
-  run.metrics = metrics_from(*records);
-  run.cameras = (*timeline)->cameras();
-  for (std::size_t i = 0; i < run.cameras.size(); ++i) {
-    run.frames.push_back((*timeline)->frames(0, kAllRows, i));
+  run.manifest = std::move(opened->manifest);
+  run.metrics = metrics_from(records);
+  run.cameras = timeline.cameras();
+  run.estimates = estimates_in(timeline, records, run.metrics, shown);
+  for (CameraRecords& camera : records.cameras) {
+    camera.frames.shrink_to_fit();
+    run.frames.push_back(std::move(camera.frames));
   }
-  run.estimates = estimates_in(**timeline, *records, run.metrics, shown);
-  RunWarnings warnings(run, (*timeline)->metrics().get(), (*timeline)->logs(0, kAllRows));
+  drop_errors_not_shown(shown, run.metrics);
+  RunWarnings warnings(run, timeline.metrics().get(), timeline.logs(0, kAllRows));
   if (Result<nlohmann::json> scenario = read_json(scenario_file(folder))) {
     run.scenario = std::move(*scenario);
   } else {

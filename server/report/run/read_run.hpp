@@ -11,7 +11,7 @@ namespace overfly::server::report {
 /// Reads a run that is over, also one that failed or was interrupted, and scores it from its rows,
 /// exactly as `overfly evaluate --run` does. Nothing is written.
 /// @param shown  the alignment of the poses and errors over time
-/// Errors: as RunTimeline::open and read_run_records; kConflict for a run that is not over;
+/// Errors: as RunTimeline::open; kConflict for a run that is not over;
 /// kNotFound for one without frames.
 [[nodiscard]] Result<ReportRun> read_report_run(const std::filesystem::path& folder,
                                                 evaluation::AlignmentMode shown);

@@ -19,14 +19,21 @@
 
 namespace overfly::server::report {
 
+/// What a report shows of an estimator's answer to a frame.
+struct ReportAnswer {
+  std::int64_t t_ns = 0;
+  TrackingState state = TrackingState::kInitialising;
+  bool scored = false;      ///< it tracks, in the map that is scored
+  double latency_ms = 0.0;  ///< 0 = not known
+  /// Estimated pose of the body by the alignment that is shown; only of answers that are scored.
+  std::optional<Pose> T_world_body = {};
+};
+
 /// One estimator of a run.
 struct ReportEstimate {
   std::string name;
   std::size_t camera = kMainCamera;  ///< index of the camera whose images it gets
-  std::vector<EstimateRow> rows;
-  /// Estimated pose of the body by the alignment that is shown, for each row; empty for rows that
-  /// do not track or belong to a map that is not scored.
-  std::vector<std::optional<Pose>> T_world_body;
+  std::vector<ReportAnswer> answers;
   EstimatorStatus status;
   std::map<evaluation::AlignmentMode, evaluation::AxisRmse> axis_rmse;
   /// By the alignment that is shown; one for each of Score::matched_t_ns.
@@ -49,7 +56,7 @@ struct ReportRun {
   RunInfo info;
   RunManifest manifest;
   nlohmann::json scenario;  ///< as flown; null if the file cannot be read
-  RunMetrics metrics;       ///< with the errors of single poses
+  RunMetrics metrics;       ///< with the errors of single poses by the alignment that is shown
   std::vector<RunCamera> cameras;
   std::vector<std::vector<FrameRow>> frames;  ///< by camera
   std::vector<ReportEstimate> estimates;      ///< in the order of the manifest
@@ -58,6 +65,13 @@ struct ReportRun {
 
   [[nodiscard]] const EstimatorMetrics& metrics_of(const ReportEstimate& estimate) const {
     return metrics.estimators.at(estimate.name);
+  }
+  /// Frames and answers: what the run's size in memory depends on.
+  [[nodiscard]] std::size_t rows() const {
+    std::size_t count = 0;
+    for (const std::vector<FrameRow>& of_camera : frames) count += of_camera.size();
+    for (const ReportEstimate& estimate : estimates) count += estimate.answers.size();
+    return count;
   }
   [[nodiscard]] const std::vector<FrameRow>& main_frames() const { return frames.at(kMainCamera); }
 };

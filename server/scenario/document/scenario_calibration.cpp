@@ -26,7 +26,12 @@ Status read_calibration(Json& camera,
   const std::filesystem::path file = files.resolve(camera.at("calibration"));
   if (Status status = sources.check(file, path + ".calibration"); !status) return status;
   const Result<CameraModel> model = read_calibrated_camera(file);
-  if (!model) return model.error().in(path + ".calibration");
+  if (!model) {
+    // The scenario names a file that is no calibration: an error of the scenario.
+    const Error error = model.error().in(path + ".calibration");
+    const bool no_camera = error.code == ErrorCode::kUnreadable;
+    return no_camera ? Error{ErrorCode::kInvalidArgument, error.message} : error;
+  }
   camera.erase("calibration");
   camera.update(json_from(*model));
   if (model->distortion().none()) camera.erase("distortion");

@@ -237,6 +237,7 @@ TEST(Euroc, NoiseDensitiesAreThoseAskedForAndBiasesAreInTheTruth) {
   options.imu->rate_hz = 100.0;
   options.imu->gyroscope_noise_rad_s_sqrt_hz = 2e-3;
   options.imu->gyroscope_walk_rad_s2_sqrt_hz = 1e-3;
+  options.imu->accelerometer_walk_m_s3_sqrt_hz = 2e-4;
   const ExportSource source = small_source({"duration_s=20"});
   exported(source, options);
   ExportOptions exact = export_options(folder.path() / "exact", DatasetFormat::kEuroc);
@@ -261,6 +262,8 @@ TEST(Euroc, NoiseDensitiesAreThoseAskedForAndBiasesAreInTheTruth) {
   const std::string yaml = read_text(folder.path() / "noisy" / "mav0" / "imu0" / "sensor.yaml");
   EXPECT_THAT(numbers_behind(yaml, "gyroscope_noise_density"), ::testing::Contains(2e-3));
   EXPECT_THAT(numbers_behind(yaml, "rate_hz"), ElementsAre(100.0));
+  // PyYAML reads 2e-04, without a point, as text.
+  EXPECT_THAT(yaml, HasSubstr("accelerometer_random_walk: 2.0e-04 "));
 }
 
 TEST(Euroc, StatesAndExtrinsicsGiveTheCamerasPoses) {

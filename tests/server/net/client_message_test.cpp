@@ -43,6 +43,32 @@ TEST(ClientMessage, ReadsSubscriptionsWithDefaults) {
   EXPECT_EQ(subscribe.pictures[3], (StreamRequest{"r", "scene", 31.0, 75, 1280, "", "map"}));
 }
 
+TEST(ClientMessage, ReadsTheOtherRunsOfAScene) {
+  const auto subscribe = parse_as<SubscribeCommand>(
+      R"({"type":"subscribe","pictures":[{"run":"r","name":"scene","first_colour":2,
+          "with":[{"run":"q","first_colour":5},{"run":"s"}]}]})");
+  ASSERT_EQ(subscribe.pictures.size(), 1U);
+  EXPECT_EQ(subscribe.pictures[0].first_colour, 2U);
+  EXPECT_EQ(subscribe.pictures[0].with, (std::vector<SceneRun>{{"q", 5}, {"s", 0}}));
+}
+
+TEST(ClientMessage, RefusesWrongOtherRuns) {
+  const auto error_of = [](const std::string& stream) {
+    const std::string text = R"({"type":"subscribe","pictures":[{"run":"r",)" + stream + "}]}";
+    const ClientMessage message = parse_client_message(text);
+    return message.status ? std::string("no error") : message.status.error().message;
+  };
+  EXPECT_THAT(error_of(R"("name":"camera","with":[{"run":"q"}])"), HasSubstr("only to the stream"));
+  EXPECT_THAT(error_of(R"("name":"camera","first_colour":1)"), HasSubstr("only to the stream"));
+  EXPECT_THAT(error_of(R"("name":"scene","first_colour":-1)"), HasSubstr("first_colour"));
+  EXPECT_THAT(error_of(R"("name":"scene","with":[7])"), HasSubstr("with.0"));
+  EXPECT_THAT(error_of(R"("name":"scene","with":[{"first_colour":1}])"), HasSubstr("run"));
+  EXPECT_THAT(error_of(R"("name":"scene","with":[{"run":"q","x":1}])"), HasSubstr("x"));
+  std::string many;
+  for (int i = 0; i < 17; ++i) many += std::string(i == 0 ? "" : ",") + R"({"run":"q"})";
+  EXPECT_THAT(error_of(R"("name":"scene","with":[)" + many + "]"), HasSubstr("at most 16"));
+}
+
 TEST(ClientMessage, TurnsDegreesOfAViewIntoRadians) {
   const auto view =
       parse_as<ViewCommand>(R"({"type":"view","mode":"orbit","azimuth_deg":180,"width_px":960})");

@@ -18,6 +18,12 @@ PlaybackClock finished(std::int64_t end_ns) {
   return clock;
 }
 
+PlaybackClock playing(std::int64_t end_ns) {
+  PlaybackClock clock = finished(end_ns);
+  clock.play();
+  return clock;
+}
+
 TEST(PlaybackClock, WaitsPausedAtTheStartOfAFinishedRun) {
   PlaybackClock clock = finished(10 * kSecond);
   clock.advance(5 * kSecond);
@@ -27,8 +33,7 @@ TEST(PlaybackClock, WaitsPausedAtTheStartOfAFinishedRun) {
 }
 
 TEST(PlaybackClock, PlaysByTheWallClockTimesTheSpeed) {
-  PlaybackClock clock = finished(100 * kSecond);
-  clock.play();
+  PlaybackClock clock = playing(100 * kSecond);
   clock.advance(2 * kSecond);
   EXPECT_EQ(clock.t_ns(), 2 * kSecond);
   clock.set_speed(10.0);
@@ -40,8 +45,7 @@ TEST(PlaybackClock, PlaysByTheWallClockTimesTheSpeed) {
 }
 
 TEST(PlaybackClock, DoesNotCountTimeWhilePaused) {
-  PlaybackClock clock = finished(100 * kSecond);
-  clock.play();
+  PlaybackClock clock = playing(100 * kSecond);
   clock.advance(kSecond);
   clock.pause();
   clock.advance(50 * kSecond);
@@ -51,8 +55,7 @@ TEST(PlaybackClock, DoesNotCountTimeWhilePaused) {
 }
 
 TEST(PlaybackClock, StopsAtTheEndAndPlaysAgainFromTheStart) {
-  PlaybackClock clock = finished(3 * kSecond);
-  clock.play();
+  PlaybackClock clock = playing(3 * kSecond);
   clock.advance(9 * kSecond);
   EXPECT_EQ(clock.t_ns(), 3 * kSecond);
   EXPECT_FALSE(clock.playing());
@@ -81,8 +84,7 @@ TEST(PlaybackClock, ClampsSeeksToWhatIsRecorded) {
 }
 
 TEST(PlaybackClock, PlaysOnAfterASeek) {
-  PlaybackClock clock = finished(30 * kSecond);
-  clock.play();
+  PlaybackClock clock = playing(30 * kSecond);
   clock.seek(10 * kSecond);
   clock.advance(kSecond);
   EXPECT_EQ(clock.t_ns(), 11 * kSecond);
@@ -132,8 +134,7 @@ TEST(PlaybackClock, BecomesLiveWhenItCatchesUp) {
 }
 
 TEST(PlaybackClock, IgnoresAClockThatGoesBack) {
-  PlaybackClock clock = finished(10 * kSecond);
-  clock.play();
+  PlaybackClock clock = playing(10 * kSecond);
   clock.advance(2 * kSecond);
   clock.advance(kSecond);
   EXPECT_EQ(clock.t_ns(), 2 * kSecond);

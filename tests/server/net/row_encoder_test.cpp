@@ -1,10 +1,14 @@
 #include "server/net/stream/row_encoder.hpp"
-#include "server/record/rows/rows.hpp"
-#include "server/record/run_info.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <map>
+#include <string>
+
+#include "server/net/stream/series_list.hpp"
+#include "server/record/rows/rows.hpp"
+#include "server/record/run_info.hpp"
 
 namespace overfly::net {
 namespace {
@@ -70,6 +74,21 @@ TEST(RowEncoder, LeavesPosesOutWhileNotTracking) {
   EXPECT_DOUBLE_EQ(columns["yaw_deg"][1], 3.0);
 }
 
+TEST(SeriesList, TakesTheUnitOfACounterFromItsName) {
+  server::RunTimeline timeline({}, {"a"});
+  const std::map<std::string, double> counters = {
+      {"map_memory_mb", 1.0}, {"residual_px", 1.0}, {"inliers", 1.0}, {"_m", 1.0}};
+  timeline.append_estimate(0, {}, counters);
+  std::map<std::string, std::string> units;
+  for (const auto& series : series_json(timeline)) {
+    const std::string column = series.at("column");
+    if (column.starts_with("counter.")) units[series.at("label")] = series.at("unit");
+  }
+  const std::map<std::string, std::string> expected = {
+      {"map memory", "MB"}, {"residual", "px"}, {"inliers", ""}, {" m", ""}};
+  EXPECT_EQ(units, expected);
+}
+
 TEST(RowEncoder, SaysNullForARunWithoutError) {
   server::RunInfo info;
   EXPECT_TRUE(run_json(info).at("error").is_null());
@@ -79,6 +98,10 @@ TEST(RowEncoder, SaysNullForARunWithoutError) {
   info.notice = "making the built-in world: 30 %";
   EXPECT_EQ(run_json(info).at("notice"), info.notice);
   EXPECT_TRUE(run_json(info).at("world_change").is_null());
+  info.flight = "course: 25 m/s";
+  info.seed = 7;
+  EXPECT_EQ(run_json(info).at("flight"), info.flight);
+  EXPECT_EQ(run_json(info).at("seed"), 7);
   info.world_change = "ortho.tif has changed since this run was flown";
   EXPECT_EQ(run_json(info).at("world_change"), info.world_change);
 }

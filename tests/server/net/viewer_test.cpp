@@ -48,6 +48,13 @@ std::shared_ptr<server::RunTimeline> scored_run() {
   return timeline;
 }
 
+server::FrameRow frame_row(std::int64_t frame, std::int64_t t_ns) {
+  server::FrameRow row;
+  row.frame = frame;
+  row.t_ns = t_ns;
+  return row;
+}
+
 class ViewerTest : public ::testing::Test {
  protected:
   /// Sends a command and carries out what it asks of the connection.
@@ -69,7 +76,7 @@ class ViewerTest : public ::testing::Test {
     const auto [ticket, request] = port_.drawn.back();
     port_.drawn.clear();
     viewer_.picture_ready(ticket, Error{ErrorCode::kCancelled, ""}, now_ns_);
-    return request.scene.alignment;
+    return request.alignment;
   }
 
   std::shared_ptr<server::RunTimeline> timeline_ = scored_run();
@@ -114,6 +121,50 @@ TEST_F(ViewerTest, ShowsScenesByTheAlignmentThatItReports) {
     if (text.at("type") == "playback") playback = text;
   }
   EXPECT_EQ(playback.at("runs").at("r").at("alignment"), "init_scale");
+}
+
+/// The other runs of a scene are shown at their own times, if they are watched.
+TEST_F(ViewerTest, AsksForScenesWithOtherRuns) {
+  timeline_->append_frame(frame_row(1, 1'000'000'000));
+  timeline_->append_frame(frame_row(2, 2'000'000'000));
+  const json other = {{"run", "q"}, {"first_colour", 4}};
+  const json absent = {{"run", "absent"}};
+  const json scene = {
+      {"run", "r"}, {"name", "scene"}, {"first_colour", 2}, {"with", {other, absent}}};
+  command({{"type", "watch"}, {"run", "r"}, {"request", 1}});
+  command({{"type", "watch"}, {"run", "q"}, {"offset_ns", 1'000'000'000}, {"request", 2}});
+  command({{"type", "subscribe"}, {"pictures", {scene}}, {"request", 3}});
+  command({{"type", "seek"}, {"t_ns", 2'000'000'000}, {"request", 4}});
+  drawn_alignment();
+  ASSERT_FALSE(port_.drawn.empty());
+  const server::PictureRequest& request = port_.drawn.back().second;
+  EXPECT_EQ(request.run_id, "r");
+  EXPECT_EQ(request.t_ns, 2'000'000'000);
+  EXPECT_EQ(request.first_colour, 2U);
+  ASSERT_EQ(request.others.size(), 1U);
+  EXPECT_EQ(request.others[0].run_id, "q");
+  EXPECT_EQ(request.others[0].t_ns, 1'000'000'000);
+  EXPECT_EQ(request.others[0].first_colour, 4U);
+}
+
+/// Where the main run has ended, the scene goes on with the others.
+TEST_F(ViewerTest, DrawsASceneAgainWhenOnlyAnotherRunMoves) {
+  timeline_->append_frame(frame_row(1, 1'000'000'000));
+  const json scene = {{"run", "r"}, {"name", "scene"}, {"with", {{{"run", "q"}}}}};
+  command({{"type", "watch"}, {"run", "r"}, {"request", 1}});
+  command({{"type", "watch"}, {"run", "q"}, {"offset_ns", 2'000'000'000}, {"request", 2}});
+  command({{"type", "subscribe"}, {"pictures", {scene}}, {"request", 3}});
+  command({{"type", "seek"}, {"t_ns", 2'500'000'000}, {"request", 4}});
+  command({{"type", "pause"}, {"request", 5}});
+  command({{"type", "seek"}, {"t_ns", 2'500'000'000}, {"request", 6}});
+  drawn_alignment();
+  drawn_alignment();
+  command({{"type", "play"}, {"request", 7}});
+  now_ns_ += 900'000'000;
+  viewer_.tick(now_ns_);
+  ASSERT_EQ(port_.drawn.size(), 1U);
+  EXPECT_EQ(port_.drawn[0].second.t_ns, 1'000'000'000);
+  EXPECT_EQ(port_.drawn[0].second.others.at(0).t_ns, 1'000'000'000);
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstring>
+
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -75,9 +77,18 @@ TEST_F(MapPointsTest, AreRefusedWhereTheFileIsDamaged) {
       EXPECT_THAT(read.error().message, HasSubstr("000007.bin"));
     }
   }
-  MapPoints no_similarity = two_points();
-  no_similarity.S_world_vo.scale = -1.0;
-  write(bytes_of(no_similarity));
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t i = 0; i < 8; ++i) {
+    std::vector<std::uint8_t> no_similarity = whole;
+    std::memcpy(no_similarity.data() + i * sizeof(double), &kNan, sizeof(double));
+    write(no_similarity);
+    const auto read = read_map_points(file());
+    ASSERT_FALSE(read.ok()) << i;
+    EXPECT_THAT(read.error().message, HasSubstr("no similarity"));
+  }
+  MapPoints mirrored = two_points();
+  mirrored.S_world_vo.scale = -1.0;
+  write(bytes_of(mirrored));
   EXPECT_THAT(read_map_points(file()).error().message, HasSubstr("no similarity"));
 }
 

@@ -146,6 +146,10 @@ TEST_F(RunManifestFile, GivesAndTakesTheInfoOfTheRun) {
   EXPECT_THAT(info.estimators, ElementsAre("f", "p"));
   EXPECT_THAT(info.estimator_cameras, ElementsAre("tilted", ""));
   EXPECT_EQ(info.attribution, "those who took it");
+  EXPECT_EQ(info.flight, "a course");
+  EXPECT_EQ(info.seed, 0xFEDC'BA98'7654'3210U);
+  ASSERT_TRUE(info.origin);
+  EXPECT_EQ(info.origin->alt_ellipsoid_m, 431.0);
   RunManifest manifest;
   put_run_info(info, manifest);
   EXPECT_EQ(manifest.status, RunStatus::kFailed);

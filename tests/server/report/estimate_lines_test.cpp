@@ -105,15 +105,15 @@ TEST(FlightGroups, AreByWhatWasFlown) {
   for (std::size_t i = 0; i < 100; i += 3) third.push_back(other_camera.frames[0][i]);
   other_camera.frames[0] = third;
   EXPECT_TRUE(same_flight(run, other_camera));
-  ReportRun beside = bent_run(100);
-  for (FrameRow& row : beside.frames[0]) row.T_world_body.translation.y() += 0.2;
-  EXPECT_FALSE(same_flight(run, beside));
+  ReportRun shifted = bent_run(100);
+  for (FrameRow& row : shifted.frames[0]) row.T_world_body.translation.y() += 0.2;
+  EXPECT_FALSE(same_flight(run, shifted));
   ReportRun shorter = bent_run(80);
   EXPECT_FALSE(same_flight(run, shorter));
   ReportRun elsewhere = bent_run(100);
   elsewhere.manifest.world->origin = geodetic_from_deg(47.0, 8.0001, 500.0);
   EXPECT_FALSE(same_flight(run, elsewhere));
-  const auto groups = flight_groups({run, beside, other_camera, elsewhere});
+  const auto groups = flight_groups({run, shifted, other_camera, elsewhere});
   EXPECT_EQ(groups, (std::vector<std::vector<std::size_t>>{{0, 2}, {1}, {3}}));
 }
 

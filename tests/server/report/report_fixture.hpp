@@ -47,18 +47,19 @@ inline void add_estimator(ReportRun& run,
   ReportEstimate estimate;
   estimate.name = name;
   for (const FrameRow& frame : run.frames[0]) {
-    EstimateRow row;
-    row.sample.frame = frame.frame;
-    row.sample.t_ns = frame.t_ns;
-    row.sample.state = state_of(frame.frame);
-    row.sample.T_vo_camera = frame.T_world_camera;
-    row.sample.T_vo_camera.translation.z() += 1.0;
-    row.latency_ms = 5.0;
-    estimate.rows.push_back(row);
-    recorded.records.push_back({row.sample, {}, false, "", {}});
-    const bool tracks = row.sample.state == TrackingState::kTracking;
-    estimate.T_world_body.push_back(tracks ? std::optional<Pose>(frame.T_world_body)
-                                           : std::nullopt);
+    EstimateSample sample;
+    sample.frame = frame.frame;
+    sample.t_ns = frame.t_ns;
+    sample.state = state_of(frame.frame);
+    sample.T_vo_camera = frame.T_world_camera;
+    sample.T_vo_camera.translation.z() += 1.0;
+    recorded.records.push_back({sample, {}, false, "", {}});
+    const bool tracks = sample.state == TrackingState::kTracking;
+    estimate.answers.push_back({sample.t_ns,
+                                sample.state,
+                                tracks,
+                                5.0,
+                                tracks ? std::optional<Pose>(frame.T_world_body) : std::nullopt});
   }
   records.estimators.push_back(recorded);
   run.metrics.estimators[name] = metrics_from(records).estimators.at(name);

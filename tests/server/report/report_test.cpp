@@ -380,6 +380,16 @@ TEST_F(Report, HasLimits) {
   ASSERT_FALSE(large.ok());
   EXPECT_EQ(large.error().code, ErrorCode::kInvalidArgument);
   EXPECT_THAT(large.error().message, HasSubstr("larger than"));
+  options = {};
+  options.max_rows = 100;  // 21 frames and twice as many answers are one run
+  const MadeReport full = made({run_folder(), run_folder()}, options);
+  EXPECT_EQ(full.runs, 1U);
+  ASSERT_EQ(full.left_out.size(), 1U);
+  EXPECT_THAT(
+      full.left_out[0].reason,
+      HasSubstr("its 63 frames and answers, with 63 of the runs before it, are more than 100"));
+  options.max_rows = 10;
+  EXPECT_FALSE(make_report({run_folder()}, options).ok());
   EXPECT_FALSE(make_report({}).ok());
   const auto many = make_report(std::vector<fs::path>(kMaxRuns + 1, run_folder()));
   ASSERT_FALSE(many.ok());

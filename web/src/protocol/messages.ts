@@ -25,6 +25,10 @@ export interface PictureStream {
   max_hz?: number;
   quality?: number;
   max_width_px?: number;
+  /** Of a scene: index of the first estimator's colour. */
+  first_colour?: number;
+  /** Of a scene: other runs whose tracks it shows. */
+  with?: { run: string; first_colour: number }[];
 }
 
 /** Number of rows that the client already has, by data stream. */

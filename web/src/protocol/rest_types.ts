@@ -23,6 +23,9 @@ export interface Run {
   frames_total: number;
   pacing: string;
   estimators: string[];
+  /** What is flown, for people: airspeed, height, ...; '' = not known yet. */
+  flight: string;
+  seed: number;
   attribution: string;
   /** The imagery, not the camera, limits the result. */
   texture_limited: boolean;

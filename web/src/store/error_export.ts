@@ -2,6 +2,7 @@
 // and LaTeX with those that the dashboard shows.
 import { alignmentModes, kErrorFigures, outcomeText } from './error_table';
 import type { AlignmentErrors, EstimatorMetrics } from '../protocol/rest_types';
+import { csvLine } from './csv';
 import { formatNumber } from './format';
 import type { WatchedRun } from './watched_run';
 
@@ -57,16 +58,7 @@ function csv(entries: Entry[]): string {
     ...keys.map((key) => numberOf(errors[key]) ?? ''),
   ]);
   const head = ['run', 'title', 'estimator', 'outcome', 'outcome_time_s', 'coverage', 'alignment'];
-  return (
-    [[...head, ...keys], ...lines].map((line) => line.map(csvCell).join(',')).join('\n') + '\n'
-  );
-}
-
-/** Text that a spreadsheet would take for a formula gets an apostrophe. */
-function csvCell(cell: string | number): string {
-  if (typeof cell === 'number') return String(cell);
-  const text = /^[=+\-@\t]/.test(cell) ? `'${cell}` : cell;
-  return /[",\n\r]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
+  return [[...head, ...keys], ...lines].map(csvLine).join('');
 }
 
 function markdown(head: string[], rows: string[][]): string {

@@ -1,4 +1,4 @@
-// State stored in the address bar: the runs, and the instant unless the view is live.
+// State stored in the address bar: the layout, the runs, and the instant unless the view is live.
 
 export interface ShownRun {
   id: string;
@@ -13,11 +13,13 @@ export interface Permalink {
   main: string | null;
   /** Of the clock. */
   t_ns: number | null;
+  /** Name of a ready-made layout; null = none is asked for. */
+  layout: string | null;
 }
 
 /**
- * "#run=ID&run=ID@OFFSET&main=ID&t=SECONDS": OFFSET in seconds, by default 0. Unknown parts are
- * ignored.
+ * "#layout=NAME&run=ID&run=ID@OFFSET&main=ID&t=SECONDS": OFFSET in seconds, by default 0. Unknown
+ * parts are ignored.
  */
 export function parsePermalink(hash: string): Permalink {
   const fields = new URLSearchParams(hash.replace(/^#/, ''));
@@ -27,12 +29,14 @@ export function parsePermalink(hash: string): Permalink {
     runs: runs.filter(({ id }, i) => id !== '' && runs.findIndex((run) => run.id === id) === i),
     main: main === '' ? null : main,
     t_ns: nanoseconds(fields.get('t')),
+    layout: fields.get('layout'),
   };
 }
 
-export function formatPermalink({ runs, main, t_ns }: Permalink): string {
-  if (runs.length === 0) return '';
+export function formatPermalink({ runs, main, t_ns, layout }: Permalink): string {
   const fields = new URLSearchParams();
+  if (layout !== null) fields.set('layout', layout);
+  if (runs.length === 0) return layout === null ? '' : `#${fields.toString()}`;
   for (const { id, offset_ns } of runs) {
     fields.append('run', offset_ns === 0 ? id : `${id}@${(offset_ns / 1e9).toFixed(3)}`);
   }

@@ -7,9 +7,10 @@ export function matching(runs: readonly Run[], text: string): Run[] {
     .toLowerCase()
     .split(/\s+/)
     .filter((word) => word !== '');
-  return runs.filter(({ id, title, scenario, status, pacing, estimators, texture_limited }) => {
+  return runs.filter(({ texture_limited, estimators, ...run }) => {
     const limited = texture_limited ? 'texture-limited' : '';
-    const all = [id, title, scenario, status, pacing, limited, ...estimators];
+    const { id, title, scenario, flight, status, pacing } = run;
+    const all = [id, title, scenario, flight, status, pacing, limited, ...estimators];
     const searched = all.join(' ').toLowerCase();
     return words.every((word) => searched.includes(word));
   });

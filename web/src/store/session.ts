@@ -11,6 +11,7 @@ import { pictureRates } from './picture_rates';
 import { clockOf } from './run_playback';
 import { shownAlignment } from './state';
 import type { State, Store } from './state';
+import { tracksOf } from './tracks';
 import { WatchedRun } from './watched_run';
 
 /** Limit of the server. */
@@ -87,6 +88,7 @@ export class Session implements StreamListener {
       return;
     }
     this.watch(id, offset_ns);
+    this.subscribe();
     this.changedRuns();
   }
 
@@ -307,6 +309,18 @@ export class Session implements StreamListener {
     if (clock.playing) this.command({ type: 'pause' });
   }
 
+  /** All watched runs, each with the colours of its tracks in the plots. */
+  private sceneTracks(): Pick<PictureStream, 'first_colour' | 'with'> {
+    const { main } = this.state;
+    const firsts = tracksOf(this.state).filter(({ name }) => name === '');
+    const all = firsts.map(({ run, colour }) => ({ run: run.id, first_colour: colour }));
+    const own = all.find(({ run }) => run === main?.id);
+    return {
+      ...(own === undefined || own.first_colour === 0 ? {} : { first_colour: own.first_colour }),
+      ...(all.length < 2 ? {} : { with: all.filter((one) => one !== own) }),
+    };
+  }
+
   private subscribe(): void {
     const { main } = this.state;
     if (main === null || main.run === null) return;
@@ -314,7 +328,7 @@ export class Session implements StreamListener {
     const max_width_px = this.pictureWidth_px;
     const small = { max_hz: 15, quality: 75, max_width_px };
     const pictures: PictureStream[] = [
-      { run, name: 'scene', max_hz: 20, quality: 80 },
+      { run, name: 'scene', max_hz: 20, quality: 80, ...this.sceneTracks() },
       {
         run,
         name: 'camera',

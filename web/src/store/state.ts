@@ -153,23 +153,31 @@ export function cameraPictures({ camera }: Pick<WatchedRun, 'camera'>): string {
 }
 
 /** Views redraw themselves for the topics that changed since the last frame. */
-export type Topic =
-  | 'connection'
-  | 'lists'
-  | 'launch'
-  | 'run'
-  | 'rows'
-  | 'log'
-  | 'metrics'
-  | 'estimators'
-  | 'playback'
-  | 'pictures'
-  | 'scene'
-  | 'cameras'
-  | 'sensors'
-  | 'notices'
-  | 'help'
-  | 'logs';
+const kTopicNames = [
+  'connection',
+  'lists',
+  'launch',
+  'run',
+  'rows',
+  'log',
+  'metrics',
+  'estimators',
+  'playback',
+  'pictures',
+  'scene',
+  'cameras',
+  'sensors',
+  'notices',
+  'help',
+  'logs',
+  'layout',
+  'theme',
+  'palette',
+] as const;
+export type Topic = (typeof kTopicNames)[number];
+
+/** Everything, for a view that is new or was hidden. */
+export const kTopics: ReadonlySet<Topic> = new Set(kTopicNames);
 
 export class Store {
   readonly state = new State();

@@ -10,7 +10,7 @@ export interface Track {
   label: string;
   /** Of its run; '' if one run is watched. */
   letter: string;
-  /** Index of the estimate's colour; -1 for the truth. */
+  /** Index of the estimate's colour; of the truth: of its run's first estimate. */
   colour: number;
   /** Position of its run among the watched ones. */
   order: number;
@@ -34,7 +34,7 @@ export function tracksOf(state: Pick<State, 'watched'>): Track[] {
       name,
       letter,
       label: `${prefix}${name === '' ? 'truth' : name}`,
-      colour: name === '' ? -1 : colour++,
+      colour: name === '' ? colour : colour++,
       order,
       shown: !run.hidden.has(name),
     }));

@@ -1,14 +1,16 @@
 // Synchronises the address bar and the store, so that a copied address shows the same run and
 // instant.
 import { formatPermalink, parsePermalink } from '../store/permalink';
+import { kDefaultLayout } from '../store/layouts/ready_layouts';
 import type { Context } from './view';
 
 const kWrite_ms = 400;
 
 export function followAddress(context: Context): void {
-  const { store, session } = context;
+  const { store, session, layouts } = context;
   const open = () => {
-    const { runs, main, t_ns } = parsePermalink(location.hash);
+    const { runs, main, t_ns, layout } = parsePermalink(location.hash);
+    if (layout !== null && layout !== layouts.shared) layouts.choose(layout);
     session.showRuns(runs, main, t_ns);
   };
   window.addEventListener('hashchange', open);
@@ -17,8 +19,19 @@ export function followAddress(context: Context): void {
     const { watched, runId, clock } = store.state;
     if (runId !== null && clock === null) return;
     const t_ns = clock === null || clock.live ? null : clock.t_ns;
-    const hash = formatPermalink({ runs: watched, main: runId, t_ns });
+    const hash = formatPermalink({
+      runs: watched,
+      main: runId,
+      t_ns,
+      layout: layoutToShow(context),
+    });
     if (hash !== location.hash)
       history.replaceState(null, '', hash === '' ? location.pathname : hash);
   }, kWrite_ms);
+}
+
+/** The default one is not named while there is nothing else to link to. */
+function layoutToShow({ store, layouts }: Context): string | null {
+  const { shared } = layouts;
+  return shared === kDefaultLayout && store.state.runId === null ? null : shared;
 }

@@ -1,17 +1,19 @@
-// The common colour scheme of the 3D view's ribbons, the curves and the table.
+// The common colour scheme of the 3D view's ribbons, the curves and the table, as in themes.css.
+// Canvases need paint().
 
 import type { CurveHue } from '../store/plots/plot_specs';
+import type { Track } from '../store/tracks';
 
-export const kTruthColour = 'rgb(230, 38, 38)';
+export const kTruthColour = 'var(--truth)';
 
 /** By the estimator's index in the run. */
 const kEstimateColours = [
-  'rgb(38, 115, 255)',
-  'rgb(26, 184, 89)',
-  'rgb(242, 166, 26)',
-  'rgb(166, 89, 230)',
-  'rgb(26, 191, 204)',
-  'rgb(217, 89, 153)',
+  'var(--estimate-1)',
+  'var(--estimate-2)',
+  'var(--estimate-3)',
+  'var(--estimate-4)',
+  'var(--estimate-5)',
+  'var(--estimate-6)',
 ] as const;
 
 export function estimateColour(index: number): string {
@@ -19,8 +21,8 @@ export function estimateColour(index: number): string {
 }
 
 /** Curves of which neither truth nor an estimate is meant. */
-const kNeutralColours = ['rgb(150, 178, 220)', 'rgb(200, 165, 120)', 'rgb(140, 195, 160)'] as const;
-const kAxisColours = ['#ff9288', '#5fd07a', '#79b8ff'] as const;
+const kNeutralColours = ['var(--neutral-1)', 'var(--neutral-2)', 'var(--neutral-3)'] as const;
+const kAxisColours = ['var(--axis-x)', 'var(--axis-y)', 'var(--axis-z)'] as const;
 
 // The truth lies below the estimates and stays visible where they agree.
 const kTruthWidth_px = 3;
@@ -52,29 +54,33 @@ export function curveStyle(hue: CurveHue): CurveStyle {
   }
 }
 
+export function trackHue({ name, order, colour }: Track): CurveHue {
+  return name === '' ? { kind: 'truth', order } : { kind: 'estimate', colour };
+}
+
 function cyclic(colours: readonly string[], index: number): string {
   return colours[index % colours.length] ?? '';
 }
 
 export const kStateColours: Readonly<Record<string, string>> = {
-  INITIALISING: '#6b7688',
-  TRACKING: '#3fb950',
-  LOST: '#e5534b',
-  CRASHED: '#ff7b72',
+  INITIALISING: 'var(--idle)',
+  TRACKING: 'var(--good)',
+  LOST: 'var(--bad)',
+  CRASHED: 'var(--bad-text)',
 };
 
-const kFaultColours: Readonly<Record<string, string>> = {
-  dropped_frames: '#ff7b72',
-  frozen_frame: '#79c0ff',
-  blackout: '#d0d7de',
-  saturation_burst: '#f2cc60',
-  dirt: '#c08a4e',
-  water_drop: '#56d4dd',
-  stamp_jitter: '#d2a8ff',
-  stamp_offset: '#ff9bce',
-  gps_outage: '#7ee787',
-};
+const kFaults: ReadonlySet<string> = new Set([
+  'dropped_frames',
+  'frozen_frame',
+  'blackout',
+  'saturation_burst',
+  'dirt',
+  'water_drop',
+  'stamp_jitter',
+  'stamp_offset',
+  'gps_outage',
+]);
 
 export function faultColour(kind: string): string {
-  return kFaultColours[kind] ?? '#eab766';
+  return `var(--fault-${kFaults.has(kind) ? kind : 'other'})`;
 }

@@ -58,7 +58,6 @@ export class ErrorPanel implements View {
   update(changed: ReadonlySet<Topic>): void {
     const { state } = this.context.store;
     if (changed.has('metrics') || changed.has('run')) {
-      void this.context.alignment.refresh();
       this.drawModes(state);
       this.draw(state);
     }

@@ -3,6 +3,8 @@ import type { State, Topic } from '../store/state';
 import { texelsPerPixel, textureHint, textureLimited } from '../store/error_table';
 import { formatNumber, formatPercent } from '../store/format';
 import { h, setAttribute, setText } from './dom';
+import { LayoutMenu } from './frame/layout_menu';
+import { ThemeMenu } from './theme_menu';
 import type { Context, View } from './view';
 
 export class HeaderBar implements View {
@@ -25,9 +27,13 @@ export class HeaderBar implements View {
     class: 'chip connection',
     'data-role': 'connection',
   });
+  private readonly layouts: LayoutMenu;
+  private readonly themes: ThemeMenu;
   private countdown = 0;
 
   constructor(private readonly context: Context) {
+    this.layouts = new LayoutMenu(context);
+    this.themes = new ThemeMenu(context);
     this.connection.addEventListener('click', () => {
       if (context.store.state.connection.status === 'locked') location.reload();
       else context.client.connect();
@@ -56,6 +62,8 @@ export class HeaderBar implements View {
       this.error,
       h('span', { class: 'spacer' }),
       this.attribution,
+      this.layouts.root,
+      this.themes.root,
       this.connection,
       help,
     );
@@ -63,6 +71,8 @@ export class HeaderBar implements View {
 
   update(changed: ReadonlySet<Topic>): void {
     const { state } = this.context.store;
+    this.layouts.update(changed);
+    this.themes.update(changed);
     if (changed.has('run') || changed.has('metrics')) this.updateRun(state);
     if (changed.has('connection')) this.updateConnection(state);
   }

@@ -1,6 +1,10 @@
 // Icons as inline SVG paths: nothing to download.
 
 const kPaths = {
+  layout: 'M2 2.5h12v11H2zM3.5 4v8h3V4zM8 4v3.2h4.5V4zM8 8.7V12h4.5V8.7z',
+  sun: 'M8 5a3 3 0 1 1 0 6 3 3 0 0 1 0-6zM7.3 1.5h1.4v2H7.3zM7.3 12.5h1.4v2H7.3zM1.5 7.3h2v1.4h-2zM12.5 7.3h2v1.4h-2zM2.9 3.9l1-1 1.4 1.4-1 1zM10.7 11.7l1-1 1.4 1.4-1 1zM11.7 5.3l-1-1 1.4-1.4 1 1zM3.9 13.1l-1-1 1.4-1.4 1 1z',
+  search:
+    'M7 2.5a4.5 4.5 0 0 1 3.6 7.2l3.2 3.2-1 1-3.2-3.2A4.5 4.5 0 1 1 7 2.5zM7 4a3 3 0 1 0 0 6 3 3 0 0 0 0-6z',
   play: 'M5 3.5v9l7.5-4.5z',
   pause: 'M4.5 3.5h2.5v9H4.5zM9 3.5h2.5v9H9z',
   stepBack: 'M11.5 3.5v9L6 8zM4 3.5h1.6v9H4z',
@@ -27,6 +31,7 @@ export function icon(name: IconName): SVGSVGElement {
   svg.setAttribute('aria-hidden', 'true');
   const path = document.createElementNS(kSvg, 'path');
   path.setAttribute('d', kPaths[name]);
+  path.setAttribute('fill-rule', 'evenodd');
   svg.append(path);
   return svg;
 }

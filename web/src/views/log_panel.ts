@@ -8,6 +8,7 @@ import { makePanel } from './panel';
 import type { Context, View } from './view';
 
 const kMostLines = 500;
+const kNear_px = 24;
 
 export class LogPanel implements View {
   readonly root: HTMLElement;
@@ -16,11 +17,19 @@ export class LogPanel implements View {
   private data: RunData | null = null;
   private generation = 0;
   private shown = 0;
+  /** The newest line is kept in view. */
+  private atEnd = true;
 
   constructor(private readonly context: Context) {
     this.panel = makePanel('log', 'Log');
     this.panel.body.append(this.list);
     this.root = this.panel.root;
+    this.list.addEventListener('scroll', () => {
+      const left_px = this.list.scrollHeight - this.list.scrollTop - this.list.clientHeight;
+      if (this.list.clientHeight > 0) this.atEnd = left_px < kNear_px;
+    });
+    // A hidden panel loses its place.
+    new ResizeObserver(() => this.scroll()).observe(this.list);
   }
 
   update(changed: ReadonlySet<Topic>): void {
@@ -32,7 +41,6 @@ export class LogPanel implements View {
       this.shown = 0;
       this.list.replaceChildren();
     }
-    const atEnd = this.list.scrollHeight - this.list.scrollTop - this.list.clientHeight < 24;
     const first = Math.max(this.shown, data.log.length - kMostLines);
     for (const { t_ns, level, text, source } of data.log.slice(first)) {
       const time = h('time', {}, formatTime(t_ns));
@@ -41,7 +49,11 @@ export class LogPanel implements View {
     }
     this.shown = data.log.length;
     while (this.list.children.length > kMostLines) this.list.firstElementChild?.remove();
-    if (atEnd) this.list.scrollTop = this.list.scrollHeight;
+    this.scroll();
     this.panel.showEmpty(data.log.length === 0 ? 'Nothing logged.' : null);
+  }
+
+  private scroll(): void {
+    if (this.atEnd) this.list.scrollTop = this.list.scrollHeight;
   }
 }

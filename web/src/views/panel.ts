@@ -1,7 +1,6 @@
 // The frame of every panel: title, tools, and the number of the frame that it shows.
 import type { RunPlayback } from '../store/run_playback';
 import { h, setAttribute, setText } from './dom';
-import { icon } from './icons';
 
 export interface Panel {
   root: HTMLElement;
@@ -22,18 +21,14 @@ export function frameOf(playback: RunPlayback | null): number | null {
   return playback === null || playback.frame < 0 ? null : playback.frame;
 }
 
-export function makePanel(name: string, title: string, expandable = false): Panel {
+export function makePanel(name: string, title: string): Panel {
   const badge = h('span', { class: 'frame-badge', title: 'Frame shown' });
   const rate = h('span', { class: 'rate-badge', 'data-role': 'rate', title: kRateHint });
   const tools = h('div', { class: 'panel-tools' });
   const empty = h('div', { class: 'panel-empty', hidden: true });
   const body = h('div', { class: 'panel-body' }, empty);
   const root = h('section', { class: 'panel', 'data-panel': name, 'aria-label': title });
-  const expand = expandable ? expandButton(root) : null;
-  root.append(
-    h('header', { class: 'panel-header' }, h('h2', {}, title), tools, rate, badge, expand ?? ''),
-    body,
-  );
+  root.append(h('header', { class: 'panel-header' }, h('h2', {}, title), tools, rate, badge), body);
   return {
     root,
     tools,
@@ -52,24 +47,4 @@ export function makePanel(name: string, title: string, expandable = false): Pane
       setText(empty, text ?? '');
     },
   };
-}
-
-function expandButton(root: HTMLElement): HTMLElement {
-  const label = 'Enlarge or restore';
-  return h(
-    'button',
-    {
-      class: 'icon-button',
-      title: label,
-      'aria-label': label,
-      onclick: () => {
-        const wasExpanded = root.classList.contains('expanded');
-        for (const other of document.querySelectorAll('.panel.expanded')) {
-          other.classList.remove('expanded');
-        }
-        root.classList.toggle('expanded', !wasExpanded);
-      },
-    },
-    icon('expand'),
-  );
 }

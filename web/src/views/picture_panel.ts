@@ -20,7 +20,7 @@ export abstract class PicturePanel implements View {
     name: string,
     title: string,
   ) {
-    this.panel = makePanel(name, title, true);
+    this.panel = makePanel(name, title);
     this.picture = new PictureCanvas(title);
     this.panel.body.append(this.picture.canvas);
     this.root = this.panel.root;

@@ -32,8 +32,7 @@ export class RunList implements View {
   constructor(private readonly context: Context) {
     this.panel = makePanel('runs', 'Runs');
     this.shown = new ShownRuns(context);
-    this.panel.tools.append(this.search);
-    this.panel.body.append(this.shown.root, this.list);
+    this.panel.body.append(this.shown.root, this.search, this.list);
     this.search.addEventListener('input', () => this.draw());
     this.root = this.panel.root;
   }
@@ -60,11 +59,12 @@ export class RunList implements View {
   private entry(run: Run, selected: boolean): HTMLElement {
     const share = run.frames_total > 0 ? run.frames / run.frames_total : 0;
     const length = run.duration_ns > 0 ? `${formatNumber(run.duration_ns / 1e9, 0)} s` : '';
+    const flight = run.flight === '' ? run.scenario : run.flight;
     const detail = [
       formatDate(run.created_utc),
       length,
       run.estimators.join(', ') || 'no estimators',
-    ];
+    ].filter((part) => part !== '');
     return h(
       'li',
       {
@@ -81,7 +81,8 @@ export class RunList implements View {
           onclick: () => this.context.session.selectRun(run.id),
         },
         h('span', { class: 'run-name' }, run.title || run.scenario),
-        h('span', { class: 'run-detail' }, detail.filter((part) => part !== '').join(' · ')),
+        h('span', { class: 'run-detail', 'data-role': 'flight', title: flight }, flight),
+        h('span', { class: 'run-detail' }, detail.join(' · ')),
         isActive(run)
           ? h(
               'span',
@@ -90,29 +91,7 @@ export class RunList implements View {
             )
           : null,
       ),
-      h(
-        'span',
-        { class: 'run-chips' },
-        h('span', { class: 'chip small', 'data-status': run.status }, run.status),
-        run.problem !== null
-          ? h(
-              'span',
-              { class: 'chip small warn', 'data-role': 'problem', title: run.problem },
-              'damaged',
-            )
-          : null,
-        run.texture_limited
-          ? h(
-              'span',
-              {
-                class: 'chip small texture-limited',
-                'data-role': 'texture-limited',
-                title: textureHint(null),
-              },
-              'texture-limited',
-            )
-          : null,
-      ),
+      chips(run),
       this.compareButton(run),
       isActive(run) ? this.cancelButton(run) : this.deleteButton(run),
     );
@@ -179,4 +158,31 @@ export class RunList implements View {
       if (this.confirming === id) this.ask(null);
     }, kConfirm_ms);
   }
+}
+
+/** Status, and what is wrong with the run. */
+function chips(run: Run): HTMLElement {
+  return h(
+    'span',
+    { class: 'run-chips' },
+    h('span', { class: 'chip small', 'data-status': run.status }, run.status),
+    run.problem !== null
+      ? h(
+          'span',
+          { class: 'chip small warn', 'data-role': 'problem', title: run.problem },
+          'damaged',
+        )
+      : null,
+    run.texture_limited
+      ? h(
+          'span',
+          {
+            class: 'chip small texture-limited',
+            'data-role': 'texture-limited',
+            title: textureHint(null),
+          },
+          'texture-limited',
+        )
+      : null,
+  );
 }

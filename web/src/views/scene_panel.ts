@@ -36,7 +36,7 @@ export class ScenePanel implements View {
   private readonly readout = h('div', { class: 'scene-readout' });
 
   constructor(private readonly context: Context) {
-    this.panel = makePanel('scene', '3D view', true);
+    this.panel = makePanel('scene', '3D view');
     this.root = this.panel.root;
     for (const { mode, label, key } of kModes) {
       const button = h(
@@ -89,13 +89,12 @@ export class ScenePanel implements View {
     this.followButton.toggleAttribute('disabled', state.sceneMode === 'chase');
     const angles = `${formatNumber(orbit.azimuth_deg, 0)}° ${formatNumber(orbit.elevation_deg, 0)}°`;
     setText(this.readout, `${angles} · ${formatNumber(orbit.distance_m, 0)} m`);
-    const { main } = state;
-    const tracks = tracksOf(state).filter(({ run }) => run === main);
-    const alignment = shownAlignment(state);
+    const tracks = tracksOf(state);
+    const alignment = [...new Set(state.watched.map(shownAlignment))].join(', ');
     const key = JSON.stringify([state.runId, alignment, tracks.map(({ label }) => label)]);
     rebuild(this.legend, key, () => [
-      ...tracks.map(({ label, colour }) =>
-        legendEntry(label, colour < 0 ? kTruthColour : estimateColour(colour)),
+      ...tracks.map(({ name, label, colour }) =>
+        legendEntry(label, name === '' ? kTruthColour : estimateColour(colour)),
       ),
       ...(tracks.length < 2 ? [] : [h('span', { class: 'alignment-note' }, `by ${alignment}`)]),
     ]);

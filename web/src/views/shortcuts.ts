@@ -110,12 +110,13 @@ export const kShortcuts: readonly Shortcut[] = [
     what: 'follow the running flight',
     run: ({ player }) => player.goLive(),
   },
+  { keys: ['t'], label: 'T', what: 'next theme', run: ({ themes }) => themes.next() },
   { keys: ['?', 'shift+?'], label: '?', what: 'this help', run: ({ store }) => toggleHelp(store) },
   {
     keys: ['escape'],
     label: 'Esc',
     what: 'close, restore',
-    run: ({ store }) => restoreScreen(store),
+    run: (context) => restoreScreen(context),
   },
 ];
 
@@ -160,10 +161,10 @@ function toggleHelp(store: Context['store']): void {
   store.change('help');
 }
 
-function restoreScreen(store: Context['store']): void {
+function restoreScreen({ store, layouts }: Context): void {
   store.state.helpOpen = false;
   store.state.editorOpen = false;
   store.state.logPage.open = false;
   store.change('help', 'logs');
-  document.querySelector('.panel.expanded')?.classList.remove('expanded');
+  layouts.restore();
 }

@@ -1,10 +1,11 @@
 // The runs that are shown together: their tracks, their offsets on the clock, which one is the main.
 import { formatNumber } from '../store/format';
+import { distinguishingNames } from '../store/run_names';
 import type { State } from '../store/state';
 import type { Track } from '../store/tracks';
 import { runLetter, tracksOf } from '../store/tracks';
 import type { WatchedRun } from '../store/watched_run';
-import { curveStyle } from './colours';
+import { curveStyle, trackHue } from './colours';
 import { h, rebuild } from './dom';
 import { icon } from './icons';
 import type { Context } from './view';
@@ -19,13 +20,15 @@ export class ShownRuns {
     const { watched, runId } = state;
     const tracks = tracksOf(state);
     const drawn = tracks.map(({ label, shown }) => [label, shown]);
-    const runs = watched.map(({ id, run, offset_ns }) => [id, run?.title, offset_ns]);
+    const names = distinguishingNames(watched.flatMap(({ run }) => run ?? []));
+    const runs = watched.map(({ id, offset_ns }) => [id, names.get(id), offset_ns]);
     rebuild(this.root, JSON.stringify([drawn, runs, runId]), () =>
       watched.length < 2
         ? []
         : watched.map((one) =>
             this.entry(
               one,
+              names.get(one.id) ?? one.id,
               runLetter(state, one),
               tracks.filter(({ run }) => run === one),
             ),
@@ -34,9 +37,9 @@ export class ShownRuns {
     this.root.hidden = watched.length < 2;
   }
 
-  private entry(watched: WatchedRun, letter: string, tracks: Track[]): HTMLElement {
+  private entry(watched: WatchedRun, name: string, letter: string, tracks: Track[]): HTMLElement {
     const { session, store } = this.context;
-    const { id, run, offset_ns } = watched;
+    const { id, offset_ns } = watched;
     const isMain = store.state.main === watched;
     const offset = h('input', {
       type: 'number',
@@ -56,11 +59,11 @@ export class ShownRuns {
         'button',
         {
           class: 'shown-title',
-          title: `${id}: show its pictures and timeline`,
+          title: `${name} (${id}): show its pictures and timeline`,
           onclick: () => session.makeMain(id),
         },
         h('b', { class: 'run-letter' }, letter),
-        h('span', {}, run?.title ?? id),
+        h('span', {}, name),
       ),
       h('label', { class: 'shown-offset' }, offset, h('span', { class: 'unit' }, 's')),
       h(
@@ -77,10 +80,9 @@ export class ShownRuns {
     );
   }
 
-  private trackButton({ run, name, label, shown, ...hue }: Track): HTMLElement {
-    const { colour } = curveStyle(
-      name === '' ? { kind: 'truth', order: hue.order } : { kind: 'estimate', colour: hue.colour },
-    );
+  private trackButton(track: Track): HTMLElement {
+    const { run, name, label, shown } = track;
+    const { colour } = curveStyle(trackHue(track));
     const text = name === '' ? 'truth' : name;
     return h(
       'button',

@@ -10,6 +10,7 @@ import type { FaultSpan } from '../store/fault_spans';
 import { tracksOf } from '../store/tracks';
 import { faultColour, kStateColours } from './colours';
 import { h, perFrame, rebuild, setAttribute, setText, wholeLabel } from './dom';
+import { paint } from './paint';
 import type { Context } from './view';
 
 const kStripHeight_px = 4;
@@ -61,7 +62,7 @@ export class TimelineTrack {
   }
 
   update(changed: ReadonlySet<Topic>): void {
-    if (changed.has('rows') || changed.has('run') || changed.has('log')) {
+    if (['rows', 'run', 'log', 'theme'].some((topic) => changed.has(topic as Topic))) {
       this.drawStrips();
       this.drawFaults();
     }
@@ -130,7 +131,7 @@ export class TimelineTrack {
       if (i < times.length && rows.states[i] === state) continue;
       const x0 = xOf(times[begin] ?? 0);
       const x1 = xOf(times[Math.min(i, times.length - 1)] ?? 0);
-      pen.fillStyle = kStateColours[state] ?? '#6b7688';
+      pen.fillStyle = paint(kStateColours[state] ?? 'var(--idle)');
       pen.fillRect(x0, top, Math.max(1, x1 - x0), kStripHeight_px - 1);
       begin = i;
     }
@@ -159,7 +160,7 @@ export class TimelineTrack {
         const place = `left:${percent(begin_ns).toFixed(3)}%;width:${width.toFixed(3)}%;`;
         const colour =
           kind === 'mode'
-            ? `background:hsla(${bandHue(text)}, 55%, 42%, 0.75)`
+            ? `background:hsl(${bandHue(text)}, 42%, 32%)`
             : `opacity:${i % 2 === 0 ? 0.9 : 0.45}`;
         return h(
           'span',
@@ -219,7 +220,7 @@ export class TimelineTrack {
     for (const { kind, begin_ns, end_ns } of spans) {
       const x = this.share(begin_ns + offset_ns) * width;
       const length = Math.max(least, this.share(end_ns + offset_ns) * width - x);
-      pen.fillStyle = faultColour(kind);
+      pen.fillStyle = paint(faultColour(kind));
       pen.fillRect(x, kinds.indexOf(kind) * lane, length, Math.max(1, lane));
     }
   }

@@ -7,9 +7,11 @@ import type { SceneControl } from '../store/scene_control';
 import type { Sensors } from '../store/sensors/sensors';
 import type { Session } from '../store/session';
 import type { Catalogue } from '../store/catalogue';
+import type { Layouts } from '../store/layouts/layouts';
 import type { LogBrowser } from '../store/logs/log_browser';
 import type { LogSmoothing } from '../store/logs/log_smoothing';
 import type { LogWorlds } from '../store/logs/log_worlds';
+import type { Themes } from '../store/themes';
 import type { VehicleConnect } from '../store/vehicle/vehicle_connect';
 import type { Notices } from '../store/notices';
 import type { StreamClient } from '../connection/stream_client';
@@ -18,6 +20,8 @@ export interface View {
   readonly root: HTMLElement;
   /** Redraws if one of the changed topics matters to this view. */
   update(changed: ReadonlySet<Topic>): void;
+  /** Called when the view is no longer visible: it stops reading what only it shows. */
+  onHidden?(): void;
 }
 
 /** What views read and call. */
@@ -36,4 +40,6 @@ export interface Context {
   connect: VehicleConnect;
   notices: Notices;
   client: StreamClient;
+  layouts: Layouts;
+  themes: Themes;
 }

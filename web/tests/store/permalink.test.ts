@@ -5,7 +5,12 @@ const alone = (id: string) => [{ id, offset_ns: 0 }];
 
 describe('permalink', () => {
   it('comes back as it was', () => {
-    const link = { runs: alone('20260102-a b&c'), main: null, t_ns: 12_345_000_000 };
+    const link = {
+      runs: alone('20260102-a b&c'),
+      main: null,
+      t_ns: 12_345_000_000,
+      layout: 'compare',
+    };
     expect(parsePermalink(formatPermalink(link))).toEqual(link);
   });
 
@@ -14,14 +19,18 @@ describe('permalink', () => {
       runs: [...alone('r1'), { id: 'r2', offset_ns: -1_500_000_000 }],
       main: 'r2',
       t_ns: 0,
+      layout: null,
     };
     expect(formatPermalink(link)).toBe('#run=r1&run=r2%40-1.500&main=r2&t=0.000');
     expect(parsePermalink(formatPermalink(link))).toEqual(link);
   });
 
   it('leaves the time out while it follows live', () => {
-    expect(formatPermalink({ runs: alone('r'), main: 'r', t_ns: null })).toBe('#run=r');
-    expect(formatPermalink({ runs: [], main: null, t_ns: 3 })).toBe('');
+    expect(formatPermalink({ runs: alone('r'), main: 'r', t_ns: null, layout: null })).toBe(
+      '#run=r',
+    );
+    expect(formatPermalink({ runs: [], main: null, t_ns: 3, layout: null })).toBe('');
+    expect(formatPermalink({ runs: [], main: null, t_ns: 3, layout: 'fly' })).toBe('#layout=fly');
   });
 
   it('takes a run once', () => {
@@ -29,6 +38,6 @@ describe('permalink', () => {
   });
 
   it.each(['', '#', '#t=4x', '#run=', '#t=', '#main='])('reads nothing from %s', (hash) => {
-    expect(parsePermalink(hash)).toEqual({ runs: [], main: null, t_ns: null });
+    expect(parsePermalink(hash)).toEqual({ runs: [], main: null, t_ns: null, layout: null });
   });
 });

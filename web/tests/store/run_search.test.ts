@@ -3,8 +3,14 @@ import { matching } from '../../src/store/run_search';
 import { sampleRun } from '../support/samples';
 
 const runs = [
-  sampleRun({ id: 'a', title: 'Hills at 25 m/s', estimators: ['feature'] }),
-  sampleRun({ id: 'b', title: 'Hills at 10 m/s', status: 'failed', texture_limited: true }),
+  sampleRun({ id: 'a', title: 'Hills at 25 m/s', estimators: ['feature'], flight: 'log smooth' }),
+  sampleRun({
+    id: 'b',
+    title: 'Hills at 10 m/s',
+    flight: '',
+    status: 'failed',
+    texture_limited: true,
+  }),
 ];
 
 describe('matching', () => {
@@ -13,6 +19,7 @@ describe('matching', () => {
     ['  hills ', ['a', 'b']],
     ['HILLS 25', ['a']],
     ['failed', ['b']],
+    ['smooth', ['a']],
     ['texture', ['b']],
     ['hills nothing', []],
   ])('finds by %j', (text, ids) => {

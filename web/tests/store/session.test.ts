@@ -159,7 +159,9 @@ describe('Session', () => {
   it('shows several runs on one clock, each with its own rows and pictures', () => {
     viewing.watch();
     viewing.session.addRun('r2', 2e9);
-    expect(viewing.socket.last()).toMatchObject({ type: 'watch', run: 'r2', offset_ns: 2e9 });
+    expect(viewing.socket.sent).toContainEqual(
+      expect.objectContaining({ type: 'watch', run: 'r2', offset_ns: 2e9 }),
+    );
     viewing.socket.receive({ type: 'run', run: sampleRun({ id: 'r2', title: 'Second' }) });
     const rows = { stream: 'truth', seq: 0, columns: { frame: [0], t_ns: [0] } };
     viewing.socket.receive({ type: 'rows', run: 'r2', ...rows });
@@ -174,7 +176,11 @@ describe('Session', () => {
     expect(state.watched).toHaveLength(2);
     expect(viewing.socket.last()).toMatchObject({
       type: 'subscribe',
-      pictures: [{ run: 'r2', name: 'scene' }, { name: 'camera' }, { name: 'debug/feature' }],
+      pictures: [
+        { run: 'r2', name: 'scene', first_colour: 1, with: [{ run: 'r1', first_colour: 0 }] },
+        { name: 'camera' },
+        { name: 'debug/feature' },
+      ],
     });
   });
 

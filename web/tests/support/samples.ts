@@ -17,6 +17,8 @@ export function sampleRun(change: Partial<Run> = {}): Run {
     frames_total: 63,
     pacing: 'lockstep',
     estimators: ['feature'],
+    flight: 'course: 25 m/s, 45 deg/s, 300 m above the ground',
+    seed: 1,
     attribution: '',
     texture_limited: false,
     notice: null,

@@ -84,7 +84,7 @@ export class LogCurves {
         new LogPlot({
           ...curve,
           timeLabels: i === kCurves.length - 1,
-          colours: ['rgb(230, 90, 90)'],
+          colours: ['var(--truth)'],
           dots: curve.wraps,
           onHover: (t_s) => this.hover(t_s),
           onSlice: (from_s, to_s) =>
@@ -110,6 +110,10 @@ export class LogCurves {
     this.marks = marksOf(events);
     kCurves.forEach((curve, i) => this.showCurve(curve, this.plots[i], series));
     this.drawLane();
+  }
+
+  repaint(): void {
+    for (const plot of this.plots) plot.repaint();
   }
 
   showSlice(slice: readonly [number, number] | null): void {

@@ -3,15 +3,16 @@ import type { Track } from '../../store/logs/log_track';
 import type { Outline } from '../../store/logs/log_worlds';
 import { nearestRow, placeText, scaleBar_m } from '../../store/logs/log_track';
 import { h, setAttribute, setText } from '../dom';
+import { paint } from '../paint';
 
 const kMargin_px = 34;
-const kGrid = 'rgba(140, 155, 180, 0.13)';
-const kLine = 'rgb(230, 38, 38)';
-const kLineOutside = 'rgba(230, 38, 38, 0.3)';
-const kText = '#8a94a6';
+const kGrid = 'var(--grid)';
+const kLine = 'var(--truth)';
+const kLineOutside = 'color-mix(in srgb, var(--truth) 30%, transparent)';
+const kText = 'var(--muted)';
 const kBar_px = 130;
-const kWorld = 'rgba(140, 155, 180, 0.5)';
-const kChosenWorld = '#5c9dff';
+const kWorld = 'var(--outline)';
+const kChosenWorld = 'var(--accent)';
 
 export class LogMap {
   readonly root: HTMLElement;
@@ -133,6 +134,10 @@ export class LogMap {
     this.draw();
   }
 
+  repaint(): void {
+    this.draw();
+  }
+
   private draw(): void {
     const pen = this.canvas.getContext('2d');
     if (pen === null) return;
@@ -151,7 +156,7 @@ export class LogMap {
     pen: CanvasRenderingContext2D,
     { name, east_m, north_m, chosen }: Outline,
   ): void {
-    pen.strokeStyle = chosen ? kChosenWorld : kWorld;
+    pen.strokeStyle = paint(chosen ? kChosenWorld : kWorld);
     pen.lineWidth = chosen ? 1.5 : 1;
     pen.setLineDash(chosen ? [] : [5, 4]);
     pen.beginPath();
@@ -173,7 +178,7 @@ export class LogMap {
     pen.setLineDash([]);
     pen.font = '10px system-ui, sans-serif';
     pen.textAlign = 'left';
-    pen.fillStyle = chosen ? kChosenWorld : kText;
+    pen.fillStyle = paint(chosen ? kChosenWorld : kText);
     pen.fillText(name, Math.max(left + 5, 6), Math.max(top + 13, 34));
   }
 
@@ -181,7 +186,7 @@ export class LogMap {
     const { clientWidth, clientHeight } = this.root;
     const [west, north] = this.metresAt(0, 0);
     const [east, south] = this.metresAt(clientWidth, clientHeight);
-    pen.strokeStyle = kGrid;
+    pen.strokeStyle = paint(kGrid);
     pen.lineWidth = 1;
     pen.beginPath();
     for (let e = Math.ceil(west / step_m) * step_m; e <= east; e += step_m) {
@@ -202,7 +207,7 @@ export class LogMap {
       this.slice === null || (t_s >= this.slice[0] && t_s <= this.slice[1]);
     pen.lineJoin = 'round';
     for (const flown of [false, true]) {
-      pen.strokeStyle = flown ? kLine : kLineOutside;
+      pen.strokeStyle = paint(flown ? kLine : kLineOutside);
       pen.lineWidth = flown ? 2 : 1.5;
       pen.beginPath();
       let drawing = false;
@@ -215,9 +220,9 @@ export class LogMap {
       pen.stroke();
     }
     const first = track.t_s.findIndex(inside);
-    if (first >= 0) this.dot(pen, track, first, '#3fb950', 'start');
+    if (first >= 0) this.dot(pen, track, first, 'var(--good)', 'start');
     if (this.cursor_s !== null) {
-      this.dot(pen, track, nearestRow(track.t_s, this.cursor_s), '#f2f5fa', '');
+      this.dot(pen, track, nearestRow(track.t_s, this.cursor_s), 'var(--cursor)', '');
     }
   }
 
@@ -229,13 +234,13 @@ export class LogMap {
     label: string,
   ): void {
     const [x, y] = this.pixelOf(track.east_m[row] ?? 0, track.north_m[row] ?? 0);
-    pen.fillStyle = colour;
+    pen.fillStyle = paint(colour);
     pen.beginPath();
     pen.arc(x, y, 4, 0, 2 * Math.PI);
     pen.fill();
     if (label === '') return;
     pen.font = '10px system-ui, sans-serif';
-    pen.fillStyle = kText;
+    pen.fillStyle = paint(kText);
     pen.textAlign = 'left';
     pen.fillText(label, x + 7, y - 5);
   }
@@ -245,8 +250,8 @@ export class LogMap {
     const { clientWidth, clientHeight } = this.root;
     const length_px = bar_m / this.scale;
     const [x, y] = [12, clientHeight - 12];
-    pen.strokeStyle = kText;
-    pen.fillStyle = kText;
+    pen.strokeStyle = paint(kText);
+    pen.fillStyle = paint(kText);
     pen.lineWidth = 1.5;
     pen.font = '11px system-ui, sans-serif';
     pen.beginPath();

@@ -64,30 +64,25 @@ export class LogPageView implements View {
     );
     this.root = h(
       'div',
-      { class: 'overlay log-overlay', hidden: true, 'data-panel': 'logs' },
+      { class: 'log-page', role: 'dialog', 'aria-label': 'Flight logs' },
+      h('header', { class: 'log-header' }, h('h2', {}, 'Flight logs'), close),
+      this.list.root,
       h(
         'div',
-        { class: 'log-page', role: 'dialog', 'aria-label': 'Flight logs' },
-        h('header', { class: 'log-header' }, h('h2', {}, 'Flight logs'), close),
-        this.list.root,
-        h(
-          'div',
-          { class: 'log-centre' },
-          this.map.root,
-          h('div', { class: 'log-plots' }, this.tabs, this.curves.root, this.residuals.root),
-          this.message,
-        ),
-        h('div', { class: 'log-side' }, this.streams.root, all, this.form.root),
+        { class: 'log-centre' },
+        this.map.root,
+        h('div', { class: 'log-plots' }, this.tabs, this.curves.root, this.residuals.root),
+        this.message,
       ),
+      h('div', { class: 'log-side' }, this.streams.root, all, this.form.root),
     );
-    this.acceptDrops();
   }
 
   update(changed: ReadonlySet<Topic>): void {
+    if (changed.has('theme')) this.repaint();
     const relevant = changed.has('logs') || changed.has('lists') || changed.has('connection');
     if (!relevant) return;
     const { logPage } = this.context.store.state;
-    this.root.hidden = !logPage.open;
     this.context.smoothing.refresh();
     if (!logPage.open) return;
     void this.context.worlds.refresh();
@@ -114,6 +109,12 @@ export class LogPageView implements View {
     setText(this.message, error ?? (chosen === null ? 'Choose a log, or upload one.' : reading));
     this.message.classList.toggle('failed', error !== null);
     this.message.hidden = this.message.textContent === '';
+  }
+
+  private repaint(): void {
+    this.map.repaint();
+    this.curves.repaint();
+    this.residuals.repaint();
   }
 
   /** The flight at its own place, or moved to the chosen world. */
@@ -175,21 +176,6 @@ export class LogPageView implements View {
       tab('Flight', 'Height, speed and attitude', false),
       tab('Smoothing', 'Residuals: logged samples minus the smooth motion', true),
     ]);
-  }
-
-  /** Files dropped anywhere open the page and are uploaded. */
-  private acceptDrops(): void {
-    const hasFiles = (event: DragEvent) => event.dataTransfer?.types.includes('Files') === true;
-    document.addEventListener('dragover', (event) => {
-      if (hasFiles(event)) event.preventDefault();
-    });
-    document.addEventListener('drop', (event) => {
-      if (!hasFiles(event)) return;
-      event.preventDefault();
-      const files = [...(event.dataTransfer?.files ?? [])];
-      if (files.length === 0) return;
-      void this.context.logs.open().then(() => this.context.logs.send(files));
-    });
   }
 }
 

@@ -4,7 +4,8 @@ import type { Band, Mark } from '../../store/logs/log_bands';
 import { bandHue, marksWithin } from '../../store/logs/log_bands';
 import { formatNumber } from '../../store/format';
 import { h, setText } from '../dom';
-import { paddedRange } from '../plots/plot_range';
+import { paint } from '../paint';
+import { paddedRange } from '../../store/plots/plot_range';
 
 export interface LogPlotOptions {
   key: string;
@@ -23,7 +24,6 @@ export interface LogPlotOptions {
   onSlice: (from_s: number, to_s: number) => void;
 }
 
-const kText = '#8a94a6';
 const kFont = '10px system-ui, sans-serif';
 const kSyncKey = 'overfly-log-plots';
 const kLeastSlice_px = 4;
@@ -90,6 +90,11 @@ export class LogPlot {
     this.plot.redraw(false);
   }
 
+  /** Draws the same again, in the colours of the theme. */
+  repaint(): void {
+    this.plot.redraw(false);
+  }
+
   private fit(): void {
     const { clientWidth, clientHeight } = this.area;
     if (clientWidth < 20 || clientHeight < 20) return;
@@ -99,9 +104,9 @@ export class LogPlot {
   private uplotOptions(): uPlot.Options {
     const { timeLabels, least, colours, dots } = this.options;
     const axis = {
-      stroke: kText,
+      stroke: () => paint('var(--muted)'),
       font: kFont,
-      grid: { stroke: 'rgba(140, 155, 180, 0.11)', width: 1 },
+      grid: { stroke: () => paint('var(--grid)'), width: 1 },
       ticks: { show: false },
     };
     return {
@@ -128,10 +133,10 @@ export class LogPlot {
       series: [
         {},
         ...colours.map((colour) => ({
-          stroke: colour,
+          stroke: () => paint(colour),
           width: dots ? 0 : 1.25,
           pxAlign: 0,
-          points: { show: dots, size: 2, fill: colour, width: 0 },
+          points: { show: dots, size: 2, fill: () => paint(colour), width: 0 },
         })),
       ],
       hooks: {
@@ -175,7 +180,7 @@ export class LogPlot {
       ctx.fillStyle = `hsla(${bandHue(text)}, 60%, 55%, 0.13)`;
       ctx.fillRect(x(begin_s), bbox.top, x(end_s) - x(begin_s), bbox.height);
     }
-    ctx.strokeStyle = 'rgba(234, 183, 102, 0.45)';
+    ctx.strokeStyle = paint('color-mix(in srgb, var(--mission) 45%, transparent)');
     ctx.beginPath();
     for (const { t_s, kind } of marksWithin(this.data.marks, this.data.span_s)) {
       if (kind === 'text') continue;
@@ -195,7 +200,7 @@ export class LogPlot {
       if (x < bbox.left || x > bbox.left + bbox.width) continue;
       const y = plot.valToPos(value, 'y', true);
       const edge = Math.min(bbox.top + bbox.height, Math.max(bbox.top, y));
-      ctx.fillStyle = colour;
+      ctx.fillStyle = paint(colour);
       ctx.beginPath();
       if (edge === y) {
         ctx.arc(x, y, radius, 0, 2 * Math.PI);
@@ -220,7 +225,7 @@ export class LogPlot {
     const from = clamp(plot.valToPos(this.slice[0], 'x', true));
     const to = clamp(plot.valToPos(this.slice[1], 'x', true));
     ctx.save();
-    ctx.fillStyle = 'rgba(11, 15, 21, 0.66)';
+    ctx.fillStyle = paint('var(--outside)');
     ctx.fillRect(bbox.left, bbox.top, from - bbox.left, bbox.height);
     ctx.fillRect(to, bbox.top, bbox.left + bbox.width - to, bbox.height);
     ctx.restore();

@@ -7,9 +7,9 @@ import { h, rebuild, setText } from '../dom';
 import type { Dot } from './log_plot';
 import { LogPlot } from './log_plot';
 
-const kColours = ['#ff9288', '#5fd07a', '#79b8ff'] as const;
-const kLeftOut = '#ffc857';
-const kShifted = '#b79cff';
+const kColours = ['var(--axis-x)', 'var(--axis-y)', 'var(--axis-z)'] as const;
+const kLeftOut = 'var(--left-out)';
+const kShifted = 'var(--shifted)';
 const kPlots = [
   {
     key: 'positions',
@@ -129,6 +129,10 @@ export class LogResidualsView {
       });
     });
     this.showTexts(residuals);
+  }
+
+  repaint(): void {
+    for (const plot of this.plots) plot.repaint();
   }
 
   showSlice(slice: readonly [number, number] | null): void {

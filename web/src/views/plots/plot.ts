@@ -2,12 +2,13 @@
 import uPlot from 'uplot';
 import { curveStyle } from '../colours';
 import { h, perFrame, setText } from '../dom';
+import { paint } from '../paint';
 import { formatNumber } from '../../store/format';
 import type { Polyline } from '../../store/plots/curve';
 import { decimated, valueAt } from '../../store/plots/curve';
+import { paddedRange } from '../../store/plots/plot_range';
 import type { PlotSpec } from '../../store/plots/plot_specs';
 import type { Span } from '../../store/time_window';
-import { paddedRange } from './plot_range';
 
 export interface PlotActions {
   onSeek: (t_s: number) => void;
@@ -16,19 +17,18 @@ export interface PlotActions {
   onZoom: (centre_s: number, factor: number) => void;
 }
 
-const kGrid = 'rgba(140, 155, 180, 0.11)';
-const kText = '#8a94a6';
 const kFont = '10px system-ui, sans-serif';
 const kZoom_per_px = 0.0015;
 /** Beyond this many, the values of all curves do not fit next to the title. */
 const kMostReadouts = 6;
 const kSyncKey = 'overfly-plots';
-const kLimitColour = '#eab766';
 
 /** Up to three values start at the edge; more use separate rows, so that none is cut off. */
-function crowding(curves: number): string {
-  if (curves <= 2 || curves > kMostReadouts) return '';
-  return curves === 3 ? ' crowded' : ' own-rows';
+function crowding(curves: PlotSpec['curves']): string {
+  if (curves.length > kMostReadouts) return '';
+  const named = curves.some(({ short }) => short !== '');
+  if (curves.length > 3 || (named && curves.length === 2)) return ' own-rows';
+  return curves.length === 3 ? ' crowded' : '';
 }
 
 export class Plot {
@@ -58,7 +58,7 @@ export class Plot {
     );
     const title = h(
       'div',
-      { class: `plot-title${crowding(curves.length)}`, title: spec.hint },
+      { class: `plot-title${crowding(curves)}`, title: spec.hint },
       h('b', {}, spec.label),
       h('span', { class: 'unit' }, spec.unit),
       h('span', { class: 'readouts' }, ...this.readouts),
@@ -84,6 +84,11 @@ export class Plot {
     const ends = [...span_s];
     // uPlot draws the axes for these two times; the curves are drawn by `path`.
     this.plot.setData([ends, ...curves.map(() => [null, null])] as uPlot.AlignedData, true);
+  }
+
+  /** Draws the same again, in the colours of the theme. */
+  repaint(): void {
+    this.plot.redraw(false);
   }
 
   moveCursor(t_s: number | null): void {
@@ -204,7 +209,7 @@ export class Plot {
     const y = plot.valToPos(limit, 'y', true);
     if (y < top || y > top + height) return;
     plot.ctx.save();
-    plot.ctx.strokeStyle = kLimitColour;
+    plot.ctx.strokeStyle = paint('var(--limit)');
     plot.ctx.setLineDash([6, 4]);
     plot.ctx.beginPath();
     plot.ctx.moveTo(left, y);
@@ -214,7 +219,11 @@ export class Plot {
   }
 
   private uplotOptions(timeLabels: boolean, leads: boolean): uPlot.Options {
-    const axis = { stroke: kText, font: kFont, grid: { stroke: kGrid, width: 1 } };
+    const axis = {
+      stroke: () => paint('var(--muted)'),
+      font: kFont,
+      grid: { stroke: () => paint('var(--grid)'), width: 1 },
+    };
     return {
       width: 200,
       height: 100,
@@ -242,7 +251,7 @@ export class Plot {
           const { colour, width_px, dash } = curveStyle(hue);
           return {
             label: name,
-            stroke: colour,
+            stroke: () => paint(colour),
             width: width_px,
             dash,
             paths: (plot: uPlot) => this.path(plot, this.lines[i]),

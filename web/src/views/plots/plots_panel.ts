@@ -8,21 +8,28 @@ import type { Span } from '../../store/time_window';
 import { following, zoomed } from '../../store/time_window';
 import { clockSpan_ns, shownAlignment } from '../../store/state';
 import type { Topic } from '../../store/state';
+import { kPanels } from '../../store/layouts/panel_names';
 import { EstimatorTable } from '../estimator_table';
 import { h, rebuild, setAttribute, setText } from '../dom';
 import type { Panel } from '../panel';
 import { frameOf, makePanel } from '../panel';
 import type { PlotActions } from './plot';
 import { Plot } from './plot';
+import { kPathAxes, PathPlot } from './path_plot';
+import type { ShownPlots } from './plot_files';
+import { plotFilesMenu } from './plot_files';
 import type { Context, View } from '../view';
 
 const kRedraw_ms = 1000 / 15;
-/** Columns of the grid in plots.css, except for few plots. */
-const kColumns = 3;
+const kMostColumns = 3;
 const kFew = 3;
+/** A plot with axis, title and values. Below this the panel scrolls. */
+const kLeastWidth_px = 190;
+const kLeastHeight_px = 92;
 
 const kGroups = [
   { name: 'pose', label: 'Pose', hint: 'Position and attitude: truth and estimates' },
+  { name: 'path', label: 'Path', hint: 'The tracks from above and from the side' },
   { name: 'errors', label: 'Errors', hint: 'Estimates minus truth: position, rotation' },
   { name: 'estimates', label: 'Estimates', hint: 'Latency and counters of the estimators' },
   { name: 'image', label: 'Image', hint: 'Texels per pixel, exposure and saturation' },
@@ -31,6 +38,9 @@ const kGroups = [
   { name: 'estimators', label: 'Status', hint: 'State, drops, latency, CPU, memory, log' },
 ] as const;
 type Group = (typeof kGroups)[number]['name'];
+
+/** Groups that are panels of their own as well. */
+type Alone = 'errors' | 'image';
 
 /** Groups that are offered only if a run has their series. */
 const kOptional: readonly PlotGroup[] = ['vehicle'];
@@ -56,7 +66,9 @@ export class PlotsPanel implements View {
   });
   private readonly hoverTime = h('span', { class: 'hover-time' });
   private group: Group = 'pose';
+  private readonly files: HTMLSelectElement;
   private plots: Plot[] = [];
+  private readonly paths: readonly PathPlot[];
   private key = '';
   private runs = '';
   private drawn_ms = -Infinity;
@@ -66,12 +78,27 @@ export class PlotsPanel implements View {
   /** The part zoomed to; null = the whole flight. */
   private window_s: Span | null = null;
 
-  constructor(private readonly context: Context) {
-    this.panel = makePanel('plots', 'Over time [s]', true);
-    this.panel.tools.append(this.tabs, this.alignment, this.hoverTime);
+  /** @param only  shows this group alone, as a panel of its own */
+  constructor(
+    private readonly context: Context,
+    private readonly only: Alone | null = null,
+  ) {
+    const name = only === null ? 'plots' : (`plots-${only}` as const);
+    this.panel = makePanel(name, kPanels[name].title);
+    this.paths = kPathAxes.map(
+      (axes) => new PathPlot(axes, (t_s) => context.player.seekTime(t_s * 1e9)),
+    );
+    this.files = plotFilesMenu(
+      () => this.shownPlots(),
+      (text) => context.notices.error(text),
+    );
+    if (only !== null) this.group = only;
+    else this.panel.tools.append(this.tabs);
+    this.panel.tools.append(this.files, this.alignment, this.hoverTime);
     this.panel.body.append(this.grid, this.statuses.root);
     this.root = this.panel.root;
     this.build();
+    new ResizeObserver(() => this.drawSoon()).observe(this.panel.body);
   }
 
   update(changed: ReadonlySet<Topic>): void {
@@ -80,8 +107,13 @@ export class PlotsPanel implements View {
       this.drawTabs();
       if (this.group === 'estimators') this.statuses.draw(this.context.store.state);
     }
+    if (changed.has('theme')) for (const plot of [...this.plots, ...this.paths]) plot.repaint();
     if (changed.has('playback')) this.followCursor();
     if (changed.has('playback') || changed.has('run')) this.moveCursor();
+  }
+
+  onHidden(): void {
+    if (this.only === null) this.context.sensors.hide();
   }
 
   private drawSoon(): void {
@@ -99,12 +131,13 @@ export class PlotsPanel implements View {
     if (this.group === 'sensors' && state.runId !== null) {
       this.context.sensors.show(state.runId, this.window_s);
     } else {
-      this.context.sensors.hide();
+      this.onHidden();
     }
     if (this.key !== this.wantedKey()) this.build();
     this.drawTabs();
     const span_s = this.window_s ?? this.whole();
     for (const plot of this.plots) plot.draw(span_s);
+    if (this.group === 'path') for (const path of this.paths) path.draw(state);
     this.panel.showEmpty(this.emptyText());
     this.moveCursor();
   }
@@ -112,8 +145,9 @@ export class PlotsPanel implements View {
   private emptyText(): string | null {
     const { runId, sensors, sensorError } = this.context.store.state;
     if (runId === null) return 'Poses of the flight appear here.';
-    if (this.plots.length > 0 || this.group === 'estimators') return null;
-    if (this.group !== 'sensors') return kNothingYet[this.group];
+    const { group } = this;
+    if (this.plots.length > 0 || group === 'estimators' || group === 'path') return null;
+    if (group !== 'sensors') return kNothingYet[group];
     if (sensorError !== null) return sensorError;
     return sensors === null
       ? 'Reading the samples'
@@ -149,11 +183,32 @@ export class PlotsPanel implements View {
       watched.data.generation,
       shownAlignment(watched),
     ]);
-    return JSON.stringify([this.group, runs, this.specs().map(specKey)]);
+    const specs = this.specs();
+    const columns = this.columns(specs.length);
+    return JSON.stringify([this.group, runs, columns, specs.map(specKey)]);
+  }
+
+  private shownPlots(): ShownPlots | null {
+    const specs = this.specs();
+    if (specs.length === 0) return null;
+    const { group } = this;
+    return {
+      group,
+      specs,
+      span_s: this.window_s ?? this.whole(),
+      columns: this.columns(specs.length),
+    };
+  }
+
+  /** As many as fit; few plots lie below each other. */
+  private columns(plots: number): number {
+    const fitting = Math.floor(this.panel.body.clientWidth / kLeastWidth_px);
+    return plots <= kFew ? 1 : Math.min(kMostColumns, Math.max(1, fitting));
   }
 
   private specs(): PlotSpec[] {
-    return this.group === 'estimators' ? [] : plotSpecs(this.context.store.state, this.group);
+    if (this.group === 'estimators' || this.group === 'path') return [];
+    return plotSpecs(this.context.store.state, this.group);
   }
 
   private build(): void {
@@ -169,17 +224,22 @@ export class PlotsPanel implements View {
       onZoom: (centre_s: number, factor: number) => this.zoom(centre_s, factor),
     };
     const specs = this.specs();
-    const columns = specs.length <= kFew ? 1 : kColumns;
+    const columns = this.columns(specs.length);
+    this.files.hidden = specs.length === 0;
     this.plots = specs.map(
       (spec, i) =>
         new Plot(spec, actions, { timeLabels: i >= specs.length - columns, leads: i === 0 }),
     );
-    setAttribute(this.grid, 'data-columns', String(columns));
+    const down = Math.ceil(specs.length / columns);
+    this.grid.style.gridTemplateColumns = `repeat(${columns}, minmax(0, 1fr))`;
+    this.grid.style.gridTemplateRows = `repeat(${down}, minmax(${kLeastHeight_px}px, 1fr))`;
+    if (this.group === 'path') this.grid.removeAttribute('style');
     this.grid.hidden = this.group === 'estimators';
     this.statuses.root.hidden = this.group !== 'estimators';
     if (this.group === 'estimators') this.statuses.draw(state);
     setAttribute(this.grid, 'data-group', this.group);
-    this.grid.replaceChildren(...this.plots.map(({ root }) => root));
+    const drawn = this.group === 'path' ? this.paths : this.plots;
+    this.grid.replaceChildren(...drawn.map(({ root }) => root));
     setText(this.alignment, this.alignmentText());
     this.drawTabs();
   }
@@ -188,7 +248,8 @@ export class PlotsPanel implements View {
     const aligned = this.context.store.state.watched.filter(
       ({ run }) => (run?.estimators.length ?? 0) > 0,
     );
-    if ((this.group !== 'pose' && this.group !== 'errors') || aligned.length === 0) return '';
+    const byAlignment: readonly Group[] = ['pose', 'path', 'errors'];
+    if (!byAlignment.includes(this.group) || aligned.length === 0) return '';
     return `estimates by ${[...new Set(aligned.map(shownAlignment))].join(', ')}`;
   }
 
@@ -225,6 +286,9 @@ export class PlotsPanel implements View {
   private moveCursor(): void {
     const { playback } = this.context.store.state;
     for (const plot of this.plots) plot.moveCursor(this.cursor_s());
+    if (this.group === 'path') {
+      for (const path of this.paths) path.moveMarks(this.context.store.state);
+    }
     this.panel.showFrame(frameOf(playback));
     if (this.hovered_s === null) this.showCursorValues();
   }

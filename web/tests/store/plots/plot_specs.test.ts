@@ -44,9 +44,9 @@ describe('tracksOf', () => {
     const { state } = twoRuns().store;
     const tracks = tracksOf(state);
     expect(tracks.map(({ label, colour }) => [label, colour])).toEqual([
-      ['A truth', -1],
+      ['A truth', 0],
       ['A feature', 0],
-      ['B truth', -1],
+      ['B truth', 1],
       ['B feature', 1],
     ]);
     const alone = new Viewing();

@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { paddedRange } from '../../../src/views/plots/plot_range';
+import { paddedRange } from '../../../src/store/plots/plot_range';
 
 describe('paddedRange', () => {
   it('leaves air around the data', () => {

@@ -1,0 +1,132 @@
+// What a scene contains: map points recorded last, and the tracks of other runs.
+#include <gtest/gtest.h>
+
+#include <future>
+#include <utility>
+
+#include "renderer/renderer.hpp"
+#include "server/files/whole_file.hpp"
+#include "server/record/map_points.hpp"
+#include "server/record/run_folder.hpp"
+#include "server/views/view_ribbons.hpp"
+#include "server/views/view_service.hpp"
+#include "tests/server/support/manager_fixture.hpp"
+
+namespace overfly::server {
+namespace {
+
+/// Draws nothing and keeps the contents of the last scene.
+class SceneWitness final : public renderer::Renderer {
+ public:
+  SceneWitness(std::unique_ptr<renderer::Renderer> inner, renderer::SceneContent& content)
+      : inner_(std::move(inner)), content_(content) {}
+  Result<renderer::CameraFrame> render_camera(const renderer::CameraRequest& request) override {
+    return inner_->render_camera(request);
+  }
+  Result<DepthImage> render_depth(const renderer::CameraRequest& request) override {
+    return inner_->render_depth(request);
+  }
+  Result<Image> render_scene(const renderer::SceneView& view,
+                             const renderer::SceneContent& content) override {
+    content_ = content;
+    return inner_->render_scene(view, content);
+  }
+  [[nodiscard]] renderer::RendererInfo info() const override { return inner_->info(); }
+
+ private:
+  std::unique_ptr<renderer::Renderer> inner_;
+  renderer::SceneContent& content_;
+};
+
+class ViewSceneContentTest : public testing::ManagerTest {
+ protected:
+  std::unique_ptr<RunManager> watched_runs() {
+    RunManagerOptions watched = options();
+    watched.renderer_factory = [this](std::shared_ptr<const terrain::TileSource> tiles)
+        -> Result<std::unique_ptr<renderer::Renderer>> {
+      std::unique_ptr<renderer::Renderer> witness =
+          std::make_unique<SceneWitness>(renderer::create_noop_renderer(std::move(tiles)), content);
+      return witness;
+    };
+    return std::move(RunManager::create(watched).value());
+  }
+
+  const renderer::SceneContent& drawn(RunManager& runs, const PictureRequest& request) {
+    std::promise<Result<Picture>> answer;
+    ViewService views(runs);
+    content = {};
+    views.request(1, 1, request, [&](Result<Picture> picture) { answer.set_value(picture); });
+    const Result<Picture> picture = answer.get_future().get();
+    EXPECT_TRUE(picture.ok()) << picture.error().message;
+    return content;
+  }
+
+  static PictureRequest scene_of(const std::string& id, std::int64_t frame) {
+    PictureRequest request;
+    request.run_id = id;
+    request.kind = PictureRequest::Kind::kScene;
+    request.t_ns = frame * 100'000'000;
+    return request;
+  }
+
+  std::vector<Eigen::Vector3f> points_at_frame(RunManager& runs,
+                                               const std::string& id,
+                                               std::int64_t frame) {
+    return drawn(runs, scene_of(id, frame)).points;
+  }
+
+  renderer::SceneContent content;  ///< of the last scene, written before its answer
+};
+
+TEST_F(ViewSceneContentTest, HasTheTracksOfOtherRunsAtTheirOwnTimes) {
+  const auto runs = watched_runs();
+  const std::string id = fly(*runs);
+  const std::string other = fly(*runs);
+  const renderer::SceneContent alone = drawn(*runs, scene_of(id, 9));
+  PictureRequest both = scene_of(id, 9);
+  both.others = {{other, 400'000'000, false, "init_scale", 3}, {"absent", 0, false, "sim3", 9}};
+  const renderer::SceneContent shared = drawn(*runs, both);
+  ASSERT_EQ(alone.aircraft.size(), 2U);
+  ASSERT_EQ(shared.aircraft.size(), 4U);
+  EXPECT_EQ(shared.aircraft[1].rgb, estimator_rgb(0));
+  EXPECT_EQ(shared.aircraft[3].rgb, estimator_rgb(3));
+  // The same flight, half a second earlier.
+  const renderer::SceneContent earlier = drawn(*runs, scene_of(id, 4));
+  EXPECT_LT(
+      (shared.aircraft[2].T_world_body.translation - earlier.aircraft[0].T_world_body.translation)
+          .norm(),
+      1e-6);
+  EXPECT_GT(
+      (shared.aircraft[2].T_world_body.translation - shared.aircraft[0].T_world_body.translation)
+          .norm(),
+      1.0);
+  EXPECT_EQ(shared.ribbons.size(), 2 * alone.ribbons.size());
+  EXPECT_EQ(shared.points.size(), alone.points.size()) << "of the main run only";
+}
+
+TEST_F(ViewSceneContentTest, HasTheMapPointsRecordedLast) {
+  const auto runs = watched_runs();
+  const std::string id = fly(*runs);
+  const std::filesystem::path folder = runs->folder(id).value();
+  EXPECT_FALSE(points_at_frame(*runs, id, 8).empty()) << "the estimator's own";
+  std::filesystem::remove_all(map_points_file(folder, "p", 0).parent_path());
+  MapPoints recorded;
+  recorded.S_world_vo.scale = 2.0;
+  recorded.S_world_vo.translation = {100.0, 0.0, 0.0};
+  for (const std::int64_t frame : {5, 9}) {
+    recorded.points_vo = {Eigen::Vector3f(static_cast<float>(frame), 1.0F, -3.0F)};
+    const std::filesystem::path file = map_points_file(folder, "p", frame);
+    std::filesystem::create_directories(file.parent_path());
+    ASSERT_TRUE(write_whole(file, bytes_of(recorded)).ok());
+  }
+  EXPECT_TRUE(points_at_frame(*runs, id, 4).empty());
+  using Points = std::vector<Eigen::Vector3f>;
+  EXPECT_EQ(points_at_frame(*runs, id, 8), Points{Eigen::Vector3f(110.0F, 2.0F, -6.0F)});
+  EXPECT_EQ(points_at_frame(*runs, id, 9), Points{Eigen::Vector3f(118.0F, 2.0F, -6.0F)});
+  // A damaged file costs the points, not the picture.
+  ASSERT_TRUE(write_whole(map_points_file(folder, "p", 9), std::string("damaged")).ok());
+  EXPECT_TRUE(points_at_frame(*runs, id, 12).empty());
+}
+
+}  // namespace
+}  // namespace overfly::server

@@ -1,0 +1,196 @@
+// Which layout is shown. It is kept by the browser, with the viewer's own layouts.
+import type { Notices } from '../notices';
+import type { Store } from '../state';
+import type { LayoutNode } from './layout_tree';
+import { readLayout } from './layout_tree';
+import type { PanelName } from './panel_names';
+import type { Area } from './ready_layouts';
+import { kDefaultLayout, readyLayout } from './ready_layouts';
+
+const kKey = 'overfly.layouts';
+const kVersion = 1;
+const kMostOwn = 50;
+export const kLongestName = 40;
+
+export type Storage = Pick<globalThis.Storage, 'getItem' | 'setItem'>;
+
+/** The part of the screen that shows the panels. */
+export interface Arranger {
+  /** Shows the current layout from its beginning. */
+  arrange(): void;
+  show(panel: PanelName): void;
+  hide(panel: PanelName): void;
+  /** Panels of the layout, also those behind others. */
+  panels(): readonly PanelName[];
+  tree(): LayoutNode;
+  /** Undoes the enlargement of a panel. */
+  restore(): void;
+}
+
+export class Layouts {
+  /** Of a ready-made layout, or the title of an own one. */
+  private name = kDefaultLayout;
+  /** What the viewer has made of the layout; null = nothing changed. */
+  private changed: LayoutNode | null = null;
+  private own = new Map<string, LayoutNode>();
+  private arranger: Arranger | null = null;
+
+  constructor(
+    private readonly store: Store,
+    private readonly notices: Notices,
+    private readonly storage: Storage,
+  ) {
+    this.read();
+  }
+
+  use(arranger: Arranger): void {
+    this.arranger = arranger;
+  }
+
+  get current(): string {
+    return this.name;
+  }
+
+  get isChanged(): boolean {
+    return this.changed !== null;
+  }
+
+  get title(): string {
+    return this.own.has(this.name) ? this.name : (readyLayout(this.name)?.title ?? this.name);
+  }
+
+  get ownNames(): string[] {
+    return [...this.own.keys()].sort((a, b) => a.localeCompare(b));
+  }
+
+  /** For an address: null for what another browser does not have. */
+  get shared(): string | null {
+    return this.isChanged || this.own.has(this.name) ? null : this.name;
+  }
+
+  arrangement(area: Area): LayoutNode {
+    const kept = this.changed ?? this.own.get(this.name);
+    const ready = readyLayout(this.name) ?? readyLayout(kDefaultLayout);
+    if (kept !== undefined) return kept;
+    if (ready === undefined) throw new Error('there is no default layout');
+    return ready.arrange(area);
+  }
+
+  /** Shows a layout from its beginning; does nothing if there is none of this name. */
+  choose(name: string): void {
+    if (readyLayout(name) === undefined && !this.own.has(name)) return;
+    this.name = name;
+    this.changed = null;
+    this.keep();
+    this.arranger?.arrange();
+  }
+
+  /** Undoes what the viewer changed. */
+  reset(): void {
+    this.choose(this.name);
+  }
+
+  /** Keeps the arrangement of the screen as it is now. */
+  onRearranged(tree: LayoutNode | null): void {
+    this.changed = tree;
+    this.keep();
+  }
+
+  /** @return why the name cannot be used, or null */
+  saveAs(title: string): string | null {
+    const name = title.trim();
+    const tree = this.arranger?.tree();
+    if (tree === undefined) return 'There is nothing to keep yet.';
+    if (name === '') return 'A layout needs a name.';
+    if (name.length > kLongestName) return `A name has at most ${kLongestName} characters.`;
+    if (readyLayout(name.toLowerCase()) !== undefined) return `${name} is a ready-made layout.`;
+    if (!this.own.has(name) && this.own.size >= kMostOwn) {
+      return `There are ${kMostOwn} layouts already: delete one first.`;
+    }
+    this.own.set(name, tree);
+    this.name = name;
+    this.changed = null;
+    this.keep();
+    return null;
+  }
+
+  remove(name: string): void {
+    if (!this.own.delete(name)) return;
+    if (this.name === name) this.choose(kDefaultLayout);
+    else this.keep();
+  }
+
+  show(panel: PanelName): void {
+    this.arranger?.show(panel);
+  }
+
+  hide(panel: PanelName): void {
+    this.arranger?.hide(panel);
+  }
+
+  panels(): readonly PanelName[] {
+    return this.arranger?.panels() ?? [];
+  }
+
+  restore(): void {
+    this.arranger?.restore();
+  }
+
+  private keep(): void {
+    const kept = {
+      version: kVersion,
+      name: this.name,
+      changed: this.changed,
+      own: Object.fromEntries(this.own),
+    };
+    try {
+      this.storage.setItem(kKey, JSON.stringify(kept));
+    } catch {
+      // Without storage, or with a full one, the layout lasts until the page is closed.
+    }
+    this.store.change('layout');
+  }
+
+  private read(): void {
+    let text: string | null = null;
+    try {
+      text = this.storage.getItem(kKey);
+    } catch {
+      return;
+    }
+    if (text === null) return;
+    const lost = this.take(parsed(text));
+    if (lost.length === 0) return;
+    this.notices.error(`Stored layouts are damaged and were left out: ${lost.join(', ')}.`);
+  }
+
+  /** Takes what is in order. @return what is not */
+  private take(kept: unknown): string[] {
+    if (typeof kept !== 'object' || kept === null) return ['all'];
+    const { version, name, changed, own } = kept as Record<string, unknown>;
+    if (version !== kVersion || typeof name !== 'string') return ['all'];
+    const lost: string[] = [];
+    const entries = typeof own === 'object' && own !== null ? Object.entries(own) : [];
+    for (const [title, value] of entries.slice(0, kMostOwn)) {
+      const tree = title.length > kLongestName ? null : readLayout(value);
+      if (tree === null) lost.push(title.slice(0, kLongestName));
+      else this.own.set(title, tree);
+    }
+    if (readyLayout(name) === undefined && !this.own.has(name)) {
+      return lost.length > 0 ? lost : [name.slice(0, kLongestName)];
+    }
+    this.name = name;
+    if (changed === null || changed === undefined) return lost;
+    this.changed = readLayout(changed);
+    if (this.changed === null) lost.push(this.title);
+    return lost;
+  }
+}
+
+function parsed(text: string): unknown {
+  try {
+    return JSON.parse(text) as unknown;
+  } catch {
+    return null;
+  }
+}

@@ -1,0 +1,114 @@
+// The part of the ground plane or of a vertical plane that a path plot shows: equal scales on both
+// axes, so that a circle is a circle.
+
+export interface Box {
+  min: [number, number];
+  max: [number, number];
+}
+
+export interface Size {
+  width_px: number;
+  height_px: number;
+}
+
+/** Maps metres to pixels: x to the right, y up. */
+export interface PathFrame {
+  /** In the middle of the plot [m]. */
+  centre_m: [number, number];
+  m_per_px: number;
+}
+
+const kMargin = 1.12;
+const kLeast_m = 2;
+const kScaleRange_m = [1e-4, 1e5] as const;
+
+/** Shows all of the box. */
+export function fitted({ min, max }: Box, { width_px, height_px }: Size): PathFrame {
+  const width_m = Math.max(kLeast_m, max[0] - min[0]) * kMargin;
+  const height_m = Math.max(kLeast_m, max[1] - min[1]) * kMargin;
+  return {
+    centre_m: [(min[0] + max[0]) / 2, (min[1] + max[1]) / 2],
+    m_per_px: Math.max(width_m / Math.max(1, width_px), height_m / Math.max(1, height_px)),
+  };
+}
+
+export function toPixels(
+  { centre_m, m_per_px }: PathFrame,
+  { width_px, height_px }: Size,
+  [x_m, y_m]: readonly [number, number],
+): [number, number] {
+  return [
+    width_px / 2 + (x_m - centre_m[0]) / m_per_px,
+    height_px / 2 - (y_m - centre_m[1]) / m_per_px,
+  ];
+}
+
+export function toMetres(
+  { centre_m, m_per_px }: PathFrame,
+  { width_px, height_px }: Size,
+  [x_px, y_px]: readonly [number, number],
+): [number, number] {
+  return [
+    centre_m[0] + (x_px - width_px / 2) * m_per_px,
+    centre_m[1] - (y_px - height_px / 2) * m_per_px,
+  ];
+}
+
+/** Zooms about a fixed point; a factor below 1 shows less. */
+export function zoomedAt(
+  frame: PathFrame,
+  size: Size,
+  at_px: readonly [number, number],
+  factor: number,
+): PathFrame {
+  const fixed_m = toMetres(frame, size, at_px);
+  const [low, high] = kScaleRange_m;
+  const m_per_px = Math.min(high, Math.max(low, frame.m_per_px * factor));
+  const ratio = m_per_px / frame.m_per_px;
+  return {
+    centre_m: [
+      fixed_m[0] + (frame.centre_m[0] - fixed_m[0]) * ratio,
+      fixed_m[1] + (frame.centre_m[1] - fixed_m[1]) * ratio,
+    ],
+    m_per_px,
+  };
+}
+
+/** Positions of an axis's numbers: multiples of 1, 2 or 5 times a power of ten. */
+export function ticks(low: number, high: number, most: number): number[] {
+  const span = high - low;
+  if (!(span > 0) || most < 1) return [];
+  const rough = span / most;
+  const power = 10 ** Math.floor(Math.log10(rough));
+  const step = ([1, 2, 5, 10].find((factor) => factor * power >= rough * 0.999) ?? 10) * power;
+  const first = Math.ceil(low / step - 1e-9);
+  const last = Math.floor(high / step + 1e-9);
+  return Array.from({ length: last - first + 1 }, (_, i) => (first + i) * step);
+}
+
+/** A tick's number with the digits of its step. */
+export function tickText(value: number, step: number): string {
+  const digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+  const text = value.toFixed(Math.min(6, digits));
+  return Number(text) === 0 ? text.replace('-', '') : text.replace('-', '−');
+}
+
+/** Encloses all finite points; null without any. */
+export function boxOf(
+  paths: readonly { x: ArrayLike<number>; y: ArrayLike<number> }[],
+): Box | null {
+  const min: [number, number] = [Infinity, Infinity];
+  const max: [number, number] = [-Infinity, -Infinity];
+  for (const { x, y } of paths) {
+    for (let i = 0; i < x.length; i += 1) {
+      const px = x[i] ?? NaN;
+      const py = y[i] ?? NaN;
+      if (!Number.isFinite(px) || !Number.isFinite(py)) continue;
+      min[0] = Math.min(min[0], px);
+      min[1] = Math.min(min[1], py);
+      max[0] = Math.max(max[0], px);
+      max[1] = Math.max(max[1], py);
+    }
+  }
+  return min[0] > max[0] ? null : { min, max };
+}

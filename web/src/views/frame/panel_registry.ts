@@ -1,0 +1,41 @@
+// Makes the panels. Their names and titles are in store/layouts/panel_names.ts.
+import { CameraPanel } from '../camera_panel';
+import { ErrorPanel } from '../error_panel';
+import { Launcher } from '../launcher';
+import { LogPanel } from '../log_panel';
+import { DebugPanel } from '../picture_panel';
+import { PlotsPanel } from '../plots/plots_panel';
+import { RunList } from '../run_list';
+import { ScenePanel } from '../scene_panel';
+import { VehicleCard } from '../vehicle/vehicle_card';
+import type { PanelName } from '../../store/layouts/panel_names';
+import type { Context, View } from '../view';
+
+/** Panels beside the default layout are loaded when they are first shown. */
+export const kPanelMakers: Record<PanelName, (context: Context) => View | Promise<View>> = {
+  launcher: (context) => new Launcher(context),
+  runs: (context) => new RunList(context),
+  log: (context) => new LogPanel(context),
+  scene: (context) => withVehicle(new ScenePanel(context), new VehicleCard(context)),
+  plots: (context) => new PlotsPanel(context),
+  'plots-errors': (context) => new PlotsPanel(context, 'errors'),
+  'plots-image': (context) => new PlotsPanel(context, 'image'),
+  camera: (context) => new CameraPanel(context),
+  debug: (context) => new DebugPanel(context),
+  errors: (context) => new ErrorPanel(context),
+  status: async (context) => {
+    const { StatusPanel } = await import('../status_panel');
+    return new StatusPanel(context);
+  },
+};
+
+function withVehicle(scene: ScenePanel, vehicle: VehicleCard): View {
+  scene.root.querySelector('.panel-body')?.append(vehicle.root);
+  return {
+    root: scene.root,
+    update(changed) {
+      scene.update(changed);
+      vehicle.update(changed);
+    },
+  };
+}

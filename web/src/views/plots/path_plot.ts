@@ -1,0 +1,277 @@
+// The tracks seen from above or from the side, with equal scales in metres. The wheel zooms,
+// dragging moves, a double click shows everything again, a click seeks.
+import type { Axis } from '../../store/run_data';
+import type { Box, PathFrame, Size } from '../../store/plots/path_frame';
+import {
+  boxOf,
+  fitted,
+  ticks,
+  tickText,
+  toMetres,
+  toPixels,
+  zoomedAt,
+} from '../../store/plots/path_frame';
+import type { State } from '../../store/state';
+import type { Track } from '../../store/tracks';
+import { tracksOf } from '../../store/tracks';
+import { curveStyle, trackHue } from '../colours';
+import { h, perFrame, setText } from '../dom';
+import { paint } from '../paint';
+
+const kZoom_per_px = 0.0015;
+const kTickSpace_px = 70;
+/** Points nearer than this to the last one are not drawn. */
+const kLeastStep_px = 0.7;
+const kClick_px = 4;
+/** A click farther from every track does not seek. */
+const kNear_px = 30;
+
+export interface PathAxes {
+  key: string;
+  label: string;
+  hint: string;
+  across: Axis;
+  up: Axis;
+}
+
+export const kPathAxes: readonly PathAxes[] = [
+  { key: 'xy', label: 'From above', hint: 'x east, y north', across: 'x_m', up: 'y_m' },
+  { key: 'xz', label: 'From the south', hint: 'x east, z up', across: 'x_m', up: 'z_m' },
+];
+
+interface Path {
+  track: Track;
+  x: Float64Array;
+  y: Float64Array;
+  t_ns: Float64Array;
+}
+
+export class PathPlot {
+  readonly root: HTMLElement;
+  private readonly area = h('div', { class: 'path-area' });
+  private readonly canvas = h('canvas', { role: 'img' });
+  private readonly readout = h('span', { class: 'readout' });
+  private paths: Path[] = [];
+  private marks: { x: number; y: number; track: Track }[] = [];
+  /** null = everything. */
+  private chosen: PathFrame | null = null;
+
+  /** @param onSeek  to a time of the clock [s] */
+  constructor(
+    private readonly axes: PathAxes,
+    private readonly onSeek: (t_s: number) => void,
+  ) {
+    const { key, label, hint } = axes;
+    this.canvas.setAttribute('aria-label', `Tracks ${label.toLowerCase()}`);
+    this.area.append(this.canvas);
+    this.root = h(
+      'div',
+      { class: 'plot path-plot', 'data-axis': key },
+      h(
+        'div',
+        { class: 'plot-title', title: `${hint}; double click: everything` },
+        h('b', {}, label),
+        h('span', { class: 'unit' }, `${hint} [m]`),
+        this.readout,
+      ),
+      this.area,
+    );
+    this.steer();
+    new ResizeObserver(() => this.repaint()).observe(this.area);
+  }
+
+  /** Takes the tracks as they are now. */
+  draw(state: State): void {
+    this.paths = tracksOf(state).flatMap((track) => {
+      const { run, name, shown } = track;
+      const table = name === '' ? run.data.truth : run.shownEstimate(name)?.table;
+      if (!shown || table === undefined) return [];
+      const { across, up } = this.axes;
+      return { track, x: table.column(across), y: table.column(up), t_ns: table.column('t_ns') };
+    });
+    this.moveMarks(state);
+  }
+
+  /** Shows where every track is at the clock's time. */
+  moveMarks(state: State): void {
+    const { across, up } = this.axes;
+    this.marks = tracksOf(state).flatMap((track) => {
+      const { run, name, shown } = track;
+      const pose = name === '' ? run.instant?.truth : run.instant?.estimates[name]?.pose;
+      if (!shown || pose === undefined || pose === null) return [];
+      return { x: pose[across], y: pose[up], track };
+    });
+    this.repaint();
+  }
+
+  private readonly repaintInFrame = perFrame<null>(() => this.paintNow());
+
+  repaint(): void {
+    this.repaintInFrame(null);
+  }
+
+  private size(): Size {
+    return { width_px: this.area.clientWidth, height_px: this.area.clientHeight };
+  }
+
+  private box(): Box {
+    return boxOf(this.paths) ?? { min: [0, 0], max: [0, 0] };
+  }
+
+  private frame(): PathFrame {
+    return this.chosen ?? fitted(this.box(), this.size());
+  }
+
+  private paintNow(): void {
+    const size = this.size();
+    if (size.width_px < 20 || size.height_px < 20) return;
+    const ratio = window.devicePixelRatio;
+    this.canvas.width = Math.round(size.width_px * ratio);
+    this.canvas.height = Math.round(size.height_px * ratio);
+    const pen = this.canvas.getContext('2d');
+    if (pen === null) return;
+    pen.scale(ratio, ratio);
+    const frame = this.frame();
+    this.paintGrid(pen, frame, size);
+    for (const path of this.paths) paintPath(pen, path, frame, size);
+    for (const { x, y, track } of this.marks) {
+      const [px, py] = toPixels(frame, size, [x, y]);
+      pen.fillStyle = paint(curveStyle(trackHue(track)).colour);
+      pen.beginPath();
+      pen.arc(px, py, track.name === '' ? 5 : 3.5, 0, 2 * Math.PI);
+      pen.fill();
+    }
+  }
+
+  private paintGrid(pen: CanvasRenderingContext2D, frame: PathFrame, size: Size): void {
+    const [left, bottom] = toMetres(frame, size, [0, size.height_px]);
+    const [right, top] = toMetres(frame, size, [size.width_px, 0]);
+    pen.strokeStyle = paint('var(--grid)');
+    pen.fillStyle = paint('var(--muted)');
+    pen.font = '10px system-ui, sans-serif';
+    pen.lineWidth = 1;
+    const columns = ticks(left, right, size.width_px / kTickSpace_px);
+    const rows = ticks(bottom, top, size.height_px / kTickSpace_px);
+    pen.beginPath();
+    for (const x of columns) {
+      const [px] = toPixels(frame, size, [x, 0]);
+      pen.moveTo(px, 0);
+      pen.lineTo(px, size.height_px);
+    }
+    for (const y of rows) {
+      const [, py] = toPixels(frame, size, [0, y]);
+      pen.moveTo(0, py);
+      pen.lineTo(size.width_px, py);
+    }
+    pen.stroke();
+    const step = (list: number[]) => (list[1] ?? 1) - (list[0] ?? 0);
+    pen.textAlign = 'center';
+    for (const x of columns) {
+      const [px] = toPixels(frame, size, [x, 0]);
+      if (px > 30 && px < size.width_px - 16) {
+        pen.fillText(tickText(x, step(columns)), px, size.height_px - 4);
+      }
+    }
+    pen.textAlign = 'left';
+    for (const y of rows) {
+      const [, py] = toPixels(frame, size, [0, y]);
+      if (py > 12 && py < size.height_px - 16) pen.fillText(tickText(y, step(rows)), 3, py - 3);
+    }
+  }
+
+  private steer(): void {
+    const { area } = this;
+    let grabbed: { at: [number, number]; moved: boolean } | null = null;
+    const at = (event: MouseEvent): [number, number] => {
+      const box = area.getBoundingClientRect();
+      return [event.clientX - box.left, event.clientY - box.top];
+    };
+    area.addEventListener('pointerdown', (event) => {
+      if (event.button !== 0) return;
+      grabbed = { at: at(event), moved: false };
+      area.setPointerCapture(event.pointerId);
+    });
+    area.addEventListener('pointermove', (event) => {
+      const here = at(event);
+      const [x, y] = toMetres(this.frame(), this.size(), here);
+      setText(this.readout, `${tickText(x, 0.1)} ${tickText(y, 0.1)}`);
+      if (grabbed === null) return;
+      const [dx, dy] = [here[0] - grabbed.at[0], here[1] - grabbed.at[1]];
+      if (!grabbed.moved && Math.hypot(dx, dy) < kClick_px) return;
+      const { centre_m, m_per_px } = this.frame();
+      this.chosen = {
+        centre_m: [centre_m[0] - dx * m_per_px, centre_m[1] + dy * m_per_px],
+        m_per_px,
+      };
+      grabbed = { at: here, moved: true };
+      this.repaint();
+    });
+    area.addEventListener('pointerup', (event) => {
+      if (grabbed?.moved === false) this.seekNear(at(event));
+      grabbed = null;
+    });
+    area.addEventListener('pointercancel', () => (grabbed = null));
+    area.addEventListener('pointerleave', () => setText(this.readout, ''));
+    area.addEventListener('dblclick', () => {
+      this.chosen = null;
+      this.repaint();
+    });
+    area.addEventListener(
+      'wheel',
+      (event) => {
+        event.preventDefault();
+        const factor = Math.exp(event.deltaY * kZoom_per_px);
+        this.chosen = zoomedAt(this.frame(), this.size(), at(event), factor);
+        this.repaint();
+      },
+      { passive: false },
+    );
+  }
+
+  /** Seeks to the time at which a track is nearest to a point of the plot. */
+  private seekNear(point: [number, number]): void {
+    const frame = this.frame();
+    const size = this.size();
+    let least_px = kNear_px;
+    let found: { path: Path; row: number } | null = null;
+    for (const path of this.paths) {
+      for (let row = 0; row < path.x.length; row += 1) {
+        const [x, y] = toPixels(frame, size, [path.x[row] ?? NaN, path.y[row] ?? NaN]);
+        const off_px = Math.hypot(x - point[0], y - point[1]);
+        if (!(off_px < least_px)) continue;
+        least_px = off_px;
+        found = { path, row };
+      }
+    }
+    if (found === null) return;
+    const { path, row } = found;
+    this.onSeek((path.t_ns[row] ?? 0) / 1e9 + path.track.run.offset_s);
+  }
+}
+
+function paintPath(
+  pen: CanvasRenderingContext2D,
+  { track, x, y }: Path,
+  frame: PathFrame,
+  size: Size,
+): void {
+  const { colour, width_px, dash } = curveStyle(trackHue(track));
+  pen.strokeStyle = paint(colour);
+  pen.lineWidth = width_px;
+  pen.setLineDash(dash);
+  pen.beginPath();
+  let last: [number, number] | null = null;
+  for (let i = 0; i < x.length; i += 1) {
+    const point = toPixels(frame, size, [x[i] ?? NaN, y[i] ?? NaN]);
+    if (Number.isNaN(point[0]) || Number.isNaN(point[1])) {
+      last = null;
+      continue;
+    }
+    if (last === null) pen.moveTo(...point);
+    else if (Math.hypot(point[0] - last[0], point[1] - last[1]) < kLeastStep_px) continue;
+    else pen.lineTo(...point);
+    last = point;
+  }
+  pen.stroke();
+  pen.setLineDash([]);
+}

@@ -1,0 +1,158 @@
+import { describe, expect, it } from 'vitest';
+import type { LayoutNode } from '../../../src/store/layouts/layout_tree';
+import type { Arranger } from '../../../src/store/layouts/layouts';
+import { Layouts } from '../../../src/store/layouts/layouts';
+import { Notices } from '../../../src/store/notices';
+import { Store } from '../../../src/store/state';
+
+const kArea = { width_px: 1280, height_px: 706 };
+const kTree: LayoutNode = {
+  split: 'row',
+  parts: [
+    { size: 300, node: { tabs: ['runs', 'log'], active: 'log' } },
+    { size: 900, node: { tabs: ['scene'], active: 'scene' } },
+  ],
+};
+
+class FakeStorage {
+  constructor(public text: string | null = null) {}
+  getItem(): string | null {
+    return this.text;
+  }
+  setItem(_key: string, text: string): void {
+    this.text = text;
+  }
+}
+
+function open(storage: FakeStorage) {
+  const store = new Store();
+  const layouts = new Layouts(store, new Notices(store, () => undefined), storage);
+  let arranged = 0;
+  const arranger: Arranger = {
+    arrange: () => (arranged += 1),
+    show: () => undefined,
+    hide: () => undefined,
+    panels: () => [],
+    tree: () => kTree,
+    restore: () => undefined,
+  };
+  layouts.use(arranger);
+  const said = () => store.state.notices.map(({ text }) => text);
+  return { layouts, said, arranged: () => arranged };
+}
+
+describe('the layouts', () => {
+  it('begin with the default one', () => {
+    const { layouts, said } = open(new FakeStorage());
+    expect(layouts.current).toBe('fly');
+    expect(layouts.shared).toBe('fly');
+    expect(said()).toEqual([]);
+  });
+
+  it('keep what the viewer rearranged, and undo it', () => {
+    const storage = new FakeStorage();
+    const first = open(storage);
+    first.layouts.choose('compare');
+    first.layouts.onRearranged(kTree);
+    const { layouts, arranged } = open(storage);
+    expect(layouts.current).toBe('compare');
+    expect(layouts.shared).toBe(null);
+    expect(layouts.arrangement(kArea)).toEqual(kTree);
+    layouts.reset();
+    expect(arranged()).toBe(1);
+    expect(layouts.shared).toBe('compare');
+    expect(layouts.arrangement(kArea)).not.toEqual(kTree);
+  });
+
+  it('keep own ones by name', () => {
+    const storage = new FakeStorage();
+    expect(open(storage).layouts.saveAs('  Mine ')).toBe(null);
+    const { layouts } = open(storage);
+    expect(layouts.ownNames).toEqual(['Mine']);
+    expect(layouts.current).toBe('Mine');
+    expect(layouts.arrangement(kArea)).toEqual(kTree);
+    layouts.choose('fly');
+    layouts.choose('Mine');
+    layouts.remove('Mine');
+    expect(layouts.current).toBe('fly');
+    expect(open(storage).layouts.ownNames).toEqual([]);
+  });
+
+  it.each(['', '  ', 'Fly', 'x'.repeat(41)])('refuse the name "%s"', (name) => {
+    expect(open(new FakeStorage()).layouts.saveAs(name)).not.toBe(null);
+  });
+
+  it('ignore a layout that there is not', () => {
+    const { layouts } = open(new FakeStorage());
+    layouts.choose('nonsense');
+    expect(layouts.current).toBe('fly');
+  });
+
+  const damaged: [string, string][] = [
+    ['no JSON', '{"version":1'],
+    ['another version', '{"version":2,"name":"camera"}'],
+    ['no layout of this name', '{"version":1,"name":"gone","changed":null,"own":{}}'],
+    ['an unknown panel', stored({ tabs: ['radar'], active: 'radar' })],
+    ['a panel that occurs twice', stored({ tabs: ['log', 'log'], active: 'log' })],
+    ['no panel in front', stored({ tabs: ['log'], active: 'runs' })],
+    ['a size of zero', stored(row({ size: 0, node: { tabs: ['log'], active: 'log' } }))],
+    [
+      'a size that is no number',
+      stored(row({ size: '4', node: { tabs: ['log'], active: 'log' } })),
+    ],
+    ['a row in a row', stored(row({ size: 1, node: row({ size: 1, node: kTree }) }))],
+    ['a row of nothing', stored(row())],
+    ['endless depth', deep(20_000)],
+  ];
+  it.each(damaged)('fall back to a ready-made one and say so: %s', (_what, text) => {
+    const { layouts, said } = open(new FakeStorage(text));
+    expect(layouts.isChanged).toBe(false);
+    expect(layouts.current).toBe('fly');
+    expect(said().length).toBe(1);
+    expect(said()[0]).toMatch(/damaged/);
+  });
+
+  it('take own layouts that are in order from among damaged ones', () => {
+    const own = { Good: kTree, Bad: { tabs: [] } };
+    const text = JSON.stringify({ version: 1, name: 'Good', changed: null, own });
+    const { layouts, said } = open(new FakeStorage(text));
+    expect(layouts.ownNames).toEqual(['Good']);
+    expect(layouts.current).toBe('Good');
+    expect(said()[0]).toContain('Bad');
+  });
+
+  it('work without a storage', () => {
+    const refusing = {
+      getItem: (): string | null => {
+        throw new Error('denied');
+      },
+      setItem: () => {
+        throw new Error('full');
+      },
+    };
+    const store = new Store();
+    const layouts = new Layouts(store, new Notices(store, () => undefined), refusing);
+    layouts.choose('camera');
+    expect(layouts.current).toBe('camera');
+  });
+});
+
+function row(...parts: unknown[]) {
+  return { split: 'row', parts };
+}
+
+function stored(changed: unknown): string {
+  return JSON.stringify({ version: 1, name: 'fly', changed, own: {} });
+}
+
+function deep(levels: number): string {
+  const kinds = ['row', 'column'];
+  let open = '';
+  let close = '';
+  for (let i = 0; i < levels; i += 1) {
+    open += `{"split":"${kinds[i % 2] ?? ''}","parts":[{"size":1,"node":`;
+    close += '}]}';
+  }
+  const inner = JSON.stringify({ tabs: ['log'], active: 'log' });
+  return `{"version":1,"name":"fly","own":{},"changed":${open}${inner}${close}}`;
+}
