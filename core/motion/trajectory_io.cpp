@@ -133,13 +133,15 @@ struct KittiTimes {
 };
 
 /// `times.txt` in the folder of a KITTI file; empty if it is absent or has another number of lines.
-Result<std::optional<KittiTimes>> kitti_times(const fs::path& poses_file, std::size_t count) {
+Result<std::optional<KittiTimes>> kitti_times(const fs::path& poses_file,
+                                              std::size_t count,
+                                              const FieldFile::Limits& limits) {
   const fs::path times_file = poses_file.parent_path() / "times.txt";
   std::error_code unknown;  // a file that cannot be accessed counts as absent
   if (times_file == poses_file || !fs::exists(times_file, unknown)) {
     return std::optional<KittiTimes>();
   }
-  const Result<FieldFile> file = FieldFile::read(times_file);
+  const Result<FieldFile> file = FieldFile::read(times_file, nullptr, limits);
   if (!file) return file.error();
   if (file->lines().size() != count) return std::optional<KittiTimes>();
   KittiTimes times{times_file.string(), *file, {}};
@@ -152,8 +154,11 @@ Result<std::optional<KittiTimes>> kitti_times(const fs::path& poses_file, std::s
   return std::optional<KittiTimes>(std::move(times));
 }
 
-Status read_kitti(const fs::path& path, const FieldFile& file, TrajectoryFile* result) {
-  const Result<std::optional<KittiTimes>> times = kitti_times(path, file.lines().size());
+Status read_kitti(const fs::path& path,
+                  const FieldFile& file,
+                  const FieldFile::Limits& limits,
+                  TrajectoryFile* result) {
+  const Result<std::optional<KittiTimes>> times = kitti_times(path, file.lines().size(), limits);
   if (!times) return times.error();
   result->has_times = times->has_value();
   std::vector<Row> rows;
@@ -193,10 +198,10 @@ TrajectoryFormat format_of(const FieldFile& file, bool comma_separated) {
                                                   : TrajectoryFormat::kTum;
 }
 
-}  // namespace
-
-Result<TrajectoryFile> read_trajectory(const fs::path& path, const std::atomic<bool>* cancel) {
-  const Result<FieldFile> file = FieldFile::read(path, cancel);
+Result<TrajectoryFile> read_with(const fs::path& path,
+                                 const FieldFile::Limits& limits,
+                                 const std::atomic<bool>* cancel) {
+  const Result<FieldFile> file = FieldFile::read(path, cancel, limits);
   if (!file) return file.error();
   if (file->lines().empty()) {
     return Error{ErrorCode::kUnreadable, path.string() + ": contains no poses"};
@@ -204,13 +209,59 @@ Result<TrajectoryFile> read_trajectory(const fs::path& path, const std::atomic<b
   TrajectoryFile result;
   result.comments = file->comments();
   result.format = format_of(*file, file->lines().front().comma_separated);
-  const Status rows = result.format == TrajectoryFormat::kKitti ? read_kitti(path, *file, &result)
-                                                                : read_rows(path, *file, &result);
+  const Status rows = result.format == TrajectoryFormat::kKitti
+                          ? read_kitti(path, *file, limits, &result)
+                          : read_rows(path, *file, &result);
   if (!rows) return rows.error();
   if (result.trajectory.empty()) {
     return Error{ErrorCode::kUnreadable, path.string() + ": contains no poses, only `nan`"};
   }
   return result;
+}
+
+}  // namespace
+
+const char* to_string(TrajectoryFormat format) {
+  switch (format) {
+    case TrajectoryFormat::kTum:
+      return "tum";
+    case TrajectoryFormat::kKitti:
+      return "kitti";
+    case TrajectoryFormat::kEuroc:
+      return "euroc";
+  }
+  return "";
+}
+
+Result<TrajectoryFile> read_trajectory(const fs::path& path, const std::atomic<bool>* cancel) {
+  return read_with(path, {}, cancel);
+}
+
+Result<TrajectoryFile> read_trajectory(const fs::path& path,
+                                       const TrajectoryLimits& limits,
+                                       const std::atomic<bool>* cancel) {
+  return read_with(path, {limits.max_bytes, limits.max_poses}, cancel);
+}
+
+Result<TrajectoryFormat> detect_trajectory(const fs::path& path) {
+  constexpr std::size_t kStartBytes = std::size_t{64} << 10U;
+  const Result<FieldFile> start = FieldFile::read_start(path, kStartBytes);
+  if (!start) return start.error();
+  if (start->lines().empty()) {
+    return Error{ErrorCode::kUnreadable, path.string() + ": contains no poses"};
+  }
+  const FieldLine& first = start->lines().front();
+  const TrajectoryFormat format = format_of(*start, first.comma_separated);
+  if (format == TrajectoryFormat::kKitti) {
+    const Result<Pose> pose = kitti_pose(*start, first);
+    if (!pose) return pose.error();
+    return format;
+  }
+  if (format == TrajectoryFormat::kTum && is_unknown(first)) return format;
+  const Result<StampedPose> pose =
+      format == TrajectoryFormat::kTum ? tum_pose(*start, first) : euroc_pose(*start, first);
+  if (!pose) return pose.error();
+  return format;
 }
 
 }  // namespace overfly

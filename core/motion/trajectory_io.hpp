@@ -2,6 +2,8 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -13,6 +15,7 @@
 namespace overfly {
 
 enum class TrajectoryFormat { kTum, kKitti, kEuroc };
+[[nodiscard]] const char* to_string(TrajectoryFormat format);  ///< "tum", "kitti", "euroc"
 
 /// The content of a trajectory file.
 struct TrajectoryFile {
@@ -41,6 +44,21 @@ struct TrajectoryFile {
 /// Errors: as FieldFile::read; kUnreadable naming file, line, column and value.
 [[nodiscard]] Result<TrajectoryFile> read_trajectory(const std::filesystem::path& file,
                                                      const std::atomic<bool>* cancel = nullptr);
+
+/// Limits of a file, and of the times file of a KITTI file.
+struct TrajectoryLimits {
+  std::uint64_t max_bytes = 0;
+  std::size_t max_poses = 0;
+};
+/// As above, for files whose size others choose.
+[[nodiscard]] Result<TrajectoryFile> read_trajectory(const std::filesystem::path& file,
+                                                     const TrajectoryLimits& limits,
+                                                     const std::atomic<bool>* cancel);
+
+/// Detects the format from the first pose of a file, which is read no further than 64 KiB.
+/// Errors: as ForwardReader::open; kUnreadable naming file and line, if the first line that is no
+/// comment is no pose.
+[[nodiscard]] Result<TrajectoryFormat> detect_trajectory(const std::filesystem::path& file);
 
 /// Writes a TUM file. Stamps are exact to the nanosecond, and numbers read back exactly. The file
 /// is written completely or not at all. Errors: kIo.

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <span>
 
 #include "core/cancel.hpp"
 #include "core/outside/file_text.hpp"
@@ -19,11 +20,14 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
 }
 
+/// At most one field more than a line may have.
 std::vector<std::string_view> fields_of(std::string_view line) {
+  constexpr std::size_t kMost = FieldFile::kMaxLineFields;
   std::vector<std::string_view> fields;
   if (line.find(',') != std::string_view::npos) {
     std::size_t begin = 0;
-    for (std::size_t comma = line.find(','); comma != std::string_view::npos;
+    for (std::size_t comma = line.find(',');
+         comma != std::string_view::npos && fields.size() < kMost;
          comma = line.find(',', begin)) {
       fields.push_back(trimmed(line.substr(begin, comma - begin)));
       begin = comma + 1;
@@ -31,7 +35,7 @@ std::vector<std::string_view> fields_of(std::string_view line) {
     fields.push_back(trimmed(line.substr(begin)));
     return fields;
   }
-  while (!(line = trimmed(line)).empty()) {
+  while (!(line = trimmed(line)).empty() && fields.size() <= kMost) {
     const std::size_t end = std::min(line.find_first_of(kBlank), line.size());
     fields.push_back(line.substr(0, end));
     line.remove_prefix(end);
@@ -107,11 +111,43 @@ std::optional<std::int64_t> ns_from_decimal(Decimal decimal) {
 
 Result<FieldFile> FieldFile::read(const std::filesystem::path& file,
                                   const std::atomic<bool>* cancel) {
-  Result<std::string> text = read_file_text(file, kMaxBytes, cancel);
+  return read(file, cancel, Limits());
+}
+
+Result<FieldFile> FieldFile::read(const std::filesystem::path& file,
+                                  const std::atomic<bool>* cancel,
+                                  const Limits& limits) {
+  Result<std::string> text = read_file_text(file, limits.max_bytes, cancel);
   if (!text) return text.error();
+  return from_text(file, std::move(*text), cancel, limits);
+}
+
+Result<FieldFile> FieldFile::read_start(const std::filesystem::path& file, std::size_t bytes) {
+  const Result<ReadableFile> open = ReadableFile::open(file);
+  if (!open) return open.error();
+  std::vector<std::uint8_t> start(bytes);
+  std::size_t filled = 0;
+  while (filled < start.size()) {
+    const Result<std::size_t> read =
+        open->read_some(filled, std::span(start).subspan(filled, start.size() - filled));
+    if (!read) return read.error();
+    if (*read == 0) break;
+    filled += *read;
+  }
+  std::string text(start.begin(), start.begin() + static_cast<std::ptrdiff_t>(filled));
+  // The last line may go on behind these bytes.
+  if (filled == bytes) text.resize(text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n'));
+  return from_text(file, std::move(text), nullptr, Limits());
+}
+
+Result<FieldFile> FieldFile::from_text(const std::filesystem::path& file,
+                                       std::string text,
+                                       const std::atomic<bool>* cancel,
+                                       const Limits& limits) {
   FieldFile result;
   result.file_ = file;
-  result.text_ = std::make_shared<const std::string>(std::move(*text));
+  result.text_ = std::make_shared<const std::string>(std::move(text));
+  std::size_t fields = 0;
 
   std::string_view rest = *result.text_;
   if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);  // UTF-8 byte order mark
@@ -124,16 +160,24 @@ Result<FieldFile> FieldFile::read(const std::filesystem::path& file,
     }
     if (line.empty()) continue;
     if (!line.starts_with('#')) {
-      if (result.lines_.size() == kMaxLines) {
-        return Error{ErrorCode::kUnreadable,
-                     file.string() + ": must have at most " + std::to_string(kMaxLines) + " lines"};
+      if (result.lines_.size() == limits.max_lines) {
+        return Error{
+            ErrorCode::kUnreadable,
+            file.string() + ": must have at most " + std::to_string(limits.max_lines) + " lines"};
       }
       result.lines_.push_back({number, line.find(',') != std::string_view::npos, fields_of(line)});
+      const FieldLine& added = result.lines_.back();
+      fields += added.fields.size();
+      if (added.fields.size() > kMaxLineFields || fields / kMeanLineFields > limits.max_lines) {
+        return result.bad_line(added,
+                               "must have at most " + std::to_string(kMaxLineFields) +
+                                   " columns, and on average " + std::to_string(kMeanLineFields));
+      }
       continue;
     }
     const std::string_view comment = trimmed(line.substr(1));
     const std::size_t blank = comment.find_first_of(kBlank);
-    if (blank == std::string_view::npos) continue;
+    if (blank == std::string_view::npos || result.comments_.size() >= kMaxComments) continue;
     result.comments_[std::string(comment.substr(0, blank))] = trimmed(comment.substr(blank));
   }
   return result;
@@ -142,9 +186,10 @@ Result<FieldFile> FieldFile::read(const std::filesystem::path& file,
 Error FieldFile::bad_field(const FieldLine& line,
                            std::size_t column,
                            const std::string& what) const {
+  constexpr std::size_t kShown = 100;
   return bad_line(line,
                   "column " + std::to_string(column) + " = '" +
-                      std::string(line.fields.at(column - 1)) + "': " + what);
+                      std::string(line.fields.at(column - 1).substr(0, kShown)) + "': " + what);
 }
 
 Error FieldFile::bad_line(const FieldLine& line, const std::string& what) const {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -28,10 +29,24 @@ class FieldFile {
   static constexpr std::uint64_t kMaxBytes = std::uint64_t{256} << 20U;
   static constexpr std::size_t kMaxLines = 4'000'000;  ///< five hours at 200 Hz
 
+  struct Limits {
+    std::uint64_t max_bytes = kMaxBytes;
+    std::size_t max_lines = kMaxLines;  ///< without empty lines and comments
+  };
+  static constexpr std::size_t kMaxLineFields = 4096;
+  static constexpr std::size_t kMeanLineFields = 32;  ///< at most so many in each of max_lines
+  static constexpr std::size_t kMaxComments = 1000;   ///< keys that are kept
+
   /// @param cancel  may be null
-  /// Errors: as read_file_text; kUnreadable beyond kMaxLines.
+  /// Errors: as read_file_text; kUnreadable beyond the limits.
   static Result<FieldFile> read(const std::filesystem::path& file,
                                 const std::atomic<bool>* cancel = nullptr);
+  static Result<FieldFile> read(const std::filesystem::path& file,
+                                const std::atomic<bool>* cancel,
+                                const Limits& limits);
+  /// The complete lines within the first bytes of a file of any size.
+  /// Errors: as ReadableFile::open; kIo.
+  static Result<FieldFile> read_start(const std::filesystem::path& file, std::size_t bytes);
 
   [[nodiscard]] const std::vector<FieldLine>& lines() const { return lines_; }
   /// Comments of the form `# key value`; the last value of each key.
@@ -55,6 +70,11 @@ class FieldFile {
   [[nodiscard]] Result<std::int64_t> time_ns(const FieldLine& line, std::size_t column) const;
 
  private:
+  static Result<FieldFile> from_text(const std::filesystem::path& file,
+                                     std::string text,
+                                     const std::atomic<bool>* cancel,
+                                     const Limits& limits);
+
   std::filesystem::path file_;
   std::shared_ptr<const std::string> text_;  // the fields point into it
   std::vector<FieldLine> lines_;

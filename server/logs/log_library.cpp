@@ -7,6 +7,7 @@
 
 #include "core/motion/pose.hpp"
 #include "core/time.hpp"
+#include "flight/logs/truth/log_trajectory.hpp"
 #include "server/files/file_stamp.hpp"
 #include "server/logs/log_info.hpp"
 
@@ -117,14 +118,41 @@ Json LogLibrary::list() {
   const LogList list = places_.list(folders());
   Json entries = Json::array();
   for (const LogEntry& entry : list.logs) entries.push_back(entry_json(entry));
+  return {{"logs", std::move(entries)}, {"complete", list.complete}, {"uploads", uploads_json()}};
+}
+
+Json LogLibrary::uploads_json(std::uint64_t max_bytes) const {
   const UploadLimits& limits = uploads_.limits();
   const bool on = !uploads_.folder().empty() && limits.quota_bytes > 0;
-  return {{"logs", std::move(entries)},
-          {"complete", list.complete},
-          {"uploads",
-           {{"used_bytes", uploads_.used_bytes()},
-            {"quota_bytes", on ? limits.quota_bytes : 0},
-            {"max_bytes", on ? std::min(limits.max_bytes, limits.quota_bytes) : 0}}}};
+  return {{"used_bytes", uploads_.used_bytes()},
+          {"quota_bytes", on ? limits.quota_bytes : 0},
+          {"max_bytes", on ? std::min({limits.max_bytes, limits.quota_bytes, max_bytes}) : 0}};
+}
+
+Result<LogPoses> LogLibrary::trajectory(const std::string& name,
+                                        const std::string& source,
+                                        std::size_t max_poses,
+                                        const std::atomic<bool>* cancel) {
+  const LogFolders where = folders();
+  const Result<fs::path> file = LogPlaces::find(where, name);
+  if (!file) return file.error();
+  std::string key;
+  const Result<Opened> log = open(*file, {}, where.sources, cancel, key);
+  if (!log) return log.error();
+  const Result<logs::TruthChoice> truth = logs::choose_truth(**log, source);
+  if (!truth) return truth.error();
+  const logs::StreamInfo& positions = (*log)->streams[truth->position];
+  if (positions.positions > max_poses) {
+    return Error{ErrorCode::kUnreadable,
+                 "log " + name + ": " + positions.description.name + " has " +
+                     std::to_string(positions.positions) + " positions: must have at most " +
+                     std::to_string(max_poses)};
+  }
+  logs::TrajectoryRequest request;
+  request.source = source;
+  auto poses = logs::read_log_trajectory(**log, request, cancel);
+  if (!poses) return poses.error();
+  return LogPoses{logs::world_trajectory(*poses), std::move(poses->warnings)};
 }
 
 Result<LogLibrary::Opened> LogLibrary::open(const fs::path& file,

@@ -3,13 +3,16 @@
 
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "core/motion/trajectory.hpp"
 #include "core/result.hpp"
 #include "flight/logs/flight_log.hpp"
 #include "flight/logs/series/log_series.hpp"
@@ -29,6 +32,12 @@ struct SeriesRequest {
   std::string source;  ///< as flight::logs::choose_truth
   flight::logs::LogSlice slice;
   std::size_t max_points = 6000;  ///< of each table, in [kMinSeriesPoints, kMaxSeriesPoints]
+};
+
+/// The truth of a log as a trajectory: T_world_body, as `overfly log convert` writes it.
+struct LogPoses {
+  Trajectory trajectory;
+  std::vector<std::string> warnings;
 };
 
 /// Thread-safe. What was read of a log is kept as long as its files do not change.
@@ -58,6 +67,15 @@ class LogLibrary {
       const ResidualRequest& request,
       const std::atomic<bool>* cancel,
       const flight::smoothing::SmoothingProgress& progress);
+  /// Errors: kNotFound; as read_log_trajectory; kUnreadable beyond `max_poses`.
+  [[nodiscard]] Result<LogPoses> trajectory(const std::string& name,
+                                            const std::string& source,
+                                            std::size_t max_poses,
+                                            const std::atomic<bool>* cancel);
+  /// Where logs and trajectories lie, with the uploads.
+  [[nodiscard]] LogFolders folders() const;
+  /// {"used_bytes", "quota_bytes", "max_bytes"} @param max_bytes  a further limit of one upload
+  [[nodiscard]] nlohmann::json uploads_json(std::uint64_t max_bytes = UINT64_MAX) const;
   [[nodiscard]] const LogUploads& uploads() const { return uploads_; }
   /// The entry of an upload that has just been finished.
   [[nodiscard]] nlohmann::json entry_of(const std::filesystem::path& upload) const;
@@ -66,7 +84,6 @@ class LogLibrary {
 
  private:
   using Opened = std::shared_ptr<const flight::logs::OpenedLog>;
-  [[nodiscard]] LogFolders folders() const;
   [[nodiscard]] Result<Opened> open(const std::filesystem::path& file,
                                     const flight::logs::LogSlice& slice,
                                     const SourcePolicy& sources,

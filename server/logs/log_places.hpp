@@ -9,18 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "core/outside/source_policy.hpp"
 #include "core/result.hpp"
 #include "server/files/file_stamp.hpp"
+#include "server/logs/data_files.hpp"
 
 namespace overfly::server {
-
-/// Where logs lie.
-struct LogFolders {
-  std::filesystem::path uploads;               ///< empty = there are no uploads
-  std::vector<std::filesystem::path> folders;  ///< data folders
-  SourcePolicy sources;                        ///< which files may be read
-};
 
 struct LogEntry {
   std::string name;  ///< a label of its folder, "/", and its path in it: "data/sitl/plane25.BIN"
@@ -35,12 +28,7 @@ struct LogList {
   bool complete = true;        ///< false: the folders hold too many files to look at all
 };
 
-/// Label of the folder of uploads in names.
-inline constexpr const char* kUploadsLabel = "uploads";
-/// Limits of a list: entries of folders that are looked at, depth of folders, logs.
-inline constexpr std::size_t kMaxVisitedFiles = 20'000;
-inline constexpr int kMaxLogDepth = 6;
-inline constexpr std::size_t kMaxLogs = 2'000;
+inline constexpr std::size_t kMaxLogs = 2'000;  ///< in a list
 
 /// Whether a file name has an extension of flight logs: .tlog, .bin, .ulg, .mcap, .bag, .active,
 /// .lcm, .log, in lower or upper case.

@@ -70,9 +70,9 @@ bool is_locked(const FileDescriptor& part) {
   return own && ::fstat(part.get(), &status) == 0 && status.st_nlink > 0;
 }
 
-Error exists_already(const fs::path& target) {
+Error exists_already(const UploadKind& kind, const fs::path& target) {
   return {ErrorCode::kConflict,
-          "log \"" + target.filename().string() + "\" exists already: delete it first"};
+          kind.noun + " \"" + target.filename().string() + "\" exists already: delete it first"};
 }
 
 }  // namespace
@@ -87,8 +87,18 @@ struct LogUpload::Room {
   std::uint64_t next_part = 0;
 };
 
-LogUpload::LogUpload(std::shared_ptr<Room> room, fs::path target)
-    : room_(std::move(room)), target_(std::move(target)) {}
+const UploadKind& log_upload_kind() {
+  static const UploadKind kind{
+      "log", log_extensions_text(), has_log_extension, [](const fs::path& file) -> Status {
+        const auto format = flight::logs::detect_format(file);
+        if (!format) return format.error();
+        return {};
+      }};
+  return kind;
+}
+
+LogUpload::LogUpload(std::shared_ptr<Room> room, fs::path target, UploadKind kind)
+    : room_(std::move(room)), kind_(std::move(kind)), target_(std::move(target)) {}
 
 LogUpload::~LogUpload() {
   open_.close();
@@ -140,11 +150,12 @@ Status LogUpload::open_next_file() {
 Status LogUpload::reserve(std::uint64_t bytes) {
   const UploadLimits& limits = room_->limits;
   if (bytes <= reserved_bytes_) return {};
-  if (bytes > limits.max_bytes) {
+  const std::uint64_t max_bytes = std::min(limits.max_bytes, kind_.max_bytes);
+  if (bytes > max_bytes) {
     refusal_ = UploadRefusal::kTooLarge;
-    return Error{
-        ErrorCode::kConflict,
-        "the log is larger than " + mib_text(limits.max_bytes) + ", the limit of one upload"};
+    return Error{ErrorCode::kConflict,
+                 "the " + kind_.noun + " is larger than " + mib_text(max_bytes) +
+                     ", the limit of one upload"};
   }
   const std::lock_guard lock(room_->mutex);
   const std::uint64_t others = bytes_in(room_->folder) + room_->reserved_bytes - reserved_bytes_;
@@ -165,8 +176,8 @@ Status LogUpload::write(std::span<const std::uint8_t> bytes) {
   const std::uint64_t total = written_bytes_ + bytes.size();
   if (total > reserved_bytes_) {
     // In larger steps, because each counts the files of the folder. Near a limit: exactly.
-    Status status =
-        reserve(std::max(total, std::min(total + kReserveStep, room_->limits.max_bytes)));
+    const std::uint64_t most = std::min(room_->limits.max_bytes, kind_.max_bytes);
+    Status status = reserve(std::max(total, std::min(total + kReserveStep, most)));
     if (!status) status = reserve(total);
     if (!status) return status;
     refusal_ = UploadRefusal::kNone;
@@ -206,10 +217,10 @@ Status LogUpload::write_to_files(std::span<const std::uint8_t> bytes) {
 Result<fs::path> LogUpload::finish() { return files_.empty() ? finish_file() : finish_files(); }
 
 Result<fs::path> LogUpload::finish_file() {
-  if (const auto format = flight::logs::detect_format(part_); !format) {
+  if (const Status checked = kind_.check(part_); !checked) {
     refusal_ = UploadRefusal::kNotALog;
     return Error{ErrorCode::kUnreadable,
-                 shown_without(part_, target_.filename().string(), format.error().message)};
+                 shown_without(part_, target_.filename().string(), checked.error().message)};
   }
   return take_target(target_);
 }
@@ -232,7 +243,7 @@ Result<fs::path> LogUpload::finish_files() {
 Result<fs::path> LogUpload::take_target(const fs::path& log) {
   const Result<bool> named = take_free_name(part_, target_);
   if (!named) return named.error();
-  if (!*named) return exists_already(target_);
+  if (!*named) return exists_already(kind_, target_);
   part_.clear();
   open_.close();
   folder_.close();
@@ -253,15 +264,16 @@ LogUploads::LogUploads(const fs::path& folder, const UploadLimits& limits)
 
 Result<std::unique_ptr<LogUpload>> LogUploads::begin(const std::string& name,
                                                      std::optional<std::uint64_t> size_bytes,
-                                                     UploadRefusal& refusal) const {
+                                                     UploadRefusal& refusal,
+                                                     const UploadKind& kind) const {
   const std::string shown = name.substr(0, 200);
-  if (!is_plain_name(name) || !has_log_extension(name)) {
+  if (!is_plain_name(name) || !kind.has_extension(name)) {
     return Error{ErrorCode::kInvalidArgument,
                  "name = " + shown +
                      ": must be letters, digits, '_', '-' and '.', at most 200, and end with " +
-                     "one of " + log_extensions_text()};
+                     "one of " + kind.extensions};
   }
-  return begin_into(room_->folder / name, {}, size_bytes, refusal);
+  return begin_into(room_->folder / name, {}, size_bytes, refusal, kind);
 }
 
 Result<std::unique_ptr<LogUpload>> LogUploads::begin_set(const std::vector<UploadFile>& files,
@@ -272,13 +284,14 @@ Result<std::unique_ptr<LogUpload>> LogUploads::begin_set(const std::vector<Uploa
   std::uint64_t total = 0;
   for (const UploadFile& file : files) total += file.size_bytes;
   const fs::path stem = fs::path(files.front().name).stem();
-  return begin_into(room_->folder / stem, files, total, refusal);
+  return begin_into(room_->folder / stem, files, total, refusal, log_upload_kind());
 }
 
 Result<std::unique_ptr<LogUpload>> LogUploads::begin_into(const fs::path& target,
                                                           const std::vector<UploadFile>& files,
                                                           std::optional<std::uint64_t> size_bytes,
-                                                          UploadRefusal& refusal) const {
+                                                          UploadRefusal& refusal,
+                                                          const UploadKind& kind) const {
   if (room_->folder.empty() || room_->limits.quota_bytes == 0) {
     refusal = UploadRefusal::kOff;
     return Error{ErrorCode::kConflict, "this server takes no uploads"};
@@ -286,7 +299,7 @@ Result<std::unique_ptr<LogUpload>> LogUploads::begin_into(const fs::path& target
   std::error_code failed;
   fs::create_directories(room_->folder, failed);
   if (failed) return Error{ErrorCode::kIo, room_->folder.string() + ": " + failed.message()};
-  if (fs::exists(fs::symlink_status(target, failed))) return exists_already(target);
+  if (fs::exists(fs::symlink_status(target, failed))) return exists_already(kind, target);
   std::unique_ptr<LogUpload> upload;
   std::uint64_t number = 0;
   {
@@ -297,7 +310,7 @@ Result<std::unique_ptr<LogUpload>> LogUploads::begin_into(const fs::path& target
                    std::to_string(room_->active) + " uploads are being received, which is this " +
                        "server's limit: try again soon"};
     }
-    upload.reset(new LogUpload(room_, target));
+    upload.reset(new LogUpload(room_, target, kind));
     ++room_->active;
     number = room_->next_part++;
   }
@@ -324,11 +337,11 @@ Status LogUploads::remove(const fs::path& file) const {
   }
   if (!is_own(parent)) {
     return Error{ErrorCode::kInvalidArgument,
-                 "log \"" + file.filename().string() + "\": only uploaded logs can be deleted"};
+                 "\"" + file.filename().string() + "\": only uploads can be deleted"};
   }
   if (::unlink(file.c_str()) != 0) {
     if (errno == ENOENT) {
-      return Error{ErrorCode::kNotFound, "log \"" + file.filename().string() + "\": no such log"};
+      return Error{ErrorCode::kNotFound, "\"" + file.filename().string() + "\": no such upload"};
     }
     return upload_error(file, "delete");
   }

@@ -1,9 +1,10 @@
-// Receives flight logs from clients into one folder.
+// Receives flight logs and trajectory files from clients into one folder.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -22,10 +23,21 @@ struct UploadLimits {
   std::size_t max_parallel = 4;
 };
 
+/// What an uploaded file must be.
+struct UploadKind {
+  std::string noun;        ///< in messages: "log"
+  std::string extensions;  ///< in messages: ".bin, .ulg"
+  std::function<bool(const std::string& name)> has_extension;
+  /// Errors: kUnreadable naming the file.
+  std::function<Status(const std::filesystem::path&)> check;
+  std::uint64_t max_bytes = UINT64_MAX;  ///< of one upload, in addition to UploadLimits
+};
+[[nodiscard]] const UploadKind& log_upload_kind();
+
 /// Why an upload is refused, in addition to its error.
 enum class UploadRefusal { kNone, kOff, kBusy, kTooLarge, kQuota, kNotALog };
 
-/// A log that is being received. Its destructor removes what was received, unless it is finished.
+/// A file that is being received. Its destructor removes what was received, unless it is finished.
 class LogUpload {
  public:
   ~LogUpload();
@@ -38,7 +50,7 @@ class LogUpload {
   [[nodiscard]] Status write(std::span<const std::uint8_t> bytes);
   /// Gives the file its name, or several files their folder.
   /// @return the file, or the mapping
-  /// Errors: kUnreadable with kNotALog if its first bytes have no known format, or if a mapping
+  /// Errors: as UploadKind::check, with kNotALog, also if a mapping
   /// names other files than those that came with it; kInvalidArgument for fewer bytes than were
   /// announced; kConflict if a log with this name has come in the meantime; kIo.
   [[nodiscard]] Result<std::filesystem::path> finish();
@@ -47,7 +59,7 @@ class LogUpload {
  private:
   friend class LogUploads;
   struct Room;
-  LogUpload(std::shared_ptr<Room> room, std::filesystem::path target);
+  LogUpload(std::shared_ptr<Room> room, std::filesystem::path target, UploadKind kind);
   [[nodiscard]] Status reserve(std::uint64_t bytes);
   [[nodiscard]] Status create_part(std::uint64_t number);
   [[nodiscard]] bool open_file(const std::filesystem::path& file);
@@ -59,6 +71,7 @@ class LogUpload {
   [[nodiscard]] Result<std::filesystem::path> take_target(const std::filesystem::path& log);
 
   std::shared_ptr<Room> room_;
+  UploadKind kind_;
   std::filesystem::path target_;     ///< the log's file; of several files, their folder
   std::filesystem::path part_;       ///< the same while it is received
   std::vector<UploadFile> files_;    ///< empty: one file of any size
@@ -80,12 +93,13 @@ class LogUploads {
   LogUploads(const std::filesystem::path& folder, const UploadLimits& limits);
 
   /// Begins an upload.
-  /// @param name        of the file: a plain name with an extension of flight logs
+  /// @param name        of the file: a plain name with an extension of its kind
   /// @param size_bytes  if it is known in advance
   /// Errors: kInvalidArgument for the name; kConflict if it exists, or with `refusal`; kIo.
   [[nodiscard]] Result<std::unique_ptr<LogUpload>> begin(const std::string& name,
                                                          std::optional<std::uint64_t> size_bytes,
-                                                         UploadRefusal& refusal) const;
+                                                         UploadRefusal& refusal,
+                                                         const UploadKind& kind) const;
   /// Begins an upload of a mapping of CSV files with its pieces, into a folder named like the
   /// mapping.
   /// @param files  the mapping first; with plain names: one .json file, the others .csv or .txt
@@ -105,7 +119,8 @@ class LogUploads {
       const std::filesystem::path& target,
       const std::vector<UploadFile>& files,
       std::optional<std::uint64_t> size_bytes,
-      UploadRefusal& refusal) const;
+      UploadRefusal& refusal,
+      const UploadKind& kind) const;
 
   std::shared_ptr<LogUpload::Room> room_;
 };

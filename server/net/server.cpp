@@ -83,6 +83,7 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options,
   const auto progress = std::make_shared<ProgressBoard>();
   add_progress_routes(&context->router, progress);
   add_log_routes(&context->router, {&context->logs, readers, progress});
+  add_trajectory_routes(&context->router, &context->trajectories, readers);
   context->offload = [workers = &server->impl_->workers](std::function<void()> work) {
     boost::asio::post(workers->loop(), std::move(work));
   };

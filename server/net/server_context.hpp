@@ -19,6 +19,7 @@
 #include "server/net/server_options.hpp"
 #include "server/net/session_registry.hpp"
 #include "server/runs/run_manager.hpp"
+#include "server/trajectories/trajectory_library.hpp"
 #include "server/views/view_service.hpp"
 
 namespace overfly::net {
@@ -60,6 +61,7 @@ struct ServerContext {
             },
             server_options.uploads_folder,
             server_options.limits.uploads),
+        trajectories(logs, [this](const std::string& id) { return runs.folder(id); }),
         connections(server_options.limits.connections) {}
 
   /// Never throws, since it is called from exception handlers.
@@ -98,6 +100,7 @@ struct ServerContext {
   /// Runs slow work (reading a run from disk) on a thread that serves no connection.
   std::function<void(std::function<void()>)> offload;
   server::LogLibrary logs;
+  server::TrajectoryLibrary trajectories;
   /// Reads flight logs, which can take minutes, without keeping other requests waiting.
   ReadingThreads readers{[this](const std::string& what) { log("error", what); }};
   std::atomic<std::uint64_t> next_client{1};  ///< next client number for the view service

@@ -210,6 +210,58 @@ class Files(Attack):
         times.unlink()
         self.assert_flies("logged")
 
+    def test_as_trajectory(self):
+        """Every name but that of a trajectory in a data folder is answered alike."""
+        outside = self.victim.outside
+        (outside / "secret.tum").write_text("0 0 0 0 0 0 0 1\n")
+        (self.victim.data / "good.tum").write_text("0 0 0 0 0 0 0 1\n1 1 0 0 0 0 0 1\n")
+        label = self.victim.data.name
+        (self.victim.data / "out.tum").symlink_to(outside / "secret.tum")
+        (self.victim.data / "nowhere.tum").symlink_to(outside / "absent.tum")
+        os.mkfifo(self.victim.data / "fifo.tum")
+        names = [f"file:{label}/{place}" for place in self.places()]
+        names += [f"file:{label}/{name}.tum" for name in ("out", "nowhere", "fifo", "absent")]
+        names += [f"{kind}:{place}" for kind in ("file", "log", "run", "x") for place in self.places()]
+        names += [f"run:{place}/truth" for place in self.places()]
+        for name in names:
+            if "\0" in name or name == f"file:{label}/sparse.txt":  # a file of the folder
+                continue
+            with self.subTest(name=name[:60]):
+                started = time.monotonic()
+                answer = self.victim.ask("POST", "/api/v1/evaluations",
+                                         {"truth": name, "estimates": [name]})
+                self.assertEqual(answer.status, 404, answer.text[:300])
+                self.assertIn("no such trajectory", answer.text)
+                self.assert_harmless(answer)
+                self.assertLess(time.monotonic() - started, HEALTH_S)
+        good = f"file:{label}/good.tum"
+        answer = self.victim.ask("POST", "/api/v1/evaluations", {"truth": good, "estimates": [good]})
+        self.assertEqual(answer.status, 200, answer.text[:300])
+        listed = [entry["name"] for entry in self.victim.get("/trajectories").json()["trajectories"]]
+        self.assertTrue(any(name.endswith("data/good.tum") for name in listed), listed)
+        for name in ("out", "nowhere", "fifo"):
+            self.assertFalse(any(entry.endswith(f"/{name}.tum") for entry in listed), listed)
+
+    def test_large_and_damaged_trajectories(self):
+        data = self.victim.data
+        label = data.name
+        with open(data / "sparse.tum", "wb") as file:
+            file.write(b"0 0 0 0 0 0 0 1\n")
+            file.truncate(1 << 40)
+        (data / "commas.csv").write_bytes(b"," * (32 << 20))
+        (data / "lines.tum").write_bytes(b"".join(b"%d 0 0 0 0 0 0 1\n" % i for i in range(500_001)))
+        (data / "cut.tum").write_text("0 0 0 0 0 0 0 1\n1 1 0 0")
+        (data / "nan.tum").write_text("0 nan nan nan nan nan nan nan\n")
+        (data / "huge.tum").write_text("0 1e308 1e308 0 0 0 0 1\n1 -1e308 0 0 0 0 0 1\n")
+        for name, status in (("sparse.tum", 422), ("commas.csv", 422), ("lines.tum", 422),
+                             ("cut.tum", 422), ("nan.tum", 422), ("huge.tum", 200)):
+            with self.subTest(name=name):
+                reference = f"file:{label}/{name}"
+                answer = self.victim.ask("POST", "/api/v1/evaluations", {
+                    "truth": reference, "estimates": [reference], "points": 100})
+                self.assertEqual(answer.status, status, answer.text[:300])
+                self.assertLess(len(answer.text), 100_000)
+
     def test_opening_a_large_file_is_cancelled(self):
         answer = self.victim.launch("listed", {"world.imagery.0.file": "endless.tif"})
         self.assertEqual(answer.status, 201, answer.text[:300])

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/motion/trajectory.hpp"
 #include "core/result.hpp"
 #include "flight/logs/flight_log.hpp"
 #include "flight/logs/log_pose.hpp"
@@ -29,10 +30,12 @@ struct LogTrajectory : LoggedTruth {
                                                         const TrajectoryRequest& request,
                                                         const std::atomic<bool>* cancel = nullptr);
 
-/// Writes T_world_body as a TUM file: world = east-north-up at the first pose, body =
-/// forward-right-down, time = the vehicle's clock. Comments give the origin and the sources.
-/// Heights above mean sea level stand for those above the ellipsoid: at 100 m of separation the
-/// positions change by 16 mm in 1 km. Errors: kIo.
+/// T_world_body: world = east-north-up at the first pose, body = forward-right-down, time = the
+/// vehicle's clock. Heights above mean sea level stand for those above the ellipsoid: at 100 m of
+/// separation the positions change by 16 mm in 1 km.
+[[nodiscard]] Trajectory world_trajectory(const LogTrajectory& trajectory);
+
+/// Writes world_trajectory() as a TUM file. Comments give the origin and the sources. Errors: kIo.
 [[nodiscard]] Status write_log_tum(const std::filesystem::path& file,
                                    const LogTrajectory& trajectory);
 

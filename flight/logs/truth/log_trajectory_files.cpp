@@ -35,29 +35,41 @@ std::string sources_of(const LogTrajectory& trajectory) {
 
 }  // namespace
 
+Trajectory world_trajectory(const LogTrajectory& trajectory) {
+  Trajectory world;
+  if (trajectory.poses.empty()) return world;
+  const Eigen::Vector3d first = trajectory.poses.front().position;
+  const LocalFrame frame(trajectory.georeferenced ? geodetic_of(first) : Geodetic{});
+  for (const LogPose& pose : trajectory.poses) {
+    const Eigen::Quaterniond R_enu_body = R_enu_ned() * pose.R_ned_body;
+    StampedPose stamped{pose.t_ns, {R_enu_body, Eigen::Vector3d::Zero()}};
+    if (trajectory.georeferenced) {
+      const Geodetic point = geodetic_of(pose.position);
+      stamped.pose = {frame.R_world_enu_at(point) * R_enu_body, frame.world_from_geodetic(point)};
+    } else {
+      const Eigen::Vector3d ned_m = pose.position - first;
+      stamped.pose.translation = {ned_m.y(), ned_m.x(), -ned_m.z()};
+    }
+    // The times increase, and what is not finite is not among the poses of a log.
+    (void)world.append(stamped);
+  }
+  return world;
+}
+
 Status write_log_tum(const fs::path& file, const LogTrajectory& trajectory) {
   return write_whole_file(file, [&](std::ofstream& out) {
     out << "# pose T_world_body: world east-north-up, body forward-right-down\n"
         << sources_of(trajectory);
     if (trajectory.poses.empty()) return;
-    const Eigen::Vector3d first = trajectory.poses.front().position;
-    if (!trajectory.georeferenced) {
-      for (const LogPose& pose : trajectory.poses) {
-        const Eigen::Vector3d ned_m = pose.position - first;
-        out << tum_row(pose.t_ns,
-                       {R_enu_ned() * pose.R_ned_body, {ned_m.y(), ned_m.x(), -ned_m.z()}});
-      }
-      return;
+    if (trajectory.georeferenced) {
+      const Eigen::Vector3d& first = trajectory.poses.front().position;
+      out << "# origin_lat_deg " << number_text(first.x()) << "\n# origin_lon_deg "
+          << number_text(first.y()) << "\n# origin_" << height_column(trajectory.height) << " "
+          << number_text(first.z()) << "\n";
     }
-    out << "# origin_lat_deg " << number_text(first.x()) << "\n# origin_lon_deg "
-        << number_text(first.y()) << "\n# origin_" << height_column(trajectory.height) << " "
-        << number_text(first.z()) << "\n";
-    const LocalFrame frame(geodetic_of(first));
-    for (const LogPose& pose : trajectory.poses) {
-      const Geodetic point = geodetic_of(pose.position);
-      out << tum_row(pose.t_ns,
-                     {frame.R_world_enu_at(point) * R_enu_ned() * pose.R_ned_body,
-                      frame.world_from_geodetic(point)});
+    const Trajectory world = world_trajectory(trajectory);
+    for (const StampedPose& stamped : world.poses()) {
+      out << tum_row(stamped.t_ns, stamped.pose);
     }
   });
 }

@@ -17,6 +17,7 @@
 #include "server/record/run_info_file.hpp"
 #include "server/record/run_lock.hpp"
 #include "server/record/run_records.hpp"
+#include "server/scoring/file_score.hpp"
 #include "server/scoring/metrics.hpp"
 #include "server/scoring/run_metrics_json.hpp"
 
@@ -44,59 +45,6 @@ std::vector<std::string> mode_names() {
   return names;
 }
 
-/// A number given as a comment in a TUM file. Errors: kUnreadable naming file and value.
-Result<std::optional<double>> comment_number(const TrajectoryFile& file,
-                                             const std::string& name,
-                                             const std::string& key) {
-  const auto comment = file.comments.find(key);
-  if (comment == file.comments.end()) return std::optional<double>();
-  try {
-    std::size_t used = 0;
-    const double value = std::stod(comment->second, &used);
-    if (used == comment->second.size() && value > 0.0) return std::optional<double>(value);
-  } catch (const std::exception&) {
-    // Reported below, with all values that are not positive numbers.
-  }
-  return Error{ErrorCode::kUnreadable,
-               name + ": # " + key + " " + comment->second + ": must be a positive number"};
-}
-
-Result<evaluation::Options> options_for(const EvaluateArguments& arguments,
-                                        const std::string& name,
-                                        const TrajectoryFile& truth,
-                                        const TrajectoryFile& estimate) {
-  evaluation::Options options;
-  if (arguments.association == "nearest") options.association = evaluation::Association::kNearest;
-  // Poses without times can be matched only by their number.
-  if (arguments.association == "index" || !truth.has_times || !estimate.has_times) {
-    options.association = evaluation::Association::kIndex;
-  }
-  options.max_time_difference_ns =
-      static_cast<std::int64_t>(arguments.max_time_difference_ms * 1e6);
-  const auto depth = comment_number(estimate, name, "init_true_depth");
-  if (!depth) return depth.error();
-  options.init_true_depth_m = *depth;
-  if (arguments.init_true_depth_m > 0.0) options.init_true_depth_m = arguments.init_true_depth_m;
-  return options;
-}
-
-Result<EstimateTrack> track_from(const std::string& name, const TrajectoryFile& file) {
-  const auto depth = comment_number(file, name, "init_scene_depth");
-  if (!depth) return depth.error();
-  EstimateTrack track;
-  track.name = name;
-  for (const StampedPose& stamped : file.trajectory.poses()) {
-    EstimateSample sample;
-    sample.frame = static_cast<std::int64_t>(track.samples.size());
-    sample.t_ns = stamped.t_ns;
-    sample.state = TrackingState::kTracking;
-    sample.T_vo_camera = stamped.pose;
-    if (track.samples.empty()) sample.scene_depth = *depth;
-    track.samples.push_back(sample);
-  }
-  return track;
-}
-
 /// Keeps only the requested modes.
 void choose_modes(const std::vector<std::string>& wanted, evaluation::Score& score) {
   const auto unwanted = [&](const auto& entry) {
@@ -111,69 +59,40 @@ void print_warnings(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) std::cerr << "warning: " << warning << "\n";
 }
 
-/// Errors: kInvalidArgument for a file whose i-th pose is not the one of its i-th line.
-Status check_listed(const std::string& name, const TrajectoryFile& file) {
-  if (file.as_listed()) return {};
-  return Error{ErrorCode::kInvalidArgument,
-               name +
-                   ": contains unknown poses, repeated times or unsorted times, so that "
-                   "its poses cannot be matched by number; add times to both files"};
-}
-
-/// The score of one file by the requested modes.
-struct EvaluatedFile {
-  std::string name;
-  std::size_t poses = 0;
-  std::size_t matched = 0;
-  std::vector<std::string> warnings;
-  evaluation::Score score;
-};
-
-Json evaluated_file_json(const EvaluatedFile& file) {
-  return {{"file", file.name},
-          {"poses", file.poses},
-          {"matched", file.matched},
-          {"warnings", file.warnings},
-          {"alignments", server::alignments_json(file.score)},
-          {"unavailable", server::unavailable_json(file.score)}};
-}
-
-Result<EvaluatedFile> evaluate_file(const EvaluateArguments& arguments,
-                                    const TrajectoryFile& truth,
-                                    const std::string& name) {
-  const Result<TrajectoryFile> file = read_trajectory(name);
-  if (!file) return file.error();
-  print_warnings(file->warnings);
-  const Result<evaluation::Options> options = options_for(arguments, name, truth, *file);
-  if (!options) return options.error();
-  if (options->association == evaluation::Association::kIndex) {
-    Status listed = check_listed(arguments.truth, truth);
-    if (listed) listed = check_listed(name, *file);
-    if (!listed) return listed.error();
+server::FileScoreRequest request_from(const EvaluateArguments& arguments) {
+  server::FileScoreRequest request;
+  for (const std::string& name : arguments.alignments) {
+    if (const auto mode = evaluation::alignment_mode_from(name)) {
+      request.alignments.push_back(*mode);
+    }
   }
-  const Result<EstimateTrack> track = track_from(name, *file);
-  if (!track) return track.error();
-  // Called first, because its error explains why nothing could be matched.
-  const auto matches = evaluation::associate(truth.trajectory, *track, *options);
-  if (!matches) return matches.error().in(name);
-  evaluation::Score score = evaluation::score(truth.trajectory, *track, *options);
-  choose_modes(arguments.alignments, score);
-  return EvaluatedFile{
-      name, track->samples.size(), matches->size(), file->warnings, std::move(score)};
+  if (arguments.association == "nearest") request.association = evaluation::Association::kNearest;
+  if (arguments.association == "index") request.association = evaluation::Association::kIndex;
+  request.max_time_difference_ns =
+      static_cast<std::int64_t>(arguments.max_time_difference_ms * 1e6);
+  if (arguments.init_true_depth_m > 0.0) request.init_true_depth_m = arguments.init_true_depth_m;
+  return request;
 }
 
 int evaluate_files(const EvaluateArguments& arguments) {
   const Result<TrajectoryFile> truth = read_trajectory(arguments.truth);
   if (!truth) return report(truth.error());
   print_warnings(truth->warnings);
+  const server::NamedTrajectory named_truth{arguments.truth, *truth};
+  const server::FileScoreRequest request = request_from(arguments);
   Json estimates = Json::array();
   bool scored = true;
   for (const std::string& name : arguments.estimates) {
-    const Result<EvaluatedFile> file = evaluate_file(arguments, *truth, name);
+    const Result<TrajectoryFile> file = read_trajectory(name);
     if (!file) return report(file.error());
-    if (!arguments.json) std::cout << name << "\n" << alignment_table(file->score);
-    scored = scored && !file->score.alignments.empty();
-    estimates.push_back(evaluated_file_json(*file));
+    print_warnings(file->warnings);
+    const auto score = server::score_file(named_truth, {name, *file}, request);
+    if (!score) return report(score.error());
+    if (!arguments.json) std::cout << name << "\n" << alignment_table(score->score);
+    scored = scored && !score->score.alignments.empty();
+    Json entry = server::json_from(*score);
+    entry["file"] = name;
+    estimates.push_back(std::move(entry));
   }
   if (arguments.json) {
     const Json result = {{"truth", arguments.truth},

@@ -8,6 +8,7 @@
 #include "server/net/rest/progress_board.hpp"
 #include "server/net/rest/rest_reading.hpp"
 #include "server/runs/run_manager.hpp"
+#include "server/trajectories/trajectory_library.hpp"
 #include "server/views/view_service.hpp"
 
 namespace overfly::net {
@@ -36,5 +37,9 @@ struct LogRoutes {
 };
 /// logs, logs/{name}, logs/{name}/series, logs/{name}/residuals
 void add_log_routes(RestRouter* router, const LogRoutes& routes);
+/// trajectories, trajectories/{name}, trajectories/{name}/series, evaluations
+void add_trajectory_routes(RestRouter* router,
+                           server::TrajectoryLibrary* library,
+                           const ReadingRoutes& readers);
 
 }  // namespace overfly::net

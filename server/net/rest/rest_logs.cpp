@@ -1,14 +1,15 @@
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "server/net/http/error_response.hpp"
 #include "server/net/rest/rest_api.hpp"
+#include "server/net/rest/rest_uploads.hpp"
 
 namespace overfly::net {
 namespace {
@@ -95,24 +96,6 @@ void answer_residuals(const LogRoutes& routes, const RouteCall& call, const Resp
                   });
 }
 
-HttpResponse upload_refused(UploadRefusal refusal, const Error& error) {
-  switch (refusal) {
-    case UploadRefusal::kNone:
-      break;
-    case UploadRefusal::kOff:
-      return error_response(403, "forbidden", error.message);
-    case UploadRefusal::kBusy:
-      return error_response(503, "too_many_uploads", error.message);
-    case UploadRefusal::kTooLarge:
-      return error_response(413, "payload_too_large", error.message);
-    case UploadRefusal::kQuota:
-      return error_response(507, "quota_exceeded", error.message);
-    case UploadRefusal::kNotALog:
-      return error_response(422, "unreadable", error.message);
-  }
-  return error_response(error);
-}
-
 /// The parameter `files`: "NAME:SIZE,NAME:SIZE". Errors: kInvalidArgument.
 Result<std::vector<server::UploadFile>> upload_files_of(const std::string& text) {
   std::vector<server::UploadFile> files;
@@ -142,7 +125,7 @@ Result<std::unique_ptr<server::LogUpload>> begin_upload(const server::LogUploads
                                                         UploadRefusal& refusal) {
   const auto found = call.query.find("files");
   if (found == call.query.end()) {
-    return uploads.begin(call.query_or("name", ""), size_bytes, refusal);
+    return uploads.begin(call.query_or("name", ""), size_bytes, refusal, server::log_upload_kind());
   }
   if (call.query.contains("name")) {
     return bad_query("name", call.query.at("name"), "absent where query.files is given");
@@ -152,36 +135,6 @@ Result<std::unique_ptr<server::LogUpload>> begin_upload(const server::LogUploads
   return uploads.begin_set(*files, refusal);
 }
 
-/// An upload as the body of a request.
-class UploadSink final : public BodySink {
- public:
-  UploadSink(std::unique_ptr<server::LogUpload> upload, const LogLibrary& logs)
-      : upload_(std::move(upload)), logs_(logs) {}
-
-  [[nodiscard]] std::optional<HttpResponse> write(std::span<const std::uint8_t> bytes) override {
-    const Status written = upload_->write(bytes);
-    if (written) return std::nullopt;
-    return upload_refused(upload_->refusal(), written.error());
-  }
-  [[nodiscard]] HttpResponse finish() override {
-    const auto file = upload_->finish();
-    if (!file) return upload_refused(upload_->refusal(), file.error());
-    const json entry = logs_.entry_of(*file);
-    std::string name = entry.at("name");
-    // Plain names: only the slashes between them need an escape.
-    for (std::size_t at = name.find('/'); at != std::string::npos; at = name.find('/', at)) {
-      name.replace(at, 1, "%2F");
-    }
-    HttpResponse response = json_response(201, entry);
-    response.headers.emplace_back("Location", "/api/v1/logs/" + name);
-    return response;
-  }
-
- private:
-  std::unique_ptr<server::LogUpload> upload_;
-  const LogLibrary& logs_;
-};
-
 }  // namespace
 
 void add_log_routes(RestRouter* router, const LogRoutes& routes) {
@@ -189,17 +142,23 @@ void add_log_routes(RestRouter* router, const LogRoutes& routes) {
   router->add("GET", "/api/v1/logs", [logs](const RouteCall&, const Respond& respond) {
     respond(json_response(200, logs->list()));
   });
-  router->add_upload("/api/v1/logs",
-                     [logs](const RouteCall& call,
-                            std::optional<std::uint64_t> size_bytes,
-                            std::optional<HttpResponse>* answer) -> std::unique_ptr<BodySink> {
-                       UploadRefusal refusal = UploadRefusal::kNone;
-                       auto upload = begin_upload(logs->uploads(), call, size_bytes, refusal);
-                       if (upload) return std::make_unique<UploadSink>(std::move(*upload), *logs);
-                       *answer = upload_refused(refusal, upload.error());
-                       return nullptr;
-                     },
-                     {"name", "files"});
+  router->add_upload(
+      "/api/v1/logs",
+      [logs](const RouteCall& call,
+             std::optional<std::uint64_t> size_bytes,
+             std::optional<HttpResponse>* answer) -> std::unique_ptr<BodySink> {
+        UploadRefusal refusal = UploadRefusal::kNone;
+        auto upload = begin_upload(logs->uploads(), call, size_bytes, refusal);
+        if (upload) {
+          return upload_sink(
+              std::move(*upload),
+              [logs](const std::filesystem::path& file) { return logs->entry_of(file); },
+              "/api/v1/logs/");
+        }
+        *answer = upload_refused(refusal, upload.error());
+        return nullptr;
+      },
+      {"name", "files"});
   router->add(
       "GET",
       "/api/v1/logs/{name}",
@@ -245,16 +204,7 @@ void add_log_routes(RestRouter* router, const LogRoutes& routes) {
               {"source", "from_s", "to_s", "points", "time_offset_s", "progress"});
   router->add(
       "DELETE", "/api/v1/logs/{name}", [logs](const RouteCall& call, const Respond& respond) {
-        const Status removed = logs->remove(call.path.at("name"));
-        if (!removed) {
-          const bool foreign = removed.error().code == ErrorCode::kInvalidArgument;
-          respond(foreign ? error_response(403, "forbidden", removed.error().message)
-                          : error_response(removed.error()));
-          return;
-        }
-        HttpResponse response;
-        response.status = 204;
-        respond(response);
+        respond(removed_response(logs->remove(call.path.at("name"))));
       });
 }
 

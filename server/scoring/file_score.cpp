@@ -1,0 +1,156 @@
+#include "server/scoring/file_score.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+#include "server/scoring/run_metrics_json.hpp"
+
+namespace overfly::server {
+namespace {
+
+using evaluation::AlignmentMode;
+using Json = nlohmann::json;
+
+/// A number given as a comment in a TUM file. Errors: kUnreadable naming file and value.
+Result<std::optional<double>> comment_number(const NamedTrajectory& trajectory,
+                                             const std::string& key) {
+  const auto comment = trajectory.file.comments.find(key);
+  if (comment == trajectory.file.comments.end()) return std::optional<double>();
+  try {
+    std::size_t used = 0;
+    const double value = std::stod(comment->second, &used);
+    if (used == comment->second.size() && value > 0.0) return std::optional<double>(value);
+  } catch (const std::exception&) {
+    // Reported below, with all values that are not positive numbers.
+  }
+  return Error{
+      ErrorCode::kUnreadable,
+      trajectory.name + ": # " + key + " " + comment->second + ": must be a positive number"};
+}
+
+/// Errors: kInvalidArgument for a file whose i-th pose is not the one of its i-th line.
+Status check_listed(const NamedTrajectory& trajectory) {
+  if (trajectory.file.as_listed()) return {};
+  return Error{ErrorCode::kInvalidArgument,
+               trajectory.name +
+                   ": contains unknown poses, repeated times or unsorted times, so that "
+                   "its poses cannot be matched by number; add times to both files"};
+}
+
+Result<evaluation::Options> options_for(const NamedTrajectory& truth,
+                                        const NamedTrajectory& estimate,
+                                        const FileScoreRequest& request) {
+  evaluation::Options options;
+  options.association = request.association;
+  // Poses without times can be matched only by their number.
+  if (!truth.file.has_times || !estimate.file.has_times) {
+    options.association = evaluation::Association::kIndex;
+  }
+  options.max_time_difference_ns = request.max_time_difference_ns;
+  const auto depth = comment_number(estimate, "init_true_depth");
+  if (!depth) return depth.error();
+  options.init_true_depth_m = request.init_true_depth_m ? request.init_true_depth_m : *depth;
+  if (options.association == evaluation::Association::kIndex) {
+    Status listed = check_listed(truth);
+    if (listed) listed = check_listed(estimate);
+    if (!listed) return listed.error();
+  }
+  return options;
+}
+
+Result<EstimateTrack> track_from(const NamedTrajectory& estimate) {
+  const auto depth = comment_number(estimate, "init_scene_depth");
+  if (!depth) return depth.error();
+  EstimateTrack track;
+  track.name = estimate.name;
+  track.samples.reserve(estimate.file.trajectory.size());
+  for (const StampedPose& stamped : estimate.file.trajectory.poses()) {
+    EstimateSample sample;
+    sample.frame = static_cast<std::int64_t>(track.samples.size());
+    sample.t_ns = stamped.t_ns;
+    sample.state = TrackingState::kTracking;
+    sample.T_vo_camera = stamped.pose;
+    if (track.samples.empty()) sample.scene_depth = *depth;
+    track.samples.push_back(sample);
+  }
+  return track;
+}
+
+/// Keeps only the requested modes.
+void choose_modes(const std::vector<AlignmentMode>& wanted, evaluation::Score& score) {
+  const auto unwanted = [&](const auto& entry) {
+    return std::find(wanted.begin(), wanted.end(), entry.first) == wanted.end();
+  };
+  std::erase_if(score.alignments, unwanted);
+  std::erase_if(score.unavailable, unwanted);
+}
+
+double path_between_m(const std::vector<StampedPose>& poses,
+                      std::int64_t begin_ns,
+                      std::int64_t end_ns) {
+  double path_m = 0.0;
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    if (poses[i - 1].t_ns < begin_ns || poses[i].t_ns > end_ns) continue;
+    path_m += (poses[i].pose.translation - poses[i - 1].pose.translation).norm();
+  }
+  return path_m;
+}
+
+}  // namespace
+
+Result<FileScore> score_file(const NamedTrajectory& truth,
+                             const NamedTrajectory& estimate,
+                             const FileScoreRequest& request) {
+  const Result<evaluation::Options> options = options_for(truth, estimate, request);
+  if (!options) return options.error();
+  const Result<EstimateTrack> track = track_from(estimate);
+  if (!track) return track.error();
+  const Trajectory& true_poses = truth.file.trajectory;
+  FileScore result;
+  result.name = estimate.name;
+  result.poses = track->samples.size();
+  result.warnings = estimate.file.warnings;
+  // Called first, because its error explains why nothing could be matched.
+  auto matches = evaluation::associate(true_poses, *track, *options);
+  if (!matches) return matches.error().in(estimate.name);
+  result.matches = std::move(*matches);
+  if (!result.matches.empty()) {
+    result.truth_path_m =
+        path_between_m(true_poses.poses(), result.matches.front().t_ns, result.matches.back().t_ns);
+  }
+  result.score = evaluation::score(true_poses, *track, *options);
+  choose_modes(request.alignments, result.score);
+  for (const auto& [mode, alignment] : result.score.alignments) {
+    result.axis_errors[mode] = evaluation::axis_errors(
+        true_poses, result.matches, alignment.S_world_vo, options->T_body_camera);
+  }
+  return result;
+}
+
+Json json_from(const FileScore& score) {
+  Json alignments = alignments_json(score.score);
+  for (const auto& [mode, errors] : score.axis_errors) {
+    const evaluation::AxisRmse rmse = evaluation::rmse_of(errors);
+    Json& entry = alignments.at(evaluation::to_string(mode));
+    entry["along_rmse_m"] = rmse.along_m;
+    entry["across_rmse_m"] = rmse.across_m;
+    entry["horizontal_rmse_m"] = rmse.horizontal_m;
+    entry["vertical_rmse_m"] = rmse.vertical_m;
+    const double position_m = score.score.alignments.at(mode).position_m.rmse;
+    entry["percent_of_path"] =
+        score.truth_path_m > 0.0 ? Json(100.0 * position_m / score.truth_path_m) : Json(nullptr);
+  }
+  const bool diverged = score.score.outcome == evaluation::Outcome::kDiverged;
+  return {
+      {"poses", score.poses},
+      {"matched", score.matches.size()},
+      {"warnings", score.warnings},
+      {"truth_path_m", score.truth_path_m},
+      {"diverged_at_s",
+       diverged && score.score.outcome_time_s ? Json(*score.score.outcome_time_s) : Json(nullptr)},
+      {"alignments", std::move(alignments)},
+      {"unavailable", unavailable_json(score.score)}};
+}
+
+}  // namespace overfly::server
