@@ -12,6 +12,7 @@ import './styles/timeline.css';
 import './styles/estimators.css';
 import './styles/logs.css';
 import './styles/residuals.css';
+import './styles/scoring.css';
 import './styles/palette.css';
 import './styles/narrow.css';
 import { RestClient } from './connection/rest_client';
@@ -28,6 +29,7 @@ import { LogWorlds } from './store/logs/log_worlds';
 import { Notices } from './store/notices';
 import { Player } from './store/player';
 import { SceneControl } from './store/scene_control';
+import { ScoreDesk } from './store/scoring/score_desk';
 import { Sensors } from './store/sensors/sensors';
 import { Session } from './store/session';
 import { Store } from './store/state';
@@ -73,6 +75,7 @@ const cameras = new Cameras(store, rest);
 const sensors = new Sensors(store, rest, { now_ms: () => performance.now(), later });
 const logs = new LogBrowser(store, rest, session, uploadByBrowser, newKey);
 const connect = new VehicleConnect(store, rest, session, newKey);
+const scores = new ScoreDesk(store, rest, uploadByBrowser);
 const worlds = new LogWorlds(store, rest);
 const storage = browserStorage();
 const layouts = new Layouts(store, notices, storage);
@@ -92,6 +95,7 @@ const context = {
   smoothing,
   worlds,
   connect,
+  scores,
   notices,
   client,
   layouts,

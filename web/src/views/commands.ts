@@ -86,9 +86,16 @@ function shortcutCommands(context: Context): Command[] {
     }));
 }
 
-function pageCommands({ catalogue, connect, logs }: Context): Command[] {
+function pageCommands({ catalogue, connect, logs, scores }: Context): Command[] {
   const group = 'Page';
   return [
+    {
+      id: 'scoring',
+      group,
+      title: 'Score trajectories',
+      words: 'evaluate upload file plot',
+      run: () => void scores.open(),
+    },
     { id: 'logs', group, title: 'Fly a log', words: 'upload', run: () => void logs.open() },
     { id: 'connect', group, title: 'Connect to an autopilot', run: () => connect.open() },
     {

@@ -77,6 +77,7 @@ export class HeaderBar implements View {
       this.error,
       h('span', { class: 'spacer' }),
       this.attribution,
+      scoresButton(context),
       this.layouts.root,
       this.themes.root,
       this.connection,
@@ -165,4 +166,17 @@ export class HeaderBar implements View {
     show();
     this.countdown = window.setInterval(show, 500);
   }
+}
+
+function scoresButton({ scores }: Context): HTMLElement {
+  return h(
+    'button',
+    {
+      class: 'tab',
+      'data-role': 'open-scores',
+      title: 'Score trajectories of files, runs and logs',
+      onclick: () => void scores.open(),
+    },
+    'Score files',
+  );
 }

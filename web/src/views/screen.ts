@@ -2,8 +2,8 @@
 import { Frame } from './frame/frame';
 import { HeaderBar } from './header_bar';
 import { HelpOverlay } from './help_overlay';
-import { acceptLogFiles, LogPageOverlay } from './logs/log_page_overlay';
 import { NoticesView } from './notices_view';
+import { acceptFiles, makePages } from './pages';
 import { Palette } from './palette';
 import { ScenarioEditor } from './scenario_editor';
 import { listenToKeys } from './shortcuts';
@@ -19,7 +19,7 @@ export function showScreen(context: Context, place: HTMLElement): void {
     new HeaderBar(context),
     frame,
     new Timeline(context),
-    new LogPageOverlay(context),
+    ...makePages(context),
     new ConnectDialog(context),
     new NoticesView(context),
     new HelpOverlay(context),
@@ -29,7 +29,7 @@ export function showScreen(context: Context, place: HTMLElement): void {
   place.replaceChildren(...views.map(({ root }) => root));
   frame.fit();
   listenToKeys(context);
-  acceptLogFiles(context);
+  acceptFiles(context);
   for (const view of views) view.update(kTopics);
   context.store.onChange(() => {
     requestAnimationFrame(() => {

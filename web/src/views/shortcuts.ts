@@ -181,6 +181,7 @@ function restoreScreen({ store, layouts }: Context): void {
   store.state.editorOpen = false;
   store.state.paletteOpen = false;
   store.state.logPage.open = false;
-  store.change('help', 'logs', 'palette');
+  store.state.scorePage.open = false;
+  store.change('help', 'logs', 'palette', 'scoring');
   layouts.restore();
 }
