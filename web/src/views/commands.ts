@@ -44,24 +44,20 @@ function layoutCommands({ layouts }: Context): Command[] {
 }
 
 function panelCommands({ layouts }: Context): Command[] {
-  const shown = layouts.panels();
-  return kPanelNames.flatMap((name): Command[] => {
-    const { title, hint } = kPanels[name];
-    const show = {
-      id: `show ${name}`,
-      group: 'Panel',
-      title: `Show ${title}`,
-      words: hint,
-      run: () => layouts.show(name),
-    };
-    const hide = {
-      id: `hide ${name}`,
-      group: 'Panel',
-      title: `Hide ${title}`,
-      run: () => layouts.hide(name),
-    };
-    return shown.includes(name) ? [show, hide] : [show];
-  });
+  const show = kPanelNames.map((name) => ({
+    id: `show ${name}`,
+    group: 'Panel',
+    title: `Show ${kPanels[name].title}`,
+    words: kPanels[name].hint,
+    run: () => layouts.show(name),
+  }));
+  const hide = layouts.panels().map((name) => ({
+    id: `hide ${name}`,
+    group: 'Panel',
+    title: `Hide ${kPanels[name].title}`,
+    run: () => layouts.hide(name),
+  }));
+  return [...show, ...hide];
 }
 
 function themeCommands({ themes }: Context): Command[] {
