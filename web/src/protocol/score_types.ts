@@ -3,7 +3,7 @@
 import type { AlignmentErrors } from './rest_types';
 
 export interface TrajectoryFile {
-  /** Behind "file:". */
+  /** "file:" with folder and path. */
   name: string;
   format: string;
   folder: string;

@@ -100,8 +100,8 @@ export class ScoreDesk {
         const { name } = await this.rest.uploadTrajectory(this.upload, file.name, file, progress);
         page.upload = null;
         await this.readLists();
-        if (page.truth === null) await this.chooseTruth(`file:${name}`);
-        else await this.toggle(`file:${name}`);
+        if (page.truth === null) await this.chooseTruth(name);
+        else await this.toggle(name);
       } catch (error) {
         page.upload = null;
         page.error = `${file.name}: ${textOf(error)}`;
@@ -115,7 +115,7 @@ export class ScoreDesk {
   async remove(name: string): Promise<void> {
     const { page } = this;
     try {
-      await this.rest.deleteTrajectory(name.slice('file:'.length));
+      await this.rest.deleteTrajectory(name);
       page.estimates = page.estimates.filter((estimate) => estimate !== name);
       if (page.truth === name) page.truth = null;
     } catch (error) {
@@ -185,7 +185,7 @@ export function choiceGroups(page: ScorePage, runs: readonly Run[] | null): Choi
   for (const { name, format, folder, uploaded } of page.files?.trajectories ?? []) {
     const label = name.slice(name.lastIndexOf('/') + 1);
     add(uploaded ? 'Uploaded files' : `Files in ${folder}`, {
-      name: `file:${name}`,
+      name,
       label,
       detail: format,
       uploaded,

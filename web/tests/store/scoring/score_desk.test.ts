@@ -24,7 +24,7 @@ beforeEach(() => {
     }
     if (url === 'api/trajectories') {
       const entry = { format: 'TUM', folder: 'd', size_bytes: 9, uploaded: false };
-      const trajectories = [{ name: 'd/a/t.tum', ...entry }];
+      const trajectories = [{ name: 'file:d/a/t.tum', ...entry }];
       return Promise.resolve(Response.json({ trajectories, complete: true }));
     }
     if (url === 'api/logs') {
@@ -34,7 +34,7 @@ beforeEach(() => {
   });
   desk = new ScoreDesk(store, rest, (url) => {
     asked.push({ url, body: 'file' });
-    const text = JSON.stringify({ name: 'uploads/e.txt' });
+    const text = JSON.stringify({ name: 'file:uploads/e.txt' });
     return Promise.resolve({ status: 201, text });
   });
 });
