@@ -27,6 +27,7 @@ import { LogBrowser } from './store/logs/log_browser';
 import { LogSmoothing } from './store/logs/log_smoothing';
 import { LogWorlds } from './store/logs/log_worlds';
 import { Notices } from './store/notices';
+import { parsePermalink } from './store/permalink';
 import { Player } from './store/player';
 import { SceneControl } from './store/scene_control';
 import { ScoreDesk } from './store/scoring/score_desk';
@@ -109,7 +110,8 @@ window
   .addEventListener('change', () => themes.refresh());
 window.addEventListener('online', () => client.connect());
 client.connect();
-catalogue.start();
+// A link shows its runs; the first visit shows the newest.
+catalogue.start(parsePermalink(location.hash).runs.length === 0);
 
 /** A browser that refuses to keep anything keeps nothing. */
 function browserStorage(): Storage {
