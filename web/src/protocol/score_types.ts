@@ -40,12 +40,29 @@ export type ScoredErrors = AlignmentErrors & {
   percent_of_path?: number | null;
 };
 
+/** Offsets that explain at least half of the mean square error; null = none does. */
+export interface ScoredOffsets {
+  clock: {
+    time_offset_s: number;
+    position_rmse_before_m: number;
+    position_rmse_after_m: number;
+    explained: number;
+  } | null;
+  mount: {
+    angle_deg: number;
+    rotation_rmse_before_deg: number;
+    rotation_rmse_after_deg: number;
+    explained: number;
+  } | null;
+}
+
 export interface ScoredEstimate {
   name: string;
   poses?: number;
   matched?: number;
   warnings?: string[];
   alignments?: Record<string, ScoredErrors>;
+  offsets?: ScoredOffsets;
   series?: Record<string, PoseSeries & { axis_errors: SeriesTable; errors: SeriesTable }>;
   /** Why it could not be read or matched. */
   error?: { code: string; message: string };
@@ -61,4 +78,5 @@ export interface EvaluationRequest {
   estimates: readonly string[];
   alignments: readonly string[];
   points?: number;
+  find_offsets?: boolean;
 }

@@ -151,7 +151,10 @@ export class ScoreDesk {
     };
     try {
       const { signal } = scoring;
-      const scores = await this.rest.evaluate({ ...request, alignments: ['all'] }, signal);
+      const scores = await this.rest.evaluate(
+        { ...request, alignments: ['all'], find_offsets: true },
+        signal,
+      );
       const series = await this.rest.evaluate(over, signal);
       if (signal.aborted) return;
       page.scores = scores;

@@ -1,7 +1,7 @@
 // The table of scores: one row for each estimate and alignment.
 import type { Evaluation, ScoredErrors } from '../../protocol/score_types';
 import { kDefaultAlignment } from '../error_table';
-import { formatNumber } from '../format';
+import { formatNumber, formatPercent } from '../format';
 import type { TextFormat } from '../table_text';
 import { csvTable, latexTable, markdownTable } from '../table_text';
 import { shortName } from './score_desk';
@@ -49,6 +49,32 @@ export function scoreRows({ estimates }: Evaluation): ScoreRow[] {
       ),
       failed: false,
     }));
+  });
+}
+
+/** What explains the errors of an estimate: offsets of its clock and of its camera's mount. */
+export function offsetTexts({ estimates }: Evaluation): string[] {
+  return estimates.flatMap(({ name, offsets }) => {
+    const { clock = null, mount = null } = offsets ?? {};
+    const share = (explained: number) => formatPercent(explained, 0);
+    const texts: string[] = [];
+    if (clock !== null) {
+      const { time_offset_s, position_rmse_before_m: before, position_rmse_after_m: after } = clock;
+      texts.push(
+        `${shortName(name)}: its clock is ${formatNumber(Math.abs(time_offset_s) * 1000, 1)} ms ${time_offset_s > 0 ? 'early' : 'late'}, which explains ` +
+          `${share(clock.explained)} of the position error after sim3 ` +
+          `(RMSE ${formatNumber(before, 3)} m, without it ${formatNumber(after, 3)} m).`,
+      );
+    }
+    if (mount !== null) {
+      const { angle_deg, rotation_rmse_before_deg: before, rotation_rmse_after_deg: after } = mount;
+      texts.push(
+        `${shortName(name)}: a constant rotation of ${formatNumber(angle_deg, 2)} deg explains ` +
+          `${share(mount.explained)} of the rotation error after sim3 ` +
+          `(RMSE ${formatNumber(before, 3)} deg, without it ${formatNumber(after, 3)} deg).`,
+      );
+    }
+    return texts;
   });
 }
 

@@ -6,6 +6,7 @@ import type { ScoreRow } from '../../store/scoring/score_rows';
 import {
   exportScores,
   kScoreFigures,
+  offsetTexts,
   scoreAlignments,
   scoreRows,
 } from '../../store/scoring/score_rows';
@@ -39,6 +40,7 @@ export class ScorePageView implements View {
   private readonly tabs = h('span', { class: 'tabs' });
   private readonly grid = h('div', { class: 'plot-grid' });
   private readonly table = h('table', { class: 'errors score-table' });
+  private readonly offsets = h('ul', { class: 'score-offsets', 'data-role': 'score-offsets' });
   private readonly copy = h(
     'select',
     { 'aria-label': 'Copy the scores', title: 'Copies the scores of every alignment' },
@@ -89,7 +91,7 @@ export class ScorePageView implements View {
           this.copy,
         ),
         h('div', { class: 'score-plots' }, this.grid, this.message),
-        h('div', { class: 'score-figures' }, this.table),
+        h('div', { class: 'score-figures' }, this.table, this.offsets),
       ),
     );
     new ResizeObserver(() => this.drawPlots()).observe(this.grid);
@@ -206,6 +208,8 @@ export class ScorePageView implements View {
   private drawTable(scores: Evaluation | null): void {
     const rows = scores === null ? [] : scoreRows(scores);
     this.table.hidden = rows.length === 0;
+    const offsets = scores === null ? [] : offsetTexts(scores);
+    rebuild(this.offsets, JSON.stringify(offsets), () => offsets.map((text) => h('li', {}, text)));
     rebuild(this.table, JSON.stringify(rows), () => [
       h(
         'thead',

@@ -60,7 +60,7 @@ describe('ScoreDesk', () => {
     await desk.toggle('run:r1/feature');
     const request = { truth: 'file:d/t.tum', estimates: ['run:r1/feature'] };
     expect(evaluations()).toEqual([
-      { ...request, alignments: ['all'] },
+      { ...request, alignments: ['all'], find_offsets: true },
       { ...request, alignments: ['init_scale'], points: 6000 },
     ]);
     await desk.chooseAlignment('sim3');

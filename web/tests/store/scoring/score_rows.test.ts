@@ -1,6 +1,11 @@
 import { describe, expect, it } from 'vitest';
 import type { Evaluation } from '../../../src/protocol/score_types';
-import { exportScores, scoreAlignments, scoreRows } from '../../../src/store/scoring/score_rows';
+import {
+  exportScores,
+  offsetTexts,
+  scoreAlignments,
+  scoreRows,
+} from '../../../src/store/scoring/score_rows';
 import { scoreSpan, scoreSpecs } from '../../../src/store/scoring/score_specs';
 
 const table = (columns: Record<string, (number | null)[]>) => ({ t_s: [1000, 1001], ...columns });
@@ -42,6 +47,32 @@ describe('scoreRows', () => {
     expect(rows[1]?.hints).toEqual(['1 pose was left out', 'a straight line']);
     expect(rows[2]?.hints).toEqual(['line 3 is no pose']);
     expect(scoreAlignments(evaluation)).toEqual(['init_scale', 'sim3']);
+  });
+});
+
+describe('offsetTexts', () => {
+  it('says which offsets explain the errors, if any do', () => {
+    expect(offsetTexts(evaluation)).toEqual([]);
+    const clock = {
+      time_offset_s: -0.04,
+      position_rmse_before_m: 1.07,
+      position_rmse_after_m: 0.18,
+      explained: 0.97,
+    };
+    const mount = {
+      angle_deg: 7,
+      rotation_rmse_before_deg: 7.1,
+      rotation_rmse_after_deg: 0.5,
+      explained: 0.99,
+    };
+    const [estimate] = evaluation.estimates;
+    if (estimate === undefined) throw new Error('no estimate');
+    const estimates = [{ ...estimate, offsets: { clock, mount } }];
+    const texts = offsetTexts({ ...evaluation, estimates });
+    expect(texts).toHaveLength(2);
+    expect(texts[0]).toContain('clock is 40.0 ms late, which explains 97 %');
+    expect(texts[0]).toContain('RMSE 1.070 m, without it 0.180 m');
+    expect(texts[1]).toContain('rotation of 7.00 deg explains 99 %');
   });
 });
 
