@@ -60,11 +60,11 @@ describe('a flight with estimators behind doors', { skip, timeout: 600_000 }, ()
   step('shows during the flight that an estimator has ended, and why', async () => {
     run = await dashboard.launch();
     await dashboard.until(
-      () => document.querySelector('[data-panel=plots] .tab[data-attention]') !== null,
+      () => document.querySelector('.tab[data-attention]') !== null,
       undefined,
       kFlightPatience_ms,
     );
-    await dashboard.page.locator('[data-panel=plots] .tab[data-group=estimators]').click();
+    await dashboard.page.locator('.tab[data-group=estimators]').click();
     assert.equal(await cell('absent', 'state'), 'CRASHED');
     const reason = await dashboard.page.locator('.statuses .crash').innerText();
     assert.match(reason, /did not start/);
@@ -91,7 +91,7 @@ describe('a flight with estimators behind doors', { skip, timeout: 600_000 }, ()
   });
 
   step('shows every value next to the plots completely', async () => {
-    await dashboard.page.locator('[data-panel=plots] .tab[data-group=pose]').click();
+    await dashboard.page.locator('.tab[data-group=pose]').click();
     await dashboard.seekAt('.track .bar', 0.9);
     await dashboard.page.locator('[data-axis=x_m] .readout').first().waitFor();
     assert.equal(await dashboard.page.locator('[data-axis=x_m] .readout').count(), 4);

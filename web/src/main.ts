@@ -12,6 +12,8 @@ import './styles/timeline.css';
 import './styles/estimators.css';
 import './styles/logs.css';
 import './styles/residuals.css';
+import './styles/scoring.css';
+import './styles/palette.css';
 import './styles/narrow.css';
 import { RestClient } from './connection/rest_client';
 import { StreamClient } from './connection/stream_client';
@@ -25,8 +27,10 @@ import { LogBrowser } from './store/logs/log_browser';
 import { LogSmoothing } from './store/logs/log_smoothing';
 import { LogWorlds } from './store/logs/log_worlds';
 import { Notices } from './store/notices';
+import { parsePermalink } from './store/permalink';
 import { Player } from './store/player';
 import { SceneControl } from './store/scene_control';
+import { ScoreDesk } from './store/scoring/score_desk';
 import { Sensors } from './store/sensors/sensors';
 import { Session } from './store/session';
 import { Store } from './store/state';
@@ -72,6 +76,7 @@ const cameras = new Cameras(store, rest);
 const sensors = new Sensors(store, rest, { now_ms: () => performance.now(), later });
 const logs = new LogBrowser(store, rest, session, uploadByBrowser, newKey);
 const connect = new VehicleConnect(store, rest, session, newKey);
+const scores = new ScoreDesk(store, rest, uploadByBrowser);
 const worlds = new LogWorlds(store, rest);
 const storage = browserStorage();
 const layouts = new Layouts(store, notices, storage);
@@ -91,6 +96,7 @@ const context = {
   smoothing,
   worlds,
   connect,
+  scores,
   notices,
   client,
   layouts,
@@ -104,7 +110,8 @@ window
   .addEventListener('change', () => themes.refresh());
 window.addEventListener('online', () => client.connect());
 client.connect();
-catalogue.start();
+// A link shows its runs; the first visit shows the newest.
+catalogue.start(parsePermalink(location.hash).runs.length === 0);
 
 /** A browser that refuses to keep anything keeps nothing. */
 function browserStorage(): Storage {

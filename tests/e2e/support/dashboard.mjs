@@ -150,9 +150,9 @@ export class Dashboard {
   }
 
   /** Clicks at a share of the width of the time line or of a plot and waits for another instant. */
-  async seekAt(selector, share) {
+  async seekAt(selector, share, panels) {
     // A view that just came to rest may still move by a frame: that is not the click's doing.
-    await this.untilSameInstant();
+    await this.untilSameInstant(panels);
     const { frame } = await this.playback();
     const box = await this.page.locator(selector).first().boundingBox();
     await this.page.mouse.click(box.x + box.width * share, box.y + box.height / 2);
@@ -160,7 +160,7 @@ export class Dashboard {
       (before) => document.querySelector('[data-panel=timeline]').dataset.frame !== String(before),
       frame,
     );
-    await this.untilSameInstant();
+    await this.untilSameInstant(panels);
   }
 
   /** A digest of what a panel's canvas shows. */

@@ -217,6 +217,39 @@ TEST_F(Report, IsOneFileThatLoadsNothing) {
   }
 }
 
+/// Test estimators are given the truth: their errors are no achievement.
+TEST_F(Report, HasNoBestAmongTestEstimators) {
+  const std::string html = made({run_folder()}).html;
+  EXPECT_THAT(html, HasSubstr("Only test estimators."));
+  EXPECT_THAT(html, Not(HasSubstr("\xE2\x98\x85")));
+  EXPECT_THAT(html, Not(HasSubstr("has the smallest position error")));
+}
+
+/// A new map has another origin and scale: the scored map's alignment does not apply to it.
+TEST_F(Report, ShowsOnlyTheScoredMap) {
+  const fs::path run = copy();
+  const auto lines = read_lines(estimate_file(run, "d"));
+  ASSERT_TRUE(lines.ok());
+  std::string rows;
+  for (std::size_t i = 0; i < lines->size(); ++i) {
+    Json row = (*lines)[i];
+    if (i + 5 >= lines->size()) row["map_id"] = 1;
+    rows += row.dump() + "\n";
+  }
+  write_text(estimate_file(run, "d"), rows);
+  const auto whole = read_report_run(run_folder(), evaluation::AlignmentMode::kSim3);
+  const auto read = read_report_run(run, evaluation::AlignmentMode::kSim3);
+  ASSERT_TRUE(whole.ok() && read.ok());
+  const ReportEstimate& estimate = read->estimates.at(1);
+  ASSERT_EQ(estimate.name, "d");
+  EXPECT_EQ(estimate.axis_errors.size() + 5, whole->estimates.at(1).axis_errors.size());
+  for (std::size_t i = 0; i < estimate.answers.size(); ++i) {
+    const bool in_map = i + 5 < estimate.answers.size();
+    EXPECT_EQ(estimate.answers[i].scored, in_map) << i;
+    EXPECT_EQ(estimate.answers[i].T_world_body.has_value(), in_map) << i;
+  }
+}
+
 TEST_F(Report, OfTheSameRunIsTheSameByteByByte) {
   EXPECT_EQ(made({run_folder()}).html, made({run_folder()}).html);
 }

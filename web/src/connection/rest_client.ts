@@ -10,6 +10,12 @@ import type {
   WorkProgress,
   WorldExtent,
 } from '../protocol/log_types';
+import type {
+  Evaluation,
+  EvaluationRequest,
+  TrajectoryFile,
+  TrajectoryList,
+} from '../protocol/score_types';
 import type { Cell } from '../protocol/messages';
 import type { Json, JsonObject, Manifest, Run, ScenarioEntry } from '../protocol/rest_types';
 import type { SensorCurves } from '../protocol/sensor_types';
@@ -144,6 +150,30 @@ export class RestClient {
     }
   }
 
+  async trajectories(): Promise<TrajectoryList> {
+    return (await this.call('GET', '/trajectories')) as TrajectoryList;
+  }
+
+  async deleteTrajectory(name: string): Promise<void> {
+    await this.call('DELETE', `/trajectories/${encodeURIComponent(name)}`);
+  }
+
+  /** The server stops scoring when `signal` aborts. */
+  async evaluate(request: EvaluationRequest, signal: AbortSignal): Promise<Evaluation> {
+    return (await this.call('POST', '/evaluations', request, {}, signal)) as Evaluation;
+  }
+
+  async uploadTrajectory(
+    upload: Upload,
+    name: string,
+    body: Blob,
+    onProgress: (share: number) => void,
+  ): Promise<TrajectoryFile> {
+    const url = `${this.base}/trajectories?name=${encodeURIComponent(name)}`;
+    const never = new AbortController().signal;
+    return (await this.send(upload, url, body, onProgress, never)) as TrajectoryFile;
+  }
+
   async deleteLog(name: string): Promise<void> {
     await this.call('DELETE', `/logs/${encodeURIComponent(name)}`);
   }
@@ -157,10 +187,20 @@ export class RestClient {
     signal: AbortSignal,
   ): Promise<LogEntry> {
     const url = `${this.base}/logs?${query}`;
+    return (await this.send(upload, url, body, onProgress, signal)) as LogEntry;
+  }
+
+  private async send(
+    upload: Upload,
+    url: string,
+    body: Blob,
+    onProgress: (share: number) => void,
+    signal: AbortSignal,
+  ): Promise<unknown> {
     const { status, text } = await upload(url, body, onProgress, signal);
     if (status === kUnauthorized) this.onLocked();
     if (status !== 201) throw await errorOf(new Response(text, { status }));
-    return JSON.parse(text) as LogEntry;
+    return JSON.parse(text);
   }
 
   /**

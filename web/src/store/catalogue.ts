@@ -25,10 +25,19 @@ export class Catalogue {
     private readonly newKey: () => string,
   ) {}
 
-  /** Reads the scenarios once, and the runs periodically. */
-  start(): void {
+  /**
+   * Reads the scenarios once, and the runs periodically.
+   * @param showNewest  shows the newest run once the list is read, unless one is shown already
+   */
+  start(showNewest: boolean): void {
     void this.readScenarios();
-    void this.poll();
+    void this.poll().then(() => {
+      const { runs, watched } = this.store.state;
+      const newest = runs?.[0];
+      if (showNewest && watched.length === 0 && newest !== undefined) {
+        this.session.selectRun(newest.id);
+      }
+    });
   }
 
   async readScenarios(): Promise<void> {

@@ -2,12 +2,10 @@
 // and LaTeX with those that the dashboard shows.
 import { alignmentModes, kErrorFigures, outcomeText } from './error_table';
 import type { AlignmentErrors, EstimatorMetrics } from '../protocol/rest_types';
-import { csvLine } from './csv';
 import { formatNumber } from './format';
+import type { TextFormat } from './table_text';
+import { csvTable, latexTable, markdownTable } from './table_text';
 import type { WatchedRun } from './watched_run';
-
-export const kExportFormats = ['Markdown', 'LaTeX', 'CSV'] as const;
-export type ExportFormat = (typeof kExportFormats)[number];
 
 interface Entry {
   run: WatchedRun;
@@ -18,7 +16,7 @@ interface Entry {
 }
 
 /** One row for each estimate and alignment. */
-export function exportErrors(watched: readonly WatchedRun[], format: ExportFormat): string {
+export function exportErrors(watched: readonly WatchedRun[], format: TextFormat): string {
   const entries = watched.flatMap(entriesOf);
   if (format === 'CSV') return csv(entries);
   const several = watched.length > 1;
@@ -33,7 +31,8 @@ export function exportErrors(watched: readonly WatchedRun[], format: ExportForma
     entry.mode,
     ...kErrorFigures.map(({ key, digits }) => formatNumber(numberOf(entry.errors[key]), digits)),
   ]);
-  return format === 'Markdown' ? markdown(head, rows) : latex(head, rows, kErrorFigures.length);
+  const table = { head, rows, numbers: kErrorFigures.length };
+  return format === 'Markdown' ? markdownTable(table) : latexTable(table);
 }
 
 function entriesOf(run: WatchedRun): Entry[] {
@@ -58,36 +57,7 @@ function csv(entries: Entry[]): string {
     ...keys.map((key) => numberOf(errors[key]) ?? ''),
   ]);
   const head = ['run', 'title', 'estimator', 'outcome', 'outcome_time_s', 'coverage', 'alignment'];
-  return [[...head, ...keys], ...lines].map(csvLine).join('');
-}
-
-function markdown(head: string[], rows: string[][]): string {
-  const line = (cells: string[]) =>
-    `| ${cells.map((cell) => cell.replaceAll('|', '\\|').replaceAll('\n', ' ')).join(' | ')} |\n`;
-  const numbers = head.length - kErrorFigures.length;
-  const rule = `|${head.map((_, i) => (i < numbers ? '---|' : '--:|')).join('')}\n`;
-  return line(head) + rule + rows.map(line).join('');
-}
-
-function latex(head: string[], rows: string[][], numbers: number): string {
-  const line = (cells: string[]) => `  ${cells.map(latexText).join(' & ')} \\\\\n`;
-  const columns = 'l'.repeat(head.length - numbers) + 'r'.repeat(numbers);
-  return (
-    `\\begin{tabular}{${columns}}\n  \\hline\n${line(head)}  \\hline\n` +
-    `${rows.map(line).join('')}  \\hline\n\\end{tabular}\n`
-  );
-}
-
-const kLatexNames: Readonly<Record<string, string>> = {
-  '\\': '\\textbackslash{}',
-  '~': '\\textasciitilde{}',
-  '^': '\\textasciicircum{}',
-  '−': '$-$',
-  '–': '--',
-};
-
-function latexText(text: string): string {
-  return text.replace(/[\\~^−–&%$#_{}]/g, (found) => kLatexNames[found] ?? `\\${found}`);
+  return csvTable([...head, ...keys], lines);
 }
 
 function numberOf(value: unknown): number | null {

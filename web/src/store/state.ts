@@ -19,6 +19,8 @@ import type { Clock, RunPlayback } from './run_playback';
 import type { ConnectState } from './vehicle/vehicle_connect';
 import { initialConnect } from './vehicle/vehicle_connect';
 import { RunData } from './run_data';
+import type { ScorePage } from './scoring/score_page';
+import { initialScorePage } from './scoring/score_page';
 import type { SensorSamples } from './sensors/sensors';
 import type { AlignedEstimates, Picture, WatchedRun } from './watched_run';
 
@@ -70,7 +72,9 @@ export class State {
   };
   notices: Notice[] = [];
   helpOpen = false;
+  paletteOpen = false;
   logPage: LogPage = initialLogPage();
+  scorePage: ScorePage = initialScorePage();
 
   // ---- the main run ----------------------------------------------------------------------------
 
@@ -170,6 +174,7 @@ const kTopicNames = [
   'notices',
   'help',
   'logs',
+  'scoring',
   'layout',
   'theme',
   'palette',

@@ -1,7 +1,8 @@
 // Errors of the estimates as scored by the server; the dashboard computes none.
 import { canBeDrawn } from '../store/alignment';
-import type { ExportFormat } from '../store/error_export';
-import { exportErrors, kExportFormats } from '../store/error_export';
+import { exportErrors } from '../store/error_export';
+import type { TextFormat } from '../store/table_text';
+import { kTextFormats } from '../store/table_text';
 import type { ErrorRow, ErrorTable } from '../store/error_table';
 import {
   alignmentModes,
@@ -36,7 +37,7 @@ export class ErrorPanel implements View {
       title: 'Copies the errors of all shown runs under every alignment',
     },
     h('option', { value: '' }, 'Copy'),
-    ...kExportFormats.map((format) => h('option', { value: format }, format)),
+    ...kTextFormats.map((format) => h('option', { value: format }, format)),
   );
   private readonly table = h('table', { class: 'errors' });
 
@@ -52,7 +53,7 @@ export class ErrorPanel implements View {
     this.alignment.addEventListener('change', () => {
       void context.alignment.choose(this.alignment.value);
     });
-    this.copy.addEventListener('change', () => void this.copyAs(this.copy.value as ExportFormat));
+    this.copy.addEventListener('change', () => void this.copyAs(this.copy.value as TextFormat));
   }
 
   update(changed: ReadonlySet<Topic>): void {
@@ -82,7 +83,7 @@ export class ErrorPanel implements View {
       : 'Alignment of the errors only: this run does not contain its transform';
   }
 
-  private async copyAs(format: ExportFormat): Promise<void> {
+  private async copyAs(format: TextFormat): Promise<void> {
     this.copy.value = '';
     const { notices, store } = this.context;
     if (await copyText(exportErrors(store.state.watched, format))) {

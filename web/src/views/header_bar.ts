@@ -3,6 +3,7 @@ import type { State, Topic } from '../store/state';
 import { texelsPerPixel, textureHint, textureLimited } from '../store/error_table';
 import { formatNumber, formatPercent } from '../store/format';
 import { h, setAttribute, setText } from './dom';
+import { icon } from './icons';
 import { LayoutMenu } from './frame/layout_menu';
 import { ThemeMenu } from './theme_menu';
 import type { Context, View } from './view';
@@ -51,6 +52,20 @@ export class HeaderBar implements View {
       },
       '?',
     );
+    const commands = h(
+      'button',
+      {
+        class: 'icon-button',
+        title: 'Every command by name (Ctrl K)',
+        'aria-label': 'Commands',
+        'data-role': 'open-palette',
+        onclick: () => {
+          context.store.state.paletteOpen = true;
+          context.store.change('palette');
+        },
+      },
+      icon('search'),
+    );
     this.root = h(
       'header',
       { class: 'header-bar' },
@@ -62,9 +77,11 @@ export class HeaderBar implements View {
       this.error,
       h('span', { class: 'spacer' }),
       this.attribution,
+      scoresButton(context),
       this.layouts.root,
       this.themes.root,
       this.connection,
+      commands,
       help,
     );
   }
@@ -149,4 +166,17 @@ export class HeaderBar implements View {
     show();
     this.countdown = window.setInterval(show, 500);
   }
+}
+
+function scoresButton({ scores }: Context): HTMLElement {
+  return h(
+    'button',
+    {
+      class: 'tab',
+      'data-role': 'open-scores',
+      title: 'Score trajectories of files, runs and logs',
+      onclick: () => void scores.open(),
+    },
+    'Score files',
+  );
 }

@@ -2,8 +2,9 @@
 import { Frame } from './frame/frame';
 import { HeaderBar } from './header_bar';
 import { HelpOverlay } from './help_overlay';
-import { acceptLogFiles, LogPageOverlay } from './logs/log_page_overlay';
 import { NoticesView } from './notices_view';
+import { acceptFiles, makePages } from './pages';
+import { Palette } from './palette';
 import { ScenarioEditor } from './scenario_editor';
 import { listenToKeys } from './shortcuts';
 import { Timeline } from './timeline';
@@ -18,16 +19,17 @@ export function showScreen(context: Context, place: HTMLElement): void {
     new HeaderBar(context),
     frame,
     new Timeline(context),
-    new LogPageOverlay(context),
+    ...makePages(context),
     new ConnectDialog(context),
     new NoticesView(context),
     new HelpOverlay(context),
     new ScenarioEditor(context),
+    new Palette(context),
   ];
   place.replaceChildren(...views.map(({ root }) => root));
   frame.fit();
   listenToKeys(context);
-  acceptLogFiles(context);
+  acceptFiles(context);
   for (const view of views) view.update(kTopics);
   context.store.onChange(() => {
     requestAnimationFrame(() => {

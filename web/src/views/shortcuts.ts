@@ -2,7 +2,7 @@
 import type { Context } from './view';
 
 interface Shortcut {
-  /** KeyboardEvent.key values, lower case; "shift+" means that the shift key is held. */
+  /** KeyboardEvent.key values, lower case, after "ctrl+" and "shift+" for keys that are held. */
   keys: readonly string[];
   label: string;
   what: string;
@@ -110,6 +110,15 @@ export const kShortcuts: readonly Shortcut[] = [
     what: 'follow the running flight',
     run: ({ player }) => player.goLive(),
   },
+  {
+    keys: ['ctrl+k'],
+    label: 'Ctrl K',
+    what: 'every command by name',
+    run: ({ store }) => {
+      store.state.paletteOpen = true;
+      store.change('palette');
+    },
+  },
   { keys: ['t'], label: 'T', what: 'next theme', run: ({ themes }) => themes.next() },
   { keys: ['?', 'shift+?'], label: '?', what: 'this help', run: ({ store }) => toggleHelp(store) },
   {
@@ -122,14 +131,20 @@ export const kShortcuts: readonly Shortcut[] = [
 
 export function listenToKeys(context: Context): void {
   document.addEventListener('keydown', (event) => {
-    if (event.ctrlKey || event.altKey || event.metaKey || wantsKey(event)) return;
-    const name = (event.shiftKey ? 'shift+' : '') + event.key.toLowerCase();
+    if (event.altKey || (wantsKey(event) && !isCommand(event))) return;
+    const held = (isCommand(event) ? 'ctrl+' : '') + (event.shiftKey ? 'shift+' : '');
+    const name = held + event.key.toLowerCase();
     const shortcut = kShortcuts.find(({ keys }) => keys.includes(name));
     if (shortcut === undefined) return;
     event.preventDefault();
     shortcut.run(context);
   });
   leaveAfterMouse();
+}
+
+/** Ctrl, or the command key of a Mac. */
+function isCommand({ ctrlKey, metaKey }: KeyboardEvent): boolean {
+  return ctrlKey || metaKey;
 }
 
 /** Whether the focused element needs the key itself. */
@@ -164,7 +179,9 @@ function toggleHelp(store: Context['store']): void {
 function restoreScreen({ store, layouts }: Context): void {
   store.state.helpOpen = false;
   store.state.editorOpen = false;
+  store.state.paletteOpen = false;
   store.state.logPage.open = false;
-  store.change('help', 'logs');
+  store.state.scorePage.open = false;
+  store.change('help', 'logs', 'palette', 'scoring');
   layouts.restore();
 }

@@ -13,6 +13,7 @@ import type { LogSmoothing } from '../store/logs/log_smoothing';
 import type { LogWorlds } from '../store/logs/log_worlds';
 import type { Themes } from '../store/themes';
 import type { VehicleConnect } from '../store/vehicle/vehicle_connect';
+import type { ScoreDesk } from '../store/scoring/score_desk';
 import type { Notices } from '../store/notices';
 import type { StreamClient } from '../connection/stream_client';
 
@@ -38,6 +39,7 @@ export interface Context {
   smoothing: LogSmoothing;
   worlds: LogWorlds;
   connect: VehicleConnect;
+  scores: ScoreDesk;
   notices: Notices;
   client: StreamClient;
   layouts: Layouts;

@@ -124,6 +124,21 @@ describe('Catalogue', () => {
     expect(store.state.notices.map(({ text }) => text)).toEqual(['it still runs']);
   });
 
+  it('shows the newest run at the first visit, but no other than the one of a link', async () => {
+    const routes = {
+      'GET /scenarios': () => [200, { scenarios: [] }] as [number, unknown],
+      'GET /runs': () =>
+        [200, { runs: [sampleRun({ id: 'new' }), sampleRun()] }] as [number, unknown],
+    };
+    const first = catalogue(routes);
+    first.subject.start(true);
+    await expect.poll(() => first.store.state.runId).toBe('new');
+    const linked = catalogue(routes);
+    linked.subject.start(false);
+    await expect.poll(() => linked.store.state.runs?.length).toBe(2);
+    expect(linked.store.state.runId).toBeNull();
+  });
+
   it('leaves a run that it deletes', async () => {
     const { store, subject } = catalogue({
       'DELETE /runs/r1': () => [204, null],
@@ -144,11 +159,11 @@ describe('Catalogue', () => {
       'GET /runs': () => [401, locked],
     });
     store.state.connection = { status: 'locked' };
-    subject.start();
+    subject.start(false);
     await expect.poll(() => store.state.listError).toBe('the token is missing');
     await expect.poll(() => timers.waiting.size).toBe(0);
     store.state.connection = { status: 'waiting', attempt: 1, delay_ms: 500 };
-    subject.start();
+    subject.start(false);
     await expect.poll(() => timers.waiting.size).toBe(1);
   });
 

@@ -54,7 +54,7 @@ function fly(area: Area): LayoutNode {
   // As wide as possible for two 4:3 pictures above the table.
   const right_px = clamp((area.height_px - 356) * 0.6667, 324, 620);
   const log_px = Math.max(80, 0.15 * area.height_px);
-  const launch_px = Math.max(200, Math.min(area.height_px - log_px - 130, 600));
+  const launch_px = Math.max(200, Math.min(area.height_px - log_px - 130, 500));
   return split('row', [
     [
       side_px,
@@ -98,7 +98,7 @@ function compare(area: Area): LayoutNode {
 }
 
 function estimator(area: Area): LayoutNode {
-  const right_px = clamp(area.width_px * 0.34, 400, 700);
+  const right_px = clamp(area.width_px * 0.37, 400, 740);
   const left_px = area.width_px - right_px;
   return split('row', [
     [

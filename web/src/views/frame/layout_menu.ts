@@ -176,9 +176,8 @@ export class LayoutMenu implements View {
     document.addEventListener('pointerdown', ({ target }) => {
       if (target instanceof Node && !this.root.contains(target)) this.open(false);
     });
-    this.root.addEventListener('keydown', (event) => {
-      if (event.key !== 'Escape' || this.sheet.hidden) return;
-      event.stopPropagation();
+    document.addEventListener('keydown', ({ key }) => {
+      if (key !== 'Escape' || this.sheet.hidden) return;
       this.open(false);
       this.opener.focus();
     });

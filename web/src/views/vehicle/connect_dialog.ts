@@ -29,10 +29,10 @@ export class ConnectDialog implements View {
     ...kKinds.map(({ value, label }) => h('option', { value }, label)),
   );
   private readonly kindHint = h('div', { class: 'connect-hint' });
-  private readonly host = input('connect-host', 'text', 'host or address');
-  private readonly port = input('connect-port', 'text', 'port');
-  private readonly device = input('connect-device', 'text', '/dev/ttyUSB0');
-  private readonly baud = input('connect-baud', 'text', 'baud');
+  private readonly host = input('connect-host', 'text', 'host or address', 'Host or address');
+  private readonly port = input('connect-port', 'text', 'port', 'Port');
+  private readonly device = input('connect-device', 'text', '/dev/ttyUSB0', 'Serial device');
+  private readonly baud = input('connect-baud', 'text', 'baud', 'Baud rate');
   private readonly readOnly = h('input', { id: 'connect-read-only', type: 'checkbox' });
   private readonly system = input('connect-system', 'text', '0');
   private readonly geoid = input('connect-geoid', 'text', '0');
@@ -191,6 +191,8 @@ export class ConnectDialog implements View {
   }
 }
 
-function input(id: string, type: string, placeholder: string): HTMLInputElement {
-  return h('input', { id, type, placeholder, autocomplete: 'off', spellcheck: 'false' });
+/** @param name  for screen readers, unless a label names it */
+function input(id: string, type: string, placeholder: string, name?: string): HTMLInputElement {
+  const typed = { autocomplete: 'off', spellcheck: 'false' };
+  return h('input', { id, type, placeholder, ...typed, 'aria-label': name });
 }

@@ -1,0 +1,206 @@
+// Two flights compared: added to each other, shown on one clock in every panel, moved against each
+// other, saved to files, and opened again by the address alone.
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { readFileSync } from 'node:fs';
+import path from 'node:path';
+import { after, before, describe } from 'node:test';
+import { browserMissing } from './support/browser.mjs';
+import { programFile, serverMissing, sourceFile } from './support/server.mjs';
+import { openStage } from './support/stage.mjs';
+import { makeStep } from './support/steps.mjs';
+
+const kFlights = [
+  { id: '20260101-000001-slow', airspeed_m_s: 15, duration_s: 6 },
+  { id: '20260101-000002-fast', airspeed_m_s: 25, duration_s: 4 },
+];
+const [kSlow, kFast] = kFlights.map(({ id }) => id);
+const kPanels = ['scene', 'camera', 'plots', 'errors'];
+
+let dashboard;
+const step = makeStep(() => dashboard);
+const skip = serverMissing() || browserMissing();
+
+function fly(runs) {
+  for (const { id, airspeed_m_s, duration_s } of kFlights) {
+    const fields = [`flight.course.airspeed_m_s=${airspeed_m_s}`, `duration_s=${duration_s}`];
+    const overrides = fields.flatMap((field) => ['--set', field]);
+    const scenario = sourceFile('scenarios/course.json');
+    const out = path.join(runs, id);
+    execFileSync(programFile(), ['run', scenario, '--out', out, '--quiet', ...overrides]);
+  }
+  return {};
+}
+
+describe('two flights compared', { skip, timeout: 600_000 }, () => {
+  let stage;
+  let page;
+
+  before(async () => {
+    stage = await openStage({ width: 1600, height: 900 }, fly);
+    dashboard = stage.dashboard;
+    page = dashboard.page;
+  });
+
+  after(() => stage?.close());
+
+  const shown = () =>
+    page.evaluate(() =>
+      [...document.querySelectorAll('[data-shown-run]')].map((entry) => ({
+        run: entry.dataset.shownRun,
+        main: entry.getAttribute('aria-current') === 'true',
+        name: entry.querySelector('.shown-title span').textContent,
+      })),
+    );
+  const readouts = (axis) =>
+    page.locator(`[data-panel=plots] [data-axis=${axis}] .readout`).allInnerTexts();
+  const group = (name) => page.locator(`.tab[data-group=${name}]`).first().click();
+
+  step('adds a run to the one that is shown', async () => {
+    await page.locator(`.run[data-run="${kSlow}"] .run-open`).click();
+    await dashboard.untilFrames(kPanels);
+    await page.locator(`.run[data-run="${kFast}"] .compare`).click();
+    await page.locator(`[data-shown-run="${kFast}"]`).waitFor();
+    await dashboard.until(() => document.querySelectorAll('.errors thead th').length === 3);
+    const runs = await shown();
+    assert.deepEqual(
+      runs.map(({ run, main }) => [run, main]),
+      [
+        [kSlow, true],
+        [kFast, false],
+      ],
+    );
+    assert.match(runs[0].name, /15 m\/s/);
+    assert.match(runs[1].name, /25 m\/s/);
+  });
+
+  step('plots both on one clock, with the errors of both', async () => {
+    await dashboard.seekAt('.track .bar', 0.5);
+    await dashboard.until(
+      () => document.querySelectorAll('[data-panel=plots] [data-axis=x_m] .readout').length === 4,
+    );
+    const values = await readouts('y_m');
+    assert.match(values[0], /^A −?\d/);
+    assert.match(values[2], /^B −?\d/);
+    const y = values.map((text) => Number(text.slice(2).replace('−', '-')));
+    assert.ok(Math.abs(y[0] - y[2]) > 20, `after 3 s they are ${y} m north`);
+    await group('errors');
+    await page.locator('[data-panel=plots] [data-axis=error_m]').waitFor();
+    await dashboard.screenshot('compare_errors_1600x900');
+    const { position_rmse_m: rmse } = await dashboard.errors();
+    for (const [i, id] of [kSlow, kFast].entries()) {
+      const file = path.join(stage.runs.folder, id, 'metrics.json');
+      const { estimators } = JSON.parse(readFileSync(file, 'utf8'));
+      const expected = estimators.feature.alignments.init_scale.position_rmse_m;
+      assert.equal(rmse[i], expected.toFixed(3));
+    }
+  });
+
+  step('hides a track', async () => {
+    await group('pose');
+    await page.locator(`[data-shown-run="${kFast}"] .track-button`).first().click();
+    await dashboard.until(
+      () => document.querySelectorAll('[data-panel=plots] [data-axis=x_m] .readout').length === 3,
+    );
+    await page.locator(`[data-shown-run="${kFast}"] .track-button`).first().click();
+  });
+
+  step('moves a run on the clock: it stands at its beginning before its offset', async () => {
+    const offset = page.getByLabel('Offset of run B in seconds');
+    await offset.fill('4');
+    await offset.press('Enter');
+    await dashboard.seekAt('.track .bar', 0.25);
+    await dashboard.until(() => {
+      const axis = document.querySelector('[data-panel=plots] [data-axis=y_m]');
+      return axis.querySelectorAll('.readout').length === 4;
+    });
+    const early = await readouts('y_m');
+    await dashboard.seekAt('.track .bar', 0.35);
+    const later = await readouts('y_m');
+    assert.notEqual(later[0], early[0], 'run A flies');
+    assert.equal(later[2], early[2], 'run B has not begun');
+    const end_s = await page.locator('.track').getAttribute('aria-valuemax');
+    assert.ok(Number(end_s) > 7.9, `the clock ends at ${end_s} s`);
+  });
+
+  step('shows the pictures of the run that is made the main one', async () => {
+    const before = (await dashboard.picture('camera')).digest;
+    await page.locator(`[data-shown-run="${kFast}"] .shown-title`).click();
+    await dashboard.untilPictureDiffers('camera', before);
+    assert.deepEqual(
+      (await shown()).map(({ main }) => main),
+      [false, true],
+    );
+  });
+
+  step('plays backwards to the beginning of a range', async () => {
+    await dashboard.seekAt('.track .bar', 0.6);
+    await page.keyboard.press('[');
+    await page.locator('[data-role=range]:not([hidden])').waitFor();
+    await dashboard.seekAt('.track .bar', 0.9);
+    await page.keyboard.press('r');
+    await page.keyboard.press(' ');
+    await dashboard.untilPlaying(true);
+    await dashboard.untilPlaying(false);
+    const { t_ns } = await dashboard.playback();
+    assert.ok(Math.abs(t_ns / 1e9 - 4.8) < 0.2, `stopped at ${t_ns} ns`);
+    await page.keyboard.press('r');
+    await page.keyboard.press('\\');
+    await page.locator('[data-role=range]').waitFor({ state: 'hidden' });
+  });
+
+  step('saves the plots and the errors', async () => {
+    const save = async (format) => {
+      const [download] = await Promise.all([
+        page.waitForEvent('download'),
+        page.locator('.plot-files').first().selectOption(format),
+      ]);
+      return readFileSync(await download.path());
+    };
+    const csv = (await save('csv')).toString();
+    assert.match(csv, /^plot,unit,curve,t_s,value\nx_m,m,A truth,0,/);
+    const rows = csv.split('\n').filter((line) => line.startsWith('x_m,m,B truth'));
+    assert.equal(rows.length, 4 * 31 + 1, 'all frames of run B');
+    assert.ok(rows[0].startsWith('x_m,m,B truth,4,'), rows[0]);
+    const svg = (await save('svg')).toString();
+    assert.match(svg, /^<svg /);
+    assert.equal(svg.match(/time \[s\]/g).length, 6);
+    const png = await save('png');
+    assert.equal(png.subarray(1, 4).toString(), 'PNG');
+    assert.ok(png.length > 10_000, `${png.length} bytes`);
+  });
+
+  step('opens the same picture from the address alone', async () => {
+    await dashboard.seekAt('.track .bar', 0.75);
+    await page.waitForFunction(() => /run=.*run=.*main=.*t=/.test(location.hash));
+    const { frame } = await dashboard.playback();
+    const before = await readouts('x_m');
+    const address = page.url();
+    await page.goto('about:blank');
+    await dashboard.open(address);
+    await dashboard.untilCursor(frame);
+    await dashboard.untilSameInstant();
+    await dashboard.until(
+      () => document.querySelectorAll('[data-panel=plots] [data-axis=x_m] .readout').length === 4,
+    );
+    assert.deepEqual(await readouts('x_m'), before);
+    assert.deepEqual(
+      (await shown()).map(({ run, main }) => [run, main]),
+      [
+        [kSlow, false],
+        [kFast, true],
+      ],
+    );
+    await dashboard.screenshot('compare_1600x900');
+  });
+
+  step('leaves the comparison', async () => {
+    await page.getByLabel('Remove run A from the comparison').click();
+    await dashboard.until(() => document.querySelector('[data-shown-run]') === null);
+    assert.equal(await dashboard.runId(), kFast);
+  });
+
+  step('logged no error in the page', () => {
+    assert.deepEqual(dashboard.complaints, []);
+  });
+});

@@ -1,0 +1,78 @@
+// Takes the pictures of docs/DASHBOARD.md and README.md: flies two short flights, opens each layout
+// and page, and saves what it shows. Run by scripts/screenshots.
+import { execFileSync } from 'node:child_process';
+import { mkdirSync } from 'node:fs';
+import path from 'node:path';
+import { browserMissing } from './support/browser.mjs';
+import { programFile, serverMissing, sourceFile } from './support/server.mjs';
+import { openStage } from './support/stage.mjs';
+
+const kFolder = sourceFile('docs/images');
+const kSize = { width: 1600, height: 900 };
+const kFlights = [
+  { id: '20260101-000001-calm', fields: ['flight.course.airspeed_m_s=15'] },
+  { id: '20260101-000002-fast', fields: ['flight.course.airspeed_m_s=25'] },
+];
+const kDuration_s = 70;
+const kInstant_s = 55;
+
+const missing = serverMissing() || browserMissing();
+if (missing) throw new Error(missing);
+
+function fly(runs) {
+  for (const { id, fields } of kFlights) {
+    const all = [...fields, `duration_s=${kDuration_s}`, 'pacing=lockstep'];
+    const overrides = all.flatMap((field) => ['--set', field]);
+    const scenario = sourceFile('scenarios/course.json');
+    const out = path.join(runs, id);
+    execFileSync(programFile(), ['run', scenario, '--out', out, '--quiet', ...overrides]);
+  }
+  return {};
+}
+
+const [slow, fast] = kFlights.map(({ id }) => id);
+const stage = await openStage(kSize, fly);
+try {
+  const { page } = stage.dashboard;
+  const save = async (name) => {
+    mkdirSync(kFolder, { recursive: true });
+    await page.screenshot({ path: path.join(kFolder, `${name}.jpg`), type: 'jpeg', quality: 82 });
+  };
+  const open = async (hash, theme = 'dark') => {
+    await page.goto('about:blank');
+    await page.emulateMedia({ colorScheme: theme });
+    await stage.dashboard.open(`${stage.server.address}#${hash}`);
+    await page.locator('.panel[data-frame], [data-panel][data-frame]').first().waitFor();
+    await stage.dashboard.until(
+      (t_s) => {
+        const { frame, tNs } = document.querySelector('[data-panel=timeline]').dataset;
+        const panels = [...document.querySelectorAll('[data-panel][data-frame]')];
+        return (
+          Math.abs(Number(tNs) / 1e9 - t_s) < 0.1 &&
+          panels.some(({ dataset }) => dataset.frame === frame)
+        );
+      },
+      kInstant_s,
+    );
+    // Pictures of the last panels, and plots, which are drawn at most 15 times a second.
+    await page.waitForTimeout(2000);
+  };
+  const instant = `t=${kInstant_s}`;
+  await open(`layout=fly&run=${fast}&${instant}`);
+  await save('dashboard');
+  await open(`layout=compare&run=${slow}&run=${fast}&${instant}`);
+  await save('dashboard_compare');
+  await open(`layout=estimator&run=${fast}&${instant}`, 'light');
+  await save('dashboard_estimator');
+  await open(`layout=camera&run=${fast}&${instant}`);
+  await save('dashboard_camera');
+  await open(`layout=fly&run=${fast}&${instant}`, 'light');
+  await page.locator('[data-role=open-scores]').click();
+  await page.locator(`[data-trajectory="run:${fast}/truth"] input[type=radio]`).check();
+  await page.locator(`[data-trajectory="run:${fast}/feature"] input[type=checkbox]`).check();
+  await page.locator('.score-table tr[data-alignment=sim3]').first().waitFor();
+  await page.waitForTimeout(1000);
+  await save('dashboard_scores');
+} finally {
+  await stage.close();
+}

@@ -1,0 +1,93 @@
+// The table of scores: one row for each estimate and alignment.
+import type { Evaluation, ScoredErrors } from '../../protocol/score_types';
+import { kDefaultAlignment } from '../error_table';
+import { formatNumber } from '../format';
+import type { TextFormat } from '../table_text';
+import { csvTable, latexTable, markdownTable } from '../table_text';
+import { shortName } from './score_desk';
+
+interface Figure {
+  key: keyof ScoredErrors;
+  label: string;
+  unit: string;
+  digits: number;
+}
+
+export const kScoreFigures: readonly Figure[] = [
+  { key: 'position_rmse_m', label: 'Position RMSE', unit: 'm', digits: 3 },
+  { key: 'horizontal_rmse_m', label: 'Horizontal', unit: 'm', digits: 3 },
+  { key: 'vertical_rmse_m', label: 'Vertical', unit: 'm', digits: 3 },
+  { key: 'percent_of_path', label: 'Of the path', unit: '%', digits: 3 },
+  { key: 'rotation_rmse_deg', label: 'Rotation RMSE', unit: 'deg', digits: 3 },
+  { key: 'scale', label: 'Scale', unit: '', digits: 4 },
+];
+
+export interface ScoreRow {
+  estimate: string;
+  /** Index of the estimate, for its colour. */
+  index: number;
+  alignment: string;
+  values: (number | null)[];
+  /** Warnings, and why values are missing. */
+  hints: string[];
+  failed: boolean;
+}
+
+export function scoreRows({ estimates }: Evaluation): ScoreRow[] {
+  return estimates.flatMap(({ name, alignments, warnings, error }, index): ScoreRow[] => {
+    const base = { estimate: name, index };
+    if (error !== undefined) {
+      const none = kScoreFigures.map(() => null);
+      return [{ ...base, alignment: '', values: none, hints: [error.message], failed: true }];
+    }
+    return Object.entries(alignments ?? {}).map(([alignment, errors]) => ({
+      ...base,
+      alignment,
+      values: kScoreFigures.map(({ key }) => numberOf(errors[key])),
+      hints: [...(warnings ?? []), errors.degenerate ?? '', errors.error ?? ''].filter(
+        (hint) => hint !== '',
+      ),
+      failed: false,
+    }));
+  });
+}
+
+export function exportScores(evaluation: Evaluation, format: TextFormat): string {
+  const rows = scoreRows(evaluation);
+  if (format === 'CSV') {
+    const keys = kScoreFigures.map(({ key }) => key);
+    return csvTable(
+      ['truth', 'estimate', 'alignment', ...keys],
+      rows.map(({ estimate, alignment, values }) => [
+        evaluation.truth.name,
+        estimate,
+        alignment,
+        ...values.map((value) => value ?? ''),
+      ]),
+    );
+  }
+  const labels = kScoreFigures.map(({ label, unit }) =>
+    unit === '' ? label : `${label} [${unit}]`,
+  );
+  const table = {
+    head: ['Estimate', 'Alignment', ...labels],
+    rows: rows.map(({ estimate, alignment, values }) => [
+      shortName(estimate),
+      alignment,
+      ...values.map((value, i) => formatNumber(value, kScoreFigures[i]?.digits ?? 3)),
+    ]),
+    numbers: kScoreFigures.length,
+  };
+  return format === 'Markdown' ? markdownTable(table) : latexTable(table);
+}
+
+/** Alignments that an estimate has, the default first. */
+export function scoreAlignments({ estimates }: Evaluation): string[] {
+  const modes = new Set(estimates.flatMap(({ alignments }) => Object.keys(alignments ?? {})));
+  const others = [...modes].filter((mode) => mode !== kDefaultAlignment).sort();
+  return modes.has(kDefaultAlignment) ? [kDefaultAlignment, ...others] : others;
+}
+
+function numberOf(value: unknown): number | null {
+  return typeof value === 'number' ? value : null;
+}

@@ -1,0 +1,115 @@
+// Everything that the command palette offers.
+import type { Command } from '../store/palette';
+import { kPanelNames, kPanels } from '../store/layouts/panel_names';
+import { kReadyLayouts } from '../store/layouts/ready_layouts';
+import { kThemes, kThemeTitles } from '../store/themes';
+import { kShortcuts } from './shortcuts';
+import type { Context } from './view';
+
+const kMostRuns = 500;
+
+export function commandsOf(context: Context): Command[] {
+  return [
+    ...layoutCommands(context),
+    ...panelCommands(context),
+    ...themeCommands(context),
+    ...shortcutCommands(context),
+    ...pageCommands(context),
+    ...runCommands(context),
+  ];
+}
+
+function layoutCommands({ layouts }: Context): Command[] {
+  const ready = kReadyLayouts.map(({ name, title, hint }) => ({
+    id: `layout ${name}`,
+    group: 'Layout',
+    title,
+    words: hint,
+    run: () => layouts.choose(name),
+  }));
+  const own = layouts.ownNames.map((name) => ({
+    id: `own layout ${name}`,
+    group: 'Own layout',
+    title: name,
+    run: () => layouts.choose(name),
+  }));
+  const reset = {
+    id: 'reset layout',
+    group: 'Layout',
+    title: 'Undo my changes of this layout',
+    words: 'reset',
+    run: () => layouts.reset(),
+  };
+  return [...ready, ...own, ...(layouts.isChanged ? [reset] : [])];
+}
+
+function panelCommands({ layouts }: Context): Command[] {
+  const show = kPanelNames.map((name) => ({
+    id: `show ${name}`,
+    group: 'Panel',
+    title: `Show ${kPanels[name].title}`,
+    words: kPanels[name].hint,
+    run: () => layouts.show(name),
+  }));
+  const hide = layouts.panels().map((name) => ({
+    id: `hide ${name}`,
+    group: 'Panel',
+    title: `Hide ${kPanels[name].title}`,
+    run: () => layouts.hide(name),
+  }));
+  return [...show, ...hide];
+}
+
+function themeCommands({ themes }: Context): Command[] {
+  return kThemes.map((theme) => ({
+    id: `theme ${theme}`,
+    group: 'Theme',
+    title: kThemeTitles[theme],
+    words: 'colours',
+    run: () => themes.choose(theme),
+  }));
+}
+
+function shortcutCommands(context: Context): Command[] {
+  return kShortcuts
+    .filter(({ keys }) => !keys.includes('escape'))
+    .map(({ label, what, run }) => ({
+      id: `key ${label}`,
+      group: 'Key',
+      title: `${what.charAt(0).toUpperCase()}${what.slice(1)}`,
+      keys: label,
+      run: () => run(context),
+    }));
+}
+
+function pageCommands({ catalogue, connect, logs, scores }: Context): Command[] {
+  const group = 'Page';
+  return [
+    {
+      id: 'scoring',
+      group,
+      title: 'Score trajectories',
+      words: 'evaluate upload file plot',
+      run: () => void scores.open(),
+    },
+    { id: 'logs', group, title: 'Fly a log', words: 'upload', run: () => void logs.open() },
+    { id: 'connect', group, title: 'Connect to an autopilot', run: () => connect.open() },
+    {
+      id: 'editor',
+      group,
+      title: 'Edit the scenario as JSON',
+      run: () => void catalogue.openEditor(),
+    },
+  ];
+}
+
+function runCommands({ session, store }: Context): Command[] {
+  return (store.state.runs ?? []).slice(0, kMostRuns).map(({ id, title, scenario, status }) => ({
+    id: `run ${id}`,
+    group: 'Open run',
+    title: title || scenario,
+    words: `${id} ${scenario} ${status}`,
+    keys: id.slice(0, 15),
+    run: () => session.selectRun(id),
+  }));
+}

@@ -1,0 +1,36 @@
+// The pages over the dashboard: flight logs, scores of trajectories.
+import { PageOverlay } from './page_overlay';
+import type { Context, View } from './view';
+
+export function makePages(context: Context): View[] {
+  return [
+    new PageOverlay(context, {
+      name: 'logs',
+      topic: 'logs',
+      page: ({ logPage }) => logPage,
+      load: async (owner) => new (await import('./logs/log_page')).LogPageView(owner),
+    }),
+    new PageOverlay(context, {
+      name: 'scoring',
+      topic: 'scoring',
+      page: ({ scorePage }) => scorePage,
+      load: async (owner) => new (await import('./scoring/score_page')).ScorePageView(owner),
+    }),
+  ];
+}
+
+/** Files dropped anywhere are uploaded: as trajectories where those are scored, else as logs. */
+export function acceptFiles(context: Context): void {
+  const hasFiles = (event: DragEvent) => event.dataTransfer?.types.includes('Files') === true;
+  document.addEventListener('dragover', (event) => {
+    if (hasFiles(event)) event.preventDefault();
+  });
+  document.addEventListener('drop', (event) => {
+    if (!hasFiles(event)) return;
+    event.preventDefault();
+    const files = [...(event.dataTransfer?.files ?? [])];
+    if (files.length === 0) return;
+    if (context.store.state.scorePage.open) void context.scores.send(files);
+    else void context.logs.open().then(() => context.logs.send(files));
+  });
+}

@@ -1,0 +1,109 @@
+import { beforeEach, describe, expect, it } from 'vitest';
+import { RestClient } from '../../../src/connection/rest_client';
+import { choiceGroups, ScoreDesk, shortName } from '../../../src/store/scoring/score_desk';
+import { Store } from '../../../src/store/state';
+import { sampleRun } from '../../support/samples';
+
+const evaluation = { truth: { name: 'file:d/t.tum', poses: 2, first_s: 0 }, estimates: [] };
+
+let store: Store;
+let asked: { url: string; body: unknown }[];
+let failing: string | null;
+let desk: ScoreDesk;
+
+beforeEach(() => {
+  store = new Store();
+  asked = [];
+  failing = null;
+  const rest = new RestClient('api', (url, init) => {
+    const body: unknown = typeof init?.body === 'string' ? JSON.parse(init.body) : null;
+    asked.push({ url, body });
+    if (failing !== null && url.includes('evaluations')) {
+      const error = { code: 'not_found', message: failing };
+      return Promise.resolve(Response.json({ error }, { status: 404 }));
+    }
+    if (url === 'api/trajectories') {
+      const entry = { format: 'TUM', folder: 'd', size_bytes: 9, uploaded: false };
+      const trajectories = [{ name: 'file:d/a/t.tum', ...entry }];
+      return Promise.resolve(Response.json({ trajectories, complete: true }));
+    }
+    if (url === 'api/logs') {
+      return Promise.resolve(Response.json({ logs: [{ name: 'd/f.bin' }], complete: true }));
+    }
+    return Promise.resolve(Response.json(evaluation));
+  });
+  desk = new ScoreDesk(store, rest, (url) => {
+    asked.push({ url, body: 'file' });
+    const text = JSON.stringify({ name: 'file:uploads/e.txt' });
+    return Promise.resolve({ status: 201, text });
+  });
+});
+
+const evaluations = () =>
+  asked.filter(({ url }) => url === 'api/evaluations').map(({ body }) => body);
+
+describe('ScoreDesk', () => {
+  it('offers files by folder, the tracks of ended runs, and logs', async () => {
+    await desk.open();
+    const runs = [sampleRun(), sampleRun({ id: 'r2', status: 'running' })];
+    const groups = choiceGroups(store.state.scorePage, runs);
+    expect(groups.map(({ title, choices }) => [title, choices.map(({ name }) => name)])).toEqual([
+      ['Files in d', ['file:d/a/t.tum']],
+      ['Run The course, r1', ['run:r1/truth', 'run:r1/feature']],
+      ['Flight logs', ['log:d/f.bin']],
+    ]);
+  });
+
+  it('scores as soon as there is a truth and an estimate, by every alignment', async () => {
+    await desk.chooseTruth('file:d/t.tum');
+    expect(evaluations()).toEqual([]);
+    await desk.toggle('run:r1/feature');
+    const request = { truth: 'file:d/t.tum', estimates: ['run:r1/feature'] };
+    expect(evaluations()).toEqual([
+      { ...request, alignments: ['all'] },
+      { ...request, alignments: ['init_scale'], points: 6000 },
+    ]);
+    await desk.chooseAlignment('sim3');
+    expect(evaluations().at(-1)).toMatchObject({ alignments: ['sim3'] });
+    expect(store.state.scorePage.scores).toMatchObject(evaluation);
+  });
+
+  it('keeps within the points that the server computes', async () => {
+    await desk.chooseTruth('file:t');
+    for (let i = 0; i < 33; i += 1) await desk.toggle(`file:e${i}`);
+    expect(store.state.scorePage.estimates).toHaveLength(32);
+    expect(store.state.scorePage.error).toContain('32');
+    expect(evaluations().at(-1)).toMatchObject({ points: 3125 });
+  });
+
+  it('never scores a trajectory against itself', async () => {
+    await desk.toggle('file:a');
+    await desk.chooseTruth('file:a');
+    expect(store.state.scorePage).toMatchObject({ truth: 'file:a', estimates: [] });
+    await desk.toggle('file:a');
+    expect(store.state.scorePage).toMatchObject({ truth: null, estimates: ['file:a'] });
+  });
+
+  it('takes uploads: the first becomes the truth', async () => {
+    await desk.send([new File(['0 0 0 0 0 0 0 1'], 'e 1.txt')]);
+    expect(asked[0]?.url).toBe('api/trajectories?name=e%201.txt');
+    expect(store.state.scorePage).toMatchObject({ truth: 'file:uploads/e.txt', upload: null });
+  });
+
+  it('says why nothing could be scored', async () => {
+    failing = 'no such trajectory';
+    await desk.chooseTruth('file:gone');
+    await desk.toggle('file:e');
+    expect(store.state.scorePage).toMatchObject({ error: failing, scores: null, working: false });
+    failing = null;
+    await desk.toggle('file:f');
+    expect(store.state.scorePage.error).toBeNull();
+  });
+});
+
+describe('shortName', () => {
+  it.each([
+    ['file:data/a/b/t.tum', 'b/t.tum'],
+    ['run:20260101-x/feature', '20260101-x/feature'],
+  ])('of %s', (name, short) => expect(shortName(name)).toBe(short));
+});

@@ -1,0 +1,84 @@
+import { describe, expect, it } from 'vitest';
+import type { Evaluation } from '../../../src/protocol/score_types';
+import { exportScores, scoreAlignments, scoreRows } from '../../../src/store/scoring/score_rows';
+import { scoreSpan, scoreSpecs } from '../../../src/store/scoring/score_specs';
+
+const table = (columns: Record<string, (number | null)[]>) => ({ t_s: [1000, 1001], ...columns });
+const poses = {
+  positions: table({ x_m: [0, 1], y_m: [0, 0], z_m: [5, 5] }),
+  attitudes: table({ roll_deg: [0, 0], pitch_deg: [0, 0], yaw_deg: [179, -179] }),
+};
+const evaluation: Evaluation = {
+  truth: { name: 'file:d/t.tum', poses: 2, first_s: 1000, path_m: 1, warnings: [], series: poses },
+  estimates: [
+    {
+      name: 'file:d/e.tum',
+      warnings: ['1 pose was left out'],
+      alignments: {
+        sim3: { position_rmse_m: 0.1234567890123, horizontal_rmse_m: 0.1, scale: 2 },
+        init_scale: { position_rmse_m: 3, degenerate: 'a straight line' },
+      },
+      series: {
+        sim3: {
+          ...poses,
+          errors: table({ position_m: [0.5, null], rotation_deg: [1, 2] }),
+          axis_errors: table({ along_m: [0, 0], across_m: [0, 0], up_m: [0, 0] }),
+        },
+      },
+    },
+    { name: 'file:d/bad.tum', error: { code: 'unreadable', message: 'line 3 is no pose' } },
+  ],
+};
+
+describe('scoreRows', () => {
+  it('has one row for each alignment, and the reason of a failure', () => {
+    const rows = scoreRows(evaluation);
+    expect(rows.map(({ alignment, failed }) => [alignment, failed])).toEqual([
+      ['sim3', false],
+      ['init_scale', false],
+      ['', true],
+    ]);
+    expect(rows[0]?.values.slice(0, 3)).toEqual([0.1234567890123, 0.1, null]);
+    expect(rows[1]?.hints).toEqual(['1 pose was left out', 'a straight line']);
+    expect(rows[2]?.hints).toEqual(['line 3 is no pose']);
+    expect(scoreAlignments(evaluation)).toEqual(['init_scale', 'sim3']);
+  });
+});
+
+describe('exportScores', () => {
+  it('writes every digit as CSV', () => {
+    const lines = exportScores(evaluation, 'CSV').split('\n');
+    expect(lines[1]).toBe('file:d/t.tum,file:d/e.tum,sim3,0.1234567890123,0.1,,,,2');
+  });
+
+  it('writes what is shown as Markdown and LaTeX', () => {
+    expect(exportScores(evaluation, 'Markdown')).toContain(
+      '| d/e.tum | sim3 | 0.123 | 0.100 | – |',
+    );
+    expect(exportScores(evaluation, 'LaTeX')).toContain('d/e.tum & init\\_scale & 3.000');
+  });
+});
+
+describe('scoreSpecs', () => {
+  it('counts the time from the first pose of the truth', () => {
+    const [x, , , , , yaw] = scoreSpecs(evaluation, 'sim3', 'pose');
+    expect(scoreSpan(evaluation)).toEqual([0, 1]);
+    expect(x?.curves.map(({ name }) => name)).toEqual(['truth', 'd/e.tum']);
+    expect(x?.curves[1]?.curve()).toMatchObject({ t_offset_s: -1000, wraps: false });
+    expect(yaw?.curves[0]?.curve()).toMatchObject({ wraps: true });
+  });
+
+  it('plots errors, with gaps where there are none', () => {
+    const specs = scoreSpecs(evaluation, 'sim3', 'errors');
+    expect(specs.map(({ key }) => key)).toEqual([
+      'position_m',
+      'along_m',
+      'across_m',
+      'up_m',
+      'rotation_deg',
+    ]);
+    const values = specs[0]?.curves[0]?.curve()?.values;
+    expect([...(values as Float64Array)]).toEqual([0.5, NaN]);
+    expect(scoreSpecs(evaluation, 'init_scale', 'errors')[0]?.curves).toEqual([]);
+  });
+});
