@@ -4,6 +4,7 @@
 #include <exception>
 #include <utility>
 
+#include "core/time.hpp"
 #include "server/scoring/run_metrics_json.hpp"
 
 namespace overfly::server {
@@ -97,6 +98,26 @@ double path_between_m(const std::vector<StampedPose>& poses,
   return path_m;
 }
 
+Json offsets_json(const evaluation::Offsets& offsets) {
+  Json json = {{"clock", nullptr}, {"mount", nullptr}};
+  if (const auto& clock = offsets.clock) {
+    json["clock"] = {{"time_offset_s", s_from_ns(clock->offset_ns)},
+                     {"position_rmse_before_m", clock->position_rmse_before_m},
+                     {"position_rmse_after_m", clock->position_rmse_after_m},
+                     {"explained", clock->explained}};
+  }
+  if (const auto& mount = offsets.mount) {
+    const Eigen::Quaterniond& q = mount->R_estimated_true;
+    const double angle_rad = rotation_angle_rad(q, Eigen::Quaterniond::Identity());
+    json["mount"] = {{"angle_deg", deg_from_rad(angle_rad)},
+                     {"quaternion_xyzw", {q.x(), q.y(), q.z(), q.w()}},
+                     {"rotation_rmse_before_deg", mount->rotation_rmse_before_deg},
+                     {"rotation_rmse_after_deg", mount->rotation_rmse_after_deg},
+                     {"explained", mount->explained}};
+  }
+  return json;
+}
+
 }  // namespace
 
 Result<FileScore> score_file(const NamedTrajectory& truth,
@@ -125,6 +146,9 @@ Result<FileScore> score_file(const NamedTrajectory& truth,
     result.axis_errors[mode] = evaluation::axis_errors(
         true_poses, result.matches, alignment.S_world_vo, options->T_body_camera);
   }
+  if (request.find_offsets && options->association != evaluation::Association::kIndex) {
+    result.offsets = evaluation::find_offsets(true_poses, *track);
+  }
   return result;
 }
 
@@ -142,7 +166,7 @@ Json json_from(const FileScore& score) {
         score.truth_path_m > 0.0 ? Json(100.0 * position_m / score.truth_path_m) : Json(nullptr);
   }
   const bool diverged = score.score.outcome == evaluation::Outcome::kDiverged;
-  return {
+  Json json = {
       {"poses", score.poses},
       {"matched", score.matches.size()},
       {"warnings", score.warnings},
@@ -151,6 +175,8 @@ Json json_from(const FileScore& score) {
        diverged && score.score.outcome_time_s ? Json(*score.score.outcome_time_s) : Json(nullptr)},
       {"alignments", std::move(alignments)},
       {"unavailable", unavailable_json(score.score)}};
+  if (score.offsets) json["offsets"] = offsets_json(*score.offsets);
+  return json;
 }
 
 }  // namespace overfly::server

@@ -13,6 +13,7 @@
 #include "core/result.hpp"
 #include "evaluation/axis_errors.hpp"
 #include "evaluation/evaluation.hpp"
+#include "evaluation/offsets.hpp"
 
 namespace overfly::server {
 
@@ -23,6 +24,7 @@ struct FileScoreRequest {
   /// True depth along the optical axis at the first pose [m]; by default the comment
   /// init_true_depth of the estimate's file.
   std::optional<double> init_true_depth_m;
+  bool find_offsets = false;  ///< of clock and mount; not where poses are matched by number
 };
 
 /// A trajectory file and its name in messages.
@@ -41,6 +43,7 @@ struct FileScore {
   evaluation::Score score;
   /// Position errors in the axes of the path, one for each match.
   std::map<evaluation::AlignmentMode, std::vector<evaluation::AxisError>> axis_errors;
+  std::optional<evaluation::Offsets> offsets;  ///< if they were asked for
 };
 
 /// Poses without times are matched by number, whatever association is asked for.

@@ -1,14 +1,18 @@
 // overfly evaluate: scores trajectory files, or scores a run folder again.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <iomanip>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/motion/trajectory_io.hpp"
+#include "core/time.hpp"
+#include "evaluation/offsets.hpp"
 #include "server/app/commands/commands.hpp"
 #include "server/app/exit_code.hpp"
 #include "server/app/score_table.hpp"
@@ -34,6 +38,7 @@ struct EvaluateArguments {
   std::string association = "interpolate";
   double max_time_difference_ms = 10.0;
   double init_true_depth_m = 0.0;
+  bool find_offsets = false;
   bool json = false;
 };
 
@@ -71,7 +76,32 @@ server::FileScoreRequest request_from(const EvaluateArguments& arguments) {
   request.max_time_difference_ns =
       static_cast<std::int64_t>(arguments.max_time_difference_ms * 1e6);
   if (arguments.init_true_depth_m > 0.0) request.init_true_depth_m = arguments.init_true_depth_m;
+  request.find_offsets = arguments.find_offsets;
   return request;
+}
+
+/// One line for each offset that explains errors.
+std::string offsets_text(const evaluation::Offsets& offsets) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(4);
+  if (!offsets.clock && !offsets.mount)
+    text << "  no offset of clock or mount explains the errors\n";
+  if (const auto& clock = offsets.clock) {
+    text << "  clock: the estimate's times are " << s_from_ns(clock->offset_ns)
+         << " s early; this explains " << std::setprecision(1) << 100.0 * clock->explained
+         << " % of the position error after sim3 (" << std::setprecision(3)
+         << clock->position_rmse_before_m << " -> " << clock->position_rmse_after_m << " m)\n";
+  }
+  if (const auto& mount = offsets.mount) {
+    const double angle_rad =
+        rotation_angle_rad(mount->R_estimated_true, Eigen::Quaterniond::Identity());
+    text << std::setprecision(3) << "  mount: a constant rotation of " << deg_from_rad(angle_rad)
+         << " deg explains " << std::setprecision(1) << 100.0 * mount->explained
+         << " % of the rotation error after sim3 (" << std::setprecision(3)
+         << mount->rotation_rmse_before_deg << " -> " << mount->rotation_rmse_after_deg
+         << " deg)\n";
+  }
+  return text.str();
 }
 
 int evaluate_files(const EvaluateArguments& arguments) {
@@ -89,6 +119,7 @@ int evaluate_files(const EvaluateArguments& arguments) {
     const auto score = server::score_file(named_truth, {name, *file}, request);
     if (!score) return report(score.error());
     if (!arguments.json) std::cout << name << "\n" << alignment_table(score->score);
+    if (!arguments.json && score->offsets) std::cout << offsets_text(*score->offsets);
     scored = scored && !score->score.alignments.empty();
     Json entry = server::json_from(*score);
     entry["file"] = name;
@@ -187,6 +218,10 @@ void add_evaluate_command(CLI::App& app, int& exit_code) {
                    "True depth along the optical axis at the first pose, for init_scale; by "
                    "default the comment init_true_depth of the estimate's file")
       ->check(CLI::PositiveNumber);
+  command->add_flag("--find-offsets",
+                    arguments->find_offsets,
+                    "Also look for offsets of the clock and of the camera's mount that explain "
+                    "errors");
   command->add_flag("--json", arguments->json, "Print JSON");
   command->callback([arguments, &exit_code] { exit_code = evaluate(*arguments); });
 }

@@ -81,6 +81,7 @@ Result<EvaluationRequest> evaluation_request_from(const std::string& body) {
                                          static_cast<std::int64_t>(server::kMaxSeriesPoints))) {
     request.points = static_cast<std::size_t>(*points);
   }
+  request.score.find_offsets = fields.boolean("find_offsets").value_or(false);
   if (const Status status = fields.finish(); !status) return status.error();
   return request;
 }

@@ -36,6 +36,43 @@ TrajectoryFile read_ok(const std::string& text) {
   return file.ok() ? *file : TrajectoryFile{};
 }
 
+TEST(TrajectoryIo, DetectsTheFormatFromTheFirstPose) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "poses.txt";
+  const auto detected = [&](const std::string& text) {
+    write_text(file, text);
+    const Result<TrajectoryFormat> format = detect_trajectory(file);
+    return format ? std::string(to_string(*format)) : "";
+  };
+  EXPECT_EQ(detected("# t x\n0 0 0 0 0 0 0 1\nnot read\n"), "tum");
+  EXPECT_EQ(detected("0 nan nan nan nan nan nan nan\n"), "tum");
+  EXPECT_EQ(detected("1 0 0 0 0 1 0 0 0 0 1 0\n"), "kitti");
+  EXPECT_EQ(detected("#t\n1,2,3,4,1,0,0,0,5\n"), "euroc");
+  EXPECT_EQ(detected("0 0 0 0 0 0 0 1\n" + std::string(200'000, 'x')), "tum");
+  for (const char* text : {"", "# only\n", "0 0 0 0 0 0 0 2\n", "1,2,3\n", "words\n"}) {
+    EXPECT_EQ(detected(text), "") << text;
+  }
+  EXPECT_EQ(detected(std::string(200'000, '1')), "");
+  ASSERT_EQ(::mkfifo((folder.path() / "fifo").c_str(), 0600), 0);
+  EXPECT_FALSE(detect_trajectory(folder.path() / "fifo").ok());
+}
+
+TEST(TrajectoryIo, KeepsToTheLimitsOfTheCaller) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "poses.txt";
+  write_text(file, "0 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n");
+  EXPECT_TRUE(read_trajectory(file, {1000, 3}, nullptr).ok());
+  const auto too_many = read_trajectory(file, {1000, 2}, nullptr);
+  ASSERT_FALSE(too_many.ok());
+  EXPECT_THAT(too_many.error().message, HasSubstr("must have at most 2 lines"));
+  EXPECT_FALSE(read_trajectory(file, {40, 3}, nullptr).ok());
+  const Error wide = error_of(std::string(1'000'000, ','));
+  EXPECT_THAT(wide.message, HasSubstr("must have at most 4096 columns"));
+  // A message does not repeat a field of any length.
+  const Error field = error_of("0 0 0 0 0 0 0 " + std::string(1'000'000, 'x') + "\n");
+  EXPECT_LT(field.message.size(), 1000U);
+}
+
 TEST(TrajectoryIo, GivesReadErrorsAsErrorsAndNeverWaits) {
   EXPECT_EQ(read_trajectory("/proc/self/mem").error().code, ErrorCode::kIo);
   const TemporaryFolder folder;

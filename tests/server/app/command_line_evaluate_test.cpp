@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -66,6 +67,46 @@ TEST_F(CommandLine, EvaluateScoresTrajectoryFilesAndRejectsInvalidOnes) {
       overfly_program({"evaluate", "--truth", path("truth.tum"), "--estimate", path("broken.tum")});
   EXPECT_EQ(broken.exit_code, 2);
   EXPECT_THAT(broken.err, HasSubstr("broken.tum"));
+}
+
+TEST_F(CommandLine, EvaluateReportsErrorsByAxisAndTheOffsetOfAClock) {
+  const auto weaving = [](double late_s, double up_m) {
+    std::string text;
+    for (int i = 0; i < 400; ++i) {
+      const double t = 0.1 * i;
+      text += std::to_string(t - late_s) + " " + std::to_string(20.0 * t) + " " +
+              std::to_string(30.0 * std::sin(0.5 * t)) + " " +
+              std::to_string(5.0 * std::sin(0.3 * t) + up_m) + " 0 0 0 1\n";
+    }
+    return text;
+  };
+  write_text(path("truth.tum"), weaving(0.0, 0.0));
+  write_text(path("high.tum"), weaving(0.0, 2.0));
+  write_text(path("late.tum"), weaving(0.7, 0.0));
+  const auto estimate_of = [&](const std::string& file) {
+    const Outcome scored = overfly_program({"evaluate",
+                                            "--truth",
+                                            path("truth.tum"),
+                                            "--estimate",
+                                            path(file),
+                                            "--alignment",
+                                            "none",
+                                            "--find-offsets",
+                                            "--json"});
+    EXPECT_EQ(scored.exit_code, 0) << scored.err;
+    return Json::parse(scored.out).at("estimates").at(0);
+  };
+  const Json high = estimate_of("high.tum");
+  const Json& none = high.at("alignments").at("none");
+  EXPECT_NEAR(none.at("vertical_rmse_m").get<double>(), 2.0, 1e-5);
+  EXPECT_NEAR(none.at("horizontal_rmse_m").get<double>(), 0.0, 1e-5);
+  EXPECT_NEAR(none.at("percent_of_path").get<double>(),
+              200.0 / high.at("truth_path_m").get<double>(),
+              1e-4);
+  EXPECT_EQ(high.at("offsets").at("clock"), nullptr);
+  const Json late = estimate_of("late.tum");
+  EXPECT_NEAR(late.at("offsets").at("clock").at("time_offset_s").get<double>(), 0.7, 0.001);
+  EXPECT_GT(late.at("alignments").at("none").at("horizontal_rmse_m").get<double>(), 10.0);
 }
 
 /// Trajectory files of other programs may repeat time stamps and be out of order.

@@ -175,6 +175,25 @@ TEST_F(RestApiTest, AnswersEveryRouteAsDocumented) {
   check("DELETE", log, upload, 204);
   check("DELETE", log, upload, 404);
 
+  const std::string files = "/api/v1/trajectories";
+  const std::string file = files + "/file:uploads%2Fa.tum";
+  EXPECT_TRUE(check("GET", files, files, 200).json().at("trajectories").empty());
+  const Answer kept = check("POST", files, files + "?name=a.tum", 201, "0 0 0 0 0 0 0 1\n");
+  EXPECT_EQ(kept.headers.at("location"), file);
+  check("POST", files, files + "?name=a.tum", 409, "0 0 0 0 0 0 0 1\n");
+  check("POST", files, files + "?name=b.tum", 422, "0 0 0 0 0 0 0 2\n");
+  EXPECT_EQ(check("GET", files, files, 200).json().at("trajectories").at(0), kept.json());
+  check("GET", files + "/{name}/series", file + "/series?points=100", 200);
+  check("GET", files + "/{name}/series", file + "/series?points=7", 400);
+  check("GET", files + "/{name}/series", files + "/none/series", 404);
+  const std::string evaluations = "/api/v1/evaluations";
+  const json scored = {{"truth", "file:uploads/a.tum"}, {"estimates", {"file:uploads/a.tum"}}};
+  check("POST", evaluations, evaluations, 200, scored.dump(), kJson);
+  check("POST", evaluations, evaluations, 400, "{}", kJson);
+  check("DELETE", files + "/{name}", file, 204);
+  check("DELETE", files + "/{name}", file, 404);
+  check("POST", evaluations, evaluations, 404, scored.dump(), kJson);
+
   // Nothing is documented that was not asked for above.
   for (const auto& [path, operations] : api_.at("paths").items()) {
     for (const auto& [verb, operation] : operations.items()) {
