@@ -172,8 +172,11 @@ describe('two flights compared', { skip, timeout: 600_000 }, () => {
 
   step('opens the same picture from the address alone', async () => {
     await dashboard.seekAt('.track .bar', 0.75);
-    await page.waitForFunction(() => /run=.*run=.*main=.*t=/.test(location.hash));
-    const { frame } = await dashboard.playback();
+    const { frame, t_ns } = await dashboard.playback();
+    await dashboard.until(
+      (t_s) => location.hash.includes('&main=') && location.hash.endsWith(`&t=${t_s}`),
+      (t_ns / 1e9).toFixed(3),
+    );
     const before = await readouts('x_m');
     const address = page.url();
     await page.goto('about:blank');

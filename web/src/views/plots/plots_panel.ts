@@ -218,6 +218,8 @@ export class PlotsPanel implements View {
     this.runs = runs;
     this.key = this.wantedKey();
     for (const plot of this.plots) plot.destroy();
+    // The mouse does not leave a plot that is removed.
+    this.hovered_s = null;
     const actions: PlotActions = {
       onSeek: (t_s: number) => this.context.player.seekTime(t_s * 1e9),
       onHover: (t_s: number | null) => this.hover(t_s),
