@@ -1,4 +1,4 @@
-// How noisy samples are, judged by the samples alone.
+// How noisy samples are, judged only by the samples.
 #pragma once
 
 #include <span>

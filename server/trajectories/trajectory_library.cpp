@@ -136,7 +136,7 @@ Result<TrajectoryLibrary::Read> TrajectoryLibrary::read_file(const std::string& 
   const bool timed = fs::exists(fs::symlink_status(times, ignored));
   if (timed && !folders.sources.check(times, "times")) {
     return Error{ErrorCode::kUnreadable,
-                 reference + ": times.txt beside it is no regular file inside the data folders"};
+                 reference + ": times.txt next to it is no regular file inside the data folders"};
   }
   const std::string key = stamp_text(*path) + (timed ? stamp_text(times) : "");
   if (Read known = read_.find(key)) return known;

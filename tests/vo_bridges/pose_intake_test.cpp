@@ -87,7 +87,7 @@ TEST(PoseIntake, GivesUpAfterManyInARow) {
   PoseIntake poses;
   for (int i = 0; i < 10 * PoseIntake::kMostInARow; ++i) {
     VoEstimate estimate = i % PoseIntake::kMostInARow == 5 ? answer(i) : answer(i, kNan);
-    EXPECT_TRUE(poses.take(estimate)) << "a good one in between begins anew";
+    EXPECT_TRUE(poses.take(estimate)) << "a good one in between starts again";
   }
   EXPECT_THAT(poses.take_notes(), SizeIs(PoseIntake::kMostNotes));
   poses = {};

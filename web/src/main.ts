@@ -6,6 +6,7 @@ import './styles/base.css';
 import './styles/layout.css';
 import './styles/dock.css';
 import './styles/panels.css';
+import './styles/errors.css';
 import './styles/plots.css';
 import './styles/side.css';
 import './styles/timeline.css';

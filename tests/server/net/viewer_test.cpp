@@ -103,7 +103,7 @@ TEST_F(ViewerTest, ForgetsTheAlignmentOfARunThatIsNotWatchedAnyMore) {
   EXPECT_EQ(drawn_alignment(), "init_scale");
 }
 
-/// A run that was deleted and flown anew under its name may lack the alignment that was shown.
+/// A run that was deleted and flown again under its name may lack the alignment that was shown.
 TEST_F(ViewerTest, ShowsScenesByTheAlignmentThatItReports) {
   command(
       {{"type", "subscribe"}, {"pictures", {{{"run", "r"}, {"name", "scene"}}}}, {"request", 1}});

@@ -4,37 +4,29 @@
 #include <future>
 #include <utility>
 
-#include "renderer/renderer.hpp"
 #include "server/files/whole_file.hpp"
 #include "server/record/map_points.hpp"
 #include "server/record/run_folder.hpp"
 #include "server/views/view_ribbons.hpp"
 #include "server/views/view_service.hpp"
 #include "tests/server/support/manager_fixture.hpp"
+#include "tests/server/support/wrapped_renderer.hpp"
 
 namespace overfly::server {
 namespace {
 
 /// Draws nothing and keeps the contents of the last scene.
-class SceneWitness final : public renderer::Renderer {
+class SceneWitness final : public testing::WrappedRenderer {
  public:
   SceneWitness(std::unique_ptr<renderer::Renderer> inner, renderer::SceneContent& content)
-      : inner_(std::move(inner)), content_(content) {}
-  Result<renderer::CameraFrame> render_camera(const renderer::CameraRequest& request) override {
-    return inner_->render_camera(request);
-  }
-  Result<DepthImage> render_depth(const renderer::CameraRequest& request) override {
-    return inner_->render_depth(request);
-  }
+      : WrappedRenderer(std::move(inner)), content_(content) {}
   Result<Image> render_scene(const renderer::SceneView& view,
                              const renderer::SceneContent& content) override {
     content_ = content;
-    return inner_->render_scene(view, content);
+    return inner().render_scene(view, content);
   }
-  [[nodiscard]] renderer::RendererInfo info() const override { return inner_->info(); }
 
  private:
-  std::unique_ptr<renderer::Renderer> inner_;
   renderer::SceneContent& content_;
 };
 

@@ -93,7 +93,7 @@ std::vector<VoEstimate> fly(VoPort& door, int count);
 
 /// Why UDP multicast cannot be tested here; empty where it can.
 [[nodiscard]] std::string multicast_missing();
-/// A multicast URL of this process alone.
+/// A multicast URL that only this process uses.
 [[nodiscard]] std::string private_udp_url();
 /// Each on a node of its own, under the channel prefix of the options.
 /// @param far_url  of the estimator; with its own receive buffer, say

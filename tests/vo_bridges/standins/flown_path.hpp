@@ -1,5 +1,5 @@
 // What the stand-in libraries "see": each knows the camera's path as a function of time, so that
-// what an adapter makes of their poses can be compared with it. C++11, Eigen alone.
+// what an adapter makes of their poses can be compared with it. C++11; needs only Eigen.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -2,7 +2,7 @@
 // and LaTeX with those that the dashboard shows.
 import { alignmentModes, kErrorFigures, outcomeText } from './error_table';
 import type { AlignmentErrors, EstimatorMetrics } from '../protocol/rest_types';
-import { formatNumber } from './format';
+import { formatNumber, numberOf } from './format';
 import type { TextFormat } from './table_text';
 import { csvTable, latexTable, markdownTable } from './table_text';
 import type { WatchedRun } from './watched_run';
@@ -58,8 +58,4 @@ function csv(entries: Entry[]): string {
   ]);
   const head = ['run', 'title', 'estimator', 'outcome', 'outcome_time_s', 'coverage', 'alignment'];
   return csvTable([...head, ...keys], lines);
-}
-
-function numberOf(value: unknown): number | null {
-  return typeof value === 'number' ? value : null;
 }

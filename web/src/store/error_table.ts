@@ -1,6 +1,6 @@
 // Converts metrics.json to the error table: one column per estimator, one row per quantity.
 import type { AlignmentErrors, EstimatorMetrics, Metrics, Run } from '../protocol/rest_types';
-import { formatNumber, formatPercent, kNothing } from './format';
+import { formatNumber, formatPercent, kNothing, numberOf } from './format';
 
 export const kDefaultAlignment = 'init_scale';
 
@@ -136,10 +136,6 @@ export function joinedTables(tables: readonly ErrorTable[]): ErrorTable {
 /** The reason why a number is missing, if the metrics contain it. */
 function missingHint(error: AlignmentErrors, key: keyof AlignmentErrors): string {
   return numberOf(error[key]) === null ? (error.degenerate ?? '') : '';
-}
-
-function numberOf(value: unknown): number | null {
-  return typeof value === 'number' ? value : null;
 }
 
 /** Median over the run of the texels per pixel; null if not known yet. */

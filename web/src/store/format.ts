@@ -2,6 +2,11 @@
 
 export const kNothing = '–';
 
+/** A number of a document from outside; null if it is missing or no number. */
+export function numberOf(value: unknown): number | null {
+  return typeof value === 'number' ? value : null;
+}
+
 /** Fixed digits with a true minus sign; an en dash for a missing value. */
 export function formatNumber(value: number | null | undefined, digits: number): string {
   if (value === null || value === undefined || !Number.isFinite(value)) return kNothing;

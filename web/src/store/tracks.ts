@@ -17,7 +17,7 @@ export interface Track {
   shown: boolean;
 }
 
-/** 'A', 'B', ... by the order of watching; '' for a run that is watched alone. */
+/** 'A', 'B', ... by the order of watching; '' for the only run that is watched. */
 export function runLetter({ watched }: Pick<State, 'watched'>, run: WatchedRun): string {
   return watched.length < 2 ? '' : String.fromCharCode(65 + watched.indexOf(run));
 }

@@ -46,7 +46,7 @@ export interface PlotSpec {
   curves: CurveSpec[];
 }
 
-const kAxisLabels: Record<Axis, string> = {
+export const kAxisLabels: Readonly<Record<Axis, string>> = {
   x_m: 'x east',
   y_m: 'y north',
   z_m: 'z up',

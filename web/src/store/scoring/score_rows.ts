@@ -1,7 +1,7 @@
 // The table of scores: one row for each estimate and alignment.
 import type { Evaluation, ScoredErrors } from '../../protocol/score_types';
 import { kDefaultAlignment } from '../error_table';
-import { formatNumber, formatPercent } from '../format';
+import { formatNumber, formatPercent, numberOf } from '../format';
 import type { TextFormat } from '../table_text';
 import { csvTable, latexTable, markdownTable } from '../table_text';
 import { shortName } from './score_desk';
@@ -112,8 +112,4 @@ export function scoreAlignments({ estimates }: Evaluation): string[] {
   const modes = new Set(estimates.flatMap(({ alignments }) => Object.keys(alignments ?? {})));
   const others = [...modes].filter((mode) => mode !== kDefaultAlignment).sort();
   return modes.has(kDefaultAlignment) ? [kDefaultAlignment, ...others] : others;
-}
-
-function numberOf(value: unknown): number | null {
-  return typeof value === 'number' ? value : null;
 }

@@ -3,17 +3,9 @@ import type { Evaluation, SeriesTable } from '../../protocol/score_types';
 import { kAxes } from '../run_data';
 import type { Curve } from '../plots/curve';
 import type { CurveHue, CurveSpec, PlotSpec } from '../plots/plot_specs';
+import { kAxisLabels } from '../plots/plot_specs';
 import { shortName } from './score_desk';
 import type { Span } from '../time_window';
-
-const kAxisLabels: Readonly<Record<(typeof kAxes)[number], string>> = {
-  x_m: 'x east',
-  y_m: 'y north',
-  z_m: 'z up',
-  roll_deg: 'Roll',
-  pitch_deg: 'Pitch',
-  yaw_deg: 'Yaw',
-};
 
 const kErrors = [
   { table: 'errors', column: 'position_m', label: 'Position error', unit: 'm' },

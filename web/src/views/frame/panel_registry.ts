@@ -11,7 +11,7 @@ import { VehicleCard } from '../vehicle/vehicle_card';
 import type { PanelName } from '../../store/layouts/panel_names';
 import type { Context, View } from '../view';
 
-/** Panels beside the default layout are loaded when they are first shown. */
+/** Panels outside the default layout are loaded when they are first shown. */
 export const kPanelMakers: Record<PanelName, (context: Context) => View | Promise<View>> = {
   launcher: (context) => new Launcher(context),
   runs: (context) => new RunList(context),

@@ -40,7 +40,7 @@ const kGroups = [
 type Group = (typeof kGroups)[number]['name'];
 
 /** Groups that are panels of their own as well. */
-type Alone = 'errors' | 'image';
+type PanelGroup = 'errors' | 'image';
 
 /** Groups that are offered only if a run has their series. */
 const kOptional: readonly PlotGroup[] = ['vehicle'];
@@ -78,10 +78,10 @@ export class PlotsPanel implements View {
   /** The part zoomed to; null = the whole flight. */
   private window_s: Span | null = null;
 
-  /** @param only  shows this group alone, as a panel of its own */
+  /** @param only  shows only this group, as a panel of its own */
   constructor(
     private readonly context: Context,
-    private readonly only: Alone | null = null,
+    private readonly only: PanelGroup | null = null,
   ) {
     const name = only === null ? 'plots' : (`plots-${only}` as const);
     this.panel = makePanel(name, kPanels[name].title);
