@@ -4,7 +4,7 @@
 LIBRARIES = [
     "core", "terrain", "renderer", "sensor", "flight", "middleware", "odometry", "vo_bridges",
     "evaluation", "calibration",
-    "server", "server/report", "server/net", "server/app",
+    "server", "server/report", "server/experiments", "server/net", "server/app",
 ]
 
 # Headers of the terrain's sub-rooms by what they build on.
@@ -131,6 +131,7 @@ MAY_INCLUDE = {
     "vo_bridges/adapters/svo": ["vo_bridges/adapters"],
     "evaluation": ["core/"],
     "evaluation/images": ["core/"],
+    "evaluation/statistics": [],
     "calibration": ["core/", "calibration/detection", "calibration/solver"],
     "calibration/detection": ["core/", "calibration", "calibration/solver"],
     "calibration/solver": ["core/", "calibration"],
@@ -203,6 +204,9 @@ MAY_INCLUDE = {
     "server/report/run": ["core/", "evaluation/", "server/files/", "server/record/",
                           "server/scoring/", "server/timeline/"],
     "server/report/plot": ["core/"],
+    "server/experiments": ["core/", "evaluation", "evaluation/statistics", "server/files/",
+                           "server/scenario/", "server/record/", "server/scoring/",
+                           "server/runs/run_memory.hpp"],
     "server/net/http": ["core/"],
     "server/net/stream": ["core/", "server/record/", "server/scoring/", "server/timeline/",
                           "server/views/", "server/net/http/"],
@@ -254,7 +258,7 @@ CALLS = [
     # Text in the program itself needs no guard; everything else may come from outside.
     (r"\b[Jj]son::(parse|sax_parse|from_\w+)\(",
      ["core/outside/outside_json.hpp", "server/scenario/document/scenario_schema.cpp",
-      "server/camera/camera_check.cpp"],
+      "server/camera/camera_check.cpp", "server/experiments/sweep_document.cpp"],
      "json_from_outside"),
     # It lets read errors out as exceptions, waits for FIFOs and knows no limit.
     (r"istreambuf_iterator", [], "read_file_text or read_file_bytes"),

@@ -1,0 +1,86 @@
+#include "server/experiments/result_key.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+
+#include "core/measure/sha256.hpp"
+#include "core/outside/file_text.hpp"
+#include "core/outside/outside_json.hpp"
+#include "server/files/build_info.hpp"
+#include "server/files/file_stamp.hpp"
+
+namespace overfly::server::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+/// Larger files are compared by size and time: imagery of gigabytes is not read for each flight.
+constexpr std::uint64_t kMostHashedBytes = std::uint64_t{1} << 20U;
+
+std::string digest_of(const std::string& text) {
+  return sha256_hex({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+}
+
+std::string stamp_text(const FileStamp& stamp) {
+  return std::to_string(stamp.size_bytes) + " bytes of " + std::to_string(stamp.modified_ns);
+}
+
+void add_named_files(const Json& value, const fs::path& folder, bool follow, std::string& text);
+
+void add_file(const fs::path& file, bool follow, std::string& text) {
+  if (!check_regular_file(file).ok()) return;
+  text += "\n" + file.string() + " ";
+  const Result<std::string> content = read_file_text(file, kMostHashedBytes);
+  if (!content) {
+    text += stamp_text(FileStamp::of(file));
+    return;
+  }
+  text += digest_of(*content);
+  if (!follow || file.extension() != ".json") return;
+  const auto document = json_from_outside<Json>(*content, file.string());
+  if (document) add_named_files(*document, file.parent_path(), false, text);
+}
+
+/// @param follow  whether the files named by JSON files count too
+// NOLINTNEXTLINE(misc-no-recursion): documents from outside are at most kMaxJsonDepth deep
+void add_named_files(const Json& value, const fs::path& folder, bool follow, std::string& text) {
+  constexpr std::size_t kLongestName = 4096;
+  if (value.is_structured()) {
+    for (const Json& child : value) add_named_files(child, folder, follow, text);
+    return;
+  }
+  if (!value.is_string()) return;
+  const auto& name = value.get_ref<const std::string&>();
+  if (name.empty() || name.size() > kLongestName || name.find('\0') != std::string::npos) return;
+  add_file((folder / name).lexically_normal(), follow, text);
+}
+
+/// A build of changed sources is known by its executable only.
+std::string program_text() {
+  const std::string commit = git_commit();
+  const bool exact = commit != "unknown" && !commit.ends_with("-dirty");
+  return version() + " " + commit +
+         (exact ? "" : " " + stamp_text(FileStamp::of("/proc/self/exe")));
+}
+
+}  // namespace
+
+std::string flight_key(const Scenario& scenario) {
+  Json document = scenario.resolved;
+  for (const char* name : {"$schema", "name", "title", "description", "estimators"}) {
+    document.erase(name);
+  }
+  std::string text = program_text() + "\n" + document.dump();
+  add_named_files(document, "/", true, text);
+  return digest_of(text);
+}
+
+std::string result_key(const std::string& flight, const Json& estimator) {
+  std::string text = flight + "\n" + estimator.dump();
+  add_named_files(estimator, "/", false, text);
+  return digest_of(text);
+}
+
+}  // namespace overfly::server::experiments

@@ -1,0 +1,143 @@
+// The cells of a sweep: the grid of its axes, or points drawn from them.
+#include <algorithm>
+#include <numeric>
+#include <random>
+#include <utility>
+
+#include "server/experiments/sweep_document.hpp"
+
+namespace overfly::server::experiments {
+namespace {
+
+using Json = nlohmann::json;
+
+Error too_many_cells() {
+  return {ErrorCode::kInvalidArgument,
+          "axes: give more than " + std::to_string(kMaxCells) + " cells"};
+}
+
+void add_value(SweepCell& cell, const SweepAxis& axis, const AxisValue& value) {
+  cell.values[axis.name] = value.value;
+  cell.changes.insert(cell.changes.end(), value.changes.begin(), value.changes.end());
+}
+
+Result<std::vector<SweepCell>> grid_cells(const Sweep& sweep) {
+  std::vector<SweepCell> cells{{Json::object(), {}}};
+  for (std::size_t i = 0; i < sweep.axes.size(); ++i) {
+    const SweepAxis& axis = sweep.axes[i];
+    if (axis.values.empty()) {
+      return Error{
+          ErrorCode::kInvalidArgument,
+          "axes." + std::to_string(i) + ".step: must be given, except with latin_hypercube"};
+    }
+    if (cells.size() * axis.values.size() > kMaxCells) return too_many_cells();
+    std::vector<SweepCell> longer;
+    for (const SweepCell& cell : cells) {
+      for (const AxisValue& value : axis.values) {
+        longer.push_back(cell);
+        add_value(longer.back(), axis, value);
+      }
+    }
+    cells = std::move(longer);
+  }
+  return cells;
+}
+
+/// A number in [0, 1) that is the same with every standard library.
+double unit_number(std::mt19937_64& random) {
+  constexpr double kPerStep = 1.0 / 9007199254740992.0;  // 2^-53
+  return static_cast<double>(random() >> 11U) * kPerStep;
+}
+
+std::vector<std::size_t> shuffled(std::size_t count, std::mt19937_64& random) {
+  std::vector<std::size_t> order(count);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  for (std::size_t i = count; i > 1; --i) {
+    const auto other = static_cast<std::size_t>(unit_number(random) * static_cast<double>(i));
+    std::swap(order[i - 1], order[other]);
+  }
+  return order;
+}
+
+/// Each axis is divided into as many equal parts as there are cells, and each part is used once
+/// (McKay, Beckman, Conover 1979, Technometrics 21, 239-245).
+std::vector<SweepCell> drawn_cells(const Sweep& sweep, const LatinHypercube& drawn) {
+  std::mt19937_64 random(drawn.seed);
+  std::vector<SweepCell> cells(drawn.cells, SweepCell{Json::object(), {}});
+  const auto count = static_cast<double>(drawn.cells);
+  for (const SweepAxis& axis : sweep.axes) {
+    const std::vector<std::size_t> parts = shuffled(drawn.cells, random);
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const double share = (static_cast<double>(parts[i]) + unit_number(random)) / count;
+      if (axis.range) {
+        const auto [from, to] = *axis.range;
+        const Json value = from + share * (to - from);
+        add_value(cells[i], axis, {value, {{axis.name, value}}});
+      } else {
+        const auto size = static_cast<double>(axis.values.size());
+        add_value(cells[i], axis, axis.values[static_cast<std::size_t>(share * size)]);
+      }
+    }
+  }
+  return cells;
+}
+
+bool value_matches(const Json& condition, const Json& value) {
+  if (!condition.is_object()) return condition == value;
+  if (!value.is_number()) return false;
+  const auto number = value.get<double>();
+  return number >= condition.value("min", -std::numeric_limits<double>::infinity()) &&
+         number <= condition.value("max", std::numeric_limits<double>::infinity());
+}
+
+bool is_skipped(const Sweep& sweep, const SweepCell& cell) {
+  return std::any_of(sweep.skip.begin(), sweep.skip.end(), [&](const Json& entry) {
+    return std::all_of(entry.items().begin(), entry.items().end(), [&](const auto& item) {
+      return value_matches(item.value(), cell.values.at(item.key()));
+    });
+  });
+}
+
+Status check_limits(const Json& condition, const std::string& field) {
+  for (const auto& [key, value] : condition.items()) {
+    if (key != "min" && key != "max") {
+      return Error{ErrorCode::kInvalidArgument, field + "." + key + ": must be min or max"};
+    }
+    if (!value.is_number()) {
+      return Error{ErrorCode::kInvalidArgument,
+                   field + "." + key + " = " + value.dump() + ": must be a number"};
+    }
+  }
+  return {};
+}
+
+Status check_skip(const Sweep& sweep) {
+  for (std::size_t i = 0; i < sweep.skip.size(); ++i) {
+    for (const auto& [name, condition] : sweep.skip[i].items()) {
+      const std::string field = "skip." + std::to_string(i) + "." + name;
+      const bool known = std::any_of(sweep.axes.begin(), sweep.axes.end(), [&](const auto& axis) {
+        return axis.name == name;
+      });
+      if (!known) return Error{ErrorCode::kInvalidArgument, field + ": must be one of the axes"};
+      if (!condition.is_object()) continue;
+      if (Status status = check_limits(condition, field); !status) return status;
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<std::vector<SweepCell>> cells_of(const Sweep& sweep) {
+  if (Status status = check_skip(sweep); !status) return status.error();
+  Result<std::vector<SweepCell>> cells =
+      sweep.latin_hypercube ? drawn_cells(sweep, *sweep.latin_hypercube) : grid_cells(sweep);
+  if (!cells) return cells;
+  std::erase_if(*cells, [&](const SweepCell& cell) { return is_skipped(sweep, cell); });
+  if (cells->empty()) {
+    return Error{ErrorCode::kInvalidArgument, "skip: must leave at least one cell"};
+  }
+  return cells;
+}
+
+}  // namespace overfly::server::experiments

@@ -1,0 +1,84 @@
+// Sweep files (scenarios/sweep.schema.json): which flights of a base scenario are flown.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/result.hpp"
+#include "server/scenario/scenario.hpp"
+
+namespace overfly::server::experiments {
+
+/// Maximum number of cells of a sweep.
+inline constexpr std::size_t kMaxCells = 10'000;
+
+struct AxisValue {
+  nlohmann::json value;  ///< as shown: a number, a text, ...
+  std::vector<Override> changes;
+};
+
+struct SweepAxis {
+  std::string name;   ///< dotted path of a scenario's field, or the name of an axis of variants
+  std::string label;  ///< for people
+  std::string unit;
+  std::vector<AxisValue> values;  ///< empty for a range without steps
+  /// Limits of a range; values between them are drawn by a Latin hypercube.
+  std::optional<std::pair<double, double>> range;
+};
+
+struct RepeatRule {
+  int most = 1;
+  /// Stop when Wilson's 95 % interval of the success rate has at most this half-width.
+  std::optional<double> half_width;
+  bool vary_world = false;
+};
+
+struct LatinHypercube {
+  std::size_t cells = 1;
+  std::uint64_t seed = 1;
+};
+
+struct Sweep {
+  std::string title;
+  std::filesystem::path scenario_file;
+  std::vector<Override> changes;  ///< of every flight
+  std::vector<SweepAxis> axes;
+  std::optional<LatinHypercube> latin_hypercube;
+  std::vector<nlohmann::json> skip;  ///< axis name -> value, or {"min", "max"}
+  RepeatRule repeats;
+  double timeout_s = 3600.0;
+  int retries = 1;
+  nlohmann::json document;  ///< as read, with defaults
+};
+
+/// One point of the axes.
+struct SweepCell {
+  nlohmann::json values;  ///< axis name -> value, in the order of the axes' names
+  std::vector<Override> changes;
+};
+
+/// The JSON schema of sweep files as text, embedded in the program.
+[[nodiscard]] const std::string& sweep_schema_text();
+
+/// Errors: as read_json; kInvalidArgument with each invalid field as "field = value: must be
+/// limit", one a line, with the file.
+[[nodiscard]] Result<Sweep> load_sweep(const std::filesystem::path& file);
+
+/// The cells in the order of the axes, the last axis changing fastest, without those to be skipped.
+/// Errors: kInvalidArgument for more than kMaxCells, a range without step in a grid, a `skip` with
+/// an unknown axis, and if no cell is left.
+[[nodiscard]] Result<std::vector<SweepCell>> cells_of(const Sweep& sweep);
+
+/// The scenario of one flight: the seed increases by one with each repeat.
+/// Errors: as load_scenario and check_scenario; kInvalidArgument for repeats.vary_world with
+/// another world than the built-in one. Each names the cell.
+[[nodiscard]] Result<Scenario> scenario_of(const Sweep& sweep, const SweepCell& cell, int repeat);
+
+/// "flight.course.height_agl_m = 50, seed = 2"
+[[nodiscard]] std::string cell_text(const nlohmann::json& values);
+
+}  // namespace overfly::server::experiments

@@ -1,0 +1,168 @@
+#include "server/experiments/sweep_plan.hpp"
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+#include "core/measure/sha256.hpp"
+#include "evaluation/statistics/wilson.hpp"
+#include "server/experiments/result_key.hpp"
+
+namespace overfly::server::experiments {
+namespace {
+
+using Json = nlohmann::json;
+
+/// Of a flight for several estimators; a name of a folder.
+std::string flight_id(const std::vector<std::string>& keys) {
+  constexpr std::size_t kDigits = 20;
+  std::string text;
+  for (const std::string& key : keys) text += key;
+  return sha256_hex({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()})
+      .substr(0, kDigits);
+}
+
+/// Keeps the estimators with these indices, in ascending order.
+void keep_estimators(Scenario& scenario, const std::vector<std::size_t>& kept) {
+  std::vector<EstimatorSpec> specs;
+  Json documents = Json::array();
+  for (const std::size_t i : kept) {
+    specs.push_back(std::move(scenario.estimators[i]));
+    documents.push_back(scenario.resolved.at("estimators").at(i));
+  }
+  scenario.estimators = std::move(specs);
+  scenario.resolved["estimators"] = std::move(documents);
+}
+
+}  // namespace
+
+bool has_enough(const RepeatRule& rule, int successes, int flights) {
+  if (flights >= rule.most) return true;
+  if (!rule.half_width || flights == 0) return false;
+  return evaluation::wilson_interval(successes, flights).half_width() <= *rule.half_width;
+}
+
+Result<SweepPlan> SweepPlan::make(const Sweep& sweep, std::vector<SweepCell> cells) {
+  constexpr int kMostMessages = 10;
+  SweepPlan plan(sweep, std::move(cells));
+  std::string messages;
+  int faults = 0;
+  for (const SweepCell& cell : plan.cells_) {
+    const Result<Scenario> scenario = scenario_of(sweep, cell, 0);
+    if (!scenario) {
+      if (++faults <= kMostMessages)
+        messages += (faults > 1 ? "\n" : "") + scenario.error().message;
+      continue;
+    }
+    if (scenario->is_live()) {
+      return Error{ErrorCode::kInvalidArgument,
+                   sweep.scenario_file.string() + ": flight: must not be live in a sweep"};
+    }
+    for (const EstimatorSpec& estimator : scenario->estimators) {
+      if (std::find(plan.estimators_.begin(), plan.estimators_.end(), estimator.name) ==
+          plan.estimators_.end()) {
+        plan.estimators_.push_back(estimator.name);
+      }
+    }
+  }
+  if (faults > kMostMessages) {
+    messages += "\nand " + std::to_string(faults - kMostMessages) + " cells more";
+  }
+  if (faults > 0) return Error{ErrorCode::kInvalidArgument, messages};
+  if (plan.estimators_.empty()) {
+    return Error{ErrorCode::kInvalidArgument, "estimators: must have at least one"};
+  }
+  return plan;
+}
+
+std::optional<std::size_t> SweepPlan::next_cell() const {
+  std::optional<std::size_t> best;
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    const State& state = states_[i];
+    const bool waits = sweep_->repeats.half_width && state.flying > 0;
+    if (state.finished || waits) continue;
+    if (!best || state.next_repeat < states_[*best].next_repeat) best = i;
+  }
+  return best;
+}
+
+bool SweepPlan::is_open(std::size_t cell,
+                        const std::string& estimator,
+                        const SweepResults& results) const {
+  int successes = 0;
+  int flights = 0;
+  for (const SweepResult* result : results_of(cell, estimator, results)) {
+    if (!result->completed()) continue;
+    ++flights;
+    successes += result->outcome == evaluation::Outcome::kCompleted ? 1 : 0;
+  }
+  return states_[cell].next_repeat < sweep_->repeats.most &&
+         !has_enough(sweep_->repeats, successes, flights);
+}
+
+Result<std::optional<DueFlight>> SweepPlan::flight_of(std::size_t cell,
+                                                      const SweepResults& results) {
+  State& state = states_[cell];
+  Result<Scenario> scenario = scenario_of(*sweep_, cells_[cell], state.next_repeat);
+  if (!scenario) return scenario.error();
+  const std::string flight = flight_key(*scenario);
+  DueFlight due{cell, state.next_repeat, {}, {}, {}};
+  std::vector<std::size_t> kept;
+  bool any_open = false;
+  for (std::size_t i = 0; i < scenario->estimators.size(); ++i) {
+    const std::string& name = scenario->estimators[i].name;
+    if (!is_open(cell, name, results)) continue;
+    any_open = true;
+    std::string key = result_key(flight, scenario->resolved.at("estimators").at(i));
+    state.keys[name].push_back(key);
+    const SweepResult* known = results.find(key);
+    if (known != nullptr && known->completed()) continue;
+    kept.push_back(i);
+    due.keys.push_back(std::move(key));
+  }
+  state.finished = !any_open;
+  if (any_open) ++state.next_repeat;
+  if (kept.empty()) return std::optional<DueFlight>();
+  keep_estimators(*scenario, kept);
+  due.scenario = std::move(*scenario);
+  due.key = flight_id(due.keys);
+  ++state.flying;
+  return std::optional<DueFlight>(std::move(due));
+}
+
+Result<std::optional<DueFlight>> SweepPlan::next(const SweepResults& results) {
+  while (const std::optional<std::size_t> cell = next_cell()) {
+    Result<std::optional<DueFlight>> flight = flight_of(*cell, results);
+    if (!flight || *flight) return flight;
+  }
+  return std::optional<DueFlight>();
+}
+
+void SweepPlan::over(const DueFlight& flight) { --states_[flight.cell].flying; }
+
+std::size_t SweepPlan::most_flights() const {
+  return cells_.size() * static_cast<std::size_t>(sweep_->repeats.most);
+}
+
+std::size_t SweepPlan::passed_flights() const {
+  std::size_t passed = 0;
+  for (const State& state : states_) {
+    passed += static_cast<std::size_t>(state.finished ? sweep_->repeats.most
+                                                      : state.next_repeat - state.flying);
+  }
+  return passed;
+}
+
+std::vector<const SweepResult*> SweepPlan::results_of(std::size_t cell,
+                                                      const std::string& estimator,
+                                                      const SweepResults& results) const {
+  std::vector<const SweepResult*> found;
+  const auto keys = states_[cell].keys.find(estimator);
+  if (keys == states_[cell].keys.end()) return found;
+  for (const std::string& key : keys->second) {
+    if (const SweepResult* result = results.find(key)) found.push_back(result);
+  }
+  return found;
+}
+
+}  // namespace overfly::server::experiments

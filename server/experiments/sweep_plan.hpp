@@ -1,0 +1,76 @@
+// Which flights of a sweep are due.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/experiments/sweep_document.hpp"
+#include "server/experiments/sweep_results.hpp"
+
+namespace overfly::server::experiments {
+
+/// A flight that is due: one repeat of one cell, for the estimators without a result.
+struct DueFlight {
+  std::size_t cell = 0;  ///< index
+  int repeat = 0;
+  Scenario scenario;              ///< with these estimators only
+  std::string key;                ///< of the flight and these estimators
+  std::vector<std::string> keys;  ///< one per estimator of the scenario, as result_key
+};
+
+/// Whether a cell needs no further flight of an estimator.
+/// @param successes, flights  of its repeats so far
+[[nodiscard]] bool has_enough(const RepeatRule& rule, int successes, int flights);
+
+/// Walks through the repeats of all cells: first all cells once, then all twice, ... Cells whose
+/// repeats stop by themselves fly one at a time.
+class SweepPlan {
+ public:
+  /// Resolves the first repeat of every cell.
+  /// Errors: as scenario_of, for up to ten cells, one a line.
+  [[nodiscard]] static Result<SweepPlan> make(const Sweep& sweep, std::vector<SweepCell> cells);
+
+  /// The next flight that is due; empty if none is, or none before those flying are over.
+  /// Errors: as scenario_of.
+  [[nodiscard]] Result<std::optional<DueFlight>> next(const SweepResults& results);
+  /// A flight from next() is over: its results are known, or it is given up.
+  void over(const DueFlight& flight);
+
+  [[nodiscard]] const std::vector<SweepCell>& cells() const { return cells_; }
+  /// Flights of one estimator at most, of all cells together.
+  [[nodiscard]] std::size_t most_flights() const;
+  /// Flights that are over, or need not be flown.
+  [[nodiscard]] std::size_t passed_flights() const;
+  /// Names of the estimators, in the order of the first cell's scenario, then of the others.
+  [[nodiscard]] const std::vector<std::string>& estimators() const { return estimators_; }
+  /// Results of one estimator in one cell as far as they are known, by repeat.
+  [[nodiscard]] std::vector<const SweepResult*> results_of(std::size_t cell,
+                                                           const std::string& estimator,
+                                                           const SweepResults& results) const;
+
+ private:
+  struct State {
+    int next_repeat = 0;
+    int flying = 0;
+    bool finished = false;
+    /// Estimator -> keys of its repeats, as far as they were reached.
+    std::map<std::string, std::vector<std::string>> keys;
+  };
+  SweepPlan(const Sweep& sweep, std::vector<SweepCell> cells)
+      : sweep_(&sweep), cells_(std::move(cells)), states_(cells_.size()) {}
+  /// Empty if the repeat needs no flight.
+  Result<std::optional<DueFlight>> flight_of(std::size_t cell, const SweepResults& results);
+  [[nodiscard]] bool is_open(std::size_t cell,
+                             const std::string& estimator,
+                             const SweepResults& results) const;
+  /// The cell to be looked at next; empty if there is none now.
+  [[nodiscard]] std::optional<std::size_t> next_cell() const;
+
+  const Sweep* sweep_;
+  std::vector<SweepCell> cells_;
+  std::vector<State> states_;
+  std::vector<std::string> estimators_;
+};
+
+}  // namespace overfly::server::experiments

@@ -1,0 +1,116 @@
+#include "server/experiments/sweep_results.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <optional>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "core/outside/file_text.hpp"
+#include "core/outside/outside_json.hpp"
+#include "server/files/whole_file.hpp"
+
+namespace overfly::server::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+Json json_of_result(const SweepResult& result) {
+  return {{"key", result.key},
+          {"cell", result.cell},
+          {"repeat", result.repeat},
+          {"seed", result.seed},
+          {"estimator", result.estimator},
+          {"run", result.run},
+          {"status", result.completed() ? "completed" : "failed"},
+          {"error", result.error},
+          {"outcome", result.completed() ? evaluation::to_string(result.outcome) : ""},
+          {"duration_s", result.duration_s}};
+}
+
+std::optional<SweepResult> result_from(const Json& line) {
+  try {
+    SweepResult result;
+    result.key = line.at("key").get<std::string>();
+    result.cell = line.at("cell");
+    result.repeat = line.at("repeat").get<int>();
+    result.seed = line.at("seed").get<std::uint64_t>();
+    result.estimator = line.at("estimator").get<std::string>();
+    result.run = line.at("run").get<std::string>();
+    result.error = line.at("error").get<std::string>();
+    result.duration_s = line.at("duration_s").get<double>();
+    const auto status = line.at("status").get<std::string>();
+    if (status == "failed") {
+      if (result.error.empty()) result.error = "failed";
+      return result;
+    }
+    const auto outcome = evaluation::outcome_from(line.at("outcome").get<std::string>());
+    if (status != "completed" || !result.completed() || !outcome) return std::nullopt;
+    result.outcome = *outcome;
+    return result;
+  } catch (const Json::exception&) {
+    return std::nullopt;
+  }
+}
+
+Error results_error(const fs::path& file, int number) {
+  return {ErrorCode::kIo, file.string() + ": " + std::generic_category().message(number)};
+}
+
+/// One write, so that a kill leaves at most one line cut off.
+Status append_line(const fs::path& file, const std::string& line) {
+  const int descriptor = ::open(file.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0644);
+  if (descriptor < 0) return results_error(file, errno);
+  const ssize_t written = ::write(descriptor, line.data(), line.size());
+  const int number = written < 0 ? errno : ENOSPC;
+  ::close(descriptor);
+  if (written != static_cast<ssize_t>(line.size())) return results_error(file, number);
+  return {};
+}
+
+}  // namespace
+
+Result<SweepResults> SweepResults::open(const fs::path& folder) {
+  SweepResults results;
+  results.file_ = folder / "results.jsonl";
+  std::error_code ignored;
+  if (!fs::exists(results.file_, ignored)) return results;
+  const Result<std::string> text = read_file_text(results.file_, kMaxRowsBytes);
+  if (!text) return text.error();
+  std::size_t begin = 0;
+  for (std::size_t end = 0; (end = text->find('\n', begin)) != std::string::npos; begin = end + 1) {
+    const std::string_view line(text->data() + begin, end - begin);
+    const auto document = json_from_outside<Json>(line, results.file_.string());
+    std::optional<SweepResult> result =
+        document ? result_from(*document) : std::optional<SweepResult>();
+    if (result) {
+      std::string key = result->key;
+      results.by_key_.insert_or_assign(std::move(key), std::move(*result));
+    } else {
+      ++results.unreadable_lines_;
+    }
+  }
+  if (begin < text->size() && ::truncate(results.file_.c_str(), static_cast<off_t>(begin)) != 0) {
+    return results_error(results.file_, errno);
+  }
+  return results;
+}
+
+const SweepResult* SweepResults::find(const std::string& key) const {
+  const auto found = by_key_.find(key);
+  return found == by_key_.end() ? nullptr : &found->second;
+}
+
+Status SweepResults::add(const SweepResult& result) {
+  if (Status status = append_line(file_, json_of_result(result).dump() + "\n"); !status) {
+    return status;
+  }
+  by_key_.insert_or_assign(result.key, result);
+  return {};
+}
+
+}  // namespace overfly::server::experiments

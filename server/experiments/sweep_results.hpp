@@ -1,0 +1,52 @@
+// results.jsonl of a sweep's folder: one line for each flight of an estimator that is over.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/result.hpp"
+#include "evaluation/evaluation.hpp"
+
+namespace overfly::server::experiments {
+
+struct SweepResult {
+  std::string key;         ///< as result_key
+  nlohmann::json cell;     ///< SweepCell::values
+  int repeat = 0;          ///< from 0
+  std::uint64_t seed = 0;  ///< of the scenario
+  std::string estimator;
+  std::string run;    ///< its run folder, relative to the sweep's
+  std::string error;  ///< why the flight failed; empty if it was completed
+  /// Of a completed flight. A flight that failed says nothing about the estimator.
+  evaluation::Outcome outcome = evaluation::Outcome::kNotInitialised;
+  double duration_s = 0.0;  ///< of the flight, by the clock on the wall
+
+  [[nodiscard]] bool completed() const { return error.empty(); }
+};
+
+/// Later lines replace earlier ones with the same key.
+class SweepResults {
+ public:
+  /// Reads the file if there is one. A last line that was cut off by a kill is removed; other lines
+  /// that are no results are counted and kept in the file.
+  /// Errors: as read_file_text; kIo.
+  [[nodiscard]] static Result<SweepResults> open(const std::filesystem::path& folder);
+
+  /// Null if there is none.
+  [[nodiscard]] const SweepResult* find(const std::string& key) const;
+  /// Errors: kIo.
+  Status add(const SweepResult& result);
+  [[nodiscard]] const std::map<std::string, SweepResult>& by_key() const { return by_key_; }
+  /// Number of lines that are no results.
+  [[nodiscard]] int unreadable_lines() const { return unreadable_lines_; }
+
+ private:
+  std::filesystem::path file_;
+  std::map<std::string, SweepResult> by_key_;
+  int unreadable_lines_ = 0;
+};
+
+}  // namespace overfly::server::experiments

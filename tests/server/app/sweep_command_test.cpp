@@ -1,0 +1,116 @@
+// overfly sweep: a whole sweep by the program itself, cancelled and killed in between.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "tests/server/app/command_line_fixture.hpp"
+#include "tests/server/app/program.hpp"
+
+namespace overfly::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+using Json = nlohmann::json;
+
+class SweepCommand : public CommandLine {
+ protected:
+  void SetUp() override {
+    CommandLine::SetUp();
+    write_text(file(), R"({"format_version": 1, "scenario": ")" + scenario_file() + R"(",
+      "axes": [{"path": "flight.course.airspeed_m_s", "label": "Airspeed", "unit": "m/s",
+                "values": [15, 20, 25]}],
+      "repeats": {"most": 2}})");
+  }
+  static std::string file() { return path("sweep.json"); }
+  static std::vector<std::string> arguments(const std::string& out) {
+    return {"sweep", file(), "--out", path(out), "--jobs", "1", "--json"};
+  }
+  static std::size_t lines(const std::string& out) {
+    const fs::path results = fs::path(path(out)) / "results.jsonl";
+    if (!fs::exists(results)) return 0;
+    const std::string text = read_text(results);
+    return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+  }
+  /// Waits until some flights are over. @return whether they are, before the program's end
+  static bool wait_for_lines(RunningProgram& program, const std::string& out, std::size_t count) {
+    while (lines(out) < count) {
+      if (!program.running()) return false;
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    return true;
+  }
+  /// The sweep is finished as if nothing had happened, and no flight was recorded twice.
+  static void expect_continued(const std::string& out) {
+    const Outcome rest = overfly_program(arguments(out));
+    ASSERT_EQ(rest.exit_code, 0) << rest.err;
+    EXPECT_EQ(lines(out), 6U);
+    const Json rows = Json::parse(rest.out);
+    ASSERT_EQ(rows.size(), 3U);
+    for (const Json& row : rows) {
+      EXPECT_EQ(row.at("flights"), 2);
+      EXPECT_EQ(row.at("successes"), 2);
+    }
+  }
+};
+
+TEST_F(SweepCommand, FliesTheCellsAndPrintsATable) {
+  SKIP_WITHOUT_EGL();
+  const Outcome planned = overfly_program({"sweep", file(), "--out", path("s1"), "--dry-run"});
+  ASSERT_EQ(planned.exit_code, 0) << planned.err;
+  EXPECT_THAT(planned.out, HasSubstr("3 cells, 1 estimator, at most 6 flights; 6 to be flown"));
+  EXPECT_FALSE(fs::exists(path("s1")));
+  const Outcome flown = overfly_program({"sweep", file(), "--out", path("s1"), "--jobs", "2"});
+  ASSERT_EQ(flown.exit_code, 0) << flown.err;
+  EXPECT_THAT(flown.out, HasSubstr("| Airspeed [m/s] | estimator |"));
+  EXPECT_THAT(flown.out, HasSubstr("2 COMPLETED"));
+  EXPECT_THAT(flown.err, HasSubstr("100 % flight 6 of 6"));
+  EXPECT_EQ(read_text(path("s1/summary.md")), flown.out);
+  // A run of the sweep is a run like any other.
+  const fs::path run = fs::directory_iterator(path("s1/runs"))->path();
+  EXPECT_EQ(overfly_program({"evaluate", "--run", run.string()}).exit_code, 0);
+  const Outcome again = overfly_program({"sweep", file(), "--out", path("s1"), "--dry-run"});
+  EXPECT_THAT(again.out, HasSubstr("; 0 to be flown"));
+}
+
+TEST_F(SweepCommand, ContinuesAfterItWasCancelled) {
+  SKIP_WITHOUT_EGL();
+  {
+    RunningProgram sweep(arguments("s2"), path(""));
+    if (!wait_for_lines(sweep, "s2", 1)) FAIL() << sweep.err();
+    sweep.signal(SIGINT);
+    EXPECT_EQ(sweep.wait(), 3) << sweep.err();
+    EXPECT_THAT(sweep.err(), HasSubstr("the same command continues"));
+  }
+  expect_continued("s2");
+}
+
+TEST_F(SweepCommand, ContinuesAfterItWasKilled) {
+  SKIP_WITHOUT_EGL();
+  for (const std::size_t flights : {1U, 3U}) {
+    RunningProgram sweep(arguments("s3"), path(""));
+    if (!wait_for_lines(sweep, "s3", flights)) FAIL() << sweep.err();
+    sweep.signal(SIGKILL);
+    EXPECT_EQ(sweep.wait(), -1);
+  }
+  expect_continued("s3");
+}
+
+TEST_F(SweepCommand, NamesWhatIsInvalid) {
+  write_text(file(),
+             R"({"format_version": 1, "scenario": ")" + scenario_file() +
+                 R"(", "axes": [{"path": "flight.course.airspeed_m_s", "values": [-1]}]})");
+  const Outcome sweep = overfly_program({"sweep", file(), "--out", path("s4")});
+  EXPECT_EQ(sweep.exit_code, 2);
+  EXPECT_THAT(sweep.err, HasSubstr("flight.course.airspeed_m_s = -1"));
+  EXPECT_FALSE(fs::exists(path("s4")));
+}
+
+}  // namespace
+}  // namespace overfly::testing

@@ -1,0 +1,153 @@
+// Sweep files and their cells.
+#include "server/experiments/sweep_document.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "tests/support/support.hpp"
+
+namespace overfly::server::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+using overfly::testing::TemporaryFolder;
+using overfly::testing::write_text;
+using ::testing::HasSubstr;
+
+class SweepDocument : public ::testing::Test {
+ protected:
+  /// The course with these fields of the sweep.
+  Result<Sweep> loaded(const std::string& fields) {
+    const fs::path file = folder_.path() / "sweep.json";
+    const std::string scenario = (fs::path(OVERFLY_SOURCE_DIR) / "scenarios/course.json").string();
+    write_text(file, R"({"format_version": 1, "scenario": ")" + scenario + "\", " + fields + "}");
+    return load_sweep(file);
+  }
+  std::string fault_of(const std::string& fields) {
+    const Result<Sweep> sweep = loaded(fields);
+    if (!sweep) return sweep.error().message;
+    const auto cells = cells_of(*sweep);
+    return cells ? "" : cells.error().message;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(SweepDocument, TheGridChangesTheLastAxisFastest) {
+  const auto sweep = loaded(
+      R"("axes": [{"path": "flight.course.airspeed_m_s", "values": [10, 25]},
+                  {"path": "flight.course.height_agl_m", "from": 50, "to": 150, "step": 50}])");
+  ASSERT_TRUE(sweep.ok()) << sweep.error().message;
+  const auto cells = cells_of(*sweep);
+  ASSERT_TRUE(cells.ok());
+  ASSERT_EQ(cells->size(), 6U);
+  const Json second = {{"flight.course.airspeed_m_s", 10}, {"flight.course.height_agl_m", 100.0}};
+  EXPECT_EQ((*cells)[1].values, second);
+  const auto scenario = scenario_of(*sweep, (*cells)[5], 2);
+  ASSERT_TRUE(scenario.ok()) << scenario.error().message;
+  const auto& course = std::get<flight::CourseParameters>(scenario->flight);
+  EXPECT_EQ(course.airspeed_m_s, 25.0);
+  EXPECT_EQ(course.height_agl_m, 150.0);
+  EXPECT_EQ(scenario->seed, 3U);  // the file's 1 and two repeats
+}
+
+TEST_F(SweepDocument, VariantsChangeSeveralFields) {
+  const auto sweep = loaded(
+      R"("axes": [{"name": "light", "variants": [
+           {"value": "slow", "set": {"flight.course.airspeed_m_s": 10, "duration_s": 5}},
+           {"value": "fast", "set": {"flight.course.airspeed_m_s": 25, "duration_s": 3}}]}],
+         "repeats": {"most": 2, "vary_world": true})");
+  ASSERT_TRUE(sweep.ok()) << sweep.error().message;
+  const auto cells = cells_of(*sweep);
+  ASSERT_EQ(cells->size(), 2U);
+  EXPECT_EQ(cells->back().values, Json({{"light", "fast"}}));
+  const auto scenario = scenario_of(*sweep, cells->back(), 1);
+  EXPECT_EQ(scenario->duration_s, 3.0);
+  EXPECT_EQ(std::get<BuiltinWorld>(scenario->world).seed, 2U);
+}
+
+TEST_F(SweepDocument, SkipsCellsThatMatchEveryField) {
+  const auto sweep = loaded(
+      R"("axes": [{"path": "flight.course.airspeed_m_s", "values": [10, 25]},
+                  {"path": "flight.course.height_agl_m", "values": [50, 100, 200]}],
+         "skip": [{"flight.course.airspeed_m_s": 25, "flight.course.height_agl_m": {"max": 100}}])");
+  ASSERT_TRUE(sweep.ok()) << sweep.error().message;
+  const auto cells = cells_of(*sweep);
+  ASSERT_EQ(cells->size(), 4U);
+  EXPECT_EQ(cells->back().values.at("flight.course.height_agl_m"), 200);
+}
+
+/// Each axis is cut into as many parts as there are cells, and each part has one value.
+TEST_F(SweepDocument, ALatinHypercubeUsesEachPartOnce) {
+  const auto sweep = loaded(
+      R"("axes": [{"path": "flight.course.airspeed_m_s", "from": 10, "to": 30},
+                  {"path": "flight.course.height_agl_m", "values": [50, 100]}],
+         "latin_hypercube": {"cells": 20, "seed": 7})");
+  ASSERT_TRUE(sweep.ok()) << sweep.error().message;
+  const auto cells = cells_of(*sweep);
+  ASSERT_EQ(cells->size(), 20U);
+  std::set<int> parts;
+  int low = 0;
+  for (const SweepCell& cell : *cells) {
+    parts.insert(static_cast<int>(cell.values.at("flight.course.airspeed_m_s").get<double>() - 10));
+    low += cell.values.at("flight.course.height_agl_m") == 50 ? 1 : 0;
+  }
+  EXPECT_EQ(parts.size(), 20U);
+  EXPECT_EQ(low, 10);
+  EXPECT_EQ(cells_of(*sweep)->at(3).values, cells->at(3).values) << "the same each time";
+}
+
+TEST_F(SweepDocument, NamesWhatIsInvalid) {
+  EXPECT_THAT(fault_of(R"("axes": [], "repeats": {"most": 0})"), HasSubstr("repeats.most = 0"));
+  EXPECT_THAT(fault_of(R"("axes": [], "wrong": 1)"), HasSubstr("wrong"));
+  EXPECT_THAT(fault_of(R"("axes": [{"path": "seed", "from": 5, "to": 1, "step": 1}])"),
+              HasSubstr("axes.0.to = 1: must be at least axes.0.from = 5"));
+  EXPECT_THAT(fault_of(R"("axes": [{"path": "seed", "from": 1, "to": 5}])"),
+              HasSubstr("axes.0.step: must be given"));
+  EXPECT_THAT(fault_of(R"("axes": [{"path": "seed", "from": 0, "to": 1e300, "step": 1}])"),
+              HasSubstr("more than 10000"));
+  EXPECT_THAT(
+      fault_of(R"("axes": [{"path": "seed", "values": [1]}, {"path": "seed", "values": [2]}])"),
+      HasSubstr("axes.1 = seed"));
+  EXPECT_THAT(fault_of(R"("axes": [{"path": "seed", "values": [1]}], "skip": [{"sead": 1}])"),
+              HasSubstr("skip.0.sead"));
+  EXPECT_THAT(
+      fault_of(R"("axes": [{"path": "seed", "values": [1]}], "skip": [{"seed": {"least": 1}}])"),
+      HasSubstr("skip.0.seed.least"));
+  EXPECT_THAT(fault_of(R"("axes": [{"path": "seed", "values": [1]}], "skip": [{"seed": 1}])"),
+              HasSubstr("at least one cell"));
+}
+
+TEST_F(SweepDocument, AnInvalidCellIsNamed) {
+  const auto sweep =
+      loaded(R"("axes": [{"path": "flight.course.airspeed_m_s", "values": [25, -4]}])");
+  ASSERT_TRUE(sweep.ok());
+  const auto cells = cells_of(*sweep);
+  const auto scenario = scenario_of(*sweep, cells->at(1), 0);
+  ASSERT_FALSE(scenario.ok());
+  EXPECT_THAT(scenario.error().message, HasSubstr("flight.course.airspeed_m_s = -4"));
+}
+
+/// The files that Overfly comes with.
+TEST(SweepFiles, AreValid) {
+  std::size_t files = 0;
+  for (const auto& entry :
+       fs::directory_iterator(fs::path(OVERFLY_SOURCE_DIR) / "scenarios/sweeps")) {
+    const auto sweep = load_sweep(entry.path());
+    ASSERT_TRUE(sweep.ok()) << sweep.error().message;
+    const auto cells = cells_of(*sweep);
+    ASSERT_TRUE(cells.ok()) << cells.error().message;
+    for (const SweepCell& cell : *cells) {
+      const auto scenario = scenario_of(*sweep, cell, 0);
+      EXPECT_TRUE(scenario.ok()) << scenario.error().message;
+    }
+    ++files;
+  }
+  EXPECT_EQ(files, 3U);
+}
+
+}  // namespace
+}  // namespace overfly::server::experiments
