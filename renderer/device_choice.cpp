@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <regex>
 
+#include "core/text/pattern.hpp"
+
 namespace overfly::renderer {
 
 Result<DeviceRequest> DeviceRequest::parse(const std::string& text) {
-  static const std::regex number("[0-9]{1,3}");
-  static const std::regex address("([0-9a-fA-F]{4,8}:)?[0-9a-fA-F]{2}:[0-9a-fA-F]{2}\\.[0-7]");
+  static const std::regex& number = compiled_pattern("[0-9]{1,3}");
+  static const std::regex& address =
+      compiled_pattern("([0-9a-fA-F]{4,8}:)?[0-9a-fA-F]{2}:[0-9a-fA-F]{2}\\.[0-7]");
   DeviceRequest request;
   if (text == "software") {
     request.software = true;

@@ -242,7 +242,7 @@ Status MissionFlight::step() {
   const dynamics::Controls commands = autopilot_.update(flight_state(aircraft_));
   states_.front() = states_.back();
   for (int part = 1; part <= kParts; ++part) {
-    aircraft_.step(commands, 1.0 / kMotionRateHz);
+    if (Status status = aircraft_.step(commands, 1.0 / kMotionRateHz); !status) return status;
     states_[part] = aircraft_.truth(t_ns() + part * kPartNs);
   }
   ++steps_;

@@ -30,6 +30,20 @@ Status check_limit(const std::string& field, double value, double limit) {
                field + " = " + number_text(value) + ": must be at most " + number_text(limit)};
 }
 
+/// Also false for a motion that is not a number.
+bool is_within_limits(const BodyState& state) {
+  return state.v_body_m_s.norm() <= kSpeedMaxMS && state.omega_body_rad_s.norm() <= kRateMaxRadS &&
+         state.position_world_m.allFinite() && state.R_world_body.coeffs().allFinite();
+}
+
+Status check_motion(const Airframe& airframe, const BodyState& state) {
+  if (is_within_limits(state)) return {};
+  return Error{ErrorCode::kInvalidArgument,
+               "airframe " + airframe.name + ": its motion exceeds " + number_text(kSpeedMaxMS) +
+                   " m/s or " + number_text(kRateMaxRadS) +
+                   " rad/s: a coefficient adds energy to the motion"};
+}
+
 Status check_start(const AircraftSetup& setup, const BodyState& start) {
   const Environment& place = setup.environment;
   if (!(place.gravity_m_s2 >= 0.0 && place.gravity_m_s2 <= 100.0)) {
@@ -107,18 +121,21 @@ int Aircraft::parts_of(double dt_s) const {
   return static_cast<int>(std::clamp(std::ceil(dt_s * rate / kRatePerPart), 1.0, kPartsMax));
 }
 
-void Aircraft::step(const Controls& commands, double dt_s) {
+Status Aircraft::step(const Controls& commands, double dt_s) {
   if (turbulence_) meet_gust(dt_s);
   const int parts = parts_of(dt_s);
   const double part_s = dt_s / parts;
   for (int i = 0; i < parts; ++i) {
     const Controls middle = advance(positions_, commands, setup_.airframe, 0.5 * part_s);
     const Controls end = advance(middle, commands, setup_.airframe, 0.5 * part_s);
-    state_ = body_.step(state_, part_s, [&](const BodyState& state, double fraction) {
+    const BodyState next = body_.step(state_, part_s, [&](const BodyState& state, double fraction) {
       return wrench_at(state, fraction == 0.0 ? positions_ : fraction == 1.0 ? end : middle);
     });
+    if (Status status = check_motion(setup_.airframe, next); !status) return status;
+    state_ = next;
     positions_ = end;
   }
+  return {};
 }
 
 AirData Aircraft::air_data() const {

@@ -16,6 +16,9 @@ namespace overfly::dynamics {
 
 /// Longest step of Aircraft::step [s].
 inline constexpr double kStepMaxS = 0.02;
+/// The coefficients of an airframe describe no faster motion.
+inline constexpr double kSpeedMaxMS = 1000.0;
+inline constexpr double kRateMaxRadS = 1000.0;
 
 /// What the aircraft's probes measure without error.
 struct AirData {
@@ -50,7 +53,9 @@ class Aircraft {
   /// Advances by one step with constant commands (see `advance` of the actuators). The gust is
   /// constant during the step. A step that is long for the aircraft's speed and rate is divided.
   /// @param dt_s  (0, kStepMaxS]
-  void step(const Controls& commands, double dt_s);
+  /// Errors: kInvalidArgument if the motion leaves kSpeedMaxMS or kRateMaxRadS, as with
+  /// coefficients that add energy. The state then stays the last one within these limits.
+  Status step(const Controls& commands, double dt_s);
 
   [[nodiscard]] const BodyState& state() const { return state_; }
   [[nodiscard]] const Controls& positions() const { return positions_; }

@@ -34,7 +34,7 @@ Result<double> times_real_time(const Airframe& airframe,
   for (std::int64_t i = 0; i < steps; ++i) {
     Controls commands = turn->controls;
     commands.aileron_rad += 0.01 * std::sin(0.01 * static_cast<double>(i));
-    aircraft->step(commands, dt_s);
+    if (Status status = aircraft->step(commands, dt_s); !status) return status.error();
   }
   const double used_s = std::max(1e-9, thread_cpu_s() - before_s);
   return static_cast<double>(steps) * dt_s / used_s;

@@ -78,6 +78,8 @@ class SimulatedVehicle {
   /// Circles around a place at a height above home.
   void circle(const Eigen::Vector3d& centre_m);
   void follow(autopilot::Mission mission, std::size_t item);
+  /// Flies for kStepNs. Errors: as dynamics::Aircraft::step.
+  [[nodiscard]] Status move(const dynamics::Controls& commands);
   void finish_flight(const Send& send);
   void park(const std::string& text, Severity severity, const Send& send);
   void say(const std::string& text, Severity severity, const Send& send);

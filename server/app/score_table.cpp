@@ -155,4 +155,12 @@ std::string alignment_table(const evaluation::Score& score) {
   return table;
 }
 
+std::vector<std::string> alignment_mode_names() {
+  std::vector<std::string> names;
+  for (const evaluation::AlignmentMode mode : evaluation::all_alignment_modes()) {
+    names.emplace_back(evaluation::to_string(mode));
+  }
+  return names;
+}
+
 }  // namespace overfly::app

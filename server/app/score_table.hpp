@@ -24,4 +24,7 @@ namespace overfly::app {
 /// late tiles, faults. Empty if there are none.
 [[nodiscard]] std::string camera_notes(const server::RunMetrics& metrics);
 
+/// "none", "origin", ...: values of the options that choose an alignment.
+[[nodiscard]] std::vector<std::string> alignment_mode_names();
+
 }  // namespace overfly::app

@@ -276,7 +276,7 @@ Result<FlownSweep> read_sweep(const Sweep& sweep, const fs::path& folder) {
   if (!cells) return cells.error();
   Result<SweepPlan> plan = SweepPlan::make(sweep, std::move(*cells));
   if (!plan) return plan.error();
-  Result<SweepResults> results = SweepResults::open(folder);
+  Result<SweepResults> results = SweepResults::read(folder);
   if (!results) return results.error();
   FlownSweep flown{std::move(*plan), std::move(*results), {}, false};
   flown.progress.most = flown.plan.most_flights();

@@ -74,7 +74,7 @@ Status append_line(const fs::path& file, const std::string& line) {
 
 }  // namespace
 
-Result<SweepResults> SweepResults::open(const fs::path& folder) {
+Result<SweepResults> SweepResults::read(const fs::path& folder) {
   SweepResults results;
   results.file_ = folder / "results.jsonl";
   std::error_code ignored;
@@ -94,9 +94,20 @@ Result<SweepResults> SweepResults::open(const fs::path& folder) {
       ++results.unreadable_lines_;
     }
   }
-  if (begin < text->size() && ::truncate(results.file_.c_str(), static_cast<off_t>(begin)) != 0) {
-    return results_error(results.file_, errno);
+  results.whole_lines_bytes_ = begin;
+  return results;
+}
+
+Result<SweepResults> SweepResults::open(const fs::path& folder) {
+  Result<SweepResults> results = read(folder);
+  if (!results) return results;
+  std::error_code error;
+  const auto size = fs::file_size(results->file_, error);
+  if (error) return results;  // there is none yet
+  if (size > results->whole_lines_bytes_) {
+    fs::resize_file(results->file_, results->whole_lines_bytes_, error);
   }
+  if (error) return results_error(results->file_, error.value());
   return results;
 }
 

@@ -30,9 +30,13 @@ struct SweepResult {
 /// Later lines replace earlier ones with the same key.
 class SweepResults {
  public:
-  /// Reads the file if there is one. A last line that was cut off by a kill is removed; other lines
-  /// that are no results are counted and kept in the file.
-  /// Errors: as read_file_text; kIo.
+  /// Reads the file if there is one. Lines that are no results are counted; a last line without
+  /// line feed, which a kill leaves or which is being written, is ignored. Errors: as
+  /// read_file_text.
+  [[nodiscard]] static Result<SweepResults> read(const std::filesystem::path& folder);
+  /// As read(), to add results: a last line that was cut off is removed from the file.
+  /// @pre no other process adds results
+  /// Errors: as read(); kIo.
   [[nodiscard]] static Result<SweepResults> open(const std::filesystem::path& folder);
 
   /// Null if there is none.
@@ -47,6 +51,7 @@ class SweepResults {
   std::filesystem::path file_;
   std::map<std::string, SweepResult> by_key_;
   int unreadable_lines_ = 0;
+  std::size_t whole_lines_bytes_ = 0;  ///< size of the file without a last line that was cut off
 };
 
 }  // namespace overfly::server::experiments

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <regex>
 
+#include "core/text/pattern.hpp"
+
 namespace overfly::server {
 namespace {
 
@@ -56,7 +58,7 @@ std::string broken_text(const Json& node, const std::string& value) {
   }
   if (node.contains("pattern")) {
     const std::string pattern = node.at("pattern").get<std::string>();
-    if (!std::regex_search(value, std::regex(pattern, std::regex::ECMAScript))) {
+    if (!std::regex_search(value, compiled_pattern(pattern))) {
       return "text that matches " + pattern;
     }
   }

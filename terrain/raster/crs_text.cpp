@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "core/text/lower_case.hpp"
+#include "core/text/pattern.hpp"
 
 namespace overfly::terrain {
 namespace {
@@ -15,8 +16,8 @@ namespace {
 constexpr std::size_t kLongest = 32'768;  ///< the longest WKT of EPSG has about 20 000 characters
 
 bool is_code(const std::string& text) {
-  static const std::regex code("(EPSG|ESRI|IGNF|OGC|IAU_2015):[A-Za-z0-9_]{1,40}(\\+[0-9]{1,10})?",
-                               std::regex::icase);
+  static const std::regex& code = compiled_pattern(
+      "(EPSG|ESRI|IGNF|OGC|IAU_2015):[A-Za-z0-9_]{1,40}(\\+[0-9]{1,10})?", std::regex::icase);
   return text.size() <= 80 && std::regex_match(text, code);
 }
 

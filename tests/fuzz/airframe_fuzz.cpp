@@ -1,5 +1,5 @@
 // Airframe files. An airframe that is accepted is trimmed and flown for a moment: its motion must
-// stay finite.
+// stay finite, or end with an error.
 #include <cstdlib>
 
 #include "flight/dynamics/aircraft.hpp"
@@ -20,7 +20,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   start.v_body_m_s = {20.0, 3.0, -4.0};
   start.omega_body_rad_s = {5.0, -3.0, 2.0};
   auto aircraft = dynamics::Aircraft::create(setup, start, {0.0, 0.0, 0.0, 1.0}).value();
-  for (int i = 0; i < 100; ++i) aircraft.step({0.3, -0.3, 0.3, 1.0}, 0.01);
+  for (int i = 0; i < 100; ++i) {
+    if (!aircraft.step({0.3, -0.3, 0.3, 1.0}, 0.01)) break;  // refused, with the state as it was
+  }
   if (!aircraft.state().v_body_m_s.allFinite()) std::abort();
   if (!aircraft.state().omega_body_rad_s.allFinite()) std::abort();
   return 0;

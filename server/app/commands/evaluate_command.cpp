@@ -42,14 +42,6 @@ struct EvaluateArguments {
   bool json = false;
 };
 
-std::vector<std::string> mode_names() {
-  std::vector<std::string> names;
-  for (const evaluation::AlignmentMode mode : evaluation::all_alignment_modes()) {
-    names.emplace_back(evaluation::to_string(mode));
-  }
-  return names;
-}
-
 /// Keeps only the requested modes.
 void choose_modes(const std::vector<std::string>& wanted, evaluation::Score& score) {
   const auto unwanted = [&](const auto& entry) {
@@ -174,7 +166,7 @@ int evaluate_run(const EvaluateArguments& arguments) {
 int evaluate(EvaluateArguments arguments) {
   const std::vector<std::string>& modes = arguments.alignments;
   if (std::find(modes.begin(), modes.end(), "all") != modes.end()) {
-    arguments.alignments = mode_names();
+    arguments.alignments = alignment_mode_names();
   }
   if (!arguments.run.empty()) return evaluate_run(arguments);
   if (arguments.truth.empty() || arguments.estimates.empty()) {
@@ -196,7 +188,7 @@ void add_evaluate_command(CLI::App& app, int& exit_code) {
           "--run", arguments->run, "Run folder to score again; its metrics.json is updated")
       ->excludes("--truth")
       ->excludes("--estimate");
-  std::vector<std::string> modes = mode_names();
+  std::vector<std::string> modes = alignment_mode_names();
   modes.emplace_back("all");
   arguments->alignments = {"init_scale"};
   command

@@ -10,6 +10,7 @@
 #include "server/app/commands/commands.hpp"
 #include "server/app/exit_code.hpp"
 #include "server/app/progress.hpp"
+#include "server/app/score_table.hpp"
 #include "server/app/stop_signal.hpp"
 #include "server/report/report.hpp"
 
@@ -60,15 +61,11 @@ void add_report_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("report", "Write one HTML file about one or several runs");
   command->add_option("runs", arguments->runs, "Run folders")->required();
   command->add_option("--out", arguments->out, "HTML file to create")->required();
-  std::vector<std::string> modes;
-  for (const evaluation::AlignmentMode mode : evaluation::all_alignment_modes()) {
-    modes.emplace_back(evaluation::to_string(mode));
-  }
   command
       ->add_option("--alignment",
                    arguments->alignment,
                    "Alignment of the estimates in summary and figures; tables have all")
-      ->check(CLI::IsMember(modes))
+      ->check(CLI::IsMember(alignment_mode_names()))
       ->capture_default_str();
   command->add_flag("--quiet", arguments->quiet, "No progress");
   command->callback([arguments, &exit_code] { exit_code = write_report_of(*arguments); });

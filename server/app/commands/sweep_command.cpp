@@ -12,6 +12,7 @@
 #include "server/app/commands/commands.hpp"
 #include "server/app/exit_code.hpp"
 #include "server/app/progress.hpp"
+#include "server/app/score_table.hpp"
 #include "server/app/stop_signal.hpp"
 #include "server/experiments/fly_sweep.hpp"
 #include "server/experiments/sweep_summary.hpp"
@@ -118,12 +119,8 @@ void add_sweep_command(CLI::App& app, int& exit_code) {
   command->add_option("--jobs", arguments->jobs, "Flights at the same time; 0: half the processors")
       ->check(CLI::Range(0, 256))
       ->capture_default_str();
-  std::vector<std::string> modes;
-  for (const evaluation::AlignmentMode mode : evaluation::all_alignment_modes()) {
-    modes.emplace_back(evaluation::to_string(mode));
-  }
   command->add_option("--alignment", arguments->alignment, "Alignment of the errors in the table")
-      ->check(CLI::IsMember(modes))
+      ->check(CLI::IsMember(alignment_mode_names()))
       ->capture_default_str();
   command->add_flag("--dry-run", arguments->dry_run, "Check everything and count the flights");
   command->add_flag("--json", arguments->json, "Print JSON instead of a table");

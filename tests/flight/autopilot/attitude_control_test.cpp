@@ -43,7 +43,7 @@ class BankFlight {
     dynamics::Controls commands =
         attitude_->update({roll_rad, energy.pitch_rad}, state, 1.0 / kControlRateHz);
     commands.throttle = energy.throttle;
-    for (int i = 0; i < 4; ++i) aircraft_->step(commands, 1.0 / kMotionRateHz);
+    for (int i = 0; i < 4; ++i) EXPECT_TRUE(aircraft_->step(commands, 1.0 / kMotionRateHz).ok());
     return flight_state(*aircraft_);
   }
 

@@ -53,7 +53,8 @@ TEST(Aircraft, StaysInItsTrim) {
     const AircraftSetup setup = setup_of(name);
     const Trim flight = level_trim(setup, testing::cruise_m_s(name));
     Aircraft aircraft = cruising(setup, flight);
-    for (int i = 0; i < 20 * 400; ++i) aircraft.step(flight.controls, kFlightStepS);
+    for (int i = 0; i < 20 * 400; ++i)
+      EXPECT_TRUE(aircraft.step(flight.controls, kFlightStepS).ok());
     // The track differs from the nose by the sideslip that trims the propeller's torque.
     const BodyState start = flight.state({0.0, 0.0, 300.0}, 0.0);
     const Eigen::Vector3d expected =
@@ -81,7 +82,7 @@ TEST(Aircraft, KeepsItsEnergyWithoutDragAndThrust) {
   const double energy = energy_j(aircraft);
   double slowest = 1e9, fastest = 0.0;
   for (int i = 0; i < 20 * 400; ++i) {
-    aircraft.step({}, kFlightStepS);
+    EXPECT_TRUE(aircraft.step({}, kFlightStepS).ok());
     slowest = std::min(slowest, aircraft.air_data().airspeed_m_s);
     fastest = std::max(fastest, aircraft.air_data().airspeed_m_s);
   }
@@ -100,7 +101,7 @@ TEST(Aircraft, GlidesWithTheRatioOfLiftAndDrag) {
     const Trim glide = trim(setup.airframe, setup.environment, request).value();
     Aircraft aircraft = cruising(setup, glide);
     const Eigen::Vector3d before = aircraft.state().position_world_m;
-    for (int i = 0; i < 4; ++i) aircraft.step(glide.controls, kFlightStepS);
+    for (int i = 0; i < 4; ++i) EXPECT_TRUE(aircraft.step(glide.controls, kFlightStepS).ok());
     const Eigen::Vector3d way = aircraft.state().position_world_m - before;
     const LiftDrag c = lift_drag(setup.airframe, aircraft.air_data().alpha_rad);
     EXPECT_NEAR(-way.head<2>().norm() / way.z() / (c.lift / c.drag), 1.0, 1e-6) << name;
@@ -120,8 +121,8 @@ TEST(Aircraft, SteadyWindShiftsTheGroundTrackOnly) {
       Controls commands = flight.controls;
       commands.aileron_rad += 0.03 * std::sin(0.01 * i);
       commands.elevator_rad += 0.02 * std::cos(0.02 * i);
-      a.step(commands, kFlightStepS);
-      b.step(commands, kFlightStepS);
+      EXPECT_TRUE(a.step(commands, kFlightStepS).ok());
+      EXPECT_TRUE(b.step(commands, kFlightStepS).ok());
     }
     const Eigen::Vector3d drift = b.state().position_world_m - a.state().position_world_m;
     EXPECT_LT((drift - seconds * windy.wind_world_m_s).norm(), 1e-6) << name;
@@ -142,7 +143,7 @@ TEST(Aircraft, CrossWindGivesTheDriftAngle) {
   request.throttle = 0.0;
   const Trim flight = trim(setup.airframe, setup.environment, request).value();
   Aircraft aircraft = cruising(setup, flight);
-  for (int i = 0; i < 4; ++i) aircraft.step(flight.controls, kFlightStepS);
+  for (int i = 0; i < 4; ++i) EXPECT_TRUE(aircraft.step(flight.controls, kFlightStepS).ok());
   const AircraftState truth = aircraft.truth(0);
   EXPECT_NEAR(std::atan2(truth.v_body_world_m_s.x(), truth.v_body_world_m_s.y()),
               std::atan(8.0 / (25.0 * std::cos(flight.climb_rad))),
@@ -175,7 +176,7 @@ TEST(Aircraft, SurvivesEveryTumbleAndFallsSlowerThanItsTerminalSpeed) {
       Aircraft aircraft = Aircraft::create(setup, start, held).value();
       const double energy_start = energy_j(aircraft);
       for (int i = 0; i < 30 * 400; ++i) {
-        aircraft.step(held, kFlightStepS);
+        EXPECT_TRUE(aircraft.step(held, kFlightStepS).ok());
         const BodyState& state = aircraft.state();
         ASSERT_TRUE(state.position_world_m.allFinite() && state.v_body_m_s.allFinite() &&
                     state.omega_body_rad_s.allFinite());
@@ -197,7 +198,7 @@ TEST(Aircraft, TailSlideEndsNoseDown) {
     Aircraft aircraft = Aircraft::create(setup, start, {}).value();
     double lowest_pitch = 1.0, forward = -1e9;
     for (int i = 0; i < 20 * 400; ++i) {
-      aircraft.step({}, kFlightStepS);
+      EXPECT_TRUE(aircraft.step({}, kFlightStepS).ok());
       lowest_pitch = std::min(lowest_pitch, attitude_from(aircraft.state().R_world_body).pitch_rad);
       forward = std::max(forward, aircraft.state().v_body_m_s.x());
     }
@@ -216,7 +217,7 @@ TEST(Aircraft, ConvergesWithTheStep) {
       Controls commands = flight.controls;
       commands.aileron_rad += piece < 2 ? 0.15 : piece < 4 ? -0.15 : 0.05;
       const auto steps = static_cast<int>(std::lround(0.5 / dt_s));
-      for (int i = 0; i < steps; ++i) aircraft.step(commands, dt_s);
+      for (int i = 0; i < steps; ++i) EXPECT_TRUE(aircraft.step(commands, dt_s).ok());
     }
     return aircraft.state();
   };
@@ -238,7 +239,8 @@ TEST(Aircraft, IsAFunctionOfItsInput) {
   setup.turbulence_seed = 78;
   Aircraft c = cruising(setup, flight);
   for (int i = 0; i < 4000; ++i) {
-    for (Aircraft* aircraft : {&a, &b, &c}) aircraft->step(flight.controls, kFlightStepS);
+    for (Aircraft* aircraft : {&a, &b, &c})
+      EXPECT_TRUE(aircraft->step(flight.controls, kFlightStepS).ok());
   }
   EXPECT_EQ(a.state().position_world_m, b.state().position_world_m);
   EXPECT_EQ(a.state().R_world_body.coeffs(), b.state().R_world_body.coeffs());
@@ -262,7 +264,7 @@ TEST(Aircraft, OneStepIsThatOfItsParts) {
   const Controls commands{-0.2, 0.2, -0.1, 0.9};
   const double dt_s = 0.005;
   Aircraft aircraft = Aircraft::create(setup, start, positions).value();
-  aircraft.step(commands, dt_s);
+  EXPECT_TRUE(aircraft.step(commands, dt_s).ok());
 
   // The same gusts, met along the horizontal airspeed 150 m above the ground.
   Turbulence air(TurbulenceLevel::kSevere, setup.airframe.wing.span_m, 5);
@@ -301,7 +303,7 @@ TEST(Aircraft, TurbulenceShakesTheAirAroundTheSteadyWind) {
   Eigen::Vector3d squares = Eigen::Vector3d::Zero();
   int count = 0;
   for (int i = 0; i < 400 * 400; ++i) {
-    aircraft.step(flight.controls, kFlightStepS);
+    EXPECT_TRUE(aircraft.step(flight.controls, kFlightStepS).ok());
     if (i % 400 == 0) {
       const Eigen::Vector3d gust = aircraft.air_velocity_world_m_s() - setup.wind_world_m_s;
       sum += gust;
@@ -325,10 +327,33 @@ TEST(Aircraft, LongStepsAtHighRatesAreDivided) {
   start.v_body_m_s = {200.0, 20.0, 10.0};
   start.omega_body_rad_s = {80.0, 30.0, 30.0};
   Aircraft aircraft = Aircraft::create(setup, start, {}).value();
-  for (int i = 0; i < 500; ++i) aircraft.step({}, kStepMaxS);
+  for (int i = 0; i < 500; ++i) EXPECT_TRUE(aircraft.step({}, kStepMaxS).ok());
   EXPECT_TRUE(aircraft.state().position_world_m.allFinite());
   EXPECT_LT(aircraft.air_data().airspeed_m_s, 60.0);
   EXPECT_LT(aircraft.state().omega_body_rad_s.norm(), 20.0);
+}
+
+/// A side force that grows with the yaw rate adds energy without a limit.
+TEST(Aircraft, AMotionThatDivergesIsAnError) {
+  AircraftSetup setup = setup_of("foam_trainer");
+  setup.airframe.mass_kg = 0.2;
+  setup.airframe.side.yaw_rate = 1.23065;
+  setup.airframe.side.rudder = 1.18102;
+  setup.airframe.lift.zero = 1.46338;
+  setup.airframe.yaw.yaw_rate = 0.5;
+  BodyState start;
+  start.v_body_m_s = {20.0, 3.0, -4.0};
+  start.omega_body_rad_s = {5.0, -3.0, 2.0};
+  Aircraft aircraft = Aircraft::create(setup, start, {0.0, 0.0, 0.0, 1.0}).value();
+  Status status;
+  for (int i = 0; i < 1000 && status; ++i) status = aircraft.step({0.3, -0.3, 0.3, 1.0}, 0.01);
+  ASSERT_FALSE(status.ok());
+  EXPECT_EQ(status.error().code, ErrorCode::kInvalidArgument);
+  EXPECT_NE(status.error().message.find("a coefficient adds energy"), std::string::npos);
+  // The state stays the last good one, and so does the error.
+  EXPECT_LE(aircraft.state().v_body_m_s.norm(), kSpeedMaxMS);
+  EXPECT_LE(aircraft.state().omega_body_rad_s.norm(), kRateMaxRadS);
+  EXPECT_FALSE(aircraft.step({}, 0.01).ok());
 }
 
 TEST(Aircraft, TellsItsTruth) {

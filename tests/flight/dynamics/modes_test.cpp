@@ -128,7 +128,7 @@ TEST(LinearModel, PredictsSmallDeviationsOfTheAircraft) {
     start.R_world_body = R_world_body_from({lat(3), flight.pitch_rad + lon(3), 0.0});
     Aircraft aircraft = Aircraft::create(setup, start, flight.controls).value();
     const double seconds = 2.0;
-    for (int i = 0; i < 800; ++i) aircraft.step(flight.controls, seconds / 800);
+    for (int i = 0; i < 800; ++i) EXPECT_TRUE(aircraft.step(flight.controls, seconds / 800).ok());
     const BodyState& end = aircraft.state();
     const RollPitchYaw attitude = attitude_from(end.R_world_body);
     const Eigen::Vector3d dv = end.v_body_m_s - flight.v_body_m_s();

@@ -86,7 +86,7 @@ TEST(Trim, FliesTheCircleThatWasAsked) {
     const Eigen::Vector3d right(track.y(), -track.x(), 0.0);
     const double half_s = kPi * 4.0;
     const int steps = static_cast<int>(std::ceil(half_s / 0.0025));
-    for (int i = 0; i < steps; ++i) aircraft.step(turn->controls, half_s / steps);
+    for (int i = 0; i < steps; ++i) EXPECT_TRUE(aircraft.step(turn->controls, half_s / steps).ok());
     const Eigen::Vector3d opposite = 2.0 * *request.radius_m * right.normalized();
     EXPECT_LT((aircraft.state().position_world_m - opposite).norm(), 1e-4) << name;
   }

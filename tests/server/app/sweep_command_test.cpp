@@ -102,6 +102,39 @@ TEST_F(SweepCommand, ContinuesAfterItWasKilled) {
   expect_continued("s3");
 }
 
+TEST_F(SweepCommand, ComparesTwoSweepsFlightByFlight) {
+  SKIP_WITHOUT_EGL();
+  for (const char* out : {"s5", "s6"}) ASSERT_EQ(overfly_program(arguments(out)).exit_code, 0);
+  // One flight of the candidate was lost.
+  std::string results = read_text(path("s5/results.jsonl"));
+  results.replace(results.find("COMPLETED"), 9, "LOST");
+  write_text(path("s5/results.jsonl"), results);
+  const auto compare = [](std::vector<std::string> conditions) {
+    std::vector<std::string> words{"compare", path("s5"), path("s6"), "--junit", path("junit.xml")};
+    for (const std::string& condition : conditions) {
+      words.insert(words.end(), {"--fail-if", condition});
+    }
+    return overfly_program(words);
+  };
+  const Outcome good =
+      compare({"success_rate < 0.8", "max(position_rmse_m) > 2 * baseline + 0.001"});
+  EXPECT_EQ(good.exit_code, 0) << good.out << good.err;
+  EXPECT_THAT(good.out, HasSubstr("6 flights in both sweeps; 0 without a pair"));
+  EXPECT_THAT(read_text(path("junit.xml")), HasSubstr(R"(tests="2" failures="0" errors="0")"));
+  const Outcome bad = compare({"success_rate < baseline", "mean(position_rmse_m) > 1"});
+  EXPECT_EQ(bad.exit_code, 1);
+  EXPECT_THAT(bad.out, HasSubstr("FAILED  success_rate < baseline  (0.8333"));
+  EXPECT_THAT(bad.out, HasSubstr("passed  mean(position_rmse_m) > 1"));
+  const std::string junit = read_text(path("junit.xml"));
+  EXPECT_THAT(junit, HasSubstr(R"(tests="2" failures="1" errors="0")"));
+  EXPECT_THAT(junit, HasSubstr(R"(name="success_rate &lt; baseline"><failure message="0.8333)"));
+  EXPECT_EQ(compare({"success < 1"}).exit_code, 2);
+  const Outcome none =
+      overfly_program({"compare", path("s5"), path("absent"), "--fail-if", "success_rate < 1"});
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_THAT(none.err, HasSubstr("no flight was completed in both"));
+}
+
 TEST_F(SweepCommand, NamesWhatIsInvalid) {
   write_text(file(),
              R"({"format_version": 1, "scenario": ")" + scenario_file() +

@@ -1,0 +1,137 @@
+#include "server/experiments/compare_sweeps.hpp"
+
+#include <map>
+#include <utility>
+
+#include "core/text/number_text.hpp"
+#include "server/experiments/sweep_results.hpp"
+#include "server/scoring/run_metrics_json.hpp"
+
+namespace overfly::server::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+
+using ResultsByFlight = std::map<std::string, const SweepResult*>;
+
+/// Completed flights by what they have in common with the other sweep's. A flight that was flown by
+/// several versions of the program counts once.
+ResultsByFlight results_by_flight(const SweepResults& results,
+                                  const std::string& estimator,
+                                  std::size_t& failed) {
+  ResultsByFlight by_flight;
+  for (const auto& [key, result] : results.by_key()) {
+    if (!estimator.empty() && result.estimator != estimator) continue;
+    if (!result.completed()) {
+      ++failed;
+      continue;
+    }
+    const nlohmann::json identity = {result.cell, result.repeat, result.seed, result.estimator};
+    by_flight.insert_or_assign(identity.dump(), &result);
+  }
+  return by_flight;
+}
+
+Status add_values(const fs::path& sweep,
+                  const SweepResult& result,
+                  evaluation::AlignmentMode mode,
+                  FlightValues& values) {
+  const Result<RunMetrics> metrics = read_run_metrics(sweep / result.run);
+  if (!metrics) return metrics.error();
+  const auto estimator = metrics->estimators.find(result.estimator);
+  if (estimator == metrics->estimators.end()) {
+    return Error{ErrorCode::kUnreadable,
+                 (sweep / result.run).string() + ": has no estimator " + result.estimator};
+  }
+  const evaluation::Score& score = estimator->second.score;
+  const bool success = result.outcome == evaluation::Outcome::kCompleted;
+  values["success_rate"].push_back(success ? 1.0 : 0.0);
+  values["coverage"].push_back(score.coverage);
+  values["reset_count"].push_back(score.reset_count);
+  if (score.initialised_at_s) values["initialised_at_s"].push_back(*score.initialised_at_s);
+  const auto alignment = score.alignments.find(mode);
+  if (!success || alignment == score.alignments.end()) return {};
+  values["position_rmse_m"].push_back(alignment->second.position_m.rmse);
+  values["position_rmse_hold_m"].push_back(alignment->second.position_rmse_hold_m);
+  if (alignment->second.rotation_deg) {
+    values["rotation_rmse_deg"].push_back(alignment->second.rotation_deg->rmse);
+  }
+  return {};
+}
+
+std::string xml_text(const std::string& text) {
+  std::string safe;
+  for (const char c : text) {
+    if (c == '&') {
+      safe += "&amp;";
+    } else if (c == '<') {
+      safe += "&lt;";
+    } else if (c == '>') {
+      safe += "&gt;";
+    } else if (c == '"') {
+      safe += "&quot;";
+    } else {
+      safe += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+    }
+  }
+  return safe;
+}
+
+}  // namespace
+
+Result<PairedSweeps> pair_sweeps(const fs::path& sweep,
+                                 const fs::path& baseline,
+                                 const std::string& estimator,
+                                 evaluation::AlignmentMode mode) {
+  const Result<SweepResults> first = SweepResults::read(sweep);
+  if (!first) return first.error();
+  const Result<SweepResults> second = SweepResults::read(baseline);
+  if (!second) return second.error();
+  PairedSweeps paired;
+  const ResultsByFlight flights = results_by_flight(*first, estimator, paired.failed);
+  const ResultsByFlight references = results_by_flight(*second, estimator, paired.failed);
+  for (const auto& [flight, result] : flights) {
+    const auto reference = references.find(flight);
+    if (reference == references.end()) continue;
+    ++paired.pairs;
+    if (Status status = add_values(sweep, *result, mode, paired.flights); !status) {
+      return status.error();
+    }
+    if (Status status = add_values(baseline, *reference->second, mode, paired.baseline); !status) {
+      return status.error();
+    }
+  }
+  paired.without_pair = flights.size() + references.size() - 2 * paired.pairs;
+  if (paired.pairs == 0) {
+    return Error{ErrorCode::kNotFound,
+                 sweep.string() + " and " + baseline.string() +
+                     ": no flight was completed in both (same cell, repeat, seed and estimator)"};
+  }
+  return paired;
+}
+
+std::string junit_from(const std::vector<JudgedCondition>& conditions) {
+  std::size_t failures = 0;
+  std::size_t errors = 0;
+  std::string cases;
+  for (const JudgedCondition& condition : conditions) {
+    cases += "  <testcase classname=\"overfly.compare\" name=\"" + xml_text(condition.text) + "\"";
+    if (!condition.verdict) {
+      ++errors;
+      cases +=
+          "><error message=\"" + xml_text(condition.verdict.error().message) + "\"/></testcase>\n";
+    } else if (condition.verdict->holds) {
+      ++failures;
+      cases += "><failure message=\"" + number_text(condition.verdict->left) + " against " +
+               number_text(condition.verdict->right) + "\"/></testcase>\n";
+    } else {
+      cases += "/>\n";
+    }
+  }
+  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"overfly compare\" "
+         "tests=\"" +
+         std::to_string(conditions.size()) + "\" failures=\"" + std::to_string(failures) +
+         "\" errors=\"" + std::to_string(errors) + "\">\n" + cases + "</testsuite>\n";
+}
+
+}  // namespace overfly::server::experiments

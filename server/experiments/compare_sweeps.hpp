@@ -1,0 +1,42 @@
+// Two sweeps flight by flight: the flights that both have, and conditions on them.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "evaluation/evaluation.hpp"
+#include "server/experiments/condition.hpp"
+
+namespace overfly::server::experiments {
+
+/// The flights of two sweeps that have the same cell, repeat and estimator and were completed in
+/// both.
+struct PairedSweeps {
+  FlightValues flights;   ///< of the first sweep, with "success_rate" as 0 or 1
+  FlightValues baseline;  ///< of the second
+  std::size_t pairs = 0;
+  std::size_t without_pair = 0;  ///< flights that only one of the sweeps has completed
+  std::size_t failed = 0;        ///< flights of either sweep that failed
+};
+
+/// Errors of positions and rotations are those of flights with the outcome COMPLETED; coverage and
+/// resets are those of all flights.
+/// @param estimator  only its flights; all if empty
+/// Errors: as SweepResults::read; as read_run_metrics; kNotFound if no flight has a pair.
+[[nodiscard]] Result<PairedSweeps> pair_sweeps(const std::filesystem::path& sweep,
+                                               const std::filesystem::path& baseline,
+                                               const std::string& estimator,
+                                               evaluation::AlignmentMode mode);
+
+/// A condition and what became of it.
+struct JudgedCondition {
+  std::string text;
+  Result<Condition::Verdict> verdict = Condition::Verdict{};
+};
+
+/// Test results in JUnit's XML: one case for each condition, which fails if the condition holds.
+[[nodiscard]] std::string junit_from(const std::vector<JudgedCondition>& conditions);
+
+}  // namespace overfly::server::experiments
