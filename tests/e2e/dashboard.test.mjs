@@ -96,6 +96,8 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
   });
 
   step("shows the truth's and the estimate's pose at the cursor", async () => {
+    // Over a plot the mouse would choose the instant that is read out.
+    await dashboard.page.mouse.move(1, 1);
     const { frame } = await dashboard.playback();
     const shown = await dashboard.page.locator('.plot[data-axis=y_m] .readout').allInnerTexts();
     for (const [i, name] of ['truth', 'feature'].entries()) {
@@ -220,6 +222,7 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
         },
         [width, height],
       );
+      await dashboard.untilSettled();
       await dashboard.untilSameInstant();
       const overflow = await dashboard.page.evaluate(() => {
         const { scrollWidth, scrollHeight } = document.documentElement;

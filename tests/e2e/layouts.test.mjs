@@ -48,6 +48,11 @@ describe('the frame of the dashboard', { skip, timeout: 900_000 }, () => {
       }),
     );
 
+  const settledGroups = async () => {
+    await dashboard.untilSettled();
+    return groups();
+  };
+
   const chooseLayout = async (name) => {
     await page.locator('[data-role=layout-menu]').click();
     await page.locator(`[data-choose-layout="${name}"]`).click();
@@ -147,7 +152,7 @@ describe('the frame of the dashboard', { skip, timeout: 900_000 }, () => {
           return tabs.includes('Log') && tabs.includes('Errors');
         }).length === 1,
     );
-    const scene = (await groups()).find(({ tabs }) => tabs.includes('3D view'));
+    const scene = (await settledGroups()).find(({ tabs }) => tabs.includes('3D view'));
     await page.mouse.move(scene.left - 3, 400);
     await page.mouse.down();
     await page.mouse.move(scene.left + 77, 400, { steps: 6 });
@@ -157,10 +162,10 @@ describe('the frame of the dashboard', { skip, timeout: 900_000 }, () => {
       const { changed } = JSON.parse(localStorage.getItem('overfly.layouts') ?? '{}');
       return changed != null && Math.abs(changed.parts[0].size - left) < 30;
     }, scene.left + 80);
-    const before = await groups();
+    const before = await settledGroups();
     await page.reload();
     await dashboard.until((count) => document.querySelectorAll('.dv-groupview').length === count, before.length);
-    const after = await groups();
+    const after = await settledGroups();
     for (const [i, { tabs, left, top }] of before.entries()) {
       assert.deepEqual(after[i].tabs, tabs);
       assert.ok(Math.hypot(after[i].left - left, after[i].top - top) < 6, `${tabs} has moved`);
@@ -274,12 +279,17 @@ describe('the frame of the dashboard', { skip, timeout: 900_000 }, () => {
   });
 
   step('stacks the panels on narrow screens', async () => {
+    await chooseLayout('fly');
     for (const [width, height] of [
       [390, 844],
       [768, 1024],
     ]) {
       await page.setViewportSize({ width, height });
-      await dashboard.until(() => document.querySelectorAll('.stacked .panel').length === 8);
+      await dashboard.until(
+        (count) => document.querySelectorAll('.stacked .panel').length === count,
+        kLayouts.fly.length,
+      );
+      await dashboard.untilSettled();
       const { over, outside } = await page.evaluate(() => ({
         over: document.documentElement.scrollWidth - window.innerWidth,
         outside: [...document.querySelectorAll('.stacked, .panel-host, .header-bar > *, .timeline > *')]

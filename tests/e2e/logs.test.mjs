@@ -98,7 +98,9 @@ describe('flight logs', { skip, timeout: 900_000 }, () => {
     await dashboard.until(() =>
       document.querySelector('[data-role=log-hint]').textContent.includes(' s'),
     );
-    assert.match(await page.locator('[data-role=log-place]').innerText(), /E -?\d+ m, N -?\d+ m · 4\d\./);
+    // The places of the recording itself arrive after the box was unchecked.
+    const place = page.locator('[data-role=log-place]');
+    await place.filter({ hasText: /E -?\d+ m, N -?\d+ m · 4\d\./ }).waitFor();
     assert.match(await page.locator('[data-log-plot=speed] .readout').innerText(), /^\d+\.\d$/);
   });
 
@@ -148,7 +150,9 @@ describe('flight logs', { skip, timeout: 900_000 }, () => {
   });
 
   step('selects a slice by dragging in a plot', async () => {
-    const box = await page.locator('[data-log-plot=height] .u-over').boundingBox();
+    const plot = page.locator('[data-log-plot=height] .u-over');
+    await plot.waitFor();
+    const box = await plot.boundingBox();
     const y = box.y + box.height / 2;
     await page.mouse.move(box.x + box.width * 0.1, y);
     await page.mouse.down();

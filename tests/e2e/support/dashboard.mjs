@@ -26,6 +26,30 @@ export class Dashboard {
     await this.page.waitForFunction(condition, argument, { timeout, polling: 50 });
   }
 
+  /**
+   * Waits until the layout has its place: after a new window size or a moved panel it takes it in
+   * steps. Two looks at the panels, ten frames apart, must agree.
+   */
+  async untilSettled() {
+    await this.page.evaluate(async (patience_ms) => {
+      const look = () =>
+        JSON.stringify(
+          [...document.querySelectorAll('.header-bar, .timeline, .dv-groupview, .panel')].map((part) => {
+            const { left, top, width, height } = part.getBoundingClientRect();
+            return [left, top, width, height];
+          }),
+        );
+      const frame = () => new Promise((done) => requestAnimationFrame(done));
+      const end = performance.now() + patience_ms;
+      let seen = '';
+      while (look() !== seen) {
+        if (performance.now() > end) throw new Error('the layout does not come to rest');
+        seen = look();
+        for (let i = 0; i < 10; i++) await frame();
+      }
+    }, kPatience_ms);
+  }
+
   field(name) {
     return this.page.locator(`[id="field-${name}"]`);
   }
