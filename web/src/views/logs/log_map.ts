@@ -51,6 +51,11 @@ export class LogMap {
     this.outlines = outlines;
     setAttribute(this.root, 'data-worlds', String(outlines.length));
     this.fit();
+    // The place under a mouse at rest is another one on another track.
+    const [first, last] = [track?.t_s[0] ?? Infinity, track?.t_s.at(-1) ?? -Infinity];
+    const { cursor_s } = this;
+    this.moveCursor(cursor_s !== null && cursor_s >= first && cursor_s <= last ? cursor_s : null);
+    if (this.cursor_s === null) setText(this.place, '');
   }
 
   showSlice(slice: readonly [number, number] | null): void {
