@@ -6,7 +6,7 @@ import { readFileSync } from 'node:fs';
 import path from 'node:path';
 import { after, before, describe } from 'node:test';
 import { browserMissing } from './support/browser.mjs';
-import { programFile, serverMissing, sourceFile } from './support/server.mjs';
+import { getJson, programFile, serverMissing, sourceFile } from './support/server.mjs';
 import { openStage } from './support/stage.mjs';
 import { makeStep } from './support/steps.mjs';
 
@@ -109,11 +109,15 @@ describe('two flights compared', { skip, timeout: 600_000 }, () => {
     const offset = page.getByLabel('Offset of run B in seconds');
     await offset.fill('4');
     await offset.press('Enter');
+    const truth = await getJson(stage.server, `/runs/${kFast}/trajectories/truth?format=json`);
+    const begin = `B ${truth.y_m[0].toFixed(1).replace('-', '−')}`;
     await dashboard.seekAt('.track .bar', 0.25);
-    await dashboard.until(() => {
+    // The plots take the offset a moment after the clock.
+    await dashboard.until((text) => {
       const axis = document.querySelector('[data-panel=plots] [data-axis=y_m]');
-      return axis.querySelectorAll('.readout').length === 4;
-    });
+      const shown = [...axis.querySelectorAll('.readout')];
+      return shown.length === 4 && shown[2].innerText === text;
+    }, begin);
     const early = await readouts('y_m');
     await dashboard.seekAt('.track .bar', 0.35);
     const later = await readouts('y_m');

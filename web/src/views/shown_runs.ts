@@ -14,14 +14,20 @@ import type { Context } from './view';
 export class ShownRuns {
   readonly root = h('ul', { class: 'shown-runs', 'aria-label': 'Runs shown together' });
 
+  /** An offset is being typed: new entries would throw it away. */
+  private typing = false;
+  /** Inputs of the offsets, by run. */
+  private readonly offsets = new Map<string, HTMLInputElement>();
+
   constructor(private readonly context: Context) {}
 
   draw(state: State): void {
+    if (this.typing) return;
     const { watched, runId } = state;
     const tracks = tracksOf(state);
     const drawn = tracks.map(({ label, shown }) => [label, shown]);
     const names = distinguishingNames(watched.flatMap(({ run }) => run ?? []));
-    const runs = watched.map(({ id, offset_ns }) => [id, names.get(id), offset_ns]);
+    const runs = watched.map(({ id }) => [id, names.get(id)]);
     rebuild(this.root, JSON.stringify([drawn, runs, runId]), () =>
       watched.length < 2
         ? []
@@ -34,6 +40,11 @@ export class ShownRuns {
             ),
           ),
     );
+    for (const { id, offset_ns } of watched) {
+      const offset = this.offsets.get(id);
+      const text = offsetText(offset_ns);
+      if (offset !== undefined && offset.value !== text) offset.value = text;
+    }
     this.root.hidden = watched.length < 2;
   }
 
@@ -44,14 +55,20 @@ export class ShownRuns {
     const offset = h('input', {
       type: 'number',
       step: 0.1,
-      value: formatNumber(offset_ns / 1e9, 3).replace('−', '-'),
+      value: offsetText(offset_ns),
       'aria-label': `Offset of run ${letter} in seconds`,
       title: 'Time of the clock at which this run begins [s]',
-      onchange: () => {
+      oninput: () => {
+        this.typing = true;
         const seconds = offset.valueAsNumber;
         if (Number.isFinite(seconds)) session.setOffset(id, Math.round(seconds * 1e9));
       },
+      onblur: () => {
+        this.typing = false;
+        this.draw(store.state);
+      },
     });
+    this.offsets.set(id, offset);
     return h(
       'li',
       { class: 'shown-run', 'data-shown-run': id, 'aria-current': isMain ? 'true' : 'false' },
@@ -96,4 +113,8 @@ export class ShownRuns {
       text,
     );
   }
+}
+
+function offsetText(offset_ns: number): string {
+  return formatNumber(offset_ns / 1e9, 3).replace('−', '-');
 }
