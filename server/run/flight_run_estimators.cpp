@@ -70,7 +70,8 @@ Port FlightRun::open_estimator(const EstimatorSpec& spec) {
                                  *folder,
                                  scenario_.rate.hz(),
                                  options_.cancel,
-                                 scenario_.has_sensors() || flies_log};
+                                 scenario_.has_sensors() || flies_log,
+                                 scenario_.cameras[spec.camera].T_body_camera};
   if (is_outside_estimator(spec.type)) return create_estimator(spec, setting, truth);
   // Also binds the threads that a native estimator starts at once.
   const AffinityGuard guard;

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "server/scenario/estimator_spec.hpp"
+
 namespace overfly::server::experiments {
 namespace {
 
@@ -57,7 +59,7 @@ CellScores scores_of(const SweepScores& scores,
   std::vector<ErrorValues> values(all_conventions().size());
   for (const FlightScore& flight : scores.flights) {
     if (flight.estimator != estimator || flight.cell != cell) continue;
-    row.baseline = is_baseline(flight.type);
+    row.baseline = is_baseline_estimator(flight.type);
     ++row.flights;
     row.initialised += flight.score.initialised_at_s ? 1 : 0;
     row.completed += flight.outcome == Outcome::kCompleted ? 1 : 0;
@@ -101,8 +103,6 @@ const std::vector<ErrorConvention>& all_conventions() {
 
 const ErrorConvention& paper_convention() { return all_conventions()[0]; }
 const ErrorConvention& sim3_convention() { return all_conventions()[1]; }
-
-bool is_baseline(const std::string& type) { return type.starts_with("baseline_"); }
 
 std::vector<CellScores> cell_scores(const SweepScores& scores) {
   std::vector<CellScores> rows;
