@@ -35,7 +35,9 @@ void keep(std::vector<double>& values, const std::optional<double>& value) {
   if (value && std::isfinite(*value)) values.push_back(*value);
 }
 
-void add_flight(const FlightScore& flight, const ErrorConvention& convention, ErrorValues& values) {
+void add_flight_errors(const FlightScore& flight,
+                       const ErrorConvention& convention,
+                       ErrorValues& values) {
   const auto found = flight.score.alignments.find(convention.mode);
   if (!convention.counts(flight) || found == flight.score.alignments.end()) return;
   const evaluation::AlignmentScore& score = found->second;
@@ -67,7 +69,7 @@ CellScores scores_of(const SweepScores& scores,
     ++row.outcomes[evaluation::to_string(flight.outcome)];
     row.runs.push_back(flight.run);
     for (std::size_t i = 0; i < values.size(); ++i) {
-      add_flight(flight, all_conventions()[i], values[i]);
+      add_flight_errors(flight, all_conventions()[i], values[i]);
     }
   }
   row.success = evaluation::wilson_interval(row.completed, row.flights);
