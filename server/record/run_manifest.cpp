@@ -137,6 +137,7 @@ void put_run_info(const RunInfo& info, RunManifest& manifest) {
 
 void put_description(const RunManifest& manifest, RunInfo* info) {
   info->seed = manifest.seed;
+  info->epoch_utc_ns = manifest.epoch_utc_ns;
   if (manifest.flight) info->flight = manifest.flight->description;
   if (!manifest.world) return;
   info->attribution = manifest.world->attribution;

@@ -1,7 +1,6 @@
 #include "server/views/view_painter.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <limits>
 #include <optional>
 #include <string>
@@ -9,9 +8,9 @@
 #include <utility>
 
 #include "core/measure/processor_time.hpp"
-#include "server/record/map_points.hpp"
 #include "server/record/rows/rows.hpp"
 #include "server/record/run_folder.hpp"
+#include "server/timeline/recorded_points.hpp"
 #include "server/timeline/run_timeline.hpp"
 #include "server/views/view_scene.hpp"
 
@@ -40,41 +39,6 @@ std::optional<FrameRow> row_of(const RunTimeline& timeline,
                                std::size_t camera) {
   if (!request.live) return timeline.frame_at(request.t_ns, camera);
   return timeline.frame_at(std::numeric_limits<std::int64_t>::max(), camera);
-}
-
-/// Number of the last file NNNNNN.* in a folder at or before `frame`.
-std::optional<std::int64_t> last_recorded(const fs::path& folder, std::int64_t frame) {
-  std::optional<std::int64_t> last;
-  std::error_code error;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
-       entry.increment(error)) {
-    const std::string name = entry->path().stem().string();
-    std::int64_t number = 0;
-    const char* name_end = name.data() + name.size();
-    const auto [rest, failure] = std::from_chars(name.data(), name_end, number);
-    if (failure != std::errc() || rest != name_end || number > frame) continue;
-    if (!last || number > *last) last = number;
-  }
-  return last;
-}
-
-/// The map points that an estimator observed last at or before a frame, world frame; empty if there
-/// are none that can be read, and while it does not track.
-std::vector<Eigen::Vector3f> recorded_points(const fs::path& folder,
-                                             const RunTimeline& timeline,
-                                             const ViewRibbons& ribbons,
-                                             const FrameRow& row,
-                                             std::size_t estimator) {
-  const auto& alignment = ribbons.alignment_of(estimator);
-  const auto estimate = timeline.estimate_at(estimator, row.t_ns);
-  if (!alignment || !estimate || estimate->sample.state != TrackingState::kTracking) return {};
-  const std::string& name = timeline.estimators()[estimator];
-  const auto frame = last_recorded(map_points_file(folder, name, 0).parent_path(), row.frame);
-  if (!frame) return {};
-  const auto points = read_map_points(map_points_file(folder, name, *frame));
-  if (!points) return {};
-  const auto S_world_vo = alignment->S_world_vo(estimate->sample.map_id, points->S_world_vo);
-  return S_world_vo ? in_world(*points, *S_world_vo) : std::vector<Eigen::Vector3f>();
 }
 
 /// Stamp of a frame at or before `row`. Row i holds frame i, or a later frame if some were skipped.
@@ -164,7 +128,8 @@ ViewPainter::Painted ViewPainter::paint_debug(const PictureRequest& request,
   const auto folder = runs_.folder(request.run_id);
   if (!folder) return folder.error();
   const std::string& name = timeline.estimators()[request.estimator];
-  const auto frame = last_recorded(debug_image_file(*folder, name, 0).parent_path(), row.frame);
+  const auto frame =
+      last_recorded_frame(debug_image_file(*folder, name, 0).parent_path(), row.frame);
   if (!frame) {
     return Error{ErrorCode::kNotFound,
                  "estimator " + name + " has no picture up to frame " + std::to_string(row.frame)};
@@ -221,8 +186,8 @@ std::vector<Eigen::Vector3f> ViewPainter::map_points(const PictureRequest& reque
     std::vector<Eigen::Vector3f> points;
     if (request.live) {
       points = timeline.live_points(i);
-    } else if (folder) {
-      points = recorded_points(*folder, timeline, ribbons, row, i);
+    } else if (const auto& alignment = ribbons.alignment_of(i); folder && alignment) {
+      points = recorded_points(*folder, timeline, i, *alignment, row);
     }
     all.insert(all.end(), points.begin(), points.end());
   }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "server/net/http/json_text.hpp"
+#include "server/net/stream/picture_codec.hpp"
 
 namespace overfly::net {
 namespace {
@@ -206,7 +207,8 @@ void PictureStreams::ready(const PictureTicket& ticket,
   header.encoding = picture->grey ? PictureEncoding::kJpegGrey : PictureEncoding::kJpegColour;
   header.payload_bytes = static_cast<std::uint32_t>(picture->jpeg->size());
   header.live = stream->live;
-  port->send_picture(ticket, header, picture->jpeg);
+  const auto head = encode_picture_header(header);
+  port->send_picture(ticket, {head.begin(), head.end()}, picture->jpeg);
 }
 
 void PictureStreams::tell_error(Stream* stream, const Error& error, ViewerPort* port) {
