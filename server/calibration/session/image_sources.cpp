@@ -77,8 +77,8 @@ class VirtualBoards final : public BoardImages {
   [[nodiscard]] Next next(std::chrono::milliseconds /*patience*/) override {
     if (ended()) return std::optional<BoardImage>();
     const std::size_t view = next_++;
-    return std::optional(BoardImage{image_title("virtual view", static_cast<std::int64_t>(view) + 1),
-                                    camera_.image(view)});
+    return std::optional(BoardImage{
+        image_title("virtual view", static_cast<std::int64_t>(view) + 1), camera_.image(view)});
   }
   [[nodiscard]] bool ended() const override { return next_ == camera_.views(); }
   [[nodiscard]] std::optional<std::size_t> total() const override { return camera_.views(); }

@@ -16,11 +16,11 @@ namespace {
 using namespace std::chrono_literals;
 using calibration::CalibratorOptions;
 using calibration::LensChoice;
-using testing::ListedImages;
 using testing::board_images;
-using testing::kSessionBoard;
-using testing::session_camera;
 using ::testing::HasSubstr;
+using testing::kSessionBoard;
+using testing::ListedImages;
+using testing::session_camera;
 
 SessionRequest request_for(OpenBoardImages open) {
   SessionRequest request;
@@ -32,8 +32,7 @@ SessionRequest request_for(OpenBoardImages open) {
 
 OpenBoardImages listed(std::vector<Image> images, ListedImages::Behaviour behaviour = {}) {
   return [images = std::move(images), behaviour](const std::atomic<bool>*) {
-    return Result<std::unique_ptr<BoardImages>>(
-        std::make_unique<ListedImages>(images, behaviour));
+    return Result<std::unique_ptr<BoardImages>>(std::make_unique<ListedImages>(images, behaviour));
   };
 }
 
@@ -138,18 +137,19 @@ TEST(CalibrationSession, EstimatesFromWhatCameBeforeTheSourceFailed) {
 }
 
 TEST(CalibrationSession, ReportsASourceThatCannotBeOpened) {
-  const auto session = CalibrationSession::begin(request_for([](const std::atomic<bool>*) {
-                         return Result<std::unique_ptr<BoardImages>>(
-                             Error{ErrorCode::kIo, "no camera there"});
-                       })).value();
+  const auto session =
+      CalibrationSession::begin(request_for([](const std::atomic<bool>*) {
+        return Result<std::unique_ptr<BoardImages>>(Error{ErrorCode::kIo, "no camera there"});
+      })).value();
   const SessionState state = wait_for(
       *session, [](const SessionState& now) { return now.phase == SessionPhase::kFailed; });
   EXPECT_EQ(state.error, "no camera there");
 }
 
 TEST(CalibrationSession, ContainsExceptionsOfItsThread) {
-  const auto session = CalibrationSession::begin(request_for(
-      [](const std::atomic<bool>*) -> Result<std::unique_ptr<BoardImages>> {
+  const auto session =
+      CalibrationSession::begin(request_for([](const std::atomic<bool>*)
+                                                -> Result<std::unique_ptr<BoardImages>> {
         throw std::bad_alloc();
       })).value();
   const SessionState state = wait_for(
@@ -181,7 +181,8 @@ TEST(CalibrationSession, TakesOfALiveCameraWhatIsUsefulOrAskedFor) {
   session->clear();
   session->set_automatic(false);
   state = wait_for(*session, [&](const SessionState& now) {
-    return now.views.empty() && !now.recent.empty() && now.recent.back()->verdict == "not asked for";
+    return now.views.empty() && !now.recent.empty() &&
+           now.recent.back()->verdict == "not asked for";
   });
   ASSERT_TRUE(session->capture());
   state = wait_for(*session, [](const SessionState& now) { return now.views.size() == 1; });

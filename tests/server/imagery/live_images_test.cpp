@@ -171,8 +171,10 @@ TEST_F(LiveVideo, NamesTheCameraThatDoesNotAnswer) {
     answer.status = 404;
     return answer;
   });
-  for (const std::string& url : {text.address() + "/a", none.address() + "/a",
-                                 std::string("rtsp://127.0.0.1:1/a"), std::string("http://127.0.0.1:1/")}) {
+  for (const std::string& url : {text.address() + "/a",
+                                 none.address() + "/a",
+                                 std::string("rtsp://127.0.0.1:1/a"),
+                                 std::string("http://127.0.0.1:1/")}) {
     const auto camera = open_live_images(address_of(url), nullptr);
     ASSERT_FALSE(camera) << url;
     EXPECT_THAT(camera.error().message, HasSubstr(url));

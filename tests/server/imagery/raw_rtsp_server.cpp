@@ -113,12 +113,13 @@ void RawRtspServer::answer(int socket, const std::string& request) {
   if (request.starts_with("OPTIONS")) {
     reply += "Public: OPTIONS, DESCRIBE, SETUP, PLAY, TEARDOWN\r\n";
   } else if (request.starts_with("DESCRIBE")) {
-    body = "v=0\r\no=- 0 0 IN IP4 127.0.0.1\r\ns=test\r\nt=0 0\r\nm=video 0 RTP/AVP 96\r\n"
-           "a=rtpmap:96 raw/90000\r\na=fmtp:96 sampling=YCbCr-4:2:2; width=" +
-           std::to_string(image_.width_px) + "; height=" + std::to_string(image_.height_px) +
-           "; depth=8; colorimetry=BT601-5\r\na=control:track1\r\n";
-    reply += "Content-Type: application/sdp\r\nContent-Length: " + std::to_string(body.size()) +
-             "\r\n";
+    body =
+        "v=0\r\no=- 0 0 IN IP4 127.0.0.1\r\ns=test\r\nt=0 0\r\nm=video 0 RTP/AVP 96\r\n"
+        "a=rtpmap:96 raw/90000\r\na=fmtp:96 sampling=YCbCr-4:2:2; width=" +
+        std::to_string(image_.width_px) + "; height=" + std::to_string(image_.height_px) +
+        "; depth=8; colorimetry=BT601-5\r\na=control:track1\r\n";
+    reply +=
+        "Content-Type: application/sdp\r\nContent-Length: " + std::to_string(body.size()) + "\r\n";
   } else if (request.starts_with("SETUP")) {
     reply += "Transport: RTP/AVP/TCP;unicast;interleaved=0-1\r\nSession: 1\r\n";
   } else if (request.starts_with("PLAY")) {

@@ -55,12 +55,10 @@ TEST_F(CalibrationRoutes, NameTheFieldThatIsWrong) {
               HasSubstr("source.name"));
   EXPECT_THAT(message({{"source", upload}, {"board", {{"cols", 9}, {"rows", 6}}}}),
               HasSubstr("board.square_m"));
-  EXPECT_THAT(
-      message({{"source", upload}, {"board", {{"cols", 2}, {"rows", 6}, {"square_m", 1}}}}),
-      HasSubstr("board.cols = 2: must be an integer in [3, 60]"));
-  EXPECT_THAT(
-      message({{"source", upload}, {"board", {{"cols", 7}, {"rows", 7}, {"square_m", 1}}}}),
-      HasSubstr("half a turn"));
+  EXPECT_THAT(message({{"source", upload}, {"board", {{"cols", 2}, {"rows", 6}, {"square_m", 1}}}}),
+              HasSubstr("board.cols = 2: must be an integer in [3, 60]"));
+  EXPECT_THAT(message({{"source", upload}, {"board", {{"cols", 7}, {"rows", 7}, {"square_m", 1}}}}),
+              HasSubstr("half a turn"));
   json charuco = kBoard;
   charuco["markers"] = "7x7";
   charuco["marker_m"] = 0.02;
@@ -148,17 +146,16 @@ TEST_F(CalibrationRoutes, ASavedCalibrationIsFlown) {
   ASSERT_EQ(run.status, 201) << run.body;
   const std::string run_id = run.json().at("id");
   server_.wait_for_end(run_id);
-  const json manifest =
-      ask(server_.port(), "GET", "/api/v1/runs/" + run_id + "/manifest").json();
+  const json manifest = ask(server_.port(), "GET", "/api/v1/runs/" + run_id + "/manifest").json();
   EXPECT_EQ(manifest.at("cameras")[0].at("fx_px"), solution.at("fx_px"));
   EXPECT_EQ(manifest.at("cameras")[0].at("width_px"), 480);
 
-  for (const auto& [format, type] : std::map<std::string, std::string>{
-           {"orb-slam2", "application/yaml"},
-           {"dso", "text/plain; charset=utf-8"},
-           {"svo", "application/yaml"},
-           {"ros", "application/yaml"},
-           {"kalibr", "application/yaml"}}) {
+  for (const auto& [format, type] :
+       std::map<std::string, std::string>{{"orb-slam2", "application/yaml"},
+                                          {"dso", "text/plain; charset=utf-8"},
+                                          {"svo", "application/yaml"},
+                                          {"ros", "application/yaml"},
+                                          {"kalibr", "application/yaml"}}) {
     const Answer file = ask(server_.port(), "GET", "/api/v1/calibrations/front?format=" + format);
     EXPECT_EQ(file.status, 200) << format;
     EXPECT_EQ(file.headers.at("content-type"), type);
