@@ -111,7 +111,9 @@ Result<OpenBoardImages> CalibrationDesk::recording_source(const DeskRequest& req
     // Errors name the file by its path, clients by its name.
     std::string message = images.error().message;
     const std::string path = file.string();
-    for (std::size_t at = message.find(path); at != std::string::npos; at = message.find(path)) {
+    // Goes on behind the name, which may contain the path of a relative folder.
+    for (std::size_t at = message.find(path); at != std::string::npos;
+         at = message.find(path, at + name.size())) {
       message.replace(at, path.size(), name);
     }
     return Result<std::unique_ptr<BoardImages>>(Error{images.error().code, message});

@@ -111,7 +111,7 @@ SessionState CalibrationSession::state() const {
   return state_;
 }
 
-Status CalibrationSession::upload(std::string name, std::vector<std::uint8_t> file) {
+Result<bool> CalibrationSession::upload(std::string name, std::vector<std::uint8_t> file) {
   if (!uploads_) return conflict("the images of this session come from " + source_);
   return uploads_->push(std::move(name), std::move(file));
 }

@@ -55,9 +55,10 @@ class CalibrationSession {
   [[nodiscard]] const std::string& source() const { return source_; }
   [[nodiscard]] bool takes_uploads() const { return uploads_ != nullptr; }
 
-  /// @param file  a PNG or JPEG file. Errors: kConflict as UploadedImages, or if the session has
-  /// another source.
-  [[nodiscard]] Status upload(std::string name, std::vector<std::uint8_t> file);
+  /// @param file  a PNG or JPEG file
+  /// @return as UploadedImages::push
+  /// Errors: kConflict if the session takes no more images, or has another source.
+  [[nodiscard]] Result<bool> upload(std::string name, std::vector<std::uint8_t> file);
   /// Useful views are taken by themselves, or only when capture() asks.
   void set_automatic(bool automatic);
   /// Takes the next image that shows the board. Errors: kConflict if no more images come.

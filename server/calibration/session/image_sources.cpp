@@ -144,16 +144,13 @@ Result<std::unique_ptr<BoardImages>> camera_images(const LiveAddress& address,
   return std::unique_ptr<BoardImages>(std::make_unique<CameraBoards>(std::move(*images)));
 }
 
-Status UploadedImages::push(std::string name, std::vector<std::uint8_t> file) {
+Result<bool> UploadedImages::push(std::string name, std::vector<std::uint8_t> file) {
   const std::lock_guard lock(mutex_);
   if (finished_) return Error{ErrorCode::kConflict, "the session takes no more images"};
-  if (files_.size() >= kMostWaiting) {
-    return Error{ErrorCode::kConflict,
-                 std::to_string(files_.size()) + " images wait to be searched: try again soon"};
-  }
+  if (files_.size() >= kMostWaiting) return false;
   files_.push_back({std::move(name), std::move(file)});
   changed_.notify_all();
-  return {};
+  return true;
 }
 
 void UploadedImages::finish() {

@@ -53,8 +53,9 @@ class UploadedImages final : public BoardImages {
   static constexpr std::size_t kMostWaiting = 4;
 
   /// @param file  a PNG or JPEG file
-  /// Errors: kConflict while kMostWaiting images wait, and after finish().
-  [[nodiscard]] Status push(std::string name, std::vector<std::uint8_t> file);
+  /// @return false while kMostWaiting images wait: the client tries again soon
+  /// Errors: kConflict after finish().
+  [[nodiscard]] Result<bool> push(std::string name, std::vector<std::uint8_t> file);
   void finish();
 
   [[nodiscard]] Result<std::optional<BoardImage>> next(std::chrono::milliseconds patience) override;

@@ -140,13 +140,20 @@ class VideoStream final : public LiveImages {
     return Error{ErrorCode::kUnreadable, address_.name + ": sends no video"};
   }
 
+  /// Where the video came from, as FFmpeg says it; empty if it does not say.
+  [[nodiscard]] std::string location_of_answer() const {
+    if (address_.kind == LiveKind::kRtsp) return format_->url;
+    if (address_.kind == LiveKind::kV4l2) return "";
+    std::uint8_t* text = nullptr;
+    if (av_opt_get(format_->pb, "location", AV_OPT_SEARCH_CHILDREN, &text) < 0) return "";
+    std::string location = reinterpret_cast<const char*>(text);
+    av_free(text);
+    return location;
+  }
+
   /// A camera is no way to an address that the operator did not allow.
   [[nodiscard]] Status check_redirection() const {
-    if (address_.kind != LiveKind::kHttp) return {};
-    std::uint8_t* text = nullptr;
-    if (av_opt_get(format_->pb, "location", AV_OPT_SEARCH_CHILDREN, &text) < 0) return {};
-    const std::string location = reinterpret_cast<const char*>(text);
-    av_free(text);
+    const std::string location = location_of_answer();
     if (location.empty() || location == address_.url) return {};
     return Error{ErrorCode::kIo,
                  address_.name + ": refers to another address; allow that one instead"};

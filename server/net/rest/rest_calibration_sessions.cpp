@@ -134,8 +134,12 @@ class ImageSink final : public BodySink {
     return std::nullopt;
   }
   [[nodiscard]] HttpResponse finish() override {
-    const Status taken = session_->upload(name_, std::move(bytes_));
-    if (!taken) return error_response(429, "too_many_images", taken.error().message);
+    const Result<bool> taken = session_->upload(name_, std::move(bytes_));
+    if (!taken) return error_response(taken.error());
+    if (!*taken) {
+      return error_response(
+          429, "too_many_images", "too many images wait to be searched: try again soon");
+    }
     return json_response(202, {{"name", name_}});
   }
   static HttpResponse too_large() {

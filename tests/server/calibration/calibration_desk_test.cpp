@@ -144,6 +144,21 @@ TEST_F(CalibrationDeskTest, NamesADamagedRecordingByItsNameOnly) {
   EXPECT_THAT(state.error, Not(HasSubstr(folder_.path().string())));
 }
 
+TEST_F(CalibrationDeskTest, NamesADamagedRecordingOfARelativeFolderOnce) {
+  overfly::testing::write_text(data() / "broken.mp4", "no video");
+  const fs::path before = fs::current_path();
+  fs::current_path(folder_.path());
+  DeskOptions relative = options();
+  relative.folders = [] { return LogFolders{{}, {"data"}, SourcePolicy::inside({"data"})}; };
+  {
+    CalibrationDesk desk(relative);
+    const auto id = desk.begin(request(SourceKind::kRecording, "data/broken.mp4"));
+    ASSERT_TRUE(id) << id.error().message;
+    EXPECT_THAT(wait_until_solved(desk, *id).error, HasSubstr("data/broken.mp4"));
+  }
+  fs::current_path(before);
+}
+
 TEST_F(CalibrationDeskTest, HasALimitedNumberOfSessions) {
   CalibrationDesk desk(options());
   std::vector<std::string> ids;

@@ -207,11 +207,11 @@ TEST(CalibrationSession, TakesUploadsAsFastAsItSearchesThem) {
   const auto session = CalibrationSession::begin(request_for({})).value();
   ASSERT_TRUE(session->takes_uploads());
   std::vector<std::uint8_t> text = {'n', 'o'};
-  ASSERT_TRUE(session->upload("text.png", text));
+  ASSERT_TRUE(session->upload("text.png", text).value());
   int refused = 0;
   for (const Image& image : board_images(6)) {
     const auto jpeg = encode_jpeg(image, 95).value();
-    while (!session->upload("photo.jpg", jpeg)) {
+    while (!session->upload("photo.jpg", jpeg).value()) {
       ++refused;
       std::this_thread::sleep_for(5ms);
     }
@@ -222,7 +222,7 @@ TEST(CalibrationSession, TakesUploadsAsFastAsItSearchesThem) {
   EXPECT_EQ(state.views.size(), 6U);
   EXPECT_EQ(state.left_out_images.at(0).name, "text.png");
   EXPECT_THAT(state.left_out_images.at(0).reason, HasSubstr("cannot be read"));
-  EXPECT_FALSE(session->upload("late.jpg", text));
+  EXPECT_EQ(session->upload("late.jpg", text).error().code, ErrorCode::kConflict);
 }
 
 TEST(CalibrationSession, RefusesImagesThatAreTooLarge) {

@@ -200,6 +200,15 @@ TEST_F(LiveVideo, RefusesACameraThatRefersToAnotherAddress) {
   EXPECT_THAT(camera.error().message, HasSubstr("refers to another address"));
 }
 
+TEST_F(LiveVideo, RefusesAnRtspCameraThatRefersToAnotherAddress) {
+  const Image image = slope(160, 120, 30);
+  const overfly::testing::RawRtspServer other(image);
+  const overfly::testing::RawRtspServer server(image, /*silent=*/false, other.address());
+  const auto camera = open_live_images(address_of(server.address()), nullptr);
+  ASSERT_FALSE(camera);
+  EXPECT_THAT(camera.error().message, HasSubstr("refers to another address"));
+}
+
 TEST_F(LiveVideo, IsCancelledWhileItWaits) {
   overfly::testing::RawRtspServer server(slope(160, 120, 30), /*silent=*/true);
   std::atomic<bool> cancel{false};

@@ -41,7 +41,8 @@ std::string header_of(const std::string& request, const std::string& name) {
 
 }  // namespace
 
-RawRtspServer::RawRtspServer(Image image, bool silent) : image_(std::move(image)), silent_(silent) {
+RawRtspServer::RawRtspServer(Image image, bool silent, std::string elsewhere)
+    : image_(std::move(image)), silent_(silent), elsewhere_(std::move(elsewhere)) {
   listener_ = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   sockaddr_in address{};
   address.sin_family = AF_INET;
@@ -110,7 +111,10 @@ void RawRtspServer::serve() {
 void RawRtspServer::answer(int socket, const std::string& request) {
   std::string reply = "RTSP/1.0 200 OK\r\nCSeq: " + header_of(request, "CSeq") + "\r\n";
   std::string body;
-  if (request.starts_with("OPTIONS")) {
+  if (!elsewhere_.empty()) {
+    reply.replace(reply.find("200 OK"), 6, "302 Found");
+    reply += "Location: " + elsewhere_ + "\r\n";
+  } else if (request.starts_with("OPTIONS")) {
     reply += "Public: OPTIONS, DESCRIBE, SETUP, PLAY, TEARDOWN\r\n";
   } else if (request.starts_with("DESCRIBE")) {
     body =

@@ -17,8 +17,9 @@ namespace overfly::testing {
 class RawRtspServer {
  public:
   /// @param image   8-bit grey; its values become the luma
-  /// @param silent  never answers
-  explicit RawRtspServer(Image image, bool silent = false);
+  /// @param silent     never answers
+  /// @param elsewhere  unless empty, the address that it refers its client to
+  explicit RawRtspServer(Image image, bool silent = false, std::string elsewhere = "");
   ~RawRtspServer();
   RawRtspServer(const RawRtspServer&) = delete;
   RawRtspServer& operator=(const RawRtspServer&) = delete;
@@ -37,6 +38,7 @@ class RawRtspServer {
 
   const Image image_;
   const bool silent_;
+  const std::string elsewhere_;
   int listener_ = -1;
   int port_ = 0;
   std::atomic<bool> stop_{false};
