@@ -119,7 +119,7 @@ struct Picture {
   int full_height_px = 0;
   bool grey = false;
   PictureCoding coding = PictureCoding::kJpeg;
-  bool key = true;  ///< does not need the picture before
+  bool key = true;                   ///< does not need the picture before
   std::optional<ColourScale> scale;  ///< of depth [m] and error pictures [grey levels]
   std::vector<SceneLabel> labels;    ///< of a scene
   std::shared_ptr<const std::vector<std::uint8_t>> bytes;
