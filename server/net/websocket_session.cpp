@@ -52,11 +52,11 @@ std::int64_t monotonic_ns() {
 struct Outgoing {
   std::string text;                ///< a text message, unless there are bytes
   std::vector<std::uint8_t> head;  ///< of a binary message
-  std::shared_ptr<const std::vector<std::uint8_t>> jpeg;  ///< follows the head; may be null
-  std::optional<PictureTicket> ticket;                    ///< of a picture
+  std::shared_ptr<const std::vector<std::uint8_t>> payload;  ///< follows the head; may be null
+  std::optional<PictureTicket> ticket;                       ///< of a picture
 
   [[nodiscard]] std::size_t bytes() const {
-    return text.size() + head.size() + (jpeg ? jpeg->size() : 0);
+    return text.size() + head.size() + (payload ? payload->size() : 0);
   }
 };
 
@@ -91,7 +91,7 @@ class WebSocketSession final : public ViewerPort,
   void send_binary(std::vector<std::uint8_t> message) override;
   void send_picture(const PictureTicket& ticket,
                     std::vector<std::uint8_t> head,
-                    std::shared_ptr<const std::vector<std::uint8_t>> jpeg) override;
+                    std::shared_ptr<const std::vector<std::uint8_t>> payload) override;
   void draw(const PictureTicket& ticket, const server::PictureRequest& request) override;
   void open_run(const std::string& run_id) override;
   void open_newest_run() override;
@@ -300,10 +300,10 @@ void WebSocketSession::send_binary(std::vector<std::uint8_t> message) {
 
 void WebSocketSession::send_picture(const PictureTicket& ticket,
                                     std::vector<std::uint8_t> head,
-                                    std::shared_ptr<const std::vector<std::uint8_t>> jpeg) {
+                                    std::shared_ptr<const std::vector<std::uint8_t>> payload) {
   Outgoing message;
   message.head = std::move(head);
-  message.jpeg = std::move(jpeg);
+  message.payload = std::move(payload);
   message.ticket = ticket;
   enqueue(std::move(message));
 }
@@ -320,7 +320,9 @@ void WebSocketSession::draw(const PictureTicket& ticket, const server::PictureRe
       });
     });
   };
-  context_->views.request(number_, static_cast<int>(ticket.stream_id), request, done);
+  server::PictureRequest drawn = request;
+  if (drawn.video) drawn.video->viewer = number_;
+  context_->views.request(number_, static_cast<int>(ticket.stream_id), drawn, done);
 }
 
 void WebSocketSession::picture_ready(const PictureTicket& ticket,
@@ -349,7 +351,7 @@ void WebSocketSession::write() {
     ws_.binary(true);
     const std::array<asio::const_buffer, 2> parts = {
         asio::buffer(message.head),
-        message.jpeg ? asio::buffer(*message.jpeg) : asio::const_buffer()};
+        message.payload ? asio::buffer(*message.payload) : asio::const_buffer()};
     ws_.async_write(parts, written);
   } else {
     ws_.text(true);

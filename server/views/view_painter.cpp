@@ -4,7 +4,6 @@
 #include <limits>
 #include <optional>
 #include <string>
-#include <system_error>
 #include <utility>
 
 #include "core/measure/processor_time.hpp"
@@ -12,12 +11,9 @@
 #include "server/record/run_folder.hpp"
 #include "server/timeline/recorded_points.hpp"
 #include "server/timeline/run_timeline.hpp"
-#include "server/views/view_scene.hpp"
 
 namespace overfly::server {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// Of a viewer's runs, and a few more.
 constexpr std::size_t kMaxRibbons = 20;
@@ -28,6 +24,10 @@ Audience::Kind audience_kind(const PictureRequest& request) {
       return Audience::Kind::kDebug;
     case PictureRequest::Kind::kScene:
       return Audience::Kind::kScene;
+    case PictureRequest::Kind::kDepth:
+      return Audience::Kind::kDepth;
+    case PictureRequest::Kind::kError:
+      return Audience::Kind::kError;
     case PictureRequest::Kind::kCamera:
       break;
   }
@@ -39,22 +39,6 @@ std::optional<FrameRow> row_of(const RunTimeline& timeline,
                                std::size_t camera) {
   if (!request.live) return timeline.frame_at(request.t_ns, camera);
   return timeline.frame_at(std::numeric_limits<std::int64_t>::max(), camera);
-}
-
-/// Stamp of a frame at or before `row`. Row i holds frame i, or a later frame if some were skipped.
-std::int64_t stamp_before(const RunTimeline& timeline, const FrameRow& row, std::int64_t frame) {
-  if (frame == row.frame) return row.t_ns;
-  const auto count = static_cast<std::int64_t>(timeline.frame_count());
-  for (std::int64_t i = std::min(frame, count - 1); i >= 0; --i) {
-    const FrameRow before = timeline.frames(static_cast<std::size_t>(i), 1).front();
-    if (before.frame <= frame) return before.t_ns;
-  }
-  return row.t_ns;
-}
-
-ViewPainter::Painted painted(Result<Picture> picture) {
-  if (!picture) return picture.error();
-  return std::optional<Picture>(std::move(*picture));
 }
 
 }  // namespace
@@ -78,67 +62,20 @@ ViewPainter::Painted ViewPainter::paint_of(const PictureRequest& request,
   if (!camera) return camera.error();
   const auto row = row_of(*timeline, request, *camera);
   if (!row) return Error{ErrorCode::kNotFound, "run " + request.run_id + " has no frame yet"};
+  const ViewedFrame frame{request.run_id, timeline.get(), *camera, *row};
   switch (request.kind) {
     case PictureRequest::Kind::kCamera:
-      return paint_camera(request, *timeline, *camera, *row);
+      return frames_.camera(request, frame);
     case PictureRequest::Kind::kDebug:
-      return paint_debug(request, *timeline, *row);
+      return frames_.debug(request, *timeline, *row);
     case PictureRequest::Kind::kScene:
       return paint_scene(request, timeline, *row);
+    case PictureRequest::Kind::kDepth:
+      return frames_.depth(request, frame);
+    case PictureRequest::Kind::kError:
+      return frames_.error(request, *timeline, frame);
   }
   return Error{ErrorCode::kInvalidArgument, "no such kind of picture"};
-}
-
-ViewPainter::Painted ViewPainter::paint_camera(const PictureRequest& request,
-                                               const RunTimeline& timeline,
-                                               std::size_t camera,
-                                               const FrameRow& row) {
-  const auto live = timeline.live_camera(camera);
-  if (live && live->image && (request.live || live->frame == row.frame)) {
-    return painted(encoder_.encode(*live, request.quality, request.max_width_px));
-  }
-  const auto folder = runs_.folder(request.run_id);
-  if (!folder) return folder.error();
-  const fs::path recorded = CameraFiles(*folder, camera, request.camera).image(row.frame);
-  std::error_code error;
-  if (fs::is_regular_file(recorded, error)) {
-    return painted(
-        encoder_.encode_file(recorded, row.frame, row.t_ns, request.quality, request.max_width_px));
-  }
-  Result<std::optional<Image>> made = renderers_.remake(request.run_id, camera, row);
-  if (!made) return made.error();
-  if (!*made) return std::optional<Picture>();
-  const auto image = std::make_shared<const Image>(std::move(**made));
-  return painted(
-      encoder_.encode({row.frame, row.t_ns, image}, request.quality, request.max_width_px));
-}
-
-ViewPainter::Painted ViewPainter::paint_debug(const PictureRequest& request,
-                                              const RunTimeline& timeline,
-                                              const FrameRow& row) {
-  if (request.estimator >= timeline.estimators().size()) {
-    return Error{ErrorCode::kInvalidArgument,
-                 "estimator = " + std::to_string(request.estimator) + ": must be below " +
-                     std::to_string(timeline.estimators().size())};
-  }
-  const auto live = timeline.live_debug(request.estimator);
-  if (live && live->image && (request.live || live->frame == row.frame)) {
-    return painted(encoder_.encode(*live, request.quality, request.max_width_px));
-  }
-  const auto folder = runs_.folder(request.run_id);
-  if (!folder) return folder.error();
-  const std::string& name = timeline.estimators()[request.estimator];
-  const auto frame =
-      last_recorded_frame(debug_image_file(*folder, name, 0).parent_path(), row.frame);
-  if (!frame) {
-    return Error{ErrorCode::kNotFound,
-                 "estimator " + name + " has no picture up to frame " + std::to_string(row.frame)};
-  }
-  return painted(encoder_.encode_file(debug_image_file(*folder, name, *frame),
-                                      *frame,
-                                      stamp_before(timeline, row, *frame),
-                                      request.quality,
-                                      request.max_width_px));
 }
 
 ViewPainter::Painted ViewPainter::paint_scene(const PictureRequest& request,
@@ -147,23 +84,51 @@ ViewPainter::Painted ViewPainter::paint_scene(const PictureRequest& request,
   auto view = renderers_.of_run(request.run_id);
   if (!view) return view.error();
   if (*view == nullptr) return std::optional<Picture>();
+  const SceneSettings& settings = request.scene;
   ViewRibbons& ribbons = ribbons_of(timeline, request.alignment);
   ribbons.refresh();
-  const auto scene =
-      scene_view(request.scene, row.T_world_body, ribbons.centre(), *(*view)->world->tiles);
-  auto points = map_points(request, *timeline, ribbons, row);
-  auto content = scene_content(*timeline, ribbons, row, std::move(points), request.first_colour);
-  const Geodetic& origin = (*view)->world->tiles->frame().origin();
-  for (const SceneTracks& tracks : request.others) add_tracks(tracks, origin, &content);
+  const terrain::TileSource& tiles = *(*view)->world->tiles;
+  const auto scene = scene_view(settings, row.T_world_body, ribbons.centre(), tiles);
+  renderer::SceneContent content;
+  std::vector<PlacedLabel> places;
+  const bool onboard = settings.mode == SceneMode::kOnboard;
+  add_run({request.run_id, *timeline, ribbons, row, request.first_colour, Pose{}, onboard},
+          settings.show,
+          &content,
+          &places);
+  if (settings.show.points) content.points = map_points(request, *timeline, ribbons, row);
+  if (settings.show.frustum || settings.show.footprint) {
+    content.frustum = renderer::SceneContent::Frustum{timeline->main_camera().model.pinhole(),
+                                                      row.T_world_camera,
+                                                      settings.show.frustum && !onboard,
+                                                      settings.show.footprint};
+  }
+  const Geodetic origin = tiles.frame().origin();
+  for (const SceneTracks& tracks : request.others) {
+    add_tracks(tracks, origin, settings.show, &content, &places);
+  }
+  if (settings.show.image) {
+    // Without the image, if there is none: the camera's own picture tells why.
+    auto projection = frames_.projection({request.run_id, timeline.get(), kMainCamera, row});
+    if (projection) content.projection = std::move(*projection);
+  }
+  // Frames may have been made again meanwhile: that keeps the view.
   auto image = (*view)->renderer->render_scene(scene, content);
   if (!image) return image.error();
   const auto shared = std::make_shared<const Image>(std::move(*image));
-  return painted(encoder_.encode({row.frame, row.t_ns, shared}, request.quality, shared->width_px));
+  PictureRequest coding = request;
+  coding.max_width_px = shared->width_px;
+  auto picture = encoder_.encode({row.frame, row.t_ns, shared}, coding);
+  if (!picture) return picture.error();
+  if (settings.show.labels) picture->labels = labels_in_view(places, scene, tiles);
+  return std::optional(std::move(*picture));
 }
 
 void ViewPainter::add_tracks(const SceneTracks& tracks,
                              const Geodetic& origin,
-                             renderer::SceneContent* content) {
+                             const SceneShow& show,
+                             renderer::SceneContent* content,
+                             std::vector<PlacedLabel>* places) {
   const auto timeline = runs_.timeline(tracks.run_id);
   if (!timeline) return;
   const std::int64_t t_ns = tracks.live ? std::numeric_limits<std::int64_t>::max() : tracks.t_ns;
@@ -172,8 +137,16 @@ void ViewPainter::add_tracks(const SceneTracks& tracks,
   if (!row || !other_origin) return;
   ViewRibbons& ribbons = ribbons_of(*timeline, tracks.alignment);
   ribbons.refresh();
-  const Pose T_scene_other = T_world_other(origin, *other_origin);
-  add_other_run(**timeline, ribbons, *row, T_scene_other, tracks.first_colour, content);
+  add_run({tracks.run_id,
+           **timeline,
+           ribbons,
+           *row,
+           tracks.first_colour,
+           T_world_other(origin, *other_origin),
+           false},
+          show,
+          content,
+          places);
 }
 
 std::vector<Eigen::Vector3f> ViewPainter::map_points(const PictureRequest& request,
@@ -187,7 +160,7 @@ std::vector<Eigen::Vector3f> ViewPainter::map_points(const PictureRequest& reque
     if (request.live) {
       points = timeline.live_points(i);
     } else if (const auto& alignment = ribbons.alignment_of(i); folder && alignment) {
-      points = recorded_points(*folder, timeline, i, *alignment, row);
+      points = recorded_points(*folder, numbers_, timeline, i, *alignment, row);
     }
     all.insert(all.end(), points.begin(), points.end());
   }

@@ -6,6 +6,8 @@ import './styles/base.css';
 import './styles/layout.css';
 import './styles/dock.css';
 import './styles/panels.css';
+import './styles/pictures.css';
+import './styles/scene.css';
 import './styles/errors.css';
 import './styles/plots.css';
 import './styles/side.css';
@@ -23,7 +25,9 @@ import { StreamClient } from './connection/stream_client';
 import { uploadByBrowser } from './connection/upload';
 import { Alignment } from './store/alignment';
 import { CalibrationDesk } from './store/calibration/calibration_desk';
-import { Cameras } from './store/cameras';
+import { Cameras } from './store/pictures/cameras';
+import { openVideo, videoWorks } from './store/pictures/video_decoding';
+import { PixelProbe } from './store/pictures/pixel_probe';
 import { Catalogue } from './store/catalogue';
 import { Layouts } from './store/layouts/layouts';
 import type { Storage } from './store/layouts/layouts';
@@ -33,7 +37,8 @@ import { LogWorlds } from './store/logs/log_worlds';
 import { Notices } from './store/notices';
 import { parsePermalink } from './store/permalink';
 import { Player } from './store/player';
-import { SceneControl } from './store/scene_control';
+import { lookFrom, showText, viewText } from './store/scene/scene_look';
+import { SceneControl } from './store/scene/scene_control';
 import { ScoreDesk } from './store/scoring/score_desk';
 import { Sensors } from './store/sensors/sensors';
 import { Session } from './store/session';
@@ -53,7 +58,14 @@ const newKey = () =>
 
 const store = new Store();
 const notices = new Notices(store, later);
-const session = new Session(store, notices, (jpeg) => createImageBitmap(jpeg));
+const session = new Session(
+  store,
+  notices,
+  (jpeg) => createImageBitmap(jpeg),
+  openVideo,
+  () => performance.now(),
+);
+void videoWorks().then((works) => session.useVideo(works));
 const rest: RestClient = new RestClient(
   'api/v1',
   (url, init) => fetch(url, init),
@@ -77,6 +89,7 @@ const catalogue = new Catalogue(store, rest, session, notices, later, newKey);
 
 const alignment = new Alignment(store, rest, session, notices);
 const cameras = new Cameras(store, rest);
+const probe = new PixelProbe(store, rest, later);
 const sensors = new Sensors(store, rest, { now_ms: () => performance.now(), later });
 const logs = new LogBrowser(store, rest, session, uploadByBrowser, newKey);
 const connect = new VehicleConnect(store, rest, session, newKey);
@@ -84,7 +97,16 @@ const scores = new ScoreDesk(store, rest, uploadByBrowser);
 const calibration = new CalibrationDesk(store, new CalibrationClient(rest), rest, notices, later);
 const worlds = new LogWorlds(store, rest);
 const storage = browserStorage();
-const layouts = new Layouts(store, notices, storage);
+const layouts = new Layouts(store, notices, storage, {
+  look: () => {
+    const { scene: shown, sideBySide } = store.state;
+    return { view: viewText(shown), show: showText(shown), sideBySide };
+  },
+  apply: ({ view, show, sideBySide }) => {
+    scene.apply(lookFrom(view, show));
+    session.setSideBySide(sideBySide);
+  },
+});
 const themes = new Themes(store, storage, applyTheme);
 const smoothing = new LogSmoothing(store, rest, later, newKey);
 
@@ -96,6 +118,7 @@ const context = {
   catalogue,
   alignment,
   cameras,
+  probe,
   sensors,
   logs,
   smoothing,
@@ -108,12 +131,16 @@ const context = {
   layouts,
   themes,
 };
-scene.setMode(store.state.sceneMode);
+scene.apply(store.state.scene);
+layouts.applyLook();
 showScreen(context, document.body);
 followAddress(context);
 window
   .matchMedia('(prefers-color-scheme: light)')
   .addEventListener('change', () => themes.refresh());
+document.addEventListener('visibilitychange', () =>
+  session.showPage(document.visibilityState === 'visible'),
+);
 window.addEventListener('online', () => client.connect());
 client.connect();
 // A link shows its runs; the first visit shows the newest.

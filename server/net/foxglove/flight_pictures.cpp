@@ -95,7 +95,7 @@ void FlightPictures::ready(const PictureTicket& ticket,
   shown.frame = picture->frame;
   const Channel& channel = slot->channel;
   auto head =
-      messages->picture_head(channel.kind, channel.index, picture->t_ns, picture->jpeg->size());
+      messages->picture_head(channel.kind, channel.index, picture->t_ns, picture->bytes->size());
   if (slot->sent == shown || !head) {
     drop();
     return;
@@ -106,7 +106,7 @@ void FlightPictures::ready(const PictureTicket& ticket,
   if (channel.kind == ChannelKind::kCameraImage) {
     messages->send_camera_info(channel.index, picture->t_ns);
   }
-  port->send_picture(ticket, std::move(*head), picture->jpeg);
+  port->send_picture(ticket, std::move(*head), picture->bytes);
 }
 
 void FlightPictures::tell_error(Slot* slot, const Error& error, ViewerPort* port) {

@@ -59,8 +59,14 @@ ClientCommand read_watch(JsonFields* fields) {
 ClientCommand read_unwatch(JsonFields* fields) { return UnwatchCommand{require_run(fields)}; }
 
 bool is_picture_stream(const std::string& name) {
-  if (name == "camera" || name == "scene") return true;
-  return name.starts_with("debug/") && name.size() > 6 && name.size() <= kMaxNameBytes;
+  if (name == "camera" || name == "scene" || name == "depth" || name == "error") return true;
+  const bool of_estimator = name.starts_with("debug/") || name.starts_with("error/");
+  return of_estimator && name.size() > 6 && name.size() <= kMaxNameBytes;
+}
+
+/// Whether one of several cameras can be chosen for a stream.
+bool has_camera(const std::string& name) {
+  return name == "camera" || name == "depth" || name == "error";
 }
 
 std::size_t read_colour(JsonFields* fields) {
@@ -105,11 +111,13 @@ Result<StreamRequest> read_stream(const json& entry, const std::string& where) {
   fields.require("name");
   stream.name = fields.text("name").value_or("");
   if (!is_picture_stream(stream.name)) {
-    fields.reject("name", ": must be \"camera\", \"scene\" or \"debug/NAME\"");
+    fields.reject("name",
+                  ": must be \"camera\", \"scene\", \"depth\", \"error\", \"error/NAME\" or "
+                  "\"debug/NAME\"");
   }
   stream.camera = read_name(&fields, "camera");
-  if (!stream.camera.empty() && stream.name != "camera") {
-    fields.reject("camera", ": applies only to the stream \"camera\"");
+  if (!stream.camera.empty() && !has_camera(stream.name)) {
+    fields.reject("camera", ": applies only to the streams \"camera\", \"depth\" and \"error\"");
   }
   stream.view = read_name(&fields, "view");
   if (!stream.view.empty() && stream.name != "scene") {
@@ -125,6 +133,12 @@ Result<StreamRequest> read_stream(const json& entry, const std::string& where) {
   stream.quality = static_cast<int>(fields.integer("quality", 1, 100).value_or(stream.quality));
   stream.max_width_px =
       static_cast<int>(fields.integer("max_width_px", 16, 8192).value_or(stream.max_width_px));
+  if (const auto encoding = fields.text("encoding")) {
+    stream.video = *encoding == "vp8";
+    if (!stream.video && *encoding != "jpeg") {
+      fields.reject("encoding", " = \"" + *encoding + "\": must be \"jpeg\" or \"vp8\"");
+    }
+  }
   if (const Status status = fields.finish(); !status) return status.error();
   return stream;
 }
@@ -135,6 +149,7 @@ bool same_stream(const StreamRequest& a, const StreamRequest& b) {
 
 ClientCommand read_subscribe(JsonFields* fields) {
   SubscribeCommand command;
+  command.acknowledges = fields->boolean("acknowledge").value_or(false);
   fields->require("pictures");
   const json* pictures = fields->array("pictures");
   if (pictures == nullptr) return command;
@@ -160,13 +175,91 @@ ClientCommand read_subscribe(JsonFields* fields) {
 }
 
 std::optional<server::SceneMode> read_mode(JsonFields* fields) {
+  using server::SceneMode;
+  static const std::map<std::string, SceneMode> kModes = {{"chase", SceneMode::kChase},
+                                                          {"orbit", SceneMode::kOrbit},
+                                                          {"top", SceneMode::kTop},
+                                                          {"onboard", SceneMode::kOnboard},
+                                                          {"free", SceneMode::kFree}};
   const auto mode = fields->text("mode");
   if (!mode) return std::nullopt;
-  if (*mode == "chase") return server::SceneMode::kChase;
-  if (*mode == "orbit") return server::SceneMode::kOrbit;
-  if (*mode == "top") return server::SceneMode::kTop;
-  fields->reject("mode", " = \"" + *mode + "\": must be \"chase\", \"orbit\" or \"top\"");
+  const auto known = kModes.find(*mode);
+  if (known != kModes.end()) return known->second;
+  fields->reject(
+      "mode",
+      " = \"" + *mode + "\": must be \"chase\", \"orbit\", \"top\", \"onboard\" or \"free\"");
   return std::nullopt;
+}
+
+/// What a scene shows: a list of names; the others are off.
+std::optional<server::SceneShow> read_show(JsonFields* fields) {
+  using Show = server::SceneShow;
+  static const std::map<std::string, bool Show::*> kParts = {
+      {"ribbons", &Show::ribbons},
+      {"aircraft", &Show::aircraft},
+      {"frustum", &Show::frustum},
+      {"footprint", &Show::footprint},
+      {"points", &Show::points},
+      {"image", &Show::image},
+      {"errors", &Show::errors},
+      {"error_history", &Show::error_history},
+      {"labels", &Show::labels}};
+  const json* list = fields->array("show");
+  if (list == nullptr) return std::nullopt;
+  Show show;
+  for (const auto& [name, part] : kParts) show.*part = false;
+  for (const json& entry : *list) {
+    const auto part = entry.is_string() ? kParts.find(entry.get<std::string>()) : kParts.end();
+    if (part == kParts.end()) {
+      fields->reject("show", ": " + to_text(entry) + " is no part of a scene");
+      return std::nullopt;
+    }
+    show.*(part->second) = true;
+  }
+  return show;
+}
+
+ClientCommand read_shown(JsonFields* fields) {
+  ShownCommand command;
+  fields->require("pictures");
+  const json* pictures = fields->array("pictures");
+  if (pictures == nullptr) return command;
+  if (pictures->size() > kMaxStreams) {
+    fields->reject("pictures", ": must have at most " + std::to_string(kMaxStreams) + " entries");
+    return command;
+  }
+  constexpr std::uint64_t kMost = 0xFFFFFFFFU;
+  for (const json& entry : *pictures) {
+    const auto number = [&](std::size_t at) { return entry[at].get<std::uint64_t>(); };
+    if (!entry.is_array() || entry.size() != 2 || !entry[0].is_number_unsigned() ||
+        !entry[1].is_number_unsigned() || number(0) > kMost || number(1) > kMost) {
+      fields->reject("pictures", ": " + to_text(entry) + ": must be [stream, sequence]");
+      return command;
+    }
+    command.pictures.emplace_back(static_cast<std::uint32_t>(number(0)),
+                                  static_cast<std::uint32_t>(number(1)));
+  }
+  return command;
+}
+
+ClientCommand read_key(JsonFields* fields) {
+  fields->require("id");
+  return KeyCommand{static_cast<std::uint32_t>(fields->integer("id", 0, 0xFFFFFFFFLL).value_or(0))};
+}
+
+/// The viewpoint of the mode "free".
+std::optional<Eigen::Vector3d> read_eye(JsonFields* fields) {
+  // Beyond it neither the tangent frame nor a map projection describes the ground.
+  constexpr double kMostM = 1e6;
+  const auto x_m = fields->number("x_m", -kMostM, kMostM);
+  const auto y_m = fields->number("y_m", -kMostM, kMostM);
+  const auto z_m = fields->number("z_m", -kMostM, kMostM);
+  if (!x_m && !y_m && !z_m) return std::nullopt;
+  if (!x_m || !y_m || !z_m) {
+    fields->reject("x_m", ": a viewpoint needs x_m, y_m and z_m");
+    return std::nullopt;
+  }
+  return Eigen::Vector3d(*x_m, *y_m, *z_m);
 }
 
 std::optional<double> read_angle_rad(JsonFields* fields, const char* name, double min, double max) {
@@ -184,11 +277,13 @@ ClientCommand read_view(JsonFields* fields) {
   command.view = read_name(fields, "view");
   command.mode = read_mode(fields);
   command.azimuth_rad = read_angle_rad(fields, "azimuth_deg", -36000, 36000);
-  command.elevation_rad = read_angle_rad(fields, "elevation_deg", -11, 90);
+  command.elevation_rad = read_angle_rad(fields, "elevation_deg", -90, 90);
   command.distance_m = fields->number("distance_m", 5, 20000);
   command.follow = fields->boolean("follow");
   command.width_px = read_size_px(fields, "width_px", 1920);
   command.height_px = read_size_px(fields, "height_px", 1440);
+  command.eye_world_m = read_eye(fields);
+  command.show = read_show(fields);
   return command;
 }
 
@@ -253,6 +348,8 @@ const std::map<std::string, std::function<ClientCommand(JsonFields*)>>& readers(
       {"watch", read_watch},
       {"unwatch", read_unwatch},
       {"subscribe", read_subscribe},
+      {"shown", read_shown},
+      {"key", read_key},
       {"view", read_view},
       {"play", read_plain<PlayCommand>},
       {"pause", read_plain<PauseCommand>},

@@ -2,10 +2,12 @@
 // server").
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -17,7 +19,6 @@ namespace overfly::net {
 
 inline constexpr std::size_t kMaxRuns = 16;  ///< that one client watches
 
-/// One requested picture stream.
 /// Another run whose tracks a scene shows.
 struct SceneRun {
   std::string run_id;
@@ -25,13 +26,15 @@ struct SceneRun {
   bool operator==(const SceneRun&) const = default;
 };
 
+/// One requested picture stream.
 struct StreamRequest {
   std::string run_id;
-  std::string name;  ///< "camera", "scene" or "debug/NAME"
+  std::string name;  ///< "camera", "scene", "depth", "error", "error/NAME" or "debug/NAME"
   double max_hz = 31.0;
   int quality = 75;
   int max_width_px = 1280;
-  std::string camera = {};          ///< for the stream "camera"; empty = the run's first
+  bool video = false;               ///< may be sent as VP8
+  std::string camera = {};          ///< for "camera", "depth", "error"; empty = the run's first
   std::string view = {};            ///< for the stream "scene": the name of its view
   std::size_t first_colour = 0;     ///< likewise: index of the first estimator's colour
   std::vector<SceneRun> with = {};  ///< likewise: other runs whose tracks it shows
@@ -52,6 +55,15 @@ struct UnwatchCommand {
 };
 struct SubscribeCommand {
   std::vector<StreamRequest> pictures;
+  bool acknowledges = false;  ///< the client reports which pictures it has shown
+};
+/// Pictures that the client has shown: stream number and sequence number of the newest.
+struct ShownCommand {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pictures;
+};
+/// Asks for a key picture, because one of the chain was lost.
+struct KeyCommand {
+  std::uint32_t stream_id = 0;
 };
 /// Empty fields keep their present value.
 struct ViewCommand {
@@ -63,6 +75,8 @@ struct ViewCommand {
   std::optional<bool> follow;
   std::optional<int> width_px;
   std::optional<int> height_px;
+  std::optional<Eigen::Vector3d> eye_world_m;
+  std::optional<server::SceneShow> show;
 };
 struct PlayCommand {};
 struct PauseCommand {};
@@ -96,6 +110,8 @@ struct AlignCommand {
 using ClientCommand = std::variant<WatchCommand,
                                    UnwatchCommand,
                                    SubscribeCommand,
+                                   ShownCommand,
+                                   KeyCommand,
                                    ViewCommand,
                                    PlayCommand,
                                    PauseCommand,

@@ -35,7 +35,7 @@ class ViewerPort {
   /// StreamClient::picture_sent.
   virtual void send_picture(const PictureTicket& ticket,
                             std::vector<std::uint8_t> head,
-                            std::shared_ptr<const std::vector<std::uint8_t>> jpeg) = 0;
+                            std::shared_ptr<const std::vector<std::uint8_t>> payload) = 0;
   /// Requests a picture; when it is ready, the connection calls StreamClient::picture_ready.
   virtual void draw(const PictureTicket& ticket, const server::PictureRequest& request) = 0;
   /// Opens a run, which may require reading it from disk. The connection calls

@@ -187,10 +187,11 @@ export class Dashboard {
     await this.untilSameInstant(panels);
   }
 
-  /** A digest of what a panel's canvas shows. */
+  /** A digest of what a panel's canvas shows: of several pictures, that of the main run. */
   picture(panel) {
     return this.page.evaluate((name) => {
-      const canvas = document.querySelector(`[data-panel="${name}"] canvas.picture`);
+      const within = (part) => document.querySelector(`[data-panel="${name}"] ${part}`);
+      const canvas = within('[data-main=true] canvas.picture') ?? within('canvas.picture');
       const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
       let sum = 0;
       let squares = 0;
@@ -204,6 +205,19 @@ export class Dashboard {
       const mean = sum / count;
       return { digest, mean, deviation: Math.sqrt(Math.max(0, squares / count - mean * mean)) };
     }, panel);
+  }
+
+  /** Waits until a panel's picture has stayed the same for as long as one takes to be drawn. */
+  async untilStill(panel) {
+    const end_ms = Date.now() + kPatience_ms;
+    let before = null;
+    for (let same = 0; same < 4; ) {
+      if (Date.now() > end_ms) throw new Error(`the picture of ${panel} never stays the same`);
+      const { digest } = await this.picture(panel);
+      same = digest === before ? same + 1 : 0;
+      before = digest;
+      await this.page.waitForTimeout(150);
+    }
   }
 
   async untilPictureDiffers(panel, digest) {

@@ -40,7 +40,36 @@ TEST(ClientMessage, ReadsSubscriptionsWithDefaults) {
   ASSERT_EQ(subscribe.pictures.size(), 4U);
   EXPECT_EQ(subscribe.pictures[0], (StreamRequest{"r", "camera", 31.0, 75, 1280}));
   EXPECT_EQ(subscribe.pictures[1], (StreamRequest{"q", "debug/a", 5.0, 60, 1280}));
-  EXPECT_EQ(subscribe.pictures[3], (StreamRequest{"r", "scene", 31.0, 75, 1280, "", "map"}));
+  EXPECT_EQ(subscribe.pictures[3], (StreamRequest{"r", "scene", 31.0, 75, 1280, false, "", "map"}));
+}
+
+TEST(ClientMessage, ReadsWhatAClientCanShowAndHasShown) {
+  const auto subscribe = parse_as<SubscribeCommand>(
+      R"({"type":"subscribe","acknowledge":true,"pictures":[
+          {"run":"r","name":"camera","encoding":"vp8"},{"run":"r","name":"scene","encoding":"jpeg"},
+          {"run":"r","name":"depth"}]})");
+  EXPECT_TRUE(subscribe.acknowledges);
+  ASSERT_EQ(subscribe.pictures.size(), 3U);
+  EXPECT_TRUE(subscribe.pictures[0].video);
+  EXPECT_FALSE(subscribe.pictures[1].video);
+  EXPECT_FALSE(subscribe.pictures[2].video);
+  const auto shown =
+      parse_as<ShownCommand>(R"({"type":"shown","pictures":[[3,17],[4294967295,0]]})");
+  EXPECT_THAT(shown.pictures,
+              ::testing::ElementsAre(std::pair(3U, 17U), std::pair(4294967295U, 0U)));
+  EXPECT_EQ(parse_as<KeyCommand>(R"({"type":"key","id":9})").stream_id, 9U);
+  for (const char* wrong : {
+           R"({"type":"shown"})",
+           R"({"type":"shown","pictures":[[3]]})",
+           R"({"type":"shown","pictures":[[3,-1]]})",
+           R"({"type":"shown","pictures":[[3,4294967296]]})",
+           R"({"type":"shown","pictures":[3]})",
+           R"({"type":"key"})",
+           R"({"type":"key","id":-1})",
+           R"({"type":"subscribe","pictures":[{"run":"r","name":"camera","encoding":"gif"}]})",
+       }) {
+    EXPECT_FALSE(parse_client_message(wrong).status.ok()) << wrong;
+  }
 }
 
 TEST(ClientMessage, ReadsTheOtherRunsOfAScene) {
@@ -50,6 +79,45 @@ TEST(ClientMessage, ReadsTheOtherRunsOfAScene) {
   ASSERT_EQ(subscribe.pictures.size(), 1U);
   EXPECT_EQ(subscribe.pictures[0].first_colour, 2U);
   EXPECT_EQ(subscribe.pictures[0].with, (std::vector<SceneRun>{{"q", 5}, {"s", 0}}));
+}
+
+TEST(ClientMessage, ReadsTheContentsAndThePlaceOfAView) {
+  const auto view = parse_as<ViewCommand>(
+      R"({"type":"view","mode":"free","elevation_deg":-90,"x_m":1,"y_m":-2,"z_m":300,
+          "show":["image","labels"]})");
+  EXPECT_EQ(view.mode, server::SceneMode::kFree);
+  EXPECT_EQ(view.eye_world_m, Eigen::Vector3d(1, -2, 300));
+  ASSERT_TRUE(view.show);
+  server::SceneShow expected{false, false, false, false, false, true, false, false, true};
+  EXPECT_EQ(*view.show, expected);
+  EXPECT_FALSE(parse_as<ViewCommand>(R"({"type":"view","mode":"onboard"})").show);
+  for (const char* wrong : {R"("show":["trees"])",
+                            R"("show":[7])",
+                            R"("show":"image")",
+                            R"("x_m":1,"y_m":2)",
+                            R"("x_m":1e7,"y_m":2,"z_m":3)",
+                            R"("mode":"underwater")",
+                            R"("elevation_deg":-91)"}) {
+    EXPECT_FALSE(parse_client_message(R"({"type":"view",)" + std::string(wrong) + "}").status.ok())
+        << wrong;
+  }
+}
+
+TEST(ClientMessage, ReadsDepthAndErrorStreams) {
+  const auto subscribe = parse_as<SubscribeCommand>(
+      R"({"type":"subscribe","pictures":[{"run":"r","name":"depth","camera":"left"},
+          {"run":"r","name":"error","camera":"left"},{"run":"r","name":"error/feature"}]})");
+  ASSERT_EQ(subscribe.pictures.size(), 3U);
+  EXPECT_EQ(subscribe.pictures[0].camera, "left");
+  EXPECT_EQ(subscribe.pictures[2].name, "error/feature");
+  for (const char* wrong : {R"("name":"error/")",
+                            R"("name":"deep")",
+                            R"("name":"error/feature","camera":"left")",
+                            R"("name":"debug/feature","camera":"left")"}) {
+    const ClientMessage message = parse_client_message(
+        R"({"type":"subscribe","pictures":[{"run":"r",)" + std::string(wrong) + "}]}");
+    EXPECT_FALSE(message.status.ok()) << wrong;
+  }
 }
 
 TEST(ClientMessage, RefusesWrongOtherRuns) {

@@ -64,8 +64,9 @@ export interface StreamClientOptions {
 const kCloseTooSlow = 4000;
 
 /** The name under which a stream's pictures arrive. */
-export function picturesOf(stream: string, camera?: string): string {
-  return camera === undefined ? stream : `${stream}/${camera}`;
+export function picturesOf(stream: string, camera?: string, view?: string): string {
+  const camera_part = camera === undefined ? '' : `?camera=${camera}`;
+  return stream + camera_part + (view === undefined ? '' : `?view=${view}`);
 }
 
 export class StreamClient {
@@ -83,6 +84,10 @@ export class StreamClient {
   private subscriptions: PictureStream[] = [];
   private view: Partial<SceneView> = {};
   private streams = new Map<number, { run: string; name: string }>();
+  /** Newest pictures shown, by stream, that the server does not know about. */
+  private readonly unsaid = new Map<number, number>();
+  /** Labels of the picture that comes next, by stream. */
+  private readonly labels = new Map<number, ServerMessage & { type: 'labels' }>();
 
   constructor(private readonly options: StreamClientOptions) {}
 
@@ -139,7 +144,18 @@ export class StreamClient {
 
   subscribe(pictures: PictureStream[]): void {
     this.subscriptions = pictures;
-    this.send({ type: 'subscribe', pictures });
+    this.send({ type: 'subscribe', pictures, acknowledge: true });
+  }
+
+  /** A picture was shown, or will not be: more may come. */
+  shown(stream: number, sequence: number): void {
+    if (this.unsaid.size === 0) queueMicrotask(() => this.sayShown());
+    this.unsaid.set(stream, Math.max(sequence, this.unsaid.get(stream) ?? 0));
+  }
+
+  /** A video picture of a stream was lost: asks for one that does not need it. */
+  askForKey(stream: number): void {
+    this.send({ type: 'key', id: stream });
   }
 
   setView(view: Partial<SceneView>): void {
@@ -150,6 +166,14 @@ export class StreamClient {
   /** Sends a playback command; does nothing without a connection. */
   command(message: ClientMessage): void {
     this.send(message);
+  }
+
+  /** Without a request number: it needs no answer. */
+  private sayShown(): void {
+    const pictures = [...this.unsaid];
+    this.unsaid.clear();
+    if (this.socket === null || !this.greeted) return;
+    this.socket.send(JSON.stringify({ type: 'shown', pictures }));
   }
 
   private send(message: ClientMessage): void {
@@ -182,9 +206,14 @@ export class StreamClient {
     } else if (message.type === 'pictures') {
       const own = message.pictures.filter(({ run }) => this.runs.has(run));
       this.streams = new Map(
-        own.map(({ id, run, name, camera }) => [id, { run, name: picturesOf(name, camera) }]),
+        own.map(({ id, run, name, camera, view }) => [
+          id,
+          { run, name: picturesOf(name, camera, view) },
+        ]),
       );
       this.options.listener.onMessage({ ...message, pictures: own });
+    } else if (message.type === 'labels') {
+      this.labels.set(message.id, message);
     } else if (message.type === 'ok' || message.type === 'error') {
       this.onAnswer(message);
     } else if (this.concerns(message)) {
@@ -193,7 +222,9 @@ export class StreamClient {
   }
 
   /** Whether a message is about a watched run; the others are of one that was left. */
-  private concerns(message: Exclude<ServerMessage, { type: 'hello' | 'ok' | 'error' }>): boolean {
+  private concerns(
+    message: Exclude<ServerMessage, { type: 'hello' | 'ok' | 'error' | 'labels' }>,
+  ): boolean {
     if (message.type === 'pictures') return false;
     if (message.type === 'playback')
       return Object.keys(message.runs).some((run) => this.runs.has(run));
@@ -225,7 +256,7 @@ export class StreamClient {
     if (this.runs.size === 0) return;
     for (const [run, offset_ns] of this.runs) this.sendWatch(run, offset_ns);
     if (this.subscriptions.length > 0) {
-      this.send({ type: 'subscribe', pictures: this.subscriptions });
+      this.send({ type: 'subscribe', pictures: this.subscriptions, acknowledge: true });
     }
     for (const command of this.options.listener.restore()) this.send(command);
   }
@@ -233,7 +264,13 @@ export class StreamClient {
   private onBinary(buffer: ArrayBuffer): void {
     const picture = parsePicture(buffer);
     const stream = picture === null ? undefined : this.streams.get(picture.streamId);
-    if (picture === null || stream === undefined || !this.runs.has(stream.run)) return;
+    if (picture === null) return;
+    if (stream === undefined || !this.runs.has(stream.run)) {
+      this.shown(picture.streamId, picture.sequence);
+      return;
+    }
+    const labels = this.labels.get(picture.streamId);
+    if (labels?.sequence === picture.sequence) picture.labels = labels.labels;
     this.options.listener.onPicture(stream.run, stream.name, picture);
   }
 
@@ -255,6 +292,8 @@ export class StreamClient {
     this.greeted = false;
     this.opening.clear();
     this.streams.clear();
+    this.labels.clear();
+    this.unsaid.clear();
     if (socket !== null) {
       socket.onclose = null;
       socket.close();

@@ -3,7 +3,18 @@ import type { EstimatorStatus, Metrics, Run } from './rest_types';
 
 export const kProtocolVersion = 2;
 
-export type SceneMode = 'chase' | 'orbit' | 'top';
+export type SceneMode = 'chase' | 'orbit' | 'top' | 'onboard' | 'free';
+
+export type ScenePart =
+  | 'ribbons'
+  | 'aircraft'
+  | 'frustum'
+  | 'footprint'
+  | 'points'
+  | 'image'
+  | 'errors'
+  | 'error_history'
+  | 'labels';
 
 export interface SceneView {
   mode: SceneMode;
@@ -11,8 +22,26 @@ export interface SceneView {
   elevation_deg: number;
   distance_m: number;
   follow: boolean;
+  /** Viewpoint of the mode `free`. */
+  x_m: number;
+  y_m: number;
+  z_m: number;
+  /** What it shows; all else is off. */
+  show: ScenePart[];
   width_px: number;
   height_px: number;
+}
+
+/** Where an aircraft is in the picture of a scene. */
+export interface SceneLabel {
+  run: string;
+  /** Absent: the truth. */
+  estimator?: string;
+  x_px: number;
+  y_px: number;
+  distance_m: number;
+  /** Of an estimate: its distance from the truth. */
+  error_m?: number;
 }
 
 export interface PictureStream {
@@ -25,6 +54,7 @@ export interface PictureStream {
   max_hz?: number;
   quality?: number;
   max_width_px?: number;
+  encoding?: 'jpeg' | 'vp8';
   /** Of a scene: index of the first estimator's colour. */
   first_colour?: number;
   /** Of a scene: other runs whose tracks it shows. */
@@ -43,7 +73,10 @@ export interface ClockRange {
 export type ClientMessage =
   | { type: 'watch'; run: string; offset_ns?: number; resume?: Resume }
   | { type: 'unwatch'; run: string }
-  | { type: 'subscribe'; pictures: PictureStream[] }
+  /** `acknowledge`: the client says which pictures it has shown, so that no more are on the way. */
+  | { type: 'subscribe'; pictures: PictureStream[]; acknowledge: boolean }
+  | { type: 'shown'; pictures: [stream: number, sequence: number][] }
+  | { type: 'key'; id: number }
   | ({ type: 'view'; view?: string } & Partial<SceneView>)
   | { type: 'play' }
   | { type: 'pause' }
@@ -142,7 +175,8 @@ export type ServerMessage =
   | { type: 'error'; request?: number; code: string; message: string }
   | { type: 'run'; run: Run }
   | { type: 'series'; run: string; series: SeriesInfo[] }
-  | { type: 'pictures'; pictures: PictureInfo[] }
+  | { type: 'pictures'; pictures: PictureInfo[]; reduction?: number }
+  | { type: 'labels'; id: number; sequence: number; labels: SceneLabel[] }
   | ({ type: 'rows' } & Rows)
   | { type: 'estimators'; run: string; estimators: Record<string, EstimatorStatus> }
   | { type: 'metrics'; run: string; metrics: Metrics }

@@ -1,5 +1,5 @@
 // Pure parsers of received messages. They throw only ParseError.
-import type { ServerMessage } from './messages';
+import type { SceneLabel, ServerMessage } from './messages';
 
 export class ParseError extends Error {}
 
@@ -10,6 +10,7 @@ const kRequired: Record<ServerMessage['type'], Record<string, string>> = {
   run: { run: 'object' },
   series: { run: 'string', series: 'object' },
   pictures: { pictures: 'object' },
+  labels: { id: 'number', sequence: 'number', labels: 'object' },
   rows: { run: 'string', stream: 'string', seq: 'number', columns: 'object' },
   estimators: { run: 'string', estimators: 'object' },
   metrics: { run: 'string', metrics: 'object' },
@@ -37,6 +38,8 @@ export function parseServerMessage(text: string): ServerMessage | null {
   return message as unknown as ServerMessage;
 }
 
+export type PictureEncoding = 'jpeg' | 'vp8';
+
 export interface PictureHeader {
   streamId: number;
   sequence: number;
@@ -44,20 +47,34 @@ export interface PictureHeader {
   t_ns: number;
   width_px: number;
   height_px: number;
-  grey: boolean;
+  encoding: PictureEncoding;
+  /** Does not need the video picture before. */
+  key: boolean;
   live: boolean;
+  /** Of depth [m] and error pictures [grey levels]: the values at the ends of their colours. */
+  scale: { low: number; high: number; logarithmic: boolean } | null;
+  /** Of the image before it was reduced. */
+  fullWidth_px: number;
+  fullHeight_px: number;
 }
 
 export interface PictureMessage extends PictureHeader {
+  /** Of a scene. */
+  labels?: readonly SceneLabel[];
   /** A view into the message, not a copy. */
-  jpeg: Uint8Array<ArrayBuffer>;
+  data: Uint8Array<ArrayBuffer>;
 }
 
-const kPictureHeaderBytes = 48;
+const kPictureHeaderBytes = 60;
+const kPictureVersion = 2;
 const kMagic = 0x4c46564f;
 const kPictureType = 1;
-const kEncodingGrey = 1;
-const kEncodingColour = 2;
+/** JPEG grey, JPEG colour, VP8. */
+const kEncodings: Readonly<Record<number, PictureEncoding>> = { 1: 'jpeg', 2: 'jpeg', 3: 'vp8' };
+const kFlagLive = 1;
+const kFlagScale = 2;
+const kFlagLogarithmic = 4;
+const kFlagKey = 8;
 
 /**
  * Parses a binary message.
@@ -70,11 +87,13 @@ export function parsePicture(buffer: ArrayBuffer): PictureMessage | null {
   const view = new DataView(buffer);
   if (view.getUint32(0, true) !== kMagic) throw new ParseError('picture has no OVFL magic');
   const version = view.getUint16(4, true);
-  if (version !== 1) throw new ParseError(`picture version ${version} is not 1`);
+  if (version !== kPictureVersion) {
+    throw new ParseError(`picture version ${version} is not ${kPictureVersion}`);
+  }
   if (view.getUint16(6, true) !== kPictureType) return null;
-  const encoding = view.getUint16(36, true);
-  if (encoding !== kEncodingGrey && encoding !== kEncodingColour) {
-    throw new ParseError(`picture encoding ${encoding} is unknown`);
+  const encoding = kEncodings[view.getUint16(36, true)];
+  if (encoding === undefined) {
+    throw new ParseError(`picture encoding ${view.getUint16(36, true)} is unknown`);
   }
   const headerBytes = view.getUint16(38, true);
   const payloadBytes = view.getUint32(40, true);
@@ -83,6 +102,7 @@ export function parsePicture(buffer: ArrayBuffer): PictureMessage | null {
       `picture says ${headerBytes} + ${payloadBytes} bytes, has ${buffer.byteLength}`,
     );
   }
+  const flags = view.getUint32(44, true);
   return {
     streamId: view.getUint32(8, true),
     sequence: view.getUint32(12, true),
@@ -90,8 +110,19 @@ export function parsePicture(buffer: ArrayBuffer): PictureMessage | null {
     t_ns: Number(view.getBigInt64(24, true)),
     width_px: view.getUint16(32, true),
     height_px: view.getUint16(34, true),
-    grey: encoding === kEncodingGrey,
-    live: (view.getUint32(44, true) & 1) === 1,
-    jpeg: new Uint8Array(buffer, headerBytes, payloadBytes),
+    encoding,
+    key: (flags & kFlagKey) !== 0,
+    live: (flags & kFlagLive) !== 0,
+    scale:
+      (flags & kFlagScale) === 0
+        ? null
+        : {
+            low: view.getFloat32(48, true),
+            high: view.getFloat32(52, true),
+            logarithmic: (flags & kFlagLogarithmic) !== 0,
+          },
+    fullWidth_px: view.getUint16(56, true),
+    fullHeight_px: view.getUint16(58, true),
+    data: new Uint8Array(buffer, headerBytes, payloadBytes),
   };
 }

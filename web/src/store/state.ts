@@ -1,8 +1,7 @@
 // The whole state of the screen in one place, and notification of its changes.
 import type { ConnectionState } from '../connection/stream_client';
-import { picturesOf } from '../connection/stream_client';
 import type { FieldError } from '../protocol/field_errors';
-import type { SceneMode, SceneView } from '../protocol/messages';
+import type { PixelAnswer, PixelQuestion } from '../protocol/pixel_types';
 import type {
   CameraInfo,
   EstimatorStatus,
@@ -16,11 +15,15 @@ import { initialCalibrationPage } from './calibration/calibration_page';
 import { kDefaultAlignment } from './error_table';
 import type { LogPage } from './logs/log_browser';
 import { initialLogPage } from './logs/log_browser';
-import type { PictureRate } from './picture_rates';
+import type { PictureRate } from './pictures/picture_rates';
+import type { Zoom } from './pictures/picture_zoom';
+import type { Hover } from './pictures/pixel_probe';
 import type { Clock, RunPlayback } from './run_playback';
 import type { ConnectState } from './vehicle/vehicle_connect';
 import { initialConnect } from './vehicle/vehicle_connect';
 import { RunData } from './run_data';
+import type { SceneLook } from './scene/scene_look';
+import { usualLook } from './scene/scene_look';
 import type { ScorePage } from './scoring/score_page';
 import { initialScorePage } from './scoring/score_page';
 import type { SensorSamples } from './sensors/sensors';
@@ -31,8 +34,6 @@ export interface Notice {
   level: 'info' | 'error';
   text: string;
 }
-
-export type SceneOrbit = Pick<SceneView, 'azimuth_deg' | 'elevation_deg' | 'distance_m' | 'follow'>;
 
 const kNoRows = new RunData();
 const kNoPictures: ReadonlyMap<string, Picture> = new Map();
@@ -66,12 +67,17 @@ export class State {
   sensors: SensorSamples | null = null;
   /** Why the sensors' samples cannot be read. */
   sensorError: string | null = null;
-  sceneMode: SceneMode = 'chase';
-  sceneOrbits: Record<SceneMode, SceneOrbit> = {
-    chase: { azimuth_deg: 20, elevation_deg: 18, distance_m: 40, follow: true },
-    orbit: { azimuth_deg: 215, elevation_deg: 35, distance_m: 900, follow: true },
-    top: { azimuth_deg: 0, elevation_deg: 90, distance_m: 2400, follow: false },
-  };
+  /** Pictures of all watched runs, not only of the main one. */
+  sideBySide = true;
+  /** Steps by which the server reduces pictures for this connection. */
+  reduction = 0;
+  /** What part of the pictures is shown, by group (pictures/picture_groups.ts). */
+  zooms = new Map<string, Zoom>();
+  /** Where the mouse points in a picture. */
+  hover: Hover | null = null;
+  /** What was asked about the pixel there, and the answer or why there is none. */
+  pixel: { question: PixelQuestion; answer: PixelAnswer | string } | null = null;
+  scene: SceneLook = usualLook();
   notices: Notice[] = [];
   helpOpen = false;
   paletteOpen = false;
@@ -154,11 +160,6 @@ export function shownAlignment({ aligned }: Pick<WatchedRun, 'aligned'>): string
   return aligned?.mode ?? kDefaultAlignment;
 }
 
-/** The name under which the chosen camera's pictures arrive. */
-export function cameraPictures({ camera }: Pick<WatchedRun, 'camera'>): string {
-  return picturesOf('camera', camera ?? undefined);
-}
-
 /** Views redraw themselves for the topics that changed since the last frame. */
 const kTopicNames = [
   'connection',
@@ -171,6 +172,8 @@ const kTopicNames = [
   'estimators',
   'playback',
   'pictures',
+  'zoom',
+  'hover',
   'scene',
   'cameras',
   'sensors',

@@ -1,9 +1,14 @@
 // One of the runs shown together: what the server sent about it, and how it is shown.
-import type { RunInstant, SeriesInfo } from '../protocol/messages';
+import type { RunInstant, SceneLabel, SeriesInfo } from '../protocol/messages';
 import type { CameraInfo, EstimatorStatus, Metrics, Run } from '../protocol/rest_types';
-import type { PictureRate } from './picture_rates';
+import type { ColourScale } from './pictures/colour_scale';
+import type { PictureRate } from './pictures/picture_rates';
+import { PictureMeter } from './pictures/picture_rates';
 import type { EstimateRows } from './run_data';
 import { RunData } from './run_data';
+
+/** Of a JPEG or a video. */
+export type DecodedImage = ImageBitmap | VideoFrame;
 
 /** A decoded picture and the instant it belongs to. */
 export interface Picture {
@@ -12,7 +17,13 @@ export interface Picture {
   width_px: number;
   height_px: number;
   live: boolean;
-  bitmap: ImageBitmap;
+  scale: ColourScale | null;
+  /** Of a scene. */
+  labels: readonly SceneLabel[];
+  /** Of the image before it was reduced. */
+  fullWidth_px: number;
+  fullHeight_px: number;
+  bitmap: DecodedImage;
 }
 
 /** Estimates under an alignment other than the recorded one. */
@@ -38,11 +49,14 @@ export class WatchedRun {
   aligned: AlignedEstimates | null = null;
   /** Empty until its manifest was read. */
   cameras: CameraInfo[] = [];
+  /** The camera whose images each estimator gets. */
+  estimatorCameras: ReadonlyMap<string, string> = new Map();
   /** The camera shown; null = the first. */
   camera: string | null = null;
   readonly pictures = new Map<string, Picture>();
-  /** For the streams whose rate is below the requested one, by name. */
+  /** For the streams whose rate a real-time flight limits, by name. */
   rates = new Map<string, PictureRate>();
+  readonly meter = new PictureMeter();
   /** Tracks that the viewer has hidden: names of estimators, '' = the truth. */
   readonly hidden = new Set<string>();
 

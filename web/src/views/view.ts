@@ -1,10 +1,11 @@
 // The interface of every part of the screen.
 import type { Alignment } from '../store/alignment';
 import type { CalibrationDesk } from '../store/calibration/calibration_desk';
-import type { Cameras } from '../store/cameras';
+import type { Cameras } from '../store/pictures/cameras';
+import type { PixelProbe } from '../store/pictures/pixel_probe';
 import type { Store, Topic } from '../store/state';
 import type { Player } from '../store/player';
-import type { SceneControl } from '../store/scene_control';
+import type { SceneControl } from '../store/scene/scene_control';
 import type { Sensors } from '../store/sensors/sensors';
 import type { Session } from '../store/session';
 import type { Catalogue } from '../store/catalogue';
@@ -35,6 +36,7 @@ export interface Context {
   catalogue: Catalogue;
   alignment: Alignment;
   cameras: Cameras;
+  probe: PixelProbe;
   sensors: Sensors;
   logs: LogBrowser;
   smoothing: LogSmoothing;

@@ -195,7 +195,7 @@ server::Picture picture_of(std::int64_t frame, std::size_t bytes) {
   server::Picture picture;
   picture.frame = frame;
   picture.t_ns = frame * kFoxgloveFrameNs;
-  picture.jpeg = std::make_shared<const Bytes>(bytes, static_cast<std::uint8_t>(frame));
+  picture.bytes = std::make_shared<const Bytes>(bytes, static_cast<std::uint8_t>(frame));
   return picture;
 }
 
