@@ -24,7 +24,7 @@ export class CaptureView {
   readonly root: HTMLElement;
   private readonly phase = h('span', { class: 'calibration-phase', 'data-role': 'phase' });
   private readonly bar = h('div', { class: 'upload-bar' });
-  private readonly track = h('div', { class: 'upload-track', hidden: true }, this.bar);
+  private readonly track = h('div', { class: 'upload-track' }, this.bar);
   private readonly automatic = h('input', { type: 'checkbox', id: 'calibration-automatic' });
   private readonly automaticLabel = h(
     'label',
@@ -42,7 +42,7 @@ export class CaptureView {
   );
   private readonly finish = button('No more images', 'finish', 'Ends the source; the views stay');
   private readonly clear = button('Forget views', 'clear', 'Begins again with the same source');
-  private readonly leave = button('Close', 'end-calibration', 'Ends the calibration');
+  private readonly leave = button('End', 'end-calibration', 'Ends the calibration and forgets its views');
   private readonly send = button(
     'Choose images',
     'choose-images',
@@ -135,7 +135,8 @@ export class CaptureView {
     this.leave.hidden = session === null;
     for (const one of [this.capture, this.finish, this.clear, this.leave]) one.disabled = busy;
     const share = session?.images_total ? session.images / session.images_total : null;
-    this.track.hidden = share === null || !open;
+    // Keeps its place, so that the pictures do not move when the images have ended.
+    this.track.style.visibility = share === null || !open ? 'hidden' : '';
     this.bar.style.width = `${100 * (share ?? 0)}%`;
   }
 

@@ -6,7 +6,7 @@ import { h, rebuild, setText } from '../dom';
 import type { Context } from '../view';
 
 const kKinds: Readonly<Record<SourceKind, { label: string; none: string }>> = {
-  scenario: { label: 'Virtual camera of a scenario', none: 'The server has no scenarios.' },
+  scenario: { label: 'Camera of a scenario', none: 'The server has no scenarios.' },
   folder: { label: 'Images in a folder', none: 'There are no images in the data folders.' },
   upload: { label: 'Images of this computer', none: '' },
   recording: { label: 'Recording or video', none: 'There are no recordings in the data folders.' },
