@@ -74,7 +74,12 @@ void serve(FoxgloveViewer* viewer, OpenPort* port, std::int64_t now_ns) {
   viewer->tick(now_ns);
   for (const auto& [ticket, t_ns] : std::exchange(port->drawn, {})) {
     const std::int64_t frame = t_ns / 50'000'000;
-    server::Picture picture{frame, t_ns, 4, 2, true, jpeg};
+    server::Picture picture;
+    picture.frame = frame;
+    picture.t_ns = t_ns;
+    picture.width_px = 4;
+    picture.height_px = 2;
+    picture.bytes = jpeg;
     viewer->picture_ready(ticket, picture, now_ns);
   }
   for (const PictureTicket& ticket : std::exchange(port->sent, {})) {

@@ -31,7 +31,8 @@ TEST(Audience, CountsPicturesAndTheirCost) {
   audience.picture_made(Audience::Kind::kScene, 0.25);
   audience.picture_made(Audience::Kind::kCamera, 0.125);
   const Json summary = audience.summary();
-  EXPECT_EQ(summary.at("pictures"), (Json{{"camera", 1}, {"debug", 0}, {"scene", 2}}));
+  EXPECT_EQ(summary.at("pictures"),
+            (Json{{"camera", 1}, {"debug", 0}, {"scene", 2}, {"depth", 0}, {"error", 0}}));
   EXPECT_EQ(summary.at("cpu_s"), 0.875);
   EXPECT_EQ(summary.at("viewers"), 0);
 }
