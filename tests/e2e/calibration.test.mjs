@@ -220,6 +220,8 @@ describe('a camera calibrated on its page', { skip, timeout: 900_000 }, () => {
     }
     camera.show(jpegs[0]);
     await begin('camera');
+    // The new session has replaced the one of the folder.
+    await role('phase').filter({ hasText: 'searched', hasNotText: 'of 8' }).waitFor();
     // Views that are near each other in place, size and tilt add nothing: some of the eight.
     for (const jpeg of jpegs) {
       camera.show(jpeg);

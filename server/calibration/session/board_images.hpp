@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -22,9 +23,10 @@ class BoardImages {
  public:
   virtual ~BoardImages() = default;
 
-  /// The next image. @return empty if none comes in time, or at the end
+  /// The next image. @pre not ended()
+  /// @return null if none comes in time
   /// Errors: those that end the source.
-  [[nodiscard]] virtual Result<std::optional<BoardImage>> next(
+  [[nodiscard]] virtual Result<std::unique_ptr<BoardImage>> next(
       std::chrono::milliseconds patience) = 0;
   /// There will be no more images.
   [[nodiscard]] virtual bool ended() const = 0;

@@ -228,7 +228,7 @@ void CalibrationSession::take_next() {
     end_source("");
     return;
   }
-  Result<std::optional<BoardImage>> image = images_->next(kTurn);
+  Result<std::unique_ptr<BoardImage>> image = images_->next(kTurn);
   if (!image) {
     end_source(image.error().message);
   } else if (*image) {

@@ -14,7 +14,11 @@ namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
-using Next = Result<std::optional<BoardImage>>;
+using Next = Result<std::unique_ptr<BoardImage>>;
+
+Next board_image(std::string name, Result<Image> image) {
+  return std::make_unique<BoardImage>(BoardImage{std::move(name), std::move(image)});
+}
 
 std::string image_title(const char* what, std::int64_t number) {
   return std::string(what) + " " + std::to_string(number);
@@ -25,13 +29,12 @@ class FolderBoards final : public BoardImages {
   explicit FolderBoards(std::vector<fs::path> files) : files_(std::move(files)) {}
 
   [[nodiscard]] Next next(std::chrono::milliseconds /*patience*/) override {
-    if (ended()) return std::optional<BoardImage>();
     const fs::path& file = files_[next_++];
     const std::string name = file.filename().string();
     Result<Image> image = read_grey_image(file);
     // The server's folders are no business of its clients.
     if (!image) image = Error{image.error().code, "cannot be read as PNG, JPEG, PGM or PPM"};
-    return std::optional(BoardImage{name, std::move(image)});
+    return board_image(name, std::move(image));
   }
   [[nodiscard]] bool ended() const override { return next_ == files_.size(); }
   [[nodiscard]] std::optional<std::size_t> total() const override { return files_.size(); }
@@ -54,12 +57,9 @@ class RecordedBoards final : public BoardImages {
   }
 
   [[nodiscard]] Next next(std::chrono::milliseconds /*patience*/) override {
-    std::optional<BoardImage> board;
-    if (ended()) return board;
     const std::size_t index = chosen_[next_++];
-    board.emplace(BoardImage{image_title("image", static_cast<std::int64_t>(index) + 1),
-                             source_->read(index)});
-    return board;
+    return board_image(image_title("image", static_cast<std::int64_t>(index) + 1),
+                       source_->read(index));
   }
   [[nodiscard]] bool ended() const override { return next_ == chosen_.size(); }
   [[nodiscard]] std::optional<std::size_t> total() const override { return chosen_.size(); }
@@ -76,10 +76,9 @@ class VirtualBoards final : public BoardImages {
   explicit VirtualBoards(VirtualCamera camera) : camera_(std::move(camera)) {}
 
   [[nodiscard]] Next next(std::chrono::milliseconds /*patience*/) override {
-    if (ended()) return std::optional<BoardImage>();
     const std::size_t view = next_++;
-    return std::optional(BoardImage{
-        image_title("virtual view", static_cast<std::int64_t>(view) + 1), camera_.image(view)});
+    return board_image(image_title("virtual view", static_cast<std::int64_t>(view) + 1),
+                       camera_.image(view));
   }
   [[nodiscard]] bool ended() const override { return next_ == camera_.views(); }
   [[nodiscard]] std::optional<std::size_t> total() const override { return camera_.views(); }
@@ -97,10 +96,10 @@ class CameraBoards final : public BoardImages {
   [[nodiscard]] Next next(std::chrono::milliseconds patience) override {
     Result<std::optional<Image>> image = images_->next(patience);
     if (!image && image.error().code == ErrorCode::kIo) return image.error();
-    if (image && !*image) return std::optional<BoardImage>();
+    if (image && !*image) return std::unique_ptr<BoardImage>();
     const std::string name = image_title("image", ++number_);
-    if (!image) return std::optional(BoardImage{name, image.error()});
-    return std::optional(BoardImage{name, std::move(**image)});
+    if (!image) return board_image(name, image.error());
+    return board_image(name, std::move(**image));
   }
   [[nodiscard]] bool ended() const override { return false; }
   [[nodiscard]] bool moving() const override { return true; }
@@ -165,7 +164,7 @@ Next UploadedImages::next(std::chrono::milliseconds patience) {
   {
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, patience, [&] { return finished_ || !files_.empty(); });
-    if (files_.empty()) return std::optional<BoardImage>();
+    if (files_.empty()) return std::unique_ptr<BoardImage>();
     file = std::move(files_.front());
     files_.pop_front();
   }
@@ -175,7 +174,7 @@ Next UploadedImages::next(std::chrono::milliseconds patience) {
   Result<Image> image = grey_picture(picture);
   // Its temporary file has a name that means nothing to a client.
   if (!image) image = Error{ErrorCode::kUnreadable, "cannot be read as PNG, JPEG, PGM or PPM"};
-  return std::optional(BoardImage{std::move(file.name), std::move(image)});
+  return board_image(std::move(file.name), std::move(image));
 }
 
 bool UploadedImages::ended() const {

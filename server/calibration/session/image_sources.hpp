@@ -58,7 +58,8 @@ class UploadedImages final : public BoardImages {
   [[nodiscard]] Result<bool> push(std::string name, std::vector<std::uint8_t> file);
   void finish();
 
-  [[nodiscard]] Result<std::optional<BoardImage>> next(std::chrono::milliseconds patience) override;
+  [[nodiscard]] Result<std::unique_ptr<BoardImage>> next(
+      std::chrono::milliseconds patience) override;
   [[nodiscard]] bool ended() const override;
 
  private:

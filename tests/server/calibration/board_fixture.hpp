@@ -38,11 +38,12 @@ class ListedImages final : public BoardImages {
   ListedImages(std::vector<Image> images, Behaviour behaviour)
       : images_(std::move(images)), behaviour_(behaviour) {}
 
-  [[nodiscard]] Result<std::optional<BoardImage>> next(std::chrono::milliseconds) override {
+  [[nodiscard]] Result<std::unique_ptr<BoardImage>> next(std::chrono::milliseconds) override {
     if (next_ >= behaviour_.fails_after) return Error{ErrorCode::kIo, "the cable was pulled"};
     const std::size_t index = behaviour_.repeat ? next_ % images_.size() : next_;
     ++next_;
-    return std::optional(BoardImage{"image " + std::to_string(next_), images_.at(index)});
+    return std::make_unique<BoardImage>(
+        BoardImage{"image " + std::to_string(next_), images_.at(index)});
   }
   [[nodiscard]] bool ended() const override {
     return !behaviour_.repeat && next_ >= images_.size();
