@@ -37,7 +37,9 @@ class CalibrationDeskTest : public ::testing::Test {
 
   [[nodiscard]] DeskOptions options() const {
     DeskOptions options;
-    options.folders = [this] { return LogFolders{{}, {data()}, SourcePolicy::inside({data()})}; };
+    options.folders = [this] {
+      return ServedFolders{{}, {data()}, SourcePolicy::inside({data()})};
+    };
     options.scenario_camera = [](const std::string& scenario, const std::string& camera) {
       if (scenario != "course") return Result<CameraSpec>(Error{ErrorCode::kNotFound, "none"});
       CameraSpec spec;
@@ -149,7 +151,7 @@ TEST_F(CalibrationDeskTest, NamesADamagedRecordingOfARelativeFolderOnce) {
   const fs::path before = fs::current_path();
   fs::current_path(folder_.path());
   DeskOptions relative = options();
-  relative.folders = [] { return LogFolders{{}, {"data"}, SourcePolicy::inside({"data"})}; };
+  relative.folders = [] { return ServedFolders{{}, {"data"}, SourcePolicy::inside({"data"})}; };
   {
     CalibrationDesk desk(relative);
     const auto id = desk.begin(request(SourceKind::kRecording, "data/broken.mp4"));
