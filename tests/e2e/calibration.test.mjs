@@ -24,6 +24,8 @@ const kScenario = {
 };
 const kViews = 14;
 const kPatience_ms = 120_000;
+/** The first ones may be on their way already; then the board has to be held still. */
+const kImagesToHold = 5;
 
 let dashboard;
 const step = makeStep(() => dashboard);
@@ -69,6 +71,15 @@ describe('a camera calibrated on its page', { skip, timeout: 900_000 }, () => {
   const session = async () => (await getJson(stage.server, '/calibration-sessions')).sessions.at(-1);
   const untilSolved = () => role('summary').filter({ hasText: 'RMS' }).waitFor({ timeout: kPatience_ms });
   const rms = async () => Number(/RMS ([\d.]+)/.exec(await role('summary').innerText())[1]);
+  /** Until the server has searched so many more images of an endless source. */
+  const untilSearched = async (count) => {
+    const { images } = await session();
+    const deadline_ms = Date.now() + kPatience_ms;
+    while ((await session()).images < images + count) {
+      assert.ok(Date.now() < deadline_ms, 'no more images are searched');
+      await page.waitForTimeout(100);
+    }
+  };
   const begin = async (kind) => {
     await field('kind').selectOption(kind);
     await role('begin-calibration').click();
@@ -225,9 +236,7 @@ describe('a camera calibrated on its page', { skip, timeout: 900_000 }, () => {
     // Views that are near each other in place, size and tilt add nothing: some of the eight.
     for (const jpeg of jpegs) {
       camera.show(jpeg);
-      const { images } = await session();
-      await page.waitForTimeout(1000);
-      assert.ok((await session()).images > images);
+      await untilSearched(kImagesToHold);
     }
     const seen = await session();
     assert.ok(seen.views.length >= 3, `${seen.views.length} views`);
@@ -237,10 +246,10 @@ describe('a camera calibrated on its page', { skip, timeout: 900_000 }, () => {
     for (const jpeg of jpegs) {
       if ((await session()).views.length >= seen.views.length + 1) break;
       camera.show(jpeg);
-      await page.waitForTimeout(700);
+      await untilSearched(kImagesToHold);
       if ((await session()).newest.verdict !== 'nothing new') continue;
       await role('capture').click();
-      await page.waitForTimeout(700);
+      await untilSearched(kImagesToHold);
     }
     assert.ok((await session()).views.length > seen.views.length);
     assert.equal(camera.viewers(), 1);
