@@ -160,18 +160,46 @@ Status CameraUnit::develop(renderer::CameraFrame drawn,
   return {};
 }
 
-/// Uses a copy of the sensor without auto-exposure, fixed at the setting; the noise is that of the
-/// frame.
-Result<sensor::SensorImage> CameraUnit::exposed_with(const sensor::ExposureSetting& setting,
-                                                     const RadianceImage& radiance,
-                                                     std::int64_t frame) const {
+sensor::SensorModel CameraUnit::fixed_at(const sensor::ExposureSetting& setting) const {
   sensor::SensorModel model = spec_.sensor;
   model.gain_dn_per_e = model.effective_gain_dn_per_e() * setting.gain;
   model.exposure_s = s_from_ns(setting.exposure_ns);
   model.auto_exposure.reset();
-  auto sensor = sensor::Sensor::create(model, spec_.model, seed_);
+  return model;
+}
+
+/// The noise is that of the frame.
+Result<sensor::SensorImage> CameraUnit::exposed_with(const sensor::ExposureSetting& setting,
+                                                     const RadianceImage& radiance,
+                                                     std::int64_t frame) const {
+  auto sensor = sensor::Sensor::create(fixed_at(setting), spec_.model, seed_);
   if (!sensor) return sensor.error();
   return (*sensor)->expose(radiance, frame);
+}
+
+Result<Image> CameraUnit::ideal(const Pose& T_world_camera,
+                                std::int64_t t_ns,
+                                std::int64_t frame,
+                                const std::optional<sensor::ExposureSetting>& setting,
+                                renderer::Renderer& renderer) const {
+  auto request =
+      renderer::CameraRequest::still(spec_.model, T_world_camera, t_ns, format_of(spec_));
+  request.quality = spec_.quality;
+  request.atmosphere = spec_.atmosphere;
+  Result<renderer::CameraFrame> drawn = renderer.render_camera(request);
+  if (!drawn) return drawn.error();
+  if (!spec_.sensor.enabled) return std::move(drawn->image);
+  sensor::SensorModel model =
+      fixed_at(setting.value_or(sensor::ExposureSetting{ns_from_s(spec_.sensor.exposure_s), 1.0}));
+  model.defocus_sigma_px = 0.0;
+  model.vignette.reset();
+  model.shot_noise = false;
+  model.prnu = 0.0;
+  model.dsnu_e = 0.0;
+  model.read_noise_e = 0.0;
+  auto sensor = sensor::Sensor::create(model, spec_.model, seed_);
+  if (!sensor) return sensor.error();
+  return std::move((*sensor)->expose(drawn->radiance, frame).image);
 }
 
 ShutterWindow ShutterWindow::of(const std::vector<std::unique_ptr<CameraUnit>>& cameras) {

@@ -48,12 +48,22 @@ class CameraUnit {
                  std::int64_t frame,
                  CameraShot& shot,
                  const std::optional<sensor::ExposureSetting>& setting = {});
+  /// The image that an ideal camera of the same geometry, exposure and response would take at a
+  /// pose: in an instant, without blur, vignetting, noise and faults.
+  /// @param setting  exposure; if empty, that of the sensor model
+  [[nodiscard]] Result<Image> ideal(const Pose& T_world_camera,
+                                    std::int64_t t_ns,
+                                    std::int64_t frame,
+                                    const std::optional<sensor::ExposureSetting>& setting,
+                                    renderer::Renderer& renderer) const;
   /// Keeps the last image, for a camera that may freeze.
   void keep_last_image() { keeps_last_ = true; }
 
  private:
   CameraUnit(const CameraSpec& spec, std::uint64_t seed) : spec_(spec), seed_(seed) {}
   void plan_window();
+  /// The sensor's model without auto-exposure, fixed at the setting.
+  [[nodiscard]] sensor::SensorModel fixed_at(const sensor::ExposureSetting& setting) const;
   [[nodiscard]] Result<sensor::SensorImage> exposed_with(const sensor::ExposureSetting& setting,
                                                          const RadianceImage& radiance,
                                                          std::int64_t frame) const;

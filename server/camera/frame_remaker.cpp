@@ -5,6 +5,15 @@
 #include "server/camera/truth.hpp"
 
 namespace overfly::server {
+namespace {
+
+/// The exposure of a frame; empty if it is not known.
+std::optional<sensor::ExposureSetting> setting_of(const FrameRow& row) {
+  if (row.exposure_ns <= 0) return std::nullopt;
+  return sensor::ExposureSetting{row.exposure_ns, row.gain};
+}
+
+}  // namespace
 
 FrameRemaker::FrameRemaker(std::filesystem::path folder,
                            Scenario scenario,
@@ -50,16 +59,19 @@ Result<Image> FrameRemaker::read_again(const CameraSpec& camera, const FrameRow&
   return recorded_->read(static_cast<std::size_t>(row.source_image));
 }
 
-Result<Image> FrameRemaker::make(std::size_t camera,
-                                 const FrameRow& row,
-                                 renderer::Renderer& renderer) {
-  if (camera >= cameras_.size()) {
-    return Error{ErrorCode::kNotFound, "camera " + std::to_string(camera) + ": no such camera"};
+Status FrameRemaker::check_camera(std::size_t camera) const {
+  if (camera < cameras_.size()) return {};
+  return Error{ErrorCode::kNotFound, "camera " + std::to_string(camera) + ": no such camera"};
+}
+
+Result<renderer::CameraRequest> FrameRemaker::request(std::size_t camera, const FrameRow& row) {
+  if (Status status = check_camera(camera); !status) return status.error();
+  if (is_real(camera)) {
+    return renderer::CameraRequest::still(scenario_.cameras[camera].model,
+                                          row.T_world_camera,
+                                          row.t_ns,
+                                          renderer::PixelFormat::kGrey8);
   }
-  if (scenario_.cameras[camera].images) return read_again(scenario_.cameras[camera], row);
-  CameraUnit& unit = *cameras_[camera];
-  std::optional<sensor::ExposureSetting> setting;
-  if (row.exposure_ns > 0) setting = sensor::ExposureSetting{row.exposure_ns, row.gain};
   const auto states = states_around(row.t_ns);
   if (!states) return states.error();
   if (!*states) {
@@ -67,17 +79,37 @@ Result<Image> FrameRemaker::make(std::size_t camera,
         ErrorCode::kConflict,
         "frame " + std::to_string(row.frame) + ": the recorded flight ends before this frame"};
   }
-  Result<renderer::CameraRequest> request = unit.request(**states, row.t_ns, setting);
+  Result<renderer::CameraRequest> request =
+      cameras_[camera]->request(**states, row.t_ns, setting_of(row));
   if (!request) return request.error();
   Status same = check_recorded_pose(row, row.t_ns, request->T_world_camera.at(row.t_ns));
   if (!same) return same.error();
+  return request;
+}
+
+Result<Image> FrameRemaker::make(std::size_t camera,
+                                 const FrameRow& row,
+                                 renderer::Renderer& renderer) {
+  if (Status status = check_camera(camera); !status) return status.error();
+  if (is_real(camera)) return read_again(scenario_.cameras[camera], row);
+  const Result<renderer::CameraRequest> request = this->request(camera, row);
+  if (!request) return request.error();
   Result<renderer::CameraFrame> drawn = renderer.render_camera(*request);
   if (!drawn) return drawn.error();
   const FrameFaults faults = FaultSchedule(scenario_).at(camera, row.frame, row.t_ns);
   CameraShot shot;
-  const Status developed = unit.develop(std::move(*drawn), faults, row.frame, shot, setting);
+  const Status developed =
+      cameras_[camera]->develop(std::move(*drawn), faults, row.frame, shot, setting_of(row));
   if (!developed) return developed.error();
   return std::move(shot.image);
+}
+
+Result<Image> FrameRemaker::make_ideal(std::size_t camera,
+                                       const FrameRow& row,
+                                       const Pose& T_world_camera,
+                                       renderer::Renderer& renderer) {
+  if (Status status = check_camera(camera); !status) return status.error();
+  return cameras_[camera]->ideal(T_world_camera, row.t_ns, row.frame, setting_of(row), renderer);
 }
 
 }  // namespace overfly::server

@@ -34,11 +34,24 @@ class FrameRemaker {
   [[nodiscard]] Result<Image> make(std::size_t camera,
                                    const FrameRow& row,
                                    renderer::Renderer& renderer);
+  /// How the frame's image was drawn; of a camera with recorded images, a camera at rest at the
+  /// row's pose. Errors: as make.
+  [[nodiscard]] Result<renderer::CameraRequest> request(std::size_t camera, const FrameRow& row);
+  /// The frame as an ideal camera would have taken it (CameraUnit::ideal), at any pose.
+  [[nodiscard]] Result<Image> make_ideal(std::size_t camera,
+                                         const FrameRow& row,
+                                         const Pose& T_world_camera,
+                                         renderer::Renderer& renderer);
+  /// Whether the camera's images were recorded by a real camera.
+  [[nodiscard]] bool is_real(std::size_t camera) const {
+    return camera < scenario_.cameras.size() && scenario_.cameras[camera].images.has_value();
+  }
 
  private:
   FrameRemaker(std::filesystem::path folder,
                Scenario scenario,
                std::shared_ptr<const terrain::World> world);
+  [[nodiscard]] Status check_camera(std::size_t camera) const;
   /// The recorded image of a row.
   [[nodiscard]] Result<Image> read_again(const CameraSpec& camera, const FrameRow& row);
   [[nodiscard]] Result<std::optional<std::vector<AircraftState>>> states_around(std::int64_t t_ns);

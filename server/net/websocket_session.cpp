@@ -42,11 +42,11 @@ std::int64_t monotonic_ns() {
 struct Outgoing {
   std::string text;  ///< a text message, unless there is a picture
   std::array<std::uint8_t, kPictureHeaderBytes> header{};
-  std::shared_ptr<const std::vector<std::uint8_t>> jpeg;
+  std::shared_ptr<const std::vector<std::uint8_t>> payload;
   PictureTicket ticket;
 
   [[nodiscard]] std::size_t bytes() const {
-    return jpeg ? header.size() + jpeg->size() : text.size();
+    return payload ? header.size() + payload->size() : text.size();
   }
 };
 
@@ -78,7 +78,7 @@ class WebSocketSession final : public ViewerPort,
   void send_text(std::string text) override;
   void send_picture(const PictureTicket& ticket,
                     const PictureHeader& header,
-                    std::shared_ptr<const std::vector<std::uint8_t>> jpeg) override;
+                    std::shared_ptr<const std::vector<std::uint8_t>> payload) override;
   void draw(const PictureTicket& ticket, const server::PictureRequest& request) override;
   void open_run(const std::string& run_id) override;
   [[nodiscard]] std::optional<double> picture_limit_hz() const override {
@@ -226,10 +226,10 @@ void WebSocketSession::send_text(std::string text) {
 
 void WebSocketSession::send_picture(const PictureTicket& ticket,
                                     const PictureHeader& header,
-                                    std::shared_ptr<const std::vector<std::uint8_t>> jpeg) {
+                                    std::shared_ptr<const std::vector<std::uint8_t>> payload) {
   Outgoing message;
   message.header = encode_picture_header(header);
-  message.jpeg = std::move(jpeg);
+  message.payload = std::move(payload);
   message.ticket = ticket;
   enqueue(std::move(message));
 }
@@ -271,10 +271,10 @@ void WebSocketSession::write() {
   const auto written = [self = shared_from_this()](const error_code& error, std::size_t) {
     self->attempt([&] { self->on_written(error); });
   };
-  if (message.jpeg) {
+  if (message.payload) {
     ws_.binary(true);
     const std::array<asio::const_buffer, 2> parts = {asio::buffer(message.header),
-                                                     asio::buffer(*message.jpeg)};
+                                                     asio::buffer(*message.payload)};
     ws_.async_write(parts, written);
   } else {
     ws_.text(true);
@@ -296,7 +296,7 @@ void WebSocketSession::on_written(const error_code& error) {
     return;
   }
   if (!queue_.empty()) write();
-  if (message.jpeg) {
+  if (message.payload) {
     viewer_.picture_sent(message.ticket, monotonic_ns());
     schedule();
   }

@@ -39,12 +39,16 @@ void Audience::picture_made(Kind kind, double cpu_s) {
 nlohmann::json Audience::summary() const {
   const std::lock_guard lock(mutex_);
   const double staying_s = seated_ * seconds_of(Clock::now()) - seated_since_sum_s_;
-  return {
-      {"viewers", came_},
-      {"most_at_once", most_},
-      {"viewer_s", left_viewer_s_ + (seated_ > 0 ? staying_s : 0.0)},
-      {"pictures", {{"camera", pictures_[0]}, {"debug", pictures_[1]}, {"scene", pictures_[2]}}},
-      {"cpu_s", cpu_s_}};
+  return {{"viewers", came_},
+          {"most_at_once", most_},
+          {"viewer_s", left_viewer_s_ + (seated_ > 0 ? staying_s : 0.0)},
+          {"pictures",
+           {{"camera", pictures_[0]},
+            {"debug", pictures_[1]},
+            {"scene", pictures_[2]},
+            {"depth", pictures_[3]},
+            {"error", pictures_[4]}}},
+          {"cpu_s", cpu_s_}};
 }
 
 }  // namespace overfly::server

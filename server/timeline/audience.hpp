@@ -25,13 +25,13 @@ class Audience {
     std::chrono::steady_clock::time_point since_;
   };
 
-  enum class Kind { kCamera, kDebug, kScene };
+  enum class Kind { kCamera, kDebug, kScene, kDepth, kError };
   /// @param cpu_s  processor time of the thread that made it
   void picture_made(Kind kind, double cpu_s);
 
   /// `viewers` in total, `most_at_once`, `viewer_s` (viewing time of all, present viewers
-  /// included), `pictures.{camera, debug, scene}` and `cpu_s` (processor time spent on the
-  /// pictures).
+  /// included), `pictures.{camera, debug, scene, depth, error}` and `cpu_s` (processor time spent
+  /// on the pictures).
   [[nodiscard]] nlohmann::json summary() const;
 
  private:
@@ -41,7 +41,7 @@ class Audience {
   int most_ = 0;
   double left_viewer_s_ = 0.0;     ///< of viewers who have left
   double seated_since_sum_s_ = 0;  ///< sum of the arrival times of the present viewers
-  std::int64_t pictures_[3] = {};
+  std::int64_t pictures_[5] = {};
   double cpu_s_ = 0.0;
 };
 

@@ -1,12 +1,16 @@
 // What a viewer asks for, and the picture that it gets.
 #pragma once
 
+#include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/earth/geodesy.hpp"
 #include "core/result.hpp"
 
 namespace overfly::server {
@@ -33,19 +37,35 @@ struct SceneTracks {
   std::size_t first_colour = 0;  ///< index of the first estimator's colour
 };
 
+/// What an error picture compares.
+struct ErrorOf {
+  /// The estimator from whose pose the view is drawn; empty: the camera's image itself is compared
+  /// with that of an ideal camera.
+  std::optional<std::size_t> estimator;
+};
+
 struct PictureRequest {
   std::string run_id;
-  enum class Kind { kCamera, kDebug, kScene } kind = Kind::kCamera;
+  enum class Kind { kCamera, kDebug, kScene, kDepth, kError } kind = Kind::kCamera;
   std::size_t estimator = 0;             ///< kDebug
-  std::string camera;                    ///< kCamera: its name; empty = the first one
+  ErrorOf error;                         ///< kError
+  std::string camera;                    ///< not kDebug, kScene: its name; empty = the first one
   std::int64_t t_ns = 0;                 ///< selects the frame at or before it
   bool live = false;                     ///< use the latest picture if the run is live
   SceneSettings scene;                   ///< kScene
-  std::string alignment = "init_scale";  ///< kScene: of the estimates
+  std::string alignment = "init_scale";  ///< kScene, kError: of the estimates
   std::size_t first_colour = 0;          ///< kScene: index of the first estimator's colour
   std::vector<SceneTracks> others;       ///< kScene: other runs whose tracks are shown
   int quality = 75;                      ///< JPEG, in [1, 100]
-  int max_width_px = 1280;               ///< camera and debug images are halved until they fit
+  int max_width_px = 1280;               ///< all but scenes are halved until they fit
+};
+
+/// The values at the ends of a picture's colours.
+struct ColourScale {
+  double low = 0.0;
+  double high = 0.0;
+  bool logarithmic = false;
+  bool operator==(const ColourScale&) const = default;
 };
 
 struct Picture {
@@ -53,10 +73,41 @@ struct Picture {
   std::int64_t t_ns = 0;
   int width_px = 0;
   int height_px = 0;
+  int full_width_px = 0;  ///< of the image before it was reduced
+  int full_height_px = 0;
   bool grey = false;
-  std::shared_ptr<const std::vector<std::uint8_t>> jpeg;
+  std::optional<ColourScale> scale;  ///< of depth [m] and error pictures [grey levels]
+  std::shared_ptr<const std::vector<std::uint8_t>> bytes;
 };
 
 using PictureDone = std::function<void(Result<Picture>)>;
+
+/// Asks for what one pixel of a camera's frame shows.
+struct PixelRequest {
+  std::string run_id;
+  std::string camera;     ///< empty = the first one
+  std::int64_t t_ns = 0;  ///< selects the frame at or before it
+  double x_px = 0.0;      ///< of the whole image; pixel centres are at integers
+  double y_px = 0.0;
+  std::optional<ErrorOf> error;          ///< also the value of this error picture
+  std::string alignment = "init_scale";  ///< of the estimate in `error`
+};
+
+struct PixelValue {
+  std::int64_t frame = 0;
+  std::int64_t t_ns = 0;
+  std::string camera;
+  int width_px = 0;  ///< of the whole image
+  int height_px = 0;
+  int grey = 0;                                   ///< as given to estimators, of 8 bit
+  std::optional<std::array<int, 3>> rgb;          ///< of colour images
+  std::optional<int> difference;                  ///< of the error picture that was named
+  std::optional<Eigen::Vector3d> ground_world_m;  ///< empty if the pixel sees the sky
+  std::optional<Geodetic> ground;
+  double depth_m = 0.0;  ///< of the ground along the optical axis
+  double range_m = 0.0;  ///< of the ground along the line of sight
+};
+
+using PixelDone = std::function<void(Result<PixelValue>)>;
 
 }  // namespace overfly::server

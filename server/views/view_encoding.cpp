@@ -67,10 +67,25 @@ Result<Picture> PictureEncoder::encode(const StampedImage& image, int quality, i
   picture.t_ns = image.t_ns;
   picture.width_px = fitting->width_px;
   picture.height_px = fitting->height_px;
+  picture.full_width_px = image.image->width_px;
+  picture.full_height_px = image.image->height_px;
   picture.grey = fitting->channels == 1;
-  picture.jpeg = std::make_shared<const std::vector<std::uint8_t>>(std::move(*jpeg));
+  picture.bytes = std::make_shared<const std::vector<std::uint8_t>>(std::move(*jpeg));
   kept_.push_front({image.image, quality, max_width_px, picture});
   if (kept_.size() > kMaxKept) kept_.pop_back();
+  return picture;
+}
+
+Result<Picture> PictureEncoder::encode(const StampedImage& image,
+                                       const ColourScale& scale,
+                                       const PinholeCamera& camera,
+                                       int quality,
+                                       int max_width_px) {
+  Result<Picture> picture = encode(image, quality, max_width_px);
+  if (!picture) return picture;
+  picture->full_width_px = camera.width_px;
+  picture->full_height_px = camera.height_px;
+  picture->scale = scale;
   return picture;
 }
 
@@ -84,8 +99,13 @@ Result<Picture> PictureEncoder::encode_file(const std::filesystem::path& file,
   if (!bytes) return bytes.error();
   const auto size = jpeg_size(*bytes);
   if (size && size->width_px <= max_width_px) {
-    Picture picture{frame, t_ns, size->width_px, size->height_px, size->grey, nullptr};
-    picture.jpeg = std::make_shared<const std::vector<std::uint8_t>>(std::move(*bytes));
+    Picture picture;
+    picture.frame = frame;
+    picture.t_ns = t_ns;
+    picture.width_px = picture.full_width_px = size->width_px;
+    picture.height_px = picture.full_height_px = size->height_px;
+    picture.grey = size->grey;
+    picture.bytes = std::make_shared<const std::vector<std::uint8_t>>(std::move(*bytes));
     return picture;
   }
   auto image = decode_jpeg(*bytes);

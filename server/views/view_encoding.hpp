@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/camera/camera.hpp"
 #include "server/timeline/run_timeline.hpp"
 #include "server/views/picture_request.hpp"
 
@@ -31,6 +32,12 @@ struct JpegSize {
 class PictureEncoder {
  public:
   [[nodiscard]] Result<Picture> encode(const StampedImage& image, int quality, int max_width_px);
+  /// An image of a quantity, drawn from a camera's image of the given size.
+  [[nodiscard]] Result<Picture> encode(const StampedImage& image,
+                                       const ColourScale& scale,
+                                       const PinholeCamera& camera,
+                                       int quality,
+                                       int max_width_px);
   /// A recorded JPEG; unchanged if it fits.
   [[nodiscard]] Result<Picture> encode_file(const std::filesystem::path& file,
                                             std::int64_t frame,

@@ -1,11 +1,10 @@
 #include "server/views/view_painter.hpp"
 
 #include <algorithm>
-#include <charconv>
+#include <filesystem>
 #include <limits>
 #include <optional>
 #include <string>
-#include <system_error>
 #include <utility>
 
 #include "core/measure/processor_time.hpp"
@@ -18,8 +17,6 @@
 namespace overfly::server {
 namespace {
 
-namespace fs = std::filesystem;
-
 /// Of a viewer's runs, and a few more.
 constexpr std::size_t kMaxRibbons = 20;
 
@@ -29,6 +26,10 @@ Audience::Kind audience_kind(const PictureRequest& request) {
       return Audience::Kind::kDebug;
     case PictureRequest::Kind::kScene:
       return Audience::Kind::kScene;
+    case PictureRequest::Kind::kDepth:
+      return Audience::Kind::kDepth;
+    case PictureRequest::Kind::kError:
+      return Audience::Kind::kError;
     case PictureRequest::Kind::kCamera:
       break;
   }
@@ -42,25 +43,10 @@ std::optional<FrameRow> row_of(const RunTimeline& timeline,
   return timeline.frame_at(std::numeric_limits<std::int64_t>::max(), camera);
 }
 
-/// Number of the last file NNNNNN.* in a folder at or before `frame`.
-std::optional<std::int64_t> last_recorded(const fs::path& folder, std::int64_t frame) {
-  std::optional<std::int64_t> last;
-  std::error_code error;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
-       entry.increment(error)) {
-    const std::string name = entry->path().stem().string();
-    std::int64_t number = 0;
-    const char* name_end = name.data() + name.size();
-    const auto [rest, failure] = std::from_chars(name.data(), name_end, number);
-    if (failure != std::errc() || rest != name_end || number > frame) continue;
-    if (!last || number > *last) last = number;
-  }
-  return last;
-}
-
 /// The map points that an estimator observed last at or before a frame, world frame; empty if there
 /// are none that can be read, and while it does not track.
-std::vector<Eigen::Vector3f> recorded_points(const fs::path& folder,
+std::vector<Eigen::Vector3f> recorded_points(const std::filesystem::path& folder,
+                                             RecordedNumbers& numbers,
                                              const RunTimeline& timeline,
                                              const ViewRibbons& ribbons,
                                              const FrameRow& row,
@@ -69,28 +55,12 @@ std::vector<Eigen::Vector3f> recorded_points(const fs::path& folder,
   const auto estimate = timeline.estimate_at(estimator, row.t_ns);
   if (!alignment || !estimate || estimate->sample.state != TrackingState::kTracking) return {};
   const std::string& name = timeline.estimators()[estimator];
-  const auto frame = last_recorded(map_points_file(folder, name, 0).parent_path(), row.frame);
+  const auto frame = numbers.last(map_points_file(folder, name, 0).parent_path(), row.frame);
   if (!frame) return {};
   const auto points = read_map_points(map_points_file(folder, name, *frame));
   if (!points) return {};
   const auto S_world_vo = alignment->S_world_vo(estimate->sample.map_id, points->S_world_vo);
   return S_world_vo ? in_world(*points, *S_world_vo) : std::vector<Eigen::Vector3f>();
-}
-
-/// Stamp of a frame at or before `row`. Row i holds frame i, or a later frame if some were skipped.
-std::int64_t stamp_before(const RunTimeline& timeline, const FrameRow& row, std::int64_t frame) {
-  if (frame == row.frame) return row.t_ns;
-  const auto count = static_cast<std::int64_t>(timeline.frame_count());
-  for (std::int64_t i = std::min(frame, count - 1); i >= 0; --i) {
-    const FrameRow before = timeline.frames(static_cast<std::size_t>(i), 1).front();
-    if (before.frame <= frame) return before.t_ns;
-  }
-  return row.t_ns;
-}
-
-ViewPainter::Painted painted(Result<Picture> picture) {
-  if (!picture) return picture.error();
-  return std::optional<Picture>(std::move(*picture));
 }
 
 }  // namespace
@@ -114,66 +84,20 @@ ViewPainter::Painted ViewPainter::paint_of(const PictureRequest& request,
   if (!camera) return camera.error();
   const auto row = row_of(*timeline, request, *camera);
   if (!row) return Error{ErrorCode::kNotFound, "run " + request.run_id + " has no frame yet"};
+  const ViewedFrame frame{request.run_id, timeline.get(), *camera, *row};
   switch (request.kind) {
     case PictureRequest::Kind::kCamera:
-      return paint_camera(request, *timeline, *camera, *row);
+      return frames_.camera(request, frame);
     case PictureRequest::Kind::kDebug:
-      return paint_debug(request, *timeline, *row);
+      return frames_.debug(request, *timeline, *row);
     case PictureRequest::Kind::kScene:
       return paint_scene(request, timeline, *row);
+    case PictureRequest::Kind::kDepth:
+      return frames_.depth(request, frame);
+    case PictureRequest::Kind::kError:
+      return frames_.error(request, *timeline, frame);
   }
   return Error{ErrorCode::kInvalidArgument, "no such kind of picture"};
-}
-
-ViewPainter::Painted ViewPainter::paint_camera(const PictureRequest& request,
-                                               const RunTimeline& timeline,
-                                               std::size_t camera,
-                                               const FrameRow& row) {
-  const auto live = timeline.live_camera(camera);
-  if (live && live->image && (request.live || live->frame == row.frame)) {
-    return painted(encoder_.encode(*live, request.quality, request.max_width_px));
-  }
-  const auto folder = runs_.folder(request.run_id);
-  if (!folder) return folder.error();
-  const fs::path recorded = CameraFiles(*folder, camera, request.camera).image(row.frame);
-  std::error_code error;
-  if (fs::is_regular_file(recorded, error)) {
-    return painted(
-        encoder_.encode_file(recorded, row.frame, row.t_ns, request.quality, request.max_width_px));
-  }
-  Result<std::optional<Image>> made = renderers_.remake(request.run_id, camera, row);
-  if (!made) return made.error();
-  if (!*made) return std::optional<Picture>();
-  const auto image = std::make_shared<const Image>(std::move(**made));
-  return painted(
-      encoder_.encode({row.frame, row.t_ns, image}, request.quality, request.max_width_px));
-}
-
-ViewPainter::Painted ViewPainter::paint_debug(const PictureRequest& request,
-                                              const RunTimeline& timeline,
-                                              const FrameRow& row) {
-  if (request.estimator >= timeline.estimators().size()) {
-    return Error{ErrorCode::kInvalidArgument,
-                 "estimator = " + std::to_string(request.estimator) + ": must be below " +
-                     std::to_string(timeline.estimators().size())};
-  }
-  const auto live = timeline.live_debug(request.estimator);
-  if (live && live->image && (request.live || live->frame == row.frame)) {
-    return painted(encoder_.encode(*live, request.quality, request.max_width_px));
-  }
-  const auto folder = runs_.folder(request.run_id);
-  if (!folder) return folder.error();
-  const std::string& name = timeline.estimators()[request.estimator];
-  const auto frame = last_recorded(debug_image_file(*folder, name, 0).parent_path(), row.frame);
-  if (!frame) {
-    return Error{ErrorCode::kNotFound,
-                 "estimator " + name + " has no picture up to frame " + std::to_string(row.frame)};
-  }
-  return painted(encoder_.encode_file(debug_image_file(*folder, name, *frame),
-                                      *frame,
-                                      stamp_before(timeline, row, *frame),
-                                      request.quality,
-                                      request.max_width_px));
 }
 
 ViewPainter::Painted ViewPainter::paint_scene(const PictureRequest& request,
@@ -193,7 +117,9 @@ ViewPainter::Painted ViewPainter::paint_scene(const PictureRequest& request,
   auto image = (*view)->renderer->render_scene(scene, content);
   if (!image) return image.error();
   const auto shared = std::make_shared<const Image>(std::move(*image));
-  return painted(encoder_.encode({row.frame, row.t_ns, shared}, request.quality, shared->width_px));
+  auto picture = encoder_.encode({row.frame, row.t_ns, shared}, request.quality, shared->width_px);
+  if (!picture) return picture.error();
+  return std::optional(std::move(*picture));
 }
 
 void ViewPainter::add_tracks(const SceneTracks& tracks,
@@ -222,7 +148,7 @@ std::vector<Eigen::Vector3f> ViewPainter::map_points(const PictureRequest& reque
     if (request.live) {
       points = timeline.live_points(i);
     } else if (folder) {
-      points = recorded_points(*folder, timeline, ribbons, row, i);
+      points = recorded_points(*folder, numbers_, timeline, ribbons, row, i);
     }
     all.insert(all.end(), points.begin(), points.end());
   }

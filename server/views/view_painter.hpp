@@ -10,6 +10,7 @@
 
 #include "server/record/rows/rows.hpp"
 #include "server/timeline/run_timeline.hpp"
+#include "server/views/images/frame_painter.hpp"
 #include "server/views/picture_request.hpp"
 #include "server/views/view_encoding.hpp"
 #include "server/views/view_renderers.hpp"
@@ -20,27 +21,25 @@ namespace overfly::server {
 /// Used and destroyed on one thread.
 class ViewPainter {
  public:
-  /// A picture; empty while its world is being opened.
-  using Painted = Result<std::optional<Picture>>;
+  /// Empty while its world is being opened.
+  using Painted = FramePainter::Painted;
 
   /// @param worlds  must outlive this
   /// @param stopping  true cancels the reading of tiles
   ViewPainter(RunManager& runs, WorldOpener& worlds, const std::atomic<bool>& stopping)
-      : runs_(runs), renderers_(runs, worlds, stopping) {}
+      : runs_(runs),
+        renderers_(runs, worlds, stopping),
+        frames_(runs, renderers_, encoder_, numbers_) {}
 
   /// Errors: kNotFound if there is nothing to show at that instant; as world and renderer.
   [[nodiscard]] Painted paint(const PictureRequest& request);
+  [[nodiscard]] FramePainter::Probed probe(const PixelRequest& request) {
+    return frames_.probe(request);
+  }
 
  private:
   [[nodiscard]] Painted paint_of(const PictureRequest& request,
                                  const std::shared_ptr<RunTimeline>& timeline);
-  [[nodiscard]] Painted paint_camera(const PictureRequest& request,
-                                     const RunTimeline& timeline,
-                                     std::size_t camera,
-                                     const FrameRow& row);
-  [[nodiscard]] Painted paint_debug(const PictureRequest& request,
-                                    const RunTimeline& timeline,
-                                    const FrameRow& row);
   [[nodiscard]] Painted paint_scene(const PictureRequest& request,
                                     const std::shared_ptr<RunTimeline>& timeline,
                                     const FrameRow& row);
@@ -60,6 +59,8 @@ class ViewPainter {
   RunManager& runs_;
   ViewRenderers renderers_;
   PictureEncoder encoder_;
+  RecordedNumbers numbers_;
+  FramePainter frames_;
   std::list<ViewRibbons> ribbons_;  ///< of the runs and alignments viewed most recently
 };
 

@@ -1,14 +1,14 @@
-// Queue of picture requests: the newest request of each client's stream, first come first served.
-// Requests whose world is being opened stand aside.
+// Queue of tasks for the drawing thread: the newest task of each client's stream, first come first
+// served. Tasks whose world is being opened stand aside.
 #pragma once
 
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <optional>
 #include <utility>
-#include <vector>
 
-#include "server/views/picture_request.hpp"
+#include "server/views/view_task.hpp"
 
 namespace overfly::server {
 
@@ -18,32 +18,31 @@ class ViewQueue {
   struct Entry {
     std::uint64_t client = 0;
     int stream = 0;
-    PictureRequest request;
-    PictureDone done;
+    std::unique_ptr<ViewTask> task;
   };
 
-  /// A stream that waits already keeps its place in the queue and gets the new request.
-  /// @return the `done` of the request replaced, empty if there was none
-  [[nodiscard]] PictureDone push(Entry entry) {
+  /// A stream that waits already keeps its place in the queue and gets the new task.
+  /// @return the task replaced; null if there was none
+  [[nodiscard]] std::unique_ptr<ViewTask> push(Entry entry) {
     for (std::deque<Entry>* waiting : {&entries_, &aside_}) {
       for (Entry& other : *waiting) {
         if (!same_stream(other, entry)) continue;
         std::swap(other, entry);
-        return std::move(entry.done);
+        return std::move(entry.task);
       }
     }
     entries_.push_back(std::move(entry));
-    return {};
+    return nullptr;
   }
 
   /// Puts an entry that was popped aside until release().
-  /// @return its `done` if a newer request of its stream waits, else empty
-  [[nodiscard]] PictureDone stand_aside(Entry entry) {
+  /// @return its task if a newer one of its stream waits, else null
+  [[nodiscard]] std::unique_ptr<ViewTask> stand_aside(Entry entry) {
     for (const Entry& other : entries_) {
-      if (same_stream(other, entry)) return std::move(entry.done);
+      if (same_stream(other, entry)) return std::move(entry.task);
     }
     aside_.push_back(std::move(entry));
-    return {};
+    return nullptr;
   }
 
   /// Puts the entries that stand aside back into the queue.

@@ -12,6 +12,9 @@ namespace {
 /// Each keeps its tiles as textures: viewers can compare runs over this many worlds without
 /// reloading them.
 constexpr std::size_t kMaxRenderers = 4;
+/// Of a world whose frames can be made again without reading their scenario anew: as many as a
+/// viewer watches.
+constexpr std::size_t kMaxRuns = 16;
 /// Of each, for tiles in memory, and the same again for textures.
 constexpr std::size_t kTileCacheBytes = std::size_t{128} << 20U;
 
@@ -27,15 +30,22 @@ Result<const Scenario*> ViewRenderers::scenario_of(const std::string& run_id) {
   return &*scenario_;
 }
 
-Result<ViewRenderers::WorldView*> ViewRenderers::of_run(const std::string& run_id) {
-  // A viewer of a run keeps its world even if the files change.
-  const auto watched = std::find_if(views_.begin(), views_.end(), [&](const WorldView& view) {
-    return view.watched_run_id == run_id && view.world->tiles->status();
-  });
-  if (watched != views_.end()) {
-    views_.splice(views_.begin(), views_, watched);
+ViewRenderers::WorldView* ViewRenderers::known_view(const std::string& run_id) {
+  for (auto view = views_.begin(); view != views_.end(); ++view) {
+    const auto watched = std::find_if(view->runs.begin(), view->runs.end(), [&](const auto& run) {
+      return run.run_id == run_id;
+    });
+    if (watched == view->runs.end() || !view->world->tiles->status()) continue;
+    view->runs.splice(view->runs.begin(), view->runs, watched);
+    views_.splice(views_.begin(), views_, view);
     return &views_.front();
   }
+  return nullptr;
+}
+
+Result<ViewRenderers::WorldView*> ViewRenderers::of_run(const std::string& run_id) {
+  // A viewer of a run keeps its world even if the files change.
+  if (WorldView* known = known_view(run_id)) return known;
   const Result<const Scenario*> scenario = scenario_of(run_id);
   if (!scenario) return scenario.error();
   const auto opened = worlds_.take(run_id);
@@ -43,43 +53,41 @@ Result<ViewRenderers::WorldView*> ViewRenderers::of_run(const std::string& run_i
   const Result<WorldOpener::World>& world = *opened;
   if (!world) return world.error();
   const RendererChoice& choice = (*scenario)->renderer;
-  const auto known = std::find_if(views_.begin(), views_.end(), [&](const WorldView& view) {
+  const auto same = std::find_if(views_.begin(), views_.end(), [&](const WorldView& view) {
     return view.world == *world && view.choice == choice;
   });
-  if (known != views_.end()) {
-    views_.splice(views_.begin(), views_, known);
-    views_.front().watched_run_id = run_id;
-    return &views_.front();
+  if (same != views_.end()) {
+    views_.splice(views_.begin(), views_, same);
+  } else {
+    while (views_.size() >= kMaxRenderers) views_.pop_back();
+    auto tiles = std::make_shared<const WatchedTiles>((*world)->tiles, &stopping_);
+    auto renderer =
+        make_renderer(**scenario, std::move(tiles), runs_.renderer_factory(), kTileCacheBytes);
+    if (!renderer) return renderer.error();
+    views_.push_front({*world, choice, std::move(*renderer), {}});
   }
-  while (views_.size() >= kMaxRenderers) views_.pop_back();
-  auto tiles = std::make_shared<const WatchedTiles>((*world)->tiles, &stopping_);
-  auto renderer =
-      make_renderer(**scenario, std::move(tiles), runs_.renderer_factory(), kTileCacheBytes);
-  if (!renderer) return renderer.error();
-  views_.push_front({*world, choice, std::move(*renderer), run_id, "", nullptr});
-  return &views_.front();
+  WorldView& view = views_.front();
+  view.runs.push_front({run_id, nullptr});
+  if (view.runs.size() > kMaxRuns) view.runs.pop_back();
+  return &view;
 }
 
-Result<std::optional<Image>> ViewRenderers::remake(const std::string& run_id,
-                                                   std::size_t camera,
-                                                   const FrameRow& row) {
+Result<std::optional<ViewRenderers::Frames>> ViewRenderers::frames_of(const std::string& run_id) {
   const Result<WorldView*> view = of_run(run_id);
   if (!view) return view.error();
-  if (*view == nullptr) return std::optional<Image>();
+  if (*view == nullptr) return std::optional<Frames>();
   WorldView& found = **view;
-  if (!found.frames || found.run_id != run_id) {
+  std::unique_ptr<FrameRemaker>& frames = found.runs.front().frames;
+  if (!frames) {
     const Result<const Scenario*> scenario = scenario_of(run_id);
     if (!scenario) return scenario.error();
     const auto folder = runs_.folder(run_id);
     if (!folder) return folder.error();
-    auto frames = FrameRemaker::create(*folder, **scenario, found.world);
-    if (!frames) return frames.error();
-    found.frames = std::move(*frames);
-    found.run_id = run_id;
+    auto created = FrameRemaker::create(*folder, **scenario, found.world);
+    if (!created) return created.error();
+    frames = std::move(*created);
   }
-  Result<Image> image = found.frames->make(camera, row, *found.renderer);
-  if (!image) return image.error();
-  return std::optional<Image>(std::move(*image));
+  return std::optional(Frames{*found.renderer, *frames, *found.world});
 }
 
 }  // namespace overfly::server

@@ -29,21 +29,29 @@ class ViewRenderers {
     std::shared_ptr<const terrain::World> world;
     RendererChoice choice;
     std::unique_ptr<renderer::Renderer> renderer;
-    std::string watched_run_id;            ///< the run of the latest request
-    std::string run_id;                    ///< the run whose frames `frames` renders
-    std::unique_ptr<FrameRemaker> frames;  ///< null until needed
+    struct Watched {
+      std::string run_id;
+      std::unique_ptr<FrameRemaker> frames;  ///< null until needed
+    };
+    std::list<Watched> runs;  ///< most recently used first; never empty
   };
   /// The view of a run's world, drawn with the scenario's settings. Valid until the next call. Null
   /// while the world is being opened. Errors: as RunManager::world_of and the renderer factory.
   [[nodiscard]] Result<WorldView*> of_run(const std::string& run_id);
-  /// One image of one of the run's cameras, rendered again; empty while its world is being opened.
-  /// Errors: as of_run and FrameRemaker.
-  [[nodiscard]] Result<std::optional<Image>> remake(const std::string& run_id,
-                                                    std::size_t camera,
-                                                    const FrameRow& row);
+  /// What makes a run's frames again.
+  struct Frames {
+    renderer::Renderer& renderer;
+    FrameRemaker& maker;
+    const terrain::World& world;
+  };
+  /// Valid until the next call; empty while the run's world is being opened.
+  /// Errors: as of_run and FrameRemaker::create.
+  [[nodiscard]] Result<std::optional<Frames>> frames_of(const std::string& run_id);
 
  private:
   [[nodiscard]] Result<const Scenario*> scenario_of(const std::string& run_id);
+  /// The view that was given to the run earlier; null if there is none that still works.
+  WorldView* known_view(const std::string& run_id);
 
   RunManager& runs_;
   WorldOpener& worlds_;

@@ -2,7 +2,10 @@
 
 #include <atomic>
 #include <condition_variable>
+#include <functional>
+#include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <thread>
@@ -17,10 +20,39 @@
 namespace overfly::server {
 namespace {
 
-/// If there is no memory for the answer, the client will ask again.
-void answer(const PictureDone& done, Result<Picture> picture) {
-  (void)contained([&] { done(std::move(picture)); }, [](const char*) {});
-}
+/// Computes a value and hands it to whoever asked for it.
+template <typename Value>
+class AnsweredTask final : public ViewTask {
+ public:
+  /// Empty while a world is being opened.
+  using Work = std::function<Result<std::optional<Value>>(ViewPainter&)>;
+  using Done = std::function<void(Result<Value>)>;
+  AnsweredTask(Work work, Done done) : work_(std::move(work)), done_(std::move(done)) {}
+
+  bool run(ViewPainter& painter) override {
+    Result<std::optional<Value>> value = guarded([&] { return work_(painter); });
+    if (!value) {
+      answer(value.error());
+    } else if (*value) {
+      answer(std::move(**value));
+    } else {
+      return false;
+    }
+    return true;
+  }
+  void refuse(const Error& reason) override { answer(reason); }
+
+ private:
+  /// If there is no memory for the answer, the client will ask again.
+  void answer(Result<Value> value) {
+    (void)contained([&] { done_(std::move(value)); }, [](const char*) {});
+  }
+
+  Work work_;
+  Done done_;
+};
+
+Error outdated() { return {ErrorCode::kCancelled, "a newer picture was requested"}; }
 
 }  // namespace
 
@@ -35,15 +67,16 @@ struct ViewService::Impl {
   void refuse(const Error& reason);
   std::optional<ViewQueue::Entry> next(bool beside_flight);
   WorldOpener::Functions opening_functions();
-  /// Paints and answers one request, or puts it aside until its world is open.
+  /// Runs one task, or puts it aside until its world is open.
   void serve(ViewQueue::Entry entry, ViewPainter& painter);
+  void push(ViewQueue::Entry entry);
 
   RunManager& runs;
   std::mutex mutex;
   std::condition_variable wake;
   ViewQueue queue;
-  std::vector<PictureDone> replaced;   ///< still to be answered, on the thread
-  std::atomic<bool> stopping = false;  ///< written under the mutex
+  std::vector<std::unique_ptr<ViewTask>> replaced;  ///< still to be answered, on the thread
+  std::atomic<bool> stopping = false;               ///< written under the mutex
   std::uint64_t worlds_opened = 0;
   WorldOpener worlds;  ///< used by the drawing thread
   std::thread thread;  ///< last member, because it uses all of the above
@@ -66,11 +99,9 @@ std::optional<ViewQueue::Entry> ViewService::Impl::next(bool beside_flight) {
     wake.wait(lock, [this] { return stopping || !queue.empty() || !replaced.empty(); });
     if (stopping || runs.picture_rate().flying() != beside_flight) return std::nullopt;
     if (replaced.empty()) return queue.pop();
-    const std::vector<PictureDone> outdated = std::exchange(replaced, {});
+    const std::vector<std::unique_ptr<ViewTask>> old = std::exchange(replaced, {});
     lock.unlock();
-    for (const PictureDone& done : outdated) {
-      answer(done, Error{ErrorCode::kCancelled, "a newer picture was requested"});
-    }
+    for (const auto& task : old) task->refuse(outdated());
     lock.lock();
   }
 }
@@ -101,7 +132,7 @@ void ViewService::Impl::refuse(const Error& reason) {
   std::unique_lock lock(mutex);
   while (auto entry = queue.pop()) {
     lock.unlock();
-    answer(entry->done, reason);
+    entry->task->refuse(reason);
     lock.lock();
   }
 }
@@ -141,20 +172,23 @@ void ViewService::Impl::serve(ViewQueue::Entry entry, ViewPainter& painter) {
     const std::lock_guard lock(mutex);
     opened_before = worlds_opened;
   }
-  ViewPainter::Painted picture = guarded([&] { return painter.paint(entry.request); });
-  if (!picture) {
-    answer(entry.done, picture.error());
-  } else if (*picture) {
-    answer(entry.done, std::move(**picture));
-  } else {
-    PictureDone outdated;
-    {
-      const std::lock_guard lock(mutex);
-      outdated = queue.stand_aside(std::move(entry));
-      if (worlds_opened != opened_before) queue.release();
-    }
-    if (outdated) answer(outdated, Error{ErrorCode::kCancelled, "a newer picture was requested"});
+  if (entry.task->run(painter)) return;
+  std::unique_ptr<ViewTask> old;
+  {
+    const std::lock_guard lock(mutex);
+    old = queue.stand_aside(std::move(entry));
+    if (worlds_opened != opened_before) queue.release();
   }
+  if (old) old->refuse(outdated());
+}
+
+void ViewService::Impl::push(ViewQueue::Entry entry) {
+  {
+    const std::lock_guard lock(mutex);
+    auto old = queue.push(std::move(entry));
+    if (old) replaced.push_back(std::move(old));
+  }
+  wake.notify_one();
 }
 
 ViewService::ViewService(RunManager& runs) : impl_(std::make_unique<Impl>(runs)) {}
@@ -164,12 +198,16 @@ void ViewService::request(std::uint64_t client,
                           int stream,
                           const PictureRequest& request,
                           PictureDone done) {
-  {
-    const std::lock_guard lock(impl_->mutex);
-    PictureDone replaced = impl_->queue.push({client, stream, request, std::move(done)});
-    if (replaced) impl_->replaced.push_back(std::move(replaced));
-  }
-  impl_->wake.notify_one();
+  const auto paint = [request](ViewPainter& painter) { return painter.paint(request); };
+  impl_->push({client, stream, std::make_unique<AnsweredTask<Picture>>(paint, std::move(done))});
+}
+
+void ViewService::probe(std::uint64_t client,
+                        int stream,
+                        const PixelRequest& request,
+                        PixelDone done) {
+  const auto look = [request](ViewPainter& painter) { return painter.probe(request); };
+  impl_->push({client, stream, std::make_unique<AnsweredTask<PixelValue>>(look, std::move(done))});
 }
 
 void ViewService::forget(std::uint64_t client) {

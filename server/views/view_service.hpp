@@ -23,6 +23,8 @@ class ViewService {
   /// replaced and its `done` gets kCancelled, so that a slow machine shows newer pictures, not
   /// more. `done` is called on the service's thread.
   void request(std::uint64_t client, int stream, const PictureRequest& request, PictureDone done);
+  /// Queues a look at one pixel, likewise.
+  void probe(std::uint64_t client, int stream, const PixelRequest& request, PixelDone done);
   /// Drops the waiting requests of a client without calling their `done`.
   void forget(std::uint64_t client);
 

@@ -6,6 +6,7 @@ import './styles/base.css';
 import './styles/layout.css';
 import './styles/dock.css';
 import './styles/panels.css';
+import './styles/pictures.css';
 import './styles/errors.css';
 import './styles/plots.css';
 import './styles/side.css';
@@ -20,7 +21,8 @@ import { RestClient } from './connection/rest_client';
 import { StreamClient } from './connection/stream_client';
 import { uploadByBrowser } from './connection/upload';
 import { Alignment } from './store/alignment';
-import { Cameras } from './store/cameras';
+import { Cameras } from './store/pictures/cameras';
+import { PixelProbe } from './store/pictures/pixel_probe';
 import { Catalogue } from './store/catalogue';
 import { Layouts } from './store/layouts/layouts';
 import type { Storage } from './store/layouts/layouts';
@@ -74,6 +76,7 @@ const catalogue = new Catalogue(store, rest, session, notices, later, newKey);
 
 const alignment = new Alignment(store, rest, session, notices);
 const cameras = new Cameras(store, rest);
+const probe = new PixelProbe(store, rest, later);
 const sensors = new Sensors(store, rest, { now_ms: () => performance.now(), later });
 const logs = new LogBrowser(store, rest, session, uploadByBrowser, newKey);
 const connect = new VehicleConnect(store, rest, session, newKey);
@@ -92,6 +95,7 @@ const context = {
   catalogue,
   alignment,
   cameras,
+  probe,
   sensors,
   logs,
   smoothing,
@@ -109,6 +113,9 @@ followAddress(context);
 window
   .matchMedia('(prefers-color-scheme: light)')
   .addEventListener('change', () => themes.refresh());
+document.addEventListener('visibilitychange', () =>
+  session.showPage(document.visibilityState === 'visible'),
+);
 window.addEventListener('online', () => client.connect());
 client.connect();
 // A link shows its runs; the first visit shows the newest.

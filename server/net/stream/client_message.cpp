@@ -59,8 +59,14 @@ ClientCommand read_watch(JsonFields* fields) {
 ClientCommand read_unwatch(JsonFields* fields) { return UnwatchCommand{require_run(fields)}; }
 
 bool is_picture_stream(const std::string& name) {
-  if (name == "camera" || name == "scene") return true;
-  return name.starts_with("debug/") && name.size() > 6 && name.size() <= kMaxNameBytes;
+  if (name == "camera" || name == "scene" || name == "depth" || name == "error") return true;
+  const bool of_estimator = name.starts_with("debug/") || name.starts_with("error/");
+  return of_estimator && name.size() > 6 && name.size() <= kMaxNameBytes;
+}
+
+/// Whether one of several cameras can be chosen for a stream.
+bool has_camera(const std::string& name) {
+  return name == "camera" || name == "depth" || name == "error";
 }
 
 std::size_t read_colour(JsonFields* fields) {
@@ -105,11 +111,13 @@ Result<StreamRequest> read_stream(const json& entry, const std::string& where) {
   fields.require("name");
   stream.name = fields.text("name").value_or("");
   if (!is_picture_stream(stream.name)) {
-    fields.reject("name", ": must be \"camera\", \"scene\" or \"debug/NAME\"");
+    fields.reject("name",
+                  ": must be \"camera\", \"scene\", \"depth\", \"error\", \"error/NAME\" or "
+                  "\"debug/NAME\"");
   }
   stream.camera = read_name(&fields, "camera");
-  if (!stream.camera.empty() && stream.name != "camera") {
-    fields.reject("camera", ": applies only to the stream \"camera\"");
+  if (!stream.camera.empty() && !has_camera(stream.name)) {
+    fields.reject("camera", ": applies only to the streams \"camera\", \"depth\" and \"error\"");
   }
   stream.view = read_name(&fields, "view");
   if (!stream.view.empty() && stream.name != "scene") {

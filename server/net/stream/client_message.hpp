@@ -17,7 +17,6 @@ namespace overfly::net {
 
 inline constexpr std::size_t kMaxRuns = 16;  ///< that one client watches
 
-/// One requested picture stream.
 /// Another run whose tracks a scene shows.
 struct SceneRun {
   std::string run_id;
@@ -25,13 +24,14 @@ struct SceneRun {
   bool operator==(const SceneRun&) const = default;
 };
 
+/// One requested picture stream.
 struct StreamRequest {
   std::string run_id;
-  std::string name;  ///< "camera", "scene" or "debug/NAME"
+  std::string name;  ///< "camera", "scene", "depth", "error", "error/NAME" or "debug/NAME"
   double max_hz = 31.0;
   int quality = 75;
   int max_width_px = 1280;
-  std::string camera = {};          ///< for the stream "camera"; empty = the run's first
+  std::string camera = {};          ///< for "camera", "depth", "error"; empty = the run's first
   std::string view = {};            ///< for the stream "scene": the name of its view
   std::size_t first_colour = 0;     ///< likewise: index of the first estimator's colour
   std::vector<SceneRun> with = {};  ///< likewise: other runs whose tracks it shows

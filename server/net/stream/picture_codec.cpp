@@ -1,5 +1,6 @@
 #include "server/net/stream/picture_codec.hpp"
 
+#include <bit>
 #include <type_traits>
 
 namespace overfly::net {
@@ -7,6 +8,8 @@ namespace {
 
 constexpr std::uint16_t kTypePicture = 1;
 constexpr std::uint32_t kFlagLive = 1U;
+constexpr std::uint32_t kFlagScale = 2U;
+constexpr std::uint32_t kFlagLogarithmic = 4U;
 
 // Offsets in the header.
 constexpr std::size_t kMagicAt = 0;
@@ -22,6 +25,10 @@ constexpr std::size_t kEncodingAt = 36;
 constexpr std::size_t kHeaderLengthAt = 38;
 constexpr std::size_t kPayloadLengthAt = 40;
 constexpr std::size_t kFlagsAt = 44;
+constexpr std::size_t kScaleLowAt = 48;
+constexpr std::size_t kScaleHighAt = 52;
+constexpr std::size_t kFullWidthAt = 56;
+constexpr std::size_t kFullHeightAt = 58;
 
 template <typename T>
 void put(std::array<std::uint8_t, kPictureHeaderBytes>* bytes, std::size_t at, T value) {
@@ -56,7 +63,15 @@ std::array<std::uint8_t, kPictureHeaderBytes> encode_picture_header(const Pictur
   put(&bytes, kEncodingAt, static_cast<std::uint16_t>(header.encoding));
   put(&bytes, kHeaderLengthAt, static_cast<std::uint16_t>(kPictureHeaderBytes));
   put(&bytes, kPayloadLengthAt, header.payload_bytes);
-  put(&bytes, kFlagsAt, header.live ? kFlagLive : 0U);
+  std::uint32_t flags = header.live ? kFlagLive : 0U;
+  if (header.scale) {
+    flags |= kFlagScale | (header.scale->logarithmic ? kFlagLogarithmic : 0U);
+    put(&bytes, kScaleLowAt, std::bit_cast<std::uint32_t>(header.scale->low));
+    put(&bytes, kScaleHighAt, std::bit_cast<std::uint32_t>(header.scale->high));
+  }
+  put(&bytes, kFlagsAt, flags);
+  put(&bytes, kFullWidthAt, header.full_width_px);
+  put(&bytes, kFullHeightAt, header.full_height_px);
   return bytes;
 }
 
@@ -77,7 +92,15 @@ std::optional<PictureHeader> decode_picture_header(std::span<const std::uint8_t>
   header.height_px = get<std::uint16_t>(message, kHeightAt);
   header.encoding = static_cast<PictureEncoding>(encoding);
   header.payload_bytes = get<std::uint32_t>(message, kPayloadLengthAt);
-  header.live = (get<std::uint32_t>(message, kFlagsAt) & kFlagLive) != 0;
+  const auto flags = get<std::uint32_t>(message, kFlagsAt);
+  header.live = (flags & kFlagLive) != 0;
+  if ((flags & kFlagScale) != 0) {
+    header.scale = {std::bit_cast<float>(get<std::uint32_t>(message, kScaleLowAt)),
+                    std::bit_cast<float>(get<std::uint32_t>(message, kScaleHighAt)),
+                    (flags & kFlagLogarithmic) != 0};
+  }
+  header.full_width_px = get<std::uint16_t>(message, kFullWidthAt);
+  header.full_height_px = get<std::uint16_t>(message, kFullHeightAt);
   if (message.size() - kPictureHeaderBytes != header.payload_bytes) return std::nullopt;
   return header;
 }

@@ -8,9 +8,9 @@
 
 namespace overfly::net {
 
-inline constexpr std::size_t kPictureHeaderBytes = 48;
+inline constexpr std::size_t kPictureHeaderBytes = 60;
 inline constexpr std::uint32_t kPictureMagic = 0x4C46564FU;  ///< "OVFL" in little-endian bytes
-inline constexpr std::uint16_t kPictureVersion = 1;
+inline constexpr std::uint16_t kPictureVersion = 2;
 
 enum class PictureEncoding : std::uint16_t { kJpegGrey = 1, kJpegColour = 2 };
 
@@ -24,6 +24,16 @@ struct PictureHeader {
   PictureEncoding encoding = PictureEncoding::kJpegColour;
   std::uint32_t payload_bytes = 0;
   bool live = false;
+  /// The values at the ends of the colours, of depth and error pictures.
+  struct Scale {
+    float low = 0.0F;
+    float high = 0.0F;
+    bool logarithmic = false;
+    bool operator==(const Scale&) const = default;
+  };
+  std::optional<Scale> scale;
+  std::uint16_t full_width_px = 0;  ///< of the image before it was reduced
+  std::uint16_t full_height_px = 0;
 };
 
 [[nodiscard]] std::array<std::uint8_t, kPictureHeaderBytes> encode_picture_header(

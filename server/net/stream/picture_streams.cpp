@@ -11,7 +11,6 @@ namespace {
 
 using server::PictureRequest;
 
-constexpr const char* kDebugPrefix = "debug/";
 /// Numbers of streams that are not subscribed any more are kept up to this count, so that a stream
 /// that comes back keeps its number.
 constexpr std::size_t kMaxKnownStreams = 1024;
@@ -19,7 +18,15 @@ constexpr std::size_t kMaxKnownStreams = 1024;
 PictureRequest::Kind kind_of(const std::string& name) {
   if (name == "camera") return PictureRequest::Kind::kCamera;
   if (name == "scene") return PictureRequest::Kind::kScene;
+  if (name == "depth") return PictureRequest::Kind::kDepth;
+  if (name == "error" || name.starts_with("error/")) return PictureRequest::Kind::kError;
   return PictureRequest::Kind::kDebug;
+}
+
+/// Whose stream it is; empty for one that belongs to no estimator.
+std::string estimator_of(const std::string& name) {
+  const std::size_t slash = name.find('/');
+  return slash == std::string::npos ? std::string() : name.substr(slash + 1);
 }
 
 }  // namespace
@@ -42,13 +49,13 @@ void PictureStreams::subscribe(const std::vector<StreamRequest>& requests) {
     if (is_new) ++next_id_;
     stream.id = id->second;
     stream.sequence = is_new ? 0 : sequences_[key_of(requested)];
+    if (stream.request != requested) ++stream.change;
     stream.request = requested;
     stream.slot.set_max_hz(requested.max_hz);
     stream.slot.set_limit_hz(limit_hz_);
     streams_.push_back(std::move(stream));
   }
   forget_old_streams();
-  show_again();
 }
 
 void PictureStreams::forget_old_streams() {
@@ -78,7 +85,7 @@ Status PictureStreams::set_view(const ViewCommand& command) {
 }
 
 std::uint64_t PictureStreams::change_of(const Stream& stream) const {
-  std::uint64_t change = change_;
+  std::uint64_t change = change_ + stream.change;
   if (kind_of(stream.request.name) != PictureRequest::Kind::kScene) return change;
   if (const auto view = views_.find(stream.request.view); view != views_.end()) {
     change += view->second.change;
@@ -115,18 +122,18 @@ std::optional<PictureRequest> PictureStreams::request_of(const Stream& stream,
   request.camera = stream.request.camera;
   request.quality = stream.request.quality;
   request.max_width_px = stream.request.max_width_px;
+  request.alignment = instant.alignment;
   if (request.kind == PictureRequest::Kind::kScene) {
     const auto view = views_.find(stream.request.view);
     if (view != views_.end()) request.scene = view->second.settings;
-    request.alignment = instant.alignment;
     request.first_colour = stream.request.first_colour;
   }
-  if (request.kind == PictureRequest::Kind::kDebug) {
+  if (const std::string name = estimator_of(stream.request.name); !name.empty()) {
     const auto& names = instant.timeline->estimators();
-    const std::string name = stream.request.name.substr(std::string(kDebugPrefix).size());
     const auto found = std::find(names.begin(), names.end(), name);
     if (found == names.end()) return std::nullopt;
     request.estimator = static_cast<std::size_t>(found - names.begin());
+    request.error.estimator = request.estimator;
   }
   return request;
 }
@@ -204,9 +211,15 @@ void PictureStreams::ready(const PictureTicket& ticket,
   header.width_px = static_cast<std::uint16_t>(picture->width_px);
   header.height_px = static_cast<std::uint16_t>(picture->height_px);
   header.encoding = picture->grey ? PictureEncoding::kJpegGrey : PictureEncoding::kJpegColour;
-  header.payload_bytes = static_cast<std::uint32_t>(picture->jpeg->size());
+  header.payload_bytes = static_cast<std::uint32_t>(picture->bytes->size());
   header.live = stream->live;
-  port->send_picture(ticket, header, picture->jpeg);
+  if (const auto& scale = picture->scale) {
+    header.scale = {
+        static_cast<float>(scale->low), static_cast<float>(scale->high), scale->logarithmic};
+  }
+  header.full_width_px = static_cast<std::uint16_t>(picture->full_width_px);
+  header.full_height_px = static_cast<std::uint16_t>(picture->full_height_px);
+  port->send_picture(ticket, header, picture->bytes);
 }
 
 void PictureStreams::tell_error(Stream* stream, const Error& error, ViewerPort* port) {

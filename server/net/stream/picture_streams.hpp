@@ -34,7 +34,8 @@ class PictureStreams {
     std::string alignment = server::kRecordedAlignment;  ///< of the estimates in scenes
   };
 
-  /// Replaces the set of streams. A stream that stays, or comes back later, keeps its number.
+  /// Replaces the set of streams. A stream that stays, or comes back later, keeps its number; one
+  /// that stays unchanged is not sent again.
   void subscribe(const std::vector<StreamRequest>& requests);
   /// Errors: kInvalidArgument beyond kMaxViews views.
   Status set_view(const ViewCommand& command);
@@ -62,6 +63,7 @@ class PictureStreams {
     std::uint32_t id = 0;
     PictureSlot slot{1.0};
     std::uint32_t sequence = 0;
+    std::uint64_t change = 0;  ///< increases with each change of the request
     std::uint64_t ticket = 0;  ///< of the picture in progress; 0 = none
     bool live = false;         ///< it was requested as a live one
     PictureKey drawn;          ///< the key of its request

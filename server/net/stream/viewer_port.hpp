@@ -30,7 +30,7 @@ class ViewerPort {
   /// When it has been sent, the connection calls Viewer::picture_sent.
   virtual void send_picture(const PictureTicket& ticket,
                             const PictureHeader& header,
-                            std::shared_ptr<const std::vector<std::uint8_t>> jpeg) = 0;
+                            std::shared_ptr<const std::vector<std::uint8_t>> payload) = 0;
   /// Requests a picture; when it is ready, the connection calls Viewer::picture_ready.
   virtual void draw(const PictureTicket& ticket, const server::PictureRequest& request) = 0;
   /// Opens a run, which may require reading it from disk. The connection calls Viewer::run_opened

@@ -187,10 +187,11 @@ export class Dashboard {
     await this.untilSameInstant(panels);
   }
 
-  /** A digest of what a panel's canvas shows. */
+  /** A digest of what a panel's canvas shows: of several pictures, that of the main run. */
   picture(panel) {
     return this.page.evaluate((name) => {
-      const canvas = document.querySelector(`[data-panel="${name}"] canvas.picture`);
+      const within = (part) => document.querySelector(`[data-panel="${name}"] ${part}`);
+      const canvas = within('[data-main=true] canvas.picture') ?? within('canvas.picture');
       const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
       let sum = 0;
       let squares = 0;

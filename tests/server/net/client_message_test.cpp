@@ -52,6 +52,23 @@ TEST(ClientMessage, ReadsTheOtherRunsOfAScene) {
   EXPECT_EQ(subscribe.pictures[0].with, (std::vector<SceneRun>{{"q", 5}, {"s", 0}}));
 }
 
+TEST(ClientMessage, ReadsDepthAndErrorStreams) {
+  const auto subscribe = parse_as<SubscribeCommand>(
+      R"({"type":"subscribe","pictures":[{"run":"r","name":"depth","camera":"left"},
+          {"run":"r","name":"error","camera":"left"},{"run":"r","name":"error/feature"}]})");
+  ASSERT_EQ(subscribe.pictures.size(), 3U);
+  EXPECT_EQ(subscribe.pictures[0].camera, "left");
+  EXPECT_EQ(subscribe.pictures[2].name, "error/feature");
+  for (const char* wrong : {R"("name":"error/")",
+                            R"("name":"deep")",
+                            R"("name":"error/feature","camera":"left")",
+                            R"("name":"debug/feature","camera":"left")"}) {
+    const ClientMessage message = parse_client_message(
+        R"({"type":"subscribe","pictures":[{"run":"r",)" + std::string(wrong) + "}]}");
+    EXPECT_FALSE(message.status.ok()) << wrong;
+  }
+}
+
 TEST(ClientMessage, RefusesWrongOtherRuns) {
   const auto error_of = [](const std::string& stream) {
     const std::string text = R"({"type":"subscribe","pictures":[{"run":"r",)" + stream + "}]}";

@@ -19,6 +19,9 @@ PictureHeader example_header() {
   header.encoding = PictureEncoding::kJpegGrey;
   header.payload_bytes = 3;
   header.live = true;
+  header.scale = {-2.0F, 100.0F, true};
+  header.full_width_px = 2560;
+  header.full_height_px = 1920;
   return header;
 }
 
@@ -31,13 +34,15 @@ std::vector<std::uint8_t> message_of(const PictureHeader& header) {
 
 TEST(PictureCodec, LaysOutTheHeaderByteByByte) {
   // Written by hand from the table of docs/PROTOCOL.md.
-  const std::array<std::uint8_t, 48> expected = {
-      'O',  'V',  'F',  'L',  1,    0, 1,  0,   // magic, version, type
-      0x04, 0x03, 0x02, 0x01, 7,    0, 0,  0,   // stream, sequence
-      0x55, 0x44, 0x33, 0x22, 0x11, 0, 0,  0,   // frame
-      0x11, 0x38, 0xEC, 0x01, 0,    0, 0,  0,   // t_ns = 32258065 = 0x01EC3811
-      0x00, 0x05, 0xC0, 0x03, 1,    0, 48, 0,   // 1280, 960, grey, header length
-      3,    0,    0,    0,    1,    0, 0,  0};  // payload, flags
+  const std::array<std::uint8_t, 60> expected = {
+      'O',  'V',  'F',  'L',  2,    0, 1,    0,     // magic, version, type
+      0x04, 0x03, 0x02, 0x01, 7,    0, 0,    0,     // stream, sequence
+      0x55, 0x44, 0x33, 0x22, 0x11, 0, 0,    0,     // frame
+      0x11, 0x38, 0xEC, 0x01, 0,    0, 0,    0,     // t_ns = 32258065 = 0x01EC3811
+      0x00, 0x05, 0xC0, 0x03, 1,    0, 60,   0,     // 1280, 960, grey, header length
+      3,    0,    0,    0,    7,    0, 0,    0,     // payload, flags: live, scale, logarithmic
+      0x00, 0x00, 0x00, 0xC0, 0x00, 0, 0xC8, 0x42,  // -2, 100
+      0x00, 0x0A, 0x80, 0x07};                      // 2560, 1920
   EXPECT_EQ(encode_picture_header(example_header()), expected);
 }
 
@@ -49,6 +54,15 @@ TEST(PictureCodec, ReadsWhatItWrote) {
   EXPECT_EQ(decoded->t_ns, 32'258'065);
   EXPECT_EQ(decoded->height_px, 960);
   EXPECT_TRUE(decoded->live);
+  EXPECT_EQ(decoded->scale, example_header().scale);
+  EXPECT_EQ(decoded->full_width_px, 2560);
+  EXPECT_EQ(decoded->full_height_px, 1920);
+}
+
+TEST(PictureCodec, HasAScaleOnlyIfItSaysSo) {
+  PictureHeader header = example_header();
+  header.scale.reset();
+  EXPECT_FALSE(decode_picture_header(message_of(header))->scale);
 }
 
 TEST(PictureCodec, KeepsNegativeFrames) {

@@ -147,6 +147,37 @@ TEST_F(ViewerTest, AsksForScenesWithOtherRuns) {
   EXPECT_EQ(request.others[0].first_colour, 4U);
 }
 
+/// A panel that appears costs only its own pictures.
+TEST_F(ViewerTest, DrawsOnlyTheStreamsThatASubscriptionChanges) {
+  using Kind = server::PictureRequest::Kind;
+  const json camera = {{"run", "r"}, {"name", "camera"}};
+  const json error = {{"run", "r"}, {"name", "error/a"}};
+  const auto kinds_drawn = [&] {
+    std::vector<Kind> kinds;
+    for (const auto& [ticket, request] : std::exchange(port_.drawn, {})) {
+      kinds.push_back(request.kind);
+      if (request.kind == Kind::kError) {
+        EXPECT_EQ(request.error.estimator, 0U);
+      }
+      viewer_.picture_ready(ticket, Error{ErrorCode::kCancelled, ""}, now_ns_);
+    }
+    return kinds;
+  };
+  command({{"type", "watch"}, {"run", "r"}, {"request", 1}});
+  command({{"type", "subscribe"}, {"pictures", {camera}}, {"request", 2}});
+  EXPECT_EQ(kinds_drawn(), std::vector{Kind::kCamera});
+  command({{"type", "subscribe"}, {"pictures", {camera, error}}, {"request", 3}});
+  EXPECT_EQ(kinds_drawn(), std::vector{Kind::kError});
+  json larger = camera;
+  larger["max_width_px"] = 2560;
+  command({{"type", "subscribe"}, {"pictures", {larger, error}}, {"request", 4}});
+  EXPECT_EQ(kinds_drawn(), std::vector{Kind::kCamera});
+  command({{"type", "subscribe"}, {"pictures", {larger}}, {"request", 5}});
+  EXPECT_EQ(kinds_drawn(), std::vector<Kind>());
+  command({{"type", "seek"}, {"t_ns", 0}, {"request", 6}});
+  EXPECT_EQ(kinds_drawn(), std::vector{Kind::kCamera});
+}
+
 /// Where the main run has ended, the scene goes on with the others.
 TEST_F(ViewerTest, DrawsASceneAgainWhenOnlyAnotherRunMoves) {
   timeline_->append_frame(frame_row(1, 1'000'000'000));

@@ -53,7 +53,7 @@ TEST(PictureEncoder, EncodesASharedImageOnce) {
   const auto second = encoder.encode(image, 75, 64);
   const auto smaller = encoder.encode(image, 75, 32);
   ASSERT_TRUE(first && second && smaller);
-  EXPECT_EQ(first->jpeg, second->jpeg);
+  EXPECT_EQ(first->bytes, second->bytes);
   EXPECT_EQ(first->frame, 7);
   EXPECT_EQ(smaller->width_px, 32);
 }
@@ -67,7 +67,7 @@ TEST(PictureEncoder, PassesARecordedPictureOnWhereItFits) {
   PictureEncoder encoder;
   const auto whole = encoder.encode_file(file, 3, 300, 75, 64);
   ASSERT_TRUE(whole);
-  EXPECT_EQ(*whole->jpeg, *jpeg);
+  EXPECT_EQ(*whole->bytes, *jpeg);
   EXPECT_TRUE(whole->grey);
   const auto half = encoder.encode_file(file, 3, 300, 75, 40);
   ASSERT_TRUE(half);

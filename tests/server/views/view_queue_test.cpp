@@ -1,26 +1,40 @@
 #include "server/views/view_queue.hpp"
-#include "server/views/picture_request.hpp"
 
 #include <gtest/gtest.h>
 
 namespace overfly::server {
 namespace {
 
-ViewQueue::Entry entry(std::uint64_t client, int stream, std::int64_t t_ns) {
-  PictureRequest request;
-  request.t_ns = t_ns;
-  return {client, stream, request, [](const Result<Picture>&) {}};
+/// A task with a number.
+class NumberedTask final : public ViewTask {
+ public:
+  explicit NumberedTask(int number) : number_(number) {}
+  bool run(ViewPainter& /*painter*/) override { return true; }
+  void refuse(const Error& /*reason*/) override {}
+  [[nodiscard]] int number() const { return number_; }
+
+ private:
+  int number_;
+};
+
+ViewQueue::Entry entry(std::uint64_t client, int stream, int number) {
+  return {client, stream, std::make_unique<NumberedTask>(number)};
+}
+
+int number_of(const std::unique_ptr<ViewTask>& task) {
+  const auto* numbered = dynamic_cast<const NumberedTask*>(task.get());
+  return numbered == nullptr ? -1 : numbered->number();
 }
 
 TEST(ViewQueue, GivesTheNewestWishInTheOldPlace) {
   ViewQueue queue;
   EXPECT_FALSE(queue.push(entry(1, 1, 10)));
   EXPECT_FALSE(queue.push(entry(2, 1, 20)));
-  EXPECT_TRUE(queue.push(entry(1, 1, 30)));
+  EXPECT_EQ(number_of(queue.push(entry(1, 1, 30))), 10);
   const auto first = queue.pop();
   ASSERT_TRUE(first);
   EXPECT_EQ(first->client, 1U);
-  EXPECT_EQ(first->request.t_ns, 30);
+  EXPECT_EQ(number_of(first->task), 30);
   EXPECT_EQ(queue.pop()->client, 2U);
   EXPECT_FALSE(queue.pop());
 }
@@ -50,11 +64,11 @@ TEST(ViewQueue, PassesOverWhatStandsAside) {
   EXPECT_FALSE(queue.stand_aside(*queue.pop()));
   EXPECT_EQ(queue.pop()->client, 2U);
   EXPECT_TRUE(queue.empty());
-  // A newer request of the stream replaces the one aside.
-  EXPECT_TRUE(queue.push(entry(1, 1, 30)));
+  // A newer task of the stream replaces the one aside.
+  EXPECT_EQ(number_of(queue.push(entry(1, 1, 30))), 10);
   EXPECT_TRUE(queue.empty());
   queue.release();
-  EXPECT_EQ(queue.pop()->request.t_ns, 30);
+  EXPECT_EQ(number_of(queue.pop()->task), 30);
 }
 
 TEST(ViewQueue, LeavesOutWhatHasBecomeOldMeanwhile) {
@@ -62,8 +76,8 @@ TEST(ViewQueue, LeavesOutWhatHasBecomeOldMeanwhile) {
   EXPECT_FALSE(queue.push(entry(1, 1, 10)));
   auto popped = queue.pop();
   EXPECT_FALSE(queue.push(entry(1, 1, 20)));
-  EXPECT_TRUE(queue.stand_aside(std::move(*popped)));
-  EXPECT_EQ(queue.pop()->request.t_ns, 20);
+  EXPECT_EQ(number_of(queue.stand_aside(std::move(*popped))), 10);
+  EXPECT_EQ(number_of(queue.pop()->task), 20);
 }
 
 }  // namespace

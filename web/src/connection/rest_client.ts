@@ -17,6 +17,7 @@ import type {
   TrajectoryList,
 } from '../protocol/score_types';
 import type { Cell } from '../protocol/messages';
+import type { PixelAnswer, PixelQuestion } from '../protocol/pixel_types';
 import type { Json, JsonObject, Manifest, Run, ScenarioEntry } from '../protocol/rest_types';
 import type { SensorCurves } from '../protocol/sensor_types';
 
@@ -88,6 +89,17 @@ export class RestClient {
     const place = `/runs/${encodeURIComponent(run)}/sensors?points=${points}${part}`;
     const answer = await this.call('GET', place, undefined, {}, signal);
     return (answer as { sensors: SensorCurves[] }).sensors;
+  }
+
+  /** What a pixel of a frame shows. */
+  async pixel(question: PixelQuestion): Promise<PixelAnswer> {
+    const { run, frame, x_px, y_px, camera, picture, alignment } = question;
+    const query = new URLSearchParams({ x_px: x_px.toFixed(2), y_px: y_px.toFixed(2) });
+    if (picture !== 'camera') query.set('picture', picture);
+    if (camera !== null) query.set('camera', camera);
+    if (picture.startsWith('error/')) query.set('alignment', alignment);
+    const place = `/runs/${encodeURIComponent(run)}/frames/${frame}/pixel?${query.toString()}`;
+    return (await this.call('GET', place)) as PixelAnswer;
   }
 
   async runs(): Promise<Run[]> {

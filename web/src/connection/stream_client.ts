@@ -65,7 +65,7 @@ const kCloseTooSlow = 4000;
 
 /** The name under which a stream's pictures arrive. */
 export function picturesOf(stream: string, camera?: string): string {
-  return camera === undefined ? stream : `${stream}/${camera}`;
+  return camera === undefined ? stream : `${stream}?camera=${camera}`;
 }
 
 export class StreamClient {

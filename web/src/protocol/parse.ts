@@ -46,6 +46,11 @@ export interface PictureHeader {
   height_px: number;
   grey: boolean;
   live: boolean;
+  /** Of depth [m] and error pictures [grey levels]: the values at the ends of their colours. */
+  scale: { low: number; high: number; logarithmic: boolean } | null;
+  /** Of the image before it was reduced. */
+  fullWidth_px: number;
+  fullHeight_px: number;
 }
 
 export interface PictureMessage extends PictureHeader {
@@ -53,11 +58,15 @@ export interface PictureMessage extends PictureHeader {
   jpeg: Uint8Array<ArrayBuffer>;
 }
 
-const kPictureHeaderBytes = 48;
+const kPictureHeaderBytes = 60;
+const kPictureVersion = 2;
 const kMagic = 0x4c46564f;
 const kPictureType = 1;
 const kEncodingGrey = 1;
 const kEncodingColour = 2;
+const kFlagLive = 1;
+const kFlagScale = 2;
+const kFlagLogarithmic = 4;
 
 /**
  * Parses a binary message.
@@ -70,7 +79,9 @@ export function parsePicture(buffer: ArrayBuffer): PictureMessage | null {
   const view = new DataView(buffer);
   if (view.getUint32(0, true) !== kMagic) throw new ParseError('picture has no OVFL magic');
   const version = view.getUint16(4, true);
-  if (version !== 1) throw new ParseError(`picture version ${version} is not 1`);
+  if (version !== kPictureVersion) {
+    throw new ParseError(`picture version ${version} is not ${kPictureVersion}`);
+  }
   if (view.getUint16(6, true) !== kPictureType) return null;
   const encoding = view.getUint16(36, true);
   if (encoding !== kEncodingGrey && encoding !== kEncodingColour) {
@@ -83,6 +94,7 @@ export function parsePicture(buffer: ArrayBuffer): PictureMessage | null {
       `picture says ${headerBytes} + ${payloadBytes} bytes, has ${buffer.byteLength}`,
     );
   }
+  const flags = view.getUint32(44, true);
   return {
     streamId: view.getUint32(8, true),
     sequence: view.getUint32(12, true),
@@ -91,7 +103,17 @@ export function parsePicture(buffer: ArrayBuffer): PictureMessage | null {
     width_px: view.getUint16(32, true),
     height_px: view.getUint16(34, true),
     grey: encoding === kEncodingGrey,
-    live: (view.getUint32(44, true) & 1) === 1,
+    live: (flags & kFlagLive) !== 0,
+    scale:
+      (flags & kFlagScale) === 0
+        ? null
+        : {
+            low: view.getFloat32(48, true),
+            high: view.getFloat32(52, true),
+            logarithmic: (flags & kFlagLogarithmic) !== 0,
+          },
+    fullWidth_px: view.getUint16(56, true),
+    fullHeight_px: view.getUint16(58, true),
     jpeg: new Uint8Array(buffer, headerBytes, payloadBytes),
   };
 }

@@ -45,6 +45,8 @@ export interface CameraInfo {
 
 export interface Manifest {
   cameras?: CameraInfo[];
+  /** With the camera whose images each gets. */
+  estimators?: { name: string; camera?: string }[];
 }
 
 export interface ScenarioEntry {

@@ -4,15 +4,17 @@ import type { ClientMessage, PictureStream, Resume, ServerMessage } from '../pro
 import type { PictureMessage } from '../protocol/parse';
 import type { Run } from '../protocol/rest_types';
 import type { Notices } from './notices';
-import type { Decode } from './picture_decoder';
-import { PictureDecoder } from './picture_decoder';
+import type { Decode } from './pictures/picture_decoder';
+import { PictureDecoder } from './pictures/picture_decoder';
 import type { ShownRun } from './permalink';
-import { pictureRates } from './picture_rates';
+import { pictureRates } from './pictures/picture_rates';
+import { PictureWishes } from './pictures/picture_wishes';
 import { clockOf } from './run_playback';
 import { shownAlignment } from './state';
 import type { State, Store } from './state';
-import { tracksOf } from './tracks';
 import { WatchedRun } from './watched_run';
+
+const kNothingSubscribed = '[]';
 
 /** Limit of the server. */
 export const kMostRuns = 16;
@@ -26,8 +28,10 @@ export class Session implements StreamListener {
    * Position of a live viewer when the connection was lost; used if the run has ended meanwhile.
    */
   private livePlace_ns: number | null = null;
-  private pictureWidth_px = 640;
-  private subscribed = '';
+  private readonly wishes = new PictureWishes();
+  /** A page that is not on the screen needs no pictures. */
+  private pageShown = true;
+  private subscribed = kNothingSubscribed;
   /** The latest message about the world of each run. */
   private readonly saidOfWorld = new Map<string, string | null>();
   private readonly state: State;
@@ -139,9 +143,22 @@ export class Session implements StreamListener {
     this.store.change('cameras', 'pictures');
   }
 
-  /** Displayed width of camera and debug images, in device pixels. */
-  setPictureWidth(width_px: number): void {
-    this.pictureWidth_px = width_px;
+  /** Shows the pictures of all watched runs side by side, or only those of the main one. */
+  setSideBySide(sideBySide: boolean): void {
+    if (this.state.sideBySide === sideBySide) return;
+    this.state.sideBySide = sideBySide;
+    this.store.change('run', 'pictures');
+  }
+
+  /** Replaces the pictures that a panel needs; none when it is hidden. */
+  want(panel: string, streams: readonly PictureStream[]): void {
+    this.wishes.set(panel, streams);
+    this.subscribe();
+  }
+
+  /** Whether the page can be seen: no pictures are sent to one that is behind others. */
+  showPage(shown: boolean): void {
+    this.pageShown = shown;
     this.subscribe();
   }
 
@@ -155,7 +172,7 @@ export class Session implements StreamListener {
   onState(state: ConnectionState): void {
     this.state.connection = state;
     this.state.wantedSpeed = null;
-    if (state.status === 'open') this.subscribed = '';
+    if (state.status === 'open') this.subscribed = kNothingSubscribed;
     this.store.change('connection');
   }
 
@@ -239,7 +256,7 @@ export class Session implements StreamListener {
     for (const { bitmap } of watched.pictures.values()) bitmap.close();
     state.watched.splice(state.watched.indexOf(watched), 1);
     if (state.main === watched) state.main = state.watched[0] ?? null;
-    if (state.main === null) this.subscribed = '';
+    if (state.main === null) this.subscribed = kNothingSubscribed;
   }
 
   private changedRuns(): void {
@@ -309,36 +326,11 @@ export class Session implements StreamListener {
     if (clock.playing) this.command({ type: 'pause' });
   }
 
-  /** All watched runs, each with the colours of its tracks in the plots. */
-  private sceneTracks(): Pick<PictureStream, 'first_colour' | 'with'> {
-    const { main } = this.state;
-    const firsts = tracksOf(this.state).filter(({ name }) => name === '');
-    const all = firsts.map(({ run, colour }) => ({ run: run.id, first_colour: colour }));
-    const own = all.find(({ run }) => run === main?.id);
-    return {
-      ...(own === undefined || own.first_colour === 0 ? {} : { first_colour: own.first_colour }),
-      ...(all.length < 2 ? {} : { with: all.filter((one) => one !== own) }),
-    };
-  }
-
   private subscribe(): void {
     const { main } = this.state;
-    if (main === null || main.run === null) return;
-    const { id: run, camera } = main;
-    const max_width_px = this.pictureWidth_px;
-    const small = { max_hz: 15, quality: 75, max_width_px };
-    const pictures: PictureStream[] = [
-      { run, name: 'scene', max_hz: 20, quality: 80, ...this.sceneTracks() },
-      {
-        run,
-        name: 'camera',
-        ...(camera === null ? {} : { camera }),
-        max_hz: 31,
-        quality: 75,
-        max_width_px,
-      },
-      ...main.run.estimators.map((name) => ({ run, name: `debug/${name}`, ...small })),
-    ];
+    if (main === null) return;
+    const wanted = this.pageShown ? this.wishes.union() : [];
+    const pictures = wanted.filter(({ run }) => this.state.watchedRun(run) !== undefined);
     const key = JSON.stringify(pictures);
     if (key === this.subscribed) return;
     this.subscribed = key;

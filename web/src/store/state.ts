@@ -1,8 +1,8 @@
 // The whole state of the screen in one place, and notification of its changes.
 import type { ConnectionState } from '../connection/stream_client';
-import { picturesOf } from '../connection/stream_client';
 import type { FieldError } from '../protocol/field_errors';
 import type { SceneMode, SceneView } from '../protocol/messages';
+import type { PixelAnswer, PixelQuestion } from '../protocol/pixel_types';
 import type {
   CameraInfo,
   EstimatorStatus,
@@ -14,7 +14,9 @@ import type {
 import { kDefaultAlignment } from './error_table';
 import type { LogPage } from './logs/log_browser';
 import { initialLogPage } from './logs/log_browser';
-import type { PictureRate } from './picture_rates';
+import type { PictureRate } from './pictures/picture_rates';
+import type { Zoom } from './pictures/picture_zoom';
+import type { Hover } from './pictures/pixel_probe';
 import type { Clock, RunPlayback } from './run_playback';
 import type { ConnectState } from './vehicle/vehicle_connect';
 import { initialConnect } from './vehicle/vehicle_connect';
@@ -64,6 +66,14 @@ export class State {
   sensors: SensorSamples | null = null;
   /** Why the sensors' samples cannot be read. */
   sensorError: string | null = null;
+  /** Pictures of all watched runs, not only of the main one. */
+  sideBySide = true;
+  /** What part of the pictures is shown, by group (pictures/picture_groups.ts). */
+  zooms = new Map<string, Zoom>();
+  /** Where the mouse points in a picture. */
+  hover: Hover | null = null;
+  /** What was asked about the pixel there, and the answer or why there is none. */
+  pixel: { question: PixelQuestion; answer: PixelAnswer | string } | null = null;
   sceneMode: SceneMode = 'chase';
   sceneOrbits: Record<SceneMode, SceneOrbit> = {
     chase: { azimuth_deg: 20, elevation_deg: 18, distance_m: 40, follow: true },
@@ -151,11 +161,6 @@ export function shownAlignment({ aligned }: Pick<WatchedRun, 'aligned'>): string
   return aligned?.mode ?? kDefaultAlignment;
 }
 
-/** The name under which the chosen camera's pictures arrive. */
-export function cameraPictures({ camera }: Pick<WatchedRun, 'camera'>): string {
-  return picturesOf('camera', camera ?? undefined);
-}
-
 /** Views redraw themselves for the topics that changed since the last frame. */
 const kTopicNames = [
   'connection',
@@ -168,6 +173,8 @@ const kTopicNames = [
   'estimators',
   'playback',
   'pictures',
+  'zoom',
+  'hover',
   'scene',
   'cameras',
   'sensors',

@@ -1,7 +1,8 @@
 // One of the runs shown together: what the server sent about it, and how it is shown.
 import type { RunInstant, SeriesInfo } from '../protocol/messages';
 import type { CameraInfo, EstimatorStatus, Metrics, Run } from '../protocol/rest_types';
-import type { PictureRate } from './picture_rates';
+import type { ColourScale } from './pictures/colour_scale';
+import type { PictureRate } from './pictures/picture_rates';
 import type { EstimateRows } from './run_data';
 import { RunData } from './run_data';
 
@@ -12,6 +13,10 @@ export interface Picture {
   width_px: number;
   height_px: number;
   live: boolean;
+  scale: ColourScale | null;
+  /** Of the image before it was reduced. */
+  fullWidth_px: number;
+  fullHeight_px: number;
   bitmap: ImageBitmap;
 }
 
@@ -38,6 +43,8 @@ export class WatchedRun {
   aligned: AlignedEstimates | null = null;
   /** Empty until its manifest was read. */
   cameras: CameraInfo[] = [];
+  /** The camera whose images each estimator gets. */
+  estimatorCameras: ReadonlyMap<string, string> = new Map();
   /** The camera shown; null = the first. */
   camera: string | null = null;
   readonly pictures = new Map<string, Picture>();

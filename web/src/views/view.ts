@@ -1,6 +1,7 @@
 // The interface of every part of the screen.
 import type { Alignment } from '../store/alignment';
-import type { Cameras } from '../store/cameras';
+import type { Cameras } from '../store/pictures/cameras';
+import type { PixelProbe } from '../store/pictures/pixel_probe';
 import type { Store, Topic } from '../store/state';
 import type { Player } from '../store/player';
 import type { SceneControl } from '../store/scene_control';
@@ -34,6 +35,7 @@ export interface Context {
   catalogue: Catalogue;
   alignment: Alignment;
   cameras: Cameras;
+  probe: PixelProbe;
   sensors: Sensors;
   logs: LogBrowser;
   smoothing: LogSmoothing;

@@ -2,7 +2,7 @@ import { beforeEach, describe, expect, it } from 'vitest';
 import type { ConnectionState, StreamListener } from '../../src/connection/stream_client';
 import { StreamClient } from '../../src/connection/stream_client';
 import type { ClientMessage, Resume, ServerMessage } from '../../src/protocol/messages';
-import { encodePicture } from '../support/encode_picture';
+import { encodePicture, sampleHeader } from '../support/encode_picture';
 import { FakeSocket, FakeTimers } from '../support/fake_socket';
 import { playbackMessage, sampleRun } from '../support/samples';
 
@@ -36,8 +36,7 @@ function socket(): FakeSocket {
 }
 
 function picture(streamId: number): ArrayBuffer {
-  const header = { streamId, sequence: 0, frame: 0, t_ns: 0, width_px: 1, height_px: 1 };
-  return encodePicture({ ...header, grey: true, live: false }, Uint8Array.of(1));
+  return encodePicture(sampleHeader({ streamId }), Uint8Array.of(1));
 }
 
 beforeEach(() => {

@@ -1,12 +1,12 @@
 import { describe, expect, it } from 'vitest';
 import { ParseError, parsePicture, parseServerMessage } from '../../src/protocol/parse';
-import { encodePicture } from '../support/encode_picture';
+import { encodePicture, sampleHeader } from '../support/encode_picture';
 
 /** Byte by byte as docs/PROTOCOL.md says, without the code under test. */
 function pictureBytes(): Uint8Array<ArrayBuffer> {
   return Uint8Array.from([
     ...[0x4f, 0x56, 0x46, 0x4c], // magic, little-endian 0x4C46564F
-    ...[1, 0], // version
+    ...[2, 0], // version
     ...[1, 0], // type: picture
     ...[7, 0, 0, 0], // stream id
     ...[0x39, 0x30, 0, 0], // sequence 12345
@@ -15,9 +15,13 @@ function pictureBytes(): Uint8Array<ArrayBuffer> {
     ...[0x00, 0x05], // 1280
     ...[0xc0, 0x03], // 960
     ...[2, 0], // JPEG colour
-    ...[48, 0], // header length
+    ...[60, 0], // header length
     ...[3, 0, 0, 0], // payload length
-    ...[1, 0, 0, 0], // live
+    ...[7, 0, 0, 0], // live, with a scale, logarithmic
+    ...[0, 0, 0x48, 0x43], // 200
+    ...[0, 0, 0xc8, 0x44], // 1600
+    ...[0x00, 0x0a], // 2560 of the whole image
+    ...[0x80, 0x07], // 1920
     ...[0xff, 0xd8, 0xff],
   ]);
 }
@@ -33,15 +37,18 @@ describe('parsePicture', () => {
       height_px: 960,
       grey: false,
       live: true,
+      scale: { low: 200, high: 1600, logarithmic: true },
+      fullWidth_px: 2560,
+      fullHeight_px: 1920,
       jpeg: Uint8Array.from([0xff, 0xd8, 0xff]),
     });
   });
 
   it('honours a longer header of a later version of the same layout', () => {
     const bytes = new Uint8Array(pictureBytes().length + 8);
-    bytes.set(pictureBytes().subarray(0, 48));
-    bytes[38] = 56;
-    bytes.set([1, 2, 3], 56);
+    bytes.set(pictureBytes().subarray(0, 60));
+    bytes[38] = 68;
+    bytes.set([1, 2, 3], 68);
     expect(parsePicture(bytes.buffer)?.jpeg).toEqual(Uint8Array.from([1, 2, 3]));
   });
 
@@ -53,9 +60,9 @@ describe('parsePicture', () => {
 
   it.each([
     ['a wrong magic', 0, 0],
-    ['an unknown version', 4, 2],
+    ['an unknown version', 4, 3],
     ['an unknown encoding', 36, 3],
-    ['a header that is too short', 38, 40],
+    ['a header that is too short', 38, 48],
     ['a payload beyond the message', 40, 4],
   ])('refuses %s', (_, offset, value) => {
     const bytes = pictureBytes();
@@ -71,18 +78,11 @@ describe('parsePicture', () => {
   });
 
   it('gives back what encodePicture wrote, negative times too', () => {
-    const header = {
-      streamId: 1,
-      sequence: 2,
-      frame: -3,
-      t_ns: -4,
-      width_px: 5,
-      height_px: 6,
-      grey: true,
-      live: false,
-    };
+    const header = sampleHeader({ sequence: 2, frame: -3, t_ns: -4, width_px: 5, height_px: 6 });
     const jpeg = Uint8Array.from([9, 8, 7]);
     expect(parsePicture(encodePicture(header, jpeg))).toEqual({ ...header, jpeg });
+    const depth = { ...header, scale: { low: 200, high: 1500, logarithmic: true } };
+    expect(parsePicture(encodePicture(depth, jpeg))).toEqual({ ...depth, jpeg });
   });
 });
 

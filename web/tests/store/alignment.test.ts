@@ -1,7 +1,7 @@
 import { beforeEach, describe, expect, it } from 'vitest';
 import { RestClient } from '../../src/connection/rest_client';
 import { Alignment, canBeDrawn } from '../../src/store/alignment';
-import { Cameras } from '../../src/store/cameras';
+import { Cameras } from '../../src/store/pictures/cameras';
 import { Notices } from '../../src/store/notices';
 import { shownAlignment } from '../../src/store/state';
 import { playbackMessage } from '../support/samples';

@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import { faultMeaning, FaultSpans, kindsOf } from '../../src/store/fault_spans';
-import { frameInfo } from '../../src/store/frame_info';
+import { frameInfo } from '../../src/store/pictures/frame_info';
 import { RunData } from '../../src/store/run_data';
 
 function flight(faults: (string[] | null)[]): RunData {

@@ -1,6 +1,5 @@
 import { beforeEach, describe, expect, it } from 'vitest';
-import { rateText } from '../../src/store/picture_rates';
-import { cameraPictures } from '../../src/store/state';
+import { rateText } from '../../src/store/pictures/picture_rates';
 import { samplePlayback, playbackMessage, sampleRun, sampleStatus } from '../support/samples';
 import { Viewing } from '../support/viewing';
 
@@ -11,13 +10,36 @@ beforeEach(() => {
 });
 
 describe('Session', () => {
-  it('asks for the pictures of the run, one debug stream an estimator', () => {
+  it('asks for the pictures that panels on the screen need, and for no others', () => {
     viewing.watch();
-    const subscribe = viewing.socket.sent.find(({ type }) => type === 'subscribe');
-    expect(subscribe).toMatchObject({
-      pictures: [{ name: 'scene' }, { name: 'camera' }, { name: 'debug/feature' }],
-    });
-    expect(viewing.socket.types().filter((type) => type === 'subscribe')).toHaveLength(1);
+    const { session, socket } = viewing;
+    expect(socket.types()).not.toContain('subscribe');
+    const camera = { run: 'r1', name: 'camera', max_hz: 31, max_width_px: 640 };
+    session.want('camera', [camera]);
+    session.want('large', [{ ...camera, max_width_px: 1280 }]);
+    session.want('scene', [{ run: 'r1', name: 'scene' }]);
+    session.want('debug', [{ run: 'other', name: 'debug/feature' }]);
+    const all = [
+      { ...camera, max_width_px: 1280 },
+      { run: 'r1', name: 'scene' },
+    ];
+    expect(socket.last()).toMatchObject({ type: 'subscribe', pictures: all });
+    session.want('large', []);
+    session.want('scene', []);
+    expect(socket.last()).toMatchObject({ type: 'subscribe', pictures: [camera] });
+    const sent = socket.sent.length;
+    session.want('camera', [camera]);
+    expect(socket.sent).toHaveLength(sent);
+  });
+
+  it('asks for no pictures while the page is not on the screen', () => {
+    viewing.watch();
+    const { session, socket } = viewing;
+    session.want('scene', [{ run: 'r1', name: 'scene' }]);
+    session.showPage(false);
+    expect(socket.last()).toMatchObject({ type: 'subscribe', pictures: [] });
+    session.showPage(true);
+    expect(socket.last()).toMatchObject({ pictures: [{ run: 'r1', name: 'scene' }] });
   });
 
   it('goes to the instant of a permalink once, and stays there', () => {
@@ -87,23 +109,11 @@ describe('Session', () => {
     ];
     viewing.socket.receive({ type: 'pictures', pictures });
     const { rates } = viewing.store.state;
-    expect([...rates.keys()]).toEqual(['scene', 'camera/left']);
-    expect(rateText(rates.get('camera/left'))).toBe('5/31 Hz');
+    expect([...rates.keys()]).toEqual(['scene', 'camera?camera=left']);
+    expect(rateText(rates.get('camera?camera=left'))).toBe('5/31 Hz');
     expect(rateText(rates.get('debug/feature'))).toBe('');
     viewing.socket.receive({ type: 'pictures', pictures: [{ id: 1, run: 'r1', name: 'scene' }] });
     expect(viewing.store.state.rates.size).toBe(0);
-  });
-
-  it('asks for the pictures of the camera chosen', () => {
-    viewing.watch();
-    viewing.session.setCamera('tail');
-    expect(viewing.socket.last()).toMatchObject({
-      type: 'subscribe',
-      pictures: [{ name: 'scene' }, { name: 'camera', camera: 'tail' }, { name: 'debug/feature' }],
-    });
-    expect(cameraPictures(viewing.store.state)).toBe('camera/tail');
-    viewing.session.selectRun('r2');
-    expect(cameraPictures(viewing.store.state)).toBe('camera');
   });
 
   it('asks again for rows when some are missing', () => {
@@ -174,14 +184,6 @@ describe('Session', () => {
     viewing.session.selectRun('r2');
     expect(state.runId).toBe('r2');
     expect(state.watched).toHaveLength(2);
-    expect(viewing.socket.last()).toMatchObject({
-      type: 'subscribe',
-      pictures: [
-        { run: 'r2', name: 'scene', first_colour: 1, with: [{ run: 'r1', first_colour: 0 }] },
-        { name: 'camera' },
-        { name: 'debug/feature' },
-      ],
-    });
   });
 
   it('leaves one of several runs: the others stay', () => {

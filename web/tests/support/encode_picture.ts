@@ -1,13 +1,31 @@
 import type { PictureHeader } from '../../src/protocol/parse';
 
-const kHeaderBytes = 48;
+const kHeaderBytes = 60;
+
+/** A header with the given changes. */
+export function sampleHeader(change: Partial<PictureHeader> = {}): PictureHeader {
+  return {
+    streamId: 1,
+    sequence: 0,
+    frame: 0,
+    t_ns: 0,
+    width_px: 4,
+    height_px: 3,
+    grey: true,
+    live: false,
+    scale: null,
+    fullWidth_px: 4,
+    fullHeight_px: 3,
+    ...change,
+  };
+}
 
 /** A picture as the server sends it: the inverse of parsePicture. */
 export function encodePicture(header: PictureHeader, jpeg: Uint8Array): ArrayBuffer {
   const buffer = new ArrayBuffer(kHeaderBytes + jpeg.byteLength);
   const view = new DataView(buffer);
   view.setUint32(0, 0x4c46564f, true);
-  view.setUint16(4, 1, true);
+  view.setUint16(4, 2, true);
   view.setUint16(6, 1, true);
   view.setUint32(8, header.streamId, true);
   view.setUint32(12, header.sequence, true);
@@ -18,7 +36,13 @@ export function encodePicture(header: PictureHeader, jpeg: Uint8Array): ArrayBuf
   view.setUint16(36, header.grey ? 1 : 2, true);
   view.setUint16(38, kHeaderBytes, true);
   view.setUint32(40, jpeg.byteLength, true);
-  view.setUint32(44, header.live ? 1 : 0, true);
+  const { scale } = header;
+  const scaleFlags = scale === null ? 0 : scale.logarithmic ? 6 : 2;
+  view.setUint32(44, (header.live ? 1 : 0) | scaleFlags, true);
+  view.setFloat32(48, scale?.low ?? 0, true);
+  view.setFloat32(52, scale?.high ?? 0, true);
+  view.setUint16(56, header.fullWidth_px, true);
+  view.setUint16(58, header.fullHeight_px, true);
   new Uint8Array(buffer, kHeaderBytes).set(jpeg);
   return buffer;
 }

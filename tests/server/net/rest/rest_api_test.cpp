@@ -134,6 +134,9 @@ TEST_F(RestApiTest, AnswersEveryRouteAsDocumented) {
   check("GET", trajectories, run + "/trajectories/perfect?format=json&alignment=sim4", 400);
   check("GET", trajectories, run + "/trajectories/perfect?alignment=sim3", 400);
   const std::string frames = one + "/frames/{file}";
+  check("GET", frames + "/pixel", run + "/frames/17/pixel?x_px=3&y_px=4", 200);
+  check("GET", frames + "/pixel", run + "/frames/17/pixel?x_px=-3&y_px=4", 400);
+  check("GET", frames + "/pixel", run + "/frames/9999/pixel?x_px=3&y_px=4", 404);
   const Answer frame = check("GET", frames, run + "/frames/17.jpg", 200);
   const auto image = server::decode_jpeg(
       {reinterpret_cast<const std::uint8_t*>(frame.body.data()), frame.body.size()});

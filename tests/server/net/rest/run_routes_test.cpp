@@ -42,6 +42,33 @@ TEST(RunRoutes, FullQueueIsToldApart) {
   EXPECT_EQ(ask(server.port(), "GET", kRuns).json().at("runs").size(), 3U);
 }
 
+TEST(RunRoutes, TellsWhatAPixelShows) {
+  TestServer server;
+  const std::string id = server.fly("tiny");
+  const auto look = [&](const std::string& frame, const std::string& query) {
+    const std::string place = std::string(kRuns) + "/" + id + "/frames/" + frame + "/pixel";
+    return ask(server.port(), "GET", place + query);
+  };
+  const Answer seen = look("7", "?x_px=10.5&y_px=20&picture=error/perfect");
+  ASSERT_EQ(seen.status, 200) << seen.body;
+  const json pixel = seen.json();
+  EXPECT_EQ(pixel.at("frame"), 7);
+  EXPECT_EQ(pixel.at("width_px"), 64);
+  EXPECT_GE(pixel.at("grey"), 0);
+  EXPECT_TRUE(pixel.at("rgb").is_null());
+  EXPECT_EQ(pixel.at("difference"), 0) << "the estimate is perfect";
+  EXPECT_GT(pixel.at("range_m"), pixel.at("depth_m"));
+  EXPECT_GT(pixel.at("ground").at("lat_deg"), -90.0);
+  EXPECT_EQ(look("7", "?x_px=10").status, 400);
+  EXPECT_EQ(look("7", "?x_px=64&y_px=1").status, 400);
+  EXPECT_EQ(look("7", "?x_px=nan&y_px=1").status, 400);
+  EXPECT_EQ(look("7", "?x_px=1&y_px=1&picture=scene").status, 400);
+  EXPECT_EQ(look("7", "?x_px=1&y_px=1&picture=error/nobody").status, 404);
+  EXPECT_EQ(look("7", "?x_px=1&y_px=1&camera=nobody").status, 404);
+  EXPECT_EQ(look("99999", "?x_px=1&y_px=1").status, 404);
+  EXPECT_EQ(look("x", "?x_px=1&y_px=1").status, 404);
+}
+
 TEST(RunRoutes, RunBeyondTheMemoryIsRefusedWithFieldValueAndLimit) {
   server::RunManagerOptions options;
   options.memory_limit_bytes = std::uint64_t{512} << 20U;

@@ -30,6 +30,16 @@ export const kPanels = {
   },
   camera: { title: 'Camera', hint: 'The pictures of the aircraft', joins: ['debug', 'scene'] },
   debug: { title: 'Estimator', hint: 'Debug images of an estimator', joins: ['camera', 'scene'] },
+  depth: {
+    title: 'Depth',
+    hint: "Depth of the ground in the camera's image",
+    joins: ['debug', 'camera', 'scene'],
+  },
+  'image-error': {
+    title: 'Image error',
+    hint: 'What sensor and faults changed in the image, or how far off the view from an estimate is',
+    joins: ['depth', 'debug', 'camera'],
+  },
   errors: {
     title: 'Errors',
     hint: 'Scores of the estimates',

@@ -38,7 +38,7 @@ export const kReadyLayouts: readonly ReadyLayout[] = [
   {
     name: 'camera',
     title: 'Camera',
-    hint: 'The picture, large, and what it is like',
+    hint: 'The picture, large, with its depth and errors, and what it is like',
     arrange: camera,
   },
 ];
@@ -83,7 +83,7 @@ function compare(area: Area): LayoutNode {
     [
       area.width_px - side_px - kTabs_px - right_px,
       split('column', [
-        [45, tabs('scene')],
+        [45, tabs('scene', 'camera')],
         [55, tabs('plots')],
       ]),
     ],
@@ -108,7 +108,7 @@ function estimator(area: Area): LayoutNode {
           52,
           split('row', [
             [50, tabs('debug')],
-            [50, tabs('camera')],
+            [50, tabs('camera', 'image-error', 'depth')],
           ]),
         ],
         [48, tabs('plots-errors', 'plots')],
@@ -130,7 +130,19 @@ function camera(area: Area): LayoutNode {
   const right_px = clamp(area.width_px * 0.3, 320, 640);
   return split('row', [
     [side_px + kTabs_px, tabs('runs', 'launcher', 'log')],
-    [area.width_px - side_px - kTabs_px - right_px, tabs('camera')],
+    [
+      area.width_px - side_px - kTabs_px - right_px,
+      split('column', [
+        [62, tabs('camera')],
+        [
+          38,
+          split('row', [
+            [50, tabs('depth')],
+            [50, tabs('image-error', 'debug')],
+          ]),
+        ],
+      ]),
+    ],
     [
       right_px,
       split('column', [

@@ -1,12 +1,12 @@
 // Makes the panels. Their names and titles are in store/layouts/panel_names.ts.
-import { CameraPanel } from '../camera_panel';
+import { CameraPanel } from '../pictures/camera_panel';
 import { ErrorPanel } from '../error_panel';
 import { Launcher } from '../launcher';
 import { LogPanel } from '../log_panel';
-import { DebugPanel } from '../picture_panel';
+import { DebugPanel } from '../pictures/debug_panel';
 import { PlotsPanel } from '../plots/plots_panel';
 import { RunList } from '../run_list';
-import { ScenePanel } from '../scene_panel';
+import { ScenePanel } from '../pictures/scene_panel';
 import { VehicleCard } from '../vehicle/vehicle_card';
 import type { PanelName } from '../../store/layouts/panel_names';
 import type { Context, View } from '../view';
@@ -22,6 +22,14 @@ export const kPanelMakers: Record<PanelName, (context: Context) => View | Promis
   'plots-image': (context) => new PlotsPanel(context, 'image'),
   camera: (context) => new CameraPanel(context),
   debug: (context) => new DebugPanel(context),
+  depth: async (context) => {
+    const { DepthPanel } = await import('../pictures/depth_panel');
+    return new DepthPanel(context);
+  },
+  'image-error': async (context) => {
+    const { ImageErrorPanel } = await import('../pictures/image_error_panel');
+    return new ImageErrorPanel(context);
+  },
   errors: (context) => new ErrorPanel(context),
   status: async (context) => {
     const { StatusPanel } = await import('../status_panel');
@@ -37,5 +45,6 @@ function withVehicle(scene: ScenePanel, vehicle: VehicleCard): View {
       scene.update(changed);
       vehicle.update(changed);
     },
+    onHidden: () => scene.onHidden(),
   };
 }

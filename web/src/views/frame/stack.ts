@@ -9,14 +9,29 @@ const kOrder: readonly PanelName[] = [
   'scene',
   'camera',
   'debug',
+  'depth',
+  'image-error',
   'plots',
   'plots-errors',
   'errors',
 ];
+/** Panels this near to the screen are ready when they are reached. */
+const kMargin = '200px';
 
 export class Stack {
   readonly root = h('div', { class: 'stack' });
   private shown: PanelName[] = [];
+  /** Panels that are scrolled away are hidden: they need no pictures. */
+  private readonly watch = new IntersectionObserver(
+    (entries) => {
+      for (const { target, isIntersecting } of entries) {
+        const name = this.shown.find((one) => this.places.get(one) === target);
+        if (name !== undefined) this.host(name).show(isIntersecting);
+      }
+    },
+    { rootMargin: kMargin },
+  );
+  private readonly places = new Map<PanelName, Element>();
 
   constructor(private readonly host: (name: PanelName) => PanelHost) {}
 
@@ -24,14 +39,15 @@ export class Stack {
     const order = [...kOrder, ...kPanelNames.filter((name) => !kOrder.includes(name))];
     const hidden = this.shown.filter((name) => !panels.includes(name));
     this.shown = order.filter((name) => panels.includes(name));
-    this.root.replaceChildren(
-      ...this.shown.map((name) => {
-        const { element, header } = this.host(name);
-        return h('div', { class: 'stacked', 'data-stacked': name }, header, element);
-      }),
-    );
+    this.watch.disconnect();
+    this.places.clear();
+    for (const name of this.shown) {
+      const { element, header } = this.host(name);
+      this.places.set(name, h('div', { class: 'stacked', 'data-stacked': name }, header, element));
+    }
+    this.root.replaceChildren(...this.places.values());
     for (const name of hidden) this.host(name).show(false);
-    for (const name of this.shown) this.host(name).show(true);
+    for (const place of this.places.values()) this.watch.observe(place);
   }
 
   panels(): PanelName[] {

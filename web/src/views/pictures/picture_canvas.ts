@@ -1,6 +1,6 @@
 // A canvas that shows the newest picture of a stream with its aspect ratio.
-import type { Picture } from '../store/watched_run';
-import { h } from './dom';
+import type { Picture } from '../../store/watched_run';
+import { h } from '../dom';
 
 const kOldest_ns = 1e9;
 

@@ -1,6 +1,6 @@
 // Decodes pictures asynchronously and keeps the newest of each stream.
-import type { PictureMessage } from '../protocol/parse';
-import type { Picture } from './watched_run';
+import type { PictureMessage } from '../../protocol/parse';
+import type { Picture } from '../watched_run';
 
 export type Decode = (jpeg: Blob) => Promise<ImageBitmap>;
 
@@ -49,7 +49,9 @@ export class PictureDecoder {
           return;
         }
         const { frame, t_ns, width_px, height_px, live } = message;
-        this.done(name, { frame, t_ns, width_px, height_px, live, bitmap });
+        const { scale, fullWidth_px, fullHeight_px } = message;
+        const size = { width_px, height_px, fullWidth_px, fullHeight_px };
+        this.done(name, { frame, t_ns, ...size, live, scale, bitmap });
       } catch {
         this.failed(`picture of frame ${message.frame} of ${name} cannot be decoded`);
       }

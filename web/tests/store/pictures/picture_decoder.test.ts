@@ -1,17 +1,11 @@
 import { describe, expect, it, vi } from 'vitest';
-import type { PictureMessage } from '../../src/protocol/parse';
-import { PictureDecoder } from '../../src/store/picture_decoder';
+import type { PictureMessage } from '../../../src/protocol/parse';
+import { sampleHeader } from '../../support/encode_picture';
+import { PictureDecoder } from '../../../src/store/pictures/picture_decoder';
 
 function message(frame: number): PictureMessage {
   return {
-    streamId: 1,
-    sequence: frame,
-    frame,
-    t_ns: frame,
-    width_px: 4,
-    height_px: 3,
-    grey: true,
-    live: false,
+    ...sampleHeader({ sequence: frame, frame, t_ns: frame }),
     jpeg: Uint8Array.of(frame),
   };
 }

@@ -1,18 +1,18 @@
 // The 3D view, drawn by the server and controlled here. Dragging turns the view, the wheel zooms.
-import type { SceneMode } from '../protocol/messages';
-import { rateText } from '../store/picture_rates';
-import { shownAlignment } from '../store/state';
-import type { Topic } from '../store/state';
-import { h, perFrame } from './dom';
-import { formatNumber } from '../store/format';
-import { tracksOf } from '../store/tracks';
-import { estimateColour, kTruthColour } from './colours';
-import { rebuild, setAttribute, setText } from './dom';
-import type { Panel } from './panel';
-import { makePanel } from './panel';
+import type { PictureStream, SceneMode } from '../../protocol/messages';
+import { rateText } from '../../store/pictures/picture_rates';
+import { shownAlignment } from '../../store/state';
+import type { State, Topic } from '../../store/state';
+import { h, perFrame } from '../dom';
+import { formatNumber } from '../../store/format';
+import { tracksOf } from '../../store/tracks';
+import { estimateColour, kTruthColour } from '../colours';
+import { rebuild, setAttribute, setText } from '../dom';
+import type { Panel } from '../panel';
+import { makePanel } from '../panel';
 import { PictureCanvas } from './picture_canvas';
 import { standingStill, waitingText } from './picture_panel';
-import type { Context, View } from './view';
+import type { Context, View } from '../view';
 
 const kModes: readonly { mode: SceneMode; label: string; key: string }[] = [
   { mode: 'chase', label: 'Chase', key: '1' },
@@ -69,14 +69,19 @@ export class ScenePanel implements View {
   update(changed: ReadonlySet<Topic>): void {
     const { state } = this.context.store;
     if (changed.has('scene') || changed.has('run')) this.updateControls();
+    if (changed.has('run')) this.context.session.want('scene', sceneWish(state));
     if (!changed.has('pictures') && !changed.has('playback') && !changed.has('run')) return;
     const picture = state.pictures.get('scene') ?? null;
     this.picture.show(picture);
-    const still = standingStill(state);
+    const still = standingStill(state, state.main);
     this.picture.markStale(still?.t_ns ?? null);
     this.panel.showFrame(picture?.frame ?? null, still?.frame ?? null);
-    this.panel.showEmpty(picture === null ? waitingText(state) : null);
+    this.panel.showEmpty(picture === null ? waitingText(state.main) : null);
     this.panel.showRate(rateText(state.rates.get('scene')));
+  }
+
+  onHidden(): void {
+    this.context.session.want('scene', []);
   }
 
   private updateControls(): void {
@@ -153,6 +158,25 @@ export class ScenePanel implements View {
       timer = window.setTimeout(() => ask({ width, height }), asked === '' ? 0 : kResizeWait_ms);
     }).observe(area);
   }
+}
+
+/** The scene with all watched runs, each with the colours of its tracks in the plots. */
+function sceneWish(state: State): PictureStream[] {
+  const { main } = state;
+  if (main === null) return [];
+  const firsts = tracksOf(state).filter(({ name }) => name === '');
+  const all = firsts.map(({ run, colour }) => ({ run: run.id, first_colour: colour }));
+  const own = all.find(({ run }) => run === main.id);
+  return [
+    {
+      run: main.id,
+      name: 'scene',
+      max_hz: 20,
+      quality: 80,
+      ...(own === undefined || own.first_colour === 0 ? {} : { first_colour: own.first_colour }),
+      ...(all.length < 2 ? {} : { with: all.filter((one) => one !== own) }),
+    },
+  ];
 }
 
 function legendEntry(name: string, colour: string): HTMLElement {

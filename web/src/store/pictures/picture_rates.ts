@@ -1,6 +1,6 @@
 // Rates of the picture streams while a real-time flight limits them.
-import { picturesOf } from '../connection/stream_client';
-import type { PictureInfo } from '../protocol/messages';
+import { picturesOf } from '../../connection/stream_client';
+import type { PictureInfo } from '../../protocol/messages';
 
 export interface PictureRate {
   now_hz: number;

@@ -1,60 +1,59 @@
 // The aircraft's camera: its picture, details of the frame, and active faults.
-import { frameInfo } from '../store/frame_info';
-import type { FrameInfo } from '../store/frame_info';
-import { faultMeaning } from '../store/fault_spans';
-import { cameraPictures } from '../store/state';
-import type { State, Topic } from '../store/state';
-import { faultColour } from './colours';
-import { h, rebuild, setAttribute, setText } from './dom';
+import { picturesOf } from '../../connection/stream_client';
+import { faultMeaning } from '../../store/fault_spans';
+import { frameInfo } from '../../store/pictures/frame_info';
+import type { FrameInfo } from '../../store/pictures/frame_info';
+import { cameraGroup, shownCamera } from '../../store/pictures/picture_groups';
+import type { State, Topic } from '../../store/state';
+import type { WatchedRun } from '../../store/watched_run';
+import { faultColour } from '../colours';
+import { h, rebuild, setAttribute, setText } from '../dom';
+import type { Context } from '../view';
+import { CameraChooser } from './camera_chooser';
+import type { CellStream } from './picture_panel';
 import { PicturePanel, waitingText } from './picture_panel';
-import type { Context } from './view';
 
 export class CameraPanel extends PicturePanel {
-  private readonly chooser = h('select', { id: 'camera', 'aria-label': 'Camera', hidden: true });
+  private readonly chooser: CameraChooser;
   private readonly lens = h('span', { class: 'lens', 'data-role': 'lens' });
-  private readonly marks = h('div', { class: 'fault-marks' });
   private readonly figures = h('div', { class: 'frame-figures', 'data-role': 'figures' });
 
   constructor(context: Context) {
     super(context, 'camera', 'Camera');
-    this.panel.tools.append(this.chooser, this.lens);
-    this.panel.body.append(this.marks);
+    this.chooser = new CameraChooser(context, 'camera');
+    this.panel.tools.prepend(this.chooser.root, this.lens);
     this.root.append(this.figures);
-    this.chooser.addEventListener('change', () => {
-      const first = this.chooser.selectedIndex === 0;
-      context.session.setCamera(first ? null : this.chooser.value);
-    });
-    new ResizeObserver(([entry]) => {
-      if (entry === undefined) return;
-      const width_px = entry.contentRect.width * window.devicePixelRatio;
-      context.session.setPictureWidth(width_px > 660 ? 1280 : 640);
-    }).observe(this.panel.body);
   }
 
   override update(changed: ReadonlySet<Topic>): void {
     super.update(changed);
     if (changed.has('playback') || changed.has('run')) void this.context.cameras.refresh();
-    if (changed.has('cameras') || changed.has('run')) this.updateChooser();
+    if (changed.has('cameras') || changed.has('run')) this.updateLens();
     const rows = changed.has('pictures') || changed.has('rows') || changed.has('run');
     if (rows || changed.has('cameras')) this.updateInfo();
   }
 
-  protected override streamOf(state: State): string {
-    return cameraPictures(state);
+  protected override streamOf(watched: WatchedRun): CellStream {
+    const camera = shownCamera(watched);
+    return {
+      stream: { name: 'camera', ...(camera === null ? {} : { camera }), max_hz: 31, quality: 75 },
+      key: picturesOf('camera', camera ?? undefined),
+      group: cameraGroup(camera),
+      asks: { camera, picture: 'camera' },
+      legend: null,
+      empty: waitingText(watched),
+    };
   }
 
   protected override emptyText(state: State): string {
-    return waitingText(state);
+    return waitingText(state.main);
   }
 
-  private updateChooser(): void {
-    const { cameras, camera } = this.context.store.state;
-    rebuild(this.chooser, JSON.stringify(cameras), () =>
-      cameras.map(({ name }) => h('option', { value: name }, name)),
-    );
-    this.chooser.hidden = cameras.length < 2;
+  private updateLens(): void {
+    const { state } = this.context.store;
+    this.chooser.draw(state);
+    const { cameras, camera } = state;
     const shown = cameras.find(({ name }) => name === camera) ?? cameras[0];
-    if (shown !== undefined) this.chooser.value = shown.name;
     const model = shown?.distortion?.model ?? 'none';
     const size = shown === undefined ? '' : `${shown.width_px}×${shown.height_px} px`;
     setText(this.lens, shown === undefined || model === 'none' ? size : `${model} · ${size}`);
@@ -62,15 +61,23 @@ export class CameraPanel extends PicturePanel {
     this.lens.title = model === 'none' ? `${size}, no distortion` : `${size}, distortion: ${model}`;
   }
 
+  /** Faults of the shown frame of each run, and figures of the main one's. */
   private updateInfo(): void {
     const { state } = this.context.store;
+    for (const [id, view] of this.views) {
+      const watched = state.watchedRun(id);
+      const cell = watched === undefined ? null : this.streamOf(watched);
+      const frame = watched?.pictures.get(cell?.key ?? '')?.frame ?? null;
+      const first = watched !== undefined && shownCamera(watched) === null;
+      const info = first ? frameInfo(watched.data, frame) : null;
+      rebuild(view.marks, JSON.stringify([info?.faults, info?.marks]), () =>
+        info === null ? [] : faultMarks(info),
+      );
+    }
     const info = frameInfo(state.data, this.frame);
     const first = state.cameras[0]?.name;
-    const other = state.camera !== null && state.camera !== first;
+    const other = state.main !== null && shownCamera(state.main) !== null;
     setAttribute(this.root, 'data-faults', other ? null : (info?.faults.join(' ') ?? null));
-    rebuild(this.marks, JSON.stringify(other ? [] : [info?.faults, info?.marks]), () =>
-      other || info === null ? [] : faultMarks(info),
-    );
     const key = JSON.stringify([info?.figures, other, state.runId === null]);
     rebuild(this.figures, key, () => {
       if (other)
